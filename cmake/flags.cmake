@@ -1,0 +1,18 @@
+# Every target links this one interface; sanitizers come from the presets.
+add_library(stickslip_flags INTERFACE)
+target_include_directories(stickslip_flags INTERFACE ${CMAKE_SOURCE_DIR})
+target_compile_options(stickslip_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror
+  # Live, replay and batch must give the same bits: the compiler may not fuse a*b+c.
+  -ffp-contract=off)
+
+set(STICKSLIP_SANITIZE "" CACHE STRING "Sanitizers for -fsanitize=, e.g. address,undefined or thread")
+if(STICKSLIP_SANITIZE)
+  target_compile_options(stickslip_flags INTERFACE
+    -fsanitize=${STICKSLIP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(stickslip_flags INTERFACE -fsanitize=${STICKSLIP_SANITIZE})
+  if(STICKSLIP_SANITIZE MATCHES "thread")
+    # GCC's ThreadSanitizer does not model the atomic_thread_fence inside Asio.
+    target_compile_options(stickslip_flags INTERFACE -Wno-tsan)
+  endif()
+endif()

@@ -1,0 +1,26 @@
+# stickslip_library(NAME [SOURCES ...] [PUBLIC ...] [PRIVATE ...]): one folder, one static library.
+function(stickslip_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  if(ARG_SOURCES)
+    add_library(${name} STATIC ${ARG_SOURCES})
+    target_link_libraries(${name} PUBLIC stickslip_flags ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  else()
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE stickslip_flags ${ARG_PUBLIC})
+  endif()
+endfunction()
+
+# stickslip_test(NAME SOURCES ... LINK ... [LABELS ...]): one GoogleTest program, one CTest entry.
+# The label "threads" marks what runs under ThreadSanitizer.
+function(stickslip_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LINK} GTest::gmock_main)
+  target_compile_definitions(${name} PRIVATE
+    STICKSLIP_SOURCE_DIR="${CMAKE_SOURCE_DIR}" STICKSLIP_BINARY_DIR="${CMAKE_BINARY_DIR}")
+  add_test(NAME ${name} COMMAND ${name})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+endfunction()

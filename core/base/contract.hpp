@@ -1,0 +1,21 @@
+/// \file
+/// Contract checks: a caller broke a documented promise, so the program stops at once with
+/// the place. Never for bad input, a board or a disk: those are values (result.hpp).
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace stickslip::base {
+
+/// Prints the broken condition with its place and aborts.
+[[noreturn]] inline void contract_broken(const char* condition, const char* file, int line) noexcept {
+  std::fprintf(stderr, "stickslip: contract broken: %s at %s:%d\n", condition, file, line);
+  std::abort();
+}
+
+}  // namespace stickslip::base
+
+/// Checked in every build: the cost is one predicted branch.
+#define STICKSLIP_EXPECTS(condition) \
+  ((condition) ? static_cast<void>(0) : ::stickslip::base::contract_broken(#condition, __FILE__, __LINE__))

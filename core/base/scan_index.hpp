@@ -1,0 +1,13 @@
+/// \file
+/// The time base of the whole product.
+#pragma once
+
+#include <cstdint>
+
+namespace stickslip::base {
+
+/// Number of a scan since the acquisition started; time = index / granted rate. It never repeats
+/// and never runs backwards; a jump is a gap.
+using ScanIndex = std::int64_t;
+
+}  // namespace stickslip::base

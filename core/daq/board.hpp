@@ -1,0 +1,83 @@
+/// \file
+/// The seam between the product and the world. Hardware, simulation and replay are equal
+/// implementations and pass one conformance suite (tests/conformance); no caller asks which.
+///
+///     base::Result<void> started = board.start();
+///     daq::ScanBlock block;
+///     while (board.read(block, 100ms) == daq::ReadStatus::kScans) ring.push(block);
+///     board.stop();
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/result.hpp"
+#include "core/daq/scan_block.hpp"
+
+namespace stickslip::daq {
+
+/// What a raw reading is.
+enum class RawQuantity {
+  kCounts,       ///< A/D code, 0 … maxdata.
+  kVolts,        ///< Imported, V.
+  kForce_N,      ///< Imported, N.
+  kCoefficient,  ///< Imported, force over the sled's weight.
+};
+
+/// Facts about the board in use, read back from it: what is granted, not what was asked.
+struct BoardInfo {
+  std::string driver;      ///< "comedi", "simulated", "replay".
+  std::string board_name;  ///< As the board names itself.
+  std::string device;      ///< Path or scene or file; for people.
+  int subdevice = 0;
+  int channel = 0;
+  RawQuantity quantity = RawQuantity::kCounts;
+  std::uint32_t maxdata = 0;  ///< Largest code; 0 if quantity is not kCounts.
+  double range_min_V = 0.0;
+  double range_max_V = 0.0;
+  /// raw → volts, ascending powers of (raw - expansion_origin); {0, 1} if quantity is not kCounts.
+  std::vector<double> polynomial{0.0, 1.0};
+  double expansion_origin = 0.0;
+  double scan_rate_requested_Hz = 0.0;
+  double scan_rate_granted_Hz = 0.0;
+};
+
+/// How a read ended.
+enum class ReadStatus {
+  kScans,         ///< The block holds at least one scan.
+  kTimeout,       ///< Nothing came in time; also before start() and after stop().
+  kEndOfInput,    ///< There will be no more scans (end of a replay or a simulation). Repeats.
+  kOverrun,       ///< The board lost scans and halted; start() again. Reported once.
+  kBoardMissing,  ///< The board is gone; only a new board object can bring it back. Repeats.
+  kFailed,        ///< Any other error; last_error() says which. stop() and start() again.
+};
+
+/// One analog input acquiring scans at a fixed rate.
+/// Thread-bound: the acquisition thread owns it between start() and stop().
+class Board {
+ public:
+  virtual ~Board() = default;
+
+  /// Constant during the life of the board.
+  [[nodiscard]] virtual const BoardInfo& info() const noexcept = 0;
+
+  /// Begins (or begins again) to acquire. Indices go on rising across restarts: the first scan
+  /// after a restart has an index ≥ the end of the last block delivered.
+  /// Calling it while acquiring is allowed and does nothing.
+  [[nodiscard]] virtual base::Result<void> start() = 0;
+
+  /// Waits at most `timeout` for scans and fills `block` with 1 … kMaxScans of them, stamped.
+  /// On any status but kScans block.count is 0. Does not allocate, lock, log or throw.
+  [[nodiscard]] virtual ReadStatus read(ScanBlock& block, std::chrono::milliseconds timeout) noexcept = 0;
+
+  /// Ends the acquisition; scans not read are lost. Allowed at any time, any number of times.
+  virtual void stop() noexcept = 0;
+
+  /// Why the last start() or read() failed, for people; empty if none did.
+  [[nodiscard]] virtual std::string last_error() const { return {}; }
+};
+
+}  // namespace stickslip::daq

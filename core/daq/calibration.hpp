@@ -1,0 +1,51 @@
+/// \file
+/// Raw reading → volts → newtons → coefficient, all linear but the board's polynomial.
+///
+///     Calibration calibration{board.info(), load_cell, normal_load_N};
+///     double c = calibration.coefficient(block.raw[0]);
+#pragma once
+
+#include <vector>
+
+#include "core/daq/board.hpp"
+
+namespace stickslip::daq {
+
+/// The load cell with its amplifier: force = (voltage − zero) · gain.
+struct LoadCell {
+  double gain_N_per_V = 1.0;
+  double zero_V = 0.0;
+};
+
+/// The chain for one channel. Real-time safe after construction.
+class Calibration {
+ public:
+  /// \param normal_load_N  sled mass × g.
+  /// \throws std::invalid_argument unless gain is finite and not zero, zero finite, load positive.
+  Calibration(const BoardInfo& board, LoadCell load_cell, double normal_load_N);
+
+  /// Volts at the board's input; the reading itself if it is no count.
+  [[nodiscard]] double volts(double raw) const noexcept;
+  /// Force on the load cell, N.
+  [[nodiscard]] double force_N(double raw) const noexcept;
+  /// Force over the normal load.
+  [[nodiscard]] double coefficient(double raw) const noexcept;
+
+  /// One A/D step as a coefficient; 0 if the reading is no count.
+  [[nodiscard]] double step_coefficient() const noexcept { return step_coefficient_; }
+  /// At a rail of the converter (code 0 or maxdata): the true value lies outside.
+  [[nodiscard]] bool saturated(double raw) const noexcept {
+    return quantity_ == RawQuantity::kCounts && (raw <= 0.0 || raw >= maxdata_);
+  }
+
+ private:
+  RawQuantity quantity_;
+  double maxdata_;
+  std::vector<double> polynomial_;
+  double expansion_origin_;
+  LoadCell load_cell_;
+  double normal_load_N_;
+  double step_coefficient_ = 0.0;
+};
+
+}  // namespace stickslip::daq

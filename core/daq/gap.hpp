@@ -1,0 +1,62 @@
+/// \file
+/// Lost scans are data: a jump in the scan index becomes a Gap with its cause.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "core/daq/scan_block.hpp"
+
+namespace stickslip::daq {
+
+enum class GapCause {
+  kUnknown,       ///< The index jumped without a report.
+  kOverrun,       ///< The board's buffer overflowed.
+  kRingFull,      ///< The processing thread was too slow: the ring dropped whole blocks.
+  kBoardMissing,  ///< The board was unplugged.
+  kMissingScans,  ///< The source itself says that they are missing (a replayed gap).
+};
+
+[[nodiscard]] constexpr std::string_view name(GapCause cause) noexcept {
+  switch (cause) {
+    case GapCause::kUnknown:
+      return "unknown";
+    case GapCause::kOverrun:
+      return "overrun";
+    case GapCause::kRingFull:
+      return "ring-full";
+    case GapCause::kBoardMissing:
+      return "board-missing";
+    case GapCause::kMissingScans:
+      return "missing-scans";
+  }
+  return "unknown";
+}
+
+/// Scans [first, first + count) did not arrive.
+struct Gap {
+  ScanIndex first = 0;
+  std::int64_t count = 0;
+  bool estimated = false;  ///< The count comes from a clock, not from the index.
+  GapCause cause = GapCause::kUnknown;
+};
+
+/// Compares each block with the end of the one before.
+class GapTracker {
+ public:
+  /// \param cause what to blame if there is a jump before this block.
+  /// \return the gap before the block, if any. The first block ever never has one.
+  [[nodiscard]] std::optional<Gap> observe(const ScanBlock& block,
+                                           GapCause cause = GapCause::kUnknown) noexcept {
+    std::optional<Gap> gap;
+    if (next_ && block.first > *next_) gap = Gap{*next_, block.first - *next_, false, cause};
+    next_ = block.end();
+    return gap;
+  }
+
+ private:
+  std::optional<ScanIndex> next_;
+};
+
+}  // namespace stickslip::daq

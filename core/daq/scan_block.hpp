@@ -1,0 +1,37 @@
+/// \file
+/// The unit that travels from the board to the detector: consecutive scans of one channel.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/base/scan_index.hpp"
+
+namespace stickslip::daq {
+
+using base::ScanIndex;
+
+/// Clock readings taken right after the read that delivered a block.
+struct ClockStamp {
+  std::int64_t monotonic_ns = 0;
+  std::int64_t realtime_ns = 0;
+};
+
+/// Consecutive scans, oldest first. Plain data: copied through the ring without allocation.
+struct ScanBlock {
+  static constexpr std::size_t kMaxScans = 64;
+
+  ScanIndex first = 0;      ///< Index of raw[0].
+  std::uint32_t count = 0;  ///< Scans in use, 0 … kMaxScans.
+  ClockStamp stamp;
+  /// Raw readings: A/D counts (a double holds every count of up to 53 bits exactly), or the
+  /// values of an imported trace in the unit that BoardInfo names.
+  std::array<double, kMaxScans> raw{};
+
+  [[nodiscard]] ScanIndex end() const noexcept { return first + static_cast<ScanIndex>(count); }
+  [[nodiscard]] std::span<const double> scans() const noexcept { return {raw.data(), count}; }
+};
+
+}  // namespace stickslip::daq

@@ -1,0 +1,50 @@
+/// \file
+/// The bounded queue between the acquisition thread and the processing thread.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+#include <boost/lockfree/spsc_queue.hpp>
+
+#include "core/daq/scan_block.hpp"
+
+namespace stickslip::daq {
+
+/// Lock-free, single producer, single consumer. When it is full the new block is dropped and
+/// counted: the producer never waits and never pops; the consumer sees the jump in the index.
+class ScanRing {
+ public:
+  /// \param capacity blocks; choose it for at least 60 s (see capacity_for()).
+  explicit ScanRing(std::size_t capacity) : queue_(capacity) {}
+
+  /// Blocks needed to bridge `bridge_s` seconds when a read may deliver as little as one block
+  /// every 5 ms (a Comedi wake-up at 250 Hz delivers every 8 ms) or as much as full blocks.
+  [[nodiscard]] static std::size_t capacity_for(double scan_rate_Hz, double bridge_s = 60.0) {
+    constexpr double kReadsPerSecond = 200.0;
+    const double full_blocks_per_second = scan_rate_Hz / static_cast<double>(ScanBlock::kMaxScans);
+    return static_cast<std::size_t>(bridge_s * (kReadsPerSecond + full_blocks_per_second)) + 1;
+  }
+
+  /// Producer only. \return false if the block was dropped.
+  bool push(const ScanBlock& block) noexcept {
+    if (queue_.push(block)) return true;
+    dropped_scans_.fetch_add(block.count, std::memory_order_relaxed);
+    return false;
+  }
+
+  /// Consumer only. \return blocks copied to `out`, at most `most`.
+  std::size_t pop(ScanBlock* out, std::size_t most) noexcept { return queue_.pop(out, most); }
+
+  /// Any thread.
+  [[nodiscard]] std::uint64_t dropped_scan_count() const noexcept {
+    return dropped_scans_.load(std::memory_order_relaxed);
+  }
+
+ private:
+  boost::lockfree::spsc_queue<ScanBlock> queue_;
+  std::atomic<std::uint64_t> dropped_scans_{0};
+};
+
+}  // namespace stickslip::daq

@@ -1,0 +1,109 @@
+/// \file
+/// Every scalar result of one test, under one name in HDF5, JSON, tables and messages.
+///
+///     for_each_result(results, [](const ResultName& name, const Estimate& estimate) { … });
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/friction/regime.hpp"
+
+namespace stickslip::friction {
+
+/// A number with how far to trust it, or the reason why there is none.
+struct Estimate {
+  std::optional<double> value;
+  std::optional<double> standard_error;          ///< Random: shrinks with replicates.
+  std::optional<double> systematic_uncertainty;  ///< Calibration, mass, conventions: does not.
+  std::string reason;                            ///< Set exactly when there is no value.
+
+  [[nodiscard]] static Estimate of(double number) { return {number, {}, {}, {}}; }
+  [[nodiscard]] static Estimate of(double number, double error) {
+    if (!std::isfinite(number)) return none("not finite");
+    return {number, std::isfinite(error) ? std::optional<double>{error} : std::nullopt, {}, {}};
+  }
+  [[nodiscard]] static Estimate none(std::string why) { return {{}, {}, {}, std::move(why)}; }
+
+  bool operator==(const Estimate&) const = default;
+};
+
+/// How a result is called everywhere.
+struct ResultName {
+  std::string_view name;
+  std::string_view unit;       ///< SI, "1" for a ratio or a count.
+  std::string_view long_name;  ///< For axes and tables.
+};
+
+/// Results of one test. Symbols as in docs/glossary.md.
+struct TestResults {
+  Regime regime = Regime::kUndecided;
+  std::string regime_reason;  ///< What decided it, for people.
+
+  Estimate transition_time;        ///< s after the record's first scan; only for mixed.
+  Estimate cycle_count;            ///< Falls that are slips.
+  Estimate stick_cycle_count;      ///< Those that ended in sticking.
+  Estimate period_median;          ///< s
+  Estimate oscillation_frequency;  ///< Hz, cycles over time.
+  Estimate static_coefficient;     ///< Traditional, by the method.
+  Estimate kinetic_coefficient;    ///< Traditional, by the method.
+  Estimate mu_s;                   ///< S of the model, corrected.
+  Estimate mu_k;                   ///< K of the model, corrected.
+  Estimate delta_mu;               ///< S − K.
+  Estimate amplitude;              ///< Half the mean range of the oscillation, coefficient.
+  Estimate gamma_over_2omega;
+  Estimate omega;  ///< rad/s, damped.
+  Estimate Q;      ///< Dimensionless speed.
+  Estimate Q_threshold;
+  Estimate threshold_speed;   ///< m/s
+  Estimate drift_rate;        ///< 1/s, of the mean coefficient.
+  Estimate delta_mu_scatter;  ///< Standard deviation of S − K from cycle to cycle.
+  Estimate spike_count;
+  Estimate gap_count;
+  Estimate lost_scan_count;
+  Estimate scan_rate_measured;  ///< Hz, from clocks.
+
+  bool operator==(const TestResults&) const = default;
+};
+
+/// Visits all estimates in the order of the record; `results` may be const or not.
+/// \param visit  called as visit(ResultName, Estimate&).
+template <typename Results, typename Visitor>
+void for_each_result(Results& results, Visitor&& visit) {
+  visit(ResultName{"transition_time", "s", "time of the transition between regimes"},
+        results.transition_time);
+  visit(ResultName{"cycle_count", "1", "number of slips"}, results.cycle_count);
+  visit(ResultName{"stick_cycle_count", "1", "number of slips that ended in sticking"},
+        results.stick_cycle_count);
+  visit(ResultName{"period_median", "s", "median period"}, results.period_median);
+  visit(ResultName{"oscillation_frequency", "Hz", "frequency of the oscillation"},
+        results.oscillation_frequency);
+  visit(ResultName{"static_coefficient", "1", "static coefficient, traditional rule"},
+        results.static_coefficient);
+  visit(ResultName{"kinetic_coefficient", "1", "kinetic coefficient, traditional rule"},
+        results.kinetic_coefficient);
+  visit(ResultName{"mu_s", "1", "static coefficient S of the model"}, results.mu_s);
+  visit(ResultName{"mu_k", "1", "kinetic coefficient K of the model"}, results.mu_k);
+  visit(ResultName{"delta_mu", "1", "S - K of the model"}, results.delta_mu);
+  visit(ResultName{"amplitude", "1", "half the range of the oscillation"}, results.amplitude);
+  visit(ResultName{"gamma_over_2omega", "1", "damping of the tester, gamma/(2 omega)"},
+        results.gamma_over_2omega);
+  visit(ResultName{"omega", "rad/s", "angular frequency of the damped oscillator"}, results.omega);
+  visit(ResultName{"Q", "1", "dimensionless sled speed"}, results.Q);
+  visit(ResultName{"Q_threshold", "1", "dimensionless speed above which the sled does not stick again"},
+        results.Q_threshold);
+  visit(ResultName{"threshold_speed", "m/s", "speed above which the sled does not stick again"},
+        results.threshold_speed);
+  visit(ResultName{"drift_rate", "1/s", "drift of the mean coefficient"}, results.drift_rate);
+  visit(ResultName{"delta_mu_scatter", "1", "standard deviation of S - K from cycle to cycle"},
+        results.delta_mu_scatter);
+  visit(ResultName{"spike_count", "1", "number of spikes"}, results.spike_count);
+  visit(ResultName{"gap_count", "1", "number of gaps"}, results.gap_count);
+  visit(ResultName{"lost_scan_count", "1", "number of scans lost in gaps"}, results.lost_scan_count);
+  visit(ResultName{"scan_rate_measured", "Hz", "scan rate measured against the clock"},
+        results.scan_rate_measured);
+}
+
+}  // namespace stickslip::friction

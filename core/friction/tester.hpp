@@ -1,0 +1,22 @@
+/// \file
+/// What is known about the tester before a test. [Penner 1995, Experimental]
+#pragma once
+
+#include <optional>
+
+namespace stickslip::friction {
+
+/// Standard acceleration of gravity, m/s² [3rd CGPM, 1901].
+inline constexpr double kStandardGravity_m_per_s2 = 9.80665;
+
+/// The sled and its drive.
+struct Tester {
+  double sled_mass_kg = 2.331;  ///< [Penner 1995]
+  double gravity_m_per_s2 = kStandardGravity_m_per_s2;
+  std::optional<double> pull_speed_m_per_s;  ///< Nominal; absent if not known.
+  std::optional<double> stiffness_N_per_m;   ///< Of the coupling; absent if not known.
+
+  [[nodiscard]] double normal_load_N() const noexcept { return sled_mass_kg * gravity_m_per_s2; }
+};
+
+}  // namespace stickslip::friction

@@ -1,0 +1,75 @@
+/// \file
+/// Where the walk of a scan ends: record, live page, table, broker are sinks.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/daq/gap.hpp"
+#include "core/daq/scan_block.hpp"
+#include "core/friction/cycle.hpp"
+#include "core/friction/results.hpp"
+
+namespace stickslip::pipeline {
+
+/// A test began. Its scans follow, pre-trigger scans first.
+struct TestStart {
+  std::int64_t number = 0;     ///< Since the start of the program, from 1.
+  daq::ScanIndex first = 0;    ///< First scan that belongs to the test's record.
+  daq::ScanIndex trigger = 0;  ///< Scan at which the force crossed the trigger.
+  daq::ClockStamp stamp;       ///< When the trigger was seen.
+};
+
+/// Why a test is over.
+enum class EndCause {
+  kUnloaded,          ///< The force went back to zero.
+  kNoRelativeMotion,  ///< The belt stopped; the coupling stays stretched.
+  kEndOfInput,        ///< The source has no more scans.
+  kStopped,           ///< The program was told to stop.
+  kBoardMissing,      ///< The board went away.
+};
+
+[[nodiscard]] constexpr std::string_view name(EndCause cause) noexcept {
+  switch (cause) {
+    case EndCause::kUnloaded:
+      return "unloaded";
+    case EndCause::kNoRelativeMotion:
+      return "no-relative-motion";
+    case EndCause::kEndOfInput:
+      return "end-of-input";
+    case EndCause::kStopped:
+      return "stopped";
+    case EndCause::kBoardMissing:
+      return "board-missing";
+  }
+  return "stopped";
+}
+
+struct TestEnd {
+  std::int64_t number = 0;
+  daq::ScanIndex end = 0;  ///< One past the last scan of the record.
+  EndCause cause = EndCause::kUnloaded;
+  friction::TestResults results;
+  std::vector<friction::Cycle> cycles;  ///< Final values, after the whole-test estimate.
+  std::vector<daq::ScanIndex> spikes;   ///< Scans replaced for the detector.
+};
+
+/// Called from the processing thread, in order: began, (scans | gap | cycle)*, ended. Must not
+/// throw; may block only if it must never lose data (the record), and then stalls the walk.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+
+  virtual void test_began(const TestStart& /*start*/) {}
+  /// Raw scans of the running test, consecutive, oldest first.
+  virtual void scans(daq::ScanIndex /*first*/, std::span<const double> /*raw*/,
+                     const daq::ClockStamp& /*stamp*/) {}
+  virtual void gap(const daq::Gap& /*gap*/) {}
+  /// As soon as it is known, before the whole-test estimate refines it.
+  virtual void cycle(const friction::Cycle& /*cycle*/) {}
+  virtual void test_ended(const TestEnd& /*end*/) {}
+};
+
+}  // namespace stickslip::pipeline
