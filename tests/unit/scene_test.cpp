@@ -176,6 +176,13 @@ TEST(SceneTruth, ShippedStickSlipSticksAndSlips) {
   EXPECT_NEAR(*truth.amplitude, 0.05 * friction::amplitude_ratio(Q, 0.022), 1e-14);  // [17]
 }
 
+TEST(SceneTruth, ShippedThresholdOscillationIsOnItsEdge) {
+  Scene scene = *load_scene(kScenes / "threshold-oscillation.toml");
+  EXPECT_EQ(scene_truth(scene, 350.0, 1).regime, friction::Regime::kStickSlip);
+  scene.constant_speed->pull_speed_m_per_s *= 1.0 + 1e-9;
+  EXPECT_EQ(scene_truth(scene, 350.0, 1).regime, friction::Regime::kRingDown);
+}
+
 TEST(SceneTruth, ModesFollowEachOtherWithoutHoles) {
   const Scene scene = *load_scene(kScenes / "stick-slip-at-12-in-per-min.toml");
   const friction::TestTruth truth = scene_truth(scene, scene.scan_rate_Hz, 1);
