@@ -1,0 +1,21 @@
+/// \file
+/// Small helps for messages of one line.
+#pragma once
+
+#include <cstddef>
+#include <set>
+#include <string>
+#include <string_view>
+
+namespace stickslip::base {
+
+/// The text without control characters (shown as \x0a) and cut after about `longest` bytes,
+/// never inside a UTF-8 sequence.
+[[nodiscard]] std::string one_line(std::string_view text, std::size_t longest = 60);
+
+/// "did you mean sled_mass? Known here: …" if a known word is within three edits of `word`,
+/// else "known here: …".
+[[nodiscard]] std::string spelling_hint(std::string_view word,
+                                        const std::set<std::string, std::less<>>& known);
+
+}  // namespace stickslip::base

@@ -1,0 +1,92 @@
+/// \file
+/// The append-only journal that a test is written to while it runs.
+///
+///     auto journal = JournalWriter::create(folder / "TEST.journal", header);
+///     journal->append_scans(first, raw, stamp);  // every 0.1 s
+///     journal->sync();                           // once a second
+///     journal->append_end(end);
+///
+/// Each entry is one write() of a 36-byte head and its payload under one CRC-32C, so that a reader
+/// knows every whole entry from a torn one. Measured to lose nothing that was written at kill -9
+/// and nothing that was synced at a power cut, which HDF5 written live does.
+/// Layout of an entry: docs/record-file.md.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/result.hpp"
+#include "core/record/record.hpp"
+
+namespace stickslip::record {
+
+inline constexpr std::string_view kJournalExtension = ".journal";
+
+/// Not thread-safe: the storage thread owns it. Move-only.
+class JournalWriter {
+ public:
+  /// Creates the file, which must not exist, writes the header and makes file and name durable.
+  /// A header without uuid gets one. Errors (kFailure) leave no file behind.
+  [[nodiscard]] static base::Result<JournalWriter> create(const std::filesystem::path& path,
+                                                          RecordHeader header);
+
+  JournalWriter(JournalWriter&& other) noexcept;
+  JournalWriter& operator=(JournalWriter&& other) noexcept;
+  JournalWriter(const JournalWriter&) = delete;
+  JournalWriter& operator=(const JournalWriter&) = delete;
+  /// Closes without syncing: sync() before, if it matters.
+  ~JournalWriter();
+
+  // Every append either adds a whole entry or returns why not (kFailure) and leaves the file as it
+  // was: after ENOSPC the same entry may be tried again. If even that cannot be done, all further
+  // appends fail with the first error.
+
+  /// \param first  rises strictly over all scans of the journal.
+  /// \param raw    consecutive; counts are whole numbers in 0 … maxdata (contract).
+  [[nodiscard]] base::Result<void> append_scans(daq::ScanIndex first, std::span<const double> raw,
+                                                const daq::ClockStamp& stamp);
+  [[nodiscard]] base::Result<void> append_spikes(std::span<const daq::ScanIndex> spikes);
+  [[nodiscard]] base::Result<void> append_gap(const daq::Gap& gap);
+  [[nodiscard]] base::Result<void> append_cycle(const friction::Cycle& cycle);
+  [[nodiscard]] base::Result<void> append_anchor(const ClockAnchor& anchor);
+  [[nodiscard]] base::Result<void> append_event(const Event& event);
+  /// The last entry; the journal is then ready for finalise().
+  [[nodiscard]] base::Result<void> append_end(const EndRecord& end);
+
+  /// fdatasync: everything appended so far survives a power cut if this succeeds.
+  [[nodiscard]] base::Result<void> sync();
+
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  /// Bytes in whole entries.
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+
+ private:
+  JournalWriter(std::filesystem::path path, int descriptor, std::uint32_t maxdata, bool counts);
+  [[nodiscard]] base::Result<void> append(std::uint16_t type, std::uint16_t encoding, std::int64_t first_scan,
+                                          std::int64_t time_ns, std::span<const std::byte> payload);
+
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  std::uint32_t maxdata_ = 0;
+  bool counts_ = false;
+  std::uint64_t size_ = 0;
+  std::string broken_;            ///< The first error that could not be undone; empty if none.
+  std::vector<std::byte> entry_;  ///< Reused, so that appending settles to no allocation.
+};
+
+/// What a journal held, up to the first entry that is not whole.
+struct JournalReading {
+  Record record;
+  std::uint64_t whole_size = 0;  ///< Bytes in whole entries.
+  std::uint64_t file_size = 0;
+  std::string stopped_by;  ///< Why reading stopped before the end of the file; empty if it did not.
+};
+
+/// Reads every whole entry. Errors: kFailure if the file cannot be read, kUsage if it is no journal
+/// or has no whole header.
+[[nodiscard]] base::Result<JournalReading> read_journal(const std::filesystem::path& path);
+
+}  // namespace stickslip::record

@@ -1,0 +1,148 @@
+/// \file
+/// What one record holds, in memory: the same for a journal, a finished HDF5 file and an
+/// imported trace. Names and units in the file: docs/record-file.md.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/daq/board.hpp"
+#include "core/daq/calibration.hpp"
+#include "core/daq/gap.hpp"
+#include "core/friction/cycle.hpp"
+#include "core/friction/results.hpp"
+#include "core/friction/tester.hpp"
+#include "core/friction/truth.hpp"
+
+namespace stickslip::record {
+
+inline constexpr std::string_view kFormat = "stickslip-record";
+inline constexpr std::int64_t kFormatVersion = 1;
+
+/// How whole the record is.
+enum class Status {
+  kComplete,     ///< The test ended and everything was written.
+  kInterrupted,  ///< The program stopped before the end of the test; made from an orphaned journal.
+  kRecovered,    ///< Something was lost or repaired on the way; see the reasons.
+  kIncomplete,   ///< Scans that arrived could not be stored (disk full).
+};
+
+/// The word in files and messages.
+[[nodiscard]] std::string_view name(Status status) noexcept;
+[[nodiscard]] std::optional<Status> status_from_name(std::string_view text) noexcept;
+
+/// What is known about the tester; what is not known is absent, never a default.
+struct TesterFacts {
+  std::optional<double> sled_mass_kg;
+  std::optional<double> gravity_m_per_s2;
+  std::optional<double> pull_speed_m_per_s;
+  std::optional<double> stiffness_N_per_m;
+
+  [[nodiscard]] static TesterFacts of(const friction::Tester& tester);
+  /// With friction::Tester's defaults for what is absent.
+  [[nodiscard]] friction::Tester tester() const;
+  bool operator==(const TesterFacts&) const = default;
+};
+
+/// Where the load cell's numbers come from; empty or absent where nobody said.
+struct CalibrationFacts {
+  std::string date;  ///< ISO 8601.
+  std::string certificate;
+  std::optional<double> gain_standard_error_N_per_V;
+
+  bool operator==(const CalibrationFacts&) const = default;
+};
+
+/// The sheet under the sled; empty where nobody said.
+struct SampleFacts {
+  std::string name;
+  std::string grade;
+  std::string direction;
+  std::string side;
+  std::optional<std::int64_t> replicate;  ///< From 1.
+  std::string operator_name;
+
+  bool operator==(const SampleFacts&) const = default;
+};
+
+/// Which program made the record, and told to do what.
+struct ProcessFacts {
+  std::string program;
+  std::string version;
+  std::string commit;
+  std::string configuration;  ///< The configuration file as it was read, whole.
+  std::string estimator;      ///< Tier of the estimators.
+  std::string method;         ///< Preset of the traditional rule.
+  std::string realtime;       ///< Scheduling and memory locking that were granted.
+
+  bool operator==(const ProcessFacts&) const = default;
+};
+
+/// Known before the first scan; the first entry of a journal.
+struct RecordHeader {
+  std::string uuid;   ///< Identifies the test for ever; JournalWriter and import make one if empty.
+  std::string title;  ///< For people.
+  std::optional<std::int64_t> test_number;        ///< Since the start of the program, from 1.
+  std::optional<daq::ScanIndex> trigger_scan;     ///< Where the force crossed the trigger.
+  std::optional<std::int64_t> start_realtime_ns;  ///< Since 1970, when the test began; absent if unknown.
+  daq::BoardInfo board;
+  std::optional<daq::LoadCell> load_cell;  ///< Required if the board gives counts.
+  CalibrationFacts calibration;
+  TesterFacts tester;
+  SampleFacts sample;
+  ProcessFacts process;
+};
+
+/// The clocks at a scan: from these the true scan rate is fitted.
+struct ClockAnchor {
+  daq::ScanIndex scan = 0;
+  std::int64_t monotonic_ns = 0;
+  std::int64_t realtime_ns = 0;
+
+  bool operator==(const ClockAnchor&) const = default;
+};
+
+/// Something a person should know about, at a scan of the test.
+struct Event {
+  daq::ScanIndex scan = 0;
+  std::int64_t realtime_ns = 0;
+  std::string text;
+
+  bool operator==(const Event&) const = default;
+};
+
+/// Known after the last scan; the last entry of a journal.
+struct EndRecord {
+  Status status = Status::kComplete;
+  std::vector<std::string> reasons;  ///< Why the status is not complete.
+  std::string cause;                 ///< Why the test was over, e.g. pipeline::name(EndCause).
+  std::optional<std::int64_t> end_realtime_ns;
+  std::optional<double> compute_time_s;
+  friction::TestResults results;
+  std::vector<friction::Cycle> cycles;  ///< Final; replaces those noted during the test.
+  std::vector<daq::ScanIndex> spikes;   ///< Scans replaced for the detector, rising; final as well.
+  std::optional<friction::TestTruth> truth;
+};
+
+/// Results of a test that could not be evaluated: every one absent for `reason`.
+[[nodiscard]] friction::TestResults absent_results(const std::string& reason);
+
+/// One test. scan and raw have equal lengths; scan rises strictly, a jump is a gap.
+struct Record {
+  RecordHeader header;
+  std::vector<daq::ScanIndex> scan;  ///< Index of the acquisition.
+  std::vector<double> raw;           ///< In board.quantity.
+  std::vector<daq::ScanIndex> spikes;
+  std::vector<daq::Gap> gaps;
+  std::vector<friction::Cycle> cycles;
+  std::vector<ClockAnchor> anchors;
+  std::vector<Event> events;
+  std::optional<EndRecord> end;  ///< Absent only in the journal of an interrupted test. Its cycles
+                                 ///< and spikes are moved to the members above by the readers.
+  std::string sha256;            ///< Of the raw values as stored, hexadecimal; set by read_record().
+};
+
+}  // namespace stickslip::record
