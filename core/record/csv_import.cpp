@@ -1,5 +1,6 @@
 #include "core/record/csv_import.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -12,6 +13,8 @@ namespace {
 const std::vector<std::string> kTimeColumns{"t_s", "t", "time_s", "time"};
 /// Slack for comparing a rounded number with its rounding error, itself computed.
 constexpr double kRoundingSlack = 1.0 + 1e-6;
+/// Of a digit: anything between the binary rounding and one digit serves.
+constexpr double kAlmostNone = 0.1;
 
 base::Result<void> check_positive(const char* what, std::optional<double> value, const char* unit) {
   if (value && (!(*value > 0.0) || !std::isfinite(*value))) {
@@ -32,11 +35,18 @@ base::Result<void> check_request(const CsvImportRequest& request) {
   return check_positive("stiffness", tester.stiffness_N_per_m, "N/m");
 }
 
-/// Half a digit of each of two printed times, plus their binary rounding.
-double tolerance_s(const CsvColumn& time, double a, double b) {
-  constexpr double kBinary = 4.0 * std::numeric_limits<double>::epsilon();
-  return 0.5 * (time.resolution(a) + time.resolution(b)) * kRoundingSlack +
-         kBinary * std::max(std::abs(a), std::abs(b));
+/// How far two printed times may be from `distance_s` apart: half a digit of each, plus their binary
+/// rounding. Where the distance is a whole number of digits both are rounded alike and nothing may
+/// differ; otherwise a lost row would pass where the step is one digit.
+double tolerance_s(const CsvColumn& time, double a, double b, double distance_s) {
+  constexpr double kBinary = 8.0 * std::numeric_limits<double>::epsilon();
+  const double binary_s = kBinary * std::max({std::abs(a), std::abs(b), distance_s});
+  const double digit_s = time.resolution(a);
+  const bool same_digit = digit_s == time.resolution(b);
+  if (same_digit && std::abs(std::remainder(distance_s, digit_s)) <= binary_s) {
+    return kAlmostNone * digit_s + binary_s;
+  }
+  return 0.5 * (digit_s + time.resolution(b)) * kRoundingSlack + binary_s;
 }
 
 /// Every step, and every time since the first row: small steps can hide in coarse digits.
@@ -45,10 +55,12 @@ base::Result<void> check_time(const CsvImportRequest& request, const CsvTable& t
   const double step_s = 1.0 / request.rate_Hz;
   const std::string path = request.path.string();
   for (std::size_t i = 1; i < time.size(); ++i) {
-    const double expected_s = time.front() + static_cast<double>(i) * step_s;
+    const double elapsed_s = static_cast<double>(i) * step_s;
+    const double expected_s = time.front() + elapsed_s;
     const bool step_fits =
-        std::abs(time[i] - time[i - 1] - step_s) <= tolerance_s(table.time, time[i], time[i - 1]);
-    const bool time_fits = std::abs(time[i] - expected_s) <= tolerance_s(table.time, time[i], time.front());
+        std::abs(time[i] - time[i - 1] - step_s) <= tolerance_s(table.time, time[i], time[i - 1], step_s);
+    const bool time_fits =
+        std::abs(time[i] - expected_s) <= tolerance_s(table.time, time[i], time.front(), elapsed_s);
     if (step_fits && time_fits) continue;
     const double measured_Hz = static_cast<double>(time.size() - 1) / (time.back() - time.front());
     return base::usage_error(
