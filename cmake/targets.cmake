@@ -11,7 +11,8 @@ function(stickslip_library name)
 endfunction()
 
 # stickslip_test(NAME SOURCES ... LINK ... [LABELS ...]): one GoogleTest program, one CTest entry.
-# The label "threads" marks what runs under ThreadSanitizer.
+# The label "threads" marks what runs under ThreadSanitizer; the target threads_tests builds just that.
+add_custom_target(threads_tests)
 function(stickslip_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
@@ -23,4 +24,7 @@ function(stickslip_test name)
     set(ARG_TIMEOUT 300)
   endif()
   set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+  if("threads" IN_LIST ARG_LABELS)
+    add_dependencies(threads_tests ${name})
+  endif()
 endfunction()

@@ -1,0 +1,52 @@
+/// \file
+/// An A/D board under Linux Comedi as a daq::Board.
+///
+///     ComediBoardSettings settings;
+///     settings.device = "/dev/comedi0";
+///     auto board = make_comedi_board(settings, *clock);
+///     if (!board) return tl::unexpected(board.error());
+///
+/// Facts about Comedi that shape this code are named where they are used. The kernel gives scans no
+/// time stamp: after a restart the clock tells how many scans went by.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/base/clock.hpp"
+#include "core/base/result.hpp"
+#include "core/daq/board.hpp"
+#include "drivers/comedi/comedi_calls.hpp"
+
+namespace stickslip::drivers {
+
+/// What is asked of a board; BoardInfo says what was granted.
+struct ComediBoardSettings {
+  std::string device = "/dev/comedi0";
+  std::optional<unsigned> subdevice;  ///< The first analog input if absent.
+  unsigned channel = 0;
+  /// Voltages that must fit; the narrowest span of the board that holds both is taken.
+  double range_min_V = -10.0;
+  double range_max_V = 10.0;
+  AnalogReference reference = AnalogReference::kGround;
+  double scan_rate_Hz = 350.0;  ///< [Penner 1995]
+  /// Largest relative difference between the rate asked and the rate granted.
+  double scan_rate_tolerance = 0.01;
+  /// The kernel's buffer, bytes; rounded up to pages. Comedi's default: 50 min at 350 Hz and 2 bytes.
+  unsigned buffer_size = 2048U * 1024U;
+};
+
+/// Opens the board and asks it what it will grant; acquires nothing and disturbs no other program.
+/// \param clock  must outlive the board.
+/// \return a usage error if the settings do not suit the board, a failure if the board cannot be used;
+///         either says what to do.
+[[nodiscard]] base::Result<std::unique_ptr<daq::Board>> make_comedi_board(const ComediBoardSettings& settings,
+                                                                          base::Clock& clock);
+
+/// The same over the calls given: for tests.
+[[nodiscard]] base::Result<std::unique_ptr<daq::Board>> make_comedi_board(const ComediBoardSettings& settings,
+                                                                          base::Clock& clock,
+                                                                          std::unique_ptr<ComediCalls> calls);
+
+}  // namespace stickslip::drivers

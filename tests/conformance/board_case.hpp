@@ -1,0 +1,35 @@
+/// \file
+/// What the conformance suite needs to know of a kind of board. Each kind has a file of its own here
+/// that makes one case.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include "core/base/clock.hpp"
+#include "core/daq/board.hpp"
+#include "tests/support/manual_clock.hpp"
+
+namespace stickslip::test {
+
+/// A board and whatever it lives from, destroyed in the right order.
+struct BoardRig {
+  std::shared_ptr<void> world;  ///< Fake hardware, files: outlives the board.
+  std::unique_ptr<daq::Board> board;
+};
+
+/// One kind of board.
+struct BoardCase {
+  std::string name;  ///< Letters and digits: part of the test's name.
+  /// A fresh board over the same input each time.
+  std::function<BoardRig(ManualClock&)> make;
+  bool ends = false;  ///< The input comes to an end.
+};
+
+inline void PrintTo(const BoardCase& board_case, std::ostream* out) { *out << board_case.name; }
+
+[[nodiscard]] BoardCase comedi_case();
+
+}  // namespace stickslip::test

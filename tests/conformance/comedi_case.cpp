@@ -1,0 +1,20 @@
+#include <stdexcept>
+#include <utility>
+
+#include "drivers/comedi/comedi_board.hpp"
+#include "tests/conformance/board_case.hpp"
+#include "tests/support/fake_comedi.hpp"
+
+namespace stickslip::test {
+
+BoardCase comedi_case() {
+  const auto make = [](ManualClock& clock) {
+    auto world = std::make_shared<FakeComediWorld>();
+    auto board = drivers::make_comedi_board({}, clock, std::make_unique<FakeComedi>(*world, clock));
+    if (!board) throw std::runtime_error(board.error().message);
+    return BoardRig{std::move(world), std::move(*board)};
+  };
+  return {"ComediOnAFakeTable", make, /*ends=*/false};
+}
+
+}  // namespace stickslip::test

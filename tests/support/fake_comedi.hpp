@@ -1,0 +1,99 @@
+/// \file
+/// A board of the kind that comedi_test is, without a kernel: the calls answer as the real ones were
+/// seen to answer on Debian 12's kernel 6.1, odd moments included.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/comedi/comedi_calls.hpp"
+#include "tests/support/manual_clock.hpp"
+
+namespace stickslip::test {
+
+/// What the world does to the board. Shared by the test and the calls that the board under test owns;
+/// change it at any moment.
+struct FakeComediWorld {
+  // The board.
+  unsigned flags = drivers::subdevice_flag::kCanCommand | drivers::subdevice_flag::kGround;
+  std::vector<drivers::InputRange> ranges{{-10.0, 10.0, true}, {-5.0, 5.0, true}};
+  std::uint32_t maxdata = 65535;
+  unsigned rounding_ns = 1000;  ///< Periods are rounded to this.
+  bool has_scan_timer = true;
+  bool has_convert_now = true;
+  bool takes_wake_end_of_scan = true;
+  std::optional<drivers::ConversionPolynomial> soft_calibration;
+
+  // What happens.
+  int open_error = 0;            ///< errno of comedi_open().
+  bool used_by_another = false;  ///< Another program acquires.
+  bool removed = false;          ///< Unplugged.
+  bool cancelled_by_another = false;
+  int largest_read = 1 << 20;  ///< Bytes that one read() hands over at most.
+  std::chrono::nanoseconds wake_interval{std::chrono::milliseconds(8)};  ///< Of the driver's timer.
+
+  // What was asked of it.
+  std::vector<drivers::ComediCommand> tested;
+  int command_count = 0;
+  unsigned buffer_size = 0;
+  std::chrono::milliseconds longest_poll{0};
+
+  /// Reading number `i` since the command: covers all codes but the rails, repeats only after 65533.
+  [[nodiscard]] std::uint32_t reading(std::int64_t i) const {
+    return 1U + static_cast<std::uint32_t>((i * 7919) % (static_cast<std::int64_t>(maxdata) - 1));
+  }
+};
+
+/// Real-time safe where the real one is.
+class FakeComedi final : public drivers::ComediCalls {
+ public:
+  /// Both must outlive it. poll() moves the clock.
+  FakeComedi(FakeComediWorld& world, ManualClock& clock) : world_(world), clock_(clock) {}
+
+  int open(const std::string& device) override;
+  void close() noexcept override { running_ = false; }
+  std::string driver_name() override { return "fake"; }
+  std::string board_name() override { return "fake-board"; }
+  int find_analog_input() override { return world_.removed ? -ENODEV : 0; }
+  int channel_count(unsigned subdevice) override;
+  unsigned subdevice_flags(unsigned subdevice) override { return subdevice == 0 ? world_.flags : 0U; }
+  std::uint32_t maxdata(unsigned subdevice, unsigned channel) override;
+  int range_count(unsigned subdevice, unsigned channel) override;
+  std::optional<drivers::InputRange> range(unsigned subdevice, unsigned channel, unsigned range) override;
+  std::optional<drivers::ConversionPolynomial> hard_calibration(unsigned subdevice, unsigned channel,
+                                                                unsigned range) override;
+  base::Result<drivers::ConversionPolynomial> soft_calibration(unsigned subdevice, unsigned channel,
+                                                               unsigned range) override;
+  int command_test(drivers::ComediCommand& command) override;
+  int command(const drivers::ComediCommand& command) override;
+  int cancel(unsigned subdevice) noexcept override;
+  int set_buffer_size(unsigned subdevice, unsigned size) override;
+  int poll(std::chrono::milliseconds timeout) noexcept override;
+  int read(std::span<std::byte> buffer) noexcept override;
+
+ private:
+  static constexpr int kChannelCount = 8;
+
+  [[nodiscard]] int stage_of(drivers::ComediCommand& command) const;
+  [[nodiscard]] std::int64_t sample_size() const;
+  [[nodiscard]] std::int64_t period_ns() const;
+  /// The driver's timer as of now: scans taken since the command, stopped by an overrun.
+  void run_board() noexcept;
+
+  FakeComediWorld& world_;
+  ManualClock& clock_;
+  drivers::ComediCommand command_;
+  bool running_ = false;  ///< The subdevice is busy with a command of ours.
+  bool overrun_ = false;  ///< It halted; what is stored can still be read.
+  std::int64_t began_ns_ = 0;
+  std::int64_t taken_bytes_ = 0;  ///< Since the command.
+  std::int64_t read_bytes_ = 0;
+};
+
+}  // namespace stickslip::test

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# lint/run.sh BUILD_DIRECTORY: every static check; runs all of them, fails if any does.
+set -euo pipefail
+cd "$(dirname "$(readlink -f "$0")")/../.."
+build=${1:?a configured build directory, for its compile_commands.json}
+failed=0
+
+check() {
+  local name=$1 began=$SECONDS
+  shift
+  if "$@"; then
+    echo "lint: $name: clean ($((SECONDS - began)) s)"
+  else
+    echo "lint: $name: FAILED ($((SECONDS - began)) s)" >&2
+    failed=1
+  fi
+}
+
+# shellcheck disable=SC2317  # the functions below are called by check
+formatted() { git ls-files -z '*.cpp' '*.hpp' | xargs -0 -r clang-format --dry-run -Werror; }
+
+# shellcheck disable=SC2317
+scripts_are_sound() { git grep -lzE '^#!.*\b(ba)?sh$' -- . | xargs -0 -r shellcheck; }
+
+# One file per process, as many processes as processors. The sources are those that the build
+# compiles; headers are checked through them. stderr only counts suppressed warnings.
+# shellcheck disable=SC2317
+tidy() {
+  sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' "$build/compile_commands.json" | sort -u |
+    grep -v "^$(realpath "$build")/" |
+    xargs -r -P "$(nproc)" -n 1 clang-tidy -p "$build" --quiet 2>/dev/null
+}
+
+check "who includes whom" python3 tools/lint/include_table.py
+check "clang-format" formatted
+check "shellcheck" scripts_are_sound
+check "clang-tidy" tidy
+exit "$failed"
