@@ -28,7 +28,6 @@ class Facts {
   virtual void orphan_finalised(const std::filesystem::path& /*file*/) {}
   virtual void orphan_kept(const std::filesystem::path& /*journal*/, std::string_view /*why*/) {}
   virtual void control_listening(std::string_view /*socket*/) {}
-  virtual void control_failed(std::string_view /*why*/) {}
   virtual void stopping(std::string_view /*why*/) {}
 };
 
