@@ -1,0 +1,243 @@
+#include "core/sim/propagator.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "core/base/contract.hpp"
+#include "core/sim/first_rise.hpp"
+
+namespace stickslip::sim {
+
+using friction::Mode;
+using friction::SlipWaveform;
+
+namespace {
+
+constexpr ScanTime kForEver{std::numeric_limits<std::int64_t>::max(), 0.0};
+
+/// Without the offset K: what is left is a solution of the homogeneous equation.
+SlipWaveform homogeneous(const SlipWaveform& slip, double sign) {
+  return {0.0, sign * slip.D, sign * slip.r, slip.oscillator};
+}
+
+/// c′ as a function of its own: from c′(0) with the slope c″(0).
+SlipWaveform derivative(const SlipWaveform& slip) {
+  const double slope = -slip.oscillator.gamma_per_s * slip.r - slip.oscillator.omega0_squared() * slip.D;
+  return {0.0, slip.r, slope, slip.oscillator};
+}
+
+}  // namespace
+
+Propagator::Propagator(const Motion& motion, double scan_rate_Hz, MotionObserver* observer)
+    : motion_(motion),
+      scan_rate_Hz_(scan_rate_Hz),
+      observer_(observer),
+      omega0_squared_(motion.oscillator.omega0_squared()) {
+  STICKSLIP_EXPECTS(scan_rate_Hz > 0.0);
+  STICKSLIP_EXPECTS(motion.mu_k >= 0.0 && motion.mu_s >= motion.mu_k && omega0_squared_ > 0.0);
+  restart();
+}
+
+void Propagator::restart() {
+  next_scan_ = 0;
+  segment_ = 0;
+  start_ = {};
+  segment_end_ = {};
+  belt_rate_ = 0.0;
+  halt_when_unloaded_ = false;
+  begin(Phase::kStick, {0.0, 0.0}, false, false);  // The first segment follows at once.
+}
+
+void Propagator::next(std::span<double> coefficient) {
+  for (double& c : coefficient) {
+    pass_until(next_scan_);
+    const double t_s = ScanTime{next_scan_, 0.0}.periods_since(start_) / scan_rate_Hz_;
+    const double extension = state_at(t_s).c;
+    c = motion_.one_way_coupling ? std::fmax(extension, 0.0) : extension;
+    ++next_scan_;
+  }
+}
+
+void Propagator::skip(std::int64_t scans) {
+  next_scan_ += scans;
+  pass_until(next_scan_);
+}
+
+void Propagator::pass_until(std::int64_t scan) {
+  while (ending_ != Ending::kNever && end_ <= ScanTime{scan, 0.0}) pass_end();
+}
+
+SlipWaveform Propagator::waveform() const {
+  const double sign = phase_ == Phase::kFaster ? -1.0 : 1.0;
+  return {motion_.mu_k, sign * begun_.c - motion_.mu_k, sign * begun_.rate, motion_.oscillator};
+}
+
+double Propagator::free_acceleration() const {
+  return std::copysign(omega0_squared_ * motion_.mu_k, belt_rate_ - begun_.rate);
+}
+
+Propagator::State Propagator::state_at(double t_s) const {
+  switch (phase_) {
+    case Phase::kSlower:
+      return {slip_.value(t_s), slip_.rate(t_s)};
+    case Phase::kFaster:
+      return {-slip_.value(t_s), -slip_.rate(t_s)};
+    case Phase::kFree: {
+      const double acceleration = free_acceleration();
+      return {begun_.c + t_s * (begun_.rate + acceleration * t_s / 2.0), begun_.rate + acceleration * t_s};
+    }
+    case Phase::kStick:
+    case Phase::kRide:
+      break;
+  }
+  return {begun_.c + belt_rate_ * t_s, belt_rate_};
+}
+
+void Propagator::next_segment() {
+  halt_when_unloaded_ = false;
+  belt_rate_ = 0.0;
+  if (segment_ == motion_.belt.size()) {
+    segment_end_ = kForEver;
+    return;
+  }
+  const BeltSegment& segment = motion_.belt[segment_++];
+  belt_rate_ = motion_.oscillator.stick_rate_per_s(segment.speed_m_per_s, motion_.gravity_m_per_s2);
+  halt_when_unloaded_ = segment.halt_when_unloaded;
+  segment_end_ = segment_end_.later(segment.duration_s * scan_rate_Hz_);
+}
+
+Propagator::Phase Propagator::phase_at_belt_speed(double c) const {
+  if (std::abs(c) <= motion_.mu_s) return Phase::kStick;
+  // Beyond the static limit the sled cannot follow the belt: it goes where the forces drive it. If
+  // they drive it back into the belt's speed from both sides, it stays there.
+  const double damping = -motion_.oscillator.gamma_per_s * belt_rate_;
+  if (damping - omega0_squared_ * (c - motion_.mu_k) < 0.0) return Phase::kSlower;
+  if (damping - omega0_squared_ * (c + motion_.mu_k) > 0.0) return Phase::kFaster;
+  return Phase::kStick;
+}
+
+void Propagator::enter(State state, bool capture) {
+  if (halt_when_unloaded_ && state.c <= 0.0) {
+    halt_when_unloaded_ = false;
+    belt_rate_ = 0.0;
+  }
+  const bool leaving = state.rate < 0.0 || (state.rate == 0.0 && belt_rate_ < 0.0);
+  const bool slack = motion_.one_way_coupling && (state.c < 0.0 || (state.c == 0.0 && leaving));
+  if (slack) {
+    begin(state.rate == belt_rate_ ? Phase::kRide : Phase::kFree, state, false, capture);
+  } else if (state.rate == belt_rate_) {
+    const Phase phase = phase_at_belt_speed(state.c);
+    begin(phase, state, phase != Phase::kStick, capture);  // An onset after no time at all.
+  } else {
+    begin(state.rate < belt_rate_ ? Phase::kSlower : Phase::kFaster, state, false, capture);
+  }
+}
+
+void Propagator::begin(Phase phase, State state, bool onset, bool capture) {
+  phase_ = phase;
+  begun_ = state;
+  if (phase == Phase::kSlower || phase == Phase::kFaster) slip_ = waveform();
+  if (observer_ != nullptr) {
+    const Mode mode = phase == Phase::kStick                               ? Mode::kStick
+                      : phase == Phase::kSlower || phase == Phase::kFaster ? Mode::kSlip
+                                                                           : Mode::kSlack;
+    observer_->mode_began({start_, mode, onset, capture});
+  }
+  plan_end();
+}
+
+void Propagator::offer(Ending ending, std::optional<double> t_s) {
+  if (!t_s) return;
+  const double duration_s = std::fmax(*t_s, 0.0);
+  if (ending_ != Ending::kNever && !(duration_s < duration_s_)) return;
+  const ScanTime end = start_.later(duration_s * scan_rate_Hz_);
+  if (end > segment_end_) return;
+  ending_ = ending;
+  duration_s_ = duration_s;
+  end_ = end;
+}
+
+void Propagator::plan_end() {
+  ending_ = Ending::kNever;
+  switch (phase_) {
+    case Phase::kStick:
+      if (belt_rate_ > 0.0) offer(Ending::kGivesWay, (motion_.mu_s - begun_.c) / belt_rate_);
+      if (belt_rate_ < 0.0) {
+        offer(Ending::kGivesWay, (-motion_.mu_s - begun_.c) / belt_rate_);
+        const bool can_unload = (motion_.one_way_coupling || halt_when_unloaded_) && begun_.c >= 0.0;
+        if (can_unload) offer(Ending::kUnloaded, -begun_.c / belt_rate_);
+      }
+      break;
+    case Phase::kSlower:
+    case Phase::kFaster:
+      plan_slip_end();
+      break;
+    case Phase::kFree:
+      plan_free_end();
+      break;
+    case Phase::kRide:
+      if (belt_rate_ > 0.0) offer(Ending::kTouchesCoupling, -begun_.c / belt_rate_);
+      break;
+  }
+  if (ending_ == Ending::kNever && segment_end_ < kForEver) {
+    ending_ = Ending::kSegment;
+    end_ = segment_end_;
+    duration_s_ = segment_end_.periods_since(start_) / scan_rate_Hz_;
+  }
+}
+
+void Propagator::plan_slip_end() {
+  const bool faster = phase_ == Phase::kFaster;
+  const double level = faster ? -belt_rate_ : belt_rate_;
+  offer(Ending::kCaptured, first_rise_s(derivative(slip_), level, Touch::kCounts));
+  if (!motion_.one_way_coupling && !(halt_when_unloaded_ && begun_.c > 0.0)) return;
+  // Slower: K − c rises to K where the force is gone; faster, mirrored: −c − K rises to −K.
+  const SlipWaveform unloading = homogeneous(slip_, faster ? 1.0 : -1.0);
+  offer(Ending::kUnloaded, first_rise_s(unloading, faster ? -motion_.mu_k : motion_.mu_k, Touch::kDoesNot));
+}
+
+void Propagator::plan_free_end() {
+  const double acceleration = free_acceleration();
+  if (acceleration != 0.0) offer(Ending::kMeetsBelt, (belt_rate_ - begun_.rate) / acceleration);
+  // c + c′t + at²/2 = 0 from below, by the root that does not cancel.
+  const double discriminant = begun_.rate * begun_.rate - 2.0 * acceleration * begun_.c;
+  if (discriminant < 0.0) return;
+  const double root = std::sqrt(discriminant);
+  if (begun_.rate > 0.0) {
+    offer(Ending::kTouchesCoupling, -2.0 * begun_.c / (begun_.rate + root));
+  } else if (acceleration > 0.0) {
+    offer(Ending::kTouchesCoupling, (root - begun_.rate) / acceleration);
+  }
+}
+
+void Propagator::pass_end() {
+  const State state = state_at(duration_s_);
+  start_ = end_;
+  switch (ending_) {
+    case Ending::kNever:
+      return;
+    case Ending::kGivesWay:
+      // Exactly at the limit, and exactly at the belt's speed: [13], [14].
+      begin(belt_rate_ > 0.0 ? Phase::kSlower : Phase::kFaster,
+            {std::copysign(motion_.mu_s, belt_rate_), belt_rate_}, true, false);
+      return;
+    case Ending::kCaptured:
+      enter({state.c, belt_rate_}, true);
+      return;
+    case Ending::kMeetsBelt:
+      enter({std::fmin(state.c, 0.0), belt_rate_}, false);
+      return;
+    case Ending::kUnloaded:
+      enter({0.0, std::fmin(state.rate, 0.0)}, false);
+      return;
+    case Ending::kTouchesCoupling:
+      enter({0.0, std::fmax(state.rate, 0.0)}, false);
+      return;
+    case Ending::kSegment:
+      next_segment();
+      enter(state, false);
+      return;
+  }
+}
+
+}  // namespace stickslip::sim

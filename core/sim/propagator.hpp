@@ -1,0 +1,120 @@
+/// \file
+/// The motion of the sled without steps: closed-form pieces joined at events whose times are
+/// solved for, so that the result does not depend on the scan rate.
+///
+///     Propagator sled{motion, 350.0};
+///     std::array<double, 64> coefficient;
+///     sled.next(coefficient);  // scans 0 … 63
+///
+/// Conventions of Penner 1995: slip starts when the spring alone holds S [13]; the load cell reads
+/// the spring.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/friction/oscillator.hpp"
+#include "core/friction/slip_waveform.hpp"
+#include "core/friction/truth.hpp"
+#include "core/sim/scan_time.hpp"
+
+namespace stickslip::sim {
+
+/// The belt at constant speed for a while.
+struct BeltSegment {
+  double duration_s = 0.0;
+  double speed_m_per_s = 0.0;  ///< Negative: the carriage returns.
+  /// Stop the belt for the rest of the segment as soon as the force is zero.
+  bool halt_when_unloaded = false;
+};
+
+/// What the motion stage of a scene comes to.
+struct Motion {
+  friction::Oscillator oscillator;
+  double mu_s = 0.0;  ///< S ≥ mu_k
+  double mu_k = 0.0;  ///< K ≥ 0
+  double gravity_m_per_s2 = 0.0;
+  bool one_way_coupling = false;
+  std::vector<BeltSegment> belt;  ///< In order; at rest after the last.
+};
+
+/// The sled changes its mode.
+struct ModeStart {
+  ScanTime time;
+  friction::Mode mode = friction::Mode::kStick;
+  bool onset = false;    ///< A slip that starts because sticking gave way.
+  bool capture = false;  ///< The slip before ended because the sled had reached the belt's speed.
+};
+
+/// Told of each change of mode, in order.
+class MotionObserver {
+ public:
+  virtual ~MotionObserver() = default;
+  virtual void mode_began(const ModeStart& start) = 0;
+};
+
+/// Needs the same memory however long it runs. Thread-bound.
+class Propagator {
+ public:
+  /// \param scan_rate_Hz > 0. \param observer may be null; outlives the propagator.
+  Propagator(const Motion& motion, double scan_rate_Hz, MotionObserver* observer = nullptr);
+
+  /// Back to scan 0, at rest and unloaded. Does not allocate.
+  void restart();
+
+  /// The coefficient F/(m g) at the next scans. Does not allocate.
+  void next(std::span<double> coefficient);
+
+  /// Goes on by `scans` without looking at them, at the cost of the events alone.
+  void skip(std::int64_t scans);
+
+ private:
+  /// What the sled is doing; two of them are slips, two are slack.
+  enum class Phase { kStick, kSlower, kFaster, kFree, kRide };
+  /// How the present piece will end.
+  enum class Ending { kNever, kGivesWay, kCaptured, kUnloaded, kTouchesCoupling, kMeetsBelt, kSegment };
+
+  struct State {
+    double c;     ///< Below zero with one-way coupling: the slack, as a coefficient.
+    double rate;  ///< c′, 1/s
+  };
+
+  [[nodiscard]] State state_at(double t_s) const;
+  [[nodiscard]] double free_acceleration() const;
+  [[nodiscard]] friction::SlipWaveform waveform() const;
+
+  void next_segment();
+  /// Chooses the phase from the state. \param capture as in ModeStart.
+  void enter(State state, bool capture);
+  void begin(Phase phase, State state, bool onset, bool capture);
+  [[nodiscard]] Phase phase_at_belt_speed(double c) const;
+  void plan_end();
+  void offer(Ending ending, std::optional<double> t_s);
+  void plan_slip_end();
+  void plan_free_end();
+  void pass_end();
+  void pass_until(std::int64_t scan);
+
+  Motion motion_;
+  double scan_rate_Hz_;
+  MotionObserver* observer_;
+  double omega0_squared_;
+
+  std::int64_t next_scan_ = 0;
+  std::size_t segment_ = 0;  ///< Of motion_.belt; its size when all are over.
+  ScanTime segment_end_;
+  double belt_rate_ = 0.0;  ///< r = ω₀² v/g of the belt, 1/s
+  bool halt_when_unloaded_ = false;
+
+  Phase phase_ = Phase::kStick;
+  ScanTime start_;               ///< Of the present piece.
+  State begun_{0.0, 0.0};        ///< State at start_.
+  friction::SlipWaveform slip_;  ///< For the two slips; mirrored for kFaster.
+  Ending ending_ = Ending::kNever;
+  ScanTime end_;
+  double duration_s_ = 0.0;  ///< From start_ to end_.
+};
+
+}  // namespace stickslip::sim

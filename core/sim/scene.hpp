@@ -1,0 +1,98 @@
+/// \file
+/// What the simulated tester is to play: one test of one paper on one tester.
+///
+///     base::Result<Scene> scene = load_scene("config/scenes/stick-slip-at-12-in-per-min.toml");
+///
+/// A scene names its effects; what it does not name is not built. They act in four stages, in this
+/// order: motion (what the sled does), transducer (what the load cell makes of it), sampling (when
+/// the converter looks) and signal (what happens to the voltage on the way into the record). A new
+/// effect is a setting here, a reader in scene_file.cpp, and a part of motion_of() or of SceneRun.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/base/result.hpp"
+#include "core/friction/oscillator.hpp"
+#include "core/friction/tester.hpp"
+#include "core/sim/propagator.hpp"
+
+namespace stickslip::sim {
+
+/// The load cell with its amplifier: voltage = zero + force/gain.
+struct SceneLoadCell {
+  double gain_N_per_V = 1.0;
+  double zero_V = 0.0;
+};
+
+/// Effect `constant_speed` (motion): a whole test as an operator runs it.
+struct ConstantSpeed {
+  double idle_s = 0.0;              ///< At rest before the pull, for the scans before the trigger.
+  double pull_speed_m_per_s = 0.0;  ///< > 0
+  double pull_s = 0.0;
+  double stop_s = 0.0;                ///< Belt at rest, coupling left stretched.
+  double return_speed_m_per_s = 0.0;  ///< > 0; the carriage goes back until the force is zero.
+  double return_s = 0.0;              ///< Time for the return; the carriage waits for the rest of it.
+  double rest_s = 0.0;                ///< Unloaded, before the next test.
+
+  [[nodiscard]] double duration_s() const noexcept { return idle_s + pull_s + stop_s + return_s + rest_s; }
+};
+
+/// Effect `white_noise` (signal): independent normal numbers added to the voltage.
+struct WhiteNoise {
+  double sd_V = 0.0;
+};
+
+/// Effect `quantisation` (signal): an ideal A/D converter that saturates at its rails.
+struct Quantisation {
+  int bits = 16;
+  double range_min_V = -10.0;
+  double range_max_V = 10.0;
+
+  [[nodiscard]] std::uint32_t maxdata() const noexcept {
+    return static_cast<std::uint32_t>((std::uint64_t{1} << static_cast<unsigned>(bits)) - 1);
+  }
+  bool operator==(const Quantisation&) const = default;
+};
+
+struct Scene {
+  std::string name;         ///< The file's name without its ending.
+  std::string description;  ///< One line for people.
+  std::string text;         ///< The file, whole.
+  std::uint64_t seed = 1;
+  double scan_rate_Hz = 350.0;  ///< Unless the board is asked for another.
+  double duration_s = 0.0;      ///< Of one repetition.
+
+  double sled_mass_kg = 0.0;
+  double gravity_m_per_s2 = friction::kStandardGravity_m_per_s2;
+  friction::Oscillator oscillator;  ///< With the damping, if listed.
+  SceneLoadCell load_cell;
+
+  double mu_s = 0.0;
+  double mu_k = 0.0;
+
+  std::optional<ConstantSpeed> constant_speed;
+  bool damping = false;
+  bool one_way_coupling = false;
+  std::optional<WhiteNoise> white_noise;
+  std::optional<Quantisation> quantisation;
+
+  [[nodiscard]] double normal_load_N() const noexcept { return sled_mass_kg * gravity_m_per_s2; }
+};
+
+/// Usage error with file, line, value and what is allowed: unreadable file, unknown key or effect,
+/// missing or wrong unit, value out of range, S < K.
+[[nodiscard]] base::Result<Scene> load_scene(const std::filesystem::path& file);
+/// The same from text. \param file stands for the file in messages and gives the scene its name.
+[[nodiscard]] base::Result<Scene> parse_scene(std::string_view text, const std::filesystem::path& file);
+
+/// The motion stage of the scene.
+[[nodiscard]] Motion motion_of(const Scene& scene);
+
+/// Scans of one repetition at this rate: all that begin before its end.
+[[nodiscard]] std::int64_t scan_count(const Scene& scene, double scan_rate_Hz) noexcept;
+
+}  // namespace stickslip::sim

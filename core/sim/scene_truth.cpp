@@ -1,0 +1,128 @@
+#include "core/sim/scene_truth.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+namespace stickslip::sim {
+namespace {
+
+using friction::Mode;
+using friction::Regime;
+
+/// Writes down what happens, in seconds.
+class Chronicle final : public MotionObserver {
+ public:
+  struct Slip {
+    double onset_s = 0.0;
+    std::optional<double> stick_again_s;
+  };
+
+  explicit Chronicle(double scan_rate_Hz) : scan_rate_Hz_(scan_rate_Hz) {}
+
+  void mode_began(const ModeStart& start) override {
+    const double now_s = start.time.periods_since({}) / scan_rate_Hz_;
+    const bool sticks = start.mode == Mode::kStick || (start.capture && start.onset);
+    if (sticks && !slips_.empty() && !slips_.back().stick_again_s) slips_.back().stick_again_s = now_s;
+    if (start.onset) slips_.push_back({now_s, {}});
+    if (!modes_.empty()) {
+      if (modes_.back().mode == start.mode && !start.onset) return;
+      close(now_s);
+    }
+    modes_.push_back({now_s, now_s, start.mode});
+  }
+
+  /// Ends the last mode; those that took no time are forgotten.
+  void close(double now_s) {
+    modes_.back().end_s = now_s;
+    if (!(modes_.back().start_s < now_s)) modes_.pop_back();
+  }
+
+  [[nodiscard]] const std::vector<friction::ModeInterval>& modes() const noexcept { return modes_; }
+  [[nodiscard]] const std::vector<Slip>& slips() const noexcept { return slips_; }
+
+ private:
+  double scan_rate_Hz_;
+  std::vector<friction::ModeInterval> modes_;
+  std::vector<Slip> slips_;
+};
+
+/// How the slips of the pull ended.
+struct Tally {
+  int captured = 0;
+  int not_captured = 0;
+  std::vector<double> onsets_s;
+};
+
+Tally tally(const std::vector<Chronicle::Slip>& slips, double pull_end_s, double period_s) {
+  Tally result;
+  double longest_slip_s = 2.0 * period_s;  // A damped slip is captured within its first period.
+  for (const Chronicle::Slip& slip : slips) {
+    if (slip.onset_s >= pull_end_s) break;
+    result.onsets_s.push_back(slip.onset_s);
+    if (slip.stick_again_s && *slip.stick_again_s < pull_end_s) {
+      ++result.captured;
+      longest_slip_s = std::max(longest_slip_s, *slip.stick_again_s - slip.onset_s);
+    } else if (pull_end_s - slip.onset_s > longest_slip_s) {
+      ++result.not_captured;
+    }
+  }
+  return result;
+}
+
+Regime regime_of(const Tally& slips, bool oscillates) {
+  if (slips.captured > 0 && slips.not_captured > 0) return Regime::kMixed;
+  if (slips.captured > 0) return Regime::kStickSlip;
+  if (slips.not_captured > 0) return oscillates ? Regime::kRingDown : Regime::kSteadySliding;
+  return Regime::kUndecided;
+}
+
+void describe_oscillation(const Scene& scene, const Tally& slips, friction::TestTruth& truth) {
+  if (slips.onsets_s.empty() || !scene.oscillator.oscillates()) return;
+  if (slips.onsets_s.size() > 1) {
+    truth.oscillation_frequency_Hz =
+        static_cast<double>(slips.onsets_s.size() - 1) / (slips.onsets_s.back() - slips.onsets_s.front());
+  } else if (slips.not_captured > 0) {
+    truth.oscillation_frequency_Hz = scene.oscillator.omega_rad_per_s() / (2.0 * std::numbers::pi);
+  }
+  const double r = scene.oscillator.stick_rate_per_s(truth.pull_speed_m_per_s, scene.gravity_m_per_s2);
+  const friction::SlipWaveform slip{scene.mu_k, scene.mu_s - scene.mu_k, r, scene.oscillator};
+  double least = slip.value(slip.trough_time_s());
+  if (scene.one_way_coupling) least = std::max(least, 0.0);
+  truth.amplitude = (slip.value(slip.peak_time_s()) - least) / 2.0;
+}
+
+}  // namespace
+
+friction::TestTruth scene_truth(const Scene& scene, double scan_rate_Hz, std::uint64_t seed) {
+  friction::TestTruth truth;
+  truth.scene_name = scene.name;
+  truth.scene_text = scene.text;
+  truth.seed = seed;
+  truth.mu_s = scene.mu_s;
+  truth.mu_k = scene.mu_k;
+  truth.omega_rad_per_s = scene.oscillator.omega_rad_per_s();
+  truth.gamma_over_2omega = scene.oscillator.gamma_over_2omega();
+
+  Chronicle chronicle{scan_rate_Hz};
+  Propagator motion{motion_of(scene), scan_rate_Hz, &chronicle};
+  motion.skip(scan_count(scene, scan_rate_Hz));
+  chronicle.close(scene.duration_s);
+  truth.modes = chronicle.modes();
+  for (const Chronicle::Slip& slip : chronicle.slips()) {
+    truth.cycles.push_back({slip.onset_s, scene.mu_s, scene.mu_k});
+  }
+
+  if (scene.constant_speed) {
+    truth.pull_speed_m_per_s = scene.constant_speed->pull_speed_m_per_s;
+    const double pull_end_s = scene.constant_speed->idle_s + scene.constant_speed->pull_s;
+    const double period_s = 2.0 * std::numbers::pi / scene.oscillator.omega_rad_per_s();
+    const Tally slips = tally(chronicle.slips(), pull_end_s, period_s);
+    truth.regime = regime_of(slips, scene.oscillator.oscillates());
+    describe_oscillation(scene, slips, truth);
+  }
+  return truth;
+}
+
+}  // namespace stickslip::sim

@@ -1,0 +1,21 @@
+/// \file
+/// What a scene's record will be compared with.
+#pragma once
+
+#include <cstdint>
+
+#include "core/friction/truth.hpp"
+#include "core/sim/scene.hpp"
+
+namespace stickslip::sim {
+
+/// The truth about one repetition, with times in seconds after its first scan.
+///
+/// Regime over the pull: stick-slip if each slip that began by giving way ended in sticking, ring-down
+/// if none did, mixed otherwise; a slip that the end of the pull cut short before it could tell is not
+/// asked. Steady-sliding if the slip cannot oscillate; undecided if there is no slip to ask.
+/// Frequency: of the onsets if there are two, else ω/2π of the ring-down. Amplitude: half the range
+/// of the first slip in closed form [17], with zero as the least force of a one-way coupling.
+[[nodiscard]] friction::TestTruth scene_truth(const Scene& scene, double scan_rate_Hz, std::uint64_t seed);
+
+}  // namespace stickslip::sim

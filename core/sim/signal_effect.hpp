@@ -1,0 +1,34 @@
+/// \file
+/// The signal stage: what happens to the load cell's voltage on its way into the record.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "core/sim/scene.hpp"
+
+namespace stickslip::sim {
+
+/// One effect with its own state and its own random stream.
+class SignalEffect {
+ public:
+  virtual ~SignalEffect() = default;
+
+  /// As scenes write it.
+  [[nodiscard]] virtual std::string_view name() const noexcept = 0;
+  /// Back to the first scan. \param seed of the scene's run; the effect mixes in its name.
+  virtual void restart(std::uint64_t seed) = 0;
+  /// Changes consecutive readings in place, the same however they are divided into calls.
+  /// Does not allocate.
+  virtual void apply(std::span<double> reading) = 0;
+};
+
+[[nodiscard]] std::unique_ptr<SignalEffect> make_white_noise(const WhiteNoise& settings);
+
+/// Volts → counts 0 … maxdata, nearest code; outside the range the nearest rail.
+/// It is the converter, so it comes last.
+[[nodiscard]] std::unique_ptr<SignalEffect> make_quantisation(const Quantisation& settings);
+
+}  // namespace stickslip::sim

@@ -1,0 +1,187 @@
+#include "drivers/simulated/simulated_board.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "core/sim/scene.hpp"
+#include "core/sim/scene_run.hpp"
+#include "drivers/simulated/playlist.hpp"
+#include "drivers/simulated/simulated_truth.hpp"
+
+namespace stickslip::drivers {
+namespace {
+
+using daq::ReadStatus;
+
+daq::BoardInfo info_of(const Playlist& playlist) {
+  daq::BoardInfo info;
+  info.driver = "simulated";
+  info.board_name = "simulated tester";
+  for (const sim::Scene& scene : playlist.scenes()) {
+    info.device += (info.device.empty() ? "" : ", ") + scene.name;
+  }
+  info.scan_rate_requested_Hz = playlist.scan_rate_Hz();
+  info.scan_rate_granted_Hz = playlist.scan_rate_Hz();
+  info.quantity = daq::RawQuantity::kVolts;
+  if (const auto& converter = playlist.scenes().front().quantisation) {
+    info.quantity = daq::RawQuantity::kCounts;
+    info.maxdata = converter->maxdata();
+    info.range_min_V = converter->range_min_V;
+    info.range_max_V = converter->range_max_V;
+    info.polynomial = {converter->range_min_V,
+                       (converter->range_max_V - converter->range_min_V) / converter->maxdata()};
+  }
+  return info;
+}
+
+class SimulatedBoard final : public daq::Board {
+ public:
+  SimulatedBoard(std::shared_ptr<const Playlist> playlist, base::Clock& clock)
+      : playlist_(std::move(playlist)), clock_(clock), info_(info_of(*playlist_)) {
+    // All runs are built here: read() may not allocate.
+    for (const sim::Scene& scene : playlist_->scenes()) runs_.emplace_back(scene, playlist_->scan_rate_Hz());
+    play(0);
+  }
+
+  [[nodiscard]] const daq::BoardInfo& info() const noexcept override { return info_; }
+
+  [[nodiscard]] base::Result<void> start() override {
+    if (running_) return {};
+    running_ = true;
+    start_scan_ = next_;
+    start_ns_ = clock_.monotonic_ns();
+    return {};
+  }
+
+  [[nodiscard]] ReadStatus read(daq::ScanBlock& block, std::chrono::milliseconds timeout) noexcept override {
+    block.count = 0;
+    const std::int64_t deadline_ns =
+        clock_.monotonic_ns() + std::chrono::duration_cast<std::chrono::nanoseconds>(timeout).count();
+    if (running_ && !playlist_->has(playing_.number)) return ReadStatus::kEndOfInput;
+    if (!running_ || due_ns(next_) > deadline_ns) {
+      clock_.sleep_until(deadline_ns);
+      return ReadStatus::kTimeout;
+    }
+    clock_.sleep_until(due_ns(next_));
+    fill(block, clock_.monotonic_ns());
+    block.stamp = {clock_.monotonic_ns(), clock_.realtime_ns()};
+    return ReadStatus::kScans;
+  }
+
+  void stop() noexcept override { running_ = false; }
+
+ private:
+  [[nodiscard]] std::int64_t due_ns(base::ScanIndex scan) const noexcept {
+    constexpr double kNanosecondsPerSecond = 1e9;
+    const auto periods = static_cast<double>(scan - start_scan_ + 1);
+    return start_ns_ +
+           static_cast<std::int64_t>(std::ceil(periods * kNanosecondsPerSecond / playlist_->scan_rate_Hz()));
+  }
+
+  void play(std::int64_t repetition) noexcept {
+    playing_.number = repetition;
+    if (!playlist_->has(repetition)) return;
+    playing_ = playlist_->repetition(repetition);
+    runs_[playing_.scene].restart(playing_.seed);
+  }
+
+  /// All scans that are due, at least the next one, as many as fit and belong to the list.
+  void fill(daq::ScanBlock& block, std::int64_t now_ns) noexcept {
+    block.first = next_;
+    std::size_t wanted = 1;
+    while (wanted < daq::ScanBlock::kMaxScans &&
+           due_ns(next_ + static_cast<std::int64_t>(wanted)) <= now_ns) {
+      ++wanted;
+    }
+    std::size_t count = 0;
+    while (count < wanted && playlist_->has(playing_.number)) {
+      count += runs_[playing_.scene].next(std::span{block.raw}.subspan(count, wanted - count));
+      if (next_ + static_cast<std::int64_t>(count) == playing_.end()) play(playing_.number + 1);
+    }
+    next_ += static_cast<std::int64_t>(count);
+    block.count = static_cast<std::uint32_t>(count);
+  }
+
+  std::shared_ptr<const Playlist> playlist_;
+  base::Clock& clock_;
+  daq::BoardInfo info_;
+  std::vector<sim::SceneRun> runs_;  ///< One for each scene.
+  Repetition playing_;
+  base::ScanIndex next_ = 0;
+  bool running_ = false;
+  base::ScanIndex start_scan_ = 0;
+  std::int64_t start_ns_ = 0;
+};
+
+/// What one calibration and one tester of the program must hold for.
+base::Result<void> agree(const sim::Scene& scene, const sim::Scene& first, bool rate_is_given) {
+  const auto differs = [&](const char* what) {
+    return base::usage_error(
+        "scene {}: {} differs from that of scene {}; scenes that are played together need the same",
+        scene.name, what, first.name);
+  };
+  if (scene.sled_mass_kg != first.sled_mass_kg) return differs("sled_mass");
+  if (scene.gravity_m_per_s2 != first.gravity_m_per_s2) return differs("gravity");
+  if (scene.load_cell.gain_N_per_V != first.load_cell.gain_N_per_V) return differs("load_cell_gain");
+  if (scene.load_cell.zero_V != first.load_cell.zero_V) return differs("load_cell_zero");
+  if (scene.quantisation != first.quantisation) return differs("quantisation");
+  if (!rate_is_given && scene.scan_rate_Hz != first.scan_rate_Hz) return differs("scan_rate");
+  return {};
+}
+
+friction::Tester tester_of(const std::vector<sim::Scene>& scenes) {
+  friction::Tester tester;
+  tester.sled_mass_kg = scenes.front().sled_mass_kg;
+  tester.gravity_m_per_s2 = scenes.front().gravity_m_per_s2;
+  const auto speed = [](const sim::Scene& scene) {
+    return scene.constant_speed ? std::optional{scene.constant_speed->pull_speed_m_per_s} : std::nullopt;
+  };
+  const auto same = [&](const sim::Scene& scene) { return speed(scene) == speed(scenes.front()); };
+  if (std::all_of(scenes.begin(), scenes.end(), same)) tester.pull_speed_m_per_s = speed(scenes.front());
+  return tester;
+}
+
+}  // namespace
+
+base::Result<SimulatedTester> make_simulated_tester(const SimulatedBoardSettings& settings,
+                                                    base::Clock& clock) {
+  if (settings.scenes.empty()) {
+    return base::usage_error("the simulated board has no scenes; name at least one scene file");
+  }
+  if (settings.repeats < 0) {
+    return base::usage_error("repeats = {} of the simulated board must be 0 (for ever) or more",
+                             settings.repeats);
+  }
+  std::vector<sim::Scene> scenes;
+  for (const std::filesystem::path& file : settings.scenes) {
+    base::Result<sim::Scene> scene = sim::load_scene(file);
+    if (!scene) return tl::unexpected(scene.error());
+    scenes.push_back(std::move(*scene));
+    if (auto same = agree(scenes.back(), scenes.front(), settings.scan_rate_Hz.has_value()); !same) {
+      return tl::unexpected(same.error());
+    }
+  }
+  const double rate_Hz = settings.scan_rate_Hz.value_or(scenes.front().scan_rate_Hz);
+  if (!(rate_Hz > 0.0) || !std::isfinite(rate_Hz)) {
+    return base::usage_error("scan rate {} Hz of the simulated board must be above 0", rate_Hz);
+  }
+  for (const sim::Scene& scene : scenes) {
+    if (sim::scan_count(scene, rate_Hz) < 1) {
+      return base::usage_error("scene {}: lasts {} s, shorter than one scan at {} Hz", scene.name,
+                               scene.duration_s, rate_Hz);
+    }
+  }
+  SimulatedTester result;
+  result.load_cell = {scenes.front().load_cell.gain_N_per_V, scenes.front().load_cell.zero_V};
+  result.tester = tester_of(scenes);
+  auto playlist = std::make_shared<const Playlist>(std::move(scenes), settings.repeats, rate_Hz);
+  result.truth = make_simulated_truth(playlist);
+  result.board = std::make_unique<SimulatedBoard>(std::move(playlist), clock);
+  return result;
+}
+
+}  // namespace stickslip::drivers

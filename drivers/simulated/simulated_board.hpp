@@ -1,0 +1,47 @@
+/// \file
+/// The simulated tester behind the board interface.
+///
+///     auto tester = drivers::make_simulated_tester({{"ring-down.toml", "stick-slip.toml"}, 5}, *clock);
+///     if (!tester) return tl::unexpected(tester.error());
+///     tester->board->start();
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/base/clock.hpp"
+#include "core/base/result.hpp"
+#include "core/daq/board.hpp"
+#include "core/daq/calibration.hpp"
+#include "core/friction/tester.hpp"
+#include "core/friction/truth.hpp"
+
+namespace stickslip::drivers {
+
+struct SimulatedBoardSettings {
+  std::vector<std::filesystem::path> scenes;  ///< Played in this order.
+  int repeats = 1;  ///< Each scene so many times in a row; 0: the list round and round for ever.
+  std::optional<double> scan_rate_Hz;  ///< Else that of the scenes. Granted as asked.
+};
+
+/// Two equal implementations of the seams, made from one list of scenes, and the facts about the
+/// tester that a bench would know from its own papers.
+struct SimulatedTester {
+  std::unique_ptr<daq::Board> board;
+  std::shared_ptr<const friction::TruthSource> truth;
+  daq::LoadCell load_cell;
+  /// Mass and gravity; the pull speed if it is the same in all scenes.
+  friction::Tester tester;
+};
+
+/// \param clock  paces the board: scan i after a start is due (i + 1)/rate later. Outlives it.
+///
+/// The board waits while it is stopped: after the next start it goes on with the next scan.
+/// Usage error: a scene that cannot be read, no scene, negative repeats, rate not positive, scenes
+/// that disagree about tester, load cell, converter or (unless one is asked for) scan rate.
+[[nodiscard]] base::Result<SimulatedTester> make_simulated_tester(const SimulatedBoardSettings& settings,
+                                                                  base::Clock& clock);
+
+}  // namespace stickslip::drivers

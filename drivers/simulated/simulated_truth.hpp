@@ -1,0 +1,17 @@
+/// \file
+/// The truth about the simulated board's scans, found again by simulating without scans.
+#pragma once
+
+#include <memory>
+
+#include "core/friction/truth.hpp"
+#include "drivers/simulated/playlist.hpp"
+
+namespace stickslip::drivers {
+
+/// Answers for the repetition that shares most scans with the window; where the window cuts it, modes
+/// and cycles are cut too. Nothing for a window without scans or behind the end of the list.
+[[nodiscard]] std::shared_ptr<const friction::TruthSource> make_simulated_truth(
+    std::shared_ptr<const Playlist> playlist);
+
+}  // namespace stickslip::drivers

@@ -1,0 +1,90 @@
+#include "core/friction/threshold.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/friction/closed_forms.hpp"
+#include "core/friction/slip_waveform.hpp"
+#include "tests/numeric/reference50.hpp"
+
+namespace stickslip::friction {
+namespace {
+
+using numeric::Real;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// Q_th by bisection of [22] in 50 digits.
+Real reference_Q_threshold(double gamma_over_2omega) {
+  const Real t = gamma_over_2omega;
+  const Real phi = atan(t);
+  const Real half_pi = numeric::pi50() / 2;
+  Real low = 0;
+  Real high = half_pi - phi;
+  for (int step = 0; step < 2000 && high - low > Real("1e-46") * high; ++step) {
+    const Real x = (low + high) / 2;
+    const bool above = t * (x - phi + 3 * half_pi) > log(cos(phi) / sin(x));
+    (above ? high : low) = x;
+  }
+  // tan θ − tan φ as one quotient: x may be below 1e-50.
+  return sin(low) * (1 + t * t) / (cos(low) - t * sin(low));
+}
+
+TEST(Threshold, TenDigitsOfThePapersCase) {
+  EXPECT_NEAR(Q_threshold(0.022), 1.93871744784, 0.5e-11);
+  EXPECT_NEAR(theta_threshold_rad(0.022) / kDegree, 62.9776275948, 0.5e-10);
+  const double half_life_of_five = std::numbers::ln2 / (10.0 * std::numbers::pi);
+  EXPECT_NEAR(Q_threshold(half_life_of_five), 1.93579678601, 0.5e-11);
+  EXPECT_NEAR(theta_threshold_rad(half_life_of_five) / kDegree, 62.9437969991, 0.5e-10);
+}
+
+TEST(Threshold, AgreesWithFiftyDigitsOverTheWholeDomain) {
+  for (const double t : {1e-12, 1e-6, 1e-3, 0.022, 0.1, 0.29999, 0.3, 0.30001, 1.0, 5.0, 40.0}) {
+    const double reference = static_cast<double>(reference_Q_threshold(t));
+    // Condition: the exponent 2π tan φ carries ε, and Q follows it one to one for strong damping.
+    EXPECT_NEAR(Q_threshold(t) / reference, 1.0, 1e-15 * (8.0 + 2.0 * std::numbers::pi * t)) << t;
+  }
+}
+
+TEST(Threshold, EndsOfTheDomainAreDefined) {
+  EXPECT_TRUE(std::isinf(Q_threshold(0.0)));
+  EXPECT_DOUBLE_EQ(theta_threshold_rad(0.0), std::numbers::pi / 2.0);
+  EXPECT_TRUE(std::isnan(Q_threshold(-1e-9)));
+  EXPECT_TRUE(std::isnan(Q_threshold(kLargestGammaOver2Omega * 1.01)));
+  EXPECT_GT(Q_threshold(kLargestGammaOver2Omega), 0.0);
+}
+
+// Q_th ≈ 1/√(4πφ); the next term is of relative order √φ.
+TEST(Threshold, ApproachesItsAsymptoteForLittleDamping) {
+  for (const double t : {1e-4, 1e-6, 1e-8}) {
+    EXPECT_NEAR(Q_threshold(t) * std::sqrt(4.0 * std::numbers::pi * t), 1.0, 10.0 * std::sqrt(t)) << t;
+  }
+}
+
+TEST(Threshold, SpeedAndDeltaMuAreConverse) {
+  const Oscillator oscillator = Oscillator::from_omega(125.0, 0.022);
+  const double speed = threshold_speed_m_per_s(oscillator, 0.05, 9.8);
+  EXPECT_NEAR(dimensionless_speed(oscillator.stick_rate_per_s(speed, 9.8), 125.0, 0.05), Q_threshold(0.022),
+              1e-14);
+  EXPECT_NEAR(delta_mu_of_threshold_speed(oscillator, speed, 9.8), 0.05, 1e-16);
+}
+
+// [21], the definition: at the threshold c′(t₃) = r. Its sign decides in plain double.
+TEST(Threshold, RateAtTheEndOfTheRiseDecidesToTenDigitsOnEachSide) {
+  const double t = 0.022;
+  const double omega = 125.0;
+  const auto margin = [&](double Q) {
+    const SlipWaveform slip{0.30, 0.05, Q * omega * 0.05, Oscillator::from_omega(omega, t)};
+    return slip.rate(slip.rise_end_time_s()) / slip.r - 1.0;
+  };
+  for (int n = 2; n <= 13; ++n) {
+    const double step = std::pow(10.0, -n);
+    EXPECT_GT(margin(Q_threshold(t) * (1.0 - step)), 0.0) << n;
+    EXPECT_LT(margin(Q_threshold(t) * (1.0 + step)), 0.0) << n;
+  }
+}
+
+}  // namespace
+}  // namespace stickslip::friction

@@ -1,0 +1,184 @@
+// What a Comedi board is asked for, what it grants, and what a person is told when it does not.
+#include "drivers/comedi/comedi_setup.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cerrno>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "drivers/comedi/comedi_board.hpp"
+#include "tests/support/fake_comedi.hpp"
+
+namespace stickslip::test {
+namespace {
+
+using base::ErrorKind;
+using drivers::ComediBoardSettings;
+using ::testing::HasSubstr;
+namespace trigger = drivers::trigger;
+
+class ComediSetup : public ::testing::Test {
+ protected:
+  base::Result<drivers::ComediSetup> agree() {
+    FakeComedi calls(world_, clock_);
+    return drivers::agree_with_board(settings_, calls);
+  }
+
+  void expect_refusal(ErrorKind kind, const std::string& part) {
+    const auto setup = agree();
+    ASSERT_FALSE(setup);
+    EXPECT_EQ(setup.error().kind, kind);
+    EXPECT_THAT(setup.error().message, HasSubstr(part));
+    EXPECT_THAT(setup.error().message, HasSubstr("/dev/comedi0"));
+    EXPECT_THAT(setup.error().message, ::testing::Not(HasSubstr("\n")));
+  }
+
+  ManualClock clock_;
+  FakeComediWorld world_;
+  ComediBoardSettings settings_;
+};
+
+// 350 Hz is a period of 2857142.86 ns; the board has whole microseconds: 2857000 ns.
+TEST_F(ComediSetup, GrantedRateIsTheRoundedOne) {
+  const auto setup = agree();
+  ASSERT_TRUE(setup);
+  EXPECT_EQ(setup->command.scan_begin_argument, 2'857'000U);
+  EXPECT_EQ(setup->info.scan_rate_requested_Hz, 350.0);
+  EXPECT_DOUBLE_EQ(setup->info.scan_rate_granted_Hz, 1e9 / 2'857'000.0);
+}
+
+TEST_F(ComediSetup, CommandRunsWithoutEndByTheScanTimer) {
+  const auto setup = agree();
+  ASSERT_TRUE(setup);
+  const drivers::ComediCommand& command = setup->command;
+  EXPECT_EQ(command.start_source, trigger::kNow);
+  EXPECT_EQ(command.scan_begin_source, trigger::kTimer);
+  EXPECT_EQ(command.convert_source, trigger::kNow);
+  EXPECT_EQ(command.scan_end_source, trigger::kCount);
+  EXPECT_EQ(command.scan_end_argument, 1U);
+  EXPECT_EQ(command.stop_source, trigger::kNone);
+  EXPECT_EQ(command.flags, drivers::kWakeEndOfScan);
+}
+
+TEST_F(ComediSetup, WakeEndOfScanIsDroppedWhereTheBoardRejectsIt) {
+  world_.takes_wake_end_of_scan = false;
+  const auto setup = agree();
+  ASSERT_TRUE(setup);
+  EXPECT_EQ(setup->command.flags, 0U);
+  EXPECT_EQ(setup->command.scan_begin_source, trigger::kTimer);
+}
+
+TEST_F(ComediSetup, BoardWithAConversionTimerGetsTheShortestConversion) {
+  world_.has_convert_now = false;
+  const auto setup = agree();
+  ASSERT_TRUE(setup);
+  EXPECT_EQ(setup->command.convert_source, trigger::kTimer);
+  EXPECT_EQ(setup->command.convert_argument, 1000U);
+  EXPECT_EQ(setup->command.scan_begin_argument, 2'857'000U);
+}
+
+TEST_F(ComediSetup, BoardWithoutAScanTimerIsTimedByItsConversions) {
+  world_.has_scan_timer = false;
+  const auto setup = agree();
+  ASSERT_TRUE(setup);
+  EXPECT_EQ(setup->command.scan_begin_source, trigger::kFollow);
+  EXPECT_EQ(setup->command.convert_argument, 2'857'000U);
+  EXPECT_DOUBLE_EQ(setup->info.scan_rate_granted_Hz, 1e9 / 2'857'000.0);
+}
+
+TEST_F(ComediSetup, BoardThatCannotBeTimedIsRefused) {
+  world_.has_scan_timer = false;
+  world_.has_convert_now = false;
+  world_.rounding_ns = 1U << 31U;  // and rounds every period to nothing
+  expect_refusal(ErrorKind::kFailure, "cannot acquire");
+}
+
+// Rounding to 1 ms makes 350 Hz 333.3 Hz: 4.8 % off.
+TEST_F(ComediSetup, RateTooFarFromTheOneAskedIsRefused) {
+  world_.rounding_ns = 1'000'000;
+  expect_refusal(ErrorKind::kUsage, "333.333333");
+  settings_.scan_rate_tolerance = 0.05;
+  const auto setup = agree();
+  ASSERT_TRUE(setup);
+  EXPECT_DOUBLE_EQ(setup->info.scan_rate_granted_Hz, 1e9 / 3e6);
+}
+
+TEST_F(ComediSetup, ImpossibleRatesAreRefused) {
+  for (const double rate_Hz : {0.0, -350.0, 0.2, 3e9, std::nan("")}) {
+    settings_.scan_rate_Hz = rate_Hz;
+    expect_refusal(ErrorKind::kUsage, "scan rate");
+  }
+}
+
+TEST_F(ComediSetup, NarrowestRangeThatHoldsTheVoltagesIsTaken) {
+  EXPECT_EQ(agree()->command.range, 0U);
+  settings_.range_min_V = 0.0;
+  settings_.range_max_V = 5.0;
+  const auto setup = agree();
+  ASSERT_TRUE(setup);
+  EXPECT_EQ(setup->command.range, 1U);
+  EXPECT_EQ(setup->info.range_min_V, -5.0);
+  EXPECT_EQ(setup->info.range_max_V, 5.0);
+}
+
+TEST_F(ComediSetup, RangesInOtherUnitsAreNotVolts) {
+  world_.ranges = {{-20.0, 20.0, false}, {-5.0, 5.0, true}};
+  expect_refusal(ErrorKind::kUsage, "it offers: -5 … 5 V");
+}
+
+// The board itself takes any reference without a word.
+TEST_F(ComediSetup, ReferenceThatIsNotWiredIsRefused) {
+  settings_.reference = drivers::AnalogReference::kDifferential;
+  expect_refusal(ErrorKind::kUsage, "it offers: ground");
+  EXPECT_TRUE(world_.tested.empty());
+}
+
+TEST_F(ComediSetup, ChannelBeyondTheLastIsRefused) {
+  settings_.channel = 8;
+  expect_refusal(ErrorKind::kUsage, "channels 0 … 7");
+}
+
+TEST_F(ComediSetup, SubdeviceThatCannotStreamIsRefused) {
+  settings_.subdevice = 1;
+  expect_refusal(ErrorKind::kUsage, "subdevice 1");
+}
+
+TEST_F(ComediSetup, OpeningErrorsSayWhatToDo) {
+  const std::pair<int, std::string> cases[] = {{EACCES, "iocard"},          {EPERM, "iocard"},
+                                               {ENOENT, "load its driver"}, {ENODEV, "no board behind"},
+                                               {ENXIO, "no board behind"},  {EBUSY, "another program"},
+                                               {EIO, "Input/output error"}};
+  for (const auto& [error, part] : cases) {
+    world_.open_error = error;
+    expect_refusal(ErrorKind::kFailure, part);
+  }
+}
+
+TEST_F(ComediSetup, CodesBecomeVoltsByTheRange) {
+  const auto setup = agree();
+  ASSERT_TRUE(setup);
+  EXPECT_EQ(setup->info.maxdata, 65535U);
+  EXPECT_EQ(setup->info.polynomial, (std::vector<double>{-10.0, 20.0 / 65535.0}));
+  EXPECT_EQ(setup->info.expansion_origin, 0.0);
+}
+
+TEST_F(ComediSetup, SoftCalibratedBoardUsesItsFile) {
+  world_.flags |= drivers::subdevice_flag::kSoftCalibrated;
+  world_.soft_calibration = drivers::ConversionPolynomial{{0.001, 0.00030518}, 32767.5};
+  const auto setup = agree();
+  ASSERT_TRUE(setup);
+  EXPECT_EQ(setup->info.polynomial, (std::vector<double>{0.001, 0.00030518}));
+  EXPECT_EQ(setup->info.expansion_origin, 32767.5);
+}
+
+TEST_F(ComediSetup, SoftCalibratedBoardWithoutItsFileIsRefused) {
+  world_.flags |= drivers::subdevice_flag::kSoftCalibrated;
+  expect_refusal(ErrorKind::kFailure, "calibration");
+}
+
+}  // namespace
+}  // namespace stickslip::test
