@@ -35,7 +35,8 @@ base::Result<record::EndRecord> analyse(const record::Record& record) {
       if (i > 0 && record.scan[i] != record.scan[i - 1] + 1) {
         analysis.gap(record.scan[i - 1] + 1, record.scan[i] - record.scan[i - 1] - 1);
       }
-      analysis.add(record.scan[i], calibration.coefficient(record.raw[i]), calibration.saturated(record.raw[i]));
+      analysis.add(record.scan[i], calibration.coefficient(record.raw[i]),
+                   calibration.saturated(record.raw[i]));
     }
     record::EndRecord end = record.end.value_or(record::EndRecord{});
     end.results = analysis.finish();

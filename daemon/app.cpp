@@ -1,5 +1,3 @@
-#include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
-
 #include "daemon/app.hpp"
 
 #include <fcntl.h>
@@ -10,6 +8,7 @@
 #include <cerrno>
 #include <stdexcept>
 #include <system_error>
+#include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
 
 #include <boost/asio/post.hpp>
 
@@ -114,7 +113,8 @@ base::Result<void> App::prepare_record_folder() {
   std::error_code error;
   std::filesystem::create_directories(config_.record_folder, error);
   if (error) {
-    return base::failure("record folder {}: cannot be made: {}", config_.record_folder.string(), error.message());
+    return base::failure("record folder {}: cannot be made: {}", config_.record_folder.string(),
+                         error.message());
   }
   // Permissions, read-only mounts and quotas: only an attempt tells.
   const std::filesystem::path probe = config_.record_folder / fmt::format(".probe-{}", ::getpid());
@@ -141,8 +141,8 @@ void App::finalise_orphans() {
 base::Result<void> App::open_session() {
   base::Result<drivers::OpenedBoard> board = world_.open_board(config_.board, *clock_);
   if (!board) return tl::unexpected(board.error());
-  const friction::TruthSource* truth = board->truth.get();
-  const SessionSettings settings = session_settings(board->board->info());
+  truth_ = board->truth;
+  const SessionSettings settings = session_settings(*board);
 
   SessionEvents events;
   events.first_scan = [this] {
@@ -160,17 +160,18 @@ base::Result<void> App::open_session() {
   };
   try {
     session_ = std::make_unique<Session>(std::move(*board), settings,
-                                         std::vector<pipeline::Sink*>{watcher_.get(), &storage_}, *world_.facts,
-                                         std::move(events));
+                                         std::vector<pipeline::Sink*>{watcher_.get(), &storage_},
+                                         *world_.facts, std::move(events));
   } catch (const std::invalid_argument& refused) {
     return base::usage_error("the board does not suit the configuration: {}", refused.what());
   }
-  watcher_->use(truth);
-  storage_.use(record_header(*session_), truth);
   if (base::Result<void> started = session_->start(); !started) {
     session_.reset();
     return started;
   }
+  watcher_->use(truth_.get());
+  storage_.use(record_header(settings), truth_.get());
+  session_->start_processing();
   return {};
 }
 
@@ -227,9 +228,10 @@ void App::leave_when_idle() {
   if (!session_) io_.stop();
 }
 
-SessionSettings App::session_settings(const daq::BoardInfo& board) const {
+SessionSettings App::session_settings(const drivers::OpenedBoard& opened) const {
+  const daq::BoardInfo& board = opened.board->info();
   SessionSettings settings;
-  settings.load_cell = config_.load_cell;
+  settings.load_cell = config_.bench.load_cell(opened.load_cell);
   settings.realtime_priority = config_.realtime_priority;
   settings.clock_speed = config_.clock_speed;
   settings.processor.first_test_number = next_test_number_;
@@ -237,35 +239,41 @@ SessionSettings App::session_settings(const daq::BoardInfo& board) const {
   settings.processor.segmenter.scan_rate_Hz = board.scan_rate_granted_Hz;
   friction::AnalysisSettings& analysis = settings.processor.analysis;
   analysis.scan_rate_Hz = board.scan_rate_granted_Hz;
-  analysis.step_coefficient =
-      daq::Calibration{board, config_.load_cell, config_.tester.normal_load_N()}.step_coefficient();
-  analysis.tester = config_.tester;
+  analysis.tester = config_.bench.tester(opened.tester);
   analysis.method = config_.method;
   return settings;
 }
 
-record::RecordHeader App::record_header(const Session& session) const {
+record::RecordHeader App::record_header(const SessionSettings& settings) const {
   record::RecordHeader header;
-  header.board = session.board_info();
-  header.load_cell = config_.load_cell;
-  header.tester = record::TesterFacts::of(config_.tester);
+  header.board = session_->board_info();
+  const daq::RawQuantity quantity = header.board.quantity;
+  if (quantity == daq::RawQuantity::kCounts || quantity == daq::RawQuantity::kVolts) {
+    header.load_cell = settings.load_cell;
+  }
+  header.tester = record::TesterFacts::of(settings.processor.analysis.tester);
   header.process.program = "stickslipd";
   header.process.version = kVersion;
   header.process.commit = kCommit;
   header.process.configuration = config_.text;
-  header.process.estimator = "one-pass";
-  header.process.method = method_text(config_.method);
+  header.process.method = method_text(settings.processor.analysis.method);
+  header.process.realtime = session_->scheduling();
   return header;
 }
 
-void App::tell_status() { notify_.status(status_line()); }
+void App::tell_status() {
+  const std::string line = status_line();
+  notify_.status(line);
+  if (world_.status_changed) world_.status_changed(line);
+}
 
 std::string App::status_line() const {
   switch (state_) {
     case State::kStarting:
       return "starting";
     case State::kAcquiring: {
-      const double rate_Hz = session_ ? session_->board_info().scan_rate_granted_Hz : config_.board.scan_rate_Hz;
+      const double rate_Hz =
+          session_ ? session_->board_info().scan_rate_granted_Hz : config_.board.scan_rate_Hz;
       const std::string activity = current_test_ ? fmt::format("test {} running", *current_test_) : "idle";
       return fmt::format("acquiring at {:.1f} Hz, {}, {} tests done", rate_Hz, activity, tests_.test_count());
     }

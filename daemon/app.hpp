@@ -31,6 +31,8 @@ struct AppWorld {
   std::function<base::Result<drivers::OpenedBoard>(const drivers::BoardConfig&, base::Clock&)> open_board;
   Finalise finalise;
   Facts* facts = nullptr;  ///< Outlives the App.
+  /// Told each new line of STATUS=, on the main thread; may be empty.
+  std::function<void(const std::string&)> status_changed;
 };
 
 /// Thread-bound: the main thread. States:
@@ -68,8 +70,8 @@ class App {
   void stop(const std::string& why);
   void leave_when_idle();
   void tell_status();
-  [[nodiscard]] SessionSettings session_settings(const daq::BoardInfo& board) const;
-  [[nodiscard]] record::RecordHeader record_header(const Session& session) const;
+  [[nodiscard]] SessionSettings session_settings(const drivers::OpenedBoard& opened) const;
+  [[nodiscard]] record::RecordHeader record_header(const SessionSettings& settings) const;
   [[nodiscard]] std::string status_line() const;
 
   DaemonConfig config_;
@@ -83,6 +85,7 @@ class App {
   Storage storage_;
   std::unique_ptr<Watcher> watcher_;
   std::unique_ptr<ControlServer> control_;
+  std::shared_ptr<const friction::TruthSource> truth_;
   std::unique_ptr<Session> session_;
 
   State state_ = State::kStarting;

@@ -1,7 +1,7 @@
 #include "daemon/config.hpp"
 
 #include <array>
-#include <limits>
+#include <optional>
 #include <utility>
 
 namespace stickslip::daemon {
@@ -31,6 +31,7 @@ constexpr std::array<std::pair<std::string_view, LogLevel>, 4> kLogLevels{{{"deb
 constexpr double kFastestScanRate_Hz = 1e6;
 constexpr double kFastestClock = 1e4;
 constexpr double kHeaviestSled_kg = 1e3;
+constexpr double kStrongestGravity_m_per_s2 = 100.0;
 constexpr double kFastestPull_m_per_s = 10.0;
 constexpr double kHighestVoltage_V = 1e3;
 constexpr std::int64_t kMostRepeats = 1'000'000;
@@ -46,7 +47,7 @@ void read_simulated(Settings table, const std::filesystem::path& folder, DaemonC
     table.refuse("scenes", "needs at least one scene file for the driver \"simulated\"");
   }
   for (const std::string& scene : scenes) config.board.simulated.scenes.push_back(resolved(folder, scene));
-  config.board.simulated.repeats = table.integer("repeats", 1, kMostRepeats, 1);
+  config.board.simulated.repeats = static_cast<int>(table.integer("repeats", 0, kMostRepeats, 1));
 }
 
 void read_replay(Settings table, const std::filesystem::path& folder, DaemonConfig& config) {
@@ -78,10 +79,10 @@ void read_comedi(Settings table, DaemonConfig& config) {
 
 void read_board(Settings table, const std::filesystem::path& folder, DaemonConfig& config) {
   config.board.driver = table.choice<Driver>("driver", kDrivers);
-  config.board.scan_rate_Hz =
-      table.quantity("scan_rate", Dimension::kFrequency, Limits::above_up_to(0.0, kFastestScanRate_Hz),
-                     config.board.scan_rate_Hz);
-  config.board.comedi.scan_rate_Hz = config.board.scan_rate_Hz;
+  const std::optional<double> scan_rate_Hz = table.quantity_if_given(
+      "scan_rate", Dimension::kFrequency, Limits::above_up_to(0.0, kFastestScanRate_Hz));
+  config.board.simulated.scan_rate_Hz = scan_rate_Hz;
+  config.board.comedi.scan_rate_Hz = scan_rate_Hz.value_or(config.board.comedi.scan_rate_Hz);
   config.clock_speed = table.quantity("clock_speed", Dimension::kDimensionless,
                                       Limits::above_up_to(0.0, kFastestClock), config.clock_speed);
   if (config.board.driver == Driver::kComedi && config.clock_speed != 1.0) {
@@ -95,23 +96,22 @@ void read_board(Settings table, const std::filesystem::path& folder, DaemonConfi
 }
 
 void read_tester(Settings table, DaemonConfig& config) {
-  friction::Tester& tester = config.tester;
-  tester.sled_mass_kg = table.quantity("sled_mass", Dimension::kMass,
-                                       Limits::above_up_to(0.0, kHeaviestSled_kg), tester.sled_mass_kg);
-  // 9.76 … 9.84 m/s² on Earth; wider, because scenes may say the paper's 32 ft/s².
-  tester.gravity_m_per_s2 = table.quantity("gravity", Dimension::kAcceleration, Limits::between(9.0, 10.5),
-                                           tester.gravity_m_per_s2);
-  tester.pull_speed_m_per_s = table.quantity_if_given("pull_speed", Dimension::kSpeed,
-                                                      Limits::above_up_to(0.0, kFastestPull_m_per_s));
-  tester.stiffness_N_per_m = table.quantity_if_given("stiffness", Dimension::kStiffness, Limits::above(0.0));
-  const double biggest = std::numeric_limits<double>::max();
-  config.load_cell.gain_N_per_V =
-      table.quantity("load_cell_gain", Dimension::kForcePerVoltage, Limits::between(-biggest, biggest),
-                     config.load_cell.gain_N_per_V);
-  if (config.load_cell.gain_N_per_V == 0.0) table.refuse("load_cell_gain", "must not be 0");
-  config.load_cell.zero_V =
-      table.quantity("load_cell_zero", Dimension::kVoltage,
-                     Limits::between(-kHighestVoltage_V, kHighestVoltage_V), config.load_cell.zero_V);
+  BenchConfig& bench = config.bench;
+  bench.sled_mass_kg =
+      table.quantity_if_given("sled_mass", Dimension::kMass, Limits::above_up_to(0.0, kHeaviestSled_kg));
+  bench.gravity_m_per_s2 = table.quantity_if_given("gravity", Dimension::kAcceleration,
+                                                   Limits::above_up_to(0.0, kStrongestGravity_m_per_s2));
+  bench.pull_speed_m_per_s = table.quantity_if_given("pull_speed", Dimension::kSpeed,
+                                                     Limits::above_up_to(0.0, kFastestPull_m_per_s));
+  bench.stiffness_N_per_m = table.quantity_if_given("stiffness", Dimension::kStiffness, Limits::above(0.0));
+  bench.load_cell_gain_N_per_V =
+      table.quantity_if_given("load_cell_gain", Dimension::kForcePerVoltage, Limits::any());
+  if (bench.load_cell_gain_N_per_V == 0.0) table.refuse("load_cell_gain", "must not be 0");
+  if (config.board.driver == Driver::kComedi && !table.has("load_cell_gain")) {
+    table.refuse("load_cell_gain", "is missing; hardware cannot know it: give it, such as \"2 N/V\"");
+  }
+  bench.load_cell_zero_V = table.quantity_if_given("load_cell_zero", Dimension::kVoltage,
+                                                   Limits::between(-kHighestVoltage_V, kHighestVoltage_V));
 }
 
 DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
@@ -130,6 +130,22 @@ DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
 }
 
 }  // namespace
+
+friction::Tester BenchConfig::tester(const std::optional<friction::Tester>& known) const {
+  friction::Tester tester = known.value_or(friction::Tester{});
+  tester.sled_mass_kg = sled_mass_kg.value_or(tester.sled_mass_kg);
+  tester.gravity_m_per_s2 = gravity_m_per_s2.value_or(tester.gravity_m_per_s2);
+  if (pull_speed_m_per_s) tester.pull_speed_m_per_s = pull_speed_m_per_s;
+  if (stiffness_N_per_m) tester.stiffness_N_per_m = stiffness_N_per_m;
+  return tester;
+}
+
+daq::LoadCell BenchConfig::load_cell(const std::optional<daq::LoadCell>& known) const {
+  daq::LoadCell cell = known.value_or(daq::LoadCell{});
+  cell.gain_N_per_V = load_cell_gain_N_per_V.value_or(cell.gain_N_per_V);
+  cell.zero_V = load_cell_zero_V.value_or(cell.zero_V);
+  return cell;
+}
 
 base::Result<DaemonConfig> read_config(Settings settings, const std::filesystem::path& folder) {
   DaemonConfig config = read_all(settings, folder);

@@ -17,12 +17,25 @@ namespace stickslip::daemon {
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
 
+/// What the file says about the bench; what it does not say is asked of the source of the scans
+/// (a scene and a record know their bench), else friction::Tester's and daq::LoadCell's defaults.
+struct BenchConfig {
+  std::optional<double> sled_mass_kg;
+  std::optional<double> gravity_m_per_s2;
+  std::optional<double> pull_speed_m_per_s;
+  std::optional<double> stiffness_N_per_m;
+  std::optional<double> load_cell_gain_N_per_V;
+  std::optional<double> load_cell_zero_V;
+
+  [[nodiscard]] friction::Tester tester(const std::optional<friction::Tester>& known) const;
+  [[nodiscard]] daq::LoadCell load_cell(const std::optional<daq::LoadCell>& known) const;
+};
+
 struct DaemonConfig {
   drivers::BoardConfig board;
   double clock_speed = 1.0;  ///< Board time over wall time; for boards that are not hardware.
   int realtime_priority = 50;
-  friction::Tester tester;
-  daq::LoadCell load_cell;
+  BenchConfig bench;
   std::filesystem::path record_folder;
   std::optional<std::filesystem::path> control_socket;
   LogLevel log_level = LogLevel::kInfo;

@@ -1,6 +1,5 @@
 #include "daemon/session.hpp"
 
-
 namespace stickslip::daemon {
 namespace {
 
@@ -37,10 +36,10 @@ Session::~Session() {
   if (thread_.joinable()) thread_.join();
 }
 
-base::Result<void> Session::start() {
-  if (base::Result<void> started = acquisition_.start(); !started) return started;
+base::Result<void> Session::start() { return acquisition_.start(); }
+
+void Session::start_processing() {
   thread_ = std::thread{[this] { process(); }};
-  return {};
 }
 
 void Session::process() {

@@ -51,8 +51,10 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Once. Errors: those of the board; no event comes then.
+  /// Starts the acquisition. Once. Errors: those of the board; no event comes then.
   [[nodiscard]] base::Result<void> start();
+  /// Starts the processing thread; from here on sinks and events are called. Once, after start().
+  void start_processing();
   /// The board stops, the ring is drained, a running test ends; then comes events.ended.
   void request_stop() noexcept { acquisition_.request_stop(); }
 

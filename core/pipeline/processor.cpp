@@ -4,12 +4,15 @@
 
 namespace stickslip::pipeline {
 
-Processor::Processor(const ProcessorSettings& settings, daq::Calibration calibration, std::vector<Sink*> sinks)
+Processor::Processor(const ProcessorSettings& settings, daq::Calibration calibration,
+                     std::vector<Sink*> sinks)
     : settings_(settings),
       calibration_(std::move(calibration)),
       sinks_(std::move(sinks)),
       segmenter_(settings.segmenter),
-      number_(settings.first_test_number) {}
+      number_(settings.first_test_number) {
+  settings_.analysis.step_coefficient = calibration_.step_coefficient();
+}
 
 void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause) {
   if (const std::optional<daq::Gap> gap = gaps_.observe(block, gap_cause)) note_gap(*gap);
@@ -25,7 +28,8 @@ void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause) {
       analyse(index, raw);
       if (event == Segmenter::Event::kUnloaded || event == Segmenter::Event::kNoRelativeMotion) {
         hand_over(block, not_handed_over, i + 1);
-        end(next_scan_, event == Segmenter::Event::kUnloaded ? EndCause::kUnloaded : EndCause::kNoRelativeMotion);
+        end(next_scan_,
+            event == Segmenter::Event::kUnloaded ? EndCause::kUnloaded : EndCause::kNoRelativeMotion);
       }
       continue;
     }

@@ -28,7 +28,7 @@ namespace stickslip::pipeline {
 
 struct ProcessorSettings {
   SegmenterSettings segmenter;
-  friction::AnalysisSettings analysis;
+  friction::AnalysisSettings analysis;  ///< Its step is taken from the calibration.
   std::int64_t first_test_number = 1;
 };
 

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/results_json.hpp"
+
 namespace stickslip::daemon {
 namespace {
 
@@ -11,28 +13,6 @@ using Json = nlohmann::ordered_json;
 
 HttpReply refusal(int status, const std::string& why, std::string allow = {}) {
   return {status, Json{{"error", why}}.dump(), std::move(allow)};
-}
-
-Json to_json(const friction::TestResults& results, bool with_details) {
-  Json json;
-  Json details;
-  json["regime"] = friction::name(results.regime);
-  if (!results.regime_reason.empty()) details["regime"]["reason"] = results.regime_reason;
-  friction::for_each_result(results,
-                            [&](const friction::ResultName& name, const friction::Estimate& estimate) {
-                              const std::string key{name.name};
-                              json[key] = estimate.value ? Json(*estimate.value) : Json(nullptr);
-                              Json& detail = details[key];
-                              detail["value"] = json[key];
-                              detail["unit"] = name.unit;
-                              if (estimate.standard_error)
-                                detail["standard_error"] = *estimate.standard_error;
-                              if (estimate.systematic_uncertainty)
-                                detail["systematic_uncertainty"] = *estimate.systematic_uncertainty;
-                              if (!estimate.value) detail["reason"] = estimate.reason;
-                            });
-  if (with_details) json["details"] = std::move(details);
-  return json;
 }
 
 Json to_json(const TestSummary& test) {
@@ -43,7 +23,7 @@ Json to_json(const TestSummary& test) {
   json["cause"] = pipeline::name(test.cause);
   json["file"] = test.file.empty() ? Json(nullptr) : Json(test.file);
   if (!test.file_error.empty()) json["file_error"] = test.file_error;
-  json["results"] = to_json(test.results, false);
+  json["results"] = results_json(test.results, false);
   return json;
 }
 
@@ -89,10 +69,6 @@ std::string printable(const std::string& text) {
 }
 
 }  // namespace
-
-std::string results_json(const friction::TestResults& results, bool with_details) {
-  return to_json(results, with_details).dump();
-}
 
 HttpHandler make_api(std::function<Status()> status) {
   return [status = std::move(status)](const HttpRequest& request) -> HttpReply {

@@ -37,9 +37,4 @@ struct Status {
 /// \param status  asked for each status request.
 [[nodiscard]] HttpHandler make_api(std::function<Status()> status);
 
-/// Results as a JSON object text: {"regime": …, "mu_s": 0.35 | null, …}; order of the record.
-/// With details, each result is also under "details" as {"value", "unit", "standard_error",
-/// "systematic_uncertainty", "reason"} where there is such a thing.
-[[nodiscard]] std::string results_json(const friction::TestResults& results, bool with_details);
-
 }  // namespace stickslip::daemon

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "core/base/clock.hpp"
 #include "core/base/result.hpp"
 #include "core/daq/board.hpp"
+#include "core/daq/calibration.hpp"
+#include "core/friction/tester.hpp"
 #include "core/friction/truth.hpp"
 #include "drivers/factory/board_config.hpp"
 
@@ -14,7 +17,10 @@ namespace stickslip::drivers {
 
 struct OpenedBoard {
   std::unique_ptr<daq::Board> board;
-  std::unique_ptr<friction::TruthSource> truth;  ///< Null if nobody knows the truth.
+  std::shared_ptr<const friction::TruthSource> truth;  ///< Null if nobody knows the truth.
+  // What the source of the scans knows about the bench behind them; absent for hardware.
+  std::optional<daq::LoadCell> load_cell;
+  std::optional<friction::Tester> tester;
 };
 
 /// \param clock  outlives the board.
