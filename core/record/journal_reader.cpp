@@ -19,8 +19,15 @@ std::vector<T> values_of(const Entry& entry) {
 }
 
 template <typename T>
-void add_raw(const Entry& entry, std::vector<double>& raw) {
-  for (const T value : values_of<T>(entry)) raw.push_back(static_cast<double>(value));
+void add_raw(const Entry& entry, Record& record) {
+  const auto values = values_of<T>(entry);
+  if (record.header.board.quantity == daq::RawQuantity::kCounts) {
+    const auto maxdata = static_cast<double>(record.header.board.maxdata);
+    for (const T value : values) {
+      if (!(static_cast<double>(value) <= maxdata)) throw std::invalid_argument("count above maxdata");
+    }
+  }
+  record.raw.insert(record.raw.end(), values.begin(), values.end());
 }
 
 /// \throws std::invalid_argument if the scans do not follow those before.
@@ -30,13 +37,13 @@ void add_scans(const Entry& entry, Record& record) {
   }
   switch (static_cast<Encoding>(entry.head.encoding)) {
     case Encoding::kU16:
-      add_raw<std::uint16_t>(entry, record.raw);
+      add_raw<std::uint16_t>(entry, record);
       break;
     case Encoding::kU32:
-      add_raw<std::uint32_t>(entry, record.raw);
+      add_raw<std::uint32_t>(entry, record);
       break;
     case Encoding::kF64:
-      add_raw<double>(entry, record.raw);
+      add_raw<double>(entry, record);
       break;
     case Encoding::kNone:
     default:
