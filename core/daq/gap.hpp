@@ -38,7 +38,7 @@ enum class GapCause {
 struct Gap {
   ScanIndex first = 0;
   std::int64_t count = 0;
-  bool estimated = false;  ///< The count comes from a clock, not from the index.
+  bool estimated = false;  ///< The board did not count them: the index after the gap comes from a clock.
   GapCause cause = GapCause::kUnknown;
 };
 
@@ -50,7 +50,10 @@ class GapTracker {
   [[nodiscard]] std::optional<Gap> observe(const ScanBlock& block,
                                            GapCause cause = GapCause::kUnknown) noexcept {
     std::optional<Gap> gap;
-    if (next_ && block.first > *next_) gap = Gap{*next_, block.first - *next_, false, cause};
+    if (next_ && block.first > *next_) {
+      const bool estimated = cause == GapCause::kOverrun || cause == GapCause::kBoardMissing;
+      gap = Gap{*next_, block.first - *next_, estimated, cause};
+    }
     next_ = block.end();
     return gap;
   }

@@ -20,18 +20,18 @@ enum CycleFlag : std::uint8_t {
 /// From one slip to the next. Times are seconds after scan 0 of the test's record: (scan index −
 /// first index of the record) / granted rate. NaN where not known.
 struct Cycle {
-  std::int64_t number = 0;        ///< From 0.
+  std::int64_t number = 0;         ///< From 0.
   base::ScanIndex first_scan = 0;  ///< Scan nearest to the peak, index of the acquisition.
-  double onset_time_s = 0.0;      ///< Slip onset.
-  double capture_time_s = 0.0;    ///< Slip ends in sticking; NaN if it does not.
-  double peak_time_s = 0.0;       ///< Maximum of the force, interpolated between scans.
-  double period_s = 0.0;          ///< Peak to next peak; NaN for the last cycle.
-  double stick_time_s = 0.0;      ///< Capture of the slip before to this onset; NaN if not seen.
-  double slip_time_s = 0.0;       ///< Onset to capture; NaN if not captured.
-  double peak = 0.0;              ///< Coefficient at the maximum, interpolated.
-  double trough = 0.0;            ///< Coefficient at the following minimum, interpolated.
-  double force_drop = 0.0;        ///< peak − trough, as a coefficient.
-  double delta_mu = 0.0;          ///< S − K of this slip; NaN if not estimated.
+  double onset_time_s = 0.0;       ///< Slip onset.
+  double capture_time_s = 0.0;     ///< Slip ends in sticking; NaN if it does not.
+  double peak_time_s = 0.0;        ///< Maximum of the force, interpolated between scans.
+  double period_s = 0.0;           ///< Peak to next peak; NaN for the last cycle.
+  double stick_time_s = 0.0;       ///< Capture of the slip before to this onset; NaN if not seen.
+  double slip_time_s = 0.0;        ///< Onset to capture; NaN if not captured.
+  double peak = 0.0;               ///< Coefficient at the maximum, interpolated.
+  double trough = 0.0;             ///< Coefficient at the following minimum, interpolated.
+  double force_drop = 0.0;         ///< peak − trough, as a coefficient.
+  double delta_mu = 0.0;           ///< S − K of this slip; NaN if not estimated.
   double delta_mu_standard_error = 0.0;
   double slip_speed_ratio = 0.0;  ///< Largest slip speed over drive speed [Penner 1995, (18)].
   std::uint8_t flags = 0;         ///< CycleFlag bits.

@@ -25,11 +25,13 @@ struct BoardCase {
   std::string name;  ///< Letters and digits: part of the test's name.
   /// A fresh board over the same input each time.
   std::function<BoardRig(ManualClock&)> make;
-  bool ends = false;  ///< The input comes to an end.
 };
 
 inline void PrintTo(const BoardCase& board_case, std::ostream* out) { *out << board_case.name; }
 
+/// No end; the fake board gives the same readings after each start.
 [[nodiscard]] BoardCase comedi_case();
+/// One repetition of each shipped scene, then the end.
+[[nodiscard]] BoardCase simulated_case();
 
 }  // namespace stickslip::test

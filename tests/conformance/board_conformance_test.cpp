@@ -245,8 +245,10 @@ TEST_P(BoardConformance, ReadingsDoNotDependOnHowTheyAreFetched) {
   }
 }
 
-TEST_P(BoardConformance, TheEndRepeats) {
-  if (!GetParam().ends) GTEST_SKIP() << "this board has no end";
+/// Only boards whose input comes to an end.
+class BoardEnd : public BoardConformance {};
+
+TEST_P(BoardEnd, EndOfInputRepeats) {
   start();
   ScanBlock block;
   ReadStatus status = ReadStatus::kScans;
@@ -259,8 +261,11 @@ TEST_P(BoardConformance, TheEndRepeats) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Boards, BoardConformance, ::testing::Values(comedi_case()),
-                         [](const auto& instance) { return instance.param.name; });
+std::string name_of(const ::testing::TestParamInfo<BoardCase>& instance) { return instance.param.name; }
+
+INSTANTIATE_TEST_SUITE_P(Boards, BoardConformance, ::testing::Values(comedi_case(), simulated_case()),
+                         name_of);
+INSTANTIATE_TEST_SUITE_P(Boards, BoardEnd, ::testing::Values(simulated_case()), name_of);
 
 }  // namespace
 }  // namespace stickslip::test

@@ -14,7 +14,7 @@ BoardCase comedi_case() {
     if (!board) throw std::runtime_error(board.error().message);
     return BoardRig{std::move(world), std::move(*board)};
   };
-  return {"ComediOnAFakeTable", make, /*ends=*/false};
+  return {"ComediOnAFakeTable", make};
 }
 
 }  // namespace stickslip::test

@@ -4,6 +4,7 @@
 
 #include <set>
 #include <string_view>
+#include <utility>
 
 namespace stickslip::test {
 namespace {
@@ -47,6 +48,19 @@ TEST(GapTracker, EachJumpIsReportedOnItsOwn) {
   EXPECT_FALSE(tracker.observe(block_at(0, 1)));
   EXPECT_EQ(tracker.observe(block_at(5, 1))->count, 4);
   EXPECT_EQ(tracker.observe(block_at(9, 1))->count, 3);
+}
+
+// A board that halted does not know how long; a ring that dropped blocks does.
+TEST(GapTracker, CountIsAnEstimateExactlyWhereTheBoardHadHalted) {
+  for (const auto& [cause, estimated] : {std::pair{GapCause::kOverrun, true},
+                                         {GapCause::kBoardMissing, true},
+                                         {GapCause::kRingFull, false},
+                                         {GapCause::kMissingScans, false},
+                                         {GapCause::kUnknown, false}}) {
+    GapTracker tracker;
+    EXPECT_FALSE(tracker.observe(block_at(0, 1)));
+    EXPECT_EQ(tracker.observe(block_at(2, 1), cause)->estimated, estimated) << name(cause);
+  }
 }
 
 // Two years at 100 kHz: far beyond 32 bits, where a narrower index would wrap.

@@ -1,0 +1,152 @@
+#include "core/friction/junction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "core/friction/capture.hpp"
+
+namespace stickslip::friction {
+namespace {
+
+/// Fewest scans on which four parameters and a choice make sense.
+constexpr std::size_t kFewestScans = 8;
+constexpr int kMostIterations = 40;
+constexpr double kFirstDamping = 1e-3;
+constexpr double kHopeless = 1e8;
+constexpr double kConverged = 1e-6;  ///< Log-likelihood units.
+
+struct Scan {
+  double tau_s;  ///< After the first scan of the window.
+  double value;
+};
+
+/// K, c(0) − K, c′(0), and for "captured" the S of the next slip.
+using Parameters = Eigen::VectorXd;
+
+double free_value(const Parameters& p, const SharedParameters& shared, double tau_s) {
+  return SlipWaveform{p[0], p[1], p[2], shared.oscillator()}.value(tau_s);
+}
+
+/// The captured course with its events worked out once.
+class CapturedCourse {
+ public:
+  CapturedCourse(const Parameters& p, const SharedParameters& shared)
+      : r_(shared.r), first_{p[0], p[1], p[2], shared.oscillator()} {
+    capture_s_ = capture_time_s(first_, r_).value_or(first_.rise_end_time_s());
+    at_capture_ = first_.value(capture_s_);
+    const double S = std::max({p[3], p[0], at_capture_});
+    onset_s_ = capture_s_ + (S - at_capture_) / r_;
+    second_ = SlipWaveform{p[0], S - p[0], r_, shared.oscillator()};
+  }
+
+  [[nodiscard]] double value(double tau_s) const {
+    if (tau_s <= capture_s_) return first_.value(tau_s);
+    if (tau_s <= onset_s_) return at_capture_ + r_ * (tau_s - capture_s_);
+    return second_.value(tau_s - onset_s_);
+  }
+
+ private:
+  double r_;
+  SlipWaveform first_;
+  SlipWaveform second_;
+  double capture_s_ = 0.0;
+  double at_capture_ = 0.0;
+  double onset_s_ = 0.0;
+};
+
+/// Half the sum of squares over σ² for the parameters; fills the residuals.
+template <typename Values>
+double cost_of(const std::vector<Scan>& scans, const Values& values, double sigma,
+               Eigen::VectorXd& residuals) {
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    residuals[static_cast<Eigen::Index>(i)] = (scans[i].value - values(scans[i].tau_s)) / sigma;
+  }
+  return 0.5 * residuals.squaredNorm();
+}
+
+/// Levenberg–Marquardt with difference quotients; `steps` are the parameters' scales.
+/// \param model  called as model(parameters) → function of τ.
+template <typename Model>
+double least_cost(const std::vector<Scan>& scans, const Model& model, Parameters p, const Parameters& steps,
+                  double sigma) {
+  const auto rows = static_cast<Eigen::Index>(scans.size());
+  Eigen::VectorXd residuals(rows);
+  Eigen::VectorXd shifted(rows);
+  Eigen::MatrixXd jacobian(rows, p.size());
+  double cost = cost_of(scans, model(p), sigma, residuals);
+  double damping = kFirstDamping;
+  for (int iteration = 0; iteration < kMostIterations && damping < kHopeless; ++iteration) {
+    for (Eigen::Index j = 0; j < p.size(); ++j) {
+      Parameters moved = p;
+      moved[j] += steps[j];
+      cost_of(scans, model(moved), sigma, shifted);
+      jacobian.col(j) = (residuals - shifted) / steps[j];
+    }
+    Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
+    normal.diagonal() *= 1.0 + damping;
+    const Parameters trial = p + normal.ldlt().solve(jacobian.transpose() * residuals);
+    const double trial_cost = trial.allFinite() ? cost_of(scans, model(trial), sigma, shifted) : cost + 1.0;
+    if (trial_cost > cost) {
+      damping *= 10.0;
+      continue;
+    }
+    const bool converged = cost - trial_cost < kConverged;
+    p = trial;
+    cost = trial_cost;
+    residuals = shifted;
+    damping *= 0.1;
+    if (converged) break;
+  }
+  return cost;
+}
+
+}  // namespace
+
+double capture_log_likelihood_ratio(const Trace& trace, std::size_t first, std::size_t end,
+                                    const SharedParameters& shared, double sigma) {
+  std::vector<Scan> scans;
+  scans.reserve(end - first);
+  double low = 0.0;
+  double high = 0.0;
+  for (std::size_t k = first; k < end; ++k) {
+    if (trace.usable[k] == 0) continue;
+    const double value = trace.value[k];
+    low = scans.empty() ? value : std::min(low, value);
+    high = scans.empty() ? value : std::max(high, value);
+    scans.push_back({trace.time_s[k] - trace.time_s[first], value});
+  }
+  if (scans.size() < kFewestScans) return 0.0;
+
+  const double swing = high - low;
+  // Difference quotients: a small part of the swing, far above the rounding of the values.
+  const double step = 1e-5 * swing;
+  const Eigen::Vector3d free_start{0.5 * (low + high), 0.5 * swing, 0.0};
+  const Eigen::Vector3d free_steps{step, step, step * shared.omega};
+  const double free_cost = least_cost(
+      scans,
+      [&](const Parameters& p) {
+        return [&shared, p](double tau_s) { return free_value(p, shared, tau_s); };
+      },
+      free_start, free_steps, sigma);
+
+  const auto captured = [&](const Parameters& p) {
+    return [course = CapturedCourse{p, shared}](double tau_s) { return course.value(tau_s); };
+  };
+  // Two starts: S as high as the swing says, and just above K; the cost has both valleys.
+  const double amplitude_of_belt = shared.r / shared.omega;
+  const double D = std::sqrt(std::max(0.25 * swing * swing - amplitude_of_belt * amplitude_of_belt, 0.0));
+  const Eigen::Vector4d steps{step, step, step * shared.omega, step};
+  double captured_cost = 0.0;
+  for (int start = 0; start < 2; ++start) {
+    const double S = free_start[0] + (start == 0 ? D : 0.1 * swing);
+    const double cost =
+        least_cost(scans, captured, Eigen::Vector4d{free_start[0], free_start[1], 0.0, S}, steps, sigma);
+    captured_cost = start == 0 ? cost : std::min(captured_cost, cost);
+  }
+  return free_cost - captured_cost;
+}
+
+}  // namespace stickslip::friction

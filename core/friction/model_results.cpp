@@ -1,0 +1,217 @@
+#include "core/friction/model_results.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <Eigen/Core>
+
+#include "core/friction/closed_forms.hpp"
+#include "core/friction/threshold.hpp"
+
+namespace stickslip::friction {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+/// From this many slips on, the first — often not representative [Penner 1995] — is left out of means.
+constexpr std::size_t kEnoughToLeaveOutTheFirst = 3;
+
+/// Mean, and standard deviation if there are two values or more.
+struct Sample {
+  double mean = 0.0;
+  double variance = 0.0;
+  double count = 0.0;
+
+  void add(double value) noexcept {  // [Welford, Technometrics 4(3):419–420, 1962]
+    count += 1.0;
+    const double delta = value - mean;
+    mean += delta / count;
+    square_sum += delta * (value - mean);
+    variance = count > 1.0 ? square_sum / (count - 1.0) : 0.0;
+  }
+  double square_sum = 0.0;
+};
+
+/// The six numbers from which all else follows, with their covariance: (ω, γ, r, S̄, K̄).
+struct Fitted {
+  Eigen::Matrix<double, 5, 1> value;
+  Eigen::Matrix<double, 5, 5> covariance;
+  Sample D;
+  Sample amplitude;
+};
+
+double half_range(const SlipWaveform& slip) {
+  return 0.5 * (slip.value(slip.peak_time_s()) - slip.value(slip.trough_time_s()));
+}
+
+Fitted gather(const SlipEstimates& estimates) {
+  const SlipFit& fit = estimates.fit;
+  std::vector<SlipWindow> windows = estimates.windows;
+  if (windows.size() >= kEnoughToLeaveOutTheFirst) windows.erase(windows.begin());
+
+  Fitted fitted;
+  Sample S;
+  Sample K;
+  Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d coupling = Eigen::Matrix3d::Zero();
+  for (const SlipWindow& window : windows) {
+    S.add(window.slip.S);
+    K.add(window.slip.K);
+    fitted.D.add(window.slip.S - window.slip.K);
+    fitted.amplitude.add(half_range(SlipModel{fit.shared, window.slip, window.captured}.waveform()));
+    own += window.inverse_curvature;
+    coupling += window.coupling;
+  }
+  const auto n = static_cast<double>(windows.size());
+  coupling /= n;
+  Eigen::Matrix2d own_mean = own.bottomRightCorner<2, 2>() / (n * n);
+  if (windows.size() > 1) {
+    // The scatter from slip to slip holds the noise of each and what the paper adds to it.
+    Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+    for (const SlipWindow& window : windows) {
+      const Eigen::Vector2d off{window.slip.S - S.mean, window.slip.K - K.mean};
+      scatter += off * off.transpose();
+    }
+    own_mean = scatter / (n * (n - 1.0));
+  }
+  const Eigen::Matrix<double, 2, 3> pull = coupling.bottomRows<2>();
+  fitted.value << fit.shared.omega, fit.shared.gamma, fit.shared.r, S.mean, K.mean;
+  fitted.covariance.topLeftCorner<3, 3>() = fit.shared_covariance;
+  fitted.covariance.bottomLeftCorner<2, 3>() = -pull * fit.shared_covariance;
+  fitted.covariance.topRightCorner<3, 2>() = fitted.covariance.bottomLeftCorner<2, 3>().transpose();
+  fitted.covariance.bottomRightCorner<2, 2>() = own_mean + pull * fit.shared_covariance * pull.transpose();
+  return fitted;
+}
+
+/// Value and first-order standard error of function(ω, γ, r, S, K), by central differences with
+/// steps of the standard errors themselves (their third root of ε would be too small beside noise).
+template <typename Function>
+Estimate derived(const Fitted& fitted, const Function& function) {
+  Eigen::Matrix<double, 5, 1> gradient = Eigen::Matrix<double, 5, 1>::Zero();
+  for (Eigen::Index i = 0; i < 5; ++i) {
+    const double step = 0.01 * std::sqrt(fitted.covariance(i, i));
+    if (!(step > 0.0)) continue;
+    Eigen::Matrix<double, 5, 1> up = fitted.value;
+    Eigen::Matrix<double, 5, 1> down = fitted.value;
+    up[i] += step;
+    down[i] -= step;
+    gradient[i] = (function(up) - function(down)) / (2.0 * step);
+  }
+  return Estimate::of(function(fitted.value), std::sqrt(gradient.dot(fitted.covariance * gradient)));
+}
+
+Oscillator oscillator_of(const Eigen::Matrix<double, 5, 1>& p) {
+  return Oscillator::from_omega(p[0], p[1] / (2.0 * p[0]));
+}
+
+}  // namespace
+
+void no_model_results(const std::string& reason, TestResults& results) {
+  for (Estimate* estimate : {&results.mu_s, &results.mu_k, &results.delta_mu, &results.omega,
+                             &results.gamma_over_2omega, &results.Q, &results.Q_threshold,
+                             &results.threshold_speed, &results.amplitude, &results.delta_mu_scatter}) {
+    *estimate = Estimate::none(reason);
+  }
+}
+
+void model_results(std::span<const Fall> slips, const SlipEstimates& estimates, const Tester& tester,
+                   double sigma, TestResults& results) {
+  const SlipFit& fit = estimates.fit;
+  const bool fitted_well = fit.converged && fit.residual_sigma <= kLargestResidualSigmas * sigma;
+  if (!fitted_well) {
+    no_model_results(
+        fit.converged
+            ? fmt::format("the model leaves residuals of {:.1f} times the scan noise, {:.0f} are allowed",
+                          fit.residual_sigma / sigma, kLargestResidualSigmas)
+            : "the fit of the model did not converge",
+        results);
+    // The traditional amplitude needs no model.
+    Sample amplitude;
+    for (const Fall& slip : slips) amplitude.add(0.5 * slip.drop());
+    results.amplitude = Estimate::of(amplitude.mean, std::sqrt(amplitude.variance / amplitude.count));
+    return;
+  }
+  const Fitted fitted = gather(estimates);
+  using P = Eigen::Matrix<double, 5, 1>;
+  results.omega = derived(fitted, [](const P& p) { return p[0]; });
+  results.gamma_over_2omega = derived(fitted, [](const P& p) { return p[1] / (2.0 * p[0]); });
+  results.mu_s = derived(fitted, [](const P& p) { return p[3]; });
+  results.mu_k = derived(fitted, [](const P& p) { return p[4]; });
+  results.delta_mu = derived(fitted, [](const P& p) { return p[3] - p[4]; });
+  const double damper = fit.shared.gamma * fit.shared.r / fit.shared.oscillator().omega0_squared();
+  results.mu_s.systematic_uncertainty = std::abs(damper);
+  results.delta_mu.systematic_uncertainty = std::abs(damper);
+
+  const double n = fitted.amplitude.count;
+  results.amplitude = n > 1.0 ? Estimate::of(fitted.amplitude.mean, std::sqrt(fitted.amplitude.variance / n))
+                              : derived(fitted, [](const P& p) {
+                                  return half_range({p[4], p[3] - p[4], p[2], oscillator_of(p)});
+                                });
+  results.delta_mu_scatter =
+      n >= 3.0 ? Estimate::of(std::sqrt(fitted.D.variance), std::sqrt(fitted.D.variance / (2.0 * (n - 1.0))))
+               : Estimate::none("fewer than three slips to compare");
+
+  if (!(fitted.D.mean > 0.0)) {
+    results.Q = results.Q_threshold = results.threshold_speed =
+        Estimate::none(fmt::format("S - K = {:.4g} is not positive", fitted.D.mean));
+    return;
+  }
+  results.Q = derived(fitted, [](const P& p) { return dimensionless_speed(p[2], p[0], p[3] - p[4]); });
+  if (!(fit.shared.gamma > 0.0)) {
+    results.Q_threshold = results.threshold_speed =
+        Estimate::none(fmt::format("the damping found, {:.3g}, is not positive", fit.shared.gamma));
+    return;
+  }
+  results.Q_threshold =
+      derived(fitted, [](const P& p) { return Q_threshold(std::abs(p[1]) / (2.0 * p[0])); });
+  results.threshold_speed = derived(fitted, [&](const P& p) {
+    return threshold_speed_m_per_s(Oscillator::from_omega(p[0], std::abs(p[1]) / (2.0 * p[0])), p[3] - p[4],
+                                   tester.gravity_m_per_s2);
+  });
+}
+
+std::vector<Cycle> cycle_table(const Trace& trace, std::span<const Fall> slips,
+                               const SlipEstimates& estimates) {
+  const SlipFit& fit = estimates.fit;
+  std::vector<Cycle> cycles;
+  double last_capture_s = kUnknown;
+  for (std::size_t i = 0; i < slips.size(); ++i) {
+    const Fall& slip = slips[i];
+    Cycle cycle;
+    cycle.number = static_cast<std::int64_t>(i);
+    cycle.peak_time_s = time_at(trace, slip.peak_at);
+    cycle.period_s =
+        i + 1 < slips.size() ? time_at(trace, slips[i + 1].peak_at) - cycle.peak_time_s : kUnknown;
+    cycle.peak = slip.peak;
+    cycle.trough = slip.trough;
+    cycle.force_drop = slip.drop();
+    cycle.onset_time_s = cycle.capture_time_s = cycle.stick_time_s = cycle.slip_time_s = kUnknown;
+    cycle.delta_mu = cycle.delta_mu_standard_error = cycle.slip_speed_ratio = kUnknown;
+    if (i == 0) cycle.flags |= kCycleIsFirst;
+    const bool captured = estimates.ends[i] == SlipEnd::kCaptured;
+    if (captured) cycle.flags |= kCycleCaptured;
+    const bool begins_from_stick = i == 0 || estimates.ends[i - 1] == SlipEnd::kCaptured;
+    if (fit.converged && begins_from_stick) {
+      const SlipWindow& window = estimates.windows[estimates.window_of_slip[i]];
+      const SlipModel model{fit.shared, window.slip, captured};
+      const Eigen::Matrix3d covariance = fit.covariance(window);
+      cycle.onset_time_s = window.slip.onset_s;
+      cycle.stick_time_s = window.slip.onset_s - last_capture_s;
+      cycle.delta_mu = window.slip.S - window.slip.K;
+      cycle.delta_mu_standard_error = std::sqrt(covariance(1, 1) + covariance(2, 2) - 2.0 * covariance(1, 2));
+      // [18], from the fitted waveform: difference quotients of scans read several per cent low.
+      cycle.slip_speed_ratio = -model.waveform().rate(model.waveform().fastest_slip_time_s()) / fit.shared.r;
+      if (captured) {
+        cycle.slip_time_s = model.capture_s();
+        cycle.capture_time_s = window.slip.onset_s + model.capture_s();
+      }
+    }
+    last_capture_s = cycle.capture_time_s;
+    cycles.push_back(cycle);
+  }
+  return cycles;
+}
+
+}  // namespace stickslip::friction

@@ -1,0 +1,33 @@
+/// \file
+/// From the fitted slips to results with standard errors, and to the table of cycles.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/friction/cycle.hpp"
+#include "core/friction/results.hpp"
+#include "core/friction/slip_estimator.hpp"
+#include "core/friction/tester.hpp"
+
+namespace stickslip::friction {
+
+/// Largest residual in units of the scan noise up to which the model counts as describing the trace.
+inline constexpr double kLargestResidualSigmas = 5.0;
+
+/// Fills mu_s, mu_k, delta_mu, omega, gamma_over_2omega, Q, Q_threshold, threshold_speed, amplitude
+/// and delta_mu_scatter, each with its standard error or the reason why there is none.
+/// γ v/g is the systematic uncertainty of S and S − K: whether the coupling's damper counts at
+/// the slip onset is a convention that no trace can tell (here: spring only, [Penner 1995, (13)]).
+/// \param sigma  noise of one scan.
+void model_results(std::span<const Fall> slips, const SlipEstimates& estimates, const Tester& tester,
+                   double sigma, TestResults& results);
+
+/// The same reason for all of them.
+void no_model_results(const std::string& reason, TestResults& results);
+
+/// One row for each slip. Flags for spikes, gaps and saturation are the caller's.
+[[nodiscard]] std::vector<Cycle> cycle_table(const Trace& trace, std::span<const Fall> slips,
+                                             const SlipEstimates& estimates);
+
+}  // namespace stickslip::friction

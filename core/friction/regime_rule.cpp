@@ -1,0 +1,59 @@
+#include "core/friction/regime_rule.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace stickslip::friction {
+
+RegimeVerdict judge_regime(std::size_t slip_count, std::span<const double> log_likelihood_ratios) {
+  if (slip_count == 0) return {Regime::kSteadySliding, "no fall of the force is a slip", {}};
+  if (log_likelihood_ratios.empty()) {
+    return {Regime::kUndecided, "one slip: nothing after it tells how it ended", {}};
+  }
+  // Log-likelihoods of the classes over "all free". Mixed takes the best for each slip, but must
+  // hold at least one of each kind, so it gives up the weakest where all agree.
+  double all_captured = 0.0;
+  double best_of_each = 0.0;
+  double weakest = std::abs(log_likelihood_ratios.front());
+  for (const double ratio : log_likelihood_ratios) {
+    all_captured += ratio;
+    best_of_each += std::max(ratio, 0.0);
+    weakest = std::min(weakest, std::abs(ratio));
+  }
+  const auto captured = std::count_if(log_likelihood_ratios.begin(), log_likelihood_ratios.end(),
+                                      [](double ratio) { return ratio > 0.0; });
+  const auto count = static_cast<std::ptrdiff_t>(log_likelihood_ratios.size());
+  const bool unanimous = captured == 0 || captured == count;
+  const double mixed = unanimous ? best_of_each - weakest : best_of_each;
+
+  struct Class {
+    Regime regime;
+    double log_likelihood;
+  };
+  std::array<Class, 3> classes{
+      {{Regime::kStickSlip, all_captured}, {Regime::kRingDown, 0.0}, {Regime::kMixed, mixed}}};
+  std::sort(classes.begin(), classes.end(),
+            [](const Class& a, const Class& b) { return a.log_likelihood > b.log_likelihood; });
+  const double lead = classes[0].log_likelihood - classes[1].log_likelihood;
+  if (lead < std::log(kDecisiveLikelihoodRatio)) {
+    return {Regime::kUndecided,
+            fmt::format("{} is only {:.1f} times as likely as {}, {:.0f} are wanted", name(classes[0].regime),
+                        std::exp(lead), name(classes[1].regime), kDecisiveLikelihoodRatio),
+            {}};
+  }
+  RegimeVerdict verdict;
+  verdict.regime = classes[0].regime;
+  verdict.reason = fmt::format("{} of {} slips ended in sticking", captured, count);
+  if (verdict.regime == Regime::kMixed) {
+    const bool first_captured = log_likelihood_ratios.front() > 0.0;
+    const auto changed = std::find_if(log_likelihood_ratios.begin(), log_likelihood_ratios.end(),
+                                      [&](double ratio) { return (ratio > 0.0) != first_captured; });
+    verdict.transition_slip = static_cast<std::size_t>(changed - log_likelihood_ratios.begin());
+  }
+  return verdict;
+}
+
+}  // namespace stickslip::friction

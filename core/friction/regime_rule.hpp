@@ -1,0 +1,29 @@
+/// \file
+/// From what each slip did to the word for the test.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/friction/regime.hpp"
+#include "core/friction/slip_estimator.hpp"
+
+namespace stickslip::friction {
+
+struct RegimeVerdict {
+  Regime regime = Regime::kUndecided;
+  std::string reason;
+  /// mixed only: the first slip after which the other behaviour began.
+  std::optional<std::size_t> transition_slip;
+};
+
+/// Likelihood ratio of the best two classes below which the data do not tell.
+inline constexpr double kDecisiveLikelihoodRatio = 20.0;
+
+/// \param slip_count  slips of the test.
+/// \param log_likelihood_ratios  captured over free, one for each slip but the last.
+[[nodiscard]] RegimeVerdict judge_regime(std::size_t slip_count,
+                                         std::span<const double> log_likelihood_ratios);
+
+}  // namespace stickslip::friction

@@ -1,0 +1,172 @@
+#include "core/friction/slip_estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/friction/junction.hpp"
+
+namespace stickslip::friction {
+namespace {
+
+/// First guess of γ/2ω: the paper's tester, (19).
+constexpr double kFirstGammaOver2Omega = 0.022;
+/// Rounds of deciding which slips were captured and fitting what follows from it.
+constexpr int kRounds = 3;
+/// A rise that starts below this part of its peak is the loading of a test from rest.
+constexpr double kLoadingStartsBelow = 0.5;
+/// A window of a free oscillation ends this many periods after the trough of its last slip: by
+/// then the amplitude is below what makes a slip significant.
+constexpr double kTailPeriods = 1.5;
+
+std::size_t scan_at(double position) {
+  return static_cast<std::size_t>(std::lround(std::max(position, 0.0)));
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Least-squares slope of the rise to `peak` from the turning point before, between levels `low`
+/// and `high` (parts of the rise): there the sled sticks and the force rises at the rate r.
+double slope_of_rise(const Trace& trace, const Fall& fall, double low, double high) {
+  const std::size_t peak = std::min(scan_at(fall.peak_at), trace.size() - 1);
+  const std::size_t length = std::min(static_cast<std::size_t>(fall.rise_duration), peak);
+  const double range = fall.peak - fall.rise_from;
+  double n = 0.0;
+  double mean_t = 0.0;
+  double mean_c = 0.0;
+  double s_tt = 0.0;
+  double s_tc = 0.0;
+  for (std::size_t k = peak - length; k <= peak; ++k) {
+    const double level = (trace.value[k] - fall.rise_from) / range;
+    if (trace.usable[k] == 0 || level < low || level > high) continue;
+    // Running means: no difference of large sums [Welford, Technometrics 4(3):419–420, 1962].
+    n += 1.0;
+    const double dt = trace.time_s[k] - mean_t;
+    mean_t += dt / n;
+    mean_c += (trace.value[k] - mean_c) / n;
+    s_tt += dt * (trace.time_s[k] - mean_t);
+    s_tc += dt * (trace.value[k] - mean_c);
+  }
+  if (n >= 2.0 && s_tt > 0.0) return s_tc / s_tt;
+  return length > 0 ? range / (trace.time_s[peak] - trace.time_s[peak - length]) : 0.0;
+}
+
+SharedParameters first_guess(const Trace& trace, std::span<const Fall> slips) {
+  std::vector<double> half_periods;
+  std::vector<double> slopes;
+  for (const Fall& slip : slips) {
+    // Maximum and minimum of a damped oscillation are π/ω apart, whatever γ and the drift.
+    half_periods.push_back(time_at(trace, slip.trough_at) - time_at(trace, slip.peak_at));
+    slopes.push_back(slope_of_rise(trace, slip, 0.3, 0.7));
+  }
+  SharedParameters shared;
+  shared.omega = std::numbers::pi / median(half_periods);
+  shared.gamma = 2.0 * kFirstGammaOver2Omega * shared.omega;
+  const Fall& first = slips.front();
+  const bool loaded_from_rest = first.rise_from < kLoadingStartsBelow * first.peak;
+  shared.r = loaded_from_rest ? slope_of_rise(trace, first, 0.2, 0.8) : median(slopes);
+  return shared;
+}
+
+/// First guess of one slip's own parameters from its peak and trough.
+SlipParameters first_guess(const Trace& trace, const Fall& slip, const SharedParameters& shared) {
+  const double amplitude = 0.5 * slip.drop();
+  const double belt = shared.r / shared.omega;
+  // [2] without damping: amplitude² = D² + (r/ω)².
+  const double D = std::sqrt(std::max(amplitude * amplitude - belt * belt, 0.01 * amplitude * amplitude));
+  SlipParameters parameters;
+  parameters.K = 0.5 * (slip.peak + slip.trough);
+  parameters.S = parameters.K + D;
+  parameters.onset_s = time_at(trace, slip.peak_at) - std::atan2(belt, D) / shared.omega;
+  return parameters;
+}
+
+void judge_ends(const Trace& trace, std::span<const Fall> slips, const SharedParameters& shared, double sigma,
+                SlipEstimates& estimates) {
+  estimates.ends.assign(slips.size(), SlipEnd::kUnknown);
+  estimates.log_likelihood_ratios.clear();
+  for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
+    const std::size_t end = std::min(scan_at(slips[i + 1].trough_at) + 1, trace.size());
+    const double ratio = capture_log_likelihood_ratio(trace, scan_at(slips[i].peak_at), end, shared, sigma);
+    estimates.log_likelihood_ratios.push_back(ratio);
+    estimates.ends[i] = ratio > 0.0 ? SlipEnd::kCaptured : SlipEnd::kFree;
+  }
+}
+
+/// Half way along the rise between two slips: scans before it belong to the first, after it to the second.
+std::size_t boundary(const Fall& before, const Fall& after) {
+  return scan_at(0.5 * (before.trough_at + after.peak_at));
+}
+
+/// Where the first slip's window begins: above the rounded start of the loading.
+std::size_t start_of_loading(const Trace& trace, const Fall& first) {
+  const std::size_t peak = scan_at(first.peak_at);
+  std::size_t start = peak - std::min(static_cast<std::size_t>(first.rise_duration), peak);
+  const double level = first.rise_from + 0.2 * (first.peak - first.rise_from);
+  for (std::size_t k = start; k < peak; ++k) {
+    if (trace.value[k] < level) start = k + 1;
+  }
+  return start;
+}
+
+void lay_windows(const Trace& trace, std::span<const Fall> slips, const SharedParameters& shared,
+                 SlipEstimates& estimates) {
+  estimates.windows.clear();
+  estimates.window_of_slip.clear();
+  const double period_s = 2.0 * std::numbers::pi / shared.omega;
+  const double scans_per_s =
+      static_cast<double>(trace.size() - 1) / (trace.time_s.back() - trace.time_s.front());
+  for (std::size_t i = 0; i < slips.size(); ++i) {
+    const bool begins = i == 0 || estimates.ends[i - 1] == SlipEnd::kCaptured;
+    if (begins) {
+      SlipWindow window;
+      window.first = i == 0 ? start_of_loading(trace, slips[0]) : boundary(slips[i - 1], slips[i]);
+      window.slip = first_guess(trace, slips[i], shared);
+      estimates.windows.push_back(window);
+    }
+    estimates.window_of_slip.push_back(estimates.windows.size() - 1);
+    SlipWindow& window = estimates.windows.back();
+    window.captured = estimates.ends[i] != SlipEnd::kFree;
+    if (i + 1 < slips.size()) {
+      window.end = boundary(slips[i], slips[i + 1]);
+    } else {
+      // Up to the trough the two courses are the same; a free oscillation has a tail to learn from.
+      const bool free_before = i > 0 && estimates.ends[i - 1] == SlipEnd::kFree;
+      window.captured = !free_before;
+      const double tail = free_before ? kTailPeriods * period_s * scans_per_s : 0.0;
+      window.end = scan_at(slips[i].trough_at + tail) + 1;
+    }
+    window.end = std::min(window.end, trace.size());
+  }
+}
+
+}  // namespace
+
+double time_at(const Trace& trace, double position) noexcept {
+  const auto before =
+      static_cast<std::size_t>(std::clamp(position, 0.0, static_cast<double>(trace.size() - 1)));
+  const std::size_t after = std::min(before + 1, trace.size() - 1);
+  return trace.time_s[before] +
+         (position - static_cast<double>(before)) * (trace.time_s[after] - trace.time_s[before]);
+}
+
+SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, double sigma) {
+  SlipEstimates estimates;
+  SharedParameters shared = first_guess(trace, slips);
+  for (int round = 0; round < kRounds; ++round) {
+    const std::vector<SlipEnd> before = estimates.ends;
+    judge_ends(trace, slips, shared, sigma, estimates);
+    if (round > 0 && estimates.ends == before) break;
+    lay_windows(trace, slips, shared, estimates);
+    estimates.fit = fit_slips(trace, estimates.windows, shared, sigma);
+    if (!estimates.fit.converged) break;
+    shared = estimates.fit.shared;
+  }
+  return estimates;
+}
+
+}  // namespace stickslip::friction

@@ -1,0 +1,37 @@
+/// \file
+/// From the falls that are slips to the parameters of the model: which slips were captured, and
+/// S, K, ω, γ and the stick rate that fit the whole test best.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/friction/fall_finder.hpp"
+#include "core/friction/slip_fit.hpp"
+#include "core/friction/trace.hpp"
+
+namespace stickslip::friction {
+
+/// How a slip ended.
+enum class SlipEnd {
+  kCaptured,  ///< In sticking.
+  kFree,      ///< The oscillation went on without sticking.
+  kUnknown,   ///< It is the last one: the trace or the pull ended first.
+};
+
+struct SlipEstimates {
+  std::vector<SlipEnd> ends;                  ///< One for each slip.
+  std::vector<double> log_likelihood_ratios;  ///< Captured over free, one fewer than slips.
+  std::vector<SlipWindow> windows;            ///< One for each onset from sticking.
+  std::vector<std::size_t> window_of_slip;    ///< Index into `windows` for each slip.
+  SlipFit fit;
+};
+
+/// \param slips  falls that are slips, in the order of time, not empty.
+/// \param sigma  noise of one scan, > 0.
+[[nodiscard]] SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, double sigma);
+
+/// Position between scans → time of the trace.
+[[nodiscard]] double time_at(const Trace& trace, double position) noexcept;
+
+}  // namespace stickslip::friction

@@ -1,0 +1,57 @@
+/// \file
+/// Maximum-likelihood fit of the closed-form model to all slips of a test at once: ω, γ and the
+/// stick rate r are shared, onset, S and K belong to each slip.
+///
+///     std::vector<SlipWindow> windows = …;            // with a first guess
+///     SharedParameters shared = …;
+///     const SlipFit fit = fit_slips(trace, windows, shared, sigma);
+///
+/// Levenberg–Marquardt [Marquardt, J. SIAM 11(2):431–441, 1963] on the normal equations, of which
+/// each slip's 3 × 3 block is eliminated first (Schur complement), so that the cost grows with the
+/// number of scans only. Robust by Huber's weights with k = 1.345, which keep 95 % efficiency for
+/// Gaussian noise [Huber, Ann. Math. Stat. 35:73–101, 1964].
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/friction/slip_model.hpp"
+#include "core/friction/trace.hpp"
+
+namespace stickslip::friction {
+
+/// Scans [first, end) of the trace belong to one slip.
+struct SlipWindow {
+  std::size_t first = 0;
+  std::size_t end = 0;
+  bool captured = false;
+  SlipParameters slip;  ///< First guess; the estimate after the fit.
+
+  // Set by the fit, for covariances.
+  Eigen::Matrix3d inverse_curvature = Eigen::Matrix3d::Zero();  ///< Of the slip's own block.
+  Eigen::Matrix3d coupling = Eigen::Matrix3d::Zero();           ///< −∂(own)/∂(shared) at the optimum.
+};
+
+struct SlipFit {
+  bool converged = false;
+  SharedParameters shared;
+  Eigen::Matrix3d shared_covariance = Eigen::Matrix3d::Zero();  ///< Of (ω, γ, r).
+  double residual_sigma = 0.0;  ///< Standard deviation of a scan about the model.
+  std::size_t scan_count = 0;
+
+  /// Covariance of the mean over `windows` of (onset, S, K); the scatter from slip to slip not included.
+  [[nodiscard]] Eigen::Matrix3d mean_covariance(const std::vector<SlipWindow>& windows) const;
+  /// Covariance of one slip's own parameters.
+  [[nodiscard]] Eigen::Matrix3d covariance(const SlipWindow& window) const;
+};
+
+/// \param sigma  noise of one scan, > 0; scales Huber's limit.
+/// \param windows,shared  first guess; windows receive the estimate. A window with fewer than four
+///        usable scans must not be passed.
+/// \return converged = false if no step lowers the cost or the equations are singular.
+[[nodiscard]] SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows,
+                                const SharedParameters& shared, double sigma);
+
+}  // namespace stickslip::friction

@@ -1,0 +1,261 @@
+#include "core/friction/test_analysis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "core/friction/model_results.hpp"
+#include "core/friction/regime_rule.hpp"
+#include "core/friction/slip_estimator.hpp"
+#include "core/friction/traditional.hpp"
+
+namespace stickslip::friction {
+namespace {
+
+/// Standard deviation of rounding to steps of one: 1/√12.
+constexpr double kRoundingSigma = 0.28867513459481287;
+/// Smallest noise assumed, relative to the largest value: a trace without any noise or steps (a
+/// closed form in doubles) still has rounding, and turning points need a scale.
+constexpr double kSmallestRelativeNoise = 1e-9;
+
+double noise_floor(std::span<const double> values, double step_coefficient) {
+  const double step = step_coefficient > 0.0 ? step_coefficient : signal::smallest_step(values);
+  double largest = 0.0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return std::max(
+      {kRoundingSigma * step, kSmallestRelativeNoise * largest, std::numeric_limits<double>::min()});
+}
+
+/// Turning points must not follow noise before the noise is known.
+double hysteresis(double sigma) { return SlipRule::kHysteresisSigmas * sigma; }
+
+std::vector<Fall> find_slips(const Trace& trace, double sigma) {
+  FallFinder finder;
+  SlipRule rule;
+  std::vector<Fall> slips;
+  for (const double value : trace.value) {
+    if (const auto fall = finder.add(value, hysteresis(sigma)); fall && rule.is_slip(*fall, sigma)) {
+      slips.push_back(*fall);
+    }
+  }
+  return slips;
+}
+
+/// Median of the periods, upper one of an even number.
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Slope of the means from peak to peak against time, by least squares: an oscillation averages out.
+Estimate drift_of(const Trace& trace, std::span<const Fall> slips) {
+  constexpr std::size_t kFewestPeriods = 3;
+  if (slips.size() < kFewestPeriods + 1) return Estimate::none("fewer than three cycles");
+  std::vector<std::pair<double, double>> means;
+  for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
+    const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
+    const auto end = static_cast<std::size_t>(std::lround(slips[i + 1].peak_at));
+    double mean = 0.0;
+    for (std::size_t k = first; k < end; ++k) mean += trace.value[k] / static_cast<double>(end - first);
+    means.emplace_back(0.5 * (trace.time_s[first] + trace.time_s[end]), mean);
+  }
+  const auto n = static_cast<double>(means.size());
+  double mean_t = 0.0;
+  double mean_c = 0.0;
+  for (const auto& [t, c] : means) {
+    mean_t += t / n;
+    mean_c += c / n;
+  }
+  double s_tt = 0.0;
+  double s_tc = 0.0;
+  double s_cc = 0.0;
+  for (const auto& [t, c] : means) {
+    s_tt += (t - mean_t) * (t - mean_t);
+    s_tc += (t - mean_t) * (c - mean_c);
+    s_cc += (c - mean_c) * (c - mean_c);
+  }
+  const double slope = s_tc / s_tt;
+  const double residual_variance = std::max(s_cc - slope * s_tc, 0.0) / (n - 2.0);
+  return Estimate::of(slope, std::sqrt(residual_variance / s_tt));
+}
+
+void period_results(const Trace& trace, std::span<const Fall> slips, TestResults& results) {
+  if (slips.size() < 2) {
+    const std::string reason = slips.empty() ? "no oscillation" : "one slip has no period";
+    results.period_median = Estimate::none(reason);
+    results.oscillation_frequency = Estimate::none(reason);
+    return;
+  }
+  std::vector<double> periods;
+  for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
+    periods.push_back(time_at(trace, slips[i + 1].peak_at) - time_at(trace, slips[i].peak_at));
+  }
+  results.period_median = Estimate::of(median(periods));
+  if (results.regime == Regime::kRingDown && results.omega.value) {
+    results.oscillation_frequency =
+        Estimate::of(*results.omega.value / (2.0 * std::numbers::pi),
+                     results.omega.standard_error.value_or(std::nan("")) / (2.0 * std::numbers::pi));
+    return;
+  }
+  const auto n = static_cast<double>(periods.size());
+  const double span_s = time_at(trace, slips.back().peak_at) - time_at(trace, slips.front().peak_at);
+  const double mean_s = span_s / n;
+  double square_sum = 0.0;
+  for (const double period : periods) square_sum += (period - mean_s) * (period - mean_s);
+  results.oscillation_frequency =
+      n > 1.0 ? Estimate::of(1.0 / mean_s, std::sqrt(square_sum / (n - 1.0) / n) / (mean_s * mean_s))
+              : Estimate::of(1.0 / mean_s);
+}
+
+}  // namespace
+
+TestAnalysis::TestAnalysis(const AnalysisSettings& settings)
+    : settings_(settings), live_noise_(kRoundingSigma * settings.step_coefficient) {
+  if (!(settings.scan_rate_Hz > 0.0) || !std::isfinite(settings.scan_rate_Hz)) {
+    throw std::invalid_argument(fmt::format("scan rate {} Hz must be positive", settings.scan_rate_Hz));
+  }
+}
+
+void TestAnalysis::add(base::ScanIndex index, double coefficient, bool saturated) {
+  indices_.push_back(index);
+  coefficients_.push_back(coefficient);
+  saturated_.push_back(saturated ? 1 : 0);
+  live_noise_.add(coefficient);
+  if (!settings_.despike) {
+    follow_live({coefficient, false});
+  } else if (const auto scan = live_despiker_.add(coefficient, live_noise_.sigma())) {
+    follow_live(*scan);
+  }
+}
+
+void TestAnalysis::follow_live(const signal::DespikedScan& scan) {
+  const double sigma = live_noise_.known() ? std::max(live_noise_.sigma(), std::numeric_limits<double>::min())
+                                           : std::numeric_limits<double>::infinity();
+  const auto fall = live_falls_.add(scan.value, hysteresis(sigma));
+  if (!fall || !live_rule_.is_slip(*fall, sigma)) return;
+  Cycle cycle;
+  cycle.number = live_cycle_count_++;
+  cycle.first_scan = indices_.front() + std::lround(fall->peak_at);
+  cycle.peak_time_s = fall->peak_at / settings_.scan_rate_Hz;
+  cycle.peak = fall->peak;
+  cycle.trough = fall->trough;
+  cycle.force_drop = fall->drop();
+  for (double* unknown :
+       {&cycle.onset_time_s, &cycle.capture_time_s, &cycle.period_s, &cycle.stick_time_s, &cycle.slip_time_s,
+        &cycle.delta_mu, &cycle.delta_mu_standard_error, &cycle.slip_speed_ratio}) {
+    *unknown = std::numeric_limits<double>::quiet_NaN();
+  }
+  new_cycles_.push_back(cycle);
+}
+
+void TestAnalysis::gap(base::ScanIndex first, std::int64_t count) {
+  gaps_.push_back({first, count});
+  live_noise_.gap();
+}
+
+std::vector<Cycle> TestAnalysis::take_new_cycles() { return std::exchange(new_cycles_, {}); }
+
+TestResults TestAnalysis::finish() {
+  TestResults results;
+  std::int64_t lost = 0;
+  for (const Gap& gap : gaps_) lost += gap.count;
+  results.gap_count = Estimate::of(static_cast<double>(gaps_.size()));
+  results.lost_scan_count = Estimate::of(static_cast<double>(lost));
+  results.scan_rate_measured = Estimate::none("no clock readings in the analysis");
+  results.transition_time = Estimate::none("no transition");
+
+  const Trace trace = despiked_trace();
+  results.spike_count = Estimate::of(static_cast<double>(spikes_.size()));
+  const double sigma = signal::scan_noise(trace.value, noise_floor(trace.value, settings_.step_coefficient));
+  const std::vector<Fall> slips = trace.size() == 0 ? std::vector<Fall>{} : find_slips(trace, sigma);
+  results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
+  if (trace.size() == 0) {
+    results.regime_reason = "no scans";
+    results.static_coefficient = results.kinetic_coefficient = Estimate::none("no scans");
+  } else {
+    const TraditionalCoefficients traditional = traditional_coefficients(trace, slips, settings_.method);
+    results.static_coefficient = traditional.static_coefficient;
+    results.kinetic_coefficient = traditional.kinetic_coefficient;
+  }
+  if (slips.empty()) {
+    if (trace.size() > 0) {
+      const RegimeVerdict verdict = judge_regime(0, {});
+      results.regime = verdict.regime;
+      results.regime_reason = verdict.reason;
+    }
+    results.stick_cycle_count = Estimate::of(0.0);
+    no_model_results("no slip", results);
+  } else {
+    const SlipEstimates estimates = estimate_slips(trace, slips, sigma);
+    const RegimeVerdict verdict = judge_regime(slips.size(), estimates.log_likelihood_ratios);
+    results.regime = verdict.regime;
+    results.regime_reason = verdict.reason;
+    results.stick_cycle_count = Estimate::of(
+        static_cast<double>(std::count(estimates.ends.begin(), estimates.ends.end(), SlipEnd::kCaptured)));
+    model_results(slips, estimates, settings_.tester, sigma, results);
+    if (verdict.transition_slip) {
+      results.transition_time = Estimate::of(time_at(trace, slips[*verdict.transition_slip].peak_at));
+    }
+    cycles_ = cycle_table(trace, slips, estimates);
+    flag_cycles(slips);
+  }
+  period_results(trace, slips, results);
+  results.drift_rate = drift_of(trace, slips);
+  return results;
+}
+
+Trace TestAnalysis::despiked_trace() {
+  Trace trace;
+  trace.time_s.reserve(indices_.size());
+  trace.value.reserve(indices_.size());
+  trace.usable.reserve(indices_.size());
+  const double sigma =
+      signal::scan_noise(coefficients_, noise_floor(coefficients_, settings_.step_coefficient));
+  signal::Despiker despiker;
+  spikes_.clear();
+  const auto take = [&](const signal::DespikedScan& scan) {
+    const std::size_t k = trace.value.size();
+    if (scan.spike) spikes_.push_back(indices_[k]);
+    trace.time_s.push_back(static_cast<double>(indices_[k] - indices_.front()) / settings_.scan_rate_Hz);
+    trace.value.push_back(scan.value);
+    trace.usable.push_back(!scan.spike && saturated_[k] == 0 ? 1 : 0);
+  };
+  for (const double coefficient : coefficients_) {
+    if (!settings_.despike) {
+      take({coefficient, false});
+    } else if (const auto scan = despiker.add(coefficient, sigma)) {
+      take(*scan);
+    }
+  }
+  while (const auto scan = despiker.flush(sigma)) take(*scan);
+  return trace;
+}
+
+void TestAnalysis::flag_cycles(const std::vector<Fall>& slips) {
+  for (std::size_t i = 0; i < cycles_.size(); ++i) {
+    Cycle& cycle = cycles_[i];
+    const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
+    const auto end = i + 1 < slips.size() ? static_cast<std::size_t>(std::lround(slips[i + 1].peak_at))
+                                          : static_cast<std::size_t>(std::lround(slips[i].trough_at));
+    cycle.first_scan = indices_[first];
+    const base::ScanIndex last_scan = indices_[std::min(end, indices_.size() - 1)];
+    const auto inside = [&](base::ScanIndex scan) { return scan >= cycle.first_scan && scan < last_scan; };
+    if (std::any_of(spikes_.begin(), spikes_.end(), inside)) cycle.flags |= kCycleHasSpike;
+    if (std::any_of(gaps_.begin(), gaps_.end(), [&](const Gap& gap) { return inside(gap.first); })) {
+      cycle.flags |= kCycleHasGap;
+    }
+    if (std::any_of(saturated_.begin() + static_cast<std::ptrdiff_t>(first),
+                    saturated_.begin() + static_cast<std::ptrdiff_t>(std::min(end, saturated_.size())),
+                    [](std::uint8_t flag) { return flag != 0; })) {
+      cycle.flags |= kCycleIsSaturated;
+    }
+  }
+}
+
+}  // namespace stickslip::friction

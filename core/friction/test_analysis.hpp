@@ -1,0 +1,86 @@
+/// \file
+/// One test, scan by scan, from the first pre-trigger scan to the end: spikes out, slips found as they
+/// come, and at the end all results. Live, replay and batch run this same class over the same
+/// scans, so their results have the same bits.
+///
+///     TestAnalysis analysis{settings};
+///     for (…) analysis.add(index, coefficient, saturated);
+///     const TestResults results = analysis.finish();
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/scan_index.hpp"
+#include "core/friction/cycle.hpp"
+#include "core/friction/fall_finder.hpp"
+#include "core/friction/method.hpp"
+#include "core/friction/results.hpp"
+#include "core/friction/slip_rule.hpp"
+#include "core/friction/tester.hpp"
+#include "core/friction/trace.hpp"
+#include "core/signal/despike.hpp"
+#include "core/signal/noise.hpp"
+
+namespace stickslip::friction {
+
+struct AnalysisSettings {
+  double scan_rate_Hz = 350.0;    ///< Granted; > 0.
+  double step_coefficient = 0.0;  ///< One A/D step; 0 if unknown: then it is taken from the trace.
+  Tester tester;
+  Method method;
+  bool despike = true;  ///< Off: to see what the spikes did.
+};
+
+/// Thread-bound. Memory grows with the test: about 17 bytes a scan.
+class TestAnalysis {
+ public:
+  /// \throws std::invalid_argument unless the rate is positive and finite.
+  explicit TestAnalysis(const AnalysisSettings& settings);
+
+  /// \param index        rises; a jump is a gap. \param coefficient calibrated; must be finite.
+  /// \param saturated    the converter was at a rail.
+  void add(base::ScanIndex index, double coefficient, bool saturated);
+  /// Scans [first, first + count) did not arrive.
+  void gap(base::ScanIndex first, std::int64_t count);
+
+  /// Cycles completed since the last call, as the detector sees them live; finish() refines them.
+  [[nodiscard]] std::vector<Cycle> take_new_cycles();
+
+  /// Estimates over the whole test. Call once.
+  [[nodiscard]] TestResults finish();
+
+  /// After finish(): one for each slip.
+  [[nodiscard]] const std::vector<Cycle>& cycles() const noexcept { return cycles_; }
+  /// After finish(): scans that the detector did not believe.
+  [[nodiscard]] const std::vector<base::ScanIndex>& spikes() const noexcept { return spikes_; }
+
+ private:
+  struct Gap {
+    base::ScanIndex first;
+    std::int64_t count;
+  };
+
+  void follow_live(const signal::DespikedScan& scan);
+  /// All scans with the noise of the whole test known; fills spikes_.
+  [[nodiscard]] Trace despiked_trace();
+  void flag_cycles(const std::vector<Fall>& slips);
+
+  AnalysisSettings settings_;
+  std::vector<base::ScanIndex> indices_;
+  std::vector<double> coefficients_;
+  std::vector<std::uint8_t> saturated_;
+  std::vector<Gap> gaps_;
+
+  signal::NoiseEstimator live_noise_;
+  signal::Despiker live_despiker_;
+  FallFinder live_falls_;
+  SlipRule live_rule_;
+  std::vector<Cycle> new_cycles_;
+  std::int64_t live_cycle_count_ = 0;
+
+  std::vector<Cycle> cycles_;
+  std::vector<base::ScanIndex> spikes_;
+};
+
+}  // namespace stickslip::friction

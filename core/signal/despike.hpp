@@ -1,0 +1,45 @@
+/// \file
+/// Removes electrical spikes of one or two scans [Penner 1995: "sharp electrical spikes … which
+/// have to be removed as they would lead to a false peak"].
+///
+///     Despiker despiker;
+///     if (auto scan = despiker.add(value, sigma)) use(scan->value, scan->spike);
+///     while (auto scan = despiker.flush(sigma)) use(scan->value, scan->spike);
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+namespace stickslip::signal {
+
+/// A scan after the filter, in the order of the input.
+struct DespikedScan {
+  double value = 0.0;  ///< As measured, or the median of its neighbourhood if it is a spike.
+  bool spike = false;
+};
+
+/// Hampel identifier over five scans [Hampel, J. Am. Stat. Assoc. 69 (1974) 383]: a scan is a
+/// spike if it is farther from the median of itself and two neighbours on each side than three
+/// scaled median absolute deviations and than five standard deviations of the scan noise. The
+/// first limit spares curved parts of the trace (at a peak the five differ by more than the noise),
+/// the second spares flat ones. Delay two scans. Does not allocate.
+class Despiker {
+ public:
+  /// \param sigma  standard deviation of the noise of one scan (NoiseEstimator).
+  [[nodiscard]] std::optional<DespikedScan> add(double value, double sigma) noexcept;
+  /// The scans still inside, one a call; then nothing, and the filter is empty again.
+  [[nodiscard]] std::optional<DespikedScan> flush(double sigma) noexcept;
+
+ private:
+  static constexpr std::size_t kWidth = 5;
+  static constexpr std::size_t kDelay = 2;
+
+  [[nodiscard]] DespikedScan judge(std::size_t position, double sigma) const noexcept;
+
+  std::array<double, kWidth> window_{};  ///< Oldest first; the first `size_` are in use.
+  std::size_t size_ = 0;
+  std::size_t judged_ = 0;  ///< Leading scans of the window that have been given out.
+};
+
+}  // namespace stickslip::signal

@@ -1,0 +1,58 @@
+#include "core/signal/noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stickslip::signal {
+namespace {
+
+/// Median absolute deviation of a unit Gaussian.
+constexpr double kGaussianMad = 0.6744897501960817;
+/// √70: gain of the fourth difference for white noise.
+constexpr double kFourthDifferenceGain = 8.366600265340756;
+
+/// Upper median; reorders its input.
+double median_of(std::span<double> values) noexcept {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+NoiseEstimator::NoiseEstimator(double floor) noexcept : floor_(floor), sigma_(floor) {}
+
+void NoiseEstimator::add(double value) noexcept {
+  std::rotate(last_.begin(), last_.begin() + 1, last_.end());
+  last_.back() = value;
+  if (++seen_ < last_.size()) return;
+  const double fourth_difference = last_[0] - 4.0 * last_[1] + 6.0 * last_[2] - 4.0 * last_[3] + last_[4];
+  block_[in_block_++] = std::abs(fourth_difference);
+  if (in_block_ == kBlock) close_block();
+}
+
+void NoiseEstimator::close_block() noexcept {
+  medians_[block_count_ % kBlocks] = median_of(block_);
+  ++block_count_;
+  in_block_ = 0;
+  std::array<double, kBlocks> sorted = medians_;
+  const std::span<double> filled{sorted.data(), std::min(block_count_, kBlocks)};
+  sigma_ = std::max(floor_, median_of(filled) / (kGaussianMad * kFourthDifferenceGain));
+}
+
+double scan_noise(std::span<const double> values, double floor) {
+  NoiseEstimator estimator{floor};
+  for (const double value : values) estimator.add(value);
+  return estimator.sigma();
+}
+
+double smallest_step(std::span<const double> values) {
+  double smallest = 0.0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double step = std::abs(values[i] - values[i - 1]);
+    if (step > 0.0 && (smallest == 0.0 || step < smallest)) smallest = step;
+  }
+  return smallest;
+}
+
+}  // namespace stickslip::signal

@@ -1,0 +1,56 @@
+/// \file
+/// How noisy are single scans? Measured from the trace itself, whatever moves slowly in it.
+///
+///     double sigma = scan_noise(values, step / std::sqrt(12.0));
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace stickslip::signal {
+
+/// Standard deviation of white noise on single scans, from fourth differences: these let pass
+/// (2 sin(π f/fs))⁴ of a sinusoid's amplitude, 1.7 % at 17.5 scans a cycle, and √70 of the noise
+/// [Σ binomial(4,k)² = 70]. Robust: the median absolute difference of blocks of 64, over 0.6745
+/// (its value for unit Gaussian noise), then the median over blocks, so that neither spikes nor
+/// slips count. Streaming, O(1) memory and bounded time per scan; does not allocate.
+class NoiseEstimator {
+ public:
+  /// \param floor  smallest answer: what one A/D step alone makes, step/√12.
+  explicit NoiseEstimator(double floor) noexcept;
+
+  void add(double value) noexcept;
+  /// Forgets the neighbours (not the estimate): differences do not reach across a gap.
+  void gap() noexcept { seen_ = 0; }
+
+  /// A block is complete, so sigma() has been measured.
+  [[nodiscard]] bool known() const noexcept { return block_count_ > 0; }
+  /// Standard deviation of one scan; the floor until known().
+  [[nodiscard]] double sigma() const noexcept { return sigma_; }
+
+ private:
+  static constexpr std::size_t kBlock = 64;
+  /// Medians of blocks kept: the latest 256, i.e. 47 s at 350 Hz.
+  static constexpr std::size_t kBlocks = 256;
+
+  void close_block() noexcept;
+
+  double floor_;
+  double sigma_;
+  std::array<double, 5> last_{};
+  std::size_t seen_ = 0;
+  std::array<double, kBlock> block_{};
+  std::size_t in_block_ = 0;
+  std::array<double, kBlocks> medians_{};
+  std::size_t block_count_ = 0;
+};
+
+/// The same for a whole trace. \return the floor if there are fewer than 68 values.
+[[nodiscard]] double scan_noise(std::span<const double> values, double floor);
+
+/// Resolution of a trace whose converter is unknown: its smallest non-zero step between
+/// consecutive values, or 0 if it is constant.
+[[nodiscard]] double smallest_step(std::span<const double> values);
+
+}  // namespace stickslip::signal

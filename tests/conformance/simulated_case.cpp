@@ -1,0 +1,24 @@
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include "drivers/simulated/simulated_board.hpp"
+#include "tests/conformance/board_case.hpp"
+
+namespace stickslip::test {
+
+BoardCase simulated_case() {
+  const auto make = [](ManualClock& clock) {
+    const std::filesystem::path scenes = std::filesystem::path(STICKSLIP_SOURCE_DIR) / "config/scenes";
+    auto tester = drivers::make_simulated_tester(
+        {.scenes = {scenes / "ring-down-at-12-in-per-min.toml", scenes / "stick-slip-at-12-in-per-min.toml"},
+         .repeats = 1,
+         .scan_rate_Hz = {}},
+        clock);
+    if (!tester) throw std::runtime_error(tester.error().message);
+    return BoardRig{nullptr, std::move(tester->board)};
+  };
+  return {"Simulated", make};
+}
+
+}  // namespace stickslip::test
