@@ -192,7 +192,7 @@ TestResults TestAnalysis::finish() {
   }
   if (slips.empty()) {
     if (trace.size() > 0) {
-      const RegimeVerdict verdict = judge_regime(0, {});
+      const RegimeVerdict verdict = judge_regime(0, {}, true);
       results.regime = verdict.regime;
       results.regime_reason = verdict.reason;
     }
@@ -200,7 +200,8 @@ TestResults TestAnalysis::finish() {
     no_model_results("no slip", results);
   } else {
     const SlipEstimates estimates = estimate_slips(trace, slips, sigma);
-    const RegimeVerdict verdict = judge_regime(slips.size(), estimates.log_likelihood_ratios);
+    const RegimeVerdict verdict =
+        judge_regime(slips.size(), estimates.log_likelihood_ratios, model_describes(estimates, sigma));
     results.regime = verdict.regime;
     results.regime_reason = verdict.reason;
     results.stick_cycle_count = Estimate::of(
