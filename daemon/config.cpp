@@ -34,6 +34,9 @@ constexpr double kHeaviestSled_kg = 1e3;
 constexpr double kStrongestGravity_m_per_s2 = 100.0;
 constexpr double kFastestPull_m_per_s = 10.0;
 constexpr double kHighestVoltage_V = 1e3;
+constexpr double kLargestCoefficient = 10.0;
+constexpr double kLongestDwell_s = 3600.0;
+constexpr std::int64_t kMostKineticCycles = 1000;
 constexpr std::int64_t kMostRepeats = 1'000'000;
 constexpr std::int64_t kHighestChannel = 1023;
 
@@ -114,10 +117,39 @@ void read_tester(Settings table, DaemonConfig& config) {
                                                    Limits::between(-kHighestVoltage_V, kHighestVoltage_V));
 }
 
+void read_test(Settings table, pipeline::SegmenterSettings& segmenter) {
+  const Limits coefficient = Limits::between(0.0, kLargestCoefficient);
+  const Limits dwell = Limits::above_up_to(0.0, kLongestDwell_s);
+  segmenter.start_coefficient =
+      table.quantity("start", Dimension::kDimensionless, coefficient, segmenter.start_coefficient);
+  segmenter.start_dwell_s = table.quantity("start_dwell", Dimension::kTime, dwell, segmenter.start_dwell_s);
+  segmenter.pre_trigger_s = table.quantity("pre_trigger", Dimension::kTime,
+                                           Limits::between(0.0, kLongestDwell_s), segmenter.pre_trigger_s);
+  segmenter.end_coefficient =
+      table.quantity("end", Dimension::kDimensionless, coefficient, segmenter.end_coefficient);
+  segmenter.unload_dwell_s = table.quantity("end_dwell", Dimension::kTime, dwell, segmenter.unload_dwell_s);
+  segmenter.no_motion_dwell_s =
+      table.quantity("no_motion_dwell", Dimension::kTime, dwell, segmenter.no_motion_dwell_s);
+  if (!(segmenter.end_coefficient < segmenter.start_coefficient)) {
+    table.refuse("end", fmt::format("must be below start = {}", segmenter.start_coefficient));
+  }
+}
+
+void read_method(Settings table, friction::Method& method) {
+  method.name = table.text("name", method.name);
+  if (method.name.empty() || method.name.find(' ') != std::string::npos) {
+    table.refuse("name", "must be a word without blanks");
+  }
+  method.kinetic_cycles =
+      static_cast<int>(table.integer("kinetic_cycles", 1, kMostKineticCycles, method.kinetic_cycles));
+}
+
 DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
   DaemonConfig config;
   read_board(settings.table("board"), folder, config);
   read_tester(settings.table("tester"), config);
+  read_test(settings.table("test"), config.segmenter);
+  read_method(settings.table("method"), config.method);
   Settings record = settings.table("record");
   config.record_folder = record.text("folder", "records");
   if (config.record_folder.empty()) record.refuse("folder", "must name a folder");

@@ -10,7 +10,9 @@
 #include "core/base/result.hpp"
 #include "core/base/settings.hpp"
 #include "core/daq/calibration.hpp"
+#include "core/friction/method.hpp"
 #include "core/friction/tester.hpp"
+#include "core/pipeline/segmenter.hpp"
 #include "drivers/factory/board_config.hpp"
 
 namespace stickslip::daemon {
@@ -36,6 +38,8 @@ struct DaemonConfig {
   double clock_speed = 1.0;  ///< Board time over wall time; for boards that are not hardware.
   int realtime_priority = 50;
   BenchConfig bench;
+  pipeline::SegmenterSettings segmenter;  ///< Its scan rate is the board's.
+  friction::Method method;
   std::filesystem::path record_folder;
   std::optional<std::filesystem::path> control_socket;
   LogLevel log_level = LogLevel::kInfo;

@@ -3,13 +3,21 @@
 #include <utility>
 
 namespace stickslip::pipeline {
+namespace {
+
+SegmenterSettings complete(SegmenterSettings settings, const daq::Calibration& calibration) {
+  settings.step_coefficient = calibration.step_coefficient();
+  return settings;
+}
+
+}  // namespace
 
 Processor::Processor(const ProcessorSettings& settings, daq::Calibration calibration,
                      std::vector<Sink*> sinks)
     : settings_(settings),
       calibration_(std::move(calibration)),
       sinks_(std::move(sinks)),
-      segmenter_(settings.segmenter),
+      segmenter_(complete(settings.segmenter, calibration_)),
       number_(settings.first_test_number) {
   settings_.analysis.step_coefficient = calibration_.step_coefficient();
 }
@@ -23,6 +31,7 @@ void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause) {
     const daq::ScanIndex index = block.first + static_cast<daq::ScanIndex>(i);
     const double raw = block.raw[i];
     next_scan_ = index + 1;
+    const bool armed = segmenter_.armed();
     const Segmenter::Event event = segmenter_.observe(index, calibration_.coefficient(raw));
     if (test_is_running()) {
       analyse(index, raw);
@@ -33,11 +42,13 @@ void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause) {
       }
       continue;
     }
+    // As the segmenter: what is left of the last test's force is no beginning of the next one.
+    if (!armed) continue;
     waiting_.push_back({index, raw});
     if (event == Segmenter::Event::kTestStarts) {
       begin(index, block.stamp);
       not_handed_over = i + 1;
-    } else if (waiting_.size() > settings_.segmenter.pre_trigger_scans) {
+    } else if (waiting_.size() > settings_.segmenter.pre_trigger_scans()) {
       waiting_.pop_front();
     }
   }

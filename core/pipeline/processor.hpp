@@ -27,8 +27,9 @@
 namespace stickslip::pipeline {
 
 struct ProcessorSettings {
+  // The A/D step of both is taken from the calibration.
   SegmenterSettings segmenter;
-  friction::AnalysisSettings analysis;  ///< Its step is taken from the calibration.
+  friction::AnalysisSettings analysis;
   std::int64_t first_test_number = 1;
 };
 
