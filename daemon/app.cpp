@@ -272,10 +272,10 @@ std::string App::status_line() const {
     case State::kStarting:
       return "starting";
     case State::kAcquiring: {
-      const double rate_Hz =
-          session_ ? session_->board_info().scan_rate_granted_Hz : config_.board.scan_rate_Hz;
+      const std::string rate =
+          session_ ? fmt::format(" at {:.1f} Hz", session_->board_info().scan_rate_granted_Hz) : "";
       const std::string activity = current_test_ ? fmt::format("test {} running", *current_test_) : "idle";
-      return fmt::format("acquiring at {:.1f} Hz, {}, {} tests done", rate_Hz, activity, tests_.test_count());
+      return fmt::format("acquiring{}, {}, {} tests done", rate, activity, tests_.test_count());
     }
     case State::kBoardMissing:
       return fmt::format("board missing: {}", missing_why_);
