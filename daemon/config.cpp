@@ -113,6 +113,9 @@ void read_tester(Settings table, DaemonConfig& config) {
   if (config.board.driver == Driver::kComedi && !table.has("load_cell_gain")) {
     table.refuse("load_cell_gain", "is missing; hardware cannot know it: give it, such as \"2 N/V\"");
   }
+  if (config.board.driver == Driver::kComedi && !table.has("sled_mass")) {
+    table.refuse("sled_mass", "is missing; hardware cannot know it: give it, such as \"2331 g\"");
+  }
   bench.load_cell_zero_V = table.quantity_if_given("load_cell_zero", Dimension::kVoltage,
                                                    Limits::between(-kHighestVoltage_V, kHighestVoltage_V));
 }
