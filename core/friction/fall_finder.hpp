@@ -21,7 +21,7 @@ struct Fall {
   double rise_duration = 0.0;  ///< Scans from the turning point before to the peak.
   double rise_from = 0.0;      ///< Value at that turning point.
 
-  double robust_drop = 0.0;    ///< Drop of the median of three, on which noise hardly counts.
+  double robust_drop = 0.0;  ///< Drop of the median of three, on which noise hardly counts.
 
   [[nodiscard]] double drop() const noexcept { return peak - trough; }
 };
