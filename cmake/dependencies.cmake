@@ -2,7 +2,10 @@
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_package(Boost 1.74 REQUIRED)
-find_package(HDF5 REQUIRED COMPONENTS C)
+find_package(HDF5 REQUIRED COMPONENTS C HL)
+find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto)
+# libcsv comes with neither a CMake nor a pkg-config file.
+find_library(STICKSLIP_CSV_LIBRARY csv REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(fmt REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)

@@ -108,6 +108,10 @@ Oscillator oscillator_of(const Eigen::Matrix<double, 5, 1>& p) {
 
 }  // namespace
 
+bool model_describes(const SlipEstimates& estimates, double sigma) noexcept {
+  return estimates.fit.converged && estimates.fit.residual_sigma <= kLargestResidualSigmas * sigma;
+}
+
 void no_model_results(const std::string& reason, TestResults& results) {
   for (Estimate* estimate : {&results.mu_s, &results.mu_k, &results.delta_mu, &results.omega,
                              &results.gamma_over_2omega, &results.Q, &results.Q_threshold,
@@ -119,8 +123,7 @@ void no_model_results(const std::string& reason, TestResults& results) {
 void model_results(std::span<const Fall> slips, const SlipEstimates& estimates, const Tester& tester,
                    double sigma, TestResults& results) {
   const SlipFit& fit = estimates.fit;
-  const bool fitted_well = fit.converged && fit.residual_sigma <= kLargestResidualSigmas * sigma;
-  if (!fitted_well) {
+  if (!model_describes(estimates, sigma)) {
     no_model_results(
         fit.converged
             ? fmt::format("the model leaves residuals of {:.1f} times the scan noise, {:.0f} are allowed",

@@ -15,6 +15,9 @@ namespace stickslip::friction {
 /// Largest residual in units of the scan noise up to which the model counts as describing the trace.
 inline constexpr double kLargestResidualSigmas = 5.0;
 
+/// The whole-test fit converged and leaves residuals that the scan noise explains.
+[[nodiscard]] bool model_describes(const SlipEstimates& estimates, double sigma) noexcept;
+
 /// Fills mu_s, mu_k, delta_mu, omega, gamma_over_2omega, Q, Q_threshold, threshold_speed, amplitude
 /// and delta_mu_scatter, each with its standard error or the reason why there is none.
 /// γ v/g is the systematic uncertainty of S and S − K: whether the coupling's damper counts at

@@ -8,7 +8,8 @@
 
 namespace stickslip::friction {
 
-RegimeVerdict judge_regime(std::size_t slip_count, std::span<const double> log_likelihood_ratios) {
+RegimeVerdict judge_regime(std::size_t slip_count, std::span<const double> log_likelihood_ratios,
+                           bool model_describes) {
   if (slip_count == 0) return {Regime::kSteadySliding, "no fall of the force is a slip", {}};
   if (log_likelihood_ratios.empty()) {
     return {Regime::kUndecided, "one slip: nothing after it tells how it ended", {}};
@@ -27,6 +28,12 @@ RegimeVerdict judge_regime(std::size_t slip_count, std::span<const double> log_l
                                       [](double ratio) { return ratio > 0.0; });
   const auto count = static_cast<std::ptrdiff_t>(log_likelihood_ratios.size());
   const bool unanimous = captured == 0 || captured == count;
+  if (!unanimous && !model_describes) {
+    return {
+        Regime::kUndecided,
+        fmt::format("{} of {} slips look captured, but the model does not describe them", captured, count),
+        {}};
+  }
   const double mixed = unanimous ? best_of_each - weakest : best_of_each;
 
   struct Class {

@@ -23,7 +23,9 @@ inline constexpr double kDecisiveLikelihoodRatio = 20.0;
 
 /// \param slip_count  slips of the test.
 /// \param log_likelihood_ratios  captured over free, one for each slip but the last.
+/// \param model_describes  the ratios rest on a model that fits the trace; if it does not, only a
+///        unanimous vote counts.
 [[nodiscard]] RegimeVerdict judge_regime(std::size_t slip_count,
-                                         std::span<const double> log_likelihood_ratios);
+                                         std::span<const double> log_likelihood_ratios, bool model_describes);
 
 }  // namespace stickslip::friction

@@ -106,17 +106,25 @@ void period_results(const Trace& trace, std::span<const Fall> slips, TestResults
   const auto n = static_cast<double>(periods.size());
   const double span_s = time_at(trace, slips.back().peak_at) - time_at(trace, slips.front().peak_at);
   const double mean_s = span_s / n;
-  double square_sum = 0.0;
-  for (const double period : periods) square_sum += (period - mean_s) * (period - mean_s);
+  // A late peak lengthens one period and shortens the next: the error of the mean takes the covariance
+  // of neighbours into account, but never less than the two end points leave.
+  double variance = 0.0;
+  double neighbours = 0.0;
+  for (std::size_t i = 0; i < periods.size(); ++i) {
+    variance += (periods[i] - mean_s) * (periods[i] - mean_s) / n;
+    if (i + 1 < periods.size()) neighbours += (periods[i] - mean_s) * (periods[i + 1] - mean_s) / n;
+  }
+  const double mean_variance = std::max(variance + 2.0 * neighbours, variance / n) / n;
   results.oscillation_frequency =
-      n > 1.0 ? Estimate::of(1.0 / mean_s, std::sqrt(square_sum / (n - 1.0) / n) / (mean_s * mean_s))
+      n > 1.0 ? Estimate::of(1.0 / mean_s, std::sqrt(mean_variance) / (mean_s * mean_s))
               : Estimate::of(1.0 / mean_s);
 }
 
 }  // namespace
 
 TestAnalysis::TestAnalysis(const AnalysisSettings& settings)
-    : settings_(settings), live_noise_(kRoundingSigma * settings.step_coefficient) {
+    : settings_(settings),
+      live_noise_(std::max(kRoundingSigma * settings.step_coefficient, kSmallestRelativeNoise)) {
   if (!(settings.scan_rate_Hz > 0.0) || !std::isfinite(settings.scan_rate_Hz)) {
     throw std::invalid_argument(fmt::format("scan rate {} Hz must be positive", settings.scan_rate_Hz));
   }
@@ -135,8 +143,7 @@ void TestAnalysis::add(base::ScanIndex index, double coefficient, bool saturated
 }
 
 void TestAnalysis::follow_live(const signal::DespikedScan& scan) {
-  const double sigma = live_noise_.known() ? std::max(live_noise_.sigma(), std::numeric_limits<double>::min())
-                                           : std::numeric_limits<double>::infinity();
+  const double sigma = live_noise_.known() ? live_noise_.sigma() : std::numeric_limits<double>::infinity();
   const auto fall = live_falls_.add(scan.value, hysteresis(sigma));
   if (!fall || !live_rule_.is_slip(*fall, sigma)) return;
   Cycle cycle;
@@ -185,7 +192,7 @@ TestResults TestAnalysis::finish() {
   }
   if (slips.empty()) {
     if (trace.size() > 0) {
-      const RegimeVerdict verdict = judge_regime(0, {});
+      const RegimeVerdict verdict = judge_regime(0, {}, true);
       results.regime = verdict.regime;
       results.regime_reason = verdict.reason;
     }
@@ -193,11 +200,14 @@ TestResults TestAnalysis::finish() {
     no_model_results("no slip", results);
   } else {
     const SlipEstimates estimates = estimate_slips(trace, slips, sigma);
-    const RegimeVerdict verdict = judge_regime(slips.size(), estimates.log_likelihood_ratios);
+    const RegimeVerdict verdict =
+        judge_regime(slips.size(), estimates.log_likelihood_ratios, model_describes(estimates, sigma));
     results.regime = verdict.regime;
     results.regime_reason = verdict.reason;
-    results.stick_cycle_count = Estimate::of(
-        static_cast<double>(std::count(estimates.ends.begin(), estimates.ends.end(), SlipEnd::kCaptured)));
+    const auto captured = std::count(estimates.ends.begin(), estimates.ends.end(), SlipEnd::kCaptured);
+    results.stick_cycle_count = verdict.regime == Regime::kUndecided
+                                    ? Estimate::none("undecided: " + verdict.reason)
+                                    : Estimate::of(static_cast<double>(captured));
     model_results(slips, estimates, settings_.tester, sigma, results);
     if (verdict.transition_slip) {
       results.transition_time = Estimate::of(time_at(trace, slips[*verdict.transition_slip].peak_at));

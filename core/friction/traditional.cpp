@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/friction/slip_estimator.hpp"
 
@@ -22,6 +23,18 @@ double mean_of(const Trace& trace, std::size_t first, std::size_t end) {
   return mean;
 }
 
+/// Scans between the first and the last at or above half the largest: what is before is loading, what
+/// is after unloading.
+std::pair<std::size_t, std::size_t> loaded_part(const Trace& trace) {
+  const double half = 0.5 * *std::max_element(trace.value.begin(), trace.value.end());
+  const auto loaded = [half](double value) { return value >= half; };
+  const auto first = std::find_if(trace.value.begin(), trace.value.end(), loaded);
+  const auto last = std::find_if(trace.value.rbegin(), trace.value.rend(), loaded);
+  if (first == trace.value.end()) return {0, trace.size()};
+  return {static_cast<std::size_t>(first - trace.value.begin()),
+          trace.size() - static_cast<std::size_t>(last - trace.value.rbegin())};
+}
+
 std::size_t first_at_or_after(const Trace& trace, double time_s) {
   const auto found = std::lower_bound(trace.time_s.begin(), trace.time_s.end(), time_s);
   return static_cast<std::size_t>(found - trace.time_s.begin());
@@ -32,8 +45,9 @@ std::size_t first_at_or_after(const Trace& trace, double time_s) {
 TraditionalCoefficients traditional_coefficients(const Trace& trace, std::span<const Fall> slips,
                                                  const Method& method) {
   if (slips.empty()) {
+    const auto [first, end] = loaded_part(trace);
     return {Estimate::none("no peak: the force never fell by a slip"),
-            Estimate::of(mean_of(trace, 0, trace.size()))};
+            Estimate::of(mean_of(trace, first, end))};
   }
   TraditionalCoefficients result;
   const auto peak = static_cast<std::size_t>(std::lround(slips.front().peak_at));

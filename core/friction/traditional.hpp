@@ -16,8 +16,9 @@ struct TraditionalCoefficients {
   Estimate kinetic_coefficient;  ///< Mean over the next method.kinetic_cycles cycles, peak to peak.
 };
 
-/// \param slips  in the order of time; with none, the kinetic coefficient is the mean of the trace
-///               if the trace has no loading ramp, and there is no static one.
+/// \param trace  not empty.
+/// \param slips  in the order of time; with none there is no static coefficient, and the kinetic one is
+///               the mean of the trace without its loading and unloading.
 [[nodiscard]] TraditionalCoefficients traditional_coefficients(const Trace& trace,
                                                                std::span<const Fall> slips,
                                                                const Method& method);

@@ -6,7 +6,7 @@
 ///     journal->sync();                           // once a second
 ///     journal->append_end(end);
 ///
-/// Each entry is one write() of a 36-byte head and its payload under one CRC-32C, so that a reader
+/// Each entry is one write() of a 32-byte head and its payload under one CRC-32C, so that a reader
 /// knows every whole entry from a torn one. Measured to lose nothing that was written at kill -9
 /// and nothing that was synced at a power cut, which HDF5 written live does.
 /// Layout of an entry: docs/record-file.md.
@@ -14,18 +14,22 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/result.hpp"
+#include "core/record/file.hpp"
+#include "core/record/journal_format.hpp"
 #include "core/record/record.hpp"
 
 namespace stickslip::record {
 
 inline constexpr std::string_view kJournalExtension = ".journal";
 
-/// Not thread-safe: the storage thread owns it. Move-only.
+/// Not thread-safe: the storage thread owns it. Move-only. Destruction closes without syncing.
 class JournalWriter {
  public:
   /// Creates the file, which must not exist, writes the header and makes file and name durable.
@@ -33,19 +37,12 @@ class JournalWriter {
   [[nodiscard]] static base::Result<JournalWriter> create(const std::filesystem::path& path,
                                                           RecordHeader header);
 
-  JournalWriter(JournalWriter&& other) noexcept;
-  JournalWriter& operator=(JournalWriter&& other) noexcept;
-  JournalWriter(const JournalWriter&) = delete;
-  JournalWriter& operator=(const JournalWriter&) = delete;
-  /// Closes without syncing: sync() before, if it matters.
-  ~JournalWriter();
-
   // Every append either adds a whole entry or returns why not (kFailure) and leaves the file as it
   // was: after ENOSPC the same entry may be tried again. If even that cannot be done, all further
   // appends fail with the first error.
 
   /// \param first  rises strictly over all scans of the journal.
-  /// \param raw    consecutive; counts are whole numbers in 0 … maxdata (contract).
+  /// \param raw    consecutive, not empty; counts are whole numbers in 0 … maxdata (contract).
   [[nodiscard]] base::Result<void> append_scans(daq::ScanIndex first, std::span<const double> raw,
                                                 const daq::ClockStamp& stamp);
   [[nodiscard]] base::Result<void> append_spikes(std::span<const daq::ScanIndex> spikes);
@@ -64,17 +61,21 @@ class JournalWriter {
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
  private:
-  JournalWriter(std::filesystem::path path, int descriptor, std::uint32_t maxdata, bool counts);
-  [[nodiscard]] base::Result<void> append(std::uint16_t type, std::uint16_t encoding, std::int64_t first_scan,
-                                          std::int64_t time_ns, std::span<const std::byte> payload);
+  JournalWriter(std::filesystem::path path, Descriptor file, const daq::BoardInfo& board);
+  /// Head and payload as one write(). \param entry  room for the head in front of the payload.
+  [[nodiscard]] base::Result<void> append(EntryType type, Encoding encoding, daq::ScanIndex first_scan,
+                                          std::int64_t time_ns);
+  [[nodiscard]] base::Result<void> append_text(EntryType type, daq::ScanIndex first_scan,
+                                               std::string_view json);
 
   std::filesystem::path path_;
-  int descriptor_ = -1;
-  std::uint32_t maxdata_ = 0;
-  bool counts_ = false;
+  Descriptor file_;
+  Encoding encoding_;
+  double maxdata_;
+  daq::ScanIndex next_scan_ = std::numeric_limits<daq::ScanIndex>::min();
   std::uint64_t size_ = 0;
   std::string broken_;            ///< The first error that could not be undone; empty if none.
-  std::vector<std::byte> entry_;  ///< Reused, so that appending settles to no allocation.
+  std::vector<std::byte> entry_;  ///< The head and payload being built; reused.
 };
 
 /// What a journal held, up to the first entry that is not whole.

@@ -140,9 +140,14 @@ struct Record {
   std::vector<friction::Cycle> cycles;
   std::vector<ClockAnchor> anchors;
   std::vector<Event> events;
-  std::optional<EndRecord> end;  ///< Absent only in the journal of an interrupted test. Its cycles
-                                 ///< and spikes are moved to the members above by the readers.
+  std::optional<EndRecord> end;  ///< Absent only in the journal of an interrupted test; see set_end().
   std::string sha256;            ///< Of the raw values as stored, hexadecimal; set by read_record().
 };
+
+/// Ends a record: the end's cycles and spikes become the record's.
+void set_end(Record& record, EndRecord end);
+
+/// A new random UUID (RFC 4122, version 4).
+[[nodiscard]] std::string make_uuid();
 
 }  // namespace stickslip::record

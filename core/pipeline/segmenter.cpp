@@ -1,0 +1,143 @@
+#include "core/pipeline/segmenter.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/friction/slip_rule.hpp"
+
+namespace stickslip::pipeline {
+namespace {
+
+using friction::SlipRule;
+
+/// Standard deviation of rounding to steps of one: 1/√12.
+constexpr double kRoundingSigma = 0.28867513459481287;
+/// Smallest noise assumed, in terms of the trigger: a scene without noise has no scale of its own.
+constexpr double kSmallestRelativeNoise = 1e-4;
+/// Time constant of the average that flatness is judged on, in scans.
+constexpr double kSmoothing = 8.0;
+/// The belt can only have stopped if the last fall was in full swing: at least this part of the
+/// largest, and twice what makes a slip significant. The last significant fall of an oscillation
+/// that dies away is by its nature a small one.
+constexpr double kFullSwing = 0.5;
+constexpr double kFullSwingSigmas = 2.0 * SlipRule::kSignificantSigmas;
+constexpr int kFewestFalls = 2;
+/// Missing periods after which the oscillation has stopped.
+constexpr double kMissingPeriods = 4.0;
+
+double noise_floor(const SegmenterSettings& settings) {
+  return std::max(kRoundingSigma * settings.step_coefficient,
+                  kSmallestRelativeNoise * settings.start_coefficient);
+}
+
+void require(bool condition, const char* what, double value) {
+  if (!condition) throw std::invalid_argument(fmt::format("{}: {}", what, value));
+}
+
+}  // namespace
+
+std::size_t SegmenterSettings::pre_trigger_scans() const noexcept {
+  return static_cast<std::size_t>(std::llround(pre_trigger_s * scan_rate_Hz));
+}
+
+Segmenter::Segmenter(const SegmenterSettings& settings) : settings_(settings), noise_(noise_floor(settings)) {
+  require(settings.scan_rate_Hz > 0.0, "scan rate in Hz must be positive", settings.scan_rate_Hz);
+  require(settings.start_dwell_s > 0.0, "start dwell in s must be positive", settings.start_dwell_s);
+  require(settings.unload_dwell_s > 0.0, "unload dwell in s must be positive", settings.unload_dwell_s);
+  require(settings.no_motion_dwell_s > 0.0, "no-motion dwell in s must be positive",
+          settings.no_motion_dwell_s);
+  require(settings.pre_trigger_s >= 0.0, "pre-trigger time in s must not be negative",
+          settings.pre_trigger_s);
+  require(settings.end_coefficient >= 0.0 && settings.end_coefficient < settings.start_coefficient,
+          "end coefficient must be from 0 to below the start coefficient", settings.end_coefficient);
+}
+
+std::int64_t Segmenter::scans(double seconds) const noexcept {
+  return std::max<std::int64_t>(2, std::llround(seconds * settings_.scan_rate_Hz));
+}
+
+Segmenter::Event Segmenter::observe(base::ScanIndex index, double coefficient) {
+  if (next_ && index != *next_ && state_ == State::kArmed) {
+    waiting_.clear();
+    above_ = 0;
+  }
+  next_ = index + 1;
+  above_ = coefficient >= settings_.start_coefficient ? above_ + 1 : 0;
+  below_ = coefficient < settings_.end_coefficient ? below_ + 1 : 0;
+  const bool unloaded = below_ >= scans(settings_.unload_dwell_s);
+
+  switch (state_) {
+    case State::kWaitingForUnload:
+      if (unloaded) state_ = State::kArmed;
+      return Event::kNone;
+    case State::kArmed:
+      waiting_.push_back(coefficient);
+      if (above_ >= scans(settings_.start_dwell_s)) {
+        begin();
+        return Event::kTestStarts;
+      }
+      if (waiting_.size() > settings_.pre_trigger_scans()) waiting_.pop_front();
+      return Event::kNone;
+    case State::kRunning:
+      follow(coefficient);
+      if (unloaded) {
+        state_ = State::kArmed;
+        return Event::kUnloaded;
+      }
+      if (belt_has_stopped()) {
+        state_ = State::kWaitingForUnload;
+        return Event::kNoRelativeMotion;
+      }
+      return Event::kNone;
+  }
+  return Event::kNone;
+}
+
+void Segmenter::begin() {
+  state_ = State::kRunning;
+  noise_ = signal::NoiseEstimator{kRoundingSigma * settings_.step_coefficient};
+  despiker_ = {};
+  falls_ = {};
+  largest_drop_ = last_drop_ = last_period_ = last_peak_at_ = 0.0;
+  fall_count_ = 0;
+  smooth_ = flat_level_ = waiting_.front();
+  flat_scans_ = 0;
+  for (const double coefficient : waiting_) follow(coefficient);
+  waiting_.clear();
+}
+
+void Segmenter::follow(double coefficient) {
+  noise_.add(coefficient);
+  if (!noise_.known()) return;
+  const double sigma = noise_.sigma();
+  const auto scan = despiker_.add(coefficient, sigma);
+  if (!scan) return;
+  if (const auto fall = falls_.add(scan->value, SlipRule::kHysteresisSigmas * sigma);
+      fall && fall->robust_drop >= SlipRule::kSignificantSigmas * sigma) {
+    ++fall_count_;
+    last_drop_ = fall->robust_drop;
+    largest_drop_ = std::max(largest_drop_, last_drop_);
+    last_period_ = fall->peak_at - last_peak_at_;
+    last_peak_at_ = fall->peak_at;
+  }
+  smooth_ += (scan->value - smooth_) / kSmoothing;
+  ++flat_scans_;
+  if (std::abs(smooth_ - flat_level_) > SlipRule::kHysteresisSigmas * sigma) {
+    flat_level_ = smooth_;
+    flat_scans_ = 0;
+  }
+}
+
+bool Segmenter::belt_has_stopped() const {
+  const double sigma = noise_.sigma();
+  const bool full_swing = fall_count_ >= kFewestFalls && last_drop_ >= kFullSwing * largest_drop_ &&
+                          last_drop_ >= kFullSwingSigmas * sigma;
+  const double wanted =
+      std::max(static_cast<double>(scans(settings_.no_motion_dwell_s)), kMissingPeriods * last_period_);
+  return full_swing && static_cast<double>(flat_scans_) >= wanted;
+}
+
+}  // namespace stickslip::pipeline

@@ -1,0 +1,88 @@
+#include "core/record/file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+
+namespace stickslip::record {
+namespace {
+
+/// Of one read(): the kernel never returns more than 2 GiB.
+constexpr std::size_t kReadChunk = std::size_t{1} << 24U;
+
+}  // namespace
+
+Descriptor::~Descriptor() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+std::string system_message(int error) { return std::generic_category().message(error); }
+
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : std::filesystem::path{"."};
+}
+
+base::Result<void> sync_path(const std::filesystem::path& path) {
+  const Descriptor descriptor{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+  if (!descriptor.open() || ::fsync(descriptor.get()) != 0) {
+    return base::failure("{}: cannot be made durable: {}", path.string(), system_message(errno));
+  }
+  return {};
+}
+
+base::Result<void> rename_to_new(const std::filesystem::path& from, const std::filesystem::path& to) {
+  // The RENAME_NOREPLACE flag closes the moment between looking and renaming; some file systems
+  // do not know it (EINVAL).
+  int status = ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE);
+  if (status != 0 && errno == EINVAL) {
+    struct stat found {};
+    if (::lstat(to.c_str(), &found) == 0) {
+      errno = EEXIST;
+    } else {
+      status = std::rename(from.c_str(), to.c_str());
+    }
+  }
+  if (status != 0 && errno == EEXIST) {
+    return base::usage_error("{}: exists already and is never overwritten: choose another name", to.string());
+  }
+  if (status != 0) {
+    return base::failure("{}: cannot be renamed to {}: {}", from.string(), to.string(),
+                         system_message(errno));
+  }
+  return sync_path(folder_of(to));
+}
+
+base::Result<std::vector<std::byte>> read_file(const std::filesystem::path& path) {
+  const Descriptor descriptor{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+  if (!descriptor.open()) {
+    if (errno == ENOENT || errno == ENOTDIR)
+      return base::usage_error("{}: there is no such file", path.string());
+    return base::failure("{}: cannot be opened: {}", path.string(), system_message(errno));
+  }
+  struct stat found {};
+  if (::fstat(descriptor.get(), &found) == 0 && S_ISDIR(found.st_mode)) {
+    return base::usage_error("{}: is a folder, a file is needed", path.string());
+  }
+  std::vector<std::byte> bytes;
+  std::size_t size = 0;
+  for (;;) {
+    // One byte more than the file says it has, so that the end is seen without another round.
+    const auto expected = static_cast<std::size_t>(found.st_size) + 1;
+    bytes.resize(size + (size < expected ? std::min(expected - size, kReadChunk) : kReadChunk));
+    const ssize_t got = ::read(descriptor.get(), bytes.data() + size, bytes.size() - size);
+    if (got < 0) {
+      if (errno == EINTR) continue;
+      return base::failure("{}: cannot be read: {}", path.string(), system_message(errno));
+    }
+    if (got == 0) break;
+    size += static_cast<std::size_t>(got);
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
+}  // namespace stickslip::record

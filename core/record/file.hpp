@@ -1,0 +1,51 @@
+/// \file
+/// Durable files: every result checked, errors with the path and the system's words.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/result.hpp"
+
+namespace stickslip::record {
+
+/// Owns a file descriptor.
+class Descriptor {
+ public:
+  explicit Descriptor(int descriptor = -1) noexcept : descriptor_(descriptor) {}
+  Descriptor(Descriptor&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(descriptor_, other.descriptor_);
+    return *this;
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor();
+
+  [[nodiscard]] int get() const noexcept { return descriptor_; }
+  [[nodiscard]] bool open() const noexcept { return descriptor_ >= 0; }
+
+ private:
+  int descriptor_;
+};
+
+/// What the system says about an errno value.
+[[nodiscard]] std::string system_message(int error);
+
+/// fsync of a file or a folder by its path.
+[[nodiscard]] base::Result<void> sync_path(const std::filesystem::path& path);
+
+/// The folder that holds a file, "." for a bare name.
+[[nodiscard]] std::filesystem::path folder_of(const std::filesystem::path& path);
+
+/// Renames without ever replacing; kUsage if `to` exists. The folder is synced.
+[[nodiscard]] base::Result<void> rename_to_new(const std::filesystem::path& from,
+                                               const std::filesystem::path& to);
+
+/// The whole file. Errors: kUsage if it is no readable file at all (missing, a folder), else kFailure.
+[[nodiscard]] base::Result<std::vector<std::byte>> read_file(const std::filesystem::path& path);
+
+}  // namespace stickslip::record

@@ -1,0 +1,174 @@
+#include "core/record/hdf_read.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace stickslip::record {
+namespace {
+
+/// Longest column read: 268 million scans (nine days at 350/s), 2 GiB. A file may claim more than
+/// any memory holds.
+constexpr hsize_t kLongestColumn = hsize_t{1} << 28U;
+/// Longest text read: configuration and scene are some kilobytes.
+constexpr std::size_t kLongestText = std::size_t{1} << 26U;
+
+[[noreturn]] void refuse(const std::string& name, const std::string& what) {
+  throw HdfError(fmt::format("{} {}", name, what));
+}
+
+/// Elements of a scalar (dimensions = 0) or a column (1).
+std::size_t count_in(const SpaceHandle& space, int dimensions, const std::string& name) {
+  if (H5Sget_simple_extent_type(space.get()) == H5S_NULL ||
+      H5Sget_simple_extent_ndims(space.get()) != dimensions) {
+    refuse(name, dimensions == 0 ? "is no single value" : "is no column");
+  }
+  hsize_t count = 1;
+  if (dimensions == 1) check(H5Sget_simple_extent_dims(space.get(), &count, nullptr), "length of " + name);
+  if (count > kLongestColumn) {
+    refuse(name, fmt::format("has {} rows, at most {} are read", count, kLongestColumn));
+  }
+  return static_cast<std::size_t>(count);
+}
+
+template <typename T>
+bool is_number(hid_t type) {
+  return H5Tequal(type, NumberType<T>::file()) > 0;
+}
+
+TypeHandle type_of(const DatasetHandle& dataset, const std::string& name) {
+  return {H5Dget_type(dataset.get()), "type of " + name};
+}
+SpaceHandle space_of(const DatasetHandle& dataset, const std::string& name) {
+  return {H5Dget_space(dataset.get()), "space of " + name};
+}
+
+/// \throws HdfError unless the type is a fixed-length string; \return its length.
+std::size_t text_width(const TypeHandle& type, std::size_t count, const std::string& name) {
+  if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0) {
+    refuse(name, "is no fixed-length text");
+  }
+  const std::size_t width = H5Tget_size(type.get());
+  if (width == 0 || width * count > kLongestText) refuse(name, "is too long a text");
+  return width;
+}
+
+std::vector<std::string> texts_of(hid_t parent, const std::string& name, int dimensions) {
+  const DatasetHandle dataset = open_dataset(parent, name);
+  const TypeHandle type = type_of(dataset, name);
+  const std::size_t count = count_in(space_of(dataset, name), dimensions, name);
+  const std::size_t width = text_width(type, count, name);
+  std::string all(width * count, '\0');
+  check(H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()), "reading " + name);
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::string text = all.substr(i * width, width);
+    text.erase(text.find_last_not_of('\0') + 1);
+    texts.push_back(std::move(text));
+  }
+  return texts;
+}
+
+template <typename T>
+std::vector<T> numbers_of(hid_t parent, const std::string& name, int dimensions,
+                          std::optional<std::size_t> expected) {
+  const DatasetHandle dataset = open_dataset(parent, name);
+  if (!is_number<T>(type_of(dataset, name).get())) refuse(name, "has another type than this format says");
+  const std::size_t count = count_in(space_of(dataset, name), dimensions, name);
+  if (expected && count != *expected) refuse(name, fmt::format("has {} rows, not {}", count, *expected));
+  std::vector<T> values(count);
+  check(H5Dread(dataset.get(), NumberType<T>::memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+        fmt::format("reading {} (cut short or damaged)", name));
+  return values;
+}
+
+}  // namespace
+
+bool has(hid_t parent, const std::string& name) { return H5Lexists(parent, name.c_str(), H5P_DEFAULT) > 0; }
+
+GroupHandle open_group(hid_t parent, const std::string& name) {
+  if (!has(parent, name)) refuse("group " + name, "is missing");
+  const hid_t group = H5Gopen2(parent, name.c_str(), H5P_DEFAULT);
+  if (group < 0) refuse(name, "is no group or damaged");
+  return {group, name};
+}
+
+std::optional<std::string> find_attribute(hid_t object, const std::string& name) {
+  if (H5Aexists(object, name.c_str()) <= 0) return std::nullopt;
+  const AttributeHandle attribute{H5Aopen(object, name.c_str(), H5P_DEFAULT), "attribute " + name};
+  const TypeHandle type{H5Aget_type(attribute.get()), "type of attribute " + name};
+  const SpaceHandle space{H5Aget_space(attribute.get()), "space of attribute " + name};
+  static_cast<void>(count_in(space, 0, "attribute " + name));
+  if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) <= 0) {
+    refuse("attribute " + name, "is no variable-length text");
+  }
+  char* value = nullptr;
+  check(H5Aread(attribute.get(), type.get(), &value), "reading attribute " + name);
+  const std::unique_ptr<char, herr_t (*)(void*)> owner{value, H5free_memory};
+  return value == nullptr ? std::string{} : std::string{value};
+}
+
+std::string read_attribute(hid_t object, const std::string& name) {
+  auto text = find_attribute(object, name);
+  if (!text) refuse("attribute " + name, "is missing");
+  return *std::move(text);
+}
+
+template <typename T>
+std::optional<T> find_number_attribute(hid_t object, const std::string& name) {
+  if (H5Aexists(object, name.c_str()) <= 0) return std::nullopt;
+  const AttributeHandle attribute{H5Aopen(object, name.c_str(), H5P_DEFAULT), "attribute " + name};
+  const TypeHandle type{H5Aget_type(attribute.get()), "type of attribute " + name};
+  const SpaceHandle space{H5Aget_space(attribute.get()), "space of attribute " + name};
+  static_cast<void>(count_in(space, 0, "attribute " + name));
+  if (!is_number<T>(type.get())) refuse("attribute " + name, "has another type than this format says");
+  T value{};
+  check(H5Aread(attribute.get(), NumberType<T>::memory(), &value), "reading attribute " + name);
+  return value;
+}
+
+DatasetHandle open_dataset(hid_t parent, const std::string& name) {
+  if (!has(parent, name)) refuse("data set " + name, "is missing");
+  const hid_t dataset = H5Dopen2(parent, name.c_str(), H5P_DEFAULT);
+  if (dataset < 0) refuse(name, "is no data set or damaged");
+  return {dataset, name};
+}
+
+std::string read_text(hid_t parent, const std::string& name) { return texts_of(parent, name, 0).front(); }
+
+std::vector<std::string> read_texts(hid_t parent, const std::string& name) {
+  return texts_of(parent, name, 1);
+}
+
+template <typename T>
+T read_scalar(hid_t parent, const std::string& name) {
+  return numbers_of<T>(parent, name, 0, std::nullopt).front();
+}
+
+template <typename T>
+std::vector<T> read_column(hid_t parent, const std::string& name, std::optional<std::size_t> count) {
+  return numbers_of<T>(parent, name, 1, count);
+}
+
+template <typename T>
+bool holds(hid_t parent, const std::string& name) {
+  const DatasetHandle dataset = open_dataset(parent, name);
+  return is_number<T>(type_of(dataset, name).get());
+}
+
+#define STICKSLIP_INSTANTIATE(type)                                                              \
+  template type read_scalar(hid_t, const std::string&);                                          \
+  template std::vector<type> read_column(hid_t, const std::string&, std::optional<std::size_t>); \
+  template bool holds<type>(hid_t, const std::string&);                                          \
+  template std::optional<type> find_number_attribute(hid_t, const std::string&)
+STICKSLIP_INSTANTIATE(double);
+STICKSLIP_INSTANTIATE(float);
+STICKSLIP_INSTANTIATE(std::int64_t);
+STICKSLIP_INSTANTIATE(std::uint64_t);
+STICKSLIP_INSTANTIATE(std::int32_t);
+STICKSLIP_INSTANTIATE(std::uint32_t);
+STICKSLIP_INSTANTIATE(std::uint16_t);
+STICKSLIP_INSTANTIATE(std::uint8_t);
+#undef STICKSLIP_INSTANTIATE
+
+}  // namespace stickslip::record

@@ -1,0 +1,65 @@
+/// \file
+/// Reading data sets and attributes of files that may hold anything. All functions throw HdfError
+/// that names the object and what is wrong with it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/record/fields.hpp"
+#include "core/record/hdf.hpp"
+
+namespace stickslip::record {
+
+/// Whether a link of that name exists in the group.
+[[nodiscard]] bool has(hid_t parent, const std::string& name);
+
+[[nodiscard]] GroupHandle open_group(hid_t parent, const std::string& name);
+
+[[nodiscard]] std::string read_attribute(hid_t object, const std::string& name);
+[[nodiscard]] std::optional<std::string> find_attribute(hid_t object, const std::string& name);
+template <typename T>
+[[nodiscard]] std::optional<T> find_number_attribute(hid_t object, const std::string& name);
+
+[[nodiscard]] DatasetHandle open_dataset(hid_t parent, const std::string& name);
+
+[[nodiscard]] std::string read_text(hid_t parent, const std::string& name);
+[[nodiscard]] std::vector<std::string> read_texts(hid_t parent, const std::string& name);
+template <typename T>
+[[nodiscard]] T read_scalar(hid_t parent, const std::string& name);
+/// \param count  required length, if known. The stored type must be T exactly (size, sign, kind).
+template <typename T>
+[[nodiscard]] std::vector<T> read_column(hid_t parent, const std::string& name,
+                                         std::optional<std::size_t> count = std::nullopt);
+/// Whether the stored type of a data set is T.
+template <typename T>
+[[nodiscard]] bool holds(hid_t parent, const std::string& name);
+
+/// Visitor for for_each_field(): the reverse of FieldWriter.
+class FieldReader {
+ public:
+  explicit FieldReader(hid_t parent) : parent_(parent) {}
+
+  void operator()(const FieldName& name, std::string& text) const {
+    const std::string key{name.name};
+    text = has(parent_, key) ? read_text(parent_, key) : std::string{};
+  }
+  void operator()(const FieldName& name, std::vector<double>& values) const {
+    values = read_column<double>(parent_, std::string{name.name});
+  }
+  template <typename T>
+  void operator()(const FieldName& name, std::optional<T>& value) const {
+    const std::string key{name.name};
+    value = has(parent_, key) ? std::optional<T>{read_scalar<T>(parent_, key)} : std::nullopt;
+  }
+  template <typename T>
+  void operator()(const FieldName& name, T& value) const {
+    value = read_scalar<T>(parent_, std::string{name.name});
+  }
+
+ private:
+  hid_t parent_;
+};
+
+}  // namespace stickslip::record

@@ -1,0 +1,173 @@
+#include "core/record/hdf_write.hpp"
+
+#include <hdf5_hl.h>
+
+#include <algorithm>
+
+namespace stickslip::record {
+namespace {
+
+/// 100 s at 350 scans/s: a viewer reads little to show little. Measured: deflate 4 with shuffle
+/// leaves 45 % of the raw size, 9 gains 1 % more.
+constexpr hsize_t kChunk = 35'000;
+constexpr unsigned kDeflateLevel = 4;
+
+TypeHandle text_type(std::size_t size) {
+  TypeHandle type{H5Tcopy(H5T_C_S1), "copy of the string type"};
+  check(H5Tset_size(type.get(), size), "string size");
+  check(H5Tset_cset(type.get(), H5T_CSET_UTF8), "UTF-8");
+  check(H5Tset_strpad(type.get(), size == H5T_VARIABLE ? H5T_STR_NULLTERM : H5T_STR_NULLPAD), "padding");
+  return type;
+}
+
+/// For data sets and groups. Times of objects are not kept: equal records are equal files.
+PropertyHandle dataset_properties() {
+  PropertyHandle properties{H5Pcreate(H5P_DATASET_CREATE), "data set properties"};
+  check(H5Pset_attr_creation_order(properties.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED),
+        "creation order");
+  check(H5Pset_obj_track_times(properties.get(), false), "object times");
+  return properties;
+}
+
+SpaceHandle column_space(std::size_t count) {
+  const hsize_t size = count;
+  return {H5Screate_simple(1, &size, nullptr), "column space"};
+}
+
+DatasetHandle make_dataset(hid_t parent, const std::string& name, hid_t type, const SpaceHandle& space,
+                           const PropertyHandle& properties) {
+  return {H5Dcreate2(parent, name.c_str(), type, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
+          "data set " + name};
+}
+
+void write_meaning(const DatasetHandle& dataset, const FieldName& name) {
+  write_attribute(dataset.get(), "units", name.unit);
+  write_attribute(dataset.get(), "long_name", name.long_name);
+}
+
+AttributeHandle make_attribute(hid_t object, const std::string& name, hid_t type, const SpaceHandle& space) {
+  return {H5Acreate2(object, name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT), "attribute " + name};
+}
+
+}  // namespace
+
+void prepare_hdf5() {
+  static const herr_t once = H5dont_atexit();
+  check(once, "H5dont_atexit");
+  check(H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr), "H5Eset_auto2");
+}
+
+GroupHandle make_group(hid_t parent, const std::string& name, const std::string& nx_class) {
+  const PropertyHandle properties{H5Pcreate(H5P_GROUP_CREATE), "group properties"};
+  constexpr unsigned kTracked = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
+  check(H5Pset_link_creation_order(properties.get(), kTracked), "creation order");
+  check(H5Pset_attr_creation_order(properties.get(), kTracked), "creation order");
+  check(H5Pset_obj_track_times(properties.get(), false), "object times");
+  GroupHandle group{H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
+                    "group " + name};
+  write_attribute(group.get(), "NX_class", nx_class);
+  return group;
+}
+
+void write_attribute(hid_t object, const std::string& name, std::string_view text) {
+  const std::string terminated{text};
+  const char* const value = terminated.c_str();
+  const TypeHandle type = text_type(H5T_VARIABLE);
+  const SpaceHandle space{H5Screate(H5S_SCALAR), "scalar space"};
+  const AttributeHandle attribute = make_attribute(object, name, type.get(), space);
+  check(H5Awrite(attribute.get(), type.get(), &value), "writing attribute " + name);
+}
+
+void write_attribute(hid_t object, const std::string& name, const std::vector<std::string>& texts) {
+  std::vector<const char*> values;
+  for (const auto& text : texts) values.push_back(text.c_str());
+  const TypeHandle type = text_type(H5T_VARIABLE);
+  const AttributeHandle attribute = make_attribute(object, name, type.get(), column_space(values.size()));
+  check(H5Awrite(attribute.get(), type.get(), values.data()), "writing attribute " + name);
+}
+
+template <typename T>
+void write_number_attribute(hid_t object, const std::string& name, T value) {
+  const SpaceHandle space{H5Screate(H5S_SCALAR), "scalar space"};
+  const AttributeHandle attribute = make_attribute(object, name, NumberType<T>::file(), space);
+  check(H5Awrite(attribute.get(), NumberType<T>::memory(), &value), "writing attribute " + name);
+}
+
+DatasetHandle write_text(hid_t parent, const std::string& name, std::string_view text) {
+  std::string padded{text};
+  if (padded.empty()) padded.push_back('\0');  // HDF5 knows no string of size 0.
+  const TypeHandle type = text_type(padded.size());
+  const SpaceHandle space{H5Screate(H5S_SCALAR), "scalar space"};
+  DatasetHandle dataset = make_dataset(parent, name, type.get(), space, dataset_properties());
+  check(H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()), "writing " + name);
+  return dataset;
+}
+
+template <typename T>
+DatasetHandle write_scalar(hid_t parent, const FieldName& name, T value) {
+  const std::string text{name.name};
+  const SpaceHandle space{H5Screate(H5S_SCALAR), "scalar space"};
+  DatasetHandle dataset = make_dataset(parent, text, NumberType<T>::file(), space, dataset_properties());
+  check(H5Dwrite(dataset.get(), NumberType<T>::memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &value),
+        "writing " + text);
+  write_meaning(dataset, name);
+  return dataset;
+}
+
+template <typename T>
+DatasetHandle write_column(hid_t parent, const FieldName& name, std::span<const T> values) {
+  const std::string text{name.name};
+  const PropertyHandle properties = dataset_properties();
+  if (!values.empty()) {
+    const hsize_t chunk = std::min<hsize_t>(kChunk, values.size());
+    check(H5Pset_chunk(properties.get(), 1, &chunk), "chunk");
+    check(H5Pset_shuffle(properties.get()), "shuffle");
+    check(H5Pset_deflate(properties.get(), kDeflateLevel), "deflate");
+    check(H5Pset_fletcher32(properties.get()), "fletcher32");
+  }
+  DatasetHandle dataset =
+      make_dataset(parent, text, NumberType<T>::file(), column_space(values.size()), properties);
+  check(H5Dwrite(dataset.get(), NumberType<T>::memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+        "writing " + text);
+  write_meaning(dataset, name);
+  return dataset;
+}
+
+DatasetHandle write_texts(hid_t parent, const std::string& name, const std::vector<std::string>& texts) {
+  std::size_t width = 1;
+  for (const auto& text : texts) width = std::max(width, text.size());
+  std::string padded;
+  for (const auto& text : texts) padded.append(text).append(width - text.size(), '\0');
+  const TypeHandle type = text_type(width);
+  DatasetHandle dataset =
+      make_dataset(parent, name, type.get(), column_space(texts.size()), dataset_properties());
+  check(H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()), "writing " + name);
+  return dataset;
+}
+
+DatasetHandle TableWriter::attached(DatasetHandle column, const std::string& name) {
+  if (scale_.empty()) {
+    check(H5DSset_scale(column.get(), name.c_str()), "dimension scale " + name);
+    check(H5Iinc_ref(column.get()), "reference to " + name);
+    scale_.emplace_back(column.get(), name);
+  } else {
+    check(H5DSattach_scale(column.get(), scale_.front().get(), 0), "dimension scale of " + name);
+  }
+  return column;
+}
+
+#define STICKSLIP_INSTANTIATE(type)                                                    \
+  template DatasetHandle write_scalar(hid_t, const FieldName&, type);                  \
+  template DatasetHandle write_column(hid_t, const FieldName&, std::span<const type>); \
+  template void write_number_attribute(hid_t, const std::string&, type)
+STICKSLIP_INSTANTIATE(double);
+STICKSLIP_INSTANTIATE(float);
+STICKSLIP_INSTANTIATE(std::int64_t);
+STICKSLIP_INSTANTIATE(std::uint64_t);
+STICKSLIP_INSTANTIATE(std::int32_t);
+STICKSLIP_INSTANTIATE(std::uint32_t);
+STICKSLIP_INSTANTIATE(std::uint16_t);
+STICKSLIP_INSTANTIATE(std::uint8_t);
+#undef STICKSLIP_INSTANTIATE
+
+}  // namespace stickslip::record

@@ -1,0 +1,58 @@
+/// \file
+/// One entry of a journal, as bytes. Little-endian, as every machine this runs on:
+///
+///     0 magic "SSJ1" · 4 type u16 · 6 encoding u16 · 8 payload size u32 · 12 CRC-32C u32
+///     16 first scan i64 · 24 time i64 [ns, monotonic] · 32 payload
+///
+/// The CRC covers the head with a CRC of 0 and the payload.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace stickslip::record {
+
+static_assert(std::endian::native == std::endian::little, "journals are little-endian");
+
+enum class EntryType : std::uint16_t {
+  kHeader = 1,  ///< JSON.
+  kScans = 2,   ///< Consecutive raw values in the entry's encoding.
+  kSpikes = 3,  ///< Scan indices, i64.
+  kGap = 4,     ///< JSON.
+  kCycle = 5,   ///< JSON.
+  kAnchor = 6,  ///< Two i64: monotonic and real time, ns; the scan is in the head.
+  kEvent = 7,   ///< JSON.
+  kEnd = 8,     ///< JSON.
+};
+
+enum class Encoding : std::uint16_t { kNone = 0, kU16 = 1, kU32 = 2, kF64 = 3 };
+
+struct EntryHead {
+  std::array<char, 4> magic{'S', 'S', 'J', '1'};
+  std::uint16_t type = 0;
+  std::uint16_t encoding = 0;
+  std::uint32_t payload_size = 0;
+  std::uint32_t crc = 0;
+  std::int64_t first_scan = 0;
+  std::int64_t time_ns = 0;
+};
+inline constexpr std::size_t kEntryHeadSize = 32;
+static_assert(sizeof(EntryHead) == kEntryHeadSize);
+
+/// CRC-32C [Castagnoli 1993; RFC 3720, 12.1] of a head, its crc field taken as 0, and its payload.
+[[nodiscard]] std::uint32_t entry_crc(EntryHead head, std::span<const std::byte> payload);
+
+struct Entry {
+  EntryHead head;
+  std::span<const std::byte> payload;
+};
+
+/// The entry at the front of `bytes`, or nothing with `why` set if it is not whole.
+[[nodiscard]] std::optional<Entry> first_entry(std::span<const std::byte> bytes, std::string& why);
+
+}  // namespace stickslip::record

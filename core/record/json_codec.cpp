@@ -1,0 +1,303 @@
+#include "core/record/json_codec.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+
+#include <nlohmann/json.hpp>
+
+#include "core/record/fields.hpp"
+#include "core/record/words.hpp"
+
+namespace stickslip::record {
+namespace {
+
+using nlohmann::json;
+
+template <typename T>
+struct IsOptional : std::false_type {};
+template <typename T>
+struct IsOptional<std::optional<T>> : std::true_type {};
+
+json encode(double value) {
+  if (std::isfinite(value)) return value;
+  if (std::isnan(value)) return nullptr;
+  return value > 0.0 ? "inf" : "-inf";
+}
+
+template <typename T>
+json encode(const T& value) {
+  if constexpr (std::is_same_v<T, std::vector<double>>) {
+    json array = json::array();
+    for (const double number : value) array.push_back(encode(number));
+    return array;
+  } else {
+    return value;
+  }
+}
+
+void decode(const json& from, double& value) {
+  if (from.is_null()) {
+    value = std::numeric_limits<double>::quiet_NaN();
+  } else if (from.is_string()) {
+    value =
+        from == "inf" ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
+  } else {
+    from.get_to(value);
+  }
+}
+
+template <typename T>
+void decode(const json& from, T& value) {
+  if constexpr (std::is_same_v<T, std::vector<double>>) {
+    value.assign(from.size(), 0.0);
+    for (std::size_t i = 0; i < value.size(); ++i) decode(from.at(i), value[i]);
+  } else {
+    from.get_to(value);
+  }
+}
+
+/// Writes a value under its key; absent optionals and empty texts get none.
+template <typename T>
+void put(json& object, std::string_view key, const T& value) {
+  if constexpr (IsOptional<T>::value) {
+    if (value) object[std::string{key}] = encode(*value);
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    if (!value.empty()) object[std::string{key}] = value;
+  } else {
+    object[std::string{key}] = encode(value);
+  }
+}
+
+template <typename T>
+void take(const json& object, std::string_view key, T& value) {
+  const auto found = object.find(std::string{key});
+  if constexpr (IsOptional<T>::value) {
+    value.reset();
+    if (found != object.end()) decode(*found, value.emplace());
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    value = found == object.end() ? std::string{} : found->get<std::string>();
+  } else {
+    if (found == object.end()) throw std::invalid_argument(fmt::format("{} is missing", key));
+    decode(*found, value);
+  }
+}
+
+auto putter(json& object) {
+  return [&object](const FieldName& name, const auto& value) { put(object, name.name, value); };
+}
+auto taker(const json& object) {
+  return [&object](const FieldName& name, auto& value) { take(object, name.name, value); };
+}
+
+template <typename Facts>
+json facts_to_json(const Facts& facts) {
+  json object = json::object();
+  for_each_field(facts, putter(object));
+  return object;
+}
+
+template <typename Value>
+Value word(const std::string& text, std::optional<Value> value) {
+  if (!value) throw std::invalid_argument(fmt::format("unknown word '{}'", text));
+  return *value;
+}
+
+json cycle_to_array(const friction::Cycle& cycle) {
+  json array = json::array();
+  for_each_cycle_column([&](const FieldName&, auto member) { array.push_back(encode(cycle.*member)); });
+  return array;
+}
+
+friction::Cycle cycle_from_array(const json& array) {
+  friction::Cycle cycle;
+  std::size_t i = 0;
+  for_each_cycle_column([&](const FieldName&, auto member) { decode(array.at(i++), cycle.*member); });
+  return cycle;
+}
+
+json results_to_json(const friction::TestResults& results) {
+  json object{{"regime", friction::name(results.regime)}, {"regime_reason", results.regime_reason}};
+  friction::for_each_result(results,
+                            [&](const friction::ResultName& name, const friction::Estimate& estimate) {
+                              json entry = json::object();
+                              put(entry, "value", estimate.value);
+                              put(entry, "standard_error", estimate.standard_error);
+                              put(entry, "systematic_uncertainty", estimate.systematic_uncertainty);
+                              put(entry, "reason", estimate.reason);
+                              object[std::string{name.name}] = std::move(entry);
+                            });
+  return object;
+}
+
+friction::TestResults results_from_json(const json& object) {
+  friction::TestResults results;
+  const auto regime = object.at("regime").get<std::string>();
+  results.regime = word(regime, friction::regime_from_name(regime));
+  object.at("regime_reason").get_to(results.regime_reason);
+  friction::for_each_result(results, [&](const friction::ResultName& name, friction::Estimate& estimate) {
+    const json& entry = object.at(std::string{name.name});
+    take(entry, "value", estimate.value);
+    take(entry, "standard_error", estimate.standard_error);
+    take(entry, "systematic_uncertainty", estimate.systematic_uncertainty);
+    take(entry, "reason", estimate.reason);
+  });
+  return results;
+}
+
+json truth_to_json(const friction::TestTruth& truth) {
+  json object = facts_to_json(truth);
+  object["regime"] = friction::name(truth.regime);
+  json& modes = object["modes"] = json::array();
+  for (const auto& mode : truth.modes) {
+    modes.push_back({encode(mode.start_s), encode(mode.end_s), friction::name(mode.mode)});
+  }
+  json& cycles = object["cycles"] = json::array();
+  for (const auto& cycle : truth.cycles) {
+    cycles.push_back({encode(cycle.onset_time_s), encode(cycle.mu_s), encode(cycle.mu_k)});
+  }
+  return object;
+}
+
+friction::TestTruth truth_from_json(const json& object) {
+  friction::TestTruth truth;
+  for_each_field(truth, taker(object));
+  const auto regime = object.at("regime").get<std::string>();
+  truth.regime = word(regime, friction::regime_from_name(regime));
+  for (const json& entry : object.at("modes")) {
+    auto& mode = truth.modes.emplace_back();
+    decode(entry.at(0), mode.start_s);
+    decode(entry.at(1), mode.end_s);
+    const auto text = entry.at(2).get<std::string>();
+    mode.mode = word(text, mode_from_name(text));
+  }
+  for (const json& entry : object.at("cycles")) {
+    auto& cycle = truth.cycles.emplace_back();
+    decode(entry.at(0), cycle.onset_time_s);
+    decode(entry.at(1), cycle.mu_s);
+    decode(entry.at(2), cycle.mu_k);
+  }
+  return truth;
+}
+
+/// Bad UTF-8 (a configuration file may hold anything) is replaced, never a reason to lose a test.
+std::string dump(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
+
+}  // namespace
+
+std::string header_to_json(const RecordHeader& header) {
+  json board = json::object();
+  for_each_name_field(header.board, putter(board));
+  for_each_converter_field(header.board, putter(board));
+  for_each_rate_field(header.board, putter(board));
+  board["quantity"] = name(header.board.quantity).name;
+
+  json object{{"format", kFormat},
+              {"format_version", kFormatVersion},
+              {"board", std::move(board)},
+              {"calibration", facts_to_json(header.calibration)},
+              {"tester", facts_to_json(header.tester)},
+              {"sample", facts_to_json(header.sample)},
+              {"process", facts_to_json(header.process)}};
+  put(object, "uuid", header.uuid);
+  put(object, "title", header.title);
+  put(object, "test_number", header.test_number);
+  put(object, "trigger_scan", header.trigger_scan);
+  put(object, "start_realtime_ns", header.start_realtime_ns);
+  put(object, "operator", header.sample.operator_name);
+  if (header.load_cell) object["load_cell"] = facts_to_json(*header.load_cell);
+  return dump(object);
+}
+
+RecordHeader header_from_json(std::string_view text) {
+  const json object = json::parse(text);
+  if (object.at("format") != kFormat || object.at("format_version") != kFormatVersion) {
+    throw std::invalid_argument(fmt::format("format {} version {}, this program reads {} version {}",
+                                            object.at("format").dump(), object.at("format_version").dump(),
+                                            kFormat, kFormatVersion));
+  }
+  RecordHeader header;
+  const json& board = object.at("board");
+  for_each_name_field(header.board, taker(board));
+  for_each_converter_field(header.board, taker(board));
+  for_each_rate_field(header.board, taker(board));
+  const auto quantity = board.at("quantity").get<std::string>();
+  header.board.quantity = word(quantity, quantity_from_name(quantity));
+  for_each_field(header.calibration, taker(object.at("calibration")));
+  for_each_field(header.tester, taker(object.at("tester")));
+  for_each_field(header.sample, taker(object.at("sample")));
+  for_each_field(header.process, taker(object.at("process")));
+  take(object, "uuid", header.uuid);
+  take(object, "title", header.title);
+  take(object, "test_number", header.test_number);
+  take(object, "trigger_scan", header.trigger_scan);
+  take(object, "start_realtime_ns", header.start_realtime_ns);
+  take(object, "operator", header.sample.operator_name);
+  if (object.contains("load_cell")) {
+    for_each_field(header.load_cell.emplace(), taker(object.at("load_cell")));
+  }
+  return header;
+}
+
+std::string gap_to_json(const daq::Gap& gap) {
+  return dump({{"first_scan", gap.first},
+               {"scan_count", gap.count},
+               {"estimated", gap.estimated},
+               {"cause", daq::name(gap.cause)}});
+}
+
+daq::Gap gap_from_json(std::string_view text) {
+  const json object = json::parse(text);
+  const auto cause = object.at("cause").get<std::string>();
+  return {object.at("first_scan").get<daq::ScanIndex>(), object.at("scan_count").get<std::int64_t>(),
+          object.at("estimated").get<bool>(), word(cause, gap_cause_from_name(cause))};
+}
+
+std::string cycle_to_json(const friction::Cycle& cycle) { return dump(cycle_to_array(cycle)); }
+
+friction::Cycle cycle_from_json(std::string_view text) { return cycle_from_array(json::parse(text)); }
+
+std::string event_to_json(const Event& event) {
+  return dump({{"scan", event.scan}, {"realtime_ns", event.realtime_ns}, {"text", event.text}});
+}
+
+Event event_from_json(std::string_view text) {
+  const json object = json::parse(text);
+  return {object.at("scan").get<daq::ScanIndex>(), object.at("realtime_ns").get<std::int64_t>(),
+          object.at("text").get<std::string>()};
+}
+
+std::string end_to_json(const EndRecord& end) {
+  json object{{"status", name(end.status)},
+              {"reasons", end.reasons},
+              {"cause", end.cause},
+              {"results", results_to_json(end.results)},
+              {"spikes", end.spikes}};
+  put(object, "end_realtime_ns", end.end_realtime_ns);
+  put(object, "compute_time", end.compute_time_s);
+  json& cycles = object["cycles"] = json::array();
+  for (const auto& cycle : end.cycles) cycles.push_back(cycle_to_array(cycle));
+  if (end.truth) object["truth"] = truth_to_json(*end.truth);
+  return dump(object);
+}
+
+EndRecord end_from_json(std::string_view text) {
+  const json object = json::parse(text);
+  EndRecord end;
+  const auto status = object.at("status").get<std::string>();
+  end.status = word(status, status_from_name(status));
+  object.at("reasons").get_to(end.reasons);
+  object.at("cause").get_to(end.cause);
+  take(object, "end_realtime_ns", end.end_realtime_ns);
+  take(object, "compute_time", end.compute_time_s);
+  end.results = results_from_json(object.at("results"));
+  object.at("spikes").get_to(end.spikes);
+  for (const json& cycle : object.at("cycles")) end.cycles.push_back(cycle_from_array(cycle));
+  if (object.contains("truth")) end.truth = truth_from_json(object.at("truth"));
+  return end;
+}
+
+}  // namespace stickslip::record

@@ -1,0 +1,51 @@
+#include <fmt/format.h>
+
+#include "core/record/hdf_read.hpp"
+#include "core/record/hdf_write.hpp"
+#include "core/record/iso_time.hpp"
+#include "core/record/layout.hpp"
+
+namespace stickslip::record {
+namespace {
+
+constexpr FieldName kTestNumber{"test_number", "1", "number of the test since the program started [1]"};
+constexpr FieldName kTriggerScan{"trigger_scan", "1", "scan at which the force crossed the trigger [1]"};
+
+std::optional<std::int64_t> read_time(hid_t entry, const std::string& name) {
+  if (!has(entry, name)) return std::nullopt;
+  const std::string text = read_text(entry, name);
+  const auto time = ns_from_iso_time(text);
+  if (!time) throw HdfError(fmt::format("{} '{}' is no time of this format", name, text));
+  return time;
+}
+
+}  // namespace
+
+void write_identity(hid_t entry, const Record& record) {
+  const RecordHeader& header = record.header;
+  const FieldWriter write{entry};
+  write(FieldName{"title", "", ""}, header.title);
+  write(FieldName{"entry_identifier_uuid", "", ""}, header.uuid);
+  write(kTestNumber, header.test_number);
+  write(kTriggerScan, header.trigger_scan);
+  if (header.start_realtime_ns) write_text(entry, "start_time", iso_time(*header.start_realtime_ns));
+  if (record.end->end_realtime_ns) write_text(entry, "end_time", iso_time(*record.end->end_realtime_ns));
+  if (!record.scan.empty()) {
+    const auto scans = static_cast<double>(record.scan.back() - record.scan.front() + 1);
+    write_scalar(entry, {"collection_time", "s", "duration of the record [s]"},
+                 scans / header.board.scan_rate_granted_Hz);
+  }
+}
+
+void read_identity(hid_t entry, Record& record) {
+  RecordHeader& header = record.header;
+  const FieldReader read{entry};
+  read(FieldName{"title", "", ""}, header.title);
+  read(FieldName{"entry_identifier_uuid", "", ""}, header.uuid);
+  read(kTestNumber, header.test_number);
+  read(kTriggerScan, header.trigger_scan);
+  header.start_realtime_ns = read_time(entry, "start_time");
+  record.end->end_realtime_ns = read_time(entry, "end_time");
+}
+
+}  // namespace stickslip::record

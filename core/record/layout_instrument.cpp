@@ -1,0 +1,76 @@
+#include "core/record/hdf_read.hpp"
+#include "core/record/hdf_write.hpp"
+#include "core/record/layout.hpp"
+
+namespace stickslip::record {
+namespace {
+
+void write_timing(hid_t entry, const Record& record) {
+  TableWriter table{make_group(entry, "timing", "NXcollection")};
+  for_each_rate_field(record.header.board, FieldWriter{table.group()});
+  std::vector<std::int64_t> scan;
+  std::vector<std::int64_t> monotonic;
+  std::vector<std::int64_t> realtime;
+  for (const ClockAnchor& anchor : record.anchors) {
+    scan.push_back(anchor.scan);
+    monotonic.push_back(anchor.monotonic_ns);
+    realtime.push_back(anchor.realtime_ns);
+  }
+  table.add(FieldName{"scan", "1", "scan at which the clocks were read [1]"}, scan);
+  table.add(FieldName{"monotonic_raw", "ns", "CLOCK_MONOTONIC_RAW [ns]"}, monotonic);
+  table.add(FieldName{"realtime", "ns", "time since 1970-01-01T00:00:00Z [ns]"}, realtime);
+}
+
+void read_timing(hid_t entry, Record& record) {
+  const GroupHandle group = open_group(entry, "timing");
+  for_each_rate_field(record.header.board, FieldReader{group.get()});
+  const auto scan = read_column<std::int64_t>(group.get(), "scan");
+  const auto monotonic = read_column<std::int64_t>(group.get(), "monotonic_raw", scan.size());
+  const auto realtime = read_column<std::int64_t>(group.get(), "realtime", scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    record.anchors.push_back({scan[i], monotonic[i], realtime[i]});
+  }
+}
+
+}  // namespace
+
+void write_instrument(hid_t entry, const Record& record) {
+  const RecordHeader& header = record.header;
+  const GroupHandle instrument = make_group(entry, "instrument", "NXinstrument");
+  for_each_field(header.tester, FieldWriter{make_group(instrument.get(), "tester", "NXcollection").get()});
+  const GroupHandle adc = make_group(instrument.get(), "adc", "NXdetector");
+  for_each_name_field(header.board, FieldWriter{adc.get()});
+  if (header.board.quantity == daq::RawQuantity::kCounts) {
+    for_each_converter_field(header.board, FieldWriter{adc.get()});
+  }
+  const GroupHandle calibration = make_group(instrument.get(), "calibration", "NXcalibration");
+  for_each_field(header.calibration, FieldWriter{calibration.get()});
+  if (header.load_cell) for_each_field(*header.load_cell, FieldWriter{calibration.get()});
+
+  write_timing(entry, record);
+  for_each_field(header.sample, FieldWriter{make_group(entry, "sample", "NXsample").get()});
+  const GroupHandle user = make_group(entry, "user", "NXuser");
+  FieldWriter{user.get()}(FieldName{"name", "", ""}, header.sample.operator_name);
+}
+
+void read_instrument(hid_t entry, Record& record) {
+  RecordHeader& header = record.header;
+  const GroupHandle instrument = open_group(entry, "instrument");
+  for_each_field(header.tester, FieldReader{open_group(instrument.get(), "tester").get()});
+  const GroupHandle adc = open_group(instrument.get(), "adc");
+  for_each_name_field(header.board, FieldReader{adc.get()});
+  if (header.board.quantity == daq::RawQuantity::kCounts) {
+    for_each_converter_field(header.board, FieldReader{adc.get()});
+  }
+  const GroupHandle calibration = open_group(instrument.get(), "calibration");
+  for_each_field(header.calibration, FieldReader{calibration.get()});
+  if (has(calibration.get(), "gain")) {
+    for_each_field(header.load_cell.emplace(), FieldReader{calibration.get()});
+  }
+  read_timing(entry, record);
+  for_each_field(header.sample, FieldReader{open_group(entry, "sample").get()});
+  const GroupHandle user = open_group(entry, "user");
+  FieldReader{user.get()}(FieldName{"name", "", ""}, header.sample.operator_name);
+}
+
+}  // namespace stickslip::record

@@ -1,0 +1,59 @@
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "core/record/hdf_read.hpp"
+#include "core/record/hdf_write.hpp"
+#include "core/record/layout.hpp"
+
+namespace stickslip::record {
+namespace {
+
+constexpr const char* kStandardError = "standard_error";
+constexpr const char* kSystematic = "systematic_uncertainty";
+constexpr const char* kReason = "reason";
+
+}  // namespace
+
+void write_results(hid_t entry, const friction::TestResults& results) {
+  const GroupHandle group = make_group(entry, "results", "NXcollection");
+  const DatasetHandle regime = write_text(group.get(), "regime", friction::name(results.regime));
+  write_attribute(regime.get(), kReason, results.regime_reason);
+  friction::for_each_result(
+      results, [&](const friction::ResultName& name, const friction::Estimate& estimate) {
+        const std::string long_name = fmt::format("{} [{}]", name.long_name, name.unit);
+        const DatasetHandle value =
+            write_scalar(group.get(), FieldName{name.name, name.unit, long_name},
+                         estimate.value.value_or(std::numeric_limits<double>::quiet_NaN()));
+        if (estimate.standard_error)
+          write_number_attribute(value.get(), kStandardError, *estimate.standard_error);
+        if (estimate.systematic_uncertainty) {
+          write_number_attribute(value.get(), kSystematic, *estimate.systematic_uncertainty);
+        }
+        if (!estimate.value) write_attribute(value.get(), kReason, estimate.reason);
+      });
+}
+
+friction::TestResults read_results(hid_t entry) {
+  const GroupHandle group = open_group(entry, "results");
+  friction::TestResults results;
+  const std::string regime = read_text(group.get(), "regime");
+  const auto known = friction::regime_from_name(regime);
+  if (!known) throw HdfError(fmt::format("results/regime '{}' is unknown", regime));
+  results.regime = *known;
+  results.regime_reason = read_attribute(open_dataset(group.get(), "regime").get(), kReason);
+  friction::for_each_result(results, [&](const friction::ResultName& name, friction::Estimate& estimate) {
+    const std::string key{name.name};
+    const DatasetHandle dataset = open_dataset(group.get(), key);
+    if (auto reason = find_attribute(dataset.get(), kReason)) {
+      estimate = friction::Estimate::none(*std::move(reason));
+    } else {
+      estimate.value = read_scalar<double>(group.get(), key);
+    }
+    estimate.standard_error = find_number_attribute<double>(dataset.get(), kStandardError);
+    estimate.systematic_uncertainty = find_number_attribute<double>(dataset.get(), kSystematic);
+  });
+  return results;
+}
+
+}  // namespace stickslip::record

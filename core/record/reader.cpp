@@ -1,0 +1,99 @@
+#include "core/record/reader.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+
+#include "core/record/file.hpp"
+#include "core/record/hdf_read.hpp"
+#include "core/record/layout.hpp"
+
+namespace stickslip::record {
+namespace {
+
+FileHandle open_hdf5(const std::filesystem::path& path) {
+  const PropertyHandle access{H5Pcreate(H5P_FILE_ACCESS), "file access properties"};
+  // Shares the lock with other readers; where the file system has no locks, reads without.
+  check(H5Pset_file_locking(access.get(), true, true), "file locking");
+  const htri_t is_hdf5 = H5Fis_hdf5(path.c_str());
+  if (is_hdf5 <= 0) throw HdfError("is no HDF5 file: a record ends in .h5 and comes from this program");
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get());
+  if (file < 0) throw HdfError("is an HDF5 file but cut short or damaged: take it from a backup");
+  return {file, "file"};
+}
+
+void check_format(const FileHandle& file) {
+  if (find_attribute(file.get(), "format") != kFormat) {
+    throw HdfError("is an HDF5 file but no record of this program: attribute format is not stickslip-record");
+  }
+  const auto version = find_number_attribute<std::int64_t>(file.get(), "format_version");
+  if (version != kFormatVersion) {
+    throw HdfError(version ? fmt::format("is a record of format version {}, this program reads {}", *version,
+                                         kFormatVersion)
+                           : "is a record without format version");
+  }
+}
+
+/// Facts without which nothing can be computed from the raw values.
+void check_facts(const Record& record) {
+  const daq::BoardInfo& board = record.header.board;
+  if (!(board.scan_rate_granted_Hz > 0.0) || !std::isfinite(board.scan_rate_granted_Hz)) {
+    throw HdfError(fmt::format("timing/scan_rate_granted {} Hz is not positive", board.scan_rate_granted_Hz));
+  }
+  if (board.quantity == daq::RawQuantity::kCounts && !record.header.load_cell) {
+    throw HdfError("instrument/calibration/gain is missing, counts mean nothing without");
+  }
+  if (board.quantity == daq::RawQuantity::kCounts &&
+      std::any_of(record.raw.begin(), record.raw.end(),
+                  [&](double count) { return count > static_cast<double>(board.maxdata); })) {
+    throw HdfError("raw/counts exceed instrument/adc/maxdata");
+  }
+  if (sha256_of_raw(record) != record.sha256) {
+    throw HdfError("raw values do not match process/sha256: damaged or altered");
+  }
+}
+
+Record read(const std::filesystem::path& path) {
+  prepare_hdf5();
+  const FileHandle file = open_hdf5(path);
+  check_format(file);
+  const GroupHandle entry = open_group(file.get(), "entry");
+  Record record;
+  record.end.emplace();
+  read_raw(entry.get(), record);
+  read_identity(entry.get(), record);
+  read_instrument(entry.get(), record);
+  read_tables(entry.get(), record);
+  record.end->results = read_results(entry.get());
+  read_process(entry.get(), record);
+  if (has(entry.get(), "truth")) record.end->truth = read_truth(entry.get());
+  check_facts(record);
+  return record;
+}
+
+}  // namespace
+
+base::Result<Record> read_record(const std::filesystem::path& path) {
+  // What the file system refuses is told in its own words; HDF5 has only one for everything.
+  const Descriptor probe{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+  if (!probe.open()) {
+    if (errno == ENOENT || errno == ENOTDIR)
+      return base::usage_error("{}: there is no such file", path.string());
+    return base::failure("{}: cannot be opened: {}", path.string(), system_message(errno));
+  }
+  struct stat found {};
+  if (::fstat(probe.get(), &found) != 0 || !S_ISREG(found.st_mode)) {
+    return base::usage_error("{}: is no file: a record is needed", path.string());
+  }
+  try {
+    return read(path);
+  } catch (const std::exception& error) {
+    return base::usage_error("{}: {}", path.string(), error.what());
+  }
+}
+
+}  // namespace stickslip::record

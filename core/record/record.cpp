@@ -1,0 +1,65 @@
+#include "core/record/record.hpp"
+
+#include <array>
+#include <utility>
+
+#include <boost/uuid/uuid_generators.hpp>
+#include <boost/uuid/uuid_io.hpp>
+
+namespace stickslip::record {
+namespace {
+
+constexpr std::array<std::pair<Status, std::string_view>, 4> kStatusNames{{
+    {Status::kComplete, "complete"},
+    {Status::kInterrupted, "interrupted"},
+    {Status::kRecovered, "recovered"},
+    {Status::kIncomplete, "incomplete"},
+}};
+
+}  // namespace
+
+std::string_view name(Status status) noexcept {
+  for (const auto& [value, text] : kStatusNames) {
+    if (value == status) return text;
+  }
+  return "incomplete";
+}
+
+std::optional<Status> status_from_name(std::string_view text) noexcept {
+  for (const auto& [value, known] : kStatusNames) {
+    if (known == text) return value;
+  }
+  return std::nullopt;
+}
+
+TesterFacts TesterFacts::of(const friction::Tester& tester) {
+  return {tester.sled_mass_kg, tester.gravity_m_per_s2, tester.pull_speed_m_per_s, tester.stiffness_N_per_m};
+}
+
+friction::Tester TesterFacts::tester() const {
+  friction::Tester tester;
+  tester.sled_mass_kg = sled_mass_kg.value_or(tester.sled_mass_kg);
+  tester.gravity_m_per_s2 = gravity_m_per_s2.value_or(tester.gravity_m_per_s2);
+  tester.pull_speed_m_per_s = pull_speed_m_per_s;
+  tester.stiffness_N_per_m = stiffness_N_per_m;
+  return tester;
+}
+
+friction::TestResults absent_results(const std::string& reason) {
+  friction::TestResults results;
+  results.regime_reason = reason;
+  friction::for_each_result(results, [&](const friction::ResultName&, friction::Estimate& estimate) {
+    estimate = friction::Estimate::none(reason);
+  });
+  return results;
+}
+
+void set_end(Record& record, EndRecord end) {
+  record.cycles = std::exchange(end.cycles, {});
+  record.spikes = std::exchange(end.spikes, {});
+  record.end = std::move(end);
+}
+
+std::string make_uuid() { return boost::uuids::to_string(boost::uuids::random_generator()()); }
+
+}  // namespace stickslip::record

@@ -1,0 +1,45 @@
+#include "core/record/words.hpp"
+
+namespace stickslip::record {
+
+QuantityName name(daq::RawQuantity quantity) noexcept {
+  switch (quantity) {
+    case daq::RawQuantity::kCounts:
+      return {"counts", "1"};
+    case daq::RawQuantity::kVolts:
+      return {"voltage", "V"};
+    case daq::RawQuantity::kForce_N:
+      return {"force", "N"};
+    case daq::RawQuantity::kCoefficient:
+      return {"coefficient", "1"};
+  }
+  return {"counts", "1"};
+}
+
+std::optional<daq::RawQuantity> quantity_from_name(std::string_view text) noexcept {
+  using daq::RawQuantity;
+  for (const auto quantity :
+       {RawQuantity::kCounts, RawQuantity::kVolts, RawQuantity::kForce_N, RawQuantity::kCoefficient}) {
+    if (name(quantity).name == text) return quantity;
+  }
+  return std::nullopt;
+}
+
+std::optional<daq::GapCause> gap_cause_from_name(std::string_view text) noexcept {
+  using daq::GapCause;
+  for (const auto cause : {GapCause::kUnknown, GapCause::kOverrun, GapCause::kRingFull,
+                           GapCause::kBoardMissing, GapCause::kMissingScans}) {
+    if (daq::name(cause) == text) return cause;
+  }
+  return std::nullopt;
+}
+
+std::optional<friction::Mode> mode_from_name(std::string_view text) noexcept {
+  using friction::Mode;
+  for (const auto mode : {Mode::kStick, Mode::kSlip, Mode::kSlack}) {
+    if (friction::name(mode) == text) return mode;
+  }
+  return std::nullopt;
+}
+
+}  // namespace stickslip::record

@@ -1,0 +1,25 @@
+/// \file
+/// Enumerators by the words that stand for them in files.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "core/daq/board.hpp"
+#include "core/daq/gap.hpp"
+#include "core/friction/truth.hpp"
+
+namespace stickslip::record {
+
+/// What the raw values are called, and their unit.
+struct QuantityName {
+  std::string_view name;  ///< Of the data set and in JSON.
+  std::string_view unit;
+};
+
+[[nodiscard]] QuantityName name(daq::RawQuantity quantity) noexcept;
+[[nodiscard]] std::optional<daq::RawQuantity> quantity_from_name(std::string_view text) noexcept;
+[[nodiscard]] std::optional<daq::GapCause> gap_cause_from_name(std::string_view text) noexcept;
+[[nodiscard]] std::optional<friction::Mode> mode_from_name(std::string_view text) noexcept;
+
+}  // namespace stickslip::record

@@ -1,0 +1,304 @@
+#include <gmock/gmock.h>
+#include <hdf5.h>
+
+#include <functional>
+#include <numeric>
+
+#include "core/record/finaliser.hpp"
+#include "core/record/iso_time.hpp"
+#include "core/record/reader.hpp"
+#include "tests/support/journal_samples.hpp"
+#include "tests/support/record_equality.hpp"
+#include "tests/support/record_samples.hpp"
+
+namespace stickslip {
+namespace {
+
+using record::finalise;
+using record::publish_record;
+using record::read_record;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& file : fs::directory_iterator{folder}) names.push_back(file.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+TEST(RecordFile, GivesBackEveryFieldOfATest) {
+  const TemporaryFolder folder;
+  const record::Record written = test::sample_record();
+  test::write_journal(folder / "a.journal", written);
+
+  const auto file = finalise(folder / "a.journal");
+
+  ASSERT_TRUE(file) << file.error().message;
+  EXPECT_EQ(*file, folder / "a.h5");
+  EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"a.h5"});  // Neither journal nor .part.
+  const auto read = read_record(*file);
+  ASSERT_TRUE(read) << read.error().message;
+  test::expect_same_record(*read, written);
+}
+
+TEST(RecordFile, ImportedValuesKeepEveryBitAndNothingIsInvented) {
+  const TemporaryFolder folder;
+  const record::Record written = test::sample_imported();
+  const auto published = publish_record(written, folder / "a.h5");
+  ASSERT_TRUE(published) << published.error().message;
+  const auto read = read_record(folder / "a.h5");
+  ASSERT_TRUE(read) << read.error().message;
+  test::expect_same_record(*read, written);
+  EXPECT_FALSE(read->header.tester.sled_mass_kg);
+  EXPECT_FALSE(read->header.load_cell);
+  EXPECT_FALSE(read->header.start_realtime_ns);
+}
+
+// Computed independently, with Python: sha256 of
+// struct.pack('<3d', 1.0, -2.5, 0.1).
+TEST(RecordFile, Sha256IsThatOfTheStoredBytes) {
+  const TemporaryFolder folder;
+  record::Record record = test::sample_imported();
+  record.raw = {1.0, -2.5, 0.1};
+  record.scan = {0, 1, 2};
+  ASSERT_TRUE(publish_record(record, folder / "a.h5"));
+  EXPECT_EQ(read_record(folder / "a.h5")->sha256,
+            "71da1541228ec3b80f80a42910c0512bc24ce229e09875fa2684836df5f229ee");
+}
+
+TEST(RecordFile, EqualRecordsAreEqualFiles) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(publish_record(test::sample_record(), folder / "a.h5"));
+  ASSERT_TRUE(publish_record(test::sample_record(), folder / "b.h5"));
+  EXPECT_EQ(test::content_of(folder / "a.h5"), test::content_of(folder / "b.h5"));
+}
+
+TEST(RecordFile, HoldsSeveralChunksAndWideCounts) {
+  const TemporaryFolder folder;
+  record::Record record = test::sample_record();
+  record.header.board.maxdata = 0xFF'FFFF;
+  record.scan.resize(100'000);
+  std::iota(record.scan.begin(), record.scan.end(), 5);
+  record.raw.clear();
+  for (const auto scan : record.scan) record.raw.push_back(static_cast<double>(scan * 7919 % 0xFF'FFFF));
+  record.spikes.clear();
+  ASSERT_TRUE(publish_record(record, folder / "a.h5"));
+  const auto read = read_record(folder / "a.h5");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->raw, record.raw);
+  EXPECT_EQ(read->scan, record.scan);
+}
+
+TEST(RecordFile, ATestWithoutScansIsStillARecord) {
+  const TemporaryFolder folder;
+  record::Record record;
+  record.header = test::sample_header();
+  record.end.emplace().results = record::absent_results("no scans");
+  const auto published = publish_record(record, folder / "a.h5");
+  ASSERT_TRUE(published) << published.error().message;
+  const auto read = read_record(folder / "a.h5");
+  ASSERT_TRUE(read) << read.error().message;
+  test::expect_same_record(*read, record);
+}
+
+TEST(RecordFile, IsNeverWrittenAgain) {
+  const TemporaryFolder folder;
+  test::write_content(folder / "a.h5", "precious");
+  const auto published = publish_record(test::sample_record(), folder / "a.h5");
+  ASSERT_FALSE(published);
+  EXPECT_EQ(published.error().exit_status(), 2);
+  EXPECT_THAT(published.error().message, HasSubstr("a.h5: exists already"));
+
+  test::write_journal(folder / "a.journal", test::sample_record());
+  EXPECT_FALSE(finalise(folder / "a.journal"));
+  EXPECT_EQ(test::content_of(folder / "a.h5"), "precious");
+  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"a.h5", "a.journal"}));
+}
+
+TEST(RecordFile, FolderThatCannotBeWrittenLeavesNothing) {
+  const TemporaryFolder folder;
+  const auto published = publish_record(test::sample_record(), folder / "missing/a.h5");
+  ASSERT_FALSE(published);
+  EXPECT_EQ(published.error().exit_status(), 1);
+  EXPECT_TRUE(names_in(folder.path()).empty());
+}
+
+TEST(Finalise, JournalWithoutEndBecomesAnInterruptedRecord) {
+  const TemporaryFolder folder;
+  const record::Record written = test::sample_record();
+  test::write_journal(folder / "a.journal", written, false);
+
+  const auto file = finalise(folder / "a.journal");
+
+  ASSERT_TRUE(file) << file.error().message;
+  const auto read = read_record(*file);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->end->status, record::Status::kInterrupted);
+  EXPECT_EQ(read->end->results, record::absent_results("interrupted"));
+  EXPECT_EQ(read->raw, written.raw);
+  test::expect_same_cycles(read->cycles, written.cycles);  // As noted while it ran.
+  EXPECT_EQ(read->spikes, written.spikes);
+}
+
+TEST(Finalise, InterruptedTestGetsTheResultsOfItsEvaluation) {
+  const TemporaryFolder folder;
+  test::write_journal(folder / "a.journal", test::sample_record(), false);
+  const auto file = finalise(folder / "a.journal", [](const record::Record& record) {
+    EXPECT_EQ(record.raw.size(), 40U);
+    return test::sample_end();
+  });
+  ASSERT_TRUE(file) << file.error().message;
+  const auto read = read_record(*file);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->end->status, record::Status::kInterrupted);
+  EXPECT_EQ(read->end->results, test::sample_results());
+}
+
+TEST(Finalise, TornJournalKeepsWhatIsWholeAndSaysSo) {
+  const TemporaryFolder folder;
+  test::write_journal(folder / "a.journal", test::sample_record(), false);
+  const std::string whole = test::content_of(folder / "a.journal");
+  test::write_content(folder / "a.journal", whole + std::string(9, 'x'));
+  const auto file = finalise(folder / "a.journal");
+  ASSERT_TRUE(file) << file.error().message;
+  const auto read = read_record(*file);
+  ASSERT_TRUE(read);
+  EXPECT_THAT(read->end->reasons.back(), HasSubstr("9 bytes at the end of the journal"));
+  EXPECT_EQ(read->raw, test::sample_record().raw);
+}
+
+// A stop between the rename and the removal of the journal leaves both.
+TEST(Finalise, JournalOfAPublishedRecordIsOnlyRemoved) {
+  const TemporaryFolder folder;
+  test::write_journal(folder / "a.journal", test::sample_record());
+  const std::string journal = test::content_of(folder / "a.journal");
+  ASSERT_TRUE(finalise(folder / "a.journal"));
+  const std::string published = test::content_of(folder / "a.h5");
+  test::write_content(folder / "a.journal", journal);
+
+  ASSERT_TRUE(finalise(folder / "a.journal"));
+
+  EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"a.h5"});
+  EXPECT_EQ(test::content_of(folder / "a.h5"), published);
+}
+
+TEST(IsoTime, GoesThereAndBackExactly) {
+  EXPECT_EQ(record::iso_time(1'795'265'582'123'456'789), "2026-11-21T12:53:02.123456789+00:00");
+  for (const std::int64_t ns : {std::int64_t{0}, std::int64_t{-1}, std::int64_t{951'782'400'000'000'001}}) {
+    EXPECT_EQ(record::ns_from_iso_time(record::iso_time(ns)), ns);
+  }
+  for (const char* bad :
+       {"", "2026-11-21", "2026-13-21T13:06:22.123456789+00:00", "2026-11-21T13:06:22.1+00:00"}) {
+    EXPECT_FALSE(record::ns_from_iso_time(bad)) << bad;
+  }
+}
+
+// --- Files that are no records -------------------------------------------------------------------
+
+void expect_refused(const fs::path& path, const std::string& reason) {
+  const auto read = read_record(path);
+  ASSERT_FALSE(read) << path;
+  EXPECT_EQ(read.error().exit_status(), 2);
+  EXPECT_THAT(read.error().message, HasSubstr(path.string()));
+  EXPECT_THAT(read.error().message, HasSubstr(reason));
+  EXPECT_EQ(read.error().message.find('\n'), std::string::npos);
+}
+
+TEST(HostileFile, ThatIsNoHdf5) {
+  const TemporaryFolder folder;
+  expect_refused(folder / "missing.h5", "no such file");
+  expect_refused(folder.path(), "is no file");
+  test::write_content(folder / "empty.h5", "");
+  expect_refused(folder / "empty.h5", "is no HDF5 file");
+  test::write_content(folder / "text.h5", "t_s,F_over_mg\n1,2\n");
+  expect_refused(folder / "text.h5", "is no HDF5 file");
+}
+
+// Cut everywhere: each is refused in one line, none crashes, none is taken for a record.
+TEST(HostileFile, ThatIsCutShort) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(publish_record(test::sample_record(), folder / "a.h5"));
+  const std::string whole = test::content_of(folder / "a.h5");
+  ASSERT_GT(whole.size(), 10'000U);
+  constexpr std::size_t kSignature = 8;
+  for (std::size_t size = kSignature; size < whole.size(); size += 997) {
+    test::write_content(folder / "cut.h5", whole.substr(0, size));
+    const auto read = read_record(folder / "cut.h5");
+    ASSERT_FALSE(read) << size;
+    ASSERT_EQ(read.error().exit_status(), 2);
+  }
+  test::write_content(folder / "cut.h5", whole.substr(0, whole.size() / 2));
+  expect_refused(folder / "cut.h5", "cut short or damaged");
+}
+
+/// A record in which `change` altered something through the bare library.
+fs::path altered(const TemporaryFolder& folder, const std::function<void(hid_t)>& change) {
+  static int number = 0;
+  const fs::path path = folder / ("altered" + std::to_string(number++) + ".h5");
+  EXPECT_TRUE(publish_record(test::sample_record(), path));
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  EXPECT_GE(file, 0);
+  change(file);
+  EXPECT_GE(H5Fclose(file), 0);
+  return path;
+}
+
+void replace_column(hid_t file, const char* path, hid_t type, hsize_t count) {
+  ASSERT_GE(H5Ldelete(file, path, H5P_DEFAULT), 0);
+  const hid_t space = H5Screate_simple(1, &count, nullptr);
+  const hid_t dataset = H5Dcreate2(file, path, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  ASSERT_GE(dataset, 0);
+  H5Dclose(dataset);
+  H5Sclose(space);
+}
+
+TEST(HostileFile, ThatIsHdf5ButNoRecord) {
+  const TemporaryFolder folder;
+  expect_refused(altered(folder, [](hid_t file) { H5Adelete(file, "format"); }), "no record of this program");
+  expect_refused(altered(folder, [](hid_t file) { H5Ldelete(file, "entry", H5P_DEFAULT); }),
+                 "group entry is missing");
+}
+
+TEST(HostileFile, OfAnotherVersion) {
+  const TemporaryFolder folder;
+  const auto path = altered(folder, [](hid_t file) {
+    const hid_t attribute = H5Aopen(file, "format_version", H5P_DEFAULT);
+    const std::int64_t version = 2;
+    H5Awrite(attribute, H5T_NATIVE_INT64, &version);
+    H5Aclose(attribute);
+  });
+  expect_refused(path, "format version 2, this program reads 1");
+}
+
+TEST(HostileFile, WithOtherTypesOrShapes) {
+  const TemporaryFolder folder;
+  expect_refused(altered(folder, [](hid_t f) { H5Ldelete(f, "entry/raw/scan", H5P_DEFAULT); }),
+                 "data set scan is missing");
+  expect_refused(altered(folder, [](hid_t f) { replace_column(f, "entry/raw/scan", H5T_IEEE_F64LE, 40); }),
+                 "scan has another type");
+  expect_refused(altered(folder, [](hid_t f) { replace_column(f, "entry/raw/counts", H5T_STD_U16LE, 39); }),
+                 "counts has 39 rows, not 40");
+  expect_refused(altered(folder, [](hid_t f) { replace_column(f, "entry/raw/counts", H5T_C_S1, 40); }),
+                 "counts has another type");
+  expect_refused(altered(folder, [](hid_t f) { replace_column(f, "entry/process/status", H5T_C_S1, 1); }),
+                 "status is no single value");
+  expect_refused(
+      altered(folder, [](hid_t f) { replace_column(f, "entry/raw/scan", H5T_STD_I64LE, hsize_t{1} << 50U); }),
+      "has 1125899906842624 rows, at most");
+  expect_refused(altered(folder, [](hid_t f) { H5Ldelete(f, "entry/results/mu_s", H5P_DEFAULT); }),
+                 "data set mu_s is missing");
+}
+
+TEST(HostileFile, WithAlteredValues) {
+  const TemporaryFolder folder;
+  // 40 zeros where other counts were: type and shape fit, the checksum does not.
+  expect_refused(altered(folder, [](hid_t f) { replace_column(f, "entry/raw/counts", H5T_STD_U16LE, 40); }),
+                 "do not match process/sha256");
+  expect_refused(altered(folder, [](hid_t f) { replace_column(f, "entry/raw/scan", H5T_STD_I64LE, 40); }),
+                 "scan does not rise");
+}
+
+}  // namespace
+}  // namespace stickslip

@@ -1,0 +1,173 @@
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+
+#include <csignal>
+
+#include "core/record/journal.hpp"
+#include "tests/support/journal_samples.hpp"
+#include "tests/support/record_equality.hpp"
+#include "tests/support/record_samples.hpp"
+
+namespace stickslip {
+namespace {
+
+using record::JournalWriter;
+using record::read_journal;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+TEST(Journal, GivesBackEveryFieldOfEveryEntry) {
+  const TemporaryFolder folder;
+  const record::Record written = test::sample_record();
+  test::write_journal(folder / "a.journal", written);
+
+  const auto read = read_journal(folder / "a.journal");
+
+  ASSERT_TRUE(read) << read.error().message;
+  test::expect_same_record(read->record, written);
+  EXPECT_EQ(read->stopped_by, "");
+  EXPECT_EQ(read->whole_size, read->file_size);
+}
+
+TEST(Journal, GivesBackImportedValuesToTheLastBit) {
+  const TemporaryFolder folder;
+  const record::Record written = test::sample_imported();
+  test::write_journal(folder / "a.journal", written);
+  const auto read = read_journal(folder / "a.journal");
+  ASSERT_TRUE(read) << read.error().message;
+  test::expect_same_record(read->record, written);
+}
+
+TEST(Journal, KeepsCountsThatNeed32Bits) {
+  const TemporaryFolder folder;
+  record::Record written = test::sample_record();
+  written.header.board.maxdata = 0xFFFF'FFFF;
+  written.raw[1] = 4294967295.0;
+  test::write_journal(folder / "a.journal", written);
+  const auto read = read_journal(folder / "a.journal");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->record.raw, written.raw);
+}
+
+// Whatever byte a crash cuts at, what was whole before is kept and nothing else appears.
+TEST(Journal, CutAnywhereKeepsEveryWholeEntry) {
+  const TemporaryFolder folder;
+  const auto sizes = test::write_journal(folder / "a.journal", test::sample_record());
+  const std::string whole = test::content_of(folder / "a.journal");
+  ASSERT_EQ(sizes.back(), whole.size());
+
+  std::size_t entries = 0;
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    while (entries < sizes.size() && sizes[entries] <= size) ++entries;
+    test::write_content(folder / "cut.journal", whole.substr(0, size));
+    const auto read = read_journal(folder / "cut.journal");
+    if (entries == 0) {
+      ASSERT_FALSE(read) << size;
+      EXPECT_EQ(read.error().exit_status(), 2);
+      continue;
+    }
+    ASSERT_TRUE(read) << size << ": " << read.error().message;
+    ASSERT_EQ(read->whole_size, sizes[entries - 1]) << size;
+    ASSERT_EQ(read->stopped_by.empty(), sizes[entries - 1] == size) << size;
+    ASSERT_FALSE(read->record.end.has_value());
+  }
+}
+
+// CRC-32C finds every single-bit error: no flip anywhere may go unnoticed.
+TEST(Journal, AnyFlippedBitEndsTheReadingBeforeItsEntry) {
+  const TemporaryFolder folder;
+  const auto sizes = test::write_journal(folder / "a.journal", test::sample_imported());
+  const std::string whole = test::content_of(folder / "a.journal");
+
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    std::string flipped = whole;
+    flipped[at] = static_cast<char>(flipped[at] ^ (1 << (at % 8)));
+    test::write_content(folder / "flipped.journal", flipped);
+    const auto read = read_journal(folder / "flipped.journal");
+    if (at < sizes.front()) {
+      ASSERT_FALSE(read) << at;
+      continue;
+    }
+    const auto entry_end = std::upper_bound(sizes.begin(), sizes.end(), at);
+    ASSERT_TRUE(read) << at;
+    ASSERT_EQ(read->whole_size, *(entry_end - 1)) << at;
+    ASSERT_NE(read->stopped_by, "") << at;
+  }
+}
+
+TEST(Journal, IsNeverStartedOverAnother) {
+  const TemporaryFolder folder;
+  test::write_content(folder / "a.journal", "precious");
+  const auto journal = JournalWriter::create(folder / "a.journal", test::sample_header());
+  ASSERT_FALSE(journal);
+  EXPECT_THAT(journal.error().message, HasSubstr("a.journal: cannot be created: File exists"));
+  EXPECT_EQ(test::content_of(folder / "a.journal"), "precious");
+}
+
+TEST(Journal, MakesAUuidWhereThereIsNone) {
+  const TemporaryFolder folder;
+  record::RecordHeader header = test::sample_header();
+  header.uuid.clear();
+  ASSERT_TRUE(JournalWriter::create(folder / "a.journal", header));
+  ASSERT_TRUE(JournalWriter::create(folder / "b.journal", header));
+  const auto a = read_journal(folder / "a.journal");
+  const auto b = read_journal(folder / "b.journal");
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(a->record.header.uuid.size(), 36U);
+  EXPECT_NE(a->record.header.uuid, b->record.header.uuid);
+}
+
+TEST(Journal, RefusesWhatIsNoJournalInOneLine) {
+  const TemporaryFolder folder;
+  test::write_content(folder / "text.journal", "this is a text, longer than the head of an entry is");
+  test::write_content(folder / "empty.journal", "");
+  for (const char* name : {"text.journal", "empty.journal", "missing.journal", "."}) {
+    const auto read = read_journal(folder / name);
+    ASSERT_FALSE(read) << name;
+    EXPECT_EQ(read.error().exit_status(), 2) << name;
+    EXPECT_THAT(read.error().message, HasSubstr(name));
+    EXPECT_EQ(read.error().message.find('\n'), std::string::npos);
+  }
+}
+
+// RLIMIT_FSIZE stands for a full disk: write() stops short of the limit and then fails.
+TEST(Journal, ShortWriteIsTakenBackAndMayBeTriedAgain) {
+  const TemporaryFolder folder;
+  auto journal = JournalWriter::create(folder / "a.journal", test::sample_header());
+  ASSERT_TRUE(journal);
+  const std::vector<double> scans(100, 7.0);
+  ASSERT_TRUE(journal->append_scans(0, scans, {}));
+  const std::uint64_t size = journal->size();
+
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit tight{size + 50, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &tight), 0);
+  const auto refused = journal->append_scans(100, scans, {});
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, old_handler);
+
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().exit_status(), 1);
+  EXPECT_THAT(refused.error().message, HasSubstr("File too large"));
+  EXPECT_EQ(std::filesystem::file_size(folder / "a.journal"), size);
+
+  ASSERT_TRUE(journal->append_scans(100, scans, {}));
+  const auto read = read_journal(folder / "a.journal");
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->record.raw.size(), 200U);
+  EXPECT_EQ(read->stopped_by, "");
+}
+
+TEST(JournalDeathTest, CountsTheBoardCannotGiveStopTheProgram) {
+  const TemporaryFolder folder;
+  auto journal = JournalWriter::create(folder / "a.journal", test::sample_header());
+  ASSERT_TRUE(journal);
+  for (const double count : {-1.0, 65536.0, 0.5, std::nan("")}) {
+    EXPECT_DEATH(static_cast<void>(journal->append_scans(0, {&count, 1}, {})), "contract broken") << count;
+  }
+}
+
+}  // namespace
+}  // namespace stickslip

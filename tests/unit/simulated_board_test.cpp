@@ -1,0 +1,185 @@
+#include "drivers/simulated/simulated_board.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/daq/calibration.hpp"
+
+namespace stickslip::drivers {
+namespace {
+
+using daq::ReadStatus;
+using ::testing::HasSubstr;
+using namespace std::chrono_literals;
+
+const std::filesystem::path kScenes = std::filesystem::path(STICKSLIP_SOURCE_DIR) / "config" / "scenes";
+const std::filesystem::path kRingDown = kScenes / "ring-down-at-12-in-per-min.toml";
+const std::filesystem::path kStickSlip = kScenes / "stick-slip-at-12-in-per-min.toml";
+/// Both shipped scenes last 8 s.
+constexpr std::int64_t kRepetitionScans = 8 * 350;
+
+/// Sleeping moves it.
+class SleepingClock final : public base::Clock {
+ public:
+  [[nodiscard]] std::int64_t monotonic_ns() const override { return now_ns; }
+  [[nodiscard]] std::int64_t realtime_ns() const override { return now_ns + 1'000'000'000'000; }
+  void sleep_until(std::int64_t deadline_ns) override {
+    if (deadline_ns > now_ns) now_ns = deadline_ns;
+  }
+  std::int64_t now_ns = 5'000;
+};
+
+SimulatedTester make(base::Clock& clock, int repeats = 2) {
+  base::Result<SimulatedTester> tester = make_simulated_tester({{kRingDown, kStickSlip}, repeats, {}}, clock);
+  if (!tester) throw std::runtime_error(tester.error().message);
+  return std::move(*tester);
+}
+
+std::vector<double> read_all(daq::Board& board, std::chrono::milliseconds timeout,
+                             std::size_t most = SIZE_MAX) {
+  std::vector<double> raw;
+  daq::ScanBlock block;
+  while (raw.size() < most && board.read(block, timeout) == ReadStatus::kScans) {
+    EXPECT_EQ(block.first, static_cast<std::int64_t>(raw.size()));
+    raw.insert(raw.end(), block.scans().begin(), block.scans().end());
+  }
+  return raw;
+}
+
+TEST(SimulatedBoard, PlaysEachSceneRepeatedlyAsOneStreamAndEnds) {
+  SleepingClock clock;
+  const SimulatedTester tester = make(clock);
+  ASSERT_TRUE(tester.board->start());
+  const std::int64_t start_ns = clock.now_ns;
+  const std::vector<double> raw = read_all(*tester.board, 100ms);
+  EXPECT_EQ(raw.size(), 4U * kRepetitionScans);
+  EXPECT_EQ(clock.now_ns - start_ns, 32'000'000'000);  // 4 × 8 s: scan i is due (i + 1)/rate later.
+  daq::ScanBlock block;
+  EXPECT_EQ(tester.board->read(block, 100ms), ReadStatus::kEndOfInput);
+  EXPECT_EQ(tester.board->read(block, 100ms), ReadStatus::kEndOfInput);
+  EXPECT_EQ(block.count, 0U);
+}
+
+TEST(SimulatedBoard, IsTheSameEachTimeAndRepetitionsDiffer) {
+  SleepingClock clock;
+  const SimulatedTester one = make(clock);
+  const SimulatedTester two = make(clock);
+  ASSERT_TRUE(one.board->start());
+  const std::vector<double> first = read_all(*one.board, 100ms);
+  ASSERT_TRUE(two.board->start());
+  clock.now_ns += 10'000'000'000;  // A late reader gets full blocks of the same scans.
+  EXPECT_EQ(read_all(*two.board, 100ms), first);
+  const std::vector<double> noise_1(first.begin(), first.begin() + 100);
+  const std::vector<double> noise_2(first.begin() + kRepetitionScans, first.begin() + kRepetitionScans + 100);
+  EXPECT_NE(noise_1, noise_2);
+}
+
+TEST(SimulatedBoard, WaitsAtMostTheTimeout) {
+  SleepingClock clock;
+  const SimulatedTester tester = make(clock);
+  daq::ScanBlock block;
+  EXPECT_EQ(tester.board->read(block, 100ms), ReadStatus::kTimeout);  // Not started.
+  EXPECT_EQ(clock.now_ns, 100'005'000);
+  ASSERT_TRUE(tester.board->start());
+  EXPECT_EQ(tester.board->read(block, 1ms), ReadStatus::kTimeout);  // A scan takes 2.86 ms.
+  EXPECT_EQ(tester.board->read(block, 10ms), ReadStatus::kScans);
+  EXPECT_EQ(block.count, 1U);
+  EXPECT_EQ(block.stamp.monotonic_ns, clock.now_ns);
+  EXPECT_EQ(block.stamp.realtime_ns, clock.realtime_ns());
+  clock.now_ns += 1'000'000'000;
+  EXPECT_EQ(tester.board->read(block, 10ms), ReadStatus::kScans);
+  EXPECT_EQ(block.count, daq::ScanBlock::kMaxScans);
+}
+
+TEST(SimulatedBoard, GoesOnWithRisingIndicesAfterAStop) {
+  SleepingClock clock;
+  const SimulatedTester tester = make(clock);
+  ASSERT_TRUE(tester.board->start());
+  ASSERT_TRUE(tester.board->start());  // Does nothing.
+  daq::ScanBlock block;
+  ASSERT_EQ(tester.board->read(block, 10ms), ReadStatus::kScans);
+  const base::ScanIndex end = block.end();
+  tester.board->stop();
+  tester.board->stop();
+  EXPECT_EQ(tester.board->read(block, 10ms), ReadStatus::kTimeout);
+  clock.now_ns += 60'000'000'000;
+  ASSERT_TRUE(tester.board->start());
+  ASSERT_EQ(tester.board->read(block, 10ms), ReadStatus::kScans);
+  EXPECT_EQ(block.first, end);
+}
+
+TEST(SimulatedBoard, PlaysForEverWithoutRepeats) {
+  SleepingClock clock;
+  const SimulatedTester tester = make(clock, 0);
+  ASSERT_TRUE(tester.board->start());
+  EXPECT_GE(read_all(*tester.board, 100ms, 10 * kRepetitionScans).size(), 10U * kRepetitionScans);
+  const auto truth = tester.truth->truth(1'000'001 * kRepetitionScans, 1'000'002 * kRepetitionScans);
+  ASSERT_TRUE(truth);
+  EXPECT_EQ(truth->scene_name, "stick-slip-at-12-in-per-min");
+}
+
+TEST(SimulatedBoard, ReadingsBecomeCoefficientsThroughItsOwnFacts) {
+  SleepingClock clock;
+  const SimulatedTester tester = make(clock, 1);
+  ASSERT_TRUE(tester.board->start());
+  const std::vector<double> raw = read_all(*tester.board, 100ms);
+  const daq::Calibration calibration{tester.board->info(), tester.load_cell, tester.tester.normal_load_N()};
+  EXPECT_EQ(tester.board->info().quantity, daq::RawQuantity::kCounts);
+  EXPECT_DOUBLE_EQ(*tester.tester.pull_speed_m_per_s, 0.00508);
+  double idle = 0.0;
+  for (std::size_t i = 0; i < 170; ++i) idle += calibration.coefficient(raw[i]) / 170.0;
+  EXPECT_NEAR(idle, 0.0, 5.0 * 0.001 / std::sqrt(170.0) + calibration.step_coefficient());
+  // The ring-down has settled at K after 4 s: 0.3 ± what is left of it and five sd of the mean.
+  double settled = 0.0;
+  for (std::size_t i = 1750; i < 1900; ++i) settled += calibration.coefficient(raw[i]) / 150.0;
+  EXPECT_NEAR(settled, 0.30, 5.0 * 0.001 / std::sqrt(150.0) + calibration.step_coefficient());
+}
+
+TEST(SimulatedTruth, IsThatOfTheRepetitionWhichTheWindowSharesMostWith) {
+  SleepingClock clock;
+  const SimulatedTester tester = make(clock);
+  const friction::TruthSource& source = *tester.truth;
+  EXPECT_EQ(source.truth(0, kRepetitionScans)->scene_name, "ring-down-at-12-in-per-min");
+  EXPECT_EQ(source.truth(2 * kRepetitionScans - 10, 3 * kRepetitionScans)->scene_name,
+            "stick-slip-at-12-in-per-min");
+  EXPECT_NE(source.truth(0, kRepetitionScans)->seed,
+            source.truth(kRepetitionScans, 2 * kRepetitionScans)->seed);
+  EXPECT_FALSE(source.truth(4 * kRepetitionScans, 5 * kRepetitionScans));
+  EXPECT_FALSE(source.truth(100, 100));
+}
+
+TEST(SimulatedTruth, CountsTimeFromTheWindow) {
+  SleepingClock clock;
+  const SimulatedTester tester = make(clock);
+  const auto whole = tester.truth->truth(2 * kRepetitionScans, 3 * kRepetitionScans);
+  const auto part = tester.truth->truth(2 * kRepetitionScans + 35, 3 * kRepetitionScans - 70);
+  ASSERT_TRUE(whole && part);
+  EXPECT_NEAR(part->cycles.front().onset_time_s, whole->cycles.front().onset_time_s - 0.1, 1e-12);
+  EXPECT_EQ(part->modes.front().start_s, 0.0);
+  EXPECT_NEAR(part->modes.back().end_s, 7.7, 1e-12);
+}
+
+TEST(SimulatedBoard, RefusesWhatItCannotPlay) {
+  SleepingClock clock;
+  const auto refusal = [&](const SimulatedBoardSettings& settings) {
+    const base::Result<SimulatedTester> tester = make_simulated_tester(settings, clock);
+    if (tester) return std::string{};
+    EXPECT_EQ(tester.error().kind, base::ErrorKind::kUsage);
+    return tester.error().message;
+  };
+  EXPECT_THAT(refusal({{}, 1, {}}), HasSubstr("no scenes"));
+  EXPECT_THAT(refusal({{kRingDown}, -1, {}}), HasSubstr("-1"));
+  EXPECT_THAT(refusal({{kRingDown}, 1, 0.0}), HasSubstr("0 Hz"));
+  EXPECT_THAT(refusal({{"/nonexistent.toml"}, 1, {}}), HasSubstr("/nonexistent.toml"));
+}
+
+}  // namespace
+}  // namespace stickslip::drivers
