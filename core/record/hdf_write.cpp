@@ -74,6 +74,7 @@ void write_attribute(hid_t object, const std::string& name, std::string_view tex
 
 void write_attribute(hid_t object, const std::string& name, const std::vector<std::string>& texts) {
   std::vector<const char*> values;
+  values.reserve(texts.size());
   for (const auto& text : texts) values.push_back(text.c_str());
   const TypeHandle type = text_type(H5T_VARIABLE);
   const AttributeHandle attribute = make_attribute(object, name, type.get(), column_space(values.size()));

@@ -267,7 +267,7 @@ TEST(HostileFile, ThatIsCutShort) {
 /// A record in which `change` altered something through the bare library.
 fs::path altered(const TemporaryFolder& folder, const std::function<void(hid_t)>& change) {
   static int number = 0;
-  const fs::path path = folder / ("altered" + std::to_string(number++) + ".h5");
+  fs::path path = folder / ("altered" + std::to_string(number++) + ".h5");
   EXPECT_TRUE(publish_record(test::sample_record(), path));
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   EXPECT_GE(file, 0);
