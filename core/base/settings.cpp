@@ -298,7 +298,7 @@ std::int64_t Settings::integer(std::string_view key, std::int64_t min, std::int6
   return fallback.value_or(min);
 }
 
-std::string Settings::text(std::string_view key, std::optional<std::string> fallback) {
+std::string Settings::text(std::string_view key, const std::optional<std::string>& fallback) {
   constexpr std::string_view kWhat = "a string";
   const toml::node* node = ask(*node_, key);
   if (node == nullptr) {
@@ -311,7 +311,7 @@ std::string Settings::text(std::string_view key, std::optional<std::string> fall
 }
 
 std::vector<std::string> Settings::texts(std::string_view key,
-                                         std::optional<std::vector<std::string>> fallback) {
+                                         const std::optional<std::vector<std::string>>& fallback) {
   constexpr std::string_view kWhat = "a list of strings";
   const toml::node* node = ask(*node_, key);
   if (node == nullptr) {

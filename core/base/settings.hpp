@@ -85,10 +85,11 @@ class Settings {
   [[nodiscard]] bool boolean(std::string_view key, std::optional<bool> fallback = std::nullopt);
   [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t min, std::int64_t max,
                                      std::optional<std::int64_t> fallback = std::nullopt);
-  [[nodiscard]] std::string text(std::string_view key, std::optional<std::string> fallback = std::nullopt);
+  [[nodiscard]] std::string text(std::string_view key,
+                                 const std::optional<std::string>& fallback = std::nullopt);
   /// An array of strings.
   [[nodiscard]] std::vector<std::string> texts(
-      std::string_view key, std::optional<std::vector<std::string>> fallback = std::nullopt);
+      std::string_view key, const std::optional<std::vector<std::string>>& fallback = std::nullopt);
 
   /// One of the names; returns what it stands for.
   template <typename T>

@@ -204,8 +204,10 @@ TestResults TestAnalysis::finish() {
         judge_regime(slips.size(), estimates.log_likelihood_ratios, model_describes(estimates, sigma));
     results.regime = verdict.regime;
     results.regime_reason = verdict.reason;
-    results.stick_cycle_count = Estimate::of(
-        static_cast<double>(std::count(estimates.ends.begin(), estimates.ends.end(), SlipEnd::kCaptured)));
+    const auto captured = std::count(estimates.ends.begin(), estimates.ends.end(), SlipEnd::kCaptured);
+    results.stick_cycle_count = verdict.regime == Regime::kUndecided
+                                    ? Estimate::none("undecided: " + verdict.reason)
+                                    : Estimate::of(static_cast<double>(captured));
     model_results(slips, estimates, settings_.tester, sigma, results);
     if (verdict.transition_slip) {
       results.transition_time = Estimate::of(time_at(trace, slips[*verdict.transition_slip].peak_at));

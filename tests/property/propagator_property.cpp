@@ -41,7 +41,7 @@ RC_GTEST_PROP(PropagatorProperty, ResultDoesNotDependOnHowReadsAreSplit, ()) {
   std::vector<double> parts(whole.size());
   Propagator sled{motion, 350.0};
   for (std::size_t first = 0; first < parts.size();) {
-    const auto count = std::min<std::size_t>(parts.size() - first, *rc::gen::inRange<std::size_t>(0, 400));
+    const auto count = std::min<std::size_t>(parts.size() - first, *rc::gen::inRange<std::size_t>(1, 400));
     sled.next(std::span{parts}.subspan(first, count));
     first += count;
   }

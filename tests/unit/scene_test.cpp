@@ -24,7 +24,7 @@ using ::testing::IsEmpty;
 
 const std::filesystem::path kScenes = std::filesystem::path(STICKSLIP_SOURCE_DIR) / "config" / "scenes";
 
-/// Lines 1 … 20.
+/// Nine lines without any effect.
 const std::string kBare = R"(description = "d"
 duration = "1 s"
 [tester]
@@ -133,7 +133,8 @@ TEST(Scene, MistakesAreNamedWithPlaceValueAndLimit) {
   EXPECT_THAT(refusal(replaced(kBare, "20 Hz", "0 Hz")), HasSubstr("test.toml:5"));
   EXPECT_THAT(refusal("scan_rate = \"0 Hz\"\n" + kBare), AllOf(HasSubstr("test.toml:1"), HasSubstr("0 Hz")));
   EXPECT_THAT(refusal(kBare + "[effects.witchcraft]\n"),
-              AllOf(HasSubstr("test.toml:10"), HasSubstr("witchcraft")));
+              AllOf(HasSubstr("test.toml:10"), HasSubstr("witchcraft"), HasSubstr("damping"),
+                    HasSubstr("white_noise")));
   EXPECT_THAT(refusal(kBare + "[effects.white_noise]\nsd = 0.1\nsize = 3\n"), HasSubstr("size"));
   EXPECT_THAT(refusal(kBare + "[effects.white_noise]\n"), HasSubstr("sd"));
   EXPECT_THAT(refusal(kBare + "[effects.white_noise]\nsd = 0.1\nsd_voltage = \"1 V\"\n"),
@@ -174,6 +175,13 @@ TEST(SceneTruth, ShippedStickSlipSticksAndSlips) {
   const double r = scene->oscillator.stick_rate_per_s(0.00508, 9.80665);
   const double Q = friction::dimensionless_speed(r, truth.omega_rad_per_s, 0.05);
   EXPECT_NEAR(*truth.amplitude, 0.05 * friction::amplitude_ratio(Q, 0.022), 1e-14);  // [17]
+}
+
+TEST(SceneTruth, ShippedThresholdOscillationIsOnItsEdge) {
+  Scene scene = *load_scene(kScenes / "threshold-oscillation.toml");
+  EXPECT_EQ(scene_truth(scene, 350.0, 1).regime, friction::Regime::kStickSlip);
+  scene.constant_speed->pull_speed_m_per_s *= 1.0 + 1e-9;
+  EXPECT_EQ(scene_truth(scene, 350.0, 1).regime, friction::Regime::kRingDown);
 }
 
 TEST(SceneTruth, ModesFollowEachOtherWithoutHoles) {
