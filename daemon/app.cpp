@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
 
+#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/post.hpp>
 
 #include "daemon/finaliser.hpp"
@@ -98,6 +99,8 @@ base::Result<void> App::run() {
     board_is_missing(opened.error().message);
   }
   tell_status();
+  // The threads of a session are no work that Asio knows of; leave_when_idle() ends the run.
+  const auto until_stopped = boost::asio::make_work_guard(io_);
   io_.run();
 
   storage_.stop();
