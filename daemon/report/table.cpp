@@ -24,10 +24,11 @@ struct Column {
   std::optional<double> (*truth)(const TestTruth&);
 };
 
-/// The traditional numbers depend on speed and tester; the model has no truth for them.
 constexpr std::array<Column, 8> kColumns{{
-    {"static", 7, 4, &TestResults::static_coefficient, nullptr},
-    {"kinetic", 7, 4, &TestResults::kinetic_coefficient, nullptr},
+    {"static", 7, 4, &TestResults::static_coefficient,
+     [](const TestTruth& t) { return t.static_coefficient; }},
+    {"kinetic", 7, 4, &TestResults::kinetic_coefficient,
+     [](const TestTruth& t) { return t.kinetic_coefficient; }},
     {"S", 7, 4, &TestResults::mu_s, [](const TestTruth& t) -> std::optional<double> { return t.mu_s; }},
     {"K", 7, 4, &TestResults::mu_k, [](const TestTruth& t) -> std::optional<double> { return t.mu_k; }},
     {"S−K", 7, 4, &TestResults::delta_mu,
@@ -85,7 +86,7 @@ std::string format_table(std::span<const TableRow> rows) {
                  friction::name(row.results.regime), cells, row.where);
     if (!row.truth) continue;
     for (std::size_t i = 0; i < kColumns.size(); ++i) {
-      cells[i] = cell(kColumns[i].truth ? kColumns[i].truth(*row.truth) : std::nullopt, kColumns[i]);
+      cells[i] = cell(kColumns[i].truth(*row.truth), kColumns[i]);
     }
     text += line("", "truth", friction::name(row.truth->regime), cells, row.truth->scene_name);
   }
