@@ -1,0 +1,131 @@
+#include "core/friction/traditional.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace stickslip::friction {
+namespace {
+
+constexpr double kScanRate_Hz = 350.0;
+constexpr int kPeriod = 20;  // scans, so that peaks lie on scans
+constexpr int kFirstPeak = 10;
+
+Trace trace_of(std::vector<double> values) {
+  Trace trace;
+  trace.value = std::move(values);
+  trace.usable.assign(trace.value.size(), 1);
+  for (std::size_t k = 0; k < trace.value.size(); ++k) {
+    trace.time_s.push_back(static_cast<double>(k) / kScanRate_Hz);
+  }
+  return trace;
+}
+
+/// 0.3 + 0.05 cos about the peaks at 10, 30, 50 …
+Trace oscillation(int scans) {
+  std::vector<double> values;
+  for (int k = 0; k < scans; ++k) {
+    values.push_back(0.3 + 0.05 * std::cos(2.0 * std::numbers::pi * (k - kFirstPeak) / kPeriod));
+  }
+  return trace_of(std::move(values));
+}
+
+std::vector<Fall> slips_at_the_peaks(int count) {
+  std::vector<Fall> slips;
+  for (int i = 0; i < count; ++i) {
+    Fall slip;
+    slip.peak_at = kFirstPeak + kPeriod * i;
+    slip.trough_at = slip.peak_at + 0.5 * kPeriod;
+    slip.peak = 0.35;
+    slip.trough = 0.25;
+    slips.push_back(slip);
+  }
+  return slips;
+}
+
+TEST(Traditional, StaticIsTheLargestScanOfTheFirstPeak) {
+  Trace trace = oscillation(400);
+  trace.value[11] = 0.37;  // beside the interpolated maximum
+  trace.value[30] = 0.40;  // another peak
+  const TraditionalCoefficients found = traditional_coefficients(trace, slips_at_the_peaks(15), {});
+  EXPECT_EQ(found.static_coefficient.value, 0.37);
+}
+
+TEST(Traditional, KineticIsTheMeanOfTenWholeCycles) {
+  // A sampled cosine over whole cycles has mean 0 up to 200 roundings of 0.35 (6e-17 each, averaged).
+  const TraditionalCoefficients found =
+      traditional_coefficients(oscillation(400), slips_at_the_peaks(15), {});
+  EXPECT_NEAR(found.kinetic_coefficient.value.value(), 0.3, 1e-14);
+}
+
+TEST(Traditional, KineticTakesTheMethodsCyclesAndNoMore) {
+  // The level is i/10 in cycle i: the mean of n cycles is (n − 1)/20.
+  Trace trace = oscillation(400);
+  for (std::size_t k = 0; k < trace.size(); ++k) {
+    trace.value[k] = k < kFirstPeak ? 9.0 : 0.1 * static_cast<double>((k - kFirstPeak) / kPeriod);
+  }
+  for (const int cycles : {1, 3, 10}) {
+    Method method;
+    method.kinetic_cycles = cycles;
+    const TraditionalCoefficients found = traditional_coefficients(trace, slips_at_the_peaks(15), method);
+    EXPECT_NEAR(found.kinetic_coefficient.value.value(), (cycles - 1) / 20.0, 1e-12) << cycles;
+  }
+}
+
+TEST(Traditional, OscillationThatDiesAwayGoesOnWithItsMeanPeriod) {
+  Trace trace = oscillation(400);
+  for (std::size_t k = kFirstPeak + 3 * kPeriod; k < trace.size(); ++k) trace.value[k] = 0.2;
+  const TraditionalCoefficients found = traditional_coefficients(trace, slips_at_the_peaks(4), {});
+  // Three cycles of mean 0.3 and seven of 0.2.
+  EXPECT_NEAR(found.kinetic_coefficient.value.value(), 0.23, 1e-12);
+}
+
+TEST(Traditional, TraceThatEndsTooEarlyHasNoKineticCoefficient) {
+  const TraditionalCoefficients found =
+      traditional_coefficients(oscillation(kFirstPeak + 5 * kPeriod), slips_at_the_peaks(4), {});
+  EXPECT_TRUE(found.static_coefficient.value);
+  EXPECT_FALSE(found.kinetic_coefficient.value);
+  EXPECT_EQ(found.kinetic_coefficient.reason, "3 cycles after the first peak, the method wants 10");
+}
+
+TEST(Traditional, OnePeakHasNoCycle) {
+  const TraditionalCoefficients found = traditional_coefficients(oscillation(400), slips_at_the_peaks(1), {});
+  EXPECT_EQ(found.static_coefficient.value, 0.3 + 0.05);
+  EXPECT_FALSE(found.kinetic_coefficient.value);
+  EXPECT_FALSE(found.kinetic_coefficient.reason.empty());
+}
+
+TEST(Traditional, UnusableScansAreLeftOutOfTheMean) {
+  Trace trace = oscillation(400);
+  // A pair half a period apart, so that the others still average to 0.3.
+  for (const std::size_t k : {45U, 55U}) {
+    trace.value[k] = 5.0;
+    trace.usable[k] = 0;
+  }
+  const TraditionalCoefficients found = traditional_coefficients(trace, slips_at_the_peaks(15), {});
+  EXPECT_NEAR(found.kinetic_coefficient.value.value(), 0.3, 1e-14);
+}
+
+TEST(Traditional, SteadySlidingAveragesWithoutLoadingAndUnloading) {
+  std::vector<double> values(100, 0.0);
+  for (int k = 0; k < 30; ++k) values.push_back(0.01 * k);
+  values.insert(values.end(), 1000, 0.3);
+  values.insert(values.end(), 100, 0.0);
+  const TraditionalCoefficients found = traditional_coefficients(trace_of(values), {}, {});
+  EXPECT_FALSE(found.static_coefficient.value);
+  EXPECT_FALSE(found.static_coefficient.reason.empty());
+  // From half of 0.3 on: 15 scans of the loading (14 if 0.15 rounds below), mean 0.22, and 1000 of 0.3.
+  EXPECT_NEAR(found.kinetic_coefficient.value.value(), (15 * 0.22 + 1000 * 0.3) / 1015.0, 2e-4);
+}
+
+TEST(Traditional, TraceBelowZeroAndOneScan) {
+  EXPECT_NEAR(traditional_coefficients(trace_of({-0.2, -0.2}), {}, {}).kinetic_coefficient.value.value(),
+              -0.2, 1e-15);
+  EXPECT_EQ(traditional_coefficients(trace_of({0.3}), {}, {}).kinetic_coefficient.value, 0.3);
+}
+
+}  // namespace
+}  // namespace stickslip::friction
