@@ -116,7 +116,7 @@ Step solve(const NormalEquations& equations, double damping) {
   std::vector<Matrix3d> inverses;
   inverses.reserve(equations.slips.size());
   for (const SlipBlock& block : equations.slips) {
-    inverses.push_back(damped(block.own, damping).inverse());
+    inverses.emplace_back(damped(block.own, damping).inverse());
     reduced -= block.mixed.transpose() * inverses.back() * block.mixed;
     right -= block.mixed.transpose() * inverses.back() * block.gradient;
   }

@@ -50,6 +50,8 @@ struct TestTruth {
   double gamma_over_2omega = 0.0;
   double pull_speed_m_per_s = 0.0;
   Regime regime = Regime::kUndecided;
+  std::optional<double> static_coefficient;        ///< What the traditional rule reads without noise,
+  std::optional<double> kinetic_coefficient;       ///< from the force itself; none if the pull is too short.
   std::optional<double> oscillation_frequency_Hz;  ///< None if there is no oscillation.
   std::optional<double> amplitude;                 ///< Half the range of the first full cycle.
   std::vector<ModeInterval> modes;

@@ -98,7 +98,7 @@ Segmenter::Event Segmenter::observe(base::ScanIndex index, double coefficient) {
 
 void Segmenter::begin() {
   state_ = State::kRunning;
-  noise_ = signal::NoiseEstimator{kRoundingSigma * settings_.step_coefficient};
+  noise_ = signal::NoiseEstimator{noise_floor(settings_)};
   despiker_ = {};
   falls_ = {};
   largest_drop_ = last_drop_ = last_period_ = last_peak_at_ = 0.0;

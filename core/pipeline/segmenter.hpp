@@ -51,6 +51,10 @@ class Segmenter {
   /// \param index rises; a jump forgets what was kept for the trigger.
   [[nodiscard]] Event observe(base::ScanIndex index, double coefficient);
 
+  /// Waits for a test: the next scan may belong to its record. False while the force of the last
+  /// test is still there.
+  [[nodiscard]] bool armed() const noexcept { return state_ == State::kArmed; }
+
   /// A test has started and not ended.
   [[nodiscard]] bool running() const noexcept { return state_ == State::kRunning; }
 

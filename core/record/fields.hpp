@@ -107,6 +107,10 @@ void for_each_field(Truth& truth, Visitor&& visit) {
   visit(FieldName{"pull_speed", "m/s", "true pull speed [m/s]"}, truth.pull_speed_m_per_s);
   visit(FieldName{"oscillation_frequency", "Hz", "true frequency of the oscillation [Hz]"},
         truth.oscillation_frequency_Hz);
+  visit(FieldName{"static_coefficient", "1", "static coefficient, traditional rule without noise [1]"},
+        truth.static_coefficient);
+  visit(FieldName{"kinetic_coefficient", "1", "kinetic coefficient, traditional rule without noise [1]"},
+        truth.kinetic_coefficient);
   visit(FieldName{"amplitude", "1", "true half range of the first full cycle [1]"}, truth.amplitude);
 }
 

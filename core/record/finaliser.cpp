@@ -24,12 +24,14 @@ FileHandle create_hdf5(const std::filesystem::path& path) {
   check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "library version bounds");
   // A leaked handle makes closing fail instead of leaving the file half open.
   check(H5Pset_fclose_degree(access.get(), H5F_CLOSE_SEMI), "close degree");
+  // Where the file system has no locks, without.
+  check(H5Pset_file_locking(access.get(), true, true), "file locking");
   const PropertyHandle creation{H5Pcreate(H5P_FILE_CREATE), "file creation properties"};
   constexpr unsigned kTracked = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
   check(H5Pset_link_creation_order(creation.get(), kTracked), "creation order");
   check(H5Pset_attr_creation_order(creation.get(), kTracked), "creation order");
   check(H5Pset_obj_track_times(creation.get(), false), "object times");
-  return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), "creating " + path.string()};
+  return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), "creating"};
 }
 
 /// \throws HdfError with the file in an unknown state: it is to be thrown away.

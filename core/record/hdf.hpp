@@ -17,13 +17,16 @@ class HdfError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// \throws HdfError naming `what` and the library's innermost reason.
+[[noreturn]] void throw_refused(const std::string& what);
+
 /// Owns an HDF5 id. \tparam Close  the library's function for its kind.
 template <herr_t (*Close)(hid_t)>
 class Handle {
  public:
   /// \throws HdfError naming `what` if the library refused, i.e. id is negative.
   Handle(hid_t id, const std::string& what) : id_(id) {
-    if (id < 0) throw HdfError("HDF5 refused: " + what);
+    if (id < 0) throw_refused(what);
   }
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)) {}
   Handle& operator=(Handle&& other) noexcept {
@@ -40,7 +43,7 @@ class Handle {
 
   /// Closes now. \throws HdfError if that fails: buffers may be lost.
   void close(const std::string& what) {
-    if (Close(std::exchange(id_, -1)) < 0) throw HdfError("HDF5 refused: " + what);
+    if (Close(std::exchange(id_, -1)) < 0) throw_refused(what);
   }
 
  private:
@@ -57,7 +60,7 @@ using PropertyHandle = Handle<H5Pclose>;
 
 /// \throws HdfError naming `what` if an HDF5 status is negative.
 inline void check(herr_t status, const std::string& what) {
-  if (status < 0) throw HdfError("HDF5 refused: " + what);
+  if (status < 0) throw_refused(what);
 }
 
 /// To be called before any other HDF5 function: no exit handler (it crashes after a full disk), no

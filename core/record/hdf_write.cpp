@@ -51,12 +51,6 @@ AttributeHandle make_attribute(hid_t object, const std::string& name, hid_t type
 
 }  // namespace
 
-void prepare_hdf5() {
-  static const herr_t once = H5dont_atexit();
-  check(once, "H5dont_atexit");
-  check(H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr), "H5Eset_auto2");
-}
-
 GroupHandle make_group(hid_t parent, const std::string& name, const std::string& nx_class) {
   const PropertyHandle properties{H5Pcreate(H5P_GROUP_CREATE), "group properties"};
   constexpr unsigned kTracked = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
@@ -80,6 +74,7 @@ void write_attribute(hid_t object, const std::string& name, std::string_view tex
 
 void write_attribute(hid_t object, const std::string& name, const std::vector<std::string>& texts) {
   std::vector<const char*> values;
+  values.reserve(texts.size());
   for (const auto& text : texts) values.push_back(text.c_str());
   const TypeHandle type = text_type(H5T_VARIABLE);
   const AttributeHandle attribute = make_attribute(object, name, type.get(), column_space(values.size()));

@@ -14,7 +14,7 @@ std::string_view text_of(const Entry& entry) {
 template <typename T>
 std::vector<T> values_of(const Entry& entry) {
   std::vector<T> values(entry.payload.size() / sizeof(T));
-  std::memcpy(values.data(), entry.payload.data(), values.size() * sizeof(T));
+  if (!values.empty()) std::memcpy(values.data(), entry.payload.data(), values.size() * sizeof(T));
   return values;
 }
 

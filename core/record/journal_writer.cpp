@@ -9,16 +9,16 @@
 #include "core/base/contract.hpp"
 #include "core/record/journal.hpp"
 #include "core/record/json_codec.hpp"
+#include "core/record/words.hpp"
 
 namespace stickslip::record {
 namespace {
 
 constexpr mode_t kFileMode = 0644;
-constexpr std::uint32_t kLargestU16 = 0xFFFF;
 
 Encoding encoding_for(const daq::BoardInfo& board) {
   if (board.quantity != daq::RawQuantity::kCounts) return Encoding::kF64;
-  return board.maxdata <= kLargestU16 ? Encoding::kU16 : Encoding::kU32;
+  return counts_fit_u16(board) ? Encoding::kU16 : Encoding::kU32;
 }
 
 template <typename T>

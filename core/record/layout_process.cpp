@@ -7,12 +7,12 @@
 #include "core/record/hdf_read.hpp"
 #include "core/record/hdf_write.hpp"
 #include "core/record/layout.hpp"
+#include "core/record/words.hpp"
 
 namespace stickslip::record {
 namespace {
 
 constexpr FieldName kComputeTime{"compute_time", "s", "time the evaluation took [s]"};
-constexpr std::uint32_t kLargestU16 = 0xFFFF;
 
 class Sha256 {
  public:
@@ -47,7 +47,7 @@ std::string sha256_of_raw(const Record& record) {
   Sha256 sha;
   if (record.header.board.quantity != daq::RawQuantity::kCounts) {
     sha.add(record.raw);
-  } else if (record.header.board.maxdata <= kLargestU16) {
+  } else if (counts_fit_u16(record.header.board)) {
     sha.add(std::vector<std::uint16_t>(record.raw.begin(), record.raw.end()));
   } else {
     sha.add(std::vector<std::uint32_t>(record.raw.begin(), record.raw.end()));

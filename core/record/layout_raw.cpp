@@ -20,8 +20,6 @@ enum ScanFlag : std::uint8_t {
 };
 const std::vector<std::string> kFlagMeaning{"spike", "saturated", "replaced_for_detection"};
 
-constexpr std::uint32_t kLargestU16 = 0xFFFF;
-
 std::vector<double> times_s(const Record& record) {
   std::vector<double> times;
   times.reserve(record.scan.size());
@@ -83,7 +81,7 @@ void write_raw(hid_t entry, const Record& record) {
   table.add(FieldName{"time", "s", "time after the first scan [s]"}, times_s(record));
   table.add(FieldName{"scan", "1", "scan index of the acquisition [1]"}, record.scan);
   if (counts) {
-    if (board.maxdata <= kLargestU16) {
+    if (counts_fit_u16(board)) {
       add_counts<std::uint16_t>(table, record);
     } else {
       add_counts<std::uint32_t>(table, record);

@@ -1,5 +1,8 @@
 #include "core/record/words.hpp"
 
+#include <cstdint>
+#include <limits>
+
 namespace stickslip::record {
 
 QuantityName name(daq::RawQuantity quantity) noexcept {
@@ -23,6 +26,10 @@ std::optional<daq::RawQuantity> quantity_from_name(std::string_view text) noexce
     if (name(quantity).name == text) return quantity;
   }
   return std::nullopt;
+}
+
+bool counts_fit_u16(const daq::BoardInfo& board) noexcept {
+  return board.maxdata <= std::numeric_limits<std::uint16_t>::max();
 }
 
 std::optional<daq::GapCause> gap_cause_from_name(std::string_view text) noexcept {

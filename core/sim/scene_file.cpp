@@ -1,5 +1,9 @@
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <numbers>
+#include <string_view>
 
 #include "core/base/settings.hpp"
 #include "core/sim/scene.hpp"
@@ -20,6 +24,9 @@ constexpr double kHeaviestSled_kg = 1000.0;
 constexpr double kFastestOscillator_Hz = 1e5;
 constexpr double kFastestScan_Hz = 1e6;
 constexpr double kHighestVoltage_V = 1000.0;
+
+constexpr std::array<std::string_view, 5> kEffects{"damping", "constant_speed", "one_way_coupling",
+                                                   "white_noise", "quantisation"};
 
 void read_tester(Settings tester, double gamma_over_2omega, Scene& scene) {
   scene.sled_mass_kg =
@@ -112,6 +119,8 @@ base::Result<Scene> read_scene(Settings settings, const std::filesystem::path& f
       settings.quantity("scan_rate", Dimension::kFrequency, Limits::above_up_to(0.0, kFastestScan_Hz), 350.0);
 
   Settings effects = settings.table("effects");
+  // All are made known, so that the message about an unknown one lists them all.
+  for (const std::string_view effect : kEffects) (void)effects.table(effect);
   double gamma_over_2omega = 0.0;
   if (effects.has("damping")) {
     scene.damping = true;
@@ -127,10 +136,7 @@ base::Result<Scene> read_scene(Settings settings, const std::filesystem::path& f
     scene.duration_s =
         settings.quantity("duration", Dimension::kTime, Limits::above_up_to(0.0, kLongestPhase_s));
   }
-  if (effects.has("one_way_coupling")) {
-    scene.one_way_coupling = true;
-    (void)effects.table("one_way_coupling");  // Has no settings, but is known.
-  }
+  scene.one_way_coupling = effects.has("one_way_coupling");
   if (effects.has("white_noise")) {
     scene.white_noise = read_white_noise(effects.table("white_noise"), scene);
   }

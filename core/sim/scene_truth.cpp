@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "core/sim/traditional_truth.hpp"
+
 namespace stickslip::sim {
 namespace {
 
@@ -121,6 +123,12 @@ friction::TestTruth scene_truth(const Scene& scene, double scan_rate_Hz, std::ui
     const Tally slips = tally(chronicle.slips(), pull_end_s, period_s);
     truth.regime = regime_of(slips, scene.oscillator.oscillates());
     describe_oscillation(scene, slips, truth);
+    if (!slips.onsets_s.empty() && scene.oscillator.oscillates()) {
+      const TraditionalTruth traditional =
+          traditional_truth(scene, slips.onsets_s.front(), friction::Method{});
+      truth.static_coefficient = traditional.static_coefficient;
+      truth.kinetic_coefficient = traditional.kinetic_coefficient;
+    }
   }
   return truth;
 }

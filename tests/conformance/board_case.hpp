@@ -33,5 +33,7 @@ inline void PrintTo(const BoardCase& board_case, std::ostream* out) { *out << bo
 [[nodiscard]] BoardCase comedi_case();
 /// One repetition of each shipped scene, then the end.
 [[nodiscard]] BoardCase simulated_case();
+/// A record without gaps that does not begin at index 0, then the end.
+[[nodiscard]] BoardCase replay_case();
 
 }  // namespace stickslip::test

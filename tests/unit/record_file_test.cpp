@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 #include <hdf5.h>
+#include <sys/resource.h>
 
+#include <csignal>
+#include <cstdlib>
 #include <functional>
 #include <numeric>
 
@@ -122,7 +125,35 @@ TEST(RecordFile, FolderThatCannotBeWrittenLeavesNothing) {
   const auto published = publish_record(test::sample_record(), folder / "missing/a.h5");
   ASSERT_FALSE(published);
   EXPECT_EQ(published.error().exit_status(), 1);
+  EXPECT_THAT(published.error().message, HasSubstr("No such file or directory"));
   EXPECT_TRUE(names_in(folder.path()).empty());
+}
+
+// RLIMIT_FSIZE stands for a full disk: at every size that is too small the journal is all that is
+// left, and the finaliser ends by itself. In a process of its own, as it is meant to run.
+TEST(RecordFile, FullDiskLeavesTheJournalOnly) {
+  const TemporaryFolder folder;
+  test::write_journal(folder / "a.journal", test::sample_record());
+  ASSERT_TRUE(publish_record(test::sample_record(), folder / "size.h5"));
+  const auto needed = fs::file_size(folder / "size.h5");
+  fs::remove(folder / "size.h5");
+  const std::string journal = test::content_of(folder / "a.journal");
+
+  for (std::uintmax_t limit = 0; limit < needed; limit += needed / 16) {
+    EXPECT_EXIT(
+        {
+          std::signal(SIGXFSZ, SIG_IGN);
+          rlimit tight{};
+          tight.rlim_cur = tight.rlim_max = limit;
+          setrlimit(RLIMIT_FSIZE, &tight);
+          const auto file = finalise(folder / "a.journal");
+          std::exit(file ? 0 : file.error().exit_status());
+        },
+        testing::ExitedWithCode(1), "")
+        << limit;
+    EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"a.journal"}) << limit;
+    EXPECT_EQ(test::content_of(folder / "a.journal"), journal);
+  }
 }
 
 TEST(Finalise, JournalWithoutEndBecomesAnInterruptedRecord) {
@@ -236,7 +267,7 @@ TEST(HostileFile, ThatIsCutShort) {
 /// A record in which `change` altered something through the bare library.
 fs::path altered(const TemporaryFolder& folder, const std::function<void(hid_t)>& change) {
   static int number = 0;
-  const fs::path path = folder / ("altered" + std::to_string(number++) + ".h5");
+  fs::path path = folder / ("altered" + std::to_string(number++) + ".h5");
   EXPECT_TRUE(publish_record(test::sample_record(), path));
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   EXPECT_GE(file, 0);

@@ -24,7 +24,7 @@ using ::testing::IsEmpty;
 
 const std::filesystem::path kScenes = std::filesystem::path(STICKSLIP_SOURCE_DIR) / "config" / "scenes";
 
-/// Lines 1 … 20.
+/// Nine lines without any effect.
 const std::string kBare = R"(description = "d"
 duration = "1 s"
 [tester]
@@ -133,7 +133,8 @@ TEST(Scene, MistakesAreNamedWithPlaceValueAndLimit) {
   EXPECT_THAT(refusal(replaced(kBare, "20 Hz", "0 Hz")), HasSubstr("test.toml:5"));
   EXPECT_THAT(refusal("scan_rate = \"0 Hz\"\n" + kBare), AllOf(HasSubstr("test.toml:1"), HasSubstr("0 Hz")));
   EXPECT_THAT(refusal(kBare + "[effects.witchcraft]\n"),
-              AllOf(HasSubstr("test.toml:10"), HasSubstr("witchcraft")));
+              AllOf(HasSubstr("test.toml:10"), HasSubstr("witchcraft"), HasSubstr("damping"),
+                    HasSubstr("white_noise")));
   EXPECT_THAT(refusal(kBare + "[effects.white_noise]\nsd = 0.1\nsize = 3\n"), HasSubstr("size"));
   EXPECT_THAT(refusal(kBare + "[effects.white_noise]\n"), HasSubstr("sd"));
   EXPECT_THAT(refusal(kBare + "[effects.white_noise]\nsd = 0.1\nsd_voltage = \"1 V\"\n"),

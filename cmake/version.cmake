@@ -1,0 +1,13 @@
+# Run at every build: writes version.cpp anew only if the commit has changed.
+# cmake -DSOURCE_DIR=… -DTEMPLATE=… -DOUTPUT=… -DPROJECT_VERSION=… -P version.cmake
+set(STICKSLIP_COMMIT "unknown")
+find_package(Git QUIET)
+if(Git_FOUND)
+  execute_process(COMMAND ${GIT_EXECUTABLE} describe --always --dirty --abbrev=12 --exclude=*
+    WORKING_DIRECTORY ${SOURCE_DIR} OUTPUT_VARIABLE DESCRIBED OUTPUT_STRIP_TRAILING_WHITESPACE
+    ERROR_QUIET RESULT_VARIABLE STATUS)
+  if(STATUS EQUAL 0)
+    set(STICKSLIP_COMMIT "${DESCRIBED}")
+  endif()
+endif()
+configure_file(${TEMPLATE} ${OUTPUT} @ONLY)

@@ -1,0 +1,122 @@
+#include "core/pipeline/processor.hpp"
+
+#include <utility>
+
+namespace stickslip::pipeline {
+namespace {
+
+SegmenterSettings complete(SegmenterSettings settings, const daq::Calibration& calibration) {
+  settings.step_coefficient = calibration.step_coefficient();
+  return settings;
+}
+
+}  // namespace
+
+Processor::Processor(const ProcessorSettings& settings, daq::Calibration calibration,
+                     std::vector<Sink*> sinks)
+    : settings_(settings),
+      calibration_(std::move(calibration)),
+      sinks_(std::move(sinks)),
+      segmenter_(complete(settings.segmenter, calibration_)),
+      number_(settings.first_test_number) {
+  settings_.analysis.step_coefficient = calibration_.step_coefficient();
+}
+
+void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause) {
+  if (const std::optional<daq::Gap> gap = gaps_.observe(block, gap_cause)) note_gap(*gap);
+  scan_count_ += block.count;
+
+  std::size_t not_handed_over = 0;  // First scan of the running test that the sinks have not seen.
+  for (std::size_t i = 0; i < block.count; ++i) {
+    const daq::ScanIndex index = block.first + static_cast<daq::ScanIndex>(i);
+    const double raw = block.raw[i];
+    next_scan_ = index + 1;
+    const bool armed = segmenter_.armed();
+    const Segmenter::Event event = segmenter_.observe(index, calibration_.coefficient(raw));
+    if (test_is_running()) {
+      analyse(index, raw);
+      if (event == Segmenter::Event::kUnloaded || event == Segmenter::Event::kNoRelativeMotion) {
+        hand_over(block, not_handed_over, i + 1);
+        end(next_scan_,
+            event == Segmenter::Event::kUnloaded ? EndCause::kUnloaded : EndCause::kNoRelativeMotion);
+      }
+      continue;
+    }
+    // As the segmenter: what is left of the last test's force is no beginning of the next one.
+    if (!armed) continue;
+    waiting_.push_back({index, raw});
+    if (event == Segmenter::Event::kTestStarts) {
+      begin(index, block.stamp);
+      not_handed_over = i + 1;
+    } else if (waiting_.size() > settings_.segmenter.pre_trigger_scans()) {
+      waiting_.pop_front();
+    }
+  }
+  if (test_is_running()) {
+    hand_over(block, not_handed_over, block.count);
+    report_new_cycles();
+  }
+}
+
+void Processor::finish(EndCause cause) {
+  if (test_is_running()) end(next_scan_, cause);
+  waiting_.clear();
+}
+
+void Processor::note_gap(const daq::Gap& gap) {
+  ++gap_count_;
+  if (!test_is_running()) {
+    // What was before a gap cannot be shown to belong to the coming test.
+    waiting_.clear();
+    return;
+  }
+  analysis_->gap(gap.first, gap.count);
+  for (Sink* sink : sinks_) sink->gap(gap);
+}
+
+void Processor::begin(daq::ScanIndex trigger, const daq::ClockStamp& stamp) {
+  analysis_.emplace(settings_.analysis);
+  const TestStart start{number_, waiting_.front().index, trigger, stamp};
+  std::vector<double> raw;
+  raw.reserve(waiting_.size());
+  for (const Waiting& scan : waiting_) {
+    raw.push_back(scan.raw);
+    analyse(scan.index, scan.raw);
+  }
+  waiting_.clear();
+  for (Sink* sink : sinks_) {
+    sink->test_began(start);
+    sink->scans(start.first, raw, stamp);
+  }
+}
+
+void Processor::analyse(daq::ScanIndex index, double raw) {
+  analysis_->add(index, calibration_.coefficient(raw), calibration_.saturated(raw));
+}
+
+void Processor::end(daq::ScanIndex end, EndCause cause) {
+  report_new_cycles();
+  TestEnd ended;
+  ended.number = number_++;
+  ended.end = end;
+  ended.cause = cause;
+  ended.results = analysis_->finish();
+  ended.cycles = analysis_->cycles();
+  ended.spikes = analysis_->spikes();
+  analysis_.reset();
+  for (Sink* sink : sinks_) sink->test_ended(ended);
+}
+
+void Processor::hand_over(const daq::ScanBlock& block, std::size_t from, std::size_t to) {
+  if (from >= to) return;
+  const std::span<const double> raw = block.scans().subspan(from, to - from);
+  for (Sink* sink : sinks_) sink->scans(block.first + static_cast<daq::ScanIndex>(from), raw, block.stamp);
+}
+
+void Processor::report_new_cycles() {
+  for (const friction::Cycle& cycle : analysis_->take_new_cycles()) {
+    for (Sink* sink : sinks_) sink->cycle(cycle);
+  }
+}
+
+}  // namespace stickslip::pipeline

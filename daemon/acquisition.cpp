@@ -1,0 +1,74 @@
+#include "daemon/acquisition.hpp"
+
+#include <chrono>
+
+#include "core/base/contract.hpp"
+#include "daemon/realtime.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+/// Longest wait for scans, and thereby for a stop request to be seen.
+constexpr std::chrono::milliseconds kReadTimeout{100};
+
+}  // namespace
+
+Acquisition::Acquisition(daq::Board& board, daq::ScanRing& ring, int realtime_priority)
+    : board_(board), ring_(ring), realtime_priority_(realtime_priority) {}
+
+Acquisition::~Acquisition() {
+  request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+base::Result<void> Acquisition::start() {
+  STICKSLIP_EXPECTS(!thread_.joinable());
+  if (base::Result<void> started = board_.start(); !started) return started;
+  thread_ = std::thread{[this] { run(); }};
+  started_.acquire();
+  return {};
+}
+
+std::optional<Acquisition::End> Acquisition::ended() const noexcept {
+  const std::uint8_t end = end_.load(std::memory_order_acquire);
+  if (end == kRunning) return std::nullopt;
+  return static_cast<End>(end);
+}
+
+void Acquisition::run() noexcept {
+  scheduling_ = use_realtime_scheduling(realtime_priority_);
+  started_.release();
+  const End end = read_to_the_end();
+  board_.stop();
+  end_.store(static_cast<std::uint8_t>(end), std::memory_order_release);
+  news_.release();
+}
+
+Acquisition::End Acquisition::read_to_the_end() noexcept {
+  daq::ScanBlock block;
+  while (!stop_requested_.load(std::memory_order_relaxed)) {
+    switch (board_.read(block, kReadTimeout)) {
+      case daq::ReadStatus::kScans:
+        // A full ring counts what it drops; the jump in the index tells the consumer.
+        ring_.push(block);
+        news_.release();
+        break;
+      case daq::ReadStatus::kTimeout:
+        break;
+      case daq::ReadStatus::kOverrun:
+        overruns_.fetch_add(1, std::memory_order_relaxed);
+        // Scans are being lost anyway: starting again may take its time.
+        if (!board_.start()) return End::kFailed;
+        break;
+      case daq::ReadStatus::kEndOfInput:
+        return End::kEndOfInput;
+      case daq::ReadStatus::kBoardMissing:
+        return End::kBoardMissing;
+      case daq::ReadStatus::kFailed:
+        return End::kFailed;
+    }
+  }
+  return End::kStopped;
+}
+
+}  // namespace stickslip::daemon

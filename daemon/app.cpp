@@ -1,0 +1,325 @@
+#include "daemon/app.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+#include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
+
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/post.hpp>
+
+#include "daemon/finaliser.hpp"
+#include "daemon/method_text.hpp"
+#include "daemon/version.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+/// Tries to open a missing board: after 1, 2, 4, 8, 16, 30, 30 … s.
+constexpr std::chrono::seconds kFirstRetry{1};
+constexpr std::chrono::seconds kLongestRetry{30};
+
+}  // namespace
+
+/// Sees the tests on the processing thread; adds them to the log, tells facts and main thread.
+class App::Watcher final : public pipeline::Sink {
+ public:
+  explicit Watcher(App& app) : app_(app) {}
+
+  /// Only between sessions.
+  void use(const friction::TruthSource* truth) { truth_ = truth; }
+
+  void test_began(const pipeline::TestStart& start) override {
+    first_ = start.first;
+    app_.world_.facts->test_began(start);
+    post_current(start.number);
+  }
+
+  void gap(const daq::Gap& gap) override { app_.world_.facts->gap_seen(gap); }
+
+  void test_ended(const pipeline::TestEnd& end) override {
+    TestSummary summary;
+    summary.number = end.number;
+    summary.first = first_;
+    summary.end = end.end;
+    summary.cause = end.cause;
+    summary.results = end.results;
+    if (truth_ != nullptr) summary.truth = truth_->truth(first_, end.end);
+    app_.tests_.add(std::move(summary));
+    app_.world_.facts->test_ended(end);
+    post_current(std::nullopt);
+  }
+
+ private:
+  void post_current(std::optional<std::int64_t> number) {
+    boost::asio::post(app_.io_, [&app = app_, number] {
+      app.current_test_ = number;
+      app.tell_status();
+    });
+  }
+
+  App& app_;
+  const friction::TruthSource* truth_ = nullptr;
+  daq::ScanIndex first_ = 0;
+};
+
+App::App(DaemonConfig config, AppWorld world)
+    : config_(std::move(config)),
+      world_(std::move(world)),
+      signals_(io_),
+      retry_timer_(io_),
+      clock_(base::make_system_clock(config_.clock_speed)),
+      storage_(config_.record_folder, world_.finalise, tests_, *world_.facts),
+      watcher_(std::make_unique<Watcher>(*this)) {}
+
+App::~App() = default;
+
+base::Result<void> App::run() {
+  signals_.add(SIGTERM);
+  signals_.add(SIGINT);
+  signals_.async_wait([this](boost::system::error_code error, int signal) {
+    if (!error) stop(signal == SIGINT ? "SIGINT" : "SIGTERM");
+  });
+
+  if (base::Result<void> prepared = prepare_record_folder(); !prepared) return prepared;
+  if (config_.control_socket) {
+    auto control = ControlServer::listen(io_, *config_.control_socket, make_api([this] { return status(); }));
+    if (!control) return tl::unexpected(control.error());
+    control_ = std::move(*control);
+    world_.facts->control_listening(config_.control_socket->string());
+  }
+  finalise_orphans();
+  if (base::Result<void> opened = open_session(); !opened) {
+    if (opened.error().kind == base::ErrorKind::kUsage) return opened;
+    board_is_missing(opened.error().message);
+  }
+  tell_status();
+  // The threads of a session are no work that Asio knows of; leave_when_idle() ends the run.
+  const auto until_stopped = boost::asio::make_work_guard(io_);
+  io_.run();
+
+  storage_.stop();
+  control_.reset();
+  return {};
+}
+
+void App::request_stop() {
+  boost::asio::post(io_, [this] { stop("told to"); });
+}
+
+base::Result<void> App::prepare_record_folder() {
+  std::error_code error;
+  std::filesystem::create_directories(config_.record_folder, error);
+  if (error) {
+    return base::failure("record folder {}: cannot be made: {}", config_.record_folder.string(),
+                         error.message());
+  }
+  // Permissions, read-only mounts and quotas: only an attempt tells.
+  const std::filesystem::path probe = config_.record_folder / fmt::format(".probe-{}", ::getpid());
+  const int descriptor = ::open(probe.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
+  if (descriptor < 0) {
+    return base::failure("record folder {}: cannot be written: {}", config_.record_folder.string(),
+                         std::generic_category().message(errno));
+  }
+  ::close(descriptor);
+  ::unlink(probe.c_str());
+  return {};
+}
+
+void App::finalise_orphans() {
+  for (const std::filesystem::path& journal : journals_in(config_.record_folder)) {
+    if (const base::Result<std::filesystem::path> file = world_.finalise(journal)) {
+      world_.facts->orphan_finalised(*file);
+    } else {
+      world_.facts->orphan_kept(journal, file.error().message);
+    }
+  }
+}
+
+base::Result<void> App::open_session() {
+  base::Result<drivers::OpenedBoard> board = world_.open_board(config_.board, *clock_);
+  if (!board) return tl::unexpected(board.error());
+  truth_ = board->truth;
+  const SessionSettings settings = session_settings(*board);
+
+  SessionEvents events;
+  events.first_scan = [this] {
+    boost::asio::post(io_, [this] {
+      if (state_ == State::kStopping) return;
+      state_ = State::kAcquiring;
+      retry_after_ = kFirstRetry;
+      world_.facts->board_started(session_->board_info(), session_->scheduling());
+      tell_status();
+      notify_.ready();
+    });
+  };
+  events.ended = [this](Acquisition::End end) {
+    boost::asio::post(io_, [this, end] { session_ended(end); });
+  };
+  try {
+    session_ = std::make_unique<Session>(std::move(*board), settings,
+                                         std::vector<pipeline::Sink*>{watcher_.get(), &storage_},
+                                         *world_.facts, std::move(events));
+  } catch (const std::invalid_argument& refused) {
+    return base::usage_error("the board does not suit the configuration: {}", refused.what());
+  }
+  if (base::Result<void> started = session_->start(); !started) {
+    session_.reset();
+    return started;
+  }
+  watcher_->use(truth_.get());
+  storage_.use(record_header(settings), truth_.get());
+  session_->start_processing();
+  return {};
+}
+
+void App::board_is_missing(const std::string& why) {
+  state_ = State::kBoardMissing;
+  missing_why_ = why;
+  world_.facts->board_missing(why, static_cast<double>(retry_after_.count()));
+  tell_status();
+  notify_.ready();
+  retry_timer_.expires_after(retry_after_);
+  retry_after_ = std::min(2 * retry_after_, kLongestRetry);
+  retry_timer_.async_wait([this](boost::system::error_code error) {
+    if (!error && state_ == State::kBoardMissing) retry_board();
+  });
+}
+
+void App::retry_board() {
+  if (base::Result<void> opened = open_session(); !opened) board_is_missing(opened.error().message);
+}
+
+void App::session_ended(Acquisition::End end) {
+  const std::string why = session_->board_error();
+  next_test_number_ = session_->next_test_number();
+  session_.reset();
+  if (state_ == State::kStopping) {
+    leave_when_idle();
+    return;
+  }
+  switch (end) {
+    case Acquisition::End::kStopped:
+    case Acquisition::End::kEndOfInput:
+      stop("end of the input");
+      break;
+    case Acquisition::End::kBoardMissing:
+    case Acquisition::End::kFailed:
+      board_is_missing(why.empty() ? "it went away" : why);
+      break;
+  }
+}
+
+void App::stop(const std::string& why) {
+  if (state_ == State::kStopping) return;
+  state_ = State::kStopping;
+  world_.facts->stopping(why);
+  notify_.stopping();
+  tell_status();
+  retry_timer_.cancel();
+  if (session_) session_->request_stop();
+  leave_when_idle();
+}
+
+void App::leave_when_idle() {
+  // A running session ends first, and calls again.
+  if (!session_) io_.stop();
+}
+
+SessionSettings App::session_settings(const drivers::OpenedBoard& opened) const {
+  const daq::BoardInfo& board = opened.board->info();
+  SessionSettings settings;
+  settings.load_cell = config_.bench.load_cell(opened.load_cell);
+  settings.realtime_priority = config_.realtime_priority;
+  settings.clock_speed = config_.clock_speed;
+  settings.processor.first_test_number = next_test_number_;
+  settings.processor.segmenter = config_.segmenter;
+  settings.processor.segmenter.scan_rate_Hz = board.scan_rate_granted_Hz;
+  friction::AnalysisSettings& analysis = settings.processor.analysis;
+  analysis.scan_rate_Hz = board.scan_rate_granted_Hz;
+  analysis.tester = config_.bench.tester(opened.tester);
+  analysis.method = config_.method;
+  return settings;
+}
+
+record::RecordHeader App::record_header(const SessionSettings& settings) const {
+  record::RecordHeader header;
+  header.board = session_->board_info();
+  const daq::RawQuantity quantity = header.board.quantity;
+  if (quantity == daq::RawQuantity::kCounts || quantity == daq::RawQuantity::kVolts) {
+    header.load_cell = settings.load_cell;
+  }
+  header.tester = record::TesterFacts::of(settings.processor.analysis.tester);
+  header.process.program = "stickslipd";
+  header.process.version = kVersion;
+  header.process.commit = kCommit;
+  header.process.configuration = config_.text;
+  header.process.method = method_text(settings.processor.analysis.method);
+  header.process.realtime = session_->scheduling();
+  return header;
+}
+
+void App::tell_status() {
+  const std::string line = status_line();
+  notify_.status(line);
+  if (world_.status_changed) world_.status_changed(line);
+}
+
+std::string App::status_line() const {
+  switch (state_) {
+    case State::kStarting:
+      return "starting";
+    case State::kAcquiring: {
+      const std::string rate =
+          session_ ? fmt::format(" at {:.1f} Hz", session_->board_info().scan_rate_granted_Hz) : "";
+      const std::string activity = current_test_ ? fmt::format("test {} running", *current_test_) : "idle";
+      return fmt::format("acquiring{}, {}, {} tests done", rate, activity, tests_.test_count());
+    }
+    case State::kBoardMissing:
+      return fmt::format("board missing: {}", missing_why_);
+    case State::kStopping:
+      return "stopping";
+  }
+  return "starting";
+}
+
+Status App::status() const {
+  Status status;
+  switch (state_) {
+    case State::kStarting:
+      status.state = "starting";
+      break;
+    case State::kAcquiring:
+      status.state = "acquiring";
+      break;
+    case State::kBoardMissing:
+      status.state = "board missing";
+      break;
+    case State::kStopping:
+      status.state = "stopping";
+      break;
+  }
+  status.detail = status_line();
+  status.version = kVersion;
+  if (session_) {
+    status.board = session_->board_info();
+    status.scheduling = session_->scheduling();
+    const SessionCounts& counts = session_->counts();
+    status.scan_count = counts.scans.load(std::memory_order_relaxed);
+    status.dropped_scan_count = counts.dropped_scans.load(std::memory_order_relaxed);
+    status.overrun_count = counts.overruns.load(std::memory_order_relaxed);
+    status.gap_count = counts.gaps.load(std::memory_order_relaxed);
+  }
+  status.storage_stall_count = storage_.stall_count();
+  status.test_count = tests_.test_count();
+  status.current_test = current_test_;
+  status.latest_test = tests_.latest();
+  return status;
+}
+
+}  // namespace stickslip::daemon

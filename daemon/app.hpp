@@ -1,0 +1,98 @@
+/// \file
+/// stickslipd as a whole: who lives how long, and what follows from what.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "core/base/clock.hpp"
+#include "daemon/config.hpp"
+#include "daemon/control/api.hpp"
+#include "daemon/control/server.hpp"
+#include "daemon/facts.hpp"
+#include "daemon/notify.hpp"
+#include "daemon/session.hpp"
+#include "daemon/storage.hpp"
+#include "daemon/test_log.hpp"
+
+namespace stickslip::daemon {
+
+/// What the daemon takes from the world; tests give their own.
+struct AppWorld {
+  std::function<base::Result<drivers::OpenedBoard>(const drivers::BoardConfig&, base::Clock&)> open_board;
+  Finalise finalise;
+  Facts* facts = nullptr;  ///< Outlives the App.
+  /// Told each new line of STATUS=, on the main thread; may be empty.
+  std::function<void(const std::string&)> status_changed;
+};
+
+/// Thread-bound: the main thread. States:
+///
+///     starting → acquiring ⇄ board missing → stopping → (run() returns)
+class App {
+ public:
+  App(DaemonConfig config, AppWorld world);
+  ~App();
+  App(const App&) = delete;
+  App& operator=(const App&) = delete;
+
+  /// Runs until SIGTERM, SIGINT or the end of the input: drains, ends the running test, finishes
+  /// its file. Errors mean that it never got ready: kUsage (configuration), kFailure (record
+  /// folder or control socket).
+  [[nodiscard]] base::Result<void> run();
+
+  /// Any thread, any time after construction: as SIGTERM.
+  void request_stop();
+
+  /// Tests so far.
+  [[nodiscard]] const TestLog& tests() const noexcept { return tests_; }
+  [[nodiscard]] Status status() const;
+
+ private:
+  class Watcher;
+  enum class State { kStarting, kAcquiring, kBoardMissing, kStopping };
+
+  [[nodiscard]] base::Result<void> prepare_record_folder();
+  void finalise_orphans();
+  [[nodiscard]] base::Result<void> open_session();
+  void board_is_missing(const std::string& why);
+  void retry_board();
+  void session_ended(Acquisition::End end);
+  void stop(const std::string& why);
+  void leave_when_idle();
+  void tell_status();
+  [[nodiscard]] SessionSettings session_settings(const drivers::OpenedBoard& opened) const;
+  [[nodiscard]] record::RecordHeader record_header(const SessionSettings& settings) const;
+  [[nodiscard]] std::string status_line() const;
+
+  DaemonConfig config_;
+  AppWorld world_;
+  boost::asio::io_context io_{1};
+  boost::asio::signal_set signals_;
+  boost::asio::steady_timer retry_timer_;
+  std::unique_ptr<base::Clock> clock_;
+  Notify notify_;
+  TestLog tests_;
+  Storage storage_;
+  std::unique_ptr<Watcher> watcher_;
+  std::unique_ptr<ControlServer> control_;
+  std::shared_ptr<const friction::TruthSource> truth_;
+  std::unique_ptr<Session> session_;
+
+  State state_ = State::kStarting;
+  std::string missing_why_;
+  std::chrono::seconds retry_after_{1};
+  std::int64_t next_test_number_ = 1;
+  std::optional<std::int64_t> current_test_;
+};
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,53 @@
+/// \file
+/// A bounded queue between two threads, for what must not be lost: a full queue stalls the
+/// producer and counts it.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <semaphore>
+#include <utility>
+
+#include <boost/lockfree/spsc_queue.hpp>
+
+namespace stickslip::daemon {
+
+/// One producer thread, one consumer thread.
+template <typename T>
+class BoundedQueue {
+ public:
+  explicit BoundedQueue(std::size_t capacity)
+      : queue_(capacity), free_slots_(static_cast<std::ptrdiff_t>(capacity)) {}
+
+  /// Producer only; waits for room.
+  void push(const T& item) {
+    if (!free_slots_.try_acquire()) {
+      stalls_.fetch_add(1, std::memory_order_relaxed);
+      free_slots_.acquire();
+    }
+    // The slot was free before it was acquired, so this cannot fail.
+    queue_.push(item);
+    items_.release();
+  }
+
+  /// Consumer only; waits for an item, at most `timeout`. \return false if none came.
+  bool pop(T& item, std::chrono::milliseconds timeout) {
+    if (!items_.try_acquire_for(timeout)) return false;
+    queue_.pop(item);
+    free_slots_.release();
+    return true;
+  }
+
+  /// Times the producer had to wait. Any thread.
+  [[nodiscard]] std::uint64_t stall_count() const noexcept { return stalls_.load(std::memory_order_relaxed); }
+
+ private:
+  boost::lockfree::spsc_queue<T> queue_;
+  std::counting_semaphore<> free_slots_;
+  std::counting_semaphore<> items_{0};
+  std::atomic<std::uint64_t> stalls_{0};
+};
+
+}  // namespace stickslip::daemon

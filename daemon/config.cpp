@@ -1,0 +1,203 @@
+#include "daemon/config.hpp"
+
+#include <array>
+#include <optional>
+#include <utility>
+
+namespace stickslip::daemon {
+namespace {
+
+using base::Dimension;
+using base::Limits;
+using base::Settings;
+using drivers::AnalogReference;
+using drivers::Driver;
+
+constexpr std::array<std::pair<std::string_view, Driver>, 3> kDrivers{
+    {{"simulated", Driver::kSimulated}, {"replay", Driver::kReplay}, {"comedi", Driver::kComedi}}};
+
+constexpr std::array<std::pair<std::string_view, AnalogReference>, 4> kReferences{
+    {{"ground", AnalogReference::kGround},
+     {"common", AnalogReference::kCommon},
+     {"differential", AnalogReference::kDifferential},
+     {"other", AnalogReference::kOther}}};
+
+constexpr std::array<std::pair<std::string_view, LogLevel>, 4> kLogLevels{{{"debug", LogLevel::kDebug},
+                                                                           {"info", LogLevel::kInfo},
+                                                                           {"warning", LogLevel::kWarning},
+                                                                           {"error", LogLevel::kError}}};
+
+/// A typing mistake of a factor of a thousand is refused; every real tester is far inside.
+constexpr double kFastestScanRate_Hz = 1e6;
+constexpr double kFastestClock = 1e4;
+constexpr double kHeaviestSled_kg = 1e3;
+constexpr double kStrongestGravity_m_per_s2 = 100.0;
+constexpr double kFastestPull_m_per_s = 10.0;
+constexpr double kHighestVoltage_V = 1e3;
+constexpr double kLargestCoefficient = 10.0;
+constexpr double kLongestDwell_s = 3600.0;
+constexpr std::int64_t kMostKineticCycles = 1000;
+constexpr std::int64_t kMostRepeats = 1'000'000;
+constexpr std::int64_t kHighestChannel = 1023;
+
+std::filesystem::path resolved(const std::filesystem::path& folder, const std::string& name) {
+  return folder / name;  // An absolute name stays as it is.
+}
+
+void read_simulated(Settings table, const std::filesystem::path& folder, DaemonConfig& config) {
+  const std::vector<std::string> scenes = table.texts("scenes", std::vector<std::string>{});
+  if (config.board.driver == Driver::kSimulated && scenes.empty()) {
+    table.refuse("scenes", "needs at least one scene file for the driver \"simulated\"");
+  }
+  for (const std::string& scene : scenes) config.board.simulated.scenes.push_back(resolved(folder, scene));
+  config.board.simulated.repeats = static_cast<int>(table.integer("repeats", 0, kMostRepeats, 1));
+}
+
+void read_replay(Settings table, const std::filesystem::path& folder, DaemonConfig& config) {
+  const std::string file = table.text("file", "");
+  if (config.board.driver == Driver::kReplay && file.empty()) {
+    table.refuse("file", "needs a record file for the driver \"replay\"");
+  }
+  config.board.replay_file = resolved(folder, file);
+}
+
+void read_comedi(Settings table, DaemonConfig& config) {
+  drivers::ComediBoardSettings& comedi = config.board.comedi;
+  comedi.device = table.text("device", comedi.device);
+  // Absent: the board's first analog input.
+  if (table.has("subdevice")) {
+    comedi.subdevice = static_cast<unsigned>(table.integer("subdevice", 0, kHighestChannel));
+  } else {
+    static_cast<void>(table.integer("subdevice", 0, kHighestChannel, 0));
+  }
+  comedi.channel = static_cast<unsigned>(table.integer("channel", 0, kHighestChannel, comedi.channel));
+  const Limits voltages = Limits::between(-kHighestVoltage_V, kHighestVoltage_V);
+  comedi.range_min_V = table.quantity("range_min", Dimension::kVoltage, voltages, comedi.range_min_V);
+  comedi.range_max_V = table.quantity("range_max", Dimension::kVoltage, voltages, comedi.range_max_V);
+  if (!(comedi.range_max_V > comedi.range_min_V)) table.refuse("range_max", "must be above range_min");
+  comedi.reference = table.choice<AnalogReference>("reference", kReferences, comedi.reference);
+  comedi.scan_rate_tolerance = table.quantity("scan_rate_tolerance", Dimension::kDimensionless,
+                                              Limits::between(0.0, 1.0), comedi.scan_rate_tolerance);
+}
+
+void read_board(Settings table, const std::filesystem::path& folder, DaemonConfig& config) {
+  config.board.driver = table.choice<Driver>("driver", kDrivers);
+  const std::optional<double> scan_rate_Hz = table.quantity_if_given(
+      "scan_rate", Dimension::kFrequency, Limits::above_up_to(0.0, kFastestScanRate_Hz));
+  config.board.simulated.scan_rate_Hz = scan_rate_Hz;
+  config.board.comedi.scan_rate_Hz = scan_rate_Hz.value_or(config.board.comedi.scan_rate_Hz);
+  config.clock_speed = table.quantity("clock_speed", Dimension::kDimensionless,
+                                      Limits::above_up_to(0.0, kFastestClock), config.clock_speed);
+  if (config.board.driver == Driver::kComedi && config.clock_speed != 1.0) {
+    table.refuse("clock_speed", "must be 1 for the driver \"comedi\": hardware keeps its own time");
+  }
+  config.realtime_priority =
+      static_cast<int>(table.integer("realtime_priority", 0, 99, config.realtime_priority));
+  read_simulated(table.table("simulated"), folder, config);
+  read_replay(table.table("replay"), folder, config);
+  read_comedi(table.table("comedi"), config);
+}
+
+void read_tester(Settings table, DaemonConfig& config) {
+  BenchConfig& bench = config.bench;
+  bench.sled_mass_kg =
+      table.quantity_if_given("sled_mass", Dimension::kMass, Limits::above_up_to(0.0, kHeaviestSled_kg));
+  bench.gravity_m_per_s2 = table.quantity_if_given("gravity", Dimension::kAcceleration,
+                                                   Limits::above_up_to(0.0, kStrongestGravity_m_per_s2));
+  bench.pull_speed_m_per_s = table.quantity_if_given("pull_speed", Dimension::kSpeed,
+                                                     Limits::above_up_to(0.0, kFastestPull_m_per_s));
+  bench.stiffness_N_per_m = table.quantity_if_given("stiffness", Dimension::kStiffness, Limits::above(0.0));
+  bench.load_cell_gain_N_per_V =
+      table.quantity_if_given("load_cell_gain", Dimension::kForcePerVoltage, Limits::any());
+  if (bench.load_cell_gain_N_per_V == 0.0) table.refuse("load_cell_gain", "must not be 0");
+  if (config.board.driver == Driver::kComedi && !table.has("load_cell_gain")) {
+    table.refuse("load_cell_gain", "is missing; hardware cannot know it: give it, such as \"2 N/V\"");
+  }
+  if (config.board.driver == Driver::kComedi && !table.has("sled_mass")) {
+    table.refuse("sled_mass", "is missing; hardware cannot know it: give it, such as \"2331 g\"");
+  }
+  bench.load_cell_zero_V = table.quantity_if_given("load_cell_zero", Dimension::kVoltage,
+                                                   Limits::between(-kHighestVoltage_V, kHighestVoltage_V));
+}
+
+void read_test(Settings table, pipeline::SegmenterSettings& segmenter) {
+  const Limits coefficient = Limits::between(0.0, kLargestCoefficient);
+  const Limits dwell = Limits::above_up_to(0.0, kLongestDwell_s);
+  segmenter.start_coefficient =
+      table.quantity("start", Dimension::kDimensionless, coefficient, segmenter.start_coefficient);
+  segmenter.start_dwell_s = table.quantity("start_dwell", Dimension::kTime, dwell, segmenter.start_dwell_s);
+  segmenter.pre_trigger_s = table.quantity("pre_trigger", Dimension::kTime,
+                                           Limits::between(0.0, kLongestDwell_s), segmenter.pre_trigger_s);
+  segmenter.end_coefficient =
+      table.quantity("end", Dimension::kDimensionless, coefficient, segmenter.end_coefficient);
+  segmenter.unload_dwell_s = table.quantity("end_dwell", Dimension::kTime, dwell, segmenter.unload_dwell_s);
+  segmenter.no_motion_dwell_s =
+      table.quantity("no_motion_dwell", Dimension::kTime, dwell, segmenter.no_motion_dwell_s);
+  if (!(segmenter.end_coefficient < segmenter.start_coefficient)) {
+    table.refuse("end", fmt::format("must be below start = {}", segmenter.start_coefficient));
+  }
+}
+
+void read_method(Settings table, friction::Method& method) {
+  method.name = table.text("name", method.name);
+  if (method.name.empty() || method.name.find(' ') != std::string::npos) {
+    table.refuse("name", "must be a word without blanks");
+  }
+  method.kinetic_cycles =
+      static_cast<int>(table.integer("kinetic_cycles", 1, kMostKineticCycles, method.kinetic_cycles));
+}
+
+DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
+  DaemonConfig config;
+  read_board(settings.table("board"), folder, config);
+  read_tester(settings.table("tester"), config);
+  read_test(settings.table("test"), config.segmenter);
+  read_method(settings.table("method"), config.method);
+  Settings record = settings.table("record");
+  config.record_folder = record.text("folder", "records");
+  if (config.record_folder.empty()) record.refuse("folder", "must name a folder");
+  Settings control = settings.table("control");
+  if (const std::string socket = control.text("socket", ""); !socket.empty()) config.control_socket = socket;
+  config.log_level = settings.table("log").choice<LogLevel>("level", kLogLevels, config.log_level);
+  config.report_table = settings.table("report").boolean("table", config.report_table);
+  config.text = settings.source_text();
+  return config;
+}
+
+}  // namespace
+
+friction::Tester BenchConfig::tester(const std::optional<friction::Tester>& known) const {
+  friction::Tester tester = known.value_or(friction::Tester{});
+  tester.sled_mass_kg = sled_mass_kg.value_or(tester.sled_mass_kg);
+  tester.gravity_m_per_s2 = gravity_m_per_s2.value_or(tester.gravity_m_per_s2);
+  if (pull_speed_m_per_s) tester.pull_speed_m_per_s = pull_speed_m_per_s;
+  if (stiffness_N_per_m) tester.stiffness_N_per_m = stiffness_N_per_m;
+  return tester;
+}
+
+daq::LoadCell BenchConfig::load_cell(const std::optional<daq::LoadCell>& known) const {
+  daq::LoadCell cell = known.value_or(daq::LoadCell{});
+  cell.gain_N_per_V = load_cell_gain_N_per_V.value_or(cell.gain_N_per_V);
+  cell.zero_V = load_cell_zero_V.value_or(cell.zero_V);
+  return cell;
+}
+
+base::Result<DaemonConfig> read_config(Settings settings, const std::filesystem::path& folder) {
+  DaemonConfig config = read_all(settings, folder);
+  if (base::Result<void> finished = settings.finish(); !finished) return tl::unexpected(finished.error());
+  return config;
+}
+
+base::Result<DaemonConfig> load_config(const std::filesystem::path& file) {
+  base::Result<Settings> settings = Settings::load(file);
+  if (!settings) return tl::unexpected(settings.error());
+  return read_config(*settings, file.parent_path());
+}
+
+std::vector<std::string> config_keys() {
+  base::Result<Settings> empty = Settings::parse("", "");
+  static_cast<void>(read_all(*empty, {}));
+  return empty->known_keys();
+}
+
+}  // namespace stickslip::daemon

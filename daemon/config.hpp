@@ -1,0 +1,61 @@
+/// \file
+/// What stickslipd is told to do. config/stickslipd.toml documents each key.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/result.hpp"
+#include "core/base/settings.hpp"
+#include "core/daq/calibration.hpp"
+#include "core/friction/method.hpp"
+#include "core/friction/tester.hpp"
+#include "core/pipeline/segmenter.hpp"
+#include "drivers/factory/board_config.hpp"
+
+namespace stickslip::daemon {
+
+enum class LogLevel { kDebug, kInfo, kWarning, kError };
+
+/// What the file says about the bench; what it does not say is asked of the source of the scans
+/// (a scene and a record know their bench), else friction::Tester's and daq::LoadCell's defaults.
+struct BenchConfig {
+  std::optional<double> sled_mass_kg;
+  std::optional<double> gravity_m_per_s2;
+  std::optional<double> pull_speed_m_per_s;
+  std::optional<double> stiffness_N_per_m;
+  std::optional<double> load_cell_gain_N_per_V;
+  std::optional<double> load_cell_zero_V;
+
+  [[nodiscard]] friction::Tester tester(const std::optional<friction::Tester>& known) const;
+  [[nodiscard]] daq::LoadCell load_cell(const std::optional<daq::LoadCell>& known) const;
+};
+
+struct DaemonConfig {
+  drivers::BoardConfig board;
+  double clock_speed = 1.0;  ///< Board time over wall time; for boards that are not hardware.
+  int realtime_priority = 50;
+  BenchConfig bench;
+  pipeline::SegmenterSettings segmenter;  ///< Its scan rate is the board's.
+  friction::Method method;
+  std::filesystem::path record_folder;
+  std::optional<std::filesystem::path> control_socket;
+  LogLevel log_level = LogLevel::kInfo;
+  bool report_table = false;
+  std::string text;  ///< The file as it was read, for the records.
+};
+
+/// Reads and checks a file. Scenes and records named in it are relative to its folder; the record
+/// folder and the control socket to the working directory. Errors: one line (kUsage).
+[[nodiscard]] base::Result<DaemonConfig> load_config(const std::filesystem::path& file);
+
+/// The same from settings already parsed. \param folder  of the file.
+[[nodiscard]] base::Result<DaemonConfig> read_config(base::Settings settings,
+                                                     const std::filesystem::path& folder);
+
+/// Every key that may be written, as dotted paths.
+[[nodiscard]] std::vector<std::string> config_keys();
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,88 @@
+#include "daemon/control/api.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/results_json.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+HttpReply refusal(int status, const std::string& why, std::string allow = {}) {
+  return {status, Json{{"error", why}}.dump(), std::move(allow)};
+}
+
+Json to_json(const TestSummary& test) {
+  Json json;
+  json["number"] = test.number;
+  json["first_scan"] = test.first;
+  json["end_scan"] = test.end;
+  json["cause"] = pipeline::name(test.cause);
+  json["file"] = test.file.empty() ? Json(nullptr) : Json(test.file);
+  if (!test.file_error.empty()) json["file_error"] = test.file_error;
+  json["results"] = results_json(test.results, false);
+  return json;
+}
+
+Json to_json(const daq::BoardInfo& board) {
+  Json json;
+  json["driver"] = board.driver;
+  json["name"] = board.board_name;
+  json["device"] = board.device;
+  json["subdevice"] = board.subdevice;
+  json["channel"] = board.channel;
+  json["scan_rate_requested"] = board.scan_rate_requested_Hz;
+  json["scan_rate_granted"] = board.scan_rate_granted_Hz;
+  json["maxdata"] = board.maxdata;
+  json["range_min"] = board.range_min_V;
+  json["range_max"] = board.range_max_V;
+  return json;
+}
+
+Json to_json(const Status& status) {
+  Json json;
+  json["state"] = status.state;
+  json["detail"] = status.detail;
+  json["version"] = status.version;
+  json["board"] = status.board ? to_json(*status.board) : Json(nullptr);
+  json["scheduling"] = status.scheduling;
+  json["scan_count"] = status.scan_count;
+  json["dropped_scan_count"] = status.dropped_scan_count;
+  json["overrun_count"] = status.overrun_count;
+  json["gap_count"] = status.gap_count;
+  json["storage_stall_count"] = status.storage_stall_count;
+  json["test_count"] = status.test_count;
+  json["current_test"] = status.current_test ? Json(*status.current_test) : Json(nullptr);
+  json["latest_test"] = status.latest_test ? to_json(*status.latest_test) : Json(nullptr);
+  return json;
+}
+
+/// A request line may hold any bytes; JSON may not.
+std::string printable(const std::string& text) {
+  constexpr std::size_t kLongest = 100;
+  std::string shown;
+  for (const char c : text.substr(0, kLongest)) shown += c >= 0x20 && c < 0x7F ? c : '?';
+  return shown;
+}
+
+}  // namespace
+
+HttpHandler make_api(std::function<Status()> status) {
+  return [status = std::move(status)](const HttpRequest& request) -> HttpReply {
+    const std::string path = request.target.substr(0, request.target.find('?'));
+    if (path != "/v1/status") {
+      return refusal(404, fmt::format("there is nothing at {}; there is: GET /v1/status", printable(path)));
+    }
+    if (request.method != "GET") {
+      return refusal(405, fmt::format("{} is not allowed at {}; GET is", printable(request.method), path),
+                     "GET");
+    }
+    // Names of files and boards come from outside: bytes that are no UTF-8 are replaced.
+    return {200, to_json(status()).dump(-1, ' ', false, Json::error_handler_t::replace), {}};
+  };
+}
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,34 @@
+/// \file
+/// What the daemon's parts have to say. They state facts; who implements this decides whether
+/// and how they are logged.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+
+#include "core/daq/board.hpp"
+#include "core/daq/gap.hpp"
+#include "core/pipeline/sink.hpp"
+
+namespace stickslip::daemon {
+
+/// Thread-safe: called from the main, processing and storage threads, never from acquisition.
+class Facts {
+ public:
+  virtual ~Facts() = default;
+
+  virtual void board_started(const daq::BoardInfo& /*board*/, std::string_view /*scheduling*/) {}
+  virtual void board_missing(std::string_view /*why*/, double /*retry_in_s*/) {}
+  virtual void gap_seen(const daq::Gap& /*gap*/) {}
+  virtual void test_began(const pipeline::TestStart& /*start*/) {}
+  virtual void test_ended(const pipeline::TestEnd& /*end*/) {}
+  virtual void file_published(std::int64_t /*test*/, const std::filesystem::path& /*file*/) {}
+  virtual void recording_failed(std::int64_t /*test*/, std::string_view /*why*/) {}
+  virtual void orphan_finalised(const std::filesystem::path& /*file*/) {}
+  virtual void orphan_kept(const std::filesystem::path& /*journal*/, std::string_view /*why*/) {}
+  virtual void control_listening(std::string_view /*socket*/) {}
+  virtual void stopping(std::string_view /*why*/) {}
+};
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,88 @@
+#include "daemon/finaliser.hpp"
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <string>
+#include <system_error>
+
+#include "core/record/journal.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+/// posix_spawn attributes that put the child into its own process group.
+class OwnProcessGroup {
+ public:
+  OwnProcessGroup() {
+    posix_spawnattr_init(&attributes_);
+    posix_spawnattr_setpgroup(&attributes_, 0);
+    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP);
+  }
+  ~OwnProcessGroup() { posix_spawnattr_destroy(&attributes_); }
+  OwnProcessGroup(const OwnProcessGroup&) = delete;
+  OwnProcessGroup& operator=(const OwnProcessGroup&) = delete;
+
+  [[nodiscard]] const posix_spawnattr_t* get() const noexcept { return &attributes_; }
+
+ private:
+  posix_spawnattr_t attributes_{};
+};
+
+}  // namespace
+
+std::filesystem::path record_of(const std::filesystem::path& journal) {
+  std::filesystem::path file = journal;
+  file.replace_extension(".h5");
+  return file;
+}
+
+base::Result<std::filesystem::path> run_finaliser(const std::filesystem::path& program,
+                                                  const std::filesystem::path& journal) {
+  std::string program_text = program.string();
+  std::string option = "--finalise";
+  std::string journal_text = journal.string();
+  const std::array<char*, 4> arguments{program_text.data(), option.data(), journal_text.data(), nullptr};
+
+  const OwnProcessGroup attributes;
+  pid_t child = 0;
+  if (const int error =
+          posix_spawn(&child, program_text.c_str(), nullptr, attributes.get(), arguments.data(), environ);
+      error != 0) {
+    return base::failure("{}: the finaliser {} cannot be started: {}", journal_text, program_text,
+                         std::generic_category().message(error));
+  }
+  int status = 0;
+  while (waitpid(child, &status, 0) == -1) {
+    if (errno != EINTR) {
+      return base::failure("{}: the finaliser cannot be waited for: {}", journal_text,
+                           std::generic_category().message(errno));
+    }
+  }
+  if (WIFSIGNALED(status)) {
+    return base::failure("{}: the finaliser was ended by signal {}; the journal is kept", journal_text,
+                         WTERMSIG(status));
+  }
+  if (WEXITSTATUS(status) != 0) {
+    return base::failure("{}: the finaliser ended with status {}; the journal is kept", journal_text,
+                         WEXITSTATUS(status));
+  }
+  return record_of(journal);
+}
+
+std::vector<std::filesystem::path> journals_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> journals;
+  std::error_code error;
+  for (auto entry = std::filesystem::directory_iterator(folder, error);
+       !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    if (entry->path().extension() == record::kJournalExtension) journals.push_back(entry->path());
+  }
+  std::sort(journals.begin(), journals.end());
+  return journals;
+}
+
+}  // namespace stickslip::daemon

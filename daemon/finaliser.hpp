@@ -1,0 +1,26 @@
+/// \file
+/// Runs the finaliser of a journal in a process of its own: HDF5's errors can end a process, and
+/// the measurement must not be in it.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/base/result.hpp"
+
+namespace stickslip::daemon {
+
+/// The finished file of a journal: beside it, with the extension .h5.
+[[nodiscard]] std::filesystem::path record_of(const std::filesystem::path& journal);
+
+/// Runs `program --finalise journal` to its end, outside the terminal's process group so that
+/// Ctrl-C does not reach it.
+/// \return the finished file. Errors: kFailure naming the journal and how the process ended; the
+///         process itself has written the reason to stderr.
+[[nodiscard]] base::Result<std::filesystem::path> run_finaliser(const std::filesystem::path& program,
+                                                                const std::filesystem::path& journal);
+
+/// Journals in the folder, sorted; none if it cannot be read.
+[[nodiscard]] std::vector<std::filesystem::path> journals_in(const std::filesystem::path& folder);
+
+}  // namespace stickslip::daemon

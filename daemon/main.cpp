@@ -1,0 +1,133 @@
+// stickslipd: the daemon. Exit status 0 after a signal or the end of the input, 1 if the world did
+// not allow it to work, 2 if it was told something wrong.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "core/record/finaliser.hpp"
+#include "daemon/analyse.hpp"
+#include "daemon/app.hpp"
+#include "daemon/config.hpp"
+#include "daemon/finaliser.hpp"
+#include "daemon/log.hpp"
+#include "daemon/report/table.hpp"
+#include "daemon/version.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  stickslipd --config config/demo.toml                  ten simulated tests, then a table
+  stickslipd --config /etc/stickslip/stickslipd.toml    as the service does
+  stickslipd --check-config my.toml                     says what is wrong; exit status 0 or 2
+Each key is documented in config/stickslipd.toml. SIGTERM and SIGINT end a running test, finish
+its file and end the daemon with status 0.)";
+
+int refused(const base::Error& error) {
+  fmt::print(stderr, "stickslipd: {}\n", error.message);
+  return error.exit_status();
+}
+
+int check_config(const std::string& file) {
+  const base::Result<DaemonConfig> config = load_config(file);
+  if (!config) return refused(config.error());
+  if (const base::Result<void> board = drivers::check_board(config->board); !board)
+    return refused(board.error());
+  fmt::print("{}: good\n", file);
+  return 0;
+}
+
+int finalise_journal(const std::string& journal) {
+  const auto evaluate = [](const record::Record& record) {
+    base::Result<record::EndRecord> end = analyse(record);
+    if (end) return *end;
+    record::EndRecord absent;
+    absent.results = record::absent_results(end.error().message);
+    return absent;
+  };
+  const base::Result<std::filesystem::path> file = record::finalise(journal, evaluate);
+  return file ? 0 : refused(file.error());
+}
+
+/// Follows the daemon's state in one line of a terminal.
+void show_status(const std::string& line) {
+  fmt::print("\r\033[K{}", line);
+  std::fflush(stdout);
+}
+
+void print_table(const TestLog& tests) {
+  std::vector<TableRow> rows;
+  for (TestSummary& test : tests.tests()) {
+    rows.push_back(
+        {test.number, std::move(test.results), std::move(test.truth),
+         test.file_error.empty() ? std::move(test.file) : fmt::format("no file: {}", test.file_error)});
+  }
+  if (!rows.empty()) fmt::print("{}", format_table(rows));
+}
+
+int run(const std::string& file) {
+  base::Result<DaemonConfig> config = load_config(file);
+  if (!config) return refused(config.error());
+  const bool table = config->report_table;
+  const bool terminal = table && ::isatty(STDOUT_FILENO) != 0;
+  const std::unique_ptr<Facts> log = make_log(config->log_level);
+
+  AppWorld world;
+  world.open_board = drivers::open_board;
+  world.finalise = [](const std::filesystem::path& journal) {
+    return run_finaliser("/proc/self/exe", journal);
+  };
+  world.facts = log.get();
+  if (terminal) world.status_changed = show_status;
+
+  App app{std::move(*config), std::move(world)};
+  const base::Result<void> ended = app.run();
+  if (terminal) show_status("");
+  if (!ended) return refused(ended.error());
+  if (table) print_table(app.tests());
+  return 0;
+}
+
+int main_of(int count, char** arguments) {
+  CLI::App options{"stickslipd: measures friction tests, one record per test"};
+  options.footer(kExamples);
+  std::string config;
+  std::string config_to_check;
+  std::string journal;
+  options.add_option("--config", config, "run with this configuration")->type_name("FILE");
+  options.add_option("--check-config", config_to_check, "check this configuration and the files it names")
+      ->type_name("FILE");
+  options.add_option("--finalise", journal, "build the record of a journal (the daemon calls this itself)")
+      ->type_name("JOURNAL");
+  options.set_version_flag("--version", fmt::format("stickslipd {} ({})", kVersion, kCommit));
+  options.require_option(1);
+  try {
+    options.parse(count, arguments);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return options.exit(error);
+    fmt::print(stderr, "stickslipd: {}; see stickslipd --help\n", error.what());
+    return 2;
+  }
+  if (!config_to_check.empty()) return check_config(config_to_check);
+  if (!journal.empty()) return finalise_journal(journal);
+  return run(config);
+}
+
+}  // namespace
+}  // namespace stickslip::daemon
+
+int main(int count, char** arguments) {
+  try {
+    return stickslip::daemon::main_of(count, arguments);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "stickslipd: {}\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,32 @@
+#include "daemon/results_json.hpp"
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace stickslip::daemon {
+
+nlohmann::ordered_json results_json(const friction::TestResults& results, bool with_details) {
+  using Json = nlohmann::ordered_json;
+  Json json;
+  Json details;
+  json["regime"] = friction::name(results.regime);
+  if (!results.regime_reason.empty()) details["regime"]["reason"] = results.regime_reason;
+  friction::for_each_result(results,
+                            [&](const friction::ResultName& name, const friction::Estimate& estimate) {
+                              const std::string key{name.name};
+                              json[key] = estimate.value ? Json(*estimate.value) : Json(nullptr);
+                              Json& detail = details[key];
+                              detail["value"] = json[key];
+                              detail["unit"] = name.unit;
+                              if (estimate.standard_error)
+                                detail["standard_error"] = *estimate.standard_error;
+                              if (estimate.systematic_uncertainty)
+                                detail["systematic_uncertainty"] = *estimate.systematic_uncertainty;
+                              if (!estimate.value) detail["reason"] = estimate.reason;
+                            });
+  if (with_details) json["details"] = std::move(details);
+  return json;
+}
+
+}  // namespace stickslip::daemon

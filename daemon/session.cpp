@@ -1,0 +1,85 @@
+#include "daemon/session.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+pipeline::EndCause end_cause(Acquisition::End end) {
+  switch (end) {
+    case Acquisition::End::kStopped:
+      return pipeline::EndCause::kStopped;
+    case Acquisition::End::kEndOfInput:
+      return pipeline::EndCause::kEndOfInput;
+    case Acquisition::End::kBoardMissing:
+    case Acquisition::End::kFailed:
+      break;
+  }
+  return pipeline::EndCause::kBoardMissing;
+}
+
+daq::Calibration calibration_of(const drivers::OpenedBoard& board, const SessionSettings& settings) {
+  return {board.board->info(), settings.load_cell, settings.processor.analysis.tester.normal_load_N()};
+}
+
+}  // namespace
+
+Session::Session(drivers::OpenedBoard board, const SessionSettings& settings,
+                 std::vector<pipeline::Sink*> sinks, Facts& facts, SessionEvents events)
+    : board_(std::move(board)),
+      facts_(facts),
+      events_(std::move(events)),
+      ring_(daq::ScanRing::capacity_for(board_.board->info().scan_rate_granted_Hz * settings.clock_speed)),
+      processor_(settings.processor, calibration_of(board_, settings), std::move(sinks)),
+      acquisition_(*board_.board, ring_, settings.realtime_priority) {}
+
+Session::~Session() {
+  acquisition_.request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+base::Result<void> Session::start() { return acquisition_.start(); }
+
+void Session::start_processing() {
+  thread_ = std::thread{[this] { process(); }};
+}
+
+void Session::process() {
+  std::vector<daq::ScanBlock> blocks(64);
+  for (;;) {
+    acquisition_.wait();
+    // Asked before the ring is emptied: then nothing can come after.
+    const std::optional<Acquisition::End> ended = acquisition_.ended();
+    while (const std::size_t count = ring_.pop(blocks.data(), blocks.size())) {
+      for (std::size_t i = 0; i < count; ++i) process_block(blocks[i]);
+    }
+    if (ended) {
+      processor_.finish(end_cause(*ended));
+      events_.ended(*ended);
+      return;
+    }
+  }
+}
+
+void Session::process_block(const daq::ScanBlock& block) {
+  if (!any_scan_) {
+    any_scan_ = true;
+    events_.first_scan();
+  }
+  const std::uint64_t dropped = ring_.dropped_scan_count();
+  const std::uint64_t overruns = acquisition_.overrun_count();
+  daq::GapCause cause = daq::GapCause::kUnknown;
+  if (overruns != overruns_before_) cause = daq::GapCause::kOverrun;
+  if (dropped != dropped_before_) cause = daq::GapCause::kRingFull;
+  const std::uint64_t gaps_before = processor_.gap_count();
+  processor_.process(block, cause);
+  if (processor_.gap_count() != gaps_before) {
+    // The reports are used up by the gap they explain.
+    dropped_before_ = dropped;
+    overruns_before_ = overruns;
+  }
+  counts_.scans.store(processor_.scan_count(), std::memory_order_relaxed);
+  counts_.dropped_scans.store(dropped, std::memory_order_relaxed);
+  counts_.overruns.store(overruns, std::memory_order_relaxed);
+  counts_.gaps.store(processor_.gap_count(), std::memory_order_relaxed);
+}
+
+}  // namespace stickslip::daemon

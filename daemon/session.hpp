@@ -1,0 +1,86 @@
+/// \file
+/// One life of a board: from start() to the last scan, with its ring and its two threads.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/daq/scan_ring.hpp"
+#include "core/pipeline/processor.hpp"
+#include "daemon/acquisition.hpp"
+#include "daemon/facts.hpp"
+#include "drivers/factory/factory.hpp"
+
+namespace stickslip::daemon {
+
+struct SessionSettings {
+  pipeline::ProcessorSettings processor;
+  daq::LoadCell load_cell;
+  int realtime_priority = 0;
+  double clock_speed = 1.0;  ///< Board time over wall time: the ring bridges wall time.
+};
+
+/// Called on the processing thread.
+struct SessionEvents {
+  std::function<void()> first_scan;
+  std::function<void(Acquisition::End)> ended;  ///< All sinks have got everything.
+};
+
+/// What happens in a session; readable from any thread at any time.
+struct SessionCounts {
+  std::atomic<std::uint64_t> scans{0};
+  std::atomic<std::uint64_t> dropped_scans{0};  ///< By the ring.
+  std::atomic<std::uint64_t> overruns{0};
+  std::atomic<std::uint64_t> gaps{0};
+};
+
+class Session {
+ public:
+  /// \param sinks,facts  outlive the session.
+  /// \throws std::invalid_argument as daq::Calibration and friction::TestAnalysis.
+  Session(drivers::OpenedBoard board, const SessionSettings& settings, std::vector<pipeline::Sink*> sinks,
+          Facts& facts, SessionEvents events);
+  /// Stops, lets all scans be processed, waits.
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Starts the acquisition. Once. Errors: those of the board; no event comes then.
+  [[nodiscard]] base::Result<void> start();
+  /// Starts the processing thread; from here on sinks and events are called. Once, after start().
+  void start_processing();
+  /// The board stops, the ring is drained, a running test ends; then comes events.ended.
+  void request_stop() noexcept { acquisition_.request_stop(); }
+
+  [[nodiscard]] const daq::BoardInfo& board_info() const noexcept { return board_.board->info(); }
+  /// Why the board ended; only after events.ended.
+  [[nodiscard]] std::string board_error() const { return board_.board->last_error(); }
+  [[nodiscard]] const std::string& scheduling() const noexcept { return acquisition_.scheduling(); }
+  [[nodiscard]] const SessionCounts& counts() const noexcept { return counts_; }
+  /// Number of the first test after this session; only after events.ended.
+  [[nodiscard]] std::int64_t next_test_number() const noexcept { return processor_.test_number(); }
+
+ private:
+  void process();
+  void process_block(const daq::ScanBlock& block);
+
+  drivers::OpenedBoard board_;
+  Facts& facts_;
+  SessionEvents events_;
+  daq::ScanRing ring_;
+  pipeline::Processor processor_;
+  Acquisition acquisition_;
+  SessionCounts counts_;
+  std::uint64_t dropped_before_ = 0;
+  std::uint64_t overruns_before_ = 0;
+  bool any_scan_ = false;
+  std::thread thread_;
+};
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,55 @@
+#include "drivers/factory/factory.hpp"
+
+#include <utility>
+
+#include "core/record/reader.hpp"
+#include "drivers/replay/replay_board.hpp"
+
+namespace stickslip::drivers {
+namespace {
+
+base::Result<OpenedBoard> open_simulated(const SimulatedBoardSettings& settings, base::Clock& clock) {
+  base::Result<SimulatedTester> simulated = make_simulated_tester(settings, clock);
+  if (!simulated) return tl::unexpected(simulated.error());
+  return OpenedBoard{std::move(simulated->board), std::move(simulated->truth), simulated->load_cell,
+                     simulated->tester};
+}
+
+base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::Clock& clock) {
+  base::Result<record::Record> record = record::read_record(file);
+  if (!record) return tl::unexpected(record.error());
+  const std::optional<daq::LoadCell> load_cell = record->header.load_cell;
+  const friction::Tester tester = record->header.tester.tester();
+  Replay replay = make_replay(std::move(*record), clock);
+  return OpenedBoard{std::move(replay.board), std::move(replay.truth), load_cell, tester};
+}
+
+base::Result<OpenedBoard> open_comedi(const ComediBoardSettings& settings, base::Clock& clock) {
+  base::Result<std::unique_ptr<daq::Board>> board = make_comedi_board(settings, clock);
+  if (!board) return tl::unexpected(board.error());
+  return OpenedBoard{std::move(*board), nullptr, std::nullopt, std::nullopt};
+}
+
+}  // namespace
+
+base::Result<OpenedBoard> open_board(const BoardConfig& config, base::Clock& clock) {
+  switch (config.driver) {
+    case Driver::kSimulated:
+      return open_simulated(config.simulated, clock);
+    case Driver::kReplay:
+      return open_replay(config.replay_file, clock);
+    case Driver::kComedi:
+      return open_comedi(config.comedi, clock);
+  }
+  return base::usage_error("no such driver");
+}
+
+base::Result<void> check_board(const BoardConfig& config) {
+  if (config.driver == Driver::kComedi) return {};
+  const std::unique_ptr<base::Clock> clock = base::make_system_clock();
+  const base::Result<OpenedBoard> opened = open_board(config, *clock);
+  if (!opened) return tl::unexpected(opened.error());
+  return {};
+}
+
+}  // namespace stickslip::drivers

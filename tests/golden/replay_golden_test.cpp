@@ -1,0 +1,160 @@
+// Live, replay and batch are one walk: the same scans give the same results to the last bit.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "core/pipeline/processor.hpp"
+#include "core/record/finaliser.hpp"
+#include "core/record/reader.hpp"
+#include "daemon/analyse.hpp"
+#include "daemon/method_text.hpp"
+#include "drivers/factory/factory.hpp"
+#include "tests/support/manual_clock.hpp"
+#include "tests/support/record_equality.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Keeps every test as a record.
+class Collector final : public pipeline::Sink {
+ public:
+  explicit Collector(record::RecordHeader header) : header_(std::move(header)) {}
+
+  void test_began(const pipeline::TestStart& start) override {
+    record::Record record;
+    record.header = header_;
+    record.header.uuid = record::make_uuid();
+    record.header.test_number = start.number;
+    record.header.trigger_scan = start.trigger;
+    records_.push_back(std::move(record));
+  }
+  void scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp&) override {
+    for (const double value : raw) {
+      records_.back().scan.push_back(first++);
+      records_.back().raw.push_back(value);
+    }
+  }
+  void gap(const daq::Gap& gap) override { records_.back().gaps.push_back(gap); }
+  void test_ended(const pipeline::TestEnd& end) override {
+    record::EndRecord record;
+    record.cause = pipeline::name(end.cause);
+    record.results = end.results;
+    record.cycles = end.cycles;
+    record.spikes = end.spikes;
+    record::set_end(records_.back(), std::move(record));
+  }
+
+  [[nodiscard]] const std::vector<record::Record>& records() const { return records_; }
+
+ private:
+  record::RecordHeader header_;
+  std::vector<record::Record> records_;
+};
+
+/// Plays the board to its end through the processor, in blocks of random sizes.
+/// \param lost  one scan in so many is dropped; 0: none.
+std::vector<record::Record> run(drivers::OpenedBoard opened, unsigned seed, int lost) {
+  const daq::BoardInfo& info = opened.board->info();
+  record::RecordHeader header;
+  header.board = info;
+  header.load_cell = opened.load_cell;
+  header.tester = record::TesterFacts::of(*opened.tester);
+  header.process.method = method_text({});
+  Collector collector{header};
+
+  pipeline::ProcessorSettings settings;
+  settings.segmenter.scan_rate_Hz = info.scan_rate_granted_Hz;
+  settings.analysis.scan_rate_Hz = info.scan_rate_granted_Hz;
+  settings.analysis.tester = *opened.tester;
+  pipeline::Processor processor{
+      settings,
+      {info, opened.load_cell.value_or(daq::LoadCell{}), opened.tester->normal_load_N()},
+      {&collector}};
+
+  std::minstd_rand random{seed};
+  std::uniform_int_distribution<std::uint32_t> size{1, 9};
+  EXPECT_TRUE(opened.board->start());
+  daq::ScanBlock block;
+  while (opened.board->read(block, 1000ms) == daq::ReadStatus::kScans) {
+    for (std::uint32_t at = 0; at < block.count;) {
+      daq::ScanBlock part;
+      part.first = block.first + at;
+      part.stamp = block.stamp;
+      part.count = std::min(size(random), block.count - at);
+      std::copy_n(block.raw.begin() + at, part.count, part.raw.begin());
+      at += part.count;
+      if (lost > 0 && part.first % lost == 0) continue;
+      processor.process(part, daq::GapCause::kUnknown);
+    }
+  }
+  processor.finish(pipeline::EndCause::kEndOfInput);
+  return collector.records();
+}
+
+void expect_same_results(const record::Record& a, const record::Record& b) {
+  EXPECT_EQ(a.scan, b.scan);
+  EXPECT_EQ(a.raw, b.raw);
+  EXPECT_EQ(a.spikes, b.spikes);
+  EXPECT_EQ(a.end->results, b.end->results);
+  ASSERT_EQ(a.cycles.size(), b.cycles.size());
+  for (std::size_t i = 0; i < a.cycles.size(); ++i) {
+    test::expect_same_bits(a.cycles[i].peak, b.cycles[i].peak, "peak");
+    test::expect_same_bits(a.cycles[i].onset_time_s, b.cycles[i].onset_time_s, "onset");
+    test::expect_same_bits(a.cycles[i].delta_mu, b.cycles[i].delta_mu, "delta_mu");
+  }
+}
+
+drivers::BoardConfig scene(const char* name) {
+  drivers::BoardConfig config;
+  config.driver = drivers::Driver::kSimulated;
+  config.simulated.scenes = {std::filesystem::path{STICKSLIP_SOURCE_DIR} / "config/scenes" / name};
+  return config;
+}
+
+class ReplayGolden : public testing::TestWithParam<int> {};
+
+TEST_P(ReplayGolden, LiveReplayAndBatchAgreeToTheLastBit) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() /
+                                     fmt::format("stickslip-golden-{}-{}.h5", ::getpid(), GetParam());
+  std::filesystem::remove(file);
+  for (const char* name : {"ring-down-at-12-in-per-min.toml", "stick-slip-at-12-in-per-min.toml"}) {
+    SCOPED_TRACE(name);
+    test::ManualClock clock;
+    auto simulated = drivers::open_board(scene(name), clock);
+    ASSERT_TRUE(simulated) << simulated.error().message;
+    const std::vector<record::Record> live = run(std::move(*simulated), 1, GetParam());
+    ASSERT_EQ(live.size(), 1U);
+    EXPECT_GT(live[0].end->results.cycle_count.value.value_or(0.0), 0.0);
+
+    ASSERT_TRUE(record::publish_record(live[0], file));
+    const auto stored = record::read_record(file);
+    ASSERT_TRUE(stored) << stored.error().message;
+    const auto batch = analyse(*stored);
+    ASSERT_TRUE(batch) << batch.error().message;
+    EXPECT_EQ(batch->results, live[0].end->results);
+    EXPECT_EQ(batch->spikes, live[0].spikes);
+
+    drivers::BoardConfig replay;
+    replay.driver = drivers::Driver::kReplay;
+    replay.replay_file = file;
+    auto replayed_board = drivers::open_board(replay, clock);
+    ASSERT_TRUE(replayed_board);
+    const std::vector<record::Record> replayed = run(std::move(*replayed_board), 2, 0);
+    ASSERT_EQ(replayed.size(), 1U);
+    expect_same_results(live[0], replayed[0]);
+    std::filesystem::remove(file);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(WithAndWithoutGaps, ReplayGolden, testing::Values(0, 97));
+
+}  // namespace
+}  // namespace stickslip::daemon

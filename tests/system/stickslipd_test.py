@@ -1,0 +1,326 @@
+#!/usr/bin/env python3
+"""The real programs, from outside: exit statuses, files, one-line errors, the sd_notify protocol.
+
+stickslipd_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
+
+Nothing here sleeps: each step waits for an event (a notification, the end of a process).
+"""
+
+import json
+import os
+import pathlib
+import signal
+import socket
+import stat
+import subprocess
+import sys
+import tempfile
+import unittest
+
+BUILD = pathlib.Path(sys.argv[1]).resolve()
+SOURCE = pathlib.Path(sys.argv[2]).resolve()
+DAEMON = BUILD / "daemon" / "stickslipd"
+CLI = BUILD / "daemon" / "stickslip"
+SCENES = SOURCE / "config" / "scenes"
+STICK_SLIP = SCENES / "stick-slip-at-12-in-per-min.toml"
+
+# Generous: under sanitizers on a busy machine everything takes its time.
+TIMEOUT_S = 240
+
+
+def run(*arguments, cwd=None):
+    return subprocess.run([str(a) for a in arguments], cwd=cwd, capture_output=True, text=True,
+                          timeout=TIMEOUT_S, check=False)
+
+
+def holds_more_than_a_header(journal):
+    """A whole first entry (core/record/journal_format.hpp) and something behind it."""
+    head = journal.read_bytes()[:32]
+    if len(head) < 32:
+        return False
+    payload_size = int.from_bytes(head[8:12], "little")
+    return journal.stat().st_size > len(head) + payload_size
+
+
+class Folder(unittest.TestCase):
+    """Each test works in a folder of its own."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory(prefix="stickslip-")
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+
+    def config(self, text):
+        file = self.folder / "test.toml"
+        file.write_text(text, encoding="utf-8")
+        return file
+
+    def simulated(self, repeats=1, speed=50, more=""):
+        return self.config(f"""
+[board]
+driver = "simulated"
+clock_speed = {speed}
+[board.simulated]
+scenes = ["{STICK_SLIP}"]
+repeats = {repeats}
+[record]
+folder = "records"
+{more}
+""")
+
+    def records(self):
+        return sorted((self.folder / "records").glob("*.h5"))
+
+
+class Manager:
+    """Stands for systemd: a datagram socket that collects notifications."""
+
+    def __init__(self, test):
+        self.path = test.folder / "notify"
+        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        test.addCleanup(self.socket.close)
+        self.socket.bind(str(self.path))
+        self.socket.settimeout(TIMEOUT_S)
+        self.messages = []
+
+    def start(self, config, cwd):
+        environment = dict(os.environ, NOTIFY_SOCKET=str(self.path))
+        return subprocess.Popen([str(DAEMON), "--config", str(config)], cwd=cwd, env=environment,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def wait_for(self, wanted):
+        """Reads notifications until one satisfies wanted(text)."""
+        while True:
+            self.messages.append(self.socket.recv(4096).decode())
+            if wanted(self.messages[-1]):
+                return self.messages[-1]
+
+
+class Demo(Folder):
+    def test_ends_by_itself_with_ten_records_and_a_table(self):
+        done = run(DAEMON, "--config", SOURCE / "config" / "demo.toml", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        records = sorted((self.folder / "records" / "demo").glob("*.h5"))
+        self.assertEqual(len(records), 10)
+        leftovers = [f for f in (self.folder / "records" / "demo").iterdir() if f.suffix != ".h5"]
+        self.assertEqual(leftovers, [])
+        lines = done.stdout.splitlines()
+        self.assertEqual(sum(" measured " in line for line in lines), 10)
+        self.assertEqual(sum(" truth " in line for line in lines), 10)
+        for measured, truth in zip(lines[1::2], lines[2::2]):
+            # The regime found is the true one: "1 measured stick-slip …" above "truth stick-slip …".
+            self.assertEqual(measured.split()[2], truth.split()[1])
+        for record in records:
+            self.assertIn(str(record.relative_to(self.folder)), done.stdout)
+
+    def test_records_analysed_again_give_the_stored_results_to_the_last_bit(self):
+        import h5py
+        done = run(DAEMON, "--config", self.simulated(repeats=2), cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(len(self.records()), 2)
+        analysed = run(CLI, "analyze", "--json", *self.records())
+        self.assertEqual(analysed.returncode, 0, analysed.stderr)
+        compared = 0
+        for test in json.loads(analysed.stdout)["tests"]:
+            with h5py.File(test["file"]) as record:
+                for name, stored in record["entry/results"].items():
+                    if name not in test or not hasattr(stored, "shape") or stored.dtype.kind != "f":
+                        continue
+                    again = test[name]
+                    if again is None:
+                        self.assertIn("reason", stored.attrs, name)
+                    else:
+                        self.assertEqual(float(stored[()]), again, name)
+                        compared += 1
+        self.assertGreater(compared, 10)
+
+    def test_a_replayed_record_gives_the_same_record(self):
+        import h5py
+        import numpy
+        done = run(DAEMON, "--config", self.simulated(), cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        [original] = self.records()
+        replay = self.config(f"""
+[board]
+driver = "replay"
+clock_speed = 50
+[board.replay]
+file = "{original}"
+[record]
+folder = "replayed"
+""")
+        done = run(DAEMON, "--config", replay, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        [copy] = sorted((self.folder / "replayed").glob("*.h5"))
+        with h5py.File(original) as a, h5py.File(copy) as b:
+            numpy.testing.assert_array_equal(a["entry/raw/counts"][()], b["entry/raw/counts"][()])
+            self.assertEqual(set(a["entry/results"]), set(b["entry/results"]))
+            for name, stored in a["entry/results"].items():
+                numpy.testing.assert_array_equal(stored[()], b["entry/results"][name][()], err_msg=name)
+            for name, stored in a["entry/cycles"].items():
+                numpy.testing.assert_array_equal(stored[()], b["entry/cycles"][name][()], err_msg=name)
+
+
+class Signals(Folder):
+    def end_with(self, number):
+        manager = Manager(self)
+        # Slow enough that the signal surely comes inside the test of 7.5 s: 1.5 s of the wall.
+        process = manager.start(self.simulated(repeats=0, speed=5), self.folder)
+        self.addCleanup(process.kill)
+        manager.wait_for(lambda text: "test 1 running" in text)
+        process.send_signal(number)
+        out, err = process.communicate(timeout=TIMEOUT_S)
+        self.assertEqual(process.returncode, 0, err)
+        self.assertIn("READY=1", manager.messages)
+        manager.wait_for(lambda text: "STOPPING=1" in text)
+        [record] = self.records()
+        self.assertEqual([f for f in (self.folder / "records").iterdir() if f != record], [])
+        shown = run(CLI, "analyze", "--json", record)
+        self.assertEqual(shown.returncode, 0, shown.stderr)
+
+    def test_sigterm_inside_a_test_finishes_its_file(self):
+        self.end_with(signal.SIGTERM)
+
+    def test_sigint_inside_a_test_finishes_its_file(self):
+        self.end_with(signal.SIGINT)
+
+    def test_a_killed_daemon_leaves_a_journal_that_the_next_one_finishes(self):
+        manager = Manager(self)
+        config = self.simulated(repeats=0, speed=5)
+        process = manager.start(config, self.folder)
+        manager.wait_for(lambda text: "test 1 running" in text)
+        # The storage thread begins the journal at about the same time; nobody announces it. The first
+        # entry is the header: kill once there is more than that.
+        journals = []
+        while not journals and process.poll() is None:
+            journals = [j for j in (self.folder / "records").glob("*.journal") if holds_more_than_a_header(j)]
+        process.kill()
+        process.communicate(timeout=TIMEOUT_S)
+        self.assertEqual(len(journals), 1)
+        manager = Manager2(self)
+        process = manager.start(config, self.folder)
+        manager.wait_for(lambda text: text == "READY=1")
+        finished = journals[0].with_suffix(".h5")
+        self.assertTrue(finished.exists())
+        self.assertFalse(journals[0].exists())
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=TIMEOUT_S)
+        self.assertEqual(process.returncode, 0)
+
+
+class Manager2(Manager):
+    """A second manager beside the first."""
+
+    def __init__(self, test):
+        (test.folder / "notify").unlink()
+        super().__init__(test)
+
+
+class Service(Folder):
+    def test_a_missing_board_is_a_state_and_not_an_end(self):
+        manager = Manager(self)
+        config = self.config("""
+[board]
+driver = "comedi"
+[board.comedi]
+device = "/dev/comedi-that-is-not-there"
+[tester]
+sled_mass = "2331 g"
+load_cell_gain = "2 N/V"
+[record]
+folder = "records"
+[control]
+socket = "control.sock"
+""")
+        process = manager.start(config, self.folder)
+        self.addCleanup(process.kill)
+        manager.wait_for(lambda text: text == "READY=1")
+        told = [text for text in manager.messages if text.startswith("STATUS=board missing: ")]
+        self.assertTrue(told, manager.messages)
+        self.assertIn("/dev/comedi-that-is-not-there", told[0])
+
+        control = self.folder / "control.sock"
+        self.assertEqual(stat.S_IMODE(control.stat().st_mode), 0o660)
+        status = run(CLI, "status", "--socket", control)
+        self.assertEqual(status.returncode, 0, status.stderr)
+        self.assertEqual(json.loads(status.stdout)["state"], "board missing")
+
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=TIMEOUT_S)
+        self.assertEqual(process.returncode, 0)
+        self.assertFalse(control.exists())
+
+    def test_status_tells_the_running_test(self):
+        manager = Manager(self)
+        process = manager.start(self.simulated(repeats=0, speed=5, more='[control]\nsocket = "c.sock"\n'),
+                                self.folder)
+        self.addCleanup(process.kill)
+        manager.wait_for(lambda text: "test 1 running" in text)
+        status = json.loads(run(CLI, "status", "--socket", self.folder / "c.sock").stdout)
+        self.assertEqual(status["state"], "acquiring")
+        self.assertEqual(status["board"]["scan_rate_granted"], 350.0)
+        self.assertGreater(status["scan_count"], 0)
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=TIMEOUT_S)
+        self.assertEqual(process.returncode, 0)
+
+
+class Refusals(Folder):
+    def refused(self, status, *arguments, cwd=None):
+        done = run(*arguments, cwd=cwd)
+        self.assertEqual(done.returncode, status, done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        return done.stderr
+
+    def test_a_wrong_configuration_ends_with_2_before_anything_happens(self):
+        for text, expected in [
+            ('[bord]\n', "test.toml:1: [bord]: unknown table; did you mean board?"),
+            ('[board]\ndriver = "simulatd"\n', 'test.toml:2: board.driver = "simulatd": must be one of'),
+            ('[board]\ndriver = "simulated"\n', "board.simulated.scenes: needs at least one scene"),
+            ('[board]\ndriver = "simulated"\nscan_rate = "0 Hz"\n', 'test.toml:3: board.scan_rate = "0 Hz"'),
+            ('[board\n', "test.toml:1: "),
+            ('[board]\ndriver = "simulated"\nsimulated = { scenes = ["no.toml"] }\n', "no.toml: cannot be read"),
+            ('[board]\ndriver = "replay"\nreplay = { file = "no.h5" }\n', "no.h5"),
+        ]:
+            with self.subTest(text):
+                config = self.config(text)
+                for option in ("--check-config", "--config"):
+                    message = self.refused(2, DAEMON, option, config, cwd=self.folder)
+                    self.assertIn(expected, message)
+                    self.assertEqual([f.suffix for f in self.folder.rglob("*.h5")], [])
+
+    def test_wrong_usage_ends_with_2(self):
+        self.refused(2, DAEMON)
+        self.refused(2, DAEMON, "--nonsense")
+        self.refused(2, CLI)
+        self.refused(2, CLI, "analyse", "x.h5")
+        self.refused(2, CLI, "analyze", self.folder / "absent.h5")
+        self.refused(1, CLI, "status", "--socket", self.folder / "absent.sock")
+
+    def test_a_record_folder_that_cannot_be_written_ends_with_1(self):
+        (self.folder / "records").write_text("a file, not a folder")
+        message = self.refused(1, DAEMON, "--config", self.simulated(more='[log]\nlevel = "error"\n'),
+                               cwd=self.folder)
+        self.assertIn("records", message)
+
+    def test_the_shipped_configurations_are_good(self):
+        for name in ("stickslipd.toml", "demo.toml"):
+            done = run(DAEMON, "--check-config", SOURCE / "config" / name)
+            self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_a_refused_import_leaves_no_file(self):
+        csv = self.folder / "x.csv"
+        csv.write_text("t_s,mu\n0,0.1\n0.5,nan\n")
+        out = self.folder / "x.h5"
+        for arguments in (["--column", "force", "--rate", "2", "--unit", "coefficient"],
+                          ["--column", "mu", "--rate", "0", "--unit", "coefficient"],
+                          ["--column", "mu", "--rate", "2", "--unit", "kg"],
+                          ["--column", "mu", "--rate", "2", "--unit", "coefficient"]):
+            with self.subTest(arguments):
+                self.refused(2, CLI, "import", csv, *arguments, "-o", out)
+                self.assertEqual(list(self.folder.iterdir()), [csv])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

@@ -1,0 +1,143 @@
+#include "core/pipeline/processor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace stickslip::pipeline {
+namespace {
+
+/// Writes down what it is told, one word each.
+class Diary final : public Sink {
+ public:
+  void test_began(const TestStart& start) override {
+    words.push_back("began");
+    starts.push_back(start);
+    next = start.first;
+  }
+  void scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp&) override {
+    EXPECT_EQ(first, next) << "scans arrive in order, each once";
+    next = first + static_cast<daq::ScanIndex>(raw.size());
+    if (words.empty() || words.back() != "scans") words.push_back("scans");
+    values.insert(values.end(), raw.begin(), raw.end());
+  }
+  void gap(const daq::Gap& gap) override {
+    words.push_back("gap");
+    gaps.push_back(gap);
+    next = gap.first + gap.count;
+  }
+  void test_ended(const TestEnd& end) override {
+    words.push_back("ended");
+    ends.push_back(end);
+    EXPECT_EQ(end.end, next);
+  }
+
+  std::vector<std::string> words;
+  std::vector<TestStart> starts;
+  std::vector<double> values;
+  std::vector<daq::Gap> gaps;
+  std::vector<TestEnd> ends;
+  daq::ScanIndex next = 0;
+};
+
+/// Readings are coefficients, 100 scans/s: unloaded 1 s, loaded 2 s, unloaded 1 s.
+class ProcessorTest : public testing::Test {
+ protected:
+  static constexpr daq::ScanIndex kLoaded = 100;
+  static constexpr daq::ScanIndex kUnloaded = 300;
+  static constexpr daq::ScanIndex kEnd = 400;
+
+  ProcessorTest() {
+    settings_.segmenter.scan_rate_Hz = 100.0;
+    settings_.segmenter.start_dwell_s = 0.02;
+    settings_.segmenter.pre_trigger_s = 0.5;
+    settings_.segmenter.unload_dwell_s = 0.1;
+    settings_.analysis.scan_rate_Hz = 100.0;
+    board_.quantity = daq::RawQuantity::kCoefficient;
+  }
+
+  static double reading(daq::ScanIndex index) {
+    const daq::ScanIndex in_test = index % kEnd;
+    return in_test >= kLoaded && in_test < kUnloaded ? 0.3 : 0.0;
+  }
+
+  Processor make() { return {settings_, {board_, {}, 1.0}, {&diary_}}; }
+
+  static void feed(Processor& processor, daq::ScanIndex first, daq::ScanIndex end,
+                   daq::ScanIndex block_size = 7) {
+    while (first < end) {
+      daq::ScanBlock block;
+      block.first = first;
+      while (first < end && static_cast<daq::ScanIndex>(block.count) < block_size) {
+        block.raw[block.count++] = reading(first++);
+      }
+      processor.process(block, daq::GapCause::kRingFull);
+    }
+  }
+
+  ProcessorSettings settings_;
+  daq::BoardInfo board_;
+  Diary diary_;
+};
+
+TEST_F(ProcessorTest, CutsTestsOutWithTheirPreTriggerScans) {
+  Processor processor = make();
+  feed(processor, 0, 2 * kEnd);
+  processor.finish(EndCause::kEndOfInput);
+  EXPECT_EQ(diary_.words, (std::vector<std::string>{"began", "scans", "ended", "began", "scans", "ended"}));
+  // The trigger is the second loaded scan in a row; half a second is kept from before it.
+  EXPECT_EQ(diary_.starts[0].trigger, kLoaded + 1);
+  EXPECT_EQ(diary_.starts[0].first, kLoaded + 1 - 50);
+  EXPECT_EQ(diary_.ends[0].end, kUnloaded + 10);
+  EXPECT_EQ(diary_.ends[0].cause, EndCause::kUnloaded);
+  EXPECT_EQ(diary_.ends[1].number, 2);
+  EXPECT_EQ(processor.test_number(), 3);
+  EXPECT_EQ(processor.scan_count(), 800U);
+}
+
+// How scans are divided into blocks is an accident of timing and must not matter.
+TEST_F(ProcessorTest, DoesNotDependOnTheSizeOfBlocks) {
+  std::vector<std::vector<double>> values;
+  for (const daq::ScanIndex size : {1, 7, 64}) {
+    diary_ = {};
+    Processor processor = make();
+    feed(processor, 0, kEnd, size);
+    processor.finish(EndCause::kEndOfInput);
+    EXPECT_EQ(diary_.ends.at(0).end, kUnloaded + 10);
+    values.push_back(diary_.values);
+  }
+  EXPECT_EQ(values[0], values[1]);
+  EXPECT_EQ(values[0], values[2]);
+}
+
+TEST_F(ProcessorTest, TellsAGapInsideATestAndForgetsWhatWasBeforeOneOutside) {
+  Processor processor = make();
+  feed(processor, 0, 90);
+  feed(processor, 95, 150);  // Before the trigger: the record begins behind the gap.
+  feed(processor, 160, kEnd);
+  processor.finish(EndCause::kEndOfInput);
+  EXPECT_EQ(diary_.starts.at(0).first, 95);
+  ASSERT_EQ(diary_.gaps.size(), 1U);
+  EXPECT_EQ(diary_.gaps[0].first, 150);
+  EXPECT_EQ(diary_.gaps[0].count, 10);
+  EXPECT_EQ(diary_.gaps[0].cause, daq::GapCause::kRingFull);
+  EXPECT_EQ(processor.gap_count(), 2U);
+  EXPECT_EQ(diary_.ends.at(0).results.lost_scan_count.value, 10.0);
+}
+
+TEST_F(ProcessorTest, EndsARunningTestWhenToldAndNothingElse) {
+  Processor processor = make();
+  feed(processor, 0, 200);
+  EXPECT_TRUE(processor.test_is_running());
+  processor.finish(EndCause::kStopped);
+  EXPECT_FALSE(processor.test_is_running());
+  ASSERT_EQ(diary_.ends.size(), 1U);
+  EXPECT_EQ(diary_.ends[0].cause, EndCause::kStopped);
+  EXPECT_EQ(diary_.ends[0].end, 200);
+  processor.finish(EndCause::kStopped);
+  EXPECT_EQ(diary_.ends.size(), 1U);
+}
+
+}  // namespace
+}  // namespace stickslip::pipeline
