@@ -106,6 +106,10 @@ void period_results(const Trace& trace, std::span<const Fall> slips, TestResults
   const auto n = static_cast<double>(periods.size());
   const double span_s = time_at(trace, slips.back().peak_at) - time_at(trace, slips.front().peak_at);
   const double mean_s = span_s / n;
+  if (!(mean_s > 0.0)) {  // In a trace too short to know its noise two falls can share a scan.
+    results.period_median = results.oscillation_frequency = Estimate::none("the peaks lie on one scan");
+    return;
+  }
   // A late peak lengthens one period and shortens the next: the error of the mean takes the covariance
   // of neighbours into account, but never less than the two end points leave.
   double variance = 0.0;
