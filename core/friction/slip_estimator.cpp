@@ -144,6 +144,17 @@ void lay_windows(const Trace& trace, std::span<const Fall> slips, const SharedPa
   }
 }
 
+/// Each slip has scans enough for its own parameters and one to spare.
+bool windows_suffice(const Trace& trace, const std::vector<SlipWindow>& windows) {
+  constexpr std::ptrdiff_t kFewestScans = 4;
+  return std::all_of(windows.begin(), windows.end(), [&](const SlipWindow& window) {
+    if (window.first >= window.end) return false;
+    const auto first = trace.usable.begin() + static_cast<std::ptrdiff_t>(window.first);
+    const auto end = trace.usable.begin() + static_cast<std::ptrdiff_t>(window.end);
+    return std::count(first, end, 1) >= kFewestScans;
+  });
+}
+
 }  // namespace
 
 double time_at(const Trace& trace, double position) noexcept {
@@ -162,6 +173,10 @@ SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, do
     judge_ends(trace, slips, shared, sigma, estimates);
     if (round > 0 && estimates.ends == before) break;
     lay_windows(trace, slips, shared, estimates);
+    if (!windows_suffice(trace, estimates.windows)) {
+      estimates.fit = {};
+      break;
+    }
     estimates.fit = fit_slips(trace, estimates.windows, shared, sigma);
     if (!estimates.fit.converged) break;
     shared = estimates.fit.shared;

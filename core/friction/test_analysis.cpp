@@ -106,10 +106,6 @@ void period_results(const Trace& trace, std::span<const Fall> slips, TestResults
   const auto n = static_cast<double>(periods.size());
   const double span_s = time_at(trace, slips.back().peak_at) - time_at(trace, slips.front().peak_at);
   const double mean_s = span_s / n;
-  if (!(mean_s > 0.0)) {  // In a trace too short to know its noise two falls can share a scan.
-    results.period_median = results.oscillation_frequency = Estimate::none("the peaks lie on one scan");
-    return;
-  }
   // A late peak lengthens one period and shortens the next: the error of the mean takes the covariance
   // of neighbours into account, but never less than the two end points leave.
   double variance = 0.0;
@@ -122,6 +118,18 @@ void period_results(const Trace& trace, std::span<const Fall> slips, TestResults
   results.oscillation_frequency =
       n > 1.0 ? Estimate::of(1.0 / mean_s, std::sqrt(mean_variance) / (mean_s * mean_s))
               : Estimate::of(1.0 / mean_s);
+}
+
+/// A stub of a test: without the noise there is no telling what is a slip.
+void too_short(std::size_t scan_count, TestResults& results) {
+  results.regime_reason =
+      fmt::format("{} scans, {} are needed to know their noise", scan_count, signal::kFewestScansForNoise);
+  no_model_results(results.regime_reason, results);
+  for (Estimate* estimate : {&results.cycle_count, &results.stick_cycle_count, &results.period_median,
+                             &results.oscillation_frequency, &results.static_coefficient,
+                             &results.kinetic_coefficient, &results.drift_rate}) {
+    *estimate = Estimate::none(results.regime_reason);
+  }
 }
 
 }  // namespace
@@ -183,23 +191,20 @@ TestResults TestAnalysis::finish() {
 
   const Trace trace = despiked_trace();
   results.spike_count = Estimate::of(static_cast<double>(spikes_.size()));
-  const double sigma = signal::scan_noise(trace.value, noise_floor(trace.value, settings_.step_coefficient));
-  const std::vector<Fall> slips = trace.size() == 0 ? std::vector<Fall>{} : find_slips(trace, sigma);
-  results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
-  if (trace.size() == 0) {
-    results.regime_reason = "no scans";
-    results.static_coefficient = results.kinetic_coefficient = Estimate::none("no scans");
-  } else {
-    const TraditionalCoefficients traditional = traditional_coefficients(trace, slips, settings_.method);
-    results.static_coefficient = traditional.static_coefficient;
-    results.kinetic_coefficient = traditional.kinetic_coefficient;
+  if (trace.size() < signal::kFewestScansForNoise) {
+    too_short(trace.size(), results);
+    return results;
   }
+  const double sigma = signal::scan_noise(trace.value, noise_floor(trace.value, settings_.step_coefficient));
+  const std::vector<Fall> slips = find_slips(trace, sigma);
+  results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
+  const TraditionalCoefficients traditional = traditional_coefficients(trace, slips, settings_.method);
+  results.static_coefficient = traditional.static_coefficient;
+  results.kinetic_coefficient = traditional.kinetic_coefficient;
   if (slips.empty()) {
-    if (trace.size() > 0) {
-      const RegimeVerdict verdict = judge_regime(0, {}, true);
-      results.regime = verdict.regime;
-      results.regime_reason = verdict.reason;
-    }
+    const RegimeVerdict verdict = judge_regime(0, {}, true);
+    results.regime = verdict.regime;
+    results.regime_reason = verdict.reason;
     results.stick_cycle_count = Estimate::of(0.0);
     no_model_results("no slip", results);
   } else {
