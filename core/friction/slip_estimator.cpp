@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/friction/junction.hpp"
+#include "core/signal/statistics.hpp"
 
 namespace stickslip::friction {
 namespace {
@@ -21,12 +22,6 @@ constexpr double kTailPeriods = 1.5;
 
 std::size_t scan_at(double position) {
   return static_cast<std::size_t>(std::lround(std::max(position, 0.0)));
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Least-squares slope of the rise to `peak` from the turning point before, between levels `low`
@@ -64,11 +59,11 @@ SharedParameters first_guess(const Trace& trace, std::span<const Fall> slips) {
     slopes.push_back(slope_of_rise(trace, slip, 0.3, 0.7));
   }
   SharedParameters shared;
-  shared.omega = std::numbers::pi / median(half_periods);
+  shared.omega = std::numbers::pi / signal::median(half_periods);
   shared.gamma = 2.0 * kFirstGammaOver2Omega * shared.omega;
   const Fall& first = slips.front();
   const bool loaded_from_rest = first.rise_from < kLoadingStartsBelow * first.peak;
-  shared.r = loaded_from_rest ? slope_of_rise(trace, first, 0.2, 0.8) : median(slopes);
+  shared.r = loaded_from_rest ? slope_of_rise(trace, first, 0.2, 0.8) : signal::median(slopes);
   return shared;
 }
 

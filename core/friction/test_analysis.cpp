@@ -13,12 +13,11 @@
 #include "core/friction/regime_rule.hpp"
 #include "core/friction/slip_estimator.hpp"
 #include "core/friction/traditional.hpp"
+#include "core/signal/statistics.hpp"
 
 namespace stickslip::friction {
 namespace {
 
-/// Standard deviation of rounding to steps of one: 1/√12.
-constexpr double kRoundingSigma = 0.28867513459481287;
 /// Smallest noise assumed, relative to the largest value: a trace without any noise or steps (a
 /// closed form in doubles) still has rounding, and turning points need a scale.
 constexpr double kSmallestRelativeNoise = 1e-9;
@@ -28,7 +27,7 @@ double noise_floor(std::span<const double> values, double step_coefficient) {
   double largest = 0.0;
   for (const double value : values) largest = std::max(largest, std::abs(value));
   return std::max(
-      {kRoundingSigma * step, kSmallestRelativeNoise * largest, std::numeric_limits<double>::min()});
+      {signal::kRoundingSigma * step, kSmallestRelativeNoise * largest, std::numeric_limits<double>::min()});
 }
 
 /// Turning points must not follow noise before the noise is known.
@@ -44,13 +43,6 @@ std::vector<Fall> find_slips(const Trace& trace, double sigma) {
     }
   }
   return slips;
-}
-
-/// Median of the periods, upper one of an even number.
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Slope of the means from peak to peak against time, by least squares: an oscillation averages out.
@@ -96,7 +88,8 @@ void period_results(const Trace& trace, std::span<const Fall> slips, TestResults
   for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
     periods.push_back(time_at(trace, slips[i + 1].peak_at) - time_at(trace, slips[i].peak_at));
   }
-  results.period_median = Estimate::of(median(periods));
+  std::vector<double> reordered = periods;
+  results.period_median = Estimate::of(signal::median(reordered));
   if (results.regime == Regime::kRingDown && results.omega.value) {
     results.oscillation_frequency =
         Estimate::of(*results.omega.value / (2.0 * std::numbers::pi),
@@ -136,7 +129,7 @@ void too_short(std::size_t scan_count, TestResults& results) {
 
 TestAnalysis::TestAnalysis(const AnalysisSettings& settings)
     : settings_(settings),
-      live_noise_(std::max(kRoundingSigma * settings.step_coefficient, kSmallestRelativeNoise)) {
+      live_noise_(std::max(signal::kRoundingSigma * settings.step_coefficient, kSmallestRelativeNoise)) {
   if (!(settings.scan_rate_Hz > 0.0) || !std::isfinite(settings.scan_rate_Hz)) {
     throw std::invalid_argument(fmt::format("scan rate {} Hz must be positive", settings.scan_rate_Hz));
   }
