@@ -6,7 +6,7 @@
 /// A scene names its effects; what it does not name is not built. They act in four stages, in this
 /// order: motion (what the sled does), transducer (what the load cell makes of it), sampling (when
 /// the converter looks) and signal (what happens to the voltage on the way into the record). A new
-/// effect is a setting here, a reader in scene_file.cpp, and a part of motion_of() or of SceneRun.
+/// effect is a setting of its stage, a reader in scene_file*.cpp, and a part of motion_of() or of SceneRun.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +19,7 @@
 #include "core/friction/oscillator.hpp"
 #include "core/friction/tester.hpp"
 #include "core/sim/propagator.hpp"
+#include "core/sim/signal_settings.hpp"
 
 namespace stickslip::sim {
 
@@ -41,23 +42,6 @@ struct ConstantSpeed {
   [[nodiscard]] double duration_s() const noexcept { return idle_s + pull_s + stop_s + return_s + rest_s; }
 };
 
-/// Effect `white_noise` (signal): independent normal numbers added to the voltage.
-struct WhiteNoise {
-  double sd_V = 0.0;
-};
-
-/// Effect `quantisation` (signal): an ideal A/D converter that saturates at its rails.
-struct Quantisation {
-  int bits = 16;
-  double range_min_V = -10.0;
-  double range_max_V = 10.0;
-
-  [[nodiscard]] std::uint32_t maxdata() const noexcept {
-    return static_cast<std::uint32_t>((std::uint64_t{1} << static_cast<unsigned>(bits)) - 1);
-  }
-  bool operator==(const Quantisation&) const = default;
-};
-
 struct Scene {
   std::string name;         ///< The file's name without its ending.
   std::string description;  ///< One line for people.
@@ -78,6 +62,9 @@ struct Scene {
   bool damping = false;
   bool one_way_coupling = false;
   std::optional<WhiteNoise> white_noise;
+  std::optional<DriftNoise> drift_noise;
+  std::optional<MainsHum> mains_hum;
+  std::optional<Spikes> spikes;
   std::optional<Quantisation> quantisation;
 
   [[nodiscard]] double normal_load_N() const noexcept { return sled_mass_kg * gravity_m_per_s2; }

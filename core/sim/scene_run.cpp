@@ -13,6 +13,9 @@ SceneRun::SceneRun(const Scene& scene, double scan_rate_Hz)
   if (scene.constant_speed) motion_effects_.push_back("constant_speed");
   if (scene.one_way_coupling) motion_effects_.push_back("one_way_coupling");
   if (scene.white_noise) signal_.push_back(make_white_noise(*scene.white_noise));
+  if (scene.drift_noise) signal_.push_back(make_drift_noise(*scene.drift_noise, scan_rate_Hz));
+  if (scene.mains_hum) signal_.push_back(make_mains_hum(*scene.mains_hum, scan_rate_Hz));
+  if (scene.spikes) signal_.push_back(make_spikes(*scene.spikes, scan_rate_Hz));
   if (scene.quantisation) signal_.push_back(make_quantisation(*scene.quantisation));
   restart(scene.seed);
 }
