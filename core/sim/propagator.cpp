@@ -50,21 +50,30 @@ void Propagator::restart() {
 
 void Propagator::next(std::span<double> coefficient) {
   for (double& c : coefficient) {
-    pass_until(next_scan_);
-    const double t_s = ScanTime{next_scan_, 0.0}.periods_since(start_) / scan_rate_Hz_;
-    const double extension = state_at(t_s).c;
-    c = motion_.one_way_coupling ? std::fmax(extension, 0.0) : extension;
-    ++next_scan_;
+    const ScanTime instant{next_scan_++, 0.0};
+    pass_until(instant);
+    c = coefficient_at(instant);
   }
+}
+
+double Propagator::at(const ScanTime& instant) {
+  STICKSLIP_EXPECTS(start_ <= instant);
+  pass_until(instant);
+  return coefficient_at(instant);
+}
+
+double Propagator::coefficient_at(const ScanTime& instant) const {
+  const double extension = state_at(instant.periods_since(start_) / scan_rate_Hz_).c;
+  return motion_.one_way_coupling ? std::fmax(extension, 0.0) : extension;
 }
 
 void Propagator::skip(std::int64_t scans) {
   next_scan_ += scans;
-  pass_until(next_scan_);
+  pass_until({next_scan_, 0.0});
 }
 
-void Propagator::pass_until(std::int64_t scan) {
-  while (ending_ != Ending::kNever && end_ <= ScanTime{scan, 0.0}) pass_end();
+void Propagator::pass_until(const ScanTime& instant) {
+  while (ending_ != Ending::kNever && end_ <= instant) pass_end();
 }
 
 SlipWaveform Propagator::waveform() const {

@@ -67,6 +67,10 @@ class Propagator {
   /// The coefficient F/(m g) at the next scans. Does not allocate.
   void next(std::span<double> coefficient);
 
+  /// The coefficient at any instants in non-decreasing order; next() and skip() keep count of their
+  /// own, and may go on only at scans that are not before the last instant. Does not allocate.
+  [[nodiscard]] double at(const ScanTime& instant);
+
   /// Goes on by `scans` without looking at them, at the cost of the events alone.
   void skip(std::int64_t scans);
 
@@ -95,7 +99,8 @@ class Propagator {
   void plan_slip_end();
   void plan_free_end();
   void pass_end();
-  void pass_until(std::int64_t scan);
+  void pass_until(const ScanTime& instant);
+  [[nodiscard]] double coefficient_at(const ScanTime& instant) const;
 
   Motion motion_;
   double scan_rate_Hz_;

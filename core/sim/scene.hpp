@@ -19,6 +19,7 @@
 #include "core/friction/oscillator.hpp"
 #include "core/friction/tester.hpp"
 #include "core/sim/propagator.hpp"
+#include "core/sim/sampling_settings.hpp"
 #include "core/sim/signal_settings.hpp"
 
 namespace stickslip::sim {
@@ -61,6 +62,9 @@ struct Scene {
   std::optional<ConstantSpeed> constant_speed;
   bool damping = false;
   bool one_way_coupling = false;
+  std::optional<ClockRateError> clock_rate_error;
+  std::optional<ClockJitter> clock_jitter;
+  std::optional<MissingScans> missing_scans;
   std::optional<WhiteNoise> white_noise;
   std::optional<DriftNoise> drift_noise;
   std::optional<MainsHum> mains_hum;
@@ -79,7 +83,10 @@ struct Scene {
 /// The motion stage of the scene.
 [[nodiscard]] Motion motion_of(const Scene& scene);
 
-/// Scans of one repetition at this rate: all that begin before its end.
+/// What the converter's clock really does when it is set to this rate.
+[[nodiscard]] double true_scan_rate_Hz(const Scene& scene, double scan_rate_Hz) noexcept;
+
+/// Scans of one repetition at this nominal rate, missing ones too: all that begin before its end.
 [[nodiscard]] std::int64_t scan_count(const Scene& scene, double scan_rate_Hz) noexcept;
 
 }  // namespace stickslip::sim

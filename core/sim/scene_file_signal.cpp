@@ -99,18 +99,14 @@ Quantisation read_quantisation(Settings effect) {
 }  // namespace
 
 void read_signal_effects(Settings effects, Scene& scene) {
-  // All are made known, listed or not, so that the message about an unknown one names them all.
-  const auto listed = [&effects](std::string_view name) {
-    (void)effects.table(name);
-    return effects.has(name);
-  };
-  if (listed("white_noise")) {
+  if (lists(effects, "white_noise")) {
     scene.white_noise = WhiteNoise{read_size_V(effects.table("white_noise"), "sd", scene)};
   }
-  if (listed("drift_noise")) scene.drift_noise = read_drift_noise(effects.table("drift_noise"), scene);
-  if (listed("mains_hum")) scene.mains_hum = read_mains_hum(effects.table("mains_hum"), scene);
-  if (listed("spikes")) scene.spikes = read_spikes(effects.table("spikes"), scene);
-  if (listed("quantisation")) scene.quantisation = read_quantisation(effects.table("quantisation"));
+  if (lists(effects, "drift_noise"))
+    scene.drift_noise = read_drift_noise(effects.table("drift_noise"), scene);
+  if (lists(effects, "mains_hum")) scene.mains_hum = read_mains_hum(effects.table("mains_hum"), scene);
+  if (lists(effects, "spikes")) scene.spikes = read_spikes(effects.table("spikes"), scene);
+  if (lists(effects, "quantisation")) scene.quantisation = read_quantisation(effects.table("quantisation"));
 }
 
 }  // namespace stickslip::sim
