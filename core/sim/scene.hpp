@@ -21,6 +21,7 @@
 #include "core/sim/propagator.hpp"
 #include "core/sim/sampling_settings.hpp"
 #include "core/sim/signal_settings.hpp"
+#include "core/sim/transducer_settings.hpp"
 
 namespace stickslip::sim {
 
@@ -62,6 +63,8 @@ struct Scene {
   std::optional<ConstantSpeed> constant_speed;
   bool damping = false;
   bool one_way_coupling = false;
+  std::optional<LoadCellDynamics> load_cell_dynamics;
+  std::optional<AntiAlias> anti_alias;
   std::optional<ClockRateError> clock_rate_error;
   std::optional<ClockJitter> clock_jitter;
   std::optional<MissingScans> missing_scans;

@@ -15,6 +15,9 @@ inline constexpr double kLargestCoefficient = 10.0;
 inline constexpr double kHighestVoltage_V = 1000.0;
 
 /// \param effects  the table [effects]. \param scene  with the scan rate.
+void read_transducer_effects(base::Settings effects, Scene& scene);
+
+/// \param effects  the table [effects]. \param scene  with the scan rate.
 void read_sampling_effects(base::Settings effects, Scene& scene);
 
 /// \param effects  the table [effects]. \param scene  with tester, load cell and scan rate.

@@ -14,6 +14,11 @@ SceneRun::SceneRun(const Scene& scene, double scan_rate_Hz)
   if (scene.damping) other_effects_.push_back("damping");
   if (scene.constant_speed) other_effects_.push_back("constant_speed");
   if (scene.one_way_coupling) other_effects_.push_back("one_way_coupling");
+  if (scene.load_cell_dynamics || scene.anti_alias) {
+    transducer_.emplace(scene.load_cell_dynamics, scene.anti_alias, scene.oscillator, true_scan_rate_Hz_);
+    if (scene.load_cell_dynamics) other_effects_.push_back("load_cell");
+    if (scene.anti_alias) other_effects_.push_back("anti_alias");
+  }
   if (scene.clock_rate_error) other_effects_.push_back("clock_rate_error");
   if (scene.clock_jitter) {
     jitter_.emplace(*scene.clock_jitter, true_scan_rate_Hz_);
@@ -34,6 +39,7 @@ SceneRun::SceneRun(const Scene& scene, double scan_rate_Hz)
 void SceneRun::restart(std::uint64_t seed) {
   next_scan_ = 0;
   motion_.restart();
+  if (transducer_) transducer_->restart();
   if (jitter_) jitter_->restart(seed);
   for (const auto& effect : signal_) effect->restart(seed);
   if (missing_) missing_->restart(seed);
@@ -49,10 +55,19 @@ std::size_t SceneRun::next(std::span<double> raw) {
   return readings.size();
 }
 
+double SceneRun::coefficient_at(const ScanTime& instant) {
+  if (!transducer_) return motion_.at(instant);
+  motion_.follow_to(instant, *transducer_);
+  return transducer_->output();
+}
+
 void SceneRun::make(std::span<double> readings) {
-  if (jitter_) {
+  if (jitter_ || transducer_) {
     std::int64_t scan = next_scan_;
-    for (double& reading : readings) reading = motion_.at(jitter_->instant(scan++));
+    for (double& reading : readings) {
+      reading = coefficient_at(jitter_ ? jitter_->instant(scan) : ScanTime{scan, 0.0});
+      ++scan;
+    }
   } else {
     motion_.next(readings);
   }

@@ -23,6 +23,7 @@
 #include "core/sim/propagator.hpp"
 #include "core/sim/scene.hpp"
 #include "core/sim/signal_effect.hpp"
+#include "core/sim/transducer.hpp"
 
 namespace stickslip::sim {
 
@@ -51,6 +52,8 @@ class SceneRun {
  private:
   /// Consecutive scans, whether they arrive or not: what is lost takes its random numbers along.
   void make(std::span<double> readings);
+  /// What the converter sees at this instant, before the signal stage.
+  [[nodiscard]] double coefficient_at(const ScanTime& instant);
   void lose_missing();
 
   std::vector<std::string_view> other_effects_;  ///< Of the stages before the signal.
@@ -60,6 +63,7 @@ class SceneRun {
   double volts_per_coefficient_;
   double zero_V_;
   Propagator motion_;
+  std::optional<Transducer> transducer_;
   std::optional<JitteringClock> jitter_;
   std::optional<MissingBursts> missing_;
   std::vector<std::unique_ptr<SignalEffect>> signal_;
