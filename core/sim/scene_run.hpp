@@ -4,9 +4,11 @@
 ///     SceneRun run{scene, 350.0};
 ///     run.restart(seed);
 ///     std::array<double, 64> raw;
-///     for (std::int64_t scan = run.next_scan(); const std::size_t count = run.next(raw); scan =
-///     run.next_scan()) {
-///       use(scan, std::span{raw}.first(count));
+///     while (true) {
+///       const std::int64_t first = run.next_scan();
+///       const std::size_t count = run.next(raw);
+///       if (count == 0) break;
+///       use(first, std::span{raw}.first(count));
 ///     }
 #pragma once
 
@@ -40,10 +42,10 @@ class SceneRun {
   /// Index of the next scan that arrives; their whole number at the end of the scene.
   [[nodiscard]] std::int64_t next_scan() const noexcept { return next_scan_; }
 
-  /// The next consecutive readings, from next_scan() on: counts if the scene lists `quantisation`, else
-  /// volts. The same, however the scans are divided into calls. Does not allocate. \return how many were
-  /// written; less than the size only where scans are missing and at the end of the
-  ///         scene, nothing only there.
+  /// The next consecutive readings, from next_scan() on: counts if the scene lists `quantisation`,
+  /// else volts. The same, however the scans are divided into calls. Does not allocate.
+  /// \return how many were written: less than the size only where scans are missing and at the end of
+  ///         the scene, none only there.
   std::size_t next(std::span<double> raw);
 
   /// Names of the effects that were built, in the order of the stages.

@@ -1,20 +1,18 @@
 /// \file
 /// Load cell and anti-alias filter as one linear system, driven by the force's closed form.
 ///
-///     Transducer transducer{settings.load_cell, settings.anti_alias, oscillator, 350.0};
+///     Transducer transducer{scene.load_cell_dynamics, scene.anti_alias, scene.oscillator, 350.0};
 ///     sled.follow_to(instant, transducer);
 ///     const double coefficient = transducer.output();
 ///
-/// Each stretch of the force solves w′ = S w with w = (c, c′, c″): S is that of the oscillator while the sled
-/// slips and nilpotent while the force is a line or a parabola. With the transducer's x′ = A x + b c
-/// the two are one homogeneous system, whose matrix exponential is the exact response: no step size, no
-/// resonance that needs a case of its own, any damping. [Van Loan, IEEE Trans. Automat. Contr.
-/// 23(3):395–404, 1978; exponential: Higham, SIAM J. Matrix Anal. Appl. 26(4):1179–1193, 2005]
+/// Each stretch of the force solves w′ = S w with w = (c, c′, c″): S is that of the oscillator while the
+/// sled slips, and nilpotent while the force is a line or a parabola. With the transducer's
+/// x′ = A x + b c the two are one homogeneous system, whose matrix exponential is the exact response: no
+/// step size, no resonance that needs a case of its own, any damping. [Van Loan, IEEE Trans. Automat.
+/// Contr. 23(3):395–404, 1978; exponential: Higham, SIAM J. Matrix Anal. Appl. 26(4):1179–1193, 2005]
 #pragma once
 
-#include <array>
 #include <optional>
-#include <vector>
 
 #include <Eigen/Core>
 
@@ -28,9 +26,9 @@ namespace stickslip::sim {
 class Transducer final : public ForceFollower {
  public:
   /// What is not given is not built; at least one is.
-  /// \param oscillator  of the motion. \param scan_rate_Hz  at which the force is mostly asked for: responses
-  /// over
-  ///                    one whole period are computed once.
+  /// \param oscillator    of the motion
+  /// \param scan_rate_Hz  at which the force is mostly asked for: the responses over one whole period
+  ///                      are computed only once.
   Transducer(const std::optional<LoadCellDynamics>& load_cell, const std::optional<AntiAlias>& anti_alias,
              const friction::Oscillator& oscillator, double scan_rate_Hz);
 

@@ -82,8 +82,8 @@ TEST(DriftNoise, DensityOfTheProcessesIsOneOverF) {
   }
 }
 
-// Periodograms scatter by 100 %: s segments and b bins give 1/√(s b) a point, with neighbours left out
-// because the window ties them together.
+// One bin of one periodogram scatters by 100 %, so the mean over s segments by 1/√s. The bins are two
+// or more apart, where Hann's window ties them together by no more than 1/36.
 TEST(DriftNoise, ReadingsHaveTheDensityOfTheProcesses) {
   constexpr std::size_t kSegment = 8192;
   constexpr double kSegments = 64.0;
