@@ -6,7 +6,7 @@
 /// A scene names its effects; what it does not name is not built. They act in four stages, in this
 /// order: motion (what the sled does), transducer (what the load cell makes of it), sampling (when
 /// the converter looks) and signal (what happens to the voltage on the way into the record). A new
-/// effect is a setting here, a reader in scene_file.cpp, and a part of motion_of() or of SceneRun.
+/// effect is a setting of its stage, a reader in scene_file*.cpp, and a part of motion_of() or of SceneRun.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +19,9 @@
 #include "core/friction/oscillator.hpp"
 #include "core/friction/tester.hpp"
 #include "core/sim/propagator.hpp"
+#include "core/sim/sampling_settings.hpp"
+#include "core/sim/signal_settings.hpp"
+#include "core/sim/transducer_settings.hpp"
 
 namespace stickslip::sim {
 
@@ -41,23 +44,6 @@ struct ConstantSpeed {
   [[nodiscard]] double duration_s() const noexcept { return idle_s + pull_s + stop_s + return_s + rest_s; }
 };
 
-/// Effect `white_noise` (signal): independent normal numbers added to the voltage.
-struct WhiteNoise {
-  double sd_V = 0.0;
-};
-
-/// Effect `quantisation` (signal): an ideal A/D converter that saturates at its rails.
-struct Quantisation {
-  int bits = 16;
-  double range_min_V = -10.0;
-  double range_max_V = 10.0;
-
-  [[nodiscard]] std::uint32_t maxdata() const noexcept {
-    return static_cast<std::uint32_t>((std::uint64_t{1} << static_cast<unsigned>(bits)) - 1);
-  }
-  bool operator==(const Quantisation&) const = default;
-};
-
 struct Scene {
   std::string name;         ///< The file's name without its ending.
   std::string description;  ///< One line for people.
@@ -77,7 +63,15 @@ struct Scene {
   std::optional<ConstantSpeed> constant_speed;
   bool damping = false;
   bool one_way_coupling = false;
+  std::optional<LoadCellDynamics> load_cell_dynamics;
+  std::optional<AntiAlias> anti_alias;
+  std::optional<ClockRateError> clock_rate_error;
+  std::optional<ClockJitter> clock_jitter;
+  std::optional<MissingScans> missing_scans;
   std::optional<WhiteNoise> white_noise;
+  std::optional<DriftNoise> drift_noise;
+  std::optional<MainsHum> mains_hum;
+  std::optional<Spikes> spikes;
   std::optional<Quantisation> quantisation;
 
   [[nodiscard]] double normal_load_N() const noexcept { return sled_mass_kg * gravity_m_per_s2; }
@@ -92,7 +86,10 @@ struct Scene {
 /// The motion stage of the scene.
 [[nodiscard]] Motion motion_of(const Scene& scene);
 
-/// Scans of one repetition at this rate: all that begin before its end.
+/// What the converter's clock really does when it is set to this rate.
+[[nodiscard]] double true_scan_rate_Hz(const Scene& scene, double scan_rate_Hz) noexcept;
+
+/// Scans of one repetition at this nominal rate, missing ones too: all that begin before its end.
 [[nodiscard]] std::int64_t scan_count(const Scene& scene, double scan_rate_Hz) noexcept;
 
 }  // namespace stickslip::sim

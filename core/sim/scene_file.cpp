@@ -7,6 +7,7 @@
 
 #include "core/base/settings.hpp"
 #include "core/sim/scene.hpp"
+#include "core/sim/scene_file_parts.hpp"
 
 namespace stickslip::sim {
 namespace {
@@ -17,16 +18,13 @@ using base::Settings;
 
 // Limits of sense, not of the method: a value outside is taken for a slip of the pen.
 constexpr double kLongestPhase_s = 1e8;
-constexpr double kLargestCoefficient = 10.0;
 constexpr double kFastestBelt_m_per_s = 10.0;
 constexpr double kStrongestGravity_m_per_s2 = 100.0;
 constexpr double kHeaviestSled_kg = 1000.0;
 constexpr double kFastestOscillator_Hz = 1e5;
 constexpr double kFastestScan_Hz = 1e6;
-constexpr double kHighestVoltage_V = 1000.0;
 
-constexpr std::array<std::string_view, 5> kEffects{"damping", "constant_speed", "one_way_coupling",
-                                                   "white_noise", "quantisation"};
+constexpr std::array<std::string_view, 3> kEffects{"damping", "constant_speed", "one_way_coupling"};
 
 void read_tester(Settings tester, double gamma_over_2omega, Scene& scene) {
   scene.sled_mass_kg =
@@ -79,35 +77,6 @@ ConstantSpeed read_constant_speed(Settings effect) {
   return test;
 }
 
-WhiteNoise read_white_noise(Settings effect, const Scene& scene) {
-  const auto coefficient =
-      effect.quantity_if_given("sd", Dimension::kDimensionless, Limits::between(0.0, kLargestCoefficient));
-  const auto force_N = effect.quantity_if_given("sd_force", Dimension::kForce, Limits::at_least(0.0));
-  const auto voltage_V =
-      effect.quantity_if_given("sd_voltage", Dimension::kVoltage, Limits::between(0.0, kHighestVoltage_V));
-  const int given = static_cast<int>(effect.has("sd")) + static_cast<int>(effect.has("sd_force")) +
-                    static_cast<int>(effect.has("sd_voltage"));
-  if (given == 0) effect.refuse("sd", "must be given, or else sd_force or sd_voltage");
-  if (given > 1) {
-    effect.refuse(effect.has("sd_voltage") ? "sd_voltage" : "sd_force",
-                  "must not stand beside another sd: the noise has one");
-  }
-  const double newtons = force_N.value_or(coefficient.value_or(0.0) * scene.normal_load_N());
-  return {voltage_V.value_or(newtons / scene.load_cell.gain_N_per_V)};
-}
-
-Quantisation read_quantisation(Settings effect) {
-  const Limits voltage = Limits::between(-kHighestVoltage_V, kHighestVoltage_V);
-  Quantisation converter;
-  converter.bits = static_cast<int>(effect.integer("bits", 1, 32));
-  converter.range_min_V = effect.quantity("range_min", Dimension::kVoltage, voltage);
-  converter.range_max_V = effect.quantity("range_max", Dimension::kVoltage, voltage);
-  if (converter.range_max_V <= converter.range_min_V) {
-    effect.refuse("range_max", fmt::format("must be above range_min = {} V", converter.range_min_V));
-  }
-  return converter;
-}
-
 base::Result<Scene> read_scene(Settings settings, const std::filesystem::path& file) {
   Scene scene;
   scene.name = file.stem().string();
@@ -137,10 +106,9 @@ base::Result<Scene> read_scene(Settings settings, const std::filesystem::path& f
         settings.quantity("duration", Dimension::kTime, Limits::above_up_to(0.0, kLongestPhase_s));
   }
   scene.one_way_coupling = effects.has("one_way_coupling");
-  if (effects.has("white_noise")) {
-    scene.white_noise = read_white_noise(effects.table("white_noise"), scene);
-  }
-  if (effects.has("quantisation")) scene.quantisation = read_quantisation(effects.table("quantisation"));
+  read_transducer_effects(effects, scene);
+  read_sampling_effects(effects, scene);
+  read_signal_effects(effects, scene);
 
   if (auto read = settings.finish(); !read) return tl::unexpected(read.error());
   return scene;
