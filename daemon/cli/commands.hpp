@@ -3,8 +3,6 @@
 /// printed and no file is left before all of it has succeeded.
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,8 +33,8 @@ struct ImportCommand {
 struct SimulateCommand {
   std::string scene;  ///< File, or name of a shipped scene.
   std::string output;
-  std::string folder;  ///< Of the shipped scenes; empty: where the program finds them.
-  std::optional<std::uint64_t> seed;
+  std::string folder;                ///< Of the shipped scenes; empty: where the program finds them.
+  std::string seed;                  ///< Empty: that of the scene.
   std::vector<std::string> without;  ///< Effects.
   std::vector<std::string> set;      ///< "key=value"
   std::string rate;

@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <limits>
+#include <memory>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/wording.hpp"
 #include "core/record/finaliser.hpp"
 #include "core/sim/scene.hpp"
 #include "daemon/cli/commands.hpp"
@@ -44,14 +48,26 @@ Result<sim::SceneChanges> changes_of(const SimulateCommand& command) {
   return changes;
 }
 
-Result<Simulation> simulate_and_publish(const sim::Scene& scene, const SimulateCommand& command) {
+Result<std::uint64_t> seed_of(const SimulateCommand& command, const sim::Scene& scene) {
+  if (command.seed.empty()) return scene.seed;
+  std::uint64_t seed = 0;
+  const char* const end = command.seed.data() + command.seed.size();
+  const auto [stop, error] = std::from_chars(command.seed.data(), end, seed);
+  if (error != std::errc{} || stop != end) {
+    return base::usage_error("--seed {}: must be a whole number from 0 to {}", base::one_line(command.seed),
+                             std::numeric_limits<std::uint64_t>::max());
+  }
+  return seed;
+}
+
+Result<Simulation> simulate_and_publish(const sim::Scene& scene, std::uint64_t seed,
+                                        const SimulateCommand& command) {
   ProgressBar bar{scene.name};
   const std::unique_ptr<base::Clock> clock = base::make_system_clock();
-  Result<Simulation> simulation =
-      simulate(scene, command.seed.value_or(scene.seed), *clock, [&bar](double done) {
-        bar.show(done);
-        if (done == 1.0) bar.show("analysing");
-      });
+  Result<Simulation> simulation = simulate(scene, seed, *clock, [&bar](double done) {
+    bar.show(done);
+    if (done == 1.0) bar.show("analysing");
+  });
   if (!simulation) return simulation;
   simulation->record.header.process.program = "stickslip simulate";
   simulation->record.header.process.configuration = command.line;
@@ -89,10 +105,12 @@ Result<std::string> run_simulate(const SimulateCommand& command) {
   if (!file) return tl::unexpected(file.error());
   const Result<sim::Scene> scene = sim::load_scene(*file, *changes);
   if (!scene) return tl::unexpected(scene.error());
+  const Result<std::uint64_t> seed = seed_of(command, *scene);
+  if (!seed) return tl::unexpected(seed.error());
   // Before the work, not only after it.
   if (auto free = record::check_publishable(command.output); !free) return tl::unexpected(free.error());
 
-  const Result<Simulation> simulation = simulate_and_publish(*scene, command);
+  const Result<Simulation> simulation = simulate_and_publish(*scene, *seed, command);
   if (!simulation) return tl::unexpected(simulation.error());
   if (command.json) return json_of(*simulation, command.output);
   const record::EndRecord& end = *simulation->record.end;
