@@ -14,6 +14,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/result.hpp"
 #include "core/friction/oscillator.hpp"
@@ -47,7 +48,7 @@ struct ConstantSpeed {
 struct Scene {
   std::string name;         ///< The file's name without its ending.
   std::string description;  ///< One line for people.
-  std::string text;         ///< The file, whole.
+  std::string text;         ///< The file, whole; with changes, as a file that would give this scene.
   std::uint64_t seed = 1;
   double scan_rate_Hz = 350.0;  ///< Unless the board is asked for another.
   double duration_s = 0.0;      ///< Of one repetition.
@@ -77,9 +78,29 @@ struct Scene {
   [[nodiscard]] double normal_load_N() const noexcept { return sled_mass_kg * gravity_m_per_s2; }
 };
 
+/// One key of a scene set, or one effect dropped.
+struct SceneChange {
+  std::string path;                  ///< Of the key, dotted; or "effects." and the effect.
+  std::optional<std::string> value;  ///< TOML, strings with or without quotes; absent: drop.
+  std::string origin;                ///< Names the change in messages: the option as typed.
+};
+
+struct SceneDuration {
+  double seconds = 0.0;
+  std::string origin;
+};
+
+/// What is to be different from the file.
+struct SceneChanges {
+  std::vector<SceneChange> changes;  ///< In this order.
+  /// Of the whole scene; a pull takes up the difference.
+  std::optional<SceneDuration> duration;
+};
+
 /// Usage error with file, line, value and what is allowed: unreadable file, unknown key or effect,
-/// missing or wrong unit, value out of range, S < K.
-[[nodiscard]] base::Result<Scene> load_scene(const std::filesystem::path& file);
+/// missing or wrong unit, value out of range, S < K. Where a change is to blame it is named.
+[[nodiscard]] base::Result<Scene> load_scene(const std::filesystem::path& file,
+                                             const SceneChanges& changes = {});
 /// The same from text. \param file stands for the file in messages and gives the scene its name.
 [[nodiscard]] base::Result<Scene> parse_scene(std::string_view text, const std::filesystem::path& file);
 

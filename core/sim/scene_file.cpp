@@ -4,8 +4,11 @@
 #include <limits>
 #include <numbers>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/base/settings.hpp"
+#include "core/base/wording.hpp"
 #include "core/sim/scene.hpp"
 #include "core/sim/scene_file_parts.hpp"
 
@@ -114,10 +117,42 @@ base::Result<Scene> read_scene(Settings settings, const std::filesystem::path& f
   return scene;
 }
 
+base::Result<Settings> changed_settings(const std::filesystem::path& file,
+                                        const std::vector<SceneChange>& changes) {
+  base::Result<Settings> settings = Settings::load(file);
+  if (!settings) return settings;
+  for (const SceneChange& change : changes) {
+    const base::Result<void> done = change.value ? settings->set(change.path, *change.value, change.origin)
+                                                 : settings->remove(change.path, change.origin);
+    if (!done) return tl::unexpected(done.error());
+  }
+  return settings;
+}
+
 }  // namespace
 
-base::Result<Scene> load_scene(const std::filesystem::path& file) {
-  base::Result<Settings> settings = Settings::load(file);
+base::Result<Scene> load_scene(const std::filesystem::path& file, const SceneChanges& changes) {
+  base::Result<Settings> settings = changed_settings(file, changes.changes);
+  if (!settings) return tl::unexpected(settings.error());
+  if (!changes.duration) return read_scene(*settings, file);
+
+  const SceneDuration& duration = *changes.duration;
+  SceneChange change{"duration", fmt::format("{} s", duration.seconds), duration.origin};
+  if (settings->table("effects").has("constant_speed")) {
+    const base::Result<Scene> scene = read_scene(*settings, file);
+    if (!scene) return scene;
+    const double others_s = scene->duration_s - scene->constant_speed->pull_s;
+    const double pull_s = duration.seconds - others_s;
+    if (!(pull_s > 0.0)) {
+      return base::usage_error("{}: must be above {} s, which the scene takes beside the pull",
+                               base::one_line(duration.origin), others_s);
+    }
+    change = {"effects.constant_speed.pull", fmt::format("{} s", pull_s), duration.origin};
+  }
+  // Anew: what has been read cannot be changed.
+  std::vector<SceneChange> all = changes.changes;
+  all.push_back(std::move(change));
+  settings = changed_settings(file, all);
   if (!settings) return tl::unexpected(settings.error());
   return read_scene(*settings, file);
 }

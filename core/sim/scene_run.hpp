@@ -48,6 +48,12 @@ class SceneRun {
   ///         the scene, none only there.
   std::size_t next(std::span<double> raw);
 
+  /// How the motion is solved, and how far its numbers can be trusted; for people.
+  [[nodiscard]] static std::string_view method() noexcept {
+    // No steps, and event times bracketed to the last bits of a double: first_rise.hpp.
+    return "exact closed forms, accurate to rounding";
+  }
+
   /// Names of the effects that were built, in the order of the stages.
   [[nodiscard]] std::vector<std::string_view> effects() const;
 

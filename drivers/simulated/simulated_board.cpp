@@ -10,6 +10,7 @@
 #include "core/sim/scene.hpp"
 #include "core/sim/scene_run.hpp"
 #include "drivers/simulated/playlist.hpp"
+#include "drivers/simulated/scene_facts.hpp"
 #include "drivers/simulated/simulated_truth.hpp"
 
 namespace stickslip::drivers {
@@ -17,33 +18,12 @@ namespace {
 
 using daq::ReadStatus;
 
-daq::BoardInfo info_of(const Playlist& playlist) {
-  daq::BoardInfo info;
-  info.driver = "simulated";
-  info.board_name = "simulated tester";
-  for (const sim::Scene& scene : playlist.scenes()) {
-    info.device += (info.device.empty() ? "" : ", ") + scene.name;
-  }
-  info.scan_rate_requested_Hz = playlist.scan_rate_Hz();
-  info.scan_rate_granted_Hz = playlist.scan_rate_Hz();
-  info.quantity = daq::RawQuantity::kVolts;
-  if (const auto& converter = playlist.scenes().front().quantisation) {
-    info.quantity = daq::RawQuantity::kCounts;
-    info.maxdata = converter->maxdata();
-    info.range_min_V = converter->range_min_V;
-    info.range_max_V = converter->range_max_V;
-    info.polynomial = {converter->range_min_V,
-                       (converter->range_max_V - converter->range_min_V) / converter->maxdata()};
-  }
-  return info;
-}
-
 class SimulatedBoard final : public daq::Board {
  public:
   SimulatedBoard(std::shared_ptr<const Playlist> playlist, base::Clock& clock)
       : playlist_(std::move(playlist)),
         clock_(clock),
-        info_(info_of(*playlist_)),
+        info_(board_info_of(playlist_->scenes(), playlist_->scan_rate_Hz())),
         true_scan_rate_Hz_(sim::true_scan_rate_Hz(playlist_->scenes().front(), playlist_->scan_rate_Hz())) {
     // All runs are built here: read() may not allocate.
     for (const sim::Scene& scene : playlist_->scenes()) runs_.emplace_back(scene, playlist_->scan_rate_Hz());
@@ -149,18 +129,6 @@ base::Result<void> agree(const sim::Scene& scene, const sim::Scene& first, bool 
   return {};
 }
 
-friction::Tester tester_of(const std::vector<sim::Scene>& scenes) {
-  friction::Tester tester;
-  tester.sled_mass_kg = scenes.front().sled_mass_kg;
-  tester.gravity_m_per_s2 = scenes.front().gravity_m_per_s2;
-  const auto speed = [](const sim::Scene& scene) {
-    return scene.constant_speed ? std::optional{scene.constant_speed->pull_speed_m_per_s} : std::nullopt;
-  };
-  const auto same = [&](const sim::Scene& scene) { return speed(scene) == speed(scenes.front()); };
-  if (std::all_of(scenes.begin(), scenes.end(), same)) tester.pull_speed_m_per_s = speed(scenes.front());
-  return tester;
-}
-
 }  // namespace
 
 base::Result<SimulatedTester> make_simulated_tester(const SimulatedBoardSettings& settings,
@@ -192,7 +160,7 @@ base::Result<SimulatedTester> make_simulated_tester(const SimulatedBoardSettings
     }
   }
   SimulatedTester result;
-  result.load_cell = {scenes.front().load_cell.gain_N_per_V, scenes.front().load_cell.zero_V};
+  result.load_cell = load_cell_of(scenes.front());
   result.tester = tester_of(scenes);
   auto playlist = std::make_shared<const Playlist>(std::move(scenes), settings.repeats, rate_Hz);
   result.truth = make_simulated_truth(playlist);
