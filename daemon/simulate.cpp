@@ -1,9 +1,10 @@
 #include "daemon/simulate.hpp"
 
-#include <algorithm>
+#include <cstddef>
 #include <numeric>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "core/pipeline/sink.hpp"
 #include "core/sim/scene_run.hpp"
@@ -12,6 +13,7 @@
 #include "daemon/method_text.hpp"
 #include "daemon/version.hpp"
 #include "drivers/simulated/scene_facts.hpp"
+#include "drivers/simulated/simulated_truth.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -33,6 +35,18 @@ record::RecordHeader header_of(const sim::Scene& scene) {
   header.process.commit = kCommit;
   header.process.method = method_text({});
   return header;
+}
+
+/// The scans follow those of the record; what is between them did not arrive.
+void append(record::Record& record, daq::ScanIndex first, std::span<const double> raw) {
+  if (!record.scan.empty() && first != record.scan.back() + 1) {
+    const daq::ScanIndex missing = record.scan.back() + 1;
+    // The cause that the daemon would note: a board does not tell it.
+    record.gaps.push_back({missing, first - missing, false, daq::GapCause::kUnknown});
+  }
+  record.scan.resize(record.scan.size() + raw.size());
+  std::iota(record.scan.end() - static_cast<std::ptrdiff_t>(raw.size()), record.scan.end(), first);
+  record.raw.insert(record.raw.end(), raw.begin(), raw.end());
 }
 
 std::string duration_text(double time_s) {
@@ -68,19 +82,23 @@ base::Result<Simulation> simulate(const sim::Scene& scene, std::uint64_t seed, c
   result.method = sim::SceneRun::method();
   record::Record& record = result.record;
   record.header = header_of(scene);
-  record.scan.resize(count);
-  std::iota(record.scan.begin(), record.scan.end(), daq::ScanIndex{0});
-  record.raw.resize(count);
+  record.scan.reserve(count);
+  record.raw.reserve(count);
 
   sim::SceneRun run{scene, scene.scan_rate_Hz};
   run.restart(seed);
   constexpr std::size_t kScansPerStep = 4096;  // Between two looks at the clock and the progress.
-  for (std::size_t done = 0; done < count;) {
-    const std::int64_t start_ns = clock.monotonic_ns();
-    done += run.next(std::span{record.raw}.subspan(done, std::min(kScansPerStep, count - done)));
+  std::vector<double> step(kScansPerStep);
+  for (;;) {
+    std::int64_t start_ns = clock.monotonic_ns();
+    const daq::ScanIndex first = run.next_scan();
+    const std::size_t arrived = run.next(step);
     result.time_taken_s += seconds_since(start_ns, clock);
-    if (progress) progress(static_cast<double>(done) / static_cast<double>(count));
+    if (arrived == 0) break;
+    append(record, first, std::span{step}.first(arrived));
+    if (progress) progress(static_cast<double>(run.next_scan()) / static_cast<double>(count));
   }
+  if (record.raw.empty()) return base::usage_error("scene {}: all its scans are missing", scene.name);
 
   const std::int64_t start_ns = clock.monotonic_ns();
   base::Result<record::EndRecord> end = analyse(record);
@@ -88,6 +106,9 @@ base::Result<Simulation> simulate(const sim::Scene& scene, std::uint64_t seed, c
   end->compute_time_s = seconds_since(start_ns, clock);
   end->cause = pipeline::name(pipeline::EndCause::kEndOfInput);
   end->truth = sim::scene_truth(scene, scene.scan_rate_Hz, seed);
+  // Its times begin with the first scan that arrived.
+  drivers::move_into_window(*end->truth, static_cast<double>(record.scan.front()) / scene.scan_rate_Hz,
+                            scene.duration_s);
   record::set_end(record, std::move(*end));
   record.header.process.simulation = result.summary();
   return result;

@@ -94,6 +94,11 @@ bool is_there(const std::filesystem::path& path) {
   return std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
 }
 
+base::Result<void> check_new(const std::filesystem::path& path) {
+  if (!is_there(path)) return {};
+  return base::usage_error("{}: exists already and is never overwritten: choose another name", path.string());
+}
+
 void end_interrupted(JournalReading& reading, const Evaluate& evaluate) {
   Record& record = reading.record;
   EndRecord end;
@@ -121,10 +126,7 @@ base::Result<void> remove_journal(const std::filesystem::path& journal) {
 }  // namespace
 
 base::Result<void> check_publishable(const std::filesystem::path& path) {
-  if (is_there(path)) {
-    return base::usage_error("{}: exists already and is never overwritten: choose another name",
-                             path.string());
-  }
+  if (auto is_new = check_new(path); !is_new) return is_new;
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder_of(path), ignored)) {
     return base::usage_error("{}: there is no folder {}: make it first", path.string(),
@@ -136,7 +138,7 @@ base::Result<void> check_publishable(const std::filesystem::path& path) {
 base::Result<void> publish_record(const Record& record, const std::filesystem::path& path) {
   STICKSLIP_EXPECTS(record.end && record.scan.size() == record.raw.size());
   STICKSLIP_EXPECTS(record.header.board.quantity != daq::RawQuantity::kCounts || record.header.load_cell);
-  if (auto free = check_publishable(path); !free) return free;
+  if (auto is_new = check_new(path); !is_new) return is_new;
   const auto part = with_suffix(path, ".part");
   auto published = build_verified(record, part);
   if (published) published = rename_to_new(part, path);

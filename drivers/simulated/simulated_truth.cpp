@@ -7,9 +7,7 @@
 #include "core/sim/scene_truth.hpp"
 
 namespace stickslip::drivers {
-namespace {
 
-/// Times relative to the window's first scan, without what lies outside of the window.
 void move_into_window(friction::TestTruth& truth, double window_start_s, double window_length_s) {
   std::vector<friction::ModeInterval> modes;
   for (friction::ModeInterval mode : truth.modes) {
@@ -25,6 +23,8 @@ void move_into_window(friction::TestTruth& truth, double window_start_s, double 
   }
   truth.cycles = std::move(cycles);
 }
+
+namespace {
 
 class SimulatedTruth final : public friction::TruthSource {
  public:

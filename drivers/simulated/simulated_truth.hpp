@@ -9,6 +9,9 @@
 
 namespace stickslip::drivers {
 
+/// Makes times relative to the window's first scan and drops what lies outside of the window.
+void move_into_window(friction::TestTruth& truth, double window_start_s, double window_length_s);
+
 /// Answers for the repetition that shares most scans with the window; where the window cuts it, modes
 /// and cycles are cut too. Nothing for a window without scans or behind the end of the list.
 [[nodiscard]] std::shared_ptr<const friction::TruthSource> make_simulated_truth(

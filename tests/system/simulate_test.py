@@ -110,6 +110,16 @@ folder = "records"
                 for name, stored in live[group].items():
                     numpy.testing.assert_array_equal(stored[()], whole[group][name][()], err_msg=name)
 
+    def test_scans_that_do_not_arrive_are_gaps(self):
+        record, _ = self.simulate("--json", scene="clock-and-missing-scans")
+        scans = record["entry/raw/scan"][()]
+        jumps = numpy.flatnonzero(numpy.diff(scans) > 1)
+        self.assertGreater(len(jumps), 0)
+        self.assertEqual(len(scans), len(record["entry/raw/counts"]))
+        numpy.testing.assert_array_equal(record["entry/gaps/first_scan"][()], scans[jumps] + 1)
+        numpy.testing.assert_array_equal(record["entry/gaps/scan_count"][()], numpy.diff(scans)[jumps] - 1)
+        self.assertEqual(record["entry/results/gap_count"][()], len(jumps))
+
     def test_seed_decides_the_bits(self):
         self.assertEqual(self.sha256("--seed", 7), self.sha256("--seed", 7))
         self.assertNotEqual(self.sha256("--seed", 7), self.sha256("--seed", 8))
