@@ -18,6 +18,7 @@
 #include "core/friction/oscillator.hpp"
 #include "core/friction/slip_waveform.hpp"
 #include "core/friction/truth.hpp"
+#include "core/sim/paper.hpp"
 #include "core/sim/scan_time.hpp"
 
 namespace stickslip::sim {
@@ -36,6 +37,7 @@ struct Motion {
   double mu_s = 0.0;  ///< S ≥ mu_k
   double mu_k = 0.0;  ///< K ≥ 0
   double gravity_m_per_s2 = 0.0;
+  PaperSettings paper;  ///< How S and K differ from contact to contact.
   bool one_way_coupling = false;
   std::vector<BeltSegment> belt;  ///< In order; at rest after the last.
 };
@@ -46,6 +48,7 @@ struct ModeStart {
   friction::Mode mode = friction::Mode::kStick;
   bool onset = false;    ///< A slip that starts because sticking gave way.
   bool capture = false;  ///< The slip before ended because the sled had reached the belt's speed.
+  Coefficients paper;    ///< S and K in force.
 };
 
 /// Told of each change of mode, in order.
@@ -59,10 +62,12 @@ class MotionObserver {
 class Propagator {
  public:
   /// \param scan_rate_Hz > 0. \param observer may be null; outlives the propagator.
-  Propagator(const Motion& motion, double scan_rate_Hz, MotionObserver* observer = nullptr);
+  /// \param seed as in restart().
+  Propagator(const Motion& motion, double scan_rate_Hz, MotionObserver* observer = nullptr,
+             std::uint64_t seed = 1);
 
-  /// Back to scan 0, at rest and unloaded. Does not allocate.
-  void restart();
+  /// Back to scan 0, at rest and unloaded, with these random numbers. Does not allocate.
+  void restart(std::uint64_t seed);
 
   /// The coefficient F/(m g) at the next scans. Does not allocate.
   void next(std::span<double> coefficient);
@@ -74,7 +79,16 @@ class Propagator {
   /// What the sled is doing; two of them are slips, two are slack.
   enum class Phase { kStick, kSlower, kFaster, kFree, kRide };
   /// How the present piece will end.
-  enum class Ending { kNever, kGivesWay, kCaptured, kUnloaded, kTouchesCoupling, kMeetsBelt, kSegment };
+  enum class Ending {
+    kNever,
+    kGivesWay,
+    kCaptured,
+    kUnloaded,
+    kTouchesCoupling,
+    kMeetsBelt,
+    kNewPlace,
+    kSegment
+  };
 
   struct State {
     double c;     ///< Below zero with one-way coupling: the slack, as a coefficient.
@@ -94,6 +108,9 @@ class Propagator {
   void offer(Ending ending, std::optional<double> t_s);
   void plan_slip_end();
   void plan_free_end();
+  [[nodiscard]] double slid_after(double t_s) const;
+  void plan_new_place();
+  void meet_new_place();
   void pass_end();
   void pass_until(std::int64_t scan);
 
@@ -101,6 +118,9 @@ class Propagator {
   double scan_rate_Hz_;
   MotionObserver* observer_;
   double omega0_squared_;
+  Paper paper_;
+  double place_length_;      ///< Correlation length in units of the coefficient.
+  double place_left_ = 0.0;  ///< Still to slide until a new place.
 
   std::int64_t next_scan_ = 0;
   std::size_t segment_ = 0;  ///< Of motion_.belt; its size when all are over.

@@ -77,6 +77,7 @@ struct Scene {
   std::optional<ConstantSpeed> constant_speed;
   bool damping = false;
   bool one_way_coupling = false;
+  PaperSettings paper;  ///< Effects that change S and K: `scatter`, `first_peak`.
   std::optional<WhiteNoise> white_noise;
   std::optional<Quantisation> quantisation;
 

@@ -24,9 +24,12 @@ constexpr double kHeaviestSled_kg = 1000.0;
 constexpr double kFastestOscillator_Hz = 1e5;
 constexpr double kFastestScan_Hz = 1e6;
 constexpr double kHighestVoltage_V = 1000.0;
+constexpr double kLargestScatter = 0.6;   // Real paper scatters by 22–55 %.
+constexpr double kFinestPaper_m = 1e-6;   // Below the thickness of a fibre,
+constexpr double kCoarsestPaper_m = 1.0;  // above the length of a sheet.
 
-constexpr std::array<std::string_view, 5> kEffects{"damping", "constant_speed", "one_way_coupling",
-                                                   "white_noise", "quantisation"};
+constexpr std::array<std::string_view, 7> kEffects{
+    "damping", "constant_speed", "one_way_coupling", "scatter", "first_peak", "white_noise", "quantisation"};
 
 void read_tester(Settings tester, double gamma_over_2omega, Scene& scene) {
   scene.sled_mass_kg =
@@ -77,6 +80,25 @@ ConstantSpeed read_constant_speed(Settings effect) {
   test.return_s = effect.quantity("return", Dimension::kTime, duration);
   test.rest_s = effect.quantity("rest", Dimension::kTime, duration);
   return test;
+}
+
+Scatter read_scatter(Settings effect) {
+  Scatter scatter;
+  scatter.delta_mu_cv =
+      effect.quantity("delta_mu_cv", Dimension::kDimensionless, Limits::between(0.0, kLargestScatter));
+  scatter.mu_k_sd =
+      effect.quantity("mu_k_sd", Dimension::kDimensionless, Limits::between(0.0, kLargestCoefficient), 0.0);
+  scatter.correlation_length_m = effect.quantity("correlation_length", Dimension::kLength,
+                                                 Limits::between(kFinestPaper_m, kCoarsestPaper_m), 0.001);
+  return scatter;
+}
+
+FirstPeak read_first_peak(Settings effect) {
+  FirstPeak peak;
+  peak.change = effect.quantity("change", Dimension::kDimensionless,
+                                Limits::between(-kLargestCoefficient, kLargestCoefficient));
+  peak.sd = effect.quantity("sd", Dimension::kDimensionless, Limits::between(0.0, kLargestCoefficient), 0.0);
+  return peak;
 }
 
 WhiteNoise read_white_noise(Settings effect, const Scene& scene) {
@@ -137,6 +159,8 @@ base::Result<Scene> read_scene(Settings settings, const std::filesystem::path& f
         settings.quantity("duration", Dimension::kTime, Limits::above_up_to(0.0, kLongestPhase_s));
   }
   scene.one_way_coupling = effects.has("one_way_coupling");
+  if (effects.has("scatter")) scene.paper.scatter = read_scatter(effects.table("scatter"));
+  if (effects.has("first_peak")) scene.paper.first_peak = read_first_peak(effects.table("first_peak"));
   if (effects.has("white_noise")) {
     scene.white_noise = read_white_noise(effects.table("white_noise"), scene);
   }

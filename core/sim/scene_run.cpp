@@ -12,6 +12,8 @@ SceneRun::SceneRun(const Scene& scene, double scan_rate_Hz)
   if (scene.damping) motion_effects_.push_back("damping");
   if (scene.constant_speed) motion_effects_.push_back("constant_speed");
   if (scene.one_way_coupling) motion_effects_.push_back("one_way_coupling");
+  if (scene.paper.scatter) motion_effects_.push_back("scatter");
+  if (scene.paper.first_peak) motion_effects_.push_back("first_peak");
   if (scene.white_noise) signal_.push_back(make_white_noise(*scene.white_noise));
   if (scene.quantisation) signal_.push_back(make_quantisation(*scene.quantisation));
   restart(scene.seed);
@@ -19,7 +21,7 @@ SceneRun::SceneRun(const Scene& scene, double scan_rate_Hz)
 
 void SceneRun::restart(std::uint64_t seed) {
   next_scan_ = 0;
-  motion_.restart();
+  motion_.restart(seed);
   for (const auto& effect : signal_) effect->restart(seed);
 }
 
