@@ -4,8 +4,10 @@
 
 namespace stickslip::sim {
 
-Paper::Paper(const PaperSettings& settings, const Coefficients& mean) : mean_(mean), now_(mean) {
+Paper::Paper(const PaperSettings& settings, const Coefficients& mean)
+    : mean_(mean), now_(mean), ageing_(settings.contact_ageing) {
   STICKSLIP_EXPECTS(mean.mu_k >= 0.0 && mean.mu_s >= mean.mu_k);
+  if (ageing_) STICKSLIP_EXPECTS(ageing_->per_decade >= 0.0 && ageing_->cutoff_s > 0.0);
   if (settings.scatter) {
     effects_.push_back(make_scatter(*settings.scatter));
     correlation_length_m_ = settings.scatter->correlation_length_m;
@@ -22,7 +24,8 @@ void Paper::renew() {
   for (const auto& effect : effects_) effect->renew(now_);
 }
 
-void Paper::slipped() {
+void Paper::slipped(double rested_s) {
+  now_.mu_s = static_limit(rested_s);
   for (const auto& effect : effects_) effect->slipped();
 }
 

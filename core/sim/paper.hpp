@@ -34,9 +34,22 @@ struct FirstPeak {
   double sd = 0.0;      ///< Of the change, normal from run to run.
 };
 
+/// Effect `contact_ageing` (motion): S grows with the time t that a contact has rested, as
+/// S + β log₁₀(1 + t/t₀); nothing at t = 0. [Dieterich, J. Geophys. Res. 77(20):3690–3697, 1972]
+struct ContactAgeing {
+  double per_decade = 0.0;  ///< β ≥ 0, as a coefficient.
+  double cutoff_s = 0.001;  ///< t₀ > 0
+
+  [[nodiscard]] double growth(double rested_s) const noexcept;
+  /// First t ≥ 0 at which held + rate · t reaches mu_s + growth(rested_s + t).
+  /// \param held  at most mu_s + growth(rested_s). \param rate  > 0, 1/s.
+  [[nodiscard]] double gives_way_s(double held, double rate, double mu_s, double rested_s) const;
+};
+
 struct PaperSettings {
-  std::optional<Scatter> scatter;
-  std::optional<FirstPeak> first_peak;
+  std::optional<Scatter> scatter{};
+  std::optional<FirstPeak> first_peak{};
+  std::optional<ContactAgeing> contact_ageing{};
 };
 
 /// S ≥ K ≥ 0.
@@ -71,8 +84,16 @@ class Paper {
   void restart(std::uint64_t seed);
   /// The sled meets a new place.
   void renew();
-  /// The contact has given way.
-  void slipped();
+  /// The contact has given way after this rest.
+  void slipped(double rested_s);
+  /// What a contact holds after this rest.
+  [[nodiscard]] double static_limit(double rested_s) const noexcept {
+    return ageing_ ? now_.mu_s + ageing_->growth(rested_s) : now_.mu_s;
+  }
+  /// After this rest, when will a force that grows at this rate (> 0, 1/s) from `held` be too much?
+  [[nodiscard]] double gives_way_s(double held, double rate, double rested_s) const {
+    return ageing_ ? ageing_->gives_way_s(held, rate, now_.mu_s, rested_s) : (now_.mu_s - held) / rate;
+  }
 
   [[nodiscard]] const Coefficients& now() const noexcept { return now_; }
   /// Sliding this far brings a new place; infinite if the paper is everywhere the same.
@@ -82,6 +103,7 @@ class Paper {
   Coefficients mean_;
   Coefficients now_;
   double correlation_length_m_ = std::numeric_limits<double>::infinity();
+  std::optional<ContactAgeing> ageing_;
   std::vector<std::unique_ptr<PaperEffect>> effects_;
 };
 

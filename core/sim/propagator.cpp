@@ -24,10 +24,10 @@ Propagator::Propagator(const Motion& motion, double scan_rate_Hz, MotionObserver
 
 void Propagator::restart(std::uint64_t seed) {
   paper_.restart(seed);
-  meet_new_place();
   next_scan_ = 0;
   segment_ = 0;
   start_ = {};
+  meet_new_place();
   segment_end_ = {};
   belt_rate_ = 0.0;
   halt_when_unloaded_ = false;
@@ -92,8 +92,12 @@ void Propagator::next_segment() {
   segment_end_ = segment_end_.later(segment.duration_s * scan_rate_Hz_);
 }
 
+double Propagator::damper_share() const {
+  return motion_.damper_counts_at_onset ? motion_.oscillator.gamma_per_s * belt_rate_ / omega0_squared_ : 0.0;
+}
+
 Propagator::Phase Propagator::phase_at_belt_speed(double c) const {
-  if (std::abs(c) <= paper_.now().mu_s) return Phase::kStick;
+  if (std::abs(c + damper_share()) <= paper_.static_limit(rested_s())) return Phase::kStick;
   // Beyond the static limit the sled cannot follow the belt: it goes where the forces drive it. If
   // they drive it back into the belt's speed from both sides, it stays there.
   const double damping = -motion_.oscillator.gamma_per_s * belt_rate_;
@@ -122,19 +126,20 @@ void Propagator::enter(State state, bool capture) {
 void Propagator::begin(Phase phase, State state, bool onset, bool capture) {
   phase_ = phase;
   begun_ = state;
+  if (onset) paper_.slipped(rested_s());
   if (phase == Phase::kSlower || phase == Phase::kFaster) slip_ = waveform();
   if (observer_ != nullptr) {
     const Mode mode = phase == Phase::kStick                               ? Mode::kStick
                       : phase == Phase::kSlower || phase == Phase::kFaster ? Mode::kSlip
                                                                            : Mode::kSlack;
-    observer_->mode_began({start_, mode, onset, capture, paper_.now()});
+    observer_->mode_began({start_, mode, onset, capture, paper_.now(), state.c});
   }
-  if (onset) paper_.slipped();
   plan_end();
 }
 
 void Propagator::meet_new_place() {
   paper_.renew();
+  contact_start_ = start_;
   place_left_ = place_length_;
 }
 
@@ -148,7 +153,8 @@ void Propagator::pass_end() {
     case Ending::kGivesWay:
       // Exactly at the limit, and exactly at the belt's speed: [13], [14].
       begin(belt_rate_ > 0.0 ? Phase::kSlower : Phase::kFaster,
-            {std::copysign(paper_.now().mu_s, belt_rate_), belt_rate_}, true, false);
+            {std::copysign(paper_.static_limit(rested_s()), belt_rate_) - damper_share(), belt_rate_}, true,
+            false);
       return;
     case Ending::kCaptured:
       meet_new_place();

@@ -6,8 +6,8 @@
 ///     std::array<double, 64> coefficient;
 ///     sled.next(coefficient);  // scans 0 … 63
 ///
-/// Conventions of Penner 1995: slip starts when the spring alone holds S [13]; the load cell reads
-/// the spring.
+/// Conventions of Penner 1995: slip starts when the spring alone holds S [13], unless the motion asks
+/// for spring and damper; the load cell reads the spring.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,8 @@ struct Motion {
   double mu_s = 0.0;  ///< S ≥ mu_k
   double mu_k = 0.0;  ///< K ≥ 0
   double gravity_m_per_s2 = 0.0;
-  PaperSettings paper;  ///< How S and K differ from contact to contact.
+  bool damper_counts_at_onset = false;  ///< Slip starts when spring and damper together hold S.
+  PaperSettings paper;                  ///< How S and K differ from contact to contact.
   bool one_way_coupling = false;
   std::vector<BeltSegment> belt;  ///< In order; at rest after the last.
 };
@@ -46,9 +47,10 @@ struct Motion {
 struct ModeStart {
   ScanTime time;
   friction::Mode mode = friction::Mode::kStick;
-  bool onset = false;    ///< A slip that starts because sticking gave way.
-  bool capture = false;  ///< The slip before ended because the sled had reached the belt's speed.
-  Coefficients paper;    ///< S and K in force.
+  bool onset = false;        ///< A slip that starts because sticking gave way.
+  bool capture = false;      ///< The slip before ended because the sled had reached the belt's speed.
+  Coefficients paper;        ///< S and K in force.
+  double coefficient = 0.0;  ///< Of the spring; below zero the slack.
 };
 
 /// Told of each change of mode, in order.
@@ -103,6 +105,9 @@ class Propagator {
   /// Chooses the phase from the state. \param capture as in ModeStart.
   void enter(State state, bool capture);
   void begin(Phase phase, State state, bool onset, bool capture);
+  /// What the damper adds to the spring at the belt's speed, if it counts.
+  [[nodiscard]] double damper_share() const;
+  [[nodiscard]] double rested_s() const { return start_.periods_since(contact_start_) / scan_rate_Hz_; }
   [[nodiscard]] Phase phase_at_belt_speed(double c) const;
   void plan_end();
   void offer(Ending ending, std::optional<double> t_s);
@@ -129,7 +134,8 @@ class Propagator {
   bool halt_when_unloaded_ = false;
 
   Phase phase_ = Phase::kStick;
-  ScanTime start_;               ///< Of the present piece.
+  ScanTime start_;  ///< Of the present piece.
+  ScanTime contact_start_;
   State begun_{0.0, 0.0};        ///< State at start_.
   friction::SlipWaveform slip_;  ///< For the two slips; mirrored for kFaster.
   Ending ending_ = Ending::kNever;

@@ -40,9 +40,11 @@ void Propagator::plan_end() {
   ending_ = Ending::kNever;
   switch (phase_) {
     case Phase::kStick:
-      if (belt_rate_ > 0.0) offer(Ending::kGivesWay, (paper_.now().mu_s - begun_.c) / belt_rate_);
+      if (belt_rate_ != 0.0) {
+        const double held = std::copysign(1.0, belt_rate_) * (begun_.c + damper_share());
+        offer(Ending::kGivesWay, paper_.gives_way_s(held, std::abs(belt_rate_), rested_s()));
+      }
       if (belt_rate_ < 0.0) {
-        offer(Ending::kGivesWay, (-paper_.now().mu_s - begun_.c) / belt_rate_);
         const bool can_unload = (motion_.one_way_coupling || halt_when_unloaded_) && begun_.c >= 0.0;
         if (can_unload) offer(Ending::kUnloaded, -begun_.c / belt_rate_);
       }

@@ -41,6 +41,9 @@ struct ConstantSpeed {
   [[nodiscard]] double duration_s() const noexcept { return idle_s + pull_s + stop_s + return_s + rest_s; }
 };
 
+/// Effect `onset_convention` (motion): which force has to exceed S for the slip to start.
+enum class OnsetConvention { kSpring, kSpringAndDamper };
+
 /// Effect `white_noise` (signal): independent normal numbers added to the voltage.
 struct WhiteNoise {
   double sd_V = 0.0;
@@ -77,7 +80,8 @@ struct Scene {
   std::optional<ConstantSpeed> constant_speed;
   bool damping = false;
   bool one_way_coupling = false;
-  PaperSettings paper;  ///< Effects that change S and K: `scatter`, `first_peak`.
+  PaperSettings paper;  ///< Effects that change S and K: `scatter`, `first_peak`, `contact_ageing`.
+  std::optional<OnsetConvention> onset_convention;
   std::optional<WhiteNoise> white_noise;
   std::optional<Quantisation> quantisation;
 

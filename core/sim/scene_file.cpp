@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 #include <string_view>
+#include <utility>
 
 #include "core/base/settings.hpp"
 #include "core/sim/scene.hpp"
@@ -28,8 +29,9 @@ constexpr double kLargestScatter = 0.6;   // Real paper scatters by 22–55 %.
 constexpr double kFinestPaper_m = 1e-6;   // Below the thickness of a fibre,
 constexpr double kCoarsestPaper_m = 1.0;  // above the length of a sheet.
 
-constexpr std::array<std::string_view, 7> kEffects{
-    "damping", "constant_speed", "one_way_coupling", "scatter", "first_peak", "white_noise", "quantisation"};
+constexpr std::array<std::string_view, 9> kEffects{"damping",          "constant_speed", "one_way_coupling",
+                                                   "scatter",          "first_peak",     "contact_ageing",
+                                                   "onset_convention", "white_noise",    "quantisation"};
 
 void read_tester(Settings tester, double gamma_over_2omega, Scene& scene) {
   scene.sled_mass_kg =
@@ -101,6 +103,20 @@ FirstPeak read_first_peak(Settings effect) {
   return peak;
 }
 
+ContactAgeing read_contact_ageing(Settings effect) {
+  ContactAgeing ageing;
+  ageing.per_decade = effect.quantity("per_decade", Dimension::kDimensionless, Limits::between(0.0, 1.0));
+  ageing.cutoff_s =
+      effect.quantity("cutoff", Dimension::kTime, Limits::between(1e-9, kLongestPhase_s), 0.001);
+  return ageing;
+}
+
+OnsetConvention read_onset_convention(Settings effect) {
+  constexpr std::array<std::pair<std::string_view, OnsetConvention>, 2> kNames{
+      {{"spring", OnsetConvention::kSpring}, {"spring-and-damper", OnsetConvention::kSpringAndDamper}}};
+  return effect.choice<OnsetConvention>("force", kNames);
+}
+
 WhiteNoise read_white_noise(Settings effect, const Scene& scene) {
   const auto coefficient =
       effect.quantity_if_given("sd", Dimension::kDimensionless, Limits::between(0.0, kLargestCoefficient));
@@ -161,6 +177,12 @@ base::Result<Scene> read_scene(Settings settings, const std::filesystem::path& f
   scene.one_way_coupling = effects.has("one_way_coupling");
   if (effects.has("scatter")) scene.paper.scatter = read_scatter(effects.table("scatter"));
   if (effects.has("first_peak")) scene.paper.first_peak = read_first_peak(effects.table("first_peak"));
+  if (effects.has("contact_ageing")) {
+    scene.paper.contact_ageing = read_contact_ageing(effects.table("contact_ageing"));
+  }
+  if (effects.has("onset_convention")) {
+    scene.onset_convention = read_onset_convention(effects.table("onset_convention"));
+  }
   if (effects.has("white_noise")) {
     scene.white_noise = read_white_noise(effects.table("white_noise"), scene);
   }

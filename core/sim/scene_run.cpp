@@ -14,6 +14,8 @@ SceneRun::SceneRun(const Scene& scene, double scan_rate_Hz)
   if (scene.one_way_coupling) motion_effects_.push_back("one_way_coupling");
   if (scene.paper.scatter) motion_effects_.push_back("scatter");
   if (scene.paper.first_peak) motion_effects_.push_back("first_peak");
+  if (scene.paper.contact_ageing) motion_effects_.push_back("contact_ageing");
+  if (scene.onset_convention) motion_effects_.push_back("onset_convention");
   if (scene.white_noise) signal_.push_back(make_white_noise(*scene.white_noise));
   if (scene.quantisation) signal_.push_back(make_quantisation(*scene.quantisation));
   restart(scene.seed);

@@ -19,6 +19,7 @@ class Chronicle final : public MotionObserver {
   struct Slip {
     double onset_s = 0.0;
     Coefficients paper;
+    double coefficient = 0.0;
     std::optional<double> stick_again_s;
   };
 
@@ -28,7 +29,7 @@ class Chronicle final : public MotionObserver {
     const double now_s = start.time.periods_since({}) / scan_rate_Hz_;
     const bool sticks = start.mode == Mode::kStick || (start.capture && start.onset);
     if (sticks && !slips_.empty() && !slips_.back().stick_again_s) slips_.back().stick_again_s = now_s;
-    if (start.onset) slips_.push_back({now_s, start.paper, {}});
+    if (start.onset) slips_.push_back({now_s, start.paper, start.coefficient, {}});
     if (!modes_.empty()) {
       if (modes_.back().mode == start.mode && !start.onset) return;
       close(now_s);
@@ -56,7 +57,7 @@ struct Tally {
   int captured = 0;
   int not_captured = 0;
   std::vector<double> onsets_s;
-  Coefficients first_paper;  ///< Of the first slip.
+  Chronicle::Slip first;
 };
 
 Tally tally(const std::vector<Chronicle::Slip>& slips, double pull_end_s, double period_s) {
@@ -64,7 +65,7 @@ Tally tally(const std::vector<Chronicle::Slip>& slips, double pull_end_s, double
   double longest_slip_s = 2.0 * period_s;  // A damped slip is captured within its first period.
   for (const Chronicle::Slip& slip : slips) {
     if (slip.onset_s >= pull_end_s) break;
-    if (result.onsets_s.empty()) result.first_paper = slip.paper;
+    if (result.onsets_s.empty()) result.first = slip;
     result.onsets_s.push_back(slip.onset_s);
     if (slip.stick_again_s && *slip.stick_again_s < pull_end_s) {
       ++result.captured;
@@ -92,7 +93,7 @@ void describe_oscillation(const Scene& scene, const Tally& slips, friction::Test
     truth.oscillation_frequency_Hz = scene.oscillator.omega_rad_per_s() / (2.0 * std::numbers::pi);
   }
   const double r = scene.oscillator.stick_rate_per_s(truth.pull_speed_m_per_s, scene.gravity_m_per_s2);
-  const friction::SlipWaveform slip{slips.first_paper.mu_k, slips.first_paper.mu_s - slips.first_paper.mu_k,
+  const friction::SlipWaveform slip{slips.first.paper.mu_k, slips.first.coefficient - slips.first.paper.mu_k,
                                     r, scene.oscillator};
   double least = slip.value(slip.trough_time_s());
   if (scene.one_way_coupling) least = std::max(least, 0.0);

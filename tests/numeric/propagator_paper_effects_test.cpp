@@ -176,5 +176,120 @@ TEST(FirstPeak, IsRandomFromRunToRunAndRepeatsWithItsSeed) {
   EXPECT_NEAR(std::sqrt(squares / kRuns) / 0.01, 1.0, 5.0 / std::sqrt(2.0 * kRuns));
 }
 
+sim::Motion ageing(double Q, double per_decade, double cutoff_s) {
+  sim::Motion motion = motion_at(Q, 0.022);
+  motion.paper.contact_ageing = sim::ContactAgeing{per_decade, cutoff_s};
+  return motion;
+}
+
+TEST(ContactAgeing, EachContactGivesWayAtTheSOfItsAge) {
+  for (const double per_decade : {0.001, 0.01, 0.1}) {
+    MotionRecorder recorder{350.0};
+    sim::Propagator sled{ageing(0.5, per_decade, 1e-4), 350.0, &recorder};
+    sled.skip(35'000);
+    ASSERT_GT(recorder.onsets_s.size(), 10U);
+    for (std::size_t i = 1; i < recorder.starts.size(); ++i) {
+      const sim::ModeStart& onset = recorder.starts[i];
+      if (!onset.onset) continue;
+      const double rested_s = onset.time.periods_since(recorder.starts[i - 1].time) / 350.0;
+      const double S = 0.35 + per_decade * std::log10(1.0 + rested_s / 1e-4);
+      // Times carry an epsilon of their scan, 1e-19 s, the sums of S a few of its own.
+      EXPECT_NEAR(onset.paper.mu_s, S, 1e-13);
+      EXPECT_EQ(onset.coefficient, onset.paper.mu_s);
+    }
+  }
+}
+
+// The force that is there at the moment of giving way is S: nothing jumps.
+TEST(ContactAgeing, ForceIsContinuousAtTheOnset) {
+  const sim::Motion motion = ageing(0.5, 0.02, 1e-3);
+  MotionRecorder recorder{350.0};
+  sim::Propagator sled{motion, 350.0, &recorder};
+  sled.skip(3500);
+  const double r = motion.oscillator.stick_rate_per_s(motion.belt[0].speed_m_per_s, kGravity);
+  int checked = 0;
+  for (std::size_t i = 1; i < recorder.starts.size(); ++i) {
+    const sim::ModeStart& before = recorder.starts[i - 1];
+    const sim::ModeStart& onset = recorder.starts[i];
+    if (!onset.onset || before.mode != Mode::kStick) continue;
+    const double c = before.coefficient + r * onset.time.periods_since(before.time) / 350.0;
+    // The bracket closes to 2 epsilon of the time, 1e-2 s, at r = 3/s; the excess has 5 roundings.
+    ASSERT_NEAR(c, onset.coefficient, 1e-14);
+    ++checked;
+  }
+  EXPECT_GT(checked, 20);
+}
+
+TEST(ContactAgeing, NothingPerDecadeIsNothing) {
+  EXPECT_EQ(trace(ageing(1.3, 0.0, 1e-3), 350.0, 3500), trace(motion_at(1.3, 0.022), 350.0, 3500));
+}
+
+// At first S may grow faster than the force, also where the force is already S: no rest, no ageing,
+// but then it holds.
+TEST(ContactAgeing, SThatRunsAheadIsCaughtLater) {
+  const sim::ContactAgeing law{0.01, 1e-9};
+  for (const double held : {0.35, 0.34, -0.35}) {
+    for (const double rate : {1e-12, 1e-3, 1.0, 1e3}) {
+      const double t_s = law.gives_way_s(held, rate, 0.35, 0.0);
+      ASSERT_GT(t_s, 0.0);
+      const double S = 0.35 + 0.01 * std::log10(1.0 + t_s / 1e-9);
+      // To 2 epsilon of t, and ten of the terms, the force among them.
+      EXPECT_NEAR((held + rate * t_s) / S, 1.0, 1e-14) << held << " " << rate;
+    }
+  }
+}
+
+// Ten times slower, a decade more of rest: S is higher by β. One event, however slow.
+TEST(ContactAgeing, SlowBeltGainsBetaPerDecade) {
+  const auto first_S = [](double speed_m_per_s) {
+    sim::Motion motion = ageing(1.0, 0.01, 1e-6);
+    motion.belt = {{1e15, speed_m_per_s, false}};
+    MotionRecorder recorder{350.0};
+    sim::Propagator sled{motion, 350.0, &recorder};
+    const double r = motion.oscillator.stick_rate_per_s(speed_m_per_s, kGravity);
+    sled.skip(static_cast<std::int64_t>(0.8 / r * 350.0));  // S is 0.5 or so by then.
+    const auto onset = std::find_if(recorder.starts.begin(), recorder.starts.end(),
+                                    [](const sim::ModeStart& start) { return start.onset; });
+    return onset == recorder.starts.end() ? 0.0 : onset->paper.mu_s;
+  };
+  // t = S/r: S itself grows by β/S = 2 % from decade to decade, which is log₁₀ 1.02 = 0.009 of one.
+  EXPECT_NEAR(first_S(1e-12) - first_S(1e-11), 0.01, 0.0002);
+}
+
+TEST(OnsetConvention, WithTheDamperIsALowerSByItsShare) {
+  for (const double damping : {0.0, 0.022, 0.3}) {
+    for (const double direction : {1.0, -1.0}) {
+      sim::Motion damper = motion_at(1.0, damping);
+      damper.belt[0].speed_m_per_s *= direction;
+      damper.damper_counts_at_onset = true;
+      sim::Motion spring = motion_at(1.0, damping);
+      spring.belt = damper.belt;
+      // γ v/g, the share that the paper's convention leaves out.
+      spring.mu_s -= damper.oscillator.gamma_per_s * std::abs(damper.belt[0].speed_m_per_s) / kGravity;
+      if (spring.mu_s < spring.mu_k) continue;
+      const std::vector<double> a = trace(damper, 350.0, 3500);
+      const std::vector<double> b = trace(spring, 350.0, 3500);
+      // S differs by an epsilon of 0.35, which each of 200 cycles may add to the time; c′ · t is 8 · that.
+      for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 1e-11) << damping << " scan " << i;
+    }
+  }
+}
+
+// A share of the damper above S − K: the spring alone is below K at the onset, and all is still well.
+TEST(OnsetConvention, DamperMayHoldMoreThanSMinusK) {
+  sim::Motion motion = motion_at(3.0, 0.3);
+  motion.damper_counts_at_onset = true;
+  MotionRecorder recorder{350.0};
+  sim::Propagator sled{motion, 350.0, &recorder};
+  std::vector<double> coefficient(3500);
+  sled.next(coefficient);
+  ASSERT_EQ(recorder.onsets_s.size(), 1U);
+  const auto onset = std::find_if(recorder.starts.begin(), recorder.starts.end(),
+                                  [](const sim::ModeStart& start) { return start.onset; });
+  EXPECT_LT(onset->coefficient, 0.30);
+  EXPECT_EQ(onset->paper.mu_s, 0.35);
+  EXPECT_NEAR(coefficient.back(), 0.30, 1e-12);
+}
+
 }  // namespace
 }  // namespace stickslip::numeric

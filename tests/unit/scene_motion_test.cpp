@@ -119,6 +119,49 @@ TEST(SceneFirstPeak, ChangesTheFirstCycleAndItsTruth) {
   EXPECT_THAT(refusal(kPull + "[effects.first_peak]\nchange = 0.1\nsd = -0.1\n"), HasSubstr("test.toml:21"));
 }
 
+TEST(SceneContactAgeing, TruthHasTheSThatGaveWay) {
+  const Scene scene = scene_with("[effects.contact_ageing]\nper_decade = 0.01\n");
+  EXPECT_EQ(scene.paper.contact_ageing->cutoff_s, 0.001);
+  EXPECT_THAT(SceneRun(scene, 350.0).effects(), Contains("contact_ageing"));
+  const auto all = cycles(scene);
+  ASSERT_GT(all.size(), 20U);
+  EXPECT_GT(all[0].mu_s, all[2].mu_s);  // The first contact rests longest.
+  EXPECT_GT(all[2].mu_s, 0.35);
+  EXPECT_THAT(refusal(kPull + "[effects.contact_ageing]\nper_decade = -0.1\n"), HasSubstr("-0.1"));
+  EXPECT_THAT(refusal(kPull + "[effects.contact_ageing]\nper_decade = 0.1\ncutoff = \"0 s\"\n"),
+              AllOf(HasSubstr("test.toml:21"), HasSubstr("0 s")));
+}
+
+TEST(SceneOnsetConvention, IsSpringUnlessAskedForTheDamperToo) {
+  const std::string damping = "[effects.damping]\ngamma_over_2omega = 0.022\n";
+  const auto first_onset_s = [&](const std::string& effects) {
+    return cycles(scene_with(damping + effects)).at(0).onset_time_s;
+  };
+  const double spring_s = first_onset_s("");
+  EXPECT_EQ(first_onset_s("[effects.onset_convention]\nforce = \"spring\"\n"), spring_s);
+  // Earlier by (γ v/g)/r = γ/ω₀²: γ = 2 · 0.022 ω.
+  const double omega = 2.0 * std::acos(-1.0) * 20.0;
+  const double earlier_s = 2.0 * 0.022 / (omega * (1.0 + 0.022 * 0.022));
+  EXPECT_NEAR(spring_s - first_onset_s("[effects.onset_convention]\nforce = \"spring-and-damper\"\n"),
+              earlier_s, 1e-14);
+  EXPECT_THAT(refusal(kPull + "[effects.onset_convention]\nforce = \"wind\"\n"),
+              AllOf(HasSubstr("wind"), HasSubstr("spring-and-damper")));
+  EXPECT_THAT(refusal(kPull + "[effects.onset_convention]\n"), HasSubstr("force"));
+}
+
+TEST(ShippedScenes, AgeingContactsAreStrongestAfterTheLongestRest) {
+  const friction::TestTruth truth = scene_truth(shipped("contact-ageing"), 350.0, 1);
+  EXPECT_EQ(truth.regime, friction::Regime::kStickSlip);
+  ASSERT_GT(truth.cycles.size(), 20U);
+  EXPECT_GT(truth.cycles[0].mu_s, truth.cycles[5].mu_s + 0.005);
+}
+
+TEST(ShippedScenes, OnsetBySpringAndDamperSticksAndSlips) {
+  const friction::TestTruth truth = scene_truth(shipped("onset-by-spring-and-damper"), 350.0, 1);
+  EXPECT_EQ(truth.regime, friction::Regime::kStickSlip);
+  EXPECT_GT(truth.cycles.size(), 20U);
+}
+
 TEST(ShippedScenes, ScatteredPaperIsMixedOrSticksAndSlips) {
   const friction::TestTruth truth = scene_truth(shipped("scattered-paper"), 350.0, 1);
   EXPECT_GT(truth.cycles.size(), 20U);
