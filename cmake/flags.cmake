@@ -11,6 +11,11 @@ if(STICKSLIP_SANITIZE)
   target_compile_options(stickslip_flags INTERFACE
     -fsanitize=${STICKSLIP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(stickslip_flags INTERFACE -fsanitize=${STICKSLIP_SANITIZE})
+  if(STICKSLIP_SANITIZE MATCHES "address")
+    # With instrumentation GCC 12 sees uninitialised members inside Beast that are none; the plain
+    # presets keep the warning.
+    target_compile_options(stickslip_flags INTERFACE -Wno-maybe-uninitialized)
+  endif()
   if(STICKSLIP_SANITIZE MATCHES "thread")
     # GCC's ThreadSanitizer does not model the atomic_thread_fence inside Asio.
     target_compile_options(stickslip_flags INTERFACE -Wno-tsan)

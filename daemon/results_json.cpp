@@ -1,10 +1,23 @@
 #include "daemon/results_json.hpp"
 
+#include <cmath>
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
 namespace stickslip::daemon {
+namespace {
+
+/// A count is a whole number, without a decimal point.
+nlohmann::ordered_json number(const std::string& name, const friction::Estimate& estimate) {
+  constexpr std::string_view kCount = "_count";
+  if (!estimate.value) return nullptr;
+  if (name.ends_with(kCount)) return std::llround(*estimate.value);
+  return *estimate.value;
+}
+
+}  // namespace
 
 nlohmann::ordered_json results_json(const friction::TestResults& results, bool with_details) {
   using Json = nlohmann::ordered_json;
@@ -15,7 +28,7 @@ nlohmann::ordered_json results_json(const friction::TestResults& results, bool w
   friction::for_each_result(results,
                             [&](const friction::ResultName& name, const friction::Estimate& estimate) {
                               const std::string key{name.name};
-                              json[key] = estimate.value ? Json(*estimate.value) : Json(nullptr);
+                              json[key] = number(key, estimate);
                               Json& detail = details[key];
                               detail["value"] = json[key];
                               detail["unit"] = name.unit;

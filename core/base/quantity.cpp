@@ -7,6 +7,8 @@
 #include <span>
 #include <system_error>
 
+#include "core/base/wording.hpp"
+
 namespace stickslip::base {
 namespace {
 
@@ -181,7 +183,8 @@ Result<double> parse_quantity(std::string_view text, Dimension dimension) {
     if (!std::isfinite(value)) return usage_error("\"{}\" is outside the range of numbers", text);
     return value;
   }
-  return usage_error("\"{}\" has the unit \"{}\"; allowed: {}", text, symbol, allowed_units(dimension));
+  return usage_error("\"{}\" has the unit \"{}\"; allowed: {}", text, one_line(symbol),
+                     allowed_units(dimension));
 }
 
 std::string_view si_unit(Dimension dimension) noexcept { return units_of(dimension).front().symbol; }

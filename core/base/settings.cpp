@@ -1,53 +1,19 @@
 #include "core/base/settings.hpp"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <deque>
 #include <fstream>
-#include <map>
 #include <set>
 #include <sstream>
 #include <system_error>
 
+#include "core/base/settings_document.hpp"
 #include "core/base/wording.hpp"
 
 namespace stickslip::base {
 
-/// What has been asked of one table, which may be absent from the text.
-struct Settings::Node {
-  const toml::table* table = nullptr;
-  std::string path;        ///< Dotted, empty for the root.
-  std::string known_path;  ///< As path, but "[]" instead of the number in an array of tables.
-  unsigned line = 1;       ///< Of the table's header, or of what should hold it.
-  std::set<std::string, std::less<>> asked;
-  std::map<std::string, std::vector<Node*>, std::less<>> children;
-};
-
-struct Settings::Document {
-  std::string name;
-  std::string text;
-  toml::table root;
-  std::deque<Node> nodes;
-  std::optional<Error> first_wrong;
-  std::optional<Error> first_missing;
-
-  void wrong(unsigned line, std::string_view what) {
-    if (!first_wrong) first_wrong = Error{ErrorKind::kUsage, fmt::format("{}:{}: {}", name, line, what)};
-  }
-  void missing(unsigned line, std::string_view what) {
-    if (!first_missing) first_missing = Error{ErrorKind::kUsage, fmt::format("{}:{}: {}", name, line, what)};
-  }
-  [[nodiscard]] std::optional<Error> first_unknown(const Node& node) const;
-};
-
 namespace {
-
-constexpr std::size_t kLongestParserMessage = 200;
-
-unsigned line_of(const toml::node& node) noexcept { return node.source().begin.line; }
 
 std::string presentable(const toml::node& node) {
   if (const auto* text = node.as_string()) return fmt::format("\"{}\"", one_line(text->get()));
@@ -63,10 +29,6 @@ std::string presentable(const toml::node& node) {
 std::string_view without_value(std::string_view message, std::string_view text) {
   message.remove_prefix(std::min(message.size(), text.size() + std::string_view{"\"\" "}.size()));
   return message;
-}
-
-std::string joined_path(std::string_view parent, std::string_view key) {
-  return parent.empty() ? std::string{key} : fmt::format("{}.{}", parent, key);
 }
 
 std::string allowed_range(const Limits& limits, Dimension dimension) {
@@ -91,11 +53,11 @@ std::optional<Error> Settings::Document::first_unknown(const Node& node) const {
     if (!node.asked.contains(key.str())) {
       const std::string path = joined_path(node.path, key.str());
       const std::string_view what = value.is_table() || value.is_array_of_tables() ? "table" : "key";
-      return Error{ErrorKind::kUsage,
-                   fmt::format("{}:{}: {}: unknown {}; {}", name, key.source().begin.line,
-                               what == "table" ? fmt::format("[{}]", path)
-                                               : fmt::format("{} = {}", path, presentable(value)),
-                               what, spelling_hint(key.str(), node.asked))};
+      return error_at(place_of(path, value),
+                      fmt::format("{}: unknown {}; {}",
+                                  what == "table" ? fmt::format("[{}]", path)
+                                                  : fmt::format("{} = {}", path, presentable(value)),
+                                  what, spelling_hint(key.str(), node.asked)));
     }
   }
   for (const auto& [key, children] : node.children) {
@@ -142,6 +104,7 @@ Result<Settings> Settings::parse(std::string_view text, std::string_view name) {
   }
   Node& root = document->nodes.emplace_back();
   root.table = &document->root;
+  root.place = fmt::format("{}:1", name);
   return Settings{std::move(document), &root};
 }
 
@@ -170,11 +133,11 @@ Settings Settings::table(std::string_view key) {
     Node& child = document_->nodes.emplace_back();
     child.path = joined_path(node_->path, key);
     child.known_path = joined_path(node_->known_path, key);
-    child.line = value != nullptr ? line_of(*value) : node_->line;
+    child.place = value != nullptr ? document_->place_of(child.path, *value) : node_->place;
     child.table = value != nullptr ? value->as_table() : nullptr;
     if (value != nullptr && child.table == nullptr) {
-      document_->wrong(child.line, fmt::format("{} = {}: must be a table, written as [{}]", child.path,
-                                               presentable(*value), child.path));
+      document_->wrong(child.place, fmt::format("{} = {}: must be a table, written as [{}]", child.path,
+                                                presentable(*value), child.path));
     }
     children.push_back(&child);
   }
@@ -188,8 +151,9 @@ std::vector<Settings> Settings::tables(std::string_view key) {
     const std::string path = joined_path(node_->path, key);
     const toml::array* array = value->as_array();
     if (array == nullptr || (!array->empty() && !array->is_array_of_tables())) {
-      document_->wrong(line_of(*value), fmt::format("{} = {}: must be an array of tables, written as [[{}]]",
-                                                    path, presentable(*value), path));
+      document_->wrong(*node_, key, *value,
+                       fmt::format("{} = {}: must be an array of tables, written as [[{}]]", path,
+                                   presentable(*value), path));
       return {};
     }
     std::size_t number = 0;
@@ -198,7 +162,7 @@ std::vector<Settings> Settings::tables(std::string_view key) {
       child.table = element.as_table();
       child.path = fmt::format("{}[{}]", path, number++);
       child.known_path = joined_path(node_->known_path, key) + "[]";
-      child.line = line_of(element);
+      child.place = document_->place_of(path, element);
       children.push_back(&child);
     }
   }
@@ -212,7 +176,7 @@ double Settings::quantity(std::string_view key, Dimension dimension, Limits limi
   if (const std::optional<double> value = quantity_if_given(key, dimension, limits)) return *value;
   if (!fallback && !has(key)) {
     document_->missing(
-        node_->line,
+        node_->place,
         fmt::format("{} is missing; it {}{}", joined_path(node_->path, key), allowed_range(limits, dimension),
                     dimension == Dimension::kDimensionless ? "" : ", written as a string with its unit"));
   }
@@ -228,28 +192,30 @@ std::optional<double> Settings::quantity_if_given(std::string_view key, Dimensio
   if (const auto* text = node->as_string()) {
     const Result<double> parsed = parse_quantity(text->get(), dimension);
     if (!parsed) {
-      document_->wrong(line_of(*node),
+      document_->wrong(*node_, key, *node,
                        fmt::format("{}: {}", place, without_value(parsed.error().message, text->get())));
       return std::nullopt;
     }
     value = *parsed;
   } else if (node->is_number()) {
     if (dimension != Dimension::kDimensionless) {
-      document_->wrong(line_of(*node), fmt::format("{}: needs a unit; write it as a string such as \"{} {}\"",
-                                                   place, presentable(*node), si_unit(dimension)));
+      document_->wrong(*node_, key, *node,
+                       fmt::format("{}: needs a unit; write it as a string such as \"{} {}\"", place,
+                                   presentable(*node), si_unit(dimension)));
       return std::nullopt;
     }
     value = node->value<double>().value_or(0.0);
   } else {
-    document_->wrong(line_of(*node), fmt::format("{}: must be a {}", place,
-                                                 dimension == Dimension::kDimensionless
-                                                     ? "number"
-                                                     : "string holding a number and its unit"));
+    document_->wrong(
+        *node_, key, *node,
+        fmt::format(
+            "{}: must be a {}", place,
+            dimension == Dimension::kDimensionless ? "number" : "string holding a number and its unit"));
     return std::nullopt;
   }
   // NaN is refused by the first half, an unlimited infinity by the second.
   if (!limits.allow(value) || !std::isfinite(value)) {
-    document_->wrong(line_of(*node),
+    document_->wrong(*node_, key, *node,
                      fmt::format("{}: {}", place,
                                  std::isfinite(value) ? allowed_range(limits, dimension) : "must be finite"));
     return std::nullopt;
@@ -274,11 +240,11 @@ bool Settings::boolean(std::string_view key, std::optional<bool> fallback) {
   constexpr std::string_view kWhat = "true or false";
   const toml::node* node = ask(*node_, key);
   if (node == nullptr) {
-    if (!fallback) document_->missing(node_->line, missing_text(node_->path, key, kWhat));
+    if (!fallback) document_->missing(node_->place, missing_text(node_->path, key, kWhat));
     return fallback.value_or(false);
   }
   if (const auto* value = node->as_boolean()) return value->get();
-  document_->wrong(line_of(*node), wrong_text(node_->path, key, *node, kWhat));
+  document_->wrong(*node_, key, *node, wrong_text(node_->path, key, *node, kWhat));
   return fallback.value_or(false);
 }
 
@@ -287,14 +253,14 @@ std::int64_t Settings::integer(std::string_view key, std::int64_t min, std::int6
   const std::string what = fmt::format("an integer from {} to {}", min, max);
   const toml::node* node = ask(*node_, key);
   if (node == nullptr) {
-    if (!fallback) document_->missing(node_->line, missing_text(node_->path, key, what));
+    if (!fallback) document_->missing(node_->place, missing_text(node_->path, key, what));
     return fallback.value_or(min);
   }
   if (const auto* value = node->as_integer();
       value != nullptr && value->get() >= min && value->get() <= max) {
     return value->get();
   }
-  document_->wrong(line_of(*node), wrong_text(node_->path, key, *node, what));
+  document_->wrong(*node_, key, *node, wrong_text(node_->path, key, *node, what));
   return fallback.value_or(min);
 }
 
@@ -302,11 +268,11 @@ std::string Settings::text(std::string_view key, const std::optional<std::string
   constexpr std::string_view kWhat = "a string";
   const toml::node* node = ask(*node_, key);
   if (node == nullptr) {
-    if (!fallback) document_->missing(node_->line, missing_text(node_->path, key, kWhat));
+    if (!fallback) document_->missing(node_->place, missing_text(node_->path, key, kWhat));
     return fallback.value_or("");
   }
   if (const auto* value = node->as_string()) return value->get();
-  document_->wrong(line_of(*node), wrong_text(node_->path, key, *node, kWhat));
+  document_->wrong(*node_, key, *node, wrong_text(node_->path, key, *node, kWhat));
   return fallback.value_or("");
 }
 
@@ -315,7 +281,7 @@ std::vector<std::string> Settings::texts(std::string_view key,
   constexpr std::string_view kWhat = "a list of strings";
   const toml::node* node = ask(*node_, key);
   if (node == nullptr) {
-    if (!fallback) document_->missing(node_->line, missing_text(node_->path, key, kWhat));
+    if (!fallback) document_->missing(node_->place, missing_text(node_->path, key, kWhat));
     return fallback.value_or(std::vector<std::string>{});
   }
   std::vector<std::string> values;
@@ -327,7 +293,7 @@ std::vector<std::string> Settings::texts(std::string_view key,
     }
     if (values.size() == array->size()) return values;
   }
-  document_->wrong(line_of(*node), wrong_text(node_->path, key, *node, kWhat));
+  document_->wrong(*node_, key, *node, wrong_text(node_->path, key, *node, kWhat));
   return {};
 }
 
@@ -339,14 +305,14 @@ std::size_t Settings::choice_index(std::string_view key, std::span<const std::st
 
   const toml::node* node = ask(*node_, key);
   if (node == nullptr) {
-    if (!fallback) document_->missing(node_->line, missing_text(node_->path, key, what));
+    if (!fallback) document_->missing(node_->place, missing_text(node_->path, key, what));
     return fallback.value_or(0);
   }
   if (const auto* value = node->as_string()) {
     const auto found = std::find(names.begin(), names.end(), std::string_view{value->get()});
     if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   }
-  document_->wrong(line_of(*node), wrong_text(node_->path, key, *node, what));
+  document_->wrong(*node_, key, *node, wrong_text(node_->path, key, *node, what));
   return fallback.value_or(0);
 }
 
@@ -354,9 +320,9 @@ void Settings::refuse(std::string_view key, std::string_view why) {
   const toml::node* node = node_->table == nullptr ? nullptr : node_->table->get(key);
   const std::string path = joined_path(node_->path, key);
   if (node == nullptr) {
-    document_->missing(node_->line, fmt::format("{}: {}", path, why));
+    document_->missing(node_->place, fmt::format("{}: {}", path, why));
   } else {
-    document_->wrong(line_of(*node), fmt::format("{} = {}: {}", path, presentable(*node), why));
+    document_->wrong(*node_, key, *node, fmt::format("{} = {}: {}", path, presentable(*node), why));
   }
 }
 

@@ -12,6 +12,11 @@
 /// A getter that fails remembers why and returns a harmless stand-in (the default, else zero), so
 /// that a reader asks for everything in a row; values count only after finish() has said yes.
 /// finish() refuses keys that nobody asked for.
+///
+/// A document can be changed before it is read, as by options of a command; errors about what was
+/// changed then name the option instead of a line of the file:
+///
+///     if (auto set = settings->set("paper.mu_s", "0.34", "--set paper.mu_s=0.34"); !set) …
 #pragma once
 
 #include <cstdint>
@@ -62,7 +67,16 @@ class Settings {
   /// Parses text. \param name stands for the file in messages.
   [[nodiscard]] static Result<Settings> parse(std::string_view text, std::string_view name);
 
-  /// Name given to load() or parse(), and the whole text as it was read.
+  /// Sets a key of the document, whatever table this is; tables on its way are made.
+  /// \param path    dotted, no arrays. \param value  TOML; what is none is taken as a string.
+  /// \param origin  stands for the place in messages, e.g. the option as typed.
+  /// Usage error: empty name in the path, a value on the way, a text that is no UTF-8.
+  [[nodiscard]] Result<void> set(std::string_view path, std::string_view value, std::string_view origin);
+  /// Removes a key or table that must be there; else usage error with what is.
+  [[nodiscard]] Result<void> remove(std::string_view path, std::string_view origin);
+
+  /// Name given to load() or parse(), and the whole text: as it was read, or, once changed, the
+  /// changed document written anew under a line that says what changed.
   [[nodiscard]] const std::string& source_name() const noexcept;
   [[nodiscard]] const std::string& source_text() const noexcept;
 

@@ -20,7 +20,10 @@ struct Estimate {
   std::optional<double> systematic_uncertainty;  ///< Calibration, mass, conventions: does not.
   std::string reason;                            ///< Set exactly when there is no value.
 
-  [[nodiscard]] static Estimate of(double number) { return {number, {}, {}, {}}; }
+  [[nodiscard]] static Estimate of(double number) {
+    if (!std::isfinite(number)) return none("not finite");
+    return {number, {}, {}, {}};
+  }
   [[nodiscard]] static Estimate of(double number, double error) {
     if (!std::isfinite(number)) return none("not finite");
     return {number, std::isfinite(error) ? std::optional<double>{error} : std::nullopt, {}, {}};

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/friction/junction.hpp"
+#include "core/signal/statistics.hpp"
 
 namespace stickslip::friction {
 namespace {
@@ -21,12 +22,6 @@ constexpr double kTailPeriods = 1.5;
 
 std::size_t scan_at(double position) {
   return static_cast<std::size_t>(std::lround(std::max(position, 0.0)));
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Least-squares slope of the rise to `peak` from the turning point before, between levels `low`
@@ -64,11 +59,11 @@ SharedParameters first_guess(const Trace& trace, std::span<const Fall> slips) {
     slopes.push_back(slope_of_rise(trace, slip, 0.3, 0.7));
   }
   SharedParameters shared;
-  shared.omega = std::numbers::pi / median(half_periods);
+  shared.omega = std::numbers::pi / signal::median(half_periods);
   shared.gamma = 2.0 * kFirstGammaOver2Omega * shared.omega;
   const Fall& first = slips.front();
   const bool loaded_from_rest = first.rise_from < kLoadingStartsBelow * first.peak;
-  shared.r = loaded_from_rest ? slope_of_rise(trace, first, 0.2, 0.8) : median(slopes);
+  shared.r = loaded_from_rest ? slope_of_rise(trace, first, 0.2, 0.8) : signal::median(slopes);
   return shared;
 }
 
@@ -144,6 +139,17 @@ void lay_windows(const Trace& trace, std::span<const Fall> slips, const SharedPa
   }
 }
 
+/// Each slip has scans enough for its own parameters and one to spare.
+bool windows_suffice(const Trace& trace, const std::vector<SlipWindow>& windows) {
+  constexpr std::ptrdiff_t kFewestScans = 4;
+  return std::all_of(windows.begin(), windows.end(), [&](const SlipWindow& window) {
+    if (window.first >= window.end) return false;
+    const auto first = trace.usable.begin() + static_cast<std::ptrdiff_t>(window.first);
+    const auto end = trace.usable.begin() + static_cast<std::ptrdiff_t>(window.end);
+    return std::count(first, end, 1) >= kFewestScans;
+  });
+}
+
 }  // namespace
 
 double time_at(const Trace& trace, double position) noexcept {
@@ -162,6 +168,10 @@ SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, do
     judge_ends(trace, slips, shared, sigma, estimates);
     if (round > 0 && estimates.ends == before) break;
     lay_windows(trace, slips, shared, estimates);
+    if (!windows_suffice(trace, estimates.windows)) {
+      estimates.fit = {};
+      break;
+    }
     estimates.fit = fit_slips(trace, estimates.windows, shared, sigma);
     if (!estimates.fit.converged) break;
     shared = estimates.fit.shared;

@@ -5,20 +5,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
+#include "core/friction/cycle_statistics.hpp"
 #include "core/friction/model_results.hpp"
 #include "core/friction/regime_rule.hpp"
 #include "core/friction/slip_estimator.hpp"
 #include "core/friction/traditional.hpp"
+#include "core/signal/statistics.hpp"
 
 namespace stickslip::friction {
 namespace {
 
-/// Standard deviation of rounding to steps of one: 1/√12.
-constexpr double kRoundingSigma = 0.28867513459481287;
 /// Smallest noise assumed, relative to the largest value: a trace without any noise or steps (a
 /// closed form in doubles) still has rounding, and turning points need a scale.
 constexpr double kSmallestRelativeNoise = 1e-9;
@@ -28,7 +27,7 @@ double noise_floor(std::span<const double> values, double step_coefficient) {
   double largest = 0.0;
   for (const double value : values) largest = std::max(largest, std::abs(value));
   return std::max(
-      {kRoundingSigma * step, kSmallestRelativeNoise * largest, std::numeric_limits<double>::min()});
+      {signal::kRoundingSigma * step, kSmallestRelativeNoise * largest, std::numeric_limits<double>::min()});
 }
 
 /// Turning points must not follow noise before the noise is known.
@@ -46,85 +45,23 @@ std::vector<Fall> find_slips(const Trace& trace, double sigma) {
   return slips;
 }
 
-/// Median of the periods, upper one of an even number.
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// Slope of the means from peak to peak against time, by least squares: an oscillation averages out.
-Estimate drift_of(const Trace& trace, std::span<const Fall> slips) {
-  constexpr std::size_t kFewestPeriods = 3;
-  if (slips.size() < kFewestPeriods + 1) return Estimate::none("fewer than three cycles");
-  std::vector<std::pair<double, double>> means;
-  for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
-    const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
-    const auto end = static_cast<std::size_t>(std::lround(slips[i + 1].peak_at));
-    double mean = 0.0;
-    for (std::size_t k = first; k < end; ++k) mean += trace.value[k] / static_cast<double>(end - first);
-    means.emplace_back(0.5 * (trace.time_s[first] + trace.time_s[end]), mean);
+/// A stub of a test: without the noise there is no telling what is a slip.
+void too_short(std::size_t scan_count, TestResults& results) {
+  results.regime_reason =
+      fmt::format("{} scans, {} are needed to know their noise", scan_count, signal::kFewestScansForNoise);
+  no_model_results(results.regime_reason, results);
+  for (Estimate* estimate : {&results.cycle_count, &results.stick_cycle_count, &results.period_median,
+                             &results.oscillation_frequency, &results.static_coefficient,
+                             &results.kinetic_coefficient, &results.drift_rate}) {
+    *estimate = Estimate::none(results.regime_reason);
   }
-  const auto n = static_cast<double>(means.size());
-  double mean_t = 0.0;
-  double mean_c = 0.0;
-  for (const auto& [t, c] : means) {
-    mean_t += t / n;
-    mean_c += c / n;
-  }
-  double s_tt = 0.0;
-  double s_tc = 0.0;
-  double s_cc = 0.0;
-  for (const auto& [t, c] : means) {
-    s_tt += (t - mean_t) * (t - mean_t);
-    s_tc += (t - mean_t) * (c - mean_c);
-    s_cc += (c - mean_c) * (c - mean_c);
-  }
-  const double slope = s_tc / s_tt;
-  const double residual_variance = std::max(s_cc - slope * s_tc, 0.0) / (n - 2.0);
-  return Estimate::of(slope, std::sqrt(residual_variance / s_tt));
-}
-
-void period_results(const Trace& trace, std::span<const Fall> slips, TestResults& results) {
-  if (slips.size() < 2) {
-    const std::string reason = slips.empty() ? "no oscillation" : "one slip has no period";
-    results.period_median = Estimate::none(reason);
-    results.oscillation_frequency = Estimate::none(reason);
-    return;
-  }
-  std::vector<double> periods;
-  for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
-    periods.push_back(time_at(trace, slips[i + 1].peak_at) - time_at(trace, slips[i].peak_at));
-  }
-  results.period_median = Estimate::of(median(periods));
-  if (results.regime == Regime::kRingDown && results.omega.value) {
-    results.oscillation_frequency =
-        Estimate::of(*results.omega.value / (2.0 * std::numbers::pi),
-                     results.omega.standard_error.value_or(std::nan("")) / (2.0 * std::numbers::pi));
-    return;
-  }
-  const auto n = static_cast<double>(periods.size());
-  const double span_s = time_at(trace, slips.back().peak_at) - time_at(trace, slips.front().peak_at);
-  const double mean_s = span_s / n;
-  // A late peak lengthens one period and shortens the next: the error of the mean takes the covariance
-  // of neighbours into account, but never less than the two end points leave.
-  double variance = 0.0;
-  double neighbours = 0.0;
-  for (std::size_t i = 0; i < periods.size(); ++i) {
-    variance += (periods[i] - mean_s) * (periods[i] - mean_s) / n;
-    if (i + 1 < periods.size()) neighbours += (periods[i] - mean_s) * (periods[i + 1] - mean_s) / n;
-  }
-  const double mean_variance = std::max(variance + 2.0 * neighbours, variance / n) / n;
-  results.oscillation_frequency =
-      n > 1.0 ? Estimate::of(1.0 / mean_s, std::sqrt(mean_variance) / (mean_s * mean_s))
-              : Estimate::of(1.0 / mean_s);
 }
 
 }  // namespace
 
 TestAnalysis::TestAnalysis(const AnalysisSettings& settings)
     : settings_(settings),
-      live_noise_(std::max(kRoundingSigma * settings.step_coefficient, kSmallestRelativeNoise)) {
+      live_noise_(std::max(signal::kRoundingSigma * settings.step_coefficient, kSmallestRelativeNoise)) {
   if (!(settings.scan_rate_Hz > 0.0) || !std::isfinite(settings.scan_rate_Hz)) {
     throw std::invalid_argument(fmt::format("scan rate {} Hz must be positive", settings.scan_rate_Hz));
   }
@@ -179,23 +116,20 @@ TestResults TestAnalysis::finish() {
 
   const Trace trace = despiked_trace();
   results.spike_count = Estimate::of(static_cast<double>(spikes_.size()));
-  const double sigma = signal::scan_noise(trace.value, noise_floor(trace.value, settings_.step_coefficient));
-  const std::vector<Fall> slips = trace.size() == 0 ? std::vector<Fall>{} : find_slips(trace, sigma);
-  results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
-  if (trace.size() == 0) {
-    results.regime_reason = "no scans";
-    results.static_coefficient = results.kinetic_coefficient = Estimate::none("no scans");
-  } else {
-    const TraditionalCoefficients traditional = traditional_coefficients(trace, slips, settings_.method);
-    results.static_coefficient = traditional.static_coefficient;
-    results.kinetic_coefficient = traditional.kinetic_coefficient;
+  if (trace.size() < signal::kFewestScansForNoise) {
+    too_short(trace.size(), results);
+    return results;
   }
+  const double sigma = signal::scan_noise(trace.value, noise_floor(trace.value, settings_.step_coefficient));
+  const std::vector<Fall> slips = find_slips(trace, sigma);
+  results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
+  const TraditionalCoefficients traditional = traditional_coefficients(trace, slips, settings_.method);
+  results.static_coefficient = traditional.static_coefficient;
+  results.kinetic_coefficient = traditional.kinetic_coefficient;
   if (slips.empty()) {
-    if (trace.size() > 0) {
-      const RegimeVerdict verdict = judge_regime(0, {}, true);
-      results.regime = verdict.regime;
-      results.regime_reason = verdict.reason;
-    }
+    const RegimeVerdict verdict = judge_regime(0, {}, true);
+    results.regime = verdict.regime;
+    results.regime_reason = verdict.reason;
     results.stick_cycle_count = Estimate::of(0.0);
     no_model_results("no slip", results);
   } else {

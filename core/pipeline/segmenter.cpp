@@ -7,14 +7,13 @@
 #include <stdexcept>
 
 #include "core/friction/slip_rule.hpp"
+#include "core/signal/statistics.hpp"
 
 namespace stickslip::pipeline {
 namespace {
 
 using friction::SlipRule;
 
-/// Standard deviation of rounding to steps of one: 1/√12.
-constexpr double kRoundingSigma = 0.28867513459481287;
 /// Smallest noise assumed, in terms of the trigger: a scene without noise has no scale of its own.
 constexpr double kSmallestRelativeNoise = 1e-4;
 /// Time constant of the average that flatness is judged on, in scans.
@@ -29,7 +28,7 @@ constexpr int kFewestFalls = 2;
 constexpr double kMissingPeriods = 4.0;
 
 double noise_floor(const SegmenterSettings& settings) {
-  return std::max(kRoundingSigma * settings.step_coefficient,
+  return std::max(signal::kRoundingSigma * settings.step_coefficient,
                   kSmallestRelativeNoise * settings.start_coefficient);
 }
 

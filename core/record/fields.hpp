@@ -65,6 +65,7 @@ void for_each_field(Facts& facts, Visitor&& visit) {
   visit(FieldName{"estimator", "", ""}, facts.estimator);
   visit(FieldName{"method", "", ""}, facts.method);
   visit(FieldName{"realtime", "", ""}, facts.realtime);
+  visit(FieldName{"simulation", "", ""}, facts.simulation);
 }
 
 /// What the input is called.

@@ -120,13 +120,23 @@ base::Result<void> remove_journal(const std::filesystem::path& journal) {
 
 }  // namespace
 
-base::Result<void> publish_record(const Record& record, const std::filesystem::path& path) {
-  STICKSLIP_EXPECTS(record.end && record.scan.size() == record.raw.size());
-  STICKSLIP_EXPECTS(record.header.board.quantity != daq::RawQuantity::kCounts || record.header.load_cell);
+base::Result<void> check_publishable(const std::filesystem::path& path) {
   if (is_there(path)) {
     return base::usage_error("{}: exists already and is never overwritten: choose another name",
                              path.string());
   }
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder_of(path), ignored)) {
+    return base::usage_error("{}: there is no folder {}: make it first", path.string(),
+                             folder_of(path).string());
+  }
+  return {};
+}
+
+base::Result<void> publish_record(const Record& record, const std::filesystem::path& path) {
+  STICKSLIP_EXPECTS(record.end && record.scan.size() == record.raw.size());
+  STICKSLIP_EXPECTS(record.header.board.quantity != daq::RawQuantity::kCounts || record.header.load_cell);
+  if (auto free = check_publishable(path); !free) return free;
   const auto part = with_suffix(path, ".part");
   auto published = build_verified(record, part);
   if (published) published = rename_to_new(part, path);

@@ -25,6 +25,9 @@ using Evaluate = std::function<EndRecord(const Record&)>;
 [[nodiscard]] base::Result<std::filesystem::path> finalise(const std::filesystem::path& journal,
                                                            const Evaluate& evaluate = {});
 
+/// Whether a record can be made at `path`: nothing stands there (kUsage), its folder does (kUsage).
+[[nodiscard]] base::Result<void> check_publishable(const std::filesystem::path& path);
+
 /// Writes a whole record at `path`, which must not exist (kUsage): built as PATH.part, compared
 /// with `record` scan for scan, made durable, renamed. On any error no file is left.
 /// \param record  has an end.

@@ -77,6 +77,7 @@ struct ProcessFacts {
   std::string estimator;      ///< Tier of the estimators.
   std::string method;         ///< Preset of the traditional rule.
   std::string realtime;       ///< Scheduling and memory locking that were granted.
+  std::string simulation;     ///< Method, accuracy, extent and time of a simulation without a clock.
 
   bool operator==(const ProcessFacts&) const = default;
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/signal/statistics.hpp"
+
 namespace stickslip::signal {
 namespace {
 
@@ -10,13 +12,6 @@ namespace {
 constexpr double kGaussianMad = 0.6744897501960817;
 /// √70: gain of the fourth difference for white noise.
 constexpr double kFourthDifferenceGain = 8.366600265340756;
-
-/// Upper median; reorders its input.
-double median_of(std::span<double> values) noexcept {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -32,12 +27,12 @@ void NoiseEstimator::add(double value) noexcept {
 }
 
 void NoiseEstimator::close_block() noexcept {
-  medians_[block_count_ % kBlocks] = median_of(block_);
+  medians_[block_count_ % kBlocks] = median(block_);
   ++block_count_;
   in_block_ = 0;
   std::array<double, kBlocks> sorted = medians_;
   const std::span<double> filled{sorted.data(), std::min(block_count_, kBlocks)};
-  sigma_ = std::max(floor_, median_of(filled) / (kGaussianMad * kFourthDifferenceGain));
+  sigma_ = std::max(floor_, median(filled) / (kGaussianMad * kFourthDifferenceGain));
 }
 
 double scan_noise(std::span<const double> values, double floor) {

@@ -46,7 +46,10 @@ class NoiseEstimator {
   std::size_t block_count_ = 0;
 };
 
-/// The same for a whole trace. \return the floor if there are fewer than 68 values.
+/// Fewest scans that tell their noise: one block of fourth differences.
+inline constexpr std::size_t kFewestScansForNoise = 68;
+
+/// The same for a whole trace. \return the floor if there are fewer than kFewestScansForNoise values.
 [[nodiscard]] double scan_noise(std::span<const double> values, double floor);
 
 /// Resolution of a trace whose converter is unknown: its smallest non-zero step between

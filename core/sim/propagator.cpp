@@ -25,6 +25,7 @@ Propagator::Propagator(const Motion& motion, double scan_rate_Hz, MotionObserver
 void Propagator::restart(std::uint64_t seed) {
   paper_.restart(seed);
   next_scan_ = 0;
+  followed_to_ = {};
   segment_ = 0;
   start_ = {};
   meet_new_place();
@@ -36,21 +37,56 @@ void Propagator::restart(std::uint64_t seed) {
 
 void Propagator::next(std::span<double> coefficient) {
   for (double& c : coefficient) {
-    pass_until(next_scan_);
-    const double t_s = ScanTime{next_scan_, 0.0}.periods_since(start_) / scan_rate_Hz_;
-    const double extension = state_at(t_s).c;
-    c = motion_.one_way_coupling ? std::fmax(extension, 0.0) : extension;
-    ++next_scan_;
+    const ScanTime instant{next_scan_++, 0.0};
+    pass_until(instant);
+    c = coefficient_at(instant);
   }
+}
+
+double Propagator::at(const ScanTime& instant) {
+  STICKSLIP_EXPECTS(start_ <= instant);
+  pass_until(instant);
+  return coefficient_at(instant);
+}
+
+void Propagator::follow_to(const ScanTime& instant, ForceFollower& follower) {
+  STICKSLIP_EXPECTS(start_ <= followed_to_ && followed_to_ <= instant);
+  while (true) {
+    const bool ends = ending_ != Ending::kNever && end_ <= instant;
+    const ScanTime to = ends ? end_ : instant;
+    if (followed_to_ < to) follower.follow(stretch_to(to));
+    followed_to_ = to;
+    if (!ends) return;
+    pass_end();
+  }
+}
+
+ForceStretch Propagator::stretch_to(const ScanTime& instant) const {
+  ForceStretch stretch;
+  stretch.duration_s = instant.periods_since(followed_to_) / scan_rate_Hz_;
+  if (phase_ == Phase::kFree || phase_ == Phase::kRide) return stretch;  // The coupling is slack.
+  const double t_s = followed_to_.periods_since(start_) / scan_rate_Hz_;
+  const State state = state_at(t_s);
+  stretch.c = state.c;
+  stretch.rate_per_s = state.rate;
+  stretch.slips = phase_ != Phase::kStick;
+  if (stretch.slips)
+    stretch.acceleration_per_s2 = (phase_ == Phase::kFaster ? -1.0 : 1.0) * slip_.acceleration(t_s);
+  return stretch;
+}
+
+double Propagator::coefficient_at(const ScanTime& instant) const {
+  const double extension = state_at(instant.periods_since(start_) / scan_rate_Hz_).c;
+  return motion_.one_way_coupling ? std::fmax(extension, 0.0) : extension;
 }
 
 void Propagator::skip(std::int64_t scans) {
   next_scan_ += scans;
-  pass_until(next_scan_);
+  pass_until({next_scan_, 0.0});
 }
 
-void Propagator::pass_until(std::int64_t scan) {
-  while (ending_ != Ending::kNever && end_ <= ScanTime{scan, 0.0}) pass_end();
+void Propagator::pass_until(const ScanTime& instant) {
+  while (ending_ != Ending::kNever && end_ <= instant) pass_end();
 }
 
 SlipWaveform Propagator::waveform() const {

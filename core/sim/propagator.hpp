@@ -60,6 +60,24 @@ class MotionObserver {
   virtual void mode_began(const ModeStart& start) = 0;
 };
 
+/// A stretch of time during which the force has one closed form.
+struct ForceStretch {
+  double duration_s = 0.0;
+  /// Coefficient and its derivatives at the start.
+  double c = 0.0;
+  double rate_per_s = 0.0;
+  double acceleration_per_s2 = 0.0;
+  /// c‴ = −ω₀² c′ − γ c″; else c‴ = 0, and the force is zero, a line or a parabola.
+  bool slips = false;
+};
+
+/// Shown the force between the instants, stretch by stretch without a hole.
+class ForceFollower {
+ public:
+  virtual ~ForceFollower() = default;
+  virtual void follow(const ForceStretch& stretch) = 0;
+};
+
 /// Needs the same memory however long it runs. Thread-bound.
 class Propagator {
  public:
@@ -73,6 +91,13 @@ class Propagator {
 
   /// The coefficient F/(m g) at the next scans. Does not allocate.
   void next(std::span<double> coefficient);
+
+  /// The coefficient at any instants in non-decreasing order; next() and skip() keep count of their
+  /// own, and may go on only at scans that are not before the last instant. Does not allocate.
+  [[nodiscard]] double at(const ScanTime& instant);
+
+  /// As at(), but shows the whole force since the last call instead of its value. Does not allocate.
+  void follow_to(const ScanTime& instant, ForceFollower& follower);
 
   /// Goes on by `scans` without looking at them, at the cost of the events alone.
   void skip(std::int64_t scans);
@@ -117,7 +142,9 @@ class Propagator {
   void plan_new_place();
   void meet_new_place();
   void pass_end();
-  void pass_until(std::int64_t scan);
+  void pass_until(const ScanTime& instant);
+  [[nodiscard]] ForceStretch stretch_to(const ScanTime& instant) const;
+  [[nodiscard]] double coefficient_at(const ScanTime& instant) const;
 
   Motion motion_;
   double scan_rate_Hz_;
@@ -128,6 +155,7 @@ class Propagator {
   double place_left_ = 0.0;  ///< Still to slide until a new place.
 
   std::int64_t next_scan_ = 0;
+  ScanTime followed_to_;
   std::size_t segment_ = 0;  ///< Of motion_.belt; its size when all are over.
   ScanTime segment_end_;
   double belt_rate_ = 0.0;  ///< r = ω₀² v/g of the belt, 1/s

@@ -23,8 +23,12 @@ Motion motion_of(const Scene& scene) {
   return motion;
 }
 
+double true_scan_rate_Hz(const Scene& scene, double scan_rate_Hz) noexcept {
+  return scene.clock_rate_error ? scan_rate_Hz * (1.0 + scene.clock_rate_error->relative) : scan_rate_Hz;
+}
+
 std::int64_t scan_count(const Scene& scene, double scan_rate_Hz) noexcept {
-  return static_cast<std::int64_t>(std::ceil(scene.duration_s * scan_rate_Hz));
+  return static_cast<std::int64_t>(std::ceil(scene.duration_s * true_scan_rate_Hz(scene, scan_rate_Hz)));
 }
 
 }  // namespace stickslip::sim

@@ -6,7 +6,7 @@
 /// A scene names its effects; what it does not name is not built. They act in four stages, in this
 /// order: motion (what the sled does), transducer (what the load cell makes of it), sampling (when
 /// the converter looks) and signal (what happens to the voltage on the way into the record). A new
-/// effect is a setting here, a reader in scene_file.cpp, and a part of motion_of() or of SceneRun.
+/// effect is a setting of its stage, a reader in scene_file*.cpp, and a part of motion_of() or of SceneRun.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,15 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/result.hpp"
 #include "core/friction/oscillator.hpp"
 #include "core/friction/tester.hpp"
 #include "core/sim/propagator.hpp"
+#include "core/sim/sampling_settings.hpp"
+#include "core/sim/signal_settings.hpp"
+#include "core/sim/transducer_settings.hpp"
 
 namespace stickslip::sim {
 
@@ -44,27 +48,10 @@ struct ConstantSpeed {
 /// Effect `onset_convention` (motion): which force has to exceed S for the slip to start.
 enum class OnsetConvention { kSpring, kSpringAndDamper };
 
-/// Effect `white_noise` (signal): independent normal numbers added to the voltage.
-struct WhiteNoise {
-  double sd_V = 0.0;
-};
-
-/// Effect `quantisation` (signal): an ideal A/D converter that saturates at its rails.
-struct Quantisation {
-  int bits = 16;
-  double range_min_V = -10.0;
-  double range_max_V = 10.0;
-
-  [[nodiscard]] std::uint32_t maxdata() const noexcept {
-    return static_cast<std::uint32_t>((std::uint64_t{1} << static_cast<unsigned>(bits)) - 1);
-  }
-  bool operator==(const Quantisation&) const = default;
-};
-
 struct Scene {
   std::string name;         ///< The file's name without its ending.
   std::string description;  ///< One line for people.
-  std::string text;         ///< The file, whole.
+  std::string text;         ///< The file, whole; with changes, as a file that would give this scene.
   std::uint64_t seed = 1;
   double scan_rate_Hz = 350.0;  ///< Unless the board is asked for another.
   double duration_s = 0.0;      ///< Of one repetition.
@@ -82,22 +69,53 @@ struct Scene {
   bool one_way_coupling = false;
   PaperSettings paper;  ///< Effects that change S and K: `scatter`, `first_peak`, `contact_ageing`.
   std::optional<OnsetConvention> onset_convention;
+  std::optional<LoadCellDynamics> load_cell_dynamics;
+  std::optional<AntiAlias> anti_alias;
+  std::optional<ClockRateError> clock_rate_error;
+  std::optional<ClockJitter> clock_jitter;
+  std::optional<MissingScans> missing_scans;
   std::optional<WhiteNoise> white_noise;
+  std::optional<DriftNoise> drift_noise;
+  std::optional<MainsHum> mains_hum;
+  std::optional<Spikes> spikes;
   std::optional<Quantisation> quantisation;
 
   [[nodiscard]] double normal_load_N() const noexcept { return sled_mass_kg * gravity_m_per_s2; }
 };
 
+/// One key of a scene set, or one effect dropped.
+struct SceneChange {
+  std::string path;                  ///< Of the key, dotted; or "effects." and the effect.
+  std::optional<std::string> value;  ///< TOML, strings with or without quotes; absent: drop.
+  std::string origin;                ///< Names the change in messages: the option as typed.
+};
+
+struct SceneDuration {
+  double seconds = 0.0;
+  std::string origin;
+};
+
+/// What is to be different from the file.
+struct SceneChanges {
+  std::vector<SceneChange> changes;  ///< In this order.
+  /// Of the whole scene; a pull takes up the difference.
+  std::optional<SceneDuration> duration;
+};
+
 /// Usage error with file, line, value and what is allowed: unreadable file, unknown key or effect,
-/// missing or wrong unit, value out of range, S < K.
-[[nodiscard]] base::Result<Scene> load_scene(const std::filesystem::path& file);
+/// missing or wrong unit, value out of range, S < K. Where a change is to blame it is named.
+[[nodiscard]] base::Result<Scene> load_scene(const std::filesystem::path& file,
+                                             const SceneChanges& changes = {});
 /// The same from text. \param file stands for the file in messages and gives the scene its name.
 [[nodiscard]] base::Result<Scene> parse_scene(std::string_view text, const std::filesystem::path& file);
 
 /// The motion stage of the scene.
 [[nodiscard]] Motion motion_of(const Scene& scene);
 
-/// Scans of one repetition at this rate: all that begin before its end.
+/// What the converter's clock really does when it is set to this rate.
+[[nodiscard]] double true_scan_rate_Hz(const Scene& scene, double scan_rate_Hz) noexcept;
+
+/// Scans of one repetition at this nominal rate, missing ones too: all that begin before its end.
 [[nodiscard]] std::int64_t scan_count(const Scene& scene, double scan_rate_Hz) noexcept;
 
 }  // namespace stickslip::sim

@@ -5,9 +5,12 @@
 #include <numbers>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/base/settings.hpp"
+#include "core/base/wording.hpp"
 #include "core/sim/scene.hpp"
+#include "core/sim/scene_file_parts.hpp"
 
 namespace stickslip::sim {
 namespace {
@@ -18,20 +21,13 @@ using base::Settings;
 
 // Limits of sense, not of the method: a value outside is taken for a slip of the pen.
 constexpr double kLongestPhase_s = 1e8;
-constexpr double kLargestCoefficient = 10.0;
 constexpr double kFastestBelt_m_per_s = 10.0;
 constexpr double kStrongestGravity_m_per_s2 = 100.0;
 constexpr double kHeaviestSled_kg = 1000.0;
 constexpr double kFastestOscillator_Hz = 1e5;
 constexpr double kFastestScan_Hz = 1e6;
-constexpr double kHighestVoltage_V = 1000.0;
-constexpr double kLargestScatter = 0.6;   // Real paper scatters by 22–55 %.
-constexpr double kFinestPaper_m = 1e-6;   // Below the thickness of a fibre,
-constexpr double kCoarsestPaper_m = 1.0;  // above the length of a sheet.
 
-constexpr std::array<std::string_view, 9> kEffects{"damping",          "constant_speed", "one_way_coupling",
-                                                   "scatter",          "first_peak",     "contact_ageing",
-                                                   "onset_convention", "white_noise",    "quantisation"};
+constexpr std::array<std::string_view, 3> kEffects{"damping", "constant_speed", "one_way_coupling"};
 
 void read_tester(Settings tester, double gamma_over_2omega, Scene& scene) {
   scene.sled_mass_kg =
@@ -84,68 +80,6 @@ ConstantSpeed read_constant_speed(Settings effect) {
   return test;
 }
 
-Scatter read_scatter(Settings effect) {
-  Scatter scatter;
-  scatter.delta_mu_cv =
-      effect.quantity("delta_mu_cv", Dimension::kDimensionless, Limits::between(0.0, kLargestScatter));
-  scatter.mu_k_sd =
-      effect.quantity("mu_k_sd", Dimension::kDimensionless, Limits::between(0.0, kLargestCoefficient), 0.0);
-  scatter.correlation_length_m = effect.quantity("correlation_length", Dimension::kLength,
-                                                 Limits::between(kFinestPaper_m, kCoarsestPaper_m), 0.001);
-  return scatter;
-}
-
-FirstPeak read_first_peak(Settings effect) {
-  FirstPeak peak;
-  peak.change = effect.quantity("change", Dimension::kDimensionless,
-                                Limits::between(-kLargestCoefficient, kLargestCoefficient));
-  peak.sd = effect.quantity("sd", Dimension::kDimensionless, Limits::between(0.0, kLargestCoefficient), 0.0);
-  return peak;
-}
-
-ContactAgeing read_contact_ageing(Settings effect) {
-  ContactAgeing ageing;
-  ageing.per_decade = effect.quantity("per_decade", Dimension::kDimensionless, Limits::between(0.0, 1.0));
-  ageing.cutoff_s =
-      effect.quantity("cutoff", Dimension::kTime, Limits::between(1e-9, kLongestPhase_s), 0.001);
-  return ageing;
-}
-
-OnsetConvention read_onset_convention(Settings effect) {
-  constexpr std::array<std::pair<std::string_view, OnsetConvention>, 2> kNames{
-      {{"spring", OnsetConvention::kSpring}, {"spring-and-damper", OnsetConvention::kSpringAndDamper}}};
-  return effect.choice<OnsetConvention>("force", kNames);
-}
-
-WhiteNoise read_white_noise(Settings effect, const Scene& scene) {
-  const auto coefficient =
-      effect.quantity_if_given("sd", Dimension::kDimensionless, Limits::between(0.0, kLargestCoefficient));
-  const auto force_N = effect.quantity_if_given("sd_force", Dimension::kForce, Limits::at_least(0.0));
-  const auto voltage_V =
-      effect.quantity_if_given("sd_voltage", Dimension::kVoltage, Limits::between(0.0, kHighestVoltage_V));
-  const int given = static_cast<int>(effect.has("sd")) + static_cast<int>(effect.has("sd_force")) +
-                    static_cast<int>(effect.has("sd_voltage"));
-  if (given == 0) effect.refuse("sd", "must be given, or else sd_force or sd_voltage");
-  if (given > 1) {
-    effect.refuse(effect.has("sd_voltage") ? "sd_voltage" : "sd_force",
-                  "must not stand beside another sd: the noise has one");
-  }
-  const double newtons = force_N.value_or(coefficient.value_or(0.0) * scene.normal_load_N());
-  return {voltage_V.value_or(newtons / scene.load_cell.gain_N_per_V)};
-}
-
-Quantisation read_quantisation(Settings effect) {
-  const Limits voltage = Limits::between(-kHighestVoltage_V, kHighestVoltage_V);
-  Quantisation converter;
-  converter.bits = static_cast<int>(effect.integer("bits", 1, 32));
-  converter.range_min_V = effect.quantity("range_min", Dimension::kVoltage, voltage);
-  converter.range_max_V = effect.quantity("range_max", Dimension::kVoltage, voltage);
-  if (converter.range_max_V <= converter.range_min_V) {
-    effect.refuse("range_max", fmt::format("must be above range_min = {} V", converter.range_min_V));
-  }
-  return converter;
-}
-
 base::Result<Scene> read_scene(Settings settings, const std::filesystem::path& file) {
   Scene scene;
   scene.name = file.stem().string();
@@ -175,27 +109,51 @@ base::Result<Scene> read_scene(Settings settings, const std::filesystem::path& f
         settings.quantity("duration", Dimension::kTime, Limits::above_up_to(0.0, kLongestPhase_s));
   }
   scene.one_way_coupling = effects.has("one_way_coupling");
-  if (effects.has("scatter")) scene.paper.scatter = read_scatter(effects.table("scatter"));
-  if (effects.has("first_peak")) scene.paper.first_peak = read_first_peak(effects.table("first_peak"));
-  if (effects.has("contact_ageing")) {
-    scene.paper.contact_ageing = read_contact_ageing(effects.table("contact_ageing"));
-  }
-  if (effects.has("onset_convention")) {
-    scene.onset_convention = read_onset_convention(effects.table("onset_convention"));
-  }
-  if (effects.has("white_noise")) {
-    scene.white_noise = read_white_noise(effects.table("white_noise"), scene);
-  }
-  if (effects.has("quantisation")) scene.quantisation = read_quantisation(effects.table("quantisation"));
+  read_paper_effects(effects, scene);
+  read_transducer_effects(effects, scene);
+  read_sampling_effects(effects, scene);
+  read_signal_effects(effects, scene);
 
   if (auto read = settings.finish(); !read) return tl::unexpected(read.error());
   return scene;
 }
 
+base::Result<Settings> changed_settings(const std::filesystem::path& file,
+                                        const std::vector<SceneChange>& changes) {
+  base::Result<Settings> settings = Settings::load(file);
+  if (!settings) return settings;
+  for (const SceneChange& change : changes) {
+    const base::Result<void> done = change.value ? settings->set(change.path, *change.value, change.origin)
+                                                 : settings->remove(change.path, change.origin);
+    if (!done) return tl::unexpected(done.error());
+  }
+  return settings;
+}
+
 }  // namespace
 
-base::Result<Scene> load_scene(const std::filesystem::path& file) {
-  base::Result<Settings> settings = Settings::load(file);
+base::Result<Scene> load_scene(const std::filesystem::path& file, const SceneChanges& changes) {
+  base::Result<Settings> settings = changed_settings(file, changes.changes);
+  if (!settings) return tl::unexpected(settings.error());
+  if (!changes.duration) return read_scene(*settings, file);
+
+  const SceneDuration& duration = *changes.duration;
+  SceneChange change{"duration", fmt::format("{} s", duration.seconds), duration.origin};
+  if (settings->table("effects").has("constant_speed")) {
+    const base::Result<Scene> scene = read_scene(*settings, file);
+    if (!scene) return scene;
+    const double others_s = scene->duration_s - scene->constant_speed->pull_s;
+    const double pull_s = duration.seconds - others_s;
+    if (!(pull_s > 0.0)) {
+      return base::usage_error("{}: must be above {} s, which the scene takes beside the pull",
+                               base::one_line(duration.origin), others_s);
+    }
+    change = {"effects.constant_speed.pull", fmt::format("{} s", pull_s), duration.origin};
+  }
+  // Anew: what has been read cannot be changed.
+  std::vector<SceneChange> all = changes.changes;
+  all.push_back(std::move(change));
+  settings = changed_settings(file, all);
   if (!settings) return tl::unexpected(settings.error());
   return read_scene(*settings, file);
 }

@@ -4,19 +4,28 @@
 ///     SceneRun run{scene, 350.0};
 ///     run.restart(seed);
 ///     std::array<double, 64> raw;
-///     while (const std::size_t count = run.next(raw)) use(std::span{raw}.first(count));
+///     while (true) {
+///       const std::int64_t first = run.next_scan();
+///       const std::size_t count = run.next(raw);
+///       if (count == 0) break;
+///       use(first, std::span{raw}.first(count));
+///     }
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "core/sim/clock_jitter.hpp"
+#include "core/sim/missing_scans.hpp"
 #include "core/sim/propagator.hpp"
 #include "core/sim/scene.hpp"
 #include "core/sim/signal_effect.hpp"
+#include "core/sim/transducer.hpp"
 
 namespace stickslip::sim {
 
@@ -24,27 +33,47 @@ namespace stickslip::sim {
 /// Thread-bound.
 class SceneRun {
  public:
-  /// \param scan_rate_Hz > 0. Stands at the first scan, with the scene's own seed.
+  /// \param scan_rate_Hz > 0, nominal. Stands at the first scan, with the scene's own seed.
   SceneRun(const Scene& scene, double scan_rate_Hz);
 
   /// Back to the first scan, with these random numbers. Does not allocate.
   void restart(std::uint64_t seed);
 
-  /// The next readings: counts if the scene lists `quantisation`, else volts. The same, however
-  /// the scans are divided into calls. Does not allocate.
-  /// \return how many were written; less than the size only at the end of the scene.
+  /// Index of the next scan that arrives; their whole number at the end of the scene.
+  [[nodiscard]] std::int64_t next_scan() const noexcept { return next_scan_; }
+
+  /// The next consecutive readings, from next_scan() on: counts if the scene lists `quantisation`,
+  /// else volts. The same, however the scans are divided into calls. Does not allocate.
+  /// \return how many were written: less than the size only where scans are missing and at the end of
+  ///         the scene, none only there.
   std::size_t next(std::span<double> raw);
+
+  /// How the motion is solved, and how far its numbers can be trusted; for people.
+  [[nodiscard]] static std::string_view method() noexcept {
+    // No steps, and event times bracketed to the last bits of a double: first_rise.hpp.
+    return "exact closed forms, accurate to rounding";
+  }
 
   /// Names of the effects that were built, in the order of the stages.
   [[nodiscard]] std::vector<std::string_view> effects() const;
 
  private:
-  std::vector<std::string_view> motion_effects_;
+  /// Consecutive scans, whether they arrive or not: what is lost takes its random numbers along.
+  void make(std::span<double> readings);
+  /// What the converter sees at this instant, before the signal stage.
+  [[nodiscard]] double coefficient_at(const ScanTime& instant);
+  void lose_missing();
+
+  std::vector<std::string_view> other_effects_;  ///< Of the stages before the signal.
+  double true_scan_rate_Hz_;
   std::int64_t scan_count_;
   std::int64_t next_scan_ = 0;
   double volts_per_coefficient_;
   double zero_V_;
   Propagator motion_;
+  std::optional<Transducer> transducer_;
+  std::optional<JitteringClock> jitter_;
+  std::optional<MissingBursts> missing_;
   std::vector<std::unique_ptr<SignalEffect>> signal_;
 };
 

@@ -100,9 +100,19 @@ void describe_oscillation(const Scene& scene, const Tally& slips, friction::Test
   truth.amplitude = (slip.value(slip.peak_time_s()) - least) / 2.0;
 }
 
+/// A clock that is fast makes a record seem long.
+void as_recorded(friction::TestTruth& truth, double recorded_per_true) {
+  for (friction::ModeInterval& mode : truth.modes) {
+    mode.start_s *= recorded_per_true;
+    mode.end_s *= recorded_per_true;
+  }
+  for (friction::TrueCycle& cycle : truth.cycles) cycle.onset_time_s *= recorded_per_true;
+}
+
 }  // namespace
 
-friction::TestTruth scene_truth(const Scene& scene, double scan_rate_Hz, std::uint64_t seed) {
+friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std::uint64_t seed) {
+  const double scan_rate_Hz = true_scan_rate_Hz(scene, nominal_rate_Hz);
   friction::TestTruth truth;
   truth.scene_name = scene.name;
   truth.scene_text = scene.text;
@@ -114,7 +124,7 @@ friction::TestTruth scene_truth(const Scene& scene, double scan_rate_Hz, std::ui
 
   Chronicle chronicle{scan_rate_Hz};
   Propagator motion{motion_of(scene), scan_rate_Hz, &chronicle, seed};
-  motion.skip(scan_count(scene, scan_rate_Hz));
+  motion.skip(scan_count(scene, nominal_rate_Hz));
   chronicle.close(scene.duration_s);
   truth.modes = chronicle.modes();
   for (const Chronicle::Slip& slip : chronicle.slips()) {
@@ -135,6 +145,7 @@ friction::TestTruth scene_truth(const Scene& scene, double scan_rate_Hz, std::ui
       truth.kinetic_coefficient = traditional.kinetic_coefficient;
     }
   }
+  if (scene.clock_rate_error) as_recorded(truth, scan_rate_Hz / nominal_rate_Hz);
   return truth;
 }
 

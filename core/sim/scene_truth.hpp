@@ -9,13 +9,14 @@
 
 namespace stickslip::sim {
 
-/// The truth about one repetition, with times in seconds after its first scan.
+/// The truth about one repetition, with times in seconds after its first scan as a record has them:
+/// scans over the nominal rate. What has no place in the record is in true seconds (the frequency).
 ///
 /// Regime over the pull: stick-slip if each slip that began by giving way ended in sticking, ring-down
 /// if none did, mixed otherwise; a slip that the end of the pull cut short before it could tell is not
 /// asked. Steady-sliding if the slip cannot oscillate; undecided if there is no slip to ask.
 /// Frequency: of the onsets if there are two, else ω/2π of the ring-down. Amplitude: half the range
 /// of the first slip in closed form [17], with zero as the least force of a one-way coupling.
-[[nodiscard]] friction::TestTruth scene_truth(const Scene& scene, double scan_rate_Hz, std::uint64_t seed);
+[[nodiscard]] friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std::uint64_t seed);
 
 }  // namespace stickslip::sim

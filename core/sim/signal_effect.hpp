@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-#include "core/sim/scene.hpp"
+#include "core/sim/signal_settings.hpp"
 
 namespace stickslip::sim {
 
@@ -26,6 +26,9 @@ class SignalEffect {
 };
 
 [[nodiscard]] std::unique_ptr<SignalEffect> make_white_noise(const WhiteNoise& settings);
+[[nodiscard]] std::unique_ptr<SignalEffect> make_drift_noise(const DriftNoise& settings, double scan_rate_Hz);
+[[nodiscard]] std::unique_ptr<SignalEffect> make_mains_hum(const MainsHum& settings, double scan_rate_Hz);
+[[nodiscard]] std::unique_ptr<SignalEffect> make_spikes(const Spikes& settings, double scan_rate_Hz);
 
 /// Volts → counts 0 … maxdata, nearest code; outside the range the nearest rail.
 /// It is the converter, so it comes last.

@@ -3,7 +3,6 @@
 /// printed and no file is left before all of it has succeeded.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -29,6 +28,25 @@ struct ImportCommand {
 [[nodiscard]] base::Result<std::string> run_import(const ImportCommand& command);
 
 [[nodiscard]] base::Result<std::string> run_analyze(const std::vector<std::string>& files, bool json);
+
+/// Numbers as typed, as above.
+struct SimulateCommand {
+  std::string scene;  ///< File, or name of a shipped scene.
+  std::string output;
+  std::string folder;                ///< Of the shipped scenes; empty: where the program finds them.
+  std::string seed;                  ///< Empty: that of the scene.
+  std::vector<std::string> without;  ///< Effects.
+  std::vector<std::string> set;      ///< "key=value"
+  std::string rate;
+  std::string duration;
+  bool json = false;
+  std::string line;  ///< The whole command, for the record.
+};
+
+[[nodiscard]] base::Result<std::string> run_simulate(const SimulateCommand& command);
+
+/// \param folder  as in SimulateCommand.
+[[nodiscard]] base::Result<std::string> run_scenes(const std::string& folder, bool json);
 
 [[nodiscard]] base::Result<std::string> run_status(const std::string& socket);
 

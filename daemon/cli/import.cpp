@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
-#include <optional>
 #include <utility>
 
-#include "core/base/quantity.hpp"
 #include "core/record/csv_import.hpp"
 #include "core/record/finaliser.hpp"
 #include "daemon/analyse.hpp"
 #include "daemon/cli/commands.hpp"
+#include "daemon/cli/options.hpp"
 #include "daemon/method_text.hpp"
 #include "daemon/version.hpp"
 
@@ -16,19 +15,6 @@ namespace {
 
 using base::Dimension;
 using base::Result;
-
-/// The option's number in SI units; nothing if it was not given.
-Result<std::optional<double>> number_of(const char* option, const std::string& text, Dimension dimension,
-                                        bool must_be_positive) {
-  if (text.empty()) return std::optional<double>{};
-  Result<double> value = base::parse_number(text);
-  if (!value) value = base::parse_quantity(text, dimension);
-  if (!value) return base::usage_error("{}: {}", option, value.error().message);
-  if (must_be_positive && !(*value > 0.0)) {
-    return base::usage_error("{}: \"{}\" must be above 0 {}", option, text, base::si_unit(dimension));
-  }
-  return std::optional<double>{*value};
-}
 
 Result<daq::RawQuantity> quantity_of(const std::string& unit) {
   if (unit == "coefficient") return daq::RawQuantity::kCoefficient;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -18,6 +19,8 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   stickslip import pull.csv --column force --rate 350 --unit N --sled-mass "2331 g" -o pull.h5
   stickslip import trace.csv --column mu --rate "2 kHz" --unit coefficient --speed "12 in/min" -o trace.h5
+  stickslip scenes                                     the shipped scenes, one line each
+  stickslip simulate stick-slip-at-12-in-per-min -o pull.h5 --seed 7
   stickslip analyze records/*.h5                       a table, with the truth where it is known
   stickslip analyze trace.h5 --json                    {"tests": [{"file": …, results …, "details": …}]}
   stickslip status                                     what the daemon is doing)";
@@ -59,6 +62,63 @@ void add_import(CLI::App& app, ImportCommand& command) {
       ->type_name("ZERO");
 }
 
+constexpr const char* kSimulateExamples =
+    R"(Runs one repetition of a scene straight into a record: the same counts, analysis and truth as from the
+daemon that plays it, but the record is the whole scene; the daemon would cut out the test.
+Changes apply in this order: --without, --set, --rate, --duration.
+
+Examples:
+  stickslip simulate stick-slip-at-12-in-per-min -o pull.h5
+  stickslip simulate my-scene.toml -o pull.h5 --seed 7 --json
+  stickslip simulate threshold-oscillation -o above.h5 --set paper.mu_s=0.34 --set effects.white_noise.sd=0.002
+  stickslip simulate stick-slip-at-12-in-per-min -o hour.h5 --duration 3600
+  stickslip simulate stick-slip-at-12-in-per-min -o fast.h5 --rate "2 kHz" --without white_noise
+  stickslip simulate ring-down-at-12-in-per-min -o slow.h5 --set "effects.constant_speed.pull_speed=6 in/min")";
+
+void add_simulate(CLI::App& app, SimulateCommand& command) {
+  CLI::App* simulate = app.add_subcommand("simulate", "run a scene straight into a record, with its truth");
+  simulate->footer(kSimulateExamples);
+  simulate->add_option("scene", command.scene, "file, or name as in stickslip scenes")
+      ->required()
+      ->type_name("SCENE");
+  simulate->add_option("-o,--output", command.output, "record to make; must not exist")
+      ->required()
+      ->type_name("FILE.h5");
+  simulate->add_option("--seed", command.seed, "of the random numbers; else that of the scene")
+      ->type_name("N");
+  simulate->add_option("--set", command.set, "change a key of the scene; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  simulate->add_option("--without", command.without, "drop a listed effect; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("EFFECT");
+  simulate
+      ->add_option("--duration", command.duration, "of the whole scene, s or with unit: the pull is fitted")
+      ->type_name("T");
+  simulate->add_option("--rate", command.rate, "scans per second; else that of the scene")->type_name("HZ");
+  simulate->add_option("--folder", command.folder, "of the scenes that have names")->type_name("DIR");
+  simulate->add_flag("--json", command.json, "JSON instead of a table; SI units, names as in the record");
+}
+
+/// The command as a shell would take it again.
+std::string command_line(int count, char** arguments) {
+  std::string line = "stickslip";
+  for (int i = 1; i < count; ++i) {
+    const std::string_view argument = arguments[i];
+    const bool plain =
+        !argument.empty() && argument.find_first_of(" \t\n\"'\\$`*?[](){}<>|&;#~!") == argument.npos;
+    line += ' ';
+    if (plain) {
+      line += argument;
+      continue;
+    }
+    line += '\'';
+    for (const char c : argument) line += c == '\'' ? std::string{"'\\''"} : std::string{c};
+    line += '\'';
+  }
+  return line;
+}
+
 int main_of(int count, char** arguments) {
   CLI::App app{"stickslip: friction tests from the command line"};
   app.footer(kExamples);
@@ -67,6 +127,15 @@ int main_of(int count, char** arguments) {
 
   ImportCommand import;
   add_import(app, import);
+
+  SimulateCommand simulation;
+  add_simulate(app, simulation);
+
+  std::string folder;
+  bool scenes_json = false;
+  CLI::App* scenes = app.add_subcommand("scenes", "list the shipped scenes");
+  scenes->add_option("--folder", folder, "another folder of scenes")->type_name("DIR");
+  scenes->add_flag("--json", scenes_json, "JSON instead of lines");
 
   std::vector<std::string> files;
   bool json = false;
@@ -87,6 +156,11 @@ int main_of(int count, char** arguments) {
   }
   if (analyze->parsed()) return print(run_analyze(files, json));
   if (status->parsed()) return print(run_status(socket));
+  if (scenes->parsed()) return print(run_scenes(folder, scenes_json));
+  if (app.got_subcommand("simulate")) {
+    simulation.line = command_line(count, arguments);
+    return print(run_simulate(simulation));
+  }
   return print(run_import(import));
 }
 

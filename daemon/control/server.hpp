@@ -18,8 +18,8 @@ namespace stickslip::daemon {
 
 /// Limits of one connection: nobody can make the daemon hold more or wait longer.
 struct HttpLimits {
-  std::uint32_t header_size = 8 * 1024;    ///< Bytes.
-  std::uint64_t body_size = 64 * 1024;     ///< Bytes.
+  std::uint32_t header_size = 8 * 1024;                ///< Bytes.
+  std::uint64_t body_size = std::uint64_t{64} * 1024;  ///< Bytes.
   std::chrono::milliseconds time{10'000};  ///< For one request to arrive, and for its reply to leave.
   int connections = 32;                    ///< At once; further ones are closed.
 };

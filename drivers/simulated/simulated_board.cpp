@@ -10,6 +10,7 @@
 #include "core/sim/scene.hpp"
 #include "core/sim/scene_run.hpp"
 #include "drivers/simulated/playlist.hpp"
+#include "drivers/simulated/scene_facts.hpp"
 #include "drivers/simulated/simulated_truth.hpp"
 
 namespace stickslip::drivers {
@@ -17,31 +18,13 @@ namespace {
 
 using daq::ReadStatus;
 
-daq::BoardInfo info_of(const Playlist& playlist) {
-  daq::BoardInfo info;
-  info.driver = "simulated";
-  info.board_name = "simulated tester";
-  for (const sim::Scene& scene : playlist.scenes()) {
-    info.device += (info.device.empty() ? "" : ", ") + scene.name;
-  }
-  info.scan_rate_requested_Hz = playlist.scan_rate_Hz();
-  info.scan_rate_granted_Hz = playlist.scan_rate_Hz();
-  info.quantity = daq::RawQuantity::kVolts;
-  if (const auto& converter = playlist.scenes().front().quantisation) {
-    info.quantity = daq::RawQuantity::kCounts;
-    info.maxdata = converter->maxdata();
-    info.range_min_V = converter->range_min_V;
-    info.range_max_V = converter->range_max_V;
-    info.polynomial = {converter->range_min_V,
-                       (converter->range_max_V - converter->range_min_V) / converter->maxdata()};
-  }
-  return info;
-}
-
 class SimulatedBoard final : public daq::Board {
  public:
   SimulatedBoard(std::shared_ptr<const Playlist> playlist, base::Clock& clock)
-      : playlist_(std::move(playlist)), clock_(clock), info_(info_of(*playlist_)) {
+      : playlist_(std::move(playlist)),
+        clock_(clock),
+        info_(board_info_of(playlist_->scenes(), playlist_->scan_rate_Hz())),
+        true_scan_rate_Hz_(sim::true_scan_rate_Hz(playlist_->scenes().front(), playlist_->scan_rate_Hz())) {
     // All runs are built here: read() may not allocate.
     for (const sim::Scene& scene : playlist_->scenes()) runs_.emplace_back(scene, playlist_->scan_rate_Hz());
     play(0);
@@ -79,17 +62,27 @@ class SimulatedBoard final : public daq::Board {
     constexpr double kNanosecondsPerSecond = 1e9;
     const auto periods = static_cast<double>(scan - start_scan_ + 1);
     return start_ns_ +
-           static_cast<std::int64_t>(std::ceil(periods * kNanosecondsPerSecond / playlist_->scan_rate_Hz()));
+           static_cast<std::int64_t>(std::ceil(periods * kNanosecondsPerSecond / true_scan_rate_Hz_));
   }
 
+  /// Goes on with this repetition, or the first after it of which any scan arrives.
   void play(std::int64_t repetition) noexcept {
-    playing_.number = repetition;
-    if (!playlist_->has(repetition)) return;
-    playing_ = playlist_->repetition(repetition);
-    runs_[playing_.scene].restart(playing_.seed);
+    for (;; ++repetition) {
+      playing_.number = repetition;
+      if (!playlist_->has(repetition)) return;
+      playing_ = playlist_->repetition(repetition);
+      runs_[playing_.scene].restart(playing_.seed);
+      next_ = next_of_playing();
+      if (next_ < playing_.end()) return;
+    }
   }
 
-  /// All scans that are due, at least the next one, as many as fit and belong to the list.
+  [[nodiscard]] base::ScanIndex next_of_playing() const noexcept {
+    return playing_.first + runs_[playing_.scene].next_scan();
+  }
+
+  /// All scans that are due, at least the next one, as many as fit, follow each other without a jump
+  /// and belong to the list.
   void fill(daq::ScanBlock& block, std::int64_t now_ns) noexcept {
     block.first = next_;
     std::size_t wanted = 1;
@@ -98,17 +91,19 @@ class SimulatedBoard final : public daq::Board {
       ++wanted;
     }
     std::size_t count = 0;
-    while (count < wanted && playlist_->has(playing_.number)) {
+    while (count < wanted && next_ == block.first + static_cast<std::int64_t>(count) &&
+           playlist_->has(playing_.number)) {
       count += runs_[playing_.scene].next(std::span{block.raw}.subspan(count, wanted - count));
-      if (next_ + static_cast<std::int64_t>(count) == playing_.end()) play(playing_.number + 1);
+      next_ = next_of_playing();
+      if (next_ == playing_.end()) play(playing_.number + 1);
     }
-    next_ += static_cast<std::int64_t>(count);
     block.count = static_cast<std::uint32_t>(count);
   }
 
   std::shared_ptr<const Playlist> playlist_;
   base::Clock& clock_;
   daq::BoardInfo info_;
+  double true_scan_rate_Hz_;         ///< At which scans fall due; nobody is told.
   std::vector<sim::SceneRun> runs_;  ///< One for each scene.
   Repetition playing_;
   base::ScanIndex next_ = 0;
@@ -129,20 +124,9 @@ base::Result<void> agree(const sim::Scene& scene, const sim::Scene& first, bool 
   if (scene.load_cell.gain_N_per_V != first.load_cell.gain_N_per_V) return differs("load_cell_gain");
   if (scene.load_cell.zero_V != first.load_cell.zero_V) return differs("load_cell_zero");
   if (scene.quantisation != first.quantisation) return differs("quantisation");
+  if (scene.clock_rate_error != first.clock_rate_error) return differs("clock_rate_error");
   if (!rate_is_given && scene.scan_rate_Hz != first.scan_rate_Hz) return differs("scan_rate");
   return {};
-}
-
-friction::Tester tester_of(const std::vector<sim::Scene>& scenes) {
-  friction::Tester tester;
-  tester.sled_mass_kg = scenes.front().sled_mass_kg;
-  tester.gravity_m_per_s2 = scenes.front().gravity_m_per_s2;
-  const auto speed = [](const sim::Scene& scene) {
-    return scene.constant_speed ? std::optional{scene.constant_speed->pull_speed_m_per_s} : std::nullopt;
-  };
-  const auto same = [&](const sim::Scene& scene) { return speed(scene) == speed(scenes.front()); };
-  if (std::all_of(scenes.begin(), scenes.end(), same)) tester.pull_speed_m_per_s = speed(scenes.front());
-  return tester;
 }
 
 }  // namespace
@@ -176,7 +160,7 @@ base::Result<SimulatedTester> make_simulated_tester(const SimulatedBoardSettings
     }
   }
   SimulatedTester result;
-  result.load_cell = {scenes.front().load_cell.gain_N_per_V, scenes.front().load_cell.zero_V};
+  result.load_cell = load_cell_of(scenes.front());
   result.tester = tester_of(scenes);
   auto playlist = std::make_shared<const Playlist>(std::move(scenes), settings.repeats, rate_Hz);
   result.truth = make_simulated_truth(playlist);

@@ -31,8 +31,10 @@ inline void PrintTo(const BoardCase& board_case, std::ostream* out) { *out << bo
 
 /// No end; the fake board gives the same readings after each start.
 [[nodiscard]] BoardCase comedi_case();
-/// One repetition of each shipped scene, then the end.
+/// One repetition of the ring-down and of the stick-slip, then the end.
 [[nodiscard]] BoardCase simulated_case();
+/// The simulated board with a clock that is off, jitter and missing scans; two repetitions, then the end.
+[[nodiscard]] BoardCase simulated_gaps_case();
 /// A record without gaps that does not begin at index 0, then the end.
 [[nodiscard]] BoardCase replay_case();
 

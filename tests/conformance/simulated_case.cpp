@@ -21,4 +21,15 @@ BoardCase simulated_case() {
   return {"Simulated", make};
 }
 
+BoardCase simulated_gaps_case() {
+  const auto make = [](ManualClock& clock) {
+    const std::filesystem::path scenes = std::filesystem::path(STICKSLIP_SOURCE_DIR) / "config/scenes";
+    auto tester = drivers::make_simulated_tester(
+        {.scenes = {scenes / "clock-and-missing-scans.toml"}, .repeats = 2, .scan_rate_Hz = {}}, clock);
+    if (!tester) throw std::runtime_error(tester.error().message);
+    return BoardRig{nullptr, std::move(tester->board)};
+  };
+  return {"SimulatedGaps", make};
+}
+
 }  // namespace stickslip::test

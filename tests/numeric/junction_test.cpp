@@ -78,7 +78,7 @@ TEST(Junction, FewerThanEightScansDecideNothing) {
   EXPECT_EQ(capture_log_likelihood_ratio(course.trace, 20, 27, course.shared, kSigma), 0.0);
   Trace unusable = course.trace;
   unusable.usable.assign(unusable.size(), 0);
-  EXPECT_EQ(capture_log_likelihood_ratio(unusable, 20, 60, course.shared, kSigma), 0.0);
+  EXPECT_EQ(capture_log_likelihood_ratio(unusable, 20, unusable.size(), course.shared, kSigma), 0.0);
 }
 
 TEST(Junction, ConstantTraceGivesANumber) {

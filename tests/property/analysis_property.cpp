@@ -275,10 +275,20 @@ TEST(Analysis, ConstantSignalSlidesSteadily) {
   EXPECT_NEAR(analysed.results.kinetic_coefficient.value.value(), 0.3, 1e-15);
 }
 
-TEST(Analysis, NoScansAreUndecided) {
-  const Analysed analysed = analyse({});
-  EXPECT_EQ(analysed.results.regime, Regime::kUndecided);
-  EXPECT_EQ(analysed.results.regime_reason, "no scans");
+// Below 68 scans the noise is not known, so that noise itself could make "slips": such a stub gets a reason.
+TEST(Analysis, FewerScansThanTheNoiseNeedsAreUndecided) {
+  std::mt19937_64 engine{1};
+  std::normal_distribution<double> normal{0.3, 0.001};
+  Input input;
+  while (input.values.size() < signal::kFewestScansForNoise) {
+    const TestResults results = analyse(input).results;
+    EXPECT_EQ(results.regime, Regime::kUndecided);
+    EXPECT_EQ(results.regime_reason,
+              std::to_string(input.values.size()) + " scans, 68 are needed to know their noise");
+    EXPECT_FALSE(results.cycle_count.value);
+    input.values.push_back(normal(engine));
+  }
+  EXPECT_EQ(analyse(input).results.regime, Regime::kSteadySliding);
 }
 
 TEST(Analysis, NoiseOfOneStepHasNoSlips) {

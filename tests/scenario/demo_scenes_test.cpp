@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -93,20 +94,21 @@ TEST_P(DemoScenes, StandardErrorsTellTheDistanceFromTheTruth) {
   for (const auto& [what, estimate, truth] : compared) {
     double sum = 0.0;
     double squares = 0.0;
-    double error_sum = 0.0;
+    double square_error_sum = 0.0;
     for (const test::AnalysedTest& test : tests()) {
       const Estimate& found = test.results.*estimate;
       ASSERT_TRUE(found.value && found.standard_error) << what << ": " << found.reason;
-      const double z = (*found.value - truth(*test.truth)) / *found.standard_error;
+      const double error = *found.value - truth(*test.truth);
+      const double z = error / *found.standard_error;
       sum += z;
       squares += z * z;
-      error_sum += *found.standard_error;
+      square_error_sum += error * error;
     }
     const double n = kRepeats;
     const double mean = sum / n;
     const double variance = (squares - n * mean * mean) / (n - 1.0);
-    RecordProperty(what, "mean " + std::to_string(mean) + " variance " + std::to_string(variance) +
-                             " standard error " + std::to_string(error_sum / n));
+    std::printf("%-18s true %-9.6g rms error %-8.2g over %d tests; z mean %5.2f variance %.2f\n", what,
+                truth(*tests().front().truth), std::sqrt(square_error_sum / n), kRepeats, mean, variance);
     EXPECT_NEAR(mean, 0.0, 4.0 / std::sqrt(n)) << what;
     EXPECT_GT(variance, 0.7) << what;
     EXPECT_LT(variance, 1.5) << what;

@@ -1,0 +1,82 @@
+#include "core/friction/cycle_statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/friction/slip_estimator.hpp"
+#include "core/signal/statistics.hpp"
+
+namespace stickslip::friction {
+
+Estimate drift_of(const Trace& trace, std::span<const Fall> slips) {
+  constexpr std::size_t kFewestPeriods = 3;
+  if (slips.size() < kFewestPeriods + 1) return Estimate::none("fewer than three cycles");
+  std::vector<std::pair<double, double>> means;
+  for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
+    const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
+    const auto end = static_cast<std::size_t>(std::lround(slips[i + 1].peak_at));
+    double mean = 0.0;
+    for (std::size_t k = first; k < end; ++k) mean += trace.value[k] / static_cast<double>(end - first);
+    means.emplace_back(0.5 * (trace.time_s[first] + trace.time_s[end]), mean);
+  }
+  const auto n = static_cast<double>(means.size());
+  double mean_t = 0.0;
+  double mean_c = 0.0;
+  for (const auto& [t, c] : means) {
+    mean_t += t / n;
+    mean_c += c / n;
+  }
+  double s_tt = 0.0;
+  double s_tc = 0.0;
+  double s_cc = 0.0;
+  for (const auto& [t, c] : means) {
+    s_tt += (t - mean_t) * (t - mean_t);
+    s_tc += (t - mean_t) * (c - mean_c);
+    s_cc += (c - mean_c) * (c - mean_c);
+  }
+  const double slope = s_tc / s_tt;
+  const double residual_variance = std::max(s_cc - slope * s_tc, 0.0) / (n - 2.0);
+  return Estimate::of(slope, std::sqrt(residual_variance / s_tt));
+}
+
+void period_results(const Trace& trace, std::span<const Fall> slips, TestResults& results) {
+  if (slips.size() < 2) {
+    const std::string reason = slips.empty() ? "no oscillation" : "one slip has no period";
+    results.period_median = Estimate::none(reason);
+    results.oscillation_frequency = Estimate::none(reason);
+    return;
+  }
+  std::vector<double> periods;
+  for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
+    periods.push_back(time_at(trace, slips[i + 1].peak_at) - time_at(trace, slips[i].peak_at));
+  }
+  std::vector<double> reordered = periods;
+  results.period_median = Estimate::of(signal::median(reordered));
+  if (results.regime == Regime::kRingDown && results.omega.value) {
+    results.oscillation_frequency =
+        Estimate::of(*results.omega.value / (2.0 * std::numbers::pi),
+                     results.omega.standard_error.value_or(std::nan("")) / (2.0 * std::numbers::pi));
+    return;
+  }
+  const auto n = static_cast<double>(periods.size());
+  const double span_s = time_at(trace, slips.back().peak_at) - time_at(trace, slips.front().peak_at);
+  const double mean_s = span_s / n;
+  // A late peak lengthens one period and shortens the next: the error of the mean takes the covariance
+  // of neighbours into account, but never less than the two end points leave.
+  double variance = 0.0;
+  double neighbours = 0.0;
+  for (std::size_t i = 0; i < periods.size(); ++i) {
+    variance += (periods[i] - mean_s) * (periods[i] - mean_s) / n;
+    if (i + 1 < periods.size()) neighbours += (periods[i] - mean_s) * (periods[i + 1] - mean_s) / n;
+  }
+  const double mean_variance = std::max(variance + 2.0 * neighbours, variance / n) / n;
+  results.oscillation_frequency =
+      n > 1.0 ? Estimate::of(1.0 / mean_s, std::sqrt(mean_variance) / (mean_s * mean_s))
+              : Estimate::of(1.0 / mean_s);
+}
+
+}  // namespace stickslip::friction

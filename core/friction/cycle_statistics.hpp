@@ -1,0 +1,20 @@
+/// \file
+/// What can be said from peak to peak without the model: periods, and the drift of the mean.
+#pragma once
+
+#include <span>
+
+#include "core/friction/fall_finder.hpp"
+#include "core/friction/results.hpp"
+#include "core/friction/trace.hpp"
+
+namespace stickslip::friction {
+
+/// Slope of the means from peak to peak against time, by least squares: an oscillation averages out.
+[[nodiscard]] Estimate drift_of(const Trace& trace, std::span<const Fall> slips);
+
+/// Fills period_median and oscillation_frequency. A ring-down's frequency is that of the fitted
+/// oscillator (results.omega), else it is cycles over time.
+void period_results(const Trace& trace, std::span<const Fall> slips, TestResults& results);
+
+}  // namespace stickslip::friction

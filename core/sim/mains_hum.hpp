@@ -1,0 +1,20 @@
+/// \file
+/// The mains' voltage at a scan, from the scan's index alone.
+#pragma once
+
+#include <cstdint>
+
+#include "core/sim/signal_settings.hpp"
+
+namespace stickslip::sim {
+
+/// Cycles of the mains at this scan, less whole cycles: within 2 ulp of one cycle however large
+/// the index is. The product of frequency and index is kept in two doubles [error-free product by
+/// fused multiply-add: Ogita, Rump and Oishi, SIAM J. Sci. Comput. 26(6):1955–1988, 2005, Alg. 3.5],
+/// and fmod is exact.
+[[nodiscard]] double mains_cycles(double frequency_Hz, double scan_rate_Hz, std::int64_t scan) noexcept;
+
+/// \param scan  0 ≤ scan < 2⁵³
+[[nodiscard]] double mains_hum_V(const MainsHum& hum, double scan_rate_Hz, std::int64_t scan) noexcept;
+
+}  // namespace stickslip::sim

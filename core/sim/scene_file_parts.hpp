@@ -1,0 +1,35 @@
+/// \file
+/// Readers of a scene's effects, one function for each stage that has a file of its own. They set
+/// what is listed; mistakes stay in the settings until finish().
+#pragma once
+
+#include <string_view>
+
+#include "core/base/settings.hpp"
+#include "core/sim/scene.hpp"
+
+namespace stickslip::sim {
+
+// Limits of sense, not of the method: a value outside is taken for a slip of the pen.
+inline constexpr double kLargestCoefficient = 10.0;
+inline constexpr double kHighestVoltage_V = 1000.0;
+
+/// Those of the motion stage that change S and K. \param effects  the table [effects].
+void read_paper_effects(base::Settings effects, Scene& scene);
+
+/// \param effects  the table [effects]. \param scene  with the scan rate.
+void read_transducer_effects(base::Settings effects, Scene& scene);
+
+/// \param effects  the table [effects]. \param scene  with the scan rate.
+void read_sampling_effects(base::Settings effects, Scene& scene);
+
+/// \param effects  the table [effects]. \param scene  with tester, load cell and scan rate.
+void read_signal_effects(base::Settings effects, Scene& scene);
+
+/// Makes the effect known, so that the message about an unknown one names it. \return is it listed?
+[[nodiscard]] inline bool lists(base::Settings& effects, std::string_view name) {
+  (void)effects.table(name);
+  return effects.has(name);
+}
+
+}  // namespace stickslip::sim

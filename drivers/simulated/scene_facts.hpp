@@ -1,0 +1,23 @@
+/// \file
+/// What a bench that plays scenes knows about itself. Of what must be the same in all of them, the
+/// first scene tells.
+#pragma once
+
+#include <vector>
+
+#include "core/daq/board.hpp"
+#include "core/daq/calibration.hpp"
+#include "core/friction/tester.hpp"
+#include "core/sim/scene.hpp"
+
+namespace stickslip::drivers {
+
+/// \param scenes  at least one.
+[[nodiscard]] daq::BoardInfo board_info_of(const std::vector<sim::Scene>& scenes, double scan_rate_Hz);
+
+[[nodiscard]] daq::LoadCell load_cell_of(const sim::Scene& scene);
+
+/// Mass and gravity; the pull speed if it is the same in all scenes. \param scenes  at least one.
+[[nodiscard]] friction::Tester tester_of(const std::vector<sim::Scene>& scenes);
+
+}  // namespace stickslip::drivers

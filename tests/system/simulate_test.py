@@ -1,0 +1,237 @@
+#!/usr/bin/env python3
+"""`stickslip simulate` and `stickslip scenes` from outside.
+
+simulate_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
+"""
+
+import json
+import os
+import pathlib
+import pty
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+BUILD = pathlib.Path(sys.argv[1]).resolve()
+SOURCE = pathlib.Path(sys.argv[2]).resolve()
+DAEMON = BUILD / "daemon" / "stickslipd"
+CLI = BUILD / "daemon" / "stickslip"
+SCENES = SOURCE / "config" / "scenes"
+SCENE = "stick-slip-at-12-in-per-min"
+
+# Generous: under sanitizers on a busy machine everything takes its time.
+TIMEOUT_S = 240
+
+
+def run(*arguments, cwd=None):
+    return subprocess.run([str(a) for a in arguments], cwd=cwd, capture_output=True, text=True,
+                          timeout=TIMEOUT_S, check=False)
+
+
+def text(record, name):
+    return record[name][()].decode()
+
+
+class Folder(unittest.TestCase):
+    """Each test works in a folder of its own."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory(prefix="stickslip-")
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        self.count = 0
+
+    def simulate(self, *options, scene=SCENE):
+        """The record, open, and what was printed."""
+        self.count += 1
+        file = self.folder / f"{self.count}.h5"
+        done = run(CLI, "simulate", scene, "-o", file, *options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr, "")  # No progress where there is no terminal.
+        record = h5py.File(file)
+        self.addCleanup(record.close)
+        return record, done.stdout
+
+    def sha256(self, *options, scene=SCENE):
+        return text(self.simulate(*options, scene=scene)[0], "entry/process/sha256")
+
+
+class Simulate(Folder):
+    def test_record_printed_results_and_later_analysis_have_the_same_bits(self):
+        record, printed = self.simulate("--json")
+        printed = json.loads(printed)
+        analysed = run(CLI, "analyze", "--json", record.filename)
+        self.assertEqual(analysed.returncode, 0, analysed.stderr)
+        [again] = json.loads(analysed.stdout)["tests"]
+        compared = 0
+        for name, stored in record["entry/results"].items():
+            if name not in again or not hasattr(stored, "shape") or stored.dtype.kind != "f":
+                continue
+            self.assertEqual(printed[name], again[name], name)
+            if again[name] is None:
+                self.assertIn("reason", stored.attrs, name)
+            else:
+                self.assertEqual(float(stored[()]), again[name], name)
+                compared += 1
+        self.assertGreater(compared, 10)
+        self.assertEqual(printed["details"], again["details"])
+        self.assertEqual(printed["regime"], "stick-slip")
+
+    def test_a_repetition_that_the_daemon_played_is_repeated_by_its_seed(self):
+        config = self.folder / "test.toml"
+        config.write_text(f"""
+[board]
+driver = "simulated"
+clock_speed = 50
+[board.simulated]
+scenes = ["{SCENES / SCENE}.toml"]
+[record]
+folder = "records"
+""", encoding="utf-8")
+        done = run(DAEMON, "--config", config, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        [file] = (self.folder / "records").glob("*.h5")
+        with h5py.File(file) as live:
+            seed = live["entry/truth/seed"][()]
+            whole, _ = self.simulate("--seed", seed)
+            scans = live["entry/raw/scan"][()]
+            self.assertLess(len(scans), len(whole["entry/raw/scan"]))
+            numpy.testing.assert_array_equal(live["entry/raw/counts"][()], whole["entry/raw/counts"][()][scans])
+            self.assertEqual(set(live["entry/truth"]), set(whole["entry/truth"]))
+            for name, stored in live["entry/truth"].items():
+                if isinstance(stored, h5py.Dataset):
+                    self.assertEqual(stored[()], whole["entry/truth"][name][()], name)
+            for group in ("entry/instrument/tester", "entry/instrument/adc", "entry/instrument/calibration"):
+                self.assertEqual(set(live[group]), set(whole[group]))
+                for name, stored in live[group].items():
+                    numpy.testing.assert_array_equal(stored[()], whole[group][name][()], err_msg=name)
+
+    def test_seed_decides_the_bits(self):
+        self.assertEqual(self.sha256("--seed", 7), self.sha256("--seed", 7))
+        self.assertNotEqual(self.sha256("--seed", 7), self.sha256("--seed", 8))
+        # Without noise there is nothing random.
+        self.assertEqual(self.sha256("--seed", 7, "--without", "white_noise"),
+                         self.sha256("--seed", 8, "--without", "white_noise"))
+        # Not given, it is the scene's.
+        self.assertEqual(self.sha256(), self.sha256("--seed", 3))
+
+    def test_set_changes_truth_and_numbers_and_nothing_else(self):
+        plain, _ = self.simulate()
+        changed, _ = self.simulate("--set", "paper.mu_s=0.34", "--set", "effects.white_noise.sd=0.002")
+        self.assertEqual(plain["entry/truth/mu_s"][()], 0.35)
+        self.assertEqual(changed["entry/truth/mu_s"][()], 0.34)
+        self.assertEqual(changed["entry/truth/mu_k"][()], plain["entry/truth/mu_k"][()])
+        self.assertNotEqual(text(changed, "entry/process/sha256"), text(plain, "entry/process/sha256"))
+        # Measured: S to a tenth of the change; the noise is idle for 0.5 s, 175 scans, so known to 1/√350 = 5 %.
+        self.assertAlmostEqual(changed["entry/results/mu_s"][()], 0.34, delta=0.001)
+        weight_N = 2.331 * 9.80665
+        idle = changed["entry/raw/force"][:170].std() / weight_N
+        self.assertAlmostEqual(idle, 0.002, delta=5 * 0.05 * 0.002)
+
+    def test_the_record_alone_repeats_itself(self):
+        record, _ = self.simulate("--set", "paper.mu_s=0.34", "--duration", "6", "--rate", "2 kHz", "--seed", 9)
+        scene = self.folder / "again.toml"
+        scene.write_text(text(record, "entry/truth/scene_text"), encoding="utf-8")
+        self.assertEqual(self.sha256("--seed", record["entry/truth/seed"][()], scene=scene),
+                         text(record, "entry/process/sha256"))
+
+    def test_duration_and_rate_decide_the_number_of_scans(self):
+        record, printed = self.simulate("--duration", "20 s", "--rate", "1 kHz")
+        self.assertEqual(len(record["entry/raw/counts"]), 20_000)
+        self.assertEqual(record["entry/timing/scan_rate_granted"][()], 1000.0)
+        self.assertIn("20000 scans, 20 s at 1000 Hz", printed)
+
+    def test_method_extent_and_time_stand_in_terminal_and_record(self):
+        record, printed = self.simulate()
+        summary = text(record, "entry/process/simulation")
+        self.assertEqual(printed.splitlines()[-1], summary)
+        for part in ("2800 scans", "8 s at 350 Hz", "ns a scan", "exact closed forms"):
+            self.assertIn(part, summary)
+        self.assertEqual(text(record, "entry/process/program"), "stickslip simulate")
+        self.assertEqual(text(record, "entry/process/configuration"),
+                         f"stickslip simulate {SCENE} -o {record.filename}")
+
+    def test_progress_is_shown_on_a_terminal(self):
+        terminal, end = pty.openpty()
+        done = subprocess.run([str(CLI), "simulate", SCENE, "-o", str(self.folder / "x.h5")], stderr=end,
+                              stdout=subprocess.PIPE, timeout=TIMEOUT_S, check=True)
+        os.close(end)
+        shown = os.read(terminal, 100_000)
+        os.close(terminal)
+        self.assertIn(b"100 %", shown)
+        self.assertTrue(shown.endswith(b"\r\x1b[K"), shown)
+        self.assertNotIn(b"\x1b", done.stdout)
+
+
+class Scenes(Folder):
+    def test_all_shipped_scenes_are_listed_and_run_by_their_names(self):
+        listed = run(CLI, "scenes")
+        self.assertEqual(listed.returncode, 0, listed.stderr)
+        names = [line.split()[0] for line in listed.stdout.splitlines()]
+        self.assertEqual(names, sorted(file.stem for file in SCENES.glob("*.toml")))
+        for line in listed.stdout.splitlines():
+            self.assertGreater(len(line.split()), 2)  # A description.
+        described = json.loads(run(CLI, "scenes", "--json").stdout)
+        self.assertEqual([scene["name"] for scene in described["scenes"]], names)
+        for name in names:
+            record, _ = self.simulate(scene=name)
+            self.assertEqual(text(record, "entry/truth/scene_name"), name)
+
+    def test_another_folder_has_other_scenes(self):
+        (self.folder / "mine.toml").write_bytes((SCENES / f"{SCENE}.toml").read_bytes())
+        listed = run(CLI, "scenes", "--folder", self.folder)
+        self.assertEqual([line.split()[0] for line in listed.stdout.splitlines()], ["mine"])
+        self.assertEqual(self.sha256("--folder", self.folder, scene="mine"), self.sha256())
+
+
+class Refusals(Folder):
+    def refused(self, status, expected, *options, scene=SCENE, output=None):
+        before = sorted(self.folder.rglob("*"))
+        done = run(CLI, "simulate", scene, "-o", output or self.folder / "x.h5", *options)
+        self.assertEqual(done.returncode, status, done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        self.assertTrue(done.stderr.startswith(f"stickslip: {expected}"), done.stderr)
+        self.assertEqual(sorted(self.folder.rglob("*")), before)
+
+    def test_wrong_options_are_named_and_leave_nothing(self):
+        for expected, *options in [
+            ("--set paper.mu=3: ", "--set", "paper.mu=3"),
+            ("--set paper.mu_s=0.1: ", "--set", "paper.mu_s=0.1"),
+            ("--set paper.mu_s: ", "--set", "paper.mu_s"),
+            ("--set effects.whit_noise.sd=1: ", "--set", "effects.whit_noise.sd=1"),
+            ("--set scan_rate=350: ", "--set", "scan_rate=350"),
+            ("--without noise: ", "--without", "noise"),
+            ("--duration 3: ", "--duration", "3"),
+            ("--duration: ", "--duration", "long"),
+            ("--rate: ", "--rate", "0"),
+            ("--rate 2 MHz: ", "--rate", "2 MHz"),
+            ("--seed -1: ", "--seed", "-1"),
+            ("--seed 1.5: ", "--seed", "1.5"),
+        ]:
+            with self.subTest(options):
+                self.refused(2, expected, *options)
+        done = run(CLI, "simulate", SCENE, "-o", self.folder / "x.h5", "--set", "paper.mu_k=0.5")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("(with --set paper.mu_k=0.5)", done.stderr)
+
+    def test_wrong_scenes_and_files_are_named(self):
+        self.refused(2, "stick-slip-at-12-in-per-mi: is neither a file nor a scene in", scene=SCENE[:-1])
+        self.refused(2, "absent.toml: cannot be read", scene="absent.toml")
+        self.refused(2, f"{self.folder}: is a folder", scene=self.folder)
+        self.refused(2, "--folder ", "--folder", self.folder / "absent", scene="mine")
+        self.refused(2, f"scene {SCENE}: ", "--duration", "20000 h")
+        nowhere = self.folder / "absent" / "x.h5"
+        self.refused(2, f"{nowhere}: there is no folder", output=nowhere)
+        taken = self.folder / "taken.h5"
+        taken.write_text("mine")
+        self.refused(2, f"{taken}: exists already", output=taken)
+        self.assertEqual(taken.read_text(), "mine")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
