@@ -2,33 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <limits>
 #include <numbers>
 
-#include <boost/math/tools/toms748_solve.hpp>
+#include "core/sim/bracket.hpp"
 
 namespace stickslip::sim {
 namespace {
 
 using friction::SlipWaveform;
-using Quiet = boost::math::policies::policy<
-    boost::math::policies::evaluation_error<boost::math::policies::ignore_error>,
-    boost::math::policies::domain_error<boost::math::policies::ignore_error>>;
-
 /// \param low,high  y rises monotonically from at most the level to at least the level.
 double crossing_between(const SlipWaveform& y, double level, double low, double high) {
-  const auto excess = [&y, level](double t) { return y.value(t) - level; };
-  const double at_low = excess(low);
-  const double at_high = excess(high);
-  if (at_low >= 0.0) return low;    // Only by rounding.
-  if (at_high <= 0.0) return high;  // Grazing.
-  std::uintmax_t iterations = 200;  // About ten are needed.
-  const auto bracket = boost::math::tools::toms748_solve(
-      excess, low, high, at_low, at_high,
-      boost::math::tools::eps_tolerance<double>(std::numeric_limits<double>::digits - 1), iterations,
-      Quiet());
-  return bracket.first + (bracket.second - bracket.first) / 2.0;
+  return rise_between([&y, level](double t) { return y.value(t) - level; }, low, high);
 }
 
 bool reaches(double maximum, double level, Touch touch) {

@@ -1,48 +1,34 @@
 #include "core/sim/propagator.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "core/base/contract.hpp"
-#include "core/sim/first_rise.hpp"
 
 namespace stickslip::sim {
 
 using friction::Mode;
 using friction::SlipWaveform;
 
-namespace {
-
-constexpr ScanTime kForEver{std::numeric_limits<std::int64_t>::max(), 0.0};
-
-/// Without the offset K: what is left is a solution of the homogeneous equation.
-SlipWaveform homogeneous(const SlipWaveform& slip, double sign) {
-  return {0.0, sign * slip.D, sign * slip.r, slip.oscillator};
-}
-
-/// c′ as a function of its own: from c′(0) with the slope c″(0).
-SlipWaveform derivative(const SlipWaveform& slip) {
-  const double slope = -slip.oscillator.gamma_per_s * slip.r - slip.oscillator.omega0_squared() * slip.D;
-  return {0.0, slip.r, slope, slip.oscillator};
-}
-
-}  // namespace
-
-Propagator::Propagator(const Motion& motion, double scan_rate_Hz, MotionObserver* observer)
+Propagator::Propagator(const Motion& motion, double scan_rate_Hz, MotionObserver* observer,
+                       std::uint64_t seed)
     : motion_(motion),
       scan_rate_Hz_(scan_rate_Hz),
       observer_(observer),
-      omega0_squared_(motion.oscillator.omega0_squared()) {
+      omega0_squared_(motion.oscillator.omega0_squared()),
+      paper_(motion.paper, {motion.mu_s, motion.mu_k}),
+      place_length_(paper_.correlation_length_m() * omega0_squared_ / motion.gravity_m_per_s2) {
   STICKSLIP_EXPECTS(scan_rate_Hz > 0.0);
-  STICKSLIP_EXPECTS(motion.mu_k >= 0.0 && motion.mu_s >= motion.mu_k && omega0_squared_ > 0.0);
-  restart();
+  STICKSLIP_EXPECTS(omega0_squared_ > 0.0);
+  restart(seed);
 }
 
-void Propagator::restart() {
+void Propagator::restart(std::uint64_t seed) {
+  paper_.restart(seed);
   next_scan_ = 0;
   followed_to_ = {};
   segment_ = 0;
   start_ = {};
+  meet_new_place();
   segment_end_ = {};
   belt_rate_ = 0.0;
   halt_when_unloaded_ = false;
@@ -105,11 +91,11 @@ void Propagator::pass_until(const ScanTime& instant) {
 
 SlipWaveform Propagator::waveform() const {
   const double sign = phase_ == Phase::kFaster ? -1.0 : 1.0;
-  return {motion_.mu_k, sign * begun_.c - motion_.mu_k, sign * begun_.rate, motion_.oscillator};
+  return {paper_.now().mu_k, sign * begun_.c - paper_.now().mu_k, sign * begun_.rate, motion_.oscillator};
 }
 
 double Propagator::free_acceleration() const {
-  return std::copysign(omega0_squared_ * motion_.mu_k, belt_rate_ - begun_.rate);
+  return std::copysign(omega0_squared_ * paper_.now().mu_k, belt_rate_ - begun_.rate);
 }
 
 Propagator::State Propagator::state_at(double t_s) const {
@@ -142,13 +128,17 @@ void Propagator::next_segment() {
   segment_end_ = segment_end_.later(segment.duration_s * scan_rate_Hz_);
 }
 
+double Propagator::damper_share() const {
+  return motion_.damper_counts_at_onset ? motion_.oscillator.gamma_per_s * belt_rate_ / omega0_squared_ : 0.0;
+}
+
 Propagator::Phase Propagator::phase_at_belt_speed(double c) const {
-  if (std::abs(c) <= motion_.mu_s) return Phase::kStick;
+  if (std::abs(c + damper_share()) <= paper_.static_limit(rested_s())) return Phase::kStick;
   // Beyond the static limit the sled cannot follow the belt: it goes where the forces drive it. If
   // they drive it back into the belt's speed from both sides, it stays there.
   const double damping = -motion_.oscillator.gamma_per_s * belt_rate_;
-  if (damping - omega0_squared_ * (c - motion_.mu_k) < 0.0) return Phase::kSlower;
-  if (damping - omega0_squared_ * (c + motion_.mu_k) > 0.0) return Phase::kFaster;
+  if (damping - omega0_squared_ * (c - paper_.now().mu_k) < 0.0) return Phase::kSlower;
+  if (damping - omega0_squared_ * (c + paper_.now().mu_k) > 0.0) return Phase::kFaster;
   return Phase::kStick;
 }
 
@@ -172,82 +162,26 @@ void Propagator::enter(State state, bool capture) {
 void Propagator::begin(Phase phase, State state, bool onset, bool capture) {
   phase_ = phase;
   begun_ = state;
+  if (onset) paper_.slipped(rested_s());
   if (phase == Phase::kSlower || phase == Phase::kFaster) slip_ = waveform();
   if (observer_ != nullptr) {
     const Mode mode = phase == Phase::kStick                               ? Mode::kStick
                       : phase == Phase::kSlower || phase == Phase::kFaster ? Mode::kSlip
                                                                            : Mode::kSlack;
-    observer_->mode_began({start_, mode, onset, capture});
+    observer_->mode_began({start_, mode, onset, capture, paper_.now(), state.c});
   }
   plan_end();
 }
 
-void Propagator::offer(Ending ending, std::optional<double> t_s) {
-  if (!t_s) return;
-  const double duration_s = std::fmax(*t_s, 0.0);
-  if (ending_ != Ending::kNever && !(duration_s < duration_s_)) return;
-  const ScanTime end = start_.later(duration_s * scan_rate_Hz_);
-  if (end > segment_end_) return;
-  ending_ = ending;
-  duration_s_ = duration_s;
-  end_ = end;
-}
-
-void Propagator::plan_end() {
-  ending_ = Ending::kNever;
-  switch (phase_) {
-    case Phase::kStick:
-      if (belt_rate_ > 0.0) offer(Ending::kGivesWay, (motion_.mu_s - begun_.c) / belt_rate_);
-      if (belt_rate_ < 0.0) {
-        offer(Ending::kGivesWay, (-motion_.mu_s - begun_.c) / belt_rate_);
-        const bool can_unload = (motion_.one_way_coupling || halt_when_unloaded_) && begun_.c >= 0.0;
-        if (can_unload) offer(Ending::kUnloaded, -begun_.c / belt_rate_);
-      }
-      break;
-    case Phase::kSlower:
-    case Phase::kFaster:
-      plan_slip_end();
-      break;
-    case Phase::kFree:
-      plan_free_end();
-      break;
-    case Phase::kRide:
-      if (belt_rate_ > 0.0) offer(Ending::kTouchesCoupling, -begun_.c / belt_rate_);
-      break;
-  }
-  if (ending_ == Ending::kNever && segment_end_ < kForEver) {
-    ending_ = Ending::kSegment;
-    end_ = segment_end_;
-    duration_s_ = segment_end_.periods_since(start_) / scan_rate_Hz_;
-  }
-}
-
-void Propagator::plan_slip_end() {
-  const bool faster = phase_ == Phase::kFaster;
-  const double level = faster ? -belt_rate_ : belt_rate_;
-  offer(Ending::kCaptured, first_rise_s(derivative(slip_), level, Touch::kCounts));
-  if (!motion_.one_way_coupling && !(halt_when_unloaded_ && begun_.c > 0.0)) return;
-  // Slower: K − c rises to K where the force is gone; faster, mirrored: −c − K rises to −K.
-  const SlipWaveform unloading = homogeneous(slip_, faster ? 1.0 : -1.0);
-  offer(Ending::kUnloaded, first_rise_s(unloading, faster ? -motion_.mu_k : motion_.mu_k, Touch::kDoesNot));
-}
-
-void Propagator::plan_free_end() {
-  const double acceleration = free_acceleration();
-  if (acceleration != 0.0) offer(Ending::kMeetsBelt, (belt_rate_ - begun_.rate) / acceleration);
-  // c + c′t + at²/2 = 0 from below, by the root that does not cancel.
-  const double discriminant = begun_.rate * begun_.rate - 2.0 * acceleration * begun_.c;
-  if (discriminant < 0.0) return;
-  const double root = std::sqrt(discriminant);
-  if (begun_.rate > 0.0) {
-    offer(Ending::kTouchesCoupling, -2.0 * begun_.c / (begun_.rate + root));
-  } else if (acceleration > 0.0) {
-    offer(Ending::kTouchesCoupling, (root - begun_.rate) / acceleration);
-  }
+void Propagator::meet_new_place() {
+  paper_.renew();
+  contact_start_ = start_;
+  place_left_ = place_length_;
 }
 
 void Propagator::pass_end() {
   const State state = state_at(duration_s_);
+  if (std::isfinite(place_left_) && phase_ != Phase::kStick) place_left_ -= slid_after(duration_s_);
   start_ = end_;
   switch (ending_) {
     case Ending::kNever:
@@ -255,12 +189,15 @@ void Propagator::pass_end() {
     case Ending::kGivesWay:
       // Exactly at the limit, and exactly at the belt's speed: [13], [14].
       begin(belt_rate_ > 0.0 ? Phase::kSlower : Phase::kFaster,
-            {std::copysign(motion_.mu_s, belt_rate_), belt_rate_}, true, false);
+            {std::copysign(paper_.static_limit(rested_s()), belt_rate_) - damper_share(), belt_rate_}, true,
+            false);
       return;
     case Ending::kCaptured:
+      meet_new_place();
       enter({state.c, belt_rate_}, true);
       return;
     case Ending::kMeetsBelt:
+      meet_new_place();
       enter({std::fmin(state.c, 0.0), belt_rate_}, false);
       return;
     case Ending::kUnloaded:
@@ -268,6 +205,10 @@ void Propagator::pass_end() {
       return;
     case Ending::kTouchesCoupling:
       enter({0.0, std::fmax(state.rate, 0.0)}, false);
+      return;
+    case Ending::kNewPlace:
+      meet_new_place();
+      enter(state, false);
       return;
     case Ending::kSegment:
       next_segment();

@@ -6,8 +6,8 @@
 ///     std::array<double, 64> coefficient;
 ///     sled.next(coefficient);  // scans 0 … 63
 ///
-/// Conventions of Penner 1995: slip starts when the spring alone holds S [13]; the load cell reads
-/// the spring.
+/// Conventions of Penner 1995: slip starts when the spring alone holds S [13], unless the motion asks
+/// for spring and damper; the load cell reads the spring.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +18,7 @@
 #include "core/friction/oscillator.hpp"
 #include "core/friction/slip_waveform.hpp"
 #include "core/friction/truth.hpp"
+#include "core/sim/paper.hpp"
 #include "core/sim/scan_time.hpp"
 
 namespace stickslip::sim {
@@ -36,6 +37,8 @@ struct Motion {
   double mu_s = 0.0;  ///< S ≥ mu_k
   double mu_k = 0.0;  ///< K ≥ 0
   double gravity_m_per_s2 = 0.0;
+  bool damper_counts_at_onset = false;  ///< Slip starts when spring and damper together hold S.
+  PaperSettings paper;                  ///< How S and K differ from contact to contact.
   bool one_way_coupling = false;
   std::vector<BeltSegment> belt;  ///< In order; at rest after the last.
 };
@@ -44,8 +47,10 @@ struct Motion {
 struct ModeStart {
   ScanTime time;
   friction::Mode mode = friction::Mode::kStick;
-  bool onset = false;    ///< A slip that starts because sticking gave way.
-  bool capture = false;  ///< The slip before ended because the sled had reached the belt's speed.
+  bool onset = false;        ///< A slip that starts because sticking gave way.
+  bool capture = false;      ///< The slip before ended because the sled had reached the belt's speed.
+  Coefficients paper;        ///< S and K in force.
+  double coefficient = 0.0;  ///< Of the spring; below zero the slack.
 };
 
 /// Told of each change of mode, in order.
@@ -77,10 +82,12 @@ class ForceFollower {
 class Propagator {
  public:
   /// \param scan_rate_Hz > 0. \param observer may be null; outlives the propagator.
-  Propagator(const Motion& motion, double scan_rate_Hz, MotionObserver* observer = nullptr);
+  /// \param seed as in restart().
+  Propagator(const Motion& motion, double scan_rate_Hz, MotionObserver* observer = nullptr,
+             std::uint64_t seed = 1);
 
-  /// Back to scan 0, at rest and unloaded. Does not allocate.
-  void restart();
+  /// Back to scan 0, at rest and unloaded, with these random numbers. Does not allocate.
+  void restart(std::uint64_t seed);
 
   /// The coefficient F/(m g) at the next scans. Does not allocate.
   void next(std::span<double> coefficient);
@@ -99,7 +106,16 @@ class Propagator {
   /// What the sled is doing; two of them are slips, two are slack.
   enum class Phase { kStick, kSlower, kFaster, kFree, kRide };
   /// How the present piece will end.
-  enum class Ending { kNever, kGivesWay, kCaptured, kUnloaded, kTouchesCoupling, kMeetsBelt, kSegment };
+  enum class Ending {
+    kNever,
+    kGivesWay,
+    kCaptured,
+    kUnloaded,
+    kTouchesCoupling,
+    kMeetsBelt,
+    kNewPlace,
+    kSegment
+  };
 
   struct State {
     double c;     ///< Below zero with one-way coupling: the slack, as a coefficient.
@@ -114,11 +130,17 @@ class Propagator {
   /// Chooses the phase from the state. \param capture as in ModeStart.
   void enter(State state, bool capture);
   void begin(Phase phase, State state, bool onset, bool capture);
+  /// What the damper adds to the spring at the belt's speed, if it counts.
+  [[nodiscard]] double damper_share() const;
+  [[nodiscard]] double rested_s() const { return start_.periods_since(contact_start_) / scan_rate_Hz_; }
   [[nodiscard]] Phase phase_at_belt_speed(double c) const;
   void plan_end();
   void offer(Ending ending, std::optional<double> t_s);
   void plan_slip_end();
   void plan_free_end();
+  [[nodiscard]] double slid_after(double t_s) const;
+  void plan_new_place();
+  void meet_new_place();
   void pass_end();
   void pass_until(const ScanTime& instant);
   [[nodiscard]] ForceStretch stretch_to(const ScanTime& instant) const;
@@ -128,6 +150,9 @@ class Propagator {
   double scan_rate_Hz_;
   MotionObserver* observer_;
   double omega0_squared_;
+  Paper paper_;
+  double place_length_;      ///< Correlation length in units of the coefficient.
+  double place_left_ = 0.0;  ///< Still to slide until a new place.
 
   std::int64_t next_scan_ = 0;
   ScanTime followed_to_;
@@ -137,7 +162,8 @@ class Propagator {
   bool halt_when_unloaded_ = false;
 
   Phase phase_ = Phase::kStick;
-  ScanTime start_;               ///< Of the present piece.
+  ScanTime start_;  ///< Of the present piece.
+  ScanTime contact_start_;
   State begun_{0.0, 0.0};        ///< State at start_.
   friction::SlipWaveform slip_;  ///< For the two slips; mirrored for kFaster.
   Ending ending_ = Ending::kNever;

@@ -30,4 +30,6 @@ struct ScanTime {
   auto operator<=>(const ScanTime&) const = default;
 };
 
+inline constexpr ScanTime kForEver{std::numeric_limits<std::int64_t>::max(), 0.0};
+
 }  // namespace stickslip::sim

@@ -10,6 +10,8 @@ Motion motion_of(const Scene& scene) {
   motion.mu_s = scene.mu_s;
   motion.mu_k = scene.mu_k;
   motion.gravity_m_per_s2 = scene.gravity_m_per_s2;
+  motion.paper = scene.paper;
+  motion.damper_counts_at_onset = scene.onset_convention == OnsetConvention::kSpringAndDamper;
   motion.one_way_coupling = scene.one_way_coupling;
   if (scene.constant_speed) {
     const ConstantSpeed& test = *scene.constant_speed;

@@ -45,6 +45,9 @@ struct ConstantSpeed {
   [[nodiscard]] double duration_s() const noexcept { return idle_s + pull_s + stop_s + return_s + rest_s; }
 };
 
+/// Effect `onset_convention` (motion): which force has to exceed S for the slip to start.
+enum class OnsetConvention { kSpring, kSpringAndDamper };
+
 struct Scene {
   std::string name;         ///< The file's name without its ending.
   std::string description;  ///< One line for people.
@@ -64,6 +67,8 @@ struct Scene {
   std::optional<ConstantSpeed> constant_speed;
   bool damping = false;
   bool one_way_coupling = false;
+  PaperSettings paper;  ///< Effects that change S and K: `scatter`, `first_peak`, `contact_ageing`.
+  std::optional<OnsetConvention> onset_convention;
   std::optional<LoadCellDynamics> load_cell_dynamics;
   std::optional<AntiAlias> anti_alias;
   std::optional<ClockRateError> clock_rate_error;

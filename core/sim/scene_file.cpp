@@ -109,6 +109,7 @@ base::Result<Scene> read_scene(Settings settings, const std::filesystem::path& f
         settings.quantity("duration", Dimension::kTime, Limits::above_up_to(0.0, kLongestPhase_s));
   }
   scene.one_way_coupling = effects.has("one_way_coupling");
+  read_paper_effects(effects, scene);
   read_transducer_effects(effects, scene);
   read_sampling_effects(effects, scene);
   read_signal_effects(effects, scene);

@@ -14,6 +14,9 @@ namespace stickslip::sim {
 inline constexpr double kLargestCoefficient = 10.0;
 inline constexpr double kHighestVoltage_V = 1000.0;
 
+/// Those of the motion stage that change S and K. \param effects  the table [effects].
+void read_paper_effects(base::Settings effects, Scene& scene);
+
 /// \param effects  the table [effects]. \param scene  with the scan rate.
 void read_transducer_effects(base::Settings effects, Scene& scene);
 

@@ -14,6 +14,10 @@ SceneRun::SceneRun(const Scene& scene, double scan_rate_Hz)
   if (scene.damping) other_effects_.push_back("damping");
   if (scene.constant_speed) other_effects_.push_back("constant_speed");
   if (scene.one_way_coupling) other_effects_.push_back("one_way_coupling");
+  if (scene.paper.scatter) other_effects_.push_back("scatter");
+  if (scene.paper.first_peak) other_effects_.push_back("first_peak");
+  if (scene.paper.contact_ageing) other_effects_.push_back("contact_ageing");
+  if (scene.onset_convention) other_effects_.push_back("onset_convention");
   if (scene.load_cell_dynamics || scene.anti_alias) {
     transducer_.emplace(scene.load_cell_dynamics, scene.anti_alias, scene.oscillator, true_scan_rate_Hz_);
     if (scene.load_cell_dynamics) other_effects_.push_back("load_cell");
@@ -38,7 +42,7 @@ SceneRun::SceneRun(const Scene& scene, double scan_rate_Hz)
 
 void SceneRun::restart(std::uint64_t seed) {
   next_scan_ = 0;
-  motion_.restart();
+  motion_.restart(seed);
   if (transducer_) transducer_->restart();
   if (jitter_) jitter_->restart(seed);
   for (const auto& effect : signal_) effect->restart(seed);

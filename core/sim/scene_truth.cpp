@@ -18,6 +18,8 @@ class Chronicle final : public MotionObserver {
  public:
   struct Slip {
     double onset_s = 0.0;
+    Coefficients paper;
+    double coefficient = 0.0;
     std::optional<double> stick_again_s;
   };
 
@@ -27,7 +29,7 @@ class Chronicle final : public MotionObserver {
     const double now_s = start.time.periods_since({}) / scan_rate_Hz_;
     const bool sticks = start.mode == Mode::kStick || (start.capture && start.onset);
     if (sticks && !slips_.empty() && !slips_.back().stick_again_s) slips_.back().stick_again_s = now_s;
-    if (start.onset) slips_.push_back({now_s, {}});
+    if (start.onset) slips_.push_back({now_s, start.paper, start.coefficient, {}});
     if (!modes_.empty()) {
       if (modes_.back().mode == start.mode && !start.onset) return;
       close(now_s);
@@ -55,6 +57,7 @@ struct Tally {
   int captured = 0;
   int not_captured = 0;
   std::vector<double> onsets_s;
+  Chronicle::Slip first;
 };
 
 Tally tally(const std::vector<Chronicle::Slip>& slips, double pull_end_s, double period_s) {
@@ -62,6 +65,7 @@ Tally tally(const std::vector<Chronicle::Slip>& slips, double pull_end_s, double
   double longest_slip_s = 2.0 * period_s;  // A damped slip is captured within its first period.
   for (const Chronicle::Slip& slip : slips) {
     if (slip.onset_s >= pull_end_s) break;
+    if (result.onsets_s.empty()) result.first = slip;
     result.onsets_s.push_back(slip.onset_s);
     if (slip.stick_again_s && *slip.stick_again_s < pull_end_s) {
       ++result.captured;
@@ -89,7 +93,8 @@ void describe_oscillation(const Scene& scene, const Tally& slips, friction::Test
     truth.oscillation_frequency_Hz = scene.oscillator.omega_rad_per_s() / (2.0 * std::numbers::pi);
   }
   const double r = scene.oscillator.stick_rate_per_s(truth.pull_speed_m_per_s, scene.gravity_m_per_s2);
-  const friction::SlipWaveform slip{scene.mu_k, scene.mu_s - scene.mu_k, r, scene.oscillator};
+  const friction::SlipWaveform slip{slips.first.paper.mu_k, slips.first.coefficient - slips.first.paper.mu_k,
+                                    r, scene.oscillator};
   double least = slip.value(slip.trough_time_s());
   if (scene.one_way_coupling) least = std::max(least, 0.0);
   truth.amplitude = (slip.value(slip.peak_time_s()) - least) / 2.0;
@@ -118,12 +123,12 @@ friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std:
   truth.gamma_over_2omega = scene.oscillator.gamma_over_2omega();
 
   Chronicle chronicle{scan_rate_Hz};
-  Propagator motion{motion_of(scene), scan_rate_Hz, &chronicle};
+  Propagator motion{motion_of(scene), scan_rate_Hz, &chronicle, seed};
   motion.skip(scan_count(scene, nominal_rate_Hz));
   chronicle.close(scene.duration_s);
   truth.modes = chronicle.modes();
   for (const Chronicle::Slip& slip : chronicle.slips()) {
-    truth.cycles.push_back({slip.onset_s, scene.mu_s, scene.mu_k});
+    truth.cycles.push_back({slip.onset_s, slip.paper.mu_s, slip.paper.mu_k});
   }
 
   if (scene.constant_speed) {
@@ -135,7 +140,7 @@ friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std:
     describe_oscillation(scene, slips, truth);
     if (!slips.onsets_s.empty() && scene.oscillator.oscillates()) {
       const TraditionalTruth traditional =
-          traditional_truth(scene, slips.onsets_s.front(), friction::Method{});
+          traditional_truth(scene, seed, slips.onsets_s.front(), friction::Method{});
       truth.static_coefficient = traditional.static_coefficient;
       truth.kinetic_coefficient = traditional.kinetic_coefficient;
     }

@@ -16,13 +16,14 @@ constexpr double kPointsPerPeriod = 2000.0;
 
 }  // namespace
 
-TraditionalTruth traditional_truth(const Scene& scene, double onset_s, const friction::Method& method) {
+TraditionalTruth traditional_truth(const Scene& scene, std::uint64_t seed, double onset_s,
+                                   const friction::Method& method) {
   TraditionalTruth truth;
   const double rate_Hz = kPointsPerPeriod * scene.oscillator.omega_rad_per_s() / (2.0 * std::numbers::pi);
   const auto from = static_cast<std::int64_t>(std::floor(onset_s * rate_Hz));
   const auto end = static_cast<std::int64_t>(
       std::ceil((scene.constant_speed->idle_s + scene.constant_speed->pull_s) * rate_Hz));
-  Propagator motion{motion_of(scene), rate_Hz};
+  Propagator motion{motion_of(scene), rate_Hz, nullptr, seed};
   motion.skip(from);
 
   std::array<double, 256> force{};

@@ -2,6 +2,7 @@
 /// What the traditional rule would read from the force itself: no noise, no converter, no scans.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "core/friction/method.hpp"
@@ -15,9 +16,10 @@ struct TraditionalTruth {
 };
 
 /// \param scene     oscillates, and has a constant-speed test.
+/// \param seed      of the run.
 /// \param onset_s   first slip onset.
 /// \return without the number that the pull is too short for.
-[[nodiscard]] TraditionalTruth traditional_truth(const Scene& scene, double onset_s,
+[[nodiscard]] TraditionalTruth traditional_truth(const Scene& scene, std::uint64_t seed, double onset_s,
                                                  const friction::Method& method);
 
 }  // namespace stickslip::sim
