@@ -162,9 +162,9 @@ base::Result<void> App::open_session() {
     boost::asio::post(io_, [this, end] { session_ended(end); });
   };
   try {
-    session_ = std::make_unique<Session>(std::move(*board), settings,
-                                         std::vector<pipeline::Sink*>{watcher_.get(), &storage_},
-                                         *world_.facts, std::move(events));
+    session_ =
+        std::make_unique<Session>(std::move(*board), settings,
+                                  std::vector<pipeline::Sink*>{watcher_.get(), &storage_}, std::move(events));
   } catch (const std::invalid_argument& refused) {
     return base::usage_error("the board does not suit the configuration: {}", refused.what());
   }

@@ -23,9 +23,8 @@ daq::Calibration calibration_of(const drivers::OpenedBoard& board, const Session
 }  // namespace
 
 Session::Session(drivers::OpenedBoard board, const SessionSettings& settings,
-                 std::vector<pipeline::Sink*> sinks, Facts& facts, SessionEvents events)
+                 std::vector<pipeline::Sink*> sinks, SessionEvents events)
     : board_(std::move(board)),
-      facts_(facts),
       events_(std::move(events)),
       ring_(daq::ScanRing::capacity_for(board_.board->info().scan_rate_granted_Hz * settings.clock_speed)),
       processor_(settings.processor, calibration_of(board_, settings), std::move(sinks)),

@@ -14,7 +14,6 @@
 #include "core/daq/scan_ring.hpp"
 #include "core/pipeline/processor.hpp"
 #include "daemon/acquisition.hpp"
-#include "daemon/facts.hpp"
 #include "drivers/factory/factory.hpp"
 
 namespace stickslip::daemon {
@@ -42,10 +41,10 @@ struct SessionCounts {
 
 class Session {
  public:
-  /// \param sinks,facts  outlive the session.
+  /// \param sinks  outlive the session.
   /// \throws std::invalid_argument as daq::Calibration and friction::TestAnalysis.
   Session(drivers::OpenedBoard board, const SessionSettings& settings, std::vector<pipeline::Sink*> sinks,
-          Facts& facts, SessionEvents events);
+          SessionEvents events);
   /// Stops, lets all scans be processed, waits.
   ~Session();
   Session(const Session&) = delete;
@@ -71,7 +70,6 @@ class Session {
   void process_block(const daq::ScanBlock& block);
 
   drivers::OpenedBoard board_;
-  Facts& facts_;
   SessionEvents events_;
   daq::ScanRing ring_;
   pipeline::Processor processor_;

@@ -26,7 +26,7 @@ std::filesystem::path free_journal_path(const std::filesystem::path& folder,
   std::error_code error;
   for (int attempt = 1;; ++attempt) {
     const std::string name = attempt == 1 ? stem : fmt::format("{}-{}", stem, attempt);
-    const std::filesystem::path journal = folder / (name + std::string{record::kJournalExtension});
+    std::filesystem::path journal = folder / (name + std::string{record::kJournalExtension});
     if (!std::filesystem::exists(journal, error) &&
         !std::filesystem::exists(folder / (name + ".h5"), error)) {
       return journal;

@@ -245,9 +245,11 @@ RC_GTEST_PROP(AnalysisProperty, TestGetsAnAnswerWhereverItIsCut, ()) {
 // Gaps of any length anywhere, told by gap() and seen as a jump of the index.
 RC_GTEST_PROP(AnalysisProperty, TestWithGapsGetsAnAnswerThatCountsThem, ()) {
   const Input input = any_test();
-  const auto gaps = *rc::gen::inRange(0, 4);
+  const auto gaps = *rc::gen::inRange<std::size_t>(0, 4);
   std::vector<std::size_t> before;
-  for (int i = 0; i < gaps; ++i) before.push_back(*rc::gen::inRange<std::size_t>(1, input.values.size()));
+  before.reserve(gaps);
+  for (std::size_t i = 0; i < gaps; ++i)
+    before.push_back(*rc::gen::inRange<std::size_t>(1, input.values.size()));
   std::sort(before.begin(), before.end());
   before.erase(std::unique(before.begin(), before.end()), before.end());
   const auto length = *rc::gen::element<base::ScanIndex>(1, 10, 1000);
