@@ -14,7 +14,6 @@ namespace {
 using Event = Segmenter::Event;
 using std::numbers::pi;
 
-constexpr double kScanRate_Hz = 350.0;
 constexpr double kSigma = 0.001;
 
 /// 0.010 s, 0.25 s and 0.25 s of the defaults at 350 Hz, rounded half up (87.5 → 88, 3.5 → 4).

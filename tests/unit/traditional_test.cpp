@@ -27,6 +27,7 @@ Trace trace_of(std::vector<double> values) {
 /// 0.3 + 0.05 cos about the peaks at 10, 30, 50 …
 Trace oscillation(int scans) {
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(scans));
   for (int k = 0; k < scans; ++k) {
     values.push_back(0.3 + 0.05 * std::cos(2.0 * std::numbers::pi * (k - kFirstPeak) / kPeriod));
   }
@@ -65,7 +66,8 @@ TEST(Traditional, KineticTakesTheMethodsCyclesAndNoMore) {
   // The level is i/10 in cycle i: the mean of n cycles is (n − 1)/20.
   Trace trace = oscillation(400);
   for (std::size_t k = 0; k < trace.size(); ++k) {
-    trace.value[k] = k < kFirstPeak ? 9.0 : 0.1 * static_cast<double>((k - kFirstPeak) / kPeriod);
+    const std::size_t cycle = k < kFirstPeak ? 90 : (k - kFirstPeak) / kPeriod;
+    trace.value[k] = 0.1 * static_cast<double>(cycle);
   }
   for (const int cycles : {1, 3, 10}) {
     Method method;
