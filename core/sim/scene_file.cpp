@@ -140,7 +140,7 @@ base::Result<Scene> load_scene(const std::filesystem::path& file, const SceneCha
   const SceneDuration& duration = *changes.duration;
   SceneChange change{"duration", fmt::format("{} s", duration.seconds), duration.origin};
   if (settings->table("effects").has("constant_speed")) {
-    const base::Result<Scene> scene = read_scene(*settings, file);
+    base::Result<Scene> scene = read_scene(*settings, file);
     if (!scene) return scene;
     const double others_s = scene->duration_s - scene->constant_speed->pull_s;
     const double pull_s = duration.seconds - others_s;
