@@ -126,6 +126,7 @@ TEST(Despike, SpikeOnAPeakGoesAndThePeakStays) {
 
 TEST(Despike, SlipWithinOneScanIsNoSpike) {
   std::vector<double> values;
+  values.reserve(200);
   for (int k = 0; k < 200; ++k) values.push_back(kSlope * (k % 20));
   EXPECT_TRUE(spikes_in(despiked(values, kSigma)).empty());
 }
