@@ -1,51 +1,71 @@
 #include "daemon/analyse.hpp"
 
 #include <stdexcept>
+#include <utility>
 
-#include "core/friction/test_analysis.hpp"
 #include "daemon/method_text.hpp"
 
 namespace stickslip::daemon {
 namespace {
 
-friction::AnalysisSettings settings_of(const record::Record& record, const daq::Calibration& calibration,
-                                       const friction::Method& method) {
+friction::AnalysisSettings settings_of(const record::RecordHeader& header,
+                                       const daq::Calibration& calibration, const friction::Method& method) {
   friction::AnalysisSettings settings;
-  settings.scan_rate_Hz = record.header.board.scan_rate_granted_Hz;
+  settings.scan_rate_Hz = header.board.scan_rate_granted_Hz;
   settings.step_coefficient = calibration.step_coefficient();
-  settings.tester = record.header.tester.tester();
+  settings.tester = header.tester.tester();
   settings.method = method;
   return settings;
 }
 
 }  // namespace
 
-base::Result<record::EndRecord> analyse(const record::Record& record) {
-  if (record.header.board.quantity == daq::RawQuantity::kCounts && !record.header.load_cell) {
+RecordAnalysis::RecordAnalysis(daq::Calibration calibration, const friction::AnalysisSettings& settings)
+    : calibration_(std::move(calibration)), analysis_(settings) {}
+
+base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& header,
+                                                  const std::filesystem::path& scratch_folder) {
+  if (header.board.quantity == daq::RawQuantity::kCounts && !header.load_cell) {
     return base::usage_error("the record has counts but no load cell, so no forces");
   }
-  const base::Result<friction::Method> method = method_from_text(record.header.process.method);
+  const base::Result<friction::Method> method = method_from_text(header.process.method);
   if (!method) return tl::unexpected(method.error());
   try {
-    const daq::Calibration calibration{record.header.board, record.header.load_cell.value_or(daq::LoadCell{}),
-                                       record.header.tester.tester().normal_load_N()};
-    friction::TestAnalysis analysis{settings_of(record, calibration, *method)};
-    // A jump of the index is a gap, as for the processor; the gaps stored tell only the cause.
-    for (std::size_t i = 0; i < record.scan.size(); ++i) {
-      if (i > 0 && record.scan[i] != record.scan[i - 1] + 1) {
-        analysis.gap(record.scan[i - 1] + 1, record.scan[i] - record.scan[i - 1] - 1);
-      }
-      analysis.add(record.scan[i], calibration.coefficient(record.raw[i]),
-                   calibration.saturated(record.raw[i]));
-    }
-    record::EndRecord end = record.end.value_or(record::EndRecord{});
-    end.results = analysis.finish();
-    end.cycles = analysis.cycles();
-    end.spikes = analysis.spikes();
-    return end;
+    daq::Calibration calibration{header.board, header.load_cell.value_or(daq::LoadCell{}),
+                                 header.tester.tester().normal_load_N()};
+    friction::AnalysisSettings settings = settings_of(header, calibration, *method);
+    settings.scratch_folder = scratch_folder;
+    return RecordAnalysis{std::move(calibration), settings};
   } catch (const std::invalid_argument& refused) {
     return base::usage_error("the record cannot be analysed: {}", refused.what());
   }
+}
+
+void RecordAnalysis::add(daq::ScanIndex first, std::span<const double> raw) {
+  if (raw.empty()) return;
+  // A jump of the index is a gap, as for the processor; the gaps stored tell only the cause.
+  if (next_ && first != *next_) analysis_.gap(*next_, first - *next_);
+  for (const double value : raw) {
+    analysis_.add(first++, calibration_.coefficient(value), calibration_.saturated(value));
+  }
+  next_ = first;
+}
+
+void RecordAnalysis::finish(record::EndRecord& end) {
+  end.results = analysis_.finish();
+  end.cycles = analysis_.cycles();
+  end.spikes = analysis_.spikes();
+}
+
+base::Result<record::EndRecord> analyse(const record::Record& record) {
+  base::Result<RecordAnalysis> analysis = RecordAnalysis::make(record.header);
+  if (!analysis) return tl::unexpected(analysis.error());
+  for (std::size_t i = 0; i < record.scan.size(); ++i) {
+    analysis->add(record.scan[i], std::span{record.raw}.subspan(i, 1));
+  }
+  record::EndRecord end = record.end.value_or(record::EndRecord{});
+  analysis->finish(end);
+  return end;
 }
 
 }  // namespace stickslip::daemon

@@ -1,15 +1,44 @@
 /// \file
-/// The shipped analysis over a record in memory: the same walk as live, so the same bits.
+/// The shipped analysis over a record: the same walk as live, so the same bits.
 #pragma once
 
+#include <filesystem>
+#include <optional>
+#include <span>
+
 #include "core/base/result.hpp"
+#include "core/daq/calibration.hpp"
+#include "core/friction/test_analysis.hpp"
 #include "core/record/record.hpp"
 
 namespace stickslip::daemon {
 
+/// Scans come, results go; the record itself need not be in memory.
+class RecordAnalysis {
+ public:
+  /// \param scratch_folder  where the scans of a long record may lie for the time being; empty: in memory.
+  /// Errors: kUsage if the facts do not allow it (no scan rate, no load cell for counts).
+  [[nodiscard]] static base::Result<RecordAnalysis> make(const record::RecordHeader& header,
+                                                         const std::filesystem::path& scratch_folder = {});
+
+  // Both may throw std::system_error where there is a scratch folder.
+
+  /// Consecutive scans from `first` on, after all before; a jump is a gap.
+  void add(daq::ScanIndex first, std::span<const double> raw);
+
+  /// Fills in results, cycles and spikes. Call once.
+  void finish(record::EndRecord& end);
+
+ private:
+  RecordAnalysis(daq::Calibration calibration, const friction::AnalysisSettings& settings);
+
+  daq::Calibration calibration_;
+  friction::TestAnalysis analysis_;
+  std::optional<daq::ScanIndex> next_;
+};
+
 /// Results, cycles and spikes of the record's scans; status, cause and truth stay those of the
-/// record's end, if it has one.
-/// Errors: kUsage if the record's facts do not allow it (no scan rate, no load cell for counts).
+/// record's end, if it has one. Errors as RecordAnalysis::make().
 [[nodiscard]] base::Result<record::EndRecord> analyse(const record::Record& record);
 
 }  // namespace stickslip::daemon

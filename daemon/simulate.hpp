@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -15,13 +16,14 @@
 
 namespace stickslip::daemon {
 
-/// Longest record that is made in memory: 40 hours at 350 Hz, about 4 GB.
+/// Longest record: 40 hours at 350 Hz.
 inline constexpr std::int64_t kMostSimulatedScans = 50'000'000;
 
 struct Simulation {
-  record::Record record;      ///< With its end; process.program and process.configuration are left open.
-  std::string method;         ///< As sim::SceneRun::method().
-  double time_taken_s = 0.0;  ///< By the simulation itself, without analysis and file.
+  record::Record record;        ///< With its end; process.program and process.configuration are left open.
+  std::int64_t scan_count = 0;  ///< Those that arrived.
+  std::string method;           ///< How the motion was solved, the accuracy in use and asked for.
+  double time_taken_s = 0.0;    ///< By the simulation itself, without analysis and file.
 
   [[nodiscard]] double ns_per_scan() const noexcept;
   /// "2975 scans, 8.5 s at 350 Hz, seed 3; simulated in …"; also in the record.
@@ -31,11 +33,28 @@ struct Simulation {
 /// Told the part of the scans that has been simulated, 0 … 1; may be empty.
 using SimulationProgress = std::function<void(double done)>;
 
+/// The record in memory: for pictures and comparisons of short scenes.
 /// \param seed   of the run: the same seed, the same bits. That of a record's truth repeats it.
 /// \param clock  measures the time taken and nothing else.
 /// Errors: kUsage for a scene without a scan, or with more than kMostSimulatedScans.
 [[nodiscard]] base::Result<Simulation> simulate(const sim::Scene& scene, std::uint64_t seed,
                                                 const base::Clock& clock,
                                                 const SimulationProgress& progress = {});
+
+/// What a file says about where it comes from.
+struct SimulationFile {
+  std::filesystem::path path;  ///< Must not exist.
+  std::string program;         ///< process/program
+  std::string configuration;   ///< process/configuration
+};
+
+/// The same into a file, scan by scan: the memory it needs is that of the tables of cycles and of the search
+/// for slips (docs/simulate.md). The scans go to FILE.journal, which is gone in the end, whatever happens.
+/// \param progress  told 1 once before the analysis and once more before the file is built.
+/// \return the simulation without scans, raw values and noise-free force.
+/// Errors: as simulate(); kUsage if the file is there already, kFailure if it cannot be written.
+[[nodiscard]] base::Result<Simulation> simulate_to_file(const sim::Scene& scene, std::uint64_t seed,
+                                                        const base::Clock& clock, const SimulationFile& file,
+                                                        const SimulationProgress& progress = {});
 
 }  // namespace stickslip::daemon

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 namespace stickslip::daemon {
 namespace {
@@ -17,6 +19,9 @@ constexpr std::chrono::seconds kSyncPeriod{1};
 constexpr double kEntry_s = 0.1;
 /// Time between clock anchors, from which the true scan rate is fitted.
 constexpr double kAnchorPeriod_s = 1.0;
+
+/// Scans in one journal entry of the noise-free force: 32 kB.
+constexpr std::size_t kForceEntry = 4096;
 
 /// "20261121T125252Z-0003", in UTC; a number is added while something of that name exists.
 std::filesystem::path free_journal_path(const std::filesystem::path& folder,
@@ -87,8 +92,10 @@ void Storage::test_ended(const pipeline::TestEnd& end) {
   record->results = end.results;
   record->cycles = end.cycles;
   record->spikes = end.spikes;
+  std::shared_ptr<friction::TrueForce> force;
   if (truth_ != nullptr) record->truth = truth_->truth(first_, end.end);
-  queue_.push(Ended{std::move(record)});
+  if (record->truth) force = truth_->force(first_);
+  queue_.push(Ended{std::move(record), std::move(force)});
 }
 
 // Storage thread.
@@ -112,6 +119,7 @@ void Storage::handle(const Began& message) {
   number_ = message.start.number;
   failed_.reset();
   pending_.clear();
+  recorded_.clear();
   record::RecordHeader header = *message.header;
   header.test_number = message.start.number;
   header.trigger_scan = message.start.trigger;
@@ -163,7 +171,9 @@ void Storage::handle(const Ended& message) {
     end.status = record::Status::kIncomplete;
     end.reasons.push_back(*failed_);
   }
-  base::Result<void> written = journal_->append_end(end);
+  base::Result<void> written;
+  if (message.force && !failed_) written = append_force(*message.force);
+  if (written) written = journal_->append_end(end);
   if (written) written = journal_->sync();
   const std::filesystem::path path = journal_->path();
   journal_.reset();
@@ -187,12 +197,31 @@ void Storage::append_pending() {
     note(journal_->append_scans(pending_first_, pending_, pending_stamp_));
     // The stamp belongs to the last scan of the last block.
     const daq::ScanIndex last = pending_first_ + static_cast<daq::ScanIndex>(pending_.size()) - 1;
+    if (!recorded_.empty() && recorded_.back().end == pending_first_) {
+      recorded_.back().end = last + 1;
+    } else {
+      recorded_.push_back({pending_first_, last + 1});
+    }
     if (!failed_ && last >= next_anchor_) {
       note(journal_->append_anchor({last, pending_stamp_.monotonic_ns, pending_stamp_.realtime_ns}));
       next_anchor_ = last + scans_per_anchor_;
     }
   }
   pending_.clear();
+}
+
+base::Result<void> Storage::append_force(friction::TrueForce& force) {
+  std::array<double, kForceEntry> coefficient{};
+  for (Stretch stretch : recorded_) {
+    while (stretch.first < stretch.end) {
+      const auto left = static_cast<std::size_t>(stretch.end - stretch.first);
+      const std::span<double> some = std::span{coefficient}.first(std::min(left, kForceEntry));
+      force.next(stretch.first, some);
+      if (auto written = journal_->append_true_coefficients(stretch.first, some); !written) return written;
+      stretch.first += static_cast<daq::ScanIndex>(some.size());
+    }
+  }
+  return {};
 }
 
 void Storage::sync_if_due() {

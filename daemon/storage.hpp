@@ -61,6 +61,12 @@ class Storage final : public pipeline::Sink {
   };
   struct Ended {
     std::shared_ptr<const record::EndRecord> end;
+    std::shared_ptr<friction::TrueForce> force;  ///< Null if nobody knows it.
+  };
+  /// Consecutive scans in the journal.
+  struct Stretch {
+    daq::ScanIndex first;
+    daq::ScanIndex end;
   };
   struct Quit {};
   using Message = std::variant<Quit, Began, daq::ScanBlock, daq::Gap, friction::Cycle, Ended>;
@@ -73,6 +79,8 @@ class Storage final : public pipeline::Sink {
   void handle(const friction::Cycle& cycle);
   void handle(const Ended& message);
   void append_pending();
+  /// The noise-free force of the scans that are in the journal.
+  [[nodiscard]] base::Result<void> append_force(friction::TrueForce& force);
   void sync_if_due();
   void note(const base::Result<void>& written);
   void fail(const std::string& why);
@@ -91,6 +99,7 @@ class Storage final : public pipeline::Sink {
   std::vector<double> pending_;  ///< Consecutive scans not yet appended.
   daq::ScanIndex pending_first_ = 0;
   daq::ClockStamp pending_stamp_;
+  std::vector<Stretch> recorded_;   ///< All of them.
   std::size_t pending_enough_ = 1;  ///< Scans in one journal entry.
   daq::ScanIndex next_anchor_ = 0;
   std::int64_t scans_per_anchor_ = 1;

@@ -45,6 +45,8 @@ constexpr std::array kSpeedUnits{Unit{"m/s", 1, 1},           Unit{"cm/s", 1, 10
                                  Unit{"in/min", kInch_m, 60}, Unit{"ft/min", kFoot_m, 60}};
 constexpr std::array kAccelerationUnits{Unit{"m/s^2", 1, 1}, Unit{"cm/s^2", 1, 100}, Unit{"mm/s^2", 1, 1e3},
                                         Unit{"in/s^2", kInch_m, 1}, Unit{"ft/s^2", kFoot_m, 1}};
+constexpr std::array kJerkUnits{Unit{"m/s^3", 1, 1}, Unit{"cm/s^3", 1, 100}, Unit{"mm/s^3", 1, 1e3},
+                                Unit{"in/s^3", kInch_m, 1}, Unit{"ft/s^3", kFoot_m, 1}};
 constexpr std::array kMassUnits{Unit{"kg", 1, 1}, Unit{"g", 1, 1e3}, Unit{"mg", 1, 1e6},
                                 Unit{"lb", kPound_kg, 1}};
 constexpr std::array kForceUnits{Unit{"N", 1, 1},
@@ -62,6 +64,8 @@ constexpr std::array kForcePerVoltageUnits{Unit{"N/V", 1, 1}, Unit{"mN/V", 1, 1e
 constexpr std::array kVoltagePerForceUnits{Unit{"V/N", 1, 1}, Unit{"mV/N", 1, 1e3},
                                            Unit{"V/kgf", 1, kKilogramForce_N},
                                            Unit{"V/lbf", 1, kPoundForce_N}};
+constexpr std::array kTimePerLengthUnits{Unit{"s/m", 1, 1}, Unit{"s/cm", 100, 1}, Unit{"s/mm", 1e3, 1},
+                                         Unit{"s/in", 1, kInch_m}, Unit{"min/in", 60, kInch_m}};
 constexpr std::array kAngleUnits{Unit{"rad", 1, 1}, Unit{"deg", std::numbers::pi, 180}};
 
 std::span<const Unit> units_of(Dimension dimension) noexcept {
@@ -82,6 +86,8 @@ std::span<const Unit> units_of(Dimension dimension) noexcept {
       return kSpeedUnits;
     case Dimension::kAcceleration:
       return kAccelerationUnits;
+    case Dimension::kJerk:
+      return kJerkUnits;
     case Dimension::kMass:
       return kMassUnits;
     case Dimension::kForce:
@@ -94,6 +100,8 @@ std::span<const Unit> units_of(Dimension dimension) noexcept {
       return kForcePerVoltageUnits;
     case Dimension::kVoltagePerForce:
       return kVoltagePerForceUnits;
+    case Dimension::kTimePerLength:
+      return kTimePerLengthUnits;
     case Dimension::kAngle:
       return kAngleUnits;
   }

@@ -27,12 +27,14 @@ enum class Dimension {
   kLength,            ///< m
   kSpeed,             ///< m/s
   kAcceleration,      ///< m/s^2
+  kJerk,              ///< m/s^3
   kMass,              ///< kg
   kForce,             ///< N
   kVoltage,           ///< V
   kStiffness,         ///< N/m
   kForcePerVoltage,   ///< N/V
   kVoltagePerForce,   ///< V/N
+  kTimePerLength,     ///< s/m
   kAngle,             ///< rad
 };
 

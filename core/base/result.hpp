@@ -20,6 +20,8 @@ namespace stickslip::base {
 enum class ErrorKind {
   kUsage,    ///< The request or its input is wrong (exit status 2).
   kFailure,  ///< The request was right, the world was not: disk, board, permission (exit status 1).
+  /// Somebody asked to stop; the same request goes on from there (exit status 130, as after Ctrl-C).
+  kInterrupted,
 };
 
 /// One line for a person: what is wrong, where, the value, what is allowed, what to do.
@@ -27,8 +29,18 @@ struct Error {
   ErrorKind kind = ErrorKind::kFailure;
   std::string message;
 
-  /// Exit status for a command that ends with this error: 2 usage and input, 1 failure.
-  [[nodiscard]] int exit_status() const noexcept { return kind == ErrorKind::kUsage ? 2 : 1; }
+  /// Exit status for a command that ends with this error: 2 usage and input, 1 failure, 130 interrupted.
+  [[nodiscard]] int exit_status() const noexcept {
+    switch (kind) {
+      case ErrorKind::kUsage:
+        return 2;
+      case ErrorKind::kFailure:
+        return 1;
+      case ErrorKind::kInterrupted:
+        return 130;
+    }
+    return 1;
+  }
 };
 
 template <typename T>

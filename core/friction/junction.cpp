@@ -23,6 +23,27 @@ struct Scan {
   double value;
 };
 
+/// All scans of a window, unless the stick or what is left of an oscillation is so long that the time for
+/// the fit and its memory would grow with it: then all near the two ends, where the slips are, and of the
+/// line between them so many that there are about kMostScans.
+class Selection {
+ public:
+  Selection(std::size_t first, std::size_t end)
+      : first_(first), end_(end), stride_((end - first + kMostScans - 1) / kMostScans) {}
+
+  [[nodiscard]] bool has(std::size_t k) const noexcept {
+    return k - first_ < kNearTheEnds || end_ - k <= kNearTheEnds || (k - first_) % stride_ == 0;
+  }
+
+ private:
+  static constexpr std::size_t kMostScans = 20'000;   ///< A minute at 350 scans/s.
+  static constexpr std::size_t kNearTheEnds = 5'000;  ///< From each end.
+
+  std::size_t first_;
+  std::size_t end_;
+  std::size_t stride_;
+};
+
 /// K, c(0) − K, c′(0), and for "captured" the S of the next slip.
 using Parameters = Eigen::VectorXd;
 
@@ -108,11 +129,11 @@ double least_cost(const std::vector<Scan>& scans, const Model& model, Parameters
 double capture_log_likelihood_ratio(const Trace& trace, std::size_t first, std::size_t end,
                                     const SharedParameters& shared, double sigma) {
   std::vector<Scan> scans;
-  scans.reserve(end - first);
+  const Selection selection{first, end};
   double low = 0.0;
   double high = 0.0;
   for (std::size_t k = first; k < end; ++k) {
-    if (trace.usable[k] == 0) continue;
+    if (!selection.has(k) || trace.usable[k] == 0) continue;
     const double value = trace.value[k];
     low = scans.empty() ? value : std::min(low, value);
     high = scans.empty() ? value : std::max(high, value);

@@ -48,8 +48,8 @@ double half_range(const SlipWaveform& slip) {
 
 Fitted gather(const SlipEstimates& estimates) {
   const SlipFit& fit = estimates.fit;
-  std::vector<SlipWindow> windows = estimates.windows;
-  if (windows.size() >= kEnoughToLeaveOutTheFirst) windows.erase(windows.begin());
+  std::span<const SlipWindow> windows = estimates.windows;
+  if (windows.size() >= kEnoughToLeaveOutTheFirst) windows = windows.subspan(1);
 
   Fitted fitted;
   Sample S;

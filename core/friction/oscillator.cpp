@@ -54,6 +54,11 @@ double Oscillator::phi_rad() const noexcept { return std::atan(gamma_over_2omega
 
 DampedBasis damped_basis(const Oscillator& oscillator, double t_s) noexcept {
   const double z = oscillator.omega_squared * t_s * t_s;
+  if (z >= kSeriesLimit) {  // As below, with what the two share worked out once.
+    const double omega = std::sqrt(oscillator.omega_squared);
+    const double decay = std::exp(-oscillator.gamma_per_s * t_s / 2.0);
+    return {decay * std::cos(omega * t_s), decay * (std::sin(omega * t_s) / omega)};
+  }
   if (z > -kSeriesLimit) {
     const double decay = std::exp(-oscillator.gamma_per_s * t_s / 2.0);
     return {decay * entire_cosine(oscillator.omega_squared, t_s),

@@ -171,26 +171,30 @@ SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows, const Sh
   for (int iteration = 0; iteration < kMostIterations && !fit.converged && damping < kHopeless; ++iteration) {
     const Step step = solve(equations, damping);
     SharedParameters trial = fit.shared;
-    std::vector<SlipWindow> trial_windows = windows;
+    // Windows are large and many: they are tried in place.
+    std::vector<SlipParameters> before;
+    before.reserve(windows.size());
+    for (const SlipWindow& window : windows) before.push_back(window.slip);
     double trial_cost = std::numeric_limits<double>::infinity();
     if (step.solved) {
       trial.omega += step.shared[0];
       trial.gamma += step.shared[1];
       trial.r += step.shared[2];
       for (std::size_t i = 0; i < windows.size(); ++i) {
-        trial_windows[i].slip.onset_s += step.slips[i][0];
-        trial_windows[i].slip.S += step.slips[i][1];
-        trial_windows[i].slip.K += step.slips[i][2];
+        windows[i].slip.onset_s += step.slips[i][0];
+        windows[i].slip.S += step.slips[i][1];
+        windows[i].slip.K += step.slips[i][2];
       }
-      if (admissible(trial)) trial_cost = cost_of(trace, trial_windows, trial, sigma);
+      if (admissible(trial)) trial_cost = cost_of(trace, windows, trial, sigma);
     }
     if (trial_cost <= equations.cost) {
       fit.converged = equations.cost - trial_cost <= kConverged * equations.cost;
       fit.shared = trial;
-      windows = std::move(trial_windows);
+      equations = {};  // Not both at once.
       equations = assemble(trace, windows, fit.shared, sigma);
       damping = std::max(damping * kEasier, kSmallestDamping);
     } else {
+      for (std::size_t i = 0; i < windows.size(); ++i) windows[i].slip = before[i];
       damping *= kHarder;
     }
   }

@@ -22,7 +22,7 @@ namespace {
 /// closed form in doubles) still has rounding, and turning points need a scale.
 constexpr double kSmallestRelativeNoise = 1e-9;
 
-double noise_floor(std::span<const double> values, double step_coefficient) {
+double noise_floor(const base::LongColumn<double>& values, double step_coefficient) {
   const double step = step_coefficient > 0.0 ? step_coefficient : signal::smallest_step(values);
   double largest = 0.0;
   for (const double value : values) largest = std::max(largest, std::abs(value));
@@ -61,6 +61,9 @@ void too_short(std::size_t scan_count, TestResults& results) {
 
 TestAnalysis::TestAnalysis(const AnalysisSettings& settings)
     : settings_(settings),
+      indices_(settings.scratch_folder),
+      coefficients_(settings.scratch_folder),
+      saturated_(settings.scratch_folder),
       live_noise_(std::max(signal::kRoundingSigma * settings.step_coefficient, kSmallestRelativeNoise)) {
   if (!(settings.scan_rate_Hz > 0.0) || !std::isfinite(settings.scan_rate_Hz)) {
     throw std::invalid_argument(fmt::format("scan rate {} Hz must be positive", settings.scan_rate_Hz));
@@ -155,22 +158,23 @@ TestResults TestAnalysis::finish() {
 }
 
 Trace TestAnalysis::despiked_trace() {
-  Trace trace;
-  trace.time_s.reserve(indices_.size());
-  trace.value.reserve(indices_.size());
-  trace.usable.reserve(indices_.size());
+  const std::filesystem::path& scratch = settings_.scratch_folder;
+  Trace trace{base::LongColumn<double>{scratch}, base::LongColumn<double>{scratch},
+              base::LongColumn<std::uint8_t>{scratch}};
   const double sigma =
       signal::scan_noise(coefficients_, noise_floor(coefficients_, settings_.step_coefficient));
   signal::Despiker despiker;
   spikes_.clear();
+  const base::LongColumn<base::ScanIndex>& indices = indices_;
+  const base::LongColumn<std::uint8_t>& saturated = saturated_;
   const auto take = [&](const signal::DespikedScan& scan) {
     const std::size_t k = trace.value.size();
-    if (scan.spike) spikes_.push_back(indices_[k]);
-    trace.time_s.push_back(static_cast<double>(indices_[k] - indices_.front()) / settings_.scan_rate_Hz);
+    if (scan.spike) spikes_.push_back(indices[k]);
+    trace.time_s.push_back(static_cast<double>(indices[k] - indices.front()) / settings_.scan_rate_Hz);
     trace.value.push_back(scan.value);
-    trace.usable.push_back(!scan.spike && saturated_[k] == 0 ? 1 : 0);
+    trace.usable.push_back(!scan.spike && saturated[k] == 0 ? 1 : 0);
   };
-  for (const double coefficient : coefficients_) {
+  for (const double coefficient : std::as_const(coefficients_)) {
     if (!settings_.despike) {
       take({coefficient, false});
     } else if (const auto scan = despiker.add(coefficient, sigma)) {
@@ -182,20 +186,22 @@ Trace TestAnalysis::despiked_trace() {
 }
 
 void TestAnalysis::flag_cycles(const std::vector<Fall>& slips) {
+  const base::LongColumn<base::ScanIndex>& indices = indices_;
+  const base::LongColumn<std::uint8_t>& saturated = saturated_;
   for (std::size_t i = 0; i < cycles_.size(); ++i) {
     Cycle& cycle = cycles_[i];
     const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
     const auto end = i + 1 < slips.size() ? static_cast<std::size_t>(std::lround(slips[i + 1].peak_at))
                                           : static_cast<std::size_t>(std::lround(slips[i].trough_at));
-    cycle.first_scan = indices_[first];
-    const base::ScanIndex last_scan = indices_[std::min(end, indices_.size() - 1)];
+    cycle.first_scan = indices[first];
+    const base::ScanIndex last_scan = indices[std::min(end, indices.size() - 1)];
     const auto inside = [&](base::ScanIndex scan) { return scan >= cycle.first_scan && scan < last_scan; };
     if (std::any_of(spikes_.begin(), spikes_.end(), inside)) cycle.flags |= kCycleHasSpike;
     if (std::any_of(gaps_.begin(), gaps_.end(), [&](const Gap& gap) { return inside(gap.first); })) {
       cycle.flags |= kCycleHasGap;
     }
-    if (std::any_of(saturated_.begin() + static_cast<std::ptrdiff_t>(first),
-                    saturated_.begin() + static_cast<std::ptrdiff_t>(std::min(end, saturated_.size())),
+    if (std::any_of(saturated.begin() + static_cast<std::ptrdiff_t>(first),
+                    saturated.begin() + static_cast<std::ptrdiff_t>(std::min(end, saturated.size())),
                     [](std::uint8_t flag) { return flag != 0; })) {
       cycle.flags |= kCycleIsSaturated;
     }

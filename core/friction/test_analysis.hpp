@@ -9,8 +9,10 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <vector>
 
+#include "core/base/long_column.hpp"
 #include "core/base/scan_index.hpp"
 #include "core/friction/cycle.hpp"
 #include "core/friction/fall_finder.hpp"
@@ -30,9 +32,13 @@ struct AnalysisSettings {
   Tester tester;
   Method method;
   bool despike = true;  ///< Off: to see what the spikes did.
+  /// Where to put the scans of a long test beside the latest few minutes; empty: they all stay in memory.
+  std::filesystem::path scratch_folder;
 };
 
-/// Thread-bound. Memory grows with the test: about 17 bytes a scan.
+/// Thread-bound. Memory grows with the test: about 34 bytes a scan (with a scratch folder only what
+/// FallFinder keeps since the last slip) and 1 kB a slip. With a scratch folder all functions may throw
+/// std::system_error.
 class TestAnalysis {
  public:
   /// \throws std::invalid_argument unless the rate is positive and finite.
@@ -67,9 +73,9 @@ class TestAnalysis {
   void flag_cycles(const std::vector<Fall>& slips);
 
   AnalysisSettings settings_;
-  std::vector<base::ScanIndex> indices_;
-  std::vector<double> coefficients_;
-  std::vector<std::uint8_t> saturated_;
+  base::LongColumn<base::ScanIndex> indices_;
+  base::LongColumn<double> coefficients_;
+  base::LongColumn<std::uint8_t> saturated_;
   std::vector<Gap> gaps_;
 
   signal::NoiseEstimator live_noise_;

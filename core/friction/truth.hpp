@@ -3,7 +3,9 @@
 /// truth, and so do records made from scenes; a bench has none.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,6 +42,16 @@ struct TrueCycle {
   double mu_k = 0.0;
 };
 
+/// How the motion behind the truth was solved, and how far its numbers can be trusted.
+struct SolverFacts {
+  std::string method;                     ///< For people.
+  double accuracy = 0.0;                  ///< In use: largest error of the coefficient to be expected.
+  double accuracy_asked = 0.0;            ///< By the scene.
+  std::optional<double> time_per_scan_s;  ///< Taken by the simulation; none where nobody measured it.
+
+  bool operator==(const SolverFacts&) const = default;
+};
+
 struct TestTruth {
   std::string scene_name;
   std::string scene_text;  ///< The scene as it was read, whole.
@@ -56,6 +68,19 @@ struct TestTruth {
   std::optional<double> amplitude;                 ///< Half the range of the first full cycle.
   std::vector<ModeInterval> modes;
   std::vector<TrueCycle> cycles;
+  std::optional<SolverFacts> solver;  ///< None in records made before it was kept.
+};
+
+/// The noise-free force of scan after scan: the coefficient F/(m g) of the coupling itself at the instant
+/// at which the converter really looked (clock rate error and jitter included), before load cell, filter
+/// and all that happens to the signal. Thread-bound.
+class TrueForce {
+ public:
+  virtual ~TrueForce() = default;
+
+  /// The coefficients at consecutive scans from `first` on; NaN where none is known, as at a scan that the
+  /// source itself lost. \param first  not before the end of the last call.
+  virtual void next(base::ScanIndex first, std::span<double> coefficient) = 0;
 };
 
 /// Thread-safe: may be asked from any thread at any time.
@@ -65,6 +90,9 @@ class TruthSource {
 
   /// The truth about scans [first, end), with times relative to `first`; nothing if unknown.
   [[nodiscard]] virtual std::optional<TestTruth> truth(base::ScanIndex first, base::ScanIndex end) const = 0;
+
+  /// The noise-free force from scan `first` on; null if this source does not know it.
+  [[nodiscard]] virtual std::unique_ptr<TrueForce> force(base::ScanIndex /*first*/) const { return nullptr; }
 };
 
 }  // namespace stickslip::friction

@@ -115,6 +115,15 @@ void for_each_field(Truth& truth, Visitor&& visit) {
   visit(FieldName{"amplitude", "1", "true half range of the first full cycle [1]"}, truth.amplitude);
 }
 
+template <FieldsOf<friction::SolverFacts> Facts, typename Visitor>
+void for_each_field(Facts& facts, Visitor&& visit) {
+  visit(FieldName{"method", "", ""}, facts.method);
+  visit(FieldName{"accuracy", "1", "largest error of the coefficient to be expected [1]"}, facts.accuracy);
+  visit(FieldName{"accuracy_asked", "1", "accuracy that the scene asks for [1]"}, facts.accuracy_asked);
+  visit(FieldName{"time_per_scan", "s", "time taken by the simulation for each scan [s]"},
+        facts.time_per_scan_s);
+}
+
 /// Columns of the table of cycles. \param visit  called as visit(FieldName, member pointer).
 template <typename Visitor>
 void for_each_cycle_column(Visitor&& visit) {

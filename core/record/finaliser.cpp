@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 
 #include "core/base/contract.hpp"
 #include "core/record/file.hpp"
@@ -18,26 +17,9 @@
 namespace stickslip::record {
 namespace {
 
-FileHandle create_hdf5(const std::filesystem::path& path) {
-  const PropertyHandle access{H5Pcreate(H5P_FILE_ACCESS), "file access properties"};
-  // Readable by HDF5 1.8, MATLAB before R2021b and JavaScript readers.
-  check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "library version bounds");
-  // A leaked handle makes closing fail instead of leaving the file half open.
-  check(H5Pset_fclose_degree(access.get(), H5F_CLOSE_SEMI), "close degree");
-  // Where the file system has no locks, without.
-  check(H5Pset_file_locking(access.get(), true, true), "file locking");
-  const PropertyHandle creation{H5Pcreate(H5P_FILE_CREATE), "file creation properties"};
-  constexpr unsigned kTracked = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
-  check(H5Pset_link_creation_order(creation.get(), kTracked), "creation order");
-  check(H5Pset_attr_creation_order(creation.get(), kTracked), "creation order");
-  check(H5Pset_obj_track_times(creation.get(), false), "object times");
-  return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), "creating"};
-}
-
 /// \throws HdfError with the file in an unknown state: it is to be thrown away.
-void build(const Record& record, const std::filesystem::path& path) {
-  prepare_hdf5();
-  FileHandle file = create_hdf5(path);
+void build(const Record& record, const ScanSource& scans, const std::filesystem::path& path) {
+  FileHandle file = create_file(path);
   write_attribute(file.get(), "NX_class", "NXroot");
   write_attribute(file.get(), "default", "entry");
   write_attribute(file.get(), "creator", record.header.process.program);
@@ -47,41 +29,28 @@ void build(const Record& record, const std::filesystem::path& path) {
   {
     const GroupHandle entry = make_group(file.get(), "entry", "NXentry");
     write_attribute(entry.get(), "default", "raw");
-    write_identity(entry.get(), record);
-    write_raw(entry.get(), record);
+    write_identity(entry.get(), record, scans);
+    const std::string sha256 = write_raw(entry.get(), record, scans);
     write_results(entry.get(), record.end->results);
     write_tables(entry.get(), record);
     write_instrument(entry.get(), record);
-    write_process(entry.get(), record);
-    if (record.end->truth) write_truth(entry.get(), *record.end->truth);
+    write_process(entry.get(), record, sha256);
+    if (record.end->truth) write_truth(entry.get(), *record.end->truth, scans);
   }
   check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), "flushing");
   file.close("closing");
 }
 
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() &&
-         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
-}
-
-bool same_scans(const Record& a, const Record& b) {
-  return a.header.board.quantity == b.header.board.quantity && a.scan == b.scan && same_bits(a.raw, b.raw);
-}
-
-base::Result<void> build_verified(const Record& record, const std::filesystem::path& part) {
+base::Result<void> build_verified(const Record& record, const ScanSource& scans,
+                                  const std::filesystem::path& part) {
   try {
-    build(record, part);
+    build(record, scans, part);
   } catch (const std::exception& error) {
     return base::failure("{}: cannot be written: {}", part.string(), error.what());
   }
   // Synced before it is read back, so that what is compared is what a disk can keep.
   if (auto synced = sync_path(part); !synced) return synced;
-  const auto back = read_record(part);
-  if (!back) return base::failure("{}", back.error().message);
-  if (!same_scans(*back, record)) {
-    return base::failure("{}: reads back other scans than were written", part.string());
-  }
-  return {};
+  return verify_record(part, record, scans);
 }
 
 std::filesystem::path with_suffix(std::filesystem::path path, const char* suffix) {
@@ -116,6 +85,17 @@ void end_interrupted(JournalReading& reading, const Evaluate& evaluate) {
   set_end(record, std::move(end));
 }
 
+base::Result<void> publish(const Record& record, const ScanSource& scans, const std::filesystem::path& path) {
+  STICKSLIP_EXPECTS(record.end);
+  STICKSLIP_EXPECTS(record.header.board.quantity != daq::RawQuantity::kCounts || record.header.load_cell);
+  if (auto is_new = check_new(path); !is_new) return is_new;
+  const auto part = with_suffix(path, ".part");
+  auto published = build_verified(record, scans, part);
+  if (published) published = rename_to_new(part, path);
+  if (!published) ::unlink(part.c_str());
+  return published;
+}
+
 base::Result<void> remove_journal(const std::filesystem::path& journal) {
   if (::unlink(journal.c_str()) != 0) {
     return base::failure("{}: cannot be removed: {}", journal.string(), system_message(errno));
@@ -136,21 +116,28 @@ base::Result<void> check_publishable(const std::filesystem::path& path) {
 }
 
 base::Result<void> publish_record(const Record& record, const std::filesystem::path& path) {
-  STICKSLIP_EXPECTS(record.end && record.scan.size() == record.raw.size());
-  STICKSLIP_EXPECTS(record.header.board.quantity != daq::RawQuantity::kCounts || record.header.load_cell);
-  if (auto is_new = check_new(path); !is_new) return is_new;
-  const auto part = with_suffix(path, ".part");
-  auto published = build_verified(record, part);
-  if (published) published = rename_to_new(part, path);
-  if (!published) ::unlink(part.c_str());
-  return published;
+  STICKSLIP_EXPECTS(record.scan.size() == record.raw.size());
+  STICKSLIP_EXPECTS(record.true_coefficient.empty() || record.true_coefficient.size() == record.scan.size());
+  return publish(record, RecordScans{record}, path);
+}
+
+base::Result<void> publish_journal(const std::filesystem::path& journal, const Record& record,
+                                   const std::filesystem::path& path) {
+  const auto reading = read_journal(journal, JournalScans::kCount);
+  if (!reading) return tl::unexpected(reading.error());
+  if (!reading->stopped_by.empty()) {
+    return base::failure("{}: cannot be read back: {}", journal.string(), reading->stopped_by);
+  }
+  return publish(record, JournalScanSource{journal, *reading}, path);
 }
 
 base::Result<std::filesystem::path> finalise(const std::filesystem::path& journal, const Evaluate& evaluate) {
-  auto reading = read_journal(journal);
+  auto reading = read_journal(journal, JournalScans::kCount);
+  if (reading && !reading->record.end && evaluate) reading = read_journal(journal);  // It needs the scans.
   if (!reading) return tl::unexpected(reading.error());
   Record& record = reading->record;
   if (!record.end) end_interrupted(*reading, evaluate);
+  const JournalScanSource scans{journal, *reading};
   if (!reading->stopped_by.empty()) {
     if (record.end->status == Status::kComplete) record.end->status = Status::kRecovered;
     record.end->reasons.push_back(fmt::format("{} bytes at the end of the journal were not readable: {}",
@@ -161,12 +148,11 @@ base::Result<std::filesystem::path> finalise(const std::filesystem::path& journa
   target.replace_extension(".h5");
   if (is_there(target)) {
     // Left by a stop between the rename and the removal of the journal, or a stranger.
-    const auto published = read_record(target);
-    if (!published || !same_scans(*published, record)) {
+    if (!verify_record(target, record, scans)) {
       return base::failure("{}: exists already with other scans than {}: move one of them away",
                            target.string(), journal.string());
     }
-  } else if (auto published = publish_record(record, target); !published) {
+  } else if (auto published = publish(record, scans, target); !published) {
     return tl::unexpected(base::Error{base::ErrorKind::kFailure, published.error().message});
   }
   if (auto removed = remove_journal(journal); !removed) return tl::unexpected(removed.error());

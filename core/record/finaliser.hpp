@@ -13,7 +13,8 @@ namespace stickslip::record {
 /// Evaluates a test whose journal has no end: the analysis lives above this folder.
 using Evaluate = std::function<EndRecord(const Record&)>;
 
-/// Builds TEST.h5 from TEST.journal and then removes the journal. On any error nothing but the
+/// Builds TEST.h5 from TEST.journal and then removes the journal, in the memory of the tables however many
+/// scans there are (a journal without an end that is to be evaluated excepted). On any error nothing but the
 /// journal is left. A file that stands there already is never written again: if it holds the same
 /// scans the journal is removed, if not it is an error.
 ///
@@ -32,5 +33,10 @@ using Evaluate = std::function<EndRecord(const Record&)>;
 /// with `record` scan for scan, made durable, renamed. On any error no file is left.
 /// \param record  has an end.
 [[nodiscard]] base::Result<void> publish_record(const Record& record, const std::filesystem::path& path);
+
+/// As publish_record(), but the scans come piece by piece from the journal, which stays where it is.
+/// \param record  all but the scans.
+[[nodiscard]] base::Result<void> publish_journal(const std::filesystem::path& journal, const Record& record,
+                                                 const std::filesystem::path& path);
 
 }  // namespace stickslip::record

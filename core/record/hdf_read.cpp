@@ -151,15 +151,32 @@ std::vector<T> read_column(hid_t parent, const std::string& name, std::optional<
 }
 
 template <typename T>
+void read_rows(const DatasetHandle& column, const std::string& name, std::size_t first, std::span<T> values) {
+  if (!is_number<T>(type_of(column, name).get())) refuse(name, "has another type than this format says");
+  const hsize_t row = first;
+  const hsize_t count = values.size();
+  const SpaceHandle file = space_of(column, name);
+  check(H5Sselect_hyperslab(file.get(), H5S_SELECT_SET, &row, nullptr, &count, nullptr), "rows of " + name);
+  const SpaceHandle memory{H5Screate_simple(1, &count, nullptr), "rows of " + name};
+  check(H5Dread(column.get(), NumberType<T>::memory(), memory.get(), file.get(), H5P_DEFAULT, values.data()),
+        fmt::format("reading {} (cut short or damaged)", name));
+}
+
+std::size_t row_count(hid_t parent, const std::string& name) {
+  return count_in(space_of(open_dataset(parent, name), name), 1, name);
+}
+
+template <typename T>
 bool holds(hid_t parent, const std::string& name) {
   const DatasetHandle dataset = open_dataset(parent, name);
   return is_number<T>(type_of(dataset, name).get());
 }
 
-#define STICKSLIP_INSTANTIATE(type)                                                              \
-  template type read_scalar(hid_t, const std::string&);                                          \
-  template std::vector<type> read_column(hid_t, const std::string&, std::optional<std::size_t>); \
-  template bool holds<type>(hid_t, const std::string&);                                          \
+#define STICKSLIP_INSTANTIATE(type)                                                                \
+  template type read_scalar(hid_t, const std::string&);                                            \
+  template std::vector<type> read_column(hid_t, const std::string&, std::optional<std::size_t>);   \
+  template bool holds<type>(hid_t, const std::string&);                                            \
+  template void read_rows(const DatasetHandle&, const std::string&, std::size_t, std::span<type>); \
   template std::optional<type> find_number_attribute(hid_t, const std::string&)
 STICKSLIP_INSTANTIATE(double);
 STICKSLIP_INSTANTIATE(float);

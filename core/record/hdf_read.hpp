@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,11 @@ template <typename T>
 template <typename T>
 [[nodiscard]] std::vector<T> read_column(hid_t parent, const std::string& name,
                                          std::optional<std::size_t> count = std::nullopt);
+/// Rows [first, first + values.size()) of a column of type T.
+template <typename T>
+void read_rows(const DatasetHandle& column, const std::string& name, std::size_t first, std::span<T> values);
+/// Rows of a column.
+[[nodiscard]] std::size_t row_count(hid_t parent, const std::string& name);
 /// Whether the stored type of a data set is T.
 template <typename T>
 [[nodiscard]] bool holds(hid_t parent, const std::string& name);

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 
+#include "core/record/scan_source.hpp"
+
 namespace stickslip::record {
 namespace {
 
 /// 100 s at 350 scans/s: a viewer reads little to show little. Measured: deflate 4 with shuffle
 /// leaves 45 % of the raw size, 9 gains 1 % more.
-constexpr hsize_t kChunk = 35'000;
+constexpr hsize_t kChunk = ScanSource::kPiece;
 constexpr unsigned kDeflateLevel = 4;
 
 TypeHandle text_type(std::size_t size) {
@@ -29,9 +31,29 @@ PropertyHandle dataset_properties() {
   return properties;
 }
 
+SpaceHandle array_space(std::span<const hsize_t> shape) {
+  return {H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), "array space"};
+}
+
 SpaceHandle column_space(std::size_t count) {
   const hsize_t size = count;
-  return {H5Screate_simple(1, &size, nullptr), "column space"};
+  return array_space({&size, 1});
+}
+
+/// Chunked along the last dimensions, compressed, checksummed. \param shape  nowhere zero.
+PropertyHandle compressed_properties(std::span<const hsize_t> shape) {
+  PropertyHandle properties = dataset_properties();
+  std::vector<hsize_t> chunk(shape.size());
+  hsize_t room = kChunk;
+  for (std::size_t i = shape.size(); i-- > 0;) {
+    chunk[i] = std::clamp<hsize_t>(room, 1, shape[i]);
+    room /= chunk[i];
+  }
+  check(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), "chunk");
+  check(H5Pset_shuffle(properties.get()), "shuffle");
+  check(H5Pset_deflate(properties.get(), kDeflateLevel), "deflate");
+  check(H5Pset_fletcher32(properties.get()), "fletcher32");
+  return properties;
 }
 
 DatasetHandle make_dataset(hid_t parent, const std::string& name, hid_t type, const SpaceHandle& space,
@@ -50,6 +72,23 @@ AttributeHandle make_attribute(hid_t object, const std::string& name, hid_t type
 }
 
 }  // namespace
+
+FileHandle create_file(const std::filesystem::path& path) {
+  prepare_hdf5();
+  const PropertyHandle access{H5Pcreate(H5P_FILE_ACCESS), "file access properties"};
+  // Readable by HDF5 1.8, MATLAB before R2021b and JavaScript readers.
+  check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "library version bounds");
+  // A leaked handle makes closing fail instead of leaving the file half open.
+  check(H5Pset_fclose_degree(access.get(), H5F_CLOSE_SEMI), "close degree");
+  // Where the file system has no locks, without.
+  check(H5Pset_file_locking(access.get(), true, true), "file locking");
+  const PropertyHandle creation{H5Pcreate(H5P_FILE_CREATE), "file creation properties"};
+  constexpr unsigned kTracked = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
+  check(H5Pset_link_creation_order(creation.get(), kTracked), "creation order");
+  check(H5Pset_attr_creation_order(creation.get(), kTracked), "creation order");
+  check(H5Pset_obj_track_times(creation.get(), false), "object times");
+  return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), "creating"};
+}
 
 GroupHandle make_group(hid_t parent, const std::string& name, const std::string& nx_class) {
   const PropertyHandle properties{H5Pcreate(H5P_GROUP_CREATE), "group properties"};
@@ -110,21 +149,59 @@ DatasetHandle write_scalar(hid_t parent, const FieldName& name, T value) {
 }
 
 template <typename T>
-DatasetHandle write_column(hid_t parent, const FieldName& name, std::span<const T> values) {
+DatasetHandle make_column(hid_t parent, const std::string& name, std::size_t count) {
+  const hsize_t shape = count;
+  const PropertyHandle properties = count == 0 ? dataset_properties() : compressed_properties({&shape, 1});
+  return make_dataset(parent, name, NumberType<T>::file(), column_space(count), properties);
+}
+
+template <typename T>
+ColumnWriter<T>::ColumnWriter(hid_t parent, const FieldName& name, std::size_t count)
+    : name_(name.name), dataset_(make_column<T>(parent, name_, count)) {
+  write_meaning(dataset_, name);
+}
+
+template <typename T>
+void ColumnWriter<T>::append(std::span<const T> values) {
+  const hsize_t count = values.size();
+  const SpaceHandle file{H5Dget_space(dataset_.get()), "space of " + name_};
+  check(H5Sselect_hyperslab(file.get(), H5S_SELECT_SET, &row_, nullptr, &count, nullptr), "rows of " + name_);
+  const SpaceHandle memory = column_space(values.size());
+  check(
+      H5Dwrite(dataset_.get(), NumberType<T>::memory(), memory.get(), file.get(), H5P_DEFAULT, values.data()),
+      "writing " + name_);
+  row_ += count;
+}
+
+template <typename T>
+DatasetHandle write_array(hid_t parent, const FieldName& name, std::span<const hsize_t> shape,
+                          std::span<const T> values) {
   const std::string text{name.name};
-  const PropertyHandle properties = dataset_properties();
-  if (!values.empty()) {
-    const hsize_t chunk = std::min<hsize_t>(kChunk, values.size());
-    check(H5Pset_chunk(properties.get(), 1, &chunk), "chunk");
-    check(H5Pset_shuffle(properties.get()), "shuffle");
-    check(H5Pset_deflate(properties.get(), kDeflateLevel), "deflate");
-    check(H5Pset_fletcher32(properties.get()), "fletcher32");
-  }
-  DatasetHandle dataset =
-      make_dataset(parent, text, NumberType<T>::file(), column_space(values.size()), properties);
+  DatasetHandle dataset = make_dataset(parent, text, NumberType<T>::file(), array_space(shape),
+                                       values.empty() ? dataset_properties() : compressed_properties(shape));
   check(H5Dwrite(dataset.get(), NumberType<T>::memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
         "writing " + text);
   write_meaning(dataset, name);
+  return dataset;
+}
+
+template <typename T>
+DatasetHandle write_column(hid_t parent, const FieldName& name, std::span<const T> values) {
+  const hsize_t count = values.size();
+  return write_array(parent, name, {&count, 1}, values);
+}
+
+DatasetHandle write_text_array(hid_t parent, const std::string& name, std::span<const hsize_t> shape,
+                               const std::vector<std::string_view>& texts) {
+  std::size_t width = 1;
+  for (const auto text : texts) width = std::max(width, text.size());
+  std::string padded;
+  padded.reserve(width * texts.size());
+  for (const auto text : texts) padded.append(text).append(width - text.size(), '\0');
+  const TypeHandle type = text_type(width);
+  DatasetHandle dataset =
+      make_dataset(parent, name, type.get(), array_space(shape), compressed_properties(shape));
+  check(H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()), "writing " + name);
   return dataset;
 }
 
@@ -140,20 +217,26 @@ DatasetHandle write_texts(hid_t parent, const std::string& name, const std::vect
   return dataset;
 }
 
-DatasetHandle TableWriter::attached(DatasetHandle column, const std::string& name) {
+void attach_scale(const DatasetHandle& column, const DatasetHandle& scale, const std::string& name) {
+  check(H5DSattach_scale(column.get(), scale.get(), 0), "dimension scale of " + name);
+}
+
+void TableWriter::attach(const DatasetHandle& column, const std::string& name) {
   if (scale_.empty()) {
     check(H5DSset_scale(column.get(), name.c_str()), "dimension scale " + name);
     check(H5Iinc_ref(column.get()), "reference to " + name);
     scale_.emplace_back(column.get(), name);
   } else {
-    check(H5DSattach_scale(column.get(), scale_.front().get(), 0), "dimension scale of " + name);
+    attach_scale(column, scale_.front(), name);
   }
-  return column;
 }
 
-#define STICKSLIP_INSTANTIATE(type)                                                    \
-  template DatasetHandle write_scalar(hid_t, const FieldName&, type);                  \
-  template DatasetHandle write_column(hid_t, const FieldName&, std::span<const type>); \
+#define STICKSLIP_INSTANTIATE(type)                                                     \
+  template DatasetHandle write_scalar(hid_t, const FieldName&, type);                   \
+  template DatasetHandle write_column(hid_t, const FieldName&, std::span<const type>);  \
+  template DatasetHandle write_array(hid_t, const FieldName&, std::span<const hsize_t>, \
+                                     std::span<const type>);                            \
+  template class ColumnWriter<type>;                                                    \
   template void write_number_attribute(hid_t, const std::string&, type)
 STICKSLIP_INSTANTIATE(double);
 STICKSLIP_INSTANTIATE(float);

@@ -3,6 +3,7 @@
 /// readers of several languages can read them. All functions throw HdfError.
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +13,9 @@
 #include "core/record/hdf.hpp"
 
 namespace stickslip::record {
+
+/// A new file, or an old one emptied, that every HDF5 since 1.8 reads; open for writing.
+[[nodiscard]] FileHandle create_file(const std::filesystem::path& path);
 
 /// \param nx_class  NeXus class, e.g. "NXdata".
 [[nodiscard]] GroupHandle make_group(hid_t parent, const std::string& name, const std::string& nx_class);
@@ -31,8 +35,35 @@ DatasetHandle write_scalar(hid_t parent, const FieldName& name, T value);
 /// Column of numbers: chunked, compressed, checksummed; contiguous if empty.
 template <typename T>
 DatasetHandle write_column(hid_t parent, const FieldName& name, std::span<const T> values);
+/// A column of known length that is written piece by piece; as write_column().
+template <typename T>
+class ColumnWriter {
+ public:
+  ColumnWriter(hid_t parent, const FieldName& name, std::size_t count);
+
+  /// The next rows; not more than are left.
+  void append(std::span<const T> values);
+
+  [[nodiscard]] const DatasetHandle& dataset() const noexcept { return dataset_; }
+
+ private:
+  std::string name_;
+  DatasetHandle dataset_;
+  hsize_t row_ = 0;
+};
+
 /// Column of texts, fixed length.
 DatasetHandle write_texts(hid_t parent, const std::string& name, const std::vector<std::string>& texts);
+
+/// Gives a column the axis of another table. \param name  of the column.
+void attach_scale(const DatasetHandle& column, const DatasetHandle& scale, const std::string& name);
+/// Numbers over several dimensions, the last the fastest: as write_column().
+template <typename T>
+DatasetHandle write_array(hid_t parent, const FieldName& name, std::span<const hsize_t> shape,
+                          std::span<const T> values);
+/// Texts over several dimensions, none of them zero: fixed length, compressed.
+DatasetHandle write_text_array(hid_t parent, const std::string& name, std::span<const hsize_t> shape,
+                               const std::vector<std::string_view>& texts);
 
 /// A group whose data sets are the columns of one table; the first is the scale of the others.
 class TableWriter {
@@ -52,10 +83,23 @@ class TableWriter {
     return attached(write_texts(group_.get(), name, texts), name);
   }
 
+  /// Adds a column that is written afterwards.
+  template <typename T>
+  [[nodiscard]] ColumnWriter<T> add_empty(const FieldName& name, std::size_t count) {
+    ColumnWriter<T> column{group_.get(), name, count};
+    attach(column.dataset(), std::string{name.name});
+    return column;
+  }
+
   [[nodiscard]] hid_t group() const noexcept { return group_.get(); }
 
  private:
-  DatasetHandle attached(DatasetHandle column, const std::string& name);
+  /// Makes the column the scale, or gives it the scale.
+  void attach(const DatasetHandle& column, const std::string& name);
+  DatasetHandle attached(DatasetHandle column, const std::string& name) {
+    attach(column, name);
+    return column;
+  }
 
   GroupHandle group_;
   std::vector<DatasetHandle> scale_;  ///< One, once there is a column.

@@ -14,6 +14,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <span>
 #include <string>
@@ -24,6 +25,7 @@
 #include "core/record/file.hpp"
 #include "core/record/journal_format.hpp"
 #include "core/record/record.hpp"
+#include "core/record/scan_source.hpp"
 
 namespace stickslip::record {
 
@@ -45,6 +47,10 @@ class JournalWriter {
   /// \param raw    consecutive, not empty; counts are whole numbers in 0 … maxdata (contract).
   [[nodiscard]] base::Result<void> append_scans(daq::ScanIndex first, std::span<const double> raw,
                                                 const daq::ClockStamp& stamp);
+  /// The noise-free force of scans that are in the journal already (friction::TrueForce).
+  /// \param first  rises strictly over all that are given. \param coefficient  consecutive.
+  [[nodiscard]] base::Result<void> append_true_coefficients(daq::ScanIndex first,
+                                                            std::span<const double> coefficient);
   [[nodiscard]] base::Result<void> append_spikes(std::span<const daq::ScanIndex> spikes);
   [[nodiscard]] base::Result<void> append_gap(const daq::Gap& gap);
   [[nodiscard]] base::Result<void> append_cycle(const friction::Cycle& cycle);
@@ -78,16 +84,58 @@ class JournalWriter {
   std::vector<std::byte> entry_;  ///< The head and payload being built; reused.
 };
 
+/// Consecutive scans.
+struct ScanRun {
+  daq::ScanIndex first = 0;
+  std::size_t count = 0;
+  std::size_t row = 0;  ///< Scans before it.
+
+  [[nodiscard]] daq::ScanIndex end() const noexcept { return first + static_cast<daq::ScanIndex>(count); }
+};
+
+/// Row of scan `first`. \param runs  rising.
+/// \throws std::invalid_argument unless it and the `count` scans from it on belong to one run.
+[[nodiscard]] std::size_t row_of(const std::vector<ScanRun>& runs, daq::ScanIndex first, std::size_t count);
+
 /// What a journal held, up to the first entry that is not whole.
 struct JournalReading {
-  Record record;
+  Record record;  ///< Without scan, raw and true_coefficient if they were not to be kept.
+  std::size_t scan_count = 0;
+  std::vector<ScanRun> runs;     ///< All scans.
+  bool has_force = false;        ///< Of at least one scan.
   std::uint64_t whole_size = 0;  ///< Bytes in whole entries.
   std::uint64_t file_size = 0;
   std::string stopped_by;  ///< Why reading stopped before the end of the file; empty if it did not.
 };
 
-/// Reads every whole entry. Errors: kFailure if the file cannot be read, kUsage if it is no journal
-/// or has no whole header.
-[[nodiscard]] base::Result<JournalReading> read_journal(const std::filesystem::path& path);
+enum class JournalScans { kKeep, kCount };
+
+/// Reads every whole entry; its memory, unless the scans are kept, is that of the tables. Errors: kFailure if
+/// the file cannot be read, kUsage if it is no journal or has no whole header.
+[[nodiscard]] base::Result<JournalReading> read_journal(const std::filesystem::path& path,
+                                                        JournalScans scans = JournalScans::kKeep);
+
+/// The scans of a journal straight from the disk. Throws std::runtime_error if the file is no longer what
+/// was read.
+class JournalScanSource final : public ScanSource {
+ public:
+  /// \param reading  of this journal; outlives it.
+  JournalScanSource(std::filesystem::path path, const JournalReading& reading)
+      : path_(std::move(path)), reading_(reading) {}
+
+  [[nodiscard]] std::size_t size() const override { return reading_.scan_count; }
+  [[nodiscard]] std::int64_t extent() const override {
+    return reading_.runs.empty() ? 0 : reading_.runs.back().end() - reading_.runs.front().first;
+  }
+  void for_each_piece(const std::function<void(const ScanPiece&)>& use) const override;
+  [[nodiscard]] bool has_force() const override { return reading_.has_force; }
+  void for_each_force_piece(const std::function<void(std::span<const double>)>& use) const override;
+
+ private:
+  void for_each_entry(EntryType type, const std::function<void(const Entry&)>& use) const;
+
+  std::filesystem::path path_;
+  const JournalReading& reading_;
+};
 
 }  // namespace stickslip::record

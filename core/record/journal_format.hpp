@@ -20,14 +20,15 @@ namespace stickslip::record {
 static_assert(std::endian::native == std::endian::little, "journals are little-endian");
 
 enum class EntryType : std::uint16_t {
-  kHeader = 1,  ///< JSON.
-  kScans = 2,   ///< Consecutive raw values in the entry's encoding.
-  kSpikes = 3,  ///< Scan indices, i64.
-  kGap = 4,     ///< JSON.
-  kCycle = 5,   ///< JSON.
-  kAnchor = 6,  ///< Two i64: monotonic and real time, ns; the scan is in the head.
-  kEvent = 7,   ///< JSON.
-  kEnd = 8,     ///< JSON.
+  kHeader = 1,     ///< JSON.
+  kScans = 2,      ///< Consecutive raw values in the entry's encoding.
+  kSpikes = 3,     ///< Scan indices, i64.
+  kGap = 4,        ///< JSON.
+  kCycle = 5,      ///< JSON.
+  kAnchor = 6,     ///< Two i64: monotonic and real time, ns; the scan is in the head.
+  kEvent = 7,      ///< JSON.
+  kEnd = 8,        ///< JSON, a zero byte and the tables as f64, row by row: cycles, true modes, true cycles.
+  kTrueForce = 9,  ///< f64: the noise-free coefficient of consecutive scans.
 };
 
 enum class Encoding : std::uint16_t { kNone = 0, kU16 = 1, kU32 = 2, kF64 = 3 };

@@ -1,108 +1,157 @@
+#include <algorithm>
 #include <cstring>
 #include <exception>
+#include <limits>
+#include <stdexcept>
 
 #include "core/record/journal.hpp"
+#include "core/record/journal_entries.hpp"
 #include "core/record/json_codec.hpp"
 
 namespace stickslip::record {
 namespace {
+
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
 std::string_view text_of(const Entry& entry) {
   return {reinterpret_cast<const char*>(entry.payload.data()), entry.payload.size()};
 }
 
 template <typename T>
-std::vector<T> values_of(const Entry& entry) {
-  std::vector<T> values(entry.payload.size() / sizeof(T));
-  if (!values.empty()) std::memcpy(values.data(), entry.payload.data(), values.size() * sizeof(T));
+std::vector<T> values_of(std::span<const std::byte> bytes) {
+  std::vector<T> values(bytes.size() / sizeof(T));
+  if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
   return values;
 }
 
-template <typename T>
-void add_raw(const Entry& entry, Record& record) {
-  const auto values = values_of<T>(entry);
-  if (record.header.board.quantity == daq::RawQuantity::kCounts) {
-    const auto maxdata = static_cast<double>(record.header.board.maxdata);
-    for (const T value : values) {
-      if (!(static_cast<double>(value) <= maxdata)) throw std::invalid_argument("count above maxdata");
-    }
-  }
-  record.raw.insert(record.raw.end(), values.begin(), values.end());
-}
-
-/// \throws std::invalid_argument if the scans do not follow those before.
-void add_scans(const Entry& entry, Record& record) {
-  if (!record.scan.empty() && entry.head.first_scan <= record.scan.back()) {
-    throw std::invalid_argument("scan indices run backwards");
-  }
+/// In board.quantity. \throws std::invalid_argument for an encoding that scans cannot have.
+std::vector<double> raw_of(const Entry& entry) {
+  const auto widened = [](const auto& values) { return std::vector<double>(values.begin(), values.end()); };
   switch (static_cast<Encoding>(entry.head.encoding)) {
     case Encoding::kU16:
-      add_raw<std::uint16_t>(entry, record);
-      break;
+      return widened(values_of<std::uint16_t>(entry.payload));
     case Encoding::kU32:
-      add_raw<std::uint32_t>(entry, record);
-      break;
+      return widened(values_of<std::uint32_t>(entry.payload));
     case Encoding::kF64:
-      add_raw<double>(entry, record);
-      break;
+      return values_of<double>(entry.payload);
     case Encoding::kNone:
     default:
       throw std::invalid_argument("unknown encoding of scans");
   }
-  for (daq::ScanIndex scan = entry.head.first_scan; record.scan.size() < record.raw.size(); ++scan) {
-    record.scan.push_back(scan);
-  }
 }
 
-/// Adds one entry. \throws std::exception if its content makes no sense.
-void add(const Entry& entry, Record& record) {
-  switch (static_cast<EntryType>(entry.head.type)) {
-    case EntryType::kScans:
-      return add_scans(entry, record);
-    case EntryType::kSpikes: {
-      const auto spikes = values_of<daq::ScanIndex>(entry);
-      record.spikes.insert(record.spikes.end(), spikes.begin(), spikes.end());
-      return;
+/// What the entries come to, whether the scans are kept or only counted.
+class Content {
+ public:
+  Content(JournalReading& reading, bool keep_scans) : reading_(reading), keep_(keep_scans) {}
+
+  /// \throws std::exception if the entry's content makes no sense.
+  void add(const Entry& entry) {
+    Record& record = reading_.record;
+    switch (static_cast<EntryType>(entry.head.type)) {
+      case EntryType::kScans:
+        return add_scans(entry);
+      case EntryType::kTrueForce:
+        return add_force(entry);
+      case EntryType::kSpikes: {
+        const auto spikes = values_of<daq::ScanIndex>(entry.payload);
+        record.spikes.insert(record.spikes.end(), spikes.begin(), spikes.end());
+        return;
+      }
+      case EntryType::kGap:
+        record.gaps.push_back(gap_from_json(text_of(entry)));
+        return;
+      case EntryType::kCycle:
+        record.cycles.push_back(cycle_from_json(text_of(entry)));
+        return;
+      case EntryType::kAnchor: {
+        const auto times = values_of<std::int64_t>(entry.payload);
+        record.anchors.push_back({entry.head.first_scan, times.at(0), times.at(1)});
+        return;
+      }
+      case EntryType::kEvent:
+        record.events.push_back(event_from_json(text_of(entry)));
+        return;
+      case EntryType::kEnd:
+        set_end(record, end_from_bytes(entry.payload));
+        return;
+      case EntryType::kHeader:
+      default:
+        throw std::invalid_argument("unknown type of entry");
     }
-    case EntryType::kGap:
-      record.gaps.push_back(gap_from_json(text_of(entry)));
-      return;
-    case EntryType::kCycle:
-      record.cycles.push_back(cycle_from_json(text_of(entry)));
-      return;
-    case EntryType::kAnchor: {
-      const auto times = values_of<std::int64_t>(entry);
-      record.anchors.push_back({entry.head.first_scan, times.at(0), times.at(1)});
-      return;
-    }
-    case EntryType::kEvent:
-      record.events.push_back(event_from_json(text_of(entry)));
-      return;
-    case EntryType::kEnd:
-      set_end(record, end_from_json(text_of(entry)));
-      return;
-    case EntryType::kHeader:
-    default:
-      throw std::invalid_argument("unknown type of entry");
   }
-}
+
+  void finish() {
+    if (keep_ && reading_.has_force) reading_.record.true_coefficient.resize(reading_.scan_count, kNotKnown);
+  }
+
+ private:
+  void add_scans(const Entry& entry) {
+    Record& record = reading_.record;
+    std::vector<ScanRun>& runs = reading_.runs;
+    const daq::ScanIndex first = entry.head.first_scan;
+    if (!runs.empty() && first < runs.back().end()) throw std::invalid_argument("scan indices run backwards");
+    const std::vector<double> raw = raw_of(entry);
+    if (record.header.board.quantity == daq::RawQuantity::kCounts) {
+      const auto maxdata = static_cast<double>(record.header.board.maxdata);
+      const auto possible = [&](double count) { return count <= maxdata; };
+      if (!std::all_of(raw.begin(), raw.end(), possible)) throw std::invalid_argument("count above maxdata");
+    }
+    if (raw.empty()) return;
+    if (runs.empty() || first != runs.back().end()) runs.push_back({first, 0, reading_.scan_count});
+    runs.back().count += raw.size();
+    reading_.scan_count += raw.size();
+    if (!keep_) return;
+    record.raw.insert(record.raw.end(), raw.begin(), raw.end());
+    for (daq::ScanIndex scan = first; record.scan.size() < record.raw.size(); ++scan) {
+      record.scan.push_back(scan);
+    }
+  }
+
+  void add_force(const Entry& entry) {
+    const std::vector<double> values = values_of<double>(entry.payload);
+    const std::size_t row = row_of(reading_.runs, entry.head.first_scan, values.size());
+    if (row < next_force_row_) throw std::invalid_argument("true force runs backwards");
+    next_force_row_ = row + values.size();
+    reading_.has_force = true;
+    if (!keep_) return;
+    std::vector<double>& force = reading_.record.true_coefficient;
+    force.resize(row, kNotKnown);
+    force.insert(force.end(), values.begin(), values.end());
+  }
+
+  JournalReading& reading_;
+  bool keep_;
+  std::size_t next_force_row_ = 0;
+};
 
 }  // namespace
 
-base::Result<JournalReading> read_journal(const std::filesystem::path& path) {
-  const auto file = read_file(path);
-  if (!file) return tl::unexpected(file.error());
+std::size_t row_of(const std::vector<ScanRun>& runs, daq::ScanIndex first, std::size_t count) {
+  const auto after =
+      std::upper_bound(runs.begin(), runs.end(), first,
+                       [](daq::ScanIndex scan, const ScanRun& run) { return scan < run.first; });
+  if (after != runs.begin()) {
+    const ScanRun& run = *(after - 1);
+    const auto offset = static_cast<std::size_t>(first - run.first);
+    if (offset <= run.count && count <= run.count - offset) return run.row + offset;
+  }
+  throw std::invalid_argument("true force of scans that are not there");
+}
+
+base::Result<JournalReading> read_journal(const std::filesystem::path& path, JournalScans scans) {
+  auto entries = JournalEntries::open(path);
+  if (!entries) return tl::unexpected(entries.error());
 
   JournalReading reading;
-  reading.file_size = file->size();
+  reading.file_size = entries->file_size();
+  Content content{reading, scans == JournalScans::kKeep};
   bool header_read = false;
-  for (std::span<const std::byte> rest{*file}; !rest.empty();) {
-    const auto entry = first_entry(rest, reading.stopped_by);
-    if (!entry) break;
+  while (const auto entry = entries->next()) {
     try {
       if (reading.record.end) throw std::invalid_argument("entry after the end");
       if (header_read) {
-        add(*entry, reading.record);
+        content.add(*entry);
       } else {
         if (entry->head.type != static_cast<std::uint16_t>(EntryType::kHeader)) {
           throw std::invalid_argument("first entry is no header");
@@ -114,14 +163,68 @@ base::Result<JournalReading> read_journal(const std::filesystem::path& path) {
       reading.stopped_by = error.what();
       break;
     }
-    rest = rest.subspan(kEntryHeadSize + entry->payload.size());
-    reading.whole_size = file->size() - rest.size();
+    reading.whole_size = entries->position();
   }
+  if (reading.stopped_by.empty()) reading.stopped_by = entries->stopped_by();
   if (!header_read) {
     return base::usage_error("{}: is no journal of this program: {}", path.string(),
-                             file->empty() ? "it is empty" : reading.stopped_by);
+                             reading.file_size == 0 ? "it is empty" : reading.stopped_by);
   }
+  content.finish();
   return reading;
+}
+
+void JournalScanSource::for_each_entry(EntryType type, const std::function<void(const Entry&)>& use) const {
+  auto entries = JournalEntries::open(path_);
+  if (!entries) throw std::runtime_error(entries.error().message);
+  // What read_journal() did not believe is not there.
+  while (entries->position() < reading_.whole_size) {
+    const auto entry = entries->next();
+    if (!entry) throw std::runtime_error(path_.string() + ": changed while it was read");
+    if (entry->head.type == static_cast<std::uint16_t>(type)) use(*entry);
+  }
+}
+
+void JournalScanSource::for_each_piece(const std::function<void(const ScanPiece&)>& use) const {
+  std::vector<daq::ScanIndex> scan;
+  std::vector<double> raw;
+  scan.reserve(kPiece);
+  raw.reserve(kPiece);
+  const auto pass_on = [&] {
+    if (!scan.empty()) use({scan, raw});
+    scan.clear();
+    raw.clear();
+  };
+  for_each_entry(EntryType::kScans, [&](const Entry& entry) {
+    daq::ScanIndex index = entry.head.first_scan;
+    for (const double value : raw_of(entry)) {
+      scan.push_back(index++);
+      raw.push_back(value);
+      if (scan.size() == kPiece) pass_on();
+    }
+  });
+  pass_on();
+}
+
+void JournalScanSource::for_each_force_piece(const std::function<void(std::span<const double>)>& use) const {
+  std::vector<double> piece;
+  piece.reserve(kPiece);
+  std::size_t row = 0;
+  const auto push = [&](double value) {
+    piece.push_back(value);
+    ++row;
+    if (piece.size() < kPiece) return;
+    use(piece);
+    piece.clear();
+  };
+  for_each_entry(EntryType::kTrueForce, [&](const Entry& entry) {
+    const std::vector<double> values = values_of<double>(entry.payload);
+    const std::size_t first = row_of(reading_.runs, entry.head.first_scan, values.size());
+    while (row < first) push(kNotKnown);
+    for (const double value : values) push(value);
+  });
+  while (row < size()) push(kNotKnown);
+  if (!piece.empty()) use(piece);
 }
 
 }  // namespace stickslip::record

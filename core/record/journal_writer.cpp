@@ -126,6 +126,14 @@ base::Result<void> JournalWriter::append_scans(daq::ScanIndex first, std::span<c
   return appended;
 }
 
+base::Result<void> JournalWriter::append_true_coefficients(daq::ScanIndex first,
+                                                           std::span<const double> coefficient) {
+  entry_.assign(kEntryHeadSize, std::byte{0});
+  const auto bytes = std::as_bytes(coefficient);
+  entry_.insert(entry_.end(), bytes.begin(), bytes.end());
+  return append(EntryType::kTrueForce, Encoding::kF64, first, 0);
+}
+
 base::Result<void> JournalWriter::append_spikes(std::span<const daq::ScanIndex> spikes) {
   entry_.assign(kEntryHeadSize, std::byte{0});
   for (const daq::ScanIndex spike : spikes) append_value(entry_, spike);
@@ -152,7 +160,9 @@ base::Result<void> JournalWriter::append_event(const Event& event) {
 }
 
 base::Result<void> JournalWriter::append_end(const EndRecord& end) {
-  return append_text(EntryType::kEnd, 0, end_to_json(end));
+  entry_.assign(kEntryHeadSize, std::byte{0});
+  append_end_bytes(end, entry_);
+  return append(EntryType::kEnd, Encoding::kNone, 0, 0);
 }
 
 base::Result<void> JournalWriter::sync() {

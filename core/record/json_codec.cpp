@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <type_traits>
@@ -151,14 +152,9 @@ friction::TestResults results_from_json(const json& object) {
 json truth_to_json(const friction::TestTruth& truth) {
   json object = facts_to_json(truth);
   object["regime"] = friction::name(truth.regime);
-  json& modes = object["modes"] = json::array();
-  for (const auto& mode : truth.modes) {
-    modes.push_back({encode(mode.start_s), encode(mode.end_s), friction::name(mode.mode)});
-  }
-  json& cycles = object["cycles"] = json::array();
-  for (const auto& cycle : truth.cycles) {
-    cycles.push_back({encode(cycle.onset_time_s), encode(cycle.mu_s), encode(cycle.mu_k)});
-  }
+  object["mode_count"] = truth.modes.size();
+  object["cycle_count"] = truth.cycles.size();
+  if (truth.solver) object["solver"] = facts_to_json(*truth.solver);
   return object;
 }
 
@@ -167,14 +163,16 @@ friction::TestTruth truth_from_json(const json& object) {
   for_each_field(truth, taker(object));
   const auto regime = object.at("regime").get<std::string>();
   truth.regime = word(regime, friction::regime_from_name(regime));
-  for (const json& entry : object.at("modes")) {
+  if (object.contains("solver")) for_each_field(truth.solver.emplace(), taker(object.at("solver")));
+  // Older journals have their tables here.
+  for (const json& entry : object.value("modes", json::array())) {
     auto& mode = truth.modes.emplace_back();
     decode(entry.at(0), mode.start_s);
     decode(entry.at(1), mode.end_s);
     const auto text = entry.at(2).get<std::string>();
     mode.mode = word(text, mode_from_name(text));
   }
-  for (const json& entry : object.at("cycles")) {
+  for (const json& entry : object.value("cycles", json::array())) {
     auto& cycle = truth.cycles.emplace_back();
     decode(entry.at(0), cycle.onset_time_s);
     decode(entry.at(1), cycle.mu_s);
@@ -270,6 +268,9 @@ Event event_from_json(std::string_view text) {
           object.at("text").get<std::string>()};
 }
 
+namespace {
+
+/// Bad UTF-8 as everywhere; without the tables, which are many numbers.
 std::string end_to_json(const EndRecord& end) {
   json object{{"status", name(end.status)},
               {"reasons", end.reasons},
@@ -278,14 +279,92 @@ std::string end_to_json(const EndRecord& end) {
               {"spikes", end.spikes}};
   put(object, "end_realtime_ns", end.end_realtime_ns);
   put(object, "compute_time", end.compute_time_s);
-  json& cycles = object["cycles"] = json::array();
-  for (const auto& cycle : end.cycles) cycles.push_back(cycle_to_array(cycle));
+  object["cycle_count"] = end.cycles.size();
   if (end.truth) object["truth"] = truth_to_json(*end.truth);
   return dump(object);
 }
 
-EndRecord end_from_json(std::string_view text) {
-  const json object = json::parse(text);
+/// Numbers one after the other. \throws std::invalid_argument at the end of the bytes.
+class TableReader {
+ public:
+  explicit TableReader(std::string_view bytes) : bytes_(bytes) {}
+
+  [[nodiscard]] std::size_t left() const noexcept { return bytes_.size() / sizeof(double); }
+  [[nodiscard]] double next() {
+    if (left() == 0) throw std::invalid_argument("tables are cut short");
+    double value = 0.0;
+    std::memcpy(&value, bytes_.data(), sizeof value);
+    bytes_.remove_prefix(sizeof value);
+    return value;
+  }
+
+ private:
+  std::string_view bytes_;
+};
+
+/// As many rows as the object says, if they can be there at all.
+std::size_t row_count(const json& object, std::string_view key, const TableReader& table) {
+  const auto count = object.at(std::string{key}).get<std::size_t>();
+  if (count > table.left()) throw std::invalid_argument("tables are cut short");
+  return count;
+}
+
+friction::Mode mode_of(double number) {
+  for (const auto mode : {friction::Mode::kStick, friction::Mode::kSlip, friction::Mode::kSlack}) {
+    if (number == static_cast<double>(mode)) return mode;
+  }
+  throw std::invalid_argument(fmt::format("unknown mode {}", number));
+}
+
+/// \param object  of the end.
+void read_tables(const json& object, TableReader table, EndRecord& end) {
+  end.cycles.resize(row_count(object, "cycle_count", table));
+  for (friction::Cycle& cycle : end.cycles) {
+    for_each_cycle_column([&](const FieldName&, auto member) {
+      cycle.*member = static_cast<std::decay_t<decltype(cycle.*member)>>(table.next());
+    });
+  }
+  if (!end.truth) return;
+  end.truth->modes.resize(row_count(object.at("truth"), "mode_count", table));
+  for (friction::ModeInterval& mode : end.truth->modes) {
+    mode.start_s = table.next();
+    mode.end_s = table.next();
+    mode.mode = mode_of(table.next());
+  }
+  end.truth->cycles.resize(row_count(object.at("truth"), "cycle_count", table));
+  for (friction::TrueCycle& cycle : end.truth->cycles) {
+    for_each_true_cycle_column([&](const FieldName&, auto member) { cycle.*member = table.next(); });
+  }
+}
+
+}  // namespace
+
+void append_end_bytes(const EndRecord& end, std::vector<std::byte>& bytes) {
+  const std::string json_text = end_to_json(end);
+  const auto text = std::as_bytes(std::span{json_text});
+  bytes.insert(bytes.end(), text.begin(), text.end());
+  bytes.push_back(std::byte{0});
+  const auto add = [&](double value) {
+    const auto number = std::as_bytes(std::span{&value, 1});
+    bytes.insert(bytes.end(), number.begin(), number.end());
+  };
+  for (const friction::Cycle& cycle : end.cycles) {
+    for_each_cycle_column([&](const FieldName&, auto member) { add(static_cast<double>(cycle.*member)); });
+  }
+  if (!end.truth) return;
+  for (const friction::ModeInterval& mode : end.truth->modes) {
+    add(mode.start_s);
+    add(mode.end_s);
+    add(static_cast<double>(mode.mode));
+  }
+  for (const friction::TrueCycle& cycle : end.truth->cycles) {
+    for_each_true_cycle_column([&](const FieldName&, auto member) { add(cycle.*member); });
+  }
+}
+
+EndRecord end_from_bytes(std::span<const std::byte> bytes) {
+  const std::string_view text{reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  const json object = json::parse(text.substr(0, text.find('\0')));
   EndRecord end;
   const auto status = object.at("status").get<std::string>();
   end.status = word(status, status_from_name(status));
@@ -295,9 +374,26 @@ EndRecord end_from_json(std::string_view text) {
   take(object, "compute_time", end.compute_time_s);
   end.results = results_from_json(object.at("results"));
   object.at("spikes").get_to(end.spikes);
-  for (const json& cycle : object.at("cycles")) end.cycles.push_back(cycle_from_array(cycle));
+  for (const json& cycle : object.value("cycles", json::array()))
+    end.cycles.push_back(cycle_from_array(cycle));
   if (object.contains("truth")) end.truth = truth_from_json(object.at("truth"));
+  if (const auto tables = text.find('\0'); tables != std::string_view::npos) {
+    read_tables(object, TableReader{text.substr(tables + 1)}, end);
+  }
   return end;
+}
+
+std::string sweep_run_to_json(const SweepRun& run) {
+  return dump({{"run", run.number},
+               {"results", results_to_json(run.results)},
+               {"truth", truth_to_json(run.truth)},
+               {"true_cycle_count", run.true_cycle_count}});
+}
+
+SweepRun sweep_run_from_json(std::string_view text) {
+  const json object = json::parse(text);
+  return {object.at("run").get<std::int64_t>(), results_from_json(object.at("results")),
+          truth_from_json(object.at("truth")), object.at("true_cycle_count").get<std::int64_t>()};
 }
 
 }  // namespace stickslip::record

@@ -5,16 +5,22 @@
 
 #include "core/record/hdf.hpp"
 #include "core/record/record.hpp"
+#include "core/record/scan_source.hpp"
 
 namespace stickslip::record {
 
 // Each takes the group /entry. The readers expect the raw data to be read first.
 
-void write_identity(hid_t entry, const Record& record);  ///< Title, uuid, times.
+void write_identity(hid_t entry, const Record& record, const ScanSource& scans);  ///< Title, uuid, times.
 void read_identity(hid_t entry, Record& record);
 
-void write_raw(hid_t entry, const Record& record);
+/// \return SHA-256 of the raw values as the file stores them (u16, u32 or f64, little-endian), hexadecimal.
+[[nodiscard]] std::string write_raw(hid_t entry, const Record& record, const ScanSource& scans);
 void read_raw(hid_t entry, Record& record);
+/// What read_raw() tells of the board, without the scans.
+void read_quantity(hid_t entry, daq::BoardInfo& board);
+/// Throws unless scans, raw values and noise-free force are those of the source, to the last bit.
+void verify_scans(hid_t entry, const daq::BoardInfo& board, const ScanSource& scans);
 
 void write_tables(hid_t entry, const Record& record);  ///< cycles, gaps, events
 void read_tables(hid_t entry, Record& record);
@@ -25,13 +31,17 @@ void write_results(hid_t entry, const friction::TestResults& results);
 void write_instrument(hid_t entry, const Record& record);  ///< instrument, timing, sample, user
 void read_instrument(hid_t entry, Record& record);
 
-void write_process(hid_t entry, const Record& record);
+/// \param sha256  of the raw values.
+void write_process(hid_t entry, const Record& record, const std::string& sha256);
 void read_process(hid_t entry, Record& record);
 
-void write_truth(hid_t entry, const friction::TestTruth& truth);
+/// Expects the raw data to be written.
+void write_truth(hid_t entry, const friction::TestTruth& truth, const ScanSource& scans);
 [[nodiscard]] friction::TestTruth read_truth(hid_t entry);
+/// The noise-free force; empty if the record has none.
+[[nodiscard]] std::vector<double> read_true_coefficient(hid_t entry, std::size_t scan_count);
 
-/// SHA-256 of the raw values as the file stores them (u16, u32 or f64, little-endian), hexadecimal.
+/// As write_raw() returns it.
 [[nodiscard]] std::string sha256_of_raw(const Record& record);
 
 }  // namespace stickslip::record

@@ -21,7 +21,7 @@ std::optional<std::int64_t> read_time(hid_t entry, const std::string& name) {
 
 }  // namespace
 
-void write_identity(hid_t entry, const Record& record) {
+void write_identity(hid_t entry, const Record& record, const ScanSource& scans) {
   const RecordHeader& header = record.header;
   const FieldWriter write{entry};
   write(FieldName{"title", "", ""}, header.title);
@@ -30,10 +30,9 @@ void write_identity(hid_t entry, const Record& record) {
   write(kTriggerScan, header.trigger_scan);
   if (header.start_realtime_ns) write_text(entry, "start_time", iso_time(*header.start_realtime_ns));
   if (record.end->end_realtime_ns) write_text(entry, "end_time", iso_time(*record.end->end_realtime_ns));
-  if (!record.scan.empty()) {
-    const auto scans = static_cast<double>(record.scan.back() - record.scan.front() + 1);
+  if (scans.size() > 0) {
     write_scalar(entry, {"collection_time", "s", "duration of the record [s]"},
-                 scans / header.board.scan_rate_granted_Hz);
+                 static_cast<double>(scans.extent()) / header.board.scan_rate_granted_Hz);
   }
 }
 

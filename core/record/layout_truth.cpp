@@ -7,10 +7,39 @@
 
 namespace stickslip::record {
 
-void write_truth(hid_t entry, const friction::TestTruth& truth) {
+namespace {
+
+constexpr const char* kForce = "coefficient";
+
+void write_force(hid_t entry, hid_t truth, const ScanSource& scans) {
+  ColumnWriter<double> column{
+      truth,
+      FieldName{kForce, "1", "true coefficient of the coupling at each scan of raw, without noise [1]"},
+      scans.size()};
+  // Rows of raw, and so with its axis.
+  const GroupHandle raw = open_group(entry, "raw");
+  attach_scale(column.dataset(), open_dataset(raw.get(), "time"), kForce);
+  scans.for_each_force_piece([&](std::span<const double> force) { column.append(force); });
+}
+
+}  // namespace
+
+std::vector<double> read_true_coefficient(hid_t entry, std::size_t scan_count) {
+  const GroupHandle group = open_group(entry, "truth");
+  if (!has(group.get(), kForce)) return {};
+  return read_column<double>(group.get(), kForce, scan_count);
+}
+
+void write_truth(hid_t entry, const friction::TestTruth& truth, const ScanSource& scans) {
   const GroupHandle group = make_group(entry, "truth", "NXcollection");
   for_each_field(truth, FieldWriter{group.get()});
   write_text(group.get(), "regime", friction::name(truth.regime));
+
+  if (truth.solver) {
+    const GroupHandle solver = make_group(group.get(), "solver", "NXcollection");
+    for_each_field(*truth.solver, FieldWriter{solver.get()});
+  }
+  if (scans.has_force() && scans.size() > 0) write_force(entry, group.get(), scans);
 
   TableWriter modes{make_group(group.get(), "modes", "NXcollection")};
   std::vector<double> start;
@@ -41,6 +70,11 @@ friction::TestTruth read_truth(hid_t entry) {
   const auto known = friction::regime_from_name(regime);
   if (!known) throw HdfError(fmt::format("truth/regime '{}' is unknown", regime));
   truth.regime = *known;
+
+  if (has(group.get(), "solver")) {
+    const GroupHandle solver = open_group(group.get(), "solver");
+    for_each_field(truth.solver.emplace(), FieldReader{solver.get()});
+  }
 
   const GroupHandle modes = open_group(group.get(), "modes");
   const auto start = read_column<double>(modes.get(), "start_time");

@@ -70,9 +70,30 @@ Record read(const std::filesystem::path& path) {
   read_tables(entry.get(), record);
   record.end->results = read_results(entry.get());
   read_process(entry.get(), record);
-  if (has(entry.get(), "truth")) record.end->truth = read_truth(entry.get());
+  if (has(entry.get(), "truth")) {
+    record.end->truth = read_truth(entry.get());
+    record.true_coefficient = read_true_coefficient(entry.get(), record.scan.size());
+  }
   check_facts(record);
   return record;
+}
+
+void verify(const std::filesystem::path& path, const Record& record, const ScanSource& scans) {
+  prepare_hdf5();
+  const FileHandle file = open_hdf5(path);
+  check_format(file);
+  const GroupHandle entry = open_group(file.get(), "entry");
+  Record back;
+  back.end.emplace();
+  read_quantity(entry.get(), back.header.board);
+  if (back.header.board.quantity != record.header.board.quantity) throw HdfError("holds another quantity");
+  read_identity(entry.get(), back);
+  read_instrument(entry.get(), back);
+  read_tables(entry.get(), back);
+  back.end->results = read_results(entry.get());
+  read_process(entry.get(), back);
+  if (has(entry.get(), "truth")) back.end->truth = read_truth(entry.get());
+  verify_scans(entry.get(), record.header.board, scans);
 }
 
 }  // namespace
@@ -93,6 +114,16 @@ base::Result<Record> read_record(const std::filesystem::path& path) {
     return read(path);
   } catch (const std::exception& error) {
     return base::usage_error("{}: {}", path.string(), error.what());
+  }
+}
+
+base::Result<void> verify_record(const std::filesystem::path& path, const Record& record,
+                                 const ScanSource& scans) {
+  try {
+    verify(path, record, scans);
+    return {};
+  } catch (const std::exception& error) {
+    return base::failure("{}: {}", path.string(), error.what());
   }
 }
 

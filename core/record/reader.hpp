@@ -6,6 +6,7 @@
 
 #include "core/base/result.hpp"
 #include "core/record/record.hpp"
+#include "core/record/scan_source.hpp"
 
 namespace stickslip::record {
 
@@ -13,5 +14,10 @@ namespace stickslip::record {
 /// is wrong: kUsage if it is no HDF5 file, no record, another version, cut short, damaged or has
 /// data of other types or shapes; kFailure if it cannot be read.
 [[nodiscard]] base::Result<Record> read_record(const std::filesystem::path& path);
+
+/// Reads the whole file back, its scans piece by piece. Errors: kFailure if anything in it cannot be read
+/// or its scans (index, raw value, noise-free force) are not those of the source, to the last bit.
+[[nodiscard]] base::Result<void> verify_record(const std::filesystem::path& path, const Record& record,
+                                               const ScanSource& scans);
 
 }  // namespace stickslip::record

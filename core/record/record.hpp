@@ -136,6 +136,8 @@ struct Record {
   RecordHeader header;
   std::vector<daq::ScanIndex> scan;  ///< Index of the acquisition.
   std::vector<double> raw;           ///< In board.quantity.
+  /// Noise-free force of each scan (friction::TrueForce), NaN where not known; empty if of none.
+  std::vector<double> true_coefficient;
   std::vector<daq::ScanIndex> spikes;
   std::vector<daq::Gap> gaps;
   std::vector<friction::Cycle> cycles;

@@ -35,19 +35,4 @@ void NoiseEstimator::close_block() noexcept {
   sigma_ = std::max(floor_, median(filled) / (kGaussianMad * kFourthDifferenceGain));
 }
 
-double scan_noise(std::span<const double> values, double floor) {
-  NoiseEstimator estimator{floor};
-  for (const double value : values) estimator.add(value);
-  return estimator.sigma();
-}
-
-double smallest_step(std::span<const double> values) {
-  double smallest = 0.0;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    const double step = std::abs(values[i] - values[i - 1]);
-    if (step > 0.0 && (smallest == 0.0 || step < smallest)) smallest = step;
-  }
-  return smallest;
-}
-
 }  // namespace stickslip::signal

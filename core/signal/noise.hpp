@@ -5,8 +5,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
-#include <span>
+#include <limits>
 
 namespace stickslip::signal {
 
@@ -50,10 +51,26 @@ class NoiseEstimator {
 inline constexpr std::size_t kFewestScansForNoise = 68;
 
 /// The same for a whole trace. \return the floor if there are fewer than kFewestScansForNoise values.
-[[nodiscard]] double scan_noise(std::span<const double> values, double floor);
+/// \tparam Values  any range of double.
+template <typename Values>
+[[nodiscard]] double scan_noise(const Values& values, double floor) {
+  NoiseEstimator estimator{floor};
+  for (const double value : values) estimator.add(value);
+  return estimator.sigma();
+}
 
 /// Resolution of a trace whose converter is unknown: its smallest non-zero step between
 /// consecutive values, or 0 if it is constant.
-[[nodiscard]] double smallest_step(std::span<const double> values);
+template <typename Values>
+[[nodiscard]] double smallest_step(const Values& values) {
+  double smallest = 0.0;
+  double before = std::numeric_limits<double>::quiet_NaN();
+  for (const double value : values) {
+    const double step = std::abs(value - before);
+    if (step > 0.0 && (smallest == 0.0 || step < smallest)) smallest = step;
+    before = value;
+  }
+  return smallest;
+}
 
 }  // namespace stickslip::signal

@@ -10,6 +10,14 @@ double ContactAgeing::growth(double rested_s) const noexcept {
   return per_decade / std::numbers::ln10 * std::log1p(rested_s / cutoff_s);
 }
 
+double ContactAgeing::growth_rate_per_s(double rested_s) const noexcept {
+  return per_decade / std::numbers::ln10 / (cutoff_s + rested_s);
+}
+
+double ContactAgeing::growth_bend_per_s2(double rested_s) const noexcept {
+  return growth_rate_per_s(rested_s) / (cutoff_s + rested_s);
+}
+
 double ContactAgeing::gives_way_s(double held, double rate, double mu_s, double rested_s) const {
   const auto excess = [&](double t_s) { return held + rate * t_s - mu_s - growth(rested_s + t_s); };
   // S grows fastest at first, so the excess falls until the rates are equal, and rises for ever after.

@@ -1,11 +1,13 @@
 /// \file
-/// Where a damped oscillation first rises to a level: the one event of a slip. Capture is the rate
-/// of the force reaching the rate of the belt; slack is the (negative) force reaching zero.
+/// Where a damped oscillation, alone or on a course, first rises to a level: the one event of a slip.
+/// Capture is the rate of the force reaching the rate of the belt; slack is the (negative) force reaching
+/// zero. Without an oscillation: where sticking gives way, where a coupling is taut.
 #pragma once
 
 #include <optional>
 
 #include "core/friction/slip_waveform.hpp"
+#include "core/sim/course.hpp"
 
 namespace stickslip::sim {
 
@@ -15,11 +17,32 @@ enum class Touch { kCounts, kDoesNot };
 ///
 /// Between its extremes, which are known in closed form, y is monotone. Its first maximum is the
 /// highest that it will ever reach above zero, so the sign of y there minus the level decides
-/// whether the event exists; only then its time is bracketed and refined [Algorithm 748: Alefeld,
-/// Potra and Shi, ACM TOMS 21(3):327–344, 1995]. Nothing is stepped over, grazing included.
+/// whether the event exists; only then its time is bracketed and refined. Nothing is stepped over,
+/// grazing included.
 ///
 /// \param y      homogeneous: y.K = 0.
 /// \param touch  whether a maximum exactly at the level is an event.
 [[nodiscard]] std::optional<double> first_rise_s(const friction::SlipWaveform& y, double level, Touch touch);
+
+/// An oscillation on a course.
+struct Curve {
+  friction::SlipWaveform wave;  ///< Homogeneous: wave.K = 0; wave.D = wave.r = 0 where nothing oscillates.
+  Course course;
+
+  [[nodiscard]] bool oscillates() const noexcept { return wave.D != 0.0 || wave.r != 0.0; }
+  [[nodiscard]] double value(double t_s) const noexcept {
+    return (oscillates() ? wave.value(t_s) : 0.0) + course.value(t_s);
+  }
+};
+
+/// First t in [from, end] at which y(t) rises through zero. Values at `from` within rounding of zero count
+/// as below, so that where y leaves zero upwards at once, the result is `from`.
+///
+/// Rolle's theorem, downwards: d/dt lowers the polynomial by a degree, d/dt + λ removes a decay, until only
+/// the oscillation (or a constant) is left, whose zeros are known in closed form. Between two zeros of one
+/// level the level above it is monotone (after multiplication with e^(λt)), so that the signs there
+/// bracket all of its zeros, and none is ever stepped over. Where the oscillation has died down so far
+/// that its envelope stays below zero, the search goes on where the envelope comes back.
+[[nodiscard]] std::optional<double> first_rise_s(const Curve& y, double from_s, double end_s, Touch touch);
 
 }  // namespace stickslip::sim

@@ -41,6 +41,9 @@ struct ContactAgeing {
   double cutoff_s = 0.001;  ///< t₀ > 0
 
   [[nodiscard]] double growth(double rested_s) const noexcept;
+  /// Its first derivative, 1/s, and its second without the sign, 1/s²; both only fall.
+  [[nodiscard]] double growth_rate_per_s(double rested_s) const noexcept;
+  [[nodiscard]] double growth_bend_per_s2(double rested_s) const noexcept;
   /// First t ≥ 0 at which held + rate · t reaches mu_s + growth(rested_s + t).
   /// \param held  at most mu_s + growth(rested_s). \param rate  > 0, 1/s.
   [[nodiscard]] double gives_way_s(double held, double rate, double mu_s, double rested_s) const;
@@ -89,6 +92,17 @@ class Paper {
   /// What a contact holds after this rest.
   [[nodiscard]] double static_limit(double rested_s) const noexcept {
     return ageing_ ? now_.mu_s + ageing_->growth(rested_s) : now_.mu_s;
+  }
+  /// Its derivatives, as those of ContactAgeing::growth().
+  [[nodiscard]] double static_limit_slope_per_s(double rested_s) const noexcept {
+    return ageing_ ? ageing_->growth_rate_per_s(rested_s) : 0.0;
+  }
+  [[nodiscard]] double static_limit_bend_per_s2(double rested_s) const noexcept {
+    return ageing_ ? ageing_->growth_bend_per_s2(rested_s) : 0.0;
+  }
+  /// What S has gained by then.
+  [[nodiscard]] double growth(double rested_s) const noexcept {
+    return ageing_ ? ageing_->growth(rested_s) : 0.0;
   }
   /// After this rest, when will a force that grows at this rate (> 0, 1/s) from `held` be too much?
   [[nodiscard]] double gives_way_s(double held, double rate, double rested_s) const {

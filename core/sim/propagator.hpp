@@ -7,100 +7,42 @@
 ///     sled.next(coefficient);  // scans 0 … 63
 ///
 /// Conventions of Penner 1995: slip starts when the spring alone holds S [13], unless the motion asks
-/// for spring and damper; the load cell reads the spring.
+/// for spring and damper; the load cell reads the spring. What a belt's acceleration a adds, a/g, counts
+/// always: the friction that takes the sled along is q = c + a/g.
+///
+/// Each piece is an oscillation on a course: c(t) = h(t) + p(t). While the belt's speed and K are constant
+/// ("plain") p is a line, a parabola or K, and everything about it is written out; else p is a Course.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
-#include "core/friction/oscillator.hpp"
 #include "core/friction/slip_waveform.hpp"
-#include "core/friction/truth.hpp"
+#include "core/sim/course.hpp"
+#include "core/sim/first_rise.hpp"
+#include "core/sim/motion.hpp"
+#include "core/sim/motion_solver.hpp"
 #include "core/sim/paper.hpp"
 #include "core/sim/scan_time.hpp"
 
 namespace stickslip::sim {
 
-/// The belt at constant speed for a while.
-struct BeltSegment {
-  double duration_s = 0.0;
-  double speed_m_per_s = 0.0;  ///< Negative: the carriage returns.
-  /// Stop the belt for the rest of the segment as soon as the force is zero.
-  bool halt_when_unloaded = false;
-};
-
-/// What the motion stage of a scene comes to.
-struct Motion {
-  friction::Oscillator oscillator;
-  double mu_s = 0.0;  ///< S ≥ mu_k
-  double mu_k = 0.0;  ///< K ≥ 0
-  double gravity_m_per_s2 = 0.0;
-  bool damper_counts_at_onset = false;  ///< Slip starts when spring and damper together hold S.
-  PaperSettings paper;                  ///< How S and K differ from contact to contact.
-  bool one_way_coupling = false;
-  std::vector<BeltSegment> belt;  ///< In order; at rest after the last.
-};
-
-/// The sled changes its mode.
-struct ModeStart {
-  ScanTime time;
-  friction::Mode mode = friction::Mode::kStick;
-  bool onset = false;        ///< A slip that starts because sticking gave way.
-  bool capture = false;      ///< The slip before ended because the sled had reached the belt's speed.
-  Coefficients paper;        ///< S and K in force.
-  double coefficient = 0.0;  ///< Of the spring; below zero the slack.
-};
-
-/// Told of each change of mode, in order.
-class MotionObserver {
- public:
-  virtual ~MotionObserver() = default;
-  virtual void mode_began(const ModeStart& start) = 0;
-};
-
-/// A stretch of time during which the force has one closed form.
-struct ForceStretch {
-  double duration_s = 0.0;
-  /// Coefficient and its derivatives at the start.
-  double c = 0.0;
-  double rate_per_s = 0.0;
-  double acceleration_per_s2 = 0.0;
-  /// c‴ = −ω₀² c′ − γ c″; else c‴ = 0, and the force is zero, a line or a parabola.
-  bool slips = false;
-};
-
-/// Shown the force between the instants, stretch by stretch without a hole.
-class ForceFollower {
- public:
-  virtual ~ForceFollower() = default;
-  virtual void follow(const ForceStretch& stretch) = 0;
-};
-
 /// Needs the same memory however long it runs. Thread-bound.
-class Propagator {
+class Propagator final : public MotionSolver {
  public:
-  /// \param scan_rate_Hz > 0. \param observer may be null; outlives the propagator.
-  /// \param seed as in restart().
+  /// \param motion  has_closed_form(). \param scan_rate_Hz > 0. \param observer may be null; outlives the
+  /// propagator. \param seed as in restart().
   Propagator(const Motion& motion, double scan_rate_Hz, MotionObserver* observer = nullptr,
              std::uint64_t seed = 1);
 
-  /// Back to scan 0, at rest and unloaded, with these random numbers. Does not allocate.
-  void restart(std::uint64_t seed);
-
-  /// The coefficient F/(m g) at the next scans. Does not allocate.
-  void next(std::span<double> coefficient);
-
-  /// The coefficient at any instants in non-decreasing order; next() and skip() keep count of their
-  /// own, and may go on only at scans that are not before the last instant. Does not allocate.
-  [[nodiscard]] double at(const ScanTime& instant);
-
-  /// As at(), but shows the whole force since the last call instead of its value. Does not allocate.
-  void follow_to(const ScanTime& instant, ForceFollower& follower);
-
-  /// Goes on by `scans` without looking at them, at the cost of the events alone.
-  void skip(std::int64_t scans);
+  void restart(std::uint64_t seed) override;
+  void next(std::span<double> coefficient) override;
+  [[nodiscard]] double at(const ScanTime& instant) override;
+  void follow_to(const ScanTime& instant, ForceFollower& follower) override;
+  void skip(std::int64_t scans) override;
+  /// No steps, and event times bracketed to the last bits of a double: first_rise.hpp.
+  [[nodiscard]] SolverMethod method() const override { return {"exact closed forms", kExactAccuracy}; }
 
  private:
   /// What the sled is doing; two of them are slips, two are slack.
@@ -120,36 +62,103 @@ class Propagator {
   struct State {
     double c;     ///< Below zero with one-way coupling: the slack, as a coefficient.
     double rate;  ///< c′, 1/s
+    bool operator==(const State&) const = default;
   };
 
-  [[nodiscard]] State state_at(double t_s) const;
-  [[nodiscard]] double free_acceleration() const;
-  [[nodiscard]] friction::SlipWaveform waveform() const;
+  /// The oscillation of a slip.
+  struct Wave {
+    double h;
+    double rate;  ///< h′, 1/s
+  };
 
+  /// The wave at a scan, to go on from there scan by scan.
+  struct Stride {
+    std::int64_t scan = -1;
+    Wave wave{0.0, 0.0};
+  };
+
+  /// What one scan period makes of a wave: a 2 × 2 matrix.
+  struct Turn {
+    double h_from_h, h_from_rate, rate_from_h, rate_from_rate;
+  };
+
+  /// What a slip depends on unless its belt or K change, and when it ends. A motion that repeats itself is
+  /// solved once.
+  struct PlainSlip {
+    State begun{0.0, 0.0};
+    double level = 0.0;  ///< ±K
+    double belt_rate = 0.0;
+    double push = 0.0;
+    bool can_unload = false;
+    bool operator==(const PlainSlip&) const = default;
+  };
+  struct SlipEnds {
+    PlainSlip slip;
+    std::optional<double> captured_s;
+    std::optional<double> unloaded_s;
+  };
+
+  // propagator_belt.cpp: what belt and drift prescribe.
   void next_segment();
+  /// Belt and drift as seen from start_.
+  void look_ahead();
+  void halt_belt();
+  [[nodiscard]] Course drift_course(double piece_after_segment_s) const;
+  [[nodiscard]] bool leaves_backwards() const;
+
+  // propagator.cpp
+  [[nodiscard]] bool slips() const { return phase_ == Phase::kSlower || phase_ == Phase::kFaster; }
+  [[nodiscard]] bool rests_on_belt() const { return phase_ == Phase::kStick || phase_ == Phase::kRide; }
+  [[nodiscard]] double seconds_since_start(const ScanTime& instant) const {
+    return instant.periods_since(start_) / scan_rate_Hz_;
+  }
+  [[nodiscard]] Wave wave_at(double t_s) const;
+  [[nodiscard]] State state_at(double t_s) const;
   /// Chooses the phase from the state. \param capture as in ModeStart.
   void enter(State state, bool capture);
   void begin(Phase phase, State state, bool onset, bool capture);
-  /// What the damper adds to the spring at the belt's speed, if it counts.
-  [[nodiscard]] double damper_share() const;
+  /// The closed form of the piece that begins.
+  void set_out();
+  [[nodiscard]] double mu_k() const { return drift_factor_ * paper_.now().mu_k; }
+  /// What holds the sled at start_.
+  [[nodiscard]] double static_limit() const {
+    return paper_.static_limit(rested_s()) + (mu_k() - paper_.now().mu_k);
+  }
+  /// q − c at the belt's speed: what its acceleration adds to the spring, and the damper if it counts.
+  [[nodiscard]] double share_beside_spring() const;
   [[nodiscard]] double rested_s() const { return start_.periods_since(contact_start_) / scan_rate_Hz_; }
   [[nodiscard]] Phase phase_at_belt_speed(double c) const;
-  void plan_end();
-  void offer(Ending ending, std::optional<double> t_s);
-  void plan_slip_end();
-  void plan_free_end();
-  [[nodiscard]] double slid_after(double t_s) const;
-  void plan_new_place();
   void meet_new_place();
   void pass_end();
+  void give_way(State state);
   void pass_until(const ScanTime& instant);
   [[nodiscard]] ForceStretch stretch_to(const ScanTime& instant) const;
-  [[nodiscard]] double coefficient_at(const ScanTime& instant) const;
+  [[nodiscard]] double as_read(double c) const { return motion_.one_way_coupling && !(c > 0.0) ? 0.0 : c; }
+  [[nodiscard]] double coefficient_at(const ScanTime& instant);
+  void fill(std::span<double> coefficient);
+  void stride_to(std::int64_t scan);
+
+  // propagator_endings.cpp
+  void plan_end();
+  void offer(Ending ending, std::optional<double> t_s);
+  void offer_giving_way(std::optional<double> t_s, double side);
+  void plan_stick_end();
+  void plan_slip_end();
+  void plan_free_end();
+  void plan_ride_end();
+  [[nodiscard]] double slid_after(double t_s) const;
+  void plan_new_place();
+  /// Until the present segment is over.
+  [[nodiscard]] double longest_s() const { return seconds_since_start(segment_end_); }
+  // propagator_limits.cpp: when a limit that moves is reached.
+  [[nodiscard]] std::optional<double> gives_way_s(const Course& held, double side, double from_s) const;
+  [[nodiscard]] std::optional<double> stick_gives_way_s(double side) const;
 
   Motion motion_;
   double scan_rate_Hz_;
   MotionObserver* observer_;
   double omega0_squared_;
+  Turn turn_;
   Paper paper_;
   double place_length_;      ///< Correlation length in units of the coefficient.
   double place_left_ = 0.0;  ///< Still to slide until a new place.
@@ -157,16 +166,34 @@ class Propagator {
   std::int64_t next_scan_ = 0;
   ScanTime followed_to_;
   std::size_t segment_ = 0;  ///< Of motion_.belt; its size when all are over.
+  ScanTime segment_start_;
   ScanTime segment_end_;
-  double belt_rate_ = 0.0;  ///< r = ω₀² v/g of the belt, 1/s
   bool halt_when_unloaded_ = false;
+  bool joins_smoothly_ = false;  ///< The segment began at the speed at which the one before had ended.
+  bool plain_ = true;            ///< Belt speed and K are constant until the segment ends.
+  double belt_rate_ = 0.0;       ///< r = ω₀² v/g of the belt at start_, 1/s
+  double belt_slope_ = 0.0;      ///< r′ at start_, 1/s²
+  double drift_factor_ = 1.0;    ///< f at start_
+  // Unless plain:
+  Course segment_rate_;          ///< r from segment_start_ on,
+  double segment_travel_ = 0.0;  ///< ∫r before it.
+  Course rate_;                  ///< r, ∫r and f from start_ on.
+  Course way_;
+  Course factor_;
 
   Phase phase_ = Phase::kStick;
   ScanTime start_;  ///< Of the present piece.
   ScanTime contact_start_;
-  State begun_{0.0, 0.0};        ///< State at start_.
-  friction::SlipWaveform slip_;  ///< For the two slips; mirrored for kFaster.
+  State begun_{0.0, 0.0};  ///< State at start_.
+  double push_ = 0.0;      ///< Sign of the friction: +1 while the sled is slower than the belt.
+  /// Oscillation of a slip; about ±K if plain, else K = 0.
+  friction::SlipWaveform slip_;
+  Course course_;  ///< Unless plain: c − h from start_ on.
+  Course course_rate_;
+  Stride stride_;
+  SlipEnds last_slip_;  ///< Of the last slip that was solved.
   Ending ending_ = Ending::kNever;
+  double gives_way_to_ = 0.0;  ///< +1: towards the slower side.
   ScanTime end_;
   double duration_s_ = 0.0;  ///< From start_ to end_.
 };

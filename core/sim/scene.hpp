@@ -19,7 +19,7 @@
 #include "core/base/result.hpp"
 #include "core/friction/oscillator.hpp"
 #include "core/friction/tester.hpp"
-#include "core/sim/propagator.hpp"
+#include "core/sim/motion.hpp"
 #include "core/sim/sampling_settings.hpp"
 #include "core/sim/signal_settings.hpp"
 #include "core/sim/transducer_settings.hpp"
@@ -45,8 +45,42 @@ struct ConstantSpeed {
   [[nodiscard]] double duration_s() const noexcept { return idle_s + pull_s + stop_s + return_s + rest_s; }
 };
 
+// Effects that shape the pull of `constant_speed` (motion); at most one of them.
+
+/// Effect `speed_ramp`: from the pull speed in a line to another over the pull.
+struct SpeedRamp {
+  double to_m_per_s = 0.0;  ///< ≥ 0
+};
+
+/// Effect `exponential_start`: a motor that approaches the pull speed V as V (1 − e^(−t/τ)).
+struct ExponentialStart {
+  double time_constant_s = 0.0;  ///< τ > 0
+};
+
+/// Effect `jerk_limited_start`: to the pull speed V in 2√(V/j), acceleration first rising, then falling.
+struct JerkLimitedStart {
+  double jerk_m_per_s3 = 0.0;  ///< j > 0
+};
+
+/// Effect `piecewise_speed` (motion), in place of `constant_speed`: lines between points; at rest before the
+/// first, on at its speed after the last. Two points at one time are a jump.
+struct PiecewiseSpeed {
+  struct Point {
+    double at_s = 0.0;  ///< After the start of the scene; never before the point before.
+    double speed_m_per_s = 0.0;
+  };
+  std::vector<Point> points;
+};
+
 /// Effect `onset_convention` (motion): which force has to exceed S for the slip to start.
 enum class OnsetConvention { kSpring, kSpringAndDamper };
+
+/// Effect `stribeck` (motion): friction that falls as sliding sets in; VelocityDependence.
+struct Stribeck {
+  double rise = 0.0;
+  double speed_m_per_s = 0.0;
+  double exponent = 2.0;
+};
 
 struct Scene {
   std::string name;         ///< The file's name without its ending.
@@ -55,6 +89,7 @@ struct Scene {
   std::uint64_t seed = 1;
   double scan_rate_Hz = 350.0;  ///< Unless the board is asked for another.
   double duration_s = 0.0;      ///< Of one repetition.
+  double accuracy = 1e-9;       ///< Of the coefficient: chooses how the motion is solved.
 
   double sled_mass_kg = 0.0;
   double gravity_m_per_s2 = friction::kStandardGravity_m_per_s2;
@@ -65,10 +100,19 @@ struct Scene {
   double mu_k = 0.0;
 
   std::optional<ConstantSpeed> constant_speed;
+  std::optional<SpeedRamp> speed_ramp;
+  std::optional<ExponentialStart> exponential_start;
+  std::optional<JerkLimitedStart> jerk_limited_start;
+  std::optional<PiecewiseSpeed> piecewise_speed;
+  std::optional<double> startup_slack_m;  ///< Effect `startup_slack` (motion): > 0; with one_way_coupling.
+  std::optional<KineticDrift> kinetic_drift;
   bool damping = false;
   bool one_way_coupling = false;
   PaperSettings paper;  ///< Effects that change S and K: `scatter`, `first_peak`, `contact_ageing`.
   std::optional<OnsetConvention> onset_convention;
+  std::optional<double> velocity_dependence_s_per_m;  ///< Effect `velocity_dependence`: dK/dV.
+  std::optional<Stribeck> stribeck;
+  std::optional<RateAndState> rate_and_state;
   std::optional<LoadCellDynamics> load_cell_dynamics;
   std::optional<AntiAlias> anti_alias;
   std::optional<ClockRateError> clock_rate_error;
@@ -111,6 +155,18 @@ struct SceneChanges {
 
 /// The motion stage of the scene.
 [[nodiscard]] Motion motion_of(const Scene& scene);
+
+/// When the belt pulls, in seconds of the scene.
+struct Pull {
+  double start_s = 0.0;
+  double end_s = 0.0;
+};
+
+/// The pull of `constant_speed`, or from the first to the last movement of `piecewise_speed`.
+[[nodiscard]] std::optional<Pull> pull_of(const Scene& scene);
+
+/// The speed that the pull is meant to have; none if it is meant to change.
+[[nodiscard]] std::optional<double> steady_pull_speed_m_per_s(const Scene& scene);
 
 /// What the converter's clock really does when it is set to this rate.
 [[nodiscard]] double true_scan_rate_Hz(const Scene& scene, double scan_rate_Hz) noexcept;

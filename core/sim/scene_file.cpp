@@ -20,14 +20,14 @@ using base::Limits;
 using base::Settings;
 
 // Limits of sense, not of the method: a value outside is taken for a slip of the pen.
-constexpr double kLongestPhase_s = 1e8;
-constexpr double kFastestBelt_m_per_s = 10.0;
 constexpr double kStrongestGravity_m_per_s2 = 100.0;
 constexpr double kHeaviestSled_kg = 1000.0;
 constexpr double kFastestOscillator_Hz = 1e5;
 constexpr double kFastestScan_Hz = 1e6;
+constexpr double kFinestAccuracy = 1e-12;  // Beyond, a numeric solver works at the roundings of a double.
+constexpr double kCoarsestAccuracy = 1e-2;
 
-constexpr std::array<std::string_view, 3> kEffects{"damping", "constant_speed", "one_way_coupling"};
+constexpr std::array<std::string_view, 2> kEffects{"damping", "one_way_coupling"};
 
 void read_tester(Settings tester, double gamma_over_2omega, Scene& scene) {
   scene.sled_mass_kg =
@@ -66,20 +66,6 @@ void read_paper(Settings paper, Scene& scene) {
   }
 }
 
-ConstantSpeed read_constant_speed(Settings effect) {
-  const Limits duration = Limits::between(0.0, kLongestPhase_s);
-  const Limits speed = Limits::above_up_to(0.0, kFastestBelt_m_per_s);
-  ConstantSpeed test;
-  test.idle_s = effect.quantity("idle", Dimension::kTime, duration);
-  test.pull_speed_m_per_s = effect.quantity("pull_speed", Dimension::kSpeed, speed);
-  test.pull_s = effect.quantity("pull", Dimension::kTime, Limits::above_up_to(0.0, kLongestPhase_s));
-  test.stop_s = effect.quantity("stop", Dimension::kTime, duration);
-  test.return_speed_m_per_s = effect.quantity("return_speed", Dimension::kSpeed, speed);
-  test.return_s = effect.quantity("return", Dimension::kTime, duration);
-  test.rest_s = effect.quantity("rest", Dimension::kTime, duration);
-  return test;
-}
-
 base::Result<Scene> read_scene(Settings settings, const std::filesystem::path& file) {
   Scene scene;
   scene.name = file.stem().string();
@@ -89,6 +75,8 @@ base::Result<Scene> read_scene(Settings settings, const std::filesystem::path& f
   scene.seed = static_cast<std::uint64_t>(settings.integer("seed", 0, kLargestSeed, 1));
   scene.scan_rate_Hz =
       settings.quantity("scan_rate", Dimension::kFrequency, Limits::above_up_to(0.0, kFastestScan_Hz), 350.0);
+  scene.accuracy = settings.quantity("accuracy", Dimension::kDimensionless,
+                                     Limits::between(kFinestAccuracy, kCoarsestAccuracy), scene.accuracy);
 
   Settings effects = settings.table("effects");
   // All are made known, so that the message about an unknown one lists them all.
@@ -101,15 +89,11 @@ base::Result<Scene> read_scene(Settings settings, const std::filesystem::path& f
   }
   read_tester(settings.table("tester"), gamma_over_2omega, scene);
   read_paper(settings.table("paper"), scene);
-  if (effects.has("constant_speed")) {
-    scene.constant_speed = read_constant_speed(effects.table("constant_speed"));
-    scene.duration_s = scene.constant_speed->duration_s();
-  } else {
-    scene.duration_s =
-        settings.quantity("duration", Dimension::kTime, Limits::above_up_to(0.0, kLongestPhase_s));
-  }
   scene.one_way_coupling = effects.has("one_way_coupling");
+  read_belt_effects(settings, effects, scene);
+  read_kinetic_drift(effects, scene);
   read_paper_effects(effects, scene);
+  read_friction_laws(effects, scene);
   read_transducer_effects(effects, scene);
   read_sampling_effects(effects, scene);
   read_signal_effects(effects, scene);

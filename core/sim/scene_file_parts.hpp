@@ -14,8 +14,22 @@ namespace stickslip::sim {
 inline constexpr double kLargestCoefficient = 10.0;
 inline constexpr double kHighestVoltage_V = 1000.0;
 
+inline constexpr double kLongestPhase_s = 1e8;
+inline constexpr double kFastestBelt_m_per_s = 10.0;
+
+/// Those of the motion stage that say how the belt moves, with the scene's duration.
+/// \param scene_table  the whole scene. \param effects  the table [effects].
+void read_belt_effects(base::Settings scene_table, base::Settings effects, Scene& scene);
+
+/// `kinetic_drift`. \param effects  the table [effects]. \param scene  with paper, belt and duration.
+void read_kinetic_drift(base::Settings effects, Scene& scene);
+
 /// Those of the motion stage that change S and K. \param effects  the table [effects].
 void read_paper_effects(base::Settings effects, Scene& scene);
+
+/// Those of the motion stage that replace Coulomb friction. \param effects  the table [effects].
+/// \param scene  with S and K.
+void read_friction_laws(base::Settings effects, Scene& scene);
 
 /// \param effects  the table [effects]. \param scene  with the scan rate.
 void read_transducer_effects(base::Settings effects, Scene& scene);

@@ -22,7 +22,7 @@
 
 #include "core/sim/clock_jitter.hpp"
 #include "core/sim/missing_scans.hpp"
-#include "core/sim/propagator.hpp"
+#include "core/sim/motion_solver.hpp"
 #include "core/sim/scene.hpp"
 #include "core/sim/signal_effect.hpp"
 #include "core/sim/transducer.hpp"
@@ -46,22 +46,26 @@ class SceneRun {
   /// else volts. The same, however the scans are divided into calls. Does not allocate.
   /// \return how many were written: less than the size only where scans are missing and at the end of
   ///         the scene, none only there.
-  std::size_t next(std::span<double> raw);
+  std::size_t next(std::span<double> raw) { return next(raw, {}); }
 
-  /// How the motion is solved, and how far its numbers can be trusted; for people.
-  [[nodiscard]] static std::string_view method() noexcept {
-    // No steps, and event times bracketed to the last bits of a double: first_rise.hpp.
-    return "exact closed forms, accurate to rounding";
-  }
+  /// The same with the noise-free force of each reading: the coefficient of the coupling at the instant at
+  /// which the converter looks, before transducer and signal. Asking for it changes no reading.
+  /// \param coefficient  as many as `raw`, or none at all.
+  std::size_t next(std::span<double> raw, std::span<double> coefficient);
+
+  /// How the motion is solved, and how far its numbers can be trusted.
+  [[nodiscard]] SolverMethod method() const { return motion_->method(); }
 
   /// Names of the effects that were built, in the order of the stages.
   [[nodiscard]] std::vector<std::string_view> effects() const;
 
  private:
   /// Consecutive scans, whether they arrive or not: what is lost takes its random numbers along.
-  void make(std::span<double> readings);
-  /// What the converter sees at this instant, before the signal stage.
-  [[nodiscard]] double coefficient_at(const ScanTime& instant);
+  /// \param coefficient  receives the noise-free force; as many as `readings`, or none.
+  void make(std::span<double> readings, std::span<double> coefficient);
+  /// What the converter sees at these scans, before the signal stage, where the instants or the force
+  /// between them matter.
+  void look(std::span<double> readings, std::span<double> coefficient);
   void lose_missing();
 
   std::vector<std::string_view> other_effects_;  ///< Of the stages before the signal.
@@ -70,7 +74,7 @@ class SceneRun {
   std::int64_t next_scan_ = 0;
   double volts_per_coefficient_;
   double zero_V_;
-  Propagator motion_;
+  std::unique_ptr<MotionSolver> motion_;
   std::optional<Transducer> transducer_;
   std::optional<JitteringClock> jitter_;
   std::optional<MissingBursts> missing_;

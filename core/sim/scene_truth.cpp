@@ -3,8 +3,14 @@
 #include <algorithm>
 #include <numbers>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "core/friction/slip_waveform.hpp"
+#include "core/sim/belt.hpp"
+#include "core/sim/first_slip.hpp"
+#include "core/sim/motion_solver.hpp"
 #include "core/sim/traditional_truth.hpp"
 
 namespace stickslip::sim {
@@ -43,7 +49,7 @@ class Chronicle final : public MotionObserver {
     if (!(modes_.back().start_s < now_s)) modes_.pop_back();
   }
 
-  [[nodiscard]] const std::vector<friction::ModeInterval>& modes() const noexcept { return modes_; }
+  [[nodiscard]] std::vector<friction::ModeInterval> take_modes() noexcept { return std::move(modes_); }
   [[nodiscard]] const std::vector<Slip>& slips() const noexcept { return slips_; }
 
  private:
@@ -123,21 +129,30 @@ friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std:
   truth.gamma_over_2omega = scene.oscillator.gamma_over_2omega();
 
   Chronicle chronicle{scan_rate_Hz};
-  Propagator motion{motion_of(scene), scan_rate_Hz, &chronicle, seed};
-  motion.skip(scan_count(scene, nominal_rate_Hz));
+  const Motion scene_motion = motion_of(scene);
+  const auto motion = make_motion_solver(scene_motion, scan_rate_Hz, scene.accuracy, &chronicle, seed);
+  motion->skip(scan_count(scene, nominal_rate_Hz));
+  const SolverMethod method = motion->method();
+  truth.solver = friction::SolverFacts{std::string{method.name}, method.accuracy, scene.accuracy, {}};
   chronicle.close(scene.duration_s);
-  truth.modes = chronicle.modes();
+  truth.modes = chronicle.take_modes();
+  truth.cycles.reserve(chronicle.slips().size());
   for (const Chronicle::Slip& slip : chronicle.slips()) {
     truth.cycles.push_back({slip.onset_s, slip.paper.mu_s, slip.paper.mu_k});
   }
 
-  if (scene.constant_speed) {
-    truth.pull_speed_m_per_s = scene.constant_speed->pull_speed_m_per_s;
-    const double pull_end_s = scene.constant_speed->idle_s + scene.constant_speed->pull_s;
+  if (const std::optional<Pull> pull = pull_of(scene)) {
     const double period_s = 2.0 * std::numbers::pi / scene.oscillator.omega_rad_per_s();
-    const Tally slips = tally(chronicle.slips(), pull_end_s, period_s);
+    const Tally slips = tally(chronicle.slips(), pull->end_s, period_s);
+    // Where the speed changes, that at which the first slip begins.
+    truth.pull_speed_m_per_s = slips.onsets_s.empty()
+                                   ? steady_pull_speed_m_per_s(scene).value_or(0.0)
+                                   : belt_speed_m_per_s(scene_motion.belt, slips.onsets_s.front());
     truth.regime = regime_of(slips, scene.oscillator.oscillates());
     describe_oscillation(scene, slips, truth);
+    if (truth.amplitude && !has_closed_form(motion_of(scene))) {
+      truth.amplitude = first_slip_amplitude(scene, seed, slips.onsets_s.front());
+    }
     if (!slips.onsets_s.empty() && scene.oscillator.oscillates()) {
       const TraditionalTruth traditional =
           traditional_truth(scene, seed, slips.onsets_s.front(), friction::Method{});

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "core/sim/propagator.hpp"
+#include "core/sim/motion_solver.hpp"
 
 namespace stickslip::sim {
 namespace {
@@ -21,10 +21,9 @@ TraditionalTruth traditional_truth(const Scene& scene, std::uint64_t seed, doubl
   TraditionalTruth truth;
   const double rate_Hz = kPointsPerPeriod * scene.oscillator.omega_rad_per_s() / (2.0 * std::numbers::pi);
   const auto from = static_cast<std::int64_t>(std::floor(onset_s * rate_Hz));
-  const auto end = static_cast<std::int64_t>(
-      std::ceil((scene.constant_speed->idle_s + scene.constant_speed->pull_s) * rate_Hz));
-  Propagator motion{motion_of(scene), rate_Hz, nullptr, seed};
-  motion.skip(from);
+  const auto end = static_cast<std::int64_t>(std::ceil(pull_of(scene)->end_s * rate_Hz));
+  const auto motion = make_motion_solver(motion_of(scene), rate_Hz, scene.accuracy, nullptr, seed);
+  motion->skip(from);
 
   std::array<double, 256> force{};
   double before = 0.0;
@@ -34,7 +33,7 @@ TraditionalTruth traditional_truth(const Scene& scene, std::uint64_t seed, doubl
   int maxima = 0;
   std::int64_t seen = 0;
   for (std::int64_t at = from; at < end; at += static_cast<std::int64_t>(force.size())) {
-    motion.next(force);
+    motion->next(force);
     for (const double now : force) {
       if (++seen > 2 && last > before && last >= now) {
         if (++maxima == 1) truth.static_coefficient = last;

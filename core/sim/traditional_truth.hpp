@@ -15,7 +15,7 @@ struct TraditionalTruth {
   std::optional<double> kinetic_coefficient;  ///< Mean over the next cycles, from maximum to maximum.
 };
 
-/// \param scene     oscillates, and has a constant-speed test.
+/// \param scene     oscillates, and has a pull.
 /// \param seed      of the run.
 /// \param onset_s   first slip onset.
 /// \return without the number that the pull is too short for.

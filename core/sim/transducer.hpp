@@ -5,19 +5,22 @@
 ///     sled.follow_to(instant, transducer);
 ///     const double coefficient = transducer.output();
 ///
-/// Each stretch of the force solves w′ = S w with w = (c, c′, c″): S is that of the oscillator while the
-/// sled slips, and nilpotent while the force is a line or a parabola. With the transducer's
-/// x′ = A x + b c the two are one homogeneous system, whose matrix exponential is the exact response: no
-/// step size, no resonance that needs a case of its own, any damping. [Van Loan, IEEE Trans. Automat.
-/// Contr. 23(3):395–404, 1978; exponential: Higham, SIAM J. Matrix Anal. Appl. 26(4):1179–1193, 2005]
+/// Each stretch of the force is a sum of motions that solve linear equations: the oscillation h″ = −ω₀² h − γ
+/// h′, a polynomial (its last derivative does not change) and decays (the last of φ_m's derivatives decays).
+/// With the transducer's x′ = A x + b c all are one homogeneous system, whose matrix exponential is the exact
+/// response: no step size, no resonance that needs a case of its own, any damping. [Van Loan, IEEE Trans.
+/// Automat. Contr. 23(3):395–404, 1978; exponential: Higham, SIAM J. Matrix Anal. Appl. 26(4):1179–1193,
+/// 2005]
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 
 #include <Eigen/Core>
 
 #include "core/friction/oscillator.hpp"
-#include "core/sim/propagator.hpp"
+#include "core/sim/motion.hpp"
 #include "core/sim/transducer_settings.hpp"
 
 namespace stickslip::sim {
@@ -41,24 +44,49 @@ class Transducer final : public ForceFollower {
   [[nodiscard]] double output() const { return state_[output_]; }
 
  private:
-  static constexpr int kForceSize = 3;
-  static constexpr int kMaxSize = 2 + AntiAlias::kHighestOrder + kForceSize;
+  static constexpr int kMaxFilter = 2 + AntiAlias::kHighestOrder;
+  static constexpr int kMaxForce = 2 + Course::kPowers + Course::kDecays * Course::kOrders;
+  static constexpr int kMaxSize = kMaxFilter + kMaxForce;
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxSize, kMaxSize>;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxSize, 1>;
 
+  /// Which motions a stretch has: what its system depends on.
+  struct Shape {
+    bool wave = false;
+    int powers = 0;
+    int decays = 0;
+    std::array<double, Course::kDecays> rates_per_s{};
+    std::array<int, Course::kDecays> orders{};
+    bool operator==(const Shape&) const = default;
+  };
+  struct System {
+    Shape shape;
+    Matrix generator;  ///< Of (x, force), 1/s.
+    Matrix period;     ///< Its exponential over one scan period.
+  };
+  static constexpr std::size_t kSystems = 6;  ///< A scene has two or three.
+
+  [[nodiscard]] static Shape shape_of(const ForceStretch& stretch);
   void add_first_order(double omega_rad_per_s);
   void add_second_order(double omega_rad_per_s, double damping_ratio);
+  void take_input(int row, double omega_rad_per_s);
+  [[nodiscard]] const System& system(const Shape& shape);
+  [[nodiscard]] Matrix generator(const Shape& shape) const;
+  [[nodiscard]] Vector start(const ForceStretch& stretch, const Shape& shape) const;
   [[nodiscard]] static Matrix exponential(const Matrix& generator);
 
-  double omega0_rad_per_s_;  ///< Unit of 1/time of w, so that its parts are of one size.
+  friction::Oscillator oscillator_;
+  double omega0_rad_per_s_;  ///< Unit of 1/time of the force's derivatives, so that all are of one size.
   double period_s_;
-  Matrix polynomial_;         ///< Generator of (w, x) while the force is a line or a parabola, 1/s.
-  Matrix slip_;               ///< The same while the sled slips.
-  Matrix polynomial_period_;  ///< Their exponentials over one scan period.
-  Matrix slip_period_;
-  int size_ = kForceSize;
-  int output_ = 0;
-  Vector state_;
+  Matrix filter_;       ///< A
+  double input_ = 0.0;  ///< b, of the row input_row_
+  int input_row_ = 0;
+  int size_ = 0;  ///< Of x
+  int output_ = -1;
+  Vector state_;  ///< x
+  std::array<System, kSystems> systems_;
+  std::size_t system_count_ = 0;
+  std::size_t next_system_ = 0;
 };
 
 }  // namespace stickslip::sim

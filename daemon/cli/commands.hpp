@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/result.hpp"
+#include "daemon/cli/scene_options.hpp"
 
 namespace stickslip::daemon {
 
@@ -29,23 +30,47 @@ struct ImportCommand {
 
 [[nodiscard]] base::Result<std::string> run_analyze(const std::vector<std::string>& files, bool json);
 
-/// Numbers as typed, as above.
-struct SimulateCommand {
-  std::string scene;  ///< File, or name of a shipped scene.
+struct SimulateCommand : SceneOptions {
   std::string output;
-  std::string folder;                ///< Of the shipped scenes; empty: where the program finds them.
-  std::string seed;                  ///< Empty: that of the scene.
-  std::vector<std::string> without;  ///< Effects.
-  std::vector<std::string> set;      ///< "key=value"
-  std::string rate;
-  std::string duration;
   bool json = false;
   std::string line;  ///< The whole command, for the record.
 };
 
 [[nodiscard]] base::Result<std::string> run_simulate(const SimulateCommand& command);
 
-/// \param folder  as in SimulateCommand.
+struct SweepCommand : SceneOptions {
+  std::string output;
+  std::vector<std::string> vary;  ///< As parse_axis() takes them.
+  std::string repeat = "1";
+  std::string threads;  ///< Empty: as many as there are processors.
+  bool json = false;
+};
+
+/// Catches SIGINT and SIGTERM while it runs: the first stops the sweep (ErrorKind::kInterrupted), the next
+/// the program.
+[[nodiscard]] base::Result<std::string> run_sweep(const SweepCommand& command);
+
+/// Times as typed, as above.
+struct PlotCommand {
+  std::string input;   ///< A record; or a scene, as in SceneOptions.
+  std::string output;  ///< Empty: the input's name with .svg, in the working folder.
+  std::string folder;  ///< As in SimulateCommand.
+  std::string from;
+  std::string to;
+  bool overview = false;
+  bool derivative = false;
+};
+
+[[nodiscard]] base::Result<std::string> run_plot(const PlotCommand& command);
+
+struct AccuracyCommand : SceneOptions {
+  std::string output;  ///< .svg or .html; empty: none.
+  bool json = false;
+};
+
+[[nodiscard]] base::Result<std::string> run_accuracy(const AccuracyCommand& command);
+
+/// \param folder  as in SceneOptions.
 [[nodiscard]] base::Result<std::string> run_scenes(const std::string& folder, bool json);
 
 [[nodiscard]] base::Result<std::string> run_status(const std::string& socket);

@@ -1,16 +1,17 @@
-// stickslip: the command line. Exit status 0 done, 1 the world did not allow it, 2 usage or input.
+// stickslip: the command line. Exit status 0 done, 1 the world did not allow it, 2 usage or input, 130
+// interrupted.
 
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <exception>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "daemon/cli/commands.hpp"
+#include "daemon/cli/options.hpp"
 #include "daemon/version.hpp"
 
 namespace stickslip::daemon {
@@ -21,6 +22,9 @@ constexpr const char* kExamples = R"(Examples:
   stickslip import trace.csv --column mu --rate "2 kHz" --unit coefficient --speed "12 in/min" -o trace.h5
   stickslip scenes                                     the shipped scenes, one line each
   stickslip simulate stick-slip-at-12-in-per-min -o pull.h5 --seed 7
+  stickslip sweep ring-down-at-12-in-per-min --vary paper.mu_s=0.31:0.35:5 --repeat 20 -o sweep.h5
+  stickslip plot pull.h5 --from 1 --to 2               pull.svg: force, modes, peaks
+  stickslip accuracy threshold-oscillation -o a.html   error against time, for each way to solve it
   stickslip analyze records/*.h5                       a table, with the truth where it is known
   stickslip analyze trace.h5 --json                    {"tests": [{"file": …, results …, "details": …}]}
   stickslip status                                     what the daemon is doing)";
@@ -75,47 +79,121 @@ Examples:
   stickslip simulate stick-slip-at-12-in-per-min -o fast.h5 --rate "2 kHz" --without white_noise
   stickslip simulate ring-down-at-12-in-per-min -o slow.h5 --set "effects.constant_speed.pull_speed=6 in/min")";
 
+/// Scene and changes.
+void add_scene_options(CLI::App& command, SceneOptions& options) {
+  command.add_option("scene", options.scene, "file, or name as in stickslip scenes")
+      ->required()
+      ->type_name("SCENE");
+  command.add_option("--seed", options.seed, "of the random numbers; else that of the scene")->type_name("N");
+  command.add_option("--set", options.set, "change a key of the scene; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  command.add_option("--without", options.without, "drop a listed effect; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("EFFECT");
+  command
+      .add_option("--duration", options.duration, "of the whole scene, s or with unit: the pull is fitted")
+      ->type_name("T");
+  command.add_option("--rate", options.rate, "scans per second; else that of the scene")->type_name("HZ");
+  command.add_option("--folder", options.folder, "of the scenes that have names")->type_name("DIR");
+}
+
 void add_simulate(CLI::App& app, SimulateCommand& command) {
   CLI::App* simulate = app.add_subcommand("simulate", "run a scene straight into a record, with its truth");
   simulate->footer(kSimulateExamples);
-  simulate->add_option("scene", command.scene, "file, or name as in stickslip scenes")
-      ->required()
-      ->type_name("SCENE");
+  add_scene_options(*simulate, command);
   simulate->add_option("-o,--output", command.output, "record to make; must not exist")
       ->required()
       ->type_name("FILE.h5");
-  simulate->add_option("--seed", command.seed, "of the random numbers; else that of the scene")
-      ->type_name("N");
-  simulate->add_option("--set", command.set, "change a key of the scene; may be repeated")
-      ->allow_extra_args(false)
-      ->type_name("KEY=VALUE");
-  simulate->add_option("--without", command.without, "drop a listed effect; may be repeated")
-      ->allow_extra_args(false)
-      ->type_name("EFFECT");
-  simulate
-      ->add_option("--duration", command.duration, "of the whole scene, s or with unit: the pull is fitted")
-      ->type_name("T");
-  simulate->add_option("--rate", command.rate, "scans per second; else that of the scene")->type_name("HZ");
-  simulate->add_option("--folder", command.folder, "of the scenes that have names")->type_name("DIR");
   simulate->add_flag("--json", command.json, "JSON instead of a table; SI units, names as in the record");
+}
+
+constexpr const char* kSweepExamples =
+    R"(Runs a scene at every point of a grid, several times each with other random numbers, and keeps the results and
+the truth of each run in one file. The file is the same, byte for byte, for any number of threads.
+Changes apply in this order: --without, --set, --rate, --vary, --duration.
+
+Ctrl-C (or SIGTERM) finishes the runs begun, keeps all in FILE.h5.part and ends with exit status 130; a second
+Ctrl-C ends at once. The same command goes on from there.
+
+KEY=FROM:TO:N        N values evenly from FROM to TO, with units as in scene files
+KEY=log:FROM:TO:N    the same, evenly in their logarithms
+KEY=A,B,C            these values
+
+Examples:
+  stickslip sweep threshold-oscillation --vary paper.mu_s=0.31:0.35:9 --repeat 20 -o threshold.h5
+  stickslip sweep stick-slip-at-12-in-per-min -o map.h5 --repeat 10 \
+    --vary "effects.constant_speed.pull_speed=3 in/min:30 in/min:10" --vary paper.mu_s=0.31:0.36:6
+  stickslip sweep scattered-paper --repeat 1000 --duration 10 -o scatter.h5 --json)";
+
+void add_sweep(CLI::App& app, SweepCommand& command) {
+  CLI::App* sweep = app.add_subcommand("sweep", "run a scene over a grid of its keys, on all processors");
+  sweep->footer(kSweepExamples);
+  add_scene_options(*sweep, command);
+  sweep->add_option("-o,--output", command.output, "file to make; must not exist")
+      ->required()
+      ->type_name("FILE.h5");
+  sweep->add_option("--vary", command.vary, "key of the scene with its values; several make a grid")
+      ->allow_extra_args(false)
+      ->type_name("KEY=FROM:TO:N");
+  sweep->add_option("--repeat", command.repeat, "runs at each point; 1 unless given")->type_name("N");
+  sweep->add_option("--threads", command.threads, "else one for each processor")->type_name("N");
+  sweep->add_flag("--json", command.json, "JSON instead of a table");
+}
+
+constexpr const char* kPlotExamples =
+    R"(Draws the force over time, as SVG. Shaded: the modes that the truth knows (stick, slip, slack). Dashed: S and K
+of each slip in the truth. Points: the peaks that the detector found. A scene is simulated first, with its own
+seed. Needs gnuplot (Debian package gnuplot-nox).
+
+Examples:
+  stickslip plot records/test-3.h5                     test-3.svg, the whole record
+  stickslip plot pull.h5 -o onset.svg --from 0.9 --to "1.4 s"
+  stickslip plot stick-slip-at-12-in-per-min -o fig3.svg --from 2 --to 3 --overview
+  stickslip plot my-scene.toml -o speed.svg --from 2 --to 2.5 --derivative)";
+
+void add_plot(CLI::App& app, PlotCommand& command) {
+  CLI::App* plot = app.add_subcommand("plot", "draw a record or a scene");
+  plot->footer(kPlotExamples);
+  plot->add_option("input", command.input, "record; or scene: file.toml, or name as in stickslip scenes")
+      ->required()
+      ->type_name("FILE.h5|SCENE");
+  plot->add_option("-o,--output", command.output,
+                   "picture to make; must not exist; else the input's name with .svg, here")
+      ->type_name("FILE.svg");
+  plot->add_option("--from", command.from, "start of the part to show, s or with unit, after the first scan")
+      ->type_name("T");
+  plot->add_option("--to", command.to, "end of the part to show")->type_name("T");
+  plot->add_flag("--overview", command.overview, "the whole record above, with the part marked");
+  plot->add_flag("--derivative", command.derivative, "the speed at which the coupling stretches below");
+  plot->add_option("--folder", command.folder, "of the scenes that have names")->type_name("DIR");
+}
+
+constexpr const char* kAccuracyExamples =
+    R"(Computes the motion of a scene by every method there is, each at several settings, and compares with closed
+forms in 50 digits (CVODE at its tightest for friction that has none): largest error of the coefficient, time
+per simulated scan, and whether the capture near the threshold is found. Then the same for the estimators of
+S - K. Changes apply in this order: --without, --set, --rate, --duration.
+
+Examples:
+  stickslip accuracy stick-slip-at-12-in-per-min
+  stickslip accuracy threshold-oscillation -o accuracy.html
+  stickslip accuracy my-scene.toml -o accuracy.svg --set paper.mu_s=0.34 --duration 20
+  stickslip accuracy ring-down-at-12-in-per-min --json)";
+
+void add_accuracy(CLI::App& app, AccuracyCommand& command) {
+  CLI::App* accuracy = app.add_subcommand("accuracy", "measure what accuracy costs in time, for one scene");
+  accuracy->footer(kAccuracyExamples);
+  add_scene_options(*accuracy, command);
+  accuracy->add_option("-o,--output", command.output, "picture or page to make; must not exist")
+      ->type_name("FILE.svg|FILE.html");
+  accuracy->add_flag("--json", command.json, "JSON instead of a table");
 }
 
 /// The command as a shell would take it again.
 std::string command_line(int count, char** arguments) {
   std::string line = "stickslip";
-  for (int i = 1; i < count; ++i) {
-    const std::string_view argument = arguments[i];
-    const bool plain =
-        !argument.empty() && argument.find_first_of(" \t\n\"'\\$`*?[](){}<>|&;#~!") == argument.npos;
-    line += ' ';
-    if (plain) {
-      line += argument;
-      continue;
-    }
-    line += '\'';
-    for (const char c : argument) line += c == '\'' ? std::string{"'\\''"} : std::string{c};
-    line += '\'';
-  }
+  for (int i = 1; i < count; ++i) line += " " + shell_word(arguments[i]);
   return line;
 }
 
@@ -130,6 +208,14 @@ int main_of(int count, char** arguments) {
 
   SimulateCommand simulation;
   add_simulate(app, simulation);
+
+  SweepCommand sweep;
+  add_sweep(app, sweep);
+  PlotCommand plot;
+  add_plot(app, plot);
+
+  AccuracyCommand accuracy;
+  add_accuracy(app, accuracy);
 
   std::string folder;
   bool scenes_json = false;
@@ -157,10 +243,13 @@ int main_of(int count, char** arguments) {
   if (analyze->parsed()) return print(run_analyze(files, json));
   if (status->parsed()) return print(run_status(socket));
   if (scenes->parsed()) return print(run_scenes(folder, scenes_json));
+  if (app.got_subcommand("plot")) return print(run_plot(plot));
+  if (app.got_subcommand("accuracy")) return print(run_accuracy(accuracy));
   if (app.got_subcommand("simulate")) {
     simulation.line = command_line(count, arguments);
     return print(run_simulate(simulation));
   }
+  if (app.got_subcommand("sweep")) return print(run_sweep(sweep));
   return print(run_import(import));
 }
 

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "core/base/quantity.hpp"
 #include "core/base/result.hpp"
@@ -14,5 +15,8 @@ namespace stickslip::daemon {
 /// Usage error that names the option.
 [[nodiscard]] base::Result<std::optional<double>> number_of(const char* option, const std::string& text,
                                                             base::Dimension dimension, bool must_be_positive);
+
+/// An argument as a shell would take it again.
+[[nodiscard]] std::string shell_word(std::string_view argument);
 
 }  // namespace stickslip::daemon

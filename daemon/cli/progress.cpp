@@ -21,13 +21,14 @@ ProgressBar::~ProgressBar() {
   if (terminal_) std::fputs(kClearLine, stderr);
 }
 
-void ProgressBar::show(double done) {
+void ProgressBar::show(double done, const std::string& note) {
   const int percent = static_cast<int>(done * 100.0);
-  if (!terminal_ || percent == percent_) return;
+  if (!terminal_ || (percent == percent_ && note == note_)) return;
   percent_ = percent;
+  note_ = note;
   const int filled = percent * kWidth / 100;
-  fmt::print(stderr, "{}{} [{:#<{}}{:.<{}}] {} %", kClearLine, what_, "", filled, "", kWidth - filled,
-             percent);
+  fmt::print(stderr, "{}{} [{:#<{}}{:.<{}}] {} %{}{}", kClearLine, what_, "", filled, "", kWidth - filled,
+             percent, note.empty() ? "" : ", ", note);
 }
 
 void ProgressBar::show(const std::string& what) {

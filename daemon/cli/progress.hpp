@@ -14,8 +14,8 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// \param done  0 … 1
-  void show(double done);
+  /// \param done  0 … 1. \param note  behind it, such as the time that is left.
+  void show(double done, const std::string& note = {});
   /// The next part, which does not tell how far it is.
   void show(const std::string& what);
 
@@ -23,6 +23,7 @@ class ProgressBar {
   std::string what_;
   bool terminal_;
   int percent_ = -1;
+  std::string note_;
 };
 
 }  // namespace stickslip::daemon

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
 #include <utility>
 
 #include "core/base/contract.hpp"
@@ -69,12 +71,37 @@ class ReplayBoard final : public daq::Board {
   std::int64_t started_ns_ = 0;
 };
 
+/// The record's noise-free force; columns of equal length.
+struct ForceTable {
+  std::vector<daq::ScanIndex> scan;
+  std::vector<double> coefficient;
+};
+
+class RecordedForce final : public friction::TrueForce {
+ public:
+  explicit RecordedForce(std::shared_ptr<const ForceTable> table) : table_(std::move(table)) {}
+
+  void next(base::ScanIndex first, std::span<double> coefficient) override {
+    const std::vector<daq::ScanIndex>& scan = table_->scan;
+    auto row = static_cast<std::size_t>(std::lower_bound(scan.begin(), scan.end(), first) - scan.begin());
+    for (double& value : coefficient) {
+      const bool known = row < scan.size() && scan[row] == first;
+      value = known ? table_->coefficient[row++] : std::numeric_limits<double>::quiet_NaN();
+      ++first;
+    }
+  }
+
+ private:
+  std::shared_ptr<const ForceTable> table_;
+};
+
 /// The record's truth, with times relative to the first scan that is asked for.
 class RecordedTruth final : public friction::TruthSource {
  public:
+  /// \param force  null if the record has none.
   RecordedTruth(std::optional<friction::TestTruth> truth, daq::ScanIndex first, daq::ScanIndex end,
-                double rate_Hz)
-      : truth_(std::move(truth)), first_(first), end_(end), rate_Hz_(rate_Hz) {}
+                double rate_Hz, std::shared_ptr<const ForceTable> force)
+      : truth_(std::move(truth)), first_(first), end_(end), rate_Hz_(rate_Hz), force_(std::move(force)) {}
 
   [[nodiscard]] std::optional<friction::TestTruth> truth(base::ScanIndex first,
                                                          base::ScanIndex end) const override {
@@ -89,11 +116,17 @@ class RecordedTruth final : public friction::TruthSource {
     return moved;
   }
 
+  [[nodiscard]] std::unique_ptr<friction::TrueForce> force(base::ScanIndex first) const override {
+    if (!force_ || first >= end_) return nullptr;
+    return std::make_unique<RecordedForce>(force_);
+  }
+
  private:
   std::optional<friction::TestTruth> truth_;
   daq::ScanIndex first_;
   daq::ScanIndex end_;
   double rate_Hz_;
+  std::shared_ptr<const ForceTable> force_;
 };
 
 }  // namespace
@@ -106,8 +139,13 @@ Replay make_replay(record::Record record, base::Clock& clock) {
   const daq::ScanIndex end = record.scan.empty() ? 0 : record.scan.back() + 1;
   std::optional<friction::TestTruth> truth;
   if (record.end) truth = std::move(record.end->truth);
+  std::shared_ptr<const ForceTable> force;
+  if (!record.true_coefficient.empty()) {
+    STICKSLIP_EXPECTS(record.true_coefficient.size() == record.scan.size());
+    force = std::make_shared<const ForceTable>(ForceTable{record.scan, std::move(record.true_coefficient)});
+  }
   return {std::make_unique<ReplayBoard>(std::move(record), clock),
-          std::make_unique<RecordedTruth>(std::move(truth), first, end, rate_Hz)};
+          std::make_unique<RecordedTruth>(std::move(truth), first, end, rate_Hz, std::move(force))};
 }
 
 }  // namespace stickslip::drivers

@@ -34,9 +34,7 @@ friction::Tester tester_of(const std::vector<sim::Scene>& scenes) {
   friction::Tester tester;
   tester.sled_mass_kg = scenes.front().sled_mass_kg;
   tester.gravity_m_per_s2 = scenes.front().gravity_m_per_s2;
-  const auto speed = [](const sim::Scene& scene) {
-    return scene.constant_speed ? std::optional{scene.constant_speed->pull_speed_m_per_s} : std::nullopt;
-  };
+  const auto speed = [](const sim::Scene& scene) { return sim::steady_pull_speed_m_per_s(scene); };
   const auto same = [&](const sim::Scene& scene) { return speed(scene) == speed(scenes.front()); };
   if (std::all_of(scenes.begin(), scenes.end(), same)) tester.pull_speed_m_per_s = speed(scenes.front());
   return tester;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/numeric/reference50.hpp"
+#include "core/accuracy/oscillation50.hpp"
 
 namespace stickslip::friction {
 namespace {
@@ -29,11 +29,11 @@ TEST(Oscillator, BasisAgreesWithFiftyDigitsFromUnderdampedToOverdamped) {
   for (const double gamma : {0.0, 5.0, 251.0, 251.396, 251.39610179, 251.4, 252.0, 400.0, 5000.0}) {
     const Oscillator oscillator = Oscillator::from_omega0(omega0_squared, gamma);
     for (const double t : {1e-9, 1e-4, 0.003, 0.05, 0.5}) {
-      const numeric::Reference reference{0, 1, 0, gamma, oscillator.omega_squared};
-      const numeric::Reference sine{0, 0, 1, gamma, oscillator.omega_squared};
+      const accuracy::Oscillation50 reference{0, 1, 0, gamma, oscillator.omega_squared};
+      const accuracy::Oscillation50 sine{0, 0, 1, gamma, oscillator.omega_squared};
       const DampedBasis basis = damped_basis(oscillator, t);
       const double cosine =
-          static_cast<double>(reference.value(t) - numeric::Real(gamma) / 2 * sine.value(t));
+          static_cast<double>(reference.value(t) - accuracy::Real(gamma) / 2 * sine.value(t));
       // Arguments γt/2, ωt carry a relative ε, so their functions carry |argument|·ε of their
       // scale; the scale of an overdamped pair is its slow exponential.
       const double argument = gamma * t + std::sqrt(omega0_squared) * t + 1.0;

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/accuracy/oscillation50.hpp"
 #include "core/friction/closed_forms.hpp"
-#include "tests/numeric/reference50.hpp"
 
 namespace stickslip::friction {
 namespace {
@@ -23,8 +23,8 @@ TEST(SlipWaveform, AgreesWithFiftyDigits) {
   for (const double D : {0.05, 1e-6, 1e-15, 0.0}) {
     for (const double gamma_over_2omega : {0.0, 0.022, 0.5, 20.0}) {
       const SlipWaveform slip{0.30, D, 8.0, Oscillator::from_omega(kOmega, gamma_over_2omega)};
-      const numeric::Reference reference{slip.K, slip.D, slip.r, slip.oscillator.gamma_per_s,
-                                         slip.oscillator.omega_squared};
+      const accuracy::Oscillation50 reference{slip.K, slip.D, slip.r, slip.oscillator.gamma_per_s,
+                                              slip.oscillator.omega_squared};
       for (const double t : {0.0, 1e-7, 0.001, 0.01, 0.04, 0.3}) {
         // Arguments up to ωt(1 + γ/2ω) carry ε each; c and c′/ω are of the order 0.4 or less.
         const double tolerance = 4e-16 * (1.0 + kOmega * t * (1.0 + gamma_over_2omega));

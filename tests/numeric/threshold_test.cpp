@@ -5,14 +5,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/accuracy/oscillation50.hpp"
 #include "core/friction/closed_forms.hpp"
 #include "core/friction/slip_waveform.hpp"
-#include "tests/numeric/reference50.hpp"
 
 namespace stickslip::friction {
 namespace {
 
-using numeric::Real;
+using accuracy::Real;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
@@ -20,7 +20,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 Real reference_Q_threshold(double gamma_over_2omega) {
   const Real t = gamma_over_2omega;
   const Real phi = atan(t);
-  const Real half_pi = numeric::pi50() / 2;
+  const Real half_pi = accuracy::pi50() / 2;
   Real low = 0;
   Real high = half_pi - phi;
   for (int step = 0; step < 2000 && high - low > Real("1e-46") * high; ++step) {

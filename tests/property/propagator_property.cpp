@@ -16,6 +16,25 @@ namespace {
 /// A number between two limits, drawn from a grid so that 0 and equal values occur too.
 double some_number(double low, double high) { return low + (high - low) * *rc::gen::inRange(0, 101) / 100.0; }
 
+BeltSegment some_segment() {
+  BeltSegment segment;
+  segment.duration_s = some_number(0.0, 2.0);
+  segment.speed_m_per_s = some_number(-0.05, 0.05);
+  segment.halt_when_unloaded = *rc::gen::arbitrary<bool>();
+  if (*rc::gen::inRange(0, 3) == 0) {
+    segment.acceleration_m_per_s2 = *rc::gen::element(1e-9, 1e-3, 0.05, 1.0, 10.0) * some_number(-1.0, 1.0);
+    if (segment.acceleration_m_per_s2 > 0.1 || segment.acceleration_m_per_s2 < -0.1)
+      segment.duration_s /= 50.0;
+  }
+  if (*rc::gen::inRange(0, 5) == 0) segment.jerk_m_per_s3 = some_number(-0.05, 0.05);
+  if (*rc::gen::inRange(0, 4) == 0) {
+    segment.decaying_speed_m_per_s =
+        *rc::gen::arbitrary<bool>() ? -segment.speed_m_per_s : some_number(-0.05, 0.05);
+    segment.time_constant_s = *rc::gen::element(0.003, 0.1, 1.0, 1e4);
+  }
+  return segment;
+}
+
 Motion some_motion() {
   Motion motion;
   const double omega0_squared = std::pow(some_number(5.0, 500.0), 2);
@@ -27,9 +46,21 @@ Motion some_motion() {
   motion.mu_s = motion.mu_k + some_number(0.0, 1.0);
   motion.gravity_m_per_s2 = 9.80665;
   motion.one_way_coupling = *rc::gen::arbitrary<bool>();
+  motion.damper_counts_at_onset = *rc::gen::inRange(0, 4) == 0;
+  if (motion.one_way_coupling && *rc::gen::arbitrary<bool>()) motion.startup_slack_m = some_number(0.0, 0.01);
   const int segments = *rc::gen::inRange(1, 6);
-  for (int i = 0; i < segments; ++i) {
-    motion.belt.push_back({some_number(0.0, 2.0), some_number(-0.05, 0.05), *rc::gen::arbitrary<bool>()});
+  for (int i = 0; i < segments; ++i) motion.belt.push_back(some_segment());
+  if (*rc::gen::inRange(0, 3) == 0) motion.paper.contact_ageing = ContactAgeing{some_number(0.0, 0.1), 1e-3};
+  if (*rc::gen::arbitrary<bool>()) {
+    KineticDrift drift;
+    drift.course = *rc::gen::element(KineticDrift::Course::kLinear, KineticDrift::Course::kExponential);
+    drift.over = *rc::gen::element(KineticDrift::Over::kTime, KineticDrift::Over::kBeltTravel);
+    drift.scale = drift.over == KineticDrift::Over::kTime ? *rc::gen::element(0.01, 3.0, 20.0) : 0.7;
+    drift.change = some_number(-0.3, 0.3);
+    if (drift.course == KineticDrift::Course::kLinear && drift.over == KineticDrift::Over::kTime)
+      drift.scale = 20.0;
+    motion.kinetic_drift = drift;
+    if (!has_closed_form(motion)) motion.kinetic_drift.reset();
   }
   return motion;
 }

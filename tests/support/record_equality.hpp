@@ -68,6 +68,7 @@ inline void expect_same_truth(const friction::TestTruth& a, const friction::Test
   EXPECT_EQ(a.regime, b.regime);
   EXPECT_EQ(a.oscillation_frequency_Hz, b.oscillation_frequency_Hz);
   EXPECT_EQ(a.amplitude, b.amplitude);
+  EXPECT_EQ(a.solver, b.solver);
   ASSERT_EQ(a.modes.size(), b.modes.size());
   for (std::size_t i = 0; i < a.modes.size(); ++i) {
     EXPECT_EQ(a.modes[i].start_s, b.modes[i].start_s);
@@ -98,6 +99,10 @@ inline void expect_same_record(const record::Record& a, const record::Record& b)
   EXPECT_EQ(a.scan, b.scan);
   ASSERT_EQ(a.raw.size(), b.raw.size());
   for (std::size_t i = 0; i < a.raw.size(); ++i) expect_same_bits(a.raw[i], b.raw[i], "raw");
+  ASSERT_EQ(a.true_coefficient.size(), b.true_coefficient.size());
+  for (std::size_t i = 0; i < a.true_coefficient.size(); ++i) {
+    expect_same_bits(a.true_coefficient[i], b.true_coefficient[i], "true_coefficient");
+  }
   EXPECT_EQ(a.spikes, b.spikes);
   ASSERT_EQ(a.gaps.size(), b.gaps.size());
   for (std::size_t i = 0; i < a.gaps.size(); ++i) {

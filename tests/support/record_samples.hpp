@@ -117,6 +117,7 @@ inline friction::TestTruth sample_truth() {
   truth.oscillation_frequency_Hz = 19.7;
   truth.modes = {{0.0, 0.03, friction::Mode::kStick}, {0.03, 0.05, friction::Mode::kSlip}};
   truth.cycles = {{0.03, 0.351, 0.299}};
+  truth.solver = friction::SolverFacts{"exact closed forms", 1.8e-15, 1e-9, 84e-9};
   return truth;
 }
 
@@ -141,6 +142,7 @@ inline record::Record sample_record() {
   for (int i = 0; i < 40; ++i) {
     record.scan.push_back(i < 20 ? 1000 + i : 1020 + i);
     record.raw.push_back(i == 0 ? 0.0 : i == 39 ? 65535.0 : 30000.0 + 17.0 * i);
+    record.true_coefficient.push_back(i == 5 ? std::nan("") : 0.3 + 0.01 * std::sin(0.1 * i));
   }
   record.gaps = {{1020, 20, true, daq::GapCause::kOverrun}};
   record.anchors = {{1000, 5'000'000'000, 1'795'265'582'000'000'000},

@@ -22,7 +22,7 @@ BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
 
 # Generous: under sanitizers on a busy machine everything takes its time.
-TIMEOUT_S = 240
+TIMEOUT_S = 600
 
 BLOCK = re.compile(r"(?:<!-- not run: (?P<reason>[^>]*?) -->\n+)?```sh\n(?P<lines>.*?)^```$", re.DOTALL | re.MULTILINE)
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <span>
 #include <vector>
 
 namespace stickslip::signal {
@@ -70,7 +71,7 @@ TEST(Noise, UnknownBeforeTheFirstBlockIsFull) {
   // 64 differences of five scans need 68 scans.
   const std::vector<double> values = white_noise(68, 1.0, 7);
   EXPECT_EQ(scan_noise(std::span{values}.first(67), 1e-9), 1e-9);
-  EXPECT_EQ(scan_noise({}, 1e-9), 1e-9);
+  EXPECT_EQ(scan_noise(std::vector<double>{}, 1e-9), 1e-9);
   EXPECT_GT(scan_noise(values, 1e-9), 0.3);
   NoiseEstimator estimator{1e-9};
   for (std::size_t k = 0; k < 67; ++k) estimator.add(values[k]);
@@ -125,7 +126,7 @@ TEST(Noise, SmallestStepIsTheConvertersResolution) {
   EXPECT_EQ(smallest_step(std::vector<double>{0.5, 0.75, 0.75, 0.625, 1.0}), 0.125);
   EXPECT_EQ(smallest_step(std::vector<double>{0.5, 0.5}), 0.0);
   EXPECT_EQ(smallest_step(std::vector<double>{0.5}), 0.0);
-  EXPECT_EQ(smallest_step({}), 0.0);
+  EXPECT_EQ(smallest_step(std::vector<double>{}), 0.0);
 }
 
 }  // namespace

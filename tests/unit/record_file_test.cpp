@@ -86,6 +86,8 @@ TEST(RecordFile, HoldsSeveralChunksAndWideCounts) {
   std::iota(record.scan.begin(), record.scan.end(), 5);
   record.raw.clear();
   for (const auto scan : record.scan) record.raw.push_back(static_cast<double>(scan * 7919 % 0xFF'FFFF));
+  record.true_coefficient.clear();
+  for (const auto scan : record.scan) record.true_coefficient.push_back(1.0 / static_cast<double>(scan));
   record.spikes.clear();
   ASSERT_TRUE(publish_record(record, folder / "a.h5"));
   const auto read = read_record(folder / "a.h5");

@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
+#include <cmath>
 #include <csignal>
+#include <span>
+#include <vector>
 
 #include "core/record/journal.hpp"
 #include "tests/support/journal_samples.hpp"
@@ -72,6 +75,66 @@ TEST(Journal, CutAnywhereKeepsEveryWholeEntry) {
     ASSERT_EQ(read->stopped_by.empty(), sizes[entries - 1] == size) << size;
     ASSERT_FALSE(read->record.end.has_value());
   }
+}
+
+TEST(Journal, TrueForceKeepsItsRowsWhereverItStandsAndWhateverIsMissing) {
+  const TemporaryFolder folder;
+  const record::Record sample = test::sample_record();
+  {
+    auto journal = JournalWriter::create(folder / "a.journal", sample.header);
+    ASSERT_TRUE(journal);
+    const std::vector<double> raw(10, 5.0);
+    ASSERT_TRUE(journal->append_scans(100, raw, {}));
+    ASSERT_TRUE(journal->append_scans(110, raw, {}));
+    ASSERT_TRUE(journal->append_scans(200, raw, {}));
+    const std::vector<double> force{0.1, 0.2, 0.3};
+    ASSERT_TRUE(journal->append_true_coefficients(109, force));  // Over the border of two entries.
+    ASSERT_TRUE(journal->append_true_coefficients(207, force));
+  }
+  const auto read = read_journal(folder / "a.journal");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->stopped_by, "");
+  ASSERT_EQ(read->record.true_coefficient.size(), 30U);
+  for (std::size_t row = 0; row < 30; ++row) {
+    const double value = read->record.true_coefficient[row];
+    const double expected = row >= 9 && row < 12    ? 0.1 * static_cast<double>(row - 8)
+                            : row >= 27 && row < 30 ? 0.1 * static_cast<double>(row - 26)
+                                                    : std::nan("");
+    if (std::isnan(expected)) {
+      EXPECT_TRUE(std::isnan(value)) << row;
+    } else {
+      EXPECT_DOUBLE_EQ(value, expected) << row;
+    }
+  }
+  // Straight from the disk it is the same.
+  const auto counted = read_journal(folder / "a.journal", record::JournalScans::kCount);
+  ASSERT_TRUE(counted);
+  EXPECT_TRUE(counted->record.raw.empty());
+  const record::JournalScanSource source{folder / "a.journal", *counted};
+  EXPECT_EQ(source.size(), 30U);
+  EXPECT_EQ(source.extent(), 110);
+  std::size_t rows = 0;
+  source.for_each_force_piece([&](std::span<const double> force) {
+    for (const double value : force) {
+      test::expect_same_bits(value, read->record.true_coefficient[rows++], "true force");
+    }
+  });
+  EXPECT_EQ(rows, 30U);
+}
+
+TEST(Journal, TrueForceOfScansThatAreNotThereEndsTheReading) {
+  const TemporaryFolder folder;
+  {
+    auto journal = JournalWriter::create(folder / "a.journal", test::sample_header());
+    ASSERT_TRUE(journal);
+    ASSERT_TRUE(journal->append_scans(100, std::vector<double>(10, 5.0), {}));
+    ASSERT_TRUE(journal->append_true_coefficients(105, std::vector<double>(6, 0.3)));
+  }
+  const auto read = read_journal(folder / "a.journal");
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->stopped_by, "true force of scans that are not there");
+  EXPECT_EQ(read->record.raw.size(), 10U);
+  EXPECT_TRUE(read->record.true_coefficient.empty());
 }
 
 // CRC-32C finds every single-bit error: no flip anywhere may go unnoticed.

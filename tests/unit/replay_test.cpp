@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
+#include <cmath>
+#include <span>
 
 #include "drivers/replay/replay_board.hpp"
 #include "tests/support/record_samples.hpp"
@@ -55,6 +58,26 @@ TEST_F(Replay, TakesTheTimeTheTestTookGapIncluded) {
   }
   const double took_s = static_cast<double>(clock_.now_ns - start_ns) * 1e-9;
   EXPECT_NEAR(took_s, 60.0 / 350.0000350000035, 1e-9);  // Times are whole nanoseconds.
+}
+
+TEST_F(Replay, KnowsTheNoiseFreeForceOfTheScansThatTheRecordHas) {
+  const auto force = replay_.truth->force(990);
+  ASSERT_NE(force, nullptr);
+  std::array<double, 80> coefficient{};
+  force->next(990, std::span{coefficient}.first(33));  // In two calls.
+  force->next(1023, std::span{coefficient}.subspan(33));
+  std::size_t row = 0;
+  for (std::size_t i = 0; i < coefficient.size(); ++i) {
+    const bool known = row < record_.scan.size() && record_.scan[row] == 990 + static_cast<daq::ScanIndex>(i);
+    const double expected = known ? record_.true_coefficient[row++] : std::nan("");
+    if (std::isnan(expected)) {
+      EXPECT_TRUE(std::isnan(coefficient[i])) << i;
+    } else {
+      EXPECT_EQ(coefficient[i], expected) << i;
+    }
+  }
+  EXPECT_EQ(row, record_.scan.size());
+  EXPECT_EQ(drivers::make_replay(test::sample_imported(), clock_).truth->force(0), nullptr);
 }
 
 TEST_F(Replay, DeliversNothingBeforeItIsDue) {

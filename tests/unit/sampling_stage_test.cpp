@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "core/sim/propagator.hpp"
 #include "core/sim/scene_truth.hpp"
 #include "drivers/simulated/simulated_board.hpp"
 #include "tests/support/allocation_count.hpp"

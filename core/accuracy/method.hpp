@@ -1,0 +1,67 @@
+/// \file
+/// One interface for every way of computing a motion that `stickslip accuracy` compares.
+///
+///     std::vector<double> coefficient(3500);
+///     for (const auto& method : shipped_methods())
+///       if (method->lacks(motion).empty()) (void)method->run(motion, 350.0, 1, coefficient);
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/sim/motion.hpp"
+
+namespace stickslip::accuracy {
+
+/// What a run tells beside the coefficient.
+struct RunOutcome {
+  std::int64_t capture_count = 0;    ///< Slips that ended because the sled reached the belt's speed.
+  std::int64_t undecided_count = 0;  ///< Captures, or none, that the method itself calls too close to tell.
+};
+
+/// Stateless. Thread-safe.
+class Method {
+ public:
+  virtual ~Method() = default;
+
+  /// Rows of one method make one curve.
+  [[nodiscard]] virtual std::string_view name() const noexcept = 0;
+  /// What buys accuracy: tolerance, step or width; empty if there is nothing to choose.
+  [[nodiscard]] virtual std::string setting() const = 0;
+  /// What of this motion it cannot do; empty if it can do all.
+  [[nodiscard]] virtual std::string_view lacks(const sim::Motion& motion) const noexcept = 0;
+  /// The coefficient at scans 0, 1, …
+  /// \param motion  lacks() is empty. \param scan_rate_Hz > 0. \param seed of the motion's random numbers.
+  virtual RunOutcome run(const sim::Motion& motion, double scan_rate_Hz, std::uint64_t seed,
+                         std::span<double> coefficient) const = 0;
+};
+
+/// sim::Propagator.
+[[nodiscard]] std::unique_ptr<Method> make_exact();
+/// sim::NumericSolver: SUNDIALS CVODE with root finding and our test of grazing.
+/// \param accuracy 1e-12 … 1e-2.
+[[nodiscard]] std::unique_ptr<Method> make_cvode(double accuracy);
+/// Boost.odeint's Dormand–Prince 5(4) from scan to scan; a sled that is past the belt's speed at a scan
+/// is taken back by bisection. \param tolerance > 0, absolute and relative, of a step.
+[[nodiscard]] std::unique_ptr<Method> make_odeint(double tolerance);
+/// Semi-implicit (symplectic) Euler; who passes the belt's speed in a step, sticks.
+/// \param steps_per_scan ≥ 1
+[[nodiscard]] std::unique_ptr<Method> make_euler(int steps_per_scan);
+/// ρ, our choice: wide enough that the curve still has a maximum near S.
+inline constexpr double kStribeckOverTanh = 3.0;
+
+/// Friction made smooth, so that nothing ever sticks, by Runge–Kutta of order 4:
+///     μ(V) = (K + (S − K) e^(−(V/ρw)²)) tanh(V/w).
+/// [the usual combination of Stribeck's curve and tanh: Andersson, Söderberg and Björklund, Tribology
+///  International 40(4):580–587, 2007, (8); 1 : 10 as Simscape's Translational Friction]
+/// \param width  w over the belt's fastest speed, > 0; the step follows from it by stability.
+[[nodiscard]] std::unique_ptr<Method> make_tanh(double width, double stribeck_over_tanh = kStribeckOverTanh);
+
+/// All of the above at the settings of the table, the exact one first.
+[[nodiscard]] std::vector<std::unique_ptr<Method>> shipped_methods();
+
+}  // namespace stickslip::accuracy

@@ -1,0 +1,52 @@
+/// \file
+/// The belt as the stepping peers see it: one speed until the next segment.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+
+#include "core/sim/motion.hpp"
+
+namespace stickslip::accuracy {
+
+class PlainBelt {
+ public:
+  /// \param motion  outlives this; lacks_reference() is empty.
+  explicit PlainBelt(const sim::Motion& motion) : motion_(&motion) { pass(0.0); }
+
+  /// r = ω₀² v/g, 1/s.
+  [[nodiscard]] double rate() const noexcept { return rate_; }
+  /// When the next segment begins, s.
+  [[nodiscard]] double end_s() const noexcept { return end_s_; }
+  /// Does it stop as soon as the force is gone?
+  [[nodiscard]] bool halts_when_unloaded() const noexcept { return halts_; }
+  void halt() noexcept {
+    halts_ = false;
+    rate_ = 0.0;
+  }
+
+  /// Starts the segments that have begun by now.
+  void pass(double now_s) {
+    while (end_s_ <= now_s) {
+      halts_ = false;
+      rate_ = 0.0;
+      if (next_ == motion_->belt.size()) {
+        end_s_ = std::numeric_limits<double>::infinity();
+        return;
+      }
+      const sim::BeltSegment& segment = motion_->belt[next_++];
+      rate_ = motion_->oscillator.stick_rate_per_s(segment.speed_m_per_s, motion_->gravity_m_per_s2);
+      halts_ = segment.halt_when_unloaded;
+      end_s_ += segment.duration_s;
+    }
+  }
+
+ private:
+  const sim::Motion* motion_;
+  std::size_t next_ = 0;
+  double rate_ = 0.0;
+  double end_s_ = 0.0;
+  bool halts_ = false;
+};
+
+}  // namespace stickslip::accuracy

@@ -1,0 +1,176 @@
+/// \file
+/// One number for each scan, of which there may be more than memory should hold.
+///
+///     LongColumn<double> force{folder};
+///     force.push_back(0.3);
+///     for (const double value : std::as_const(force)) …
+///
+/// Without a folder it is a vector in blocks. With one, the latest few blocks stay in memory and the others
+/// are fetched from a nameless file there; who walks through it, or looks around in one place, reads each
+/// block once.
+#pragma once
+
+#include <algorithm>
+#include <compare>
+#include <cstddef>
+#include <filesystem>
+#include <iterator>
+#include <memory>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "core/base/contract.hpp"
+#include "core/base/scratch_file.hpp"
+
+namespace stickslip::base {
+
+/// Thread-bound, also where it is const. Where there is a file, growing and reading may throw
+/// std::system_error, and elements can be read but not changed.
+template <typename T>
+class LongColumn {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  static constexpr std::size_t kBlock = std::size_t{1} << 16U;  ///< Elements; 3 min at 350 scans/s.
+  static constexpr std::size_t kResident = 4;                   ///< Blocks in memory if there is a file.
+
+  template <bool kConst>
+  class Iterator;
+  using value_type = T;
+  using iterator = Iterator<false>;
+  using const_iterator = Iterator<true>;
+
+  LongColumn() = default;
+  LongColumn(const std::vector<T>& values) {  // NOLINT(google-explicit-constructor): it is such a vector.
+    for (const T value : values) push_back(value);
+  }
+  /// \param folder  of the file; empty: all in memory.
+  explicit LongColumn(const std::filesystem::path& folder) {
+    if (!folder.empty()) file_ = std::make_unique<ScratchFile>(folder);
+  }
+  LongColumn(const LongColumn& other) { *this = other; }
+  LongColumn(LongColumn&&) noexcept = default;
+  LongColumn& operator=(const LongColumn& other) {
+    if (this == &other) return *this;
+    STICKSLIP_EXPECTS(!other.file_);
+    LongColumn copy;
+    for (std::size_t k = 0; k < other.size_; ++k) copy.push_back(other[k]);
+    return *this = std::move(copy);
+  }
+  LongColumn& operator=(LongColumn&&) noexcept = default;
+  ~LongColumn() = default;
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+
+  void push_back(T value) {
+    if (size_ % kBlock == 0) add_block();
+    blocks_.back()[size_ % kBlock] = value;
+    ++size_;
+  }
+  void assign(std::size_t count, T value) {
+    *this = LongColumn{};
+    while (size_ < count) push_back(value);
+  }
+
+  [[nodiscard]] T operator[](std::size_t k) const {
+    const T* block = blocks_[k / kBlock].get();
+    if (block == nullptr) block = fetch(k / kBlock);
+    return block[k % kBlock];
+  }
+  [[nodiscard]] T& operator[](std::size_t k) {
+    STICKSLIP_EXPECTS(!file_);
+    return blocks_[k / kBlock][k % kBlock];
+  }
+  [[nodiscard]] T front() const { return (*this)[0]; }
+  [[nodiscard]] T back() const { return (*this)[size_ - 1]; }
+
+  [[nodiscard]] const_iterator begin() const { return {this, 0}; }
+  [[nodiscard]] const_iterator end() const { return {this, size_}; }
+  [[nodiscard]] iterator begin() { return {this, 0}; }
+  [[nodiscard]] iterator end() { return {this, size_}; }
+  [[nodiscard]] auto rbegin() const { return std::make_reverse_iterator(end()); }
+  [[nodiscard]] auto rend() const { return std::make_reverse_iterator(begin()); }
+
+ private:
+  using Buffer = std::unique_ptr<T[]>;  // NOLINT(modernize-avoid-c-arrays)
+  static constexpr std::size_t kBlockBytes = kBlock * sizeof(T);
+
+  void add_block() {
+    // Every block but the last is in the file.
+    if (file_ && !blocks_.empty()) {
+      file_->write((blocks_.size() - 1) * kBlockBytes,
+                   std::as_bytes(std::span{blocks_.back().get(), kBlock}));
+    }
+    Buffer buffer = free_buffer(blocks_.size());
+    blocks_.push_back(std::move(buffer));
+    if (file_) resident_.push_back(blocks_.size() - 1);
+  }
+
+  const T* fetch(std::size_t block) const {
+    Buffer buffer = free_buffer(blocks_.size() - 1);
+    file_->read(block * kBlockBytes, std::as_writable_bytes(std::span{buffer.get(), kBlock}));
+    blocks_[block] = std::move(buffer);
+    resident_.push_back(block);
+    return blocks_[block].get();
+  }
+
+  /// A new one, or that of the block fetched longest ago. \param last  the block that is not in the file.
+  [[nodiscard]] Buffer free_buffer(std::size_t last) const {
+    if (!file_ || resident_.size() < kResident) return std::make_unique_for_overwrite<T[]>(kBlock);
+    const auto oldest =
+        std::find_if(resident_.begin(), resident_.end(), [&](std::size_t block) { return block != last; });
+    Buffer buffer = std::move(blocks_[*oldest]);
+    resident_.erase(oldest);
+    return buffer;
+  }
+
+  std::size_t size_ = 0;
+  mutable std::vector<Buffer> blocks_;
+  mutable std::vector<std::size_t> resident_;  ///< Blocks in memory, the latest last; only with a file.
+  std::unique_ptr<ScratchFile> file_;
+};
+
+/// Reads by value: what it points to may be in the file in a moment.
+template <typename T>
+template <bool kConst>
+class LongColumn<T>::Iterator {
+ public:
+  using Column = std::conditional_t<kConst, const LongColumn, LongColumn>;
+  using iterator_category = std::random_access_iterator_tag;
+  using value_type = T;
+  using difference_type = std::ptrdiff_t;
+  using pointer = void;
+  using reference = std::conditional_t<kConst, T, T&>;
+
+  Iterator() = default;
+  Iterator(Column* column, std::size_t at) : column_(column), at_(at) {}
+
+  [[nodiscard]] reference operator*() const { return (*column_)[at_]; }
+  [[nodiscard]] reference operator[](difference_type n) const { return *(*this + n); }
+  Iterator& operator+=(difference_type n) {
+    at_ = static_cast<std::size_t>(static_cast<difference_type>(at_) + n);
+    return *this;
+  }
+  Iterator& operator-=(difference_type n) { return *this += -n; }
+  Iterator& operator++() { return *this += 1; }
+  Iterator& operator--() { return *this -= 1; }
+  Iterator operator++(int) { return std::exchange(*this, *this + 1); }
+  Iterator operator--(int) { return std::exchange(*this, *this - 1); }
+  [[nodiscard]] friend Iterator operator+(Iterator a, difference_type n) { return a += n; }
+  [[nodiscard]] friend Iterator operator+(difference_type n, Iterator a) { return a += n; }
+  [[nodiscard]] friend Iterator operator-(Iterator a, difference_type n) { return a -= n; }
+  [[nodiscard]] friend difference_type operator-(const Iterator& a, const Iterator& b) {
+    return static_cast<difference_type>(a.at_) - static_cast<difference_type>(b.at_);
+  }
+  auto operator<=>(const Iterator& other) const { return at_ <=> other.at_; }
+  bool operator==(const Iterator& other) const { return at_ == other.at_; }
+
+ private:
+  Column* column_ = nullptr;
+  std::size_t at_ = 0;
+};
+
+}  // namespace stickslip::base

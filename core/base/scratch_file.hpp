@@ -1,0 +1,29 @@
+/// \file
+/// A file without a name, for what is too long for memory; it is gone with its owner.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+namespace stickslip::base {
+
+/// All functions throw std::system_error that says what could not be done in which folder.
+class ScratchFile {
+ public:
+  explicit ScratchFile(const std::filesystem::path& folder);
+  ~ScratchFile();
+  ScratchFile(const ScratchFile&) = delete;
+  ScratchFile& operator=(const ScratchFile&) = delete;
+
+  void write(std::uint64_t position, std::span<const std::byte> bytes);
+  /// \param bytes  lie within what was written.
+  void read(std::uint64_t position, std::span<std::byte> bytes) const;
+
+ private:
+  std::filesystem::path folder_;
+  int descriptor_ = -1;
+};
+
+}  // namespace stickslip::base

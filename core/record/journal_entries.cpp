@@ -1,0 +1,63 @@
+#include "core/record/journal_entries.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace stickslip::record {
+
+base::Result<JournalEntries> JournalEntries::open(const std::filesystem::path& path) {
+  Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+  if (!file.open()) {
+    if (errno == ENOENT || errno == ENOTDIR)
+      return base::usage_error("{}: there is no such file", path.string());
+    return base::failure("{}: cannot be opened: {}", path.string(), system_message(errno));
+  }
+  struct stat found {};
+  if (::fstat(file.get(), &found) != 0) {
+    return base::failure("{}: cannot be read: {}", path.string(), system_message(errno));
+  }
+  if (S_ISDIR(found.st_mode)) {
+    return base::usage_error("{}: is a folder, a file is needed", path.string());
+  }
+  return JournalEntries{std::move(file), static_cast<std::uint64_t>(found.st_size)};
+}
+
+void JournalEntries::fill(std::size_t size) {
+  std::size_t filled = bytes_.size();
+  bytes_.resize(size);
+  while (filled < size) {
+    const ssize_t got =
+        ::pread(file_.get(), bytes_.data() + filled, size - filled, static_cast<off_t>(position_ + filled));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) stopped_by_ = "cannot be read: " + system_message(errno);
+    if (got <= 0) break;
+    filled += static_cast<std::size_t>(got);
+  }
+  bytes_.resize(filled);
+}
+
+std::optional<Entry> JournalEntries::next() {
+  if (position_ == file_size_ || !stopped_by_.empty()) return std::nullopt;
+  bytes_.clear();
+  fill(kEntryHeadSize);
+  EntryHead head;
+  if (bytes_.size() == kEntryHeadSize) {
+    std::memcpy(&head, bytes_.data(), kEntryHeadSize);
+    // A head that is none may claim any size: no more than the file has.
+    const std::uint64_t left = file_size_ - position_ - kEntryHeadSize;
+    if (head.magic == EntryHead{}.magic && head.payload_size <= left)
+      fill(kEntryHeadSize + head.payload_size);
+  }
+  if (!stopped_by_.empty()) return std::nullopt;
+  std::optional<Entry> entry = first_entry(bytes_, stopped_by_);
+  if (entry) position_ += kEntryHeadSize + entry->payload.size();
+  return entry;
+}
+
+}  // namespace stickslip::record

@@ -1,0 +1,57 @@
+/// \file
+/// The scans of a record piece by piece, wherever they are: so that a file is built and verified in the
+/// same memory however long the test was.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "core/base/scan_index.hpp"
+#include "core/record/record.hpp"
+
+namespace stickslip::record {
+
+/// Columns of equal length; scan rises strictly.
+struct ScanPiece {
+  std::span<const base::ScanIndex> scan;
+  std::span<const double> raw;
+};
+
+/// Gives the same each time it is asked. All functions may throw std::exception where a file is read.
+class ScanSource {
+ public:
+  /// Rows of a piece, all but the last: 100 s at 350 scans/s, and a chunk of the file.
+  static constexpr std::size_t kPiece = 35'000;
+
+  virtual ~ScanSource() = default;
+
+  [[nodiscard]] virtual std::size_t size() const = 0;
+  /// Scan periods from the first scan to the end of the last; 0 if there is none.
+  [[nodiscard]] virtual std::int64_t extent() const = 0;
+  virtual void for_each_piece(const std::function<void(const ScanPiece&)>& use) const = 0;
+  /// The noise-free force is known.
+  [[nodiscard]] virtual bool has_force() const = 0;
+  /// As many values as scans, in pieces of the same lengths; NaN where not known.
+  virtual void for_each_force_piece(const std::function<void(std::span<const double>)>& use) const = 0;
+};
+
+/// Those of a record in memory, which outlives it.
+class RecordScans final : public ScanSource {
+ public:
+  explicit RecordScans(const Record& record) : record_(record) {}
+
+  [[nodiscard]] std::size_t size() const override { return record_.scan.size(); }
+  [[nodiscard]] std::int64_t extent() const override {
+    return record_.scan.empty() ? 0 : record_.scan.back() - record_.scan.front() + 1;
+  }
+  void for_each_piece(const std::function<void(const ScanPiece&)>& use) const override;
+  [[nodiscard]] bool has_force() const override { return !record_.true_coefficient.empty(); }
+  void for_each_force_piece(const std::function<void(std::span<const double>)>& use) const override;
+
+ private:
+  const Record& record_;
+};
+
+}  // namespace stickslip::record

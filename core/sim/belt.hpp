@@ -1,0 +1,31 @@
+/// \file
+/// The belt of a motion as functions of time.
+///
+///     belt_speed(segment).value(t);            // m/s, t after the start of the segment
+///     belt_speed_m_per_s(motion.belt, 2.0);    // at 2 s of the scene
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "core/sim/course.hpp"
+#include "core/sim/motion.hpp"
+
+namespace stickslip::sim {
+
+/// v(t) of a segment, m/s. Starts at exactly speed + decaying_speed.
+[[nodiscard]] Course belt_speed(const BeltSegment& segment);
+
+/// At this moment of the scene, ≥ 0; where two segments meet, that of the later one. Without regard to
+/// halt_when_unloaded.
+[[nodiscard]] double belt_speed_m_per_s(const std::vector<BeltSegment>& belt, double time_s);
+
+/// Least and largest way ∫v dt that the belt will have gone within this time, m: (≤ 0, ≥ 0). Without regard
+/// to halt_when_unloaded, so they may be wider than what happens.
+[[nodiscard]] std::pair<double, double> belt_travel_range_m(const std::vector<BeltSegment>& belt,
+                                                            double duration_s);
+
+/// f(x) of a drift, x in s or m.
+[[nodiscard]] double drift_factor(const KineticDrift& drift, double x);
+
+}  // namespace stickslip::sim

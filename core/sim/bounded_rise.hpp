@@ -1,0 +1,59 @@
+/// \file
+/// Where a smooth function of time first rises to zero, whatever it does in between.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace stickslip::sim {
+
+/// First t ≥ 0 at which f reaches zero from below.
+///
+/// Over each stretch f lies below the parabola of its value, its slope and the largest second derivative
+/// there, so that where the parabola meets zero f has not done so yet: that is the next point. The points
+/// come closer to a simple zero as Newton's, never pass it, and leave no touch out.
+///
+/// \param f          value(t), slope(t), and bend(from, to) ≥ the second derivative in between.
+///                   f(0) = 0 is no event if f falls at first.
+/// \param longest_s  how far to look; may be very long.
+/// \param stretch_s  > 0, of the first stretch; those that follow are longer.
+/// \param rounding   ≥ 0: a value of f this close to zero is zero.
+template <typename Function>
+[[nodiscard]] std::optional<double> bounded_rise_s(const Function& f, double longest_s, double stretch_s,
+                                                   double rounding) {
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  // Smallest step after which the parabola is at zero.
+  const auto safe_step = [&f](double t, double value, double slope, double to) {
+    const double bend = std::fmax(f.bend(t, to), 0.0);
+    if (bend == 0.0) return slope > 0.0 ? -value / slope : kNever;
+    const double root = std::sqrt(slope * slope - 2.0 * bend * value);
+    return slope > 0.0 ? -2.0 * value / (slope + root) : (root - slope) / bend;
+  };
+  double t = 0.0;
+  while (true) {
+    const double slope = f.slope(t);
+    double value = f.value(t);
+    if (t == 0.0) {
+      if (value > 0.0 || (value == 0.0 && slope > 0.0)) return 0.0;
+    } else if (value >= -rounding) {
+      return t;
+    }
+    value = std::fmin(value, 0.0);
+    double step = 0.0;
+    for (const double to : {longest_s, std::fmin(t + stretch_s, longest_s)}) {
+      const double safe = safe_step(t, value, slope, to);
+      if (t + safe > longest_s && to == longest_s) return std::nullopt;
+      step = std::fmax(step, std::fmin(safe, to - t));
+    }
+    if (!(t < longest_s)) return std::nullopt;
+    if (step <= kEpsilon * t) return t;
+    if (step == 0.0) step = kEpsilon * stretch_s;  // Zero, level and bent: on to where it shows how.
+    if (step >= stretch_s) stretch_s *= 2.0;
+    t += step;
+  }
+}
+
+}  // namespace stickslip::sim

@@ -1,0 +1,77 @@
+/// \file
+/// A function of time made of a polynomial and a few decays: what belt and paper prescribe, and how
+/// the force follows where nothing oscillates.
+///
+///     Course speed{0.01};                     // v = 0.01 − 0.002 t + 0.003 (1 − e^(−5t))
+///     speed.add_power(1, -0.002);
+///     speed.add_decay(5.0, 1, 0.003 * 5.0);
+///     const double way = speed.integral().value(2.0);
+#pragma once
+
+#include <array>
+
+#include "core/friction/oscillator.hpp"
+
+namespace stickslip::sim {
+
+/// Σ a_k t^k + Σ_j Σ_m b_jm φ_m(λ_j, t) for t ≥ 0, with φ₀ = e^(−λt) and φ_m = ∫₀ᵗ φ_(m−1).
+///
+/// φ₁ = (1 − e^(−λt))/λ, φ₂ = (t − φ₁)/λ …: integrals of a slow decay stay accurate where e^(−λt) and the
+/// polynomial that it nearly is would cancel; λ may be of any sign.
+class Course {
+ public:
+  static constexpr int kPowers = 6;  ///< k = 0 … 5
+  static constexpr int kOrders = 5;  ///< m = 0 … 4
+  static constexpr int kDecays = 3;
+
+  struct Decay {
+    double rate_per_s = 0.0;  ///< λ ≠ 0
+    int orders = 0;           ///< Weights of this order and above are zero.
+    std::array<double, kOrders> weight{};
+  };
+
+  Course() = default;
+  explicit Course(double constant) { add_power(0, constant); }
+
+  /// Adds a t^k.
+  void add_power(int k, double a);
+  /// Adds b φ_m(λ, t). At most kDecays different λ.
+  void add_decay(double rate_per_s, int order, double b);
+  Course& operator+=(const Course& other);
+
+  [[nodiscard]] double value(double t_s) const noexcept;
+  /// The sum of the sizes of its terms: what its rounding is relative to.
+  [[nodiscard]] double magnitude(double t_s) const noexcept;
+  [[nodiscard]] Course scaled(double factor) const;
+  [[nodiscard]] Course derivative() const;
+  /// From 0.
+  [[nodiscard]] Course integral() const;
+  /// The same from a later moment on. \param by_s ≥ 0
+  [[nodiscard]] Course later(double by_s) const;
+  /// Its derivative plus λ times itself, for the λ of a decay: a course without that decay.
+  [[nodiscard]] Course without_decay(int index) const;
+  /// What follows it: the particular solution p of p″ + γp′ + ω₀² p = ω₀² (this). Keep away from resonance:
+  /// resonance().
+  [[nodiscard]] Course response(const friction::Oscillator& oscillator) const;
+
+  [[nodiscard]] int powers() const noexcept { return powers_; }  ///< Highest k + 1; 0: no polynomial.
+  [[nodiscard]] int decays() const noexcept { return decays_; }
+  [[nodiscard]] double power(int k) const { return power_.at(static_cast<std::size_t>(k)); }
+  [[nodiscard]] const Decay& decay(int index) const { return decay_.at(static_cast<std::size_t>(index)); }
+  [[nodiscard]] bool is_constant() const noexcept { return powers_ <= 1 && decays_ == 0; }
+
+ private:
+  int powers_ = 0;
+  int decays_ = 0;
+  std::array<double, kPowers> power_{};
+  std::array<Decay, kDecays> decay_{};
+};
+
+/// φ₀ … φ_(count−1) of λ at t ≥ 0.
+[[nodiscard]] std::array<double, Course::kOrders> decay_integrals(double rate_per_s, double t_s, int count);
+
+/// (λ² − γλ + ω₀²)/ω₀²: how far a decay is from being a motion of the oscillator itself; zero is resonance,
+/// which only overdamped oscillators can meet.
+[[nodiscard]] double distance_from_resonance(double rate_per_s, const friction::Oscillator& oscillator);
+
+}  // namespace stickslip::sim

@@ -1,0 +1,126 @@
+/// \file
+/// What the motion stage of a scene comes to, whichever way it is solved, and what it tells others.
+///
+///     Motion motion;
+///     motion.oscillator = friction::Oscillator::from_omega(omega, 0.022);
+///     motion.mu_s = 0.35;
+///     motion.mu_k = 0.30;
+///     motion.gravity_m_per_s2 = 9.80665;
+///     motion.belt = {{.duration_s = 10.0, .speed_m_per_s = 0.00508}};
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/friction/oscillator.hpp"
+#include "core/friction/truth.hpp"
+#include "core/sim/course.hpp"
+#include "core/sim/paper.hpp"
+#include "core/sim/scan_time.hpp"
+
+namespace stickslip::sim {
+
+/// The belt for a while. At t after the start of the segment its speed is
+///     v(t) = speed + acceleration t + jerk t²/2 + decaying_speed e^(−t/time_constant).
+struct BeltSegment {
+  double duration_s = 0.0;
+  double speed_m_per_s = 0.0;  ///< Negative: the carriage returns.
+  /// Stop the belt for the rest of the segment as soon as the force is zero.
+  bool halt_when_unloaded = false;
+  double acceleration_m_per_s2 = 0.0;
+  double jerk_m_per_s3 = 0.0;
+  double decaying_speed_m_per_s = 0.0;  ///< −speed: a motor that starts from rest.
+  double time_constant_s = 1.0;         ///< > 0
+};
+
+/// Effect `kinetic_drift` (motion): K changes by a factor f(x) of the time since the start of the scene or of
+/// the way ∫v dt that the belt has gone since then (back again where it returns); S − K of the contact stays
+/// what it is, so that S goes with it.
+///     linear       f = 1 + change · x/scale
+///     exponential  f = 1 + change · (1 − e^(−x/scale))
+struct KineticDrift {
+  enum class Course { kLinear, kExponential };
+  enum class Over { kTime, kBeltTravel };
+  Course course = Course::kLinear;
+  Over over = Over::kTime;
+  double change = 0.0;  ///< Relative, of K; f never goes below zero within the scene.
+  double scale = 1.0;   ///< > 0; s, or m of belt travel.
+};
+
+/// Effects `velocity_dependence` and `stribeck` (motion): while the sled slides at V = |belt − sled|,
+///     K(V) = K + per_speed · V + stribeck_rise · e^(−(V/stribeck_speed)^stribeck_exponent).
+/// [Armstrong-Hélouvry, Dupont and Canudas de Wit, Automatica 30(7):1083–1138, 1994, (4)]
+struct VelocityDependence {
+  double per_speed_s_per_m = 0.0;       ///< Any sign: below zero, the faster the less friction.
+  double stribeck_rise = 0.0;           ///< ≥ 0, at most S − K: what is added to K at V → 0.
+  double stribeck_speed_m_per_s = 1.0;  ///< > 0
+  double stribeck_exponent = 1.0;       ///< > 0; 1 (Tustin), 2 (Gaussian).
+};
+
+/// Effect `rate_and_state` (motion): friction without S and K of its own, regularised at V = 0:
+///     μ(V, θ) = a asinh( V/(2 V₀) · e^((μ₀ + b ln(V₀ θ/D_c))/a) ),
+///     ageing law  θ′ = 1 − |V| θ/D_c,    slip law  θ′ = −(|V| θ/D_c) ln(|V| θ/D_c).
+/// [Dieterich, J. Geophys. Res. 84(B5):2161–2168, 1979; Ruina, J. Geophys. Res. 88(B12):10359–10370, 1983;
+///  Lapusta, Rice, Ben-Zion and Zheng, J. Geophys. Res. 105(B10):23765–23789, 2000 (asinh)]
+struct RateAndState {
+  enum class Law { kAgeing, kSlip };
+  Law law = Law::kAgeing;
+  double a = 0.0;                        ///< > 0
+  double b = 0.0;                        ///< ≥ 0
+  double critical_slip_m = 0.0;          ///< D_c > 0
+  double reference_speed_m_per_s = 0.0;  ///< V₀ > 0
+  double mu_0 = 0.0;                     ///< ≥ 0; of steady sliding at V₀.
+};
+
+/// What the motion stage of a scene comes to.
+struct Motion {
+  friction::Oscillator oscillator;
+  double mu_s = 0.0;  ///< S ≥ mu_k
+  double mu_k = 0.0;  ///< K ≥ 0
+  double gravity_m_per_s2 = 0.0;
+  bool damper_counts_at_onset = false;  ///< Slip starts when spring and damper together hold S.
+  PaperSettings paper;                  ///< How S and K differ from contact to contact.
+  bool one_way_coupling = false;
+  std::vector<BeltSegment> belt;  ///< In order; at rest after the last.
+  /// ≥ 0; above zero only with one_way_coupling. The sled has been riding on the belt, at its first speed.
+  double startup_slack_m = 0.0;
+  std::optional<KineticDrift> kinetic_drift;
+  std::optional<VelocityDependence> velocity_dependence;  ///< Numeric only.
+  std::optional<RateAndState> rate_and_state;             ///< Numeric only; then S and K count for nothing.
+};
+
+/// The sled changes its mode.
+struct ModeStart {
+  ScanTime time;
+  friction::Mode mode = friction::Mode::kStick;
+  bool onset = false;        ///< A slip that starts because sticking gave way.
+  bool capture = false;      ///< The slip before ended because the sled had reached the belt's speed.
+  Coefficients paper;        ///< S and K in force.
+  double coefficient = 0.0;  ///< Of the spring; below zero the slack.
+};
+
+/// Told of each change of mode, in order.
+class MotionObserver {
+ public:
+  virtual ~MotionObserver() = default;
+  virtual void mode_began(const ModeStart& start) = 0;
+};
+
+/// A stretch of time during which the force has one closed form: c(t) = h(t) + course(t), t from its start.
+struct ForceStretch {
+  double duration_s = 0.0;
+  Course course;
+  /// The oscillation h, h″ = −ω₀² h − γ h′, by its value and rate at the start; zero unless the sled slips.
+  double wave = 0.0;
+  double wave_rate_per_s = 0.0;
+};
+
+/// Shown the force between the instants, stretch by stretch without a hole.
+class ForceFollower {
+ public:
+  virtual ~ForceFollower() = default;
+  virtual void follow(const ForceStretch& stretch) = 0;
+};
+
+}  // namespace stickslip::sim

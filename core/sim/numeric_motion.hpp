@@ -1,0 +1,77 @@
+/// \file
+/// What the numeric solver asks of the two kinds of friction law it can solve.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+#include "core/sim/motion.hpp"
+#include "core/sim/motion_solver.hpp"
+#include "core/sim/scan_time.hpp"
+
+namespace stickslip::sim {
+
+/// The force of the spring as a coefficient, with its derivatives.
+struct SpringForce {
+  double c = 0.0;
+  double rate_per_s = 0.0;
+  double acceleration_per_s2 = 0.0;
+};
+
+/// The motion, a stretch of time after the other. Thread-bound.
+class NumericMotion {
+ public:
+  virtual ~NumericMotion() = default;
+
+  /// Back to scan 0, at rest and unloaded.
+  virtual void restart(std::uint64_t seed) = 0;
+
+  // The present stretch, in which the force is known.
+  [[nodiscard]] virtual const ScanTime& known_from() const = 0;
+  [[nodiscard]] virtual const ScanTime& known_to() const = 0;
+  /// \param instant  in the present stretch.
+  [[nodiscard]] virtual SpringForce force_at(const ScanTime& instant) const = 0;
+
+  /// On to the next stretch, which starts where this one ends. It may take no time, as after an event.
+  virtual void advance() = 0;
+
+  [[nodiscard]] virtual SolverMethod method() const = 0;
+};
+
+/// Coulomb friction, with K that may depend on time and on the speed of sliding.
+[[nodiscard]] std::unique_ptr<NumericMotion> make_sliding_motion(const Motion& motion, double scan_rate_Hz,
+                                                                 double accuracy, MotionObserver* observer);
+/// Rate-and-state friction.
+[[nodiscard]] std::unique_ptr<NumericMotion> make_rate_and_state_motion(const Motion& motion,
+                                                                        double scan_rate_Hz, double accuracy,
+                                                                        MotionObserver* observer);
+
+/// From the accuracy asked for to the tolerance of CVODE's steps.
+///
+/// The errors of the steps add up over a cycle, and, since each cycle starts where the last one ended, over
+/// the cycles: error ≤ growth · (1 + cycles while the belt moves) · tolerance, with a growth that is
+/// measured for each method (tests/numeric/numeric_solver_accuracy_test.cpp).
+struct ToleranceChoice {
+  double tolerance = 0.0;  ///< Of a coefficient in one step.
+  double accuracy = 0.0;   ///< To be expected: more than was asked for where rounding sets the limit.
+
+  /// \param least_tolerance  below which rounding has the say.
+  static ToleranceChoice of(const Motion& motion, double accuracy, double growth, double least_tolerance) {
+    double moving_s = 0.0;
+    for (const BeltSegment& segment : motion.belt) moving_s += segment.duration_s;
+    const double period_s = 2.0 * std::numbers::pi / std::sqrt(motion.oscillator.omega0_squared());
+    const double all = growth * (1.0 + moving_s / period_s);
+    const double tolerance = std::clamp(accuracy / all, least_tolerance, kCoarsest);
+    return {tolerance, std::max(accuracy, all * tolerance)};
+  }
+
+ private:
+  /// Coarser, steps of CVODE are no longer small against a period.
+  static constexpr double kCoarsest = 1e-4;
+};
+
+}  // namespace stickslip::sim

@@ -1,0 +1,82 @@
+/// \file
+/// The sled on a rate-and-state contact: one equation from rest to slip, with no mode of its own.
+///
+/// Modes are names here, for those who judge a detector. Two thresholds, so that neither rounding nor a
+/// steady creep near one of them makes events:
+///     slip onset  |V| rises through half the belt's speed. A slip accelerates exponentially, so that this
+///                 is the peak of the force within the time of a few e-foldings, and a sled that comes to
+///                 slide steadily (V = belt speed) crosses it too.
+///     capture     |V| falls through a hundredth of it: the sled moves with the belt. A ring-down whose
+///                 speed stays above never counts as sticking again, as with Coulomb friction.
+/// While the belt rests, a hundredth of the highest speed of its course stands for its speed.
+/// S of a slip is the coefficient at its onset, K that of steady sliding at the belt's speed.
+///
+/// A run starts with a contact that has not rested. Ageing law: θ = 0, or rather so little that the rest of
+/// the motion cannot tell (10⁻³ of the accuracy, over ω₀). Slip law: contacts that do not slide keep their
+/// θ for ever, also θ = 0, which would be no friction; the run starts with θ = D_c/V₀, that of μ₀.
+///
+/// |V| is not smooth at V = 0, but there V is exponentially small in x: the step control copes, and a
+/// change of sign is no event.
+#pragma once
+
+#include <optional>
+
+#include "core/sim/belt_walk.hpp"
+#include "core/sim/cvode.hpp"
+#include "core/sim/numeric_motion.hpp"
+#include "core/sim/rate_and_state_system.hpp"
+
+namespace stickslip::sim {
+
+class RateAndStateMotion final : public NumericMotion {
+ public:
+  RateAndStateMotion(const Motion& motion, double scan_rate_Hz, double accuracy, MotionObserver* observer);
+
+  void restart(std::uint64_t seed) override;
+  [[nodiscard]] const ScanTime& known_from() const override { return known_from_; }
+  [[nodiscard]] const ScanTime& known_to() const override { return known_to_; }
+  [[nodiscard]] SpringForce force_at(const ScanTime& instant) const override;
+  void advance() override;
+  [[nodiscard]] SolverMethod method() const override;
+
+ private:
+  enum class Ending { kOngoing, kNoForce, kSegment, kFreshStart };
+
+  [[nodiscard]] OdeState state_at(double t_s) const;
+  [[nodiscard]] double sliding_speed_m_per_s(const OdeState& y) const {
+    return system_.speed_m_per_s(y[1], y[2]);
+  }
+  /// The belt's, or what stands for it.
+  [[nodiscard]] double speed_scale_m_per_s() const;
+  /// The sled keeps its speed and the belt gets another.
+  void change_belt(OdeState& y, double rate_before) const;
+  /// \param y  with c = 0 it may be moved off zero by nothing that matters.
+  [[nodiscard]] bool becomes_taut(OdeState& y);
+  void begin(OdeState y);
+  void look_for_events();
+  void name_mode(friction::Mode mode, bool onset, bool capture, const ScanTime& time, const OdeState& y);
+  void pass_end();
+
+  Motion motion_;
+  double scan_rate_Hz_;
+  MotionObserver* observer_;
+  double omega0_rad_per_s_;
+  double per_metre_;  ///< ω₀²/g
+  ToleranceChoice choice_;
+  double fastest_belt_m_per_s_ = 0.0;
+  BeltWalk walk_;
+  RateAndStateSystem system_;
+  Cvode cvode_;
+
+  ScanTime start_;  ///< Of the present piece.
+  ScanTime known_from_;
+  ScanTime known_to_;
+  OdeState begun_{};
+  BeltRate belt_;
+  bool taut_ = true;
+  std::optional<friction::Mode> mode_;
+  Ending ending_ = Ending::kOngoing;
+  double solved_s_ = 0.0;  ///< From start_ to known_to_.
+};
+
+}  // namespace stickslip::sim

@@ -1,0 +1,67 @@
+/// \file
+/// The equation of a sled that slides one way on the belt, for CVODE.
+#pragma once
+
+#include <optional>
+
+#include "core/sim/belt_walk.hpp"
+#include "core/sim/cvode.hpp"
+#include "core/sim/motion.hpp"
+
+namespace stickslip::sim {
+
+/// y = (c, c′/ω₀) with
+///     c″ + γ c′ + ω₀² (c − σ K(V)) = 0 in a taut coupling, c″ = σ ω₀² K(V) in a slack one,
+/// σ = +1 where the sled is slower than the belt, −1 where it is faster, V = σ (r − c′) g/ω₀².
+class SlidingSystem final : public OdeSystem {
+ public:
+  /// Which event is which.
+  enum : std::size_t {
+    kBeltSpeed,  ///< c′ meets r.
+    kNoForce,    ///< c meets zero: from above in a taut coupling, from below in a slack one.
+    kNewPlace    ///< The sled has slid as far as a place is long.
+  };
+  struct Piece {
+    double sign = 1.0;  ///< σ
+    bool taut = true;
+    bool watches_force = false;  ///< Is kNoForce an event?
+    double begun_c = 0.0;
+    double mu_k = 0.0;  ///< Before the drift.
+    double stribeck_rise = 0.0;
+    double place_left = 0.0;  ///< Still to slide, in units of the coefficient; may be infinite.
+    BeltRate belt;
+    DriftCourse drift;
+  };
+
+  SlidingSystem(const friction::Oscillator& oscillator, double gravity_m_per_s2,
+                const std::optional<VelocityDependence>& law);
+
+  void begin(const Piece& piece) { piece_ = piece; }
+  /// Error of the difference between c′ and r to be expected, 1/s.
+  void set_doubt(double doubt_per_s) { doubt_per_s_ = doubt_per_s; }
+  [[nodiscard]] const Piece& piece() const noexcept { return piece_; }
+
+  [[nodiscard]] OdeState rate(double t_s, const OdeState& y) const override;
+  [[nodiscard]] Jacobian jacobian(double t_s, const OdeState& y) const override;
+  [[nodiscard]] Events events(double t_s, const OdeState& y) const override;
+  /// c″
+  [[nodiscard]] double acceleration(double t_s, const OdeState& y) const;
+  /// How far the sled has slid since the piece began, in units of the coefficient.
+  [[nodiscard]] double slid(double t_s, double c) const;
+
+ private:
+  struct Friction {
+    double value;
+    double slope;  ///< By σ(r − c′), s
+  };
+  [[nodiscard]] Friction friction(double t_s, double c_rate) const;
+
+  double gamma_per_s_;
+  double omega0_rad_per_s_;
+  double metres_;  ///< g/ω₀²: what a unit of the coefficient is in metres of extension.
+  std::optional<VelocityDependence> law_;
+  double doubt_per_s_ = 0.0;
+  Piece piece_;
+};
+
+}  // namespace stickslip::sim

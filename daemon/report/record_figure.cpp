@@ -1,0 +1,235 @@
+#include "daemon/report/record_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "core/daq/calibration.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMillimetresPerMetre = 1e3;
+/// With fewer scans than this in view each of them is to be seen.
+constexpr std::size_t kMostScansWithDots = 250;
+
+/// Two pixels each in a picture of the usual width.
+constexpr std::size_t kMostBands = 400;
+
+struct Trace {
+  std::vector<double> time_s;
+  std::vector<double> value;
+};
+
+/// With a break at each gap.
+Trace coefficients(const record::Record& record, const daq::Calibration& calibration) {
+  Trace trace;
+  const double rate_Hz = record.header.board.scan_rate_granted_Hz;
+  for (std::size_t i = 0; i < record.scan.size(); ++i) {
+    const auto time_of = [&](base::ScanIndex scan) {
+      return static_cast<double>(scan - record.scan.front()) / rate_Hz;
+    };
+    if (i > 0 && record.scan[i] != record.scan[i - 1] + 1) {
+      trace.time_s.push_back(time_of(record.scan[i - 1] + 1));
+      trace.value.push_back(kNothing);
+    }
+    trace.time_s.push_back(time_of(record.scan[i]));
+    trace.value.push_back(calibration.coefficient(record.raw[i]));
+  }
+  return trace;
+}
+
+/// Differences of neighbours over their distance, half-way between them. \param factor  to the unit shown.
+Trace derivative(const Trace& trace, double factor) {
+  Trace slope;
+  for (std::size_t i = 1; i < trace.time_s.size(); ++i) {
+    const double step_s = trace.time_s[i] - trace.time_s[i - 1];
+    slope.time_s.push_back(trace.time_s[i - 1] + step_s / 2.0);
+    slope.value.push_back(factor * (trace.value[i] - trace.value[i - 1]) / step_s);
+  }
+  return slope;
+}
+
+/// The modes within the part; none if they change too often to be told apart.
+std::vector<Band> bands_of(const friction::TestTruth& truth, const AxisRange& part) {
+  std::vector<Band> bands;
+  for (const friction::ModeInterval& interval : truth.modes) {
+    if (interval.end_s <= part.from || interval.start_s >= part.to) continue;
+    const Shade shade = interval.mode == friction::Mode::kStick  ? Shade::kStick
+                        : interval.mode == friction::Mode::kSlip ? Shade::kSlip
+                                                                 : Shade::kSlack;
+    bands.push_back({interval.start_s, interval.end_s, shade});
+  }
+  if (bands.size() > kMostBands) bands.clear();
+  return bands;
+}
+
+/// Where a slip's S and K end: the next slip, else the end of the mode in which it is.
+double end_of_cycle(const friction::TestTruth& truth, std::size_t i) {
+  if (i + 1 < truth.cycles.size()) return truth.cycles[i + 1].onset_time_s;
+  for (const friction::ModeInterval& mode : truth.modes) {
+    if (mode.end_s > truth.cycles[i].onset_time_s) return mode.end_s;
+  }
+  return truth.cycles[i].onset_time_s;
+}
+
+void add_truth(Panel& panel, const friction::TestTruth& truth, const AxisRange& part) {
+  panel.bands = bands_of(truth, part);
+  Curve mu_s{.label = "S of each slip (truth)", .style = CurveStyle::kDashed, .colour = Colour::kGreen};
+  Curve mu_k{.label = "K of each slip (truth)", .style = CurveStyle::kDashed, .colour = Colour::kPurple};
+  for (std::size_t i = 0; i < truth.cycles.size(); ++i) {
+    const friction::TrueCycle& cycle = truth.cycles[i];
+    for (const double time_s : {cycle.onset_time_s, end_of_cycle(truth, i)}) {
+      mu_s.x.push_back(time_s);
+      mu_s.y.push_back(cycle.mu_s);
+      mu_k.x.push_back(time_s);
+      mu_k.y.push_back(cycle.mu_k);
+    }
+  }
+  if (truth.cycles.empty()) return;
+  panel.curves.push_back(std::move(mu_s));
+  panel.curves.push_back(std::move(mu_k));
+}
+
+void add_peaks(Panel& panel, const std::vector<friction::Cycle>& cycles) {
+  Curve sticks{
+      .label = "peak found, sticks again", .style = CurveStyle::kPoints, .colour = Colour::kVermilion};
+  Curve slides{.label = "peak found, slides on", .style = CurveStyle::kPoints, .colour = Colour::kBlack};
+  for (const friction::Cycle& cycle : cycles) {
+    Curve& peaks = (cycle.flags & friction::kCycleCaptured) != 0 ? sticks : slides;
+    peaks.x.push_back(cycle.peak_time_s);
+    peaks.y.push_back(cycle.peak);
+  }
+  if (!sticks.x.empty()) panel.curves.push_back(std::move(sticks));
+  if (!slides.x.empty()) panel.curves.push_back(std::move(slides));
+}
+
+Panel force_panel(const record::Record& record, const Trace& trace, const AxisRange& part) {
+  const double scans = (part.to - part.from) * record.header.board.scan_rate_granted_Hz;
+  Panel panel;
+  panel.y.label = "force / weight";
+  panel.height = 2.0;
+  const auto style =
+      scans <= static_cast<double>(kMostScansWithDots) ? CurveStyle::kLineAndPoints : CurveStyle::kLine;
+  panel.curves.push_back({"force at each scan", trace.time_s, trace.value, style, Colour::kBlue});
+  if (record.end && record.end->truth) add_truth(panel, *record.end->truth, part);
+  add_peaks(panel, record.cycles);
+  return panel;
+}
+
+Panel overview_panel(const Trace& trace, const AxisRange& whole, const AxisRange& part) {
+  Panel panel;
+  panel.y.label = "whole record";
+  panel.height = 0.7;
+  panel.own_x = Axis{.range = whole};
+  panel.curves.push_back({"", trace.time_s, trace.value, CurveStyle::kLine, Colour::kBlue});
+  panel.bands = {{part.from, part.to, Shade::kWindow}};
+  return panel;
+}
+
+/// g/ω₀², which turns the rate of the coefficient into the speed at which the coupling stretches: dl/dt =
+/// (m g/k) dc/dt. From the truth or from the stiffness; absent if neither is known.
+std::optional<double> stretch_m(const record::Record& record) {
+  const friction::Tester tester = record.header.tester.tester();
+  if (tester.stiffness_N_per_m && *tester.stiffness_N_per_m > 0.0) {
+    return tester.normal_load_N() / *tester.stiffness_N_per_m;
+  }
+  if (!record.end || !record.end->truth) return std::nullopt;
+  const friction::TestTruth& truth = *record.end->truth;
+  const double omega0 = truth.omega_rad_per_s * std::hypot(1.0, truth.gamma_over_2omega);  // [7]
+  if (!(omega0 > 0.0)) return std::nullopt;
+  return tester.gravity_m_per_s2 / (omega0 * omega0);
+}
+
+Panel derivative_panel(const record::Record& record, const Trace& trace, const AxisRange& part) {
+  const friction::Tester tester = record.header.tester.tester();
+  const std::optional<double> scaled = stretch_m(record);
+  const double factor = scaled ? kMillimetresPerMetre * *scaled : 1.0;
+  Trace slope = derivative(trace, factor);
+  Panel panel;
+  panel.y.label = scaled ? "stretching (mm/s)" : "rate of force / weight (1/s)";
+  panel.height = 1.6;
+  panel.curves.push_back({"difference of neighbouring scans", std::move(slope.time_s), std::move(slope.value),
+                          CurveStyle::kLine, Colour::kBlue});
+  if (scaled && tester.pull_speed_m_per_s) {
+    const double speed = kMillimetresPerMetre * *tester.pull_speed_m_per_s;
+    panel.curves.push_back({"speed of the pull, which sticking cannot exceed",
+                            {part.from, part.to},
+                            {speed, speed},
+                            CurveStyle::kDashed,
+                            Colour::kGreen});
+  }
+  if (record.end && record.end->truth) panel.bands = bands_of(*record.end->truth, part);
+  return panel;
+}
+
+std::string facts_line(const record::Record& record) {
+  std::string line =
+      fmt::format("{} scans at {:.6g} Hz", record.scan.size(), record.header.board.scan_rate_granted_Hz);
+  if (const auto speed = record.header.tester.pull_speed_m_per_s) {
+    line += fmt::format("; pulled at {:.4g} mm/s", kMillimetresPerMetre * *speed);
+  }
+  if (record.end && record.end->truth) {
+    const friction::TestTruth& truth = *record.end->truth;
+    line += fmt::format("; scene {}, seed {}; truth: {}", truth.scene_name, truth.seed, name(truth.regime));
+  }
+  return line;
+}
+
+base::Result<AxisRange> part_of(const RecordView& view, const AxisRange& whole) {
+  const AxisRange part{view.from_s.value_or(whole.from), view.to_s.value_or(whole.to)};
+  if (!(part.from >= 0.0) || !(part.from < whole.to)) {
+    return base::usage_error("from {} s: must be from 0 s to below {:.6g} s, the end of the record",
+                             part.from, whole.to);
+  }
+  if (!(part.to > part.from)) {
+    return base::usage_error("to {} s: must be above {:.6g} s, where the picture begins", part.to, part.from);
+  }
+  return part;
+}
+
+}  // namespace
+
+base::Result<Figure> record_figure(const record::Record& record, const RecordView& view) {
+  if (record.header.board.quantity == daq::RawQuantity::kCounts && !record.header.load_cell) {
+    return base::usage_error("the record has counts but no load cell, so no forces");
+  }
+  if (record.scan.size() < 2) return base::usage_error("the record has fewer than 2 scans");
+  try {
+    const daq::Calibration calibration{record.header.board, record.header.load_cell.value_or(daq::LoadCell{}),
+                                       record.header.tester.tester().normal_load_N()};
+    const Trace trace = coefficients(record, calibration);
+    const AxisRange whole{0.0, trace.time_s.back()};
+    const base::Result<AxisRange> part = part_of(view, whole);
+    if (!part) return tl::unexpected(part.error());
+
+    Figure figure;
+    figure.title = view.title.empty() ? record.header.title : view.title;
+    figure.x = {.label = "time (s)", .range = *part};
+    figure.notes = {facts_line(record)};
+    if (view.overview) {
+      figure.panels.push_back(overview_panel(trace, whole, *part));
+      figure.height_px += 130;
+    }
+    figure.panels.push_back(force_panel(record, trace, *part));
+    const bool has_modes = record.end && record.end->truth && !record.end->truth->modes.empty();
+    if (has_modes && figure.panels.back().bands.empty()) {
+      figure.notes.emplace_back("modes change too often to be shaded here: show a part of the record");
+    }
+    if (view.derivative) {
+      figure.panels.push_back(derivative_panel(record, trace, *part));
+      figure.height_px += 200;
+    }
+    return figure;
+  } catch (const std::invalid_argument& refused) {
+    return base::usage_error("the record cannot be drawn: {}", refused.what());
+  }
+}
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,102 @@
+// The peers are what they are said to be: each has the order of its method.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <boost/numeric/odeint.hpp>
+
+#include "core/accuracy/comparison.hpp"
+#include "core/accuracy/reference.hpp"
+#include "tests/numeric/motion_recorder.hpp"
+
+namespace stickslip::numeric {
+namespace {
+
+constexpr double kRate_Hz = 350.0;
+
+double error_of(const accuracy::Method& method, const sim::Motion& motion, std::size_t scans) {
+  std::vector<double> truth(scans);
+  std::vector<double> coefficient(scans);
+  accuracy::Reference{motion, kRate_Hz}.next(truth);
+  (void)method.run(motion, kRate_Hz, 1, coefficient);
+  return accuracy::largest_difference(truth, coefficient);
+}
+
+// Dormand and Prince's 5(4) leaves O(h⁵) at a fixed time: halving the step divides the error by 32.
+TEST(Convergence, DormandPrinceHasOrderFiveOnASlip) {
+  using State = std::array<double, 2>;
+  const sim::Motion motion = motion_at(1.3, 0.022);
+  const double r = motion.oscillator.stick_rate_per_s(motion.belt[0].speed_m_per_s, kGravity);
+  const accuracy::Oscillation50 slip{accuracy::Real(motion.mu_k),
+                                     accuracy::Real(motion.mu_s) - accuracy::Real(motion.mu_k),
+                                     accuracy::Real(r), accuracy::Real(motion.oscillator.gamma_per_s),
+                                     accuracy::Real(motion.oscillator.omega_squared)};
+  const auto equation = [&motion](const State& x, State& dx, double /*t*/) {
+    dx = {x[1],
+          -motion.oscillator.gamma_per_s * x[1] - motion.oscillator.omega0_squared() * (x[0] - motion.mu_k)};
+  };
+  constexpr double kDuration_s = 0.03;
+  const auto error = [&](int steps) {
+    State x{motion.mu_s, r};
+    boost::numeric::odeint::runge_kutta_dopri5<State> stepper;
+    const double step_s = kDuration_s / steps;
+    for (int i = 0; i < steps; ++i) stepper.do_step(equation, x, i * step_s, step_s);
+    return std::abs(x[0] - static_cast<double>(slip.value(accuracy::Real(kDuration_s))));
+  };
+  // 16 to 64 steps a period: errors of 1e-5 to 1e-9, far above rounding; the next power of h is 6.
+  for (const int steps : {16, 32}) EXPECT_NEAR(std::log2(error(steps) / error(2 * steps)), 5.0, 0.3) << steps;
+}
+
+// The step follows from the tolerance as tol^(1/5), the error from the step as h⁵; a cycle starts afresh, so
+// what is added up are times. A thousandth of the tolerance: a hundredth of the error at the least.
+TEST(Convergence, OdeintFollowsItsTolerance) {
+  const sim::Motion motion = motion_at(1.3, 0.022);
+  const double coarse = error_of(*accuracy::make_odeint(1e-6), motion, 1000);
+  const double fine = error_of(*accuracy::make_odeint(1e-9), motion, 1000);
+  const double finest = error_of(*accuracy::make_odeint(1e-12), motion, 1000);
+  EXPECT_LT(fine, coarse / 100.0);
+  EXPECT_LT(finest, fine / 100.0);
+  EXPECT_LT(fine, 1e-7);
+}
+
+// Order 1, seen where no capture is decided anew: a ring-down. Halving the step halves the error.
+TEST(Convergence, EulerHasOrderOne) {
+  const sim::Motion motion = motion_at(2.6, 0.022, 0.325, 0.30);
+  for (const int steps : {64, 128, 256}) {
+    const double ratio = error_of(*accuracy::make_euler(steps), motion, 1000) /
+                         error_of(*accuracy::make_euler(2 * steps), motion, 1000);
+    // The times of the two events before it are found within a step only, half of the error in one or the
+    // other.
+    EXPECT_GT(ratio, 1.3) << steps;
+    EXPECT_LT(ratio, 3.1) << steps;
+  }
+  // Over a factor of 16 that chance counts for less: order 1 ± 0.2.
+  const double order = std::log2(error_of(*accuracy::make_euler(32), motion, 1000) /
+                                 error_of(*accuracy::make_euler(512), motion, 1000)) /
+                       4.0;
+  EXPECT_NEAR(order, 1.0, 0.2);
+}
+
+// Smooth friction never converges to this scene: its limit starts slips at a lower force.
+TEST(Convergence, SmoothFrictionDoesNotConverge) {
+  const sim::Motion motion = motion_at(1.3, 0.022);
+  for (const double width : {0.01, 0.003, 0.001}) {
+    // It lacks S − S′ = 0.029 at every peak.
+    EXPECT_GT(error_of(*accuracy::make_tanh(width), motion, 700), 0.01) << width;
+  }
+}
+
+TEST(Convergence, PeersTakePartInWholeTests) {
+  sim::Motion motion = motion_at(1.3, 0.022);
+  motion.one_way_coupling = true;
+  motion.belt = {{0.1, 0.0, false}, {1.0, 0.00508, false}, {0.5, 0.0, false}, {0.5, -0.00508, true}};
+  EXPECT_LT(error_of(*accuracy::make_odeint(1e-9), motion, 1000), 1e-6);
+  EXPECT_LT(error_of(*accuracy::make_euler(1024), motion, 1000), 1e-2);
+  motion.mu_s = 0.75;  // With slack in each cycle.
+  EXPECT_LT(error_of(*accuracy::make_odeint(1e-9), motion, 500), 1e-4);
+}
+
+}  // namespace
+}  // namespace stickslip::numeric

@@ -1,0 +1,71 @@
+#include "core/base/long_column.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace stickslip::base {
+namespace {
+
+using Column = LongColumn<std::int64_t>;
+
+/// More blocks than stay in memory, the last one not full.
+constexpr std::size_t kSize = (2 * Column::kResident + 1) * Column::kBlock + 7;
+
+Column counted(Column column) {
+  for (std::size_t k = 0; k < kSize; ++k) column.push_back(static_cast<std::int64_t>(3 * k));
+  return column;
+}
+
+TEST(LongColumn, GivesBackWhatLiesInTheFileForwardsBackwardsAndInLeaps) {
+  const Column column = counted(Column{std::filesystem::temp_directory_path()});
+  ASSERT_EQ(column.size(), kSize);
+  std::int64_t expected = 0;
+  for (const std::int64_t value : column) {
+    ASSERT_EQ(value, expected);
+    expected += 3;
+  }
+  for (auto at = column.rbegin(); at != column.rend(); at += 1001) {
+    ASSERT_EQ(*at, 3 * (column.rend() - at - 1));
+    if (column.rend() - at <= 1001) break;
+  }
+  for (std::size_t k = 0; k < kSize; k += Column::kBlock / 2 + 1) {
+    ASSERT_EQ(column[k], 3 * static_cast<std::int64_t>(k));
+    ASSERT_EQ(column.back(), 3 * static_cast<std::int64_t>(kSize - 1));
+    ASSERT_EQ(column.front(), 0);
+  }
+  const auto found = std::lower_bound(column.begin(), column.end(), std::int64_t{1'200'000});
+  EXPECT_EQ(found - column.begin(), 400'000);
+}
+
+TEST(LongColumn, GrowsAfterItWasRead) {
+  Column column = counted(Column{std::filesystem::temp_directory_path()});
+  EXPECT_EQ(std::as_const(column)[5], 15);  // Fetched; the last block is still being filled.
+  for (std::size_t k = 0; k < 2 * Column::kBlock; ++k) column.push_back(7);
+  EXPECT_EQ(std::as_const(column)[kSize - 1], 3 * static_cast<std::int64_t>(kSize - 1));
+  EXPECT_EQ(std::as_const(column)[kSize], 7);
+  EXPECT_EQ(column.back(), 7);
+}
+
+TEST(LongColumn, WithoutAFolderIsAVectorThatMayBeChangedAndCopied) {
+  Column column{std::vector<std::int64_t>{1, 2, 3}};
+  column[1] = 20;
+  const Column copy = column;
+  for (std::int64_t& value : column) value = 0;
+  EXPECT_EQ(std::vector<std::int64_t>(copy.begin(), copy.end()), (std::vector<std::int64_t>{1, 20, 3}));
+  EXPECT_EQ(column.back(), 0);
+  column.assign(2, 9);
+  EXPECT_EQ(column.size(), 2U);
+}
+
+TEST(LongColumn, SaysInWhichFolderThereIsNoRoom) {
+  EXPECT_THROW(Column{std::filesystem::path{"/nowhere at all"}}, std::system_error);
+}
+
+}  // namespace
+}  // namespace stickslip::base

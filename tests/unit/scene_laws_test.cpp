@@ -1,0 +1,141 @@
+// Friction laws beyond Coulomb's as scenes list them.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "core/sim/scene_run.hpp"
+#include "core/sim/scene_truth.hpp"
+#include "tests/unit/scene_text.hpp"
+
+namespace stickslip::sim {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+/// Twenty lines; the next table starts on line 21.
+const std::string kPull = R"(description = "d"
+seed = 11
+accuracy = 1e-5
+[tester]
+sled_mass = "2331 g"
+frequency = "20 Hz"
+load_cell_gain = "2 N/V"
+[paper]
+mu_s = 0.35
+mu_k = 0.30
+[effects.damping]
+gamma_over_2omega = 0.022
+[effects.constant_speed]
+idle = "0.1 s"
+pull_speed = "6 in/min"
+pull = "1.5 s"
+stop = "0.2 s"
+return_speed = "12 in/min"
+return = "0.5 s"
+rest = "0.1 s"
+)";
+const std::string kAgeing =
+    "[effects.rate_and_state]\nlaw = \"ageing\"\na = 0.01\nb = 0.02\ncritical_slip = \"1 um\"\n"
+    "reference_speed = \"1 um/s\"\n";
+
+TEST(SceneLaws, VelocityDependenceAndStribeckMakeOneLaw) {
+  const Scene scene = scene_of(kPull +
+                               "[effects.velocity_dependence]\nper_speed = \"-0.5 s/m\"\n"
+                               "[effects.stribeck]\nrise = 0.02\nspeed = \"1 mm/s\"\nexponent = 1\n");
+  const Motion motion = motion_of(scene);
+  ASSERT_TRUE(motion.velocity_dependence);
+  EXPECT_EQ(motion.velocity_dependence->per_speed_s_per_m, -0.5);
+  EXPECT_EQ(motion.velocity_dependence->stribeck_rise, 0.02);
+  EXPECT_EQ(motion.velocity_dependence->stribeck_speed_m_per_s, 0.001);
+  EXPECT_EQ(motion.velocity_dependence->stribeck_exponent, 1.0);
+  const SceneRun run{scene, 350.0};
+  EXPECT_THAT(run.effects(), AllOf(Contains("velocity_dependence"), Contains("stribeck")));
+  EXPECT_EQ(run.method().name, "SUNDIALS CVODE (Adams)");
+  EXPECT_EQ(run.method().accuracy, 1e-5);
+  EXPECT_EQ(SceneRun(scene_of(kPull), 350.0).method().name, "exact closed forms");
+}
+
+TEST(SceneLaws, RateAndStateIsReadWithItsUnits) {
+  const Scene scene = scene_of(kPull + kAgeing);
+  const Motion motion = motion_of(scene);
+  ASSERT_TRUE(motion.rate_and_state);
+  EXPECT_EQ(motion.rate_and_state->law, RateAndState::Law::kAgeing);
+  EXPECT_EQ(motion.rate_and_state->critical_slip_m, 1e-6);
+  EXPECT_EQ(motion.rate_and_state->reference_speed_m_per_s, 1e-6);
+  EXPECT_EQ(motion.rate_and_state->mu_0, 0.30);  // mu_k
+  EXPECT_EQ(SceneRun(scene, 350.0).method().name, "SUNDIALS CVODE (BDF)");
+}
+
+TEST(SceneLaws, RateAndStateHasATruth) {
+  const friction::TestTruth truth = scene_truth(scene_of(kPull + kAgeing), 350.0, 1);
+  EXPECT_EQ(truth.regime, friction::Regime::kStickSlip);
+  ASSERT_GT(truth.cycles.size(), 5U);
+  for (const friction::TrueCycle& cycle : truth.cycles) {
+    EXPECT_GT(cycle.mu_s, cycle.mu_k);
+    EXPECT_LT(cycle.mu_s, 0.6);
+  }
+  ASSERT_TRUE(truth.static_coefficient && truth.kinetic_coefficient);
+  // S is the coefficient at the onset; the force goes on to its maximum right after.
+  EXPECT_NEAR(*truth.static_coefficient, truth.cycles[0].mu_s, 0.01);
+  EXPECT_LT(*truth.kinetic_coefficient, *truth.static_coefficient);
+  ASSERT_TRUE(truth.amplitude && truth.oscillation_frequency_Hz);
+  EXPECT_GT(*truth.amplitude, truth.cycles[0].mu_s - truth.cycles[0].mu_k);
+  EXPECT_NEAR(*truth.oscillation_frequency_Hz, 14.0, 6.0);
+}
+
+// a > b: no stick-slip at any speed.
+TEST(SceneLaws, StrengtheningRateAndStateSlidesOnceAndForAll) {
+  const std::string law =
+      "[effects.rate_and_state]\nlaw = \"slip\"\na = 0.02\nb = 0.01\ncritical_slip = \"1 um\"\n"
+      "reference_speed = \"1 um/s\"\n";
+  const friction::TestTruth truth = scene_truth(scene_of(kPull + law), 350.0, 1);
+  EXPECT_EQ(truth.regime, friction::Regime::kRingDown);
+}
+
+// The transducers see the same force as the scans: a load cell far above the motion changes little.
+TEST(SceneLaws, TransducersFollowANumericMotion) {
+  const std::string law = "[effects.stribeck]\nrise = 0.03\nspeed = \"1 mm/s\"\n";
+  const std::vector<double> bare = readings_of(kPull + law);
+  const std::vector<double> seen =
+      readings_of(kPull + law + "[effects.load_cell]\nfrequency = \"20 kHz\"\ndamping_ratio = 0.7\n");
+  ASSERT_EQ(bare.size(), seen.size());
+  const double volts = 2.331 * 9.80665 / 2.0;
+  // Behind by 2ζ/ω = 11 µs, at no more than 20/s; and twice the accuracy.
+  for (std::size_t i = 0; i < bare.size(); ++i) ASSERT_NEAR(seen[i], bare[i], (20 * 1.2e-5 + 2e-5) * volts);
+}
+
+TEST(SceneLaws, MistakesAreNamed) {
+  EXPECT_EQ(refusal_of(kPull + kAgeing), "");
+  EXPECT_THAT(refusal_of(kPull + "[effects.velocity_dependence]\n"), HasSubstr("per_speed"));
+  EXPECT_THAT(refusal_of(kPull + "[effects.velocity_dependence]\nper_speed = 0.5\n"),
+              AllOf(HasSubstr("test.toml:22"), HasSubstr("s/m")));
+  EXPECT_THAT(refusal_of(kPull + "[effects.stribeck]\nrise = 0.06\nspeed = \"1 mm/s\"\n"),
+              AllOf(HasSubstr("test.toml:22"), HasSubstr("0.06"), HasSubstr("mu_s - mu_k")));
+  EXPECT_THAT(refusal_of(kPull + "[effects.stribeck]\nrise = 0.01\nspeed = \"0 m/s\"\n"),
+              HasSubstr("test.toml:23"));
+  EXPECT_THAT(refusal_of(kPull + "[effects.rate_and_state]\nlaw = \"ruina\"\n"),
+              AllOf(HasSubstr("ageing"), HasSubstr("slip")));
+  EXPECT_THAT(refusal_of(kPull + kAgeing + "mu_0 = -1\n"), HasSubstr("test.toml:27"));
+}
+
+TEST(SceneLaws, RateAndStateStandsAlone) {
+  for (const std::string other :
+       {"[effects.scatter]\ndelta_mu_cv = 0.3\n", "[effects.first_peak]\nchange = 0.01\n",
+        "[effects.contact_ageing]\nper_decade = 0.01\n",
+        "[effects.velocity_dependence]\nper_speed = \"1 s/m\"\n",
+        "[effects.stribeck]\nrise = 0.01\nspeed = \"1 mm/s\"\n",
+        "[effects.onset_convention]\nforce = \"spring\"\n"}) {
+    EXPECT_THAT(refusal_of(fmt::format("{}{}{}", kPull, kAgeing, other)),
+                AllOf(HasSubstr("test.toml:27"), HasSubstr("rate_and_state")))
+        << other;
+  }
+}
+
+}  // namespace
+}  // namespace stickslip::sim
