@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -46,6 +47,20 @@ double half_range(const SlipWaveform& slip) {
   return 0.5 * (slip.value(slip.peak_time_s()) - slip.value(slip.trough_time_s()));
 }
 
+/// The six numbers of a course that all slips share.
+void take(const UniformFit& uniform, Fitted& fitted) {
+  using P = UniformParameters;
+  constexpr std::array<Eigen::Index, 5> kOrder{P::kOmega, P::kGamma, P::kR, P::kS, P::kK};
+  const P::Vector value = uniform.parameters.vector();
+  for (Eigen::Index i = 0; i < 5; ++i) {
+    const Eigen::Index from = kOrder[static_cast<std::size_t>(i)];
+    fitted.value[i] = value[from];
+    for (Eigen::Index j = 0; j < 5; ++j) {
+      fitted.covariance(i, j) = uniform.covariance(from, kOrder[static_cast<std::size_t>(j)]);
+    }
+  }
+}
+
 Fitted gather(const SlipEstimates& estimates) {
   const SlipFit& fit = estimates.fit;
   std::span<const SlipWindow> windows = estimates.windows;
@@ -63,6 +78,10 @@ Fitted gather(const SlipEstimates& estimates) {
     fitted.amplitude.add(half_range(SlipModel{fit.shared, window.slip, window.captured}.waveform()));
     own += window.inverse_curvature;
     coupling += window.coupling;
+  }
+  if (estimates.uniform) {
+    take(*estimates.uniform, fitted);
+    return fitted;
   }
   const auto n = static_cast<double>(windows.size());
   coupling /= n;
@@ -143,28 +162,31 @@ void model_results(std::span<const Fall> slips, const SlipEstimates& estimates, 
   results.mu_s = derived(fitted, [](const P& p) { return p[3]; });
   results.mu_k = derived(fitted, [](const P& p) { return p[4]; });
   results.delta_mu = derived(fitted, [](const P& p) { return p[3] - p[4]; });
-  const double damper = fit.shared.gamma * fit.shared.r / fit.shared.oscillator().omega0_squared();
+  const SharedParameters shared{fitted.value[0], fitted.value[1], fitted.value[2]};
+  const double damper = shared.gamma * shared.r / shared.oscillator().omega0_squared();
   results.mu_s.systematic_uncertainty = std::abs(damper);
   results.delta_mu.systematic_uncertainty = std::abs(damper);
 
   const double n = fitted.amplitude.count;
-  results.amplitude = n > 1.0 ? Estimate::of(fitted.amplitude.mean, std::sqrt(fitted.amplitude.variance / n))
-                              : derived(fitted, [](const P& p) {
-                                  return half_range({p[4], p[3] - p[4], p[2], oscillator_of(p)});
-                                });
+  results.amplitude = n > 1.0 && !estimates.uniform
+                          ? Estimate::of(fitted.amplitude.mean, std::sqrt(fitted.amplitude.variance / n))
+                          : derived(fitted, [](const P& p) {
+                              return half_range({p[4], p[3] - p[4], p[2], oscillator_of(p)});
+                            });
   results.delta_mu_scatter =
       n >= 3.0 ? Estimate::of(std::sqrt(fitted.D.variance), std::sqrt(fitted.D.variance / (2.0 * (n - 1.0))))
                : Estimate::none("fewer than three slips to compare");
 
-  if (!(fitted.D.mean > 0.0)) {
+  const double delta_mu = fitted.value[3] - fitted.value[4];
+  if (!(delta_mu > 0.0)) {
     results.Q = results.Q_threshold = results.threshold_speed =
-        Estimate::none(fmt::format("S - K = {:.4g} is not positive", fitted.D.mean));
+        Estimate::none(fmt::format("S - K = {:.4g} is not positive", delta_mu));
     return;
   }
   results.Q = derived(fitted, [](const P& p) { return dimensionless_speed(p[2], p[0], p[3] - p[4]); });
-  if (!(fit.shared.gamma > 0.0)) {
+  if (!(shared.gamma > 0.0)) {
     results.Q_threshold = results.threshold_speed =
-        Estimate::none(fmt::format("the damping found, {:.3g}, is not positive", fit.shared.gamma));
+        Estimate::none(fmt::format("the damping found, {:.3g}, is not positive", shared.gamma));
     return;
   }
   results.Q_threshold =

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/friction/junction.hpp"
+#include "core/friction/uniform_stage.hpp"
 #include "core/signal/statistics.hpp"
 
 namespace stickslip::friction {
@@ -160,7 +161,8 @@ double time_at(const Trace& trace, double position) noexcept {
          (position - static_cast<double>(before)) * (trace.time_s[after] - trace.time_s[before]);
 }
 
-SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, double sigma) {
+SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, double sigma,
+                             const SharedPrior& prior) {
   SlipEstimates estimates;
   SharedParameters shared = first_guess(trace, slips);
   for (int round = 0; round < kRounds; ++round) {
@@ -172,9 +174,12 @@ SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, do
       estimates.fit = {};
       break;
     }
-    estimates.fit = fit_slips(trace, estimates.windows, shared, sigma);
+    estimates.fit = fit_slips(trace, estimates.windows, shared, sigma, prior);
     if (!estimates.fit.converged) break;
     shared = estimates.fit.shared;
+  }
+  if (estimates.fit.converged) {
+    estimates.uniform = uniform_if_slips_agree(trace, estimates.windows, shared, sigma, prior);
   }
   return estimates;
 }

@@ -3,12 +3,14 @@
 /// S, K, ω, γ and the stick rate that fit the whole test best.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/friction/fall_finder.hpp"
 #include "core/friction/slip_fit.hpp"
 #include "core/friction/trace.hpp"
+#include "core/friction/uniform_fit.hpp"
 
 namespace stickslip::friction {
 
@@ -25,11 +27,15 @@ struct SlipEstimates {
   std::vector<SlipWindow> windows;            ///< One for each onset from sticking.
   std::vector<std::size_t> window_of_slip;    ///< Index into `windows` for each slip.
   SlipFit fit;
+  /// One S and one K for all slips but the first; nothing where the slips differ by more than noise.
+  std::optional<UniformFit> uniform;
 };
 
 /// \param slips  falls that are slips, in the order of time, not empty.
 /// \param sigma  noise of one scan, > 0.
-[[nodiscard]] SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, double sigma);
+/// \param prior  what is known of ω, γ and the stick rate beforehand.
+[[nodiscard]] SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, double sigma,
+                                           const SharedPrior& prior = {});
 
 /// Position between scans → time of the trace.
 [[nodiscard]] double time_at(const Trace& trace, double position) noexcept;

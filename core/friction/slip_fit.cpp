@@ -7,14 +7,14 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "core/friction/huber.hpp"
+
 namespace stickslip::friction {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Huber's limit in standard deviations.
-constexpr double kHuber = 1.345;
 constexpr int kMostIterations = 60;
 /// Relative change of the cost below which the fit has converged.
 constexpr double kConverged = 1e-10;
@@ -36,21 +36,13 @@ struct NormalEquations {
   std::vector<SlipBlock> slips;
   Matrix3d shared = Matrix3d::Zero();
   Vector3d gradient = Vector3d::Zero();
-  double cost = 0.0;        ///< Huber's, in units of σ².
-  double square_sum = 0.0;  ///< Of the weighted residuals.
-  double weight_sum = 0.0;
-  double psi_square_sum = 0.0;  ///< Of the residuals cut at Huber's limit.
-  double inlier_count = 0.0;    ///< Scans within Huber's limit.
-  double count = 0.0;           ///< Usable scans.
+  HuberSums sums;     ///< Of the residuals over σ.
+  double cost = 0.0;  ///< Of scans and prior.
+  PriorTerms prior;
 };
 
-double huber_cost(double z) noexcept {
-  const double size = std::abs(z);
-  return size <= kHuber ? 0.5 * z * z : kHuber * (size - 0.5 * kHuber);
-}
-
 NormalEquations assemble(const Trace& trace, const std::vector<SlipWindow>& windows,
-                         const SharedParameters& shared, double sigma) {
+                         const SharedParameters& shared, double sigma, const SharedPrior& prior) {
   NormalEquations equations;
   equations.slips.resize(windows.size());
   for (std::size_t i = 0; i < windows.size(); ++i) {
@@ -60,14 +52,7 @@ NormalEquations assemble(const Trace& trace, const std::vector<SlipWindow>& wind
       if (trace.usable[k] == 0) continue;
       const SlipModelPoint point = model.at(trace.time_s[k]);
       const double residual = trace.value[k] - point.value;
-      const double z = residual / sigma;
-      const double weight = std::abs(z) <= kHuber ? 1.0 : kHuber / std::abs(z);
-      equations.cost += huber_cost(z);
-      equations.square_sum += weight * residual * residual;
-      equations.weight_sum += weight;
-      equations.psi_square_sum += weight * weight * residual * residual;
-      equations.count += 1.0;
-      if (weight == 1.0) equations.inlier_count += 1.0;
+      const double weight = equations.sums.add(residual / sigma);
       block.own += weight * point.by_slip * point.by_slip.transpose();
       block.mixed += weight * point.by_slip * point.by_shared.transpose();
       block.gradient += weight * residual * point.by_slip;
@@ -75,12 +60,16 @@ NormalEquations assemble(const Trace& trace, const std::vector<SlipWindow>& wind
       equations.gradient += weight * residual * point.by_shared;
     }
   }
+  equations.prior = prior.at(shared);
+  // The equations of the scans are in units of σ².
+  equations.gradient += sigma * sigma * equations.prior.gradient;
+  equations.cost = equations.sums.cost() + equations.prior.cost;
   return equations;
 }
 
 double cost_of(const Trace& trace, const std::vector<SlipWindow>& windows, const SharedParameters& shared,
-               double sigma) {
-  double cost = 0.0;
+               double sigma, const SharedPrior& prior) {
+  double cost = prior.at(shared).cost;
   for (const SlipWindow& window : windows) {
     const SlipModel model{shared, window.slip, window.captured};
     for (std::size_t k = window.first; k < window.end; ++k) {
@@ -109,9 +98,10 @@ struct Step {
   bool solved = false;
 };
 
-Step solve(const NormalEquations& equations, double damping) {
+Step solve(const NormalEquations& equations, double sigma, double damping) {
   Step step;
-  Matrix3d reduced = damped(equations.shared, damping);
+  // Only what the scans say is damped: a step along what the prior holds fixed must stay easy.
+  Matrix3d reduced = damped(equations.shared, damping) + sigma * sigma * equations.prior.information;
   Vector3d right = equations.gradient;
   std::vector<Matrix3d> inverses;
   inverses.reserve(equations.slips.size());
@@ -131,21 +121,14 @@ Step solve(const NormalEquations& equations, double damping) {
 }
 
 /// Covariances at the optimum, in terms of the residuals found.
-void finish(SlipFit& fit, std::vector<SlipWindow>& windows, const NormalEquations& equations) {
+void finish(SlipFit& fit, std::vector<SlipWindow>& windows, const NormalEquations& equations, double sigma) {
   const double parameters = 3.0 + 3.0 * static_cast<double>(windows.size());
   for (const SlipWindow& window : windows) fit.scan_count += window.end - window.first;
-  const double freedom = equations.weight_sum - parameters;
-  fit.residual_sigma = freedom > 0.0 ? std::sqrt(equations.square_sum / freedom) : 0.0;
-  // Variance of an M-estimator: Σψ²/(n − p)/(mean ψ′)² · (JᵀJ)⁻¹ [Huber, Robust Statistics, 1981, (6.5)];
-  // the equations hold Σ w J Jᵀ, which is smaller by the mean weight. Weighted least squares instead
-  // would leave out that Huber's weights follow the noise: 15 % too small a variance for Gaussian noise.
-  const double count = std::max(equations.count, 1.0);
-  const double inlier_part = std::max(equations.inlier_count, 1.0) / count;
-  const double mean_weight = equations.weight_sum / count;
-  const double psi_freedom = count - parameters;
-  const double variance =
-      psi_freedom > 0.0 ? equations.psi_square_sum / psi_freedom * mean_weight / (inlier_part * inlier_part)
-                        : 0.0;
+  fit.residual_sigma = sigma * equations.sums.residual_sigma(parameters);
+  fit.cost = equations.cost;
+  fit.cost_scale = equations.sums.cost_scale(parameters);
+  fit.freedom = equations.sums.count() - parameters;
+  const double variance = sigma * sigma * equations.sums.covariance_scale(parameters);
   Matrix3d reduced = equations.shared;
   for (std::size_t i = 0; i < windows.size(); ++i) {
     const SlipBlock& block = equations.slips[i];
@@ -154,22 +137,26 @@ void finish(SlipFit& fit, std::vector<SlipWindow>& windows, const NormalEquation
     windows[i].coupling = inverse * block.mixed;
     reduced -= block.mixed.transpose() * windows[i].coupling;
   }
-  fit.shared_covariance = variance * reduced.inverse();
-  fit.converged = fit.converged && freedom > 0.0 && fit.shared_covariance.allFinite() &&
-                  fit.shared_covariance.diagonal().minCoeff() >= 0.0;
+  // The estimate answers to the noise of both, scans and prior, through the one inverse.
+  const Matrix3d prior = sigma * sigma * equations.prior.information;
+  const Matrix3d response = (reduced + prior).inverse();
+  fit.shared_covariance =
+      variance * response * reduced * response + sigma * sigma * response * prior * response;
+  fit.converged = fit.converged && equations.sums.freedom(parameters) > 0.0 &&
+                  fit.shared_covariance.allFinite() && fit.shared_covariance.diagonal().minCoeff() >= 0.0;
 }
 
 }  // namespace
 
 SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows, const SharedParameters& shared,
-                  double sigma) {
+                  double sigma, const SharedPrior& prior) {
   SlipFit fit;
   fit.shared = shared;
   if (windows.empty() || !admissible(shared)) return fit;
-  NormalEquations equations = assemble(trace, windows, fit.shared, sigma);
+  NormalEquations equations = assemble(trace, windows, fit.shared, sigma, prior);
   double damping = kFirstDamping;
   for (int iteration = 0; iteration < kMostIterations && !fit.converged && damping < kHopeless; ++iteration) {
-    const Step step = solve(equations, damping);
+    const Step step = solve(equations, sigma, damping);
     SharedParameters trial = fit.shared;
     // Windows are large and many: they are tried in place.
     std::vector<SlipParameters> before;
@@ -185,20 +172,20 @@ SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows, const Sh
         windows[i].slip.S += step.slips[i][1];
         windows[i].slip.K += step.slips[i][2];
       }
-      if (admissible(trial)) trial_cost = cost_of(trace, windows, trial, sigma);
+      if (admissible(trial)) trial_cost = cost_of(trace, windows, trial, sigma, prior);
     }
     if (trial_cost <= equations.cost) {
       fit.converged = equations.cost - trial_cost <= kConverged * equations.cost;
       fit.shared = trial;
       equations = {};  // Not both at once.
-      equations = assemble(trace, windows, fit.shared, sigma);
+      equations = assemble(trace, windows, fit.shared, sigma, prior);
       damping = std::max(damping * kEasier, kSmallestDamping);
     } else {
       for (std::size_t i = 0; i < windows.size(); ++i) windows[i].slip = before[i];
       damping *= kHarder;
     }
   }
-  finish(fit, windows, equations);
+  finish(fit, windows, equations, sigma);
   return fit;
 }
 

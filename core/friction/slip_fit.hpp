@@ -17,6 +17,7 @@
 
 #include <Eigen/Core>
 
+#include "core/friction/shared_prior.hpp"
 #include "core/friction/slip_model.hpp"
 #include "core/friction/trace.hpp"
 
@@ -40,6 +41,9 @@ struct SlipFit {
   Eigen::Matrix3d shared_covariance = Eigen::Matrix3d::Zero();  ///< Of (ω, γ, r).
   double residual_sigma = 0.0;  ///< Standard deviation of a scan about the model.
   std::size_t scan_count = 0;
+  double cost = 0.0;        ///< Huber's, of scans and prior.
+  double cost_scale = 0.0;  ///< HuberSums::cost_scale().
+  double freedom = 0.0;     ///< Usable scans less parameters.
 
   /// Covariance of the mean over `windows` of (onset, S, K); the scatter from slip to slip not included.
   [[nodiscard]] Eigen::Matrix3d mean_covariance(const std::vector<SlipWindow>& windows) const;
@@ -50,8 +54,9 @@ struct SlipFit {
 /// \param sigma  noise of one scan, > 0; scales Huber's limit.
 /// \param windows,shared  first guess; windows receive the estimate. A window with fewer than four
 ///        usable scans must not be passed.
+/// \param prior  what is known of the shared parameters beforehand.
 /// \return converged = false if no step lowers the cost or the equations are singular.
 [[nodiscard]] SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows,
-                                const SharedParameters& shared, double sigma);
+                                const SharedParameters& shared, double sigma, const SharedPrior& prior = {});
 
 }  // namespace stickslip::friction

@@ -136,7 +136,7 @@ TestResults TestAnalysis::finish() {
     results.stick_cycle_count = Estimate::of(0.0);
     no_model_results("no slip", results);
   } else {
-    const SlipEstimates estimates = estimate_slips(trace, slips, sigma);
+    const SlipEstimates estimates = estimate_slips(trace, slips, sigma, settings_.prior);
     const RegimeVerdict verdict =
         judge_regime(slips.size(), estimates.log_likelihood_ratios, model_describes(estimates, sigma));
     results.regime = verdict.regime;

@@ -18,6 +18,7 @@
 #include "core/friction/fall_finder.hpp"
 #include "core/friction/method.hpp"
 #include "core/friction/results.hpp"
+#include "core/friction/shared_prior.hpp"
 #include "core/friction/slip_rule.hpp"
 #include "core/friction/tester.hpp"
 #include "core/friction/trace.hpp"
@@ -31,6 +32,7 @@ struct AnalysisSettings {
   double step_coefficient = 0.0;  ///< One A/D step; 0 if unknown: then it is taken from the trace.
   Tester tester;
   Method method;
+  SharedPrior prior;    ///< What is known of the tester beforehand; empty: the test tells it all.
   bool despike = true;  ///< Off: to see what the spikes did.
   /// Where to put the scans of a long test beside the latest few minutes; empty: they all stay in memory.
   std::filesystem::path scratch_folder;

@@ -1,0 +1,43 @@
+// How close the estimators come to the Cramér–Rao bound, by simulation through the whole analysis:
+//
+//     bench_estimator_limits [SEEDS]      # default 4000
+//
+// The table of docs/detector.md.
+
+#include "tests/support/estimator_limits.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdlib>
+
+int main(int argc, char** argv) {
+  using namespace stickslip;
+  const int seeds = argc > 1 ? std::atoi(argv[1]) : 4000;
+  if (seeds < 1) {
+    fmt::print(stderr, "usage: {} [SEEDS], a number from 1\n", argv[0]);
+    return 2;
+  }
+  const test::LimitScene scene;
+  fmt::print(
+      "{} seeds (1 to {}) a case; S 0.35, K 0.30, 12 in/min, 350 Hz, 0.001 rms white, {} cycles after the "
+      "first\n",
+      seeds, seeds, test::LimitScene::kCycles);
+  fmt::print("tester from one ring-down of {} s: gamma {:.2f} %\n", test::LimitScene::kRingDown_s,
+             100.0 * std::sqrt(scene.coupling_covariance()(1, 1)) / 0.022);
+  fmt::print("{:<48}{:<14}{:>10}{:>11}{:>10}{:>10}{:>10}\n", "known beforehand", "result", "bound, %",
+             "rms/bound", "z mean", "z var.", "in 95 %");
+  for (const test::LimitCase& which : test::kLimitCases) {
+    const auto begin = std::chrono::steady_clock::now();
+    const test::LimitReport report = scene.run(which, seeds);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    for (const test::LimitTally& tally : report.tallies) {
+      fmt::print("{:<48}{:<14}{:>10.4f}{:>11.3f}{:>10.3f}{:>10.3f}{:>9.1f} %\n", which.name(), tally.what,
+                 100.0 * tally.bound / tally.truth, tally.rms_over_bound(), tally.normalised_mean(),
+                 tally.normalised_variance(), 100.0 * tally.coverage());
+    }
+    fmt::print("    without a result: {}; {:.0f} µs a cycle for the whole analysis\n", report.without_result,
+               1e6 * seconds / seeds / (test::LimitScene::kCycles + 1));
+  }
+  return 0;
+}
