@@ -17,12 +17,18 @@ inline constexpr double kHuberLimit = 1.345;
   return size <= kHuberLimit ? 0.5 * z * z : kHuberLimit * (size - 0.5 * kHuberLimit);
 }
 
+/// ψ(z)/z: the weight of a residual in the normal equations.
+[[nodiscard]] inline double huber_weight(double z) noexcept {
+  const double size = std::abs(z);
+  return size <= kHuberLimit ? 1.0 : kHuberLimit / size;
+}
+
 /// What a fit needs to know of all its residuals, each in units of σ.
 class HuberSums {
  public:
   /// \return the weight of this residual in the normal equations: ψ(z)/z.
   double add(double z) noexcept {
-    const double weight = std::abs(z) <= kHuberLimit ? 1.0 : kHuberLimit / std::abs(z);
+    const double weight = huber_weight(z);
     cost_ += huber_cost(z);
     square_sum_ += weight * z * z;
     weight_sum_ += weight;

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "core/friction/capture.hpp"
+#include "core/friction/huber.hpp"
 
 namespace stickslip::friction {
 namespace {
@@ -78,14 +79,18 @@ class CapturedCourse {
   double onset_s_ = 0.0;
 };
 
-/// Half the sum of squares over σ² for the parameters; fills the residuals.
+/// Huber's cost of the residuals over σ, which it fills: a spike that was not found counts no more for one
+/// course than for the other.
 template <typename Values>
 double cost_of(const std::vector<Scan>& scans, const Values& values, double sigma,
                Eigen::VectorXd& residuals) {
+  double cost = 0.0;
   for (std::size_t i = 0; i < scans.size(); ++i) {
-    residuals[static_cast<Eigen::Index>(i)] = (scans[i].value - values(scans[i].tau_s)) / sigma;
+    const double z = (scans[i].value - values(scans[i].tau_s)) / sigma;
+    residuals[static_cast<Eigen::Index>(i)] = z;
+    cost += huber_cost(z);
   }
-  return 0.5 * residuals.squaredNorm();
+  return cost;
 }
 
 /// Levenberg–Marquardt with difference quotients; `steps` are the parameters' scales.
@@ -106,9 +111,10 @@ double least_cost(const std::vector<Scan>& scans, const Model& model, Parameters
       cost_of(scans, model(moved), sigma, shifted);
       jacobian.col(j) = (residuals - shifted) / steps[j];
     }
-    Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
+    const Eigen::VectorXd weights = residuals.unaryExpr([](double z) { return huber_weight(z); });
+    Eigen::MatrixXd normal = jacobian.transpose() * weights.asDiagonal() * jacobian;
     normal.diagonal() *= 1.0 + damping;
-    const Parameters trial = p + normal.ldlt().solve(jacobian.transpose() * residuals);
+    const Parameters trial = p + normal.ldlt().solve(jacobian.transpose() * weights.cwiseProduct(residuals));
     const double trial_cost = trial.allFinite() ? cost_of(scans, model(trial), sigma, shifted) : cost + 1.0;
     if (trial_cost > cost) {
       damping *= 10.0;

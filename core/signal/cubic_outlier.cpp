@@ -19,8 +19,9 @@ constexpr double kUnexplained = 0.05;
 /// What noise leaves of seven scans without one and a cubic: χ² with two degrees of freedom, 99 %.
 constexpr double kNoiseLeaves = 9.21;
 /// Two outliers leave one degree of freedom, which says little. They must be larger than this many second
-/// differences of what is left: 1.54 is the largest for a cosine of 4 scans a cycle, 0.9 for corners.
-constexpr double kCurvatures = 1.6;
+/// differences of what is left: 0.8 is the largest for a cosine of 4.5 scans a cycle or more, 0.9 for
+/// corners, 1.0 for a fall within two scans.
+constexpr double kCurvatures = 1.5;
 
 /// Rows: the orthonormal polynomials of degree 4, 5 and 6 over seven points, which a cubic cannot follow.
 /// [Table of orthogonal polynomials: Fisher and Yates, Statistical Tables, 1938]

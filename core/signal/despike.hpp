@@ -31,8 +31,8 @@ struct DespikedScan {
 /// Outlier of a cubic over seven scans, three on each side, for those: at 17.5 scans a cycle a cubic
 /// leaves 0.4 % of an amplitude. Of the seven, that one scan is left out, or those two from the middle on,
 /// without which the cubic fits best; each must be worth five standard deviations and explain all but a
-/// small part of the misfit, which neither corners nor steps nor few scans a cycle can (from 4 on). Scans
-/// before the middle enter repaired.
+/// small part of the misfit, which neither corners nor steps nor few scans a cycle can (from 5 on; below, the
+/// noise found is that of the oscillation). Scans before the middle enter repaired.
 ///
 /// Delay three scans; three at each end are judged by the first test alone. Does not allocate.
 class Despiker {

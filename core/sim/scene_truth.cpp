@@ -29,12 +29,24 @@ class Chronicle final : public MotionObserver {
     std::optional<double> stick_again_s;
   };
 
+  /// The belt started faster than friction can pull the sled along: it slides without having given way.
+  struct Slide {
+    double start_s = 0.0;
+    double end_s = 0.0;
+  };
+
   explicit Chronicle(double scan_rate_Hz) : scan_rate_Hz_(scan_rate_Hz) {}
 
   void mode_began(const ModeStart& start) override {
     const double now_s = start.time.periods_since({}) / scan_rate_Hz_;
     const bool sticks = start.mode == Mode::kStick || (start.capture && start.onset);
     if (sticks && !slips_.empty() && !slips_.back().stick_again_s) slips_.back().stick_again_s = now_s;
+    if (slide_start_s_ && start.mode != Mode::kSlip) {
+      slides_.push_back({*slide_start_s_, now_s});
+      slide_start_s_.reset();
+    }
+    const bool rests = modes_.empty() || modes_.back().mode == Mode::kStick;
+    if (rests && start.mode == Mode::kSlip && !start.onset) slide_start_s_ = now_s;
     if (start.onset) slips_.push_back({now_s, start.paper, start.coefficient, {}});
     if (!modes_.empty()) {
       if (modes_.back().mode == start.mode && !start.onset) return;
@@ -49,13 +61,22 @@ class Chronicle final : public MotionObserver {
     if (!(modes_.back().start_s < now_s)) modes_.pop_back();
   }
 
+  /// Of the scene.
+  void end(double now_s) {
+    close(now_s);
+    if (slide_start_s_) slides_.push_back({*slide_start_s_, now_s});
+  }
+
   [[nodiscard]] std::vector<friction::ModeInterval> take_modes() noexcept { return std::move(modes_); }
   [[nodiscard]] const std::vector<Slip>& slips() const noexcept { return slips_; }
+  [[nodiscard]] const std::vector<Slide>& slides() const noexcept { return slides_; }
 
  private:
   double scan_rate_Hz_;
   std::vector<friction::ModeInterval> modes_;
   std::vector<Slip> slips_;
+  std::vector<Slide> slides_;  ///< That have ended.
+  std::optional<double> slide_start_s_;
 };
 
 /// How the slips of the pull ended.
@@ -66,10 +87,10 @@ struct Tally {
   Chronicle::Slip first;
 };
 
-Tally tally(const std::vector<Chronicle::Slip>& slips, double pull_end_s, double period_s) {
+Tally tally(const Chronicle& chronicle, double pull_end_s, double period_s) {
   Tally result;
   double longest_slip_s = 2.0 * period_s;  // A damped slip is captured within its first period.
-  for (const Chronicle::Slip& slip : slips) {
+  for (const Chronicle::Slip& slip : chronicle.slips()) {
     if (slip.onset_s >= pull_end_s) break;
     if (result.onsets_s.empty()) result.first = slip;
     result.onsets_s.push_back(slip.onset_s);
@@ -79,6 +100,9 @@ Tally tally(const std::vector<Chronicle::Slip>& slips, double pull_end_s, double
     } else if (pull_end_s - slip.onset_s > longest_slip_s) {
       ++result.not_captured;
     }
+  }
+  for (const Chronicle::Slide& slide : chronicle.slides()) {
+    if (std::min(slide.end_s, pull_end_s) - slide.start_s > longest_slip_s) ++result.not_captured;
   }
   return result;
 }
@@ -134,7 +158,7 @@ friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std:
   motion->skip(scan_count(scene, nominal_rate_Hz));
   const SolverMethod method = motion->method();
   truth.solver = friction::SolverFacts{std::string{method.name}, method.accuracy, scene.accuracy, {}};
-  chronicle.close(scene.duration_s);
+  chronicle.end(scene.duration_s);
   truth.modes = chronicle.take_modes();
   truth.cycles.reserve(chronicle.slips().size());
   for (const Chronicle::Slip& slip : chronicle.slips()) {
@@ -143,7 +167,7 @@ friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std:
 
   if (const std::optional<Pull> pull = pull_of(scene)) {
     const double period_s = 2.0 * std::numbers::pi / scene.oscillator.omega_rad_per_s();
-    const Tally slips = tally(chronicle.slips(), pull->end_s, period_s);
+    const Tally slips = tally(chronicle, pull->end_s, period_s);
     // Where the speed changes, that at which the first slip begins.
     truth.pull_speed_m_per_s = slips.onsets_s.empty()
                                    ? steady_pull_speed_m_per_s(scene).value_or(0.0)

@@ -14,11 +14,11 @@ namespace stickslip::sim {
 ///
 /// Regime over the pull: stick-slip if each slip that began by giving way ended in sticking, ring-down
 /// if none did, mixed otherwise; a slip that the end of the pull cut short before it could tell is not
-/// asked. Steady-sliding if the slip cannot oscillate; undecided if there is no slip to ask.
-/// Frequency: of the onsets if there are two, else ω/2π of the ring-down. Amplitude: half the range
-/// of the first slip in closed form [17], with zero as the least force of a one-way coupling; of a motion
-/// without closed forms that of the force itself. What rate-and-state friction calls a slip, and which S and
-/// K it then has: rate_and_state_motion.hpp.
+/// asked; a sled that a fast start of the belt leaves sliding has not stuck either. Steady-sliding if the
+/// slip cannot oscillate; undecided if there is no slip to ask. Frequency: of the onsets if there are two,
+/// else ω/2π of the ring-down. Amplitude: half the range of the first slip in closed form [17], with zero as
+/// the least force of a one-way coupling; of a motion without closed forms that of the force itself. What
+/// rate-and-state friction calls a slip, and which S and K it then has: rate_and_state_motion.hpp.
 [[nodiscard]] friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std::uint64_t seed);
 
 }  // namespace stickslip::sim

@@ -2,7 +2,7 @@
 /// Tests of papers drawn at random, with what the detector says of them beside what the simulation did.
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <random>
@@ -52,15 +52,15 @@ inline sim::Scene random_test(const sim::Scene& base, const Disturbance& disturb
   return scene;
 }
 
-/// Slips of the pull that ended in sticking.
+/// Slips of the pull that began by giving way and ended in sticking.
 inline int captures(const friction::TestTruth& truth, const sim::Pull& pull) {
   int count = 0;
-  for (std::size_t i = 1; i < truth.modes.size(); ++i) {
-    const friction::ModeInterval& mode = truth.modes[i];
-    if (mode.mode == friction::Mode::kStick && truth.modes[i - 1].mode == friction::Mode::kSlip &&
-        mode.start_s < pull.end_s) {
-      ++count;
-    }
+  auto mode = truth.modes.begin();
+  for (const friction::TrueCycle& cycle : truth.cycles) {
+    mode = std::find_if(mode, truth.modes.end(), [&](const friction::ModeInterval& interval) {
+      return interval.mode == friction::Mode::kSlip && interval.start_s >= cycle.onset_time_s;
+    });
+    if (mode != truth.modes.end() && mode->end_s < pull.end_s) ++count;
   }
   return count;
 }
