@@ -7,13 +7,23 @@
 #include <utility>
 #include <vector>
 
+#include <boost/math/distributions/students_t.hpp>
+
 #include "core/friction/slip_estimator.hpp"
 #include "core/signal/statistics.hpp"
 
 namespace stickslip::friction {
 
+namespace {
+
+constexpr std::size_t kFewestPeriods = 3;
+/// Probability with which a test without drift is taken to have one. It costs little: a slope that is not
+/// there turns K about the middle of the test by its own error.
+constexpr double kDriftLevel = 0.001;
+
+}  // namespace
+
 Estimate drift_of(const Trace& trace, std::span<const Fall> slips) {
-  constexpr std::size_t kFewestPeriods = 3;
   if (slips.size() < kFewestPeriods + 1) return Estimate::none("fewer than three cycles");
   std::vector<std::pair<double, double>> means;
   for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
@@ -41,6 +51,20 @@ Estimate drift_of(const Trace& trace, std::span<const Fall> slips) {
   const double slope = s_tc / s_tt;
   const double residual_variance = std::max(s_cc - slope * s_tc, 0.0) / (n - 2.0);
   return Estimate::of(slope, std::sqrt(residual_variance / s_tt));
+}
+
+Drift significant_drift(const Trace& trace, std::span<const Fall> slips) {
+  const Estimate slope = drift_of(trace, slips);
+  if (!slope.value || !slope.standard_error) return {};
+  const auto freedom = static_cast<double>(slips.size() - 3);  // Of the means, one fewer than slips.
+  const double limit =
+      boost::math::quantile(boost::math::complement(boost::math::students_t{freedom}, 0.5 * kDriftLevel));
+  if (!(std::abs(*slope.value) > limit * *slope.standard_error)) return {};
+  double mean_s = 0.0;
+  for (const Fall& slip : slips.subspan(1)) {
+    mean_s += time_at(trace, slip.peak_at) / static_cast<double>(slips.size() - 1);
+  }
+  return {*slope.value, mean_s};
 }
 
 void period_results(const Trace& trace, std::span<const Fall> slips, TestResults& results) {

@@ -13,6 +13,10 @@ namespace stickslip::friction {
 /// Slope of the means from peak to peak against time, by least squares: an oscillation averages out.
 [[nodiscard]] Estimate drift_of(const Trace& trace, std::span<const Fall> slips);
 
+/// The same as something to take off before the model is fitted: none unless it is significant, so that a
+/// test without drift stays as it is.
+[[nodiscard]] Drift significant_drift(const Trace& trace, std::span<const Fall> slips);
+
 /// Fills period_median and oscillation_frequency. A ring-down's frequency is that of the fitted
 /// oscillator (results.omega), else it is cycles over time.
 void period_results(const Trace& trace, std::span<const Fall> slips, TestResults& results);

@@ -140,7 +140,7 @@ double capture_log_likelihood_ratio(const Trace& trace, std::size_t first, std::
   double high = 0.0;
   for (std::size_t k = first; k < end; ++k) {
     if (!selection.has(k) || trace.usable[k] == 0) continue;
-    const double value = trace.value[k];
+    const double value = trace.level(k);
     low = scans.empty() ? value : std::min(low, value);
     high = scans.empty() ? value : std::max(high, value);
     scans.push_back({trace.time_s[k] - trace.time_s[first], value});

@@ -41,6 +41,7 @@ struct Fitted {
   Eigen::Matrix<double, 5, 5> covariance;
   Sample D;
   Sample amplitude;
+  double drift = 0.0;  ///< Of S and K, where the slips begin in the mean.
 };
 
 double half_range(const SlipWaveform& slip) {
@@ -78,6 +79,7 @@ Fitted gather(const SlipEstimates& estimates) {
     fitted.amplitude.add(half_range(SlipModel{fit.shared, window.slip, window.captured}.waveform()));
     own += window.inverse_curvature;
     coupling += window.coupling;
+    fitted.drift += estimates.drift.at(window.slip.onset_s) / static_cast<double>(windows.size());
   }
   if (estimates.uniform) {
     take(*estimates.uniform, fitted);
@@ -159,8 +161,8 @@ void model_results(std::span<const Fall> slips, const SlipEstimates& estimates, 
   using P = Eigen::Matrix<double, 5, 1>;
   results.omega = derived(fitted, [](const P& p) { return p[0]; });
   results.gamma_over_2omega = derived(fitted, [](const P& p) { return p[1] / (2.0 * p[0]); });
-  results.mu_s = derived(fitted, [](const P& p) { return p[3]; });
-  results.mu_k = derived(fitted, [](const P& p) { return p[4]; });
+  results.mu_s = derived(fitted, [&](const P& p) { return p[3] + fitted.drift; });
+  results.mu_k = derived(fitted, [&](const P& p) { return p[4] + fitted.drift; });
   results.delta_mu = derived(fitted, [](const P& p) { return p[3] - p[4]; });
   const SharedParameters shared{fitted.value[0], fitted.value[1], fitted.value[2]};
   const double damper = shared.gamma * shared.r / shared.oscillator().omega0_squared();

@@ -75,7 +75,7 @@ SlipParameters first_guess(const Trace& trace, const Fall& slip, const SharedPar
   // [2] without damping: amplitude² = D² + (r/ω)².
   const double D = std::sqrt(std::max(amplitude * amplitude - belt * belt, 0.01 * amplitude * amplitude));
   SlipParameters parameters;
-  parameters.K = 0.5 * (slip.peak + slip.trough);
+  parameters.K = 0.5 * (slip.peak + slip.trough) - trace.drift.at(time_at(trace, slip.peak_at));
   parameters.S = parameters.K + D;
   parameters.onset_s = time_at(trace, slip.peak_at) - std::atan2(belt, D) / shared.omega;
   return parameters;
@@ -164,6 +164,7 @@ double time_at(const Trace& trace, double position) noexcept {
 SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, double sigma,
                              const SharedPrior& prior) {
   SlipEstimates estimates;
+  estimates.drift = trace.drift;
   SharedParameters shared = first_guess(trace, slips);
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<SlipEnd> before = estimates.ends;

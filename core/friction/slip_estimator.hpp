@@ -22,6 +22,7 @@ enum class SlipEnd {
 };
 
 struct SlipEstimates {
+  Drift drift;                                ///< Of the trace: fitted S and K are without it.
   std::vector<SlipEnd> ends;                  ///< One for each slip.
   std::vector<double> log_likelihood_ratios;  ///< Captured over free, one fewer than slips.
   std::vector<SlipWindow> windows;            ///< One for each onset from sticking.

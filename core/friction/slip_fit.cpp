@@ -51,7 +51,7 @@ NormalEquations assemble(const Trace& trace, const std::vector<SlipWindow>& wind
     for (std::size_t k = windows[i].first; k < windows[i].end; ++k) {
       if (trace.usable[k] == 0) continue;
       const SlipModelPoint point = model.at(trace.time_s[k]);
-      const double residual = trace.value[k] - point.value;
+      const double residual = trace.level(k) - point.value;
       const double weight = equations.sums.add(residual / sigma);
       block.own += weight * point.by_slip * point.by_slip.transpose();
       block.mixed += weight * point.by_slip * point.by_shared.transpose();
@@ -74,7 +74,7 @@ double cost_of(const Trace& trace, const std::vector<SlipWindow>& windows, const
     const SlipModel model{shared, window.slip, window.captured};
     for (std::size_t k = window.first; k < window.end; ++k) {
       if (trace.usable[k] != 0)
-        cost += huber_cost((trace.value[k] - model.at(trace.time_s[k]).value) / sigma);
+        cost += huber_cost((trace.level(k) - model.at(trace.time_s[k]).value) / sigma);
     }
   }
   return cost;

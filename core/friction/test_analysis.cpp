@@ -117,7 +117,7 @@ TestResults TestAnalysis::finish() {
   results.scan_rate_measured = Estimate::none("no clock readings in the analysis");
   results.transition_time = Estimate::none("no transition");
 
-  const Trace trace = despiked_trace();
+  Trace trace = despiked_trace();
   results.spike_count = Estimate::of(static_cast<double>(spikes_.size()));
   if (trace.size() < signal::kFewestScansForNoise) {
     too_short(trace.size(), results);
@@ -136,6 +136,7 @@ TestResults TestAnalysis::finish() {
     results.stick_cycle_count = Estimate::of(0.0);
     no_model_results("no slip", results);
   } else {
+    if (settings_.remove_drift) trace.drift = significant_drift(trace, slips);
     const SlipEstimates estimates = estimate_slips(trace, slips, sigma, settings_.prior);
     const RegimeVerdict verdict =
         judge_regime(slips.size(), estimates.log_likelihood_ratios, model_describes(estimates, sigma));
@@ -160,7 +161,7 @@ TestResults TestAnalysis::finish() {
 Trace TestAnalysis::despiked_trace() {
   const std::filesystem::path& scratch = settings_.scratch_folder;
   Trace trace{base::LongColumn<double>{scratch}, base::LongColumn<double>{scratch},
-              base::LongColumn<std::uint8_t>{scratch}};
+              base::LongColumn<std::uint8_t>{scratch}, {}};
   const double sigma =
       signal::scan_noise(coefficients_, noise_floor(coefficients_, settings_.step_coefficient));
   signal::Despiker despiker;

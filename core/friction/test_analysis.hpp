@@ -32,8 +32,9 @@ struct AnalysisSettings {
   double step_coefficient = 0.0;  ///< One A/D step; 0 if unknown: then it is taken from the trace.
   Tester tester;
   Method method;
-  SharedPrior prior;    ///< What is known of the tester beforehand; empty: the test tells it all.
-  bool despike = true;  ///< Off: to see what the spikes did.
+  SharedPrior prior;         ///< What is known of the tester beforehand; empty: the test tells it all.
+  bool despike = true;       ///< Off: to see what the spikes did.
+  bool remove_drift = true;  ///< Off: to see what the drift did.
   /// Where to put the scans of a long test beside the latest few minutes; empty: they all stay in memory.
   std::filesystem::path scratch_folder;
 };

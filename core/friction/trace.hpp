@@ -9,12 +9,26 @@
 
 namespace stickslip::friction {
 
+/// What K and S change by together while a test lasts, in a line.
+struct Drift {
+  double rate_per_s = 0.0;
+  double zero_at_s = 0.0;  ///< Where it counts as none.
+
+  [[nodiscard]] double at(double time_s) const noexcept { return rate_per_s * (time_s - zero_at_s); }
+};
+
 /// Columns of equal length, in the order of time.
 struct Trace {
   base::LongColumn<double> time_s;        ///< (scan index − first index of the record) / granted rate.
   base::LongColumn<double> value;         ///< Coefficient; a spike is replaced by the median around it.
   base::LongColumn<std::uint8_t> usable;  ///< 0 for a spike or a saturated scan: left out of fits.
 
+  /// Taken off for the fits, and added again to what they find. Exact for the model: with c − βt for c, K and
+  /// S become constant, and the stick rate r is less by β.
+  Drift drift;
+
+  /// The coefficient without the drift.
+  [[nodiscard]] double level(std::size_t scan) const noexcept { return value[scan] - drift.at(time_s[scan]); }
   [[nodiscard]] std::size_t size() const noexcept { return value.size(); }
 };
 

@@ -41,7 +41,7 @@ Equations assemble(const Trace& trace, std::size_t first, std::size_t end, const
   for (std::size_t k = first; k < end; ++k) {
     if (trace.usable[k] == 0) continue;
     const UniformPoint point = course->at(trace.time_s[k]);
-    const double z = (trace.value[k] - point.value) / sigma;
+    const double z = (trace.level(k) - point.value) / sigma;
     const double weight = equations.sums.add(z);
     const P::Vector by = point.by / sigma;
     equations.normal.selfadjointView<Eigen::Lower>().rankUpdate(by, weight);
