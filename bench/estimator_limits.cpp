@@ -1,6 +1,6 @@
 // How close the estimators come to the Cramér–Rao bound, by simulation through the whole analysis:
 //
-//     bench_estimator_limits [SEEDS]      # default 4000
+//     estimator_limits [SEEDS]      # default 4000
 //
 // The table of docs/detector.md.
 

@@ -92,6 +92,15 @@ bool admissible(const SharedParameters& shared) {
          std::abs(shared.gamma) < 2.0 * shared.omega;
 }
 
+/// S may fall below K by what noise does to them, no further: a free oscillation also meets the line of the
+/// stick half a turn before its onset, with S far below K, and a step can land in that valley.
+bool admissible(const std::vector<SlipWindow>& windows, double sigma) {
+  constexpr double kLowestSigmas = 6.0;  // Half of the least fall that is a slip.
+  return std::all_of(windows.begin(), windows.end(), [&](const SlipWindow& window) {
+    return window.slip.S - window.slip.K >= -kLowestSigmas * sigma;
+  });
+}
+
 struct Step {
   Vector3d shared;
   std::vector<Vector3d> slips;
@@ -172,7 +181,8 @@ SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows, const Sh
         windows[i].slip.S += step.slips[i][1];
         windows[i].slip.K += step.slips[i][2];
       }
-      if (admissible(trial)) trial_cost = cost_of(trace, windows, trial, sigma, prior);
+      if (admissible(trial) && admissible(windows, sigma))
+        trial_cost = cost_of(trace, windows, trial, sigma, prior);
     }
     if (trial_cost <= equations.cost) {
       fit.converged = equations.cost - trial_cost <= kConverged * equations.cost;

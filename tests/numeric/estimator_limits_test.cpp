@@ -1,0 +1,43 @@
+// The estimators reach the Cramér–Rao bound, and their standard errors tell the truth. With more seeds the
+// program estimator_limits prints the same numbers.
+
+#include "tests/support/estimator_limits.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace stickslip {
+namespace {
+
+constexpr int kSeeds = 400;
+
+class EstimatorLimits : public testing::TestWithParam<test::LimitCase> {};
+
+TEST_P(EstimatorLimits, AreWithinATenthOfTheBound) {
+  // Of N seeds an rms scatters by 1/√(2N) of itself, a variance by √(2/N), a mean by 1/√N, a part p by
+  // √(p(1 − p)/N). What is promised of infinitely many seeds, and three of these.
+  const double n = kSeeds;
+  const test::LimitReport report = test::LimitScene{}.run(GetParam(), kSeeds);
+  EXPECT_EQ(report.without_result, 0);
+  for (const test::LimitTally& tally : report.tallies) {
+    std::printf("%-14s bound %-9.3g rms/bound %.3f; z mean %6.3f variance %.3f; in 95 %%: %.1f %%\n",
+                tally.what, tally.bound, tally.rms_over_bound(), tally.normalised_mean(),
+                tally.normalised_variance(), 100.0 * tally.coverage());
+    EXPECT_LT(tally.rms_over_bound(), 1.1 * (1.0 + 3.0 / std::sqrt(2.0 * n))) << tally.what;
+    EXPECT_GT(tally.rms_over_bound(), 1.0 - 3.0 / std::sqrt(2.0 * n)) << tally.what << ": the bound is wrong";
+    EXPECT_NEAR(tally.normalised_mean(), 0.0, 3.0 / std::sqrt(n)) << tally.what;
+    EXPECT_NEAR(tally.normalised_variance(), 1.0, 0.1 + 3.0 * std::sqrt(2.0 / n)) << tally.what;
+    EXPECT_NEAR(tally.coverage(), 0.95, 0.01 + 3.0 * std::sqrt(0.95 * 0.05 / n)) << tally.what;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Known, EstimatorLimits, testing::ValuesIn(test::kLimitCases),
+                         [](const testing::TestParamInfo<test::LimitCase>& known) {
+                           return std::string{known.param.coupling_known ? "Tester" : "Nothing"} +
+                                  (known.param.speed_known ? "AndSpeed" : "");
+                         });
+
+}  // namespace
+}  // namespace stickslip

@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "core/friction/uniform_stage.hpp"
+#include "tests/support/model_course.hpp"
+
+namespace stickslip::friction {
+namespace {
+
+using test::ModelCourse;
+
+constexpr double kSigma = 0.001;
+
+TEST(UniformFit, GivesBackTheParametersOfAnExactTrace) {
+  // As SlipFit: it stops where a step lowers the cost by less than 1e-10 of it, and converges quadratically.
+  const ModelCourse course = ModelCourse::captured(1.3, 10);
+  UniformParameters guess{course.shared, course.windows.front().slip};
+  guess.slip.S += 0.002;
+  guess.slip.K -= 0.001;
+  guess.shared.omega *= 1.001;
+  guess.shared.gamma *= 0.9;
+  const UniformFit fit = fit_uniform(course.trace, 0, course.trace.size(), guess, kSigma, {});
+  ASSERT_TRUE(fit.converged);
+  EXPECT_NEAR(fit.parameters.slip.S, ModelCourse::kS, 1e-8);
+  EXPECT_NEAR(fit.parameters.slip.K, ModelCourse::kK, 1e-8);
+  EXPECT_NEAR(fit.parameters.shared.gamma / course.shared.gamma, 1.0, 1e-6);
+  EXPECT_NEAR(fit.parameters.shared.omega / course.shared.omega, 1.0, 1e-8);
+  EXPECT_EQ(fit.scan_count, static_cast<double>(course.trace.size()));
+}
+
+std::optional<UniformFit> stage(const Trace& trace, std::vector<SlipWindow> windows,
+                                const ModelCourse& course) {
+  const SlipFit fit = fit_slips(trace, windows, course.shared, kSigma);
+  return fit.converged ? uniform_if_slips_agree(trace, windows, fit.shared, kSigma, {}) : std::nullopt;
+}
+
+TEST(UniformStage, TakesEqualSlipsAsEqualAtItsLevel) {
+  // One in a hundred is refused: of 300 at most 3 + 4·√3.
+  constexpr int kSeeds = 300;
+  const ModelCourse course = ModelCourse::captured(1.3, 11);
+  int refused = 0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    if (!stage(course.noisy(kSigma, seed), course.windows, course)) ++refused;
+  }
+  EXPECT_LE(refused, 10);
+}
+
+TEST(UniformStage, HundredsOfSlipsKeepTheirPhase) {
+  const ModelCourse course = ModelCourse::captured(1.3, 400);
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const auto uniform = stage(course.noisy(kSigma, seed), course.windows, course);
+    if (!uniform) continue;
+    ++found;
+    EXPECT_NEAR(uniform->parameters.slip.S, ModelCourse::kS,
+                5.0 * std::sqrt(uniform->covariance(UniformParameters::kS, UniformParameters::kS)));
+  }
+  EXPECT_GE(found, 9);
+}
+
+TEST(UniformStage, SlipsThatDifferKeepTheirOwn) {
+  // One K of eleven off by 2 % of K: 6 σ in every one of some twelve scans of its slip.
+  const ModelCourse course = ModelCourse::captured(1.3, 11);
+  Trace trace = course.noisy(kSigma, 1);
+  for (std::size_t k = course.windows[5].first; k < course.windows[5].end; ++k) trace.value[k] += 0.006;
+  EXPECT_FALSE(stage(trace, course.windows, course));
+}
+
+TEST(UniformStage, NeedsThreeSlipsThatStickAgain) {
+  const ModelCourse two = ModelCourse::captured(1.3, 2);
+  EXPECT_FALSE(stage(two.noisy(kSigma, 1), two.windows, two));
+  ModelCourse free = ModelCourse::captured(1.3, 5);
+  free.windows[3].captured = false;
+  EXPECT_FALSE(stage(free.noisy(kSigma, 1), free.windows, free));
+}
+
+}  // namespace
+}  // namespace stickslip::friction
