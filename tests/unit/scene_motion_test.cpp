@@ -49,7 +49,7 @@ std::string refusal(const std::string& text) {
 
 Scene scene_with(const std::string& effects) { return parse_scene(kPull + effects, "test.toml").value(); }
 
-std::vector<friction::TrueCycle> cycles(const Scene& scene, std::uint64_t seed = 11) {
+base::LongColumn<friction::TrueCycle> cycles(const Scene& scene, std::uint64_t seed = 11) {
   return scene_truth(scene, 350.0, seed).cycles;
 }
 
