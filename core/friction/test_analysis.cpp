@@ -33,16 +33,20 @@ double noise_floor(const base::LongColumn<double>& values, double step_coefficie
 /// Turning points must not follow noise before the noise is known.
 double hysteresis(double sigma) { return SlipRule::kHysteresisSigmas * sigma; }
 
-std::vector<Fall> find_slips(const Trace& trace, double sigma) {
+/// \param scratch  folder for what is being collected, so that the result grows once.
+std::vector<Fall> find_slips(const Trace& trace, double sigma, const std::filesystem::path& scratch) {
   FallFinder finder;
   SlipRule rule;
-  std::vector<Fall> slips;
+  base::LongColumn<Fall> slips{scratch};
   for (const double value : trace.value) {
     if (const auto fall = finder.add(value, hysteresis(sigma)); fall && rule.is_slip(*fall, sigma)) {
       slips.push_back(*fall);
     }
   }
-  return slips;
+  std::vector<Fall> all;
+  all.reserve(slips.size());
+  for (const Fall& slip : std::as_const(slips)) all.push_back(slip);
+  return all;
 }
 
 /// A stub of a test: without the noise there is no telling what is a slip.
@@ -124,7 +128,7 @@ TestResults TestAnalysis::finish() {
     return results;
   }
   const double sigma = signal::scan_noise(trace.value, noise_floor(trace.value, settings_.step_coefficient));
-  const std::vector<Fall> slips = find_slips(trace, sigma);
+  const std::vector<Fall> slips = find_slips(trace, sigma, settings_.scratch_folder);
   results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
   const TraditionalCoefficients traditional = traditional_coefficients(trace, slips, settings_.method);
   results.static_coefficient = traditional.static_coefficient;

@@ -37,9 +37,9 @@ struct AnalysisSettings {
   std::filesystem::path scratch_folder;
 };
 
-/// Thread-bound. Memory grows with the test: about 34 bytes a scan (with a scratch folder only what
-/// FallFinder keeps since the last slip) and 1 kB a slip. With a scratch folder all functions may throw
-/// std::system_error.
+/// Thread-bound. Memory grows with the test: about 34 bytes a scan and 0.8 kB a slip; with a scratch folder
+/// not with the scans, and by 0.6 kB a slip while they are estimated. With a scratch folder all functions may
+/// throw std::system_error.
 class TestAnalysis {
  public:
   /// \throws std::invalid_argument unless the rate is positive and finite.
