@@ -49,11 +49,13 @@ void RecordAnalysis::add(daq::ScanIndex first, std::span<const double> raw) {
     analysis_.add(first++, calibration_.coefficient(value), calibration_.saturated(value));
   }
   next_ = first;
+  // Nobody looks on: the final ones come with the results.
+  static_cast<void>(analysis_.take_new_cycles());
 }
 
 void RecordAnalysis::finish(record::EndRecord& end) {
   end.results = analysis_.finish();
-  end.cycles = analysis_.cycles();
+  end.cycles = analysis_.take_cycles();
   end.spikes = analysis_.spikes();
 }
 

@@ -143,11 +143,11 @@ class Walk {
     analysis->finish(end);
     end.compute_time_s = analysis_s + seconds_since(start_ns, clock_);
     end.cause = pipeline::name(pipeline::EndCause::kEndOfInput);
-    end.truth = sim::scene_truth(scene_, scene_.scan_rate_Hz, seed_);
+    end.truth = sim::scene_truth(scene_, scene_.scan_rate_Hz, seed_, scratch_);
     end.truth->solver->time_per_scan_s = result.time_taken_s / static_cast<double>(result.scan_count);
     // Its times begin with the first scan that arrived.
     drivers::move_into_window(*end.truth, static_cast<double>(first_) / scene_.scan_rate_Hz,
-                              scene_.duration_s);
+                              scene_.duration_s, scratch_);
     record::set_end(result.record, std::move(end));
     result.record.header.process.simulation = result.summary();
     return {};
@@ -248,6 +248,10 @@ base::Result<Simulation> simulate_to_file(const sim::Scene& scene, std::uint64_t
   if (auto published = record::publish_journal(journal_path, result.record, file.path); !published) {
     return tl::unexpected(published.error());
   }
+  // Who wants the tables has the file.
+  result.record.cycles.clear();
+  result.record.end->truth->modes.clear();
+  result.record.end->truth->cycles.clear();
   return result;
 }
 

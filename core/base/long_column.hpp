@@ -1,5 +1,5 @@
 /// \file
-/// One number for each scan, of which there may be more than memory should hold.
+/// One number for each scan, or one row for each slip, of which there may be more than memory should hold.
 ///
 ///     LongColumn<double> force{folder};
 ///     force.push_back(0.3);
@@ -11,9 +11,11 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <compare>
 #include <cstddef>
 #include <filesystem>
+#include <initializer_list>
 #include <iterator>
 #include <memory>
 #include <span>
@@ -33,8 +35,11 @@ class LongColumn {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
-  static constexpr std::size_t kBlock = std::size_t{1} << 16U;  ///< Elements; 3 min at 350 scans/s.
-  static constexpr std::size_t kResident = 4;                   ///< Blocks in memory if there is a file.
+  /// Elements. Of numbers 3 min at 350 scans/s; of rows of a table, of which there are fewer, 32 kB.
+  static constexpr std::size_t kBlock = sizeof(T) <= sizeof(double)
+                                            ? std::size_t{1} << 16U
+                                            : std::bit_floor((std::size_t{1} << 15U) / sizeof(T));
+  static constexpr std::size_t kResident = 4;  ///< Blocks in memory if there is a file.
 
   template <bool kConst>
   class Iterator;
@@ -44,7 +49,10 @@ class LongColumn {
 
   LongColumn() = default;
   LongColumn(const std::vector<T>& values) {  // NOLINT(google-explicit-constructor): it is such a vector.
-    for (const T value : values) push_back(value);
+    for (const T& value : values) push_back(value);
+  }
+  LongColumn(std::initializer_list<T> values) {
+    for (const T& value : values) push_back(value);
   }
   /// \param folder  of the file; empty: all in memory.
   explicit LongColumn(const std::filesystem::path& folder) {
@@ -65,13 +73,14 @@ class LongColumn {
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
 
-  void push_back(T value) {
+  void push_back(const T& value) {
     if (size_ % kBlock == 0) add_block();
     blocks_.back()[size_ % kBlock] = value;
     ++size_;
   }
+  void clear() { *this = LongColumn{}; }
   void assign(std::size_t count, T value) {
-    *this = LongColumn{};
+    clear();
     while (size_ < count) push_back(value);
   }
 

@@ -14,80 +14,98 @@ double median_of_three(double a, double b, double c) noexcept {
 }  // namespace
 
 std::optional<Fall> FallFinder::add(double value, double hysteresis) {
-  scans_.push_back(value);
+  std::copy(latest_.begin() + 1, latest_.end(), latest_.begin());
+  latest_.back() = value;
   ++count_;
   std::optional<Fall> fall;
   if (count_ == 1) {
-    medians_.push_back(value);
-    high_ = low_ = turn_ = Extreme{0, value};
+    // A median of one.
+    high_ = low_ = turn_ = Extreme{0, value, {}};
+    for (Extreme* first : {&high_, &low_}) complete(*first);
     return fall;
   }
+  for (Extreme* candidate : {&high_, &low_}) complete(*candidate);
   if (count_ == 2) return fall;
-  const std::size_t newest = count_ - 1;
-  const double median = median_of_three(at(newest - 2), at(newest - 1), at(newest));
-  medians_.push_back(median);
-  step(newest - 1, median, hysteresis, fall);
+  const double median = median_of_three(latest_[2], latest_[3], latest_[4]);
+  step(count_ - 2, median, hysteresis, fall);
   return fall;
 }
 
-void FallFinder::step(std::size_t position, double median, double hysteresis, std::optional<Fall>& fall) {
-  if (direction_ != Direction::kDown && median > high_.value) high_ = {position, median};
-  if (direction_ != Direction::kUp && median < low_.value) low_ = {position, median};
+FallFinder::Extreme FallFinder::extreme(std::size_t position, double median) const noexcept {
+  // The newest scan is the one after the position.
+  Extreme extreme{position, median, {}};
+  std::copy(latest_.begin() + 1, latest_.end(), extreme.scans.begin());
+  return extreme;
+}
+
+void FallFinder::complete(Extreme& extreme) const noexcept {
+  const std::size_t offset = count_ - 1 - extreme.position;
+  if (offset <= kReach) extreme.scans[kReach + offset] = latest_.back();
+}
+
+void FallFinder::step(std::size_t position, double median, double hysteresis,
+                      std::optional<Fall>& fall) noexcept {
+  const bool new_high = direction_ != Direction::kDown && median > high_.value;
+  const bool new_low = direction_ != Direction::kUp && median < low_.value;
+  if (new_high) {
+    restart_at_high(position, median);
+  } else {
+    above_after_low_.add(position, median);
+    below_.add(position, median);
+  }
+  if (new_low) fall_to(position, median);
 
   if (direction_ != Direction::kDown && median < high_.value - hysteresis) {
     // The high was a maximum. While the direction is unknown the trace may have begun at it.
     if (direction_ == Direction::kUnknown) turn_ = low_.position < high_.position ? low_ : high_;
     direction_ = Direction::kDown;
-    low_ = {position, median};
+    fall_to(position, median);
   } else if (direction_ != Direction::kUp && median > low_.value + hysteresis) {
     if (direction_ == Direction::kDown) fall = describe(high_, low_);
     direction_ = Direction::kUp;
     turn_ = low_;
-    high_ = {position, median};
-    forget_before(turn_.position);
+    restart_at_high(position, median);
   }
 }
 
-void FallFinder::forget_before(std::size_t position) {
-  // A few scans before the turning point are kept for interpolation.
-  constexpr std::size_t kKept = 4;
-  if (position < base_ + kKept) return;
-  const std::size_t gone = position - kKept - base_;
-  const auto count = static_cast<std::ptrdiff_t>(gone);
-  scans_.erase(scans_.begin(), scans_.begin() + count);
-  medians_.erase(medians_.begin(), medians_.begin() + count);
-  base_ += gone;
+void FallFinder::restart_at_high(std::size_t position, double median) noexcept {
+  high_ = extreme(position, median);
+  above_.clear();
+  above_after_low_.clear();
+  below_.clear();
 }
 
-Fall FallFinder::describe(const Extreme& peak, const Extreme& trough) const {
+void FallFinder::fall_to(std::size_t position, double median) noexcept {
+  low_ = extreme(position, median);
+  above_.take(above_after_low_);
+}
+
+Fall FallFinder::describe(const Extreme& peak, const Extreme& trough) const noexcept {
   Fall fall;
   std::tie(fall.peak_at, fall.peak) = interpolate(peak, 1.0);
   std::tie(fall.trough_at, fall.trough) = interpolate(trough, -1.0);
   const double drop = peak.value - trough.value;
   fall.robust_drop = drop;
   // 10–90 % as in rise times of instruments: ends of a fall are rounded and drown in noise.
-  std::size_t last_above = peak.position;
-  std::size_t first_below = trough.position;
-  for (std::size_t position = peak.position; position <= trough.position; ++position) {
-    if (medians_[position - base_] > peak.value - 0.1 * drop) last_above = position;
-  }
-  for (std::size_t position = trough.position; position > peak.position; --position) {
-    if (medians_[position - base_] < trough.value + 0.1 * drop) first_below = position;
-  }
+  const std::size_t last_above = above_.find(peak.value - 0.1 * drop).value_or(peak.position);
+  // Medians behind the trough are in there too, but none of them is below it: it would be the trough.
+  const std::size_t first_below = below_.find(trough.value + 0.1 * drop).value_or(trough.position);
   fall.duration = first_below > last_above ? static_cast<double>(first_below - last_above) : 0.0;
   fall.rise_duration = static_cast<double>(peak.position - turn_.position);
   fall.rise_from = turn_.value;
   return fall;
 }
 
-std::pair<double, double> FallFinder::interpolate(const Extreme& extreme, double sign) const {
+std::pair<double, double> FallFinder::interpolate(const Extreme& extreme, double sign) noexcept {
+  // Whoever asks has seen more than kReach scans behind the extreme.
+  const auto at = [&](std::size_t position) { return extreme.scans[position + kReach - extreme.position]; };
   std::size_t best = extreme.position;
   // The median of three lies at most one scan beside the true extreme scan.
-  for (std::size_t position = std::max(extreme.position, base_ + 1) - 1;
-       position <= extreme.position + 1 && position < count_; ++position) {
+  for (std::size_t position = std::max<std::size_t>(extreme.position, 1) - 1;
+       position <= extreme.position + 1; ++position) {
     if (sign * at(position) > sign * at(best)) best = position;
   }
-  if (best == base_ || best + 1 >= count_) return {static_cast<double>(best), at(best)};
+  if (best == 0) return {0.0, at(0)};
   const double left = at(best - 1);
   const double middle = at(best);
   const double right = at(best + 1);

@@ -2,22 +2,24 @@
 /// Turning points of a noisy force: rises and falls that are large against the noise of a scan.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <utility>
-#include <vector>
 
-#include "core/base/scan_index.hpp"
+#include "core/signal/level_positions.hpp"
 
 namespace stickslip::friction {
 
 /// A fall of the force between two turning points. Times are in scans after the first scan.
 struct Fall {
-  double peak_at = 0.0;        ///< Position of the maximum, interpolated between scans.
-  double trough_at = 0.0;      ///< Position of the following minimum, interpolated.
-  double peak = 0.0;           ///< Value at the maximum, interpolated.
-  double trough = 0.0;         ///< Value at the minimum, interpolated.
-  double duration = 0.0;       ///< Scans from the last above 90 % to the first below 10 % of the drop.
+  double peak_at = 0.0;    ///< Position of the maximum, interpolated between scans.
+  double trough_at = 0.0;  ///< Position of the following minimum, interpolated.
+  double peak = 0.0;       ///< Value at the maximum, interpolated.
+  double trough = 0.0;     ///< Value at the minimum, interpolated.
+  /// Scans from the last above 90 % to the first below 10 % of the drop. Of a fall of more than
+  /// signal::kMostSteps scans it may be too large by 0.2 % of the time from peak to trough.
+  double duration = 0.0;
   double rise_duration = 0.0;  ///< Scans from the turning point before to the peak.
   double rise_from = 0.0;      ///< Value at that turning point.
 
@@ -28,7 +30,8 @@ struct Fall {
 
 /// Follows the force with hysteresis: a maximum is one as soon as the force has fallen below it by
 /// the hysteresis, a minimum likewise. Runs on the median of three scans, so that no single scan
-/// makes a turning point; the values reported come from the scans themselves.
+/// makes a turning point; the values reported come from the scans themselves. Its memory, 100 kB, is taken
+/// when it is made and does not depend on the trace; each scan costs amortised O(1). Move-only.
 class FallFinder {
  public:
   /// \param value       despiked coefficient of the next scan.
@@ -43,28 +46,40 @@ class FallFinder {
  private:
   enum class Direction { kUnknown, kUp, kDown };
 
-  /// A candidate for a turning point: its position in `scans_` is position − base_.
+  /// Scans before and after a turning point that its interpolation may look at.
+  static constexpr std::size_t kReach = 2;
+  using Scans = std::array<double, 2 * kReach + 1>;
+
+  /// A candidate for a turning point.
   struct Extreme {
     std::size_t position = 0;
-    double value = 0.0;
+    double value = 0.0;  ///< Median of three.
+    /// Those from position − kReach on: none before the trace, and no more than have come.
+    Scans scans{};
   };
 
-  void step(std::size_t position, double median, double hysteresis, std::optional<Fall>& fall);
-  void forget_before(std::size_t position);
-  [[nodiscard]] Fall describe(const Extreme& peak, const Extreme& trough) const;
+  [[nodiscard]] Extreme extreme(std::size_t position, double median) const noexcept;
+  /// Hands the newest scan to a candidate that it is close to.
+  void complete(Extreme& extreme) const noexcept;
+  void step(std::size_t position, double median, double hysteresis, std::optional<Fall>& fall) noexcept;
+  void restart_at_high(std::size_t position, double median) noexcept;
+  void fall_to(std::size_t position, double median) noexcept;
+  [[nodiscard]] Fall describe(const Extreme& peak, const Extreme& trough) const noexcept;
   /// Refines an extreme with a parabola through the largest scan near it and its neighbours.
   /// \param sign  +1 for a maximum, −1 for a minimum.
-  [[nodiscard]] std::pair<double, double> interpolate(const Extreme& extreme, double sign) const;
-  [[nodiscard]] double at(std::size_t position) const noexcept { return scans_[position - base_]; }
+  [[nodiscard]] static std::pair<double, double> interpolate(const Extreme& extreme, double sign) noexcept;
 
-  std::vector<double> scans_;    ///< From before the last confirmed turning point on.
-  std::vector<double> medians_;  ///< Median of three around the same positions, one shorter.
-  std::size_t base_ = 0;         ///< Position of scans_.front().
-  std::size_t count_ = 0;        ///< Scans seen.
+  Scans latest_{};         ///< The newest last.
+  std::size_t count_ = 0;  ///< Scans seen.
   Direction direction_ = Direction::kUnknown;
   Extreme high_;
   Extreme low_;
   Extreme turn_;  ///< The confirmed turning point before high_ (direction up) or peak (down).
+
+  // Medians behind high_. While the force falls, those behind low_ are kept apart: the fall ends with low_.
+  signal::LastAbove above_;
+  signal::LastAbove above_after_low_;
+  signal::FirstBelow below_;
 };
 
 }  // namespace stickslip::friction

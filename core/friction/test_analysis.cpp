@@ -33,16 +33,20 @@ double noise_floor(const base::LongColumn<double>& values, double step_coefficie
 /// Turning points must not follow noise before the noise is known.
 double hysteresis(double sigma) { return SlipRule::kHysteresisSigmas * sigma; }
 
-std::vector<Fall> find_slips(const Trace& trace, double sigma) {
+/// \param scratch  folder for what is being collected, so that the result grows once.
+std::vector<Fall> find_slips(const Trace& trace, double sigma, const std::filesystem::path& scratch) {
   FallFinder finder;
   SlipRule rule;
-  std::vector<Fall> slips;
+  base::LongColumn<Fall> slips{scratch};
   for (const double value : trace.value) {
     if (const auto fall = finder.add(value, hysteresis(sigma)); fall && rule.is_slip(*fall, sigma)) {
       slips.push_back(*fall);
     }
   }
-  return slips;
+  std::vector<Fall> all;
+  all.reserve(slips.size());
+  for (const Fall& slip : std::as_const(slips)) all.push_back(slip);
+  return all;
 }
 
 /// A stub of a test: without the noise there is no telling what is a slip.
@@ -124,7 +128,7 @@ TestResults TestAnalysis::finish() {
     return results;
   }
   const double sigma = signal::scan_noise(trace.value, noise_floor(trace.value, settings_.step_coefficient));
-  const std::vector<Fall> slips = find_slips(trace, sigma);
+  const std::vector<Fall> slips = find_slips(trace, sigma, settings_.scratch_folder);
   results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
   const TraditionalCoefficients traditional = traditional_coefficients(trace, slips, settings_.method);
   results.static_coefficient = traditional.static_coefficient;
@@ -150,8 +154,7 @@ TestResults TestAnalysis::finish() {
     if (verdict.transition_slip) {
       results.transition_time = Estimate::of(time_at(trace, slips[*verdict.transition_slip].peak_at));
     }
-    cycles_ = cycle_table(trace, slips, estimates);
-    flag_cycles(slips);
+    keep_cycles(cycle_table(trace, slips, estimates), slips);
   }
   period_results(trace, slips, results);
   results.drift_rate = drift_of(trace, slips);
@@ -186,26 +189,30 @@ Trace TestAnalysis::despiked_trace() {
   return trace;
 }
 
-void TestAnalysis::flag_cycles(const std::vector<Fall>& slips) {
+void TestAnalysis::keep_cycles(const std::vector<Cycle>& cycles, const std::vector<Fall>& slips) {
   const base::LongColumn<base::ScanIndex>& indices = indices_;
   const base::LongColumn<std::uint8_t>& saturated = saturated_;
-  for (std::size_t i = 0; i < cycles_.size(); ++i) {
-    Cycle& cycle = cycles_[i];
+  cycles_ = base::LongColumn<Cycle>{settings_.scratch_folder};
+  for (std::size_t i = 0; i < cycles.size(); ++i) {
+    Cycle cycle = cycles[i];
     const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
     const auto end = i + 1 < slips.size() ? static_cast<std::size_t>(std::lround(slips[i + 1].peak_at))
                                           : static_cast<std::size_t>(std::lround(slips[i].trough_at));
     cycle.first_scan = indices[first];
     const base::ScanIndex last_scan = indices[std::min(end, indices.size() - 1)];
-    const auto inside = [&](base::ScanIndex scan) { return scan >= cycle.first_scan && scan < last_scan; };
-    if (std::any_of(spikes_.begin(), spikes_.end(), inside)) cycle.flags |= kCycleHasSpike;
-    if (std::any_of(gaps_.begin(), gaps_.end(), [&](const Gap& gap) { return inside(gap.first); })) {
-      cycle.flags |= kCycleHasGap;
-    }
+    // Spikes and gaps rise.
+    const auto spike = std::lower_bound(spikes_.begin(), spikes_.end(), cycle.first_scan);
+    if (spike != spikes_.end() && *spike < last_scan) cycle.flags |= kCycleHasSpike;
+    const auto gap =
+        std::lower_bound(gaps_.begin(), gaps_.end(), cycle.first_scan,
+                         [](const Gap& candidate, base::ScanIndex scan) { return candidate.first < scan; });
+    if (gap != gaps_.end() && gap->first < last_scan) cycle.flags |= kCycleHasGap;
     if (std::any_of(saturated.begin() + static_cast<std::ptrdiff_t>(first),
                     saturated.begin() + static_cast<std::ptrdiff_t>(std::min(end, saturated.size())),
                     [](std::uint8_t flag) { return flag != 0; })) {
       cycle.flags |= kCycleIsSaturated;
     }
+    cycles_.push_back(cycle);
   }
 }
 

@@ -7,8 +7,8 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
+#include "core/base/long_column.hpp"
 #include "core/base/scan_index.hpp"
 #include "core/friction/regime.hpp"
 
@@ -66,8 +66,8 @@ struct TestTruth {
   std::optional<double> kinetic_coefficient;       ///< from the force itself; none if the pull is too short.
   std::optional<double> oscillation_frequency_Hz;  ///< None if there is no oscillation.
   std::optional<double> amplitude;                 ///< Half the range of the first full cycle.
-  std::vector<ModeInterval> modes;
-  std::vector<TrueCycle> cycles;
+  base::LongColumn<ModeInterval> modes;
+  base::LongColumn<TrueCycle> cycles;
   std::optional<SolverFacts> solver;  ///< None in records made before it was kept.
 };
 

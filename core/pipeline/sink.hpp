@@ -52,8 +52,8 @@ struct TestEnd {
   daq::ScanIndex end = 0;  ///< One past the last scan of the record.
   EndCause cause = EndCause::kUnloaded;
   friction::TestResults results;
-  std::vector<friction::Cycle> cycles;  ///< Final values, after the whole-test estimate.
-  std::vector<daq::ScanIndex> spikes;   ///< Scans replaced for the detector.
+  base::LongColumn<friction::Cycle> cycles;  ///< Final values, after the whole-test estimate.
+  std::vector<daq::ScanIndex> spikes;        ///< Scans replaced for the detector.
 };
 
 /// Called from the processing thread, in order: began, (scans | gap | cycle)*, ended. Must not

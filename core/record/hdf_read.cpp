@@ -53,6 +53,17 @@ std::size_t text_width(const TypeHandle& type, std::size_t count, const std::str
   return width;
 }
 
+/// \param all  `width` bytes each.
+std::vector<std::string> texts_in(const std::string& all, std::size_t width) {
+  std::vector<std::string> texts;
+  for (std::size_t at = 0; at < all.size(); at += width) {
+    std::string text = all.substr(at, width);
+    text.erase(text.find_last_not_of('\0') + 1);
+    texts.push_back(std::move(text));
+  }
+  return texts;
+}
+
 std::vector<std::string> texts_of(hid_t parent, const std::string& name, int dimensions) {
   const DatasetHandle dataset = open_dataset(parent, name);
   const TypeHandle type = type_of(dataset, name);
@@ -60,13 +71,7 @@ std::vector<std::string> texts_of(hid_t parent, const std::string& name, int dim
   const std::size_t width = text_width(type, count, name);
   std::string all(width * count, '\0');
   check(H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()), "reading " + name);
-  std::vector<std::string> texts;
-  for (std::size_t i = 0; i < count; ++i) {
-    std::string text = all.substr(i * width, width);
-    text.erase(text.find_last_not_of('\0') + 1);
-    texts.push_back(std::move(text));
-  }
-  return texts;
+  return texts_in(all, width);
 }
 
 template <typename T>
@@ -160,6 +165,21 @@ void read_rows(const DatasetHandle& column, const std::string& name, std::size_t
   const SpaceHandle memory{H5Screate_simple(1, &count, nullptr), "rows of " + name};
   check(H5Dread(column.get(), NumberType<T>::memory(), memory.get(), file.get(), H5P_DEFAULT, values.data()),
         fmt::format("reading {} (cut short or damaged)", name));
+}
+
+std::vector<std::string> read_text_rows(const DatasetHandle& column, const std::string& name,
+                                        std::size_t first, std::size_t count) {
+  const TypeHandle type = type_of(column, name);
+  const std::size_t width = text_width(type, count, name);
+  const hsize_t row = first;
+  const hsize_t rows = count;
+  const SpaceHandle file = space_of(column, name);
+  check(H5Sselect_hyperslab(file.get(), H5S_SELECT_SET, &row, nullptr, &rows, nullptr), "rows of " + name);
+  const SpaceHandle memory{H5Screate_simple(1, &rows, nullptr), "rows of " + name};
+  std::string all(width * count, '\0');
+  check(H5Dread(column.get(), type.get(), memory.get(), file.get(), H5P_DEFAULT, all.data()),
+        "reading " + name);
+  return texts_in(all, width);
 }
 
 std::size_t row_count(hid_t parent, const std::string& name) {

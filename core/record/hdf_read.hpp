@@ -36,6 +36,9 @@ template <typename T>
 /// Rows [first, first + values.size()) of a column of type T.
 template <typename T>
 void read_rows(const DatasetHandle& column, const std::string& name, std::size_t first, std::span<T> values);
+/// The same of a column of texts.
+[[nodiscard]] std::vector<std::string> read_text_rows(const DatasetHandle& column, const std::string& name,
+                                                      std::size_t first, std::size_t count);
 /// Rows of a column.
 [[nodiscard]] std::size_t row_count(hid_t parent, const std::string& name);
 /// Whether the stored type of a data set is T.

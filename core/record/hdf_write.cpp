@@ -205,6 +205,26 @@ DatasetHandle write_text_array(hid_t parent, const std::string& name, std::span<
   return dataset;
 }
 
+TextColumnWriter::TextColumnWriter(hid_t parent, const std::string& name, std::size_t width,
+                                   std::size_t count)
+    : name_(name),
+      width_(width),
+      type_(text_type(width)),
+      dataset_(make_dataset(parent, name, type_.get(), column_space(count), dataset_properties())) {}
+
+void TextColumnWriter::append(std::span<const std::string_view> texts) {
+  std::string padded;
+  padded.reserve(width_ * texts.size());
+  for (const std::string_view text : texts) padded.append(text).append(width_ - text.size(), '\0');
+  const hsize_t count = texts.size();
+  const SpaceHandle file{H5Dget_space(dataset_.get()), "space of " + name_};
+  check(H5Sselect_hyperslab(file.get(), H5S_SELECT_SET, &row_, nullptr, &count, nullptr), "rows of " + name_);
+  const SpaceHandle memory = column_space(texts.size());
+  check(H5Dwrite(dataset_.get(), type_.get(), memory.get(), file.get(), H5P_DEFAULT, padded.data()),
+        "writing " + name_);
+  row_ += count;
+}
+
 DatasetHandle write_texts(hid_t parent, const std::string& name, const std::vector<std::string>& texts) {
   std::size_t width = 1;
   for (const auto& text : texts) width = std::max(width, text.size());

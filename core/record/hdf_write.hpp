@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/record/fields.hpp"
@@ -44,10 +45,31 @@ class ColumnWriter {
   /// The next rows; not more than are left.
   void append(std::span<const T> values);
 
+  [[nodiscard]] const DatasetHandle& dataset() const& noexcept { return dataset_; }
+  /// When all is written.
+  [[nodiscard]] DatasetHandle dataset() && noexcept { return std::move(dataset_); }
+
+ private:
+  std::string name_;
+  DatasetHandle dataset_;
+  hsize_t row_ = 0;
+};
+
+/// A column of texts of a fixed length that is written piece by piece; as write_texts().
+class TextColumnWriter {
+ public:
+  /// \param width  bytes of the longest text, at least 1.
+  TextColumnWriter(hid_t parent, const std::string& name, std::size_t width, std::size_t count);
+
+  /// The next rows; not more than are left.
+  void append(std::span<const std::string_view> texts);
+
   [[nodiscard]] const DatasetHandle& dataset() const noexcept { return dataset_; }
 
  private:
   std::string name_;
+  std::size_t width_;
+  TypeHandle type_;
   DatasetHandle dataset_;
   hsize_t row_ = 0;
 };
@@ -88,6 +110,13 @@ class TableWriter {
   [[nodiscard]] ColumnWriter<T> add_empty(const FieldName& name, std::size_t count) {
     ColumnWriter<T> column{group_.get(), name, count};
     attach(column.dataset(), std::string{name.name});
+    return column;
+  }
+
+  [[nodiscard]] TextColumnWriter add_empty_texts(const std::string& name, std::size_t width,
+                                                 std::size_t count) {
+    TextColumnWriter column{group_.get(), name, width, count};
+    attach(column.dataset(), name);
     return column;
   }
 

@@ -166,17 +166,19 @@ friction::TestTruth truth_from_json(const json& object) {
   if (object.contains("solver")) for_each_field(truth.solver.emplace(), taker(object.at("solver")));
   // Older journals have their tables here.
   for (const json& entry : object.value("modes", json::array())) {
-    auto& mode = truth.modes.emplace_back();
+    friction::ModeInterval mode;
     decode(entry.at(0), mode.start_s);
     decode(entry.at(1), mode.end_s);
     const auto text = entry.at(2).get<std::string>();
     mode.mode = word(text, mode_from_name(text));
+    truth.modes.push_back(mode);
   }
   for (const json& entry : object.value("cycles", json::array())) {
-    auto& cycle = truth.cycles.emplace_back();
+    friction::TrueCycle cycle;
     decode(entry.at(0), cycle.onset_time_s);
     decode(entry.at(1), cycle.mu_s);
     decode(entry.at(2), cycle.mu_k);
+    truth.cycles.push_back(cycle);
   }
   return truth;
 }
@@ -318,22 +320,25 @@ friction::Mode mode_of(double number) {
 
 /// \param object  of the end.
 void read_tables(const json& object, TableReader table, EndRecord& end) {
-  end.cycles.resize(row_count(object, "cycle_count", table));
-  for (friction::Cycle& cycle : end.cycles) {
+  for (std::size_t left = row_count(object, "cycle_count", table); left > 0; --left) {
+    friction::Cycle cycle;
     for_each_cycle_column([&](const FieldName&, auto member) {
       cycle.*member = static_cast<std::decay_t<decltype(cycle.*member)>>(table.next());
     });
+    end.cycles.push_back(cycle);
   }
   if (!end.truth) return;
-  end.truth->modes.resize(row_count(object.at("truth"), "mode_count", table));
-  for (friction::ModeInterval& mode : end.truth->modes) {
+  for (std::size_t left = row_count(object.at("truth"), "mode_count", table); left > 0; --left) {
+    friction::ModeInterval mode;
     mode.start_s = table.next();
     mode.end_s = table.next();
     mode.mode = mode_of(table.next());
+    end.truth->modes.push_back(mode);
   }
-  end.truth->cycles.resize(row_count(object.at("truth"), "cycle_count", table));
-  for (friction::TrueCycle& cycle : end.truth->cycles) {
+  for (std::size_t left = row_count(object.at("truth"), "cycle_count", table); left > 0; --left) {
+    friction::TrueCycle cycle;
     for_each_true_cycle_column([&](const FieldName&, auto member) { cycle.*member = table.next(); });
+    end.truth->cycles.push_back(cycle);
   }
 }
 

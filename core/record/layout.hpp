@@ -24,6 +24,8 @@ void verify_scans(hid_t entry, const daq::BoardInfo& board, const ScanSource& sc
 
 void write_tables(hid_t entry, const Record& record);  ///< cycles, gaps, events
 void read_tables(hid_t entry, Record& record);
+/// Throws unless they could be read.
+void check_tables(hid_t entry);
 
 void write_results(hid_t entry, const friction::TestResults& results);
 [[nodiscard]] friction::TestResults read_results(hid_t entry);
@@ -38,6 +40,8 @@ void read_process(hid_t entry, Record& record);
 /// Expects the raw data to be written.
 void write_truth(hid_t entry, const friction::TestTruth& truth, const ScanSource& scans);
 [[nodiscard]] friction::TestTruth read_truth(hid_t entry);
+/// Throws unless it could be read.
+void check_truth(hid_t entry);
 /// The noise-free force; empty if the record has none.
 [[nodiscard]] std::vector<double> read_true_coefficient(hid_t entry, std::size_t scan_count);
 

@@ -3,6 +3,7 @@
 #include "core/record/hdf_read.hpp"
 #include "core/record/hdf_write.hpp"
 #include "core/record/layout.hpp"
+#include "core/record/long_tables.hpp"
 #include "core/record/words.hpp"
 
 namespace stickslip::record {
@@ -19,29 +20,27 @@ std::vector<Value> column_of(const std::vector<Row>& rows, Value Row::*member) {
   return column;
 }
 
-void write_cycles(hid_t entry, const std::vector<friction::Cycle>& cycles) {
+void write_cycles(hid_t entry, const base::LongColumn<friction::Cycle>& cycles) {
   TableWriter table{make_group(entry, "cycles", "NXdata")};
   write_attribute(table.group(), "signal", "delta_mu");
   write_attribute(table.group(), "axes", std::vector<std::string>{"cycle"});
   for_each_cycle_column([&](const FieldName& name, auto member) {
-    const DatasetHandle column = table.add(name, column_of(cycles, member));
+    const DatasetHandle column = write_member(table, name, cycles, member);
     if (name.name == "flags") write_attribute(column.get(), "meaning", kCycleFlagMeaning);
   });
 }
 
-template <typename Value>
-void read_member(hid_t group, const FieldName& name, Value friction::Cycle::*member,
-                 std::vector<friction::Cycle>& cycles) {
-  const auto column = read_column<Value>(group, std::string{name.name}, cycles.size());
-  for (std::size_t i = 0; i < cycles.size(); ++i) cycles[i].*member = column[i];
-}
-
-std::vector<friction::Cycle> read_cycles(hid_t entry) {
+template <typename Use>
+void for_each_cycle(hid_t entry, const Use& use) {
   const GroupHandle group = open_group(entry, "cycles");
-  std::vector<friction::Cycle> cycles(read_column<std::int64_t>(group.get(), "cycle").size());
-  for_each_cycle_column(
-      [&](const FieldName& name, auto member) { read_member(group.get(), name, member, cycles); });
-  return cycles;
+  for_each_row<friction::Cycle>(
+      group.get(), "cycle",
+      [&](std::size_t first, std::vector<friction::Cycle>& rows, std::size_t count) {
+        for_each_cycle_column([&](const FieldName& name, auto member) {
+          read_member(group.get(), name, member, count, first, rows);
+        });
+      },
+      use);
 }
 
 void write_gaps(hid_t entry, const std::vector<daq::Gap>& gaps) {
@@ -103,9 +102,16 @@ void write_tables(hid_t entry, const Record& record) {
 }
 
 void read_tables(hid_t entry, Record& record) {
-  record.cycles = read_cycles(entry);
+  record.cycles.clear();
+  for_each_cycle(entry, [&](const friction::Cycle& cycle) { record.cycles.push_back(cycle); });
   record.gaps = read_gaps(entry);
   record.events = read_events(entry);
+}
+
+void check_tables(hid_t entry) {
+  for_each_cycle(entry, [](const friction::Cycle&) {});
+  static_cast<void>(read_gaps(entry));
+  static_cast<void>(read_events(entry));
 }
 
 }  // namespace stickslip::record

@@ -1,8 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string_view>
+
 #include "core/record/hdf_read.hpp"
 #include "core/record/hdf_write.hpp"
 #include "core/record/layout.hpp"
+#include "core/record/long_tables.hpp"
 #include "core/record/words.hpp"
 
 namespace stickslip::record {
@@ -20,6 +24,75 @@ void write_force(hid_t entry, hid_t truth, const ScanSource& scans) {
   const GroupHandle raw = open_group(entry, "raw");
   attach_scale(column.dataset(), open_dataset(raw.get(), "time"), kForce);
   scans.for_each_force_piece([&](std::span<const double> force) { column.append(force); });
+}
+
+const FieldName kModeStart{"start_time", "s", "begin of the mode, after the first scan [s]"};
+const FieldName kModeEnd{"end_time", "s", "end of the mode, after the first scan [s]"};
+constexpr const char* kModeName = "mode";
+
+void write_modes(hid_t truth, const base::LongColumn<friction::ModeInterval>& modes) {
+  TableWriter table{make_group(truth, "modes", "NXcollection")};
+  static_cast<void>(write_member(table, kModeStart, modes, &friction::ModeInterval::start_s));
+  static_cast<void>(write_member(table, kModeEnd, modes, &friction::ModeInterval::end_s));
+  std::size_t width = 1;
+  for (const friction::ModeInterval& mode : modes) {
+    width = std::max(width, std::string_view{friction::name(mode.mode)}.size());
+  }
+  TextColumnWriter names = table.add_empty_texts(kModeName, width, modes.size());
+  write_rows(names, modes,
+             [](const friction::ModeInterval& mode) { return std::string_view{friction::name(mode.mode)}; });
+}
+
+template <typename Use>
+void for_each_mode(hid_t truth, const Use& use) {
+  const GroupHandle group = open_group(truth, "modes");
+  const DatasetHandle names = open_dataset(group.get(), kModeName);
+  for_each_row<friction::ModeInterval>(
+      group.get(), std::string{kModeStart.name},
+      [&](std::size_t first, std::vector<friction::ModeInterval>& rows, std::size_t count) {
+        read_member(group.get(), kModeStart, &friction::ModeInterval::start_s, count, first, rows);
+        read_member(group.get(), kModeEnd, &friction::ModeInterval::end_s, count, first, rows);
+        if (row_count(group.get(), kModeName) != count) {
+          throw HdfError("truth/modes/mode has another length than start_time");
+        }
+        if (rows.empty()) return;
+        const std::vector<std::string> texts = read_text_rows(names, kModeName, first, rows.size());
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+          const auto mode = mode_from_name(texts[i]);
+          if (!mode) throw HdfError(fmt::format("truth/modes/mode '{}' is unknown", texts[i]));
+          rows[i].mode = *mode;
+        }
+      },
+      use);
+}
+
+template <typename Use>
+void for_each_true_cycle(hid_t truth, const Use& use) {
+  const GroupHandle group = open_group(truth, "cycles");
+  for_each_row<friction::TrueCycle>(
+      group.get(), "onset_time",
+      [&](std::size_t first, std::vector<friction::TrueCycle>& rows, std::size_t count) {
+        for_each_true_cycle_column([&](const FieldName& name, auto member) {
+          read_member(group.get(), name, member, count, first, rows);
+        });
+      },
+      use);
+}
+
+/// All but the tables.
+friction::TestTruth read_facts(hid_t group) {
+  friction::TestTruth truth;
+  for_each_field(truth, FieldReader{group});
+  const std::string regime = read_text(group, "regime");
+  const auto known = friction::regime_from_name(regime);
+  if (!known) throw HdfError(fmt::format("truth/regime '{}' is unknown", regime));
+  truth.regime = *known;
+
+  if (has(group, "solver")) {
+    const GroupHandle solver = open_group(group, "solver");
+    for_each_field(truth.solver.emplace(), FieldReader{solver.get()});
+  }
+  return truth;
 }
 
 }  // namespace
@@ -41,59 +114,26 @@ void write_truth(hid_t entry, const friction::TestTruth& truth, const ScanSource
   }
   if (scans.has_force() && scans.size() > 0) write_force(entry, group.get(), scans);
 
-  TableWriter modes{make_group(group.get(), "modes", "NXcollection")};
-  std::vector<double> start;
-  std::vector<double> end;
-  std::vector<std::string> names;
-  for (const auto& mode : truth.modes) {
-    start.push_back(mode.start_s);
-    end.push_back(mode.end_s);
-    names.emplace_back(friction::name(mode.mode));
-  }
-  modes.add(FieldName{"start_time", "s", "begin of the mode, after the first scan [s]"}, start);
-  modes.add(FieldName{"end_time", "s", "end of the mode, after the first scan [s]"}, end);
-  modes.add("mode", names);
-
+  write_modes(group.get(), truth.modes);
   TableWriter cycles{make_group(group.get(), "cycles", "NXcollection")};
   for_each_true_cycle_column([&](const FieldName& name, auto member) {
-    std::vector<double> column;
-    for (const auto& cycle : truth.cycles) column.push_back(cycle.*member);
-    cycles.add(name, column);
+    static_cast<void>(write_member(cycles, name, truth.cycles, member));
   });
 }
 
 friction::TestTruth read_truth(hid_t entry) {
   const GroupHandle group = open_group(entry, "truth");
-  friction::TestTruth truth;
-  for_each_field(truth, FieldReader{group.get()});
-  const std::string regime = read_text(group.get(), "regime");
-  const auto known = friction::regime_from_name(regime);
-  if (!known) throw HdfError(fmt::format("truth/regime '{}' is unknown", regime));
-  truth.regime = *known;
-
-  if (has(group.get(), "solver")) {
-    const GroupHandle solver = open_group(group.get(), "solver");
-    for_each_field(truth.solver.emplace(), FieldReader{solver.get()});
-  }
-
-  const GroupHandle modes = open_group(group.get(), "modes");
-  const auto start = read_column<double>(modes.get(), "start_time");
-  const auto end = read_column<double>(modes.get(), "end_time", start.size());
-  const auto names = read_texts(modes.get(), "mode");
-  if (names.size() != start.size()) throw HdfError("truth/modes/mode has another length than start_time");
-  for (std::size_t i = 0; i < start.size(); ++i) {
-    const auto mode = mode_from_name(names[i]);
-    if (!mode) throw HdfError(fmt::format("truth/modes/mode '{}' is unknown", names[i]));
-    truth.modes.push_back({start[i], end[i], *mode});
-  }
-
-  const GroupHandle cycles = open_group(group.get(), "cycles");
-  truth.cycles.resize(read_column<double>(cycles.get(), "onset_time").size());
-  for_each_true_cycle_column([&](const FieldName& name, auto member) {
-    const auto column = read_column<double>(cycles.get(), std::string{name.name}, truth.cycles.size());
-    for (std::size_t i = 0; i < column.size(); ++i) truth.cycles[i].*member = column[i];
-  });
+  friction::TestTruth truth = read_facts(group.get());
+  for_each_mode(group.get(), [&](const friction::ModeInterval& mode) { truth.modes.push_back(mode); });
+  for_each_true_cycle(group.get(), [&](const friction::TrueCycle& cycle) { truth.cycles.push_back(cycle); });
   return truth;
+}
+
+void check_truth(hid_t entry) {
+  const GroupHandle group = open_group(entry, "truth");
+  static_cast<void>(read_facts(group.get()));
+  for_each_mode(group.get(), [](const friction::ModeInterval&) {});
+  for_each_true_cycle(group.get(), [](const friction::TrueCycle&) {});
 }
 
 }  // namespace stickslip::record

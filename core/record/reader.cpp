@@ -89,10 +89,10 @@ void verify(const std::filesystem::path& path, const Record& record, const ScanS
   if (back.header.board.quantity != record.header.board.quantity) throw HdfError("holds another quantity");
   read_identity(entry.get(), back);
   read_instrument(entry.get(), back);
-  read_tables(entry.get(), back);
+  check_tables(entry.get());
   back.end->results = read_results(entry.get());
   read_process(entry.get(), back);
-  if (has(entry.get(), "truth")) back.end->truth = read_truth(entry.get());
+  if (has(entry.get(), "truth")) check_truth(entry.get());
   verify_scans(entry.get(), record.header.board, scans);
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/long_column.hpp"
 #include "core/daq/board.hpp"
 #include "core/daq/calibration.hpp"
 #include "core/daq/gap.hpp"
@@ -123,8 +124,8 @@ struct EndRecord {
   std::optional<std::int64_t> end_realtime_ns;
   std::optional<double> compute_time_s;
   friction::TestResults results;
-  std::vector<friction::Cycle> cycles;  ///< Final; replaces those noted during the test.
-  std::vector<daq::ScanIndex> spikes;   ///< Scans replaced for the detector, rising; final as well.
+  base::LongColumn<friction::Cycle> cycles;  ///< Final; replaces those noted during the test.
+  std::vector<daq::ScanIndex> spikes;        ///< Scans replaced for the detector, rising; final as well.
   std::optional<friction::TestTruth> truth;
 };
 
@@ -140,7 +141,7 @@ struct Record {
   std::vector<double> true_coefficient;
   std::vector<daq::ScanIndex> spikes;
   std::vector<daq::Gap> gaps;
-  std::vector<friction::Cycle> cycles;
+  base::LongColumn<friction::Cycle> cycles;
   std::vector<ClockAnchor> anchors;
   std::vector<Event> events;
   std::optional<EndRecord> end;  ///< Absent only in the journal of an interrupted test; see set_end().

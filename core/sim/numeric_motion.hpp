@@ -15,11 +15,10 @@
 
 namespace stickslip::sim {
 
-/// The force of the spring as a coefficient, with its derivatives.
+/// The force of the spring as a coefficient, with its derivative.
 struct SpringForce {
   double c = 0.0;
   double rate_per_s = 0.0;
-  double acceleration_per_s2 = 0.0;
 };
 
 /// The motion, a stretch of time after the other. Thread-bound.

@@ -80,7 +80,7 @@ SpringForce RateAndStateMotion::force_at(const ScanTime& instant) const {
   const double t_s = instant == known_to_ ? solved_s_ : instant.periods_since(start_) / scan_rate_Hz_;
   const OdeState y = state_at(t_s);
   return {motion_.one_way_coupling ? std::fmax(y[0], 0.0) : y[0],
-          belt_.at(t_s) - per_metre_ * sliding_speed_m_per_s(y), system_.acceleration(t_s, y)};
+          belt_.at(t_s) - per_metre_ * sliding_speed_m_per_s(y)};
 }
 
 double RateAndStateMotion::speed_scale_m_per_s() const {

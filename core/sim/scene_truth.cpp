@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
+#include "core/base/long_column.hpp"
 #include "core/friction/slip_waveform.hpp"
 #include "core/sim/belt.hpp"
 #include "core/sim/first_slip.hpp"
@@ -35,55 +35,67 @@ class Chronicle final : public MotionObserver {
     double end_s = 0.0;
   };
 
-  explicit Chronicle(double scan_rate_Hz) : scan_rate_Hz_(scan_rate_Hz) {}
+  Chronicle(double scan_rate_Hz, const std::filesystem::path& scratch_folder)
+      : scan_rate_Hz_(scan_rate_Hz),
+        modes_(scratch_folder),
+        slips_(scratch_folder),
+        slides_(scratch_folder) {}
 
   void mode_began(const ModeStart& start) override {
     const double now_s = start.time.periods_since({}) / scan_rate_Hz_;
     const bool sticks = start.mode == Mode::kStick || (start.capture && start.onset);
-    if (sticks && !slips_.empty() && !slips_.back().stick_again_s) slips_.back().stick_again_s = now_s;
-    if (slide_start_s_ && start.mode != Mode::kSlip) {
-      slides_.push_back({*slide_start_s_, now_s});
-      slide_start_s_.reset();
-    }
-    const bool rests = modes_.empty() || modes_.back().mode == Mode::kStick;
+    if (sticks && slip_ && !slip_->stick_again_s) slip_->stick_again_s = now_s;
+    const bool rests = !mode_ || mode_->mode == Mode::kStick;
+    if (start.mode != Mode::kSlip) end_slide(now_s);
     if (rests && start.mode == Mode::kSlip && !start.onset) slide_start_s_ = now_s;
-    if (start.onset) slips_.push_back({now_s, start.paper, start.coefficient, {}});
-    if (!modes_.empty()) {
-      if (modes_.back().mode == start.mode && !start.onset) return;
-      close(now_s);
+    if (start.onset) {
+      if (slip_) slips_.push_back(*slip_);
+      slip_ = Slip{now_s, start.paper, start.coefficient, {}};
     }
-    modes_.push_back({now_s, now_s, start.mode});
+    if (mode_ && mode_->mode == start.mode && !start.onset) return;
+    end_mode(now_s);
+    mode_ = friction::ModeInterval{now_s, now_s, start.mode};
   }
 
-  /// Ends the last mode; those that took no time are forgotten.
+  /// Nothing comes any more.
   void close(double now_s) {
-    modes_.back().end_s = now_s;
-    if (!(modes_.back().start_s < now_s)) modes_.pop_back();
+    end_mode(now_s);
+    end_slide(now_s);
+    if (slip_) slips_.push_back(*slip_);
+    slip_.reset();
   }
 
-  /// Of the scene.
-  void end(double now_s) {
-    close(now_s);
-    if (slide_start_s_) slides_.push_back({*slide_start_s_, now_s});
-  }
-
-  [[nodiscard]] std::vector<friction::ModeInterval> take_modes() noexcept { return std::move(modes_); }
-  [[nodiscard]] const std::vector<Slip>& slips() const noexcept { return slips_; }
-  [[nodiscard]] const std::vector<Slide>& slides() const noexcept { return slides_; }
+  [[nodiscard]] base::LongColumn<friction::ModeInterval> take_modes() { return std::exchange(modes_, {}); }
+  [[nodiscard]] const base::LongColumn<Slip>& slips() const noexcept { return slips_; }
+  [[nodiscard]] const base::LongColumn<Slide>& slides() const noexcept { return slides_; }
 
  private:
+  /// Modes that took no time are forgotten.
+  void end_mode(double now_s) {
+    if (mode_ && mode_->start_s < now_s) modes_.push_back({mode_->start_s, now_s, mode_->mode});
+    mode_.reset();
+  }
+
+  void end_slide(double now_s) {
+    if (slide_start_s_) slides_.push_back({*slide_start_s_, now_s});
+    slide_start_s_.reset();
+  }
+
   double scan_rate_Hz_;
-  std::vector<friction::ModeInterval> modes_;
-  std::vector<Slip> slips_;
-  std::vector<Slide> slides_;  ///< That have ended.
+  std::optional<friction::ModeInterval> mode_;  ///< The present one.
+  std::optional<Slip> slip_;                    ///< The latest, which may still stick again.
   std::optional<double> slide_start_s_;
+  base::LongColumn<friction::ModeInterval> modes_;
+  base::LongColumn<Slip> slips_;
+  base::LongColumn<Slide> slides_;
 };
 
 /// How the slips of the pull ended.
 struct Tally {
   int captured = 0;
   int not_captured = 0;
-  std::vector<double> onsets_s;
+  int count = 0;  ///< Slips that began.
+  double last_onset_s = 0.0;
   Chronicle::Slip first;
 };
 
@@ -92,8 +104,9 @@ Tally tally(const Chronicle& chronicle, double pull_end_s, double period_s) {
   double longest_slip_s = 2.0 * period_s;  // A damped slip is captured within its first period.
   for (const Chronicle::Slip& slip : chronicle.slips()) {
     if (slip.onset_s >= pull_end_s) break;
-    if (result.onsets_s.empty()) result.first = slip;
-    result.onsets_s.push_back(slip.onset_s);
+    if (result.count == 0) result.first = slip;
+    ++result.count;
+    result.last_onset_s = slip.onset_s;
     if (slip.stick_again_s && *slip.stick_again_s < pull_end_s) {
       ++result.captured;
       longest_slip_s = std::max(longest_slip_s, *slip.stick_again_s - slip.onset_s);
@@ -115,10 +128,10 @@ Regime regime_of(const Tally& slips, bool oscillates) {
 }
 
 void describe_oscillation(const Scene& scene, const Tally& slips, friction::TestTruth& truth) {
-  if (slips.onsets_s.empty() || !scene.oscillator.oscillates()) return;
-  if (slips.onsets_s.size() > 1) {
+  if (slips.count == 0 || !scene.oscillator.oscillates()) return;
+  if (slips.count > 1) {
     truth.oscillation_frequency_Hz =
-        static_cast<double>(slips.onsets_s.size() - 1) / (slips.onsets_s.back() - slips.onsets_s.front());
+        static_cast<double>(slips.count - 1) / (slips.last_onset_s - slips.first.onset_s);
   } else if (slips.not_captured > 0) {
     truth.oscillation_frequency_Hz = scene.oscillator.omega_rad_per_s() / (2.0 * std::numbers::pi);
   }
@@ -131,17 +144,27 @@ void describe_oscillation(const Scene& scene, const Tally& slips, friction::Test
 }
 
 /// A clock that is fast makes a record seem long.
-void as_recorded(friction::TestTruth& truth, double recorded_per_true) {
-  for (friction::ModeInterval& mode : truth.modes) {
+void as_recorded(friction::TestTruth& truth, double recorded_per_true,
+                 const std::filesystem::path& scratch_folder) {
+  base::LongColumn<friction::ModeInterval> modes{scratch_folder};
+  for (friction::ModeInterval mode : std::as_const(truth.modes)) {
     mode.start_s *= recorded_per_true;
     mode.end_s *= recorded_per_true;
+    modes.push_back(mode);
   }
-  for (friction::TrueCycle& cycle : truth.cycles) cycle.onset_time_s *= recorded_per_true;
+  truth.modes = std::move(modes);
+  base::LongColumn<friction::TrueCycle> cycles{scratch_folder};
+  for (friction::TrueCycle cycle : std::as_const(truth.cycles)) {
+    cycle.onset_time_s *= recorded_per_true;
+    cycles.push_back(cycle);
+  }
+  truth.cycles = std::move(cycles);
 }
 
 }  // namespace
 
-friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std::uint64_t seed) {
+friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std::uint64_t seed,
+                                const std::filesystem::path& scratch_folder) {
   const double scan_rate_Hz = true_scan_rate_Hz(scene, nominal_rate_Hz);
   friction::TestTruth truth;
   truth.scene_name = scene.name;
@@ -152,15 +175,15 @@ friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std:
   truth.omega_rad_per_s = scene.oscillator.omega_rad_per_s();
   truth.gamma_over_2omega = scene.oscillator.gamma_over_2omega();
 
-  Chronicle chronicle{scan_rate_Hz};
+  Chronicle chronicle{scan_rate_Hz, scratch_folder};
   const Motion scene_motion = motion_of(scene);
   const auto motion = make_motion_solver(scene_motion, scan_rate_Hz, scene.accuracy, &chronicle, seed);
   motion->skip(scan_count(scene, nominal_rate_Hz));
   const SolverMethod method = motion->method();
   truth.solver = friction::SolverFacts{std::string{method.name}, method.accuracy, scene.accuracy, {}};
-  chronicle.end(scene.duration_s);
+  chronicle.close(scene.duration_s);
   truth.modes = chronicle.take_modes();
-  truth.cycles.reserve(chronicle.slips().size());
+  truth.cycles = base::LongColumn<friction::TrueCycle>{scratch_folder};
   for (const Chronicle::Slip& slip : chronicle.slips()) {
     truth.cycles.push_back({slip.onset_s, slip.paper.mu_s, slip.paper.mu_k});
   }
@@ -169,22 +192,21 @@ friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std:
     const double period_s = 2.0 * std::numbers::pi / scene.oscillator.omega_rad_per_s();
     const Tally slips = tally(chronicle, pull->end_s, period_s);
     // Where the speed changes, that at which the first slip begins.
-    truth.pull_speed_m_per_s = slips.onsets_s.empty()
-                                   ? steady_pull_speed_m_per_s(scene).value_or(0.0)
-                                   : belt_speed_m_per_s(scene_motion.belt, slips.onsets_s.front());
+    truth.pull_speed_m_per_s = slips.count == 0 ? steady_pull_speed_m_per_s(scene).value_or(0.0)
+                                                : belt_speed_m_per_s(scene_motion.belt, slips.first.onset_s);
     truth.regime = regime_of(slips, scene.oscillator.oscillates());
     describe_oscillation(scene, slips, truth);
     if (truth.amplitude && !has_closed_form(motion_of(scene))) {
-      truth.amplitude = first_slip_amplitude(scene, seed, slips.onsets_s.front());
+      truth.amplitude = first_slip_amplitude(scene, seed, slips.first.onset_s);
     }
-    if (!slips.onsets_s.empty() && scene.oscillator.oscillates()) {
+    if (slips.count > 0 && scene.oscillator.oscillates()) {
       const TraditionalTruth traditional =
-          traditional_truth(scene, seed, slips.onsets_s.front(), friction::Method{});
+          traditional_truth(scene, seed, slips.first.onset_s, friction::Method{});
       truth.static_coefficient = traditional.static_coefficient;
       truth.kinetic_coefficient = traditional.kinetic_coefficient;
     }
   }
-  if (scene.clock_rate_error) as_recorded(truth, scan_rate_Hz / nominal_rate_Hz);
+  if (scene.clock_rate_error) as_recorded(truth, scan_rate_Hz / nominal_rate_Hz, scratch_folder);
   return truth;
 }
 

@@ -91,10 +91,8 @@ SpringForce SlidingMotion::force_at(const ScanTime& instant) const {
   if (slack(phase_)) return {};
   const double t_s = instant == known_to_ ? solved_s_ : instant.periods_since(start_) / scan_rate_Hz_;
   const State state = state_at(t_s);
-  if (phase_ == Phase::kStick) return {state.c, state.rate, belt_.slope_at(t_s)};
-  const double acceleration =
-      system_.acceleration(t_s, {state.c, state.rate / std::sqrt(omega0_squared_), 0.0});
-  return {motion_.one_way_coupling ? std::fmax(state.c, 0.0) : state.c, state.rate, acceleration};
+  const bool cut = motion_.one_way_coupling && phase_ != Phase::kStick;
+  return {cut ? std::fmax(state.c, 0.0) : state.c, state.rate};
 }
 
 /// At most S − K of the contact at hand, which may differ from the scene's.

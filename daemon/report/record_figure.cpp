@@ -84,7 +84,7 @@ void add_truth(Panel& panel, const friction::TestTruth& truth, const AxisRange& 
   Curve mu_s{.label = "S of each slip (truth)", .style = CurveStyle::kDashed, .colour = Colour::kGreen};
   Curve mu_k{.label = "K of each slip (truth)", .style = CurveStyle::kDashed, .colour = Colour::kPurple};
   for (std::size_t i = 0; i < truth.cycles.size(); ++i) {
-    const friction::TrueCycle& cycle = truth.cycles[i];
+    const friction::TrueCycle cycle = truth.cycles[i];
     for (const double time_s : {cycle.onset_time_s, end_of_cycle(truth, i)}) {
       mu_s.x.push_back(time_s);
       mu_s.y.push_back(cycle.mu_s);
@@ -97,7 +97,7 @@ void add_truth(Panel& panel, const friction::TestTruth& truth, const AxisRange& 
   panel.curves.push_back(std::move(mu_k));
 }
 
-void add_peaks(Panel& panel, const std::vector<friction::Cycle>& cycles) {
+void add_peaks(Panel& panel, const base::LongColumn<friction::Cycle>& cycles) {
   Curve sticks{
       .label = "peak found, sticks again", .style = CurveStyle::kPoints, .colour = Colour::kVermilion};
   Curve slides{.label = "peak found, slides on", .style = CurveStyle::kPoints, .colour = Colour::kBlack};

@@ -6,23 +6,24 @@
 #include <optional>
 #include <span>
 #include <utility>
-#include <vector>
 
+#include "core/base/long_column.hpp"
 #include "core/sim/scene_run.hpp"
 #include "core/sim/scene_truth.hpp"
 
 namespace stickslip::drivers {
 
-void move_into_window(friction::TestTruth& truth, double window_start_s, double window_length_s) {
-  std::vector<friction::ModeInterval> modes;
-  for (friction::ModeInterval mode : truth.modes) {
+void move_into_window(friction::TestTruth& truth, double window_start_s, double window_length_s,
+                      const std::filesystem::path& scratch_folder) {
+  base::LongColumn<friction::ModeInterval> modes{scratch_folder};
+  for (friction::ModeInterval mode : std::as_const(truth.modes)) {
     mode.start_s = std::max(mode.start_s - window_start_s, 0.0);
     mode.end_s = std::min(mode.end_s - window_start_s, window_length_s);
     if (mode.start_s < mode.end_s) modes.push_back(mode);
   }
   truth.modes = std::move(modes);
-  std::vector<friction::TrueCycle> cycles;
-  for (friction::TrueCycle cycle : truth.cycles) {
+  base::LongColumn<friction::TrueCycle> cycles{scratch_folder};
+  for (friction::TrueCycle cycle : std::as_const(truth.cycles)) {
     cycle.onset_time_s -= window_start_s;
     if (cycle.onset_time_s >= 0.0 && cycle.onset_time_s < window_length_s) cycles.push_back(cycle);
   }

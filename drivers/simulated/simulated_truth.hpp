@@ -2,6 +2,7 @@
 /// The truth about the simulated board's scans, found again by simulating without scans.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 
 #include "core/friction/truth.hpp"
@@ -10,7 +11,9 @@
 namespace stickslip::drivers {
 
 /// Makes times relative to the window's first scan and drops what lies outside of the window.
-void move_into_window(friction::TestTruth& truth, double window_start_s, double window_length_s);
+/// \param scratch_folder  of the tables (base::LongColumn); empty: in memory.
+void move_into_window(friction::TestTruth& truth, double window_start_s, double window_length_s,
+                      const std::filesystem::path& scratch_folder = {});
 
 /// Answers for the repetition that shares most scans with the window; where the window cuts it, modes
 /// and cycles are cut too. Nothing for a window without scans or behind the end of the list.

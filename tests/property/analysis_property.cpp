@@ -16,7 +16,7 @@ namespace {
 
 struct Analysed {
   TestResults results;
-  std::vector<Cycle> cycles;
+  base::LongColumn<Cycle> cycles;
   std::vector<base::ScanIndex> spikes;
 };
 

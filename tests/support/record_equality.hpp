@@ -46,7 +46,8 @@ inline void expect_same_header(const record::RecordHeader& a, const record::Reco
   EXPECT_EQ(a.process, b.process);
 }
 
-inline void expect_same_cycles(const std::vector<friction::Cycle>& a, const std::vector<friction::Cycle>& b) {
+inline void expect_same_cycles(const base::LongColumn<friction::Cycle>& a,
+                               const base::LongColumn<friction::Cycle>& b) {
   ASSERT_EQ(a.size(), b.size());
   record::for_each_cycle_column([&](const record::FieldName& name, auto member) {
     for (std::size_t i = 0; i < a.size(); ++i) {

@@ -26,7 +26,7 @@ struct AnalysedTest {
   base::ScanIndex end = 0;
   pipeline::Segmenter::Event ended_by = pipeline::Segmenter::Event::kNone;  ///< kNone: the input ended.
   friction::TestResults results;
-  std::vector<friction::Cycle> cycles;
+  base::LongColumn<friction::Cycle> cycles;
   std::optional<friction::TestTruth> truth;
 };
 

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <random>
 #include <vector>
+
+#include "tests/support/allocation_count.hpp"
 
 namespace stickslip::friction {
 namespace {
@@ -159,6 +162,26 @@ TEST(FallFinder, SingleScanMakesNoTurningPoint) {
   std::vector<double> values(100, 0.0);
   values[50] = 100.0;
   EXPECT_TRUE(falls_in(values, 1.0).empty());
+}
+
+TEST(FallFinder, NeverAllocatesOnceItIsMade) {
+  // An hour at 350 Hz of each: flat noise, in which nothing turns; one fall, without an end; sticks and
+  // slips.
+  constexpr int kScans = 3600 * 350;
+  std::mt19937_64 engine{3};
+  std::normal_distribution<double> normal{0.0, 1.0};
+  const std::uint64_t none = test::allocation_count();
+  FallFinder finder;
+  EXPECT_GT(test::allocation_count(), none);  // the counter counts
+  const std::uint64_t before = test::allocation_count();
+  int falls = 0;
+  for (int k = 0; k < kScans; ++k) (void)finder.add(normal(engine), 12.0);
+  for (int k = 0; k < kScans; ++k) (void)finder.add(-k, 12.0);
+  for (int k = 0; k < kScans; ++k) {
+    if (finder.add(20.0 * (k % 20) + normal(engine), 12.0)) ++falls;
+  }
+  EXPECT_EQ(test::allocation_count(), before);
+  EXPECT_GT(falls, kScans / 20 - 2);
 }
 
 TEST(FallFinder, KnowsHowLongNothingHasTurned) {

@@ -63,6 +63,37 @@ TEST(LongColumn, WithoutAFolderIsAVectorThatMayBeChangedAndCopied) {
   EXPECT_EQ(column.size(), 2U);
 }
 
+/// As wide as the row of a table.
+struct Row {
+  std::int64_t number = 0;
+  double value = 0.0;
+  std::uint8_t flags = 0;
+};
+
+TEST(LongColumn, HoldsRowsOfATable) {
+  using Rows = LongColumn<Row>;
+  static_assert(Rows::kBlock * sizeof(Row) <= 1U << 15U);
+  Rows rows{std::filesystem::temp_directory_path()};
+  const std::size_t size = 3 * Rows::kResident * Rows::kBlock + 1;
+  for (std::size_t k = 0; k < size; ++k) {
+    rows.push_back(
+        {static_cast<std::int64_t>(k), 0.5 * static_cast<double>(k), static_cast<std::uint8_t>(k)});
+  }
+  std::size_t k = 0;
+  for (const Row& row : std::as_const(rows)) {
+    ASSERT_EQ(row.number, static_cast<std::int64_t>(k));
+    ASSERT_EQ(row.value, 0.5 * static_cast<double>(k));
+    ASSERT_EQ(row.flags, static_cast<std::uint8_t>(k));
+    ++k;
+  }
+  EXPECT_EQ(k, size);
+  rows.clear();
+  EXPECT_TRUE(rows.empty());
+  const Rows two = {{1, 0.1, 1}, {2, 0.2, 0}};
+  EXPECT_EQ(two.size(), 2U);
+  EXPECT_EQ(two[1].value, 0.2);
+}
+
 TEST(LongColumn, SaysInWhichFolderThereIsNoRoom) {
   EXPECT_THROW(Column{std::filesystem::path{"/nowhere at all"}}, std::system_error);
 }

@@ -49,7 +49,7 @@ std::string refusal(const std::string& text) {
 
 Scene scene_with(const std::string& effects) { return parse_scene(kPull + effects, "test.toml").value(); }
 
-std::vector<friction::TrueCycle> cycles(const Scene& scene, std::uint64_t seed = 11) {
+base::LongColumn<friction::TrueCycle> cycles(const Scene& scene, std::uint64_t seed = 11) {
   return scene_truth(scene, 350.0, seed).cycles;
 }
 
@@ -135,7 +135,7 @@ TEST(SceneContactAgeing, TruthHasTheSThatGaveWay) {
 TEST(SceneOnsetConvention, IsSpringUnlessAskedForTheDamperToo) {
   const std::string damping = "[effects.damping]\ngamma_over_2omega = 0.022\n";
   const auto first_onset_s = [&](const std::string& effects) {
-    return cycles(scene_with(damping + effects)).at(0).onset_time_s;
+    return cycles(scene_with(damping + effects)).front().onset_time_s;
   };
   const double spring_s = first_onset_s("");
   EXPECT_EQ(first_onset_s("[effects.onset_convention]\nforce = \"spring\"\n"), spring_s);

@@ -197,6 +197,33 @@ TEST(SceneTruth, ModesFollowEachOtherWithoutHoles) {
   }
 }
 
+TEST(SceneTruth, TablesAreTheSameInAScratchFolder) {
+  Scene scene = *load_scene(kScenes / "stick-slip-at-12-in-per-min.toml");
+  scene.constant_speed->pull_s = 600.0;
+  scene.duration_s = scene.constant_speed->duration_s();
+  scene.clock_rate_error = ClockRateError{1e-4};
+  const friction::TestTruth expected = scene_truth(scene, scene.scan_rate_Hz, 1);
+  const friction::TestTruth truth =
+      scene_truth(scene, scene.scan_rate_Hz, 1, std::filesystem::temp_directory_path());
+  // More than stay in memory.
+  ASSERT_GT(truth.cycles.size(), truth.cycles.kResident * truth.cycles.kBlock);
+  ASSERT_GT(truth.modes.size(), truth.modes.kResident * truth.modes.kBlock);
+  ASSERT_EQ(truth.cycles.size(), expected.cycles.size());
+  ASSERT_EQ(truth.modes.size(), expected.modes.size());
+  for (std::size_t i = 0; i < truth.cycles.size(); ++i) {
+    ASSERT_EQ(truth.cycles[i].onset_time_s, expected.cycles[i].onset_time_s);
+    ASSERT_EQ(truth.cycles[i].mu_s, expected.cycles[i].mu_s);
+    ASSERT_EQ(truth.cycles[i].mu_k, expected.cycles[i].mu_k);
+  }
+  for (std::size_t i = 0; i < truth.modes.size(); ++i) {
+    ASSERT_EQ(truth.modes[i].start_s, expected.modes[i].start_s);
+    ASSERT_EQ(truth.modes[i].end_s, expected.modes[i].end_s);
+    ASSERT_EQ(truth.modes[i].mode, expected.modes[i].mode);
+  }
+  EXPECT_EQ(truth.regime, expected.regime);
+  EXPECT_EQ(truth.oscillation_frequency_Hz, expected.oscillation_frequency_Hz);
+}
+
 TEST(SceneTruth, WithoutPullThereIsNoRegime) {
   const friction::TestTruth truth = scene_truth(*parse_scene(kBare, "t.toml"), 350.0, 1);
   EXPECT_EQ(truth.regime, friction::Regime::kUndecided);

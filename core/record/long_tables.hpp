@@ -1,0 +1,79 @@
+/// \file
+/// Tables with a row for each slip, of which there may be more than memory should hold: written and read
+/// piece by piece.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "core/base/long_column.hpp"
+#include "core/record/hdf_read.hpp"
+#include "core/record/hdf_write.hpp"
+#include "core/record/scan_source.hpp"
+
+namespace stickslip::record {
+
+/// Rows that are in memory at a time: a chunk of the file, so that each is packed and unpacked once.
+inline constexpr std::size_t kRowsPerPiece = ScanSource::kPiece;
+
+/// All of a column. \param column  ColumnWriter or TextColumnWriter. \param value_of  called with each row.
+template <typename Column, typename Row, typename ValueOf>
+void write_rows(Column& column, const base::LongColumn<Row>& rows, const ValueOf& value_of) {
+  std::vector<std::invoke_result_t<const ValueOf&, const Row&>> piece;
+  piece.reserve(std::min(rows.size(), kRowsPerPiece));
+  const auto pass_on = [&] {
+    if (!piece.empty()) column.append(piece);
+    piece.clear();
+  };
+  for (const Row& row : rows) {
+    piece.push_back(value_of(row));
+    if (piece.size() == kRowsPerPiece) pass_on();
+  }
+  pass_on();
+}
+
+/// The column of a member of each row. \return its data set, for attributes.
+template <typename Row, typename Value>
+DatasetHandle write_member(TableWriter& table, const FieldName& name, const base::LongColumn<Row>& rows,
+                           Value Row::*member) {
+  ColumnWriter<Value> column = table.add_empty<Value>(name, rows.size());
+  write_rows(column, rows, [member](const Row& row) { return row.*member; });
+  return std::move(column).dataset();
+}
+
+/// One member of the rows [first, first + rows.size()) of a table; throws HdfError unless the column has as
+/// many rows as the table.
+template <typename Row, typename Value>
+void read_member(hid_t group, const FieldName& name, Value Row::*member, std::size_t table_rows,
+                 std::size_t first, std::vector<Row>& rows) {
+  const std::string key{name.name};
+  const std::size_t count = row_count(group, key);
+  if (count != table_rows) throw HdfError(fmt::format("{} has {} rows, not {}", key, count, table_rows));
+  if (rows.empty()) return;
+  std::vector<Value> values(rows.size());
+  read_rows<Value>(open_dataset(group, key), key, first, values);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].*member = values[i];
+}
+
+/// \param key  column that tells how many rows there are.
+/// \param read_piece  called as read_piece(first row, rows to be filled, rows in the table).
+/// \param use  called with each row.
+template <typename Row, typename ReadPiece, typename Use>
+void for_each_row(hid_t group, const std::string& key, const ReadPiece& read_piece, const Use& use) {
+  const std::size_t count = row_count(group, key);
+  std::size_t first = 0;
+  do {  // Also an empty table has columns.
+    std::vector<Row> rows(std::min(kRowsPerPiece, count - first));
+    read_piece(first, rows, count);
+    for (const Row& row : rows) use(row);
+    first += rows.size();
+  } while (first < count);
+}
+
+}  // namespace stickslip::record
