@@ -18,6 +18,10 @@ constexpr int kMostIterations = 40;
 constexpr double kFirstDamping = 1e-3;
 constexpr double kHopeless = 1e8;
 constexpr double kConverged = 1e-6;  ///< Log-likelihood units.
+/// Standard deviation of ln(S − K) of paper at most: √ln(1 + 0.6²), for a scatter of 60 %.
+constexpr double kLogScatter = 0.5545;
+/// Keeps the logarithm finite.
+constexpr double kLeastRatio = 1e-6;
 
 struct Scan {
   double tau_s;  ///< After the first scan of the window.
@@ -48,21 +52,33 @@ class Selection {
 /// K, c(0) − K, c′(0), and for "captured" the S of the next slip.
 using Parameters = Eigen::VectorXd;
 
-double free_value(const Parameters& p, const SharedParameters& shared, double tau_s) {
-  return SlipWaveform{p[0], p[1], p[2], shared.oscillator()}.value(tau_s);
-}
+class FreeCourse {
+ public:
+  FreeCourse(const Parameters& p, const SharedParameters& shared)
+      : waveform_{p[0], p[1], p[2], shared.oscillator()} {}
+
+  [[nodiscard]] double value(double tau_s) const { return waveform_.value(tau_s); }
+  [[nodiscard]] static double surprise() noexcept { return 0.0; }
+
+ private:
+  SlipWaveform waveform_;
+};
 
 /// The captured course with its events worked out once.
 class CapturedCourse {
  public:
-  CapturedCourse(const Parameters& p, const SharedParameters& shared)
+  CapturedCourse(const Parameters& p, const SharedParameters& shared, double typical_delta_mu)
       : r_(shared.r), first_{p[0], p[1], p[2], shared.oscillator()} {
     capture_s_ = capture_time_s(first_, r_).value_or(first_.rise_end_time_s());
     at_capture_ = first_.value(capture_s_);
     const double S = std::max({p[3], p[0], at_capture_});
     onset_s_ = capture_s_ + (S - at_capture_) / r_;
     second_ = SlipWaveform{p[0], S - p[0], r_, shared.oscillator()};
+    surprise_ = std::log(std::max((S - p[0]) / typical_delta_mu, kLeastRatio)) / kLogScatter;
   }
+
+  /// How unusual its S − K is, in standard deviations.
+  [[nodiscard]] double surprise() const noexcept { return surprise_; }
 
   [[nodiscard]] double value(double tau_s) const {
     if (tau_s <= capture_s_) return first_.value(tau_s);
@@ -77,16 +93,18 @@ class CapturedCourse {
   double capture_s_ = 0.0;
   double at_capture_ = 0.0;
   double onset_s_ = 0.0;
+  double surprise_ = 0.0;
 };
 
-/// Huber's cost of the residuals over σ, which it fills: a spike that was not found counts no more for one
-/// course than for the other.
-template <typename Values>
-double cost_of(const std::vector<Scan>& scans, const Values& values, double sigma,
+/// Huber's cost of the residuals over σ, which it fills (a spike that was not found counts no more for one
+/// course than for the other), with the surprise as the last of them.
+template <typename Course>
+double cost_of(const std::vector<Scan>& scans, const Course& course, double sigma,
                Eigen::VectorXd& residuals) {
-  double cost = 0.0;
+  residuals[static_cast<Eigen::Index>(scans.size())] = -course.surprise();
+  double cost = 0.5 * course.surprise() * course.surprise();
   for (std::size_t i = 0; i < scans.size(); ++i) {
-    const double z = (scans[i].value - values(scans[i].tau_s)) / sigma;
+    const double z = (scans[i].value - course.value(scans[i].tau_s)) / sigma;
     residuals[static_cast<Eigen::Index>(i)] = z;
     cost += huber_cost(z);
   }
@@ -94,11 +112,11 @@ double cost_of(const std::vector<Scan>& scans, const Values& values, double sigm
 }
 
 /// Levenberg–Marquardt with difference quotients; `steps` are the parameters' scales.
-/// \param model  called as model(parameters) → function of τ.
+/// \param model  called as model(parameters) → course.
 template <typename Model>
 double least_cost(const std::vector<Scan>& scans, const Model& model, Parameters p, const Parameters& steps,
                   double sigma) {
-  const auto rows = static_cast<Eigen::Index>(scans.size());
+  const auto rows = static_cast<Eigen::Index>(scans.size()) + 1;
   Eigen::VectorXd residuals(rows);
   Eigen::VectorXd shifted(rows);
   Eigen::MatrixXd jacobian(rows, p.size());
@@ -111,7 +129,8 @@ double least_cost(const std::vector<Scan>& scans, const Model& model, Parameters
       cost_of(scans, model(moved), sigma, shifted);
       jacobian.col(j) = (residuals - shifted) / steps[j];
     }
-    const Eigen::VectorXd weights = residuals.unaryExpr([](double z) { return huber_weight(z); });
+    Eigen::VectorXd weights = residuals.unaryExpr([](double z) { return huber_weight(z); });
+    weights[rows - 1] = 1.0;
     Eigen::MatrixXd normal = jacobian.transpose() * weights.asDiagonal() * jacobian;
     normal.diagonal() *= 1.0 + damping;
     const Parameters trial = p + normal.ldlt().solve(jacobian.transpose() * weights.cwiseProduct(residuals));
@@ -133,7 +152,7 @@ double least_cost(const std::vector<Scan>& scans, const Model& model, Parameters
 }  // namespace
 
 double capture_log_likelihood_ratio(const Trace& trace, std::size_t first, std::size_t end,
-                                    const SharedParameters& shared, double sigma) {
+                                    const SharedParameters& shared, double sigma, double typical_delta_mu) {
   std::vector<Scan> scans;
   const Selection selection{first, end};
   double low = 0.0;
@@ -155,13 +174,11 @@ double capture_log_likelihood_ratio(const Trace& trace, std::size_t first, std::
   const double free_cost = least_cost(
       scans,
       [&](const Parameters& p) {
-        return [&shared, p](double tau_s) { return free_value(p, shared, tau_s); };
+        return FreeCourse{p, shared};
       },
       free_start, free_steps, sigma);
 
-  const auto captured = [&](const Parameters& p) {
-    return [course = CapturedCourse{p, shared}](double tau_s) { return course.value(tau_s); };
-  };
+  const auto captured = [&](const Parameters& p) { return CapturedCourse{p, shared, typical_delta_mu}; };
   // Two starts: S as high as the swing says, and just above K; the cost has both valleys.
   const double amplitude_of_belt = shared.r / shared.omega;
   const double D = std::sqrt(std::max(0.25 * swing * swing - amplitude_of_belt * amplitude_of_belt, 0.0));

@@ -17,9 +17,12 @@ namespace stickslip::friction {
 /// S ≥ K, then a second slip with the same K (four parameters). After sticking the next amplitude
 /// cannot be below r/ω, and below it a free oscillation cannot reach c′ = r: that is what decides
 /// close to the threshold. [Penner 1995, (20)–(22)]
-/// \param shared  ω, γ and r, held fixed. \param sigma noise of one scan.
+/// A capture that slips at once again, with S hardly above K, looks like no capture at all; so S − K of the
+/// next slip is expected to be log-normal about what is typical of the test. \param shared  ω, γ and r, held
+/// fixed. \param sigma noise of one scan. \param typical_delta_mu  S − K of the test's slips, roughly; > 0.
 /// \return > 0 for captured; 0 if there are fewer than eight usable scans.
 [[nodiscard]] double capture_log_likelihood_ratio(const Trace& trace, std::size_t first, std::size_t end,
-                                                  const SharedParameters& shared, double sigma);
+                                                  const SharedParameters& shared, double sigma,
+                                                  double typical_delta_mu);
 
 }  // namespace stickslip::friction

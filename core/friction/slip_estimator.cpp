@@ -64,7 +64,7 @@ SharedParameters first_guess(const Trace& trace, std::span<const Fall> slips) {
   shared.gamma = 2.0 * kFirstGammaOver2Omega * shared.omega;
   const Fall& first = slips.front();
   const bool loaded_from_rest = first.rise_from < kLoadingStartsBelow * first.peak;
-  shared.r = loaded_from_rest ? slope_of_rise(trace, first, 0.2, 0.8) : signal::median(slopes);
+  shared.r = loaded_from_rest ? slope_of_rise(trace, first, 0.15, 0.5) : signal::median(slopes);
   return shared;
 }
 
@@ -81,13 +81,40 @@ SlipParameters first_guess(const Trace& trace, const Fall& slip, const SharedPar
   return parameters;
 }
 
+double scans_per_s(const Trace& trace) {
+  return static_cast<double>(trace.size() - 1) / (trace.time_s.back() - trace.time_s.front());
+}
+
+/// Where a slip is at its lowest, in scans: half an oscillation after its peak. What follows may be flat (a
+/// belt that stops), and its lowest scan anywhere.
+double trough_at(const Trace& trace, const Fall& slip, const SharedParameters& shared) {
+  constexpr double kMargin = 1.15;  // For the first guess of ω.
+  return std::min(slip.trough_at,
+                  slip.peak_at + kMargin * std::numbers::pi / shared.omega * scans_per_s(trace));
+}
+
+/// S − K of a slip by its amplitude, [2]: median of those that moved faster than the belt.
+double typical_delta_mu(std::span<const Fall> slips, const SharedParameters& shared) {
+  const double belt = shared.r / shared.omega;
+  std::vector<double> D;
+  double largest = 0.0;
+  for (const Fall& slip : slips) {
+    const double amplitude = 0.5 * slip.drop();
+    largest = std::max(largest, amplitude);
+    if (amplitude > belt) D.push_back(std::sqrt(amplitude * amplitude - belt * belt));
+  }
+  return D.empty() ? largest : signal::median(D);
+}
+
 void judge_ends(const Trace& trace, std::span<const Fall> slips, const SharedParameters& shared, double sigma,
                 SlipEstimates& estimates) {
   estimates.ends.assign(slips.size(), SlipEnd::kUnknown);
   estimates.log_likelihood_ratios.clear();
+  const double typical = typical_delta_mu(slips, shared);
   for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
-    const std::size_t end = std::min(scan_at(slips[i + 1].trough_at) + 1, trace.size());
-    const double ratio = capture_log_likelihood_ratio(trace, scan_at(slips[i].peak_at), end, shared, sigma);
+    const std::size_t end = std::min(scan_at(trough_at(trace, slips[i + 1], shared)) + 1, trace.size());
+    const double ratio =
+        capture_log_likelihood_ratio(trace, scan_at(slips[i].peak_at), end, shared, sigma, typical);
     estimates.log_likelihood_ratios.push_back(ratio);
     estimates.ends[i] = ratio > 0.0 ? SlipEnd::kCaptured : SlipEnd::kFree;
   }
@@ -114,8 +141,6 @@ void lay_windows(const Trace& trace, std::span<const Fall> slips, const SharedPa
   estimates.windows.clear();
   estimates.window_of_slip.clear();
   const double period_s = 2.0 * std::numbers::pi / shared.omega;
-  const double scans_per_s =
-      static_cast<double>(trace.size() - 1) / (trace.time_s.back() - trace.time_s.front());
   for (std::size_t i = 0; i < slips.size(); ++i) {
     const bool begins = i == 0 || estimates.ends[i - 1] == SlipEnd::kCaptured;
     if (begins) {
@@ -133,8 +158,8 @@ void lay_windows(const Trace& trace, std::span<const Fall> slips, const SharedPa
       // Up to the trough the two courses are the same; a free oscillation has a tail to learn from.
       const bool free_before = i > 0 && estimates.ends[i - 1] == SlipEnd::kFree;
       window.captured = !free_before;
-      const double tail = free_before ? kTailPeriods * period_s * scans_per_s : 0.0;
-      window.end = scan_at(slips[i].trough_at + tail) + 1;
+      const double tail = free_before ? kTailPeriods * period_s * scans_per_s(trace) : 0.0;
+      window.end = scan_at(trough_at(trace, slips[i], shared) + tail) + 1;
     }
     window.end = std::min(window.end, trace.size());
   }

@@ -12,6 +12,7 @@
 #include "core/friction/model_results.hpp"
 #include "core/friction/regime_rule.hpp"
 #include "core/friction/slip_estimator.hpp"
+#include "core/friction/slip_list.hpp"
 #include "core/friction/traditional.hpp"
 #include "core/signal/statistics.hpp"
 
@@ -46,6 +47,7 @@ std::vector<Fall> find_slips(const Trace& trace, double sigma, const std::filesy
   std::vector<Fall> all;
   all.reserve(slips.size());
   for (const Fall& slip : std::as_const(slips)) all.push_back(slip);
+  keep_slips(all);
   return all;
 }
 
@@ -163,8 +165,10 @@ TestResults TestAnalysis::finish() {
 
 Trace TestAnalysis::despiked_trace() {
   const std::filesystem::path& scratch = settings_.scratch_folder;
-  Trace trace{base::LongColumn<double>{scratch}, base::LongColumn<double>{scratch},
-              base::LongColumn<std::uint8_t>{scratch}, {}};
+  Trace trace{base::LongColumn<double>{scratch},
+              base::LongColumn<double>{scratch},
+              base::LongColumn<std::uint8_t>{scratch},
+              {}};
   const double sigma =
       signal::scan_noise(coefficients_, noise_floor(coefficients_, settings_.step_coefficient));
   signal::Despiker despiker;

@@ -60,7 +60,7 @@ inline int captures(const friction::TestTruth& truth, const sim::Pull& pull) {
     mode = std::find_if(mode, truth.modes.end(), [&](const friction::ModeInterval& interval) {
       return interval.mode == friction::Mode::kSlip && interval.start_s >= cycle.onset_time_s;
     });
-    if (mode != truth.modes.end() && mode->end_s < pull.end_s) ++count;
+    if (mode != truth.modes.end() && (*mode).end_s < pull.end_s) ++count;
   }
   return count;
 }

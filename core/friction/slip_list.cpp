@@ -1,0 +1,67 @@
+#include "core/friction/slip_list.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "core/signal/statistics.hpp"
+
+namespace stickslip::friction {
+namespace {
+
+/// Fewest falls of which a median is typical.
+constexpr std::size_t kFewestForMedian = 3;
+/// Between rest and a typical peak: a force below has not been loaded, or is unloaded.
+constexpr double kLoaded = 0.5;
+/// A slip that ends below this part of the way from rest to a typical peak has let go of the load.
+constexpr double kUnloaded = 0.25;
+/// In the model, peak and trough are half an oscillation apart, and so are trough and next peak at least.
+constexpr double kShortestHalf = 0.5;
+
+template <typename Value>
+double median_of(const std::vector<Fall>& falls, const Value& value) {
+  std::vector<double> values;
+  values.reserve(falls.size());
+  for (const Fall& fall : falls) values.push_back(value(fall));
+  return signal::median(values);
+}
+
+void keep_loaded(std::vector<Fall>& falls) {
+  const double rest = falls.front().rise_from;
+  const double load = median_of(falls, [](const Fall& fall) { return fall.peak; }) - rest;
+  const auto loaded = [&](const Fall& fall) { return fall.peak - rest >= kLoaded * load; };
+  falls.erase(falls.begin(), std::find_if(falls.begin(), falls.end(), loaded));
+  falls.erase(std::find_if(falls.rbegin(), falls.rend(), loaded).base(), falls.end());
+  if (falls.empty()) return;
+  const double trough = median_of(falls, [](const Fall& fall) { return fall.trough; });
+  if (trough - rest >= kLoaded * load && falls.back().trough - rest < kUnloaded * load) falls.pop_back();
+}
+
+void join_halves(std::vector<Fall>& falls) {
+  const double half = median_of(falls, [](const Fall& fall) { return fall.trough_at - fall.peak_at; });
+  std::vector<Fall> joined;
+  joined.reserve(falls.size());
+  for (const Fall& fall : falls) {
+    if (joined.empty() || fall.peak_at - joined.back().trough_at >= kShortestHalf * half) {
+      joined.push_back(fall);
+      continue;
+    }
+    Fall& before = joined.back();
+    if (fall.trough >= before.trough) continue;
+    before.duration += fall.trough_at - before.trough_at;
+    before.robust_drop += before.trough - fall.trough;
+    before.trough = fall.trough;
+    before.trough_at = fall.trough_at;
+  }
+  falls = std::move(joined);
+}
+
+}  // namespace
+
+void keep_slips(std::vector<Fall>& falls) {
+  if (falls.size() < kFewestForMedian) return;
+  keep_loaded(falls);
+  if (falls.size() < kFewestForMedian) return;
+  join_halves(falls);
+}
+
+}  // namespace stickslip::friction
