@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t kFewestForMedian = 3;
 /// Between rest and a typical peak: a force below has not been loaded, or is unloaded.
 constexpr double kLoaded = 0.5;
-/// A slip that ends below this part of the way from rest to a typical peak has let go of the load.
-constexpr double kUnloaded = 0.25;
+/// A slip that ends below this part of the way from rest to a typical trough has let go of the load.
+constexpr double kUnloaded = 0.5;
 /// In the model, peak and trough are half an oscillation apart, and so are trough and next peak at least.
 constexpr double kShortestHalf = 0.5;
 
@@ -33,7 +33,7 @@ void keep_loaded(std::vector<Fall>& falls) {
   falls.erase(std::find_if(falls.rbegin(), falls.rend(), loaded).base(), falls.end());
   if (falls.empty()) return;
   const double trough = median_of(falls, [](const Fall& fall) { return fall.trough; });
-  if (trough - rest >= kLoaded * load && falls.back().trough - rest < kUnloaded * load) falls.pop_back();
+  if (falls.back().trough - rest < kUnloaded * (trough - rest)) falls.pop_back();
 }
 
 void join_halves(std::vector<Fall>& falls) {
