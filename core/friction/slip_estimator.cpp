@@ -17,6 +17,8 @@ constexpr double kFirstGammaOver2Omega = 0.022;
 constexpr int kRounds = 3;
 /// A rise that starts below this part of its peak is the loading of a test from rest.
 constexpr double kLoadingStartsBelow = 0.5;
+/// Part of the loading that a motor takes to get to its speed.
+constexpr double kRoundedStart = 0.2;
 /// A window of a free oscillation ends this many periods after the trough of its last slip: by
 /// then the amplitude is below what makes a slip significant.
 constexpr double kTailPeriods = 1.5;
@@ -51,6 +53,16 @@ double slope_of_rise(const Trace& trace, const Fall& fall, double low, double hi
   return length > 0 ? range / (trace.time_s[peak] - trace.time_s[peak - length]) : 0.0;
 }
 
+/// Steepest part of the loading from rest. It begins less steep, while a sled that a fast start of the belt
+/// has left behind catches up, and ends so, where it slips.
+double slope_of_loading(const Trace& trace, const Fall& first) {
+  double steepest = 0.0;
+  for (const double low : {0.2, 0.3, 0.4, 0.5}) {
+    steepest = std::max(steepest, slope_of_rise(trace, first, low, low + 0.2));
+  }
+  return steepest;
+}
+
 SharedParameters first_guess(const Trace& trace, std::span<const Fall> slips) {
   std::vector<double> half_periods;
   std::vector<double> slopes;
@@ -64,7 +76,7 @@ SharedParameters first_guess(const Trace& trace, std::span<const Fall> slips) {
   shared.gamma = 2.0 * kFirstGammaOver2Omega * shared.omega;
   const Fall& first = slips.front();
   const bool loaded_from_rest = first.rise_from < kLoadingStartsBelow * first.peak;
-  shared.r = loaded_from_rest ? slope_of_rise(trace, first, 0.15, 0.5) : signal::median(slopes);
+  shared.r = loaded_from_rest ? slope_of_loading(trace, first) : signal::median(slopes);
   return shared;
 }
 
@@ -125,11 +137,15 @@ std::size_t boundary(const Fall& before, const Fall& after) {
   return scan_at(0.5 * (before.trough_at + after.peak_at));
 }
 
-/// Where the first slip's window begins: above the rounded start of the loading.
-std::size_t start_of_loading(const Trace& trace, const Fall& first) {
+/// Where the first slip's window begins: above the rounded start of the loading. A sled that the belt's start
+/// has left behind has caught up after v/(K g) at c = r²/(ω₀² K); twice that is taken.
+std::size_t start_of_loading(const Trace& trace, const Fall& first, const SharedParameters& shared) {
   const std::size_t peak = scan_at(first.peak_at);
   std::size_t start = peak - std::min(static_cast<std::size_t>(first.rise_duration), peak);
-  const double level = first.rise_from + 0.2 * (first.peak - first.rise_from);
+  const double K = 0.5 * (first.peak + first.trough) - first.rise_from;
+  const double caught_up = 2.0 * shared.r * shared.r / (shared.oscillator().omega0_squared() * K);
+  const double range = first.peak - first.rise_from;
+  const double level = first.rise_from + std::clamp(caught_up, kRoundedStart * range, range);
   for (std::size_t k = start; k < peak; ++k) {
     if (trace.value[k] < level) start = k + 1;
   }
@@ -145,7 +161,7 @@ void lay_windows(const Trace& trace, std::span<const Fall> slips, const SharedPa
     const bool begins = i == 0 || estimates.ends[i - 1] == SlipEnd::kCaptured;
     if (begins) {
       SlipWindow window;
-      window.first = i == 0 ? start_of_loading(trace, slips[0]) : boundary(slips[i - 1], slips[i]);
+      window.first = i == 0 ? start_of_loading(trace, slips[0], shared) : boundary(slips[i - 1], slips[i]);
       window.slip = first_guess(trace, slips[i], shared);
       estimates.windows.push_back(window);
     }

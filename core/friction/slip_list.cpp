@@ -16,6 +16,10 @@ constexpr double kLoaded = 0.5;
 constexpr double kUnloaded = 0.5;
 /// In the model, peak and trough are half an oscillation apart, and so are trough and next peak at least.
 constexpr double kShortestHalf = 0.5;
+/// A last fall later than this many halves after the one before is no free oscillation, and smaller than this
+/// part of a typical one it is no slip after sticking either.
+constexpr double kLate = 3.2;
+constexpr double kSmall = 1.0 / 3.0;
 
 template <typename Value>
 double median_of(const std::vector<Fall>& falls, const Value& value) {
@@ -34,6 +38,15 @@ void keep_loaded(std::vector<Fall>& falls) {
   if (falls.empty()) return;
   const double trough = median_of(falls, [](const Fall& fall) { return fall.trough; });
   if (falls.back().trough - rest < kUnloaded * (trough - rest)) falls.pop_back();
+}
+
+void end_with_the_pull(std::vector<Fall>& falls) {
+  const double half = median_of(falls, [](const Fall& fall) { return fall.trough_at - fall.peak_at; });
+  const double drop = median_of(falls, [](const Fall& fall) { return fall.drop(); });
+  while (falls.size() > kFewestForMedian && falls.back().drop() < kSmall * drop &&
+         falls.back().peak_at - falls[falls.size() - 2].peak_at > kLate * half) {
+    falls.pop_back();
+  }
 }
 
 void join_halves(std::vector<Fall>& falls) {
@@ -61,6 +74,7 @@ void keep_slips(std::vector<Fall>& falls) {
   if (falls.size() < kFewestForMedian) return;
   keep_loaded(falls);
   if (falls.size() < kFewestForMedian) return;
+  end_with_the_pull(falls);
   join_halves(falls);
 }
 
