@@ -40,11 +40,19 @@ void keep_loaded(std::vector<Fall>& falls) {
   if (falls.back().trough - rest < kUnloaded * (trough - rest)) falls.pop_back();
 }
 
+double slope_between(const Fall& before, const Fall& after) noexcept {
+  return (after.peak - before.trough) / (after.peak_at - before.trough_at);
+}
+
 void end_with_the_pull(std::vector<Fall>& falls) {
   const double half = median_of(falls, [](const Fall& fall) { return fall.trough_at - fall.peak_at; });
-  const double drop = median_of(falls, [](const Fall& fall) { return fall.drop(); });
-  while (falls.size() > kFewestForMedian && falls.back().drop() < kSmall * drop &&
-         falls.back().peak_at - falls[falls.size() - 2].peak_at > kLate * half) {
+  std::vector<double> slopes;
+  for (std::size_t i = 0; i + 1 < falls.size(); ++i) slopes.push_back(slope_between(falls[i], falls[i + 1]));
+  const double typical = signal::median(slopes);
+  while (falls.size() > kFewestForMedian) {
+    const Fall& before = falls[falls.size() - 2];
+    const bool late = falls.back().peak_at - before.peak_at > kLate * half;
+    if (!late || slope_between(before, falls.back()) >= kFlat * typical) return;
     falls.pop_back();
   }
 }

@@ -10,7 +10,7 @@ namespace stickslip::friction {
 
 /// Takes out of `falls`, which the rule of single slips has let pass,
 /// - falls before the force has been loaded and after it is unloaded: two spikes at rest;
-/// - small ones in the hold after a pull;
+/// - falls in the hold after a pull, where the force does not climb;
 /// - the unloading itself, the last fall, which ends where the loading began though the slips do not;
 /// and joins two falls that are closer than a quarter of an oscillation: one slip, split by what disturbed
 /// it.
