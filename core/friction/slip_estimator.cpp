@@ -238,6 +238,11 @@ double time_at(const Trace& trace, double position) noexcept {
          (position - static_cast<double>(before)) * (trace.time_s[after] - trace.time_s[before]);
 }
 
+TesterEstimate SlipEstimates::tester() const {
+  if (!uniform) return TesterEstimate::from(fit.shared, fit.shared_covariance);
+  return TesterEstimate::from(uniform->parameters.shared, uniform->covariance.bottomRightCorner<3, 3>());
+}
+
 SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, double sigma,
                              const SharedPrior& prior) {
   SlipEstimates estimates = rounds(trace, slips, sigma, prior, first_guess(trace, slips));

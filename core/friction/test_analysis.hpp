@@ -10,15 +10,18 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "core/base/long_column.hpp"
 #include "core/base/scan_index.hpp"
+#include "core/friction/characterisation.hpp"
 #include "core/friction/cycle.hpp"
 #include "core/friction/fall_finder.hpp"
 #include "core/friction/method.hpp"
 #include "core/friction/results.hpp"
 #include "core/friction/shared_prior.hpp"
+#include "core/friction/slip_estimator.hpp"
 #include "core/friction/slip_rule.hpp"
 #include "core/friction/tester.hpp"
 #include "core/friction/trace.hpp"
@@ -60,6 +63,10 @@ class TestAnalysis {
 
   /// After finish(): one for each slip.
   [[nodiscard]] const std::vector<Cycle>& cycles() const noexcept { return cycles_; }
+  /// After finish(): what the test alone says about the tester; nothing without a fit that describes it.
+  [[nodiscard]] const std::optional<TesterEstimate>& tester() const noexcept { return tester_; }
+  /// After finish(): the test against settings.prior.coupling; nothing without either.
+  [[nodiscard]] const std::optional<TesterCheck>& tester_check() const noexcept { return tester_check_; }
   /// After finish(): scans that the detector did not believe.
   [[nodiscard]] const std::vector<base::ScanIndex>& spikes() const noexcept { return spikes_; }
 
@@ -72,6 +79,8 @@ class TestAnalysis {
   void follow_live(const signal::DespikedScan& scan);
   /// All scans with the noise of the whole test known; fills spikes_.
   [[nodiscard]] Trace despiked_trace();
+  /// With the prior, unless the test alone contradicts it; fills tester_ and tester_check_.
+  [[nodiscard]] SlipEstimates estimate(const Trace& trace, const std::vector<Fall>& slips, double sigma);
   void flag_cycles(const std::vector<Fall>& slips);
 
   AnalysisSettings settings_;
@@ -88,6 +97,8 @@ class TestAnalysis {
   std::int64_t live_cycle_count_ = 0;
 
   std::vector<Cycle> cycles_;
+  std::optional<TesterEstimate> tester_;
+  std::optional<TesterCheck> tester_check_;
   std::vector<base::ScanIndex> spikes_;
 };
 
