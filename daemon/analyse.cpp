@@ -24,7 +24,8 @@ RecordAnalysis::RecordAnalysis(daq::Calibration calibration, const friction::Ana
     : calibration_(std::move(calibration)), analysis_(settings) {}
 
 base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& header,
-                                                  const std::filesystem::path& scratch_folder) {
+                                                  const std::filesystem::path& scratch_folder,
+                                                  const friction::SharedPrior& prior) {
   if (header.board.quantity == daq::RawQuantity::kCounts && !header.load_cell) {
     return base::usage_error("the record has counts but no load cell, so no forces");
   }
@@ -35,6 +36,7 @@ base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& he
                                  header.tester.tester().normal_load_N()};
     friction::AnalysisSettings settings = settings_of(header, calibration, *method);
     settings.scratch_folder = scratch_folder;
+    settings.prior = prior;
     return RecordAnalysis{std::move(calibration), settings};
   } catch (const std::invalid_argument& refused) {
     return base::usage_error("the record cannot be analysed: {}", refused.what());
@@ -59,15 +61,25 @@ void RecordAnalysis::finish(record::EndRecord& end) {
   end.spikes = analysis_.spikes();
 }
 
-base::Result<record::EndRecord> analyse(const record::Record& record) {
-  base::Result<RecordAnalysis> analysis = RecordAnalysis::make(record.header);
+base::Result<TesterAnalysis> analyse_with_tester(const record::Record& record,
+                                                 const friction::SharedPrior& prior) {
+  base::Result<RecordAnalysis> analysis = RecordAnalysis::make(record.header, {}, prior);
   if (!analysis) return tl::unexpected(analysis.error());
   for (std::size_t i = 0; i < record.scan.size(); ++i) {
     analysis->add(record.scan[i], std::span{record.raw}.subspan(i, 1));
   }
-  record::EndRecord end = record.end.value_or(record::EndRecord{});
-  analysis->finish(end);
-  return end;
+  TesterAnalysis result;
+  result.end = record.end.value_or(record::EndRecord{});
+  analysis->finish(result.end);
+  result.tester = analysis->tester();
+  result.check = analysis->tester_check();
+  return result;
+}
+
+base::Result<record::EndRecord> analyse(const record::Record& record) {
+  base::Result<TesterAnalysis> result = analyse_with_tester(record, {});
+  if (!result) return tl::unexpected(result.error());
+  return std::move(result->end);
 }
 
 }  // namespace stickslip::daemon

@@ -17,9 +17,11 @@ namespace stickslip::daemon {
 class RecordAnalysis {
  public:
   /// \param scratch_folder  where the scans of a long record may lie for the time being; empty: in memory.
+  /// \param prior  what is known of the tester beforehand.
   /// Errors: kUsage if the facts do not allow it (no scan rate, no load cell for counts).
   [[nodiscard]] static base::Result<RecordAnalysis> make(const record::RecordHeader& header,
-                                                         const std::filesystem::path& scratch_folder = {});
+                                                         const std::filesystem::path& scratch_folder = {},
+                                                         const friction::SharedPrior& prior = {});
 
   // Both may throw std::system_error where there is a scratch folder.
 
@@ -28,6 +30,14 @@ class RecordAnalysis {
 
   /// Fills in results, cycles and spikes. Call once.
   void finish(record::EndRecord& end);
+
+  /// After finish(), as TestAnalysis.
+  [[nodiscard]] const std::optional<friction::TesterEstimate>& tester() const noexcept {
+    return analysis_.tester();
+  }
+  [[nodiscard]] const std::optional<friction::TesterCheck>& tester_check() const noexcept {
+    return analysis_.tester_check();
+  }
 
  private:
   RecordAnalysis(daq::Calibration calibration, const friction::AnalysisSettings& settings);
@@ -40,5 +50,14 @@ class RecordAnalysis {
 /// Results, cycles and spikes of the record's scans; status, cause and truth stay those of the
 /// record's end, if it has one. Errors as RecordAnalysis::make().
 [[nodiscard]] base::Result<record::EndRecord> analyse(const record::Record& record);
+
+/// The same, with what the test says about the tester.
+struct TesterAnalysis {
+  record::EndRecord end;
+  std::optional<friction::TesterEstimate> tester;
+  std::optional<friction::TesterCheck> check;  ///< Only with a prior.
+};
+[[nodiscard]] base::Result<TesterAnalysis> analyse_with_tester(const record::Record& record,
+                                                               const friction::SharedPrior& prior);
 
 }  // namespace stickslip::daemon

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "core/friction/junction.hpp"
@@ -118,9 +119,10 @@ double typical_delta_mu(std::span<const Fall> slips, const SharedParameters& sha
   return D.empty() ? largest : signal::median(D);
 }
 
-void judge_ends(const Trace& trace, std::span<const Fall> slips, const SharedParameters& shared, double sigma,
-                SlipEstimates& estimates) {
-  estimates.ends.assign(slips.size(), SlipEnd::kUnknown);
+/// Fills the likelihood ratios.
+std::vector<SlipEnd> judge_ends(const Trace& trace, std::span<const Fall> slips,
+                                const SharedParameters& shared, double sigma, SlipEstimates& estimates) {
+  std::vector<SlipEnd> ends(slips.size(), SlipEnd::kUnknown);
   estimates.log_likelihood_ratios.clear();
   const double typical = typical_delta_mu(slips, shared);
   for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
@@ -128,8 +130,32 @@ void judge_ends(const Trace& trace, std::span<const Fall> slips, const SharedPar
     const double ratio =
         capture_log_likelihood_ratio(trace, scan_at(slips[i].peak_at), end, shared, sigma, typical);
     estimates.log_likelihood_ratios.push_back(ratio);
-    estimates.ends[i] = ratio > 0.0 ? SlipEnd::kCaptured : SlipEnd::kFree;
+    ends[i] = ratio > 0.0 ? SlipEnd::kCaptured : SlipEnd::kFree;
   }
+  return ends;
+}
+
+/// Log of the likelihood ratio up to which a capture is not believed against other evidence: 400 to 1.
+constexpr double kDoubtful = 6.0;
+/// S − K that stays below so many of its standard errors is no stick.
+constexpr double kInsignificant = 3.0;
+
+/// A slip just above the threshold speed goes on almost as if it had been captured for a moment, at the least
+/// possible amplitude: then "captured" fits as well, and needs a next slip with S − K at or below 0. A stick
+/// ends at S > K, so such captures are none; nor, where the fit finds no answer, are those that the scans
+/// hardly tell. \return whether an end was changed.
+bool free_the_doubtful(SlipEstimates& estimates) {
+  bool changed = false;
+  for (std::size_t i = 0; i < estimates.log_likelihood_ratios.size(); ++i) {
+    if (estimates.ends[i] != SlipEnd::kCaptured || estimates.log_likelihood_ratios[i] > kDoubtful) continue;
+    const SlipWindow& next = estimates.windows[estimates.window_of_slip[i + 1]];
+    const Eigen::Matrix3d covariance = estimates.fit.covariance(next);
+    const double error = std::sqrt(covariance(1, 1) + covariance(2, 2) - 2.0 * covariance(1, 2));
+    if (estimates.fit.converged && next.slip.S - next.slip.K >= kInsignificant * error) continue;
+    estimates.ends[i] = SlipEnd::kFree;
+    changed = true;
+  }
+  return changed;
 }
 
 /// Half way along the rise between two slips: scans before it belong to the first, after it to the second.
@@ -192,22 +218,29 @@ bool windows_suffice(const Trace& trace, const std::vector<SlipWindow>& windows)
   });
 }
 
-/// Fits what follows from the ends of the slips, judges the ends anew, and so on until they stay.
-void fit_and_judge(const Trace& trace, std::span<const Fall> slips, SharedParameters shared, double sigma,
-                   const SharedPrior& prior, SlipEstimates& estimates) {
-  for (int round = 0; round < kRounds; ++round) {
+/// Rounds of deciding which slips were captured and fitting what follows from it, from a first guess.
+/// \param found  ends to begin with; empty: those that the guess says.
+SlipEstimates rounds(const Trace& trace, std::span<const Fall> slips, double sigma, const SharedPrior& prior,
+                     SharedParameters shared) {
+  SlipEstimates estimates;
+  const auto fit = [&] {
     lay_windows(trace, slips, shared, estimates);
-    if (!windows_suffice(trace, estimates.windows)) {
-      estimates.fit = {};
-      return;
-    }
-    estimates.fit = fit_slips(trace, estimates.windows, shared, sigma, prior);
-    if (!estimates.fit.converged) return;
+    estimates.fit = windows_suffice(trace, estimates.windows)
+                        ? fit_slips(trace, estimates.windows, shared, sigma, prior)
+                        : SlipFit{};
+  };
+  std::vector<SlipEnd> before;
+  for (int round = 0; round < kRounds; ++round) {
+    if (round > 0 || found.empty()) found = judge_ends(trace, slips, shared, sigma, estimates);
+    if (round > 0 && found == before) break;
+    before = found;
+    estimates.ends = found;
+    fit();
+    if (free_the_doubtful(estimates)) fit();
+    if (!estimates.fit.converged) break;
     shared = estimates.fit.shared;
-    const std::vector<SlipEnd> before = estimates.ends;
-    judge_ends(trace, slips, shared, sigma, estimates);
-    if (estimates.ends == before) return;
   }
+  return estimates;
 }
 
 /// The model leaves hardly more than noise. Of 500 scans, that is 1.00 ± 0.03 of it.
@@ -220,6 +253,33 @@ bool better(const SlipEstimates& a, const SlipEstimates& b) noexcept {
   return a.fit.converged && (!b.fit.converged || a.fit.residual_sigma < b.fit.residual_sigma);
 }
 
+/// A better first guess from those slips alone that most surely began from sticking — the likelier half —
+/// each up to its trough, where it does not matter yet how it ends. Turning points tell ω to half a per cent,
+/// and then slips that differ much can be taken for a free oscillation, which no fit survives. \param tried
+/// has the likelihood ratios. \return nothing if this does not converge either.
+std::optional<SharedParameters> guess_from_sure_slips(const Trace& trace, std::span<const Fall> slips,
+                                                      double sigma, const SharedPrior& prior,
+                                                      const SlipEstimates& tried) {
+  const SharedParameters shared = first_guess(trace, slips);
+  std::vector<double> for_captured;
+  std::copy_if(tried.log_likelihood_ratios.begin(), tried.log_likelihood_ratios.end(),
+               std::back_inserter(for_captured), [](double ratio) { return ratio > 0.0; });
+  const double sure = for_captured.empty() ? kDoubtful : std::max(signal::median(for_captured), kDoubtful);
+  std::vector<SlipWindow> windows;
+  for (std::size_t i = 0; i < slips.size(); ++i) {
+    if (i > 0 && tried.log_likelihood_ratios[i - 1] < sure) continue;
+    SlipWindow window;
+    window.first = i == 0 ? start_of_loading(trace, slips[0], shared) : boundary(slips[i - 1], slips[i]);
+    window.end = std::min(scan_at(trough_at(trace, slips[i], shared)) + 1, trace.size());
+    window.captured = true;
+    window.slip = first_guess(trace, slips[i], shared);
+    windows.push_back(window);
+  }
+  if (!windows_suffice(trace, windows)) return std::nullopt;
+  const SlipFit fit = fit_slips(trace, windows, shared, sigma, prior);
+  return fit.converged ? std::optional{fit.shared} : std::nullopt;
+}
+
 }  // namespace
 
 double time_at(const Trace& trace, double position) noexcept {
@@ -230,20 +290,25 @@ double time_at(const Trace& trace, double position) noexcept {
          (position - static_cast<double>(before)) * (trace.time_s[after] - trace.time_s[before]);
 }
 
+TesterEstimate SlipEstimates::tester() const {
+  if (!uniform) return TesterEstimate::from(fit.shared, fit.shared_covariance);
+  return TesterEstimate::from(uniform->parameters.shared, uniform->covariance.bottomRightCorner<3, 3>());
+}
+
 SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, double sigma,
                              const SharedPrior& prior) {
   const SharedParameters guess = first_guess(trace, slips);
-  SlipEstimates estimates;
-  judge_ends(trace, slips, guess, sigma, estimates);
-  fit_and_judge(trace, slips, guess, sigma, prior, estimates);
+  SlipEstimates estimates = rounds(trace, slips, sigma, prior, guess);
+  if (!estimates.fit.converged) {
+    const auto surer = guess_from_sure_slips(trace, slips, sigma, prior, estimates);
+    if (surer) estimates = rounds(trace, slips, sigma, prior, *surer);
+  }
   if (!describes_well(estimates, sigma)) {
     // A rough first guess may call stick-slip near the threshold an oscillation without damping, which fits
     // not too badly: then begin from the other end, as if each slip had been captured.
-    SlipEstimates other;
-    other.ends.assign(slips.size(), SlipEnd::kCaptured);
-    other.ends.back() = SlipEnd::kUnknown;
-    other.log_likelihood_ratios.assign(slips.size() - 1, 0.0);
-    fit_and_judge(trace, slips, guess, sigma, prior, other);
+    std::vector<SlipEnd> ends(slips.size(), SlipEnd::kCaptured);
+    ends.back() = SlipEnd::kUnknown;
+    SlipEstimates other = rounds(trace, slips, sigma, prior, guess, std::move(ends));
     if (better(other, estimates)) estimates = std::move(other);
   }
   estimates.drift = trace.drift;

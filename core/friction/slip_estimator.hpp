@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/friction/characterisation.hpp"
 #include "core/friction/fall_finder.hpp"
 #include "core/friction/slip_fit.hpp"
 #include "core/friction/trace.hpp"
@@ -30,6 +31,9 @@ struct SlipEstimates {
   SlipFit fit;
   /// One S and one K for all slips but the first; nothing where the slips differ by more than noise.
   std::optional<UniformFit> uniform;
+
+  /// What the fit that counts says about the tester. Only if fit.converged.
+  [[nodiscard]] TesterEstimate tester() const;
 };
 
 /// \param slips  falls that are slips, in the order of time, not empty.

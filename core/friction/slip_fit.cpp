@@ -191,6 +191,8 @@ SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows, const Sh
       equations = assemble(trace, windows, fit.shared, sigma, prior);
       damping = std::max(damping * kEasier, kSmallestDamping);
     } else {
+      // At the optimum the cost cannot fall, and rounding decides its sign.
+      fit.converged = trial_cost - equations.cost <= kConverged * equations.cost;
       for (std::size_t i = 0; i < windows.size(); ++i) windows[i].slip = before[i];
       damping *= kHarder;
     }

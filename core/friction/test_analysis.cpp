@@ -143,7 +143,7 @@ TestResults TestAnalysis::finish() {
     no_model_results("no slip", results);
   } else {
     if (settings_.remove_drift) trace.drift = significant_drift(trace, slips);
-    const SlipEstimates estimates = estimate_slips(trace, slips, sigma, settings_.prior);
+    const SlipEstimates estimates = estimate(trace, slips, sigma);
     const RegimeVerdict verdict =
         judge_regime(slips.size(), estimates.log_likelihood_ratios, model_describes(estimates, sigma));
     results.regime = verdict.regime;
@@ -191,6 +191,16 @@ Trace TestAnalysis::despiked_trace() {
   }
   while (const auto scan = despiker.flush(sigma)) take(*scan);
   return trace;
+}
+
+SlipEstimates TestAnalysis::estimate(const Trace& trace, const std::vector<Fall>& slips, double sigma) {
+  SlipEstimates alone = estimate_slips(trace, slips, sigma);
+  if (model_describes(alone, sigma)) tester_ = alone.tester();
+  if (settings_.prior.empty()) return alone;
+  SlipEstimates with = estimate_slips(trace, slips, sigma, settings_.prior);
+  if (!settings_.prior.coupling || !tester_ || !with.fit.converged) return with;
+  tester_check_ = check_tester(*tester_, with.tester(), *settings_.prior.coupling, settings_.tester);
+  return tester_check_->agrees() ? with : alone;
 }
 
 void TestAnalysis::keep_cycles(const std::vector<Cycle>& cycles, const std::vector<Fall>& slips) {

@@ -10,16 +10,19 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/base/long_column.hpp"
 #include "core/base/scan_index.hpp"
+#include "core/friction/characterisation.hpp"
 #include "core/friction/cycle.hpp"
 #include "core/friction/fall_finder.hpp"
 #include "core/friction/method.hpp"
 #include "core/friction/results.hpp"
 #include "core/friction/shared_prior.hpp"
+#include "core/friction/slip_estimator.hpp"
 #include "core/friction/slip_rule.hpp"
 #include "core/friction/tester.hpp"
 #include "core/friction/trace.hpp"
@@ -64,6 +67,10 @@ class TestAnalysis {
   [[nodiscard]] const base::LongColumn<Cycle>& cycles() const noexcept { return cycles_; }
   /// The same, for keeps.
   [[nodiscard]] base::LongColumn<Cycle> take_cycles() { return std::exchange(cycles_, {}); }
+  /// After finish(): what the test alone says about the tester; nothing without a fit that describes it.
+  [[nodiscard]] const std::optional<TesterEstimate>& tester() const noexcept { return tester_; }
+  /// After finish(): the test against settings.prior.coupling; nothing without either.
+  [[nodiscard]] const std::optional<TesterCheck>& tester_check() const noexcept { return tester_check_; }
   /// After finish(): scans that the detector did not believe.
   [[nodiscard]] const std::vector<base::ScanIndex>& spikes() const noexcept { return spikes_; }
 
@@ -78,6 +85,8 @@ class TestAnalysis {
   [[nodiscard]] Trace despiked_trace();
   /// Into cycles_, with their flags.
   void keep_cycles(const std::vector<Cycle>& cycles, const std::vector<Fall>& slips);
+  /// With the prior, unless the test alone contradicts it; fills tester_ and tester_check_.
+  [[nodiscard]] SlipEstimates estimate(const Trace& trace, const std::vector<Fall>& slips, double sigma);
 
   AnalysisSettings settings_;
   base::LongColumn<base::ScanIndex> indices_;
@@ -93,6 +102,8 @@ class TestAnalysis {
   std::int64_t live_cycle_count_ = 0;
 
   base::LongColumn<Cycle> cycles_;
+  std::optional<TesterEstimate> tester_;
+  std::optional<TesterCheck> tester_check_;
   std::vector<base::ScanIndex> spikes_;
 };
 

@@ -93,6 +93,8 @@ UniformFit fit_uniform(const Trace& trace, std::size_t first, std::size_t end, c
       equations = there;
       damping = std::max(damping * kEasier, kSmallestDamping);
     } else {
+      // At the optimum the cost cannot fall, and rounding decides its sign.
+      fit.converged = there.cost - equations.cost <= kConverged * equations.cost;
       damping *= kHarder;
     }
   }

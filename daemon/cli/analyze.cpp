@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <optional>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -7,23 +10,58 @@
 #include "daemon/cli/commands.hpp"
 #include "daemon/report/table.hpp"
 #include "daemon/results_json.hpp"
+#include "daemon/tester_file.hpp"
 
 namespace stickslip::daemon {
 
-base::Result<std::string> run_analyze(const std::vector<std::string>& files, bool json) {
+namespace {
+
+/// The test against the characterisation, or why it could not be asked.
+nlohmann::ordered_json json_of(const std::optional<friction::TesterCheck>& check) {
+  if (!check) return nullptr;
+  return {
+      {"chi_squared", check->chi_squared},
+      {"probability", check->probability},
+      {"agrees", check->agrees()},
+      {"pull_speed", check->pull_speed.value ? nlohmann::ordered_json(*check->pull_speed.value) : nullptr},
+      {"pull_speed_standard_error", check->pull_speed.standard_error
+                                        ? nlohmann::ordered_json(*check->pull_speed.standard_error)
+                                        : nullptr},
+      {"findings", check->findings}};
+}
+
+}  // namespace
+
+base::Result<std::string> run_analyze(const std::vector<std::string>& files, bool json,
+                                      const std::string& tester) {
+  friction::SharedPrior prior;
+  if (!tester.empty()) {
+    const auto coupling = load_tester(tester);
+    if (!coupling) return tl::unexpected(coupling.error());
+    prior.coupling = *coupling;
+  }
+  std::string findings;
   nlohmann::ordered_json tests = nlohmann::ordered_json::array();
   std::vector<TableRow> rows;
   for (const std::string& file : files) {
     const base::Result<record::Record> record = record::read_record(file);
     if (!record) return tl::unexpected(record.error());
-    base::Result<record::EndRecord> end = analyse(*record);
-    if (!end) {
-      return tl::unexpected(base::Error{end.error().kind, fmt::format("{}: {}", file, end.error().message)});
+    base::Result<TesterAnalysis> analysed = analyse_with_tester(*record, prior);
+    if (!analysed) {
+      return tl::unexpected(
+          base::Error{analysed.error().kind, fmt::format("{}: {}", file, analysed.error().message)});
+    }
+    record::EndRecord* const end = &analysed->end;
+    if (analysed->check) {
+      for (const std::string& finding : analysed->check->findings) {
+        findings += fmt::format("{}: {}\n", file, finding);
+      }
     }
     if (json) {
       nlohmann::ordered_json test;
       test["file"] = file;
       test.update(results_json(end->results, true));
+      if (!tester.empty()) test["tester_check"] = json_of(analysed->check);
       tests.push_back(std::move(test));
     } else {
       const auto number = static_cast<std::int64_t>(rows.size()) + 1;
@@ -31,7 +69,7 @@ base::Result<std::string> run_analyze(const std::vector<std::string>& files, boo
                       std::move(end->truth), file});
     }
   }
-  if (!json) return format_table(rows);
+  if (!json) return format_table(rows) + findings;
   using Json = nlohmann::ordered_json;
   return Json{{"tests", std::move(tests)}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -28,7 +28,17 @@ struct ImportCommand {
 
 [[nodiscard]] base::Result<std::string> run_import(const ImportCommand& command);
 
-[[nodiscard]] base::Result<std::string> run_analyze(const std::vector<std::string>& files, bool json);
+/// \param tester  file of a characterisation; empty: none.
+[[nodiscard]] base::Result<std::string> run_analyze(const std::vector<std::string>& files, bool json,
+                                                    const std::string& tester);
+
+struct CharacteriseCommand {
+  std::vector<std::string> files;  ///< Records of ring-downs.
+  std::string output;              ///< Empty: none.
+  bool json = false;
+};
+
+[[nodiscard]] base::Result<std::string> run_characterise(const CharacteriseCommand& command);
 
 struct SimulateCommand : SceneOptions {
   std::string output;

@@ -27,6 +27,7 @@ constexpr const char* kExamples = R"(Examples:
   stickslip accuracy threshold-oscillation -o a.html   error against time, for each way to solve it
   stickslip analyze records/*.h5                       a table, with the truth where it is known
   stickslip analyze trace.h5 --json                    {"tests": [{"file": …, results …, "details": …}]}
+  stickslip characterise ring-down.h5 -o tester.toml   omega and gamma of the tester, for --tester
   stickslip status                                     what the daemon is doing)";
 
 int print(const base::Result<std::string>& output) {
@@ -228,6 +229,27 @@ int main_of(int count, char** arguments) {
   CLI::App* analyze = app.add_subcommand("analyze", "run the detector and the estimators over records");
   analyze->add_option("files", files, "records")->required()->type_name("FILE.h5");
   analyze->add_flag("--json", json, "JSON instead of a table; names as in the record, null where absent");
+  std::string tester;
+  analyze
+      ->add_option(
+          "--tester", tester,
+          "what `stickslip characterise` wrote: S and K become surer, and what speaks against it is told")
+      ->type_name("FILE.toml");
+
+  CharacteriseCommand characterisation;
+  CLI::App* characterise =
+      app.add_subcommand("characterise", "omega and gamma of the tester from its ring-downs");
+  characterise->add_option("files", characterisation.files, "records of ring-downs")
+      ->required()
+      ->type_name("FILE.h5");
+  characterise
+      ->add_option("-o,--output", characterisation.output, "where to keep it, a file that does not exist")
+      ->type_name("FILE.toml");
+  characterise->add_flag("--json", characterisation.json, "JSON instead of a table");
+  characterise->footer(
+      "Examples:\n"
+      "  stickslip characterise ring-down-1.h5 ring-down-2.h5 -o tester.toml\n"
+      "  stickslip analyze records/*.h5 --tester tester.toml");
 
   std::string socket = "/run/stickslip/control.sock";
   CLI::App* status = app.add_subcommand("status", "ask the running daemon");
@@ -240,7 +262,8 @@ int main_of(int count, char** arguments) {
     fmt::print(stderr, "stickslip: {}; see stickslip --help\n", error.what());
     return 2;
   }
-  if (analyze->parsed()) return print(run_analyze(files, json));
+  if (analyze->parsed()) return print(run_analyze(files, json, tester));
+  if (characterise->parsed()) return print(run_characterise(characterisation));
   if (status->parsed()) return print(run_status(socket));
   if (scenes->parsed()) return print(run_scenes(folder, scenes_json));
   if (app.got_subcommand("plot")) return print(run_plot(plot));

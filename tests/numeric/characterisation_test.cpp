@@ -1,0 +1,128 @@
+#include "core/friction/characterisation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include "core/friction/test_analysis.hpp"
+#include "tests/support/estimator_limits.hpp"
+
+namespace stickslip::friction {
+namespace {
+
+constexpr double kInchPerMinute_m_per_s = 0.0254 / 60.0;
+
+TesterEstimate ring_down(double omega, double gamma_over_2omega) {
+  TesterEstimate estimate;
+  estimate.omega = omega;
+  estimate.gamma_over_2omega = gamma_over_2omega;
+  estimate.covariance = Eigen::Vector3d{1e-4, 1e-8, 1e-10}.asDiagonal();
+  return estimate;
+}
+
+TEST(Characterisation, IsTheWeightedMeanOfItsRingDowns) {
+  std::vector<TesterEstimate> two{ring_down(125.60, 0.0220), ring_down(125.63, 0.0221)};
+  two[1].covariance *= 4.0;  // counts a quarter
+  const auto result = pool_ring_downs(two);
+  ASSERT_TRUE(result);
+  EXPECT_NEAR(result->coupling.omega, 125.606, 1e-9);
+  EXPECT_NEAR(result->coupling.gamma_over_2omega, 0.02202, 1e-12);
+  EXPECT_EQ(result->freedom, 2);
+  // 0.006²/1e-4 + 0.024²/4e-4 and 2e-5²/1e-8 + 8e-5²/4e-8
+  EXPECT_NEAR(result->chi_squared, 0.36 + 1.44 + 0.04 + 0.16, 1e-9);
+  EXPECT_NEAR(result->coupling.covariance(0, 0), 0.8e-4, 1e-12);  // χ² is not above its freedom
+  EXPECT_NEAR(result->probability(), std::exp(-0.5 * result->chi_squared), 1e-12);
+}
+
+TEST(Characterisation, IsWidenedWhereRingDownsDisagree) {
+  const std::vector<TesterEstimate> two{ring_down(125.0, 0.022), ring_down(126.0, 0.022)};
+  const auto result = pool_ring_downs(two);
+  ASSERT_TRUE(result);
+  EXPECT_NEAR(result->chi_squared, 2.0 * 0.25 / 1e-4, 1e-6);
+  EXPECT_NEAR(result->coupling.covariance(0, 0), 0.5e-4 * 2500.0, 1e-9);
+  EXPECT_LT(result->probability(), kDisagreement);
+  EXPECT_FALSE(pool_ring_downs({}));
+}
+
+TEST(Characterisation, NormalisedErrorsOfItsMeanAreChiSquared) {
+  // χ² of 2 (n − 1) = 6 freedom over 500 trials: mean 6 ± 4·√(2·6/500).
+  std::mt19937_64 engine{1};
+  std::normal_distribution<double> normal;
+  double sum = 0.0;
+  constexpr int kTrials = 500;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::vector<TesterEstimate> four;
+    for (int i = 0; i < 4; ++i) {
+      const double omega = 125.6 + 1e-2 * normal(engine);
+      four.push_back(ring_down(omega, 0.022 + 1e-4 * normal(engine)));
+    }
+    sum += pool_ring_downs(four)->chi_squared / kTrials;
+  }
+  EXPECT_NEAR(sum, 6.0, 4.0 * std::sqrt(12.0 / kTrials));
+}
+
+class TesterChecked : public testing::Test {
+ protected:
+  /// A test at 12 in/min of the tester known, with its noise, against what it is told.
+  TestAnalysis analysed(const SharedPrior::Coupling& told, double plan_in_per_min, std::uint64_t seed) const {
+    AnalysisSettings settings;
+    settings.prior.coupling = told;
+    settings.tester.pull_speed_m_per_s = plan_in_per_min * kInchPerMinute_m_per_s;
+    TestAnalysis analysis{settings};
+    std::mt19937_64 engine{seed};
+    std::normal_distribution<double> normal{0.0, test::LimitScene::kSigma};
+    base::ScanIndex index = 0;
+    for (const double value : scene_.exact()) analysis.add(index++, value + normal(engine), false);
+    results_ = analysis.finish();
+    return analysis;
+  }
+
+  test::LimitScene scene_;
+  SharedPrior::Coupling known_ = *scene_.prior({true, false}).coupling;
+  mutable TestResults results_;
+};
+
+TEST_F(TesterChecked, PullSpeedIsKnownToHalfAPerCentAndAWrongPlanIsCaught) {
+  // Standard error of the speed from the bound: below 0.5 %, so that a plan of 6 in/min is off by 100 σ.
+  double squares = 0.0;
+  constexpr int kSeeds = 100;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const TestAnalysis right = analysed(known_, 12.0, seed);
+    ASSERT_TRUE(right.tester_check());
+    const TesterCheck& check = *right.tester_check();
+    EXPECT_TRUE(check.findings.empty()) << seed << ": " << check.findings.front();
+    const double speed = *check.pull_speed.value / kInchPerMinute_m_per_s;
+    EXPECT_LT(*check.pull_speed.standard_error / *check.pull_speed.value, 0.005);
+    squares +=
+        std::pow((speed / 12.0 - 1.0) / (*check.pull_speed.standard_error / *check.pull_speed.value), 2);
+  }
+  EXPECT_NEAR(squares / kSeeds, 1.0, 0.1 + 3.0 * std::sqrt(2.0 / kSeeds));
+  const TestAnalysis wrong = analysed(known_, 6.0, 1);
+  ASSERT_EQ(wrong.tester_check()->findings.size(), 1U);
+  EXPECT_NE(wrong.tester_check()->findings.front().find("the plan says 6.00"), std::string::npos);
+}
+
+TEST_F(TesterChecked, AnotherSpringIsAFindingAndIsNotUsed) {
+  SharedPrior::Coupling other = known_;
+  other.omega *= 1.01;  // 9 standard errors of one test of ten cycles, whose ω is known to 0.11 %.
+  const TestAnalysis analysis = analysed(other, 12.0, 1);
+  ASSERT_TRUE(analysis.tester_check());
+  EXPECT_FALSE(analysis.tester_check()->agrees());
+  EXPECT_NE(analysis.tester_check()->findings.front().find("disagrees"), std::string::npos);
+  // As without it: γ is as uncertain as the test alone leaves it, S − K within four standard errors.
+  EXPECT_GT(*results_.gamma_over_2omega.standard_error, 0.05 * 0.022);
+  EXPECT_NEAR(*results_.delta_mu.value, 0.05, 4.0 * *results_.delta_mu.standard_error);
+}
+
+TEST_F(TesterChecked, KnowingTheTesterCutsTheErrorOfSMinusK) {
+  const double alone = scene_.bounds({false, false}).delta_mu;
+  (void)analysed(known_, 12.0, 1);
+  EXPECT_LT(*results_.delta_mu.standard_error, alone / 4.0);
+}
+
+}  // namespace
+}  // namespace stickslip::friction

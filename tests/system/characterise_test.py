@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""`stickslip characterise` and `stickslip analyze --tester` from outside.
+
+characterise_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import tomllib
+import unittest
+
+BUILD = pathlib.Path(sys.argv[1]).resolve()
+CLI = BUILD / "daemon" / "stickslip"
+
+# Generous: under sanitizers on a busy machine everything takes its time.
+TIMEOUT_S = 600
+
+
+def run(*arguments, cwd=None):
+    return subprocess.run([str(a) for a in arguments], cwd=cwd, capture_output=True, text=True,
+                          timeout=TIMEOUT_S, check=False)
+
+
+class Characterise(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory(prefix="stickslip-")
+        cls.folder = pathlib.Path(cls.temporary.name)
+        cls.ring_downs = []
+        for seed in (1, 2, 3):
+            cls.ring_downs.append(cls.simulate("ring-down-at-12-in-per-min", f"ring-down-{seed}.h5", "--seed", seed))
+        cls.pull = cls.simulate("stick-slip-at-12-in-per-min", "pull.h5", "--seed", 7)
+        # Another spring: ω is 2 % higher, many standard errors.
+        cls.changed = cls.simulate("stick-slip-at-12-in-per-min", "changed.h5", "--seed", 8,
+                                   "--set", "tester.frequency=20.4 Hz")
+        cls.tester = cls.folder / "tester.toml"
+        done = run(CLI, "characterise", *cls.ring_downs, "-o", cls.tester, "--json")
+        assert done.returncode == 0, done.stderr
+        cls.json = json.loads(done.stdout)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    @classmethod
+    def simulate(cls, scene, name, *options):
+        file = cls.folder / name
+        done = run(CLI, "simulate", scene, "-o", file, *options)
+        assert done.returncode == 0, done.stderr
+        return file
+
+    def test_the_file_holds_the_tester_of_the_scenes(self):
+        kept = tomllib.loads(self.tester.read_text())["tester"]
+        self.assertEqual(kept["ring_downs"], 3)
+        omega = float(kept["omega"].removesuffix(" rad/s"))
+        error = float(kept["omega_standard_error"].removesuffix(" rad/s"))
+        self.assertLess(abs(omega - 125.66370614), 5 * error)
+        self.assertLess(abs(kept["gamma_over_2omega"] - 0.022), 5 * kept["gamma_over_2omega_standard_error"])
+        # Three ring-downs of some 1.5 s, each known to 0.5 % at best.
+        self.assertLess(kept["gamma_over_2omega_standard_error"] / 0.022, 0.01)
+        self.assertAlmostEqual(self.json["tester"]["omega"], omega, places=6)
+        self.assertEqual(len(self.json["ring_downs"]), 3)
+
+    def test_it_makes_s_minus_k_surer(self):
+        alone = json.loads(run(CLI, "analyze", self.pull, "--json").stdout)["tests"][0]
+        known = json.loads(run(CLI, "analyze", self.pull, "--tester", self.tester, "--json").stdout)["tests"][0]
+        self.assertNotIn("tester_check", alone)
+        self.assertTrue(known["tester_check"]["agrees"])
+        self.assertEqual(known["tester_check"]["findings"], [])
+        self.assertLess(abs(known["tester_check"]["pull_speed"] / 0.00508 - 1), 0.01)
+        error = known["details"]["delta_mu"]["standard_error"]
+        self.assertLess(error, alone["details"]["delta_mu"]["standard_error"] / 2)
+        self.assertLess(abs(known["delta_mu"] - 0.05), 5 * error)
+
+    def test_another_spring_is_a_finding(self):
+        done = run(CLI, "analyze", self.changed, "--tester", self.tester)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("the tester disagrees with its characterisation", done.stdout)
+        check = json.loads(run(CLI, "analyze", self.changed, "--tester", self.tester, "--json").stdout)
+        self.assertFalse(check["tests"][0]["tester_check"]["agrees"])
+
+    def test_refusals_leave_no_file(self):
+        for files, word in (([self.pull], "stick-slip"), ([self.folder / "none.h5"], "none.h5")):
+            output = self.folder / "refused.toml"
+            done = run(CLI, "characterise", *files, "-o", output)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(word, done.stderr)
+            self.assertFalse(output.exists())
+        before = self.tester.read_text()
+        self.assertEqual(run(CLI, "characterise", self.ring_downs[0], "-o", self.tester).returncode, 2)
+        self.assertEqual(self.tester.read_text(), before)
+
+    def test_help_has_examples(self):
+        self.assertIn("stickslip characterise ring-down-1.h5", run(CLI, "characterise", "--help").stdout)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
