@@ -48,12 +48,11 @@ struct SimulationFile {
   std::string configuration;   ///< process/configuration
 };
 
-/// The same into a file, scan by scan and slip by slip: what grows with them lies in nameless files beside FILE,
-/// but for what the fit of the slips needs (docs/simulate.md). The scans go to FILE.journal, which is gone in the
-/// end, whatever happens.
-/// \param progress  told 1 once before the analysis and once more before the file is built.
-/// \return the simulation without scans, raw values, noise-free force and tables of slips and modes.
-/// Errors: as simulate(); kUsage if the file is there already, kFailure if it cannot be written.
+/// The same into a file, scan by scan and slip by slip: what grows with them lies in nameless files beside
+/// FILE, but for what the fit of the slips needs (docs/simulate.md). The scans go to FILE.journal, which is
+/// gone in the end, whatever happens. \param progress  told 1 once before the analysis and once more before
+/// the file is built. \return the simulation without scans, raw values, noise-free force and tables of slips
+/// and modes. Errors: as simulate(); kUsage if the file is there already, kFailure if it cannot be written.
 [[nodiscard]] base::Result<Simulation> simulate_to_file(const sim::Scene& scene, std::uint64_t seed,
                                                         const base::Clock& clock, const SimulationFile& file,
                                                         const SimulationProgress& progress = {});

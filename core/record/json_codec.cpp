@@ -174,11 +174,11 @@ friction::TestTruth truth_from_json(const json& object) {
     truth.modes.push_back(mode);
   }
   for (const json& entry : object.value("cycles", json::array())) {
-    friction::TrueCycle cycle;
-    decode(entry.at(0), cycle.onset_time_s);
-    decode(entry.at(1), cycle.mu_s);
-    decode(entry.at(2), cycle.mu_k);
-    truth.cycles.push_back(cycle);
+    friction::TrueCycle slip;
+    decode(entry.at(0), slip.onset_time_s);
+    decode(entry.at(1), slip.mu_s);
+    decode(entry.at(2), slip.mu_k);
+    truth.cycles.push_back(slip);
   }
   return truth;
 }
@@ -329,11 +329,8 @@ void read_tables(const json& object, TableReader table, EndRecord& end) {
   }
   if (!end.truth) return;
   for (std::size_t left = row_count(object.at("truth"), "mode_count", table); left > 0; --left) {
-    friction::ModeInterval mode;
-    mode.start_s = table.next();
-    mode.end_s = table.next();
-    mode.mode = mode_of(table.next());
-    end.truth->modes.push_back(mode);
+    end.truth->modes.push_back(
+        {table.next(), table.next(), mode_of(table.next())});  // Braces keep the order.
   }
   for (std::size_t left = row_count(object.at("truth"), "cycle_count", table); left > 0; --left) {
     friction::TrueCycle cycle;
@@ -379,8 +376,7 @@ EndRecord end_from_bytes(std::span<const std::byte> bytes) {
   take(object, "compute_time", end.compute_time_s);
   end.results = results_from_json(object.at("results"));
   object.at("spikes").get_to(end.spikes);
-  for (const json& cycle : object.value("cycles", json::array()))
-    end.cycles.push_back(cycle_from_array(cycle));
+  for (const json& row : object.value("cycles", json::array())) end.cycles.push_back(cycle_from_array(row));
   if (object.contains("truth")) end.truth = truth_from_json(object.at("truth"));
   if (const auto tables = text.find('\0'); tables != std::string_view::npos) {
     read_tables(object, TableReader{text.substr(tables + 1)}, end);
