@@ -221,7 +221,7 @@ bool windows_suffice(const Trace& trace, const std::vector<SlipWindow>& windows)
 /// Rounds of deciding which slips were captured and fitting what follows from it, from a first guess.
 /// \param found  ends to begin with; empty: those that the guess says.
 SlipEstimates rounds(const Trace& trace, std::span<const Fall> slips, double sigma, const SharedPrior& prior,
-                     SharedParameters shared) {
+                     SharedParameters shared, std::vector<SlipEnd> found = {}) {
   SlipEstimates estimates;
   const auto fit = [&] {
     lay_windows(trace, slips, shared, estimates);
