@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "core/friction/method.hpp"
 #include "core/friction/truth.hpp"
 #include "core/sim/scene.hpp"
 
@@ -19,6 +20,9 @@ namespace stickslip::sim {
 /// of the first slip in closed form [17], with zero as the least force of a one-way coupling; of a motion
 /// without closed forms that of the force itself. What rate-and-state friction calls a slip, and which S and
 /// K it then has: rate_and_state_motion.hpp.
-[[nodiscard]] friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std::uint64_t seed);
+///
+/// \param method  by which the traditional coefficients are read from the force.
+[[nodiscard]] friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std::uint64_t seed,
+                                              const friction::Method& method = {});
 
 }  // namespace stickslip::sim
