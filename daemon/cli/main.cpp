@@ -225,6 +225,10 @@ Examples:
   stickslip compare a*.h5 -- b*.h5 --json --csv comparison.csv)";
 
 void add_report_options(CLI::App& command, ReportOptions& options) {
+  command
+      .add_option("-o,--output", options.page,
+                  "page to make, one file with traces to zoom in; must not exist")
+      ->type_name("FILE.html");
   command.add_option("--csv", options.csv, "table to make; must not exist")->type_name("FILE.csv");
   command.add_flag("--json", options.json, "JSON instead of tables; SI units, null where there is no number");
 }

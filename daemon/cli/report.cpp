@@ -9,6 +9,7 @@
 #include "daemon/cli/commands.hpp"
 #include "daemon/new_file.hpp"
 #include "daemon/report/report_json.hpp"
+#include "daemon/report/report_page.hpp"
 #include "daemon/report/report_text.hpp"
 #include "daemon/report/test_report.hpp"
 
@@ -35,10 +36,13 @@ std::string dumped(const Json& json) {
 }
 
 /// Files first, so that nothing is printed before all has succeeded.
-Result<std::string> deliver(const ReportOptions& options, const std::string& csv, const Json& json,
-                            const std::string& text) {
+Result<std::string> deliver(const ReportOptions& options, const std::string& csv, const std::string& page,
+                            const Json& json, const std::string& text) {
   if (!options.csv.empty()) {
     if (auto written = write_new_file(options.csv, csv); !written) return tl::unexpected(written.error());
+  }
+  if (!options.page.empty()) {
+    if (auto written = write_new_file(options.page, page); !written) return tl::unexpected(written.error());
   }
   return options.json ? dumped(json) : text;
 }
@@ -49,7 +53,8 @@ Result<std::string> run_report(const ReportCommand& command) {
   if (auto free = check_outputs(command); !free) return tl::unexpected(free.error());
   const Result<Material> material = read_material("", command.files, !command.page.empty());
   if (!material) return tl::unexpected(material.error());
-  return deliver(command, report_csv(*material), report_json(*material), report_text(*material));
+  return deliver(command, report_csv(*material), command.page.empty() ? "" : report_page(*material),
+                 report_json(*material), report_text(*material));
 }
 
 Result<std::string> run_compare(const CompareCommand& command) {
@@ -63,7 +68,8 @@ Result<std::string> run_compare(const CompareCommand& command) {
   const Result<Material> b = read_material(command.label_b, command.b, with_traces);
   if (!b) return tl::unexpected(b.error());
   const MaterialComparison comparison = compare_materials(*a, *b);
-  return deliver(command, comparison_csv(*a, *b, comparison), comparison_json(*a, *b, comparison),
+  return deliver(command, comparison_csv(*a, *b, comparison),
+                 with_traces ? comparison_page(*a, *b, comparison) : "", comparison_json(*a, *b, comparison),
                  comparison_text(*a, *b, comparison));
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -68,7 +70,7 @@ std::string figure_line(const std::string& speed, const std::string& label, cons
 }
 
 std::string replicates_table(const Material& material, const SpeedGroup& group) {
-  std::string text = fmt::format("{:<12}{:>4}  {:>9}  {:>9}  {:>11}  {:>20}\n", "", "n", "mean", "s_r",
+  std::string text = fmt::format("{:<15}{:>4}  {:>9}  {:>9}  {:>11}  {:>20}\n", "", "n", "mean", "s_r",
                                  "r = 2.8 s_r", "95 % of the mean");
   std::string notes;
   for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
@@ -78,7 +80,7 @@ std::string replicates_table(const Material& material, const SpeedGroup& group) 
     const Replicates& values = own.replicates ? *own.replicates : none;
     const std::string title = quantity.unit == "1" ? std::string{quantity.title}
                                                    : fmt::format("{} ({})", quantity.title, quantity.unit);
-    text += fmt::format("{:<12}{:>4}  {:>9}  {:>9}  {:>11}  {:>20}\n", title, values.count,
+    text += fmt::format("{:<15}{:>4}  {:>9}  {:>9}  {:>11}  {:>20}\n", title, values.count,
                         number(own.replicates ? std::optional{values.mean} : std::nullopt, quantity.decimals),
                         number(values.standard_deviation, quantity.decimals + 1),
                         number(values.repeatability, quantity.decimals + 1),
@@ -125,7 +127,12 @@ std::string needed_text(const std::optional<int>& count) {
 }
 
 std::string comparison_table(const std::array<report::Comparison, report::kQuantityCount>& comparisons) {
-  std::string text = fmt::format("{:<12}{:>10}  {:>22}  {:>9}  {:>8}  {:>18}  {:>14}\n", "", "A − B", "95 %",
+  const std::string& first = comparisons.front().reason;
+  const auto same = [&first](const report::Comparison& own) { return own.reason == first; };
+  if (!first.empty() && std::all_of(comparisons.begin(), comparisons.end(), same)) {
+    return fmt::format("{}  {}\n", kAbsent, first);
+  }
+  std::string text = fmt::format("{:<15}{:>10}  {:>22}  {:>9}  {:>8}  {:>18}  {:>14}\n", "", "A − B", "95 %",
                                  "p (Welch)", "g", "95 % of g", "tests 80/90 %");
   std::map<std::string, std::string> reasons;
   for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
@@ -134,12 +141,12 @@ std::string comparison_table(const std::array<report::Comparison, report::kQuant
     const std::string title = quantity.unit == "1" ? std::string{quantity.title}
                                                    : fmt::format("{} ({})", quantity.title, quantity.unit);
     if (!own.welch) {
-      text += fmt::format("{:<12}{:>10}\n", title, kAbsent);
+      text += fmt::format("{:<15}{:>10}\n", title, kAbsent);
       std::string& titles = reasons[own.reason];
       titles += fmt::format("{}{}", titles.empty() ? "" : ", ", quantity.title);
       continue;
     }
-    text += fmt::format("{:<12}{:>10}  {:>22}  {:>9}  {:>8.2f}  {:>18}  {:>14}{}\n", title,
+    text += fmt::format("{:<15}{:>10}  {:>22}  {:>9}  {:>8.2f}  {:>18}  {:>14}{}\n", title,
                         number(own.welch->difference, quantity.decimals),
                         interval(own.welch->interval, quantity.decimals), p_text(own.welch->p), own.effect->g,
                         interval(own.effect->interval, 1),

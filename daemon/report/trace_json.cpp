@@ -58,23 +58,38 @@ Json cycles_json(const std::vector<friction::Cycle>& cycles) {
   return json;
 }
 
-Json modes_json(const std::vector<friction::Cycle>& cycles, double end_s) {
+/// Where the force was last at or above half of its largest: what is after is unloading, as for the
+/// traditional rule.
+double end_of_pull_s(const RecordTrace& trace) {
+  double largest = 0.0;
+  for (const double value : trace.value) {
+    if (value > largest) largest = value;  // Not with a break.
+  }
+  for (std::size_t i = trace.value.size(); i-- > 0;) {
+    if (trace.value[i] >= 0.5 * largest) return trace.time_s[i];
+  }
+  return 0.0;
+}
+
+/// Where the onset was not estimated, the peak is near it.
+double start_s(const friction::Cycle& cycle) {
+  return std::isfinite(cycle.onset_time_s) ? cycle.onset_time_s : cycle.peak_time_s;
+}
+
+/// \param last_slides  the last slip, of which no next one tells, goes on to the end of the pull.
+Json modes_json(const std::vector<friction::Cycle>& cycles, double end_s, bool last_slides) {
   Json json = Json::array();
   const auto add = [&json](double from_s, double to_s, const char* mode) {
     if (from_s < to_s) json.push_back(Json::array({rounded(from_s), rounded(to_s), mode}));
   };
   for (std::size_t i = 0; i < cycles.size(); ++i) {
     const friction::Cycle& cycle = cycles[i];
-    // Where the onset was not estimated, the peak is near it.
-    const auto start = [](const friction::Cycle& c) {
-      return std::isfinite(c.onset_time_s) ? c.onset_time_s : c.peak_time_s;
-    };
     const bool last = i + 1 == cycles.size();
     if (std::isfinite(cycle.capture_time_s)) {
-      add(start(cycle), cycle.capture_time_s, "slip");
-      if (!last) add(cycle.capture_time_s, start(cycles[i + 1]), "stick");
-    } else {
-      add(start(cycle), last ? end_s : start(cycles[i + 1]), "slide");
+      add(start_s(cycle), cycle.capture_time_s, "slip");
+      if (!last) add(cycle.capture_time_s, start_s(cycles[i + 1]), "stick");
+    } else if (!last || last_slides) {
+      add(start_s(cycle), last ? end_s : start_s(cycles[i + 1]), "slide");
     }
   }
   return json;
@@ -88,7 +103,7 @@ base::Result<Json> trace_json(const record::Record& record) {
   const std::optional<double> scaled = stretch_m(record);
   const double factor = scaled ? kMillimetresPerMetre * *scaled : 1.0;
   RecordTrace slope = derivative(*trace, factor);
-  const double end_s = trace->time_s.empty() ? 0.0 : trace->time_s.back();
+  const double end_s = end_of_pull_s(*trace);
 
   Json json;
   json["scan_count"] = record.scan.size();
@@ -102,7 +117,10 @@ base::Result<Json> trace_json(const record::Record& record) {
   const std::optional<double>& speed = record.header.tester.pull_speed_m_per_s;
   json["slope"]["limit"] = scaled && speed ? Json(*speed * kMillimetresPerMetre) : Json(nullptr);
   json["cycles"] = cycles_json(record.cycles);
-  json["modes"] = modes_json(record.cycles, end_s);
+  // In a test that sticks the end of the pull cut the last slip short; nobody knows.
+  const friction::Regime regime = record.end->results.regime;
+  const bool last_slides = regime == friction::Regime::kRingDown || regime == friction::Regime::kMixed;
+  json["modes"] = modes_json(record.cycles, end_s, last_slides);
   const friction::Estimate& transition = record.end->results.transition_time;
   json["transition"] = transition.value ? Json(*transition.value) : Json(nullptr);
   return json;
