@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/hypergeometric.hpp>
 #include <boost/math/distributions/non_central_t.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/gamma.hpp>
@@ -106,6 +107,24 @@ std::optional<int> tests_needed(double effect, double power) {
     (reaches(middle) ? enough : too_few) = middle;
   }
   return enough;
+}
+
+double exact_p(unsigned a_yes, unsigned a_no, unsigned b_yes, unsigned b_no) {
+  const unsigned yes = a_yes + b_yes;
+  const unsigned of_a = a_yes + a_no;
+  const unsigned all = of_a + b_yes + b_no;
+  if (of_a == 0 || of_a == all || yes == 0 || yes == all) return 1.0;
+  const boost::math::hypergeometric distribution{yes, of_a, all};
+  // Tables as likely as this one count, whatever rounding did to them; SciPy and R do the same.
+  constexpr double kRounding = 1e-7;
+  const double limit = boost::math::pdf(distribution, a_yes) * (1.0 + kRounding);
+  const unsigned least = yes + of_a > all ? yes + of_a - all : 0;
+  double p = 0.0;
+  for (unsigned k = least; k <= std::min(yes, of_a); ++k) {
+    const double probability = boost::math::pdf(distribution, k);
+    if (probability <= limit) p += probability;
+  }
+  return std::min(p, 1.0);
 }
 
 double combined_p(std::span<const double> p) {

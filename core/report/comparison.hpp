@@ -57,6 +57,12 @@ struct Comparison {
 /// The least count that reaches the power; none above kMostTestsNeeded. \param power  in (0, 1).
 [[nodiscard]] std::optional<int> tests_needed(double effect, double power);
 
+/// Of so many tests of A and B some are of one kind (such as: sticking) and the others not. Probability of a
+/// table as unlikely as this one, or more so, if A and B do not differ: two-sided, by the sum of all that are
+/// no likelier [Fisher 1935, J. R. Stat. Soc. 98, 39; hypergeometric distribution by Boost.Math]. \param
+/// a_yes,a_no,b_yes,b_no  ≥ 0. \return  1 where one of the materials or kinds is empty.
+[[nodiscard]] double exact_p(unsigned a_yes, unsigned a_no, unsigned b_yes, unsigned b_no);
+
 /// Several independent tests of "no difference" as one: −2 Σ ln p is χ² with 2k degrees of freedom
 /// [Fisher 1932, Statistical Methods for Research Workers, 21.1]. \param p  at least one, in [0, 1].
 [[nodiscard]] double combined_p(std::span<const double> p);

@@ -107,7 +107,14 @@ Json comparison_json(const Material& a, const Material& b, const MaterialCompari
   }
   json["comparisons"] = Json::array();
   for (std::size_t i = 0; i < comparison.pairs.size(); ++i) {
-    Json of_pair{{"pull_speed", or_null(comparison.pairs[i].pull_speed_m_per_s)}};
+    const RegimeComparison& regime = comparison.regimes[i];
+    Json of_pair{{"pull_speed", or_null(comparison.pairs[i].pull_speed_m_per_s)},
+                 {"regime",
+                  {{"a_sticking", regime.a.sticking},
+                   {"a_sliding", regime.a.sliding},
+                   {"b_sticking", regime.b.sticking},
+                   {"b_sliding", regime.b.sliding},
+                   {"p", or_null(regime.p)}}}};
     for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
       of_pair["quantities"][std::string{report::quantities()[q].name}] =
           comparison_json(comparison.comparisons[i][q]);

@@ -18,7 +18,8 @@ namespace stickslip::daemon {
 ///  "pooled_standard_deviation": {NAME: …}}
 [[nodiscard]] nlohmann::ordered_json report_json(const Material& material);
 
-/// {"a": report_json() and "label", "b": …, "comparisons": [{"pull_speed", "quantities": {NAME:
+/// {"a": report_json() and "label", "b": …, "comparisons": [{"pull_speed", "regime":
+///    {"a_sticking", "a_sliding", "b_sticking", "b_sliding", "p"}, "quantities": {NAME:
 ///    {"difference", "confidence_interval", "t", "degrees_of_freedom", "p", "hedges_g",
 ///     "hedges_g_interval", "tests_needed_80", "tests_needed_90", "reason"}}}],
 ///  "combined": {NAME: {"p", "speeds"}}}

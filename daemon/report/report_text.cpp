@@ -126,6 +126,15 @@ std::string needed_text(const std::optional<int>& count) {
   return count ? fmt::format("{}", *count) : fmt::format("> {}", report::kMostTestsNeeded);
 }
 
+std::string regime_line(const RegimeComparison& regime) {
+  if (!regime.p) return {};
+  const auto counts = [](const RegimeCounts& own) {
+    return fmt::format("{} of {}", own.sticking, own.sticking + own.sliding);
+  };
+  return fmt::format("sticking       A {}, B {}, p {} (Fisher's exact test){}\n", counts(regime.a),
+                     counts(regime.b), p_text(*regime.p), *regime.p < report::kSignificance ? "  *" : "");
+}
+
 std::string comparison_table(const std::array<report::Comparison, report::kQuantityCount>& comparisons) {
   const std::string& first = comparisons.front().reason;
   const auto same = [&first](const report::Comparison& own) { return own.reason == first; };
@@ -187,7 +196,7 @@ std::string comparison_text(const Material& a, const Material& b, const Material
   for (std::size_t i = 0; i < comparison.pairs.size(); ++i) {
     text +=
         fmt::format("\n{}: A − B (* differs at 5 %)\n", speed_text(comparison.pairs[i].pull_speed_m_per_s));
-    text += comparison_table(comparison.comparisons[i]);
+    text += comparison_table(comparison.comparisons[i]) + regime_line(comparison.regimes[i]);
   }
   std::string combined;
   for (std::size_t q = 0; q < report::kQuantityCount; ++q) {

@@ -41,11 +41,40 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
   return material;
 }
 
+namespace {
+
+RegimeCounts regime_counts(const Material& material, const std::optional<std::size_t>& group) {
+  RegimeCounts counts;
+  if (!group) return counts;
+  for (const std::size_t test : material.groups[*group].tests) {
+    switch (material.measured[test].results.regime) {
+      case friction::Regime::kStickSlip:
+      case friction::Regime::kMixed:
+        ++counts.sticking;
+        break;
+      case friction::Regime::kRingDown:
+      case friction::Regime::kSteadySliding:
+        ++counts.sliding;
+        break;
+      case friction::Regime::kUndecided:
+        break;
+    }
+  }
+  return counts;
+}
+
+}  // namespace
+
 MaterialComparison compare_materials(const Material& a, const Material& b) {
   MaterialComparison result;
   result.pairs = report::pair_speeds(a.groups, b.groups);
   std::array<std::vector<double>, report::kQuantityCount> p;
   for (const report::SpeedPair& pair : result.pairs) {
+    RegimeComparison regime{regime_counts(a, pair.a), regime_counts(b, pair.b), std::nullopt};
+    if (regime.a.sticking + regime.a.sliding > 0 && regime.b.sticking + regime.b.sliding > 0) {
+      regime.p = report::exact_p(regime.a.sticking, regime.a.sliding, regime.b.sticking, regime.b.sliding);
+    }
+    result.regimes.push_back(regime);
     auto& comparisons = result.comparisons.emplace_back();
     for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
       comparisons[q] = report::compare_pair(a.groups, b.groups, pair, q);

@@ -41,10 +41,25 @@ struct Material {
 [[nodiscard]] base::Result<Material> read_material(std::string label, std::span<const std::string> files,
                                                    bool with_traces);
 
+/// How many tests at one speed stuck again at least once (stick-slip, mixed), and how many never did
+/// (ring-down, steady sliding): the paper's qualitative difference between its two mills. Undecided ones are
+/// not counted.
+struct RegimeCounts {
+  unsigned sticking = 0;
+  unsigned sliding = 0;
+};
+
+struct RegimeComparison {
+  RegimeCounts a;
+  RegimeCounts b;
+  std::optional<double> p;  ///< Fisher's exact test; none where a material has no test to count.
+};
+
 /// All comparisons of two materials, in the order of pair_speeds() and report::quantities().
 struct MaterialComparison {
   std::vector<report::SpeedPair> pairs;
   std::vector<std::array<report::Comparison, report::kQuantityCount>> comparisons;  ///< One for each pair.
+  std::vector<RegimeComparison> regimes;                                            ///< One for each pair.
   struct Combined {
     double p = 0.0;  ///< Of all speeds together (Fisher).
     int speed_count = 0;

@@ -85,10 +85,14 @@
     const made = section("comparison", "Do they differ?", node("p", {class: "note"},
       "A − B with its 95 % interval; p of Welch's test; g is the difference in units of the scatter of single tests (Hedges). The last two columns: " +
       "tests of each material with which a difference as large would be found 80 or 90 times of 100. Green: differs at 5 %."));
-    const grid = node("div", {class: "grid"});
-    made.append(grid);
     data.comparison.comparisons.forEach((pair, i) => {
-      grid.append(node("div", {}, node("h3", {}, speed(pair.pull_speed)),
+      const reasons = data.quantities.map(q => pair.quantities[q.name].reason);
+      made.append(node("h3", {}, speed(pair.pull_speed)));
+      if (reasons[0] && reasons.every(reason => reason === reasons[0])) {
+        made.append(node("p", {class: "note", id: `comparison-${i}`}, reasons[0]));
+        return;
+      }
+      made.append(
         table(`comparison-${i}`, ["", "A − B", "95 %", "p", "g", "95 % of g", "tests, 80 %", "tests, 90 %"], data.quantities.map(q => {
           const own = pair.quantities[q.name];
           if (own.p == null) return row(title(q), absentCell(own.reason), ...Array(6).fill(""));
@@ -96,7 +100,12 @@
           return row(title(q), fixed(own.difference, q.decimals), range(own.confidence_interval, q.decimals),
             node("td", own.p < 0.05 ? {class: "differs"} : {}, probability(own.p)), fixed(own.hedges_g, 2),
             range(own.hedges_g_interval, 1), needed(own.tests_needed_80), needed(own.tests_needed_90));
-        }))));
+        })));
+      const regime = pair.regime;
+      if (regime.p != null) {
+        made.append(node("p", {class: "note", id: `regime-${i}`}, `Sticking: ${regime.a_sticking} of ${regime.a_sticking + regime.a_sliding} tests of A, ` +
+          `${regime.b_sticking} of ${regime.b_sticking + regime.b_sliding} of B; p ${probability(regime.p)} (Fisher's exact test).`));
+      }
     });
     const combined = data.quantities.filter(q => data.comparison.combined[q.name]);
     if (combined.length > 0) {

@@ -145,8 +145,9 @@ class Pages(unittest.TestCase):
         page = self.page("compare.html")
         compared = self.comparison["comparisons"]
         self.assertEqual(len(compared), 2)
-        self.assertEqual({row[1] for row in self.rows(page, "comparison-0")}, {"–"})  # B has no test at 6 in/min.
-        self.assertEqual(page.value("document.querySelector('#comparison-0 .absent').title"), "no test of B at this speed")
+        # B has no test at 6 in/min.
+        self.assertEqual(page.value("document.getElementById('comparison-0').textContent"), "no test of B at this speed")
+        self.assertEqual(page.value("document.getElementById('regime-1').textContent"), "Sticking: 3 of 3 tests of A, 0 of 3 of B; p 0.1000 (Fisher's exact test).")
         for row, quantity in zip(self.rows(page, "comparison-1"), quantities):
             own, digits = compared[1]["quantities"][quantity["name"]], quantity["decimals"]
             self.assertEqual(row[1], f"{own['difference']:.{digits}f}")

@@ -179,6 +179,16 @@ TEST(CombinedP, IsThatOfScipy) {
   EXPECT_EQ(combined_p(std::array{0.5, 0.0}), 0.0);
 }
 
+// scipy.stats.fisher_exact([[5, 0], [0, 5]])[1]; the third is the example of SciPy's manual.
+TEST(ExactP, IsThatOfScipy) {
+  EXPECT_SAME(exact_p(5, 0, 0, 5), 0.007936507936507936);
+  EXPECT_SAME(exact_p(3, 2, 1, 4), 0.5238095238095238);
+  EXPECT_SAME(exact_p(8, 2, 1, 5), 0.034965034965034975);
+  EXPECT_SAME(exact_p(2, 3, 0, 3), 0.4642857142857143);
+  EXPECT_EQ(exact_p(0, 0, 2, 3), 1.0);
+  EXPECT_EQ(exact_p(4, 0, 3, 0), 1.0);
+}
+
 TEST(Comparison, SaysWhatIsMissing) {
   const Replicates one = describe_replicates(std::array{0.3});
   const Replicates two = describe_replicates(std::array{0.3, 0.4});
