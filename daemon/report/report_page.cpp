@@ -32,7 +32,7 @@ Json quantities_json() {
 Json material_json(const Material& material, Json report) {
   report["label"] = material.label;
   for (std::size_t i = 0; i < material.tests.size(); ++i)
-    report["tests"][i]["trace"] = material.tests[i].trace;
+    report["tests"][i]["trace"] = Json::parse(material.tests[i].trace);
   return report;
 }
 

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include <nlohmann/json.hpp>
+
 #include "core/friction/method.hpp"
 #include "core/record/reader.hpp"
 #include "daemon/method_text.hpp"
@@ -26,12 +28,12 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
       test.departures = friction::departures(*method, tester.sled_mass_kg, tester.pull_speed_m_per_s);
     }
     if (with_traces) {
-      base::Result<nlohmann::ordered_json> trace = trace_json(*record);
+      const base::Result<nlohmann::ordered_json> trace = trace_json(*record);
       if (!trace) {
         return tl::unexpected(
             base::Error{trace.error().kind, fmt::format("{}: {}", file, trace.error().message)});
       }
-      test.trace = std::move(*trace);
+      test.trace = trace->dump();
     }
     test.truth = std::move(record->end->truth);
     material.measured.push_back({tester.pull_speed_m_per_s, std::move(record->end->results)});

@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "core/base/result.hpp"
 #include "core/friction/truth.hpp"
 #include "core/record/record.hpp"
@@ -24,7 +22,7 @@ struct ReportedTest {
   std::string method;                   ///< As in the record.
   std::vector<std::string> departures;  ///< From the method, one line each.
   std::optional<friction::TestTruth> truth;
-  nlohmann::ordered_json trace;  ///< For the page (trace_json()); null unless asked for.
+  std::string trace;  ///< For the page: trace_json() as text; empty unless asked for.
 };
 
 /// Tests of one material. `tests` and `measured` have equal lengths.

@@ -9,6 +9,7 @@ With STICKSLIP_SCREENSHOTS=FOLDER in the environment pictures of the pages are l
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -20,7 +21,7 @@ import numpy
 from chromium import Chromium
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
-CHROMIUM = sys.argv[2]
+CHROMIUM = shutil.which(sys.argv[2])
 CLI = BUILD / "daemon" / "stickslip"
 SPEED = "effects.constant_speed.pull_speed"
 HOSTILE = "</script><img src=x onerror='window.hacked=1'><b>&amp;"
@@ -222,4 +223,6 @@ class Pages(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    if CHROMIUM is None:
+        sys.exit(f"{sys.argv[2]} is not installed; ./dev deps test installs it")
     unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

@@ -15,9 +15,9 @@ constexpr double kScanRate_Hz = 350.0;
 constexpr int kPeriod = 20;  // scans, so that peaks lie on scans
 constexpr int kFirstPeak = 10;
 
-Trace trace_of(std::vector<double> values) {
+Trace trace_of(const std::vector<double>& values) {
   Trace trace;
-  trace.value = std::move(values);
+  trace.value = values;
   trace.usable.assign(trace.value.size(), 1);
   for (std::size_t k = 0; k < trace.value.size(); ++k) {
     trace.time_s.push_back(static_cast<double>(k) / kScanRate_Hz);
@@ -32,7 +32,7 @@ Trace oscillation(int scans) {
   for (int k = 0; k < scans; ++k) {
     values.push_back(0.3 + 0.05 * std::cos(2.0 * std::numbers::pi * (k - kFirstPeak) / kPeriod));
   }
-  return trace_of(std::move(values));
+  return trace_of(values);
 }
 
 std::vector<Fall> slips_at_the_peaks(int count) {
