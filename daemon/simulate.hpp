@@ -47,7 +47,7 @@ struct SimulationFile {
   std::filesystem::path path;  ///< Must not exist.
   std::string program;         ///< process/program
   std::string configuration;   ///< process/configuration
-  friction::Method method;     ///< process/method, and the rule of results and truth.
+  friction::Method method{};   ///< process/method, and the rule of results and truth.
 };
 
 /// The same into a file, scan by scan: the memory it needs is that of the tables of cycles and of the search
