@@ -4,6 +4,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/friction/method_file.hpp"
+
 namespace stickslip::daemon {
 namespace {
 
@@ -36,7 +38,6 @@ constexpr double kFastestPull_m_per_s = 10.0;
 constexpr double kHighestVoltage_V = 1e3;
 constexpr double kLargestCoefficient = 10.0;
 constexpr double kLongestDwell_s = 3600.0;
-constexpr std::int64_t kMostKineticCycles = 1000;
 constexpr std::int64_t kMostRepeats = 1'000'000;
 constexpr std::int64_t kHighestChannel = 1023;
 
@@ -138,13 +139,24 @@ void read_test(Settings table, pipeline::SegmenterSettings& segmenter) {
   }
 }
 
-void read_method(Settings table, friction::Method& method) {
+void read_method(Settings table, const std::filesystem::path& folder, friction::Method& method) {
+  if (const std::string file = table.text("file", ""); !file.empty()) {
+    for (const char* key : {"name", "kinetic_cycles"}) {
+      if (table.has(key)) table.refuse(key, "stands in the method's file");
+    }
+    const base::Result<friction::MethodFile> read = friction::load_method(folder / file);
+    if (read) {
+      method = read->method;
+    } else {
+      table.refuse("file", read.error().message);
+    }
+  }
   method.name = table.text("name", method.name);
   if (method.name.empty() || method.name.find(' ') != std::string::npos) {
     table.refuse("name", "must be a word without blanks");
   }
-  method.kinetic_cycles =
-      static_cast<int>(table.integer("kinetic_cycles", 1, kMostKineticCycles, method.kinetic_cycles));
+  method.kinetic_cycles = static_cast<int>(
+      table.integer("kinetic_cycles", 1, friction::kMostKineticCycles, method.kinetic_cycles));
 }
 
 DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
@@ -152,7 +164,8 @@ DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
   read_board(settings.table("board"), folder, config);
   read_tester(settings.table("tester"), config);
   read_test(settings.table("test"), config.segmenter);
-  read_method(settings.table("method"), config.method);
+  read_method(settings.table("method"), folder, config.method);
+  config.board.simulated.method = config.method;
   Settings record = settings.table("record");
   config.record_folder = record.text("folder", "records");
   if (config.record_folder.empty()) record.refuse("folder", "must name a folder");

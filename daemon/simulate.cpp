@@ -30,7 +30,7 @@ double seconds_since(std::int64_t start_ns, const base::Clock& clock) {
   return static_cast<double>(clock.monotonic_ns() - start_ns) / kNanosecondsPerSecond;
 }
 
-record::RecordHeader header_of(const sim::Scene& scene) {
+record::RecordHeader header_of(const sim::Scene& scene, const friction::Method& method) {
   record::RecordHeader header;
   header.uuid = record::make_uuid();
   header.title = scene.name;
@@ -39,7 +39,7 @@ record::RecordHeader header_of(const sim::Scene& scene) {
   header.tester = record::TesterFacts::of(drivers::tester_of({scene}));
   header.process.version = kVersion;
   header.process.commit = kCommit;
-  header.process.method = method_text({});
+  header.process.method = method_text(method);
   return header;
 }
 
@@ -114,9 +114,11 @@ base::Result<std::int64_t> scans_of(const sim::Scene& scene) {
 class Walk {
  public:
   /// \param scratch  folder for what is too long for memory; empty: nothing is.
-  Walk(const sim::Scene& scene, std::uint64_t seed, const base::Clock& clock, std::filesystem::path scratch)
+  Walk(const sim::Scene& scene, std::uint64_t seed, const base::Clock& clock, std::filesystem::path scratch,
+       friction::Method traditional)
       : scene_(scene),
         seed_(seed),
+        traditional_(std::move(traditional)),
         clock_(clock),
         scratch_(std::move(scratch)),
         run_(scene, scene.scan_rate_Hz) {
@@ -143,7 +145,7 @@ class Walk {
     analysis->finish(end);
     end.compute_time_s = analysis_s + seconds_since(start_ns, clock_);
     end.cause = pipeline::name(pipeline::EndCause::kEndOfInput);
-    end.truth = sim::scene_truth(scene_, scene_.scan_rate_Hz, seed_, scratch_);
+    end.truth = sim::scene_truth(scene_, scene_.scan_rate_Hz, seed_, traditional_, scratch_);
     end.truth->solver->time_per_scan_s = result.time_taken_s / static_cast<double>(result.scan_count);
     // Its times begin with the first scan that arrived.
     drivers::move_into_window(*end.truth, static_cast<double>(first_) / scene_.scan_rate_Hz,
@@ -184,6 +186,7 @@ class Walk {
 
   const sim::Scene& scene_;
   std::uint64_t seed_;
+  friction::Method traditional_;
   const base::Clock& clock_;
   std::filesystem::path scratch_;
   sim::SceneRun run_;
@@ -213,9 +216,9 @@ base::Result<Simulation> simulate(const sim::Scene& scene, std::uint64_t seed, c
   const base::Result<std::int64_t> count = scans_of(scene);
   if (!count) return tl::unexpected(count.error());
   Simulation result;
-  result.record.header = header_of(scene);
+  result.record.header = header_of(scene, {});
   MemorySink sink{result.record};
-  Walk walk{scene, seed, clock, {}};
+  Walk walk{scene, seed, clock, {}, {}};
   if (auto gone = walk.go(*count, sink, progress, result); !gone) return tl::unexpected(gone.error());
   return result;
 }
@@ -227,7 +230,7 @@ base::Result<Simulation> simulate_to_file(const sim::Scene& scene, std::uint64_t
   if (!count) return tl::unexpected(count.error());
   if (auto free = record::check_publishable(file.path); !free) return tl::unexpected(free.error());
   Simulation result;
-  result.record.header = header_of(scene);
+  result.record.header = header_of(scene, file.method);
   result.record.header.process.program = file.program;
   result.record.header.process.configuration = file.configuration;
 
@@ -238,7 +241,8 @@ base::Result<Simulation> simulate_to_file(const sim::Scene& scene, std::uint64_t
   if (!journal) return tl::unexpected(journal.error());
   const JournalFile journal_file{journal_path};
   JournalSink sink{*journal};
-  Walk walk{scene, seed, clock, journal_path.has_parent_path() ? journal_path.parent_path() : "."};
+  Walk walk{scene, seed, clock, journal_path.has_parent_path() ? journal_path.parent_path() : ".",
+            file.method};
   try {
     if (auto gone = walk.go(*count, sink, progress, result); !gone) return tl::unexpected(gone.error());
   } catch (const std::system_error& error) {  // The scratch files.

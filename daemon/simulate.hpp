@@ -11,6 +11,7 @@
 
 #include "core/base/clock.hpp"
 #include "core/base/result.hpp"
+#include "core/friction/method.hpp"
 #include "core/record/record.hpp"
 #include "core/sim/scene.hpp"
 
@@ -46,6 +47,7 @@ struct SimulationFile {
   std::filesystem::path path;  ///< Must not exist.
   std::string program;         ///< process/program
   std::string configuration;   ///< process/configuration
+  friction::Method method{};   ///< process/method, and the rule of results and truth.
 };
 
 /// The same into a file, scan by scan and slip by slip: what grows with them lies in nameless files beside

@@ -38,6 +38,8 @@ constexpr std::array kPerTimeUnits{Unit{"1/s", 1, 1}, Unit{"1/min", 1, 60}, Unit
                                    Unit{"%/s", 1, 100}, Unit{"ppm/s", 1, 1e6}};
 constexpr std::array kLengthUnits{Unit{"m", 1, 1},    Unit{"cm", 1, 100},     Unit{"mm", 1, 1e3},
                                   Unit{"um", 1, 1e6}, Unit{"in", kInch_m, 1}, Unit{"ft", kFoot_m, 1}};
+constexpr std::array kAreaUnits{Unit{"m^2", 1, 1}, Unit{"cm^2", 1, 1e4}, Unit{"mm^2", 1, 1e6},
+                                Unit{"in^2", 64516, 1e8}};
 constexpr std::array kSpeedUnits{Unit{"m/s", 1, 1},           Unit{"cm/s", 1, 100},
                                  Unit{"mm/s", 1, 1e3},        Unit{"um/s", 1, 1e6},
                                  Unit{"m/min", 1, 60},        Unit{"cm/min", 1, 6000},
@@ -82,6 +84,8 @@ std::span<const Unit> units_of(Dimension dimension) noexcept {
       return kPerTimeUnits;
     case Dimension::kLength:
       return kLengthUnits;
+    case Dimension::kArea:
+      return kAreaUnits;
     case Dimension::kSpeed:
       return kSpeedUnits;
     case Dimension::kAcceleration:

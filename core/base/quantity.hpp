@@ -25,6 +25,7 @@ enum class Dimension {
   kAngularFrequency,  ///< rad/s
   kPerTime,           ///< 1/s
   kLength,            ///< m
+  kArea,              ///< m^2
   kSpeed,             ///< m/s
   kAcceleration,      ///< m/s^2
   kJerk,              ///< m/s^3

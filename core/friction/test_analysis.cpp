@@ -132,7 +132,8 @@ TestResults TestAnalysis::finish() {
   const double sigma = signal::scan_noise(trace.value, noise_floor(trace.value, settings_.step_coefficient));
   const std::vector<Fall> slips = find_slips(trace, sigma, settings_.scratch_folder);
   results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
-  const TraditionalCoefficients traditional = traditional_coefficients(trace, slips, settings_.method);
+  const TraditionalCoefficients traditional =
+      traditional_coefficients(trace, slips, settings_.method, settings_.tester.pull_speed_m_per_s);
   results.static_coefficient = traditional.static_coefficient;
   results.kinetic_coefficient = traditional.kinetic_coefficient;
   if (slips.empty()) {

@@ -40,28 +40,19 @@ std::size_t first_at_or_after(const Trace& trace, double time_s) {
   return static_cast<std::size_t>(found - trace.time_s.begin());
 }
 
-}  // namespace
-
-TraditionalCoefficients traditional_coefficients(const Trace& trace, std::span<const Fall> slips,
-                                                 const Method& method) {
-  if (slips.empty()) {
-    const auto [first, end] = loaded_part(trace);
-    return {Estimate::none("no peak: the force never fell by a slip"),
-            Estimate::of(mean_of(trace, first, end))};
-  }
-  TraditionalCoefficients result;
-  const auto peak = static_cast<std::size_t>(std::lround(slips.front().peak_at));
+/// Largest scan of the peak.
+Estimate largest_scan(const Trace& trace, const Fall& slip) {
+  const auto peak = static_cast<std::size_t>(std::lround(slip.peak_at));
   const std::size_t last = std::min(peak + 1, trace.size() - 1);
   double largest = trace.value[peak];
   for (std::size_t k = peak > 0 ? peak - 1 : 0; k <= last; ++k) largest = std::max(largest, trace.value[k]);
-  result.static_coefficient = Estimate::of(largest);
+  return Estimate::of(largest);
+}
 
-  // Peak to peak: a whole number of cycles, so that the phase does not matter.
-  const auto wanted = static_cast<std::size_t>(method.kinetic_cycles);
-  if (slips.size() < 2) {
-    result.kinetic_coefficient = Estimate::none("only one peak: no cycle to average over");
-    return result;
-  }
+/// Peak to peak: a whole number of cycles, so that the phase does not matter.
+Estimate mean_of_cycles(const Trace& trace, std::span<const Fall> slips, int cycles) {
+  const auto wanted = static_cast<std::size_t>(cycles);
+  if (slips.size() < 2) return Estimate::none("only one peak: no cycle to average over");
   const double begin_s = time_at(trace, slips.front().peak_at);
   const std::size_t last_peak = std::min(wanted, slips.size() - 1);
   double end_s = time_at(trace, slips[last_peak].peak_at);
@@ -70,14 +61,55 @@ TraditionalCoefficients traditional_coefficients(const Trace& trace, std::span<c
     const double period_s = (end_s - begin_s) / static_cast<double>(last_peak);
     const double wanted_end_s = begin_s + static_cast<double>(wanted) * period_s;
     if (wanted_end_s > trace.time_s.back()) {
-      result.kinetic_coefficient = Estimate::none(fmt::format(
-          "{} cycles after the first peak, the method wants {}", last_peak, method.kinetic_cycles));
-      return result;
+      return Estimate::none(
+          fmt::format("{} cycles after the first peak, the method wants {}", last_peak, cycles));
     }
     end_s = wanted_end_s;
   }
-  result.kinetic_coefficient =
-      Estimate::of(mean_of(trace, first_at_or_after(trace, begin_s), first_at_or_after(trace, end_s)));
+  return Estimate::of(mean_of(trace, first_at_or_after(trace, begin_s), first_at_or_after(trace, end_s)));
+}
+
+/// \param start_s  of the travel.
+Estimate mean_of_travel(const Trace& trace, double start_s, const TravelWindow& window,
+                        std::optional<double> pull_speed_m_per_s) {
+  if (!pull_speed_m_per_s) {
+    return Estimate::none("the method averages over a travel, and the pull speed is not known");
+  }
+  const double end_s = start_s + window.to_m / *pull_speed_m_per_s;
+  if (end_s > trace.time_s.back()) {
+    return Estimate::none(fmt::format("{:.4g} m of travel after the first peak, the method wants {:.4g} m",
+                                      (trace.time_s.back() - start_s) * *pull_speed_m_per_s, window.to_m));
+  }
+  const std::size_t first = first_at_or_after(trace, start_s + window.from_m / *pull_speed_m_per_s);
+  const std::size_t end = first_at_or_after(trace, end_s);
+  if (first == end) return Estimate::none("no scan within the method's travel");
+  return Estimate::of(mean_of(trace, first, end));
+}
+
+}  // namespace
+
+TraditionalCoefficients traditional_coefficients(const Trace& trace, std::span<const Fall> slips,
+                                                 const Method& method,
+                                                 std::optional<double> pull_speed_m_per_s) {
+  TraditionalCoefficients result;
+  if (slips.empty()) {
+    const auto [first, end] = loaded_part(trace);
+    result.static_coefficient = Estimate::none("no peak: the force never fell by a slip");
+    result.kinetic_coefficient =
+        method.kinetic_travel
+            ? mean_of_travel(trace, trace.time_s[first], *method.kinetic_travel, pull_speed_m_per_s)
+            : Estimate::of(mean_of(trace, first, end));
+    return result;
+  }
+  const auto wanted = static_cast<std::size_t>(method.static_slip);
+  result.static_coefficient =
+      slips.size() < wanted ? Estimate::none(fmt::format("{} slips, the method reads the peak of slip {}",
+                                                         slips.size(), wanted))
+                            : largest_scan(trace, slips[wanted - 1]);
+  result.kinetic_coefficient = method.kinetic_travel
+                                   ? mean_of_travel(trace, time_at(trace, slips.front().peak_at),
+                                                    *method.kinetic_travel, pull_speed_m_per_s)
+                                   : mean_of_cycles(trace, slips, method.kinetic_cycles);
   return result;
 }
 

@@ -2,6 +2,7 @@
 /// The two numbers of the tradition. [Penner 1995, Experimental]
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "core/friction/fall_finder.hpp"
@@ -12,15 +13,18 @@
 namespace stickslip::friction {
 
 struct TraditionalCoefficients {
-  Estimate static_coefficient;   ///< Largest scan of the first peak.
-  Estimate kinetic_coefficient;  ///< Mean over the next method.kinetic_cycles cycles, peak to peak.
+  Estimate static_coefficient;   ///< Largest scan of the peak of slip method.static_slip.
+  Estimate kinetic_coefficient;  ///< Mean over the cycles, peak to peak, or the travel after the first peak.
 };
 
 /// \param trace  not empty.
 /// \param slips  in the order of time; with none there is no static coefficient, and the kinetic one is
-///               the mean of the trace without its loading and unloading.
+///               the mean of the trace without its loading and unloading; a travel window then begins to
+///               count at the end of the loading.
+/// \param pull_speed_m_per_s  nominal, > 0; a travel window needs it.
 [[nodiscard]] TraditionalCoefficients traditional_coefficients(const Trace& trace,
                                                                std::span<const Fall> slips,
-                                                               const Method& method);
+                                                               const Method& method,
+                                                               std::optional<double> pull_speed_m_per_s = {});
 
 }  // namespace stickslip::friction

@@ -164,7 +164,7 @@ void as_recorded(friction::TestTruth& truth, double recorded_per_true,
 }  // namespace
 
 friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std::uint64_t seed,
-                                const std::filesystem::path& scratch_folder) {
+                                const friction::Method& method, const std::filesystem::path& scratch_folder) {
   const double scan_rate_Hz = true_scan_rate_Hz(scene, nominal_rate_Hz);
   friction::TestTruth truth;
   truth.scene_name = scene.name;
@@ -179,8 +179,8 @@ friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std:
   const Motion scene_motion = motion_of(scene);
   const auto motion = make_motion_solver(scene_motion, scan_rate_Hz, scene.accuracy, &chronicle, seed);
   motion->skip(scan_count(scene, nominal_rate_Hz));
-  const SolverMethod method = motion->method();
-  truth.solver = friction::SolverFacts{std::string{method.name}, method.accuracy, scene.accuracy, {}};
+  const SolverMethod solver = motion->method();
+  truth.solver = friction::SolverFacts{std::string{solver.name}, solver.accuracy, scene.accuracy, {}};
   chronicle.close(scene.duration_s);
   truth.modes = chronicle.take_modes();
   truth.cycles = base::LongColumn<friction::TrueCycle>{scratch_folder};
@@ -201,7 +201,7 @@ friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std:
     }
     if (slips.count > 0 && scene.oscillator.oscillates()) {
       const TraditionalTruth traditional =
-          traditional_truth(scene, seed, slips.first.onset_s, friction::Method{});
+          traditional_truth(scene, seed, slips.first.onset_s, method, truth.pull_speed_m_per_s);
       truth.static_coefficient = traditional.static_coefficient;
       truth.kinetic_coefficient = traditional.kinetic_coefficient;
     }

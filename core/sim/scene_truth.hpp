@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "core/friction/method.hpp"
 #include "core/friction/truth.hpp"
 #include "core/sim/scene.hpp"
 
@@ -20,9 +21,12 @@ namespace stickslip::sim {
 /// else ω/2π of the ring-down. Amplitude: half the range of the first slip in closed form [17], with zero as
 /// the least force of a one-way coupling; of a motion without closed forms that of the force itself. What
 /// rate-and-state friction calls a slip, and which S and K it then has: rate_and_state_motion.hpp.
+///
+/// \param method  by which the traditional coefficients are read from the force.
 /// \param scratch_folder  of the tables of a long test (base::LongColumn), which throw std::system_error
 ///        then; empty: they are in memory.
 [[nodiscard]] friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std::uint64_t seed,
+                                              const friction::Method& method = {},
                                               const std::filesystem::path& scratch_folder = {});
 
 }  // namespace stickslip::sim

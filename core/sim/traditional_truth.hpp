@@ -11,15 +11,17 @@
 namespace stickslip::sim {
 
 struct TraditionalTruth {
-  std::optional<double> static_coefficient;   ///< First maximum after the first slip onset.
-  std::optional<double> kinetic_coefficient;  ///< Mean over the next cycles, from maximum to maximum.
+  std::optional<double>
+      static_coefficient;  ///< Maximum number method.static_slip after the first slip onset.
+  std::optional<double> kinetic_coefficient;  ///< Mean after the first maximum, over cycles or travel.
 };
 
 /// \param scene     oscillates, and has a pull.
 /// \param seed      of the run.
 /// \param onset_s   first slip onset.
+/// \param pull_speed_m_per_s  turns the method's travel into time.
 /// \return without the number that the pull is too short for.
 [[nodiscard]] TraditionalTruth traditional_truth(const Scene& scene, std::uint64_t seed, double onset_s,
-                                                 const friction::Method& method);
+                                                 const friction::Method& method, double pull_speed_m_per_s);
 
 }  // namespace stickslip::sim

@@ -8,6 +8,8 @@
 #include "core/record/reader.hpp"
 #include "daemon/analyse.hpp"
 #include "daemon/cli/commands.hpp"
+#include "daemon/cli/method_option.hpp"
+#include "daemon/method_text.hpp"
 #include "daemon/report/table.hpp"
 #include "daemon/results_json.hpp"
 #include "daemon/tester_file.hpp"
@@ -32,20 +34,22 @@ nlohmann::ordered_json json_of(const std::optional<friction::TesterCheck>& check
 
 }  // namespace
 
-base::Result<std::string> run_analyze(const std::vector<std::string>& files, bool json,
-                                      const std::string& tester) {
+base::Result<std::string> run_analyze(const AnalyzeCommand& command) {
+  const base::Result<friction::Method> method = chosen_method(command.method);
+  if (!method) return tl::unexpected(method.error());
   friction::SharedPrior prior;
-  if (!tester.empty()) {
-    const auto coupling = load_tester(tester);
+  if (!command.tester.empty()) {
+    const auto coupling = load_tester(command.tester);
     if (!coupling) return tl::unexpected(coupling.error());
     prior.coupling = *coupling;
   }
   std::string findings;
   nlohmann::ordered_json tests = nlohmann::ordered_json::array();
   std::vector<TableRow> rows;
-  for (const std::string& file : files) {
-    const base::Result<record::Record> record = record::read_record(file);
+  for (const std::string& file : command.files) {
+    base::Result<record::Record> record = record::read_record(file);
     if (!record) return tl::unexpected(record.error());
+    if (!command.method.empty()) record->header.process.method = method_text(*method);
     base::Result<TesterAnalysis> analysed = analyse_with_tester(*record, prior);
     if (!analysed) {
       return tl::unexpected(
@@ -57,11 +61,11 @@ base::Result<std::string> run_analyze(const std::vector<std::string>& files, boo
         findings += fmt::format("{}: {}\n", file, finding);
       }
     }
-    if (json) {
+    if (command.json) {
       nlohmann::ordered_json test;
       test["file"] = file;
       test.update(results_json(end->results, true));
-      if (!tester.empty()) test["tester_check"] = json_of(analysed->check);
+      if (!command.tester.empty()) test["tester_check"] = json_of(analysed->check);
       tests.push_back(std::move(test));
     } else {
       const auto number = static_cast<std::int64_t>(rows.size()) + 1;
@@ -69,7 +73,7 @@ base::Result<std::string> run_analyze(const std::vector<std::string>& files, boo
                       std::move(end->truth), file});
     }
   }
-  if (!json) return format_table(rows) + findings;
+  if (!command.json) return format_table(rows) + findings;
   using Json = nlohmann::ordered_json;
   return Json{{"tests", std::move(tests)}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -23,14 +23,20 @@ struct ImportCommand {
   std::string stiffness;
   std::string load_cell_gain;
   std::string load_cell_zero;
+  std::string method;  ///< As chosen_method() takes it.
   std::string output;
 };
 
 [[nodiscard]] base::Result<std::string> run_import(const ImportCommand& command);
 
-/// \param tester  file of a characterisation; empty: none.
-[[nodiscard]] base::Result<std::string> run_analyze(const std::vector<std::string>& files, bool json,
-                                                    const std::string& tester);
+struct AnalyzeCommand {
+  std::vector<std::string> files;
+  std::string method;  ///< As chosen_method() takes it; empty: that of each record.
+  std::string tester;  ///< File of a characterisation; empty: none.
+  bool json = false;
+};
+
+[[nodiscard]] base::Result<std::string> run_analyze(const AnalyzeCommand& command);
 
 struct CharacteriseCommand {
   std::vector<std::string> files;  ///< Records of ring-downs.
@@ -41,6 +47,7 @@ struct CharacteriseCommand {
 [[nodiscard]] base::Result<std::string> run_characterise(const CharacteriseCommand& command);
 
 struct SimulateCommand : SceneOptions {
+  std::string method;  ///< As chosen_method() takes it.
   std::string output;
   bool json = false;
   std::string line;  ///< The whole command, for the record.
@@ -80,8 +87,32 @@ struct AccuracyCommand : SceneOptions {
 
 [[nodiscard]] base::Result<std::string> run_accuracy(const AccuracyCommand& command);
 
+struct ReportOptions {
+  std::string csv;   ///< File to make; empty: none.
+  std::string page;  ///< HTML file to make; empty: none.
+  bool json = false;
+};
+
+struct ReportCommand : ReportOptions {
+  std::vector<std::string> files;
+};
+
+[[nodiscard]] base::Result<std::string> run_report(const ReportCommand& command);
+
+struct CompareCommand : ReportOptions {
+  std::vector<std::string> a;
+  std::vector<std::string> b;
+  std::string label_a = "A";
+  std::string label_b = "B";
+};
+
+[[nodiscard]] base::Result<std::string> run_compare(const CompareCommand& command);
+
 /// \param folder  as in SceneOptions.
 [[nodiscard]] base::Result<std::string> run_scenes(const std::string& folder, bool json);
+
+/// \param folder  of the methods; empty: where the program finds them.
+[[nodiscard]] base::Result<std::string> run_methods(const std::string& folder, bool json);
 
 [[nodiscard]] base::Result<std::string> run_status(const std::string& socket);
 

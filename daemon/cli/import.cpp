@@ -6,6 +6,7 @@
 #include "core/record/finaliser.hpp"
 #include "daemon/analyse.hpp"
 #include "daemon/cli/commands.hpp"
+#include "daemon/cli/method_option.hpp"
 #include "daemon/cli/options.hpp"
 #include "daemon/method_text.hpp"
 #include "daemon/version.hpp"
@@ -65,7 +66,9 @@ Result<record::CsvImportRequest> request_of(const ImportCommand& command) {
   request.process.program = "stickslip import";
   request.process.version = kVersion;
   request.process.commit = kCommit;
-  request.process.method = method_text({});
+  const Result<friction::Method> method = chosen_method(command.method);
+  if (!method) return tl::unexpected(method.error());
+  request.process.method = method_text(*method);
   return request;
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -17,6 +18,8 @@
 namespace stickslip::daemon {
 namespace {
 
+constexpr const char* kOtherMaterial = "--against";
+
 constexpr const char* kExamples = R"(Examples:
   stickslip import pull.csv --column force --rate 350 --unit N --sled-mass "2331 g" -o pull.h5
   stickslip import trace.csv --column mu --rate "2 kHz" --unit coefficient --speed "12 in/min" -o trace.h5
@@ -26,8 +29,11 @@ constexpr const char* kExamples = R"(Examples:
   stickslip plot pull.h5 --from 1 --to 2               pull.svg: force, modes, peaks
   stickslip accuracy threshold-oscillation -o a.html   error against time, for each way to solve it
   stickslip analyze records/*.h5                       a table, with the truth where it is known
+  stickslip analyze trace.h5 --method iso-8295         stickslip methods lists the shipped ones
   stickslip analyze trace.h5 --json                    {"tests": [{"file": …, results …, "details": …}]}
   stickslip characterise ring-down.h5 -o tester.toml   omega and gamma of the tester, for --tester
+  stickslip report records/*.h5 -o report.html         replicates, coefficient against speed, traces
+  stickslip compare a*.h5 -- b*.h5                     do two materials differ, and how many tests would show it
   stickslip status                                     what the daemon is doing)";
 
 int print(const base::Result<std::string>& output) {
@@ -37,6 +43,14 @@ int print(const base::Result<std::string>& output) {
   }
   fmt::print("{}", *output);
   return std::fflush(stdout) == 0 ? 0 : 1;
+}
+
+void add_method_option(CLI::App& command, std::string& method) {
+  command
+      .add_option("--method", method,
+                  "test method by which the traditional coefficients are read: file.toml, or name as in "
+                  "stickslip methods")
+      ->type_name("METHOD");
 }
 
 void add_import(CLI::App& app, ImportCommand& command) {
@@ -58,6 +72,7 @@ void add_import(CLI::App& app, ImportCommand& command) {
       ->add_option("--time-column", command.time_column,
                    "header of the time in s (else t, t_s, time, time_s)")
       ->type_name("NAME");
+  add_method_option(*import, command.method);
   import->add_option("--speed", command.speed, "pull speed, m/s or with unit")->type_name("V");
   import->add_option("--sled-mass", command.sled_mass, "kg or with unit; needed for N and V")->type_name("M");
   import->add_option("--stiffness", command.stiffness, "of the coupling, N/m or with unit")->type_name("K");
@@ -106,6 +121,7 @@ void add_simulate(CLI::App& app, SimulateCommand& command) {
   simulate->add_option("-o,--output", command.output, "record to make; must not exist")
       ->required()
       ->type_name("FILE.h5");
+  add_method_option(*simulate, command.method);
   simulate->add_flag("--json", command.json, "JSON instead of a table; SI units, names as in the record");
 }
 
@@ -191,6 +207,64 @@ void add_accuracy(CLI::App& app, AccuracyCommand& command) {
   accuracy->add_flag("--json", command.json, "JSON instead of a table");
 }
 
+constexpr const char* kReportExamples =
+    R"(Shows the results that stand in records of one material: coefficient against speed (Fig. 1 of the paper), mean,
+scatter s_r, repeatability r = 2.8 s_r, 95 % confidence interval, outliers (named, never left out).
+
+Examples:
+  stickslip report records/*.h5
+  stickslip report pull.h5 -o pull.html                one page with traces to zoom in; needs no network
+  stickslip report records/*.h5 --json --csv tests.csv)";
+
+constexpr const char* kCompareExamples =
+    R"(Compares two materials at each speed: difference with 95 % interval, Welch's t test, effect size (Hedges' g), and how
+many tests of each would have found a difference as large with 80 % and 90 % probability.
+
+Examples:
+  stickslip compare thorold/*.h5 -- baie-comeau/*.h5 --label-a Thorold --label-b "Baie Comeau"
+  stickslip compare a*.h5 -- b*.h5 -o comparison.html
+  stickslip compare a*.h5 -- b*.h5 --json --csv comparison.csv)";
+
+void add_report_options(CLI::App& command, ReportOptions& options) {
+  command
+      .add_option("-o,--output", options.page,
+                  "page to make, one file with traces to zoom in; must not exist")
+      ->type_name("FILE.html");
+  command.add_option("--csv", options.csv, "table to make; must not exist")->type_name("FILE.csv");
+  command.add_flag("--json", options.json, "JSON instead of tables; SI units, null where there is no number");
+}
+
+void add_report(CLI::App& app, ReportCommand& command) {
+  CLI::App* report =
+      app.add_subcommand("report", "replicates: means, repeatability, coefficient against speed");
+  report->footer(kReportExamples);
+  report->add_option("files", command.files, "records")->required()->type_name("FILE.h5");
+  add_report_options(*report, command);
+}
+
+void add_compare(CLI::App& app, CompareCommand& command) {
+  CLI::App* compare = app.add_subcommand("compare", "two materials: stickslip compare A… -- B…");
+  compare->footer(kCompareExamples);
+  compare->add_option("a", command.a, "records of the one")->type_name("A.h5");
+  compare->add_option(kOtherMaterial, command.b, "records of the other; a plain -- does the same")
+      ->type_name("B.h5");
+  compare->add_option("--label-a", command.label_a, "what the one is called")->type_name("NAME");
+  compare->add_option("--label-b", command.label_b, "what the other is called")->type_name("NAME");
+  add_report_options(*compare, command);
+}
+
+/// In `stickslip compare` a plain -- stands between two lists; to the parser that is an option with values,
+/// after which options may follow.
+std::vector<std::string> words(int count, char** arguments) {
+  std::vector<std::string> words(arguments + 1, arguments + count);
+  if (!words.empty() && words.front() == "compare") {
+    if (const auto mark = std::find(words.begin(), words.end(), "--"); mark != words.end())
+      *mark = kOtherMaterial;
+  }
+  std::reverse(words.begin(), words.end());  // As CLI11 takes them.
+  return words;
+}
+
 /// The command as a shell would take it again.
 std::string command_line(int count, char** arguments) {
   std::string line = "stickslip";
@@ -218,23 +292,35 @@ int main_of(int count, char** arguments) {
   AccuracyCommand accuracy;
   add_accuracy(app, accuracy);
 
+  ReportCommand report;
+  add_report(app, report);
+
+  CompareCommand comparison;
+  add_compare(app, comparison);
+
   std::string folder;
   bool scenes_json = false;
   CLI::App* scenes = app.add_subcommand("scenes", "list the shipped scenes");
   scenes->add_option("--folder", folder, "another folder of scenes")->type_name("DIR");
   scenes->add_flag("--json", scenes_json, "JSON instead of lines");
 
-  std::vector<std::string> files;
-  bool json = false;
+  std::string method_folder;
+  bool methods_json = false;
+  CLI::App* methods = app.add_subcommand("methods", "list the shipped test methods");
+  methods->add_option("--folder", method_folder, "another folder of methods")->type_name("DIR");
+  methods->add_flag("--json", methods_json, "JSON instead of lines, with all settings and what to check");
+
+  AnalyzeCommand analysis;
   CLI::App* analyze = app.add_subcommand("analyze", "run the detector and the estimators over records");
-  analyze->add_option("files", files, "records")->required()->type_name("FILE.h5");
-  analyze->add_flag("--json", json, "JSON instead of a table; names as in the record, null where absent");
-  std::string tester;
+  analyze->add_option("files", analysis.files, "records")->required()->type_name("FILE.h5");
+  add_method_option(*analyze, analysis.method);
   analyze
       ->add_option(
-          "--tester", tester,
+          "--tester", analysis.tester,
           "what `stickslip characterise` wrote: S and K become surer, and what speaks against it is told")
       ->type_name("FILE.toml");
+  analyze->add_flag("--json", analysis.json,
+                    "JSON instead of a table; names as in the record, null where absent");
 
   CharacteriseCommand characterisation;
   CLI::App* characterise =
@@ -256,17 +342,20 @@ int main_of(int count, char** arguments) {
   status->add_option("--socket", socket, "its control socket")->capture_default_str()->type_name("PATH");
 
   try {
-    app.parse(count, arguments);
+    app.parse(words(count, arguments));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     fmt::print(stderr, "stickslip: {}; see stickslip --help\n", error.what());
     return 2;
   }
-  if (analyze->parsed()) return print(run_analyze(files, json, tester));
+  if (analyze->parsed()) return print(run_analyze(analysis));
   if (characterise->parsed()) return print(run_characterise(characterisation));
   if (status->parsed()) return print(run_status(socket));
   if (scenes->parsed()) return print(run_scenes(folder, scenes_json));
+  if (methods->parsed()) return print(run_methods(method_folder, methods_json));
   if (app.got_subcommand("plot")) return print(run_plot(plot));
+  if (app.got_subcommand("report")) return print(run_report(report));
+  if (app.got_subcommand("compare")) return print(run_compare(comparison));
   if (app.got_subcommand("accuracy")) return print(run_accuracy(accuracy));
   if (app.got_subcommand("simulate")) {
     simulation.line = command_line(count, arguments);

@@ -10,6 +10,7 @@
 #include "core/record/finaliser.hpp"
 #include "core/sim/scene.hpp"
 #include "daemon/cli/commands.hpp"
+#include "daemon/cli/method_option.hpp"
 #include "daemon/cli/progress.hpp"
 #include "daemon/report/table.hpp"
 #include "daemon/results_json.hpp"
@@ -20,11 +21,11 @@ namespace {
 using base::Result;
 
 Result<Simulation> simulate_and_publish(const sim::Scene& scene, std::uint64_t seed,
-                                        const SimulateCommand& command) {
+                                        const friction::Method& method, const SimulateCommand& command) {
   ProgressBar bar{scene.name};
   const std::unique_ptr<base::Clock> clock = base::make_system_clock();
   bool simulated = false;
-  return simulate_to_file(scene, seed, *clock, {command.output, "stickslip simulate", command.line},
+  return simulate_to_file(scene, seed, *clock, {command.output, "stickslip simulate", command.line, method},
                           [&](double done) {
                             bar.show(done);
                             if (done == 1.0)
@@ -55,10 +56,12 @@ std::string json_of(const Simulation& simulation, const std::string& output) {
 Result<std::string> run_simulate(const SimulateCommand& command) {
   const Result<ChosenScene> chosen = chosen_scene(command);
   if (!chosen) return tl::unexpected(chosen.error());
+  const Result<friction::Method> method = chosen_method(command.method);
+  if (!method) return tl::unexpected(method.error());
   // Before the work, not only after it.
   if (auto free = record::check_publishable(command.output); !free) return tl::unexpected(free.error());
 
-  const Result<Simulation> simulation = simulate_and_publish(chosen->scene, chosen->seed, command);
+  const Result<Simulation> simulation = simulate_and_publish(chosen->scene, chosen->seed, *method, command);
   if (!simulation) return tl::unexpected(simulation.error());
   if (command.json) return json_of(*simulation, command.output);
   const record::EndRecord& end = *simulation->record.end;

@@ -2,59 +2,22 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstddef>
-#include <limits>
-#include <stdexcept>
+#include <optional>
 #include <utility>
 #include <vector>
 
-#include "core/daq/calibration.hpp"
+#include "daemon/report/record_trace.hpp"
 
 namespace stickslip::daemon {
 namespace {
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMillimetresPerMetre = 1e3;
 /// With fewer scans than this in view each of them is to be seen.
 constexpr std::size_t kMostScansWithDots = 250;
 
 /// Two pixels each in a picture of the usual width.
 constexpr std::size_t kMostBands = 400;
-
-struct Trace {
-  std::vector<double> time_s;
-  std::vector<double> value;
-};
-
-/// With a break at each gap.
-Trace coefficients(const record::Record& record, const daq::Calibration& calibration) {
-  Trace trace;
-  const double rate_Hz = record.header.board.scan_rate_granted_Hz;
-  for (std::size_t i = 0; i < record.scan.size(); ++i) {
-    const auto time_of = [&](base::ScanIndex scan) {
-      return static_cast<double>(scan - record.scan.front()) / rate_Hz;
-    };
-    if (i > 0 && record.scan[i] != record.scan[i - 1] + 1) {
-      trace.time_s.push_back(time_of(record.scan[i - 1] + 1));
-      trace.value.push_back(kNothing);
-    }
-    trace.time_s.push_back(time_of(record.scan[i]));
-    trace.value.push_back(calibration.coefficient(record.raw[i]));
-  }
-  return trace;
-}
-
-/// Differences of neighbours over their distance, half-way between them. \param factor  to the unit shown.
-Trace derivative(const Trace& trace, double factor) {
-  Trace slope;
-  for (std::size_t i = 1; i < trace.time_s.size(); ++i) {
-    const double step_s = trace.time_s[i] - trace.time_s[i - 1];
-    slope.time_s.push_back(trace.time_s[i - 1] + step_s / 2.0);
-    slope.value.push_back(factor * (trace.value[i] - trace.value[i - 1]) / step_s);
-  }
-  return slope;
-}
 
 /// The modes within the part; none if they change too often to be told apart.
 std::vector<Band> bands_of(const friction::TestTruth& truth, const AxisRange& part) {
@@ -110,7 +73,7 @@ void add_peaks(Panel& panel, const base::LongColumn<friction::Cycle>& cycles) {
   if (!slides.x.empty()) panel.curves.push_back(std::move(slides));
 }
 
-Panel force_panel(const record::Record& record, const Trace& trace, const AxisRange& part) {
+Panel force_panel(const record::Record& record, const RecordTrace& trace, const AxisRange& part) {
   const double scans = (part.to - part.from) * record.header.board.scan_rate_granted_Hz;
   Panel panel;
   panel.y.label = "force / weight";
@@ -123,7 +86,7 @@ Panel force_panel(const record::Record& record, const Trace& trace, const AxisRa
   return panel;
 }
 
-Panel overview_panel(const Trace& trace, const AxisRange& whole, const AxisRange& part) {
+Panel overview_panel(const RecordTrace& trace, const AxisRange& whole, const AxisRange& part) {
   Panel panel;
   panel.y.label = "whole record";
   panel.height = 0.7;
@@ -133,25 +96,11 @@ Panel overview_panel(const Trace& trace, const AxisRange& whole, const AxisRange
   return panel;
 }
 
-/// g/ω₀², which turns the rate of the coefficient into the speed at which the coupling stretches: dl/dt =
-/// (m g/k) dc/dt. From the truth or from the stiffness; absent if neither is known.
-std::optional<double> stretch_m(const record::Record& record) {
-  const friction::Tester tester = record.header.tester.tester();
-  if (tester.stiffness_N_per_m && *tester.stiffness_N_per_m > 0.0) {
-    return tester.normal_load_N() / *tester.stiffness_N_per_m;
-  }
-  if (!record.end || !record.end->truth) return std::nullopt;
-  const friction::TestTruth& truth = *record.end->truth;
-  const double omega0 = truth.omega_rad_per_s * std::hypot(1.0, truth.gamma_over_2omega);  // [7]
-  if (!(omega0 > 0.0)) return std::nullopt;
-  return tester.gravity_m_per_s2 / (omega0 * omega0);
-}
-
-Panel derivative_panel(const record::Record& record, const Trace& trace, const AxisRange& part) {
+Panel derivative_panel(const record::Record& record, const RecordTrace& trace, const AxisRange& part) {
   const friction::Tester tester = record.header.tester.tester();
   const std::optional<double> scaled = stretch_m(record);
   const double factor = scaled ? kMillimetresPerMetre * *scaled : 1.0;
-  Trace slope = derivative(trace, factor);
+  RecordTrace slope = derivative(trace, factor);
   Panel panel;
   panel.y.label = scaled ? "stretching (mm/s)" : "rate of force / weight (1/s)";
   panel.height = 1.6;
@@ -197,39 +146,31 @@ base::Result<AxisRange> part_of(const RecordView& view, const AxisRange& whole) 
 }  // namespace
 
 base::Result<Figure> record_figure(const record::Record& record, const RecordView& view) {
-  if (record.header.board.quantity == daq::RawQuantity::kCounts && !record.header.load_cell) {
-    return base::usage_error("the record has counts but no load cell, so no forces");
-  }
   if (record.scan.size() < 2) return base::usage_error("the record has fewer than 2 scans");
-  try {
-    const daq::Calibration calibration{record.header.board, record.header.load_cell.value_or(daq::LoadCell{}),
-                                       record.header.tester.tester().normal_load_N()};
-    const Trace trace = coefficients(record, calibration);
-    const AxisRange whole{0.0, trace.time_s.back()};
-    const base::Result<AxisRange> part = part_of(view, whole);
-    if (!part) return tl::unexpected(part.error());
+  const base::Result<RecordTrace> trace = coefficient_trace(record);
+  if (!trace) return tl::unexpected(trace.error());
+  const AxisRange whole{0.0, trace->time_s.back()};
+  const base::Result<AxisRange> part = part_of(view, whole);
+  if (!part) return tl::unexpected(part.error());
 
-    Figure figure;
-    figure.title = view.title.empty() ? record.header.title : view.title;
-    figure.x = {.label = "time (s)", .range = *part};
-    figure.notes = {facts_line(record)};
-    if (view.overview) {
-      figure.panels.push_back(overview_panel(trace, whole, *part));
-      figure.height_px += 130;
-    }
-    figure.panels.push_back(force_panel(record, trace, *part));
-    const bool has_modes = record.end && record.end->truth && !record.end->truth->modes.empty();
-    if (has_modes && figure.panels.back().bands.empty()) {
-      figure.notes.emplace_back("modes change too often to be shaded here: show a part of the record");
-    }
-    if (view.derivative) {
-      figure.panels.push_back(derivative_panel(record, trace, *part));
-      figure.height_px += 200;
-    }
-    return figure;
-  } catch (const std::invalid_argument& refused) {
-    return base::usage_error("the record cannot be drawn: {}", refused.what());
+  Figure figure;
+  figure.title = view.title.empty() ? record.header.title : view.title;
+  figure.x = {.label = "time (s)", .range = *part};
+  figure.notes = {facts_line(record)};
+  if (view.overview) {
+    figure.panels.push_back(overview_panel(*trace, whole, *part));
+    figure.height_px += 130;
   }
+  figure.panels.push_back(force_panel(record, *trace, *part));
+  const bool has_modes = record.end && record.end->truth && !record.end->truth->modes.empty();
+  if (has_modes && figure.panels.back().bands.empty()) {
+    figure.notes.emplace_back("modes change too often to be shaded here: show a part of the record");
+  }
+  if (view.derivative) {
+    figure.panels.push_back(derivative_panel(record, *trace, *part));
+    figure.height_px += 200;
+  }
+  return figure;
 }
 
 }  // namespace stickslip::daemon

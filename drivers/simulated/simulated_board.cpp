@@ -163,7 +163,7 @@ base::Result<SimulatedTester> make_simulated_tester(const SimulatedBoardSettings
   result.load_cell = load_cell_of(scenes.front());
   result.tester = tester_of(scenes);
   auto playlist = std::make_shared<const Playlist>(std::move(scenes), settings.repeats, rate_Hz);
-  result.truth = make_simulated_truth(playlist);
+  result.truth = make_simulated_truth(playlist, settings.method);
   result.board = std::make_unique<SimulatedBoard>(std::move(playlist), clock);
   return result;
 }

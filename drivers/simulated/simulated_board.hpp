@@ -15,6 +15,7 @@
 #include "core/base/result.hpp"
 #include "core/daq/board.hpp"
 #include "core/daq/calibration.hpp"
+#include "core/friction/method.hpp"
 #include "core/friction/tester.hpp"
 #include "core/friction/truth.hpp"
 
@@ -24,6 +25,7 @@ struct SimulatedBoardSettings {
   std::vector<std::filesystem::path> scenes;  ///< Played in this order.
   int repeats = 1;  ///< Each scene so many times in a row; 0: the list round and round for ever.
   std::optional<double> scan_rate_Hz;  ///< Else that of the scenes. Granted as asked.
+  friction::Method method{};           ///< By which the truth reads the traditional coefficients.
 };
 
 /// Two equal implementations of the seams, made from one list of scenes, and the facts about the

@@ -92,7 +92,8 @@ class SimulatedForce final : public friction::TrueForce {
 
 class SimulatedTruth final : public friction::TruthSource {
  public:
-  explicit SimulatedTruth(std::shared_ptr<const Playlist> playlist) : playlist_(std::move(playlist)) {}
+  SimulatedTruth(std::shared_ptr<const Playlist> playlist, friction::Method method)
+      : playlist_(std::move(playlist)), method_(std::move(method)) {}
 
   [[nodiscard]] std::optional<friction::TestTruth> truth(base::ScanIndex first,
                                                          base::ScanIndex end) const override {
@@ -110,7 +111,8 @@ class SimulatedTruth final : public friction::TruthSource {
     }
     if (!best) return std::nullopt;
     const double rate_Hz = playlist_->scan_rate_Hz();
-    friction::TestTruth truth = sim::scene_truth(playlist_->scenes()[best->scene], rate_Hz, best->seed);
+    friction::TestTruth truth =
+        sim::scene_truth(playlist_->scenes()[best->scene], rate_Hz, best->seed, method_);
     move_into_window(truth, static_cast<double>(first - best->first) / rate_Hz,
                      static_cast<double>(end - first) / rate_Hz);
     return truth;
@@ -122,12 +124,14 @@ class SimulatedTruth final : public friction::TruthSource {
 
  private:
   std::shared_ptr<const Playlist> playlist_;
+  friction::Method method_;
 };
 
 }  // namespace
 
-std::shared_ptr<const friction::TruthSource> make_simulated_truth(std::shared_ptr<const Playlist> playlist) {
-  return std::make_shared<SimulatedTruth>(std::move(playlist));
+std::shared_ptr<const friction::TruthSource> make_simulated_truth(std::shared_ptr<const Playlist> playlist,
+                                                                  friction::Method method) {
+  return std::make_shared<SimulatedTruth>(std::move(playlist), std::move(method));
 }
 
 }  // namespace stickslip::drivers

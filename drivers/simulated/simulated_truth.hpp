@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "core/friction/method.hpp"
 #include "core/friction/truth.hpp"
 #include "drivers/simulated/playlist.hpp"
 
@@ -17,7 +18,8 @@ void move_into_window(friction::TestTruth& truth, double window_start_s, double 
 
 /// Answers for the repetition that shares most scans with the window; where the window cuts it, modes
 /// and cycles are cut too. Nothing for a window without scans or behind the end of the list.
+/// \param method  as for sim::scene_truth().
 [[nodiscard]] std::shared_ptr<const friction::TruthSource> make_simulated_truth(
-    std::shared_ptr<const Playlist> playlist);
+    std::shared_ptr<const Playlist> playlist, friction::Method method = {});
 
 }  // namespace stickslip::drivers

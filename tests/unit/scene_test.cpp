@@ -204,7 +204,7 @@ TEST(SceneTruth, TablesAreTheSameInAScratchFolder) {
   scene.clock_rate_error = ClockRateError{1e-4};
   const friction::TestTruth expected = scene_truth(scene, scene.scan_rate_Hz, 1);
   const friction::TestTruth truth =
-      scene_truth(scene, scene.scan_rate_Hz, 1, std::filesystem::temp_directory_path());
+      scene_truth(scene, scene.scan_rate_Hz, 1, {}, std::filesystem::temp_directory_path());
   // More than stay in memory.
   ASSERT_GT(truth.cycles.size(), truth.cycles.kResident * truth.cycles.kBlock);
   ASSERT_GT(truth.modes.size(), truth.modes.kResident * truth.modes.kBlock);

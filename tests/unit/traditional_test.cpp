@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 namespace stickslip::friction {
@@ -14,9 +15,9 @@ constexpr double kScanRate_Hz = 350.0;
 constexpr int kPeriod = 20;  // scans, so that peaks lie on scans
 constexpr int kFirstPeak = 10;
 
-Trace trace_of(std::vector<double> values) {
+Trace trace_of(const std::vector<double>& values) {
   Trace trace;
-  trace.value = std::move(values);
+  trace.value = values;
   trace.usable.assign(trace.value.size(), 1);
   for (std::size_t k = 0; k < trace.value.size(); ++k) {
     trace.time_s.push_back(static_cast<double>(k) / kScanRate_Hz);
@@ -31,7 +32,7 @@ Trace oscillation(int scans) {
   for (int k = 0; k < scans; ++k) {
     values.push_back(0.3 + 0.05 * std::cos(2.0 * std::numbers::pi * (k - kFirstPeak) / kPeriod));
   }
-  return trace_of(std::move(values));
+  return trace_of(values);
 }
 
 std::vector<Fall> slips_at_the_peaks(int count) {
@@ -75,6 +76,48 @@ TEST(Traditional, KineticTakesTheMethodsCyclesAndNoMore) {
     const TraditionalCoefficients found = traditional_coefficients(trace, slips_at_the_peaks(15), method);
     EXPECT_NEAR(found.kinetic_coefficient.value.value(), (cycles - 1) / 20.0, 1e-12) << cycles;
   }
+}
+
+TEST(Traditional, StaticIsThePeakOfTheMethodsSlip) {
+  Trace trace = oscillation(400);
+  trace.value[kFirstPeak + 2 * kPeriod] = 0.41;
+  Method method;
+  method.static_slip = 3;
+  EXPECT_EQ(traditional_coefficients(trace, slips_at_the_peaks(15), method).static_coefficient.value, 0.41);
+  const Estimate absent = traditional_coefficients(trace, slips_at_the_peaks(2), method).static_coefficient;
+  EXPECT_FALSE(absent.value);
+  EXPECT_EQ(absent.reason, "2 slips, the method reads the peak of slip 3");
+}
+
+// One metre is a second, so 350 scans; the value is the time since the first peak.
+TEST(Traditional, KineticIsTheMeanOverTheMethodsTravelAfterTheFirstPeak) {
+  Trace trace = oscillation(400);
+  for (std::size_t k = 0; k < trace.size(); ++k) {
+    trace.value[k] = trace.time_s[k] - kFirstPeak / kScanRate_Hz;
+  }
+  Method method;
+  method.kinetic_travel = TravelWindow{0.2, 0.8};
+  const auto kinetic = [&](std::optional<double> speed_m_per_s) {
+    return traditional_coefficients(trace, slips_at_the_peaks(15), method, speed_m_per_s).kinetic_coefficient;
+  };
+  // The mean time of the window; its ends fall between scans by up to one of them.
+  EXPECT_NEAR(kinetic(1.0).value.value(), 0.5, 1.0 / kScanRate_Hz);
+  EXPECT_NEAR(kinetic(2.0).value.value(), 0.25, 1.0 / kScanRate_Hz);
+  EXPECT_FALSE(kinetic({}).value);
+  EXPECT_EQ(kinetic({}).reason, "the method averages over a travel, and the pull speed is not known");
+  EXPECT_FALSE(kinetic(0.5).value);
+  EXPECT_EQ(kinetic(0.5).reason, "0.5557 m of travel after the first peak, the method wants 0.8 m");
+}
+
+TEST(Traditional, TravelOfSteadySlidingCountsFromTheEndOfTheLoading) {
+  std::vector<double> values(100, 0.0);
+  values.insert(values.end(), 350, 0.3);
+  values.insert(values.end(), 350, 0.2);
+  Method method;
+  method.kinetic_travel = TravelWindow{0.0, 2.0};
+  const TraditionalCoefficients found = traditional_coefficients(trace_of(values), {}, method, 1.5);
+  // 2 m last 4/3 s: 350 scans of 0.3, then a third of that of 0.2 (116 or 117).
+  EXPECT_NEAR(found.kinetic_coefficient.value.value(), (0.3 * 350 + 0.2 * 116.67) / 466.67, 1e-4);
 }
 
 TEST(Traditional, OscillationThatDiesAwayGoesOnWithItsMeanPeriod) {

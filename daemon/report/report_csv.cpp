@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/friction/results.hpp"
+#include "daemon/report/report_json.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+/// One line of cells, quoted where RFC 4180 asks for it.
+class Line {
+ public:
+  Line& text(std::string_view cell) {
+    separate();
+    if (cell.find_first_of(",\"\r\n") == std::string_view::npos) {
+      line_ += cell;
+      return *this;
+    }
+    line_ += '"';
+    for (const char c : cell) line_ += c == '"' ? std::string{"\"\""} : std::string{c};
+    line_ += '"';
+    return *this;
+  }
+
+  /// The shortest digits that read back to the same number; empty if there is none.
+  template <typename T>
+  Line& number(const std::optional<T>& value) {
+    separate();
+    if (value) line_ += fmt::format("{}", *value);
+    return *this;
+  }
+
+  Line& interval(const std::optional<report::Interval>& value) {
+    number(value ? std::optional{value->low} : std::nullopt);
+    return number(value ? std::optional{value->high} : std::nullopt);
+  }
+
+  [[nodiscard]] std::string end() const { return line_ + "\r\n"; }
+
+ private:
+  void separate() {
+    if (!first_) line_ += ',';
+    first_ = false;
+  }
+
+  std::string line_;
+  bool first_ = true;
+};
+
+/// One side of a comparison.
+void summary_cells(Line& line, const Material& material, const std::optional<std::size_t>& group,
+                   std::size_t q) {
+  const report::GroupQuantity* own = group ? &material.groups[*group].quantities[q] : nullptr;
+  const report::Replicates none;
+  const bool has = own != nullptr && own->replicates;
+  const report::Replicates& replicates = has ? *own->replicates : none;
+  line.number(std::optional{replicates.count});
+  line.number(has ? std::optional{replicates.mean} : std::nullopt);
+  line.number(replicates.standard_deviation)
+      .number(replicates.repeatability)
+      .interval(replicates.mean_interval);
+}
+
+}  // namespace
+
+std::string report_csv(const Material& material) {
+  Line header;
+  header.text("file").text("title").text("method").text("pull_speed").text("regime");
+  std::string text;
+  for (std::size_t i = 0; i < material.tests.size(); ++i) {
+    const report::MeasuredTest& measured = material.measured[i];
+    Line line;
+    line.text(material.tests[i].file).text(material.tests[i].title).text(material.tests[i].method);
+    line.number(measured.pull_speed_m_per_s).text(friction::name(measured.results.regime));
+    std::string reasons;
+    friction::for_each_result(
+        measured.results, [&](const friction::ResultName& name, const friction::Estimate& estimate) {
+          if (i == 0) header.text(name.name);
+          line.number(estimate.value);
+          if (!estimate.value) {
+            reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", name.name, estimate.reason);
+          }
+        });
+    if (i == 0) text = header.text("absent").end();
+    text += line.text(reasons).end();
+  }
+  return text;
+}
+
+std::string comparison_csv(const Material& a, const Material& b, const MaterialComparison& comparison) {
+  Line header;
+  header.text("pull_speed").text("quantity").text("unit");
+  for (const char* side : {"a", "b"}) {
+    for (const char* name :
+         {"count", "mean", "standard_deviation", "repeatability", "mean_low", "mean_high"}) {
+      header.text(fmt::format("{}_{}", side, name));
+    }
+  }
+  for (const char* name :
+       {"difference", "difference_low", "difference_high", "t", "degrees_of_freedom", "p", "hedges_g",
+        "hedges_g_low", "hedges_g_high", "tests_needed_80", "tests_needed_90", "reason"}) {
+    header.text(name);
+  }
+  std::string text = header.end();
+  for (std::size_t i = 0; i < comparison.pairs.size(); ++i) {
+    for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
+      const report::Quantity& quantity = report::quantities()[q];
+      const auto& [welch, effect, needed, reason] = comparison.comparisons[i][q];
+      Line line;
+      line.number(comparison.pairs[i].pull_speed_m_per_s).text(quantity.name).text(quantity.unit);
+      summary_cells(line, a, comparison.pairs[i].a, q);
+      summary_cells(line, b, comparison.pairs[i].b, q);
+      line.number(welch ? std::optional{welch->difference} : std::nullopt);
+      line.interval(welch ? std::optional{welch->interval} : std::nullopt);
+      line.number(welch ? std::optional{welch->t} : std::nullopt);
+      line.number(welch ? std::optional{welch->degrees_of_freedom} : std::nullopt);
+      line.number(welch ? std::optional{welch->p} : std::nullopt);
+      line.number(effect ? std::optional{effect->g} : std::nullopt);
+      line.interval(effect ? effect->interval : std::nullopt);
+      line.number(needed ? needed->for_80_percent : std::nullopt);
+      line.number(needed ? needed->for_90_percent : std::nullopt);
+      text += line.text(reason).end();
+    }
+  }
+  return text;
+}
+
+}  // namespace stickslip::daemon

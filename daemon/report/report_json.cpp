@@ -1,0 +1,133 @@
+#include "daemon/report/report_json.hpp"
+
+#include <optional>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/results_json.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using report::Comparison;
+using report::GroupQuantity;
+using report::Interval;
+
+template <typename T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json interval_json(const std::optional<Interval>& interval) {
+  return interval ? Json::array({interval->low, interval->high}) : Json(nullptr);
+}
+
+Json test_json(const ReportedTest& test, const report::MeasuredTest& measured) {
+  Json json{{"file", test.file},
+            {"title", test.title},
+            {"method", test.method},
+            {"departures", test.departures},
+            {"pull_speed", or_null(measured.pull_speed_m_per_s)}};
+  json.update(results_json(measured.results, true));
+  return json;
+}
+
+Json quantity_json(const Material& material, const GroupQuantity& group, const report::Quantity& quantity) {
+  Json json{{"unit", quantity.unit}, {"count", group.tests.size()}};
+  if (const std::optional<report::Replicates>& own = group.replicates) {
+    json["mean"] = own->mean;
+    json["standard_deviation"] = or_null(own->standard_deviation);
+    json["repeatability"] = or_null(own->repeatability);
+    json["confidence_interval"] = interval_json(own->mean_interval);
+    json["outlier"] = nullptr;
+    if (own->outlier) {
+      json["outlier"] = {{"file", material.tests[group.tests[own->outlier->index]].file},
+                         {"statistic", own->outlier->statistic},
+                         {"critical", own->outlier->critical}};
+    }
+  } else {
+    for (const char* key :
+         {"mean", "standard_deviation", "repeatability", "confidence_interval", "outlier"}) {
+      json[key] = nullptr;
+    }
+  }
+  json["absent"] = Json::array();
+  for (const report::Absence& absence : group.absences) {
+    json["absent"].push_back({{"file", material.tests[absence.test].file}, {"reason", absence.reason}});
+  }
+  return json;
+}
+
+Json comparison_json(const Comparison& comparison) {
+  const auto& [welch, effect, needed, reason] = comparison;
+  Json json;
+  json["difference"] = welch ? Json(welch->difference) : Json(nullptr);
+  json["confidence_interval"] = welch ? interval_json(welch->interval) : Json(nullptr);
+  json["t"] = welch ? Json(welch->t) : Json(nullptr);
+  json["degrees_of_freedom"] = welch ? Json(welch->degrees_of_freedom) : Json(nullptr);
+  json["p"] = welch ? Json(welch->p) : Json(nullptr);
+  json["hedges_g"] = effect ? Json(effect->g) : Json(nullptr);
+  json["hedges_g_interval"] = effect ? interval_json(effect->interval) : Json(nullptr);
+  json["tests_needed_80"] = needed ? or_null(needed->for_80_percent) : Json(nullptr);
+  json["tests_needed_90"] = needed ? or_null(needed->for_90_percent) : Json(nullptr);
+  if (!reason.empty()) json["reason"] = reason;
+  return json;
+}
+
+}  // namespace
+
+Json report_json(const Material& material) {
+  Json json{{"tests", Json::array()}, {"groups", Json::array()}};
+  for (std::size_t i = 0; i < material.tests.size(); ++i) {
+    json["tests"].push_back(test_json(material.tests[i], material.measured[i]));
+  }
+  for (const report::SpeedGroup& group : material.groups) {
+    Json of_group{{"pull_speed", or_null(group.pull_speed_m_per_s)}, {"tests", group.tests}};
+    for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
+      const report::Quantity& quantity = report::quantities()[q];
+      of_group["quantities"][std::string{quantity.name}] =
+          quantity_json(material, group.quantities[q], quantity);
+    }
+    json["groups"].push_back(std::move(of_group));
+  }
+  for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
+    json["pooled_standard_deviation"][std::string{report::quantities()[q].name}] =
+        or_null(report::pooled_over_groups(material.groups, q));
+  }
+  return json;
+}
+
+Json comparison_json(const Material& a, const Material& b, const MaterialComparison& comparison) {
+  Json json;
+  for (const auto& [key, material] : {std::pair{"a", &a}, std::pair{"b", &b}}) {
+    json[key] = {{"label", material->label}};
+    json[key].update(report_json(*material));
+  }
+  json["comparisons"] = Json::array();
+  for (std::size_t i = 0; i < comparison.pairs.size(); ++i) {
+    const RegimeComparison& regime = comparison.regimes[i];
+    Json of_pair{{"pull_speed", or_null(comparison.pairs[i].pull_speed_m_per_s)},
+                 {"regime",
+                  {{"a_sticking", regime.a.sticking},
+                   {"a_sliding", regime.a.sliding},
+                   {"b_sticking", regime.b.sticking},
+                   {"b_sliding", regime.b.sliding},
+                   {"p", or_null(regime.p)}}}};
+    for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
+      of_pair["quantities"][std::string{report::quantities()[q].name}] =
+          comparison_json(comparison.comparisons[i][q]);
+    }
+    json["comparisons"].push_back(std::move(of_pair));
+  }
+  json["combined"] = Json::object();
+  for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
+    const auto& combined = comparison.combined[q];
+    json["combined"][std::string{report::quantities()[q].name}] =
+        combined ? Json{{"p", combined->p}, {"speeds", combined->speed_count}} : Json(nullptr);
+  }
+  return json;
+}
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,96 @@
+#include "daemon/report/report_page.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/report/report_json.hpp"
+#include "daemon/version.hpp"
+#include "daemon/web/assets.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json quantities_json() {
+  Json json = Json::array();
+  for (const report::Quantity& quantity : report::quantities()) {
+    json.push_back({{"name", quantity.name},
+                    {"title", quantity.title},
+                    {"unit", quantity.unit},
+                    {"decimals", quantity.decimals}});
+  }
+  return json;
+}
+
+/// \param report  of the material, as report_json() gives it.
+Json material_json(const Material& material, Json report) {
+  report["label"] = material.label;
+  for (std::size_t i = 0; i < material.tests.size(); ++i)
+    report["tests"][i]["trace"] = Json::parse(material.tests[i].trace);
+  return report;
+}
+
+/// The template with each mark replaced, once, from the first to the last.
+std::string page_of(const Json& data) {
+  const std::string text = json_for_script(data);
+  const std::array<std::pair<std::string_view, std::string_view>, 7> parts{{
+      {"@LICENSE@", web::uplot_license()},
+      {"@UPLOT_CSS@", web::uplot_css()},
+      {"@REPORT_CSS@", web::report_css()},
+      {"@DATA@", text},
+      {"@UPLOT_JS@", web::uplot_js()},
+      {"@CHARTS_JS@", web::charts_js()},
+      {"@REPORT_JS@", web::report_js()},
+  }};
+  const std::string_view html = web::report_html();
+  std::string page;
+  std::size_t done = 0;
+  for (const auto& [mark, part] : parts) {
+    const std::size_t at = html.find(mark, done);
+    page.append(html.substr(done, at - done)).append(part);
+    done = at + mark.size();
+  }
+  return page.append(html.substr(done));
+}
+
+Json page_json(Json materials, Json comparison) {
+  return {{"program", fmt::format("stickslip {} ({})", kVersion, kCommit)},
+          {"quantities", quantities_json()},
+          {"materials", std::move(materials)},
+          {"comparison", std::move(comparison)}};
+}
+
+}  // namespace
+
+std::string json_for_script(const Json& json) {
+  std::string text;
+  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+    if (c == '<') {
+      text += "\\u003c";  // Only inside strings, where this means the same.
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+std::string report_page(const Material& material) {
+  return page_of(page_json(Json::array({material_json(material, report_json(material))}), nullptr));
+}
+
+std::string comparison_page(const Material& a, const Material& b, const MaterialComparison& comparison) {
+  Json whole = comparison_json(a, b, comparison);
+  Json materials =
+      Json::array({material_json(a, std::move(whole["a"])), material_json(b, std::move(whole["b"]))});
+  whole.erase("a");
+  whole.erase("b");
+  return page_of(page_json(std::move(materials), std::move(whole)));
+}
+
+}  // namespace stickslip::daemon

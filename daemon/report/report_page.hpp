@@ -1,0 +1,21 @@
+/// \file
+/// The report as one HTML file that needs nothing else: no network, no other file.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "daemon/report/test_report.hpp"
+
+namespace stickslip::daemon {
+
+/// Materials read with traces. The tables show the numbers of report_json().
+[[nodiscard]] std::string report_page(const Material& material);
+[[nodiscard]] std::string comparison_page(const Material& a, const Material& b,
+                                          const MaterialComparison& comparison);
+
+/// JSON that may stand inside a script element: no text in it can end the element.
+[[nodiscard]] std::string json_for_script(const nlohmann::ordered_json& json);
+
+}  // namespace stickslip::daemon

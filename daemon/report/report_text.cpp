@@ -1,0 +1,211 @@
+#include "daemon/report/report_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "daemon/report/table.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+using report::GroupQuantity;
+using report::Interval;
+using report::Quantity;
+using report::Replicates;
+using report::SpeedGroup;
+
+constexpr double kMillimetresPerMetre = 1e3;
+constexpr std::string_view kAbsent = "–";
+
+std::string speed_text(const std::optional<double>& speed_m_per_s) {
+  if (!speed_m_per_s) return "speed not known";
+  return fmt::format("{:.4g} mm/s", *speed_m_per_s * kMillimetresPerMetre);
+}
+
+std::string number(const std::optional<double>& value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : std::string{kAbsent};
+}
+
+std::string interval(const std::optional<Interval>& value, int decimals) {
+  return value ? fmt::format("{:.{}f} … {:.{}f}", value->low, decimals, value->high, decimals)
+               : std::string{kAbsent};
+}
+
+/// "0.3812 ± 0.0012"; without the second part where the scatter is not known.
+std::string mean_text(const GroupQuantity& group, const Quantity& quantity) {
+  if (!group.replicates) return std::string{kAbsent};
+  const Replicates& own = *group.replicates;
+  if (!own.mean_interval) return number(own.mean, quantity.decimals);
+  return fmt::format("{:.{}f} ± {:.{}f}", own.mean, quantity.decimals, own.mean_interval->high - own.mean,
+                     quantity.decimals);
+}
+
+std::string count_of_tests(std::size_t count) {
+  return fmt::format("{} test{}", count, count == 1 ? "" : "s");
+}
+
+/// Fig. 1 has the first two; S and K stand beside them.
+constexpr std::size_t kFigureQuantities = 4;
+
+std::string figure_header(bool two) {
+  std::string text = fmt::format("{:<16}{:<14}{:>5}", "speed", two ? "material" : "", "tests");
+  for (std::size_t q = 0; q < kFigureQuantities; ++q)
+    text += fmt::format("  {:>17}", report::quantities()[q].title);
+  return text + "\n";
+}
+
+std::string figure_line(const std::string& speed, const std::string& label, const SpeedGroup& group) {
+  std::string text = fmt::format("{:<16}{:<14}{:>5}", speed, label, group.tests.size());
+  for (std::size_t q = 0; q < kFigureQuantities; ++q) {
+    text += fmt::format("  {:>17}", mean_text(group.quantities[q], report::quantities()[q]));
+  }
+  return text + "\n";
+}
+
+std::string replicates_table(const Material& material, const SpeedGroup& group) {
+  std::string text = fmt::format("{:<15}{:>4}  {:>9}  {:>9}  {:>11}  {:>20}\n", "", "n", "mean", "s_r",
+                                 "r = 2.8 s_r", "95 % of the mean");
+  std::string notes;
+  for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
+    const Quantity& quantity = report::quantities()[q];
+    const GroupQuantity& own = group.quantities[q];
+    const Replicates none;
+    const Replicates& values = own.replicates ? *own.replicates : none;
+    const std::string title = quantity.unit == "1" ? std::string{quantity.title}
+                                                   : fmt::format("{} ({})", quantity.title, quantity.unit);
+    text += fmt::format("{:<15}{:>4}  {:>9}  {:>9}  {:>11}  {:>20}\n", title, values.count,
+                        number(own.replicates ? std::optional{values.mean} : std::nullopt, quantity.decimals),
+                        number(values.standard_deviation, quantity.decimals + 1),
+                        number(values.repeatability, quantity.decimals + 1),
+                        interval(values.mean_interval, quantity.decimals));
+    if (values.outlier) {
+      const std::size_t test = own.tests[values.outlier->index];
+      notes += fmt::format("!  {} of {} stands out (Grubbs {:.2f} above {:.2f}, 5 %); it is not left out\n",
+                           quantity.title, material.tests[test].file, values.outlier->statistic,
+                           values.outlier->critical);
+    }
+  }
+  return text + notes;
+}
+
+std::string tests_table(const Material& material) {
+  std::vector<TableRow> rows;
+  for (std::size_t i = 0; i < material.tests.size(); ++i) {
+    rows.push_back({static_cast<std::int64_t>(i) + 1, material.measured[i].results, material.tests[i].truth,
+                    material.tests[i].file});
+  }
+  std::string text = format_table(rows);
+  for (std::size_t i = 0; i < material.tests.size(); ++i) {
+    for (const std::string& line : material.tests[i].departures)
+      text += fmt::format("!  test {}: {}\n", i + 1, line);
+  }
+  return text;
+}
+
+std::string methods_line(const Material& material) {
+  std::map<std::string, std::size_t> counts;
+  for (const ReportedTest& test : material.tests) ++counts[test.method];
+  std::string text;
+  for (const auto& [method, count] : counts) {
+    text += fmt::format("{}{}{}", text.empty() ? "" : "; ", method.empty() ? "method not known" : method,
+                        counts.size() > 1 ? fmt::format(" ({})", count_of_tests(count)) : "");
+  }
+  return text;
+}
+
+std::string p_text(double p) { return p < 0.0001 ? "< 0.0001" : fmt::format("{:.4f}", p); }
+
+std::string needed_text(const std::optional<int>& count) {
+  return count ? fmt::format("{}", *count) : fmt::format("> {}", report::kMostTestsNeeded);
+}
+
+std::string regime_line(const RegimeComparison& regime) {
+  if (!regime.p) return {};
+  const auto counts = [](const RegimeCounts& own) {
+    return fmt::format("{} of {}", own.sticking, own.sticking + own.sliding);
+  };
+  return fmt::format("sticking       A {}, B {}, p {} (Fisher's exact test){}\n", counts(regime.a),
+                     counts(regime.b), p_text(*regime.p), *regime.p < report::kSignificance ? "  *" : "");
+}
+
+std::string comparison_table(const std::array<report::Comparison, report::kQuantityCount>& comparisons) {
+  const std::string& first = comparisons.front().reason;
+  const auto same = [&first](const report::Comparison& own) { return own.reason == first; };
+  if (!first.empty() && std::all_of(comparisons.begin(), comparisons.end(), same)) {
+    return fmt::format("{}  {}\n", kAbsent, first);
+  }
+  std::string text = fmt::format("{:<15}{:>10}  {:>22}  {:>9}  {:>8}  {:>18}  {:>14}\n", "", "A − B", "95 %",
+                                 "p (Welch)", "g", "95 % of g", "tests 80/90 %");
+  std::map<std::string, std::string> reasons;
+  for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
+    const Quantity& quantity = report::quantities()[q];
+    const report::Comparison& own = comparisons[q];
+    const std::string title = quantity.unit == "1" ? std::string{quantity.title}
+                                                   : fmt::format("{} ({})", quantity.title, quantity.unit);
+    if (!own.welch) {
+      text += fmt::format("{:<15}{:>10}\n", title, kAbsent);
+      std::string& titles = reasons[own.reason];
+      titles += fmt::format("{}{}", titles.empty() ? "" : ", ", quantity.title);
+      continue;
+    }
+    text += fmt::format("{:<15}{:>10}  {:>22}  {:>9}  {:>8.2f}  {:>18}  {:>14}{}\n", title,
+                        number(own.welch->difference, quantity.decimals),
+                        interval(own.welch->interval, quantity.decimals), p_text(own.welch->p), own.effect->g,
+                        interval(own.effect->interval, 1),
+                        fmt::format("{} / {}", needed_text(own.needed->for_80_percent),
+                                    needed_text(own.needed->for_90_percent)),
+                        own.welch->p < report::kSignificance ? "  *" : "");
+  }
+  for (const auto& [reason, titles] : reasons)
+    text += fmt::format("{}  no {}: {}\n", kAbsent, titles, reason);
+  return text;
+}
+
+}  // namespace
+
+std::string report_text(const Material& material) {
+  std::string text = tests_table(material) + "method: " + methods_line(material) + "\n";
+  text += "\nCoefficient against speed (Fig. 1): mean ± half of its 95 % interval\n" + figure_header(false);
+  for (const SpeedGroup& group : material.groups) {
+    text += figure_line(speed_text(group.pull_speed_m_per_s), "", group);
+  }
+  for (const SpeedGroup& group : material.groups) {
+    text +=
+        fmt::format("\n{}, {}\n", speed_text(group.pull_speed_m_per_s), count_of_tests(group.tests.size()));
+    text += replicates_table(material, group);
+  }
+  return text;
+}
+
+std::string comparison_text(const Material& a, const Material& b, const MaterialComparison& comparison) {
+  std::string text = fmt::format("A: {}\n{}method: {}\n\nB: {}\n{}method: {}\n", a.label, tests_table(a),
+                                 methods_line(a), b.label, tests_table(b), methods_line(b));
+  text += "\nCoefficient against speed (Fig. 1): mean ± half of its 95 % interval\n" + figure_header(true);
+  for (const report::SpeedPair& pair : comparison.pairs) {
+    std::string speed = speed_text(pair.pull_speed_m_per_s);
+    if (pair.a) text += figure_line(std::exchange(speed, ""), "A", a.groups[*pair.a]);
+    if (pair.b) text += figure_line(speed, "B", b.groups[*pair.b]);
+  }
+  for (std::size_t i = 0; i < comparison.pairs.size(); ++i) {
+    text +=
+        fmt::format("\n{}: A − B (* differs at 5 %)\n", speed_text(comparison.pairs[i].pull_speed_m_per_s));
+    text += comparison_table(comparison.comparisons[i]) + regime_line(comparison.regimes[i]);
+  }
+  std::string combined;
+  for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
+    if (!comparison.combined[q]) continue;
+    combined += fmt::format("{}{} {}", combined.empty() ? "" : ", ", report::quantities()[q].title,
+                            p_text(comparison.combined[q]->p));
+  }
+  if (!combined.empty()) text += "\nall speeds together, p (Fisher): " + combined + "\n";
+  return text;
+}
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,93 @@
+#include "daemon/report/test_report.hpp"
+
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "core/friction/method.hpp"
+#include "core/record/reader.hpp"
+#include "daemon/method_text.hpp"
+#include "daemon/report/trace_json.hpp"
+
+namespace stickslip::daemon {
+
+base::Result<Material> read_material(std::string label, std::span<const std::string> files,
+                                     bool with_traces) {
+  Material material;
+  material.label = std::move(label);
+  for (const std::string& file : files) {
+    base::Result<record::Record> record = record::read_record(file);
+    if (!record) return tl::unexpected(record.error());
+    const record::TesterFacts& tester = record->header.tester;
+    ReportedTest test;
+    test.file = file;
+    test.title = record->header.title;
+    test.method = record->header.process.method;
+    // A method in another form is shown as it stands; nothing can be compared with it.
+    if (const base::Result<friction::Method> method = method_from_text(test.method)) {
+      test.departures = friction::departures(*method, tester.sled_mass_kg, tester.pull_speed_m_per_s);
+    }
+    if (with_traces) {
+      const base::Result<nlohmann::ordered_json> trace = trace_json(*record);
+      if (!trace) {
+        return tl::unexpected(
+            base::Error{trace.error().kind, fmt::format("{}: {}", file, trace.error().message)});
+      }
+      test.trace = trace->dump();
+    }
+    test.truth = std::move(record->end->truth);
+    material.measured.push_back({tester.pull_speed_m_per_s, std::move(record->end->results)});
+    material.tests.push_back(std::move(test));
+  }
+  material.groups = report::group_by_speed(material.measured);
+  return material;
+}
+
+namespace {
+
+RegimeCounts regime_counts(const Material& material, const std::optional<std::size_t>& group) {
+  RegimeCounts counts;
+  if (!group) return counts;
+  for (const std::size_t test : material.groups[*group].tests) {
+    switch (material.measured[test].results.regime) {
+      case friction::Regime::kStickSlip:
+      case friction::Regime::kMixed:
+        ++counts.sticking;
+        break;
+      case friction::Regime::kRingDown:
+      case friction::Regime::kSteadySliding:
+        ++counts.sliding;
+        break;
+      case friction::Regime::kUndecided:
+        break;
+    }
+  }
+  return counts;
+}
+
+}  // namespace
+
+MaterialComparison compare_materials(const Material& a, const Material& b) {
+  MaterialComparison result;
+  result.pairs = report::pair_speeds(a.groups, b.groups);
+  std::array<std::vector<double>, report::kQuantityCount> p;
+  for (const report::SpeedPair& pair : result.pairs) {
+    RegimeComparison regime{regime_counts(a, pair.a), regime_counts(b, pair.b), std::nullopt};
+    if (regime.a.sticking + regime.a.sliding > 0 && regime.b.sticking + regime.b.sliding > 0) {
+      regime.p = report::exact_p(regime.a.sticking, regime.a.sliding, regime.b.sticking, regime.b.sliding);
+    }
+    result.regimes.push_back(regime);
+    auto& comparisons = result.comparisons.emplace_back();
+    for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
+      comparisons[q] = report::compare_pair(a.groups, b.groups, pair, q);
+      if (comparisons[q].welch) p[q].push_back(comparisons[q].welch->p);
+    }
+  }
+  for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
+    if (p[q].size() < 2) continue;
+    result.combined[q] = {report::combined_p(p[q]), static_cast<int>(p[q].size())};
+  }
+  return result;
+}
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,70 @@
+/// \file
+/// One material, or two to be compared: records read, grouped by speed, summarised. What terminal, JSON, CSV
+/// and page show is made from this.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/result.hpp"
+#include "core/friction/truth.hpp"
+#include "core/record/record.hpp"
+#include "core/report/grouping.hpp"
+
+namespace stickslip::daemon {
+
+/// One record without its scans.
+struct ReportedTest {
+  std::string file;
+  std::string title;
+  std::string method;                   ///< As in the record.
+  std::vector<std::string> departures;  ///< From the method, one line each.
+  std::optional<friction::TestTruth> truth;
+  std::string trace;  ///< For the page: trace_json() as text; empty unless asked for.
+};
+
+/// Tests of one material. `tests` and `measured` have equal lengths.
+struct Material {
+  std::string label;  ///< Empty where there is only one.
+  std::vector<ReportedTest> tests;
+  std::vector<report::MeasuredTest> measured;
+  std::vector<report::SpeedGroup> groups;
+};
+
+/// Results are those in the files.
+/// \param with_traces  for the page.
+/// Error: of the first file that cannot be read, one line that names it.
+[[nodiscard]] base::Result<Material> read_material(std::string label, std::span<const std::string> files,
+                                                   bool with_traces);
+
+/// How many tests at one speed stuck again at least once (stick-slip, mixed), and how many never did
+/// (ring-down, steady sliding): the paper's qualitative difference between its two mills. Undecided ones are
+/// not counted.
+struct RegimeCounts {
+  unsigned sticking = 0;
+  unsigned sliding = 0;
+};
+
+struct RegimeComparison {
+  RegimeCounts a;
+  RegimeCounts b;
+  std::optional<double> p;  ///< Fisher's exact test; none where a material has no test to count.
+};
+
+/// All comparisons of two materials, in the order of pair_speeds() and report::quantities().
+struct MaterialComparison {
+  std::vector<report::SpeedPair> pairs;
+  std::vector<std::array<report::Comparison, report::kQuantityCount>> comparisons;  ///< One for each pair.
+  std::vector<RegimeComparison> regimes;                                            ///< One for each pair.
+  struct Combined {
+    double p = 0.0;  ///< Of all speeds together (Fisher).
+    int speed_count = 0;
+  };
+  std::array<std::optional<Combined>, report::kQuantityCount> combined;  ///< None below two speeds.
+};
+
+[[nodiscard]] MaterialComparison compare_materials(const Material& a, const Material& b);
+
+}  // namespace stickslip::daemon

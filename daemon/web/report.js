@@ -1,0 +1,235 @@
+// The report page: reads the JSON in the page, writes tables, places charts. Texts go through textContent alone.
+"use strict";
+
+(() => {
+  const data = JSON.parse(document.getElementById("data").textContent);
+  const two = data.materials.length === 2;
+  const sides = ["A", "B"];
+  const strokes = ["--a", "--b"];
+  const main = document.getElementById("main");
+  const kMillimetres = 1000;
+  const kTexts = new Set(["material", "file", "regime"]);  // Columns of words.
+
+  // node("td", {class: "x"}, "text", child, …)
+  const node = (tag, attributes, ...children) => {
+    const made = document.createElement(tag);
+    for (const [name, value] of Object.entries(attributes || {})) {
+      if (name.startsWith("on")) made.addEventListener(name.slice(2), value); else made.setAttribute(name, value);
+    }
+    made.append(...children);
+    return made;
+  };
+  const plural = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;
+  const fixed = (value, decimals) => (value == null ? "–" : value.toFixed(decimals));
+  const range = (pair, decimals) => (pair == null ? "–" : `${fixed(pair[0], decimals)} … ${fixed(pair[1], decimals)}`);
+  const speed = value => (value == null ? "speed not known" : `${Number((value * kMillimetres).toPrecision(4))} mm/s`);
+  const title = q => (q.unit === "1" ? q.title : `${q.title} (${q.unit})`);
+  const probability = p => (p == null ? "–" : p < 0.0001 ? "< 0.0001" : p.toFixed(4));
+  const half = own => (own.confidence_interval ? own.confidence_interval[1] - own.mean : null);
+  const meanText = (own, decimals) =>
+    own.mean == null ? "–" : fixed(own.mean, decimals) + (half(own) == null ? "" : ` ± ${fixed(half(own), decimals)}`);
+  const nameOf = index => (two ? `${sides[index]}: ${data.materials[index].label}` : "");
+  const absentCell = reason => node("td", {}, node("span", {class: "absent", title: reason, tabindex: "0"}, "–"));
+
+  function table(id, headings, rows) {
+    return node("div", {class: "table"}, node("table", {id},
+      node("thead", {}, node("tr", {}, ...headings.map(h => node("th", {scope: "col", ...(kTexts.has(h) ? {class: "text"} : {})}, h)))),
+      node("tbody", {}, ...rows)));
+  }
+  const section = (id, heading, ...children) => {
+    const made = node("section", {id, "aria-label": heading}, node("h2", {}, heading), ...children);
+    main.append(made);
+    return made;
+  };
+  const row = (...cells) => node("tr", {}, ...cells.map(c => (c instanceof Node ? c : node("td", {}, c))));
+
+  // ---- Fig. 1 ------------------------------------------------------------------------------------------
+  function figureSeries() {
+    return data.materials.flatMap((material, m) => ["static_coefficient", "kinetic_coefficient"].map((name, kind) => ({
+      label: (two ? material.label + " " : "") + (kind ? "kinetic" : "static"),
+      colour: two ? strokes[m] : strokes[kind], dash: kind ? [7, 4] : undefined,
+      points: material.groups.filter(g => g.pull_speed != null && g.quantities[name].mean != null).map(g => ({
+        x: g.pull_speed * kMillimetres, mean: g.quantities[name].mean,
+        low: (g.quantities[name].confidence_interval || [null])[0], high: (g.quantities[name].confidence_interval || [null, null])[1],
+        values: g.tests.map(t => material.tests[t][name]).filter(v => v != null),
+      })),
+    }))).filter(s => s.points.length > 0);
+  }
+
+  let figure = null;
+  const figureBox = node("div", {class: "chart", id: "figure", role: "img", "aria-label": "coefficient against speed; the table below has its numbers"});
+  function drawFigure() {
+    if (figure) figure.destroy();
+    const series = figureSeries();
+    figure = series.length > 0 ? Charts.againstSpeed(figureBox, series) : null;
+  }
+
+  function writeFigure() {
+    const shown = data.quantities.slice(0, 5);
+    const rows = data.materials.flatMap((material, m) => material.groups.map(group => ({m, group})));
+    rows.sort((x, y) => (x.group.pull_speed ?? Infinity) - (y.group.pull_speed ?? Infinity) || x.m - y.m);
+    section("against-speed", "Coefficient against speed",
+      node("p", {class: "note"}, "Means with their 95 % intervals; small dots are single tests. Static and kinetic are the traditional numbers, " +
+        "S and K those of the two-parameter model, from which the effect of speed is taken out (Penner 1995, Fig. 1)."),
+      figureBox,
+      table("speeds", ["speed", ...(two ? ["material"] : []), "tests", ...shown.map(title)], rows.map(({m, group}) => row(
+        speed(group.pull_speed), ...(two ? [node("td", {class: "text"}, nameOf(m))] : []), String(group.tests.length),
+        ...shown.map(q => {
+          const own = group.quantities[q.name];
+          return own.mean == null ? absentCell(own.absent.map(a => a.reason)[0] || "") : meanText(own, q.decimals);
+        })))));
+  }
+
+  // ---- Comparison --------------------------------------------------------------------------------------
+  function writeComparison() {
+    const made = section("comparison", "Do they differ?", node("p", {class: "note"},
+      "A − B with its 95 % interval; p of Welch's test; g is the difference in units of the scatter of single tests (Hedges). The last two columns: " +
+      "tests of each material with which a difference as large would be found 80 or 90 times of 100. Green: differs at 5 %."));
+    data.comparison.comparisons.forEach((pair, i) => {
+      const reasons = data.quantities.map(q => pair.quantities[q.name].reason);
+      made.append(node("h3", {}, speed(pair.pull_speed)));
+      if (reasons[0] && reasons.every(reason => reason === reasons[0])) {
+        made.append(node("p", {class: "note", id: `comparison-${i}`}, reasons[0]));
+        return;
+      }
+      made.append(
+        table(`comparison-${i}`, ["", "A − B", "95 %", "p", "g", "95 % of g", "tests, 80 %", "tests, 90 %"], data.quantities.map(q => {
+          const own = pair.quantities[q.name];
+          if (own.p == null) return row(title(q), absentCell(own.reason), ...Array(6).fill(""));
+          const needed = n => (n == null ? "> 10000" : String(n));
+          return row(title(q), fixed(own.difference, q.decimals), range(own.confidence_interval, q.decimals),
+            node("td", own.p < 0.05 ? {class: "differs"} : {}, probability(own.p)), fixed(own.hedges_g, 2),
+            range(own.hedges_g_interval, 1), needed(own.tests_needed_80), needed(own.tests_needed_90));
+        })));
+      const regime = pair.regime;
+      if (regime.p != null) {
+        made.append(node("p", {class: "note", id: `regime-${i}`}, `Sticking: ${regime.a_sticking} of ${regime.a_sticking + regime.a_sliding} tests of A, ` +
+          `${regime.b_sticking} of ${regime.b_sticking + regime.b_sliding} of B; p ${probability(regime.p)} (Fisher's exact test).`));
+      }
+    });
+    const combined = data.quantities.filter(q => data.comparison.combined[q.name]);
+    if (combined.length > 0) {
+      made.append(node("p", {class: "note"}, "All speeds together, p (Fisher): " +
+        combined.map(q => `${q.title} ${probability(data.comparison.combined[q.name].p)}`).join(", ")));
+    }
+  }
+
+  // ---- Replicates --------------------------------------------------------------------------------------
+  function writeReplicates() {
+    const made = section("replicates", "Replicates", node("p", {class: "note"},
+      "Two single tests of one material differ by less than r = 2.8 s_r, 95 times of 100 (ISO 5725-6)."));
+    const grid = node("div", {class: "grid"});
+    made.append(grid);
+    data.materials.forEach((material, m) => material.groups.forEach((group, g) => {
+      const notes = [];
+      const own = node("div", {}, node("h3", {}, `${two ? nameOf(m) + ", " : ""}${speed(group.pull_speed)}, ${plural(group.tests.length, "test")}`),
+        table(`replicates-${m}-${g}`, ["", "n", "mean", "s_r", "r = 2.8 s_r", "95 % of the mean"], data.quantities.map(q => {
+          const own = group.quantities[q.name];
+          if (own.outlier) {
+            notes.push(node("li", {}, node("b", {}, `${q.title} of ${own.outlier.file} stands out`),
+              `: Grubbs ${fixed(own.outlier.statistic, 2)} above ${fixed(own.outlier.critical, 2)} (5 %). It is not left out.`));
+          }
+          for (const absence of own.absent) notes.push(node("li", {}, node("b", {}, `no ${q.title} in ${absence.file}`), `: ${absence.reason}`));
+          return row(title(q), String(own.count), fixed(own.mean, q.decimals), fixed(own.standard_deviation, q.decimals + 1),
+            fixed(own.repeatability, q.decimals + 1), range(own.confidence_interval, q.decimals));
+        })));
+      if (notes.length > 0) own.append(node("ul", {class: "notes"}, ...notes));
+      grid.append(own);
+    }));
+  }
+
+  // ---- Traces ------------------------------------------------------------------------------------------
+  const viewers = [];
+  function writeViewer(m) {
+    const material = data.materials[m];
+    const box = node("div", {class: "charts", tabindex: "0", role: "group",
+      "aria-label": "traces; keys: plus and minus zoom, arrows move, 0 shows the whole test"});
+    const facts = node("p", {class: "facts"});
+    const choice = node("select", {"aria-label": "test", id: `test-${m}`, onchange: () => viewer.show(choice.selectedIndex)},
+      ...material.tests.map((t, i) => node("option", {}, `${i + 1}: ${t.file}`)));
+    const count = node("span", {id: `marked-${m}`, "aria-live": "polite"});
+    const button = (label, name, act) => node("button", {type: "button", "aria-label": name, title: name, onclick: act}, label);
+    const viewer = {
+      box, chart: null, shown: 0,
+      show(i) {
+        viewer.shown = i;
+        choice.selectedIndex = i;
+        const test = material.tests[i];
+        const trace = test.trace;
+        trace.key = `${m}`;
+        facts.textContent = [test.title, test.regime, plural(trace.scan_count, "scan") + ` at ${Number(trace.rate.toPrecision(6))} Hz`,
+          speed(test.pull_speed), trace.thinned ? "lowest and highest scan of each part shown" : ""].filter(Boolean).join(" · ");
+        if (viewer.chart) viewer.chart.destroy();
+        viewer.chart = Charts.traces(box, trace, strokes[m], n => {
+          count.textContent = `${plural(n, "cycle")} marked` + (n === trace.cycles.time.length ? "" : ` of ${trace.cycles.time.length}`);
+        });
+        document.querySelectorAll(`#tests-${m} tbody tr`).forEach((r, at) => r.classList.toggle("chosen", at === i));
+      },
+    };
+    const keys = {"+": () => viewer.chart.zoom(0.5), "=": () => viewer.chart.zoom(0.5), "-": () => viewer.chart.zoom(2),
+      "0": () => viewer.chart.whole(), ArrowLeft: () => viewer.chart.move(-0.25), ArrowRight: () => viewer.chart.move(0.25)};
+    box.addEventListener("keydown", event => {
+      if (event.ctrlKey || event.metaKey || event.altKey || !keys[event.key]) return;
+      event.preventDefault();
+      keys[event.key]();
+    });
+    section(`traces-${m}`, two ? `Traces of ${nameOf(m)}` : "Traces",
+      node("p", {class: "note"}, "Force, and below its derivative: the speed at which the coupling stretches, cut off at the pull speed while the sled sticks " +
+        "(Penner 1995, Fig. 4). Drag over a part to zoom in, double click for the whole test."),
+      node("div", {class: "tools"}, choice, button("◀", "previous test", () => viewer.show(Math.max(0, viewer.shown - 1))),
+        button("▶", "next test", () => viewer.show(Math.min(material.tests.length - 1, viewer.shown + 1))), node("span", {class: "grow"}),
+        button("+", "zoom in", keys["+"]), button("−", "zoom out", keys["-"]), button("←", "move left", keys.ArrowLeft),
+        button("→", "move right", keys.ArrowRight), button("whole test", "whole test", keys["0"])),
+      facts, box,
+      node("p", {class: "legend"}, node("span", {class: "swatch", style: "background: var(--stick)"}), "sticks",
+        node("span", {class: "swatch", style: "background: var(--slide)"}), "slides without sticking",
+        node("span", {class: "swatch round", style: "background: var(--mark)"}), "peak, sticks again",
+        node("span", {class: "swatch ring", style: "border-color: var(--free)"}), "peak, not seen to stick again",
+        node("span", {class: "swatch", style: "background: var(--limit); height: 2px; border: 0; vertical-align: .25em"}), "pull speed", " · ", count));
+    viewers.push(viewer);
+  }
+
+  function writeTests(m) {
+    const material = data.materials[m];
+    const show = i => { viewers[m].show(i); document.getElementById(`traces-${m}`).scrollIntoView({block: "start"}); };
+    const notes = material.tests.flatMap((t, i) => t.departures.map(d => node("li", {}, node("b", {}, `test ${i + 1}`), `: ${d}`)));
+    section(`all-tests-${m}`, two ? `Tests of ${nameOf(m)}` : "Tests",
+      node("p", {class: "note"}, "Method: " + [...new Set(material.tests.map(t => t.method || "not known"))].join("; ")),
+      table(`tests-${m}`, ["test", "file", "speed", "regime", ...data.quantities.map(title)], material.tests.map((t, i) => row(
+        node("td", {}, node("button", {type: "button", class: "link", onclick: () => show(i)}, String(i + 1))),
+        node("td", {class: "text"}, t.file), speed(t.pull_speed), node("td", {class: "text", title: t.details.regime ? t.details.regime.reason : ""}, t.regime),
+        ...data.quantities.map(q => (t[q.name] == null ? absentCell(t.details[q.name].reason) : fixed(t[q.name], q.decimals)))))),
+      ...(notes.length > 0 ? [node("ul", {class: "notes"}, ...notes)] : []));
+  }
+
+  // ---- The page ----------------------------------------------------------------------------------------
+  const total = data.materials.reduce((sum, m) => sum + m.tests.length, 0);
+  const heading = two ? `${data.materials[0].label} against ${data.materials[1].label}` :
+    total === 1 ? data.materials[0].tests[0].title || data.materials[0].tests[0].file : `Friction of ${total} tests`;
+  document.title = `${heading} – stickslip`;
+  document.getElementById("title").textContent = heading;
+  document.getElementById("subtitle").textContent =
+    data.materials.map((m, i) => (two ? `${nameOf(i)}: ` : "") + `${plural(m.tests.length, "test")} at ${plural(m.groups.length, "speed")}`).join("; ");
+  document.getElementById("footer").textContent = `Made by ${data.program}. This file holds everything it shows and asks no network.`;
+
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const setTheme = theme => { document.documentElement.dataset.theme = theme; };
+  const redraw = () => { drawFigure(); for (const viewer of viewers) { const at = viewer.chart.inView(); viewer.show(viewer.shown); viewer.chart.view(...at); } };
+  setTheme(dark.matches ? "dark" : "light");
+
+  writeFigure();
+  if (two) writeComparison();
+  data.materials.forEach((_, m) => writeViewer(m));
+  writeReplicates();
+  data.materials.forEach((_, m) => writeTests(m));
+  drawFigure();
+  viewers.forEach(viewer => viewer.show(0));
+
+  document.getElementById("theme").addEventListener("click", () => { setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"); redraw(); });
+  dark.addEventListener("change", () => { setTheme(dark.matches ? "dark" : "light"); redraw(); });
+  new ResizeObserver(() => {
+    if (figure) figure.setSize({width: Charts.width(figureBox), height: figure.height});
+    for (const viewer of viewers) viewer.chart.resize();
+  }).observe(main);
+  window.stickslip = {data, viewers, figure: () => figure};  // For tests and for the curious.
+})();

@@ -1,0 +1,228 @@
+#!/usr/bin/env python3
+"""The pages of `stickslip report` and `stickslip compare` in a real browser.
+
+report_page_test.py BUILD_DIR CHROMIUM [unittest arguments]
+
+With STICKSLIP_SCREENSHOTS=FOLDER in the environment pictures of the pages are left there.
+"""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+from chromium import Chromium
+
+BUILD = pathlib.Path(sys.argv[1]).resolve()
+CHROMIUM = shutil.which(sys.argv[2])
+CLI = BUILD / "daemon" / "stickslip"
+SPEED = "effects.constant_speed.pull_speed"
+HOSTILE = "</script><img src=x onerror='window.hacked=1'><b>&amp;"
+
+# Generous: under sanitizers on a busy machine everything takes its time.
+TIMEOUT_S = 600
+
+
+def run(*arguments, cwd=None):
+    done = subprocess.run([str(a) for a in (CLI, *arguments)], capture_output=True, text=True, timeout=TIMEOUT_S,
+                          check=False, cwd=cwd)
+    if done.returncode != 0:
+        raise AssertionError(done.stderr)
+    return done.stdout
+
+
+def simulate(folder, name, scene, speed, seed, *options):
+    run("simulate", scene, "-o", name, "--seed", seed, "--set", f"{SPEED}={speed}", *options, cwd=folder)
+    return name
+
+
+class Pages(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        temporary = tempfile.TemporaryDirectory(prefix="stickslip-")
+        cls.addClassCleanup(temporary.cleanup)
+        cls.folder = pathlib.Path(temporary.name)
+        sticks, rings = "stick-slip-at-12-in-per-min", "ring-down-at-12-in-per-min"
+        cls.a = [simulate(cls.folder, f"a{i}-{speed[:2].strip()}.h5", sticks, speed, i, "--duration", "5 s")
+                 for speed in ("6 in/min", "12 in/min") for i in (1, 2, 3)]
+        cls.b = [simulate(cls.folder, f"b{i}.h5", rings, "12 in/min", 10 + i, "--duration", "5 s") for i in (1, 2, 3)]
+        cls.report = cls.json_of("report", *cls.a, "-o", "report.html")
+        cls.comparison = cls.json_of("compare", *cls.a, "--", *cls.b, "-o", "compare.html", "--label-b", HOSTILE)
+        cls.browser = cls.enterClassContext(Chromium(CHROMIUM))
+
+    @classmethod
+    def json_of(cls, *arguments):
+        return json.loads(run(*arguments, "--json", cwd=cls.folder))
+
+    def page(self, name="report.html", **options):
+        page = self.browser.open(self.folder / name, **options)
+        self.addCleanup(lambda: self.assertEqual(page.complaints(), []))
+        return page
+
+    def rows(self, page, table):
+        return page.value(f"[...document.querySelectorAll('#{table} tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
+
+    def range(self, page, viewer=0, chart=0):
+        return page.value(f"(({{min, max}}) => [min, max])(stickslip.viewers[{viewer}].chart.charts[{chart}].scales.x)")
+
+    def cycles(self, file):
+        with h5py.File(self.folder / file) as record:
+            return record["entry/cycles/peak_time"][()]
+
+    def test_it_opens_without_a_complaint_and_asks_no_network(self):
+        for name in ("report.html", "compare.html"):
+            page = self.page(name)
+            self.assertEqual(page.value("document.readyState"), "complete")
+            urls = [url for url in page.requests() if not url.startswith("data:")]
+            self.assertEqual(urls, [(self.folder / name).resolve().as_uri()])
+            if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
+                page.screenshot(pathlib.Path(folder) / name.replace(".html", ".png"))
+
+    def test_traces_are_drawn_and_hold_each_scan(self):
+        page = self.page()
+        with h5py.File(self.folder / self.a[0]) as record:
+            scans = record["entry/raw/force"].shape[0]
+        self.assertEqual(page.value("stickslip.viewers[0].chart.charts[0].data[1].length"), scans)
+        for chart in (0, 1):
+            # Pixels of the line's own colour, and columns that have one: from the left end to the right.
+            columns = page.value("""(() => {
+              const u = stickslip.viewers[0].chart.charts[%d], {left, top, width, height} = u.bbox;
+              const probe = document.createElement('canvas').getContext('2d');
+              probe.fillStyle = getComputedStyle(document.documentElement).getPropertyValue('--a'); probe.fillRect(0, 0, 1, 1);
+              const [r, g, b] = probe.getImageData(0, 0, 1, 1).data, pixels = u.ctx.getImageData(left, top, width, height).data;
+              let columns = 0;
+              for (let x = 0; x < width; ++x) {
+                for (let y = 0; y < height; ++y) {
+                  const at = 4 * (y * width + x);
+                  if (Math.abs(pixels[at] - r) + Math.abs(pixels[at + 1] - g) + Math.abs(pixels[at + 2] - b) < 90) { ++columns; break; }
+                }
+              }
+              return columns / width;
+            })()""" % chart)
+            self.assertGreater(columns, 0.95)
+
+    def test_as_many_cycles_are_marked_as_the_record_has_in_view(self):
+        page = self.page()
+        for test, file in enumerate(self.a):
+            page.value(f"stickslip.viewers[0].show({test})")
+            page.settle()
+            cycles = self.cycles(file)
+            self.assertGreater(len(cycles), 10)
+            self.assertEqual(page.value("document.getElementById('marked-0').textContent"), f"{len(cycles)} cycles marked")
+        page.value("stickslip.viewers[0].chart.view(1.0, 1.5)")
+        page.settle()
+        inside = numpy.count_nonzero((cycles >= 1.0) & (cycles <= 1.5))
+        self.assertGreater(inside, 2)
+        self.assertEqual(page.value("document.getElementById('marked-0').textContent"),
+                         f"{inside} cycles marked of {len(cycles)}")
+
+    def test_tables_show_the_numbers_of_the_json_output(self):
+        page = self.page()
+        quantities = page.value("stickslip.data.quantities")
+        self.assertEqual(len(quantities), 8)
+        for index, group in enumerate(self.report["groups"]):
+            rows = self.rows(page, f"replicates-0-{index}")
+            self.assertEqual(len(rows), len(quantities))
+            for row, quantity in zip(rows, quantities):
+                own, digits = group["quantities"][quantity["name"]], quantity["decimals"]
+                low, high = own["confidence_interval"]
+                self.assertEqual(row[1:], [str(own["count"]), f"{own['mean']:.{digits}f}",
+                                           f"{own['standard_deviation']:.{digits + 1}f}", f"{own['repeatability']:.{digits + 1}f}",
+                                           f"{low:.{digits}f} … {high:.{digits}f}"])
+        rows = self.rows(page, "tests-0")
+        self.assertEqual([row[1] for row in rows], self.a)
+        for row, test in zip(rows, self.report["tests"]):
+            self.assertEqual(row[3], test["regime"])
+            for cell, quantity in zip(row[4:], quantities):
+                self.assertEqual(cell, f"{test[quantity['name']]:.{quantity['decimals']}f}")
+
+        page = self.page("compare.html")
+        compared = self.comparison["comparisons"]
+        self.assertEqual(len(compared), 2)
+        # B has no test at 6 in/min.
+        self.assertEqual(page.value("document.getElementById('comparison-0').textContent"), "no test of B at this speed")
+        self.assertEqual(page.value("document.getElementById('regime-1').textContent"), "Sticking: 3 of 3 tests of A, 0 of 3 of B; p 0.1000 (Fisher's exact test).")
+        for row, quantity in zip(self.rows(page, "comparison-1"), quantities):
+            own, digits = compared[1]["quantities"][quantity["name"]], quantity["decimals"]
+            self.assertEqual(row[1], f"{own['difference']:.{digits}f}")
+            self.assertEqual(row[3], "< 0.0001" if own["p"] < 0.0001 else f"{own['p']:.4f}")
+            self.assertEqual(row[4], f"{own['hedges_g']:.2f}")
+            self.assertEqual(row[6:], ["> 10000" if own[key] is None else str(own[key])
+                                       for key in ("tests_needed_80", "tests_needed_90")])
+
+    def test_dragging_zooms_both_charts_and_a_double_click_shows_the_whole_again(self):
+        page = self.page()
+        whole = self.range(page)
+        page.drag("#traces-0 .u-over", 0.25, 0.5)
+        zoomed = self.range(page)
+        # A pixel of 1100 is 0.1 % of the width.
+        numpy.testing.assert_allclose(zoomed, [0.25 * whole[1], 0.5 * whole[1]], atol=0.004 * whole[1])
+        self.assertEqual(self.range(page, chart=1), zoomed)
+        page.click("#traces-0 .u-over", times=2)
+        self.assertEqual(self.range(page), whole)
+        self.assertEqual(self.range(page, chart=1), whole)
+
+    def test_keys_and_buttons_do_the_same(self):
+        page = self.page()
+        whole = self.range(page)
+        page.value("stickslip.viewers[0].box.focus()")
+        page.press("+", "+")
+        numpy.testing.assert_allclose(self.range(page), [0.25 * whole[1], 0.75 * whole[1]], rtol=1e-9)
+        page.press("ArrowRight")
+        numpy.testing.assert_allclose(self.range(page), [0.375 * whole[1], 0.875 * whole[1]], rtol=1e-9)
+        page.press("0", "0")
+        self.assertEqual(self.range(page), whole)
+        page.click("#traces-0 button[aria-label='zoom in']")
+        numpy.testing.assert_allclose(self.range(page), [0.25 * whole[1], 0.75 * whole[1]], rtol=1e-9)
+        page.click("#tests-0 button", index=4)
+        self.assertEqual(page.value("stickslip.viewers[0].shown"), 4)
+        self.assertEqual(page.value("document.getElementById('test-0').selectedIndex"), 4)
+        # Each control can be reached by the tab key.
+        self.assertEqual(page.value("[...document.querySelectorAll('button, select, .charts')].filter(e => e.tabIndex < 0).length"), 0)
+
+    def test_it_is_dark_where_the_reader_likes_it_dark_and_can_be_changed(self):
+        light = "getComputedStyle(document.body).backgroundColor"
+        brightness = {}
+        for dark in (False, True):
+            page = self.page(dark=dark)
+            colour = page.value(light)
+            brightness[dark] = sum(int(part) for part in colour.strip("rgb()").split(","))
+            page.click("#theme")
+            self.assertNotEqual(page.value(light), colour)
+            self.assertIn("cycles marked", page.value("document.getElementById('marked-0').textContent"))
+        self.assertGreater(brightness[False], 600)
+        self.assertLess(brightness[True], 150)
+
+    def test_no_text_becomes_markup(self):
+        page = self.page("compare.html")
+        self.assertEqual(page.value("document.getElementById('title').textContent"), f"A against {HOSTILE}")
+        self.assertIsNone(page.value("window.hacked"))
+        self.assertEqual(page.value("document.querySelectorAll('img, main b').length"), 0)
+        self.assertEqual(page.value("stickslip.data.materials[1].label"), HOSTILE)
+
+    def test_a_long_record_keeps_its_highest_and_lowest_scans(self):
+        simulate(self.folder, "long.h5", "stick-slip-at-12-in-per-min", "12 in/min", 5, "--duration", "100 s")
+        run("report", "long.h5", "-o", "long.html", cwd=self.folder)
+        with h5py.File(self.folder / "long.h5") as record:
+            truth = record["entry/truth/coefficient"][()]
+        self.assertGreater(len(truth), 30000)
+        page = self.page("long.html")
+        points, low, high = page.value("(v => [v.length, Math.min(...v), Math.max(...v)])(stickslip.viewers[0].chart.charts[0].data[1])")
+        self.assertLessEqual(points, 20002)  # Two for each of 10 000 parts, and the ends.
+        # Counts have noise of 0.001; five of its standard deviations beside the true extremes.
+        self.assertAlmostEqual(low, truth.min(), delta=0.005)
+        self.assertAlmostEqual(high, truth.max(), delta=0.005)
+        self.assertEqual(page.value("document.getElementById('marked-0').textContent"), f"{len(self.cycles('long.h5'))} cycles marked")
+
+
+if __name__ == "__main__":
+    if CHROMIUM is None:
+        sys.exit(f"{sys.argv[2]} is not installed; ./dev deps test installs it")
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

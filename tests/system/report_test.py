@@ -1,0 +1,230 @@
+#!/usr/bin/env python3
+"""`stickslip methods`, `report` and `compare` from outside.
+
+report_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
+"""
+
+import csv
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+BUILD = pathlib.Path(sys.argv[1]).resolve()
+SOURCE = pathlib.Path(sys.argv[2]).resolve()
+CLI = BUILD / "daemon" / "stickslip"
+SPEED = "effects.constant_speed.pull_speed"
+STICKS, RINGS = "stick-slip-at-12-in-per-min", "ring-down-at-12-in-per-min"
+QUANTITIES = ["static_coefficient", "kinetic_coefficient", "mu_s", "mu_k", "delta_mu", "amplitude", "oscillation_frequency",
+              "gamma_over_2omega"]
+
+# Generous: under sanitizers on a busy machine everything takes its time.
+TIMEOUT_S = 600
+
+# Upper 2.5 % points of Student's t: scipy.stats.t.ppf(0.975, [2, 4]).
+T_2, T_4 = 4.302652729911275, 2.7764451051977987
+
+
+def run(*arguments, cwd=None):
+    return subprocess.run([str(a) for a in (CLI, *arguments)], capture_output=True, text=True, timeout=TIMEOUT_S,
+                          check=False, cwd=cwd)
+
+
+class Folder(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        temporary = tempfile.TemporaryDirectory(prefix="stickslip-")
+        cls.addClassCleanup(temporary.cleanup)
+        cls.folder = pathlib.Path(temporary.name)
+
+    @classmethod
+    def simulate(cls, name, scene, speed, seed, *options):
+        done = run("simulate", scene, "-o", name, "--seed", seed, "--set", f"{SPEED}={speed}", "--duration", "5 s", *options,
+                   cwd=cls.folder)
+        if done.returncode != 0:
+            raise AssertionError(done.stderr)
+        return name
+
+    def good(self, *arguments):
+        done = run(*arguments, cwd=self.folder)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        return done.stdout
+
+    def refused(self, status, message, *arguments):
+        done = run(*arguments, cwd=self.folder)
+        self.assertEqual((done.returncode, done.stdout), (status, ""))
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertIn(message, done.stderr)
+
+
+class Methods(Folder):
+    def test_the_shipped_ones_are_listed(self):
+        lines = self.good("methods").splitlines()
+        self.assertEqual([line.split()[0] for line in lines], ["astm-d1894", "iso-15359", "iso-8295", "penner-1995", "tappi-t549"])
+        listed = json.loads(self.good("methods", "--json"))["methods"]
+        by_name = {method["name"]: method for method in listed}
+        self.assertEqual(by_name["iso-8295"]["kinetic_travel"], [0, 0.06])
+        self.assertEqual(by_name["penner-1995"]["kinetic_cycles"], 10)
+        self.assertEqual([m["name"] for m in listed if not m["check"]], ["penner-1995"])
+
+    def test_a_method_decides_the_traditional_numbers_and_stands_in_the_record(self):
+        method = self.folder / "own.toml"
+        method.write_text('name = "own"\ndescription = "short travel"\n[static]\nslip = 3\n'
+                          '[kinetic]\ntravel_from = "2 mm"\ntravel_to = "8 mm"\n')
+        self.simulate("own.h5", STICKS, "12 in/min", 4, "--method", method)
+        self.simulate("plain.h5", STICKS, "12 in/min", 4)
+        with h5py.File(self.folder / "own.h5") as own, h5py.File(self.folder / "plain.h5") as plain:
+            self.assertEqual(own["entry/process/method"].asstr()[()], "own static_slip=3 kinetic_travel=0.002:0.008")
+            self.assertEqual(plain["entry/process/method"].asstr()[()], "penner-1995 kinetic_cycles=10")
+            numpy.testing.assert_array_equal(own["entry/raw/force"], plain["entry/raw/force"])
+            for name in ("static_coefficient", "kinetic_coefficient"):
+                found, truth = (own[f"entry/{group}/{name}"][()] for group in ("results", "truth"))
+                self.assertNotEqual(found, plain[f"entry/results/{name}"][()])
+                # White noise of 0.001 at a peak, the largest of three scans; beyond it less than a scan's share of
+                # the window (413 scans) of the oscillation (0.08).
+                self.assertAlmostEqual(found, truth, delta=0.004, msg=name)
+            self.assertEqual(own["entry/results/mu_s"][()], plain["entry/results/mu_s"][()])
+        again = json.loads(self.good("analyze", "plain.h5", "--method", "own.toml", "--json"))["tests"][0]
+        first = json.loads(self.good("analyze", "own.h5", "--json"))["tests"][0]
+        for name in QUANTITIES:
+            self.assertEqual(again[name], first[name], name)
+
+    def test_mistakes_are_one_line(self):
+        self.refused(2, "--method iso-8259: is neither a file nor a method", "analyze", "x.h5", "--method", "iso-8259")
+        bad = self.folder / "bad.toml"
+        bad.write_text('name = "own"\ndescription = "x"\n[static]\nslip = 0\n')
+        self.refused(2, "bad.toml:4: static.slip = 0: must be an integer from 1 to 1000", "simulate", STICKS, "-o", "no.h5",
+                     "--method", "bad.toml")
+        self.assertFalse((self.folder / "no.h5").exists())
+
+
+class Reports(Folder):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        speeds = ("6 in/min", "12 in/min")
+        cls.a = [cls.simulate(f"a{v}-{i}.h5", STICKS, speed, 10 * v + i, "--set", f"paper.mu_s=0.35{i}")
+                 for v, speed in enumerate(speeds) for i in range(5 if v else 3)]
+        cls.b = [cls.simulate(f"b-{i}.h5", RINGS, "12 in/min", 50 + i) for i in range(3)]
+
+    def values(self, files, name):
+        values = []
+        for file in files:
+            with h5py.File(self.folder / file) as record:
+                values.append(record[f"entry/results/{name}"][()])
+        return numpy.array(values)
+
+    def test_means_and_repeatability_are_those_of_numpy_over_the_records(self):
+        report = json.loads(self.good("report", *self.a, "--json"))
+        self.assertEqual([test["file"] for test in report["tests"]], self.a)
+        self.assertEqual([group["tests"] for group in report["groups"]], [[0, 1, 2], [3, 4, 5, 6, 7]])
+        numpy.testing.assert_allclose([group["pull_speed"] for group in report["groups"]], [0.00254, 0.00508])
+        for group, t in zip(report["groups"], (T_2, T_4)):
+            for name in QUANTITIES:
+                own = group["quantities"][name]
+                values = self.values([self.a[i] for i in group["tests"]], name)
+                s = values.std(ddof=1)
+                half = t * s / math.sqrt(len(values))
+                self.assertEqual(own["count"], len(values))
+                numpy.testing.assert_allclose(
+                    [own["mean"], own["standard_deviation"], own["repeatability"], *own["confidence_interval"]],
+                    [values.mean(), s, 2.8 * s, values.mean() - half, values.mean() + half], rtol=1e-9)
+        pooled = math.sqrt(sum((n - 1) * g["quantities"]["mu_s"]["standard_deviation"] ** 2
+                               for n, g in zip((3, 5), report["groups"])) / 6)
+        self.assertAlmostEqual(report["pooled_standard_deviation"]["mu_s"], pooled, delta=1e-12)
+
+    def test_text_shows_the_same_numbers(self):
+        report = json.loads(self.good("report", *self.a, "--json"))
+        text = self.good("report", *self.a)
+        for group in report["groups"]:
+            own = group["quantities"]["static_coefficient"]
+            half = own["confidence_interval"][1] - own["mean"]
+            self.assertIn(f"{own['mean']:.4f} ± {half:.4f}", text)
+            self.assertIn(f"{own['repeatability']:.5f}", text)
+        self.assertIn("5.08 mm/s, 5 tests", text)
+
+    def test_csv_has_one_line_for_each_test_and_no_quoting_goes_wrong(self):
+        odd = 'odd, "name".h5'
+        (self.folder / odd).write_bytes((self.folder / self.a[0]).read_bytes())
+        self.good("report", odd, *self.a, "--csv", "tests.csv")
+        with (self.folder / "tests.csv").open(newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([row["file"] for row in rows], [odd, *self.a])
+        numpy.testing.assert_array_equal([float(row["mu_s"]) for row in rows[1:]], self.values(self.a, "mu_s"))
+        self.assertEqual(rows[1]["scan_rate_measured"], "")
+        self.assertIn("scan_rate_measured: no clock readings", rows[1]["absent"])
+
+    def test_compare_is_welchs_test_over_the_records(self):
+        comparison = json.loads(self.good("compare", *self.a, "--", *self.b, "--json", "--csv", "c.csv", "--label-b", "Thorold"))
+        self.assertEqual(comparison["b"]["label"], "Thorold")
+        slow, fast = comparison["comparisons"]
+        self.assertEqual({own["reason"] for own in slow["quantities"].values()}, {"no test of B at this speed"})
+        for name in QUANTITIES:
+            own = fast["quantities"][name]
+            a, b = self.values(self.a[3:], name), self.values(self.b, name)
+            error = math.sqrt(a.var(ddof=1) / 5 + b.var(ddof=1) / 3)
+            numpy.testing.assert_allclose([own["difference"], own["t"]], [a.mean() - b.mean(), (a.mean() - b.mean()) / error],
+                                          rtol=1e-6)
+        self.assertLess(fast["quantities"]["delta_mu"]["p"], 1e-4)
+        self.assertEqual(fast["quantities"]["delta_mu"]["tests_needed_80"], 2)
+        # All of A stick and none of B: 1 of 8!/(5! 3!) = 56 tables.
+        self.assertEqual(fast["regime"], {"a_sticking": 5, "a_sliding": 0, "b_sticking": 0, "b_sliding": 3, "p": fast["regime"]["p"]})
+        self.assertAlmostEqual(fast["regime"]["p"], 1 / 56, delta=1e-12)
+        with (self.folder / "c.csv").open(newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 2 * len(QUANTITIES))
+        self.assertEqual([row["quantity"] for row in rows], 2 * QUANTITIES)
+        self.assertEqual(float(rows[-1]["p"]), fast["quantities"][QUANTITIES[-1]]["p"])
+
+    def test_options_may_stand_before_or_behind_the_mark(self):
+        plain = self.good("compare", *self.a, "--", *self.b, "--label-a", "X", "--json")
+        self.assertEqual(self.good("compare", "--json", "--label-a", "X", *self.a, "--", *self.b), plain)
+        self.assertEqual(self.good("compare", *self.a, "--label-a", "X", "--json", "--against", *self.b), plain)
+
+    def test_a_single_test_has_no_scatter_and_an_absent_number_its_reason(self):
+        self.simulate("film.h5", STICKS, "12 in/min", 9, "--method", "iso-8295")
+        text = self.good("report", "film.h5")
+        self.assertIn("no kinetic in test 1: ", text)
+        self.assertIn("test 1: sled mass 2.331 kg, iso-8295 asks 0.2 ± 0.002 kg", text)
+        own = json.loads(self.good("report", "film.h5", "--json"))["groups"][0]["quantities"]
+        self.assertIsNone(own["static_coefficient"]["standard_deviation"])
+        self.assertIsNone(own["kinetic_coefficient"]["mean"])
+        self.assertIn("the method wants 0.06 m", own["kinetic_coefficient"]["absent"][0]["reason"])
+        comparison = json.loads(self.good("compare", "film.h5", "--", *self.b, "--json"))["comparisons"][0]["quantities"]
+        self.assertEqual(comparison["static_coefficient"]["reason"], "two values of each are needed to know the scatter")
+
+    def test_what_is_wrong_is_one_line_and_no_file_is_left(self):
+        (self.folder / "junk.h5").write_text("junk")
+        self.refused(2, "junk.h5: ", "report", self.a[0], "junk.h5", "-o", "r.html", "--csv", "r.csv")
+        self.refused(2, "none.h5: there is no such file", "compare", *self.a, "--", "none.h5")
+        self.refused(2, "compare needs records on both sides", "compare", *self.a)
+        self.refused(2, "compare needs records on both sides", "compare", "--", *self.a)
+        self.refused(2, "files", "report")
+        self.refused(2, "name the same file", "report", self.a[0], "-o", "same", "--csv", "same")
+        (self.folder / "there.html").write_text("mine")
+        self.refused(2, "there.html", "report", self.a[0], "-o", "there.html", "--csv", "r.csv")
+        self.assertEqual((self.folder / "there.html").read_text(), "mine")
+        self.refused(2, "nowhere/x.html", "report", self.a[0], "-o", "nowhere/x.html")
+        self.assertEqual(sorted(p.name for p in self.folder.glob("r.*")), [])
+
+    def test_the_page_holds_the_json_and_loads_nothing(self):
+        self.good("report", *self.a, "-o", "page.html")
+        page = (self.folder / "page.html").read_text(encoding="utf-8")
+        held = json.loads(page.split('id="data">')[1].split("</script>")[0])
+        report = json.loads(self.good("report", *self.a, "--json"))
+        for test in held["materials"][0]["tests"]:
+            self.assertGreater(len(test.pop("trace")["force"]["value"]), 1000)
+        self.assertEqual(held["materials"][0]["tests"], report["tests"])
+        self.assertEqual(held["materials"][0]["groups"], report["groups"])
+        for loads in ('src="', "href=\"http", "@import", "fetch(", "XMLHttpRequest"):
+            self.assertNotIn(loads, page)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

@@ -1,0 +1,130 @@
+#include "daemon/report/report_page.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/report/report_json.hpp"
+#include "daemon/report/report_text.hpp"
+#include "daemon/report/trace_json.hpp"
+#include "tests/support/record_samples.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+using ::testing::HasSubstr;
+using Json = nlohmann::ordered_json;
+
+friction::Cycle cycle_at(double onset_s, double capture_s) {
+  friction::Cycle cycle{};
+  cycle.onset_time_s = onset_s;
+  cycle.capture_time_s = capture_s;
+  cycle.peak_time_s = onset_s;
+  if (std::isfinite(capture_s)) cycle.flags = friction::kCycleCaptured;
+  return cycle;
+}
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+TEST(TraceJson, HasABreakAtAGapAndEachCycle) {
+  const Json trace = trace_json(test::sample_record()).value();
+  EXPECT_EQ(trace["scan_count"], 40);
+  EXPECT_EQ(trace["thinned"], false);
+  ASSERT_EQ(trace["force"]["value"].size(), 41U);
+  EXPECT_TRUE(trace["force"]["value"][20].is_null());
+  EXPECT_FALSE(trace["force"]["value"][21].is_null());
+  EXPECT_EQ(trace["cycles"]["captured"], Json::array({true, false}));
+  // The stiffness and the pull speed are known: the slope is a speed, with its limit.
+  EXPECT_EQ(trace["slope"]["unit"], "mm/s");
+  EXPECT_DOUBLE_EQ(trace["slope"]["limit"], 5.08);
+}
+
+TEST(TraceJson, SlopeWithoutStiffnessIsARateWithoutALimit) {
+  const Json trace = trace_json(test::sample_imported()).value();
+  EXPECT_EQ(trace["slope"]["unit"], "1/s");
+  EXPECT_TRUE(trace["slope"]["limit"].is_null());
+  // sin(0.1 i)/3 at 2 kHz begins with a slope of 0.1/3 · 2000 Hz, less i²/6 of it.
+  EXPECT_NEAR(trace["slope"]["value"][0], 0.1 / 3.0 * 2000.0, 0.002 * 0.1 / 3.0 * 2000.0);
+}
+
+TEST(TraceJson, ModesGoFromSlipToStickToSlip) {
+  record::Record record = test::sample_imported();
+  record.cycles = {cycle_at(0.001, 0.002), cycle_at(0.004, kNone), cycle_at(0.006, kNone)};
+  record.end->results.regime = friction::Regime::kStickSlip;
+  const Json sticking = trace_json(record).value()["modes"];
+  // Of the last slip of a test that sticks nobody knows how it would have ended.
+  EXPECT_EQ(sticking,
+            Json::array({{0.001, 0.002, "slip"}, {0.002, 0.004, "stick"}, {0.004, 0.006, "slide"}}));
+  // That of a ring-down goes on while the force is at least half of its largest: to the last of 20 scans.
+  record.end->results.regime = friction::Regime::kMixed;
+  const Json mixed = trace_json(record).value()["modes"];
+  ASSERT_EQ(mixed.size(), 4U);
+  EXPECT_EQ(mixed[3], Json::array({0.006, 0.0095, "slide"}));
+}
+
+TEST(TraceJson, RecordWithoutLoadCellIsRefused) {
+  record::Record record = test::sample_record();
+  record.header.load_cell.reset();
+  ASSERT_FALSE(trace_json(record));
+  EXPECT_EQ(trace_json(record).error().exit_status(), 2);
+}
+
+TEST(JsonForScript, CannotEndItsElement) {
+  const Json json{{"title", "</script><!--<script>\xff"}};
+  const std::string text = json_for_script(json);
+  EXPECT_EQ(text.find('<'), std::string::npos);
+  EXPECT_EQ(Json::parse(text)["title"], "</script><!--<script>\uFFFD");
+}
+
+/// Three tests at one speed, the third without a static coefficient and not as its method asks.
+Material sample_material() {
+  Material material;
+  for (int i = 0; i < 3; ++i) {
+    report::MeasuredTest test;
+    test.pull_speed_m_per_s = 0.00508;
+    friction::for_each_result(test.results,
+                              [](const friction::ResultName& /*name*/, friction::Estimate& estimate) {
+                                estimate = friction::Estimate::none("not asked");
+                              });
+    if (i < 2) test.results.static_coefficient = friction::Estimate::of(0.38 + 0.01 * i);
+    material.measured.push_back(test);
+    ReportedTest reported;
+    reported.file = fmt::format("f{}.h5", i);
+    reported.method = "own kinetic_cycles=3";
+    reported.trace = "{}";
+    material.tests.push_back(reported);
+  }
+  material.tests[2].departures = {"pull speed is other"};
+  material.groups = report::group_by_speed(material.measured);
+  return material;
+}
+
+TEST(ReportText, ShowsMeansReasonsAndDepartures) {
+  const std::string text = report_text(sample_material());
+  EXPECT_THAT(text, HasSubstr("5.08 mm/s, 3 tests\n"));
+  EXPECT_THAT(text, HasSubstr("0.3850 ± 0.0635"));  // t(0.975, 1) · 0.00707/√2 = 12.706 · 0.005
+  EXPECT_THAT(text, HasSubstr("–  no static in test 3: not asked\n"));
+  EXPECT_THAT(text, HasSubstr("!  test 3: pull speed is other\n"));
+  EXPECT_THAT(text, HasSubstr("method: own kinetic_cycles=3\n"));
+}
+
+TEST(ReportPage, HoldsEachPartOnceAndNoMark) {
+  const std::string page = report_page(sample_material());
+  for (const char* mark :
+       {"@LICENSE@", "@UPLOT_CSS@", "@REPORT_CSS@", "@DATA@", "@UPLOT_JS@", "@CHARTS_JS@", "@REPORT_JS@"}) {
+    EXPECT_EQ(page.find(mark), std::string::npos) << mark;
+  }
+  EXPECT_THAT(page, HasSubstr("The MIT License"));
+  EXPECT_THAT(page, HasSubstr("const Charts"));
+  EXPECT_THAT(page, HasSubstr("uPlot"));
+  EXPECT_TRUE(page.starts_with("<!DOCTYPE html>"));
+  EXPECT_TRUE(page.ends_with("</html>\n"));
+}
+
+}  // namespace
+}  // namespace stickslip::daemon
