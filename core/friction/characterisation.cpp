@@ -79,10 +79,11 @@ TesterCheck check_tester(const TesterEstimate& alone, const TesterEstimate& with
   if (!check.agrees()) {
     check.findings.push_back(fmt::format(
         "the tester disagrees with its characterisation: chi-squared {:.1f} for 2 (omega {:.3f} rad/s here, "
-        "{:.3f} there; gamma/2omega {:.5f} here, {:.5f} there), so that it was not used",
-        check.chi_squared, alone.omega, known.omega, alone.gamma_over_2omega, known.gamma_over_2omega));
+        "{:.3f} there; gamma/2omega {:.5f} here, {:.5f} there), so that it was {}",
+        check.chi_squared, alone.omega, known.omega, alone.gamma_over_2omega, known.gamma_over_2omega,
+        check.used() ? "used with doubt" : "not used"));
   }
-  const TesterEstimate& best = check.agrees() ? with : alone;
+  const TesterEstimate& best = check.used() ? with : alone;
   const double g = tester.gravity_m_per_s2;
   const double error = std::sqrt(best.covariance(2, 2)) * g;
   check.pull_speed = Estimate::of(best.speed_over_gravity_s * g, error);

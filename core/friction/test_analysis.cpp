@@ -201,7 +201,7 @@ SlipEstimates TestAnalysis::estimate(const Trace& trace, const std::vector<Fall>
   SlipEstimates with = estimate_slips(trace, slips, sigma, settings_.prior);
   if (!settings_.prior.coupling || !tester_ || !with.fit.converged) return with;
   tester_check_ = check_tester(*tester_, with.tester(), *settings_.prior.coupling, settings_.tester);
-  return tester_check_->agrees() ? with : alone;
+  return tester_check_->used() ? with : alone;
 }
 
 void TestAnalysis::keep_cycles(const std::vector<Cycle>& cycles, const std::vector<Fall>& slips) {

@@ -111,7 +111,7 @@ TEST_F(TesterChecked, AnotherSpringIsAFindingAndIsNotUsed) {
   other.omega *= 1.01;  // 9 standard errors of one test of ten cycles, whose ω is known to 0.11 %.
   const TestAnalysis analysis = analysed(other, 12.0, 1);
   ASSERT_TRUE(analysis.tester_check());
-  EXPECT_FALSE(analysis.tester_check()->agrees());
+  EXPECT_FALSE(analysis.tester_check()->used());
   EXPECT_NE(analysis.tester_check()->findings.front().find("disagrees"), std::string::npos);
   // As without it: γ is as uncertain as the test alone leaves it, S − K within four standard errors.
   EXPECT_GT(*results_.gamma_over_2omega.standard_error, 0.05 * 0.022);
