@@ -16,10 +16,10 @@ constexpr double kLoaded = 0.5;
 constexpr double kUnloaded = 0.5;
 /// In the model, peak and trough are half an oscillation apart, and so are trough and next peak at least.
 constexpr double kShortestHalf = 0.5;
-/// A last fall later than this many halves after the one before is no free oscillation, and smaller than this
-/// part of a typical one it is no slip after sticking either.
+/// A last fall later than this many halves after the one before is no free oscillation, and if the force has
+/// climbed less steeply than this part of the usual, the sled did not stick to a moving belt either.
 constexpr double kLate = 3.2;
-constexpr double kSmall = 1.0 / 3.0;
+constexpr double kFlat = 0.5;
 
 template <typename Value>
 double median_of(const std::vector<Fall>& falls, const Value& value) {

@@ -14,6 +14,7 @@ namespace {
 using test::ModelCourse;
 
 constexpr double kSigma = 0.001;  // D/50, as in the shipped scenes
+constexpr double kDeltaMu = ModelCourse::kS - ModelCourse::kK;
 
 /// Ratio for the first junction of the course: from the first maximum to the minimum after the second.
 double first_junction(const ModelCourse& course, const Trace& trace, double sigma) {
@@ -25,7 +26,8 @@ double first_junction(const ModelCourse& course, const Trace& trace, double sigm
                               : peak_s + 3.0 * half_period_s;
   const auto first = static_cast<std::size_t>(std::lround(peak_s * ModelCourse::kScanRate_Hz));
   const auto end = static_cast<std::size_t>(std::lround(trough_s * ModelCourse::kScanRate_Hz)) + 1;
-  return capture_log_likelihood_ratio(trace, first, std::min(end, trace.size()), course.shared, sigma);
+  return capture_log_likelihood_ratio(trace, first, std::min(end, trace.size()), course.shared, sigma,
+                                      kDeltaMu);
 }
 
 /// How many of n noisy repetitions are called captured.
@@ -65,27 +67,48 @@ TEST(Junction, ExactTracesAreToldApartOnePercentFromTheThreshold) {
 }
 
 TEST(Junction, ConvictionGrowsWithTheSquareOfSignalOverNoise) {
-  // On an exact trace the ratio is the sum of squares of the other course's best residuals over 2σ².
+  // On an exact trace the ratio is the sum of squares of the other course's best residuals over 2σ², as long
+  // as all of them lie within Huber's limit: here within 1.345 · 0.02, half of S − K.
   const ModelCourse course = ModelCourse::captured(1.3, 2);
-  const double at_sigma = first_junction(course, course.trace, kSigma);
+  const double at_sigma = first_junction(course, course.trace, 0.04);
   EXPECT_GT(at_sigma, 0.0);
   // Both fits stop at changes of 1e-6 of a log-likelihood.
-  EXPECT_NEAR(first_junction(course, course.trace, 0.5 * kSigma) / at_sigma, 4.0, 1e-3);
+  EXPECT_NEAR(first_junction(course, course.trace, 0.02) / at_sigma, 4.0, 1e-6 * 8.0 / at_sigma);
+}
+
+TEST(Junction, SpikesThatWereNotFoundDoNotTurnTheVerdict) {
+  // One scan of ten off by ten standard deviations to the same side, which is S − K/5.
+  for (const bool captured : {true, false}) {
+    const ModelCourse course = captured ? ModelCourse::captured(1.3, 2) : ModelCourse::free(2.6, 3.0);
+    for (std::size_t phase = 0; phase < 10; ++phase) {
+      Trace trace = course.noisy(kSigma, phase + 1);
+      for (std::size_t k = phase; k < trace.size(); k += 10) trace.value[k] += 10.0 * kSigma;
+      EXPECT_EQ(first_junction(course, trace, kSigma) > 0.0, captured) << phase;
+    }
+  }
+}
+
+TEST(Junction, CaptureNeedsACredibleNextSlip) {
+  // Just above the threshold a capture that slips at once, with S hardly above K, would look the same.
+  const double Q_th = Q_threshold(ModelCourse::kGammaOver2Omega);
+  const ModelCourse above = ModelCourse::free(1.003 * Q_th, 3.0);
+  EXPECT_LT(first_junction(above, above.trace, kSigma), -std::log(20.0));
 }
 
 TEST(Junction, FewerThanEightScansDecideNothing) {
   const ModelCourse course = ModelCourse::captured(1.3, 2);
-  EXPECT_EQ(capture_log_likelihood_ratio(course.trace, 20, 27, course.shared, kSigma), 0.0);
+  EXPECT_EQ(capture_log_likelihood_ratio(course.trace, 20, 27, course.shared, kSigma, kDeltaMu), 0.0);
   Trace unusable = course.trace;
   unusable.usable.assign(unusable.size(), 0);
-  EXPECT_EQ(capture_log_likelihood_ratio(unusable, 20, unusable.size(), course.shared, kSigma), 0.0);
+  EXPECT_EQ(capture_log_likelihood_ratio(unusable, 20, unusable.size(), course.shared, kSigma, kDeltaMu),
+            0.0);
 }
 
 TEST(Junction, ConstantTraceGivesANumber) {
   Trace trace = ModelCourse::free(2.6, 3.0).trace;
   trace.value.assign(trace.size(), 0.3);
-  EXPECT_TRUE(
-      std::isfinite(capture_log_likelihood_ratio(trace, 20, 50, ModelCourse::tester_at(1.3), kSigma)));
+  EXPECT_TRUE(std::isfinite(
+      capture_log_likelihood_ratio(trace, 20, 50, ModelCourse::tester_at(1.3), kSigma, kDeltaMu)));
 }
 
 }  // namespace

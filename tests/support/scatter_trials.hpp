@@ -58,7 +58,7 @@ struct ScatterTrials {
         }
       }
       const friction::TestResults results = analysis.finish();
-      cycles.push_back(analysis.cycles());
+      cycles.emplace_back(analysis.cycles().begin(), analysis.cycles().end());
       delta_mu.push_back(results.delta_mu);
     }
   }
