@@ -1,7 +1,9 @@
 #include "core/friction/slip_list.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "core/signal/statistics.hpp"
 
@@ -10,16 +12,17 @@ namespace {
 
 /// Fewest falls of which a median is typical.
 constexpr std::size_t kFewestForMedian = 3;
-/// Between rest and a typical peak: a force below has not been loaded, or is unloaded.
-constexpr double kLoaded = 0.5;
-/// A slip that ends below this part of the way from rest to a typical trough has let go of the load.
-constexpr double kUnloaded = 0.5;
+/// Rest, from which the force was loaded, is where the first rise began; if the troughs are not even this
+/// part of the way up to the peaks, the trace begins in the middle of a test, or slips may end at rest.
+constexpr double kLoaded = 0.2;
+/// A fall to within this part of the load from rest is the unloading, or comes before or after all load.
+constexpr double kAtRest = 0.05;
 /// In the model, peak and trough are half an oscillation apart, and so are trough and next peak at least.
 constexpr double kShortestHalf = 0.5;
 /// A last fall later than this many halves after the one before is no free oscillation, and if the force has
 /// climbed less steeply than this part of the usual, the sled did not stick to a moving belt either.
 constexpr double kLate = 3.2;
-constexpr double kFlat = 0.5;
+constexpr double kFlat = 0.25;
 
 template <typename Value>
 double median_of(const std::vector<Fall>& falls, const Value& value) {
@@ -32,12 +35,11 @@ double median_of(const std::vector<Fall>& falls, const Value& value) {
 void keep_loaded(std::vector<Fall>& falls) {
   const double rest = falls.front().rise_from;
   const double load = median_of(falls, [](const Fall& fall) { return fall.peak; }) - rest;
-  const auto loaded = [&](const Fall& fall) { return fall.peak - rest >= kLoaded * load; };
+  const double trough = median_of(falls, [](const Fall& fall) { return fall.trough; }) - rest;
+  if (trough < kLoaded * load) return;
+  const auto loaded = [&](const Fall& fall) { return std::abs(fall.trough - rest) > kAtRest * load; };
   falls.erase(falls.begin(), std::find_if(falls.begin(), falls.end(), loaded));
   falls.erase(std::find_if(falls.rbegin(), falls.rend(), loaded).base(), falls.end());
-  if (falls.empty()) return;
-  const double trough = median_of(falls, [](const Fall& fall) { return fall.trough; });
-  if (falls.back().trough - rest < kUnloaded * (trough - rest)) falls.pop_back();
 }
 
 double slope_between(const Fall& before, const Fall& after) noexcept {

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/long_column.hpp"
 #include "daemon/plot/figure.hpp"
 #include "daemon/plot/thinning.hpp"
 #include "daemon/report/record_trace.hpp"
@@ -48,7 +49,7 @@ RecordTrace thinned(RecordTrace trace) {
   return thin;
 }
 
-Json cycles_json(const std::vector<friction::Cycle>& cycles) {
+Json cycles_json(const base::LongColumn<friction::Cycle>& cycles) {
   Json json{{"time", Json::array()}, {"peak", Json::array()}, {"captured", Json::array()}};
   for (const friction::Cycle& cycle : cycles) {
     json["time"].push_back(rounded(cycle.peak_time_s));
@@ -77,13 +78,13 @@ double start_s(const friction::Cycle& cycle) {
 }
 
 /// \param last_slides  the last slip, of which no next one tells, goes on to the end of the pull.
-Json modes_json(const std::vector<friction::Cycle>& cycles, double end_s, bool last_slides) {
+Json modes_json(const base::LongColumn<friction::Cycle>& cycles, double end_s, bool last_slides) {
   Json json = Json::array();
   const auto add = [&json](double from_s, double to_s, const char* mode) {
     if (from_s < to_s) json.push_back(Json::array({rounded(from_s), rounded(to_s), mode}));
   };
   for (std::size_t i = 0; i < cycles.size(); ++i) {
-    const friction::Cycle& cycle = cycles[i];
+    const friction::Cycle cycle = cycles[i];
     const bool last = i + 1 == cycles.size();
     if (std::isfinite(cycle.capture_time_s)) {
       add(start_s(cycle), cycle.capture_time_s, "slip");
