@@ -15,6 +15,8 @@ constexpr std::size_t kFewestForMedian = 3;
 /// Rest, from which the force was loaded, is where the first rise began; if the troughs are not even this
 /// part of the way up to the peaks, the trace begins in the middle of a test, or slips may end at rest.
 constexpr double kLoaded = 0.2;
+/// A first fall that stays within this part of the load from rest comes before the loading.
+constexpr double kNotLoaded = 0.25;
 /// A fall to within this part of the load from rest is the unloading, or comes before or after all load.
 constexpr double kAtRest = 0.05;
 /// In the model, peak and trough are half an oscillation apart, and so are trough and next peak at least.
@@ -36,6 +38,10 @@ void keep_loaded(std::vector<Fall>& falls) {
   const double rest = falls.front().rise_from;
   const double load = median_of(falls, [](const Fall& fall) { return fall.peak; }) - rest;
   const double trough = median_of(falls, [](const Fall& fall) { return fall.trough; }) - rest;
+  const auto loading = std::find_if(falls.begin(), falls.end(), [&](const Fall& fall) {
+    return fall.peak - rest > kNotLoaded * load || std::abs(fall.trough - rest) > kNotLoaded * load;
+  });
+  falls.erase(falls.begin(), loading);
   if (trough < kLoaded * load) return;
   const auto loaded = [&](const Fall& fall) { return std::abs(fall.trough - rest) > kAtRest * load; };
   falls.erase(falls.begin(), std::find_if(falls.begin(), falls.end(), loaded));
