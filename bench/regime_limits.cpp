@@ -5,91 +5,24 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <atomic>
 #include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <numeric>
-#include <string>
+#include <filesystem>
 #include <string_view>
-#include <thread>
-#include <vector>
 
 #include "core/friction/regime.hpp"
 #include "core/sim/scene.hpp"
-#include "core/sim/scene_truth.hpp"
-#include "daemon/sweep/runner.hpp"
-#include "tests/support/random_tests.hpp"
+#include "tests/support/regime_tally.hpp"
 
 namespace {
 
 using namespace stickslip;
-using friction::Regime;
-
-struct Tally {
-  int tests = 0;
-  int wrong = 0;
-  int undecided = 0;
-
-  void add(Regime truth, Regime measured) noexcept {
-    ++tests;
-    if (measured == Regime::kUndecided) {
-      ++undecided;
-    } else if (measured != truth) {
-      ++wrong;
-    }
-  }
-  void print(std::string_view name) const {
-    const auto percent = [this](int count) { return tests == 0 ? 0.0 : 100.0 * count / tests; };
-    fmt::print("{:<28} {:>7} {:>8.2f} % {:>10.2f} %\n", name, tests, percent(wrong), percent(undecided));
-  }
-};
-
-struct Table {
-  std::array<Tally, friction::kRegimeNames.size()> of_regime;
-  Tally few_captures;
-};
-
-Tally& of(Table& table, Regime regime) {
-  for (std::size_t i = 0; i < friction::kRegimeNames.size(); ++i) {
-    if (friction::kRegimeNames[i].first == regime) return table.of_regime[i];
-  }
-  std::abort();
-}
-
-/// \param misses  prints each test that was called wrongly, so that it can be made again.
-Table judge(const sim::Scene& base, const test::Disturbance& disturbance, std::int64_t count,
-            std::uint64_t seed, bool misses) {
-  daemon::SweepPlan plan;
-  for (std::int64_t i = 0; i < count; ++i) {
-    const std::uint64_t own = sim::stream_seed(seed, static_cast<std::uint64_t>(i));
-    plan.points.push_back(test::random_test(base, disturbance, own));
-    plan.seeds.push_back(own);
-  }
-  std::vector<std::int64_t> numbers(static_cast<std::size_t>(count));
-  std::iota(numbers.begin(), numbers.end(), 0);
-  Table table;
-  const std::atomic<bool> stop{false};
-  const auto take = [&](const record::SweepRun& run) -> base::Result<void> {
-    const sim::Scene& scene = plan.points[static_cast<std::size_t>(run.number)];
-    const friction::TestTruth truth = sim::scene_truth(scene, scene.scan_rate_Hz, plan.seed_of(run.number));
-    const int captured = test::captures(truth, *sim::pull_of(scene));
-    of(table, truth.regime).add(truth.regime, run.results.regime);
-    if (captured >= 1 && captured <= 3) table.few_captures.add(truth.regime, run.results.regime);
-    if (misses && run.results.regime != truth.regime) {
-      fmt::print("  test {}: {} called {} ({} captures; {})\n", run.number, name(truth.regime),
-                 name(run.results.regime), captured, run.results.regime_reason);
-    }
-    return {};
-  };
-  const auto threads = static_cast<std::int64_t>(std::max(std::thread::hardware_concurrency(), 1U));
-  if (const auto done = daemon::do_runs(plan, numbers, threads, stop, take); !done) {
-    fmt::print(stderr, "{}\n", done.error().message);
-    std::exit(1);
-  }
-  return table;
+void print(const test::RegimeTally& tally, std::string_view name) {
+  const auto percent = [&](int count) { return tally.tests == 0 ? 0.0 : 100.0 * count / tally.tests; };
+  fmt::print("{:<28} {:>7} {:>8.2f} % {:>10.2f} %\n", name, tally.tests, percent(tally.wrong),
+             percent(tally.undecided));
 }
 
 std::uint64_t number(const char* text) {
@@ -118,12 +51,14 @@ int main(int argc, char** argv) {
     const test::Disturbance disturbance{.noise = noise};
     fmt::print("\nnoise {} (S - K), drift {} per s, {} spikes per s of {} (S - K)\n", noise,
                disturbance.drift_per_s, disturbance.spikes_per_s, disturbance.spike_size);
-    Table table = judge(*base, disturbance, static_cast<std::int64_t>(count), seed, argc > 3);
-    fmt::print("{:<28} {:>7} {:>10} {:>12}\n", "really", "tests", "wrong", "undecided");
-    for (std::size_t i = 0; i < table.of_regime.size(); ++i) {
-      if (table.of_regime[i].tests > 0) table.of_regime[i].print(friction::kRegimeNames[i].second);
+    const auto table = test::judge_random_tests(*base, disturbance, static_cast<std::int64_t>(count), seed);
+    if (!table) {
+      fmt::print(stderr, "{}\n", table.error().message);
+      return 1;
     }
-    table.few_captures.print("with one to three captures");
+    fmt::print("{:<28} {:>7} {:>10} {:>12}\n", "really", "tests", "wrong", "undecided");
+    for (const auto& [regime, tally] : table->of_regime) print(tally, friction::name(regime));
+    print(table->few_captures, "with one to three captures");
   }
   return 0;
 }

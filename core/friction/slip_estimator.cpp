@@ -301,7 +301,10 @@ SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, do
   SlipEstimates estimates = rounds(trace, slips, sigma, prior, guess);
   if (!estimates.fit.converged) {
     const auto surer = guess_from_sure_slips(trace, slips, sigma, prior, estimates);
-    if (surer) estimates = rounds(trace, slips, sigma, prior, *surer);
+    if (surer) {
+      SlipEstimates again = rounds(trace, slips, sigma, prior, *surer);
+      if (again.fit.converged) estimates = std::move(again);
+    }
   }
   if (!describes_well(estimates, sigma)) {
     // A rough first guess may call stick-slip near the threshold an oscillation without damping, which fits

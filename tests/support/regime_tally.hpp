@@ -1,0 +1,70 @@
+/// \file
+/// How often the detector's word for a random test is the true one.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <thread>
+#include <vector>
+
+#include "core/base/result.hpp"
+#include "core/friction/regime.hpp"
+#include "core/sim/scene.hpp"
+#include "core/sim/scene_truth.hpp"
+#include "daemon/sweep/runner.hpp"
+#include "tests/support/random_tests.hpp"
+
+namespace stickslip::test {
+
+struct RegimeTally {
+  int tests = 0;
+  int wrong = 0;
+  int undecided = 0;
+
+  void add(friction::Regime truth, friction::Regime measured) noexcept {
+    ++tests;
+    if (measured == friction::Regime::kUndecided) {
+      ++undecided;
+    } else if (measured != truth) {
+      ++wrong;
+    }
+  }
+};
+
+struct RegimeTable {
+  std::map<friction::Regime, RegimeTally> of_regime;  ///< By what the simulation really did.
+  RegimeTally few_captures;                           ///< Tests with one to three captures.
+};
+
+/// Random tests 0 … count − 1 of this seed, on all processors; the same table for any number of them.
+inline base::Result<RegimeTable> judge_random_tests(const sim::Scene& base, const Disturbance& disturbance,
+                                                    std::int64_t count, std::uint64_t seed) {
+  daemon::SweepPlan plan;
+  for (std::int64_t i = 0; i < count; ++i) {
+    const std::uint64_t own = sim::stream_seed(seed, static_cast<std::uint64_t>(i));
+    plan.points.push_back(random_test(base, disturbance, own));
+    plan.seeds.push_back(own);
+  }
+  std::vector<std::int64_t> numbers(static_cast<std::size_t>(count));
+  std::iota(numbers.begin(), numbers.end(), 0);
+  RegimeTable table;
+  const std::atomic<bool> stop{false};
+  const auto take = [&](const record::SweepRun& run) -> base::Result<void> {
+    const sim::Scene& scene = plan.points[static_cast<std::size_t>(run.number)];
+    const friction::TestTruth truth = sim::scene_truth(scene, scene.scan_rate_Hz, plan.seed_of(run.number));
+    const int captured = captures(truth, *sim::pull_of(scene));
+    table.of_regime[truth.regime].add(truth.regime, run.results.regime);
+    if (captured >= 1 && captured <= 3) table.few_captures.add(truth.regime, run.results.regime);
+    return {};
+  };
+  const auto threads = static_cast<std::int64_t>(std::max(std::thread::hardware_concurrency(), 1U));
+  if (auto done = daemon::do_runs(plan, numbers, threads, stop, take); !done) {
+    return tl::unexpected(done.error());
+  }
+  return table;
+}
+
+}  // namespace stickslip::test

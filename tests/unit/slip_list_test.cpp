@@ -1,0 +1,117 @@
+#include "core/friction/slip_list.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace stickslip::friction {
+namespace {
+
+constexpr double kPeriod = 20.0;  // scans
+constexpr double kPeak = 0.38;
+constexpr double kTrough = 0.24;
+
+Fall fall(double peak_at, double peak, double trough, double rise_from) {
+  Fall fall;
+  fall.peak_at = peak_at;
+  fall.trough_at = peak_at + kPeriod / 2.0;
+  fall.peak = peak;
+  fall.trough = trough;
+  fall.duration = 6.0;
+  fall.rise_duration = kPeriod / 2.0;
+  fall.rise_from = rise_from;
+  fall.robust_drop = peak - trough;
+  return fall;
+}
+
+/// Regular slips from scan 100 on, loaded from `rest`.
+std::vector<Fall> slips(int count, double rest = 0.0) {
+  std::vector<Fall> all;
+  for (int i = 0; i < count; ++i) {
+    all.push_back(fall(100.0 + kPeriod * i, kPeak, kTrough, i == 0 ? rest : kTrough));
+  }
+  return all;
+}
+
+TEST(SlipList, RegularSlipsStay) {
+  for (const int count : {0, 1, 2, 3, 40}) {
+    for (const double rest : {0.0, kTrough}) {
+      std::vector<Fall> kept = slips(count, rest);
+      keep_slips(kept);
+      EXPECT_EQ(kept.size(), static_cast<std::size_t>(count)) << rest;
+    }
+  }
+}
+
+TEST(SlipList, SlipsOfAnySizeInAnyOrderStay) {
+  // Paper scatters by a half, and a trace may begin in the middle of a test.
+  std::vector<Fall> falls;
+  for (int i = 0; i < 30; ++i) {
+    const double size = 0.5 + 0.05 * ((7 * i) % 21);
+    falls.push_back(fall(kPeriod * (1 + i), 0.31 + 0.07 * size, 0.31 - 0.07 * size, i == 0 ? 0.25 : 0.31));
+  }
+  std::vector<Fall> kept = falls;
+  keep_slips(kept);
+  EXPECT_EQ(kept.size(), falls.size());
+}
+
+TEST(SlipList, TwoSpikesBeforeTheLoadingAreNoSlip) {
+  std::vector<Fall> kept = slips(10);
+  kept.front().rise_from = -0.01;
+  kept.insert(kept.begin(), fall(30.0, 0.05, -0.01, 0.0));
+  keep_slips(kept);
+  EXPECT_EQ(kept.size(), 10U);
+  EXPECT_EQ(kept.front().peak_at, 100.0);
+}
+
+TEST(SlipList, UnloadingIsNoSlip) {
+  std::vector<Fall> kept = slips(10);
+  kept.push_back(fall(900.0, 0.33, 0.001, kTrough));
+  keep_slips(kept);
+  EXPECT_EQ(kept.size(), 10U);
+}
+
+TEST(SlipList, SlipsThatEndAtRestStay) {
+  // A coupling that hangs slack after each slip: S of twice K and more.
+  std::vector<Fall> kept;
+  for (int i = 0; i < 10; ++i) kept.push_back(fall(100.0 + 40.0 * i, 0.5, 0.0, 0.0));
+  keep_slips(kept);
+  EXPECT_EQ(kept.size(), 10U);
+}
+
+TEST(SlipList, SpikesInTheHoldAfterThePullAreNoSlip) {
+  // The force stays where the belt stopped; sticking to a moving belt it would have climbed by 0.14 in half a
+  // period.
+  std::vector<Fall> kept = slips(10);
+  const double last = kept.back().peak_at;
+  kept.push_back(fall(last + 10.0 * kPeriod, 0.40, 0.27, 0.30));
+  keep_slips(kept);
+  EXPECT_EQ(kept.size(), 10U);
+}
+
+TEST(SlipList, LastSlipAfterALongStickStays) {
+  std::vector<Fall> falls;
+  for (int i = 0; i < 10; ++i)
+    falls.push_back(fall(100.0 + 10.0 * kPeriod * i, kPeak, kTrough, i == 0 ? 0.0 : kTrough));
+  std::vector<Fall> kept = falls;
+  keep_slips(kept);
+  EXPECT_EQ(kept.size(), falls.size());
+}
+
+TEST(SlipList, SlipThatSpikesHaveSplitIsOne) {
+  std::vector<Fall> kept = slips(10);
+  Fall second = kept[4];
+  kept[4].trough_at = kept[4].peak_at + 3.0;
+  kept[4].trough = 0.33;
+  second.peak_at = kept[4].trough_at + 2.0;
+  second.peak = 0.36;
+  kept.insert(kept.begin() + 5, second);
+  keep_slips(kept);
+  ASSERT_EQ(kept.size(), 10U);
+  EXPECT_EQ(kept[4].peak, kPeak);
+  EXPECT_EQ(kept[4].trough, kTrough);
+  EXPECT_EQ(kept[4].trough_at, kept[4].peak_at + kPeriod / 2.0);
+}
+
+}  // namespace
+}  // namespace stickslip::friction
