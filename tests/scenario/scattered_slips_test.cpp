@@ -14,7 +14,7 @@ namespace {
 constexpr int kTests = 200;
 
 friction::PooledDeltaMu pool_and_print(double speed_in_per_min, const test::ScatterTrials& trials) {
-  const friction::PooledDeltaMu pooled = friction::pool_delta_mu(trials.cycles);
+  friction::PooledDeltaMu pooled = friction::pool_delta_mu(trials.cycles);
   const auto bias = [](const friction::Estimate& mean) {
     return 100.0 * (*mean.value / test::ScatterTrials::kDeltaMu - 1.0);
   };

@@ -27,6 +27,7 @@ Fall fall(double peak_at, double peak, double trough, double rise_from) {
 /// Regular slips from scan 100 on, loaded from `rest`.
 std::vector<Fall> slips(int count, double rest = 0.0) {
   std::vector<Fall> all;
+  all.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     all.push_back(fall(100.0 + kPeriod * i, kPeak, kTrough, i == 0 ? rest : kTrough));
   }
@@ -74,6 +75,7 @@ TEST(SlipList, UnloadingIsNoSlip) {
 TEST(SlipList, SlipsThatEndAtRestStay) {
   // A coupling that hangs slack after each slip: S of twice K and more.
   std::vector<Fall> kept;
+  kept.reserve(10);
   for (int i = 0; i < 10; ++i) kept.push_back(fall(100.0 + 40.0 * i, 0.5, 0.0, 0.0));
   keep_slips(kept);
   EXPECT_EQ(kept.size(), 10U);
@@ -91,6 +93,7 @@ TEST(SlipList, SpikesInTheHoldAfterThePullAreNoSlip) {
 
 TEST(SlipList, LastSlipAfterALongStickStays) {
   std::vector<Fall> falls;
+  falls.reserve(10);
   for (int i = 0; i < 10; ++i)
     falls.push_back(fall(100.0 + 10.0 * kPeriod * i, kPeak, kTrough, i == 0 ? 0.0 : kTrough));
   std::vector<Fall> kept = falls;
