@@ -1,5 +1,5 @@
 // The detector's word for a test against what the simulation really did, for tests of random papers and
-// speeds with noise, drift and twenty spikes a second. bench/regime_limits prints the table for 10000.
+// speeds with noise, drift and twenty spikes a second. bench/regime_limits prints the table for more.
 
 #include <gtest/gtest.h>
 
@@ -28,8 +28,8 @@ TEST(RandomTests, AreCalledWhatTheyAre) {
     all.undecided += tally.undecided;
   }
   EXPECT_EQ(all.tests, kTests);
-  // Of 10000 tests 0.3 % are called wrongly and 1.5 % not at all (docs/detector.md): so many of 300 and four
-  // standard deviations of a binomial count.
+  // Of 1000 tests 0.2 % are called wrongly and 1.2 % not at all (docs/detector.md), give or take a quarter:
+  // so many of 300 and four standard deviations of a binomial count.
   const auto limit = [](double share) {
     return kTests * share + 4.0 * std::sqrt(kTests * share * (1.0 - share));
   };
