@@ -12,6 +12,7 @@
 
 #include "core/friction/test_analysis.hpp"
 #include "tests/support/measured_traces.hpp"
+#include "tests/support/sanitized.hpp"
 
 namespace stickslip::friction {
 namespace {
@@ -124,7 +125,7 @@ TEST_P(DisturbedTraces, CutAnywhere) {
   // its rise, and at its end one its trough: up to two fewer, none more. The noise is measured inside the cut
   // alone, and moves limits with it: 5 % as above.
   constexpr std::uint64_t kSeed = 17;
-  constexpr int kCuts = 40;
+  constexpr int kCuts = test::kSanitized ? 4 : 40;
   std::mt19937_64 engine{kSeed};
   std::uniform_int_distribution<std::size_t> place{0, whole_.values.size()};
   for (int cut = 0; cut < kCuts; ++cut) {
