@@ -122,8 +122,9 @@ TEST_P(DisturbedTraces, ScaledAndMoved) {
 
 TEST_P(DisturbedTraces, CutAnywhere) {
   // A cut leaves the slips whose rise and fall lie inside as they are. At its begin one slip can have lost
-  // its rise, and at its end one its trough: up to two fewer, none more. The noise is measured inside the cut
-  // alone, and moves limits with it: 5 % as above.
+  // its rise, and at its end one its trough: up to two fewer. A first fall of which only part of the rise is
+  // seen can look like a slip: up to one more. The noise is measured inside the cut alone, and moves limits
+  // with it: 5 % as above.
   constexpr std::uint64_t kSeed = 17;
   constexpr int kCuts = test::kSanitized ? 4 : 40;
   std::mt19937_64 engine{kSeed};
