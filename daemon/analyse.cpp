@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "daemon/method_text.hpp"
+#include "daemon/tester_file.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -31,12 +32,18 @@ base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& he
   }
   const base::Result<friction::Method> method = method_from_text(header.process.method);
   if (!method) return tl::unexpected(method.error());
+  friction::SharedPrior recorded;
+  if (prior.empty() && !header.process.characterisation.empty()) {
+    const auto coupling = parse_tester(header.process.characterisation, "the record's characterisation");
+    if (!coupling) return tl::unexpected(coupling.error());
+    recorded.coupling.emplace(*coupling);
+  }
   try {
     daq::Calibration calibration{header.board, header.load_cell.value_or(daq::LoadCell{}),
                                  header.tester.tester().normal_load_N()};
     friction::AnalysisSettings settings = settings_of(header, calibration, *method);
     settings.scratch_folder = scratch_folder;
-    settings.prior = prior;
+    settings.prior = prior.empty() ? recorded : prior;
     return RecordAnalysis{std::move(calibration), settings};
   } catch (const std::invalid_argument& refused) {
     return base::usage_error("the record cannot be analysed: {}", refused.what());

@@ -17,7 +17,7 @@ namespace stickslip::daemon {
 class RecordAnalysis {
  public:
   /// \param scratch_folder  where the scans of a long record may lie for the time being; empty: in memory.
-  /// \param prior  what is known of the tester beforehand.
+  /// \param prior  what is known of the tester beforehand; empty: what the record says was known.
   /// Errors: kUsage if the facts do not allow it (no scan rate, no load cell for counts).
   [[nodiscard]] static base::Result<RecordAnalysis> make(const record::RecordHeader& header,
                                                          const std::filesystem::path& scratch_folder = {},

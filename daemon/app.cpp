@@ -15,6 +15,7 @@
 
 #include "daemon/finaliser.hpp"
 #include "daemon/method_text.hpp"
+#include "daemon/tester_file.hpp"
 #include "daemon/version.hpp"
 
 namespace stickslip::daemon {
@@ -145,7 +146,9 @@ base::Result<void> App::open_session() {
   base::Result<drivers::OpenedBoard> board = world_.open_board(config_.board, *clock_);
   if (!board) return tl::unexpected(board.error());
   truth_ = board->truth;
-  const SessionSettings settings = session_settings(*board);
+  const base::Result<SessionSettings> made = session_settings(*board);
+  if (!made) return tl::unexpected(made.error());
+  const SessionSettings& settings = *made;
 
   SessionEvents events;
   events.first_scan = [this] {
@@ -231,7 +234,7 @@ void App::leave_when_idle() {
   if (!session_) io_.stop();
 }
 
-SessionSettings App::session_settings(const drivers::OpenedBoard& opened) const {
+base::Result<SessionSettings> App::session_settings(const drivers::OpenedBoard& opened) const {
   const daq::BoardInfo& board = opened.board->info();
   SessionSettings settings;
   settings.load_cell = config_.bench.load_cell(opened.load_cell);
@@ -244,6 +247,14 @@ SessionSettings App::session_settings(const drivers::OpenedBoard& opened) const 
   analysis.scan_rate_Hz = board.scan_rate_granted_Hz;
   analysis.tester = config_.bench.tester(opened.tester);
   analysis.method = config_.method;
+  settings.characterisation =
+      config_.bench.characterisation.empty() ? opened.characterisation : config_.bench.characterisation;
+  if (!settings.characterisation.empty()) {
+    auto coupling = parse_tester(settings.characterisation, "characterisation");
+    // The configuration's was checked with it; a record's may be damaged.
+    if (!coupling) return tl::unexpected(coupling.error());
+    analysis.prior.coupling = *std::move(coupling);
+  }
   return settings;
 }
 
@@ -260,6 +271,7 @@ record::RecordHeader App::record_header(const SessionSettings& settings) const {
   header.process.commit = kCommit;
   header.process.configuration = config_.text;
   header.process.method = method_text(settings.processor.analysis.method);
+  header.process.characterisation = settings.characterisation;
   header.process.realtime = session_->scheduling();
   return header;
 }

@@ -70,7 +70,7 @@ class App {
   void stop(const std::string& why);
   void leave_when_idle();
   void tell_status();
-  [[nodiscard]] SessionSettings session_settings(const drivers::OpenedBoard& opened) const;
+  [[nodiscard]] base::Result<SessionSettings> session_settings(const drivers::OpenedBoard& opened) const;
   [[nodiscard]] record::RecordHeader record_header(const SessionSettings& settings) const;
   [[nodiscard]] std::string status_line() const;
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/friction/method_file.hpp"
+#include "daemon/tester_file.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -99,7 +100,7 @@ void read_board(Settings table, const std::filesystem::path& folder, DaemonConfi
   read_comedi(table.table("comedi"), config);
 }
 
-void read_tester(Settings table, DaemonConfig& config) {
+void read_tester(Settings table, const std::filesystem::path& folder, DaemonConfig& config) {
   BenchConfig& bench = config.bench;
   bench.sled_mass_kg =
       table.quantity_if_given("sled_mass", Dimension::kMass, Limits::above_up_to(0.0, kHeaviestSled_kg));
@@ -119,6 +120,16 @@ void read_tester(Settings table, DaemonConfig& config) {
   }
   bench.load_cell_zero_V = table.quantity_if_given("load_cell_zero", Dimension::kVoltage,
                                                    Limits::between(-kHighestVoltage_V, kHighestVoltage_V));
+  if (const std::string file = table.text("characterisation", ""); !file.empty()) {
+    const base::Result<Settings> read = Settings::load(resolved(folder, file));
+    if (!read) {
+      table.refuse("characterisation", read.error().message);
+    } else if (const auto parsed = parse_tester(read->source_text(), file); !parsed) {
+      table.refuse("characterisation", parsed.error().message);
+    } else {
+      bench.characterisation = read->source_text();
+    }
+  }
 }
 
 void read_test(Settings table, pipeline::SegmenterSettings& segmenter) {
@@ -162,7 +173,7 @@ void read_method(Settings table, const std::filesystem::path& folder, friction::
 DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
   DaemonConfig config;
   read_board(settings.table("board"), folder, config);
-  read_tester(settings.table("tester"), config);
+  read_tester(settings.table("tester"), folder, config);
   read_test(settings.table("test"), config.segmenter);
   read_method(settings.table("method"), folder, config.method);
   config.board.simulated.method = config.method;

@@ -28,6 +28,7 @@ struct BenchConfig {
   std::optional<double> stiffness_N_per_m;
   std::optional<double> load_cell_gain_N_per_V;
   std::optional<double> load_cell_zero_V;
+  std::string characterisation;  ///< Text of the file that `stickslip characterise` wrote; empty: none.
 
   [[nodiscard]] friction::Tester tester(const std::optional<friction::Tester>& known) const;
   [[nodiscard]] daq::LoadCell load_cell(const std::optional<daq::LoadCell>& known) const;

@@ -25,6 +25,7 @@ nlohmann::ordered_json results_json(const friction::TestResults& results, bool w
   Json details;
   json["regime"] = friction::name(results.regime);
   if (!results.regime_reason.empty()) details["regime"]["reason"] = results.regime_reason;
+  json["findings"] = results.findings;
   friction::for_each_result(results,
                             [&](const friction::ResultName& name, const friction::Estimate& estimate) {
                               const std::string key{name.name};

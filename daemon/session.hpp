@@ -21,6 +21,7 @@ namespace stickslip::daemon {
 struct SessionSettings {
   pipeline::ProcessorSettings processor;
   daq::LoadCell load_cell;
+  std::string characterisation;  ///< Where processor.analysis.prior comes from, for the records; empty: none.
   int realtime_priority = 0;
   double clock_speed = 1.0;  ///< Board time over wall time: the ring bridges wall time.
 };

@@ -69,6 +69,24 @@ std::optional<Characterisation> pool_ring_downs(std::span<const TesterEstimate> 
   return result;
 }
 
+Estimate pull_speed_of(const TesterEstimate& estimate, double gravity_m_per_s2) {
+  return Estimate::of(estimate.speed_over_gravity_s * gravity_m_per_s2,
+                      std::sqrt(estimate.covariance(2, 2)) * gravity_m_per_s2);
+}
+
+std::optional<std::string> speed_finding(const Estimate& measured_m_per_s, const Tester& tester) {
+  if (!tester.pull_speed_m_per_s || !measured_m_per_s.value || !measured_m_per_s.standard_error) {
+    return std::nullopt;
+  }
+  const double plan = *tester.pull_speed_m_per_s;
+  const double error = *measured_m_per_s.standard_error;
+  const double difference = std::abs(*measured_m_per_s.value - plan);
+  if (!(difference > kSpeedTolerance * plan && difference > kSpeedSigmas * error)) return std::nullopt;
+  return fmt::format("the pull speed was {:.2f} +- {:.2f} in/min, the plan says {:.2f}",
+                     *measured_m_per_s.value / kInchPerMinute_m_per_s, error / kInchPerMinute_m_per_s,
+                     plan / kInchPerMinute_m_per_s);
+}
+
 TesterCheck check_tester(const TesterEstimate& alone, const TesterEstimate& with,
                          const SharedPrior::Coupling& known, const Tester& tester) {
   TesterCheck check;
@@ -84,18 +102,8 @@ TesterCheck check_tester(const TesterEstimate& alone, const TesterEstimate& with
         check.used() ? "used with doubt" : "not used"));
   }
   const TesterEstimate& best = check.used() ? with : alone;
-  const double g = tester.gravity_m_per_s2;
-  const double error = std::sqrt(best.covariance(2, 2)) * g;
-  check.pull_speed = Estimate::of(best.speed_over_gravity_s * g, error);
-  if (tester.pull_speed_m_per_s && check.pull_speed.value) {
-    const double plan = *tester.pull_speed_m_per_s;
-    const double difference = std::abs(*check.pull_speed.value - plan);
-    if (difference > kSpeedTolerance * plan && difference > kSpeedSigmas * error) {
-      check.findings.push_back(fmt::format("the pull speed was {:.2f} +- {:.2f} in/min, the plan says {:.2f}",
-                                           *check.pull_speed.value / kInchPerMinute_m_per_s,
-                                           error / kInchPerMinute_m_per_s, plan / kInchPerMinute_m_per_s));
-    }
-  }
+  check.pull_speed = pull_speed_of(best, tester.gravity_m_per_s2);
+  if (auto finding = speed_finding(check.pull_speed, tester)) check.findings.push_back(*std::move(finding));
   return check;
 }
 

@@ -65,6 +65,14 @@ struct TesterCheck {
   [[nodiscard]] bool used() const noexcept { return probability >= kNotThisTester; }
 };
 
+/// v = (v/g) g, m/s, with its standard error.
+[[nodiscard]] Estimate pull_speed_of(const TesterEstimate& estimate, double gravity_m_per_s2);
+
+/// What to say if the speed measured is not the planned one: off by kSpeedTolerance and three standard
+/// errors. Nothing if there is no plan or no speed.
+[[nodiscard]] std::optional<std::string> speed_finding(const Estimate& measured_m_per_s,
+                                                       const Tester& tester);
+
 /// \param alone  the test without the characterisation. \param with  the same with it: only there the speed
 ///               is known well. \param tester  with the planned speed, if there is a plan.
 [[nodiscard]] TesterCheck check_tester(const TesterEstimate& alone, const TesterEstimate& with,

@@ -6,10 +6,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include <Eigen/Core>
 
 #include "core/friction/closed_forms.hpp"
+#include "core/friction/cycle_features.hpp"
 #include "core/friction/threshold.hpp"
 
 namespace stickslip::friction {
@@ -129,28 +132,62 @@ Oscillator oscillator_of(const Eigen::Matrix<double, 5, 1>& p) {
 
 }  // namespace
 
+namespace {
+
+/// Standard errors by which a tester's damping may be found below zero by chance.
+constexpr double kNegativeDampingSigmas = 4.0;
+
+/// γ with its standard error.
+std::pair<double, double> damping_of(const SlipEstimates& estimates) noexcept {
+  using P = UniformParameters;
+  if (estimates.uniform) {
+    return {estimates.uniform->parameters.shared.gamma,
+            std::sqrt(estimates.uniform->covariance(P::kGamma, P::kGamma))};
+  }
+  return {estimates.fit.shared.gamma, std::sqrt(estimates.fit.shared_covariance(1, 1))};
+}
+
+/// Friction that falls with speed feeds the oscillation: K is no constant then.
+bool feeds_the_oscillation(const SlipEstimates& estimates) noexcept {
+  const auto [gamma, error] = damping_of(estimates);
+  return gamma < -kNegativeDampingSigmas * error;
+}
+
+/// Why model_describes() says no.
+std::string why_not(const SlipEstimates& estimates, double sigma) {
+  const SlipFit& fit = estimates.fit;
+  if (!fit.converged) return "the fit of the model did not converge";
+  if (fit.residual_sigma > kLargestResidualSigmas * sigma) {
+    return fmt::format("the model leaves residuals of {:.1f} times the scan noise, {:.0f} are allowed",
+                       fit.residual_sigma / sigma, kLargestResidualSigmas);
+  }
+  const auto [gamma, error] = damping_of(estimates);
+  return fmt::format(
+      "the model does not describe this friction: its damping, {:.2g} +- {:.1g} 1/s, would be negative",
+      gamma, error);
+}
+
+}  // namespace
+
 bool model_describes(const SlipEstimates& estimates, double sigma) noexcept {
-  return estimates.fit.converged && estimates.fit.residual_sigma <= kLargestResidualSigmas * sigma;
+  return estimates.fit.converged && estimates.fit.residual_sigma <= kLargestResidualSigmas * sigma &&
+         !feeds_the_oscillation(estimates);
 }
 
 void no_model_results(const std::string& reason, TestResults& results) {
-  for (Estimate* estimate : {&results.mu_s, &results.mu_k, &results.delta_mu, &results.omega,
-                             &results.gamma_over_2omega, &results.Q, &results.Q_threshold,
-                             &results.threshold_speed, &results.amplitude, &results.delta_mu_scatter}) {
+  for (Estimate* estimate :
+       {&results.mu_s, &results.mu_k, &results.delta_mu, &results.omega, &results.gamma_over_2omega,
+        &results.Q, &results.Q_threshold, &results.threshold_speed, &results.amplitude,
+        &results.delta_mu_scatter, &results.pull_speed_measured}) {
     *estimate = Estimate::none(reason);
   }
+  no_feature_results(reason, results);
 }
 
 void model_results(std::span<const Fall> slips, const SlipEstimates& estimates, const Tester& tester,
                    double sigma, TestResults& results) {
-  const SlipFit& fit = estimates.fit;
   if (!model_describes(estimates, sigma)) {
-    no_model_results(
-        fit.converged
-            ? fmt::format("the model leaves residuals of {:.1f} times the scan noise, {:.0f} are allowed",
-                          fit.residual_sigma / sigma, kLargestResidualSigmas)
-            : "the fit of the model did not converge",
-        results);
+    no_model_results(why_not(estimates, sigma), results);
     // The traditional amplitude needs no model.
     Sample amplitude;
     for (const Fall& slip : slips) amplitude.add(0.5 * slip.drop());

@@ -15,7 +15,8 @@ namespace stickslip::friction {
 /// Largest residual in units of the scan noise up to which the model counts as describing the trace.
 inline constexpr double kLargestResidualSigmas = 5.0;
 
-/// The whole-test fit converged and leaves residuals that the scan noise explains.
+/// The whole-test fit converged, leaves residuals that the scan noise explains, and its damping is none that
+/// feeds the oscillation.
 [[nodiscard]] bool model_describes(const SlipEstimates& estimates, double sigma) noexcept;
 
 /// Fills mu_s, mu_k, delta_mu, omega, gamma_over_2omega, Q, Q_threshold, threshold_speed, amplitude

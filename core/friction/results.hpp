@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/friction/regime.hpp"
 
@@ -68,6 +69,18 @@ struct TestResults {
   Estimate lost_scan_count;
   Estimate scan_rate_measured;  ///< Hz, from clocks.
 
+  // From features of the cycles that stick, core/friction/cycle_features.
+  Estimate delta_mu_from_amplitude;   ///< S − K by the amplitude ratio [17].
+  Estimate delta_mu_from_timing;      ///< S − K by the period.
+  Estimate delta_mu_from_slip_speed;  ///< S − K by the slip-to-stick speed ratio [18].
+  Estimate delta_mu_combined;         ///< The three, weighted by condition number and scatter.
+  Estimate mu_k_from_mean;            ///< K: the mean less what damping adds to it.
+  Estimate mu_s_from_amplitude;       ///< S: mu_k_from_mean + delta_mu_from_amplitude.
+  Estimate pull_speed_measured;       ///< m/s, from the stick slope and ω₀.
+
+  /// What somebody should look at: the tester disagrees with its characterisation, the plan's speed is wrong.
+  std::vector<std::string> findings;
+
   bool operator==(const TestResults&) const = default;
 };
 
@@ -107,6 +120,18 @@ void for_each_result(Results& results, Visitor&& visit) {
   visit(ResultName{"lost_scan_count", "1", "number of scans lost in gaps"}, results.lost_scan_count);
   visit(ResultName{"scan_rate_measured", "Hz", "scan rate measured against the clock"},
         results.scan_rate_measured);
+  visit(ResultName{"delta_mu_from_amplitude", "1", "S - K from the amplitude"},
+        results.delta_mu_from_amplitude);
+  visit(ResultName{"delta_mu_from_timing", "1", "S - K from the period"}, results.delta_mu_from_timing);
+  visit(ResultName{"delta_mu_from_slip_speed", "1", "S - K from the largest slip speed"},
+        results.delta_mu_from_slip_speed);
+  visit(ResultName{"delta_mu_combined", "1", "S - K from amplitude, period and slip speed"},
+        results.delta_mu_combined);
+  visit(ResultName{"mu_k_from_mean", "1", "K from the mean, without the bias of the damping"},
+        results.mu_k_from_mean);
+  visit(ResultName{"mu_s_from_amplitude", "1", "S from mean and amplitude"}, results.mu_s_from_amplitude);
+  visit(ResultName{"pull_speed_measured", "m/s", "pull speed from the slope of the sticks"},
+        results.pull_speed_measured);
 }
 
 }  // namespace stickslip::friction

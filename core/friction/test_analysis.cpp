@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/friction/cycle_features.hpp"
 #include "core/friction/cycle_statistics.hpp"
 #include "core/friction/model_results.hpp"
 #include "core/friction/regime_rule.hpp"
@@ -154,6 +155,10 @@ TestResults TestAnalysis::finish() {
                                     ? Estimate::none("undecided: " + verdict.reason)
                                     : Estimate::of(static_cast<double>(captured));
     model_results(slips, estimates, settings_.tester, sigma, results);
+    if (model_describes(estimates, sigma)) {
+      feature_results(trace, slips, estimates, results);
+      speed_results(estimates, results);
+    }
     if (verdict.transition_slip) {
       results.transition_time = Estimate::of(time_at(trace, slips[*verdict.transition_slip].peak_at));
     }
@@ -202,6 +207,24 @@ SlipEstimates TestAnalysis::estimate(const Trace& trace, const std::vector<Fall>
   if (!settings_.prior.coupling || !tester_ || !with.fit.converged) return with;
   tester_check_ = check_tester(*tester_, with.tester(), *settings_.prior.coupling, settings_.tester);
   return tester_check_->used() ? with : alone;
+}
+
+void TestAnalysis::speed_results(const SlipEstimates& estimates, TestResults& results) const {
+  const TesterEstimate found = estimates.tester();
+  results.pull_speed_measured =
+      tester_check_ ? tester_check_->pull_speed : pull_speed_of(found, settings_.tester.gravity_m_per_s2);
+  if (results.pull_speed_measured.value) {
+    // The stick rate that was fitted is less by that of the drift.
+    const double omega0_squared =
+        found.omega * found.omega * (1.0 + found.gamma_over_2omega * found.gamma_over_2omega);
+    *results.pull_speed_measured.value +=
+        estimates.drift.rate_per_s * settings_.tester.gravity_m_per_s2 / omega0_squared;
+  }
+  if (tester_check_) {
+    results.findings = tester_check_->findings;
+  } else if (auto finding = speed_finding(results.pull_speed_measured, settings_.tester)) {
+    results.findings.push_back(*std::move(finding));
+  }
 }
 
 void TestAnalysis::keep_cycles(const std::vector<Cycle>& cycles, const std::vector<Fall>& slips) {

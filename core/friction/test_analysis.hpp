@@ -85,6 +85,8 @@ class TestAnalysis {
   [[nodiscard]] Trace despiked_trace();
   /// Into cycles_, with their flags.
   void keep_cycles(const std::vector<Cycle>& cycles, const std::vector<Fall>& slips);
+  /// Fills pull_speed_measured and the findings.
+  void speed_results(const SlipEstimates& estimates, TestResults& results) const;
   /// With the prior, unless the test alone contradicts it; fills tester_ and tester_check_.
   [[nodiscard]] SlipEstimates estimate(const Trace& trace, const std::vector<Fall>& slips, double sigma);
 

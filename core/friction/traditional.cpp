@@ -7,20 +7,18 @@
 #include <utility>
 
 #include "core/friction/slip_estimator.hpp"
+#include "core/signal/statistics.hpp"
 
 namespace stickslip::friction {
 namespace {
 
-/// Mean of the usable scans in [first, end), without large sums [Welford 1962].
+/// Mean of the usable scans in [first, end), without large sums.
 double mean_of(const Trace& trace, std::size_t first, std::size_t end) {
-  double mean = 0.0;
-  double n = 0.0;
+  signal::RunningMean mean;
   for (std::size_t k = first; k < end; ++k) {
-    if (trace.usable[k] == 0) continue;
-    n += 1.0;
-    mean += (trace.value[k] - mean) / n;
+    if (trace.usable[k] != 0) mean.add(trace.value[k]);
   }
-  return mean;
+  return mean.mean;
 }
 
 /// Scans between the first and the last at or above half the largest: what is before is loading, what

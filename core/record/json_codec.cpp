@@ -121,7 +121,9 @@ friction::Cycle cycle_from_array(const json& array) {
 }
 
 json results_to_json(const friction::TestResults& results) {
-  json object{{"regime", friction::name(results.regime)}, {"regime_reason", results.regime_reason}};
+  json object{{"regime", friction::name(results.regime)},
+              {"regime_reason", results.regime_reason},
+              {"findings", results.findings}};
   friction::for_each_result(results,
                             [&](const friction::ResultName& name, const friction::Estimate& estimate) {
                               json entry = json::object();
@@ -139,8 +141,9 @@ friction::TestResults results_from_json(const json& object) {
   const auto regime = object.at("regime").get<std::string>();
   results.regime = word(regime, friction::regime_from_name(regime));
   object.at("regime_reason").get_to(results.regime_reason);
+  results.findings = object.value("findings", std::vector<std::string>{});
   friction::for_each_result(results, [&](const friction::ResultName& name, friction::Estimate& estimate) {
-    const json& entry = object.at(std::string{name.name});
+    const json entry = object.value(std::string{name.name}, json{{"reason", kNoSuchResultThen}});
     take(entry, "value", estimate.value);
     take(entry, "standard_error", estimate.standard_error);
     take(entry, "systematic_uncertainty", estimate.systematic_uncertainty);

@@ -12,6 +12,7 @@ namespace {
 constexpr const char* kStandardError = "standard_error";
 constexpr const char* kSystematic = "systematic_uncertainty";
 constexpr const char* kReason = "reason";
+constexpr const char* kFindings = "findings";
 
 }  // namespace
 
@@ -32,6 +33,7 @@ void write_results(hid_t entry, const friction::TestResults& results) {
         }
         if (!estimate.value) write_attribute(value.get(), kReason, estimate.reason);
       });
+  write_texts(group.get(), kFindings, results.findings);
 }
 
 friction::TestResults read_results(hid_t entry) {
@@ -44,6 +46,10 @@ friction::TestResults read_results(hid_t entry) {
   results.regime_reason = read_attribute(open_dataset(group.get(), "regime").get(), kReason);
   friction::for_each_result(results, [&](const friction::ResultName& name, friction::Estimate& estimate) {
     const std::string key{name.name};
+    if (!has(group.get(), key)) {
+      estimate = friction::Estimate::none(std::string{kNoSuchResultThen});
+      return;
+    }
     const DatasetHandle dataset = open_dataset(group.get(), key);
     if (auto reason = find_attribute(dataset.get(), kReason)) {
       estimate = friction::Estimate::none(*std::move(reason));
@@ -53,6 +59,7 @@ friction::TestResults read_results(hid_t entry) {
     estimate.standard_error = find_number_attribute<double>(dataset.get(), kStandardError);
     estimate.systematic_uncertainty = find_number_attribute<double>(dataset.get(), kSystematic);
   });
+  if (has(group.get(), kFindings)) results.findings = read_texts(group.get(), kFindings);
   return results;
 }
 

@@ -77,8 +77,10 @@ struct ProcessFacts {
   std::string configuration;  ///< The configuration file as it was read, whole.
   std::string estimator;      ///< Tier of the estimators.
   std::string method;         ///< Preset of the traditional rule.
-  std::string realtime;       ///< Scheduling and memory locking that were granted.
-  std::string simulation;     ///< Method, accuracy, extent and time of a simulation without a clock.
+  /// What was known of the tester beforehand: the file of its characterisation, whole; empty: nothing.
+  std::string characterisation;
+  std::string realtime;    ///< Scheduling and memory locking that were granted.
+  std::string simulation;  ///< Method, accuracy, extent and time of a simulation without a clock.
 
   bool operator==(const ProcessFacts&) const = default;
 };
@@ -128,6 +130,9 @@ struct EndRecord {
   std::vector<daq::ScanIndex> spikes;        ///< Scans replaced for the detector, rising; final as well.
   std::optional<friction::TestTruth> truth;
 };
+
+/// Why a result is absent that the program that made the record did not know.
+inline constexpr std::string_view kNoSuchResultThen = "the record was made before there was this result";
 
 /// Results of a test that could not be evaluated: every one absent for `reason`.
 [[nodiscard]] friction::TestResults absent_results(const std::string& reason);

@@ -19,4 +19,16 @@ inline constexpr double kRoundingSigma = 0.28867513459481287;
   return *middle;
 }
 
+/// Mean of any number of values, without a large sum: its error stays below some ε of the largest value,
+/// however many there are. [Welford, Technometrics 4(3):419–420, 1962]
+struct RunningMean {
+  double mean = 0.0;
+  double count = 0.0;  ///< A double counts exactly up to 2⁵³.
+
+  void add(double value) noexcept {
+    count += 1.0;
+    mean += (value - mean) / count;
+  }
+};
+
 }  // namespace stickslip::signal

@@ -43,7 +43,6 @@ base::Result<std::string> run_analyze(const AnalyzeCommand& command) {
     if (!coupling) return tl::unexpected(coupling.error());
     prior.coupling = *coupling;
   }
-  std::string findings;
   nlohmann::ordered_json tests = nlohmann::ordered_json::array();
   std::vector<TableRow> rows;
   for (const std::string& file : command.files) {
@@ -56,16 +55,11 @@ base::Result<std::string> run_analyze(const AnalyzeCommand& command) {
           base::Error{analysed.error().kind, fmt::format("{}: {}", file, analysed.error().message)});
     }
     record::EndRecord* const end = &analysed->end;
-    if (analysed->check) {
-      for (const std::string& finding : analysed->check->findings) {
-        findings += fmt::format("{}: {}\n", file, finding);
-      }
-    }
     if (command.json) {
       nlohmann::ordered_json test;
       test["file"] = file;
       test.update(results_json(end->results, true));
-      if (!command.tester.empty()) test["tester_check"] = json_of(analysed->check);
+      if (analysed->check || !command.tester.empty()) test["tester_check"] = json_of(analysed->check);
       tests.push_back(std::move(test));
     } else {
       const auto number = static_cast<std::int64_t>(rows.size()) + 1;
@@ -73,7 +67,7 @@ base::Result<std::string> run_analyze(const AnalyzeCommand& command) {
                       std::move(end->truth), file});
     }
   }
-  if (!command.json) return format_table(rows) + findings;
+  if (!command.json) return format_table(rows);
   using Json = nlohmann::ordered_json;
   return Json{{"tests", std::move(tests)}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -78,6 +78,7 @@ std::string format_table(std::span<const TableRow> rows) {
   std::array<std::string, kColumns.size()> cells;
   for (std::size_t i = 0; i < kColumns.size(); ++i) cells[i] = kColumns[i].title;
   std::string text = line("test", "", "regime", cells, "file, scene");
+  std::string findings;
   for (const TableRow& row : rows) {
     for (std::size_t i = 0; i < kColumns.size(); ++i) {
       cells[i] = cell((row.results.*kColumns[i].measured).value, kColumns[i]);
@@ -90,7 +91,12 @@ std::string format_table(std::span<const TableRow> rows) {
     }
     text += line("", "truth", friction::name(row.truth->regime), cells, row.truth->scene_name);
   }
-  return text + footnotes(rows);
+  for (const TableRow& row : rows) {
+    for (const std::string& finding : row.results.findings) {
+      findings += fmt::format("!  test {}: {}\n", row.number, finding);
+    }
+  }
+  return text + footnotes(rows) + findings;
 }
 
 }  // namespace stickslip::daemon

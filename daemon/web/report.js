@@ -192,7 +192,7 @@
   function writeTests(m) {
     const material = data.materials[m];
     const show = i => { viewers[m].show(i); document.getElementById(`traces-${m}`).scrollIntoView({block: "start"}); };
-    const notes = material.tests.flatMap((t, i) => t.departures.map(d => node("li", {}, node("b", {}, `test ${i + 1}`), `: ${d}`)));
+    const notes = material.tests.flatMap((t, i) => [...t.departures, ...t.findings].map(d => node("li", {}, node("b", {}, `test ${i + 1}`), `: ${d}`)));
     section(`all-tests-${m}`, two ? `Tests of ${nameOf(m)}` : "Tests",
       node("p", {class: "note"}, "Method: " + [...new Set(material.tests.map(t => t.method || "not known"))].join("; ")),
       table(`tests-${m}`, ["test", "file", "speed", "regime", ...data.quantities.map(title)], material.tests.map((t, i) => row(

@@ -11,8 +11,8 @@ namespace {
 base::Result<OpenedBoard> open_simulated(const SimulatedBoardSettings& settings, base::Clock& clock) {
   base::Result<SimulatedTester> simulated = make_simulated_tester(settings, clock);
   if (!simulated) return tl::unexpected(simulated.error());
-  return OpenedBoard{std::move(simulated->board), std::move(simulated->truth), simulated->load_cell,
-                     simulated->tester};
+  return OpenedBoard{
+      std::move(simulated->board), std::move(simulated->truth), simulated->load_cell, simulated->tester, {}};
 }
 
 base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::Clock& clock) {
@@ -20,14 +20,16 @@ base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::C
   if (!record) return tl::unexpected(record.error());
   const std::optional<daq::LoadCell> load_cell = record->header.load_cell;
   const friction::Tester tester = record->header.tester.tester();
+  std::string characterisation = record->header.process.characterisation;
   Replay replay = make_replay(std::move(*record), clock);
-  return OpenedBoard{std::move(replay.board), std::move(replay.truth), load_cell, tester};
+  return OpenedBoard{std::move(replay.board), std::move(replay.truth), load_cell, tester,
+                     std::move(characterisation)};
 }
 
 base::Result<OpenedBoard> open_comedi(const ComediBoardSettings& settings, base::Clock& clock) {
   base::Result<std::unique_ptr<daq::Board>> board = make_comedi_board(settings, clock);
   if (!board) return tl::unexpected(board.error());
-  return OpenedBoard{std::move(*board), nullptr, std::nullopt, std::nullopt};
+  return OpenedBoard{std::move(*board), nullptr, std::nullopt, std::nullopt, {}};
 }
 
 }  // namespace

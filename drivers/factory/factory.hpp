@@ -21,6 +21,7 @@ struct OpenedBoard {
   // What the source of the scans knows about the bench behind them; absent for hardware.
   std::optional<daq::LoadCell> load_cell;
   std::optional<friction::Tester> tester;
+  std::string characterisation;  ///< Of a replayed record: what was known of its tester beforehand.
 };
 
 /// \param clock  outlives the board.

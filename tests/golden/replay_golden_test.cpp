@@ -14,6 +14,7 @@
 #include "core/record/reader.hpp"
 #include "daemon/analyse.hpp"
 #include "daemon/method_text.hpp"
+#include "daemon/tester_file.hpp"
 #include "drivers/factory/factory.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/record_equality.hpp"
@@ -61,19 +62,27 @@ class Collector final : public pipeline::Sink {
 
 /// Plays the board to its end through the processor, in blocks of random sizes.
 /// \param lost  one scan in so many is dropped; 0: none.
-std::vector<record::Record> run(drivers::OpenedBoard opened, unsigned seed, int lost) {
+/// \param characterisation  of the tester, as in the configuration; empty: what the board knows of it.
+std::vector<record::Record> run(drivers::OpenedBoard opened, unsigned seed, int lost,
+                                const std::string& characterisation = {}) {
   const daq::BoardInfo& info = opened.board->info();
   record::RecordHeader header;
   header.board = info;
   header.load_cell = opened.load_cell;
   header.tester = record::TesterFacts::of(*opened.tester);
   header.process.method = method_text({});
+  header.process.characterisation = characterisation.empty() ? opened.characterisation : characterisation;
   Collector collector{header};
 
   pipeline::ProcessorSettings settings;
   settings.segmenter.scan_rate_Hz = info.scan_rate_granted_Hz;
   settings.analysis.scan_rate_Hz = info.scan_rate_granted_Hz;
   settings.analysis.tester = *opened.tester;
+  if (!header.process.characterisation.empty()) {
+    const auto known = parse_tester(header.process.characterisation, "characterisation");
+    EXPECT_TRUE(known) << known.error().message;
+    if (known) settings.analysis.prior.coupling.emplace(*known);
+  }
   pipeline::Processor processor{
       settings,
       {info, opened.load_cell.value_or(daq::LoadCell{}), opened.tester->normal_load_N()},
@@ -152,6 +161,50 @@ TEST_P(ReplayGolden, LiveReplayAndBatchAgreeToTheLastBit) {
     expect_same_results(live[0], replayed[0]);
     std::filesystem::remove(file);
   }
+}
+
+TEST(ReplayGoldenOfAKnownTester, RecordCarriesWhatWasKnownAndGivesTheSameBits) {
+  friction::Characterisation known;
+  known.coupling = {125.6637, 0.022, Eigen::Vector2d{1e-4, 1e-8}.asDiagonal()};
+  known.ring_downs = 1;
+  const std::string text = tester_text(known, "");
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / fmt::format("stickslip-golden-known-{}.h5", ::getpid());
+  std::filesystem::remove(file);
+  test::ManualClock clock;
+  const char* const name = "stick-slip-at-12-in-per-min.toml";
+  auto board = drivers::open_board(scene(name), clock);
+  ASSERT_TRUE(board) << board.error().message;
+  const std::vector<record::Record> live = run(std::move(*board), 1, 0, text);
+  ASSERT_EQ(live.size(), 1U);
+  auto unknown_board = drivers::open_board(scene(name), clock);
+  const std::vector<record::Record> unknown = run(std::move(*unknown_board), 1, 0);
+  // It did count: γ of stick and slip alone is ten times less certain.
+  EXPECT_LT(*live[0].end->results.gamma_over_2omega.standard_error,
+            0.5 * *unknown[0].end->results.gamma_over_2omega.standard_error);
+
+  ASSERT_TRUE(record::publish_record(live[0], file));
+  const auto stored = record::read_record(file);
+  ASSERT_TRUE(stored) << stored.error().message;
+  EXPECT_EQ(stored->header.process.characterisation, text);
+  const auto batch = analyse(*stored);
+  ASSERT_TRUE(batch) << batch.error().message;
+  EXPECT_EQ(batch->results, live[0].end->results);
+
+  drivers::BoardConfig replay;
+  replay.driver = drivers::Driver::kReplay;
+  replay.replay_file = file;
+  auto replayed_board = drivers::open_board(replay, clock);
+  ASSERT_TRUE(replayed_board);
+  const std::vector<record::Record> replayed = run(std::move(*replayed_board), 2, 0);
+  ASSERT_EQ(replayed.size(), 1U);
+  EXPECT_EQ(replayed[0].header.process.characterisation, text);
+  expect_same_results(live[0], replayed[0]);
+
+  record::Record damaged = *stored;
+  damaged.header.process.characterisation = "[tester]\nomega = 3";
+  EXPECT_FALSE(analyse(damaged));
+  std::filesystem::remove(file);
 }
 
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutGaps, ReplayGolden, testing::Values(0, 97));

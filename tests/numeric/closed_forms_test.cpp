@@ -54,5 +54,15 @@ TEST(ClosedForms, HalfLifeOfFiveCyclesIsThePapersDamping) {
   EXPECT_NEAR(std::exp(-2.0 * pi * gamma_over_2omega_of_half_life(5.0) * 5.0), 0.5, 1e-15);
 }
 
+TEST(ClosedForms, HalfLifeWithoutDampingIsForEver) {
+  // One quotient, correctly rounded but for ln 2/2π: no cycles are too many.
+  for (const double cycles : {1e3, 1e12, 1e150, 1e300}) {
+    EXPECT_NEAR(gamma_over_2omega_of_half_life(cycles) * cycles / (std::numbers::ln2 / (2.0 * pi)), 1.0,
+                1e-15);
+  }
+  EXPECT_EQ(gamma_over_2omega_of_half_life(std::numeric_limits<double>::infinity()), 0.0);
+  EXPECT_EQ(amplitude_ratio(1.3, gamma_over_2omega_of_half_life(1e300)), amplitude_ratio(1.3, 0.0));
+}
+
 }  // namespace
 }  // namespace stickslip::friction

@@ -31,6 +31,27 @@ TEST(UniformFit, GivesBackTheParametersOfAnExactTrace) {
   EXPECT_EQ(fit.scan_count, static_cast<double>(course.trace.size()));
 }
 
+TEST(UniformFit, SaysSoWhereScansAreFewOrTellNothing) {
+  const ModelCourse course = ModelCourse::captured(1.3, 10);
+  const UniformParameters truth{course.shared, course.windows.front().slip};
+  // Six numbers from none to six scans, and from a stick alone, where K, omega and gamma leave no trace.
+  for (const std::size_t end : {0U, 1U, 3U, 5U, 6U, 15U}) {
+    const UniformFit fit = fit_uniform(course.noisy(kSigma, 1), 0, end, truth, kSigma, {});
+    if (!fit.converged) continue;
+    EXPECT_TRUE(fit.covariance.allFinite()) << end;
+    // What the scans do not tell must not be claimed: K to better than S - K.
+    EXPECT_GT(std::sqrt(fit.covariance(UniformParameters::kK, UniformParameters::kK)),
+              ModelCourse::kS - ModelCourse::kK)
+        << end;
+  }
+  // From a bad guess: an end, with or without convergence, and finite numbers.
+  UniformParameters bad = truth;
+  bad.shared.omega *= 3.0;
+  bad.slip.S += 1.0;
+  const UniformFit far = fit_uniform(course.trace, 0, course.trace.size(), bad, kSigma, {});
+  EXPECT_TRUE(far.parameters.vector().allFinite());
+}
+
 std::optional<UniformFit> stage(const Trace& trace, std::vector<SlipWindow> windows,
                                 const ModelCourse& course) {
   const SlipFit fit = fit_slips(trace, windows, course.shared, kSigma);

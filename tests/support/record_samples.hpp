@@ -69,8 +69,15 @@ inline record::RecordHeader sample_header() {
   header.calibration = {"2026-05-01", "DKD-1234", 0.003};
   header.tester = {2.331, 9.81, 0.00508, 4200.0};
   header.sample = {"linerboard 42", "kraft", "MD", "wire", 3, "Ada"};
-  header.process = {"stickslipd",  "0.1.0",       "8a83624",       "[tester]\nsled_mass = \"2331 g\"\n",
-                    "closed form", "TAPPI T 816", "SCHED_FIFO 20", "exact closed forms"};
+  header.process = {"stickslipd",
+                    "0.1.0",
+                    "8a83624",
+                    "[tester]\nsled_mass = \"2331 g\"\n",
+                    "closed form",
+                    "TAPPI T 816",
+                    "[tester]\nomega = \"125.7 rad/s\"\n",
+                    "SCHED_FIFO 20",
+                    "exact closed forms"};
   return header;
 }
 
@@ -78,6 +85,7 @@ inline friction::TestResults sample_results() {
   friction::TestResults results;
   results.regime = friction::Regime::kMixed;
   results.regime_reason = "3 of 5 slips captured";
+  results.findings = {"the pull speed was 6.00 +- 0.02 in/min, the plan says 12.00", "another"};
   double number = 0.1;
   friction::for_each_result(results, [&](const friction::ResultName& name, friction::Estimate& estimate) {
     if (name.name == "Q_threshold") {

@@ -26,6 +26,7 @@ struct ScatterTrials {
 
   std::vector<std::vector<friction::Cycle>> cycles;  ///< Of each test.
   std::vector<friction::Estimate> delta_mu;          ///< Of each test.
+  std::vector<friction::TestResults> results;        ///< Of each test.
 
   static sim::Scene scene_at(double speed_in_per_min) {
     // A newton a volt over m g: a volt is the coefficient.
@@ -57,9 +58,9 @@ struct ScatterTrials {
           if (index < pull_end) analysis.add(index, raw[k], false);
         }
       }
-      const friction::TestResults results = analysis.finish();
+      results.push_back(analysis.finish());
       cycles.emplace_back(analysis.cycles().begin(), analysis.cycles().end());
-      delta_mu.push_back(results.delta_mu);
+      delta_mu.push_back(results.back().delta_mu);
     }
   }
 

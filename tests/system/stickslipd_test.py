@@ -134,6 +134,33 @@ class Demo(Folder):
                         compared += 1
         self.assertGreater(compared, 10)
 
+    def test_a_characterised_tester_is_known_and_kept_in_the_record(self):
+        import h5py
+        (self.folder / "tester.toml").write_text("""
+[tester]
+omega = "128 rad/s"
+omega_standard_error = "0.01 rad/s"
+gamma_over_2omega = 0.022
+gamma_over_2omega_standard_error = 0.0001
+""", encoding="utf-8")
+        config = self.simulated(more="[tester]\ncharacterisation = \"tester.toml\"\n[report]\ntable = true")
+        done = run(DAEMON, "--config", config, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        # The scene's spring has 125.66 rad/s: far off what is told here.
+        self.assertIn("the tester disagrees with its characterisation", done.stdout)
+        [record] = self.records()
+        with h5py.File(record) as file:
+            kept = file["entry/process/characterisation"].asstr()[()]
+            self.assertEqual(kept, (self.folder / "tester.toml").read_text(encoding="utf-8"))
+            stored = [text.decode() for text in file["entry/results/findings"][()]]
+        [again] = json.loads(run(CLI, "analyze", record, "--json").stdout)["tests"]
+        self.assertEqual(again["findings"], stored)
+        self.assertEqual(len(stored), 1)
+        (self.folder / "tester.toml").write_text("[tester]\nomega = 3\n", encoding="utf-8")
+        done = run(DAEMON, "--check-config", config, cwd=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("characterisation", done.stderr)
+
     def test_a_replayed_record_gives_the_same_record(self):
         import h5py
         import numpy
