@@ -8,7 +8,7 @@
 
 namespace stickslip::friction {
 
-RegimeVerdict judge_regime(std::size_t slip_count, std::span<const double> log_likelihood_ratios,
+RegimeVerdict judge_regime(std::size_t slip_count, const base::LongColumn<double>& log_likelihood_ratios,
                            bool model_describes) {
   if (slip_count == 0) return {Regime::kSteadySliding, "no fall of the force is a slip", {}};
   if (log_likelihood_ratios.empty()) {
