@@ -49,11 +49,14 @@ void keep_loaded(Part& part) {
   const double rest = part[0].rise_from;
   const double load = part.median([](const Fall& fall) { return fall.peak; }) - rest;
   const double trough = part.median([](const Fall& fall) { return fall.trough; }) - rest;
+  const bool from_rest = trough >= kLoaded * load;
   const auto loading = [&](const Fall& fall) {
-    return fall.peak - rest > kNotLoaded * load || std::abs(fall.trough - rest) > kNotLoaded * load;
+    // Where a trace begins in the middle of a test, the first fall may be seen without its rise.
+    return fall.peak - rest > kNotLoaded * load ||
+           (!from_rest && std::abs(fall.trough - rest) > kNotLoaded * load);
   };
   while (part.size() > 0 && !loading(part[0])) ++part.first;
-  if (trough < kLoaded * load) return;
+  if (!from_rest) return;
   const auto loaded = [&](const Fall& fall) { return std::abs(fall.trough - rest) > kAtRest * load; };
   while (part.size() > 0 && !loaded(part[0])) ++part.first;
   while (part.size() > 0 && !loaded(part.back())) --part.end;

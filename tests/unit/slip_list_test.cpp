@@ -63,6 +63,15 @@ TEST(SlipList, TwoSpikesBeforeTheLoadingAreNoSlip) {
   EXPECT_EQ(kept.front().peak_at, 100.0);
 }
 
+TEST(SlipList, SpikesFarBelowRestBeforeTheLoadingAreNoSlip) {
+  std::vector<Fall> falls = slips(10);
+  falls.front().rise_from = -0.15;
+  falls.insert(falls.begin(), fall(30.0, 0.003, -0.15, 0.0));
+  const base::LongColumn<Fall> kept = kept_slips(falls);
+  ASSERT_EQ(kept.size(), 10U);
+  EXPECT_EQ(kept[0].peak_at, 100.0);
+}
+
 TEST(SlipList, UnloadingIsNoSlip) {
   std::vector<Fall> falls = slips(10);
   falls.push_back(fall(900.0, 0.33, 0.001, kTrough));
