@@ -18,6 +18,8 @@ constexpr double kFirstGammaOver2Omega = 0.022;
 constexpr int kRounds = 3;
 /// A rise that starts below this part of its peak is the loading of a test from rest.
 constexpr double kLoadingStartsBelow = 0.5;
+/// Log of the likelihood ratio up to which a capture is not believed against other evidence: 400 to 1.
+constexpr double kDoubtful = 6.0;
 /// Slips of which the last may be left out because the pull ended in it.
 constexpr std::size_t kFewestForEndOfPull = 4;
 /// Part of the loading that a motor takes to get to its speed.
@@ -75,7 +77,12 @@ double slope_of_loading(const Trace& trace, const Fall& first) {
     if (trace.usable[k] == 0 || trace.usable[k + lag] == 0) continue;
     slopes.push_back((trace.value[k + lag] - trace.value[k]) / (trace.time_s[k + lag] - trace.time_s[k]));
   }
-  if (slopes.empty()) return slope_of_rise(trace, first, 0.0, 1.0);
+  if (slopes.empty()) {
+    for (std::size_t k = std::max<std::size_t>(begin, 1); k <= peak; ++k) {
+      slopes.push_back((trace.value[k] - trace.value[k - 1]) / (trace.time_s[k] - trace.time_s[k - 1]));
+    }
+    return *std::max_element(slopes.begin(), slopes.end());
+  }
   const auto quartile = slopes.begin() + static_cast<std::ptrdiff_t>(3 * slopes.size() / 4);
   std::nth_element(slopes.begin(), quartile, slopes.end());
   return *quartile;
@@ -162,16 +169,16 @@ std::vector<SlipEnd> judge_ends(const Trace& trace, std::span<const Fall> slips,
     const bool to_the_peak = cut && i + 2 == slips.size();
     const double end_at = to_the_peak ? slips[i + 1].peak_at : trough_at(trace, slips[i + 1], shared);
     const std::size_t end = std::min(scan_at(end_at) + 1, trace.size());
-    const double ratio =
+    double ratio =
         capture_log_likelihood_ratio(trace, scan_at(slips[i].peak_at), end, shared, sigma, typical);
+    // The belt may have stopped before that peak.
+    if (to_the_peak && std::abs(ratio) < kDoubtful) ratio = 0.0;
     estimates.log_likelihood_ratios.push_back(ratio);
-    ends[i] = ratio > 0.0 ? SlipEnd::kCaptured : SlipEnd::kFree;
+    if (ratio != 0.0) ends[i] = ratio > 0.0 ? SlipEnd::kCaptured : SlipEnd::kFree;
   }
   return ends;
 }
 
-/// Log of the likelihood ratio up to which a capture is not believed against other evidence: 400 to 1.
-constexpr double kDoubtful = 6.0;
 /// S − K that stays below so many of its standard errors is no stick.
 constexpr double kInsignificant = 3.0;
 
@@ -222,7 +229,7 @@ void lay_windows(const Trace& trace, std::span<const Fall> slips, const SharedPa
   const bool cut = pull_ended_in_last_slip(trace, slips, shared);
   for (std::size_t i = 0; i < slips.size(); ++i) {
     const bool begins = i == 0 || estimates.ends[i - 1] == SlipEnd::kCaptured;
-    if (begins && cut && i + 1 == slips.size()) {
+    if (cut && i + 1 == slips.size() && estimates.ends[i - 1] != SlipEnd::kFree) {
       estimates.window_of_slip.push_back(SlipEstimates::kNoWindow);
       break;
     }
