@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 #include "core/friction/junction.hpp"
 #include "core/friction/uniform_stage.hpp"
@@ -24,6 +26,8 @@ constexpr double kDoubtful = 6.0;
 constexpr std::size_t kFewestForEndOfPull = 4;
 /// Part of the loading that a motor takes to get to its speed.
 constexpr double kRoundedStart = 0.2;
+/// Part by which another guess of the stick rate must differ to be worth a try.
+constexpr double kOtherRate = 0.1;
 /// A window of a free oscillation ends this many periods after the trough of its last slip: by
 /// then the amplitude is below what makes a slip significant.
 constexpr double kTailPeriods = 1.5;
@@ -58,6 +62,18 @@ double slope_of_rise(const Trace& trace, const Fall& fall, double low, double hi
   return length > 0 ? range / (trace.time_s[peak] - trace.time_s[peak - length]) : 0.0;
 }
 
+/// Level from which the force rises to the peak: the median about the turning point, which two spikes there
+/// do not move.
+double level_before(const Trace& trace, const Fall& fall) {
+  constexpr std::size_t kReach = 3;
+  const std::size_t turn = scan_at(fall.peak_at - fall.rise_duration);
+  std::vector<double> levels;
+  for (std::size_t k = turn > kReach ? turn - kReach : 0; k <= turn + kReach && k < trace.size(); ++k) {
+    levels.push_back(trace.value[k]);
+  }
+  return signal::median(levels);
+}
+
 /// Slope of the loading from rest: upper quartile of those over an eighth of it, or from scan to scan if it
 /// is shorter. It begins less steep, while a sled that a fast start of the belt has left behind catches up,
 /// and ends so, where it slips.
@@ -66,8 +82,9 @@ double slope_of_loading(const Trace& trace, const Fall& first) {
   constexpr double kTo = 0.95;
   constexpr std::size_t kParts = 8;
   const std::size_t peak = std::min(scan_at(first.peak_at), trace.size() - 1);
+  const double rest = level_before(trace, first);
   const auto at_least = [&](std::size_t k, double level) {
-    return trace.value[k] >= first.rise_from + level * (first.peak - first.rise_from);
+    return trace.value[k] >= rest + level * (first.peak - rest);
   };
   std::size_t begin = peak;
   while (begin > 0 && at_least(begin - 1, kFrom)) --begin;
@@ -88,20 +105,25 @@ double slope_of_loading(const Trace& trace, const Fall& first) {
   return *quartile;
 }
 
+/// Median over the rises to the peaks: half of a rise is stick, where there is any.
+double slope_of_sticks(const Trace& trace, std::span<const Fall> slips) {
+  std::vector<double> slopes;
+  for (const Fall& slip : slips) slopes.push_back(slope_of_rise(trace, slip, 0.3, 0.7));
+  return signal::median(slopes);
+}
+
 SharedParameters first_guess(const Trace& trace, std::span<const Fall> slips) {
   std::vector<double> half_periods;
-  std::vector<double> slopes;
   for (const Fall& slip : slips) {
     // Maximum and minimum of a damped oscillation are π/ω apart, whatever γ and the drift.
     half_periods.push_back(time_at(trace, slip.trough_at) - time_at(trace, slip.peak_at));
-    slopes.push_back(slope_of_rise(trace, slip, 0.3, 0.7));
   }
   SharedParameters shared;
   shared.omega = std::numbers::pi / signal::median(half_periods);
   shared.gamma = 2.0 * kFirstGammaOver2Omega * shared.omega;
   const Fall& first = slips.front();
-  const bool loaded_from_rest = first.rise_from < kLoadingStartsBelow * first.peak;
-  shared.r = loaded_from_rest ? slope_of_loading(trace, first) : signal::median(slopes);
+  const bool loaded_from_rest = level_before(trace, first) < kLoadingStartsBelow * first.peak;
+  shared.r = loaded_from_rest ? slope_of_loading(trace, first) : slope_of_sticks(trace, slips);
   return shared;
 }
 
@@ -211,10 +233,11 @@ std::size_t boundary(const Fall& before, const Fall& after) {
 std::size_t start_of_loading(const Trace& trace, const Fall& first, const SharedParameters& shared) {
   const std::size_t peak = scan_at(first.peak_at);
   std::size_t start = peak - std::min(static_cast<std::size_t>(first.rise_duration), peak);
-  const double K = 0.5 * (first.peak + first.trough) - first.rise_from;
+  const double rest = level_before(trace, first);
+  const double K = 0.5 * (first.peak + first.trough) - rest;
   const double caught_up = 2.0 * shared.r * shared.r / (shared.oscillator().omega0_squared() * K);
-  const double range = first.peak - first.rise_from;
-  const double level = first.rise_from + std::clamp(caught_up, kRoundedStart * range, range);
+  const double range = first.peak - rest;
+  const double level = rest + std::clamp(caught_up, kRoundedStart * range, range);
   for (std::size_t k = start; k < peak; ++k) {
     if (trace.value[k] < level) start = k + 1;
   }
@@ -266,6 +289,49 @@ bool windows_suffice(const Trace& trace, const std::vector<SlipWindow>& windows)
   });
 }
 
+/// Log-likelihood, in units of a cost, by which other ends must be worse before they are refused, and within
+/// which one end alone is a matter of chance: three parameters more or less are worth 1.5 by themselves.
+constexpr double kWorse = 9.0;
+constexpr double kChance = 3.0;
+/// Log-likelihood ratio of an end that is a matter of chance.
+constexpr double kUnsure = 0.1;
+
+std::size_t different(const std::vector<SlipEnd>& a, const std::vector<SlipEnd>& b) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) count += a[i] != b[i] ? 1U : 0U;
+  return count;
+}
+
+/// Single slips have turned over the ends that a fit was based on: does the fit of the whole bear them out? A
+/// spike that was not found makes a slip look like another; all other slips know better what it was.
+/// \param before  the fit, converged. \param after  with the new ends; where it is worse it becomes `before`
+/// with what the whole says of the ends in question.
+/// \return whether `after` was kept.
+bool weigh_new_ends(const SlipEstimates& before, SlipEstimates& after) {
+  // Windows may have grown or shrunk.
+  const double expected = before.fit.cost * static_cast<double>(after.fit.scan_count) /
+                          static_cast<double>(before.fit.scan_count);
+  const double worse =
+      after.fit.converged ? after.fit.cost - expected : std::numeric_limits<double>::infinity();
+  if (worse < kChance) return true;
+  const std::size_t count = different(before.ends, after.ends);
+  const auto set = [&](double ratio, const std::vector<SlipEnd>& ends) {
+    for (std::size_t i = 0; i < after.log_likelihood_ratios.size(); ++i) {
+      if (before.ends[i] == after.ends[i]) continue;
+      after.log_likelihood_ratios[i] = ends[i] == SlipEnd::kCaptured ? ratio : -ratio;
+    }
+  };
+  if (worse < kWorse) {
+    if (count == 1) set(kUnsure, after.ends);
+    return true;
+  }
+  set(std::isfinite(worse) ? worse / static_cast<double>(count) : kDoubtful, before.ends);
+  std::vector<double> ratios = std::move(after.log_likelihood_ratios);
+  after = before;
+  after.log_likelihood_ratios = std::move(ratios);
+  return false;
+}
+
 /// Rounds of deciding which slips were captured and fitting what follows from it, from a first guess.
 /// \param found  ends to begin with; empty: those that the guess says.
 SlipEstimates rounds(const Trace& trace, std::span<const Fall> slips, double sigma, const SharedPrior& prior,
@@ -277,14 +343,14 @@ SlipEstimates rounds(const Trace& trace, std::span<const Fall> slips, double sig
                         ? fit_slips(trace, estimates.windows, shared, sigma, prior)
                         : SlipFit{};
   };
-  std::vector<SlipEnd> before;
   for (int round = 0; round < kRounds; ++round) {
+    const SlipEstimates before = estimates;
     if (round > 0 || found.empty()) found = judge_ends(trace, slips, shared, sigma, estimates);
-    if (round > 0 && found == before) break;
-    before = found;
+    if (round > 0 && found == before.ends) break;
     estimates.ends = found;
     fit();
     if (free_the_doubtful(estimates)) fit();
+    if (round > 0 && !weigh_new_ends(before, estimates)) break;
     if (!estimates.fit.converged) break;
     shared = estimates.fit.shared;
   }
@@ -347,20 +413,25 @@ SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, do
                              const SharedPrior& prior) {
   const SharedParameters guess = first_guess(trace, slips);
   SlipEstimates estimates = rounds(trace, slips, sigma, prior, guess);
+  const auto try_too = [&](const SharedParameters& start, std::vector<SlipEnd> ends) {
+    SlipEstimates other = rounds(trace, slips, sigma, prior, start, std::move(ends));
+    if (better(other, estimates)) estimates = std::move(other);
+  };
   if (!estimates.fit.converged) {
     const auto surer = guess_from_sure_slips(trace, slips, sigma, prior, estimates);
-    if (surer) {
-      SlipEstimates again = rounds(trace, slips, sigma, prior, *surer);
-      if (again.fit.converged) estimates = std::move(again);
-    }
+    if (surer) try_too(*surer, {});
   }
-  if (!describes_well(estimates, sigma)) {
-    // A rough first guess may call stick-slip near the threshold an oscillation without damping, which fits
-    // not too badly: then begin from the other end, as if each slip had been captured.
-    std::vector<SlipEnd> ends(slips.size(), SlipEnd::kCaptured);
-    ends.back() = SlipEnd::kUnknown;
-    SlipEstimates other = rounds(trace, slips, sigma, prior, guess, std::move(ends));
-    if (better(other, estimates)) estimates = std::move(other);
+  // A rough first guess may call stick-slip near the threshold an oscillation without damping, which fits
+  // not too badly: then begin from the other end, as if each slip had been captured.
+  std::vector<SlipEnd> captured(slips.size(), SlipEnd::kCaptured);
+  captured.back() = SlipEnd::kUnknown;
+  if (!describes_well(estimates, sigma)) try_too(guess, captured);
+  // Spikes in the loading may have spoilt its slope; the sticks between the slips have one too.
+  SharedParameters other_rate = guess;
+  other_rate.r = slope_of_sticks(trace, slips);
+  if (!describes_well(estimates, sigma) && std::abs(other_rate.r - guess.r) > kOtherRate * guess.r) {
+    try_too(other_rate, {});
+    if (!describes_well(estimates, sigma)) try_too(other_rate, captured);
   }
   estimates.drift = trace.drift;
   if (estimates.fit.converged) {
