@@ -11,7 +11,7 @@
 #include "core/friction/cycle_statistics.hpp"
 #include "core/friction/model_results.hpp"
 #include "core/friction/regime_rule.hpp"
-#include "core/friction/slip_estimator.hpp"
+#include "core/friction/sections.hpp"
 #include "core/friction/slip_list.hpp"
 #include "core/friction/traditional.hpp"
 #include "core/signal/statistics.hpp"
@@ -44,8 +44,7 @@ void take_live_estimate(const base::LongColumn<LiveCycle>& live, std::size_t& ne
 /// Turning points must not follow noise before the noise is known.
 double hysteresis(double sigma) { return SlipRule::kHysteresisSigmas * sigma; }
 
-/// \param scratch  folder for what is being collected, so that the result grows once.
-std::vector<Fall> find_slips(const Trace& trace, double sigma, const std::filesystem::path& scratch) {
+base::LongColumn<Fall> find_slips(const Trace& trace, double sigma, const std::filesystem::path& scratch) {
   FallFinder finder;
   SlipRule rule;
   base::LongColumn<Fall> slips{scratch};
@@ -54,11 +53,18 @@ std::vector<Fall> find_slips(const Trace& trace, double sigma, const std::filesy
       slips.push_back(*fall);
     }
   }
-  std::vector<Fall> all;
-  all.reserve(slips.size());
-  for (const Fall& slip : std::as_const(slips)) all.push_back(slip);
-  keep_slips(all);
-  return all;
+  return kept_slips(std::move(slips), scratch);
+}
+
+/// What the model has found, beside what needs no model.
+void take_model_results(const TestResults& model, TestResults& results) {
+  std::vector<const Estimate*> from;
+  for_each_result(model, [&](const ResultName&, const Estimate& estimate) { from.push_back(&estimate); });
+  std::size_t i = 0;
+  for_each_result(results, [&](const ResultName&, Estimate& estimate) {
+    const Estimate& found = *from[i++];
+    if (found.value || !found.reason.empty()) estimate = found;
+  });
 }
 
 /// A stub of a test: without the noise there is no telling what is a slip.
@@ -137,7 +143,7 @@ TestResults TestAnalysis::finish() {
     return results;
   }
   const double sigma = signal::scan_noise(trace.value, noise_floor(trace.value, settings_.step_coefficient));
-  const std::vector<Fall> slips = find_slips(trace, sigma, settings_.scratch_folder);
+  const base::LongColumn<Fall> slips = find_slips(trace, sigma, settings_.scratch_folder);
   results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
   const TraditionalCoefficients traditional =
       traditional_coefficients(trace, slips, settings_.method, settings_.tester.pull_speed_m_per_s);
@@ -151,21 +157,20 @@ TestResults TestAnalysis::finish() {
     no_model_results("no slip", results);
   } else {
     if (settings_.remove_drift) trace.drift = significant_drift(trace, slips);
-    const SlipEstimates estimates = estimate(trace, slips, sigma);
+    TestEstimates estimates = estimate(trace, slips, sigma);
     const RegimeVerdict verdict =
-        judge_regime(slips.size(), estimates.log_likelihood_ratios, model_describes(estimates, sigma));
+        judge_regime(slips.size(), estimates.log_likelihood_ratios, estimates.model_describes);
     results.regime = verdict.regime;
     results.regime_reason = verdict.reason;
-    const auto captured = std::count(estimates.ends.begin(), estimates.ends.end(), SlipEnd::kCaptured);
     results.stick_cycle_count = verdict.regime == Regime::kUndecided
                                     ? Estimate::none("undecided: " + verdict.reason)
-                                    : Estimate::of(static_cast<double>(captured));
-    model_results(slips, estimates, settings_.tester, sigma, results);
+                                    : Estimate::of(static_cast<double>(estimates.captured));
+    take_model_results(estimates.results, results);
     if (settings_.estimator != EstimatorTier::kFit) means_.fill(results);
     if (verdict.transition_slip) {
       results.transition_time = Estimate::of(time_at(trace, slips[*verdict.transition_slip].peak_at));
     }
-    keep_cycles(cycle_table(trace, slips, estimates), slips);
+    keep_cycles(estimates.cycles, slips);
   }
   period_results(trace, slips, results);
   results.drift_rate = drift_of(trace, slips);
@@ -202,17 +207,20 @@ Trace TestAnalysis::despiked_trace() {
   return trace;
 }
 
-SlipEstimates TestAnalysis::estimate(const Trace& trace, const std::vector<Fall>& slips, double sigma) {
-  SlipEstimates alone = estimate_slips(trace, slips, sigma);
-  if (model_describes(alone, sigma)) tester_ = alone.tester();
+TestEstimates TestAnalysis::estimate(const Trace& trace, const base::LongColumn<Fall>& slips, double sigma) {
+  const auto estimates = [&](const SharedPrior& prior) {
+    return estimate_in_sections(trace, slips, sigma, prior, settings_.tester, settings_.scratch_folder);
+  };
+  TestEstimates alone = estimates({});
+  if (alone.model_describes) tester_ = alone.tester;
   if (settings_.prior.empty()) return alone;
-  SlipEstimates with = estimate_slips(trace, slips, sigma, settings_.prior);
-  if (!settings_.prior.coupling || !tester_ || !with.fit.converged) return with;
-  tester_check_ = check_tester(*tester_, with.tester(), *settings_.prior.coupling, settings_.tester);
-  return tester_check_->used() ? with : alone;
+  TestEstimates with = estimates(settings_.prior);
+  if (!settings_.prior.coupling || !tester_ || !with.tester) return with;
+  tester_check_ = check_tester(*tester_, *with.tester, *settings_.prior.coupling, settings_.tester);
+  return tester_check_->used() ? std::move(with) : std::move(alone);
 }
 
-void TestAnalysis::keep_cycles(const std::vector<Cycle>& cycles, const std::vector<Fall>& slips) {
+void TestAnalysis::keep_cycles(const base::LongColumn<Cycle>& cycles, const base::LongColumn<Fall>& slips) {
   const base::LongColumn<base::ScanIndex>& indices = indices_;
   const base::LongColumn<std::uint8_t>& saturated = saturated_;
   cycles_ = base::LongColumn<Cycle>{settings_.scratch_folder};
