@@ -42,6 +42,8 @@ bool read_travel(std::string_view text, std::optional<friction::TravelWindow>& w
          read_number(text.substr(split + 1), window->to_m) && window->from_m < window->to_m;
 }
 
+constexpr std::string_view kEstimatorKey = " estimator=";
+
 bool read_setting(std::string_view key, std::string_view value, friction::Method& method) {
   if (key == "static_slip") return read_count(value, method.static_slip);
   if (key == "kinetic_cycles") return read_count(value, method.kinetic_cycles);
@@ -50,6 +52,8 @@ bool read_setting(std::string_view key, std::string_view value, friction::Method
   if (key == "sled_area") return read_number(value, method.sled_area_m2.emplace());
   if (key == "speed") return read_nominal(value, method.pull_speed_m_per_s);
   if (key == "replicates") return read_count(value, method.replicates.emplace());
+  // No part of the method: estimator_from_text() reads it.
+  if (key == "estimator") return friction::estimator_tier_from_name(value).has_value();
   return false;
 }
 
@@ -93,6 +97,23 @@ base::Result<friction::Method> method_from_text(std::string_view text) {
         base::one_line(text, 200));
   }
   return method;
+}
+
+std::string with_estimator(std::string text, friction::EstimatorTier tier) {
+  if (const std::size_t at = text.find(kEstimatorKey); at != std::string::npos) {
+    const std::size_t end = text.find(' ', at + 1);
+    text.erase(at, end == std::string::npos ? end : end - at);
+  }
+  if (tier == friction::EstimatorTier::kFit) return text;
+  return text + std::string{kEstimatorKey} + std::string{name(tier)};
+}
+
+friction::EstimatorTier estimator_from_text(std::string_view text) {
+  const std::size_t at = text.find(kEstimatorKey);
+  if (at == std::string_view::npos) return friction::EstimatorTier::kFit;
+  const std::string_view rest = text.substr(at + kEstimatorKey.size());
+  return friction::estimator_tier_from_name(rest.substr(0, rest.find(' ')))
+      .value_or(friction::EstimatorTier::kFit);
 }
 
 }  // namespace stickslip::daemon

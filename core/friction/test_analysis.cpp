@@ -31,6 +31,16 @@ double noise_floor(const base::LongColumn<double>& values, double step_coefficie
       {signal::kRoundingSigma * step, kSmallestRelativeNoise * largest, std::numeric_limits<double>::min()});
 }
 
+/// S − K of the cycle as the live side found it; NaN where it saw none there.
+/// \param next  where to look on, from cycle to cycle.
+void take_live_estimate(const base::LongColumn<LiveCycle>& live, std::size_t& next, Cycle& cycle) {
+  const double half_s = 0.5 * (std::isnan(cycle.period_s) ? 1.0 : cycle.period_s);
+  while (next < live.size() && live[next].cycle.peak_time_s < cycle.peak_time_s - half_s) ++next;
+  const bool found = next < live.size() && live[next].cycle.peak_time_s < cycle.peak_time_s + half_s;
+  cycle.delta_mu = found ? live[next].cycle.delta_mu : std::numeric_limits<double>::quiet_NaN();
+  cycle.delta_mu_standard_error = std::numeric_limits<double>::quiet_NaN();
+}
+
 /// Turning points must not follow noise before the noise is known.
 double hysteresis(double sigma) { return SlipRule::kHysteresisSigmas * sigma; }
 
@@ -76,7 +86,11 @@ TestAnalysis::TestAnalysis(const AnalysisSettings& settings)
       indices_(settings.scratch_folder),
       coefficients_(settings.scratch_folder),
       saturated_(settings.scratch_folder),
-      live_noise_(std::max(signal::kRoundingSigma * settings.step_coefficient, kSmallestRelativeNoise)) {
+      live_({settings.scan_rate_Hz, settings.step_coefficient, settings.estimator, settings.prior,
+             settings.despike}),
+      live_cycles_(settings.scratch_folder) {
+  constexpr std::size_t kRoom = 100;
+  new_cycles_.reserve(kRoom);
   if (!(settings.scan_rate_Hz > 0.0) || !std::isfinite(settings.scan_rate_Hz)) {
     throw std::invalid_argument(fmt::format("scan rate {} Hz must be positive", settings.scan_rate_Hz));
   }
@@ -86,41 +100,34 @@ void TestAnalysis::add(base::ScanIndex index, double coefficient, bool saturated
   indices_.push_back(index);
   coefficients_.push_back(coefficient);
   saturated_.push_back(saturated ? 1 : 0);
-  live_noise_.add(coefficient);
-  if (!settings_.despike) {
-    follow_live({coefficient, false});
-  } else if (const auto scan = live_despiker_.add(coefficient, live_noise_.sigma())) {
-    follow_live(*scan);
-  }
+  if (const auto cycle = live_.add(coefficient, saturated)) keep_live(*cycle);
 }
 
-void TestAnalysis::follow_live(const signal::DespikedScan& scan) {
-  const double sigma = live_noise_.known() ? live_noise_.sigma() : std::numeric_limits<double>::infinity();
-  const auto fall = live_falls_.add(scan.value, hysteresis(sigma));
-  if (!fall || !live_rule_.is_slip(*fall, sigma)) return;
-  Cycle cycle;
-  cycle.number = live_cycle_count_++;
-  cycle.first_scan = indices_.front() + std::lround(fall->peak_at);
-  cycle.peak_time_s = fall->peak_at / settings_.scan_rate_Hz;
-  cycle.peak = fall->peak;
-  cycle.trough = fall->trough;
-  cycle.force_drop = fall->drop();
-  for (double* unknown :
-       {&cycle.onset_time_s, &cycle.capture_time_s, &cycle.period_s, &cycle.stick_time_s, &cycle.slip_time_s,
-        &cycle.delta_mu, &cycle.delta_mu_standard_error, &cycle.slip_speed_ratio}) {
-    *unknown = std::numeric_limits<double>::quiet_NaN();
-  }
-  new_cycles_.push_back(cycle);
+void TestAnalysis::keep_live(const LiveCycle& cycle) {
+  new_cycles_.push_back(cycle.cycle);
+  new_cycles_.back().first_scan += indices_.front();
+  if (settings_.estimator == EstimatorTier::kFit) return;
+  means_.add(cycle);
+  live_cycles_.push_back(cycle);
+}
+
+void TestAnalysis::end_live() {
+  if (const auto cycle = live_.end()) keep_live(*cycle);
 }
 
 void TestAnalysis::gap(base::ScanIndex first, std::int64_t count) {
   gaps_.push_back({first, count});
-  live_noise_.gap();
+  live_.gap(count);
 }
 
-std::vector<Cycle> TestAnalysis::take_new_cycles() { return std::exchange(new_cycles_, {}); }
+std::vector<Cycle> TestAnalysis::take_new_cycles() {
+  std::vector<Cycle> taken = new_cycles_;
+  new_cycles_.clear();  // Their room stays.
+  return taken;
+}
 
 TestResults TestAnalysis::finish() {
+  end_live();
   TestResults results;
   std::int64_t lost = 0;
   for (const Gap& gap : gaps_) lost += gap.count;
@@ -159,6 +166,7 @@ TestResults TestAnalysis::finish() {
                                     ? Estimate::none("undecided: " + verdict.reason)
                                     : Estimate::of(static_cast<double>(estimates.captured));
     take_model_results(estimates.results, results);
+    if (settings_.estimator != EstimatorTier::kFit) means_.fill(results);
     if (verdict.transition_slip) {
       results.transition_time = Estimate::of(time_at(trace, slips[*verdict.transition_slip].peak_at));
     }
@@ -216,6 +224,7 @@ void TestAnalysis::keep_cycles(const base::LongColumn<Cycle>& cycles, const base
   const base::LongColumn<base::ScanIndex>& indices = indices_;
   const base::LongColumn<std::uint8_t>& saturated = saturated_;
   cycles_ = base::LongColumn<Cycle>{settings_.scratch_folder};
+  std::size_t live = 0;
   for (std::size_t i = 0; i < cycles.size(); ++i) {
     Cycle cycle = cycles[i];
     const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
@@ -235,6 +244,7 @@ void TestAnalysis::keep_cycles(const base::LongColumn<Cycle>& cycles, const base
                     [](std::uint8_t flag) { return flag != 0; })) {
       cycle.flags |= kCycleIsSaturated;
     }
+    if (settings_.estimator != EstimatorTier::kFit) take_live_estimate(live_cycles_, live, cycle);
     cycles_.push_back(cycle);
   }
 }

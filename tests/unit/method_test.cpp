@@ -120,6 +120,20 @@ TEST(MethodText, ReadsBackToTheSameMethodForEveryShippedOne) {
   EXPECT_EQ(daemon::method_from_text(daemon::method_text(third)).value(), third);
 }
 
+TEST(MethodText, CarriesTheEstimatorUnlessItIsTheFit) {
+  using friction::EstimatorTier;
+  const std::string plain = daemon::method_text({});
+  EXPECT_EQ(daemon::with_estimator(plain, EstimatorTier::kFit), plain);
+  EXPECT_EQ(daemon::estimator_from_text(plain), EstimatorTier::kFit);
+  const std::string peak = daemon::with_estimator(plain, EstimatorTier::kPeak);
+  EXPECT_EQ(peak, plain + " estimator=peak");
+  EXPECT_EQ(daemon::estimator_from_text(peak), EstimatorTier::kPeak);
+  EXPECT_EQ(daemon::method_from_text(peak).value(), friction::Method{});
+  EXPECT_EQ(daemon::with_estimator(peak, EstimatorTier::kInterpolated), plain + " estimator=interpolated");
+  EXPECT_EQ(daemon::with_estimator(peak, EstimatorTier::kFit), plain);
+  EXPECT_FALSE(daemon::method_from_text(plain + " estimator=best"));
+}
+
 TEST(MethodText, RefusesWhatIsNoMethod) {
   for (const char* text : {"penner-1995", "x kinetic_cycles=0", "x kinetic_cycles=3x", " kinetic_cycles=3",
                            "x kinetic_travel=0.06", "x kinetic_travel=0.06:0.01", "x kinetic_cycles=3 speed=",
