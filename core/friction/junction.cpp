@@ -67,13 +67,15 @@ class FreeCourse {
 /// The captured course with its events worked out once.
 class CapturedCourse {
  public:
-  CapturedCourse(const Parameters& p, const SharedParameters& shared, double typical_delta_mu)
-      : r_(shared.r), first_{p[0], p[1], p[2], shared.oscillator()} {
-    capture_s_ = capture_time_s(first_, r_).value_or(first_.rise_end_time_s());
+  /// \param belt  outlives this. \param start_s  time of the trace at τ = 0.
+  CapturedCourse(const Parameters& p, const SharedParameters& shared, double typical_delta_mu,
+                 const BeltCourse& belt, double start_s)
+      : r_(shared.r), belt_(belt), start_s_(start_s), first_{p[0], p[1], p[2], shared.oscillator()} {
+    capture_s_ = capture_time_s(first_, belt, r_, start_s).value_or(first_.rise_end_time_s());
     at_capture_ = first_.value(capture_s_);
     const double S = std::max({p[3], p[0], at_capture_});
-    onset_s_ = capture_s_ + (S - at_capture_) / r_;
-    second_ = SlipWaveform{p[0], S - p[0], r_, shared.oscillator()};
+    onset_s_ = capture_s_ + belt.climbing_time_s(r_, start_s + capture_s_, S - at_capture_);
+    second_ = SlipWaveform{p[0], S - p[0], belt.stick_rate(r_, start_s + onset_s_), shared.oscillator()};
     surprise_ = std::log(std::max((S - p[0]) / typical_delta_mu, kLeastRatio)) / kLogScatter;
   }
 
@@ -82,12 +84,14 @@ class CapturedCourse {
 
   [[nodiscard]] double value(double tau_s) const {
     if (tau_s <= capture_s_) return first_.value(tau_s);
-    if (tau_s <= onset_s_) return at_capture_ + r_ * (tau_s - capture_s_);
+    if (tau_s <= onset_s_) return at_capture_ + belt_.climb(r_, start_s_ + capture_s_, tau_s - capture_s_);
     return second_.value(tau_s - onset_s_);
   }
 
  private:
   double r_;
+  const BeltCourse& belt_;
+  double start_s_;
   SlipWaveform first_;
   SlipWaveform second_;
   double capture_s_ = 0.0;
@@ -178,9 +182,11 @@ double capture_log_likelihood_ratio(const Trace& trace, std::size_t first, std::
       },
       free_start, free_steps, sigma);
 
-  const auto captured = [&](const Parameters& p) { return CapturedCourse{p, shared, typical_delta_mu}; };
+  const auto captured = [&](const Parameters& p) {
+    return CapturedCourse{p, shared, typical_delta_mu, trace.belt, trace.time_s[first]};
+  };
   // Two starts: S as high as the swing says, and just above K; the cost has both valleys.
-  const double amplitude_of_belt = shared.r / shared.omega;
+  const double amplitude_of_belt = trace.belt.stick_rate(shared.r, trace.time_s[first]) / shared.omega;
   const double D = std::sqrt(std::max(0.25 * swing * swing - amplitude_of_belt * amplitude_of_belt, 0.0));
   const Eigen::Vector4d steps{step, step, step * shared.omega, step};
   double captured_cost = 0.0;

@@ -46,7 +46,7 @@ NormalEquations assemble(const Trace& trace, const std::vector<SlipWindow>& wind
   NormalEquations equations;
   equations.slips.resize(windows.size());
   for (std::size_t i = 0; i < windows.size(); ++i) {
-    const SlipModel model{shared, windows[i].slip, windows[i].captured};
+    const SlipModel model{shared, windows[i].slip, windows[i].captured, trace.belt};
     SlipBlock& block = equations.slips[i];
     for (std::size_t k = windows[i].first; k < windows[i].end; ++k) {
       if (trace.usable[k] == 0) continue;
@@ -71,7 +71,7 @@ double cost_of(const Trace& trace, const std::vector<SlipWindow>& windows, const
                double sigma, const SharedPrior& prior) {
   double cost = prior.at(shared).cost;
   for (const SlipWindow& window : windows) {
-    const SlipModel model{shared, window.slip, window.captured};
+    const SlipModel model{shared, window.slip, window.captured, trace.belt};
     for (std::size_t k = window.first; k < window.end; ++k) {
       if (trace.usable[k] != 0)
         cost += huber_cost((trace.level(k) - model.at(trace.time_s[k]).value) / sigma);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/friction/belt_start.hpp"
 #include "core/friction/cycle_statistics.hpp"
 #include "core/friction/model_results.hpp"
 #include "core/friction/regime_rule.hpp"
@@ -49,6 +50,39 @@ std::vector<Fall> find_slips(const Trace& trace, double sigma, const std::filesy
   for (const Fall& slip : std::as_const(slips)) all.push_back(slip);
   keep_slips(all);
   return all;
+}
+
+/// Lays the plan over the trace and forgets the falls outside its pulls: one that begins as the belt stops or
+/// turns is no slip.
+void follow_plan(const PullSpeed& plan, double gravity_m_per_s2, double scan_rate_Hz, Trace& trace,
+                 std::vector<Fall>& slips) {
+  constexpr double kScansBeforeStop = 1.5;  // The peak is interpolated between scans.
+  if (slips.empty()) return;
+  const std::optional<BeltCourse> belt = belt_from_loading(trace, slips.front(), plan, gravity_m_per_s2);
+  if (!belt) return;
+  trace.belt = *belt;
+  std::erase_if(slips, [&](const Fall& slip) {
+    const double peak_s = time_at(trace, slip.peak_at);
+    const std::size_t pull = trace.belt.pull_of(peak_s);
+    return peak_s < trace.belt.pull_start_s(pull) ||
+           peak_s > trace.belt.pull_end_s(pull) - kScansBeforeStop / scan_rate_Hz;
+  });
+}
+
+/// The ratios of those slips whose end can be told, and which slips they are.
+struct DecidedEnds {
+  std::vector<double> log_likelihood_ratios;
+  std::vector<std::size_t> slips;
+};
+
+DecidedEnds decided_ends(const SlipEstimates& estimates) {
+  DecidedEnds decided;
+  for (std::size_t i = 0; i < estimates.log_likelihood_ratios.size(); ++i) {
+    if (estimates.ends[i] == SlipEnd::kUnknown) continue;
+    decided.log_likelihood_ratios.push_back(estimates.log_likelihood_ratios[i]);
+    decided.slips.push_back(i);
+  }
+  return decided;
 }
 
 /// A stub of a test: without the noise there is no telling what is a slip.
@@ -130,7 +164,13 @@ TestResults TestAnalysis::finish() {
     return results;
   }
   const double sigma = signal::scan_noise(trace.value, noise_floor(trace.value, settings_.step_coefficient));
-  const std::vector<Fall> slips = find_slips(trace, sigma, settings_.scratch_folder);
+  std::vector<Fall> slips = find_slips(trace, sigma, settings_.scratch_folder);
+  // What the tester did counts before what the method asks.
+  const auto& plan =
+      settings_.tester.speed_course ? settings_.tester.speed_course : settings_.method.speed_course;
+  if (plan) {
+    follow_plan(*plan, settings_.tester.gravity_m_per_s2, settings_.scan_rate_Hz, trace, slips);
+  }
   results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
   const TraditionalCoefficients traditional =
       traditional_coefficients(trace, slips, settings_.method, settings_.tester.pull_speed_m_per_s);
@@ -144,9 +184,11 @@ TestResults TestAnalysis::finish() {
     no_model_results("no slip", results);
   } else {
     if (settings_.remove_drift) trace.drift = significant_drift(trace, slips);
+    trace.belt.take_off_drift(trace.drift.rate_per_s);
     const SlipEstimates estimates = estimate(trace, slips, sigma);
+    const DecidedEnds decided = decided_ends(estimates);
     const RegimeVerdict verdict =
-        judge_regime(slips.size(), estimates.log_likelihood_ratios, model_describes(estimates, sigma));
+        judge_regime(slips.size(), decided.log_likelihood_ratios, model_describes(estimates, sigma));
     results.regime = verdict.regime;
     results.regime_reason = verdict.reason;
     const auto captured = std::count(estimates.ends.begin(), estimates.ends.end(), SlipEnd::kCaptured);
@@ -155,7 +197,8 @@ TestResults TestAnalysis::finish() {
                                     : Estimate::of(static_cast<double>(captured));
     model_results(slips, estimates, settings_.tester, sigma, results);
     if (verdict.transition_slip) {
-      results.transition_time = Estimate::of(time_at(trace, slips[*verdict.transition_slip].peak_at));
+      const Fall& slip = slips[decided.slips[*verdict.transition_slip]];
+      results.transition_time = Estimate::of(time_at(trace, slip.peak_at));
     }
     keep_cycles(cycle_table(trace, slips, estimates), slips);
   }
@@ -169,6 +212,7 @@ Trace TestAnalysis::despiked_trace() {
   Trace trace{base::LongColumn<double>{scratch},
               base::LongColumn<double>{scratch},
               base::LongColumn<std::uint8_t>{scratch},
+              {},
               {}};
   const double sigma =
       signal::scan_noise(coefficients_, noise_floor(coefficients_, settings_.step_coefficient));

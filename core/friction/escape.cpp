@@ -1,0 +1,170 @@
+#include "core/friction/escape.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+
+#include <boost/math/tools/toms748_solve.hpp>
+
+#include "core/friction/capture.hpp"
+#include "core/friction/threshold.hpp"
+
+namespace stickslip::friction {
+namespace {
+
+/// φ(z)/Φ(z), the slope of ln Φ.
+double slope_of_log_probability(double z) noexcept {
+  constexpr double kAsymptotic = -30.0;  // Below, Φ nears the least double, and the ratio is −z to 0.1 %.
+  if (z < kAsymptotic) return -z;
+  const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
+  return density / (0.5 * std::erfc(-z / std::numbers::sqrt2));
+}
+
+struct Slopes {
+  double first = 0.0;
+  double second = 0.0;
+};
+
+/// Of the log-likelihood by m, the mean of the logarithm of the slips' threshold speeds; concave.
+Slopes slopes_at(std::span<const EscapeTrial> trials, double m, double sigma) {
+  Slopes slopes;
+  for (const EscapeTrial& trial : trials) {
+    const double sign = trial.captured ? 1.0 : -1.0;
+    const double z = sign * (m - std::log(trial.critical_speed_m_per_s)) / sigma;
+    const double slope = slope_of_log_probability(z);
+    slopes.first += sign * slope / sigma;
+    slopes.second -= slope * (slope + z) / (sigma * sigma);
+  }
+  return slopes;
+}
+
+struct Likeliest {
+  double log_mean = 0.0;   ///< m
+  double curvature = 0.0;  ///< −∂²/∂m²
+  /// Threshold speed of the mean of a log-normal S − K.
+  [[nodiscard]] double speed_m_per_s(double sigma) const { return std::exp(log_mean + 0.5 * sigma * sigma); }
+};
+
+Likeliest likeliest(std::span<const EscapeTrial> trials, double sigma) {
+  const auto [least, most] =
+      std::minmax_element(trials.begin(), trials.end(), [](const EscapeTrial& a, const EscapeTrial& b) {
+        return a.critical_speed_m_per_s < b.critical_speed_m_per_s;
+      });
+  // The maximum cannot lie further out than where even one trial outweighs all others.
+  const double margin = sigma * std::sqrt(2.0 * std::log(static_cast<double>(trials.size()) + 1.0)) + sigma;
+  double low = std::log(least->critical_speed_m_per_s) - margin;
+  double high = std::log(most->critical_speed_m_per_s) + margin;
+  for (int i = 0; i < 80; ++i) {
+    const double middle = 0.5 * (low + high);
+    (slopes_at(trials, middle, sigma).first > 0.0 ? low : high) = middle;
+  }
+  const double m = 0.5 * (low + high);
+  return {m, -slopes_at(trials, m, sigma).second};
+}
+
+/// Logarithm of the gap between the fastest slip that was captured and the slowest above it that was not.
+double gap_of(std::span<const EscapeTrial> trials) {
+  double captured = 0.0;
+  double escaped = std::numeric_limits<double>::infinity();
+  for (const EscapeTrial& trial : trials) {
+    if (trial.captured) captured = std::max(captured, trial.critical_speed_m_per_s);
+  }
+  for (const EscapeTrial& trial : trials) {
+    if (!trial.captured && trial.critical_speed_m_per_s >= captured) {
+      escaped = std::min(escaped, trial.critical_speed_m_per_s);
+    }
+  }
+  return std::isfinite(escaped) ? std::log(escaped / captured) : 0.0;
+}
+
+}  // namespace
+
+EscapeSpeeds escape_speeds(std::span<const EscapeTrial> trials, double scatter) {
+  EscapeSpeeds speeds;
+  const auto escape =
+      std::find_if(trials.begin(), trials.end(), [](const EscapeTrial& trial) { return !trial.captured; });
+  const auto before = std::count_if(trials.begin(), escape, [](const auto& trial) { return trial.captured; });
+  if (escape == trials.end() || before == 0) {
+    const std::string reason =
+        escape == trials.end()
+            ? "every slip stuck again: the threshold speed was not reached"
+            : fmt::format("the first slip did not stick again: the threshold speed lies below {:.4g} m/s",
+                          escape->onset_speed_m_per_s);
+    return {Estimate::none(reason), Estimate::none(reason)};
+  }
+  speeds.first_escape = Estimate::of(escape->onset_speed_m_per_s);
+  const double of_paper = std::sqrt(std::log1p(scatter * scatter));
+  const auto total = [&](double paper) { return std::hypot(paper, gap_of(trials) / std::sqrt(12.0)); };
+  const double sigma = total(of_paper);
+  if (!(sigma > 0.0)) {
+    speeds.of_mean_paper = Estimate::none("slips at one speed ended in both ways without scatter");
+    return speeds;
+  }
+  // Mean of the paper, not of what cannot be told of the speed: the half variance is the paper's alone.
+  const auto speed = [&](double paper) { return likeliest(trials, total(paper)).speed_m_per_s(paper); };
+  const double best = speed(of_paper);
+  const double of_place = best / std::sqrt(likeliest(trials, sigma).curvature);
+  const double step = of_paper / std::sqrt(2.0 * std::max(static_cast<double>(trials.size()) - 1.0, 1.0));
+  const double of_scatter = 0.5 * (speed(of_paper + step) - speed(of_paper - step));
+  speeds.of_mean_paper = Estimate::of(best, std::hypot(of_place, of_scatter));
+  return speeds;
+}
+
+std::vector<EscapeTrial> escape_trials(const SlipEstimates& estimates) {
+  std::vector<EscapeTrial> trials;
+  const SharedParameters& shared = estimates.fit.shared;
+  const Oscillator oscillator = shared.oscillator();
+  const BeltCourse& belt = estimates.belt;
+  if (belt.is_constant() || !(shared.gamma > 0.0)) return trials;
+  const double Q_th = Q_threshold(oscillator.gamma_over_2omega());
+  for (std::size_t i = 0; i < estimates.ends.size(); ++i) {
+    const bool begins = i == 0 || estimates.window_of_slip[i] != estimates.window_of_slip[i - 1];
+    if (!begins || estimates.ends[i] == SlipEnd::kUnknown) continue;
+    const double onset_s = estimates.windows[estimates.window_of_slip[i]].slip.onset_s;
+    const double rate = belt.stick_rate(shared.r, onset_s);
+    const double share = belt.acceleration_share(shared.r, oscillator.omega0_squared(), onset_s);
+    // How much faster than the belt c′ gets with this S − K.
+    const auto excess = [&](double delta_mu) {
+      const SlipWaveform slip{0.0, delta_mu - share, rate, oscillator};
+      const double t_s = deciding_time_s(slip, belt, shared.r, onset_s);
+      return slip.rate(t_s) - belt.stick_rate(shared.r, onset_s + t_s);
+    };
+    const double steady = rate / (Q_th * oscillator.omega_rad_per_s());
+    const double low = 0.25 * steady;
+    const double high = 4.0 * steady;
+    const double at_low = excess(low);
+    const double at_high = excess(high);
+    if (!(at_low < 0.0 && at_high > 0.0)) continue;  // The belt is about to stop: no speed decides there.
+    std::uintmax_t iterations = 100;
+    const auto root = boost::math::tools::toms748_solve(
+        excess, low, high, at_low, at_high, boost::math::tools::eps_tolerance<double>(40), iterations);
+    const double speed_m_per_s = belt.plan().speed_m_per_s(onset_s - belt.start_s());
+    trials.push_back({speed_m_per_s, speed_m_per_s * 0.5 * (root.first + root.second) / steady,
+                      estimates.ends[i] == SlipEnd::kCaptured});
+  }
+  return trials;
+}
+
+std::optional<double> delta_mu_scatter(const SlipEstimates& estimates) {
+  double mean = 0.0;
+  double squares = 0.0;
+  double noise = 0.0;
+  double n = 0.0;
+  for (const SlipWindow& window : estimates.windows) {
+    const double D = estimates.static_coefficient(window) - window.slip.K;
+    n += 1.0;
+    const double delta = D - mean;
+    mean += delta / n;
+    squares += delta * (D - mean);
+    const Eigen::Matrix3d& own = window.inverse_curvature;
+    noise += own(1, 1) + own(2, 2) - 2.0 * own(1, 2);
+  }
+  if (n < 3.0 || !(mean > 0.0)) return std::nullopt;
+  return std::sqrt(std::max(squares / (n - 1.0) - noise / n, 0.0)) / mean;
+}
+
+}  // namespace stickslip::friction
