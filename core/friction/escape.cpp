@@ -123,7 +123,7 @@ std::vector<EscapeTrial> escape_trials(const SlipEstimates& estimates) {
   const double Q_th = Q_threshold(oscillator.gamma_over_2omega());
   for (std::size_t i = 0; i < estimates.ends.size(); ++i) {
     const bool begins = i == 0 || estimates.window_of_slip[i] != estimates.window_of_slip[i - 1];
-    if (!begins || estimates.ends[i] == SlipEnd::kUnknown) continue;
+    if (!begins || !estimates.has_window(i) || estimates.ends[i] == SlipEnd::kUnknown) continue;
     const double onset_s = estimates.windows[estimates.window_of_slip[i]].slip.onset_s;
     const double rate = belt.stick_rate(shared.r, onset_s);
     const double share = belt.acceleration_share(shared.r, oscillator.omega0_squared(), onset_s);

@@ -247,7 +247,7 @@ std::vector<Cycle> cycle_table(const Trace& trace, std::span<const Fall> slips,
     const bool captured = estimates.ends[i] == SlipEnd::kCaptured;
     if (captured) cycle.flags |= kCycleCaptured;
     const bool begins_from_stick = i == 0 || estimates.window_of_slip[i] != estimates.window_of_slip[i - 1];
-    if (fit.converged && begins_from_stick) {
+    if (fit.converged && begins_from_stick && estimates.has_window(i)) {
       const SlipWindow& window = estimates.windows[estimates.window_of_slip[i]];
       const SlipModel model{fit.shared, window.slip, captured, estimates.belt};
       const Eigen::Matrix3d covariance = fit.covariance(window);

@@ -18,6 +18,8 @@ constexpr double kFirstGammaOver2Omega = 0.022;
 constexpr int kRounds = 3;
 /// A rise that starts below this part of its peak is the loading of a test from rest.
 constexpr double kLoadingStartsBelow = 0.5;
+/// Slips of which the last may be left out because the pull ended in it.
+constexpr std::size_t kFewestForEndOfPull = 4;
 /// Part of the loading that a motor takes to get to its speed.
 constexpr double kRoundedStart = 0.2;
 /// A window of a free oscillation ends this many periods after the trough of its last slip: by
@@ -54,14 +56,29 @@ double slope_of_rise(const Trace& trace, const Fall& fall, double low, double hi
   return length > 0 ? range / (trace.time_s[peak] - trace.time_s[peak - length]) : 0.0;
 }
 
-/// Steepest part of the loading from rest. It begins less steep, while a sled that a fast start of the belt
-/// has left behind catches up, and ends so, where it slips.
+/// Slope of the loading from rest: upper quartile of those over an eighth of it, or from scan to scan if it
+/// is shorter. It begins less steep, while a sled that a fast start of the belt has left behind catches up,
+/// and ends so, where it slips.
 double slope_of_loading(const Trace& trace, const Fall& first) {
-  double steepest = 0.0;
-  for (const double low : {0.2, 0.3, 0.4, 0.5}) {
-    steepest = std::max(steepest, slope_of_rise(trace, first, low, low + 0.2));
+  constexpr double kFrom = 0.1;
+  constexpr double kTo = 0.95;
+  constexpr std::size_t kParts = 8;
+  const std::size_t peak = std::min(scan_at(first.peak_at), trace.size() - 1);
+  const auto at_least = [&](std::size_t k, double level) {
+    return trace.value[k] >= first.rise_from + level * (first.peak - first.rise_from);
+  };
+  std::size_t begin = peak;
+  while (begin > 0 && at_least(begin - 1, kFrom)) --begin;
+  const std::size_t lag = std::max<std::size_t>((peak - begin) / kParts, 1);
+  std::vector<double> slopes;
+  for (std::size_t k = begin; k + lag <= peak && !at_least(k + lag, kTo); ++k) {
+    if (trace.usable[k] == 0 || trace.usable[k + lag] == 0) continue;
+    slopes.push_back((trace.value[k + lag] - trace.value[k]) / (trace.time_s[k + lag] - trace.time_s[k]));
   }
-  return steepest;
+  if (slopes.empty()) return slope_of_rise(trace, first, 0.0, 1.0);
+  const auto quartile = slopes.begin() + static_cast<std::ptrdiff_t>(3 * slopes.size() / 4);
+  std::nth_element(slopes.begin(), quartile, slopes.end());
+  return *quartile;
 }
 
 /// Where the speed changes: median of the slopes over what they are of the plan's largest speed. Half of a
@@ -141,19 +158,38 @@ std::size_t pull_of(const Trace& trace, const Fall& slip) {
   return trace.belt.is_constant() ? 0 : trace.belt.pull_of(time_at(trace, slip.peak_at));
 }
 
+/// The pull ended while the last slip was on its way: what follows its trough does not climb as a stick does.
+/// Where the trace ends before that can be seen, it counts as any other.
+bool pull_ended_in_last_slip(const Trace& trace, std::span<const Fall> slips,
+                             const SharedParameters& shared) {
+  constexpr double kClimbs = 0.5;
+  if (slips.size() < kFewestForEndOfPull) return false;
+  const double period = 2.0 * std::numbers::pi / shared.omega * scans_per_s(trace);
+  const double trough = trough_at(trace, slips.back(), shared);
+  const std::size_t begin = scan_at(trough + 0.5 * period);
+  const std::size_t end = scan_at(trough + 2.5 * period);
+  if (end >= trace.size()) return false;
+  const double rise = trace.value[end] - trace.value[begin];
+  return rise <
+         kClimbs * trace.belt.climb(shared.r, trace.time_s[begin], trace.time_s[end] - trace.time_s[begin]);
+}
+
 /// Fills the likelihood ratios.
 std::vector<SlipEnd> judge_ends(const Trace& trace, std::span<const Fall> slips,
                                 const SharedParameters& shared, double sigma, SlipEstimates& estimates) {
   std::vector<SlipEnd> ends(slips.size(), SlipEnd::kUnknown);
   estimates.log_likelihood_ratios.clear();
   const double typical = typical_delta_mu(trace, slips, shared);
+  const bool cut = pull_ended_in_last_slip(trace, slips, shared);
   for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
     if (pull_of(trace, slips[i]) != pull_of(trace, slips[i + 1])) {
       // The belt stopped in between: its end is not known.
       estimates.log_likelihood_ratios.push_back(0.0);
       continue;
     }
-    const std::size_t end = std::min(scan_at(trough_at(trace, slips[i + 1], shared)) + 1, trace.size());
+    const bool to_the_peak = cut && i + 2 == slips.size();
+    const double end_at = to_the_peak ? slips[i + 1].peak_at : trough_at(trace, slips[i + 1], shared);
+    const std::size_t end = std::min(scan_at(end_at) + 1, trace.size());
     const double ratio =
         capture_log_likelihood_ratio(trace, scan_at(slips[i].peak_at), end, shared, sigma, typical);
     estimates.log_likelihood_ratios.push_back(ratio);
@@ -175,6 +211,7 @@ bool free_the_doubtful(SlipEstimates& estimates) {
   bool changed = false;
   for (std::size_t i = 0; i < estimates.log_likelihood_ratios.size(); ++i) {
     if (estimates.ends[i] != SlipEnd::kCaptured || estimates.log_likelihood_ratios[i] > kDoubtful) continue;
+    if (!estimates.has_window(i + 1)) continue;
     const SlipWindow& next = estimates.windows[estimates.window_of_slip[i + 1]];
     const Eigen::Matrix3d covariance = estimates.fit.covariance(next);
     const double error = std::sqrt(covariance(1, 1) + covariance(2, 2) - 2.0 * covariance(1, 2));
@@ -225,9 +262,14 @@ void lay_windows(const Trace& trace, std::span<const Fall> slips, const SharedPa
   estimates.windows.clear();
   estimates.window_of_slip.clear();
   const double period_s = 2.0 * std::numbers::pi / shared.omega;
+  const bool cut = pull_ended_in_last_slip(trace, slips, shared);
   for (std::size_t i = 0; i < slips.size(); ++i) {
     const bool loading = begins_a_pull(trace, slips, i);
     const bool begins = loading || estimates.ends[i - 1] == SlipEnd::kCaptured;
+    if (begins && cut && i + 1 == slips.size()) {
+      estimates.window_of_slip.push_back(SlipEstimates::kNoWindow);
+      break;
+    }
     if (begins) {
       SlipWindow window;
       window.first = loading ? start_of_loading(trace, slips[i], shared) : boundary(slips[i - 1], slips[i]);

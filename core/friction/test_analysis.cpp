@@ -12,7 +12,7 @@
 #include "core/friction/cycle_statistics.hpp"
 #include "core/friction/model_results.hpp"
 #include "core/friction/regime_rule.hpp"
-#include "core/friction/slip_estimator.hpp"
+#include "core/friction/sections.hpp"
 #include "core/friction/slip_list.hpp"
 #include "core/friction/traditional.hpp"
 #include "core/signal/statistics.hpp"
@@ -35,8 +35,7 @@ double noise_floor(const base::LongColumn<double>& values, double step_coefficie
 /// Turning points must not follow noise before the noise is known.
 double hysteresis(double sigma) { return SlipRule::kHysteresisSigmas * sigma; }
 
-/// \param scratch  folder for what is being collected, so that the result grows once.
-std::vector<Fall> find_slips(const Trace& trace, double sigma, const std::filesystem::path& scratch) {
+base::LongColumn<Fall> find_slips(const Trace& trace, double sigma, const std::filesystem::path& scratch) {
   FallFinder finder;
   SlipRule rule;
   base::LongColumn<Fall> slips{scratch};
@@ -45,44 +44,37 @@ std::vector<Fall> find_slips(const Trace& trace, double sigma, const std::filesy
       slips.push_back(*fall);
     }
   }
-  std::vector<Fall> all;
-  all.reserve(slips.size());
-  for (const Fall& slip : std::as_const(slips)) all.push_back(slip);
-  keep_slips(all);
-  return all;
+  return kept_slips(std::move(slips), scratch);
+}
+
+/// What the model has found, beside what needs no model.
+void take_model_results(const TestResults& model, TestResults& results) {
+  std::vector<const Estimate*> from;
+  for_each_result(model, [&](const ResultName&, const Estimate& estimate) { from.push_back(&estimate); });
+  std::size_t i = 0;
+  for_each_result(results, [&](const ResultName&, Estimate& estimate) {
+    const Estimate& found = *from[i++];
+    if (found.value || !found.reason.empty()) estimate = found;
+  });
 }
 
 /// Lays the plan over the trace and forgets the falls outside its pulls: one that begins as the belt stops or
 /// turns is no slip.
-void follow_plan(const PullSpeed& plan, double gravity_m_per_s2, double scan_rate_Hz, Trace& trace,
-                 std::vector<Fall>& slips) {
+void follow_plan(const PullSpeed& plan, double gravity_m_per_s2, Trace& trace, base::LongColumn<Fall>& slips,
+                 const std::filesystem::path& scratch) {
   constexpr double kScansBeforeStop = 1.5;  // The peak is interpolated between scans.
-  if (slips.empty()) return;
-  const std::optional<BeltCourse> belt = belt_from_loading(trace, slips.front(), plan, gravity_m_per_s2);
+  const std::optional<BeltCourse> belt =
+      belt_from_loading(trace, std::as_const(slips)[0], plan, gravity_m_per_s2);
   if (!belt) return;
   trace.belt = *belt;
-  std::erase_if(slips, [&](const Fall& slip) {
-    const double peak_s = time_at(trace, slip.peak_at);
-    const std::size_t pull = trace.belt.pull_of(peak_s);
-    return peak_s < trace.belt.pull_start_s(pull) ||
-           peak_s > trace.belt.pull_end_s(pull) - kScansBeforeStop / scan_rate_Hz;
-  });
-}
-
-/// The ratios of those slips whose end can be told, and which slips they are.
-struct DecidedEnds {
-  std::vector<double> log_likelihood_ratios;
-  std::vector<std::size_t> slips;
-};
-
-DecidedEnds decided_ends(const SlipEstimates& estimates) {
-  DecidedEnds decided;
-  for (std::size_t i = 0; i < estimates.log_likelihood_ratios.size(); ++i) {
-    if (estimates.ends[i] == SlipEnd::kUnknown) continue;
-    decided.log_likelihood_ratios.push_back(estimates.log_likelihood_ratios[i]);
-    decided.slips.push_back(i);
+  base::LongColumn<Fall> kept{scratch};
+  for (const Fall& slip : std::as_const(slips)) {
+    const std::size_t pull = trace.belt.pull_of(time_at(trace, slip.peak_at));
+    const bool pulled = time_at(trace, slip.peak_at) >= trace.belt.pull_start_s(pull) &&
+                        time_at(trace, slip.peak_at + kScansBeforeStop) < trace.belt.pull_end_s(pull);
+    if (pulled) kept.push_back(slip);
   }
-  return decided;
+  slips = std::move(kept);
 }
 
 /// A stub of a test: without the noise there is no telling what is a slip.
@@ -164,12 +156,12 @@ TestResults TestAnalysis::finish() {
     return results;
   }
   const double sigma = signal::scan_noise(trace.value, noise_floor(trace.value, settings_.step_coefficient));
-  std::vector<Fall> slips = find_slips(trace, sigma, settings_.scratch_folder);
+  base::LongColumn<Fall> slips = find_slips(trace, sigma, settings_.scratch_folder);
   // What the tester did counts before what the method asks.
   const auto& plan =
       settings_.tester.speed_course ? settings_.tester.speed_course : settings_.method.speed_course;
-  if (plan) {
-    follow_plan(*plan, settings_.tester.gravity_m_per_s2, settings_.scan_rate_Hz, trace, slips);
+  if (plan && !slips.empty()) {
+    follow_plan(*plan, settings_.tester.gravity_m_per_s2, trace, slips, settings_.scratch_folder);
   }
   results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
   const TraditionalCoefficients traditional =
@@ -185,22 +177,20 @@ TestResults TestAnalysis::finish() {
   } else {
     if (settings_.remove_drift) trace.drift = significant_drift(trace, slips);
     trace.belt.take_off_drift(trace.drift.rate_per_s);
-    const SlipEstimates estimates = estimate(trace, slips, sigma);
-    const DecidedEnds decided = decided_ends(estimates);
+    TestEstimates estimates = estimate(trace, slips, sigma);
     const RegimeVerdict verdict =
-        judge_regime(slips.size(), decided.log_likelihood_ratios, model_describes(estimates, sigma));
+        judge_regime(slips.size(), estimates.log_likelihood_ratios, estimates.model_describes);
     results.regime = verdict.regime;
     results.regime_reason = verdict.reason;
-    const auto captured = std::count(estimates.ends.begin(), estimates.ends.end(), SlipEnd::kCaptured);
     results.stick_cycle_count = verdict.regime == Regime::kUndecided
                                     ? Estimate::none("undecided: " + verdict.reason)
-                                    : Estimate::of(static_cast<double>(captured));
-    model_results(slips, estimates, settings_.tester, sigma, results);
+                                    : Estimate::of(static_cast<double>(estimates.captured));
+    take_model_results(estimates.results, results);
     if (verdict.transition_slip) {
-      const Fall& slip = slips[decided.slips[*verdict.transition_slip]];
+      const Fall slip = std::as_const(slips)[*verdict.transition_slip];
       results.transition_time = Estimate::of(time_at(trace, slip.peak_at));
     }
-    keep_cycles(cycle_table(trace, slips, estimates), slips);
+    keep_cycles(estimates.cycles, slips);
   }
   period_results(trace, slips, results);
   results.drift_rate = drift_of(trace, slips);
@@ -238,17 +228,20 @@ Trace TestAnalysis::despiked_trace() {
   return trace;
 }
 
-SlipEstimates TestAnalysis::estimate(const Trace& trace, const std::vector<Fall>& slips, double sigma) {
-  SlipEstimates alone = estimate_slips(trace, slips, sigma);
-  if (model_describes(alone, sigma)) tester_ = alone.tester();
+TestEstimates TestAnalysis::estimate(const Trace& trace, const base::LongColumn<Fall>& slips, double sigma) {
+  const auto estimates = [&](const SharedPrior& prior) {
+    return estimate_in_sections(trace, slips, sigma, prior, settings_.tester, settings_.scratch_folder);
+  };
+  TestEstimates alone = estimates({});
+  if (alone.model_describes) tester_ = alone.tester;
   if (settings_.prior.empty()) return alone;
-  SlipEstimates with = estimate_slips(trace, slips, sigma, settings_.prior);
-  if (!settings_.prior.coupling || !tester_ || !with.fit.converged) return with;
-  tester_check_ = check_tester(*tester_, with.tester(), *settings_.prior.coupling, settings_.tester);
-  return tester_check_->used() ? with : alone;
+  TestEstimates with = estimates(settings_.prior);
+  if (!settings_.prior.coupling || !tester_ || !with.tester) return with;
+  tester_check_ = check_tester(*tester_, *with.tester, *settings_.prior.coupling, settings_.tester);
+  return tester_check_->used() ? std::move(with) : std::move(alone);
 }
 
-void TestAnalysis::keep_cycles(const std::vector<Cycle>& cycles, const std::vector<Fall>& slips) {
+void TestAnalysis::keep_cycles(const base::LongColumn<Cycle>& cycles, const base::LongColumn<Fall>& slips) {
   const base::LongColumn<base::ScanIndex>& indices = indices_;
   const base::LongColumn<std::uint8_t>& saturated = saturated_;
   cycles_ = base::LongColumn<Cycle>{settings_.scratch_folder};

@@ -21,8 +21,8 @@
 #include "core/friction/fall_finder.hpp"
 #include "core/friction/method.hpp"
 #include "core/friction/results.hpp"
+#include "core/friction/sections.hpp"
 #include "core/friction/shared_prior.hpp"
-#include "core/friction/slip_estimator.hpp"
 #include "core/friction/slip_rule.hpp"
 #include "core/friction/tester.hpp"
 #include "core/friction/trace.hpp"
@@ -43,9 +43,8 @@ struct AnalysisSettings {
   std::filesystem::path scratch_folder;
 };
 
-/// Thread-bound. Memory grows with the test: about 34 bytes a scan and 0.8 kB a slip; with a scratch folder
-/// not with the scans, and by 0.6 kB a slip while they are estimated. With a scratch folder all functions may
-/// throw std::system_error.
+/// Thread-bound. Memory grows with the test by about 34 bytes a scan and 0.2 kB a slip; with a scratch folder
+/// it does not, but for 8 bytes of each spike, and all functions may throw std::system_error.
 class TestAnalysis {
  public:
   /// \throws std::invalid_argument unless the rate is positive and finite.
@@ -84,9 +83,9 @@ class TestAnalysis {
   /// All scans with the noise of the whole test known; fills spikes_.
   [[nodiscard]] Trace despiked_trace();
   /// Into cycles_, with their flags.
-  void keep_cycles(const std::vector<Cycle>& cycles, const std::vector<Fall>& slips);
+  void keep_cycles(const base::LongColumn<Cycle>& cycles, const base::LongColumn<Fall>& slips);
   /// With the prior, unless the test alone contradicts it; fills tester_ and tester_check_.
-  [[nodiscard]] SlipEstimates estimate(const Trace& trace, const std::vector<Fall>& slips, double sigma);
+  [[nodiscard]] TestEstimates estimate(const Trace& trace, const base::LongColumn<Fall>& slips, double sigma);
 
   AnalysisSettings settings_;
   base::LongColumn<base::ScanIndex> indices_;
