@@ -16,54 +16,82 @@
 namespace stickslip::friction {
 namespace {
 
-/// φ(z)/Φ(z), the slope of ln Φ.
-double slope_of_log_probability(double z) noexcept {
-  constexpr double kAsymptotic = -30.0;  // Below, Φ nears the least double, and the ratio is −z to 0.1 %.
-  if (z < kAsymptotic) return -z;
-  const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
-  return density / (0.5 * std::erfc(-z / std::numbers::sqrt2));
+/// A slip with the logarithm of its critical speed.
+struct Place {
+  double log_speed = 0.0;
+  double sign = 1.0;  ///< 1: captured.
+};
+
+/// From here on Φ(z) is 1 to the last bit.
+constexpr double kCertain = 8.3;
+
+/// ln Φ(z)
+double log_probability(double z) noexcept {
+  if (z > kCertain) return 0.0;
+  constexpr double kAsymptotic = -30.0;  // Below, Φ nears the least double: φ(z)/−z, to 0.1 %.
+  if (z < kAsymptotic) return -0.5 * z * z - std::log(-z * std::sqrt(2.0 * std::numbers::pi));
+  return std::log(0.5 * std::erfc(-z / std::numbers::sqrt2));
 }
 
-struct Slopes {
+/// Of the mean m of the logarithm of the slips' threshold speeds; concave.
+double log_likelihood(const std::vector<Place>& places, double m, double sigma) {
+  double sum = 0.0;
+  for (const Place& place : places) sum += log_probability(place.sign * (m - place.log_speed) / sigma);
+  return sum;
+}
+
+struct Believed {
+  double mean = 0.0;
+  double sd = 0.0;
+};
+
+/// Mean and standard deviation of m over its likelihood.
+Believed believed(const std::vector<Place>& places, double sigma) {
+  const auto [least, most] = std::minmax_element(
+      places.begin(), places.end(), [](const Place& a, const Place& b) { return a.log_speed < b.log_speed; });
+  // The maximum lies no further out: there even one slip outweighs all others.
+  const double margin = sigma * (std::sqrt(2.0 * std::log(static_cast<double>(places.size()) + 1.0)) + 1.0);
+  double low = least->log_speed - margin;
+  double high = most->log_speed + margin;
+  // Golden section: the function is concave.
+  constexpr double kGolden = 1.0 / std::numbers::phi;
+  double left = high - kGolden * (high - low);
+  double right = low + kGolden * (high - low);
+  double at_left = log_likelihood(places, left, sigma);
+  double at_right = log_likelihood(places, right, sigma);
+  while (high - low > 0.01 * sigma) {
+    if (at_left > at_right) {
+      high = right;
+      right = left;
+      at_right = at_left;
+      left = high - kGolden * (high - low);
+      at_left = log_likelihood(places, left, sigma);
+    } else {
+      low = left;
+      left = right;
+      at_left = at_right;
+      right = low + kGolden * (high - low);
+      at_right = log_likelihood(places, right, sigma);
+    }
+  }
+  // One escape among captures has a likelihood of a width of 0.3 σ and more, of smooth functions of σ: steps
+  // of half of that leave nothing to the trapezoidal rule, and 6 σ away it is below 1e-7.
+  const double mode = 0.5 * (low + high);
+  const double top = log_likelihood(places, mode, sigma);
+  constexpr int kSteps = 40;
+  constexpr double kReach = 6.0;
+  double weights = 0.0;
   double first = 0.0;
   double second = 0.0;
-};
-
-/// Of the log-likelihood by m, the mean of the logarithm of the slips' threshold speeds; concave.
-Slopes slopes_at(std::span<const EscapeTrial> trials, double m, double sigma) {
-  Slopes slopes;
-  for (const EscapeTrial& trial : trials) {
-    const double sign = trial.captured ? 1.0 : -1.0;
-    const double z = sign * (m - std::log(trial.critical_speed_m_per_s)) / sigma;
-    const double slope = slope_of_log_probability(z);
-    slopes.first += sign * slope / sigma;
-    slopes.second -= slope * (slope + z) / (sigma * sigma);
+  for (int i = -kSteps; i <= kSteps; ++i) {
+    const double off = kReach * sigma * i / kSteps;
+    const double weight = std::exp(log_likelihood(places, mode + off, sigma) - top);
+    weights += weight;
+    first += weight * off;
+    second += weight * off * off;
   }
-  return slopes;
-}
-
-struct Likeliest {
-  double log_mean = 0.0;   ///< m
-  double curvature = 0.0;  ///< −∂²/∂m²
-  /// Threshold speed of the mean of a log-normal S − K.
-  [[nodiscard]] double speed_m_per_s(double sigma) const { return std::exp(log_mean + 0.5 * sigma * sigma); }
-};
-
-Likeliest likeliest(std::span<const EscapeTrial> trials, double sigma) {
-  const auto [least, most] =
-      std::minmax_element(trials.begin(), trials.end(), [](const EscapeTrial& a, const EscapeTrial& b) {
-        return a.critical_speed_m_per_s < b.critical_speed_m_per_s;
-      });
-  // The maximum cannot lie further out than where even one trial outweighs all others.
-  const double margin = sigma * std::sqrt(2.0 * std::log(static_cast<double>(trials.size()) + 1.0)) + sigma;
-  double low = std::log(least->critical_speed_m_per_s) - margin;
-  double high = std::log(most->critical_speed_m_per_s) + margin;
-  for (int i = 0; i < 80; ++i) {
-    const double middle = 0.5 * (low + high);
-    (slopes_at(trials, middle, sigma).first > 0.0 ? low : high) = middle;
-  }
-  const double m = 0.5 * (low + high);
-  return {m, -slopes_at(trials, m, sigma).second};
+  const double mean = first / weights;
+  return {mode + mean, std::sqrt(std::max(second / weights - mean * mean, 0.0))};
 }
 
 /// Logarithm of the gap between the fastest slip that was captured and the slowest above it that was not.
@@ -104,12 +132,19 @@ EscapeSpeeds escape_speeds(std::span<const EscapeTrial> trials, double scatter) 
     speeds.of_mean_paper = Estimate::none("slips at one speed ended in both ways without scatter");
     return speeds;
   }
-  // Mean of the paper, not of what cannot be told of the speed: the half variance is the paper's alone.
-  const auto speed = [&](double paper) { return likeliest(trials, total(paper)).speed_m_per_s(paper); };
-  const double best = speed(of_paper);
-  const double of_place = best / std::sqrt(likeliest(trials, sigma).curvature);
+  std::vector<Place> places;
+  for (const EscapeTrial& trial : trials)
+    places.push_back({std::log(trial.critical_speed_m_per_s), trial.captured ? 1.0 : -1.0});
+  // The mean of a log-normal; the half variance is the paper's alone, not that of the steps of the speed.
+  const auto speed = [](const Believed& m, double paper) { return std::exp(m.mean + 0.5 * paper * paper); };
+  const Believed m = believed(places, sigma);
+  const double best = speed(m, of_paper);
+  const double of_place = best * m.sd;
   const double step = of_paper / std::sqrt(2.0 * std::max(static_cast<double>(trials.size()) - 1.0, 1.0));
-  const double of_scatter = 0.5 * (speed(of_paper + step) - speed(of_paper - step));
+  const double of_scatter = step > 0.0
+                                ? 0.5 * (speed(believed(places, total(of_paper + step)), of_paper + step) -
+                                         speed(believed(places, total(of_paper - step)), of_paper - step))
+                                : 0.0;
   speeds.of_mean_paper = Estimate::of(best, std::hypot(of_place, of_scatter));
   return speeds;
 }

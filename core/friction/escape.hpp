@@ -32,11 +32,11 @@ struct EscapeSpeeds {
   Estimate of_mean_paper;  ///< m/s: threshold speed for the mean of S − K.
 };
 
-/// Maximum likelihood for S − K that is log-normal with this relative scatter, and with it each slip's own
-/// threshold speed, which is proportional to it. What of the speed lies between the last captured slip and
-/// the first above it that escaped cannot be told: its variance, a uniform distribution's, is added to the
-/// scatter. The standard error is that of the curvature, with what the scatter's own error (scatter/√(2(n −
-/// 1))) adds. \param trials  in the order of time. \param scatter  standard deviation over mean of S − K, ≥
+/// Mean over the likelihood, for S − K that is log-normal with this relative scatter, and with it each slip's
+/// own threshold speed, which is proportional to it. What of the speed lies between the last captured slip
+/// and the first above it that escaped cannot be told: its variance, a uniform distribution's, is added to
+/// the scatter. The standard error is that of the curvature, with what the scatter's own error (scatter/√(2(n
+/// − 1))) adds. \param trials  in the order of time. \param scatter  standard deviation over mean of S − K, ≥
 /// 0.
 [[nodiscard]] EscapeSpeeds escape_speeds(std::span<const EscapeTrial> trials, double scatter);
 
