@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 #include "core/friction/junction.hpp"
 #include "core/friction/uniform_stage.hpp"
@@ -18,10 +20,14 @@ constexpr double kFirstGammaOver2Omega = 0.022;
 constexpr int kRounds = 3;
 /// A rise that starts below this part of its peak is the loading of a test from rest.
 constexpr double kLoadingStartsBelow = 0.5;
+/// Log of the likelihood ratio up to which a capture is not believed against other evidence: 400 to 1.
+constexpr double kDoubtful = 6.0;
 /// Slips of which the last may be left out because the pull ended in it.
 constexpr std::size_t kFewestForEndOfPull = 4;
 /// Part of the loading that a motor takes to get to its speed.
 constexpr double kRoundedStart = 0.2;
+/// Part by which another guess of the stick rate must differ to be worth a try.
+constexpr double kOtherRate = 0.1;
 /// A window of a free oscillation ends this many periods after the trough of its last slip: by
 /// then the amplitude is below what makes a slip significant.
 constexpr double kTailPeriods = 1.5;
@@ -56,6 +62,18 @@ double slope_of_rise(const Trace& trace, const Fall& fall, double low, double hi
   return length > 0 ? range / (trace.time_s[peak] - trace.time_s[peak - length]) : 0.0;
 }
 
+/// Level from which the force rises to the peak: the median about the turning point, which two spikes there
+/// do not move.
+double level_before(const Trace& trace, const Fall& fall) {
+  constexpr std::size_t kReach = 3;
+  const std::size_t turn = scan_at(fall.peak_at - fall.rise_duration);
+  std::vector<double> levels;
+  for (std::size_t k = turn > kReach ? turn - kReach : 0; k <= turn + kReach && k < trace.size(); ++k) {
+    levels.push_back(trace.value[k]);
+  }
+  return signal::median(levels);
+}
+
 /// Slope of the loading from rest: upper quartile of those over an eighth of it, or from scan to scan if it
 /// is shorter. It begins less steep, while a sled that a fast start of the belt has left behind catches up,
 /// and ends so, where it slips.
@@ -64,8 +82,9 @@ double slope_of_loading(const Trace& trace, const Fall& first) {
   constexpr double kTo = 0.95;
   constexpr std::size_t kParts = 8;
   const std::size_t peak = std::min(scan_at(first.peak_at), trace.size() - 1);
+  const double rest = level_before(trace, first);
   const auto at_least = [&](std::size_t k, double level) {
-    return trace.value[k] >= first.rise_from + level * (first.peak - first.rise_from);
+    return trace.value[k] >= rest + level * (first.peak - rest);
   };
   std::size_t begin = peak;
   while (begin > 0 && at_least(begin - 1, kFrom)) --begin;
@@ -75,39 +94,45 @@ double slope_of_loading(const Trace& trace, const Fall& first) {
     if (trace.usable[k] == 0 || trace.usable[k + lag] == 0) continue;
     slopes.push_back((trace.value[k + lag] - trace.value[k]) / (trace.time_s[k + lag] - trace.time_s[k]));
   }
-  if (slopes.empty()) return slope_of_rise(trace, first, 0.0, 1.0);
+  if (slopes.empty()) {
+    for (std::size_t k = std::max<std::size_t>(begin, 1); k <= peak; ++k) {
+      slopes.push_back((trace.value[k] - trace.value[k - 1]) / (trace.time_s[k] - trace.time_s[k - 1]));
+    }
+    return *std::max_element(slopes.begin(), slopes.end());
+  }
   const auto quartile = slopes.begin() + static_cast<std::ptrdiff_t>(3 * slopes.size() / 4);
   std::nth_element(slopes.begin(), quartile, slopes.end());
   return *quartile;
 }
 
-/// Where the speed changes: median of the slopes over what they are of the plan's largest speed. Half of a
-/// rise is stick where there is any, and a free oscillation is as steep there as a stick at its own speed.
-double rate_at_largest_speed(const Trace& trace, std::span<const Fall> slips, std::vector<double> slopes) {
-  std::vector<double> rates;
-  for (std::size_t i = 0; i < slips.size(); ++i) {
+/// Median over the rises to the peaks: half of a rise is stick, where there is any. Where the speed changes,
+/// over what each is of the plan's largest.
+double slope_of_sticks(const Trace& trace, std::span<const Fall> slips) {
+  std::vector<double> slopes;
+  for (const Fall& slip : slips) {
+    const double slope = slope_of_rise(trace, slip, 0.3, 0.7);
     const double relative =
-        trace.belt.relative(time_at(trace, slips[i].peak_at - 0.5 * slips[i].rise_duration));
-    if (relative > 0.0) rates.push_back(slopes[i] / relative);
+        trace.belt.is_constant()
+            ? 1.0
+            : trace.belt.relative(time_at(trace, slip.peak_at - 0.5 * slip.rise_duration));
+    if (relative > 0.0) slopes.push_back(slope / relative);
   }
-  return rates.empty() ? signal::median(slopes) : signal::median(rates);
+  return slopes.empty() ? slope_of_rise(trace, slips.front(), 0.3, 0.7) : signal::median(slopes);
 }
 
 SharedParameters first_guess(const Trace& trace, std::span<const Fall> slips) {
   std::vector<double> half_periods;
-  std::vector<double> slopes;
   for (const Fall& slip : slips) {
     // Maximum and minimum of a damped oscillation are π/ω apart, whatever γ and the drift.
     half_periods.push_back(time_at(trace, slip.trough_at) - time_at(trace, slip.peak_at));
-    slopes.push_back(slope_of_rise(trace, slip, 0.3, 0.7));
   }
   SharedParameters shared;
   shared.omega = std::numbers::pi / signal::median(half_periods);
   shared.gamma = 2.0 * kFirstGammaOver2Omega * shared.omega;
   const Fall& first = slips.front();
-  const bool loaded_from_rest = first.rise_from < kLoadingStartsBelow * first.peak;
-  shared.r = loaded_from_rest ? slope_of_loading(trace, first) : signal::median(slopes);
-  if (!trace.belt.is_constant()) shared.r = rate_at_largest_speed(trace, slips, slopes);
+  const bool from_loading =
+      trace.belt.is_constant() && level_before(trace, first) < kLoadingStartsBelow * first.peak;
+  shared.r = from_loading ? slope_of_loading(trace, first) : slope_of_sticks(trace, slips);
   return shared;
 }
 
@@ -190,16 +215,16 @@ std::vector<SlipEnd> judge_ends(const Trace& trace, std::span<const Fall> slips,
     const bool to_the_peak = cut && i + 2 == slips.size();
     const double end_at = to_the_peak ? slips[i + 1].peak_at : trough_at(trace, slips[i + 1], shared);
     const std::size_t end = std::min(scan_at(end_at) + 1, trace.size());
-    const double ratio =
+    double ratio =
         capture_log_likelihood_ratio(trace, scan_at(slips[i].peak_at), end, shared, sigma, typical);
+    // The belt may have stopped before that peak.
+    if (to_the_peak && std::abs(ratio) < kDoubtful) ratio = 0.0;
     estimates.log_likelihood_ratios.push_back(ratio);
-    ends[i] = ratio > 0.0 ? SlipEnd::kCaptured : SlipEnd::kFree;
+    if (ratio != 0.0) ends[i] = ratio > 0.0 ? SlipEnd::kCaptured : SlipEnd::kFree;
   }
   return ends;
 }
 
-/// Log of the likelihood ratio up to which a capture is not believed against other evidence: 400 to 1.
-constexpr double kDoubtful = 6.0;
 /// S − K that stays below so many of its standard errors is no stick.
 constexpr double kInsignificant = 3.0;
 
@@ -232,11 +257,12 @@ std::size_t boundary(const Fall& before, const Fall& after) {
 std::size_t start_of_loading(const Trace& trace, const Fall& first, const SharedParameters& shared) {
   const std::size_t peak = scan_at(first.peak_at);
   std::size_t start = peak - std::min(static_cast<std::size_t>(first.rise_duration), peak);
-  const double K = 0.5 * (first.peak + first.trough) - first.rise_from;
+  const double rest = level_before(trace, first);
+  const double K = 0.5 * (first.peak + first.trough) - rest;
   const double rate = rate_at(trace, first, shared);
   const double caught_up = 2.0 * rate * rate / (shared.oscillator().omega0_squared() * K);
-  const double range = first.peak - first.rise_from;
-  const double level = first.rise_from + std::clamp(caught_up, kRoundedStart * range, range);
+  const double range = first.peak - rest;
+  const double level = rest + std::clamp(caught_up, kRoundedStart * range, range);
   for (std::size_t k = start; k < peak; ++k) {
     if (trace.value[k] < level) start = k + 1;
   }
@@ -266,7 +292,7 @@ void lay_windows(const Trace& trace, std::span<const Fall> slips, const SharedPa
   for (std::size_t i = 0; i < slips.size(); ++i) {
     const bool loading = begins_a_pull(trace, slips, i);
     const bool begins = loading || estimates.ends[i - 1] == SlipEnd::kCaptured;
-    if (begins && cut && i + 1 == slips.size()) {
+    if (cut && i + 1 == slips.size() && estimates.ends[i - 1] != SlipEnd::kFree) {
       estimates.window_of_slip.push_back(SlipEstimates::kNoWindow);
       break;
     }
@@ -303,6 +329,49 @@ bool windows_suffice(const Trace& trace, const std::vector<SlipWindow>& windows)
   });
 }
 
+/// Log-likelihood, in units of a cost, by which other ends must be worse before they are refused, and within
+/// which one end alone is a matter of chance: three parameters more or less are worth 1.5 by themselves.
+constexpr double kWorse = 9.0;
+constexpr double kChance = 3.0;
+/// Log-likelihood ratio of an end that is a matter of chance.
+constexpr double kUnsure = 0.1;
+
+std::size_t different(const std::vector<SlipEnd>& a, const std::vector<SlipEnd>& b) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) count += a[i] != b[i] ? 1U : 0U;
+  return count;
+}
+
+/// Single slips have turned over the ends that a fit was based on: does the fit of the whole bear them out? A
+/// spike that was not found makes a slip look like another; all other slips know better what it was.
+/// \param before  the fit, converged. \param after  with the new ends; where it is worse it becomes `before`
+/// with what the whole says of the ends in question.
+/// \return whether `after` was kept.
+bool weigh_new_ends(const SlipEstimates& before, SlipEstimates& after) {
+  // Windows may have grown or shrunk.
+  const double expected = before.fit.cost * static_cast<double>(after.fit.scan_count) /
+                          static_cast<double>(before.fit.scan_count);
+  const double worse =
+      after.fit.converged ? after.fit.cost - expected : std::numeric_limits<double>::infinity();
+  if (worse < kChance) return true;
+  const std::size_t count = different(before.ends, after.ends);
+  const auto set = [&](double ratio, const std::vector<SlipEnd>& ends) {
+    for (std::size_t i = 0; i < after.log_likelihood_ratios.size(); ++i) {
+      if (before.ends[i] == after.ends[i]) continue;
+      after.log_likelihood_ratios[i] = ends[i] == SlipEnd::kCaptured ? ratio : -ratio;
+    }
+  };
+  if (worse < kWorse) {
+    if (count == 1) set(kUnsure, after.ends);
+    return true;
+  }
+  set(std::isfinite(worse) ? worse / static_cast<double>(count) : kDoubtful, before.ends);
+  std::vector<double> ratios = std::move(after.log_likelihood_ratios);
+  after = before;
+  after.log_likelihood_ratios = std::move(ratios);
+  return false;
+}
+
 /// Rounds of deciding which slips were captured and fitting what follows from it, from a first guess.
 /// \param found  ends to begin with; empty: those that the guess says.
 SlipEstimates rounds(const Trace& trace, std::span<const Fall> slips, double sigma, const SharedPrior& prior,
@@ -314,14 +383,14 @@ SlipEstimates rounds(const Trace& trace, std::span<const Fall> slips, double sig
                         ? fit_slips(trace, estimates.windows, shared, sigma, prior)
                         : SlipFit{};
   };
-  std::vector<SlipEnd> before;
   for (int round = 0; round < kRounds; ++round) {
+    const SlipEstimates before = estimates;
     if (round > 0 || found.empty()) found = judge_ends(trace, slips, shared, sigma, estimates);
-    if (round > 0 && found == before) break;
-    before = found;
+    if (round > 0 && found == before.ends) break;
     estimates.ends = found;
     fit();
     if (free_the_doubtful(estimates)) fit();
+    if (round > 0 && !weigh_new_ends(before, estimates)) break;
     if (!estimates.fit.converged) break;
     shared = estimates.fit.shared;
   }
@@ -391,23 +460,28 @@ SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, do
                              const SharedPrior& prior) {
   const SharedParameters guess = first_guess(trace, slips);
   SlipEstimates estimates = rounds(trace, slips, sigma, prior, guess);
+  const auto try_too = [&](const SharedParameters& start, std::vector<SlipEnd> ends) {
+    SlipEstimates other = rounds(trace, slips, sigma, prior, start, std::move(ends));
+    if (better(other, estimates)) estimates = std::move(other);
+  };
   if (!estimates.fit.converged) {
     const auto surer = guess_from_sure_slips(trace, slips, sigma, prior, estimates);
-    if (surer) {
-      SlipEstimates again = rounds(trace, slips, sigma, prior, *surer);
-      if (again.fit.converged) estimates = std::move(again);
-    }
+    if (surer) try_too(*surer, {});
   }
-  if (!describes_well(estimates, sigma)) {
-    // A rough first guess may call stick-slip near the threshold an oscillation without damping, which fits
-    // not too badly: then begin from the other end, as if each slip had been captured.
-    std::vector<SlipEnd> ends(slips.size(), SlipEnd::kCaptured);
-    for (std::size_t i = 1; i < slips.size(); ++i) {
-      if (begins_a_pull(trace, slips, i)) ends[i - 1] = SlipEnd::kUnknown;
-    }
-    ends.back() = SlipEnd::kUnknown;
-    SlipEstimates other = rounds(trace, slips, sigma, prior, guess, std::move(ends));
-    if (better(other, estimates)) estimates = std::move(other);
+  // A rough first guess may call stick-slip near the threshold an oscillation without damping, which fits
+  // not too badly: then begin from the other end, as if each slip had been captured.
+  std::vector<SlipEnd> captured(slips.size(), SlipEnd::kCaptured);
+  for (std::size_t i = 1; i < slips.size(); ++i) {
+    if (begins_a_pull(trace, slips, i)) captured[i - 1] = SlipEnd::kUnknown;
+  }
+  captured.back() = SlipEnd::kUnknown;
+  if (!describes_well(estimates, sigma)) try_too(guess, captured);
+  // Spikes in the loading may have spoilt its slope; the sticks between the slips have one too.
+  SharedParameters other_rate = guess;
+  other_rate.r = slope_of_sticks(trace, slips);
+  if (!describes_well(estimates, sigma) && std::abs(other_rate.r - guess.r) > kOtherRate * guess.r) {
+    try_too(other_rate, {});
+    if (!describes_well(estimates, sigma)) try_too(other_rate, captured);
   }
   estimates.drift = trace.drift;
   estimates.belt = trace.belt;

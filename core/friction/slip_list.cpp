@@ -24,6 +24,9 @@ constexpr double kShortestHalf = 0.5;
 /// climbed less steeply than this part of the usual, the sled did not stick to a moving belt either.
 constexpr double kLate = 3.2;
 constexpr double kFlat = 0.25;
+/// A slip of the model takes 0.3 of an oscillation, whatever its size. One that falls, but for one scan, in
+/// less than this part of the usual time is a step between two spikes.
+constexpr double kQuick = 0.4;
 
 /// Falls [first, end).
 struct Part {
@@ -89,10 +92,14 @@ void join(Fall& before, const Fall& fall) noexcept {
 
 base::LongColumn<Fall> joined_halves(const Part& part, const std::filesystem::path& scratch) {
   const double half = half_of(part);
+  const double quick = kQuick * part.median([](const Fall& fall) { return fall.duration; }) - 1.0;
   base::LongColumn<Fall> joined{scratch};
-  Fall latest = part[0];
-  for (std::size_t i = 1; i < part.size(); ++i) {
+  std::size_t i = 0;
+  while (part[i].duration < quick) ++i;  // The median is not.
+  Fall latest = part[i];
+  for (++i; i < part.size(); ++i) {
     const Fall fall = part[i];
+    if (fall.duration < quick) continue;
     if (fall.peak_at - latest.trough_at >= kShortestHalf * half) {
       joined.push_back(std::exchange(latest, fall));
     } else {

@@ -98,6 +98,18 @@ TEST(SlipList, SpikesInTheHoldAfterThePullAreNoSlip) {
   EXPECT_EQ(kept.size(), 10U);
 }
 
+TEST(SlipList, StepFromScanToScanIsNoSlip) {
+  // The others take six scans: less than 0.4 · 6 − 1 = 1.4 is too quick.
+  std::vector<Fall> falls = slips(10);
+  Fall step = fall(falls.back().peak_at + 2.0 * kPeriod, 0.5, 0.3, kTrough);
+  for (const double duration : {1.0, 2.0}) {
+    step.duration = duration;
+    std::vector<Fall> with = falls;
+    with.push_back(step);
+    EXPECT_EQ(kept_slips(with).size(), duration < 1.4 ? 10U : 11U);
+  }
+}
+
 TEST(SlipList, LastSlipAfterALongStickStays) {
   std::vector<Fall> falls;
   falls.reserve(10);
