@@ -105,11 +105,19 @@ double slope_of_loading(const Trace& trace, const Fall& first) {
   return *quartile;
 }
 
-/// Median over the rises to the peaks: half of a rise is stick, where there is any.
+/// Median over the rises to the peaks: half of a rise is stick, where there is any. Where the speed changes,
+/// over what each is of the plan's largest.
 double slope_of_sticks(const Trace& trace, std::span<const Fall> slips) {
   std::vector<double> slopes;
-  for (const Fall& slip : slips) slopes.push_back(slope_of_rise(trace, slip, 0.3, 0.7));
-  return signal::median(slopes);
+  for (const Fall& slip : slips) {
+    const double slope = slope_of_rise(trace, slip, 0.3, 0.7);
+    const double relative =
+        trace.belt.is_constant()
+            ? 1.0
+            : trace.belt.relative(time_at(trace, slip.peak_at - 0.5 * slip.rise_duration));
+    if (relative > 0.0) slopes.push_back(slope / relative);
+  }
+  return slopes.empty() ? slope_of_rise(trace, slips.front(), 0.3, 0.7) : signal::median(slopes);
 }
 
 SharedParameters first_guess(const Trace& trace, std::span<const Fall> slips) {
@@ -122,15 +130,21 @@ SharedParameters first_guess(const Trace& trace, std::span<const Fall> slips) {
   shared.omega = std::numbers::pi / signal::median(half_periods);
   shared.gamma = 2.0 * kFirstGammaOver2Omega * shared.omega;
   const Fall& first = slips.front();
-  const bool loaded_from_rest = level_before(trace, first) < kLoadingStartsBelow * first.peak;
-  shared.r = loaded_from_rest ? slope_of_loading(trace, first) : slope_of_sticks(trace, slips);
+  const bool from_loading =
+      trace.belt.is_constant() && level_before(trace, first) < kLoadingStartsBelow * first.peak;
+  shared.r = from_loading ? slope_of_loading(trace, first) : slope_of_sticks(trace, slips);
   return shared;
+}
+
+/// Stick rate at the peak of a slip.
+double rate_at(const Trace& trace, const Fall& slip, const SharedParameters& shared) {
+  return trace.belt.is_constant() ? shared.r : trace.belt.stick_rate(shared.r, time_at(trace, slip.peak_at));
 }
 
 /// First guess of one slip's own parameters from its peak and trough.
 SlipParameters first_guess(const Trace& trace, const Fall& slip, const SharedParameters& shared) {
   const double amplitude = 0.5 * slip.drop();
-  const double belt = shared.r / shared.omega;
+  const double belt = rate_at(trace, slip, shared) / shared.omega;
   // [2] without damping: amplitude² = D² + (r/ω)².
   const double D = std::sqrt(std::max(amplitude * amplitude - belt * belt, 0.01 * amplitude * amplitude));
   SlipParameters parameters;
@@ -153,16 +167,20 @@ double trough_at(const Trace& trace, const Fall& slip, const SharedParameters& s
 }
 
 /// S − K of a slip by its amplitude, [2]: median of those that moved faster than the belt.
-double typical_delta_mu(std::span<const Fall> slips, const SharedParameters& shared) {
-  const double belt = shared.r / shared.omega;
+double typical_delta_mu(const Trace& trace, std::span<const Fall> slips, const SharedParameters& shared) {
   std::vector<double> D;
   double largest = 0.0;
   for (const Fall& slip : slips) {
+    const double belt = rate_at(trace, slip, shared) / shared.omega;
     const double amplitude = 0.5 * slip.drop();
     largest = std::max(largest, amplitude);
     if (amplitude > belt) D.push_back(std::sqrt(amplitude * amplitude - belt * belt));
   }
   return D.empty() ? largest : signal::median(D);
+}
+
+std::size_t pull_of(const Trace& trace, const Fall& slip) {
+  return trace.belt.is_constant() ? 0 : trace.belt.pull_of(time_at(trace, slip.peak_at));
 }
 
 /// The pull ended while the last slip was on its way: what follows its trough does not climb as a stick does.
@@ -177,7 +195,8 @@ bool pull_ended_in_last_slip(const Trace& trace, std::span<const Fall> slips,
   const std::size_t end = scan_at(trough + 2.5 * period);
   if (end >= trace.size()) return false;
   const double rise = trace.value[end] - trace.value[begin];
-  return rise < kClimbs * shared.r * (trace.time_s[end] - trace.time_s[begin]);
+  return rise <
+         kClimbs * trace.belt.climb(shared.r, trace.time_s[begin], trace.time_s[end] - trace.time_s[begin]);
 }
 
 /// Fills the likelihood ratios.
@@ -185,9 +204,14 @@ std::vector<SlipEnd> judge_ends(const Trace& trace, std::span<const Fall> slips,
                                 const SharedParameters& shared, double sigma, SlipEstimates& estimates) {
   std::vector<SlipEnd> ends(slips.size(), SlipEnd::kUnknown);
   estimates.log_likelihood_ratios.clear();
-  const double typical = typical_delta_mu(slips, shared);
+  const double typical = typical_delta_mu(trace, slips, shared);
   const bool cut = pull_ended_in_last_slip(trace, slips, shared);
   for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
+    if (pull_of(trace, slips[i]) != pull_of(trace, slips[i + 1])) {
+      // The belt stopped in between: its end is not known.
+      estimates.log_likelihood_ratios.push_back(0.0);
+      continue;
+    }
     const bool to_the_peak = cut && i + 2 == slips.size();
     const double end_at = to_the_peak ? slips[i + 1].peak_at : trough_at(trace, slips[i + 1], shared);
     const std::size_t end = std::min(scan_at(end_at) + 1, trace.size());
@@ -235,13 +259,28 @@ std::size_t start_of_loading(const Trace& trace, const Fall& first, const Shared
   std::size_t start = peak - std::min(static_cast<std::size_t>(first.rise_duration), peak);
   const double rest = level_before(trace, first);
   const double K = 0.5 * (first.peak + first.trough) - rest;
-  const double caught_up = 2.0 * shared.r * shared.r / (shared.oscillator().omega0_squared() * K);
+  const double rate = rate_at(trace, first, shared);
+  const double caught_up = 2.0 * rate * rate / (shared.oscillator().omega0_squared() * K);
   const double range = first.peak - rest;
   const double level = rest + std::clamp(caught_up, kRoundedStart * range, range);
   for (std::size_t k = start; k < peak; ++k) {
     if (trace.value[k] < level) start = k + 1;
   }
   return start;
+}
+
+/// The first slip of the test, or after the belt had stopped.
+bool begins_a_pull(const Trace& trace, std::span<const Fall> slips, std::size_t i) {
+  return i == 0 || pull_of(trace, slips[i - 1]) != pull_of(trace, slips[i]);
+}
+
+/// The first scan after the pull in which the slip lies.
+std::size_t end_of_pull(const Trace& trace, const Fall& slip) {
+  if (trace.belt.is_constant()) return trace.size();
+  const double end_s = trace.belt.pull_end_s(pull_of(trace, slip));
+  std::size_t end = std::min(scan_at(slip.peak_at), trace.size());
+  while (end < trace.size() && trace.time_s[end] < end_s) ++end;
+  return end;
 }
 
 void lay_windows(const Trace& trace, std::span<const Fall> slips, const SharedParameters& shared,
@@ -251,30 +290,31 @@ void lay_windows(const Trace& trace, std::span<const Fall> slips, const SharedPa
   const double period_s = 2.0 * std::numbers::pi / shared.omega;
   const bool cut = pull_ended_in_last_slip(trace, slips, shared);
   for (std::size_t i = 0; i < slips.size(); ++i) {
-    const bool begins = i == 0 || estimates.ends[i - 1] == SlipEnd::kCaptured;
+    const bool loading = begins_a_pull(trace, slips, i);
+    const bool begins = loading || estimates.ends[i - 1] == SlipEnd::kCaptured;
     if (cut && i + 1 == slips.size() && estimates.ends[i - 1] != SlipEnd::kFree) {
       estimates.window_of_slip.push_back(SlipEstimates::kNoWindow);
       break;
     }
     if (begins) {
       SlipWindow window;
-      window.first = i == 0 ? start_of_loading(trace, slips[0], shared) : boundary(slips[i - 1], slips[i]);
+      window.first = loading ? start_of_loading(trace, slips[i], shared) : boundary(slips[i - 1], slips[i]);
       window.slip = first_guess(trace, slips[i], shared);
       estimates.windows.push_back(window);
     }
     estimates.window_of_slip.push_back(estimates.windows.size() - 1);
     SlipWindow& window = estimates.windows.back();
     window.captured = estimates.ends[i] != SlipEnd::kFree;
-    if (i + 1 < slips.size()) {
+    if (i + 1 < slips.size() && !begins_a_pull(trace, slips, i + 1)) {
       window.end = boundary(slips[i], slips[i + 1]);
     } else {
       // Up to the trough the two courses are the same; a free oscillation has a tail to learn from.
-      const bool free_before = i > 0 && estimates.ends[i - 1] == SlipEnd::kFree;
+      const bool free_before = !loading && estimates.ends[i - 1] == SlipEnd::kFree;
       window.captured = !free_before;
       const double tail = free_before ? kTailPeriods * period_s * scans_per_s(trace) : 0.0;
       window.end = scan_at(trough_at(trace, slips[i], shared) + tail) + 1;
     }
-    window.end = std::min(window.end, trace.size());
+    window.end = std::min({window.end, trace.size(), end_of_pull(trace, slips[i])});
   }
 }
 
@@ -381,10 +421,12 @@ std::optional<SharedParameters> guess_from_sure_slips(const Trace& trace, std::s
   const double sure = for_captured.empty() ? kDoubtful : std::max(signal::median(for_captured), kDoubtful);
   std::vector<SlipWindow> windows;
   for (std::size_t i = 0; i < slips.size(); ++i) {
-    if (i > 0 && tried.log_likelihood_ratios[i - 1] < sure) continue;
+    const bool loading = begins_a_pull(trace, slips, i);
+    if (!loading && tried.log_likelihood_ratios[i - 1] < sure) continue;
     SlipWindow window;
-    window.first = i == 0 ? start_of_loading(trace, slips[0], shared) : boundary(slips[i - 1], slips[i]);
-    window.end = std::min(scan_at(trough_at(trace, slips[i], shared)) + 1, trace.size());
+    window.first = loading ? start_of_loading(trace, slips[i], shared) : boundary(slips[i - 1], slips[i]);
+    window.end = std::min(
+        {scan_at(trough_at(trace, slips[i], shared)) + 1, trace.size(), end_of_pull(trace, slips[i])});
     window.captured = true;
     window.slip = first_guess(trace, slips[i], shared);
     windows.push_back(window);
@@ -409,6 +451,11 @@ TesterEstimate SlipEstimates::tester() const {
   return TesterEstimate::from(uniform->parameters.shared, uniform->covariance.bottomRightCorner<3, 3>());
 }
 
+double SlipEstimates::static_coefficient(const SlipWindow& window) const {
+  return window.slip.S +
+         belt.acceleration_share(fit.shared.r, fit.shared.oscillator().omega0_squared(), window.slip.onset_s);
+}
+
 SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, double sigma,
                              const SharedPrior& prior) {
   const SharedParameters guess = first_guess(trace, slips);
@@ -424,6 +471,9 @@ SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, do
   // A rough first guess may call stick-slip near the threshold an oscillation without damping, which fits
   // not too badly: then begin from the other end, as if each slip had been captured.
   std::vector<SlipEnd> captured(slips.size(), SlipEnd::kCaptured);
+  for (std::size_t i = 1; i < slips.size(); ++i) {
+    if (begins_a_pull(trace, slips, i)) captured[i - 1] = SlipEnd::kUnknown;
+  }
   captured.back() = SlipEnd::kUnknown;
   if (!describes_well(estimates, sigma)) try_too(guess, captured);
   // Spikes in the loading may have spoilt its slope; the sticks between the slips have one too.
@@ -434,7 +484,8 @@ SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, do
     if (!describes_well(estimates, sigma)) try_too(other_rate, captured);
   }
   estimates.drift = trace.drift;
-  if (estimates.fit.converged) {
+  estimates.belt = trace.belt;
+  if (estimates.fit.converged && trace.belt.is_constant()) {
     estimates.uniform = uniform_if_slips_agree(trace, estimates.windows, estimates.fit.shared, sigma, prior);
   }
   return estimates;
