@@ -99,6 +99,7 @@ Result<AccuracyReport> measure_accuracy(const sim::Scene& scene, std::uint64_t s
   } else {
     report.detection = accuracy::compare_estimators(*test, accuracy::shipped_estimators(), clock);
   }
+  report.tiers = accuracy::compare_tiers(clock);
   if (progress) progress(1.0);
   return report;
 }

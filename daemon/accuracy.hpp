@@ -9,6 +9,7 @@
 #include "core/accuracy/comparison.hpp"
 #include "core/accuracy/detection.hpp"
 #include "core/accuracy/grazing.hpp"
+#include "core/accuracy/tiers.hpp"
 #include "core/base/clock.hpp"
 #include "core/base/result.hpp"
 #include "core/sim/scene.hpp"
@@ -30,6 +31,7 @@ struct AccuracyReport {
   double grazing_gamma_over_2omega = 0.0;
   std::vector<accuracy::GrazingRow> grazing;
   std::vector<accuracy::DetectionRow> detection;
+  std::vector<accuracy::TierRow> tiers;
   std::string no_detection;  ///< Why there is none; empty if there is.
 };
 

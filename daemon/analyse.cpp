@@ -16,6 +16,7 @@ friction::AnalysisSettings settings_of(const record::RecordHeader& header,
   settings.step_coefficient = calibration.step_coefficient();
   settings.tester = header.tester.tester();
   settings.method = method;
+  settings.estimator = estimator_from_text(header.process.method);
   return settings;
 }
 

@@ -13,6 +13,7 @@
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/post.hpp>
 
+#include "core/friction/sampling.hpp"
 #include "daemon/finaliser.hpp"
 #include "daemon/method_text.hpp"
 #include "daemon/tester_file.hpp"
@@ -149,6 +150,16 @@ base::Result<void> App::open_session() {
   const base::Result<SessionSettings> made = session_settings(*board);
   if (!made) return tl::unexpected(made.error());
   const SessionSettings& settings = *made;
+  if (config_.board.driver != drivers::Driver::kReplay) {
+    // The plan alone is asked: a record is what it is.
+    friction::Tester plan = settings.processor.analysis.tester;
+    plan.stiffness_N_per_m = config_.bench.stiffness_N_per_m;
+    const friction::SamplingVerdict verdict = friction::check_sampling(
+        board->board->info().scan_rate_granted_Hz, friction::expected_frequency_Hz(plan, {}));
+    if (verdict.kind == friction::SamplingVerdict::Kind::kRefused)
+      return base::usage_error("[board] scan_rate: {}", verdict.reason);
+    world_.facts->sampling_checked(verdict);
+  }
 
   SessionEvents events;
   events.first_scan = [this] {
@@ -255,6 +266,7 @@ base::Result<SessionSettings> App::session_settings(const drivers::OpenedBoard& 
     if (!coupling) return tl::unexpected(coupling.error());
     analysis.prior.coupling = *std::move(coupling);
   }
+  analysis.estimator = config_.estimator;
   return settings;
 }
 
@@ -270,7 +282,8 @@ record::RecordHeader App::record_header(const SessionSettings& settings) const {
   header.process.version = kVersion;
   header.process.commit = kCommit;
   header.process.configuration = config_.text;
-  header.process.method = method_text(settings.processor.analysis.method);
+  header.process.method =
+      with_estimator(method_text(settings.processor.analysis.method), settings.processor.analysis.estimator);
   header.process.characterisation = settings.characterisation;
   header.process.realtime = session_->scheduling();
   return header;
@@ -320,6 +333,7 @@ Status App::status() const {
   status.version = kVersion;
   if (session_) {
     status.board = session_->board_info();
+    if (current_test_) status.live = session_->live();
     status.scheduling = session_->scheduling();
     const SessionCounts& counts = session_->counts();
     status.scan_count = counts.scans.load(std::memory_order_relaxed);

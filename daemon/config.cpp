@@ -30,6 +30,11 @@ constexpr std::array<std::pair<std::string_view, LogLevel>, 4> kLogLevels{{{"deb
                                                                            {"warning", LogLevel::kWarning},
                                                                            {"error", LogLevel::kError}}};
 
+constexpr std::array<std::pair<std::string_view, friction::EstimatorTier>, 3> kEstimators{
+    {{name(friction::EstimatorTier::kPeak), friction::EstimatorTier::kPeak},
+     {name(friction::EstimatorTier::kInterpolated), friction::EstimatorTier::kInterpolated},
+     {name(friction::EstimatorTier::kFit), friction::EstimatorTier::kFit}}};
+
 /// A typing mistake of a factor of a thousand is refused; every real tester is far inside.
 constexpr double kFastestScanRate_Hz = 1e6;
 constexpr double kFastestClock = 1e4;
@@ -177,6 +182,8 @@ DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
   read_test(settings.table("test"), config.segmenter);
   read_method(settings.table("method"), folder, config.method);
   config.board.simulated.method = config.method;
+  config.estimator =
+      settings.table("analysis").choice<friction::EstimatorTier>("estimator", kEstimators, config.estimator);
   Settings record = settings.table("record");
   config.record_folder = record.text("folder", "records");
   if (config.record_folder.empty()) record.refuse("folder", "must name a folder");

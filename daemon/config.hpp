@@ -10,6 +10,7 @@
 #include "core/base/result.hpp"
 #include "core/base/settings.hpp"
 #include "core/daq/calibration.hpp"
+#include "core/friction/live_cycle.hpp"
 #include "core/friction/method.hpp"
 #include "core/friction/tester.hpp"
 #include "core/pipeline/segmenter.hpp"
@@ -41,6 +42,7 @@ struct DaemonConfig {
   BenchConfig bench;
   pipeline::SegmenterSettings segmenter;  ///< Its scan rate is the board's.
   friction::Method method;
+  friction::EstimatorTier estimator = friction::EstimatorTier::kFit;
   std::filesystem::path record_folder;
   std::optional<std::filesystem::path> control_socket;
   LogLevel log_level = LogLevel::kInfo;

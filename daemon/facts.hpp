@@ -9,6 +9,7 @@
 
 #include "core/daq/board.hpp"
 #include "core/daq/gap.hpp"
+#include "core/friction/sampling.hpp"
 #include "core/pipeline/sink.hpp"
 
 namespace stickslip::daemon {
@@ -19,6 +20,8 @@ class Facts {
   virtual ~Facts() = default;
 
   virtual void board_started(const daq::BoardInfo& /*board*/, std::string_view /*scheduling*/) {}
+  /// Before the start: do the scans come often enough?
+  virtual void sampling_checked(const friction::SamplingVerdict& /*verdict*/) {}
   virtual void board_missing(std::string_view /*why*/, double /*retry_in_s*/) {}
   virtual void gap_seen(const daq::Gap& /*gap*/) {}
   virtual void test_began(const pipeline::TestStart& /*start*/) {}

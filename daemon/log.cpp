@@ -70,6 +70,11 @@ class Log final : public Facts {
                  board.driver, board.device, board.scan_rate_requested_Hz, board.scan_rate_granted_Hz,
                  scheduling);
   }
+  void sampling_checked(const friction::SamplingVerdict& verdict) override {
+    using Kind = friction::SamplingVerdict::Kind;
+    if (verdict.kind == Kind::kFew) logger_.warn("sampling: {}", verdict.reason);
+    if (verdict.kind == Kind::kNotVerifiable) logger_.info("sampling: {}", verdict.reason);
+  }
   void board_missing(std::string_view why, double retry_in_s) override {
     logger_.warn("board missing: {}; next try in {} s", why, retry_in_s);
   }

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/base/result.hpp"
+#include "core/friction/live_cycle.hpp"
 #include "core/friction/method.hpp"
 
 namespace stickslip::daemon {
@@ -17,5 +18,12 @@ namespace stickslip::daemon {
 
 /// Reads what method_text() wrote; an empty text is the default method. Error: kUsage.
 [[nodiscard]] base::Result<friction::Method> method_from_text(std::string_view text);
+
+/// A method's text with the estimator at its end; "fit", the default, is not written. So a record says by
+/// itself how its numbers came about.
+[[nodiscard]] std::string with_estimator(std::string text, friction::EstimatorTier tier);
+
+/// Reads what with_estimator() wrote.
+[[nodiscard]] friction::EstimatorTier estimator_from_text(std::string_view text);
 
 }  // namespace stickslip::daemon

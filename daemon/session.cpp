@@ -75,6 +75,10 @@ void Session::process_block(const daq::ScanBlock& block) {
     dropped_before_ = dropped;
     overruns_before_ = overruns;
   }
+  {
+    const std::lock_guard lock{live_mutex_};
+    live_ = processor_.live();
+  }
   counts_.scans.store(processor_.scan_count(), std::memory_order_relaxed);
   counts_.dropped_scans.store(dropped, std::memory_order_relaxed);
   counts_.overruns.store(overruns, std::memory_order_relaxed);

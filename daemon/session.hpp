@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -63,6 +64,11 @@ class Session {
   [[nodiscard]] std::string board_error() const { return board_.board->last_error(); }
   [[nodiscard]] const std::string& scheduling() const noexcept { return acquisition_.scheduling(); }
   [[nodiscard]] const SessionCounts& counts() const noexcept { return counts_; }
+  /// Phase, regime and latest cycle of the running test, as of the block processed last. From any thread.
+  [[nodiscard]] friction::LiveState live() const {
+    const std::lock_guard lock{live_mutex_};
+    return live_;
+  }
   /// Number of the first test after this session; only after events.ended.
   [[nodiscard]] std::int64_t next_test_number() const noexcept { return processor_.test_number(); }
 
@@ -76,6 +82,8 @@ class Session {
   pipeline::Processor processor_;
   Acquisition acquisition_;
   SessionCounts counts_;
+  mutable std::mutex live_mutex_;  ///< Held for a copy; the acquisition thread has no part in it.
+  friction::LiveState live_;
   std::uint64_t dropped_before_ = 0;
   std::uint64_t overruns_before_ = 0;
   bool any_scan_ = false;

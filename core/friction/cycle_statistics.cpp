@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include <boost/math/distributions/students_t.hpp>
 
@@ -23,37 +21,40 @@ constexpr double kDriftLevel = 0.001;
 
 }  // namespace
 
-Estimate drift_of(const Trace& trace, std::span<const Fall> slips) {
+Estimate drift_of(const Trace& trace, const base::LongColumn<Fall>& slips) {
   if (slips.size() < kFewestPeriods + 1) return Estimate::none("fewer than three cycles");
-  std::vector<std::pair<double, double>> means;
-  for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
-    const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
-    const auto end = static_cast<std::size_t>(std::lround(slips[i + 1].peak_at));
-    double mean = 0.0;
-    for (std::size_t k = first; k < end; ++k) mean += trace.value[k] / static_cast<double>(end - first);
-    means.emplace_back(0.5 * (trace.time_s[first] + trace.time_s[end]), mean);
-  }
-  const auto n = static_cast<double>(means.size());
+  const std::size_t count = slips.size() - 1;
+  // Worked out twice, for the mean and for the slope: there may be more than memory should hold.
+  const auto for_each_mean = [&](const auto& take) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
+      const auto end = static_cast<std::size_t>(std::lround(slips[i + 1].peak_at));
+      double mean = 0.0;
+      for (std::size_t k = first; k < end; ++k) mean += trace.value[k] / static_cast<double>(end - first);
+      take(0.5 * (trace.time_s[first] + trace.time_s[end]), mean);
+    }
+  };
+  const auto n = static_cast<double>(count);
   double mean_t = 0.0;
   double mean_c = 0.0;
-  for (const auto& [t, c] : means) {
+  for_each_mean([&](double t, double c) {
     mean_t += t / n;
     mean_c += c / n;
-  }
+  });
   double s_tt = 0.0;
   double s_tc = 0.0;
   double s_cc = 0.0;
-  for (const auto& [t, c] : means) {
+  for_each_mean([&](double t, double c) {
     s_tt += (t - mean_t) * (t - mean_t);
     s_tc += (t - mean_t) * (c - mean_c);
     s_cc += (c - mean_c) * (c - mean_c);
-  }
+  });
   const double slope = s_tc / s_tt;
   const double residual_variance = std::max(s_cc - slope * s_tc, 0.0) / (n - 2.0);
   return Estimate::of(slope, std::sqrt(residual_variance / s_tt));
 }
 
-Drift significant_drift(const Trace& trace, std::span<const Fall> slips) {
+Drift significant_drift(const Trace& trace, const base::LongColumn<Fall>& slips) {
   const Estimate slope = drift_of(trace, slips);
   if (!slope.value || !slope.standard_error) return {};
   const auto freedom = static_cast<double>(slips.size() - 3);  // Of the means, one fewer than slips.
@@ -61,41 +62,41 @@ Drift significant_drift(const Trace& trace, std::span<const Fall> slips) {
       boost::math::quantile(boost::math::complement(boost::math::students_t{freedom}, 0.5 * kDriftLevel));
   if (!(std::abs(*slope.value) > limit * *slope.standard_error)) return {};
   double mean_s = 0.0;
-  for (const Fall& slip : slips.subspan(1)) {
-    mean_s += time_at(trace, slip.peak_at) / static_cast<double>(slips.size() - 1);
+  for (std::size_t i = 1; i < slips.size(); ++i) {
+    mean_s += time_at(trace, slips[i].peak_at) / static_cast<double>(slips.size() - 1);
   }
   return {*slope.value, mean_s};
 }
 
-void period_results(const Trace& trace, std::span<const Fall> slips, TestResults& results) {
+void period_results(const Trace& trace, const base::LongColumn<Fall>& slips, TestResults& results) {
   if (slips.size() < 2) {
     const std::string reason = slips.empty() ? "no oscillation" : "one slip has no period";
     results.period_median = Estimate::none(reason);
     results.oscillation_frequency = Estimate::none(reason);
     return;
   }
-  std::vector<double> periods;
-  for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
-    periods.push_back(time_at(trace, slips[i + 1].peak_at) - time_at(trace, slips[i].peak_at));
-  }
-  std::vector<double> reordered = periods;
-  results.period_median = Estimate::of(signal::median(reordered));
+  const std::size_t count = slips.size() - 1;
+  const auto period = [&](std::size_t i) {
+    return time_at(trace, slips[i + 1].peak_at) - time_at(trace, slips[i].peak_at);
+  };
+  results.period_median = Estimate::of(signal::median_of(count, period));
   if (results.regime == Regime::kRingDown && results.omega.value) {
     results.oscillation_frequency =
         Estimate::of(*results.omega.value / (2.0 * std::numbers::pi),
                      results.omega.standard_error.value_or(std::nan("")) / (2.0 * std::numbers::pi));
     return;
   }
-  const auto n = static_cast<double>(periods.size());
+  const auto n = static_cast<double>(count);
   const double span_s = time_at(trace, slips.back().peak_at) - time_at(trace, slips.front().peak_at);
   const double mean_s = span_s / n;
   // A late peak lengthens one period and shortens the next: the error of the mean takes the covariance
   // of neighbours into account, but never less than the two end points leave.
   double variance = 0.0;
   double neighbours = 0.0;
-  for (std::size_t i = 0; i < periods.size(); ++i) {
-    variance += (periods[i] - mean_s) * (periods[i] - mean_s) / n;
-    if (i + 1 < periods.size()) neighbours += (periods[i] - mean_s) * (periods[i + 1] - mean_s) / n;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double off = period(i) - mean_s;
+    variance += off * off / n;
+    if (i + 1 < count) neighbours += off * (period(i + 1) - mean_s) / n;
   }
   const double mean_variance = std::max(variance + 2.0 * neighbours, variance / n) / n;
   results.oscillation_frequency =

@@ -2,8 +2,7 @@
 /// What can be said from peak to peak without the model: periods, and the drift of the mean.
 #pragma once
 
-#include <span>
-
+#include "core/base/long_column.hpp"
 #include "core/friction/fall_finder.hpp"
 #include "core/friction/results.hpp"
 #include "core/friction/trace.hpp"
@@ -11,14 +10,14 @@
 namespace stickslip::friction {
 
 /// Slope of the means from peak to peak against time, by least squares: an oscillation averages out.
-[[nodiscard]] Estimate drift_of(const Trace& trace, std::span<const Fall> slips);
+[[nodiscard]] Estimate drift_of(const Trace& trace, const base::LongColumn<Fall>& slips);
 
 /// The same as something to take off before the model is fitted: none unless it is significant, so that a
 /// test without drift stays as it is.
-[[nodiscard]] Drift significant_drift(const Trace& trace, std::span<const Fall> slips);
+[[nodiscard]] Drift significant_drift(const Trace& trace, const base::LongColumn<Fall>& slips);
 
 /// Fills period_median and oscillation_frequency. A ring-down's frequency is that of the fitted
 /// oscillator (results.omega), else it is cycles over time.
-void period_results(const Trace& trace, std::span<const Fall> slips, TestResults& results);
+void period_results(const Trace& trace, const base::LongColumn<Fall>& slips, TestResults& results);
 
 }  // namespace stickslip::friction

@@ -42,6 +42,10 @@ class FallFinder {
   /// Scans since the last confirmed turning point; for finding out that nothing moves.
   [[nodiscard]] double scans_since_turn() const noexcept;
   [[nodiscard]] bool falling() const noexcept { return direction_ == Direction::kDown; }
+  /// Positions of the highest and lowest median since the last confirmed turning points: while falling(), of
+  /// the peak and of the trough so far.
+  [[nodiscard]] std::size_t high_at() const noexcept { return high_.position; }
+  [[nodiscard]] std::size_t low_at() const noexcept { return low_.position; }
 
  private:
   enum class Direction { kUnknown, kUp, kDown };

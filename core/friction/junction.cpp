@@ -8,6 +8,7 @@
 
 #include "core/friction/capture.hpp"
 #include "core/friction/huber.hpp"
+#include "core/friction/junction_scans.hpp"
 
 namespace stickslip::friction {
 namespace {
@@ -23,171 +24,209 @@ constexpr double kLogScatter = 0.5545;
 /// Keeps the logarithm finite.
 constexpr double kLeastRatio = 1e-6;
 
-struct Scan {
-  double tau_s;  ///< After the first scan of the window.
-  double value;
-};
-
-/// All scans of a window, unless the stick or what is left of an oscillation is so long that the time for
-/// the fit and its memory would grow with it: then all near the two ends, where the slips are, and of the
-/// line between them so many that there are about kMostScans.
-class Selection {
- public:
-  Selection(std::size_t first, std::size_t end)
-      : first_(first), end_(end), stride_((end - first + kMostScans - 1) / kMostScans) {}
-
-  [[nodiscard]] bool has(std::size_t k) const noexcept {
-    return k - first_ < kNearTheEnds || end_ - k <= kNearTheEnds || (k - first_) % stride_ == 0;
-  }
-
- private:
-  static constexpr std::size_t kMostScans = 20'000;   ///< A minute at 350 scans/s.
-  static constexpr std::size_t kNearTheEnds = 5'000;  ///< From each end.
-
-  std::size_t first_;
-  std::size_t end_;
-  std::size_t stride_;
-};
-
 /// K, c(0) − K, c′(0), and for "captured" the S of the next slip.
-using Parameters = Eigen::VectorXd;
+template <int kCount>
+using Parameters = Eigen::Matrix<double, kCount, 1>;
+
+/// Value of a course at a point, and its derivatives by the parameters.
+template <int kCount>
+struct CoursePoint {
+  double value = 0.0;
+  Parameters<kCount> by;
+};
 
 class FreeCourse {
  public:
-  FreeCourse(const Parameters& p, const SharedParameters& shared)
-      : waveform_{p[0], p[1], p[2], shared.oscillator()} {}
+  static constexpr int kCount = 3;
 
-  [[nodiscard]] double value(double tau_s) const { return waveform_.value(tau_s); }
-  [[nodiscard]] static double surprise() noexcept { return 0.0; }
+  FreeCourse(const Parameters<kCount>& p, const SharedParameters& shared)
+      : p_(p), damping_(0.5 * shared.gamma / shared.omega), per_omega_(1.0 / shared.omega) {}
+
+  [[nodiscard]] CoursePoint<kCount> at(const JunctionPoint& point) const noexcept {
+    const double by_D = point.cosine + damping_ * point.sine;
+    const double by_rate = per_omega_ * point.sine;
+    return {p_[0] + p_[1] * by_D + p_[2] * by_rate, {1.0, by_D, by_rate}};
+  }
+  [[nodiscard]] static CoursePoint<kCount> surprise() noexcept { return {0.0, Parameters<kCount>::Zero()}; }
 
  private:
-  SlipWaveform waveform_;
+  Parameters<kCount> p_;
+  double damping_;  ///< γ/2ω
+  double per_omega_;
 };
 
 /// The captured course with its events worked out once.
 class CapturedCourse {
  public:
-  CapturedCourse(const Parameters& p, const SharedParameters& shared, double typical_delta_mu)
-      : r_(shared.r), first_{p[0], p[1], p[2], shared.oscillator()} {
-    capture_s_ = capture_time_s(first_, r_).value_or(first_.rise_end_time_s());
-    at_capture_ = first_.value(capture_s_);
-    const double S = std::max({p[3], p[0], at_capture_});
-    onset_s_ = capture_s_ + (S - at_capture_) / r_;
-    second_ = SlipWaveform{p[0], S - p[0], r_, shared.oscillator()};
-    surprise_ = std::log(std::max((S - p[0]) / typical_delta_mu, kLeastRatio)) / kLogScatter;
+  static constexpr int kCount = 4;
+
+  /// \param belt  outlives this. \param start_s  time of the trace at τ = 0.
+  CapturedCourse(const Parameters<kCount>& p, const SharedParameters& shared, double typical_delta_mu,
+                 double last_s, const BeltCourse& belt, double start_s)
+      : belt_(belt),
+        start_s_(start_s),
+        r_(shared.r),
+        first_(p.head<3>(), shared),
+        damping_(0.5 * shared.gamma / shared.omega),
+        omega_(shared.omega),
+        K_(p[0]) {
+    const SlipWaveform slip{p[0], p[1], p[2], shared.oscillator()};
+    capture_s_ = capture_time_s(slip, belt, r_, start_s).value_or(slip.rise_end_time_s());
+    JunctionPoint capture;
+    const double decay = std::exp(-0.5 * shared.gamma * capture_s_);
+    capture.cosine = decay * std::cos(omega_ * capture_s_);
+    capture.sine = decay * std::sin(omega_ * capture_s_);
+    at_capture_ = first_.at(capture);
+    const double S = std::max({p[3], K_, at_capture_.value});
+    D_ = S - K_;
+    onset_s_ = capture_s_ + belt.climbing_time_s(r_, start_s + capture_s_, S - at_capture_.value);
+    onset_rate_ = belt.stick_rate(r_, start_s + onset_s_);
+    onset_slope_ = r_ * belt.slope(start_s + onset_s_);
+    // c = K + e^(−γt/2) [D cos ωt + B sin ωt] from the onset on: (11) without a division by D. Counted from
+    // the last point, the onset turns and stretches the two.
+    const double onset_to_end_s = onset_s_ - last_s;
+    const double growth = std::exp(0.5 * shared.gamma * onset_to_end_s);
+    cosine_ = growth * std::cos(omega_ * onset_to_end_s);
+    sine_ = growth * std::sin(omega_ * onset_to_end_s);
+    ratio_ = std::max(D_ / typical_delta_mu, kLeastRatio);
+    sure_ = ratio_ > kLeastRatio;
   }
 
   /// How unusual its S − K is, in standard deviations.
-  [[nodiscard]] double surprise() const noexcept { return surprise_; }
+  [[nodiscard]] CoursePoint<kCount> surprise() const noexcept {
+    CoursePoint<kCount> point{std::log(ratio_) / kLogScatter, Parameters<kCount>::Zero()};
+    if (sure_) point.by << -1.0 / (D_ * kLogScatter), 0.0, 0.0, 1.0 / (D_ * kLogScatter);
+    return point;
+  }
 
-  [[nodiscard]] double value(double tau_s) const {
-    if (tau_s <= capture_s_) return first_.value(tau_s);
-    if (tau_s <= onset_s_) return at_capture_ + r_ * (tau_s - capture_s_);
-    return second_.value(tau_s - onset_s_);
+  [[nodiscard]] CoursePoint<kCount> at(const JunctionPoint& point) const noexcept {
+    if (point.tau_s <= capture_s_) return widened(first_.at(point));
+    // c and c′ are continuous at the capture, so its shift drops out of the derivatives.
+    CoursePoint<kCount> course = widened(at_capture_);
+    if (point.tau_s <= onset_s_) {
+      course.value += belt_.climb(r_, start_s_ + capture_s_, point.tau_s - capture_s_);
+      return course;
+    }
+    const double cosine = point.cosine_to_end * cosine_ + point.sine_to_end * sine_;
+    const double sine = point.sine_to_end * cosine_ - point.cosine_to_end * sine_;
+    const double by_D = cosine + damping_ * sine;
+    course.value = K_ + D_ * by_D + onset_rate_ / omega_ * sine;
+    // c′ = e^(−γt/2) [r cos ωt − (γ/2ω r + ω₀² D/ω) sin ωt] [12]; ω₀² = ω² (1 + (γ/2ω)²).
+    const double rate =
+        onset_rate_ * cosine - (damping_ * onset_rate_ + omega_ * (1.0 + damping_ * damping_) * D_) * sine;
+    // The onset is later by (∂S − ∂c(capture))/r, and the slip begins with what the belt's rate is then.
+    const double later = (rate - onset_slope_ / omega_ * sine) / onset_rate_;
+    course.by *= later;
+    course.by[0] += 1.0 - by_D;
+    course.by[3] = by_D - later;
+    return course;
   }
 
  private:
+  [[nodiscard]] static CoursePoint<kCount> widened(const CoursePoint<3>& point) noexcept {
+    return {point.value, {point.by[0], point.by[1], point.by[2], 0.0}};
+  }
+
+  const BeltCourse& belt_;
+  double start_s_;
   double r_;
-  SlipWaveform first_;
-  SlipWaveform second_;
+  FreeCourse first_;
+  double damping_;  ///< γ/2ω
+  double omega_;
+  double K_;
+  double D_ = 0.0;  ///< S − K of the second slip.
   double capture_s_ = 0.0;
-  double at_capture_ = 0.0;
+  CoursePoint<3> at_capture_;
   double onset_s_ = 0.0;
-  double surprise_ = 0.0;
+  double onset_rate_ = 0.0;   ///< Of the belt at the onset, 1/s,
+  double onset_slope_ = 0.0;  ///< and its slope, 1/s².
+  double cosine_ = 0.0;
+  double sine_ = 0.0;
+  double ratio_ = 1.0;  ///< S − K over the typical one.
+  bool sure_ = true;
 };
 
-/// Huber's cost of the residuals over σ, which it fills (a spike that was not found counts no more for one
-/// course than for the other), with the surprise as the last of them.
+/// Normal equations of Huber's cost (a spike that was not found counts no more for one course than for the
+/// other) with the surprise as one residual more.
+template <int kCount>
+struct Equations {
+  Eigen::Matrix<double, kCount, kCount> normal = Eigen::Matrix<double, kCount, kCount>::Zero();
+  Parameters<kCount> gradient = Parameters<kCount>::Zero();
+  double cost = 0.0;
+};
+
 template <typename Course>
-double cost_of(const std::vector<Scan>& scans, const Course& course, double sigma,
-               Eigen::VectorXd& residuals) {
-  residuals[static_cast<Eigen::Index>(scans.size())] = -course.surprise();
-  double cost = 0.5 * course.surprise() * course.surprise();
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    const double z = (scans[i].value - course.value(scans[i].tau_s)) / sigma;
-    residuals[static_cast<Eigen::Index>(i)] = z;
-    cost += huber_cost(z);
+Equations<Course::kCount> equations_of(const JunctionScans& scans, const Course& course, double sigma) {
+  Equations<Course::kCount> equations;
+  const CoursePoint<Course::kCount> surprise = course.surprise();
+  equations.normal = surprise.by * surprise.by.transpose();
+  equations.gradient = -surprise.value * surprise.by;
+  equations.cost = 0.5 * surprise.value * surprise.value;
+  const double per_sigma = 1.0 / sigma;
+  for (const JunctionPoint& point : scans.points()) {
+    const CoursePoint<Course::kCount> model = course.at(point);
+    const double scale = point.root_count * per_sigma;
+    const double z = scale * (point.value - model.value);
+    const double weight = scale * huber_weight(z);
+    equations.cost += huber_cost(z);
+    equations.normal += (weight * scale) * model.by * model.by.transpose();
+    equations.gradient += (weight * z) * model.by;
   }
-  return cost;
+  return equations;
 }
 
-/// Levenberg–Marquardt with difference quotients; `steps` are the parameters' scales.
-/// \param model  called as model(parameters) → course.
-template <typename Model>
-double least_cost(const std::vector<Scan>& scans, const Model& model, Parameters p, const Parameters& steps,
-                  double sigma) {
-  const auto rows = static_cast<Eigen::Index>(scans.size()) + 1;
-  Eigen::VectorXd residuals(rows);
-  Eigen::VectorXd shifted(rows);
-  Eigen::MatrixXd jacobian(rows, p.size());
-  double cost = cost_of(scans, model(p), sigma, residuals);
+/// Levenberg–Marquardt. \param make  called as make(parameters) → course.
+template <int kCount, typename Make>
+double least_cost(const JunctionScans& scans, const Make& make, Parameters<kCount> p, double sigma) {
+  Equations<kCount> equations = equations_of(scans, make(p), sigma);
   double damping = kFirstDamping;
   for (int iteration = 0; iteration < kMostIterations && damping < kHopeless; ++iteration) {
-    for (Eigen::Index j = 0; j < p.size(); ++j) {
-      Parameters moved = p;
-      moved[j] += steps[j];
-      cost_of(scans, model(moved), sigma, shifted);
-      jacobian.col(j) = (residuals - shifted) / steps[j];
-    }
-    Eigen::VectorXd weights = residuals.unaryExpr([](double z) { return huber_weight(z); });
-    weights[rows - 1] = 1.0;
-    Eigen::MatrixXd normal = jacobian.transpose() * weights.asDiagonal() * jacobian;
-    normal.diagonal() *= 1.0 + damping;
-    const Parameters trial = p + normal.ldlt().solve(jacobian.transpose() * weights.cwiseProduct(residuals));
-    const double trial_cost = trial.allFinite() ? cost_of(scans, model(trial), sigma, shifted) : cost + 1.0;
-    if (trial_cost > cost) {
+    Eigen::Matrix<double, kCount, kCount> damped = equations.normal;
+    damped.diagonal() *= 1.0 + damping;
+    const Parameters<kCount> trial = p + damped.ldlt().solve(equations.gradient);
+    if (!trial.allFinite()) return equations.cost;
+    const Equations<kCount> there = equations_of(scans, make(trial), sigma);
+    if (!(there.cost <= equations.cost)) {
       damping *= 10.0;
       continue;
     }
-    const bool converged = cost - trial_cost < kConverged;
+    const bool converged = equations.cost - there.cost < kConverged;
     p = trial;
-    cost = trial_cost;
-    residuals = shifted;
+    equations = there;
     damping *= 0.1;
     if (converged) break;
   }
-  return cost;
+  return equations.cost;
 }
 
 }  // namespace
 
 double capture_log_likelihood_ratio(const Trace& trace, std::size_t first, std::size_t end,
                                     const SharedParameters& shared, double sigma, double typical_delta_mu) {
-  std::vector<Scan> scans;
-  const Selection selection{first, end};
-  double low = 0.0;
-  double high = 0.0;
-  for (std::size_t k = first; k < end; ++k) {
-    if (!selection.has(k) || trace.usable[k] == 0) continue;
-    const double value = trace.level(k);
-    low = scans.empty() ? value : std::min(low, value);
-    high = scans.empty() ? value : std::max(high, value);
-    scans.push_back({trace.time_s[k] - trace.time_s[first], value});
-  }
-  if (scans.size() < kFewestScans) return 0.0;
+  JunctionScans scans;
+  scans.read(trace, first, end, shared);
+  if (scans.scan_count() < kFewestScans) return 0.0;
 
-  const double swing = high - low;
-  // Difference quotients: a small part of the swing, far above the rounding of the values.
-  const double step = 1e-5 * swing;
-  const Eigen::Vector3d free_start{0.5 * (low + high), 0.5 * swing, 0.0};
-  const Eigen::Vector3d free_steps{step, step, step * shared.omega};
-  const double free_cost = least_cost(
+  const double swing = scans.highest() - scans.lowest();
+  const double middle = 0.5 * (scans.lowest() + scans.highest());
+  const double free_cost = least_cost<3>(
       scans,
-      [&](const Parameters& p) {
+      [&](const Parameters<3>& p) {
         return FreeCourse{p, shared};
       },
-      free_start, free_steps, sigma);
+      {middle, 0.5 * swing, 0.0}, sigma);
 
-  const auto captured = [&](const Parameters& p) { return CapturedCourse{p, shared, typical_delta_mu}; };
+  const double last_s = scans.points().back().tau_s;
+  const auto captured = [&](const Parameters<4>& p) {
+    return CapturedCourse{p, shared, typical_delta_mu, last_s, trace.belt, trace.time_s[first]};
+  };
   // Two starts: S as high as the swing says, and just above K; the cost has both valleys.
-  const double amplitude_of_belt = shared.r / shared.omega;
+  const double amplitude_of_belt = trace.belt.stick_rate(shared.r, trace.time_s[first]) / shared.omega;
   const double D = std::sqrt(std::max(0.25 * swing * swing - amplitude_of_belt * amplitude_of_belt, 0.0));
-  const Eigen::Vector4d steps{step, step, step * shared.omega, step};
   double captured_cost = 0.0;
   for (int start = 0; start < 2; ++start) {
-    const double S = free_start[0] + (start == 0 ? D : 0.1 * swing);
-    const double cost =
-        least_cost(scans, captured, Eigen::Vector4d{free_start[0], free_start[1], 0.0, S}, steps, sigma);
+    const double S = middle + (start == 0 ? D : 0.1 * swing);
+    const double cost = least_cost<4>(scans, captured, {middle, 0.5 * swing, 0.0, S}, sigma);
     captured_cost = start == 0 ? cost : std::min(captured_cost, cost);
   }
   return free_cost - captured_cost;

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace stickslip::friction {
 
-RegimeVerdict judge_regime(std::size_t slip_count, std::span<const double> log_likelihood_ratios,
+RegimeVerdict judge_regime(std::size_t slip_count, const base::LongColumn<double>& log_likelihood_ratios,
                            bool model_describes) {
   if (slip_count == 0) return {Regime::kSteadySliding, "no fall of the force is a slip", {}};
   if (log_likelihood_ratios.empty()) {
@@ -18,15 +19,18 @@ RegimeVerdict judge_regime(std::size_t slip_count, std::span<const double> log_l
   // hold at least one of each kind, so it gives up the weakest where all agree.
   double all_captured = 0.0;
   double best_of_each = 0.0;
-  double weakest = std::abs(log_likelihood_ratios.front());
+  double weakest = std::numeric_limits<double>::infinity();
+  std::ptrdiff_t captured = 0;
+  std::ptrdiff_t count = 0;
   for (const double ratio : log_likelihood_ratios) {
+    if (ratio == 0.0) continue;  // Says nothing.
+    ++count;
+    if (ratio > 0.0) ++captured;
     all_captured += ratio;
     best_of_each += std::max(ratio, 0.0);
     weakest = std::min(weakest, std::abs(ratio));
   }
-  const auto captured = std::count_if(log_likelihood_ratios.begin(), log_likelihood_ratios.end(),
-                                      [](double ratio) { return ratio > 0.0; });
-  const auto count = static_cast<std::ptrdiff_t>(log_likelihood_ratios.size());
+  if (count == 0) return {Regime::kUndecided, "no slip tells how it ended", {}};
   const bool unanimous = captured == 0 || captured == count;
   if (!unanimous && !model_describes) {
     return {
@@ -55,9 +59,11 @@ RegimeVerdict judge_regime(std::size_t slip_count, std::span<const double> log_l
   verdict.regime = classes[0].regime;
   verdict.reason = fmt::format("{} of {} slips ended in sticking", captured, count);
   if (verdict.regime == Regime::kMixed) {
-    const bool first_captured = log_likelihood_ratios.front() > 0.0;
-    const auto changed = std::find_if(log_likelihood_ratios.begin(), log_likelihood_ratios.end(),
-                                      [&](double ratio) { return (ratio > 0.0) != first_captured; });
+    const auto tells = [](double ratio) { return ratio != 0.0; };
+    const auto first = std::find_if(log_likelihood_ratios.begin(), log_likelihood_ratios.end(), tells);
+    const auto changed = std::find_if(first, log_likelihood_ratios.end(), [&](double ratio) {
+      return tells(ratio) && (ratio > 0.0) != (*first > 0.0);
+    });
     verdict.transition_slip = static_cast<std::size_t>(changed - log_likelihood_ratios.begin());
   }
   return verdict;

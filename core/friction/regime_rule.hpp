@@ -3,11 +3,10 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 
+#include "core/base/long_column.hpp"
 #include "core/friction/regime.hpp"
-#include "core/friction/slip_estimator.hpp"
 
 namespace stickslip::friction {
 
@@ -26,6 +25,7 @@ inline constexpr double kDecisiveLikelihoodRatio = 20.0;
 /// \param model_describes  the ratios rest on a model that fits the trace; if it does not, only a
 ///        unanimous vote counts.
 [[nodiscard]] RegimeVerdict judge_regime(std::size_t slip_count,
-                                         std::span<const double> log_likelihood_ratios, bool model_describes);
+                                         const base::LongColumn<double>& log_likelihood_ratios,
+                                         bool model_describes);
 
 }  // namespace stickslip::friction

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -46,7 +47,7 @@ NormalEquations assemble(const Trace& trace, const std::vector<SlipWindow>& wind
   NormalEquations equations;
   equations.slips.resize(windows.size());
   for (std::size_t i = 0; i < windows.size(); ++i) {
-    const SlipModel model{shared, windows[i].slip, windows[i].captured};
+    const SlipModel model{shared, windows[i].slip, windows[i].captured, trace.belt};
     SlipBlock& block = equations.slips[i];
     for (std::size_t k = windows[i].first; k < windows[i].end; ++k) {
       if (trace.usable[k] == 0) continue;
@@ -65,19 +66,6 @@ NormalEquations assemble(const Trace& trace, const std::vector<SlipWindow>& wind
   equations.gradient += sigma * sigma * equations.prior.gradient;
   equations.cost = equations.sums.cost() + equations.prior.cost;
   return equations;
-}
-
-double cost_of(const Trace& trace, const std::vector<SlipWindow>& windows, const SharedParameters& shared,
-               double sigma, const SharedPrior& prior) {
-  double cost = prior.at(shared).cost;
-  for (const SlipWindow& window : windows) {
-    const SlipModel model{shared, window.slip, window.captured};
-    for (std::size_t k = window.first; k < window.end; ++k) {
-      if (trace.usable[k] != 0)
-        cost += huber_cost((trace.level(k) - model.at(trace.time_s[k]).value) / sigma);
-    }
-  }
-  return cost;
 }
 
 Matrix3d damped(const Matrix3d& matrix, double damping) {
@@ -167,11 +155,11 @@ SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows, const Sh
   for (int iteration = 0; iteration < kMostIterations && !fit.converged && damping < kHopeless; ++iteration) {
     const Step step = solve(equations, sigma, damping);
     SharedParameters trial = fit.shared;
-    // Windows are large and many: they are tried in place.
     std::vector<SlipParameters> before;
     before.reserve(windows.size());
     for (const SlipWindow& window : windows) before.push_back(window.slip);
-    double trial_cost = std::numeric_limits<double>::infinity();
+    NormalEquations there;
+    there.cost = std::numeric_limits<double>::infinity();
     if (step.solved) {
       trial.omega += step.shared[0];
       trial.gamma += step.shared[1];
@@ -181,18 +169,18 @@ SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows, const Sh
         windows[i].slip.S += step.slips[i][1];
         windows[i].slip.K += step.slips[i][2];
       }
-      if (admissible(trial) && admissible(windows, sigma))
-        trial_cost = cost_of(trace, windows, trial, sigma, prior);
+      if (admissible(trial) && admissible(windows, sigma)) {
+        there = assemble(trace, windows, trial, sigma, prior);
+      }
     }
-    if (trial_cost <= equations.cost) {
-      fit.converged = equations.cost - trial_cost <= kConverged * equations.cost;
+    if (there.cost <= equations.cost) {
+      fit.converged = equations.cost - there.cost <= kConverged * equations.cost;
       fit.shared = trial;
-      equations = {};  // Not both at once.
-      equations = assemble(trace, windows, fit.shared, sigma, prior);
+      equations = std::move(there);
       damping = std::max(damping * kEasier, kSmallestDamping);
     } else {
       // At the optimum the cost cannot fall, and rounding decides its sign.
-      fit.converged = trial_cost - equations.cost <= kConverged * equations.cost;
+      fit.converged = there.cost - equations.cost <= kConverged * equations.cost;
       for (std::size_t i = 0; i < windows.size(); ++i) windows[i].slip = before[i];
       damping *= kHarder;
     }

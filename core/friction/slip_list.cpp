@@ -1,6 +1,5 @@
 #include "core/friction/slip_list.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -25,73 +24,105 @@ constexpr double kShortestHalf = 0.5;
 /// climbed less steeply than this part of the usual, the sled did not stick to a moving belt either.
 constexpr double kLate = 3.2;
 constexpr double kFlat = 0.25;
+/// A slip of the model takes 0.3 of an oscillation, whatever its size. One that falls, but for one scan, in
+/// less than this part of the usual time is a step between two spikes.
+constexpr double kQuick = 0.4;
 
-template <typename Value>
-double median_of(const std::vector<Fall>& falls, const Value& value) {
-  std::vector<double> values;
-  values.reserve(falls.size());
-  for (const Fall& fall : falls) values.push_back(value(fall));
-  return signal::median(values);
+/// Falls [first, end).
+struct Part {
+  const base::LongColumn<Fall>& falls;
+  std::size_t first;
+  std::size_t end;
+
+  [[nodiscard]] std::size_t size() const noexcept { return end - first; }
+  [[nodiscard]] Fall operator[](std::size_t i) const { return falls[first + i]; }
+  [[nodiscard]] Fall back() const { return falls[end - 1]; }
+
+  template <typename Value>
+  [[nodiscard]] double median(const Value& value) const {
+    return signal::median_of(size(), [&](std::size_t i) { return value((*this)[i]); });
+  }
+};
+
+double half_of(const Part& part) {
+  return part.median([](const Fall& fall) { return fall.trough_at - fall.peak_at; });
 }
 
-void keep_loaded(std::vector<Fall>& falls) {
-  const double rest = falls.front().rise_from;
-  const double load = median_of(falls, [](const Fall& fall) { return fall.peak; }) - rest;
-  const double trough = median_of(falls, [](const Fall& fall) { return fall.trough; }) - rest;
-  const auto loading = std::find_if(falls.begin(), falls.end(), [&](const Fall& fall) {
-    return fall.peak - rest > kNotLoaded * load || std::abs(fall.trough - rest) > kNotLoaded * load;
-  });
-  falls.erase(falls.begin(), loading);
-  if (trough < kLoaded * load) return;
+void keep_loaded(Part& part) {
+  const double rest = part[0].rise_from;
+  const double load = part.median([](const Fall& fall) { return fall.peak; }) - rest;
+  const double trough = part.median([](const Fall& fall) { return fall.trough; }) - rest;
+  const bool from_rest = trough >= kLoaded * load;
+  const auto loading = [&](const Fall& fall) {
+    // Where a trace begins in the middle of a test, the first fall may be seen without its rise.
+    return fall.peak - rest > kNotLoaded * load ||
+           (!from_rest && std::abs(fall.trough - rest) > kNotLoaded * load);
+  };
+  while (part.size() > 0 && !loading(part[0])) ++part.first;
+  if (!from_rest) return;
   const auto loaded = [&](const Fall& fall) { return std::abs(fall.trough - rest) > kAtRest * load; };
-  falls.erase(falls.begin(), std::find_if(falls.begin(), falls.end(), loaded));
-  falls.erase(std::find_if(falls.rbegin(), falls.rend(), loaded).base(), falls.end());
+  while (part.size() > 0 && !loaded(part[0])) ++part.first;
+  while (part.size() > 0 && !loaded(part.back())) --part.end;
 }
 
 double slope_between(const Fall& before, const Fall& after) noexcept {
   return (after.peak - before.trough) / (after.peak_at - before.trough_at);
 }
 
-void end_with_the_pull(std::vector<Fall>& falls) {
-  const double half = median_of(falls, [](const Fall& fall) { return fall.trough_at - fall.peak_at; });
-  std::vector<double> slopes;
-  for (std::size_t i = 0; i + 1 < falls.size(); ++i) slopes.push_back(slope_between(falls[i], falls[i + 1]));
-  const double typical = signal::median(slopes);
-  while (falls.size() > kFewestForMedian) {
-    const Fall& before = falls[falls.size() - 2];
-    const bool late = falls.back().peak_at - before.peak_at > kLate * half;
-    if (!late || slope_between(before, falls.back()) >= kFlat * typical) return;
-    falls.pop_back();
+void end_with_the_pull(Part& part) {
+  const double half = half_of(part);
+  const double typical =
+      signal::median_of(part.size() - 1, [&](std::size_t i) { return slope_between(part[i], part[i + 1]); });
+  while (part.size() > kFewestForMedian) {
+    const Fall before = part[part.size() - 2];
+    const bool late = part.back().peak_at - before.peak_at > kLate * half;
+    if (!late || slope_between(before, part.back()) >= kFlat * typical) return;
+    --part.end;
   }
 }
 
-void join_halves(std::vector<Fall>& falls) {
-  const double half = median_of(falls, [](const Fall& fall) { return fall.trough_at - fall.peak_at; });
-  std::vector<Fall> joined;
-  joined.reserve(falls.size());
-  for (const Fall& fall : falls) {
-    if (joined.empty() || fall.peak_at - joined.back().trough_at >= kShortestHalf * half) {
-      joined.push_back(fall);
-      continue;
+/// `fall` goes on where `before` has paused.
+void join(Fall& before, const Fall& fall) noexcept {
+  if (fall.trough >= before.trough) return;
+  before.duration += fall.trough_at - before.trough_at;
+  before.robust_drop += before.trough - fall.trough;
+  before.trough = fall.trough;
+  before.trough_at = fall.trough_at;
+}
+
+base::LongColumn<Fall> joined_halves(const Part& part, const std::filesystem::path& scratch) {
+  const double half = half_of(part);
+  const double quick = kQuick * part.median([](const Fall& fall) { return fall.duration; }) - 1.0;
+  base::LongColumn<Fall> joined{scratch};
+  std::size_t i = 0;
+  while (part[i].duration < quick) ++i;  // The median is not.
+  Fall latest = part[i];
+  for (++i; i < part.size(); ++i) {
+    const Fall fall = part[i];
+    if (fall.duration < quick) continue;
+    if (fall.peak_at - latest.trough_at >= kShortestHalf * half) {
+      joined.push_back(std::exchange(latest, fall));
+    } else {
+      join(latest, fall);
     }
-    Fall& before = joined.back();
-    if (fall.trough >= before.trough) continue;
-    before.duration += fall.trough_at - before.trough_at;
-    before.robust_drop += before.trough - fall.trough;
-    before.trough = fall.trough;
-    before.trough_at = fall.trough_at;
   }
-  falls = std::move(joined);
+  joined.push_back(latest);
+  return joined;
 }
 
 }  // namespace
 
-void keep_slips(std::vector<Fall>& falls) {
-  if (falls.size() < kFewestForMedian) return;
-  keep_loaded(falls);
-  if (falls.size() < kFewestForMedian) return;
-  end_with_the_pull(falls);
-  join_halves(falls);
+base::LongColumn<Fall> kept_slips(base::LongColumn<Fall> falls, const std::filesystem::path& scratch) {
+  if (falls.size() < kFewestForMedian) return falls;
+  Part part{falls, 0, falls.size()};
+  keep_loaded(part);
+  if (part.size() >= kFewestForMedian) {
+    end_with_the_pull(part);
+    return joined_halves(part, scratch);
+  }
+  base::LongColumn<Fall> kept{scratch};
+  for (std::size_t i = 0; i < part.size(); ++i) kept.push_back(part[i]);
+  return kept;
 }
 
 }  // namespace stickslip::friction

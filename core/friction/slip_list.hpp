@@ -2,18 +2,21 @@
 /// The slips of a whole test, seen together: what looked like a slip when it came and is none.
 #pragma once
 
-#include <vector>
+#include <filesystem>
 
+#include "core/base/long_column.hpp"
 #include "core/friction/fall_finder.hpp"
 
 namespace stickslip::friction {
 
-/// Takes out of `falls`, which the rule of single slips has let pass,
+/// `falls`, which the rule of single slips has let pass, without
 /// - falls before the force has been loaded and after it is unloaded: two spikes at rest;
 /// - falls in the hold after a pull, where the force does not climb;
+/// - falls too quick for the oscillation that the others show: steps between spikes;
 /// - the unloading itself, the last fall, which ends where the loading began though the slips do not;
-/// and joins two falls that are closer than a quarter of an oscillation: one slip, split by what disturbed
-/// it.
-void keep_slips(std::vector<Fall>& falls);
+/// and with two falls joined that are closer than a quarter of an oscillation: one slip, split by what
+/// disturbed it. \param scratch  folder for a long list; empty: memory.
+[[nodiscard]] base::LongColumn<Fall> kept_slips(base::LongColumn<Fall> falls,
+                                                const std::filesystem::path& scratch = {});
 
 }  // namespace stickslip::friction

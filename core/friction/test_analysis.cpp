@@ -8,11 +8,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/friction/cycle_features.hpp"
+#include "core/friction/belt_start.hpp"
 #include "core/friction/cycle_statistics.hpp"
 #include "core/friction/model_results.hpp"
 #include "core/friction/regime_rule.hpp"
-#include "core/friction/slip_estimator.hpp"
+#include "core/friction/sections.hpp"
 #include "core/friction/slip_list.hpp"
 #include "core/friction/traditional.hpp"
 #include "core/signal/statistics.hpp"
@@ -32,11 +32,20 @@ double noise_floor(const base::LongColumn<double>& values, double step_coefficie
       {signal::kRoundingSigma * step, kSmallestRelativeNoise * largest, std::numeric_limits<double>::min()});
 }
 
+/// S − K of the cycle as the live side found it; NaN where it saw none there.
+/// \param next  where to look on, from cycle to cycle.
+void take_live_estimate(const base::LongColumn<LiveCycle>& live, std::size_t& next, Cycle& cycle) {
+  const double half_s = 0.5 * (std::isnan(cycle.period_s) ? 1.0 : cycle.period_s);
+  while (next < live.size() && live[next].cycle.peak_time_s < cycle.peak_time_s - half_s) ++next;
+  const bool found = next < live.size() && live[next].cycle.peak_time_s < cycle.peak_time_s + half_s;
+  cycle.delta_mu = found ? live[next].cycle.delta_mu : std::numeric_limits<double>::quiet_NaN();
+  cycle.delta_mu_standard_error = std::numeric_limits<double>::quiet_NaN();
+}
+
 /// Turning points must not follow noise before the noise is known.
 double hysteresis(double sigma) { return SlipRule::kHysteresisSigmas * sigma; }
 
-/// \param scratch  folder for what is being collected, so that the result grows once.
-std::vector<Fall> find_slips(const Trace& trace, double sigma, const std::filesystem::path& scratch) {
+base::LongColumn<Fall> find_slips(const Trace& trace, double sigma, const std::filesystem::path& scratch) {
   FallFinder finder;
   SlipRule rule;
   base::LongColumn<Fall> slips{scratch};
@@ -45,11 +54,37 @@ std::vector<Fall> find_slips(const Trace& trace, double sigma, const std::filesy
       slips.push_back(*fall);
     }
   }
-  std::vector<Fall> all;
-  all.reserve(slips.size());
-  for (const Fall& slip : std::as_const(slips)) all.push_back(slip);
-  keep_slips(all);
-  return all;
+  return kept_slips(std::move(slips), scratch);
+}
+
+/// What the model has found, beside what needs no model.
+void take_model_results(const TestResults& model, TestResults& results) {
+  std::vector<const Estimate*> from;
+  for_each_result(model, [&](const ResultName&, const Estimate& estimate) { from.push_back(&estimate); });
+  std::size_t i = 0;
+  for_each_result(results, [&](const ResultName&, Estimate& estimate) {
+    const Estimate& found = *from[i++];
+    if (found.value || !found.reason.empty()) estimate = found;
+  });
+}
+
+/// Lays the plan over the trace and forgets the falls outside its pulls: one that begins as the belt stops or
+/// turns is no slip.
+void follow_plan(const PullSpeed& plan, double gravity_m_per_s2, Trace& trace, base::LongColumn<Fall>& slips,
+                 const std::filesystem::path& scratch) {
+  constexpr double kScansBeforeStop = 1.5;  // The peak is interpolated between scans.
+  const std::optional<BeltCourse> belt =
+      belt_from_loading(trace, std::as_const(slips)[0], plan, gravity_m_per_s2);
+  if (!belt) return;
+  trace.belt = *belt;
+  base::LongColumn<Fall> kept{scratch};
+  for (const Fall& slip : std::as_const(slips)) {
+    const std::size_t pull = trace.belt.pull_of(time_at(trace, slip.peak_at));
+    const bool pulled = time_at(trace, slip.peak_at) >= trace.belt.pull_start_s(pull) &&
+                        time_at(trace, slip.peak_at + kScansBeforeStop) < trace.belt.pull_end_s(pull);
+    if (pulled) kept.push_back(slip);
+  }
+  slips = std::move(kept);
 }
 
 /// A stub of a test: without the noise there is no telling what is a slip.
@@ -71,7 +106,11 @@ TestAnalysis::TestAnalysis(const AnalysisSettings& settings)
       indices_(settings.scratch_folder),
       coefficients_(settings.scratch_folder),
       saturated_(settings.scratch_folder),
-      live_noise_(std::max(signal::kRoundingSigma * settings.step_coefficient, kSmallestRelativeNoise)) {
+      live_({settings.scan_rate_Hz, settings.step_coefficient, settings.estimator, settings.prior,
+             settings.despike}),
+      live_cycles_(settings.scratch_folder) {
+  constexpr std::size_t kRoom = 100;
+  new_cycles_.reserve(kRoom);
   if (!(settings.scan_rate_Hz > 0.0) || !std::isfinite(settings.scan_rate_Hz)) {
     throw std::invalid_argument(fmt::format("scan rate {} Hz must be positive", settings.scan_rate_Hz));
   }
@@ -81,41 +120,34 @@ void TestAnalysis::add(base::ScanIndex index, double coefficient, bool saturated
   indices_.push_back(index);
   coefficients_.push_back(coefficient);
   saturated_.push_back(saturated ? 1 : 0);
-  live_noise_.add(coefficient);
-  if (!settings_.despike) {
-    follow_live({coefficient, false});
-  } else if (const auto scan = live_despiker_.add(coefficient, live_noise_.sigma())) {
-    follow_live(*scan);
-  }
+  if (const auto cycle = live_.add(coefficient, saturated)) keep_live(*cycle);
 }
 
-void TestAnalysis::follow_live(const signal::DespikedScan& scan) {
-  const double sigma = live_noise_.known() ? live_noise_.sigma() : std::numeric_limits<double>::infinity();
-  const auto fall = live_falls_.add(scan.value, hysteresis(sigma));
-  if (!fall || !live_rule_.is_slip(*fall, sigma)) return;
-  Cycle cycle;
-  cycle.number = live_cycle_count_++;
-  cycle.first_scan = indices_.front() + std::lround(fall->peak_at);
-  cycle.peak_time_s = fall->peak_at / settings_.scan_rate_Hz;
-  cycle.peak = fall->peak;
-  cycle.trough = fall->trough;
-  cycle.force_drop = fall->drop();
-  for (double* unknown :
-       {&cycle.onset_time_s, &cycle.capture_time_s, &cycle.period_s, &cycle.stick_time_s, &cycle.slip_time_s,
-        &cycle.delta_mu, &cycle.delta_mu_standard_error, &cycle.slip_speed_ratio}) {
-    *unknown = std::numeric_limits<double>::quiet_NaN();
-  }
-  new_cycles_.push_back(cycle);
+void TestAnalysis::keep_live(const LiveCycle& cycle) {
+  new_cycles_.push_back(cycle.cycle);
+  new_cycles_.back().first_scan += indices_.front();
+  if (settings_.estimator == EstimatorTier::kFit) return;
+  means_.add(cycle);
+  live_cycles_.push_back(cycle);
+}
+
+void TestAnalysis::end_live() {
+  if (const auto cycle = live_.end()) keep_live(*cycle);
 }
 
 void TestAnalysis::gap(base::ScanIndex first, std::int64_t count) {
   gaps_.push_back({first, count});
-  live_noise_.gap();
+  live_.gap(count);
 }
 
-std::vector<Cycle> TestAnalysis::take_new_cycles() { return std::exchange(new_cycles_, {}); }
+std::vector<Cycle> TestAnalysis::take_new_cycles() {
+  std::vector<Cycle> taken = new_cycles_;
+  new_cycles_.clear();  // Their room stays.
+  return taken;
+}
 
 TestResults TestAnalysis::finish() {
+  end_live();
   TestResults results;
   std::int64_t lost = 0;
   for (const Gap& gap : gaps_) lost += gap.count;
@@ -131,7 +163,13 @@ TestResults TestAnalysis::finish() {
     return results;
   }
   const double sigma = signal::scan_noise(trace.value, noise_floor(trace.value, settings_.step_coefficient));
-  const std::vector<Fall> slips = find_slips(trace, sigma, settings_.scratch_folder);
+  base::LongColumn<Fall> slips = find_slips(trace, sigma, settings_.scratch_folder);
+  // What the tester did counts before what the method asks.
+  const auto& plan =
+      settings_.tester.speed_course ? settings_.tester.speed_course : settings_.method.speed_course;
+  if (plan && !slips.empty()) {
+    follow_plan(*plan, settings_.tester.gravity_m_per_s2, trace, slips, settings_.scratch_folder);
+  }
   results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
   const TraditionalCoefficients traditional =
       traditional_coefficients(trace, slips, settings_.method, settings_.tester.pull_speed_m_per_s);
@@ -145,24 +183,23 @@ TestResults TestAnalysis::finish() {
     no_model_results("no slip", results);
   } else {
     if (settings_.remove_drift) trace.drift = significant_drift(trace, slips);
-    const SlipEstimates estimates = estimate(trace, slips, sigma);
+    trace.belt.take_off_drift(trace.drift.rate_per_s);
+    TestEstimates estimates = estimate(trace, slips, sigma);
     const RegimeVerdict verdict =
-        judge_regime(slips.size(), estimates.log_likelihood_ratios, model_describes(estimates, sigma));
+        judge_regime(slips.size(), estimates.log_likelihood_ratios, estimates.model_describes);
     results.regime = verdict.regime;
     results.regime_reason = verdict.reason;
-    const auto captured = std::count(estimates.ends.begin(), estimates.ends.end(), SlipEnd::kCaptured);
     results.stick_cycle_count = verdict.regime == Regime::kUndecided
                                     ? Estimate::none("undecided: " + verdict.reason)
-                                    : Estimate::of(static_cast<double>(captured));
-    model_results(slips, estimates, settings_.tester, sigma, results);
-    if (model_describes(estimates, sigma)) {
-      feature_results(trace, slips, estimates, results);
-      speed_results(estimates, results);
-    }
+                                    : Estimate::of(static_cast<double>(estimates.captured));
+    take_model_results(estimates.results, results);
+    if (estimates.model_describes) speed_results(trace, estimates, results);
+    if (settings_.estimator != EstimatorTier::kFit) means_.fill(results);
     if (verdict.transition_slip) {
-      results.transition_time = Estimate::of(time_at(trace, slips[*verdict.transition_slip].peak_at));
+      const Fall slip = std::as_const(slips)[*verdict.transition_slip];
+      results.transition_time = Estimate::of(time_at(trace, slip.peak_at));
     }
-    keep_cycles(cycle_table(trace, slips, estimates), slips);
+    keep_cycles(estimates.cycles, slips);
   }
   period_results(trace, slips, results);
   results.drift_rate = drift_of(trace, slips);
@@ -174,6 +211,7 @@ Trace TestAnalysis::despiked_trace() {
   Trace trace{base::LongColumn<double>{scratch},
               base::LongColumn<double>{scratch},
               base::LongColumn<std::uint8_t>{scratch},
+              {},
               {}};
   const double sigma =
       signal::scan_noise(coefficients_, noise_floor(coefficients_, settings_.step_coefficient));
@@ -199,18 +237,30 @@ Trace TestAnalysis::despiked_trace() {
   return trace;
 }
 
-SlipEstimates TestAnalysis::estimate(const Trace& trace, const std::vector<Fall>& slips, double sigma) {
-  SlipEstimates alone = estimate_slips(trace, slips, sigma);
-  if (model_describes(alone, sigma)) tester_ = alone.tester();
+TestEstimates TestAnalysis::estimate(const Trace& trace, const base::LongColumn<Fall>& slips, double sigma) {
+  const auto estimates = [&](const SharedPrior& prior) {
+    return estimate_in_sections(trace, slips, sigma, prior, settings_.tester, settings_.scratch_folder);
+  };
+  TestEstimates alone = estimates({});
+  if (alone.model_describes) tester_ = alone.tester;
   if (settings_.prior.empty()) return alone;
-  SlipEstimates with = estimate_slips(trace, slips, sigma, settings_.prior);
-  if (!settings_.prior.coupling || !tester_ || !with.fit.converged) return with;
-  tester_check_ = check_tester(*tester_, with.tester(), *settings_.prior.coupling, settings_.tester);
-  return tester_check_->used() ? with : alone;
+  TestEstimates with = estimates(settings_.prior);
+  if (!settings_.prior.coupling || !tester_ || !with.tester) return with;
+  tester_check_ = check_tester(*tester_, *with.tester, *settings_.prior.coupling, settings_.tester);
+  return tester_check_->used() ? std::move(with) : std::move(alone);
 }
 
-void TestAnalysis::speed_results(const SlipEstimates& estimates, TestResults& results) const {
-  const TesterEstimate found = estimates.tester();
+void TestAnalysis::speed_results(const Trace& trace, const TestEstimates& estimates,
+                                 TestResults& results) const {
+  if (!trace.belt.is_constant()) {
+    results.pull_speed_measured = Estimate::none("the pull speed changes during the test");
+    return;
+  }
+  if (!estimates.tester) {
+    results.pull_speed_measured = Estimate::none("the fit of the model did not converge");
+    return;
+  }
+  const TesterEstimate& found = *estimates.tester;
   results.pull_speed_measured =
       tester_check_ ? tester_check_->pull_speed : pull_speed_of(found, settings_.tester.gravity_m_per_s2);
   if (results.pull_speed_measured.value) {
@@ -218,7 +268,7 @@ void TestAnalysis::speed_results(const SlipEstimates& estimates, TestResults& re
     const double omega0_squared =
         found.omega * found.omega * (1.0 + found.gamma_over_2omega * found.gamma_over_2omega);
     *results.pull_speed_measured.value +=
-        estimates.drift.rate_per_s * settings_.tester.gravity_m_per_s2 / omega0_squared;
+        trace.drift.rate_per_s * settings_.tester.gravity_m_per_s2 / omega0_squared;
   }
   if (tester_check_) {
     results.findings = tester_check_->findings;
@@ -227,10 +277,11 @@ void TestAnalysis::speed_results(const SlipEstimates& estimates, TestResults& re
   }
 }
 
-void TestAnalysis::keep_cycles(const std::vector<Cycle>& cycles, const std::vector<Fall>& slips) {
+void TestAnalysis::keep_cycles(const base::LongColumn<Cycle>& cycles, const base::LongColumn<Fall>& slips) {
   const base::LongColumn<base::ScanIndex>& indices = indices_;
   const base::LongColumn<std::uint8_t>& saturated = saturated_;
   cycles_ = base::LongColumn<Cycle>{settings_.scratch_folder};
+  std::size_t live = 0;
   for (std::size_t i = 0; i < cycles.size(); ++i) {
     Cycle cycle = cycles[i];
     const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
@@ -250,6 +301,7 @@ void TestAnalysis::keep_cycles(const std::vector<Cycle>& cycles, const std::vect
                     [](std::uint8_t flag) { return flag != 0; })) {
       cycle.flags |= kCycleIsSaturated;
     }
+    if (settings_.estimator != EstimatorTier::kFit) take_live_estimate(live_cycles_, live, cycle);
     cycles_.push_back(cycle);
   }
 }

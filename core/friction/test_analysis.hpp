@@ -19,15 +19,14 @@
 #include "core/friction/characterisation.hpp"
 #include "core/friction/cycle.hpp"
 #include "core/friction/fall_finder.hpp"
+#include "core/friction/live_detector.hpp"
 #include "core/friction/method.hpp"
 #include "core/friction/results.hpp"
+#include "core/friction/sections.hpp"
 #include "core/friction/shared_prior.hpp"
-#include "core/friction/slip_estimator.hpp"
-#include "core/friction/slip_rule.hpp"
 #include "core/friction/tester.hpp"
+#include "core/friction/tier_means.hpp"
 #include "core/friction/trace.hpp"
-#include "core/signal/despike.hpp"
-#include "core/signal/noise.hpp"
 
 namespace stickslip::friction {
 
@@ -36,6 +35,9 @@ struct AnalysisSettings {
   double step_coefficient = 0.0;  ///< One A/D step; 0 if unknown: then it is taken from the trace.
   Tester tester;
   Method method;
+  /// Where S, K and S − K come from: those of each cycle, live and at the end, and those of the test. The
+  /// regime, ω and γ come from the fit of the whole test in any case.
+  EstimatorTier estimator = EstimatorTier::kFit;
   SharedPrior prior;         ///< What is known of the tester beforehand; empty: the test tells it all.
   bool despike = true;       ///< Off: to see what the spikes did.
   bool remove_drift = true;  ///< Off: to see what the drift did.
@@ -43,9 +45,8 @@ struct AnalysisSettings {
   std::filesystem::path scratch_folder;
 };
 
-/// Thread-bound. Memory grows with the test: about 34 bytes a scan and 0.8 kB a slip; with a scratch folder
-/// not with the scans, and by 0.6 kB a slip while they are estimated. With a scratch folder all functions may
-/// throw std::system_error.
+/// Thread-bound. Memory grows with the test by about 34 bytes a scan and 0.2 kB a slip; with a scratch folder
+/// it does not, but for 8 bytes of each spike, and all functions may throw std::system_error.
 class TestAnalysis {
  public:
   /// \throws std::invalid_argument unless the rate is positive and finite.
@@ -57,8 +58,13 @@ class TestAnalysis {
   /// Scans [first, first + count) did not arrive.
   void gap(base::ScanIndex first, std::int64_t count);
 
-  /// Cycles completed since the last call, as the detector sees them live; finish() refines them.
+  /// Cycles completed since the last call, as the detector sees them live; finish() refines them. A cycle is
+  /// complete when the next slip is seen, or the oscillation has died away.
   [[nodiscard]] std::vector<Cycle> take_new_cycles();
+  /// No more scans: the cycle under way is complete too. finish() does the same.
+  void end_live();
+  /// Phase and regime of the moment.
+  [[nodiscard]] const LiveState& live() const noexcept { return live_.state(); }
 
   /// Estimates over the whole test. Call once.
   [[nodiscard]] TestResults finish();
@@ -80,15 +86,15 @@ class TestAnalysis {
     std::int64_t count;
   };
 
-  void follow_live(const signal::DespikedScan& scan);
+  void keep_live(const LiveCycle& cycle);
   /// All scans with the noise of the whole test known; fills spikes_.
   [[nodiscard]] Trace despiked_trace();
   /// Into cycles_, with their flags.
-  void keep_cycles(const std::vector<Cycle>& cycles, const std::vector<Fall>& slips);
+  void keep_cycles(const base::LongColumn<Cycle>& cycles, const base::LongColumn<Fall>& slips);
   /// Fills pull_speed_measured and the findings.
-  void speed_results(const SlipEstimates& estimates, TestResults& results) const;
+  void speed_results(const Trace& trace, const TestEstimates& estimates, TestResults& results) const;
   /// With the prior, unless the test alone contradicts it; fills tester_ and tester_check_.
-  [[nodiscard]] SlipEstimates estimate(const Trace& trace, const std::vector<Fall>& slips, double sigma);
+  [[nodiscard]] TestEstimates estimate(const Trace& trace, const base::LongColumn<Fall>& slips, double sigma);
 
   AnalysisSettings settings_;
   base::LongColumn<base::ScanIndex> indices_;
@@ -96,12 +102,10 @@ class TestAnalysis {
   base::LongColumn<std::uint8_t> saturated_;
   std::vector<Gap> gaps_;
 
-  signal::NoiseEstimator live_noise_;
-  signal::Despiker live_despiker_;
-  FallFinder live_falls_;
-  SlipRule live_rule_;
-  std::vector<Cycle> new_cycles_;
-  std::int64_t live_cycle_count_ = 0;
+  LiveDetector live_;
+  std::vector<Cycle> new_cycles_;  ///< With room for those of a second at 100 a second.
+  TierMeans means_;
+  base::LongColumn<LiveCycle> live_cycles_;  ///< Only if they say what S − K of a cycle is.
 
   base::LongColumn<Cycle> cycles_;
   std::optional<TesterEstimate> tester_;

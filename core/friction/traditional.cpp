@@ -48,7 +48,7 @@ Estimate largest_scan(const Trace& trace, const Fall& slip) {
 }
 
 /// Peak to peak: a whole number of cycles, so that the phase does not matter.
-Estimate mean_of_cycles(const Trace& trace, std::span<const Fall> slips, int cycles) {
+Estimate mean_of_cycles(const Trace& trace, const base::LongColumn<Fall>& slips, int cycles) {
   const auto wanted = static_cast<std::size_t>(cycles);
   if (slips.size() < 2) return Estimate::none("only one peak: no cycle to average over");
   const double begin_s = time_at(trace, slips.front().peak_at);
@@ -86,7 +86,7 @@ Estimate mean_of_travel(const Trace& trace, double start_s, const TravelWindow& 
 
 }  // namespace
 
-TraditionalCoefficients traditional_coefficients(const Trace& trace, std::span<const Fall> slips,
+TraditionalCoefficients traditional_coefficients(const Trace& trace, const base::LongColumn<Fall>& slips,
                                                  const Method& method,
                                                  std::optional<double> pull_speed_m_per_s) {
   TraditionalCoefficients result;

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <optional>
-#include <span>
 
+#include "core/base/long_column.hpp"
 #include "core/friction/fall_finder.hpp"
 #include "core/friction/method.hpp"
 #include "core/friction/results.hpp"
@@ -23,7 +23,7 @@ struct TraditionalCoefficients {
 ///               count at the end of the loading.
 /// \param pull_speed_m_per_s  nominal, > 0; a travel window needs it.
 [[nodiscard]] TraditionalCoefficients traditional_coefficients(const Trace& trace,
-                                                               std::span<const Fall> slips,
+                                                               const base::LongColumn<Fall>& slips,
                                                                const Method& method,
                                                                std::optional<double> pull_speed_m_per_s = {});
 

@@ -95,6 +95,7 @@ void Processor::analyse(daq::ScanIndex index, double raw) {
 }
 
 void Processor::end(daq::ScanIndex end, EndCause cause) {
+  analysis_->end_live();
   report_new_cycles();
   TestEnd ended;
   ended.number = number_++;

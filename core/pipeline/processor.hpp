@@ -49,6 +49,10 @@ class Processor {
   [[nodiscard]] bool test_is_running() const noexcept { return analysis_.has_value(); }
   /// Number of the running test, else of the next one.
   [[nodiscard]] std::int64_t test_number() const noexcept { return number_; }
+  /// Phase and regime of the moment; idle between tests.
+  [[nodiscard]] friction::LiveState live() const {
+    return analysis_ ? analysis_->live() : friction::LiveState{};
+  }
   [[nodiscard]] std::uint64_t scan_count() const noexcept { return scan_count_; }
   [[nodiscard]] std::uint64_t gap_count() const noexcept { return gap_count_; }
 

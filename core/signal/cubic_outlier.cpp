@@ -10,8 +10,6 @@ namespace stickslip::signal {
 namespace {
 
 constexpr std::size_t kMiddle = kCubicWindow / 2;
-/// An outlier must be worth this many standard deviations: noise alone is in 6 of ten million scans.
-constexpr double kOutlierSigmas = 5.0;
 /// Part of the misfit that one outlier may leave unexplained. Of noise-free courses without a spike the
 /// middle alone leaves: a corner 0.14, a step 0.22, a jump of the curvature 0.38, a cosine of 4 scans a cycle
 /// 0.49.

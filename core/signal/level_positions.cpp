@@ -9,7 +9,7 @@ void Stairs::clear() noexcept {
   cell_bits_ = 0;
 }
 
-void Stairs::push(const CourseStep& step) noexcept {
+void Stairs::push_into_cells(const CourseStep& step) noexcept {
   if (join(step)) return;
   while (steps_.size() == kMostSteps) {
     widen_cells();

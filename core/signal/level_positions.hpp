@@ -46,7 +46,13 @@ class Stairs {
 
   void clear() noexcept;
   /// \param step  behind and below the last one.
-  void push(const CourseStep& step) noexcept;
+  void push(const CourseStep& step) noexcept {
+    if (cell_bits_ == 0 && steps_.size() < kMostSteps) {
+      steps_.push_back(step);
+    } else {
+      push_into_cells(step);
+    }
+  }
   void pop() noexcept { steps_.pop_back(); }
 
   [[nodiscard]] const std::vector<CourseStep>& steps() const noexcept { return steps_; }
@@ -55,6 +61,7 @@ class Stairs {
   [[nodiscard]] bool same_cell(const CourseStep& a, const CourseStep& b) const noexcept {
     return a.position >> cell_bits_ == b.position >> cell_bits_;
   }
+  void push_into_cells(const CourseStep& step) noexcept;
   /// Joins the step to the last one if they share a cell.
   [[nodiscard]] bool join(const CourseStep& step) noexcept;
   void widen_cells() noexcept;

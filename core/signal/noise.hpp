@@ -43,7 +43,8 @@ class NoiseEstimator {
   std::size_t seen_ = 0;
   std::array<double, kBlock> block_{};
   std::size_t in_block_ = 0;
-  std::array<double, kBlocks> medians_{};
+  std::array<double, kBlocks> medians_{};  ///< In the order of time, round and round.
+  std::array<double, kBlocks> sorted_{};   ///< The same in the order of size.
   std::size_t block_count_ = 0;
 };
 

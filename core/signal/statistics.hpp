@@ -3,8 +3,11 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 namespace stickslip::signal {
 
@@ -17,6 +20,33 @@ inline constexpr double kRoundingSigma = 0.28867513459481287;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// Up to this many values a median sorts copies of them; of more it bisects, in memory that does not grow.
+inline constexpr std::size_t kMostSorted = std::size_t{1} << 16U;
+
+/// The same of value(0) … value(count − 1), each asked for once, or 64 times if there are more than
+/// kMostSorted. \param count  > 0. \param value  no NaN.
+template <typename Value>
+[[nodiscard]] double median_of(std::size_t count, const Value& value) {
+  if (count <= kMostSorted) {
+    std::vector<double> values(count);
+    for (std::size_t i = 0; i < count; ++i) values[i] = value(i);
+    return median(values);
+  }
+  // Doubles rise with their bits; those below zero are turned round.
+  constexpr std::uint64_t kSign = std::uint64_t{1} << 63U;
+  const auto rank_of = [](double number) {
+    const auto bits = std::bit_cast<std::uint64_t>(number);
+    return (bits & kSign) != 0 ? ~bits : bits | kSign;
+  };
+  std::uint64_t answer = 0;  // The largest with no more than count/2 values below it, bit by bit.
+  for (std::uint64_t bit = kSign; bit != 0; bit >>= 1U) {
+    std::size_t below = 0;
+    for (std::size_t i = 0; i < count; ++i) below += rank_of(value(i)) < (answer | bit) ? 1U : 0U;
+    if (below <= count / 2) answer |= bit;
+  }
+  return std::bit_cast<double>((answer & kSign) != 0 ? answer & ~kSign : ~answer);
 }
 
 /// Mean of any number of values, without a large sum: its error stays below some ε of the largest value,

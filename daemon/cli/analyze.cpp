@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/wording.hpp"
 #include "core/record/reader.hpp"
 #include "daemon/analyse.hpp"
 #include "daemon/cli/commands.hpp"
@@ -37,6 +38,14 @@ nlohmann::ordered_json json_of(const std::optional<friction::TesterCheck>& check
 base::Result<std::string> run_analyze(const AnalyzeCommand& command) {
   const base::Result<friction::Method> method = chosen_method(command.method);
   if (!method) return tl::unexpected(method.error());
+  std::optional<friction::EstimatorTier> estimator;
+  if (!command.estimator.empty()) {
+    estimator = friction::estimator_tier_from_name(command.estimator);
+    if (!estimator) {
+      return base::usage_error("--estimator {}: must be \"peak\", \"interpolated\" or \"fit\"",
+                               base::one_line(command.estimator, 100));
+    }
+  }
   friction::SharedPrior prior;
   if (!command.tester.empty()) {
     const auto coupling = load_tester(command.tester);
@@ -48,7 +57,12 @@ base::Result<std::string> run_analyze(const AnalyzeCommand& command) {
   for (const std::string& file : command.files) {
     base::Result<record::Record> record = record::read_record(file);
     if (!record) return tl::unexpected(record.error());
-    if (!command.method.empty()) record->header.process.method = method_text(*method);
+    std::string& text = record->header.process.method;
+    const friction::EstimatorTier tier = estimator.value_or(estimator_from_text(text));
+    if (!command.method.empty()) text = method_text(*method);
+    // An empty text is the default method, which is written only where something stands behind it.
+    if (text.empty() && tier != friction::EstimatorTier::kFit) text = method_text({});
+    text = with_estimator(text, tier);
     base::Result<TesterAnalysis> analysed = analyse_with_tester(*record, prior);
     if (!analysed) {
       return tl::unexpected(

@@ -31,8 +31,9 @@ struct ImportCommand {
 
 struct AnalyzeCommand {
   std::vector<std::string> files;
-  std::string method;  ///< As chosen_method() takes it; empty: that of each record.
-  std::string tester;  ///< File of a characterisation; empty: none.
+  std::string method;     ///< As chosen_method() takes it; empty: that of each record.
+  std::string tester;     ///< File of a characterisation; empty: none.
+  std::string estimator;  ///< "peak", "interpolated" or "fit"; empty: that of each record.
   bool json = false;
 };
 

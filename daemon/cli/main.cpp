@@ -30,6 +30,7 @@ constexpr const char* kExamples = R"(Examples:
   stickslip accuracy threshold-oscillation -o a.html   error against time, for each way to solve it
   stickslip analyze records/*.h5                       a table, with the truth where it is known
   stickslip analyze trace.h5 --method iso-8295         stickslip methods lists the shipped ones
+  stickslip analyze trace.h5 --estimator peak          S and K as the tradition has them, for comparison
   stickslip analyze trace.h5 --json                    {"tests": [{"file": …, results …, "details": …}]}
   stickslip characterise ring-down.h5 -o tester.toml   omega and gamma of the tester, for --tester
   stickslip report records/*.h5 -o report.html         replicates, coefficient against speed, traces
@@ -319,6 +320,12 @@ int main_of(int count, char** arguments) {
           "--tester", analysis.tester,
           "what `stickslip characterise` wrote: S and K become surer, and what speaks against it is told")
       ->type_name("FILE.toml");
+  analyze
+      ->add_option(
+          "--estimator", analysis.estimator,
+          "where S and K come from: \"peak\" (largest scan and mean of each cycle), \"interpolated\" "
+          "(turning points), \"fit\" (all scans); default: as the record says")
+      ->type_name("NAME");
   analyze->add_flag("--json", analysis.json,
                     "JSON instead of a table; names as in the record, null where absent");
 

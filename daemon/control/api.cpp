@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 #include "daemon/results_json.hpp"
@@ -42,6 +44,32 @@ Json to_json(const daq::BoardInfo& board) {
   return json;
 }
 
+Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+/// Names and units as in the table of cycles of a record.
+Json to_json(const friction::LiveState& live) {
+  Json json;
+  json["phase"] = friction::name(live.phase);
+  json["regime"] = friction::name(live.regime);
+  json["slip_count"] = live.slip_count;
+  json["latest_cycle"] = nullptr;
+  if (live.latest) {
+    const friction::Cycle& cycle = live.latest->cycle;
+    json["latest_cycle"] = {{"number", cycle.number},
+                            {"captured", (cycle.flags & friction::kCycleCaptured) != 0},
+                            {"evidence", or_null(live.latest->evidence)},
+                            {"peak_time", or_null(cycle.peak_time_s)},
+                            {"period", or_null(cycle.period_s)},
+                            {"force_drop", or_null(cycle.force_drop)},
+                            {"mu_s", or_null(live.latest->S)},
+                            {"mu_k", or_null(live.latest->K)},
+                            {"delta_mu", or_null(cycle.delta_mu)},
+                            {"delta_mu_standard_error", or_null(cycle.delta_mu_standard_error)},
+                            {"slip_speed_ratio", or_null(cycle.slip_speed_ratio)}};
+  }
+  return json;
+}
+
 Json to_json(const Status& status) {
   Json json;
   json["state"] = status.state;
@@ -56,6 +84,7 @@ Json to_json(const Status& status) {
   json["storage_stall_count"] = status.storage_stall_count;
   json["test_count"] = status.test_count;
   json["current_test"] = status.current_test ? Json(*status.current_test) : Json(nullptr);
+  json["live"] = status.live ? to_json(*status.live) : Json(nullptr);
   json["latest_test"] = status.latest_test ? to_json(*status.latest_test) : Json(nullptr);
   return json;
 }

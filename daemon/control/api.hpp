@@ -12,6 +12,7 @@
 #include <string>
 
 #include "core/daq/board.hpp"
+#include "core/friction/live_cycle.hpp"
 #include "daemon/control/http.hpp"
 #include "daemon/test_log.hpp"
 
@@ -31,6 +32,7 @@ struct Status {
   std::uint64_t storage_stall_count = 0;
   std::int64_t test_count = 0;               ///< Ended.
   std::optional<std::int64_t> current_test;  ///< Running now.
+  std::optional<friction::LiveState> live;   ///< Of the current test.
   std::optional<TestSummary> latest_test;
 };
 

@@ -88,6 +88,23 @@ std::string detection_part(const AccuracyReport& report) {
   return html + "</table>";
 }
 
+std::string tier_part(const AccuracyReport& report) {
+  std::string html =
+      "<table><tr><th class=\"n\">scans/s</th><th>estimator</th><th class=\"n\">bias, %</th>"
+      "<th class=\"n\">sd, %</th><th class=\"n\">× bound</th><th class=\"n\">µs per cycle</th></tr>\n";
+  for (const accuracy::TierRow& row : report.tiers) {
+    html +=
+        fmt::format("<tr><td class=\"n\">{:.6g}</td><td>{}</td>", row.scan_rate_Hz, escaped(row.estimator));
+    html += row.reason.empty()
+                ? fmt::format(
+                      "<td class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.3g}</td>"
+                      "<td class=\"n\">{:.4g}</td></tr>\n",
+                      100.0 * row.bias, 100.0 * row.deviation, row.over_bound, row.us_per_cycle)
+                : fmt::format("<td colspan=\"4\">{}</td></tr>\n", escaped(row.reason));
+  }
+  return html + "</table>";
+}
+
 }  // namespace
 
 std::string accuracy_page(const AccuracyReport& report, std::string_view svg) {
@@ -109,12 +126,13 @@ std::string accuracy_page(const AccuracyReport& report, std::string_view svg) {
       "by its own account.</p>\n"
       "<table>\n{14}</table>\n<h2>Detection</h2>\n<p>S − K of this scene's test, with all its effects, "
       "against the "
-      "truth.</p>\n{15}\n</body>\n</html>\n",
+      "truth.</p>\n{15}\n<p>S − K of single cycles, live, at several scan rates: "
+      "{16}.</p>\n{17}\n</body>\n</html>\n",
       escaped(report.scene_name), kStyle, escaped(report.scene_description), report.scan_count,
       report.scan_rate_Hz, escaped(report.processor), escaped(report.motion.reference),
       report.motion.reference_uncertainty, report.motion.capture_count, report.asked_accuracy,
       escaped(report.chosen_method), picture, motion_rows(report), report.grazing_gamma_over_2omega,
-      grazing_rows(report), detection_part(report));
+      grazing_rows(report), detection_part(report), accuracy::kTierScene, tier_part(report));
 }
 
 }  // namespace stickslip::daemon

@@ -69,6 +69,21 @@ std::string detection_rows(const AccuracyReport& report) {
   return text;
 }
 
+std::string tier_rows(const AccuracyReport& report) {
+  std::string text = fmt::format("{:>10} {:>8}  {:<24} {:>9} {:>9} {:>8} {:>10}\n", "scans/s", "a cycle",
+                                 "estimator", "bias, %", "sd, %", "× bound", "µs/cycle");
+  for (const accuracy::TierRow& row : report.tiers) {
+    text += fmt::format("{:>10.6g} {:>8.3g}  {:<24} ", row.scan_rate_Hz, row.scans_per_cycle, row.estimator);
+    if (row.reason.empty()) {
+      text += fmt::format("{:>9.2f} {:>9.2f} {:>8.3g} {:>10.4g}\n", 100.0 * row.bias, 100.0 * row.deviation,
+                          row.over_bound, row.us_per_cycle);
+    } else {
+      text += row.reason + '\n';
+    }
+  }
+  return text;
+}
+
 Json or_null(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
 }
@@ -110,10 +125,12 @@ std::string accuracy_table(const AccuracyReport& report) {
       "Q = Q_th(1 ∓ 10⁻ⁿ) at γ/2ω = {:.4g}: + capture below found, - missed, ! one found above that is not "
       "there, "
       "x both wrong, ? undecided\n{}\n"
-      "S − K of this scene's test, with all its effects: error against the truth, and time\n{}",
+      "S − K of this scene's test, with all its effects: error against the truth, and time\n{}\n"
+      "S − K of single cycles, live, at several scan rates: {}\n{}",
       report.scene_name, report.scan_count, report.scan_rate_Hz, report.processor, motion.reference,
       motion.reference_uncertainty, motion.capture_count, report.asked_accuracy, report.chosen_method,
-      motion_rows(report), report.grazing_gamma_over_2omega, grazing_rows(report), detection_rows(report));
+      motion_rows(report), report.grazing_gamma_over_2omega, grazing_rows(report), detection_rows(report),
+      accuracy::kTierScene, tier_rows(report));
 }
 
 std::string accuracy_json(const AccuracyReport& report) {
@@ -130,6 +147,17 @@ std::string accuracy_json(const AccuracyReport& report) {
                        {"ns_per_scan", measured ? Json(row.ns_per_scan) : Json(nullptr)},
                        {"captures", measured ? Json(row.capture_count) : Json(nullptr)},
                        {"grazing", std::move(grazing)}});
+  }
+  Json tiers = Json::array();
+  for (const accuracy::TierRow& row : report.tiers) {
+    const bool measured = row.reason.empty();
+    tiers.push_back({{"scan_rate", row.scan_rate_Hz},
+                     {"estimator", row.estimator},
+                     {"bias", measured ? Json(row.bias) : Json(nullptr)},
+                     {"deviation", measured ? Json(row.deviation) : Json(nullptr)},
+                     {"over_bound", measured ? Json(row.over_bound) : Json(nullptr)},
+                     {"us_per_cycle", measured ? Json(row.us_per_cycle) : Json(nullptr)},
+                     {"reason", measured ? Json(nullptr) : Json(row.reason)}});
   }
   Json estimators = Json::array();
   for (const accuracy::DetectionRow& row : report.detection) {
@@ -151,7 +179,8 @@ std::string accuracy_json(const AccuracyReport& report) {
                     {"captures", report.motion.capture_count}}},
                   {"methods", std::move(methods)},
                   {"grazing_gamma_over_2omega", report.grazing_gamma_over_2omega},
-                  {"estimators", std::move(estimators)}};
+                  {"estimators", std::move(estimators)},
+                  {"live_estimators", std::move(tiers)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "daemon/report/ramp_text.hpp"
+
 namespace stickslip::daemon {
 namespace {
 
@@ -95,6 +97,8 @@ std::string format_table(std::span<const TableRow> rows) {
     for (const std::string& finding : row.results.findings) {
       findings += fmt::format("!  test {}: {}\n", row.number, finding);
     }
+    if (const std::string ramp = ramp_text(row.results); !ramp.empty())
+      text += fmt::format("ramp, test {}: {}\n", row.number, ramp);
   }
   return text + footnotes(rows) + findings;
 }

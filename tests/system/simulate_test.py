@@ -182,13 +182,12 @@ folder = "records"
         self.assertLess(slips, 10)
         self.assertLess(growth / (107 * 60 * 350), 1)
 
-    def test_memory_of_a_slip_is_that_of_its_estimate(self):
-        # In bytes: a Fall 72; its ends of this round and the last, likelihood ratio and window's number 28; its
-        # SlipWindow 192, and that of the fit without the first slip again; in a step of the fit its SlipBlock 168 and
-        # its solution 96. Tables of cycles, modes and true slips come on top of none of it.
-        growth, slips = self.memory_growth("velocity-at-3-in-per-min", "13 min", "30 min")
+    def test_memory_does_not_grow_with_the_slips(self):
+        # A table row is some 100 bytes, a slip in the fit 700; what is seen is a tenth of one Fall, 72. At half an hour
+        # the tables too have filled the blocks that stay in memory.
+        growth, slips = self.memory_growth("velocity-at-3-in-per-min", "30 min", "45 min")
         self.assertGreater(slips, 15_000)
-        self.assertLess(growth / slips, 72 + 28 + 2 * 192 + 168 + 96 + 52)  # 52 for what malloc adds
+        self.assertLess(growth / slips, 72)
 
     def test_seed_decides_the_bits(self):
         self.assertEqual(self.sha256("--seed", 7), self.sha256("--seed", 7))

@@ -76,6 +76,7 @@ TEST(Config, ShippedFileShowsTheDefaults) {
   EXPECT_EQ(written->record_folder, plain.record_folder);
   EXPECT_EQ(written->log_level, plain.log_level);
   EXPECT_EQ(written->report_table, plain.report_table);
+  EXPECT_EQ(written->estimator, plain.estimator);
 }
 
 TEST(Config, ResolvesScenesAgainstItsOwnFolder) {

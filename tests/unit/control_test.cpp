@@ -34,6 +34,11 @@ Status some_status() {
   status.latest_test->number = 7;
   status.latest_test->results.mu_s = friction::Estimate::of(0.35);
   status.latest_test->results.mu_k = friction::Estimate::none("no slip");
+  status.live.emplace();
+  status.live->phase = friction::Phase::kCycles;
+  status.live->regime = friction::Regime::kStickSlip;
+  status.live->latest.emplace();
+  status.live->latest->S = 0.36;
   return status;
 }
 
@@ -45,6 +50,10 @@ TEST(ControlApi, TellsTheStatusByTheNamesOfTheRecord) {
   EXPECT_EQ(status["scan_count"], 42);
   EXPECT_EQ(status["board"]["scan_rate_granted"], 350.0);
   EXPECT_EQ(status["current_test"], nullptr);
+  EXPECT_EQ(status["live"]["phase"], "cycles");
+  EXPECT_EQ(status["live"]["regime"], "stick-slip");
+  EXPECT_EQ(status["live"]["latest_cycle"]["mu_s"], 0.36);
+  EXPECT_EQ(status["live"]["latest_cycle"]["mu_k"], nullptr);
   EXPECT_EQ(status["latest_test"]["results"]["mu_s"], 0.35);
   EXPECT_EQ(status["latest_test"]["results"]["mu_k"], nullptr);
 }

@@ -67,6 +67,12 @@ TEST(RegimeRule, WithoutAModelOnlyAUnanimousVoteCounts) {
   EXPECT_EQ(regime_of({50.0, 50.0, -50.0}, false), Regime::kUndecided);
 }
 
+TEST(RegimeRule, SlipsThatTellNothingDoNotVote) {
+  EXPECT_EQ(regime_of({50.0, 0.0, 50.0}), Regime::kStickSlip);
+  EXPECT_EQ(regime_of({-50.0, 0.0, -50.0}), Regime::kRingDown);
+  EXPECT_EQ(judge_regime(5, std::vector{0.0, 50.0, 0.0, -50.0}, true).transition_slip, 3U);
+}
+
 TEST(RegimeRule, NothingKnownIsUndecidedWithAReason) {
   const RegimeVerdict verdict = judge_regime(4, std::vector{0.0, 0.0, 0.0}, true);
   EXPECT_EQ(verdict.regime, Regime::kUndecided);

@@ -1,0 +1,151 @@
+// The live detector, tier by tier: time for a scan over whole tests, and the slowest single scan, which is
+// one that closes a cycle. Beside it, in the same run and over the same scans, what is done with SciPy: a
+// median of five, a Savitzky–Golay filter and find_peaks (bench/scipy_chain.py), as a whole array at once,
+// and the raw maximum.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/support/live_trials.hpp"
+
+namespace {
+
+using namespace stickslip;
+
+/// Argument: scans a second. 0.05 s a cycle; 30 cycles.
+test::LiveScene fast_cycles(double scan_rate_Hz) {
+  test::LiveScene scene;
+  scene.scan_rate_Hz = scan_rate_Hz;
+  scene.slips = 30;
+  return scene;
+}
+
+/// 2 s a cycle.
+test::LiveScene slow_cycles(double scan_rate_Hz) {
+  test::LiveScene scene;
+  scene.scan_rate_Hz = scan_rate_Hz;
+  scene.Q = 0.008;
+  scene.slips = 3;
+  return scene;
+}
+
+std::vector<double> scans_of(const test::LiveScene& scene) {
+  test::LiveTrial trial{scene};
+  std::vector<double> scans;
+  while (static_cast<std::int64_t>(scans.size()) < trial.scan_count()) scans.push_back(trial.next());
+  return scans;
+}
+
+friction::LiveSettings settings_of(const test::LiveScene& scene, friction::EstimatorTier tier) {
+  friction::LiveSettings settings;
+  settings.scan_rate_Hz = scene.scan_rate_Hz;
+  settings.estimator = tier;
+  settings.prior = scene.characterised();
+  return settings;
+}
+
+void follow(benchmark::State& state, const test::LiveScene& scene, friction::EstimatorTier tier) {
+  const std::vector<double> scans = scans_of(scene);
+  std::int64_t cycles = 0;
+  for (auto _ : state) {
+    friction::LiveDetector detector{settings_of(scene, tier)};
+    cycles = 0;
+    for (const double value : scans) cycles += detector.add(value, false) ? 1 : 0;
+    benchmark::DoNotOptimize(detector);
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(scans.size()));
+  state.counters["cycles"] = static_cast<double>(cycles);
+  state.counters["per_scan"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(scans.size()),
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+/// The slowest scan: of several runs the least for each scan, so that what else the machine does does not
+/// count.
+void slowest_scan(benchmark::State& state, const test::LiveScene& scene, friction::EstimatorTier tier) {
+  using Clock = std::chrono::steady_clock;
+  constexpr int kRuns = 7;
+  const std::vector<double> scans = scans_of(scene);
+  double slowest_us = 0.0;
+  for (auto _ : state) {
+    std::vector<double> least_us(scans.size(), std::numeric_limits<double>::infinity());
+    for (int run = 0; run < kRuns; ++run) {
+      friction::LiveDetector detector{settings_of(scene, tier)};
+      for (std::size_t k = 0; k < scans.size(); ++k) {
+        const auto begin = Clock::now();
+        benchmark::DoNotOptimize(detector.add(scans[k], false));
+        const std::chrono::duration<double, std::micro> took = Clock::now() - begin;
+        least_us[k] = std::min(least_us[k], took.count());
+      }
+    }
+    slowest_us = *std::max_element(least_us.begin(), least_us.end());
+  }
+  state.counters["slowest_scan_us"] = slowest_us;
+}
+
+void peer_raw_maximum(benchmark::State& state) {
+  const std::vector<double> scans = scans_of(fast_cycles(static_cast<double>(state.range(0))));
+  for (auto _ : state) benchmark::DoNotOptimize(*std::max_element(scans.begin(), scans.end()));
+  state.counters["per_scan"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(scans.size()),
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(peer_raw_maximum)->Arg(350)->Arg(10'000);
+
+/// Python tells the least time of many itself.
+void peer_scipy_chain(benchmark::State& state) {
+  const test::LiveScene scene = fast_cycles(static_cast<double>(state.range(0)));
+  const std::vector<double> scans = scans_of(scene);
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("stickslip-scans-" + std::to_string(state.range(0)) + ".f64");
+  std::ofstream{file, std::ios::binary}.write(reinterpret_cast<const char*>(scans.data()),
+                                              static_cast<std::streamsize>(scans.size() * sizeof(double)));
+  const std::string command = "/usr/bin/python3 " STICKSLIP_SOURCE_DIR "/bench/scipy_chain.py " +
+                              file.string() + " " + std::to_string(scene.scan_rate_Hz) + " " +
+                              std::to_string(scene.frequency_Hz);
+  double ns = 0.0;
+  for (auto _ : state) {
+    std::FILE* python = popen(command.c_str(), "r");
+    if (python == nullptr || std::fscanf(python, "%lf", &ns) != 1)
+      state.SkipWithError("no SciPy: ./dev deps bench");
+    if (python != nullptr) pclose(python);
+  }
+  std::filesystem::remove(file);
+  state.counters["per_scan"] = ns * 1e-9;
+}
+BENCHMARK(peer_scipy_chain)->Arg(350)->Arg(10'000)->Iterations(1)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  for (const auto tier : {friction::EstimatorTier::kPeak, friction::EstimatorTier::kInterpolated,
+                          friction::EstimatorTier::kFit}) {
+    const std::string tier_name{name(tier)};
+    for (const double rate_Hz : {350.0, 1000.0, 10'000.0, 100'000.0}) {
+      const std::string at = tier_name + "/" + std::to_string(static_cast<int>(rate_Hz));
+      benchmark::RegisterBenchmark(("follow/" + at).c_str(), [=](benchmark::State& state) {
+        follow(state, fast_cycles(rate_Hz), tier);
+      });
+      benchmark::RegisterBenchmark(("slowest_scan/" + at).c_str(), [=](benchmark::State& state) {
+        slowest_scan(state, fast_cycles(rate_Hz), tier);
+      })->Iterations(1);
+    }
+    benchmark::RegisterBenchmark(
+        ("slowest_scan/2s_cycle/" + tier_name + "/100000").c_str(),
+        [=](benchmark::State& state) { slowest_scan(state, slow_cycles(100'000.0), tier); })
+        ->Iterations(1);
+  }
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

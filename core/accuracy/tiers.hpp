@@ -1,0 +1,37 @@
+/// \file
+/// What S − K of one cycle costs and is worth, live: each estimator at several scan rates, against the least
+/// error that any could have.
+///
+///     for (const TierRow& row : compare_tiers(*clock)) …
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/clock.hpp"
+
+namespace stickslip::accuracy {
+
+/// What is simulated, for people.
+inline constexpr std::string_view kTierScene =
+    "S 0.35, K 0.30, 20 Hz, γ/2ω 0.022 characterised, 12 in/min, noise 0.001 rms; bound: the least sd of one "
+    "cycle "
+    "with ω, γ and the stick rate known";
+
+struct TierRow {
+  double scan_rate_Hz = 0.0;
+  double scans_per_cycle = 0.0;  ///< Of the oscillation.
+  std::string estimator;
+  std::string reason;         ///< Why there are no numbers; empty if there are.
+  double bias = 0.0;          ///< Mean error of S − K over its truth.
+  double deviation = 0.0;     ///< Of the error from cycle to cycle, over the truth.
+  double over_bound = 0.0;    ///< deviation over the Cramér–Rao bound of a cycle.
+  double us_per_cycle = 0.0;  ///< Of the whole detector over the whole test, by the cycles.
+};
+
+/// The tiers of friction::LiveDetector, and the raw maximum less the mean, at 50 … 10 000 scans/s. Seeded:
+/// the same numbers each time but for the times.
+[[nodiscard]] std::vector<TierRow> compare_tiers(const base::Clock& clock);
+
+}  // namespace stickslip::accuracy

@@ -1,0 +1,175 @@
+#include "core/friction/live_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/signal/statistics.hpp"
+
+namespace stickslip::friction {
+namespace {
+
+/// A force that is up by as much as a slip is down is being loaded.
+constexpr int kLoadedScans = 3;
+/// Scans that the despiker holds back.
+constexpr std::int64_t kHeldBack = 3;
+/// As for the whole test: a trace without noise still has rounding.
+constexpr double kSmallestNoise = 1e-9;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+LiveDetector::LiveDetector(const LiveSettings& settings)
+    : settings_(settings),
+      noise_(std::max(signal::kRoundingSigma * settings.step_coefficient, kSmallestNoise)),
+      follower_(settings.estimator, settings.scan_rate_Hz, settings.prior),
+      lowest_(kInfinity),
+      highest_(-kInfinity) {}
+
+std::optional<LiveCycle> LiveDetector::add(double coefficient, bool saturated) {
+  noise_.add(coefficient);
+  saturated_[static_cast<std::size_t>(come_++) % saturated_.size()] = saturated;
+  if (!settings_.despike) return follow({coefficient, false}, saturated);
+  const auto scan = despiker_.add(coefficient, noise_.sigma());
+  if (!scan) return std::nullopt;
+  return follow(*scan, saturated_[static_cast<std::size_t>(come_ - 1 - kHeldBack) % saturated_.size()]);
+}
+
+double LiveDetector::time_of(double position) const noexcept {
+  const std::int64_t lost = position < static_cast<double>(gap_at_) ? lost_before_ : lost_;
+  return (position + static_cast<double>(lost)) / settings_.scan_rate_Hz;
+}
+
+std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, bool saturated) {
+  const double sigma = noise_.known() ? noise_.sigma() : kInfinity;
+  const double now_s = time_of(static_cast<double>(position_++));
+  if (scan.spike) flags_after_ |= kCycleHasSpike;
+  if (saturated) flags_after_ |= kCycleIsSaturated;
+  if (scan.value > highest_) {
+    highest_ = scan.value;
+    sum_at_highest_ = sum_;
+    count_at_highest_ = count_;
+    flags_to_highest_ |= flags_after_;
+    flags_after_ = 0;
+  }
+  sum_ += scan.value;
+  count_ += 1.0;
+  const bool usable = !scan.spike && !saturated;
+  if (usable) follower_.add(now_s, scan.value);
+  const auto amplitude = watch_.add(scan.value, usable);
+
+  const auto fall = finder_.add(scan.value, SlipRule::kHysteresisSigmas * sigma);
+  if (finder_.falling()) {
+    follower_.falls(time_of(static_cast<double>(finder_.high_at())),
+                    time_of(static_cast<double>(finder_.low_at())));
+  }
+  if (state_.phase < Phase::kCycles) watch_phase(scan.value, sigma);
+  if (fall && rule_.is_slip(*fall, sigma)) return slip(*fall, sigma, now_s);
+  if (follower_.step(now_s, sigma)) take_decision();
+  if (amplitude && amplitude->is_over()) {
+    watch_.stop();
+    state_.regime = Regime::kSteadySliding;
+    state_.ring_down_since_s = kUnknown;
+    return close();
+  }
+  return std::nullopt;
+}
+
+void LiveDetector::watch_phase(double value, double sigma) noexcept {
+  if (state_.phase == Phase::kIdle) {
+    lowest_ = std::min(lowest_, value);
+    above_ = value - lowest_ > SlipRule::kSignificantSigmas * sigma ? above_ + 1 : 0;
+    if (above_ >= kLoadedScans) state_.phase = Phase::kLoading;
+    return;
+  }
+  if (state_.phase == Phase::kLoading && finder_.falling()) state_.phase = Phase::kFirstSlip;
+  // What fell was none.
+  if (state_.phase == Phase::kFirstSlip && !finder_.falling() && state_.slip_count == 0)
+    state_.phase = Phase::kLoading;
+}
+
+std::optional<LiveCycle> LiveDetector::slip(const Fall& fall, double sigma, double now_s) noexcept {
+  if (follower_.is_open() && follower_.force(now_s, sigma, &fall)) take_decision();
+  // The cycle before reaches from its peak to this one.
+  std::optional<LiveCycle> closed;
+  const double peak_s = time_of(fall.peak_at);
+  if (follower_.is_open()) {
+    cycle_flags_ |= flags_to_highest_;
+    closed = close();
+    closed->cycle.period_s = peak_s - closed->cycle.peak_time_s;
+    if (settings_.estimator == EstimatorTier::kPeak) {
+      closed->K = (sum_at_highest_ - sum_at_peak_) / (count_at_highest_ - count_at_peak_);
+      closed->S = cycle_S_;
+      closed->cycle.peak = cycle_S_;
+      closed->cycle.delta_mu = closed->S - closed->K;
+    }
+    state_.latest = closed;
+  }
+  const bool begins_from_stick = state_.regime != Regime::kRingDown;
+  follower_.open(fall, peak_s, time_of(fall.trough_at), begins_from_stick, sigma);
+  if (state_.phase < Phase::kFirstSlip) state_.phase = Phase::kFirstSlip;
+  ++state_.slip_count;
+  cycle_S_ = highest_;
+  sum_at_peak_ = sum_at_highest_;
+  count_at_peak_ = count_at_highest_;
+  cycle_flags_ = flags_after_;
+  flags_to_highest_ = flags_after_ = 0;
+  highest_ = -kInfinity;
+  return closed;
+}
+
+void LiveDetector::take_decision() noexcept {
+  if (state_.phase == Phase::kFirstSlip) state_.phase = Phase::kCycles;
+  if (follower_.captured()) {
+    state_.regime = Regime::kStickSlip;
+    state_.ring_down_since_s = kUnknown;
+    watch_.stop();
+    return;
+  }
+  if (state_.regime != Regime::kRingDown) {
+    const Cycle& cycle = follower_.slip().cycle;
+    state_.ring_down_since_s = cycle.peak_time_s;
+  }
+  state_.regime = Regime::kRingDown;
+  if (!watch_.running())
+    watch_.start(follower_.shared().omega, follower_.shared().gamma, settings_.scan_rate_Hz);
+}
+
+std::optional<LiveCycle> LiveDetector::close() noexcept {
+  if (!follower_.is_open()) return std::nullopt;
+  LiveCycle closed = follower_.slip();
+  closed.cycle.flags |= cycle_flags_;
+  closed.cycle.number = state_.slip_count - 1;
+  if (closed.cycle.number == 0) closed.cycle.flags |= kCycleIsFirst;
+  // The scan's number in the acquisition is the caller's to add.
+  closed.cycle.first_scan = std::llround(closed.cycle.peak_time_s * settings_.scan_rate_Hz);
+  follower_.close();
+  // Its onset is known by now.
+  if (state_.ring_down_since_s == closed.cycle.peak_time_s && std::isfinite(closed.cycle.onset_time_s))
+    state_.ring_down_since_s = closed.cycle.onset_time_s;
+  state_.latest = closed;
+  return closed;
+}
+
+void LiveDetector::gap(std::int64_t count) noexcept {
+  noise_.gap();
+  lost_before_ = lost_;
+  lost_ += count;
+  gap_at_ = come_;
+  flags_after_ |= kCycleHasGap;
+  follower_.gap();
+  if (watch_.running())
+    watch_.start(follower_.shared().omega, follower_.shared().gamma, settings_.scan_rate_Hz);
+}
+
+std::optional<LiveCycle> LiveDetector::end() noexcept {
+  const double now_s = time_of(static_cast<double>(position_));
+  const double sigma = noise_.sigma();
+  if (follower_.is_open() && follower_.force(now_s, sigma, nullptr)) take_decision();
+  cycle_flags_ |= flags_to_highest_ | flags_after_;
+  state_.phase = Phase::kEnd;
+  return close();
+}
+
+}  // namespace stickslip::friction

@@ -1,0 +1,96 @@
+/// \file
+/// The detector while the test runs: phase and regime of the moment, and each cycle as it closes.
+///
+///     LiveDetector detector{settings};
+///     for (…) if (const auto cycle = detector.add(coefficient, saturated)) use(*cycle);
+///     if (const auto last = detector.end()) use(*last);
+///
+/// What it says depends on the scans alone, not on how they come in blocks. O(1) for a scan; the fits that a
+/// closing cycle needs are of bounded size and spread over scans. Never allocates after it is made.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "core/friction/fall_finder.hpp"
+#include "core/friction/live_cycle.hpp"
+#include "core/friction/ring_down_watch.hpp"
+#include "core/friction/shared_prior.hpp"
+#include "core/friction/slip_follower.hpp"
+#include "core/friction/slip_rule.hpp"
+#include "core/signal/despike.hpp"
+#include "core/signal/noise.hpp"
+
+namespace stickslip::friction {
+
+struct LiveSettings {
+  double scan_rate_Hz = 350.0;    ///< Granted; > 0.
+  double step_coefficient = 0.0;  ///< One A/D step; 0 if unknown.
+  EstimatorTier estimator = EstimatorTier::kFit;
+  SharedPrior prior;  ///< The tester's characterisation, if there is one.
+  bool despike = true;
+};
+
+/// Thread-bound. 170 kB, taken when it is made.
+class LiveDetector {
+ public:
+  explicit LiveDetector(const LiveSettings& settings);
+
+  /// The next scan. \return the cycle that it closes: at the peak after the next trough its successor is
+  /// seen.
+  std::optional<LiveCycle> add(double coefficient, bool saturated);
+  /// So many scans did not arrive.
+  void gap(std::int64_t count) noexcept;
+  /// The test is over. \return the last cycle, if one is open.
+  std::optional<LiveCycle> end() noexcept;
+
+  [[nodiscard]] const LiveState& state() const noexcept { return state_; }
+  /// The slip under way with what is known of it; nothing between none and the first.
+  [[nodiscard]] const LiveCycle* under_way() const noexcept {
+    return follower_.is_open() ? &follower_.slip() : nullptr;
+  }
+
+ private:
+  std::optional<LiveCycle> follow(const signal::DespikedScan& scan, bool saturated);
+  std::optional<LiveCycle> slip(const Fall& fall, double sigma, double now_s) noexcept;
+  void take_decision() noexcept;
+  void watch_phase(double value, double sigma) noexcept;
+  std::optional<LiveCycle> close() noexcept;
+  [[nodiscard]] double time_of(double position) const noexcept;
+
+  LiveSettings settings_;
+  signal::NoiseEstimator noise_;
+  signal::Despiker despiker_;
+  std::array<bool, 4> saturated_{};  ///< Of the scans that the despiker still holds, and one.
+  FallFinder finder_;
+  SlipRule rule_;
+  SlipFollower follower_;
+  RingDownWatch watch_;
+  LiveState state_;
+
+  std::int64_t come_ = 0;         ///< Scans that came.
+  std::int64_t position_ = 0;     ///< Scans followed, as the finder counts them.
+  std::int64_t lost_ = 0;         ///< Before the scan that comes next.
+  std::int64_t lost_before_ = 0;  ///< Before the last gap.
+  std::int64_t gap_at_ = 0;       ///< Position of the first scan after the last gap.
+
+  double lowest_ = 0.0;  ///< While idle.
+  int above_ = 0;        ///< Scans in a row that are up from there.
+  bool was_falling_ = false;
+
+  // The highest scan since the last slip, and the sums up to it, for the tradition.
+  double highest_;
+  double sum_ = 0.0;
+  double count_ = 0.0;
+  double sum_at_highest_ = 0.0;
+  double count_at_highest_ = 0.0;
+  double sum_at_peak_ = 0.0;
+  double count_at_peak_ = 0.0;
+  std::uint8_t flags_to_highest_ = 0;
+  std::uint8_t flags_after_ = 0;
+  std::uint8_t cycle_flags_ = 0;
+  double cycle_S_ = 0.0;
+};
+
+}  // namespace stickslip::friction

@@ -1,0 +1,211 @@
+#include "core/friction/live_junction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Cholesky>
+
+#include "core/friction/capture.hpp"
+#include "core/friction/huber.hpp"
+
+namespace stickslip::friction {
+namespace {
+
+/// As core/friction/junction: standard deviation of ln(S − K) of paper, √ln(1 + 0.6²), and what keeps the
+/// logarithm finite.
+constexpr double kLogScatter = 0.5545;
+constexpr double kLeastRatio = 1e-6;
+/// Four parameters, and a choice.
+constexpr std::size_t kFewestPoints = 8;
+/// Of reweighting: weights of a linear model settle in two or three rounds.
+constexpr int kRounds = 3;
+constexpr int kMostIterations = 8;
+constexpr double kFirstDamping = 1e-3;
+/// Log-likelihood units: nothing against what decides.
+constexpr double kConverged = 1e-2;
+
+}  // namespace
+
+void LiveJunction::lay_out(std::span<const CyclePoint> points, const SharedParameters& shared,
+                           double sigma) noexcept {
+  const auto& [omega, gamma, r] = shared;
+  const double omega0_squared = omega * omega + 0.25 * gamma * gamma;
+  size_ = points.size();
+  for (std::size_t i = 0; i < size_; ++i) {
+    const CyclePoint& point = points[i];
+    Row& row = rows_[i];
+    row.tau_s = point.time_s - points.front().time_s;
+    row.value = point.value;
+    row.scale = std::sqrt(point.count) / sigma;
+    row.half_spread_s2 = 0.5 * point.spread_s2;
+    const double decay = std::exp(-0.5 * gamma * row.tau_s);
+    const double cosine = decay * std::cos(omega * row.tau_s);
+    const double sine = decay * std::sin(omega * row.tau_s) / omega;
+    const double by_D = cosine + 0.5 * gamma * sine;
+    // Both solve f″ = −γ f′ − ω₀² f; the first has f′ = −ω₀² sine, the second cosine − γ/2 sine.
+    const double rate_by_D = -omega0_squared * sine;
+    const double rate_by_rate = cosine - 0.5 * gamma * sine;
+    row.by_D = by_D + row.half_spread_s2 * (-gamma * rate_by_D - omega0_squared * by_D);
+    row.by_rate = sine + row.half_spread_s2 * (-gamma * rate_by_rate - omega0_squared * sine);
+  }
+}
+
+double LiveJunction::fit_free(std::size_t count, Free& p) const noexcept {
+  double cost = 0.0;
+  for (int round = 0; round <= kRounds; ++round) {
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    cost = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Row& row = rows_[i];
+      const Eigen::Vector3d by{1.0, row.by_D, row.by_rate};
+      const double z = (row.value - by.dot(p)) * row.scale;
+      cost += huber_cost(z);
+      const double weight = (round == 0 ? 1.0 : huber_weight(z)) * row.scale * row.scale;
+      normal += (weight * by) * by.transpose();
+      right += weight * row.value * by;
+    }
+    if (round == kRounds) break;
+    // by_rate is smaller than the others by ω: its own unit.
+    const Eigen::Vector3d scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Eigen::Matrix3d scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+    const Eigen::Vector3d next = scale.cwiseProduct(scaled.ldlt().solve(scale.cwiseProduct(right)));
+    if (next.allFinite()) p = next;
+  }
+  return cost;
+}
+
+LiveJunction::Events LiveJunction::events_of(const Captured& p,
+                                             const SharedParameters& shared) const noexcept {
+  const SlipWaveform first{p[0], p[1], p[2], shared.oscillator()};
+  Events events;
+  events.capture_tau_s = capture_time_s(first, shared.r).value_or(first.rise_end_time_s());
+  const DampedBasis basis = damped_basis(shared.oscillator(), std::max(events.capture_tau_s, 0.0));
+  events.by_free = {1.0, basis.cosine + 0.5 * shared.gamma * basis.sine, basis.sine};
+  events.at_capture = events.by_free.dot(p.head<3>());
+  events.onset_tau_s =
+      events.capture_tau_s + (std::max(p[3], events.at_capture) - events.at_capture) / shared.r;
+  return events;
+}
+
+LiveJunction::Assembled LiveJunction::assemble(const Captured& p, const SharedParameters& shared,
+                                               double typical_delta_mu) const noexcept {
+  Assembled sum{Eigen::Matrix4d::Zero(), Eigen::Vector4d::Zero(), 0.0};
+  const Events events = events_of(p, shared);
+  const double S = std::max(p[3], events.at_capture);
+  const double D = S - p[0];
+  const double ratio = D / typical_delta_mu;
+  const double surprise = std::log(std::max(ratio, kLeastRatio)) / kLogScatter;
+  sum.cost = 0.5 * surprise * surprise;
+  if (ratio > kLeastRatio) {
+    const Eigen::Vector4d by = Eigen::Vector4d{-1.0, 0.0, 0.0, 1.0} / (D * kLogScatter);
+    sum.normal += by * by.transpose();
+    sum.gradient -= surprise * by;
+  }
+  const auto& [omega, gamma, r] = shared;
+  const double B = (r + 0.5 * gamma * D) / omega;
+  for (std::size_t i = 0; i < size_; ++i) {
+    const Row& row = rows_[i];
+    double value = 0.0;
+    Eigen::Vector4d by = Eigen::Vector4d::Zero();
+    if (row.tau_s <= events.capture_tau_s) {
+      by << 1.0, row.by_D, row.by_rate, 0.0;
+      value = by.dot(p);
+    } else if (row.tau_s <= events.onset_tau_s) {
+      // c and c′ are continuous at the capture: its shift drops out.
+      by.head<3>() = events.by_free;
+      value = events.at_capture + r * (row.tau_s - events.capture_tau_s);
+    } else {
+      const double tau_s = row.tau_s - events.onset_tau_s;
+      const double decay = std::exp(-0.5 * gamma * tau_s);
+      const double cosine = decay * std::cos(omega * tau_s);
+      const double sine = decay * std::sin(omega * tau_s);
+      const double swing = D * cosine + B * sine;
+      const double rate = r * cosine - (0.5 * gamma * B + omega * D) * sine;
+      const double by_D = cosine + 0.5 * gamma / omega * sine;
+      value =
+          p[0] + swing - row.half_spread_s2 * (gamma * rate + (omega * omega + 0.25 * gamma * gamma) * swing);
+      // The onset comes later by 1/r for each S, and earlier by what the capture is higher.
+      by[3] = by_D - rate / r;
+      by.head<3>() = rate / r * events.by_free;
+      by[0] += 1.0 - by_D;
+    }
+    const double z = (row.value - value) * row.scale;
+    sum.cost += huber_cost(z);
+    const double weight = huber_weight(z);
+    sum.normal += (weight * row.scale * row.scale * by) * by.transpose();
+    sum.gradient += weight * z * row.scale * by;
+  }
+  return sum;
+}
+
+double LiveJunction::fit_captured(Captured& p, const SharedParameters& shared, double sigma,
+                                  double typical_delta_mu) const noexcept {
+  Assembled now = assemble(p, shared, typical_delta_mu);
+  double damping = kFirstDamping;
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    Eigen::Matrix4d normal = now.normal;
+    normal.diagonal() *= 1.0 + damping;
+    const Eigen::Vector4d scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Eigen::Matrix4d scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+    const Eigen::Vector4d step = scale.cwiseProduct(scaled.ldlt().solve(scale.cwiseProduct(now.gradient)));
+    const Captured trial = p + step;
+    if (!step.allFinite() || !(trial[3] - trial[0] > -sigma)) {
+      damping *= 10.0;
+      continue;
+    }
+    const Assembled next = assemble(trial, shared, typical_delta_mu);
+    const double fallen = now.cost - next.cost;
+    if (fallen >= 0.0) {
+      p = trial;
+      now = next;
+      damping *= 0.1;
+    } else {
+      damping *= 10.0;
+    }
+    if (std::abs(fallen) < kConverged) break;
+  }
+  return now.cost;
+}
+
+JunctionEvidence LiveJunction::ask(std::span<const CyclePoint> points, const SharedParameters& shared,
+                                   double sigma, double typical_delta_mu) noexcept {
+  JunctionEvidence evidence;
+  if (points.size() < kFewestPoints || points.size() > rows_.size()) return evidence;
+  evidence.known = true;
+  lay_out(points, shared, sigma);
+  // Up to the trough, half an oscillation after the peak, the two are the same course.
+  const double half_s = std::numbers::pi / shared.omega;
+  std::size_t same = 0;
+  while (same < size_ && rows_[same].tau_s < half_s) ++same;
+  Free start = Free::Zero();
+  fit_free(std::max<std::size_t>(std::min(size_, same), 4), start);
+  Free free = start;
+  const double free_cost = fit_free(size_, free);
+
+  double captured_cost = std::numeric_limits<double>::infinity();
+  Captured best = Captured::Zero();
+  // Two starts, as the cost has two valleys: S − K as usual, and hardly any.
+  for (const double part : {1.0, 0.1}) {
+    Captured p;
+    p << start, start[0] + part * typical_delta_mu;
+    const double cost = fit_captured(p, shared, sigma, typical_delta_mu);
+    if (cost < captured_cost) {
+      captured_cost = cost;
+      best = p;
+    }
+    // The second slip has not begun, and nothing says that it should have.
+    if (cost <= free_cost && events_of(p, shared).onset_tau_s > rows_[size_ - 1].tau_s) break;
+  }
+  const Events events = events_of(best, shared);
+  evidence.capture_s = points.front().time_s + events.capture_tau_s;
+  evidence.next_onset_s = points.front().time_s + events.onset_tau_s;
+  // Where both leave more than noise, the scans tell less than they seem to.
+  const double left = 2.0 * std::min(free_cost, captured_cost) / static_cast<double>(size_);
+  evidence.residual_sigmas = std::sqrt(left);
+  evidence.log_likelihood_ratio = (free_cost - captured_cost) / std::max(left, 1.0);
+  return evidence;
+}
+
+}  // namespace stickslip::friction

@@ -1,0 +1,73 @@
+/// \file
+/// The question of core/friction/junction while the slip is still under way: was it captured, or does it go
+/// on? Asked again as scans come in, so in bounded time and without allocating: linear least squares for the
+/// free course, four parameters with analytic derivatives for the captured one, both with Huber's weights.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <span>
+
+#include <Eigen/Core>
+
+#include "core/friction/cycle_buffer.hpp"
+#include "core/friction/slip_model.hpp"
+
+namespace stickslip::friction {
+
+struct JunctionEvidence {
+  /// Captured over free; about 0 as long as the scans cannot tell.
+  double log_likelihood_ratio = 0.0;
+  double capture_s = std::numeric_limits<double>::quiet_NaN();     ///< If captured.
+  double next_onset_s = std::numeric_limits<double>::quiet_NaN();  ///< If captured; may be yet to come.
+  double residual_sigmas = 0.0;  ///< What the better of the two leaves, over the noise.
+  bool known = false;            ///< There were scans enough to ask.
+};
+
+/// Room for the points of one question.
+class LiveJunction {
+ public:
+  /// \param points  from a maximum of the force on. \param shared  ω, γ and r, held fixed.
+  /// \param sigma   noise of one scan. \param typical_delta_mu  S − K of the slips so far, roughly; > 0.
+  [[nodiscard]] JunctionEvidence ask(std::span<const CyclePoint> points, const SharedParameters& shared,
+                                     double sigma, double typical_delta_mu) noexcept;
+
+ private:
+  struct Row {
+    double tau_s = 0.0;  ///< After the first point.
+    double value = 0.0;  ///< Of the point.
+    double scale = 0.0;  ///< √count/σ
+    double half_spread_s2 = 0.0;
+    double by_D = 0.0;     ///< What c(0) − K adds, its mean over the point.
+    double by_rate = 0.0;  ///< What c′(0) adds, s.
+  };
+  using Free = Eigen::Vector3d;      ///< K, c(0) − K, c′(0)
+  using Captured = Eigen::Vector4d;  ///< … and S of the next slip
+
+  /// The events of a captured course.
+  struct Events {
+    double capture_tau_s = 0.0;
+    double at_capture = 0.0;
+    Eigen::Vector3d by_free = Eigen::Vector3d::Zero();  ///< Of at_capture.
+    double onset_tau_s = 0.0;
+  };
+
+  void lay_out(std::span<const CyclePoint> points, const SharedParameters& shared, double sigma) noexcept;
+  /// Best free course of the first `count` rows. \return its cost.
+  double fit_free(std::size_t count, Free& p) const noexcept;
+  [[nodiscard]] Events events_of(const Captured& p, const SharedParameters& shared) const noexcept;
+  struct Assembled {
+    Eigen::Matrix4d normal;
+    Eigen::Vector4d gradient;
+    double cost;
+  };
+  [[nodiscard]] Assembled assemble(const Captured& p, const SharedParameters& shared,
+                                   double typical_delta_mu) const noexcept;
+  double fit_captured(Captured& p, const SharedParameters& shared, double sigma,
+                      double typical_delta_mu) const noexcept;
+
+  std::array<Row, CycleBuffer::kMostPoints> rows_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace stickslip::friction

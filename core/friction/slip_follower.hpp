@@ -1,0 +1,94 @@
+/// \file
+/// One slip from its fall on: how does it end, and what are its S and K?
+#pragma once
+
+#include <limits>
+#include <utility>
+
+#include "core/friction/cycle_fit.hpp"
+#include "core/friction/fall_finder.hpp"
+#include "core/friction/live_cycle.hpp"
+#include "core/friction/live_junction.hpp"
+
+namespace stickslip::friction {
+
+/// Follows one slip at a time. What takes long, fits of up to 256 points, is done one for a scan, so that no
+/// scan waits for two. Fixed memory, 60 kB; never allocates.
+class SlipFollower {
+ public:
+  /// \param scan_rate_Hz > 0.
+  SlipFollower(EstimatorTier tier, double scan_rate_Hz, SharedPrior prior)
+      : tier_(tier), scan_s_(1.0 / scan_rate_Hz), knowledge_(std::move(prior)) {}
+
+  /// A usable scan.
+  void add(double time_s, double value) noexcept {
+    if (tier_ != EstimatorTier::kPeak) buffer_.add(time_s, value);
+  }
+  /// The force falls: its peak and the lowest so far.
+  void falls(double peak_s, double lowest_s) noexcept;
+  /// Scans are missing: what was before does not belong to what comes.
+  void gap() noexcept;
+
+  /// A fall was confirmed to be a slip; ends the one before. Call force() and take it first.
+  /// \param peak_s,trough_s  times of the fall's turning points. \param begins_from_stick  the slip before
+  /// was captured; if it was not, but this one is too large for that, it begins from sticking all the same.
+  void open(const Fall& fall, double peak_s, double trough_s, bool begins_from_stick, double sigma) noexcept;
+  /// At most one task. \return true when this decided how the slip ends.
+  [[nodiscard]] bool step(double now_s, double sigma) noexcept;
+  /// All that is left to do, with what is known. \param next  the slip that follows; nullptr if there is
+  /// none. \return true when this decided how the slip ends.
+  [[nodiscard]] bool force(double now_s, double sigma, const Fall* next) noexcept;
+  void close() noexcept { task_ = Task::kNone, open_ = false; }
+
+  [[nodiscard]] bool is_open() const noexcept { return open_; }
+  [[nodiscard]] bool decided() const noexcept { return decided_; }
+  [[nodiscard]] bool captured() const noexcept { return (slip_.cycle.flags & kCycleCaptured) != 0; }
+  [[nodiscard]] const LiveCycle& slip() const noexcept { return slip_; }
+  /// ω, γ and r as far as they are known.
+  [[nodiscard]] const SharedParameters& shared() const noexcept { return shared_; }
+
+ private:
+  enum class Task { kNone, kFirstFit, kJudge, kFit };
+
+  void first_fit(double sigma) noexcept;
+  [[nodiscard]] bool judge(double now_s, double sigma, bool last) noexcept;
+  /// The next drop if it goes on freely.
+  [[nodiscard]] double freely_next_drop() const noexcept;
+  /// By the heights of this fall and the next alone.
+  void judge_by_heights(const Fall& next, double sigma) noexcept;
+  void decide(double evidence, double now_s) noexcept;
+  void estimate(double now_s, double sigma) noexcept;
+  void estimate_by_turning_points() noexcept;
+  void estimate_by_fit(double window_end_s, double sigma) noexcept;
+  void take_course(const SharedParameters& shared, const SlipParameters& slip) noexcept;
+  void learn_typical(double delta_mu) noexcept;
+  [[nodiscard]] SlipParameters first_guess() const noexcept;
+  [[nodiscard]] double period_s() const noexcept;
+
+  EstimatorTier tier_;
+  double scan_s_;
+  SharedKnowledge knowledge_;
+  CycleBuffer buffer_;
+  LiveJunction junction_;
+
+  // The slip under way.
+  bool open_ = false;
+  bool decided_ = false;
+  bool begins_from_stick_ = false;
+  Task task_ = Task::kNone;
+  double next_task_s_ = 0.0;
+  LiveCycle slip_;
+  Fall fall_;
+  double peak_s_ = 0.0;
+  double trough_s_ = 0.0;
+  double rise_slope_ = 0.0;
+  SharedParameters shared_;
+  JunctionEvidence evidence_;
+
+  double window_from_s_ = 0.0;  ///< Scans before belong to the slip before.
+  double last_capture_s_ = std::numeric_limits<double>::quiet_NaN();  ///< NaN if unknown.
+  double typical_delta_mu_ = 0.0;
+  double typical_count_ = 0.0;
+};
+
+}  // namespace stickslip::friction

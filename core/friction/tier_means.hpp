@@ -1,0 +1,34 @@
+/// \file
+/// S, K and S − K of a test from those of its cycles, for the estimators that know cycles alone.
+#pragma once
+
+#include "core/friction/live_cycle.hpp"
+#include "core/friction/results.hpp"
+
+namespace stickslip::friction {
+
+/// Means over cycles in a fixed memory. The first — often not representative [Penner 1995] — counts only if
+/// there is no other.
+class TierMeans {
+ public:
+  void add(const LiveCycle& cycle) noexcept;
+  /// mu_s, mu_k, delta_mu with standard errors from the scatter, and delta_mu_scatter.
+  void fill(TestResults& results) const;
+
+ private:
+  struct Mean {
+    double count = 0.0;
+    double mean = 0.0;
+    double square_sum = 0.0;
+
+    void add(double value) noexcept;
+    [[nodiscard]] Estimate estimate() const;
+  };
+
+  Mean S_;
+  Mean K_;
+  Mean delta_mu_;
+  bool only_first_ = true;
+};
+
+}  // namespace stickslip::friction

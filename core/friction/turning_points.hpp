@@ -1,0 +1,37 @@
+/// \file
+/// What the turning points of a slip say about S and K by closed forms alone.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "core/friction/cycle_buffer.hpp"
+#include "core/friction/oscillator.hpp"
+
+namespace stickslip::friction {
+
+struct TurningPoint {
+  double time_s = 0.0;
+  double value = 0.0;
+};
+
+/// Vertex of the parabola that fits the points within reach_s of near_s best.
+/// \param sign  +1 for a maximum, −1 for a minimum.
+/// \return nothing with fewer than three points, without the curvature, or if the vertex lies out of reach.
+[[nodiscard]] std::optional<TurningPoint> parabola_vertex(std::span<const CyclePoint> points, double near_s,
+                                                          double reach_s, double sign) noexcept;
+
+/// Slope of the points between two parts of the rise from `low` to `high`, least squares.
+/// \return nothing with fewer than two points there.
+[[nodiscard]] std::optional<double> slope_between(std::span<const CyclePoint> points, double low,
+                                                  double high) noexcept;
+
+/// K from a maximum and the minimum half an oscillation later, which is nearer to it by e^(−πγ/2ω).
+[[nodiscard]] double K_of_turning_points(double peak, double trough, const Oscillator& oscillator) noexcept;
+
+/// S − K of a slip whose force peaks so much above K: [2] with damping, [17], solved for it.
+/// \param peak_above_K > 0. \param stick_rate_per_s r. \return ≥ 0; 0 if even no S − K peaks higher.
+[[nodiscard]] double delta_mu_of_peak(double peak_above_K, double stick_rate_per_s,
+                                      const Oscillator& oscillator) noexcept;
+
+}  // namespace stickslip::friction

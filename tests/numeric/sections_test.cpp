@@ -1,0 +1,91 @@
+#include "core/friction/sections.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/friction/slip_rule.hpp"
+#include "tests/support/model_course.hpp"
+
+namespace stickslip::friction {
+namespace {
+
+using test::ModelCourse;
+
+constexpr double kSigma = 0.001;
+constexpr std::size_t kMost = 24;  // A hundred slips are five sections then.
+
+std::vector<Fall> slips_of(const Trace& trace) {
+  FallFinder finder;
+  SlipRule rule;
+  std::vector<Fall> slips;
+  for (const double value : trace.value) {
+    const auto fall = finder.add(value, SlipRule::kHysteresisSigmas * kSigma);
+    if (fall && rule.is_slip(*fall, kSigma)) slips.push_back(*fall);
+  }
+  return slips;
+}
+
+class Sections : public testing::TestWithParam<std::uint64_t> {};
+
+TEST_P(Sections, SayWhatTheWholeSays) {
+  const ModelCourse course = ModelCourse::captured(1.3, 100);
+  const Trace trace = course.noisy(kSigma, GetParam());
+  const std::vector<Fall> slips = slips_of(trace);
+  ASSERT_GE(slips.size(), 95U);
+  const TestEstimates whole = estimate_in_sections(trace, slips, kSigma, {}, {});
+  const TestEstimates parts = estimate_in_sections(trace, slips, kSigma, {}, {}, {}, kMost);
+  ASSERT_TRUE(whole.model_describes);
+  ASSERT_TRUE(parts.model_describes);
+  EXPECT_EQ(parts.captured, whole.captured);
+  ASSERT_EQ(parts.cycles.size(), slips.size());
+  ASSERT_EQ(parts.log_likelihood_ratios.size(), slips.size() - 1);
+
+  // Each section finds one S, one K and its own ω, γ and rate from a fifth of the scans. Both are estimates
+  // from the same noise, so they differ by less than the errors of the less certain one.
+  const auto expect_close = [](const Estimate& a, const Estimate& b) {
+    ASSERT_TRUE(a.value && b.value && a.standard_error && b.standard_error);
+    EXPECT_NEAR(*a.value, *b.value, 3.0 * *b.standard_error);
+    EXPECT_GT(*b.standard_error, 0.8 * *a.standard_error);
+    // The ends of the sections' courses say nothing of the period across them, which holds ω and the rate:
+    // of five it is up to √5³ less certain.
+    EXPECT_LT(*b.standard_error, 12.0 * *a.standard_error);
+  };
+  expect_close(whole.results.delta_mu, parts.results.delta_mu);
+  expect_close(whole.results.mu_k, parts.results.mu_k);
+  expect_close(whole.results.omega, parts.results.omega);
+  expect_close(whole.results.gamma_over_2omega, parts.results.gamma_over_2omega);
+  EXPECT_EQ(parts.results.cycle_count, Estimate{}) << "is not the model's";
+
+  // ω, γ and r of 24 slips move S of all of them by its error in one section, and the onset along the stick.
+  const double sections = static_cast<double>(slips.size()) / static_cast<double>(kMost);
+  const double onset_error_s =
+      parts.results.delta_mu.standard_error.value_or(0.0) * std::sqrt(sections) / course.shared.r;
+  for (std::size_t i = 0; i < slips.size(); ++i) {
+    const Cycle a = whole.cycles[i];
+    const Cycle b = parts.cycles[i];
+    EXPECT_EQ(b.number, a.number);
+    EXPECT_EQ(b.peak_time_s, a.peak_time_s);
+    EXPECT_EQ(b.flags, a.flags) << i;
+    EXPECT_NEAR(b.onset_time_s, a.onset_time_s, 4.0 * onset_error_s) << i;
+    EXPECT_EQ(std::isnan(b.stick_time_s), std::isnan(a.stick_time_s)) << i;
+    EXPECT_EQ(std::isnan(b.period_s), std::isnan(a.period_s)) << i;
+  }
+  ASSERT_TRUE(whole.tester && parts.tester);
+  EXPECT_NEAR(parts.tester->omega, whole.tester->omega, 3.0 * std::sqrt(parts.tester->covariance(0, 0)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Sections, testing::Values(1, 2, 3, 4, 5));
+
+TEST(Sections, OneSectionIsTheFitOfAll) {
+  const ModelCourse course = ModelCourse::captured(1.3, 20);
+  const Trace trace = course.noisy(kSigma, 1);
+  const std::vector<Fall> slips = slips_of(trace);
+  const TestEstimates exactly = estimate_in_sections(trace, slips, kSigma, {}, {}, {}, slips.size());
+  const TestEstimates easily = estimate_in_sections(trace, slips, kSigma, {}, {});
+  EXPECT_EQ(exactly.results, easily.results);
+}
+
+}  // namespace
+}  // namespace stickslip::friction

@@ -1,0 +1,37 @@
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "core/signal/statistics.hpp"
+
+namespace stickslip::signal {
+namespace {
+
+TEST(Median, OfAnEvenNumberIsTheUpper) {
+  const std::vector<double> values{4.0, 1.0, 3.0, 2.0};
+  EXPECT_EQ(median_of(values.size(), [&](std::size_t i) { return values[i]; }), 3.0);
+}
+
+TEST(Median, OfMoreThanAreSortedIsTheSame) {
+  constexpr std::uint64_t kSeed = 11;
+  std::mt19937_64 engine{kSeed};
+  std::normal_distribution<double> normal{0.0, 1.0};
+  for (const double offset : {-100.0, 0.0, 100.0}) {
+    for (const std::size_t count : {kMostSorted + 1, kMostSorted + 2}) {
+      std::vector<double> values(count);
+      for (double& value : values) value = offset + normal(engine);
+      values[1] = std::numeric_limits<double>::infinity();
+      values[2] = -0.0;
+      values[3] = std::numeric_limits<double>::denorm_min();
+      const double bisected = median_of(count, [&](std::size_t i) { return values[i]; });
+      EXPECT_EQ(bisected, median(values)) << offset << ", " << count << ", seed " << kSeed;
+    }
+  }
+  EXPECT_EQ(median_of(kMostSorted + 1, [](std::size_t) { return -3.5; }), -3.5);
+}
+
+}  // namespace
+}  // namespace stickslip::signal
