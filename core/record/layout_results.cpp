@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <string_view>
+#include <utility>
 
 #include "core/record/hdf_read.hpp"
 #include "core/record/hdf_write.hpp"
@@ -13,6 +15,8 @@ constexpr const char* kStandardError = "standard_error";
 constexpr const char* kSystematic = "systematic_uncertainty";
 constexpr const char* kReason = "reason";
 constexpr const char* kFindings = "findings";
+/// The last result that every record has; those after it came later.
+constexpr std::string_view kLastOfTheFirst = "scan_rate_measured";
 
 }  // namespace
 
@@ -44,9 +48,11 @@ friction::TestResults read_results(hid_t entry) {
   if (!known) throw HdfError(fmt::format("results/regime '{}' is unknown", regime));
   results.regime = *known;
   results.regime_reason = read_attribute(open_dataset(group.get(), "regime").get(), kReason);
+  bool may_be_missing = false;
   friction::for_each_result(results, [&](const friction::ResultName& name, friction::Estimate& estimate) {
     const std::string key{name.name};
-    if (!has(group.get(), key)) {
+    const bool came_later = std::exchange(may_be_missing, may_be_missing || name.name == kLastOfTheFirst);
+    if (came_later && !has(group.get(), key)) {
       estimate = friction::Estimate::none(std::string{kNoSuchResultThen});
       return;
     }
