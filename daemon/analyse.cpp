@@ -37,7 +37,7 @@ base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& he
   if (prior.empty() && !header.process.characterisation.empty()) {
     const auto coupling = parse_tester(header.process.characterisation, "the record's characterisation");
     if (!coupling) return tl::unexpected(coupling.error());
-    recorded.coupling.emplace(*coupling);
+    recorded.coupling = *coupling;
   }
   try {
     daq::Calibration calibration{header.board, header.load_cell.value_or(daq::LoadCell{}),

@@ -81,7 +81,7 @@ std::vector<record::Record> run(drivers::OpenedBoard opened, unsigned seed, int 
   if (!header.process.characterisation.empty()) {
     const auto known = parse_tester(header.process.characterisation, "characterisation");
     EXPECT_TRUE(known) << known.error().message;
-    if (known) settings.analysis.prior.coupling.emplace(*known);
+    if (known) settings.analysis.prior.coupling = *known;
   }
   pipeline::Processor processor{
       settings,
