@@ -132,7 +132,7 @@ TEST(BeltCourse, ClimbingTimeIsTheInverseOfTheClimb) {
 TEST(RampFit, GivesBackTheTruthOfSimulatedRamps) {
   for (const double acceleration_m_per_s2 : {0.5e-3, 2e-3}) {
     sim::Scene scene = test::RampTrials{acceleration_m_per_s2, 0.0}.scene();
-    scene.white_noise->sd = 1e-6;
+    scene.white_noise->sd_V = 1e-6;  // A volt is the coefficient.
     sim::SceneRun run{scene, scene.scan_rate_Hz};
     run.restart(1);
     AnalysisSettings settings;
