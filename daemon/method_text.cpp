@@ -1,5 +1,6 @@
 #include "daemon/method_text.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -44,6 +45,16 @@ bool read_travel(std::string_view text, std::optional<friction::TravelWindow>& w
 
 constexpr std::string_view kEstimatorKey = " estimator=";
 
+/// Points stand side by side with spaces; the settings of a method do, too.
+constexpr char kBetweenPoints = ',';
+
+bool read_course(std::string_view text, std::optional<friction::PullSpeed>& course) {
+  std::string points{text};
+  std::replace(points.begin(), points.end(), kBetweenPoints, ' ');
+  course = friction::PullSpeed::parse(points);
+  return course.has_value();
+}
+
 bool read_setting(std::string_view key, std::string_view value, friction::Method& method) {
   if (key == "static_slip") return read_count(value, method.static_slip);
   if (key == "kinetic_cycles") return read_count(value, method.kinetic_cycles);
@@ -51,6 +62,7 @@ bool read_setting(std::string_view key, std::string_view value, friction::Method
   if (key == "sled_mass") return read_nominal(value, method.sled_mass_kg);
   if (key == "sled_area") return read_number(value, method.sled_area_m2.emplace());
   if (key == "speed") return read_nominal(value, method.pull_speed_m_per_s);
+  if (key == "speed_course") return read_course(value, method.speed_course);
   if (key == "replicates") return read_count(value, method.replicates.emplace());
   // No part of the method: estimator_from_text() reads it.
   if (key == "estimator") return friction::estimator_tier_from_name(value).has_value();
@@ -70,6 +82,11 @@ std::string method_text(const friction::Method& method) {
   if (method.sled_mass_kg) text += " sled_mass=" + nominal_text(*method.sled_mass_kg);
   if (method.sled_area_m2) text += fmt::format(" sled_area={}", *method.sled_area_m2);
   if (method.pull_speed_m_per_s) text += " speed=" + nominal_text(*method.pull_speed_m_per_s);
+  if (method.speed_course) {
+    std::string points = method.speed_course->text();
+    std::replace(points.begin(), points.end(), ' ', kBetweenPoints);
+    text += " speed_course=" + points;
+  }
   if (method.replicates) text += fmt::format(" replicates={}", *method.replicates);
   return text;
 }

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "core/friction/belt_course.hpp"
 #include "core/friction/slip_waveform.hpp"
 
 namespace stickslip::friction {
@@ -14,5 +15,18 @@ namespace stickslip::friction {
 /// \param slip  oscillates. \param belt_rate_per_s  ω₀² v/g.
 /// \return seconds after the onset; nothing if the sled does not stick again.
 [[nodiscard]] std::optional<double> capture_time_s(const SlipWaveform& slip, double belt_rate_per_s) noexcept;
+
+/// The same on a belt whose speed may change: the last upward crossing of c′ and the belt's rate about t₃. It
+/// exists exactly when c′ less the rate is not negative at its maximum, which a steady acceleration moves
+/// from t₃ to where c″ is the slope of the rate; that is looked for within a quarter of an oscillation of t₃,
+/// which is enough while |r p′| < ω |c′| of the slip, or 100 times a ramp through the threshold speed in a
+/// second. \param r  stick rate at the belt's reference speed. \param onset_s  time of the slip's onset.
+[[nodiscard]] std::optional<double> capture_time_s(const SlipWaveform& slip, const BeltCourse& belt, double r,
+                                                   double onset_s) noexcept;
+
+/// Where c′ less the belt's rate is largest about the end of the rise of c′: there it is decided whether the
+/// sled sticks again. t₃ with one speed throughout. Seconds after the onset.
+[[nodiscard]] double deciding_time_s(const SlipWaveform& slip, const BeltCourse& belt, double r,
+                                     double onset_s) noexcept;
 
 }  // namespace stickslip::friction

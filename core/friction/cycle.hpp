@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "core/base/scan_index.hpp"
 
@@ -35,6 +36,8 @@ struct Cycle {
   double delta_mu_standard_error = 0.0;
   double slip_speed_ratio = 0.0;  ///< Largest slip speed over drive speed [Penner 1995, (18)].
   std::uint8_t flags = 0;         ///< CycleFlag bits.
+  /// At the onset, where the speed is known to change; NaN elsewhere.
+  double pull_speed_m_per_s = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace stickslip::friction

@@ -60,15 +60,18 @@ class CapturedCourse {
  public:
   static constexpr int kCount = 4;
 
+  /// \param belt  outlives this. \param start_s  time of the trace at τ = 0.
   CapturedCourse(const Parameters<kCount>& p, const SharedParameters& shared, double typical_delta_mu,
-                 double last_s)
-      : r_(shared.r),
+                 double last_s, const BeltCourse& belt, double start_s)
+      : belt_(belt),
+        start_s_(start_s),
+        r_(shared.r),
         first_(p.head<3>(), shared),
         damping_(0.5 * shared.gamma / shared.omega),
         omega_(shared.omega),
         K_(p[0]) {
     const SlipWaveform slip{p[0], p[1], p[2], shared.oscillator()};
-    capture_s_ = capture_time_s(slip, r_).value_or(slip.rise_end_time_s());
+    capture_s_ = capture_time_s(slip, belt, r_, start_s).value_or(slip.rise_end_time_s());
     JunctionPoint capture;
     const double decay = std::exp(-0.5 * shared.gamma * capture_s_);
     capture.cosine = decay * std::cos(omega_ * capture_s_);
@@ -76,7 +79,9 @@ class CapturedCourse {
     at_capture_ = first_.at(capture);
     const double S = std::max({p[3], K_, at_capture_.value});
     D_ = S - K_;
-    onset_s_ = capture_s_ + (S - at_capture_.value) / r_;
+    onset_s_ = capture_s_ + belt.climbing_time_s(r_, start_s + capture_s_, S - at_capture_.value);
+    onset_rate_ = belt.stick_rate(r_, start_s + onset_s_);
+    onset_slope_ = r_ * belt.slope(start_s + onset_s_);
     // c = K + e^(−γt/2) [D cos ωt + B sin ωt] from the onset on: (11) without a division by D. Counted from
     // the last point, the onset turns and stretches the two.
     const double onset_to_end_s = onset_s_ - last_s;
@@ -99,17 +104,18 @@ class CapturedCourse {
     // c and c′ are continuous at the capture, so its shift drops out of the derivatives.
     CoursePoint<kCount> course = widened(at_capture_);
     if (point.tau_s <= onset_s_) {
-      course.value += r_ * (point.tau_s - capture_s_);
+      course.value += belt_.climb(r_, start_s_ + capture_s_, point.tau_s - capture_s_);
       return course;
     }
     const double cosine = point.cosine_to_end * cosine_ + point.sine_to_end * sine_;
     const double sine = point.sine_to_end * cosine_ - point.cosine_to_end * sine_;
     const double by_D = cosine + damping_ * sine;
-    course.value = K_ + D_ * by_D + r_ / omega_ * sine;
+    course.value = K_ + D_ * by_D + onset_rate_ / omega_ * sine;
     // c′ = e^(−γt/2) [r cos ωt − (γ/2ω r + ω₀² D/ω) sin ωt] [12]; ω₀² = ω² (1 + (γ/2ω)²).
-    const double rate = r_ * cosine - (damping_ * r_ + omega_ * (1.0 + damping_ * damping_) * D_) * sine;
-    // The onset is later by (∂S − ∂c(capture))/r.
-    const double later = rate / r_;
+    const double rate =
+        onset_rate_ * cosine - (damping_ * onset_rate_ + omega_ * (1.0 + damping_ * damping_) * D_) * sine;
+    // The onset is later by (∂S − ∂c(capture))/r, and the slip begins with what the belt's rate is then.
+    const double later = (rate - onset_slope_ / omega_ * sine) / onset_rate_;
     course.by *= later;
     course.by[0] += 1.0 - by_D;
     course.by[3] = by_D - later;
@@ -121,6 +127,8 @@ class CapturedCourse {
     return {point.value, {point.by[0], point.by[1], point.by[2], 0.0}};
   }
 
+  const BeltCourse& belt_;
+  double start_s_;
   double r_;
   FreeCourse first_;
   double damping_;  ///< γ/2ω
@@ -130,6 +138,8 @@ class CapturedCourse {
   double capture_s_ = 0.0;
   CoursePoint<3> at_capture_;
   double onset_s_ = 0.0;
+  double onset_rate_ = 0.0;   ///< Of the belt at the onset, 1/s,
+  double onset_slope_ = 0.0;  ///< and its slope, 1/s².
   double cosine_ = 0.0;
   double sine_ = 0.0;
   double ratio_ = 1.0;  ///< S − K over the typical one.
@@ -208,10 +218,10 @@ double capture_log_likelihood_ratio(const Trace& trace, std::size_t first, std::
 
   const double last_s = scans.points().back().tau_s;
   const auto captured = [&](const Parameters<4>& p) {
-    return CapturedCourse{p, shared, typical_delta_mu, last_s};
+    return CapturedCourse{p, shared, typical_delta_mu, last_s, trace.belt, trace.time_s[first]};
   };
   // Two starts: S as high as the swing says, and just above K; the cost has both valleys.
-  const double amplitude_of_belt = shared.r / shared.omega;
+  const double amplitude_of_belt = trace.belt.stick_rate(shared.r, trace.time_s[first]) / shared.omega;
   const double D = std::sqrt(std::max(0.25 * swing * swing - amplitude_of_belt * amplitude_of_belt, 0.0));
   double captured_cost = 0.0;
   for (int start = 0; start < 2; ++start) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/friction/pull_speed.hpp"
+
 namespace stickslip::friction {
 
 /// A number that a method asks for.
@@ -37,6 +39,8 @@ struct Method {
   std::optional<Nominal> sled_mass_kg;
   std::optional<double> sled_area_m2;
   std::optional<Nominal> pull_speed_m_per_s;
+  std::optional<PullSpeed>
+      speed_course;  ///< Where the speed is meant to change; then instead of the nominal.
   std::optional<int> replicates;
 
   bool operator==(const Method&) const = default;

@@ -15,6 +15,7 @@ constexpr double kHeaviestSled_kg = 1000.0;
 constexpr double kLargestSled_m2 = 1.0;
 constexpr double kFastestPull_m_per_s = 10.0;
 constexpr double kLongestTravel_m = 10.0;
+constexpr double kLongestRamp_s = 1e5;
 constexpr int kMostReplicates = 1000;
 
 std::optional<Nominal> nominal(Settings& table, const std::string& key, Dimension dimension, double largest) {
@@ -46,6 +47,26 @@ void read_kinetic(Settings kinetic, Method& method) {
   method.kinetic_travel = window;
 }
 
+void read_speed(Settings& test, Method& method) {
+  const Limits duration = Limits::above_up_to(0.0, kLongestRamp_s);
+  const Limits speed = Limits::between(0.0, kFastestPull_m_per_s);
+  method.pull_speed_m_per_s = nominal(test, "speed", Dimension::kSpeed, kFastestPull_m_per_s);
+  const std::optional<double> to = test.quantity_if_given("speed_to", Dimension::kSpeed, speed);
+  const std::optional<double> in = test.quantity_if_given("speed_ramp", Dimension::kTime, duration);
+  if (to.has_value() != in.has_value()) {
+    const std::string given = to ? "speed_to" : "speed_ramp";
+    test.refuse(given,
+                to ? "needs speed_ramp, the time to get there" : "needs speed_to, the speed at its end");
+  } else if (to && !method.pull_speed_m_per_s) {
+    test.refuse("speed_to", "needs speed, with which the ramp begins");
+  } else if (to && method.pull_speed_m_per_s->tolerance) {
+    test.refuse("speed_tolerance", "must not stand beside a ramp");
+  } else if (to) {
+    method.speed_course = PullSpeed::make({{0.0, method.pull_speed_m_per_s->value}, {*in, *to}});
+    method.pull_speed_m_per_s.reset();
+  }
+}
+
 base::Result<MethodFile> read(Settings settings) {
   MethodFile file;
   file.method.name = settings.text("name");
@@ -62,7 +83,7 @@ base::Result<MethodFile> read(Settings settings) {
   file.method.sled_area_m2 =
       sled.quantity_if_given("area", Dimension::kArea, Limits::above_up_to(0.0, kLargestSled_m2));
   Settings test = settings.table("test");
-  file.method.pull_speed_m_per_s = nominal(test, "speed", Dimension::kSpeed, kFastestPull_m_per_s);
+  read_speed(test, file.method);
   if (test.has("replicates")) {
     file.method.replicates = static_cast<int>(test.integer("replicates", 1, kMostReplicates));
   } else {

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "core/friction/closed_forms.hpp"
+#include "core/friction/escape.hpp"
 #include "core/friction/threshold.hpp"
 
 namespace stickslip::friction {
@@ -41,7 +42,8 @@ struct Fitted {
   Eigen::Matrix<double, 5, 5> covariance;
   Sample D;
   Sample amplitude;
-  double drift = 0.0;  ///< Of S and K, where the slips begin in the mean.
+  double drift = 0.0;           ///< Of S and K, where the slips begin in the mean.
+  double relative_speed = 1.0;  ///< Mean over the slips, of the speed at which r is given.
 };
 
 double half_range(const SlipWaveform& slip) {
@@ -72,11 +74,17 @@ Fitted gather(const SlipEstimates& estimates) {
   Sample K;
   Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d coupling = Eigen::Matrix3d::Zero();
+  if (!estimates.belt.is_constant()) fitted.relative_speed = 0.0;
   for (const SlipWindow& window : windows) {
-    S.add(window.slip.S);
+    S.add(estimates.static_coefficient(window));
     K.add(window.slip.K);
-    fitted.D.add(window.slip.S - window.slip.K);
-    fitted.amplitude.add(half_range(SlipModel{fit.shared, window.slip, window.captured}.waveform()));
+    fitted.D.add(estimates.static_coefficient(window) - window.slip.K);
+    const SlipModel model{fit.shared, window.slip, window.captured, estimates.belt};
+    fitted.amplitude.add(half_range(model.waveform()));
+    if (!estimates.belt.is_constant()) {
+      fitted.relative_speed +=
+          estimates.belt.relative(window.slip.onset_s) / static_cast<double>(windows.size());
+    }
     own += window.inverse_curvature;
     coupling += window.coupling;
     fitted.drift += estimates.drift.at(window.slip.onset_s) / static_cast<double>(windows.size());
@@ -92,7 +100,7 @@ Fitted gather(const SlipEstimates& estimates) {
     // The scatter from slip to slip holds the noise of each and what the paper adds to it.
     Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
     for (const SlipWindow& window : windows) {
-      const Eigen::Vector2d off{window.slip.S - S.mean, window.slip.K - K.mean};
+      const Eigen::Vector2d off{estimates.static_coefficient(window) - S.mean, window.slip.K - K.mean};
       scatter += off * off.transpose();
     }
     own_mean = scatter / (n * (n - 1.0));
@@ -134,11 +142,25 @@ bool model_describes(const SlipEstimates& estimates, double sigma) noexcept {
 }
 
 void no_model_results(const std::string& reason, TestResults& results) {
-  for (Estimate* estimate : {&results.mu_s, &results.mu_k, &results.delta_mu, &results.omega,
-                             &results.gamma_over_2omega, &results.Q, &results.Q_threshold,
-                             &results.threshold_speed, &results.amplitude, &results.delta_mu_scatter}) {
+  for (Estimate* estimate :
+       {&results.mu_s, &results.mu_k, &results.delta_mu, &results.omega, &results.gamma_over_2omega,
+        &results.Q, &results.Q_threshold, &results.threshold_speed, &results.amplitude,
+        &results.delta_mu_scatter, &results.escape_speed, &results.escape_speed_corrected}) {
     *estimate = Estimate::none(reason);
   }
+}
+
+void escape_results(const SlipEstimates& estimates, TestResults& results) {
+  const auto none = [&](const char* reason) {
+    results.escape_speed = results.escape_speed_corrected = Estimate::none(reason);
+  };
+  if (estimates.belt.is_constant()) return none("no course of the pull speed is known");
+  if (!(estimates.fit.shared.gamma > 0.0)) return none("the damping found is not positive");
+  const std::optional<double> scatter = delta_mu_scatter(estimates);
+  if (!scatter) return none("fewer than three slips to compare");
+  const EscapeSpeeds speeds = escape_speeds(escape_trials(estimates), *scatter);
+  results.escape_speed = speeds.first_escape;
+  results.escape_speed_corrected = speeds.of_mean_paper;
 }
 
 void model_results(std::span<const Fall> slips, const SlipEstimates& estimates, const Tester& tester,
@@ -157,6 +179,7 @@ void model_results(std::span<const Fall> slips, const SlipEstimates& estimates, 
     results.amplitude = Estimate::of(amplitude.mean, std::sqrt(amplitude.variance / amplitude.count));
     return;
   }
+  escape_results(estimates, results);
   const Fitted fitted = gather(estimates);
   using P = Eigen::Matrix<double, 5, 1>;
   results.omega = derived(fitted, [](const P& p) { return p[0]; });
@@ -165,7 +188,8 @@ void model_results(std::span<const Fall> slips, const SlipEstimates& estimates, 
   results.mu_k = derived(fitted, [&](const P& p) { return p[4] + fitted.drift; });
   results.delta_mu = derived(fitted, [](const P& p) { return p[3] - p[4]; });
   const SharedParameters shared{fitted.value[0], fitted.value[1], fitted.value[2]};
-  const double damper = shared.gamma * shared.r / shared.oscillator().omega0_squared();
+  const double damper =
+      shared.gamma * shared.r * fitted.relative_speed / shared.oscillator().omega0_squared();
   results.mu_s.systematic_uncertainty = std::abs(damper);
   results.delta_mu.systematic_uncertainty = std::abs(damper);
 
@@ -185,7 +209,9 @@ void model_results(std::span<const Fall> slips, const SlipEstimates& estimates, 
         Estimate::none(fmt::format("S - K = {:.4g} is not positive", delta_mu));
     return;
   }
-  results.Q = derived(fitted, [](const P& p) { return dimensionless_speed(p[2], p[0], p[3] - p[4]); });
+  results.Q = estimates.belt.is_constant()
+                  ? derived(fitted, [](const P& p) { return dimensionless_speed(p[2], p[0], p[3] - p[4]); })
+                  : Estimate::none(std::string{kSpeedChanges});
   if (!(shared.gamma > 0.0)) {
     results.Q_threshold = results.threshold_speed =
         Estimate::none(fmt::format("the damping found, {:.3g}, is not positive", shared.gamma));
@@ -216,20 +242,26 @@ std::vector<Cycle> cycle_table(const Trace& trace, std::span<const Fall> slips,
     cycle.force_drop = slip.drop();
     cycle.onset_time_s = cycle.capture_time_s = cycle.stick_time_s = cycle.slip_time_s = kUnknown;
     cycle.delta_mu = cycle.delta_mu_standard_error = cycle.slip_speed_ratio = kUnknown;
+    cycle.pull_speed_m_per_s = kUnknown;
     if (i == 0) cycle.flags |= kCycleIsFirst;
     const bool captured = estimates.ends[i] == SlipEnd::kCaptured;
     if (captured) cycle.flags |= kCycleCaptured;
-    const bool begins_from_stick = i == 0 || estimates.ends[i - 1] == SlipEnd::kCaptured;
+    const bool begins_from_stick = i == 0 || estimates.window_of_slip[i] != estimates.window_of_slip[i - 1];
     if (fit.converged && begins_from_stick && estimates.has_window(i)) {
       const SlipWindow& window = estimates.windows[estimates.window_of_slip[i]];
-      const SlipModel model{fit.shared, window.slip, captured};
+      const SlipModel model{fit.shared, window.slip, captured, estimates.belt};
       const Eigen::Matrix3d covariance = fit.covariance(window);
       cycle.onset_time_s = window.slip.onset_s;
+      if (!estimates.belt.is_constant()) {
+        cycle.pull_speed_m_per_s =
+            estimates.belt.plan().speed_m_per_s(window.slip.onset_s - estimates.belt.start_s());
+      }
       cycle.stick_time_s = window.slip.onset_s - last_capture_s;
-      cycle.delta_mu = window.slip.S - window.slip.K;
+      cycle.delta_mu = estimates.static_coefficient(window) - window.slip.K;
       cycle.delta_mu_standard_error = std::sqrt(covariance(1, 1) + covariance(2, 2) - 2.0 * covariance(1, 2));
       // [18], from the fitted waveform: difference quotients of scans read several per cent low.
-      cycle.slip_speed_ratio = -model.waveform().rate(model.waveform().fastest_slip_time_s()) / fit.shared.r;
+      cycle.slip_speed_ratio =
+          -model.waveform().rate(model.waveform().fastest_slip_time_s()) / model.waveform().r;
       if (captured) {
         cycle.slip_time_s = model.capture_s();
         cycle.capture_time_s = window.slip.onset_s + model.capture_s();

@@ -26,6 +26,9 @@ inline constexpr double kLargestResidualSigmas = 5.0;
 void model_results(std::span<const Fall> slips, const SlipEstimates& estimates, const Tester& tester,
                    double sigma, TestResults& results);
 
+/// Fills escape_speed and escape_speed_corrected. \param estimates  converged.
+void escape_results(const SlipEstimates& estimates, TestResults& results);
+
 /// The same reason for all of them.
 void no_model_results(const std::string& reason, TestResults& results);
 

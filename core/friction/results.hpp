@@ -40,6 +40,9 @@ struct ResultName {
   std::string_view long_name;  ///< For axes and tables.
 };
 
+/// Why there is no Q on a ramp: each slip has its own.
+inline constexpr std::string_view kSpeedChanges = "the pull speed changes";
+
 /// Results of one test. Symbols as in docs/glossary.md.
 struct TestResults {
   Regime regime = Regime::kUndecided;
@@ -67,6 +70,9 @@ struct TestResults {
   Estimate gap_count;
   Estimate lost_scan_count;
   Estimate scan_rate_measured;  ///< Hz, from clocks.
+  Estimate escape_speed;        ///< m/s, at the first slip that did not stick; where the speed changes.
+  Estimate
+      escape_speed_corrected;  ///< m/s, threshold speed of the mean paper, from that slip and all before.
 
   bool operator==(const TestResults&) const = default;
 };
@@ -107,6 +113,11 @@ void for_each_result(Results& results, Visitor&& visit) {
   visit(ResultName{"lost_scan_count", "1", "number of scans lost in gaps"}, results.lost_scan_count);
   visit(ResultName{"scan_rate_measured", "Hz", "scan rate measured against the clock"},
         results.scan_rate_measured);
+  visit(ResultName{"escape_speed", "m/s", "pull speed at the first slip that did not stick again"},
+        results.escape_speed);
+  visit(ResultName{"escape_speed_corrected", "m/s",
+                   "escape speed, corrected for being the first of many cycles"},
+        results.escape_speed_corrected);
 }
 
 }  // namespace stickslip::friction

@@ -144,6 +144,8 @@ TestEstimates estimate_in_sections(const Trace& trace, const base::LongColumn<Fa
   PooledResults results;
   PooledTester testers;
   double last_capture_s = std::nan("");
+  // Where the speed changes, how each slip ended tells about all the others: escape_speeds().
+  if (!trace.belt.is_constant()) most = slips.size();
   for (std::size_t first = 0; whole.cycles.size() < slips.size();) {
     const std::size_t size = next_size(slips.size() - first, most);
     std::vector<Fall> section;

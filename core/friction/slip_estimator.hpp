@@ -28,17 +28,21 @@ struct SlipEstimates {
 
   Drift drift;                                ///< Of the trace: fitted S and K are without it.
   std::vector<SlipEnd> ends;                  ///< One for each slip.
-  std::vector<double> log_likelihood_ratios;  ///< Captured over free, one fewer than slips.
+  std::vector<double> log_likelihood_ratios;  ///< Captured over free, one fewer than slips; 0 if unknown.
   std::vector<SlipWindow> windows;            ///< One for each onset from sticking.
   std::vector<std::size_t> window_of_slip;    ///< Index into `windows` for each slip, or kNoWindow.
   SlipFit fit;
   /// One S and one K for all slips but the first; nothing where the slips differ by more than noise.
   std::optional<UniformFit> uniform;
+  BeltCourse belt;  ///< Of the trace.
 
   [[nodiscard]] bool has_window(std::size_t slip) const noexcept { return window_of_slip[slip] != kNoWindow; }
 
   /// What the fit that counts says about the tester. Only if fit.converged.
   [[nodiscard]] TesterEstimate tester() const;
+  /// S of a slip: c at its onset, with what friction gives beside it to take the sled along with an
+  /// accelerating belt, a/g.
+  [[nodiscard]] double static_coefficient(const SlipWindow& window) const;
 };
 
 /// \param slips  falls that are slips, in the order of time, not empty.

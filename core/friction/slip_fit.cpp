@@ -47,7 +47,7 @@ NormalEquations assemble(const Trace& trace, const std::vector<SlipWindow>& wind
   NormalEquations equations;
   equations.slips.resize(windows.size());
   for (std::size_t i = 0; i < windows.size(); ++i) {
-    const SlipModel model{shared, windows[i].slip, windows[i].captured};
+    const SlipModel model{shared, windows[i].slip, windows[i].captured, trace.belt};
     SlipBlock& block = equations.slips[i];
     for (std::size_t k = windows[i].first; k < windows[i].end; ++k) {
       if (trace.usable[k] == 0) continue;

@@ -94,8 +94,10 @@ base::LongColumn<Fall> joined_halves(const Part& part, const std::filesystem::pa
   const double half = half_of(part);
   const double quick = kQuick * part.median([](const Fall& fall) { return fall.duration; }) - 1.0;
   base::LongColumn<Fall> joined{scratch};
-  Fall latest = part[0];
-  for (std::size_t i = 1; i < part.size(); ++i) {
+  std::size_t i = 0;
+  while (part[i].duration < quick) ++i;  // The median is not.
+  Fall latest = part[i];
+  for (++i; i < part.size(); ++i) {
     const Fall fall = part[i];
     if (fall.duration < quick) continue;
     if (fall.peak_at - latest.trough_at >= kShortestHalf * half) {

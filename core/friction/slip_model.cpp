@@ -7,16 +7,21 @@
 
 namespace stickslip::friction {
 
-SlipModel::SlipModel(const SharedParameters& shared, const SlipParameters& slip, bool captured) noexcept
+SlipModel::SlipModel(const SharedParameters& shared, const SlipParameters& slip, bool captured,
+                     const BeltCourse& belt) noexcept
     : shared_(shared),
       slip_(slip),
-      waveform_{slip.K, slip.S - slip.K, shared.r, shared.oscillator()},
-      capture_s_(captured ? capture_time_s(waveform_, shared.r).value_or(waveform_.rise_end_time_s())
+      belt_(&belt),
+      waveform_{slip.K, slip.S - slip.K, belt.stick_rate(shared.r, slip.onset_s), shared.oscillator()},
+      capture_s_(captured ? capture_time_s(waveform_, belt, shared.r, slip.onset_s)
+                                .value_or(deciding_time_s(waveform_, belt, shared.r, slip.onset_s))
                           : std::numeric_limits<double>::infinity()) {}
 
 SlipModelPoint SlipModel::slipping(double tau_s) const noexcept {
   // c = K + e^(−γτ/2) [D cos ωτ + B sin ωτ], B = (r + γD/2)/ω: (11) without a division by D.
-  const auto& [omega, gamma, r] = shared_;
+  const double omega = shared_.omega;
+  const double gamma = shared_.gamma;
+  const double r = waveform_.r;
   const double D = slip_.S - slip_.K;
   const double B = (r + 0.5 * gamma * D) / omega;
   const double decay = std::exp(-0.5 * gamma * tau_s);
@@ -30,6 +35,12 @@ SlipModelPoint SlipModel::slipping(double tau_s) const noexcept {
   point.by_slip = {-waveform_.rate(tau_s), by_D, 1.0 - by_D};
   point.by_shared = {decay * (tau_s * (B * cosine - D * sine) - B / omega * sine),
                      -0.5 * tau_s * swing + decay * 0.5 * D / omega * sine, decay * sine / omega};
+  if (!belt_->is_constant()) {
+    // The slip begins at the belt's rate r p(onset).
+    const double by_rate = point.by_shared[2];
+    point.by_slip[0] += by_rate * shared_.r * belt_->slope(slip_.onset_s);
+    point.by_shared[2] = by_rate * belt_->relative(slip_.onset_s);
+  }
   return point;
 }
 
@@ -37,18 +48,21 @@ SlipModelPoint SlipModel::at(double time_s) const noexcept {
   const double tau_s = time_s - slip_.onset_s;
   if (tau_s < 0.0) {
     SlipModelPoint point;
-    point.value = slip_.S + shared_.r * tau_s;
-    point.by_slip = {-shared_.r, 1.0, 0.0};
-    point.by_shared = {0.0, 0.0, tau_s};
+    point.value = slip_.S + belt_->climb(shared_.r, slip_.onset_s, tau_s);
+    point.by_slip = {-waveform_.r, 1.0, 0.0};
+    point.by_shared = {0.0, 0.0, belt_->way_s(slip_.onset_s, tau_s)};
     return point;
   }
   if (tau_s <= capture_s_) return slipping(tau_s);
-  // c and c′ are continuous at the capture, so its shift drops out of the derivatives.
+  // c and c′ are continuous at the capture, so its shift drops out of the derivatives; the onset's moves the
+  // slip along the time, on which the belt's speed depends.
   SlipModelPoint point = slipping(capture_s_);
   const double since_s = tau_s - capture_s_;
-  point.value += shared_.r * since_s;
-  point.by_slip[0] = -shared_.r;
-  point.by_shared[2] += since_s;
+  const double capture_at_s = slip_.onset_s + capture_s_;
+  const double onset_by_start = belt_->is_constant() ? 0.0 : point.by_slip[0] + waveform_.rate(capture_s_);
+  point.value += belt_->climb(shared_.r, capture_at_s, since_s);
+  point.by_slip[0] = onset_by_start - belt_->stick_rate(shared_.r, capture_at_s);
+  point.by_shared[2] += belt_->way_s(capture_at_s, since_s);
   return point;
 }
 

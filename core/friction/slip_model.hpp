@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "core/friction/belt_course.hpp"
 #include "core/friction/slip_waveform.hpp"
 
 namespace stickslip::friction {
@@ -13,7 +14,7 @@ namespace stickslip::friction {
 struct SharedParameters {
   double omega = 0.0;  ///< rad/s, damped.
   double gamma = 0.0;  ///< 1/s
-  double r = 0.0;      ///< Rate of the coefficient while sticking, 1/s.
+  double r = 0.0;      ///< Rate of the coefficient while sticking, 1/s; BeltCourse says when.
 
   [[nodiscard]] Oscillator oscillator() const noexcept {
     return Oscillator::from_omega(omega, gamma / (2.0 * omega));
@@ -23,7 +24,7 @@ struct SharedParameters {
 /// What belongs to one slip.
 struct SlipParameters {
   double onset_s = 0.0;  ///< Time of the slip onset.
-  double S = 0.0;        ///< Coefficient at the onset.
+  double S = 0.0;        ///< Coefficient at the onset; S of the paper less a/g of an accelerating belt.
   double K = 0.0;        ///< Kinetic coefficient during the slip.
 };
 
@@ -38,8 +39,9 @@ struct SlipModelPoint {
 class SlipModel {
  public:
   /// \param captured  the sled sticks again where c′ = r (at t₃ if c′ does not get there);
-  ///                  otherwise the oscillation goes on for ever.
-  SlipModel(const SharedParameters& shared, const SlipParameters& slip, bool captured) noexcept;
+  ///                  otherwise the oscillation goes on for ever. \param belt  outlives this.
+  SlipModel(const SharedParameters& shared, const SlipParameters& slip, bool captured,
+            const BeltCourse& belt = constant_belt()) noexcept;
 
   [[nodiscard]] SlipModelPoint at(double time_s) const noexcept;
   [[nodiscard]] const SlipWaveform& waveform() const noexcept { return waveform_; }
@@ -51,6 +53,7 @@ class SlipModel {
 
   SharedParameters shared_;
   SlipParameters slip_;
+  const BeltCourse* belt_;
   SlipWaveform waveform_;
   double capture_s_;
 };

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/friction/belt_start.hpp"
 #include "core/friction/cycle_statistics.hpp"
 #include "core/friction/model_results.hpp"
 #include "core/friction/regime_rule.hpp"
@@ -65,6 +66,25 @@ void take_model_results(const TestResults& model, TestResults& results) {
     const Estimate& found = *from[i++];
     if (found.value || !found.reason.empty()) estimate = found;
   });
+}
+
+/// Lays the plan over the trace and forgets the falls outside its pulls: one that begins as the belt stops or
+/// turns is no slip.
+void follow_plan(const PullSpeed& plan, double gravity_m_per_s2, Trace& trace, base::LongColumn<Fall>& slips,
+                 const std::filesystem::path& scratch) {
+  constexpr double kScansBeforeStop = 1.5;  // The peak is interpolated between scans.
+  const std::optional<BeltCourse> belt =
+      belt_from_loading(trace, std::as_const(slips)[0], plan, gravity_m_per_s2);
+  if (!belt) return;
+  trace.belt = *belt;
+  base::LongColumn<Fall> kept{scratch};
+  for (const Fall& slip : std::as_const(slips)) {
+    const std::size_t pull = trace.belt.pull_of(time_at(trace, slip.peak_at));
+    const bool pulled = time_at(trace, slip.peak_at) >= trace.belt.pull_start_s(pull) &&
+                        time_at(trace, slip.peak_at + kScansBeforeStop) < trace.belt.pull_end_s(pull);
+    if (pulled) kept.push_back(slip);
+  }
+  slips = std::move(kept);
 }
 
 /// A stub of a test: without the noise there is no telling what is a slip.
@@ -143,7 +163,13 @@ TestResults TestAnalysis::finish() {
     return results;
   }
   const double sigma = signal::scan_noise(trace.value, noise_floor(trace.value, settings_.step_coefficient));
-  const base::LongColumn<Fall> slips = find_slips(trace, sigma, settings_.scratch_folder);
+  base::LongColumn<Fall> slips = find_slips(trace, sigma, settings_.scratch_folder);
+  // What the tester did counts before what the method asks.
+  const auto& plan =
+      settings_.tester.speed_course ? settings_.tester.speed_course : settings_.method.speed_course;
+  if (plan && !slips.empty()) {
+    follow_plan(*plan, settings_.tester.gravity_m_per_s2, trace, slips, settings_.scratch_folder);
+  }
   results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
   const TraditionalCoefficients traditional =
       traditional_coefficients(trace, slips, settings_.method, settings_.tester.pull_speed_m_per_s);
@@ -157,6 +183,7 @@ TestResults TestAnalysis::finish() {
     no_model_results("no slip", results);
   } else {
     if (settings_.remove_drift) trace.drift = significant_drift(trace, slips);
+    trace.belt.take_off_drift(trace.drift.rate_per_s);
     TestEstimates estimates = estimate(trace, slips, sigma);
     const RegimeVerdict verdict =
         judge_regime(slips.size(), estimates.log_likelihood_ratios, estimates.model_describes);
@@ -168,7 +195,8 @@ TestResults TestAnalysis::finish() {
     take_model_results(estimates.results, results);
     if (settings_.estimator != EstimatorTier::kFit) means_.fill(results);
     if (verdict.transition_slip) {
-      results.transition_time = Estimate::of(time_at(trace, slips[*verdict.transition_slip].peak_at));
+      const Fall slip = std::as_const(slips)[*verdict.transition_slip];
+      results.transition_time = Estimate::of(time_at(trace, slip.peak_at));
     }
     keep_cycles(estimates.cycles, slips);
   }
@@ -182,6 +210,7 @@ Trace TestAnalysis::despiked_trace() {
   Trace trace{base::LongColumn<double>{scratch},
               base::LongColumn<double>{scratch},
               base::LongColumn<std::uint8_t>{scratch},
+              {},
               {}};
   const double sigma =
       signal::scan_noise(coefficients_, noise_floor(coefficients_, settings_.step_coefficient));

@@ -4,6 +4,8 @@
 
 #include <optional>
 
+#include "core/friction/pull_speed.hpp"
+
 namespace stickslip::friction {
 
 /// Standard acceleration of gravity, m/s² [3rd CGPM, 1901].
@@ -15,6 +17,8 @@ struct Tester {
   double gravity_m_per_s2 = kStandardGravity_m_per_s2;
   std::optional<double> pull_speed_m_per_s;  ///< Nominal; absent if not known.
   std::optional<double> stiffness_N_per_m;   ///< Of the coupling; absent if not known.
+  /// The course of the speed where it is meant to change: a test plan's, or what a speed channel read.
+  std::optional<PullSpeed> speed_course;
 
   [[nodiscard]] double normal_load_N() const noexcept { return sled_mass_kg * gravity_m_per_s2; }
 };

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/base/long_column.hpp"
+#include "core/friction/belt_course.hpp"
 
 namespace stickslip::friction {
 
@@ -26,6 +27,9 @@ struct Trace {
   /// Taken off for the fits, and added again to what they find. Exact for the model: with c − βt for c, K and
   /// S become constant, and the stick rate r is less by β.
   Drift drift;
+
+  /// Over the time of the trace.
+  BeltCourse belt;
 
   /// The coefficient without the drift.
   [[nodiscard]] double level(std::size_t scan) const noexcept { return value[scan] - drift.at(time_s[scan]); }

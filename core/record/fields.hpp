@@ -31,6 +31,7 @@ void for_each_field(Facts& facts, Visitor&& visit) {
   visit(FieldName{"gravity", "m/s^2", "acceleration of gravity [m/s^2]"}, facts.gravity_m_per_s2);
   visit(FieldName{"pull_speed", "m/s", "nominal pull speed [m/s]"}, facts.pull_speed_m_per_s);
   visit(FieldName{"stiffness", "N/m", "stiffness of the coupling [N/m]"}, facts.stiffness_N_per_m);
+  visit(FieldName{"speed_course", "", ""}, facts.speed_course);
 }
 
 template <FieldsOf<CalibrationFacts> Facts, typename Visitor>
@@ -147,6 +148,7 @@ void for_each_cycle_column(Visitor&& visit) {
         &Cycle::slip_speed_ratio);
   visit(FieldName{"flags", "1", "flags of the cycle, bits named in the attribute meaning [1]"},
         &Cycle::flags);
+  visit(FieldName{"pull_speed", "m/s", "pull speed at the slip onset [m/s]"}, &Cycle::pull_speed_m_per_s);
 }
 
 /// Columns of the table of true slips.

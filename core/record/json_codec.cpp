@@ -107,6 +107,15 @@ Value word(const std::string& text, std::optional<Value> value) {
   return *value;
 }
 
+/// Columns of a cycle in the first journals; what came later may be missing.
+constexpr std::size_t kFirstCycleColumns = 15;
+
+std::size_t cycle_columns() {
+  std::size_t count = 0;
+  for_each_cycle_column([&](const FieldName&, auto) { ++count; });
+  return count;
+}
+
 json cycle_to_array(const friction::Cycle& cycle) {
   json array = json::array();
   for_each_cycle_column([&](const FieldName&, auto member) { array.push_back(encode(cycle.*member)); });
@@ -116,7 +125,10 @@ json cycle_to_array(const friction::Cycle& cycle) {
 friction::Cycle cycle_from_array(const json& array) {
   friction::Cycle cycle;
   std::size_t i = 0;
-  for_each_cycle_column([&](const FieldName&, auto member) { decode(array.at(i++), cycle.*member); });
+  for_each_cycle_column([&](const FieldName&, auto member) {
+    if (i < kFirstCycleColumns || i < array.size()) decode(array.at(i), cycle.*member);
+    ++i;
+  });
   return cycle;
 }
 
@@ -282,6 +294,7 @@ std::string end_to_json(const EndRecord& end) {
   put(object, "end_realtime_ns", end.end_realtime_ns);
   put(object, "compute_time", end.compute_time_s);
   object["cycle_count"] = end.cycles.size();
+  object["cycle_columns"] = cycle_columns();
   if (end.truth) object["truth"] = truth_to_json(*end.truth);
   return dump(object);
 }
@@ -320,10 +333,12 @@ friction::Mode mode_of(double number) {
 
 /// \param object  of the end.
 void read_tables(const json& object, TableReader table, EndRecord& end) {
+  const auto columns = object.value("cycle_columns", kFirstCycleColumns);
   for (std::size_t left = row_count(object, "cycle_count", table); left > 0; --left) {
     friction::Cycle cycle;
+    std::size_t column = 0;
     for_each_cycle_column([&](const FieldName&, auto member) {
-      cycle.*member = static_cast<std::decay_t<decltype(cycle.*member)>>(table.next());
+      if (column++ < columns) cycle.*member = static_cast<std::decay_t<decltype(cycle.*member)>>(table.next());
     });
     end.cycles.push_back(cycle);
   }

@@ -37,6 +37,8 @@ void for_each_cycle(hid_t entry, const Use& use) {
       group.get(), "cycle",
       [&](std::size_t first, std::vector<friction::Cycle>& rows, std::size_t count) {
         for_each_cycle_column([&](const FieldName& name, auto member) {
+          // Records made before the speed of each slip was kept have no such column.
+          if (name.name == "pull_speed" && !has(group.get(), std::string{name.name})) return;
           read_member(group.get(), name, member, count, first, rows);
         });
       },

@@ -33,7 +33,8 @@ std::optional<Status> status_from_name(std::string_view text) noexcept {
 }
 
 TesterFacts TesterFacts::of(const friction::Tester& tester) {
-  return {tester.sled_mass_kg, tester.gravity_m_per_s2, tester.pull_speed_m_per_s, tester.stiffness_N_per_m};
+  return {tester.sled_mass_kg, tester.gravity_m_per_s2, tester.pull_speed_m_per_s, tester.stiffness_N_per_m,
+          tester.speed_course ? tester.speed_course->text() : std::string{}};
 }
 
 friction::Tester TesterFacts::tester() const {
@@ -42,6 +43,7 @@ friction::Tester TesterFacts::tester() const {
   tester.gravity_m_per_s2 = gravity_m_per_s2.value_or(tester.gravity_m_per_s2);
   tester.pull_speed_m_per_s = pull_speed_m_per_s;
   tester.stiffness_N_per_m = stiffness_N_per_m;
+  tester.speed_course = friction::PullSpeed::parse(speed_course);
   return tester;
 }
 

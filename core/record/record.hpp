@@ -41,6 +41,7 @@ struct TesterFacts {
   std::optional<double> gravity_m_per_s2;
   std::optional<double> pull_speed_m_per_s;
   std::optional<double> stiffness_N_per_m;
+  std::string speed_course;  ///< friction::PullSpeed::text(); empty where the speed is not meant to change.
 
   [[nodiscard]] static TesterFacts of(const friction::Tester& tester);
   /// With friction::Tester's defaults for what is absent.

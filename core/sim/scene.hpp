@@ -18,6 +18,7 @@
 
 #include "core/base/result.hpp"
 #include "core/friction/oscillator.hpp"
+#include "core/friction/pull_speed.hpp"
 #include "core/friction/tester.hpp"
 #include "core/sim/motion.hpp"
 #include "core/sim/sampling_settings.hpp"
@@ -167,6 +168,12 @@ struct Pull {
 
 /// The speed that the pull is meant to have; none if it is meant to change.
 [[nodiscard]] std::optional<double> steady_pull_speed_m_per_s(const Scene& scene);
+
+/// The course of the speed where it changes while the belt pulls, from the first movement on, curves as lines
+/// between so many points that they are off by less than a thousandth of the speed's change; none for a
+/// steady pull. Up to the stop: what a carriage does then with the force, stopping when it is zero, no plan
+/// tells.
+[[nodiscard]] std::optional<friction::PullSpeed> pull_speed_of(const Scene& scene);
 
 /// What the converter's clock really does when it is set to this rate.
 [[nodiscard]] double true_scan_rate_Hz(const Scene& scene, double scan_rate_Hz) noexcept;

@@ -22,6 +22,15 @@ Json json_of(const std::optional<friction::Nominal>& nominal) {
   return {{"value", nominal->value}, {"tolerance", json_of(nominal->tolerance)}};
 }
 
+/// Points of time and speed.
+Json json_of(const std::optional<friction::PullSpeed>& course) {
+  if (!course) return nullptr;
+  Json points = Json::array();
+  for (const friction::SpeedPoint& point : course->points())
+    points.push_back(Json::array({point.at_s, point.speed_m_per_s}));
+  return points;
+}
+
 /// SI units; null where the method leaves it open.
 Json json_of(const friction::MethodFile& file) {
   const friction::Method& method = file.method;
@@ -33,6 +42,7 @@ Json json_of(const friction::MethodFile& file) {
   json["sled_mass"] = json_of(method.sled_mass_kg);
   json["sled_area"] = json_of(method.sled_area_m2);
   json["speed"] = json_of(method.pull_speed_m_per_s);
+  json["speed_course"] = json_of(method.speed_course);
   json["replicates"] = method.replicates ? Json(*method.replicates) : Json(nullptr);
   json["check"] = file.check;
   return json;

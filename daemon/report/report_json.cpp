@@ -1,10 +1,12 @@
 #include "daemon/report/report_json.hpp"
 
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/report/ramp_text.hpp"
 #include "daemon/results_json.hpp"
 
 namespace stickslip::daemon {
@@ -31,6 +33,7 @@ Json test_json(const ReportedTest& test, const report::MeasuredTest& measured) {
             {"departures", test.departures},
             {"pull_speed", or_null(measured.pull_speed_m_per_s)}};
   json.update(results_json(measured.results, true));
+  if (std::string ramp = ramp_text(measured.results); !ramp.empty()) json["ramp"] = std::move(ramp);
   return json;
 }
 

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "daemon/report/ramp_text.hpp"
+
 namespace stickslip::daemon {
 namespace {
 
@@ -89,6 +91,10 @@ std::string format_table(std::span<const TableRow> rows) {
       cells[i] = cell(kColumns[i].truth(*row.truth), kColumns[i]);
     }
     text += line("", "truth", friction::name(row.truth->regime), cells, row.truth->scene_name);
+  }
+  for (const TableRow& row : rows) {
+    if (const std::string ramp = ramp_text(row.results); !ramp.empty())
+      text += fmt::format("ramp, test {}: {}\n", row.number, ramp);
   }
   return text + footnotes(rows);
 }

@@ -189,6 +189,13 @@
     viewers.push(viewer);
   }
 
+  // Tests whose pull speed changes: what each slip measures comes first, the speed of escape after it.
+  function writeRamps() {
+    const lines = data.materials.flatMap((material, m) => material.tests.flatMap((t, i) => t.ramp == null ? [] :
+      [node("li", {}, node("b", {}, `${two ? nameOf(m) + ", " : ""}test ${i + 1}`), `: ${t.ramp}`)]));
+    if (lines.length > 0) section("ramps", "Ramp tests", node("ul", {class: "notes"}, ...lines));
+  }
+
   function writeTests(m) {
     const material = data.materials[m];
     const show = i => { viewers[m].show(i); document.getElementById(`traces-${m}`).scrollIntoView({block: "start"}); };
@@ -217,6 +224,7 @@
   const redraw = () => { drawFigure(); for (const viewer of viewers) { const at = viewer.chart.inView(); viewer.show(viewer.shown); viewer.chart.view(...at); } };
   setTheme(dark.matches ? "dark" : "light");
 
+  writeRamps();
   writeFigure();
   if (two) writeComparison();
   data.materials.forEach((_, m) => writeViewer(m));

@@ -37,6 +37,9 @@ friction::Tester tester_of(const std::vector<sim::Scene>& scenes) {
   const auto speed = [](const sim::Scene& scene) { return sim::steady_pull_speed_m_per_s(scene); };
   const auto same = [&](const sim::Scene& scene) { return speed(scene) == speed(scenes.front()); };
   if (std::all_of(scenes.begin(), scenes.end(), same)) tester.pull_speed_m_per_s = speed(scenes.front());
+  const auto course = sim::pull_speed_of(scenes.front());
+  const auto same_course = [&](const sim::Scene& scene) { return sim::pull_speed_of(scene) == course; };
+  if (std::all_of(scenes.begin(), scenes.end(), same_course)) tester.speed_course = course;
   return tester;
 }
 

@@ -17,7 +17,8 @@ namespace stickslip::drivers {
 
 [[nodiscard]] daq::LoadCell load_cell_of(const sim::Scene& scene);
 
-/// Mass and gravity; the pull speed if it is the same in all scenes. \param scenes  at least one.
+/// Mass and gravity; the pull speed, or its course, if it is the same in all scenes. \param scenes  at least
+/// one.
 [[nodiscard]] friction::Tester tester_of(const std::vector<sim::Scene>& scenes);
 
 }  // namespace stickslip::drivers

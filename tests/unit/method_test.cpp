@@ -30,10 +30,11 @@ TEST(MethodFile, EveryShippedOneIsGoodAndNamedLikeItsFile) {
     EXPECT_EQ(file->method.name, entry.path().stem());
     EXPECT_LE(file->description.size(), 110U) << file->method.name;
     // What is after a standard says what to compare with it; the paper is free.
-    EXPECT_EQ(file->check.empty(), file->method.name == "penner-1995") << file->method.name;
+    const bool of_the_paper = file->method.name == "penner-1995" || file->method.name == "speed-ramp";
+    EXPECT_EQ(file->check.empty(), of_the_paper) << file->method.name;
     ++count;
   }
-  EXPECT_EQ(count, 5);
+  EXPECT_EQ(count, 6);
 }
 
 TEST(MethodFile, DefaultMethodIsTheRuleOfTheShippedPaper) {
@@ -64,6 +65,27 @@ TEST(MethodFile, GivesEachSettingInSiUnits) {
   expected.pull_speed_m_per_s = friction::Nominal{0.002, {}};
   expected.replicates = 4;
   EXPECT_EQ(file->method, expected);
+}
+
+TEST(MethodFile, ARampIsACourseOfTheSpeed) {
+  const base::Result<MethodFile> file = friction::load_method(kFolder / "speed-ramp.toml");
+  ASSERT_TRUE(file) << file.error().message;
+  EXPECT_FALSE(file->method.pull_speed_m_per_s);
+  ASSERT_TRUE(file->method.speed_course);
+  const std::vector<friction::SpeedPoint>& points = file->method.speed_course->points();
+  ASSERT_EQ(points.size(), 2U);
+  constexpr double kInchPerMinute_m_per_s = 0.0254 / 60.0;
+  EXPECT_DOUBLE_EQ(points[0].speed_m_per_s, 4.0 * kInchPerMinute_m_per_s);
+  EXPECT_EQ(points[1].at_s, 8.0);
+  EXPECT_DOUBLE_EQ(points[1].speed_m_per_s, 24.0 * kInchPerMinute_m_per_s);
+}
+
+TEST(MethodText, ARampComesBackToTheLastBit) {
+  Method ramp;
+  ramp.speed_course = friction::PullSpeed::make({{0.0, 0.1 / 3.0}, {8.0, 0.0101600001}});
+  const base::Result<Method> back = daemon::method_from_text(daemon::method_text(ramp));
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(*back, ramp);
 }
 
 struct Mistake {
@@ -103,8 +125,11 @@ INSTANTIATE_TEST_SUITE_P(
                 "m.toml:4: test.speed = \"0 mm/min\": must be above 0 m/s and at most 10 m/s"},
         Mistake{kHead + "[test]\nreplicas = 3",
                 "m.toml:4: test.replicas = 3: unknown key; did you mean replicates? Known here: replicates, "
-                "speed, "
-                "speed_tolerance"}));
+                "speed, speed_ramp, speed_to, speed_tolerance"},
+        Mistake{kHead + "[test]\nspeed = \"4 in/min\"\nspeed_to = \"24 in/min\"",
+                "m.toml:5: test.speed_to = \"24 in/min\": needs speed_ramp, the time to get there"},
+        Mistake{kHead + "[test]\nspeed_to = \"24 in/min\"\nspeed_ramp = \"8 s\"",
+                "m.toml:4: test.speed_to = \"24 in/min\": needs speed, with which the ramp begins"}));
 
 TEST(MethodText, ReadsBackToTheSameMethodForEveryShippedOne) {
   EXPECT_EQ(daemon::method_text({}), "penner-1995 kinetic_cycles=10");

@@ -1,0 +1,60 @@
+#include "core/friction/pull_speed.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace stickslip::friction {
+namespace {
+
+TEST(PullSpeed, IsLinesBetweenPoints) {
+  const auto speed = PullSpeed::make({{0.0, 0.002}, {2.0, 0.006}, {2.0, 0.001}});
+  ASSERT_TRUE(speed);
+  EXPECT_EQ(speed->speed_m_per_s(-0.1), 0.0);
+  EXPECT_DOUBLE_EQ(speed->speed_m_per_s(1.0), 0.004);
+  EXPECT_EQ(speed->speed_m_per_s(2.0), 0.001) << "at a jump, what comes after it";
+  EXPECT_EQ(speed->speed_m_per_s(50.0), 0.001);
+  EXPECT_DOUBLE_EQ(speed->acceleration_m_per_s2(1.0), 0.002);
+  EXPECT_EQ(speed->acceleration_m_per_s2(3.0), 0.0);
+  EXPECT_DOUBLE_EQ(speed->travel_m(1.0), 0.003);
+  EXPECT_DOUBLE_EQ(speed->travel_m(4.0), 0.008 + 0.002);
+  EXPECT_EQ(speed->steady_until_s(1.0), 2.0);
+  EXPECT_TRUE(std::isinf(speed->steady_until_s(2.0)));
+  EXPECT_EQ(speed->largest_m_per_s(), 0.006);
+}
+
+TEST(PullSpeed, PullsWhereItIsAboveZero) {
+  // Forwards, to a stop in a line, back, at rest, forwards again from rest in a line.
+  const auto speed = PullSpeed::make(
+      {{0.0, 0.004}, {1.0, 0.004}, {3.0, -0.004}, {4.0, -0.004}, {4.0, 0.0}, {5.0, 0.0}, {6.0, 0.003}});
+  ASSERT_TRUE(speed);
+  ASSERT_EQ(speed->pulls().size(), 2U);
+  EXPECT_EQ(speed->pulls()[0].start_s, 0.0);
+  EXPECT_DOUBLE_EQ(speed->pulls()[0].end_s, 2.0);
+  EXPECT_EQ(speed->pulls()[1].start_s, 5.0);
+  EXPECT_TRUE(std::isinf(speed->pulls()[1].end_s));
+}
+
+TEST(PullSpeed, TextComesBackToTheLastBit) {
+  const auto speed = PullSpeed::make({{0.0, 0.1 / 3.0}, {1.0 / 7.0, 1e-300}, {2.0, 0.02}});
+  ASSERT_TRUE(speed);
+  const auto back = PullSpeed::parse(speed->text());
+  ASSERT_TRUE(back);
+  EXPECT_EQ(*back, *speed);
+}
+
+TEST(PullSpeed, IsNoneOfWhatDoesNotPull) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(PullSpeed::make({}));
+  EXPECT_FALSE(PullSpeed::make({{0.0, 0.0}, {1.0, -0.1}}));
+  EXPECT_FALSE(PullSpeed::make({{0.5, 0.01}}));
+  EXPECT_FALSE(PullSpeed::make({{0.0, 0.01}, {2.0, 0.02}, {1.0, 0.03}}));
+  EXPECT_FALSE(PullSpeed::make({{0.0, kNan}}));
+  for (const char* text : {"", "0", "0:", "0:x", "0:0.01 ", "0:0.01  1:0.02", "0:0.01,1:0.02"}) {
+    EXPECT_FALSE(PullSpeed::parse(text)) << text;
+  }
+}
+
+}  // namespace
+}  // namespace stickslip::friction
