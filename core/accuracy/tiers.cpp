@@ -45,7 +45,7 @@ friction::SharedParameters shared() {
 friction::SharedPrior characterised() {
   friction::SharedPrior prior;
   const double omega = shared().omega;
-  prior.coupling.emplace();
+  prior.coupling = friction::SharedPrior::Coupling{};
   prior.coupling->omega = omega;
   prior.coupling->gamma_over_2omega = kGammaOver2Omega;
   prior.coupling->covariance =

@@ -77,7 +77,6 @@ class LiveDetector {
 
   double lowest_ = 0.0;  ///< While idle.
   int above_ = 0;        ///< Scans in a row that are up from there.
-  bool was_falling_ = false;
 
   // The highest scan since the last slip, and the sums up to it, for the tradition.
   double highest_;

@@ -72,6 +72,7 @@ void PullSpeed::find_pulls() {
 
 std::optional<PullSpeed> PullSpeed::parse(std::string_view text) {
   std::vector<SpeedPoint> points;
+  if (text.ends_with(' ')) return std::nullopt;
   while (!text.empty() && points.size() <= kMostPoints) {
     const std::size_t space = text.find(' ');
     const std::string_view point = text.substr(0, space);

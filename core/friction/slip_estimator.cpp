@@ -4,200 +4,23 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "core/friction/junction.hpp"
+#include "core/friction/slip_guess.hpp"
+#include "core/friction/slip_windows.hpp"
 #include "core/friction/uniform_stage.hpp"
 #include "core/signal/statistics.hpp"
 
 namespace stickslip::friction {
 namespace {
 
-/// First guess of γ/2ω: the paper's tester, (19).
-constexpr double kFirstGammaOver2Omega = 0.022;
 /// Rounds of deciding which slips were captured and fitting what follows from it.
 constexpr int kRounds = 3;
-/// A rise that starts below this part of its peak is the loading of a test from rest.
-constexpr double kLoadingStartsBelow = 0.5;
 /// Log of the likelihood ratio up to which a capture is not believed against other evidence: 400 to 1.
 constexpr double kDoubtful = 6.0;
-/// Slips of which the last may be left out because the pull ended in it.
-constexpr std::size_t kFewestForEndOfPull = 4;
-/// Part of the loading that a motor takes to get to its speed.
-constexpr double kRoundedStart = 0.2;
 /// Part by which another guess of the stick rate must differ to be worth a try.
 constexpr double kOtherRate = 0.1;
-/// A window of a free oscillation ends this many periods after the trough of its last slip: by
-/// then the amplitude is below what makes a slip significant.
-constexpr double kTailPeriods = 1.5;
-
-std::size_t scan_at(double position) {
-  return static_cast<std::size_t>(std::lround(std::max(position, 0.0)));
-}
-
-/// Least-squares slope of the rise to `peak` from the turning point before, between levels `low`
-/// and `high` (parts of the rise): there the sled sticks and the force rises at the rate r.
-double slope_of_rise(const Trace& trace, const Fall& fall, double low, double high) {
-  const std::size_t peak = std::min(scan_at(fall.peak_at), trace.size() - 1);
-  const std::size_t length = std::min(static_cast<std::size_t>(fall.rise_duration), peak);
-  const double range = fall.peak - fall.rise_from;
-  double n = 0.0;
-  double mean_t = 0.0;
-  double mean_c = 0.0;
-  double s_tt = 0.0;
-  double s_tc = 0.0;
-  for (std::size_t k = peak - length; k <= peak; ++k) {
-    const double level = (trace.value[k] - fall.rise_from) / range;
-    if (trace.usable[k] == 0 || level < low || level > high) continue;
-    // Running means: no difference of large sums [Welford, Technometrics 4(3):419–420, 1962].
-    n += 1.0;
-    const double dt = trace.time_s[k] - mean_t;
-    mean_t += dt / n;
-    mean_c += (trace.value[k] - mean_c) / n;
-    s_tt += dt * (trace.time_s[k] - mean_t);
-    s_tc += dt * (trace.value[k] - mean_c);
-  }
-  if (n >= 2.0 && s_tt > 0.0) return s_tc / s_tt;
-  return length > 0 ? range / (trace.time_s[peak] - trace.time_s[peak - length]) : 0.0;
-}
-
-/// Level from which the force rises to the peak: the median about the turning point, which two spikes there
-/// do not move.
-double level_before(const Trace& trace, const Fall& fall) {
-  constexpr std::size_t kReach = 3;
-  const std::size_t turn = scan_at(fall.peak_at - fall.rise_duration);
-  std::vector<double> levels;
-  for (std::size_t k = turn > kReach ? turn - kReach : 0; k <= turn + kReach && k < trace.size(); ++k) {
-    levels.push_back(trace.value[k]);
-  }
-  return signal::median(levels);
-}
-
-/// Slope of the loading from rest: upper quartile of those over an eighth of it, or from scan to scan if it
-/// is shorter. It begins less steep, while a sled that a fast start of the belt has left behind catches up,
-/// and ends so, where it slips.
-double slope_of_loading(const Trace& trace, const Fall& first) {
-  constexpr double kFrom = 0.1;
-  constexpr double kTo = 0.95;
-  constexpr std::size_t kParts = 8;
-  const std::size_t peak = std::min(scan_at(first.peak_at), trace.size() - 1);
-  const double rest = level_before(trace, first);
-  const auto at_least = [&](std::size_t k, double level) {
-    return trace.value[k] >= rest + level * (first.peak - rest);
-  };
-  std::size_t begin = peak;
-  while (begin > 0 && at_least(begin - 1, kFrom)) --begin;
-  const std::size_t lag = std::max<std::size_t>((peak - begin) / kParts, 1);
-  std::vector<double> slopes;
-  for (std::size_t k = begin; k + lag <= peak && !at_least(k + lag, kTo); ++k) {
-    if (trace.usable[k] == 0 || trace.usable[k + lag] == 0) continue;
-    slopes.push_back((trace.value[k + lag] - trace.value[k]) / (trace.time_s[k + lag] - trace.time_s[k]));
-  }
-  if (slopes.empty()) {
-    for (std::size_t k = std::max<std::size_t>(begin, 1); k <= peak; ++k) {
-      slopes.push_back((trace.value[k] - trace.value[k - 1]) / (trace.time_s[k] - trace.time_s[k - 1]));
-    }
-    return *std::max_element(slopes.begin(), slopes.end());
-  }
-  const auto quartile = slopes.begin() + static_cast<std::ptrdiff_t>(3 * slopes.size() / 4);
-  std::nth_element(slopes.begin(), quartile, slopes.end());
-  return *quartile;
-}
-
-/// Median over the rises to the peaks: half of a rise is stick, where there is any. Where the speed changes,
-/// over what each is of the plan's largest.
-double slope_of_sticks(const Trace& trace, std::span<const Fall> slips) {
-  std::vector<double> slopes;
-  for (const Fall& slip : slips) {
-    const double slope = slope_of_rise(trace, slip, 0.3, 0.7);
-    const double relative =
-        trace.belt.is_constant()
-            ? 1.0
-            : trace.belt.relative(time_at(trace, slip.peak_at - 0.5 * slip.rise_duration));
-    if (relative > 0.0) slopes.push_back(slope / relative);
-  }
-  return slopes.empty() ? slope_of_rise(trace, slips.front(), 0.3, 0.7) : signal::median(slopes);
-}
-
-SharedParameters first_guess(const Trace& trace, std::span<const Fall> slips) {
-  std::vector<double> half_periods;
-  for (const Fall& slip : slips) {
-    // Maximum and minimum of a damped oscillation are π/ω apart, whatever γ and the drift.
-    half_periods.push_back(time_at(trace, slip.trough_at) - time_at(trace, slip.peak_at));
-  }
-  SharedParameters shared;
-  shared.omega = std::numbers::pi / signal::median(half_periods);
-  shared.gamma = 2.0 * kFirstGammaOver2Omega * shared.omega;
-  const Fall& first = slips.front();
-  const bool from_loading =
-      trace.belt.is_constant() && level_before(trace, first) < kLoadingStartsBelow * first.peak;
-  shared.r = from_loading ? slope_of_loading(trace, first) : slope_of_sticks(trace, slips);
-  return shared;
-}
-
-/// Stick rate at the peak of a slip.
-double rate_at(const Trace& trace, const Fall& slip, const SharedParameters& shared) {
-  return trace.belt.is_constant() ? shared.r : trace.belt.stick_rate(shared.r, time_at(trace, slip.peak_at));
-}
-
-/// First guess of one slip's own parameters from its peak and trough.
-SlipParameters first_guess(const Trace& trace, const Fall& slip, const SharedParameters& shared) {
-  const double amplitude = 0.5 * slip.drop();
-  const double belt = rate_at(trace, slip, shared) / shared.omega;
-  // [2] without damping: amplitude² = D² + (r/ω)².
-  const double D = std::sqrt(std::max(amplitude * amplitude - belt * belt, 0.01 * amplitude * amplitude));
-  SlipParameters parameters;
-  parameters.K = 0.5 * (slip.peak + slip.trough) - trace.drift.at(time_at(trace, slip.peak_at));
-  parameters.S = parameters.K + D;
-  parameters.onset_s = time_at(trace, slip.peak_at) - std::atan2(belt, D) / shared.omega;
-  return parameters;
-}
-
-double scans_per_s(const Trace& trace) {
-  return static_cast<double>(trace.size() - 1) / (trace.time_s.back() - trace.time_s.front());
-}
-
-/// Where a slip is at its lowest, in scans: half an oscillation after its peak. What follows may be flat (a
-/// belt that stops), and its lowest scan anywhere.
-double trough_at(const Trace& trace, const Fall& slip, const SharedParameters& shared) {
-  constexpr double kMargin = 1.15;  // For the first guess of ω.
-  return std::min(slip.trough_at,
-                  slip.peak_at + kMargin * std::numbers::pi / shared.omega * scans_per_s(trace));
-}
-
-/// S − K of a slip by its amplitude, [2]: median of those that moved faster than the belt.
-double typical_delta_mu(const Trace& trace, std::span<const Fall> slips, const SharedParameters& shared) {
-  std::vector<double> D;
-  double largest = 0.0;
-  for (const Fall& slip : slips) {
-    const double belt = rate_at(trace, slip, shared) / shared.omega;
-    const double amplitude = 0.5 * slip.drop();
-    largest = std::max(largest, amplitude);
-    if (amplitude > belt) D.push_back(std::sqrt(amplitude * amplitude - belt * belt));
-  }
-  return D.empty() ? largest : signal::median(D);
-}
-
-std::size_t pull_of(const Trace& trace, const Fall& slip) {
-  return trace.belt.is_constant() ? 0 : trace.belt.pull_of(time_at(trace, slip.peak_at));
-}
-
-/// The pull ended while the last slip was on its way: what follows its trough does not climb as a stick does.
-/// Where the trace ends before that can be seen, it counts as any other.
-bool pull_ended_in_last_slip(const Trace& trace, std::span<const Fall> slips,
-                             const SharedParameters& shared) {
-  constexpr double kClimbs = 0.5;
-  if (slips.size() < kFewestForEndOfPull) return false;
-  const double period = 2.0 * std::numbers::pi / shared.omega * scans_per_s(trace);
-  const double trough = trough_at(trace, slips.back(), shared);
-  const std::size_t begin = scan_at(trough + 0.5 * period);
-  const std::size_t end = scan_at(trough + 2.5 * period);
-  if (end >= trace.size()) return false;
-  const double rise = trace.value[end] - trace.value[begin];
-  return rise <
-         kClimbs * trace.belt.climb(shared.r, trace.time_s[begin], trace.time_s[end] - trace.time_s[begin]);
-}
 
 /// Fills the likelihood ratios.
 std::vector<SlipEnd> judge_ends(const Trace& trace, std::span<const Fall> slips,
@@ -245,88 +68,6 @@ bool free_the_doubtful(SlipEstimates& estimates) {
     changed = true;
   }
   return changed;
-}
-
-/// Half way along the rise between two slips: scans before it belong to the first, after it to the second.
-std::size_t boundary(const Fall& before, const Fall& after) {
-  return scan_at(0.5 * (before.trough_at + after.peak_at));
-}
-
-/// Where the first slip's window begins: above the rounded start of the loading. A sled that the belt's start
-/// has left behind has caught up after v/(K g) at c = r²/(ω₀² K); twice that is taken.
-std::size_t start_of_loading(const Trace& trace, const Fall& first, const SharedParameters& shared) {
-  const std::size_t peak = scan_at(first.peak_at);
-  std::size_t start = peak - std::min(static_cast<std::size_t>(first.rise_duration), peak);
-  const double rest = level_before(trace, first);
-  const double K = 0.5 * (first.peak + first.trough) - rest;
-  const double rate = rate_at(trace, first, shared);
-  const double caught_up = 2.0 * rate * rate / (shared.oscillator().omega0_squared() * K);
-  const double range = first.peak - rest;
-  const double level = rest + std::clamp(caught_up, kRoundedStart * range, range);
-  for (std::size_t k = start; k < peak; ++k) {
-    if (trace.value[k] < level) start = k + 1;
-  }
-  return start;
-}
-
-/// The first slip of the test, or after the belt had stopped.
-bool begins_a_pull(const Trace& trace, std::span<const Fall> slips, std::size_t i) {
-  return i == 0 || pull_of(trace, slips[i - 1]) != pull_of(trace, slips[i]);
-}
-
-/// The first scan after the pull in which the slip lies.
-std::size_t end_of_pull(const Trace& trace, const Fall& slip) {
-  if (trace.belt.is_constant()) return trace.size();
-  const double end_s = trace.belt.pull_end_s(pull_of(trace, slip));
-  std::size_t end = std::min(scan_at(slip.peak_at), trace.size());
-  while (end < trace.size() && trace.time_s[end] < end_s) ++end;
-  return end;
-}
-
-void lay_windows(const Trace& trace, std::span<const Fall> slips, const SharedParameters& shared,
-                 SlipEstimates& estimates) {
-  estimates.windows.clear();
-  estimates.window_of_slip.clear();
-  const double period_s = 2.0 * std::numbers::pi / shared.omega;
-  const bool cut = pull_ended_in_last_slip(trace, slips, shared);
-  for (std::size_t i = 0; i < slips.size(); ++i) {
-    const bool loading = begins_a_pull(trace, slips, i);
-    const bool begins = loading || estimates.ends[i - 1] == SlipEnd::kCaptured;
-    if (cut && i + 1 == slips.size() && estimates.ends[i - 1] != SlipEnd::kFree) {
-      estimates.window_of_slip.push_back(SlipEstimates::kNoWindow);
-      break;
-    }
-    if (begins) {
-      SlipWindow window;
-      window.first = loading ? start_of_loading(trace, slips[i], shared) : boundary(slips[i - 1], slips[i]);
-      window.slip = first_guess(trace, slips[i], shared);
-      estimates.windows.push_back(window);
-    }
-    estimates.window_of_slip.push_back(estimates.windows.size() - 1);
-    SlipWindow& window = estimates.windows.back();
-    window.captured = estimates.ends[i] != SlipEnd::kFree;
-    if (i + 1 < slips.size() && !begins_a_pull(trace, slips, i + 1)) {
-      window.end = boundary(slips[i], slips[i + 1]);
-    } else {
-      // Up to the trough the two courses are the same; a free oscillation has a tail to learn from.
-      const bool free_before = !loading && estimates.ends[i - 1] == SlipEnd::kFree;
-      window.captured = !free_before;
-      const double tail = free_before ? kTailPeriods * period_s * scans_per_s(trace) : 0.0;
-      window.end = scan_at(trough_at(trace, slips[i], shared) + tail) + 1;
-    }
-    window.end = std::min({window.end, trace.size(), end_of_pull(trace, slips[i])});
-  }
-}
-
-/// Each slip has scans enough for its own parameters and one to spare.
-bool windows_suffice(const Trace& trace, const std::vector<SlipWindow>& windows) {
-  constexpr std::ptrdiff_t kFewestScans = 4;
-  return std::all_of(windows.begin(), windows.end(), [&](const SlipWindow& window) {
-    if (window.first >= window.end) return false;
-    const auto first = trace.usable.begin() + static_cast<std::ptrdiff_t>(window.first);
-    const auto end = trace.usable.begin() + static_cast<std::ptrdiff_t>(window.end);
-    return std::count(first, end, 1) >= kFewestScans;
-  });
 }
 
 /// Log-likelihood, in units of a cost, by which other ends must be worse before they are refused, and within
@@ -437,14 +178,6 @@ std::optional<SharedParameters> guess_from_sure_slips(const Trace& trace, std::s
 }
 
 }  // namespace
-
-double time_at(const Trace& trace, double position) noexcept {
-  const auto before =
-      static_cast<std::size_t>(std::clamp(position, 0.0, static_cast<double>(trace.size() - 1)));
-  const std::size_t after = std::min(before + 1, trace.size() - 1);
-  return trace.time_s[before] +
-         (position - static_cast<double>(before)) * (trace.time_s[after] - trace.time_s[before]);
-}
 
 TesterEstimate SlipEstimates::tester() const {
   if (!uniform) return TesterEstimate::from(fit.shared, fit.shared_covariance);

@@ -51,7 +51,4 @@ struct SlipEstimates {
 [[nodiscard]] SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, double sigma,
                                            const SharedPrior& prior = {});
 
-/// Position between scans → time of the trace.
-[[nodiscard]] double time_at(const Trace& trace, double position) noexcept;
-
 }  // namespace stickslip::friction

@@ -182,7 +182,8 @@ TestResults TestAnalysis::finish() {
     results.stick_cycle_count = Estimate::of(0.0);
     no_model_results("no slip", results);
   } else {
-    if (settings_.remove_drift) trace.drift = significant_drift(trace, slips);
+    // Where the speed changes, the mean of a cycle does so too, without any drift of the paper.
+    if (settings_.remove_drift && trace.belt.is_constant()) trace.drift = significant_drift(trace, slips);
     trace.belt.take_off_drift(trace.drift.rate_per_s);
     TestEstimates estimates = estimate(trace, slips, sigma);
     const RegimeVerdict verdict =

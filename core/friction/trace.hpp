@@ -2,6 +2,7 @@
 /// The scans of one test as the estimators see them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -35,5 +36,14 @@ struct Trace {
   [[nodiscard]] double level(std::size_t scan) const noexcept { return value[scan] - drift.at(time_s[scan]); }
   [[nodiscard]] std::size_t size() const noexcept { return value.size(); }
 };
+
+/// Position between scans → time of the trace.
+[[nodiscard]] inline double time_at(const Trace& trace, double position) noexcept {
+  const auto before =
+      static_cast<std::size_t>(std::clamp(position, 0.0, static_cast<double>(trace.size() - 1)));
+  const std::size_t after = std::min(before + 1, trace.size() - 1);
+  return trace.time_s[before] +
+         (position - static_cast<double>(before)) * (trace.time_s[after] - trace.time_s[before]);
+}
 
 }  // namespace stickslip::friction

@@ -38,7 +38,7 @@ struct LiveScene {
   /// ω and γ from a ring-down, as docs/detector.md has them: 0.013 % and 0.51 %.
   [[nodiscard]] friction::SharedPrior characterised() const {
     friction::SharedPrior prior;
-    prior.coupling.emplace();
+    prior.coupling = friction::SharedPrior::Coupling{};
     prior.coupling->omega = omega();
     prior.coupling->gamma_over_2omega = gamma_over_2omega;
     prior.coupling->covariance =

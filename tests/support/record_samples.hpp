@@ -67,7 +67,7 @@ inline record::RecordHeader sample_header() {
   header.board.scan_rate_granted_Hz = 350.0000350000035;
   header.load_cell = daq::LoadCell{9.8, 0.01};
   header.calibration = {"2026-05-01", "DKD-1234", 0.003};
-  header.tester = {2.331, 9.81, 0.00508, 4200.0};
+  header.tester = {2.331, 9.81, 0.00508, 4200.0, "0:0.00508 2.5:0.0101"};
   header.sample = {"linerboard 42", "kraft", "MD", "wire", 3, "Ada"};
   header.process = {"stickslipd",
                     "0.1.0",

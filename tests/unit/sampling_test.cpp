@@ -32,7 +32,7 @@ TEST(Sampling, ExpectsWhatWasMeasuredElseWhatTheStiffnessSays) {
   tester.stiffness_N_per_m = 8.0 * std::numbers::pi * std::numbers::pi * 100.0;
   EXPECT_NEAR(*expected_frequency_Hz(tester, {}), 10.0, 1e-12);
   SharedPrior prior;
-  prior.coupling.emplace();
+  prior.coupling = SharedPrior::Coupling{};
   prior.coupling->omega = 2.0 * std::numbers::pi * 20.0;
   EXPECT_NEAR(*expected_frequency_Hz(tester, prior), 20.0, 1e-12);
 }

@@ -1,0 +1,43 @@
+/// \file
+/// First guesses of what a fit starts from, out of turning points and slopes.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "core/friction/fall_finder.hpp"
+#include "core/friction/slip_model.hpp"
+#include "core/friction/trace.hpp"
+
+namespace stickslip::friction {
+
+/// The scan nearest to a position between scans; the first if it lies before it.
+[[nodiscard]] std::size_t scan_at(double position);
+[[nodiscard]] double scans_per_s(const Trace& trace);
+
+/// Level from which the force rises to the peak: the median about the turning point, which two spikes there
+/// do not move.
+[[nodiscard]] double level_before(const Trace& trace, const Fall& fall);
+
+/// Median slope of the rises to the peaks: half of a rise is stick, where there is any.
+[[nodiscard]] double slope_of_sticks(const Trace& trace, std::span<const Fall> slips);
+
+/// ω from half periods, γ of the paper's tester, the stick rate from the loading, or the sticks where the
+/// trace begins later. \param slips  not empty.
+[[nodiscard]] SharedParameters first_guess(const Trace& trace, std::span<const Fall> slips);
+/// One slip's own parameters from its peak and trough.
+[[nodiscard]] SlipParameters first_guess(const Trace& trace, const Fall& slip,
+                                         const SharedParameters& shared);
+
+/// Stick rate at the peak of a slip, 1/s.
+[[nodiscard]] double rate_at(const Trace& trace, const Fall& slip, const SharedParameters& shared);
+
+/// Where a slip is at its lowest, in scans: half an oscillation after its peak. What follows may be flat (a
+/// belt that stops), and its lowest scan anywhere.
+[[nodiscard]] double trough_at(const Trace& trace, const Fall& slip, const SharedParameters& shared);
+
+/// S − K of a slip by its amplitude, [2]: median of those that moved faster than the belt.
+[[nodiscard]] double typical_delta_mu(const Trace& trace, std::span<const Fall> slips,
+                                      const SharedParameters& shared);
+
+}  // namespace stickslip::friction
