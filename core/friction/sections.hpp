@@ -24,8 +24,8 @@ namespace stickslip::friction {
 inline constexpr std::size_t kMostSlipsTogether = 1024;
 
 struct TestEstimates {
-  /// Those of model_results() and feature_results() only. Of several sections the mean, weighted by their slips; nothing where one
-  /// section has nothing.
+  /// Those of model_results() and feature_results() only. Of several sections the mean, weighted by their
+  /// slips; nothing where one section has nothing.
   TestResults results;
   base::LongColumn<double> log_likelihood_ratios;  ///< Captured over free, one fewer than slips.
   base::LongColumn<Cycle> cycles;                  ///< One for each slip, as from cycle_table().

@@ -341,7 +341,8 @@ void read_tables(const json& object, TableReader table, EndRecord& end) {
     friction::Cycle cycle;
     std::size_t column = 0;
     for_each_cycle_column([&](const FieldName&, auto member) {
-      if (column++ < columns) cycle.*member = static_cast<std::decay_t<decltype(cycle.*member)>>(table.next());
+      if (column++ < columns)
+        cycle.*member = static_cast<std::decay_t<decltype(cycle.*member)>>(table.next());
     });
     end.cycles.push_back(cycle);
   }

@@ -107,9 +107,7 @@ TEST(CycleFeatures, GiveTheMeanOfSlipsThatScatter) {
   for (const TestResults& results : trials.results) {
     tallies.add(results, 0.35, 0.30, 4.0 * test::LimitScene::kInchPerMinute_m_per_s);
   }
-  tallies.each([&](const char* what, const Tally& tally) {
-    expect_right(what, tally, tests, 20.0);
-  });
+  tallies.each([&](const char* what, const Tally& tally) { expect_right(what, tally, tests, 20.0); });
 }
 
 TEST(CycleFeatures, SayWhyThereAreNone) {
