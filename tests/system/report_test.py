@@ -66,12 +66,13 @@ class Folder(unittest.TestCase):
 class Methods(Folder):
     def test_the_shipped_ones_are_listed(self):
         lines = self.good("methods").splitlines()
-        self.assertEqual([line.split()[0] for line in lines], ["astm-d1894", "iso-15359", "iso-8295", "penner-1995", "tappi-t549"])
+        self.assertEqual([line.split()[0] for line in lines], ["astm-d1894", "iso-15359", "iso-8295", "penner-1995",
+                                                               "speed-ramp", "tappi-t549"])
         listed = json.loads(self.good("methods", "--json"))["methods"]
         by_name = {method["name"]: method for method in listed}
         self.assertEqual(by_name["iso-8295"]["kinetic_travel"], [0, 0.06])
         self.assertEqual(by_name["penner-1995"]["kinetic_cycles"], 10)
-        self.assertEqual([m["name"] for m in listed if not m["check"]], ["penner-1995"])
+        self.assertEqual([m["name"] for m in listed if not m["check"]], ["penner-1995", "speed-ramp"])
 
     def test_a_method_decides_the_traditional_numbers_and_stands_in_the_record(self):
         method = self.folder / "own.toml"
