@@ -255,7 +255,7 @@ void feature_results(const Trace& trace, std::span<const Fall> slips, const Slip
         i < kFeatureCount ? covariance(i, i) : shared_covariance(i - kFeatureCount, i - kFeatureCount);
     const double step = 0.01 * std::sqrt(variance);
     if (!(step > 0.0)) continue;
-    const auto moved = [&](double by) {
+    const auto moved = [&, &shared = shared](double by) {
       Features features = mean;
       Eigen::Vector3d p{shared.omega, shared.gamma, shared.r};
       if (i < kFeatureCount) {

@@ -74,6 +74,8 @@ bool free_the_doubtful(SlipEstimates& estimates) {
 /// which one end alone is a matter of chance: three parameters more or less are worth 1.5 by themselves.
 constexpr double kWorse = 9.0;
 constexpr double kChance = 3.0;
+/// So many times what the slips themselves say must the whole say against it.
+constexpr double kOutweighs = 3.0;
 /// Log-likelihood ratio of an end that is a matter of chance.
 constexpr double kUnsure = 0.1;
 
@@ -92,9 +94,10 @@ bool weigh_new_ends(const SlipEstimates& before, SlipEstimates& after) {
   // Windows may have grown or shrunk.
   const double expected = before.fit.cost * static_cast<double>(after.fit.scan_count) /
                           static_cast<double>(before.fit.scan_count);
+  // A fit that did not converge is at least no worse than where it stopped.
   const double worse =
-      after.fit.converged ? after.fit.cost - expected : std::numeric_limits<double>::infinity();
-  if (worse < kChance) return true;
+      after.fit.scan_count > 0 ? after.fit.cost - expected : std::numeric_limits<double>::infinity();
+  if (worse < kChance && after.fit.converged) return true;
   const std::size_t count = different(before.ends, after.ends);
   const auto set = [&](double ratio, const std::vector<SlipEnd>& ends) {
     for (std::size_t i = 0; i < after.log_likelihood_ratios.size(); ++i) {
@@ -102,8 +105,13 @@ bool weigh_new_ends(const SlipEstimates& before, SlipEstimates& after) {
       after.log_likelihood_ratios[i] = ends[i] == SlipEnd::kCaptured ? ratio : -ratio;
     }
   };
-  if (worse < kWorse) {
-    if (count == 1) set(kUnsure, after.ends);
+  double said = 0.0;
+  for (std::size_t i = 0; i < after.log_likelihood_ratios.size(); ++i) {
+    if (before.ends[i] != after.ends[i]) said += std::abs(after.log_likelihood_ratios[i]);
+  }
+  // A capture has three parameters more to hide a spike in: the whole must outweigh what the slips say.
+  if (worse < kWorse || worse < kOutweighs * said) {
+    if (count == 1 && worse < kWorse) set(kUnsure, after.ends);
     return true;
   }
   set(std::isfinite(worse) ? worse / static_cast<double>(count) : kDoubtful, before.ends);
