@@ -132,14 +132,21 @@ SlipEstimates rounds(const Trace& trace, std::span<const Fall> slips, double sig
                         ? fit_slips(trace, estimates.windows, shared, sigma, prior)
                         : SlipFit{};
   };
+  std::vector<double> weighed;  // The ratios after the latest weighing.
   for (int round = 0; round < kRounds; ++round) {
     const SlipEstimates before = estimates;
     if (round > 0 || found.empty()) found = judge_ends(trace, slips, shared, sigma, estimates);
-    if (round > 0 && found == before.ends) break;
+    if (round > 0 && found == before.ends) {
+      for (std::size_t i = 0; i < weighed.size(); ++i) {
+        if (std::abs(weighed[i]) == kUnsure) estimates.log_likelihood_ratios[i] = weighed[i];
+      }
+      break;
+    }
     estimates.ends = found;
     fit();
     if (free_the_doubtful(estimates)) fit();
     if (round > 0 && !weigh_new_ends(before, estimates)) break;
+    weighed = estimates.log_likelihood_ratios;
     if (!estimates.fit.converged) break;
     shared = estimates.fit.shared;
   }
@@ -223,6 +230,19 @@ SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, do
   if (!describes_well(estimates, sigma) && std::abs(other_rate.r - guess.r) > kOtherRate * guess.r) {
     try_too(other_rate, {});
     if (!describes_well(estimates, sigma)) try_too(other_rate, captured);
+  }
+  // Nothing but the loading and the first slip tells the stick rate of a ring-down, and a rate that is off by
+  // a tenth hides a first slip that did stick again.
+  const bool all_free = std::none_of(estimates.ends.begin(), estimates.ends.end(),
+                                     [](SlipEnd end) { return end == SlipEnd::kCaptured; });
+  if (estimates.fit.converged && all_free && slips.size() > 2) {
+    std::vector<SlipEnd> first_captured = estimates.ends;
+    first_captured.front() = SlipEnd::kCaptured;
+    SlipEstimates other = rounds(trace, slips, sigma, prior, estimates.fit.shared, std::move(first_captured));
+    const double gain = estimates.fit.cost * static_cast<double>(other.fit.scan_count) /
+                            static_cast<double>(estimates.fit.scan_count) -
+                        other.fit.cost;
+    if (other.fit.converged && gain > kWorse) estimates = std::move(other);
   }
   estimates.drift = trace.drift;
   estimates.belt = trace.belt;
