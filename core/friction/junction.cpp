@@ -19,8 +19,6 @@ constexpr int kMostIterations = 40;
 constexpr double kFirstDamping = 1e-3;
 constexpr double kHopeless = 1e8;
 constexpr double kConverged = 1e-6;  ///< Log-likelihood units.
-/// Standard deviation of ln(S − K) of paper at most: √ln(1 + 0.6²), for a scatter of 60 %.
-constexpr double kLogScatter = 0.5545;
 /// Keeps the logarithm finite.
 constexpr double kLeastRatio = 1e-6;
 
@@ -94,8 +92,8 @@ class CapturedCourse {
 
   /// How unusual its S − K is, in standard deviations.
   [[nodiscard]] CoursePoint<kCount> surprise() const noexcept {
-    CoursePoint<kCount> point{std::log(ratio_) / kLogScatter, Parameters<kCount>::Zero()};
-    if (sure_) point.by << -1.0 / (D_ * kLogScatter), 0.0, 0.0, 1.0 / (D_ * kLogScatter);
+    CoursePoint<kCount> point{std::log(ratio_) / kDeltaMuLogScatter, Parameters<kCount>::Zero()};
+    if (sure_) point.by << -1.0 / (D_ * kDeltaMuLogScatter), 0.0, 0.0, 1.0 / (D_ * kDeltaMuLogScatter);
     return point;
   }
 

@@ -9,6 +9,9 @@
 
 namespace stickslip::friction {
 
+/// Standard deviation of ln(S − K) of paper at most: √ln(1 + 0.6²), for a scatter of 60 %.
+inline constexpr double kDeltaMuLogScatter = 0.5545;
+
 /// Log of the generalised likelihood ratio of "captured" over "continues free" on scans
 /// [first, end), which reach from one maximum of the force to the minimum after the next.
 ///

@@ -192,6 +192,27 @@ std::optional<SharedParameters> guess_from_sure_slips(const Trace& trace, std::s
   return fit.converged ? std::optional{fit.shared} : std::nullopt;
 }
 
+/// Nothing but the loading and the first slip tells the stick rate of a ring-down, and a rate that is off by
+/// a tenth hides a first slip that did stick again. \param free  converged, no slip captured. \param captured
+/// the fit with the first one captured.
+bool first_stuck_after_all(const SlipEstimates& free, const SlipEstimates& captured, double sigma) {
+  if (!captured.fit.converged || captured.windows.size() < 2 || captured.ends[0] != SlipEnd::kCaptured) {
+    return false;
+  }
+  const auto delta_mu = [&](std::size_t i) {
+    return captured.windows[i].slip.S - captured.windows[i].slip.K;
+  };
+  if (!(delta_mu(0) > 0.0 && delta_mu(1) > 0.0)) return false;
+  constexpr double kThreeParameters = 1.5;
+  const double surprise = std::log(delta_mu(1) / delta_mu(0)) / kDeltaMuLogScatter;
+  // Where spikes have been left the residuals are larger than the noise, and so is what chance gains.
+  const double residual = std::max(captured.fit.residual_sigma / sigma, 1.0);
+  const double gain = free.fit.cost * static_cast<double>(captured.fit.scan_count) /
+                          static_cast<double>(free.fit.scan_count) -
+                      captured.fit.cost;
+  return gain / (residual * residual) - kThreeParameters - 0.5 * surprise * surprise > kWorse;
+}
+
 }  // namespace
 
 TesterEstimate SlipEstimates::tester() const {
@@ -231,18 +252,13 @@ SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, do
     try_too(other_rate, {});
     if (!describes_well(estimates, sigma)) try_too(other_rate, captured);
   }
-  // Nothing but the loading and the first slip tells the stick rate of a ring-down, and a rate that is off by
-  // a tenth hides a first slip that did stick again.
   const bool all_free = std::none_of(estimates.ends.begin(), estimates.ends.end(),
                                      [](SlipEnd end) { return end == SlipEnd::kCaptured; });
   if (estimates.fit.converged && all_free && slips.size() > 2) {
     std::vector<SlipEnd> first_captured = estimates.ends;
     first_captured.front() = SlipEnd::kCaptured;
     SlipEstimates other = rounds(trace, slips, sigma, prior, estimates.fit.shared, std::move(first_captured));
-    const double gain = estimates.fit.cost * static_cast<double>(other.fit.scan_count) /
-                            static_cast<double>(estimates.fit.scan_count) -
-                        other.fit.cost;
-    if (other.fit.converged && gain > kWorse) estimates = std::move(other);
+    if (first_stuck_after_all(estimates, other, sigma)) estimates = std::move(other);
   }
   estimates.drift = trace.drift;
   estimates.belt = trace.belt;
