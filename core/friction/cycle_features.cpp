@@ -133,6 +133,7 @@ Cycles cycles_of(const Trace& trace, std::span<const Fall> slips, const SlipEsti
                         static_cast<double>(std::max<std::size_t>(trace.size(), 2) - 1);
   for (std::size_t i = 1; i + 1 < slips.size(); ++i) {
     if (estimates.ends[i - 1] != SlipEnd::kCaptured || estimates.ends[i] != SlipEnd::kCaptured) continue;
+    if (!estimates.has_window(i + 1)) continue;
     const SlipWindow& window = estimates.windows[estimates.window_of_slip[i]];
     const SlipWindow& next = estimates.windows[estimates.window_of_slip[i + 1]];
     const SlipModel model{estimates.fit.shared, window.slip, true};

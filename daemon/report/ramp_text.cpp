@@ -8,7 +8,7 @@ namespace {
 constexpr double kMillimetresPerMetre = 1e3;
 
 std::string with_error(const friction::Estimate& estimate, double scale, int decimals) {
-  const std::string value = fmt::format("{:.{}f}", scale * *estimate.value, decimals);
+  std::string value = fmt::format("{:.{}f}", scale * *estimate.value, decimals);
   if (!estimate.standard_error) return value;
   return fmt::format("{} ± {:.{}f}", value, scale * *estimate.standard_error, decimals);
 }
