@@ -102,7 +102,6 @@ TEST(CycleBuffer, MeansOfAParabolaAreItsValueAndTheCurvatureTerm) {
 
 // The bound that the header gives: block of a tenth of an oscillation, h⁴ω⁴/1920 = 8e-5.
 TEST(CycleBuffer, MeansOfAnOscillationAreWithinTheStatedBound) {
-  CycleBuffer buffer;
   constexpr int kBlock = 500;
   const double omega = 2.0 * std::numbers::pi * 20.0;  // 5000 scans a period
   double worst = 0.0;

@@ -32,7 +32,7 @@ struct Scan {
 /// A rest of 0.2 s, the loading, and slips with these S − K about K that falls, each ending in sticking.
 class Pull {
  public:
-  Pull(std::vector<double> delta_mu, double drift_per_s = 0.0) : drift_per_s_(drift_per_s) {
+  explicit Pull(std::vector<double> delta_mu, double drift_per_s = 0.0) : drift_per_s_(drift_per_s) {
     double onset_s = kRest_s + test::ModelCourse::kS / shared_.r;
     begin_s_ = kRest_s;
     for (std::size_t i = 0; i < delta_mu.size(); ++i) {
