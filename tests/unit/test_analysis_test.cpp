@@ -33,7 +33,7 @@ TEST(TestAnalysis, EstimatorChangesWhereSAndKComeFromAndNothingElse) {
     TestAnalysis analysis{settings};
     test::LiveTrial trial{scene};
     for (base::ScanIndex scan = 0; scan < trial.scan_count(); ++scan) analysis.add(scan, trial.next(), false);
-    const TestResults results = analysis.finish();
+    TestResults results = analysis.finish();
     EXPECT_EQ(analysis.live().phase, Phase::kEnd);
     EXPECT_EQ(analysis.live().regime, Regime::kStickSlip);
     return results;
