@@ -26,6 +26,9 @@ class BoardConformance : public ::testing::TestWithParam<BoardCase> {
  protected:
   void SetUp() override { rig_ = GetParam().make(clock_); }
 
+  base::Clock& clock() { return rig_.clock ? *rig_.clock : clock_; }
+  static std::int64_t lateness_ns() { return GetParam().lateness.count(); }
+
   daq::Board& board() { return *rig_.board; }
   void start() { ASSERT_TRUE(board().start()) << board().last_error(); }
 
@@ -97,11 +100,13 @@ TEST_P(BoardConformance, InfoDoesNotChange) {
 }
 
 TEST_P(BoardConformance, ReadBeforeStartTimesOut) {
-  const std::int64_t began_ns = clock_.monotonic_ns();
+  const std::int64_t began_ns = clock().monotonic_ns();
   ScanBlock block = used_block();
   EXPECT_EQ(board().read(block, 30ms), ReadStatus::kTimeout);
   EXPECT_EQ(block.count, 0U);
-  EXPECT_EQ(clock_.monotonic_ns() - began_ns, 30 * kNanosecondsPerMillisecond);
+  const std::int64_t took_ns = clock().monotonic_ns() - began_ns;
+  EXPECT_GE(took_ns, 30 * kNanosecondsPerMillisecond);
+  EXPECT_LE(took_ns, 30 * kNanosecondsPerMillisecond + lateness_ns());
 }
 
 TEST_P(BoardConformance, ReadAfterStopTimesOut) {
@@ -109,20 +114,23 @@ TEST_P(BoardConformance, ReadAfterStopTimesOut) {
   ScanBlock block;
   ASSERT_EQ(next(block), ReadStatus::kScans);
   board().stop();
-  const std::int64_t began_ns = clock_.monotonic_ns();
+  const std::int64_t began_ns = clock().monotonic_ns();
   block = used_block();
   EXPECT_EQ(board().read(block, 30ms), ReadStatus::kTimeout);
   EXPECT_EQ(block.count, 0U);
-  EXPECT_EQ(clock_.monotonic_ns() - began_ns, 30 * kNanosecondsPerMillisecond);
+  const std::int64_t took_ns = clock().monotonic_ns() - began_ns;
+  EXPECT_GE(took_ns, 30 * kNanosecondsPerMillisecond);
+  EXPECT_LE(took_ns, 30 * kNanosecondsPerMillisecond + lateness_ns());
 }
 
 TEST_P(BoardConformance, ReadNeverTakesLongerThanItsTimeout) {
   start();
   for (const auto timeout : {0ms, 1ms, 3ms, 50ms, 1000ms}) {
-    const std::int64_t began_ns = clock_.monotonic_ns();
+    const std::int64_t began_ns = clock().monotonic_ns();
     ScanBlock block = used_block();
     const ReadStatus status = board().read(block, timeout);
-    EXPECT_LE(clock_.monotonic_ns() - began_ns, timeout.count() * kNanosecondsPerMillisecond);
+    EXPECT_LE(clock().monotonic_ns() - began_ns,
+              timeout.count() * kNanosecondsPerMillisecond + lateness_ns());
     EXPECT_EQ(block.count > 0, status == ReadStatus::kScans);
   }
 }
@@ -152,18 +160,18 @@ TEST_P(BoardConformance, IndicesAreConsecutiveWhileNothingIsLost) {
 TEST_P(BoardConformance, StampsNeverRunBackwards) {
   start();
   ScanBlock block;
-  daq::ClockStamp last{clock_.monotonic_ns(), clock_.realtime_ns()};
+  daq::ClockStamp last{clock().monotonic_ns(), clock().realtime_ns()};
   for (int i = 0; i < 200 && next(block) == ReadStatus::kScans; ++i) {
     ASSERT_GE(block.stamp.monotonic_ns, last.monotonic_ns);
     ASSERT_GE(block.stamp.realtime_ns, last.realtime_ns);
-    ASSERT_LE(block.stamp.monotonic_ns, clock_.monotonic_ns());
+    ASSERT_LE(block.stamp.monotonic_ns, clock().monotonic_ns());
     last = block.stamp;
   }
 }
 
 TEST_P(BoardConformance, ScansDoNotComeBeforeTheirTime) {
   const double period_ns = 1e9 / board().info().scan_rate_granted_Hz;
-  const std::int64_t began_ns = clock_.monotonic_ns();
+  const std::int64_t began_ns = clock().monotonic_ns();
   start();
   ScanBlock block;
   daq::ScanIndex delivered = 0;
@@ -228,10 +236,12 @@ TEST_P(BoardConformance, ReadDoesNotAllocate) {
 }
 
 TEST_P(BoardConformance, ReadingsDoNotDependOnHowTheyAreFetched) {
+  if (!GetParam().input_repeats) GTEST_SKIP() << "the input of this board does not repeat";
   constexpr std::size_t kCount = 500;
   start();
   const std::vector<double> expected = readings(board(), kCount, 1000ms);
   ASSERT_FALSE(expected.empty());
+  rig_.board.reset();  // A device serves one at a time.
   for (const auto timeout : {1ms, 5ms, 23ms}) {
     ManualClock clock;
     const BoardRig other = GetParam().make(clock);
@@ -263,10 +273,13 @@ TEST_P(BoardEnd, EndOfInputRepeats) {
 
 std::string name_of(const ::testing::TestParamInfo<BoardCase>& instance) { return instance.param.name; }
 
-INSTANTIATE_TEST_SUITE_P(Boards, BoardConformance,
-                         ::testing::Values(comedi_case(), simulated_case(), simulated_gaps_case(),
-                                           replay_case()),
-                         name_of);
+std::vector<BoardCase> all_cases() {
+  std::vector<BoardCase> cases{comedi_case(), simulated_case(), simulated_gaps_case(), replay_case()};
+  if (auto device = comedi_device_case()) cases.push_back(*std::move(device));
+  return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(Boards, BoardConformance, ::testing::ValuesIn(all_cases()), name_of);
 INSTANTIATE_TEST_SUITE_P(Boards, BoardEnd,
                          ::testing::Values(simulated_case(), simulated_gaps_case(), replay_case()), name_of);
 

@@ -12,9 +12,9 @@ BoardCase comedi_case() {
     auto world = std::make_shared<FakeComediWorld>();
     auto board = drivers::make_comedi_board({}, clock, std::make_unique<FakeComedi>(*world, clock));
     if (!board) throw std::runtime_error(board.error().message);
-    return BoardRig{std::move(world), std::move(*board)};
+    return BoardRig{std::move(world), nullptr, std::move(*board)};
   };
-  return {"ComediOnAFakeTable", make};
+  return {.name = "ComediOnAFakeTable", .make = make};
 }
 
 }  // namespace stickslip::test

@@ -25,9 +25,9 @@ BoardCase replay_case() {
       record.raw.push_back(static_cast<double>(i * 7919 % 65536));
     }
     drivers::Replay replay = drivers::make_replay(std::move(record), clock);
-    return BoardRig{nullptr, std::move(replay.board)};
+    return BoardRig{nullptr, nullptr, std::move(replay.board)};
   };
-  return {"Replay", make};
+  return {.name = "Replay", .make = make};
 }
 
 }  // namespace stickslip::test

@@ -16,9 +16,9 @@ BoardCase simulated_case() {
          .scan_rate_Hz = {}},
         clock);
     if (!tester) throw std::runtime_error(tester.error().message);
-    return BoardRig{nullptr, std::move(tester->board)};
+    return BoardRig{nullptr, nullptr, std::move(tester->board)};
   };
-  return {"Simulated", make};
+  return {.name = "Simulated", .make = make};
 }
 
 BoardCase simulated_gaps_case() {
@@ -27,9 +27,9 @@ BoardCase simulated_gaps_case() {
     auto tester = drivers::make_simulated_tester(
         {.scenes = {scenes / "clock-and-missing-scans.toml"}, .repeats = 2, .scan_rate_Hz = {}}, clock);
     if (!tester) throw std::runtime_error(tester.error().message);
-    return BoardRig{nullptr, std::move(tester->board)};
+    return BoardRig{nullptr, nullptr, std::move(tester->board)};
   };
-  return {"SimulatedGaps", make};
+  return {.name = "SimulatedGaps", .make = make};
 }
 
 }  // namespace stickslip::test
