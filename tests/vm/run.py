@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""The proof on a kernel: run.py BUILD_DIR FOLDER [TEST...]
+
+Fetches kernel and headers, builds the virtual tester, runs the test programs (all of tests/vm/*_vm_test.py, or
+those named), as many at a time as there are processors, and ends with one screen. What cannot be had is said: the
+tests are then skipped, or failed where CI=true.
+"""
+
+import concurrent.futures
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+
+import kernel
+
+HERE = pathlib.Path(__file__).resolve().parent
+# Longest first: what is begun last should be short.
+ORDER = ("stream", "service", "cycles", "faults", "tester")
+PROGRAMS = ("qemu-system-x86_64", "busybox", "cpio", "depmod", "mke2fs", "mmdebstrap", "make", "gcc", "strip")
+LIMIT_S = 480
+
+
+def say(text):
+    print(f"test-vm: {text}", flush=True)
+
+
+def prepare(folder):
+    for program in PROGRAMS:
+        if shutil.which(program) is None:
+            raise kernel.Unavailable(f"no {program} here; ./dev deps vm installs it")
+    found = kernel.find_kernel()
+    kernel.build_module(found, folder / "module" / found.release)
+    return found
+
+
+def run_one(name, build, folder):
+    environment = dict(os.environ, STICKSLIP_VM_BUILD=str(build), STICKSLIP_VM_FOLDER=str(folder))
+    began = time.monotonic()
+    with open(folder / f"{name}.log", "w+", encoding="utf-8") as log:
+        try:
+            status = subprocess.run([sys.executable, "-m", "unittest", "-v", f"{name}_vm_test"], cwd=HERE, stdout=log,
+                                    stderr=subprocess.STDOUT, env=environment, timeout=LIMIT_S, check=False).returncode
+        except subprocess.TimeoutExpired:
+            status = f"longer than {LIMIT_S} s"
+        log.seek(0)
+        return name, status, time.monotonic() - began, log.read()
+
+
+def main():
+    build, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        found = prepare(folder)
+    except kernel.Unavailable as why:
+        say(f"SKIPPED: {why}")
+        return 1 if os.environ.get("CI") == "true" else 0
+    present = [name for name in ORDER if (HERE / f"{name}_vm_test.py").exists()]
+    assert len(present) == len(list(HERE.glob("*_vm_test.py"))), "a test program is missing in ORDER"
+    names = sys.argv[3:] or present
+    say(f"kernel {found.release}, translated; {', '.join(names)}")
+    outcomes = []
+    with concurrent.futures.ThreadPoolExecutor(max_workers=max(1, os.cpu_count() or 1)) as pool:
+        for done in concurrent.futures.as_completed([pool.submit(run_one, name, build, folder) for name in names]):
+            outcomes.append(done.result())
+            print(outcomes[-1][3], flush=True)
+    for name, status, seconds, _ in outcomes:
+        say(f"{name:10} {'passed' if status == 0 else f'FAILED ({status})':12} {seconds:5.0f} s")
+    return 0 if all(status == 0 for _, status, _, _ in outcomes) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

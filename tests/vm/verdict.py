@@ -1,0 +1,77 @@
+"""Judges records with h5py, as somebody would who knows docs/record-file.md alone.
+
+When `stickslip verify` is there, `judge()` is the place to ask it too.
+"""
+
+import dataclasses
+
+import h5py
+import numpy
+
+
+@dataclasses.dataclass
+class Gap:
+    first: int
+    count: int
+    estimated: bool
+    cause: str
+
+
+@dataclasses.dataclass
+class Judged:
+    scan: numpy.ndarray
+    counts: numpy.ndarray
+    gaps: list
+    results: dict       # name -> float or text
+    events: list        # texts
+    anchors: tuple      # scan, monotonic (ns)
+    granted_Hz: float
+    measured_Hz: float  # by the anchors
+    cycles: dict
+
+
+def text(value):
+    return value.decode() if isinstance(value, bytes) else value
+
+
+def gaps_of(entry):
+    group = entry["gaps"]
+    return [Gap(int(first), int(count), bool(estimated), text(cause)) for first, count, estimated, cause in
+            zip(group["first_scan"][()], group["scan_count"][()], group["estimated"][()], group["cause"][()])]
+
+
+def check_jumps(scan, gaps):
+    """Indices rise by one except over the gaps that the record names, and each gap is a jump."""
+    steps = numpy.diff(scan)
+    assert (steps >= 1).all(), "scan indices that do not rise"
+    jumps = [(int(scan[at]) + 1, int(steps[at]) - 1) for at in numpy.flatnonzero(steps > 1)]
+    assert jumps == [(gap.first, gap.count) for gap in gaps], (jumps, gaps)
+
+
+def rate_by(scan, monotonic_ns):
+    """Least squares; nan where two anchors are not enough."""
+    if len(scan) < 3:
+        return float("nan")
+    seconds = (monotonic_ns - monotonic_ns[0]) * 1e-9
+    return float(numpy.polyfit(seconds - seconds.mean(), scan - scan.mean(), 1)[0])
+
+
+def judge(path):
+    """Reads a record and checks that it agrees with itself. Raises AssertionError."""
+    with h5py.File(path) as file:
+        assert text(file.attrs["format"]) == "stickslip-record"
+        entry = file["entry"]
+        scan = entry["raw/scan"][()]
+        counts = entry["raw/counts"][()]
+        assert len(scan) == len(counts) > 0
+        gaps = gaps_of(entry)
+        check_jumps(scan, gaps)
+        results = {}
+        for name, data in entry["results"].items():
+            if isinstance(data, h5py.Dataset) and data.shape == ():
+                results[name] = text(data[()])
+        assert int(results["gap_count"]) == len(gaps), results["gap_count"]
+        anchors = entry["timing/scan"][()], entry["timing/monotonic_raw"][()]
+        return Judged(scan, counts, gaps, results, [text(event) for event in entry["events/text"][()]], anchors,
+                      float(entry["timing/scan_rate_granted"][()]), rate_by(*anchors),
+                      {name: data[()] for name, data in entry["cycles"].items()})
