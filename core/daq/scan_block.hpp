@@ -17,6 +17,9 @@ using base::ScanIndex;
 struct ClockStamp {
   std::int64_t monotonic_ns = 0;
   std::int64_t realtime_ns = 0;
+  /// The read had to wait for the scans, so the stamp tells when the last of them was taken. False while
+  /// scans that had piled up are fetched.
+  bool prompt = true;
 };
 
 /// Consecutive scans, oldest first. Plain data: copied through the ring without allocation.
