@@ -67,22 +67,17 @@ void Session::process_block(const daq::ScanBlock& block) {
     any_scan_ = true;
     events_.first_scan();
   }
-  const std::uint64_t dropped = ring_.dropped_scan_count();
-  const std::uint64_t overruns = acquisition_.overrun_count();
-  const bool halted = continues_ || overruns != overruns_before_;
+  const std::uint64_t overruns = block.overrun_count - std::exchange(overruns_before_, block.overrun_count);
+  const std::uint64_t dropped =
+      block.dropped_scan_count - std::exchange(dropped_before_, block.dropped_scan_count);
+  const bool continues = std::exchange(continues_, false);
   daq::GapCause cause = daq::GapCause::kUnknown;
-  if (overruns != overruns_before_) cause = daq::GapCause::kOverrun;
-  if (dropped != dropped_before_) cause = daq::GapCause::kRingFull;
-  if (continues_) cause = daq::GapCause::kBoardMissing;
+  if (overruns > 0) cause = daq::GapCause::kOverrun;
+  if (dropped > 0) cause = daq::GapCause::kRingFull;
+  if (continues) cause = daq::GapCause::kBoardMissing;
   const std::uint64_t gaps_before = processor_.gap_count();
   const std::int64_t lost_before = processor_.lost_scan_count();
-  processor_.process(block, cause, halted);
-  if (processor_.gap_count() != gaps_before) {
-    // The reports are used up by the gap they explain.
-    dropped_before_ = dropped;
-    overruns_before_ = overruns;
-    continues_ = false;
-  }
+  processor_.process(block, cause, continues || overruns > 0);
   const daq::RateMeter& meter = processor_.rate_meter();
   {
     const std::lock_guard lock{live_mutex_};
@@ -90,8 +85,8 @@ void Session::process_block(const daq::ScanBlock& block) {
     clocks_.scan_rate = meter.estimate();
     if (const auto late_ns = meter.lateness_ns(block)) clocks_.latency.add(*late_ns);
   }
-  counts_.dropped_scans.fetch_add(dropped - std::exchange(dropped_told_, dropped), std::memory_order_relaxed);
-  counts_.overruns.fetch_add(overruns - std::exchange(overruns_told_, overruns), std::memory_order_relaxed);
+  counts_.dropped_scans.fetch_add(dropped, std::memory_order_relaxed);
+  counts_.overruns.fetch_add(overruns, std::memory_order_relaxed);
   counts_.scans.fetch_add(block.count, std::memory_order_relaxed);
   counts_.gaps.fetch_add(processor_.gap_count() - gaps_before, std::memory_order_relaxed);
   counts_.lost_scans.fetch_add(processor_.lost_scan_count() - lost_before, std::memory_order_relaxed);

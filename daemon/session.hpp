@@ -105,10 +105,8 @@ class Session {
   mutable std::mutex live_mutex_;  ///< Held for a copy; the acquisition thread has no part in it.
   friction::LiveState live_;
   SessionClocks clocks_;
-  std::uint64_t dropped_before_ = 0;  ///< Explained by a gap.
+  std::uint64_t dropped_before_ = 0;
   std::uint64_t overruns_before_ = 0;
-  std::uint64_t dropped_told_ = 0;  ///< Already in the counts.
-  std::uint64_t overruns_told_ = 0;
   bool any_scan_ = false;
   bool continues_;  ///< After another session: the gap before the first scan is that of a missing board.
   std::thread thread_;

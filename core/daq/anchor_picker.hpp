@@ -32,11 +32,14 @@ class AnchorPicker {
     std::optional<ClockAnchor> picked;
     const ScanIndex last = block.end() - 1;
     if (block.count == 0) return picked;
-    if (!window_begin_) window_begin_ = block.first;
-    if (last >= *window_begin_ + window_scans_) {
+    if (!window_open_) {
+      window_open_ = true;
+      window_end_ = block.first + window_scans_;
+    }
+    if (last >= window_end_) {
       picked = best_;
       best_.reset();
-      window_begin_ = block.first;
+      window_end_ = block.first + window_scans_;
     }
     if (!block.stamp.prompt) return picked;
     const ClockAnchor candidate{last, block.stamp.monotonic_ns, block.stamp.realtime_ns};
@@ -46,7 +49,7 @@ class AnchorPicker {
 
   /// The anchor of the window that has begun, if it has any; forgets it. Also to begin anew after a jump.
   [[nodiscard]] std::optional<ClockAnchor> flush() noexcept {
-    window_begin_.reset();
+    window_open_ = false;
     std::optional<ClockAnchor> last;
     last.swap(best_);
     return last;
@@ -64,7 +67,8 @@ class AnchorPicker {
  private:
   double period_ns_;
   std::int64_t window_scans_;
-  std::optional<ScanIndex> window_begin_;
+  bool window_open_ = false;
+  ScanIndex window_end_ = 0;
   std::optional<ClockAnchor> best_;
 };
 
