@@ -50,13 +50,15 @@ Acquisition::End Acquisition::read_to_the_end() noexcept {
     switch (board_.read(block, kReadTimeout)) {
       case daq::ReadStatus::kScans:
         // A full ring counts what it drops; the jump in the index tells the consumer.
+        block.overrun_count = overruns_;
+        block.dropped_scan_count = ring_.dropped_scan_count();
         ring_.push(block);
         news_.release();
         break;
       case daq::ReadStatus::kTimeout:
         break;
       case daq::ReadStatus::kOverrun:
-        overruns_.fetch_add(1, std::memory_order_relaxed);
+        ++overruns_;
         // Scans are being lost anyway: starting again may take its time.
         if (!board_.start()) return End::kFailed;
         break;

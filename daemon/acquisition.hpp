@@ -39,10 +39,6 @@ class Acquisition {
   /// Once set, all blocks are in the ring: whoever sees it and then empties the ring has them all.
   [[nodiscard]] std::optional<End> ended() const noexcept;
 
-  /// Times the board's own buffer overflowed.
-  [[nodiscard]] std::uint64_t overrun_count() const noexcept {
-    return overruns_.load(std::memory_order_relaxed);
-  }
   /// Scheduling in use; valid after start().
   [[nodiscard]] const std::string& scheduling() const noexcept { return scheduling_; }
 
@@ -58,7 +54,7 @@ class Acquisition {
   std::string scheduling_;
   std::atomic<bool> stop_requested_{false};
   std::atomic<std::uint8_t> end_{kRunning};
-  std::atomic<std::uint64_t> overruns_{0};
+  std::uint64_t overruns_ = 0;  ///< Of the thread: blocks carry it.
   std::counting_semaphore<> news_{0};
   std::binary_semaphore started_{0};
   std::thread thread_;

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/pipeline/true_rate.hpp"
 #include "daemon/method_text.hpp"
 #include "daemon/tester_file.hpp"
 
@@ -23,7 +24,9 @@ friction::AnalysisSettings settings_of(const record::RecordHeader& header,
 }  // namespace
 
 RecordAnalysis::RecordAnalysis(daq::Calibration calibration, const friction::AnalysisSettings& settings)
-    : calibration_(std::move(calibration)), analysis_(settings) {}
+    : calibration_(std::move(calibration)),
+      scan_rate_granted_Hz_(settings.scan_rate_Hz),
+      analysis_(settings) {}
 
 base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& header,
                                                   const std::filesystem::path& scratch_folder,
@@ -63,8 +66,10 @@ void RecordAnalysis::add(daq::ScanIndex first, std::span<const double> raw) {
   static_cast<void>(analysis_.take_new_cycles());
 }
 
-void RecordAnalysis::finish(record::EndRecord& end) {
+void RecordAnalysis::finish(record::EndRecord& end, std::span<const daq::ClockAnchor> anchors,
+                            std::span<const daq::Gap> gaps) {
   end.results = analysis_.finish();
+  pipeline::add_true_rate(end.results, anchors, gaps, scan_rate_granted_Hz_);
   end.cycles = analysis_.take_cycles();
   end.spikes = analysis_.spikes();
 }
@@ -78,7 +83,7 @@ base::Result<TesterAnalysis> analyse_with_tester(const record::Record& record,
   }
   TesterAnalysis result;
   result.end = record.end.value_or(record::EndRecord{});
-  analysis->finish(result.end);
+  analysis->finish(result.end, record.anchors, record.gaps);
   result.tester = analysis->tester();
   result.check = analysis->tester_check();
   return result;

@@ -29,7 +29,9 @@ class RecordAnalysis {
   void add(daq::ScanIndex first, std::span<const double> raw);
 
   /// Fills in results, cycles and spikes. Call once.
-  void finish(record::EndRecord& end);
+  /// \param anchors,gaps  of the record, for the scan rate.
+  void finish(record::EndRecord& end, std::span<const daq::ClockAnchor> anchors = {},
+              std::span<const daq::Gap> gaps = {});
 
   /// After finish(), as TestAnalysis.
   [[nodiscard]] const std::optional<friction::TesterEstimate>& tester() const noexcept {
@@ -43,6 +45,7 @@ class RecordAnalysis {
   RecordAnalysis(daq::Calibration calibration, const friction::AnalysisSettings& settings);
 
   daq::Calibration calibration_;
+  double scan_rate_granted_Hz_;
   friction::TestAnalysis analysis_;
   std::optional<daq::ScanIndex> next_;
 };

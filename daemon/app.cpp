@@ -23,7 +23,6 @@ namespace stickslip::daemon {
 namespace {
 
 /// Tries to open a missing board: after 1, 2, 4, 8, 16, 30, 30 … s.
-constexpr std::chrono::seconds kFirstRetry{1};
 constexpr std::chrono::seconds kLongestRetry{30};
 
 }  // namespace
@@ -43,6 +42,7 @@ class App::Watcher final : public pipeline::Sink {
   }
 
   void gap(const daq::Gap& gap) override { app_.world_.facts->gap_seen(gap); }
+  void gap_between_tests(const daq::Gap& gap) override { app_.world_.facts->gap_seen(gap); }
 
   void test_ended(const pipeline::TestEnd& end) override {
     TestSummary summary;
@@ -75,9 +75,10 @@ App::App(DaemonConfig config, AppWorld world)
       world_(std::move(world)),
       signals_(io_),
       retry_timer_(io_),
-      clock_(base::make_system_clock(config_.clock_speed)),
+      clock_(world_.clock ? std::move(world_.clock) : base::make_system_clock(config_.clock_speed)),
       storage_(config_.record_folder, world_.finalise, tests_, *world_.facts),
-      watcher_(std::make_unique<Watcher>(*this)) {}
+      watcher_(std::make_unique<Watcher>(*this)),
+      retry_after_(world_.first_retry) {}
 
 App::~App() = default;
 
@@ -144,7 +145,8 @@ void App::finalise_orphans() {
 }
 
 base::Result<void> App::open_session() {
-  base::Result<drivers::OpenedBoard> board = world_.open_board(config_.board, *clock_);
+  base::Result<drivers::OpenedBoard> board =
+      world_.open_board(config_.board, *clock_, continues_.continuation);
   if (!board) return tl::unexpected(board.error());
   truth_ = board->truth;
   const base::Result<SessionSettings> made = session_settings(*board);
@@ -166,7 +168,7 @@ base::Result<void> App::open_session() {
     boost::asio::post(io_, [this] {
       if (state_ == State::kStopping) return;
       state_ = State::kAcquiring;
-      retry_after_ = kFirstRetry;
+      retry_after_ = world_.first_retry;
       world_.facts->board_started(session_->board_info(), session_->scheduling());
       tell_status();
       notify_.ready();
@@ -176,9 +178,9 @@ base::Result<void> App::open_session() {
     boost::asio::post(io_, [this, end] { session_ended(end); });
   };
   try {
-    session_ =
-        std::make_unique<Session>(std::move(*board), settings,
-                                  std::vector<pipeline::Sink*>{watcher_.get(), &storage_}, std::move(events));
+    session_ = std::make_unique<Session>(std::move(*board), settings,
+                                         std::vector<pipeline::Sink*>{watcher_.get(), &storage_},
+                                         std::move(events), counts_);
   } catch (const std::invalid_argument& refused) {
     return base::usage_error("the board does not suit the configuration: {}", refused.what());
   }
@@ -195,11 +197,11 @@ base::Result<void> App::open_session() {
 void App::board_is_missing(const std::string& why) {
   state_ = State::kBoardMissing;
   missing_why_ = why;
-  world_.facts->board_missing(why, static_cast<double>(retry_after_.count()));
+  world_.facts->board_missing(why, std::chrono::duration<double>(retry_after_).count());
   tell_status();
   notify_.ready();
   retry_timer_.expires_after(retry_after_);
-  retry_after_ = std::min(2 * retry_after_, kLongestRetry);
+  retry_after_ = std::min<std::chrono::milliseconds>(2 * retry_after_, kLongestRetry);
   retry_timer_.async_wait([this](boost::system::error_code error) {
     if (!error && state_ == State::kBoardMissing) retry_board();
   });
@@ -211,7 +213,11 @@ void App::retry_board() {
 
 void App::session_ended(Acquisition::End end) {
   const std::string why = session_->board_error();
-  next_test_number_ = session_->next_test_number();
+  SessionEnd ended = session_->end();
+  // A session without a scan knows nothing of the index.
+  if (!ended.continuation) ended.continuation = continues_.continuation;
+  continues_ = std::move(ended);
+  clocks_ = session_->clocks();
   session_.reset();
   if (state_ == State::kStopping) {
     leave_when_idle();
@@ -224,6 +230,7 @@ void App::session_ended(Acquisition::End end) {
       break;
     case Acquisition::End::kBoardMissing:
     case Acquisition::End::kFailed:
+      ++board_loss_count_;
       board_is_missing(why.empty() ? "it went away" : why);
       break;
   }
@@ -251,7 +258,10 @@ base::Result<SessionSettings> App::session_settings(const drivers::OpenedBoard& 
   settings.load_cell = config_.bench.load_cell(opened.load_cell);
   settings.realtime_priority = config_.realtime_priority;
   settings.clock_speed = config_.clock_speed;
-  settings.processor.first_test_number = next_test_number_;
+  settings.processor.first_test_number = continues_.next_test_number;
+  if (continues_.continuation) settings.processor.continues_at = continues_.continuation->end;
+  settings.processor.recorded = opened.recorded;
+  settings.processor.clock_is_real = config_.clock_speed == 1.0;
   settings.processor.segmenter = config_.segmenter;
   settings.processor.segmenter.scan_rate_Hz = board.scan_rate_granted_Hz;
   friction::AnalysisSettings& analysis = settings.processor.analysis;
@@ -335,12 +345,16 @@ Status App::status() const {
     status.board = session_->board_info();
     if (current_test_) status.live = session_->live();
     status.scheduling = session_->scheduling();
-    const SessionCounts& counts = session_->counts();
-    status.scan_count = counts.scans.load(std::memory_order_relaxed);
-    status.dropped_scan_count = counts.dropped_scans.load(std::memory_order_relaxed);
-    status.overrun_count = counts.overruns.load(std::memory_order_relaxed);
-    status.gap_count = counts.gaps.load(std::memory_order_relaxed);
   }
+  status.scan_count = counts_.scans.load(std::memory_order_relaxed);
+  status.dropped_scan_count = counts_.dropped_scans.load(std::memory_order_relaxed);
+  status.overrun_count = counts_.overruns.load(std::memory_order_relaxed);
+  status.gap_count = counts_.gaps.load(std::memory_order_relaxed);
+  status.lost_scan_count = counts_.lost_scans.load(std::memory_order_relaxed);
+  status.board_loss_count = board_loss_count_;
+  const SessionClocks clocks = session_ ? session_->clocks() : clocks_;
+  if (config_.clock_speed == 1.0) status.scan_rate_measured = clocks.scan_rate;
+  status.latency = clocks.latency;
   status.storage_stall_count = storage_.stall_count();
   status.test_count = tests_.test_count();
   status.current_test = current_test_;

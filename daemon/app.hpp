@@ -28,11 +28,15 @@ namespace stickslip::daemon {
 
 /// What the daemon takes from the world; tests give their own.
 struct AppWorld {
-  std::function<base::Result<drivers::OpenedBoard>(const drivers::BoardConfig&, base::Clock&)> open_board;
+  std::function<base::Result<drivers::OpenedBoard>(const drivers::BoardConfig&, base::Clock&,
+                                                   const std::optional<daq::Continuation>&)>
+      open_board;
   Finalise finalise;
   Facts* facts = nullptr;  ///< Outlives the App.
   /// Told each new line of STATUS=, on the main thread; may be empty.
   std::function<void(const std::string&)> status_changed;
+  std::unique_ptr<base::Clock> clock;           ///< Null: the machine's, as fast as configured.
+  std::chrono::milliseconds first_retry{1000};  ///< Of a missing board; then twice as long each time.
 };
 
 /// Thread-bound: the main thread. States:
@@ -90,8 +94,11 @@ class App {
 
   State state_ = State::kStarting;
   std::string missing_why_;
-  std::chrono::seconds retry_after_{1};
-  std::int64_t next_test_number_ = 1;
+  std::chrono::milliseconds retry_after_;
+  SessionEnd continues_;
+  SessionCounts counts_;
+  std::uint64_t board_loss_count_ = 0;
+  SessionClocks clocks_;  ///< Of the latest session.
   std::optional<std::int64_t> current_test_;
 };
 

@@ -1,5 +1,7 @@
 #include "daemon/session.hpp"
 
+#include <utility>
+
 namespace stickslip::daemon {
 namespace {
 
@@ -23,12 +25,14 @@ daq::Calibration calibration_of(const drivers::OpenedBoard& board, const Session
 }  // namespace
 
 Session::Session(drivers::OpenedBoard board, const SessionSettings& settings,
-                 std::vector<pipeline::Sink*> sinks, SessionEvents events)
+                 std::vector<pipeline::Sink*> sinks, SessionEvents events, SessionCounts& counts)
     : board_(std::move(board)),
       events_(std::move(events)),
       ring_(daq::ScanRing::capacity_for(board_.board->info().scan_rate_granted_Hz * settings.clock_speed)),
       processor_(settings.processor, calibration_of(board_, settings), std::move(sinks)),
-      acquisition_(*board_.board, ring_, settings.realtime_priority) {}
+      acquisition_(*board_.board, ring_, settings.realtime_priority),
+      counts_(counts),
+      continues_(settings.processor.continues_at.has_value()) {}
 
 Session::~Session() {
   acquisition_.request_stop();
@@ -63,26 +67,29 @@ void Session::process_block(const daq::ScanBlock& block) {
     any_scan_ = true;
     events_.first_scan();
   }
-  const std::uint64_t dropped = ring_.dropped_scan_count();
-  const std::uint64_t overruns = acquisition_.overrun_count();
+  const std::uint64_t overruns = block.overrun_count - std::exchange(overruns_before_, block.overrun_count);
+  const std::uint64_t dropped =
+      block.dropped_scan_count - std::exchange(dropped_before_, block.dropped_scan_count);
+  const bool continues = std::exchange(continues_, false);
   daq::GapCause cause = daq::GapCause::kUnknown;
-  if (overruns != overruns_before_) cause = daq::GapCause::kOverrun;
-  if (dropped != dropped_before_) cause = daq::GapCause::kRingFull;
+  if (overruns > 0) cause = daq::GapCause::kOverrun;
+  if (dropped > 0) cause = daq::GapCause::kRingFull;
+  if (continues) cause = daq::GapCause::kBoardMissing;
   const std::uint64_t gaps_before = processor_.gap_count();
-  processor_.process(block, cause);
-  if (processor_.gap_count() != gaps_before) {
-    // The reports are used up by the gap they explain.
-    dropped_before_ = dropped;
-    overruns_before_ = overruns;
-  }
+  const std::int64_t lost_before = processor_.lost_scan_count();
+  processor_.process(block, cause, continues || overruns > 0);
+  const daq::RateMeter& meter = processor_.rate_meter();
   {
     const std::lock_guard lock{live_mutex_};
     live_ = processor_.live();
+    clocks_.scan_rate = meter.estimate();
+    if (const auto late_ns = meter.lateness_ns(block)) clocks_.latency.add(*late_ns);
   }
-  counts_.scans.store(processor_.scan_count(), std::memory_order_relaxed);
-  counts_.dropped_scans.store(dropped, std::memory_order_relaxed);
-  counts_.overruns.store(overruns, std::memory_order_relaxed);
-  counts_.gaps.store(processor_.gap_count(), std::memory_order_relaxed);
+  counts_.dropped_scans.fetch_add(dropped, std::memory_order_relaxed);
+  counts_.overruns.fetch_add(overruns, std::memory_order_relaxed);
+  counts_.scans.fetch_add(block.count, std::memory_order_relaxed);
+  counts_.gaps.fetch_add(processor_.gap_count() - gaps_before, std::memory_order_relaxed);
+  counts_.lost_scans.fetch_add(processor_.lost_scan_count() - lost_before, std::memory_order_relaxed);
 }
 
 }  // namespace stickslip::daemon

@@ -15,6 +15,7 @@
 #include "core/daq/scan_ring.hpp"
 #include "core/pipeline/processor.hpp"
 #include "daemon/acquisition.hpp"
+#include "daemon/latency_histogram.hpp"
 #include "drivers/factory/factory.hpp"
 
 namespace stickslip::daemon {
@@ -27,26 +28,39 @@ struct SessionSettings {
   double clock_speed = 1.0;  ///< Board time over wall time: the ring bridges wall time.
 };
 
+/// Where a session left the index, for the next one.
+struct SessionEnd {
+  std::int64_t next_test_number = 1;
+  std::optional<daq::Continuation> continuation;  ///< None if there was no scan.
+};
+
 /// Called on the processing thread.
 struct SessionEvents {
   std::function<void()> first_scan;
   std::function<void(Acquisition::End)> ended;  ///< All sinks have got everything.
 };
 
-/// What happens in a session; readable from any thread at any time.
+/// What happens in all sessions of a program; readable from any thread at any time.
 struct SessionCounts {
   std::atomic<std::uint64_t> scans{0};
   std::atomic<std::uint64_t> dropped_scans{0};  ///< By the ring.
   std::atomic<std::uint64_t> overruns{0};
   std::atomic<std::uint64_t> gaps{0};
+  std::atomic<std::int64_t> lost_scans{0};  ///< In gaps.
+};
+
+/// A picture of what a session measures about itself.
+struct SessionClocks {
+  std::optional<daq::RateEstimate> scan_rate;  ///< Of all scans so far.
+  LatencyHistogram latency;
 };
 
 class Session {
  public:
-  /// \param sinks  outlive the session.
+  /// \param sinks,counts  outlive the session.
   /// \throws std::invalid_argument as daq::Calibration and friction::TestAnalysis.
   Session(drivers::OpenedBoard board, const SessionSettings& settings, std::vector<pipeline::Sink*> sinks,
-          SessionEvents events);
+          SessionEvents events, SessionCounts& counts);
   /// Stops, lets all scans be processed, waits.
   ~Session();
   Session(const Session&) = delete;
@@ -63,14 +77,20 @@ class Session {
   /// Why the board ended; only after events.ended.
   [[nodiscard]] std::string board_error() const { return board_.board->last_error(); }
   [[nodiscard]] const std::string& scheduling() const noexcept { return acquisition_.scheduling(); }
-  [[nodiscard]] const SessionCounts& counts() const noexcept { return counts_; }
   /// Phase, regime and latest cycle of the running test, as of the block processed last. From any thread.
   [[nodiscard]] friction::LiveState live() const {
     const std::lock_guard lock{live_mutex_};
     return live_;
   }
-  /// Number of the first test after this session; only after events.ended.
-  [[nodiscard]] std::int64_t next_test_number() const noexcept { return processor_.test_number(); }
+  /// From any thread.
+  [[nodiscard]] SessionClocks clocks() const {
+    const std::lock_guard lock{live_mutex_};
+    return clocks_;
+  }
+  /// Only after events.ended.
+  [[nodiscard]] SessionEnd end() const {
+    return {processor_.test_number(), processor_.rate_meter().continuation()};
+  }
 
  private:
   void process();
@@ -81,12 +101,14 @@ class Session {
   daq::ScanRing ring_;
   pipeline::Processor processor_;
   Acquisition acquisition_;
-  SessionCounts counts_;
+  SessionCounts& counts_;
   mutable std::mutex live_mutex_;  ///< Held for a copy; the acquisition thread has no part in it.
   friction::LiveState live_;
+  SessionClocks clocks_;
   std::uint64_t dropped_before_ = 0;
   std::uint64_t overruns_before_ = 0;
   bool any_scan_ = false;
+  bool continues_;  ///< After another session: the gap before the first scan is that of a missing board.
   std::thread thread_;
 };
 

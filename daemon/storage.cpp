@@ -17,8 +17,6 @@ constexpr std::size_t kQueueCapacity = 4096;
 constexpr std::chrono::seconds kSyncPeriod{1};
 /// One journal entry holds this much time.
 constexpr double kEntry_s = 0.1;
-/// Time between clock anchors, from which the true scan rate is fitted.
-constexpr double kAnchorPeriod_s = 1.0;
 
 /// Scans in one journal entry of the noise-free force: 32 kB.
 constexpr std::size_t kForceEntry = 4096;
@@ -84,6 +82,8 @@ void Storage::scans(daq::ScanIndex first, std::span<const double> raw, const daq
 
 void Storage::gap(const daq::Gap& gap) { queue_.push(gap); }
 
+void Storage::anchor(const daq::ClockAnchor& anchor) { queue_.push(anchor); }
+
 void Storage::cycle(const friction::Cycle& cycle) { queue_.push(cycle); }
 
 void Storage::test_ended(const pipeline::TestEnd& end) {
@@ -93,6 +93,10 @@ void Storage::test_ended(const pipeline::TestEnd& end) {
   record->cycles = end.cycles;
   record->spikes = end.spikes;
   std::shared_ptr<friction::TrueForce> force;
+  if (end.cause == pipeline::EndCause::kBoardMissing) {
+    record->status = record::Status::kIncomplete;
+    record->reasons.emplace_back("the board went away before the end of the test");
+  }
   if (truth_ != nullptr) record->truth = truth_->truth(first_, end.end);
   if (record->truth) force = truth_->force(first_);
   queue_.push(Ended{std::move(record), std::move(force)});
@@ -127,8 +131,6 @@ void Storage::handle(const Began& message) {
   header.title = fmt::format("test {}", message.start.number);
   const double rate_Hz = header.board.scan_rate_granted_Hz;
   pending_enough_ = static_cast<std::size_t>(std::max(1.0, std::floor(rate_Hz * kEntry_s)));
-  scans_per_anchor_ = static_cast<std::int64_t>(std::max(1.0, std::floor(rate_Hz * kAnchorPeriod_s)));
-  next_anchor_ = message.start.trigger;
   auto journal = record::JournalWriter::create(free_journal_path(folder_, message.start), std::move(header));
   if (journal) {
     journal_.emplace(std::move(*journal));
@@ -152,6 +154,10 @@ void Storage::handle(const daq::ScanBlock& block) {
 void Storage::handle(const daq::Gap& gap) {
   append_pending();
   if (journal_ && !failed_) note(journal_->append_gap(gap));
+}
+
+void Storage::handle(const daq::ClockAnchor& anchor) {
+  if (journal_ && !failed_) note(journal_->append_anchor(anchor));
 }
 
 void Storage::handle(const friction::Cycle& cycle) {
@@ -201,10 +207,6 @@ void Storage::append_pending() {
       recorded_.back().end = last + 1;
     } else {
       recorded_.push_back({pending_first_, last + 1});
-    }
-    if (!failed_ && last >= next_anchor_) {
-      note(journal_->append_anchor({last, pending_stamp_.monotonic_ns, pending_stamp_.realtime_ns}));
-      next_anchor_ = last + scans_per_anchor_;
     }
   }
   pending_.clear();

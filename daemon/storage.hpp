@@ -51,6 +51,7 @@ class Storage final : public pipeline::Sink {
   void test_began(const pipeline::TestStart& start) override;
   void scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp& stamp) override;
   void gap(const daq::Gap& gap) override;
+  void anchor(const daq::ClockAnchor& anchor) override;
   void cycle(const friction::Cycle& cycle) override;
   void test_ended(const pipeline::TestEnd& end) override;
 
@@ -69,13 +70,15 @@ class Storage final : public pipeline::Sink {
     daq::ScanIndex end;
   };
   struct Quit {};
-  using Message = std::variant<Quit, Began, daq::ScanBlock, daq::Gap, friction::Cycle, Ended>;
+  using Message =
+      std::variant<Quit, Began, daq::ScanBlock, daq::Gap, daq::ClockAnchor, friction::Cycle, Ended>;
 
   // The storage thread's side.
   void run();
   void handle(const Began& message);
   void handle(const daq::ScanBlock& block);
   void handle(const daq::Gap& gap);
+  void handle(const daq::ClockAnchor& anchor);
   void handle(const friction::Cycle& cycle);
   void handle(const Ended& message);
   void append_pending();
@@ -101,8 +104,6 @@ class Storage final : public pipeline::Sink {
   daq::ClockStamp pending_stamp_;
   std::vector<Stretch> recorded_;   ///< All of them.
   std::size_t pending_enough_ = 1;  ///< Scans in one journal entry.
-  daq::ScanIndex next_anchor_ = 0;
-  std::int64_t scans_per_anchor_ = 1;
   std::optional<std::string> failed_;
   std::chrono::steady_clock::time_point last_sync_;
   std::thread thread_;

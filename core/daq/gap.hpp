@@ -45,13 +45,18 @@ struct Gap {
 /// Compares each block with the end of the one before.
 class GapTracker {
  public:
+  GapTracker() = default;
+  /// \param next  where an acquisition before this one ended: the first block may have a gap then.
+  explicit GapTracker(std::optional<ScanIndex> next) noexcept : next_(next) {}
+
   /// \param cause what to blame if there is a jump before this block.
+  /// \param halted  the board had halted in between: the jump is an estimate, whatever else to blame.
   /// \return the gap before the block, if any. The first block ever never has one.
-  [[nodiscard]] std::optional<Gap> observe(const ScanBlock& block,
-                                           GapCause cause = GapCause::kUnknown) noexcept {
+  [[nodiscard]] std::optional<Gap> observe(const ScanBlock& block, GapCause cause = GapCause::kUnknown,
+                                           bool halted = false) noexcept {
     std::optional<Gap> gap;
     if (next_ && block.first > *next_) {
-      const bool estimated = cause == GapCause::kOverrun || cause == GapCause::kBoardMissing;
+      const bool estimated = halted || cause == GapCause::kOverrun || cause == GapCause::kBoardMissing;
       gap = Gap{*next_, block.first - *next_, estimated, cause};
     }
     next_ = block.end();

@@ -17,6 +17,9 @@ using base::ScanIndex;
 struct ClockStamp {
   std::int64_t monotonic_ns = 0;
   std::int64_t realtime_ns = 0;
+  /// The read had to wait for the scans, so the stamp tells when the last of them was taken. False while
+  /// scans that had piled up are fetched.
+  bool prompt = true;
 };
 
 /// Consecutive scans, oldest first. Plain data: copied through the ring without allocation.
@@ -26,6 +29,10 @@ struct ScanBlock {
   ScanIndex first = 0;      ///< Index of raw[0].
   std::uint32_t count = 0;  ///< Scans in use, 0 … kMaxScans.
   ClockStamp stamp;
+  // Of the acquisition so far, as of this block: what they rose by since the block before is to blame for a
+  // jump between the two. Boards leave them alone.
+  std::uint64_t overrun_count = 0;       ///< Halts of the board.
+  std::uint64_t dropped_scan_count = 0;  ///< By a full ring.
   /// Raw readings: A/D counts (a double holds every count of up to 53 bits exactly), or the
   /// values of an imported trace in the unit that BoardInfo names.
   std::array<double, kMaxScans> raw{};

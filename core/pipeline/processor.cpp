@@ -1,6 +1,9 @@
 #include "core/pipeline/processor.hpp"
 
+#include <algorithm>
 #include <utility>
+
+#include "core/pipeline/true_rate.hpp"
 
 namespace stickslip::pipeline {
 namespace {
@@ -17,14 +20,18 @@ Processor::Processor(const ProcessorSettings& settings, daq::Calibration calibra
     : settings_(settings),
       calibration_(std::move(calibration)),
       sinks_(std::move(sinks)),
+      gaps_(settings.continues_at),
       segmenter_(complete(settings.segmenter, calibration_)),
-      number_(settings.first_test_number) {
+      number_(settings.first_test_number),
+      meter_(settings.analysis.scan_rate_Hz),
+      picker_(settings.analysis.scan_rate_Hz) {
   settings_.analysis.step_coefficient = calibration_.step_coefficient();
 }
 
-void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause) {
-  if (const std::optional<daq::Gap> gap = gaps_.observe(block, gap_cause)) note_gap(*gap);
+void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause, bool halted) {
+  if (const std::optional<daq::Gap> gap = gaps_.observe(block, gap_cause, halted)) note_gap(*gap);
   scan_count_ += block.count;
+  meter_.observe(block);
 
   std::size_t not_handed_over = 0;  // First scan of the running test that the sinks have not seen.
   for (std::size_t i = 0; i < block.count; ++i) {
@@ -54,6 +61,9 @@ void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause) {
   }
   if (test_is_running()) {
     hand_over(block, not_handed_over, block.count);
+    if (settings_.clock_is_real && !settings_.recorded) {
+      if (const auto anchor = picker_.observe(block)) note_anchor(*anchor);
+    }
     report_new_cycles();
   }
 }
@@ -63,19 +73,33 @@ void Processor::finish(EndCause cause) {
   waiting_.clear();
 }
 
-void Processor::note_gap(const daq::Gap& gap) {
+void Processor::note_gap(daq::Gap gap) {
+  if (settings_.recorded) {
+    const auto known = std::find_if(
+        settings_.recorded->gaps.begin(), settings_.recorded->gaps.end(),
+        [&gap](const daq::Gap& old) { return old.first == gap.first && old.count == gap.count; });
+    if (known != settings_.recorded->gaps.end()) gap = *known;
+  }
   ++gap_count_;
+  lost_scan_count_ += gap.count;
+  if (gap.estimated) meter_.restarted();
   if (!test_is_running()) {
     // What was before a gap cannot be shown to belong to the coming test.
     waiting_.clear();
+    for (Sink* sink : sinks_) sink->gap_between_tests(gap);
     return;
   }
+  test_gaps_.push_back(gap);
   analysis_->gap(gap.first, gap.count);
   for (Sink* sink : sinks_) sink->gap(gap);
 }
 
 void Processor::begin(daq::ScanIndex trigger, const daq::ClockStamp& stamp) {
   analysis_.emplace(settings_.analysis);
+  trigger_ = trigger;
+  static_cast<void>(picker_.flush());
+  anchors_.clear();
+  test_gaps_.clear();
   const TestStart start{number_, waiting_.front().index, trigger, stamp};
   std::vector<double> raw;
   raw.reserve(waiting_.size());
@@ -97,15 +121,32 @@ void Processor::analyse(daq::ScanIndex index, double raw) {
 void Processor::end(daq::ScanIndex end, EndCause cause) {
   analysis_->end_live();
   report_new_cycles();
+  finish_clocks(end);
   TestEnd ended;
   ended.number = number_++;
   ended.end = end;
   ended.cause = cause;
   ended.results = analysis_->finish();
+  add_true_rate(ended.results, anchors_, test_gaps_, settings_.analysis.scan_rate_Hz);
   ended.cycles = analysis_->cycles();
   ended.spikes = analysis_->spikes();
   analysis_.reset();
   for (Sink* sink : sinks_) sink->test_ended(ended);
+}
+
+void Processor::note_anchor(const daq::ClockAnchor& anchor) {
+  anchors_.push_back(anchor);
+  for (Sink* sink : sinks_) sink->anchor(anchor);
+}
+
+void Processor::finish_clocks(daq::ScanIndex end) {
+  if (settings_.recorded) {
+    for (const daq::ClockAnchor& anchor : settings_.recorded->anchors) {
+      if (anchor.scan >= trigger_ && anchor.scan < end) note_anchor(anchor);
+    }
+  } else if (const auto last = picker_.flush()) {
+    note_anchor(*last);
+  }
 }
 
 void Processor::hand_over(const daq::ScanBlock& block, std::size_t from, std::size_t to) {

@@ -13,12 +13,15 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "core/daq/calibration.hpp"
 #include "core/daq/gap.hpp"
+#include "core/daq/rate_meter.hpp"
+#include "core/daq/recorded_facts.hpp"
 #include "core/daq/scan_block.hpp"
 #include "core/friction/test_analysis.hpp"
 #include "core/pipeline/segmenter.hpp"
@@ -31,6 +34,12 @@ struct ProcessorSettings {
   SegmenterSettings segmenter;
   friction::AnalysisSettings analysis;
   std::int64_t first_test_number = 1;
+  /// Where the acquisition before this one ended; absent for the first.
+  std::optional<daq::ScanIndex> continues_at;
+  /// Of a replayed record: takes the place of the blocks' stamps and of what is said about gaps.
+  std::shared_ptr<const daq::RecordedFacts> recorded;
+  /// The stamps are of the machine's own clock, so that they can measure the scan rate.
+  bool clock_is_real = true;
 };
 
 /// Thread-bound: the processing thread.
@@ -41,7 +50,8 @@ class Processor {
 
   /// Blocks in the order of their indices.
   /// \param gap_cause  what to blame if there is a jump before this block.
-  void process(const daq::ScanBlock& block, daq::GapCause gap_cause);
+  /// \param halted  the board had halted before this block: a jump is an estimate.
+  void process(const daq::ScanBlock& block, daq::GapCause gap_cause, bool halted = false);
 
   /// No more blocks: ends the running test, if any.
   void finish(EndCause cause);
@@ -55,6 +65,9 @@ class Processor {
   }
   [[nodiscard]] std::uint64_t scan_count() const noexcept { return scan_count_; }
   [[nodiscard]] std::uint64_t gap_count() const noexcept { return gap_count_; }
+  [[nodiscard]] std::int64_t lost_scan_count() const noexcept { return lost_scan_count_; }
+  /// The true scan rate of all scans so far, and where the index is.
+  [[nodiscard]] const daq::RateMeter& rate_meter() const noexcept { return meter_; }
 
  private:
   /// A scan kept in case a test starts soon.
@@ -63,7 +76,10 @@ class Processor {
     double raw;
   };
 
-  void note_gap(const daq::Gap& gap);
+  void note_gap(daq::Gap gap);
+  void note_anchor(const daq::ClockAnchor& anchor);
+  /// Clock anchors of the test that ends at `end`, and what they say.
+  void finish_clocks(daq::ScanIndex end);
   void begin(daq::ScanIndex trigger, const daq::ClockStamp& stamp);
   void analyse(daq::ScanIndex index, double raw);
   void end(daq::ScanIndex end, EndCause cause);
@@ -81,6 +97,13 @@ class Processor {
   daq::ScanIndex next_scan_ = 0;
   std::uint64_t scan_count_ = 0;
   std::uint64_t gap_count_ = 0;
+  std::int64_t lost_scan_count_ = 0;
+  daq::RateMeter meter_;
+  // Of the running test.
+  daq::AnchorPicker picker_;
+  daq::ScanIndex trigger_ = 0;
+  std::vector<daq::ClockAnchor> anchors_;
+  std::vector<daq::Gap> test_gaps_;
 };
 
 }  // namespace stickslip::pipeline

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/daq/clock_anchor.hpp"
 #include "core/daq/gap.hpp"
 #include "core/daq/scan_block.hpp"
 #include "core/friction/cycle.hpp"
@@ -56,7 +57,7 @@ struct TestEnd {
   std::vector<daq::ScanIndex> spikes;        ///< Scans replaced for the detector.
 };
 
-/// Called from the processing thread, in order: began, (scans | gap | cycle)*, ended. Must not
+/// Called from the processing thread, in order: began, (scans | gap | anchor | cycle)*, ended. Must not
 /// throw; may block only if it must never lose data (the record), and then stalls the walk.
 class Sink {
  public:
@@ -67,9 +68,13 @@ class Sink {
   virtual void scans(daq::ScanIndex /*first*/, std::span<const double> /*raw*/,
                      const daq::ClockStamp& /*stamp*/) {}
   virtual void gap(const daq::Gap& /*gap*/) {}
+  /// The clocks at a scan of the running test; rising, and after the scan itself.
+  virtual void anchor(const daq::ClockAnchor& /*anchor*/) {}
   /// As soon as it is known, before the whole-test estimate refines it.
   virtual void cycle(const friction::Cycle& /*cycle*/) {}
   virtual void test_ended(const TestEnd& /*end*/) {}
+  /// Scans lost while no test was running.
+  virtual void gap_between_tests(const daq::Gap& /*gap*/) {}
 };
 
 }  // namespace stickslip::pipeline

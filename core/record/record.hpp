@@ -12,6 +12,7 @@
 #include "core/base/long_column.hpp"
 #include "core/daq/board.hpp"
 #include "core/daq/calibration.hpp"
+#include "core/daq/clock_anchor.hpp"
 #include "core/daq/gap.hpp"
 #include "core/friction/cycle.hpp"
 #include "core/friction/results.hpp"
@@ -28,7 +29,7 @@ enum class Status {
   kComplete,     ///< The test ended and everything was written.
   kInterrupted,  ///< The program stopped before the end of the test; made from an orphaned journal.
   kRecovered,    ///< Something was lost or repaired on the way; see the reasons.
-  kIncomplete,   ///< Scans that arrived could not be stored (disk full).
+  kIncomplete,  ///< Scans could not be stored (disk full), or the board went away before the end of the test.
 };
 
 /// The word in files and messages.
@@ -101,14 +102,7 @@ struct RecordHeader {
   ProcessFacts process;
 };
 
-/// The clocks at a scan: from these the true scan rate is fitted.
-struct ClockAnchor {
-  daq::ScanIndex scan = 0;
-  std::int64_t monotonic_ns = 0;
-  std::int64_t realtime_ns = 0;
-
-  bool operator==(const ClockAnchor&) const = default;
-};
+using daq::ClockAnchor;
 
 /// Something a person should know about, at a scan of the test.
 struct Event {

@@ -70,6 +70,24 @@ Json to_json(const friction::LiveState& live) {
   return json;
 }
 
+Json to_json(const std::optional<daq::RateEstimate>& rate) {
+  if (!rate) return nullptr;
+  return {{"value", rate->rate_Hz},
+          {"standard_error", rate->standard_error_Hz},
+          {"clock_reading_count", rate->anchor_count}};
+}
+
+/// Bins without a read are left out.
+Json to_json(const LatencyHistogram& latency) {
+  Json bins = Json::array();
+  for (std::size_t bin = 0; bin < LatencyHistogram::kBins; ++bin) {
+    if (latency.counts()[bin] == 0) continue;
+    bins.push_back(
+        {{"below", or_null(LatencyHistogram::limit_s(bin))}, {"read_count", latency.counts()[bin]}});
+  }
+  return {{"largest", latency.largest_s()}, {"bins", bins}};
+}
+
 Json to_json(const Status& status) {
   Json json;
   json["state"] = status.state;
@@ -81,6 +99,10 @@ Json to_json(const Status& status) {
   json["dropped_scan_count"] = status.dropped_scan_count;
   json["overrun_count"] = status.overrun_count;
   json["gap_count"] = status.gap_count;
+  json["lost_scan_count"] = status.lost_scan_count;
+  json["board_loss_count"] = status.board_loss_count;
+  json["scan_rate_measured"] = to_json(status.scan_rate_measured);
+  json["read_latency"] = to_json(status.latency);
   json["storage_stall_count"] = status.storage_stall_count;
   json["test_count"] = status.test_count;
   json["current_test"] = status.current_test ? Json(*status.current_test) : Json(nullptr);

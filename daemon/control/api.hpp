@@ -12,8 +12,10 @@
 #include <string>
 
 #include "core/daq/board.hpp"
+#include "core/daq/rate_fit.hpp"
 #include "core/friction/live_cycle.hpp"
 #include "daemon/control/http.hpp"
+#include "daemon/latency_histogram.hpp"
 #include "daemon/test_log.hpp"
 
 namespace stickslip::daemon {
@@ -29,6 +31,10 @@ struct Status {
   std::uint64_t dropped_scan_count = 0;  ///< By the ring.
   std::uint64_t overrun_count = 0;       ///< By the board.
   std::uint64_t gap_count = 0;
+  std::int64_t lost_scan_count = 0;                     ///< In gaps.
+  std::uint64_t board_loss_count = 0;                   ///< Times the board went away or failed.
+  std::optional<daq::RateEstimate> scan_rate_measured;  ///< Of the board's present life.
+  LatencyHistogram latency;                             ///< Of reads.
   std::uint64_t storage_stall_count = 0;
   std::int64_t test_count = 0;               ///< Ended.
   std::optional<std::int64_t> current_test;  ///< Running now.

@@ -6,7 +6,6 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -29,17 +28,30 @@ constexpr std::int64_t kProbePeriods = 8;
 /// … but not shorter than this, so that fast rates do not busy the processor.
 constexpr std::int64_t kShortestProbe_ms = 20;
 constexpr std::size_t kLargestSample_bytes = 4;
+/// A board that says nothing for so long, and for so many periods, is as good as unplugged: some drivers
+/// neither deliver nor report when their device has gone.
+constexpr std::int64_t kLongestSilence_ns = 5'000'000'000;
+constexpr std::int64_t kSilentPeriods = 50;
+/// Where the board does not wake its reader at each scan, half its FIFO may have to fill: half of 8192
+/// samples take 11.7 s at 350 Hz.
+constexpr std::int64_t kLongestSilenceOfAFifo_ns = 30'000'000'000;
 
 class ComediBoard final : public daq::Board {
  public:
-  ComediBoard(ComediSetup setup, unsigned buffer_size, base::Clock& clock, std::unique_ptr<ComediCalls> calls)
+  ComediBoard(ComediSetup setup, const ComediBoardSettings& settings, base::Clock& clock,
+              std::unique_ptr<ComediCalls> calls)
       : setup_(std::move(setup)),
-        buffer_size_(buffer_size),
+        buffer_size_(settings.buffer_size),
+        continues_(settings.continues),
         clock_(clock),
         calls_(std::move(calls)),
-        period_ns_(1e9 / setup_.info.scan_rate_granted_Hz),
-        probe_ms_(std::max(kShortestProbe_ms, static_cast<std::int64_t>(period_ns_) * kProbePeriods /
-                                                  kNanosecondsPerMillisecond)) {}
+        meter_(setup_.info.scan_rate_granted_Hz) {
+    const auto period_ns = static_cast<std::int64_t>(1e9 / setup_.info.scan_rate_granted_Hz);
+    probe_ms_ = std::max(kShortestProbe_ms, period_ns * kProbePeriods / kNanosecondsPerMillisecond);
+    const bool each_scan = (setup_.command.flags & kWakeEndOfScan) != 0;
+    longest_silence_ns_ =
+        std::max(each_scan ? kLongestSilence_ns : kLongestSilenceOfAFifo_ns, period_ns * kSilentPeriods);
+  }
 
   ComediBoard(const ComediBoard&) = delete;
   ComediBoard& operator=(const ComediBoard&) = delete;
@@ -57,8 +69,12 @@ class ComediBoard final : public daq::Board {
       return refused(-result);
     }
     if (const int result = calls_->command(setup_.command); result < 0) return refused(-result);
-    next_ = index_now();
-    anchor_ = {next_, clock_.monotonic_ns()};
+    const std::int64_t now_ns = clock_.monotonic_ns();
+    if (const auto from = meter_.continuation(); from || continues_) {
+      next_ = daq::first_scan_after(from ? *from : *continues_, now_ns);
+    }
+    meter_.started(next_, now_ns);
+    heard_ns_ = now_ns;
     left_over_ = 0;
     error_ = 0;
     state_ = State::kAcquiring;
@@ -82,7 +98,9 @@ class ComediBoard final : public daq::Board {
         continue;
       }
       if (result != -EAGAIN && result != -EINTR) return ended(result);
-      const std::int64_t left_ns = deadline_ns - clock_.monotonic_ns();
+      const std::int64_t now_ns = clock_.monotonic_ns();
+      if (now_ns - heard_ns_ > longest_silence_ns_) return silent();
+      const std::int64_t left_ns = deadline_ns - now_ns;
       if (left_ns <= 0) return ReadStatus::kTimeout;
       const std::int64_t left_ms = (left_ns + kNanosecondsPerMillisecond - 1) / kNanosecondsPerMillisecond;
       const int polled = calls_->poll(milliseconds(std::min(left_ms, probe_ms_)));
@@ -104,6 +122,9 @@ class ComediBoard final : public daq::Board {
         return {};
       case EPIPE:
         return fmt::format("{}: the board's buffer overflowed and it halted", setup_.info.device);
+      case kSilent:
+        return fmt::format("{}: the board has sent nothing for {:g} s", setup_.info.device,
+                           1e-9 * static_cast<double>(longest_silence_ns_));
       case kEndedByItself:
       case EINVAL:
         return fmt::format("{}: the acquisition was ended by something else than this program",
@@ -116,21 +137,7 @@ class ComediBoard final : public daq::Board {
  private:
   enum class State { kIdle, kAcquiring, kMissing };
   static constexpr int kEndedByItself = -1;
-
-  /// A scan that was about to be taken at a known time.
-  struct Anchor {
-    daq::ScanIndex index = 0;
-    std::int64_t monotonic_ns = 0;
-  };
-
-  /// What index the next scan has after a restart: the kernel does not know how many went by, the clock
-  /// does, to within the latency of the read that set the anchor.
-  [[nodiscard]] daq::ScanIndex index_now() const {
-    if (!anchor_) return 0;
-    const auto elapsed_ns = static_cast<double>(clock_.monotonic_ns() - anchor_->monotonic_ns);
-    return std::max(next_,
-                    anchor_->index + static_cast<daq::ScanIndex>(std::llround(elapsed_ns / period_ns_)));
-  }
+  static constexpr int kSilent = -2;
 
   /// Turns `fresh_bytes` new bytes into scans. \return false if they do not complete one.
   bool deliver(std::size_t fresh_bytes, bool waited, ScanBlock& block) noexcept {
@@ -142,10 +149,12 @@ class ComediBoard final : public daq::Board {
     if (count == 0) return false;
     block.first = next_;
     block.count = static_cast<std::uint32_t>(count);
-    block.stamp = {clock_.monotonic_ns(), clock_.realtime_ns()};
-    next_ = block.end();
     // Only a read that had to wait and got everything tells when its last scan was taken.
-    if (waited && count < ScanBlock::kMaxScans) anchor_ = {next_, block.stamp.monotonic_ns};
+    const bool prompt = waited && count < ScanBlock::kMaxScans;
+    block.stamp = {clock_.monotonic_ns(), clock_.realtime_ns(), prompt};
+    heard_ns_ = block.stamp.monotonic_ns;
+    next_ = block.end();
+    meter_.observe(block);
     return true;
   }
 
@@ -172,6 +181,14 @@ class ComediBoard final : public daq::Board {
     return error_ == EPIPE ? ReadStatus::kOverrun : ReadStatus::kFailed;
   }
 
+  /// Only closing and opening can help, as for a board that was removed.
+  ReadStatus silent() noexcept {
+    error_ = kSilent;
+    calls_->cancel(setup_.command.subdevice);
+    state_ = State::kMissing;
+    return ReadStatus::kBoardMissing;
+  }
+
   [[nodiscard]] base::Result<void> refused(int error) {
     error_ = error;
     if (error == ENODEV) state_ = State::kMissing;
@@ -180,13 +197,15 @@ class ComediBoard final : public daq::Board {
 
   ComediSetup setup_;
   unsigned buffer_size_;
+  std::optional<daq::Continuation> continues_;
   base::Clock& clock_;
   std::unique_ptr<ComediCalls> calls_;
-  double period_ns_;
-  std::int64_t probe_ms_;
+  daq::RateMeter meter_;
+  std::int64_t probe_ms_ = 0;
+  std::int64_t longest_silence_ns_ = 0;
   State state_ = State::kIdle;
   daq::ScanIndex next_ = 0;
-  std::optional<Anchor> anchor_;
+  std::int64_t heard_ns_ = 0;  ///< Of the latest scan, or of the start.
   int error_ = 0;
   std::size_t left_over_ = 0;  ///< Bytes of a sample not complete yet: read() is byte-granular.
   std::array<std::byte, ScanBlock::kMaxScans * kLargestSample_bytes> bytes_{};
@@ -204,7 +223,7 @@ base::Result<std::unique_ptr<daq::Board>> make_comedi_board(const ComediBoardSet
                                                             std::unique_ptr<ComediCalls> calls) {
   auto setup = agree_with_board(settings, *calls);
   if (!setup) return tl::unexpected(setup.error());
-  return std::make_unique<ComediBoard>(std::move(*setup), settings.buffer_size, clock, std::move(calls));
+  return std::make_unique<ComediBoard>(std::move(*setup), settings, clock, std::move(calls));
 }
 
 }  // namespace stickslip::drivers

@@ -17,6 +17,7 @@
 #include "core/base/clock.hpp"
 #include "core/base/result.hpp"
 #include "core/daq/board.hpp"
+#include "core/daq/rate_meter.hpp"
 #include "drivers/comedi/comedi_calls.hpp"
 
 namespace stickslip::drivers {
@@ -35,6 +36,8 @@ struct ComediBoardSettings {
   double scan_rate_tolerance = 0.01;
   /// The kernel's buffer, bytes; rounded up to pages. Comedi's default: 50 min at 350 Hz and 2 bytes.
   unsigned buffer_size = 2048U * 1024U;
+  /// Of the board object before this one, if there was one: the index goes on as the clock says.
+  std::optional<daq::Continuation> continues;
 };
 
 /// Opens the board and asks it what it will grant; acquires nothing and disturbs no other program.

@@ -11,8 +11,12 @@ namespace {
 base::Result<OpenedBoard> open_simulated(const SimulatedBoardSettings& settings, base::Clock& clock) {
   base::Result<SimulatedTester> simulated = make_simulated_tester(settings, clock);
   if (!simulated) return tl::unexpected(simulated.error());
-  return OpenedBoard{
-      std::move(simulated->board), std::move(simulated->truth), simulated->load_cell, simulated->tester, {}};
+  return OpenedBoard{std::move(simulated->board),
+                     std::move(simulated->truth),
+                     simulated->load_cell,
+                     simulated->tester,
+                     {},
+                     nullptr};
 }
 
 base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::Clock& clock) {
@@ -21,27 +25,32 @@ base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::C
   const std::optional<daq::LoadCell> load_cell = record->header.load_cell;
   const friction::Tester tester = record->header.tester.tester();
   std::string characterisation = record->header.process.characterisation;
+  auto recorded = std::make_shared<const daq::RecordedFacts>(
+      daq::RecordedFacts{std::move(record->anchors), std::move(record->gaps)});
   Replay replay = make_replay(std::move(*record), clock);
-  return OpenedBoard{std::move(replay.board), std::move(replay.truth), load_cell, tester,
-                     std::move(characterisation)};
+  return OpenedBoard{std::move(replay.board),     std::move(replay.truth), load_cell, tester,
+                     std::move(characterisation), std::move(recorded)};
 }
 
-base::Result<OpenedBoard> open_comedi(const ComediBoardSettings& settings, base::Clock& clock) {
+base::Result<OpenedBoard> open_comedi(ComediBoardSettings settings, base::Clock& clock,
+                                      const std::optional<daq::Continuation>& continues) {
+  settings.continues = continues;
   base::Result<std::unique_ptr<daq::Board>> board = make_comedi_board(settings, clock);
   if (!board) return tl::unexpected(board.error());
-  return OpenedBoard{std::move(*board), nullptr, std::nullopt, std::nullopt, {}};
+  return OpenedBoard{std::move(*board), nullptr, std::nullopt, std::nullopt, {}, nullptr};
 }
 
 }  // namespace
 
-base::Result<OpenedBoard> open_board(const BoardConfig& config, base::Clock& clock) {
+base::Result<OpenedBoard> open_board(const BoardConfig& config, base::Clock& clock,
+                                     const std::optional<daq::Continuation>& continues) {
   switch (config.driver) {
     case Driver::kSimulated:
       return open_simulated(config.simulated, clock);
     case Driver::kReplay:
       return open_replay(config.replay_file, clock);
     case Driver::kComedi:
-      return open_comedi(config.comedi, clock);
+      return open_comedi(config.comedi, clock, continues);
   }
   return base::usage_error("no such driver");
 }

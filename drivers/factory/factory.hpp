@@ -9,6 +9,8 @@
 #include "core/base/result.hpp"
 #include "core/daq/board.hpp"
 #include "core/daq/calibration.hpp"
+#include "core/daq/rate_meter.hpp"
+#include "core/daq/recorded_facts.hpp"
 #include "core/friction/tester.hpp"
 #include "core/friction/truth.hpp"
 #include "drivers/factory/board_config.hpp"
@@ -22,12 +24,15 @@ struct OpenedBoard {
   std::optional<daq::LoadCell> load_cell;
   std::optional<friction::Tester> tester;
   std::string characterisation;  ///< Of a replayed record: what was known of its tester beforehand.
+  std::shared_ptr<const daq::RecordedFacts> recorded;  ///< Null unless a record is replayed.
 };
 
 /// \param clock  outlives the board.
+/// \param continues  where the acquisition before this one ended; only boards that can go away need it.
 /// Errors: kUsage if the configuration or a file it names is wrong; kFailure if the board is not
 /// there, in which case a later try may succeed.
-[[nodiscard]] base::Result<OpenedBoard> open_board(const BoardConfig& config, base::Clock& clock);
+[[nodiscard]] base::Result<OpenedBoard> open_board(const BoardConfig& config, base::Clock& clock,
+                                                   const std::optional<daq::Continuation>& continues = {});
 
 /// Reads all that open_board() would read but touches no hardware.
 [[nodiscard]] base::Result<void> check_board(const BoardConfig& config);

@@ -44,6 +44,7 @@ class Collector final : public pipeline::Sink {
     }
   }
   void gap(const daq::Gap& gap) override { records_.back().gaps.push_back(gap); }
+  void anchor(const daq::ClockAnchor& anchor) override { records_.back().anchors.push_back(anchor); }
   void test_ended(const pipeline::TestEnd& end) override {
     record::EndRecord record;
     record.cause = pipeline::name(end.cause);
@@ -78,6 +79,7 @@ std::vector<record::Record> run(drivers::OpenedBoard opened, unsigned seed, int 
   settings.segmenter.scan_rate_Hz = info.scan_rate_granted_Hz;
   settings.analysis.scan_rate_Hz = info.scan_rate_granted_Hz;
   settings.analysis.tester = *opened.tester;
+  settings.recorded = opened.recorded;
   if (!header.process.characterisation.empty()) {
     const auto known = parse_tester(header.process.characterisation, "characterisation");
     EXPECT_TRUE(known) << known.error().message;
@@ -112,6 +114,7 @@ void expect_same_results(const record::Record& a, const record::Record& b) {
   EXPECT_EQ(a.scan, b.scan);
   EXPECT_EQ(a.raw, b.raw);
   EXPECT_EQ(a.spikes, b.spikes);
+  EXPECT_EQ(a.anchors, b.anchors);
   EXPECT_EQ(a.end->results, b.end->results);
   ASSERT_EQ(a.cycles.size(), b.cycles.size());
   for (std::size_t i = 0; i < a.cycles.size(); ++i) {
@@ -142,6 +145,7 @@ TEST_P(ReplayGolden, LiveReplayAndBatchAgreeToTheLastBit) {
     const std::vector<record::Record> live = run(std::move(*simulated), 1, GetParam());
     ASSERT_EQ(live.size(), 1U);
     EXPECT_GT(live[0].end->results.cycle_count.value.value_or(0.0), 0.0);
+    EXPECT_TRUE(live[0].end->results.scan_rate_measured.value);
 
     ASSERT_TRUE(record::publish_record(live[0], file));
     const auto stored = record::read_record(file);

@@ -88,6 +88,7 @@ int FakeComedi::command_test(ComediCommand& command) {
 
 int FakeComedi::command(const ComediCommand& command) {
   if (world_.removed) return -ENODEV;
+  if (world_.locked_by_another) return -EACCES;
   if (world_.used_by_another || running_) return -EBUSY;
   ComediCommand copy = command;
   if (stage_of(copy) != 0) return -EAGAIN;
@@ -130,7 +131,20 @@ void FakeComedi::run_board() noexcept {
   // after the command.
   const std::int64_t interval_ns = world_.wake_interval.count();
   const std::int64_t last_wake_ns = (clock_.monotonic_ns() - began_ns_) / interval_ns * interval_ns;
-  taken_bytes_ = last_wake_ns / period_ns() * sample_size();
+  const double period_ns = static_cast<double>(this->period_ns()) * (1.0 + world_.clock_error);
+  const auto taken = static_cast<std::int64_t>(static_cast<double>(last_wake_ns) / period_ns);
+  taken_bytes_ = taken * sample_size();
+  if (world_.removed_at_scan >= 0 && taken >= world_.removed_at_scan) {
+    world_.removed = true;
+    return;
+  }
+  if (world_.overrun_at_scan >= 0 && taken >= world_.overrun_at_scan) {
+    taken_bytes_ = std::max(read_bytes_, world_.overrun_at_scan * sample_size());
+    world_.overrun_at_scan = -1;
+    overrun_ = true;
+    clock_.advance(world_.halt);
+    return;
+  }
   if (taken_bytes_ - read_bytes_ > static_cast<std::int64_t>(world_.buffer_size)) {
     taken_bytes_ = read_bytes_ + static_cast<std::int64_t>(world_.buffer_size);
     overrun_ = true;
@@ -149,6 +163,10 @@ int FakeComedi::poll(std::chrono::milliseconds timeout) noexcept {
   if (!running_ || world_.cancelled_by_another) return 1;
   for (;;) {
     run_board();
+    if (world_.removed) {
+      clock_.sleep_until(deadline_ns);
+      return 0;
+    }
     if (taken_bytes_ > read_bytes_ || overrun_) return 1;
     const std::int64_t now_ns = clock_.monotonic_ns();
     if (now_ns >= deadline_ns) return 0;
@@ -162,6 +180,7 @@ int FakeComedi::read(std::span<std::byte> buffer) noexcept {
   if (world_.removed) return -ENODEV;
   if (!running_ || world_.cancelled_by_another) return -EINVAL;
   run_board();
+  if (world_.removed) return -ENODEV;
   if (taken_bytes_ == read_bytes_) {
     if (!overrun_) return -EAGAIN;
     running_ = false;  // EPIPE is said once; then the subdevice is idle.

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -35,7 +36,12 @@ struct FakeComediWorld {
   bool used_by_another = false;  ///< Another program acquires.
   bool removed = false;          ///< Unplugged.
   bool cancelled_by_another = false;
-  int largest_read = 1 << 20;  ///< Bytes that one read() hands over at most.
+  bool locked_by_another = false;     ///< Another program holds comedi_lock() on the subdevice.
+  std::int64_t removed_at_scan = -1;  ///< Unplugged when it takes this one, counted from the command.
+  std::int64_t overrun_at_scan = -1;  ///< Halts at this one, once, as if the reader had slept …
+  std::chrono::nanoseconds halt{0};   ///< … and is asked again so much later.
+  double clock_error = 0.0;           ///< Its periods are longer by this part than it says.
+  int largest_read = 1 << 20;         ///< Bytes that one read() hands over at most.
   std::chrono::nanoseconds wake_interval{std::chrono::milliseconds(8)};  ///< Of the driver's timer.
 
   // What was asked of it.
@@ -44,8 +50,12 @@ struct FakeComediWorld {
   unsigned buffer_size = 0;
   std::chrono::milliseconds longest_poll{0};
 
+  /// What is measured at scan `i` since the command, a code; empty: see reading().
+  std::function<std::uint32_t(std::int64_t)> signal;
+
   /// Reading number `i` since the command: covers all codes but the rails, repeats only after 65533.
   [[nodiscard]] std::uint32_t reading(std::int64_t i) const {
+    if (signal) return signal(i);
     return 1U + static_cast<std::uint32_t>((i * 7919) % (static_cast<std::int64_t>(maxdata) - 1));
   }
 };

@@ -1,0 +1,41 @@
+#include "core/pipeline/true_rate.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/daq/rate_fit.hpp"
+
+namespace stickslip::pipeline {
+namespace {
+
+/// The computer's own quartz may be as far off; no finding below it, and no rate is known better.
+constexpr double kClockTolerance = 100e-6;
+/// Standard errors that chance alone does not reach.
+constexpr double kSureErrors = 5.0;
+
+}  // namespace
+
+void add_true_rate(friction::TestResults& results, std::span<const daq::ClockAnchor> anchors,
+                   std::span<const daq::Gap> gaps, double granted_Hz) {
+  if (anchors.empty()) return;
+  const auto fit = daq::fit_rate(anchors, gaps, granted_Hz);
+  if (!fit) {
+    results.scan_rate_measured = friction::Estimate::none(fmt::format(
+        "{} clock readings; at least {} are needed", anchors.size(), daq::RateFit::kFewestAnchors));
+    return;
+  }
+  results.scan_rate_measured = friction::Estimate::of(fit->rate_Hz, fit->standard_error_Hz);
+  results.scan_rate_measured.systematic_uncertainty = kClockTolerance * fit->rate_Hz;
+  const double factor = fit->rate_Hz / granted_Hz;
+  const bool far = std::abs(factor - 1.0) > kClockTolerance &&
+                   std::abs(fit->rate_Hz - granted_Hz) > kSureErrors * fit->standard_error_Hz;
+  if (far) {
+    results.findings.push_back(fmt::format(
+        "scan rate: {:.7g} +- {:.2g} Hz by the clock, {:.7g} Hz granted by the board ({:+.0f} ppm); "
+        "the true omega, frequencies and speeds are {:.6f} times those given, times are divided by it",
+        fit->rate_Hz, fit->standard_error_Hz, granted_Hz, 1e6 * (factor - 1.0), factor));
+  }
+}
+
+}  // namespace stickslip::pipeline

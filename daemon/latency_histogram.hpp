@@ -1,0 +1,41 @@
+/// \file
+/// How late scans are read, in octaves: fixed size, no allocation, a value that can be copied.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace stickslip::daemon {
+
+/// Bin 0 holds all below kFirstLimit_s, each further one twice as wide; the last holds all above.
+class LatencyHistogram {
+ public:
+  static constexpr std::size_t kBins = 18;
+  static constexpr double kFirstLimit_s = 16e-6;  ///< The last limit is then 1.05 s.
+
+  /// Upper limit of a bin, s; infinite for the last.
+  [[nodiscard]] static double limit_s(std::size_t bin) noexcept {
+    return bin + 1 >= kBins ? HUGE_VAL : std::ldexp(kFirstLimit_s, static_cast<int>(bin));
+  }
+
+  /// \param late_ns  below 0 counts as 0: the reference itself was late then.
+  void add(double late_ns) noexcept {
+    const double late_s = std::max(0.0, 1e-9 * late_ns);
+    std::size_t bin = 0;
+    while (bin + 1 < kBins && late_s >= limit_s(bin)) ++bin;
+    ++counts_[bin];
+    largest_s_ = std::max(largest_s_, late_s);
+  }
+
+  [[nodiscard]] const std::array<std::uint64_t, kBins>& counts() const noexcept { return counts_; }
+  [[nodiscard]] double largest_s() const noexcept { return largest_s_; }
+
+ private:
+  std::array<std::uint64_t, kBins> counts_{};
+  double largest_s_ = 0.0;
+};
+
+}  // namespace stickslip::daemon

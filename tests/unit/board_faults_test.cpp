@@ -1,0 +1,289 @@
+// What the daemon makes of a board's misfortunes, from the command table up to the record.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/record/journal.hpp"
+#include "daemon/app.hpp"
+#include "tests/support/fake_comedi.hpp"
+#include "tests/support/sanitized.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+using test::FakeComedi;
+using test::FakeComediWorld;
+using test::ManualClock;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using namespace std::chrono_literals;
+
+/// One attempt to open the board, and what becomes of it.
+struct Life {
+  std::string refused;                 ///< Not empty: opening fails with this.
+  std::chrono::nanoseconds absent{0};  ///< Goes by before it.
+  FakeComediWorld world;
+};
+
+/// Thread-safe; keeps what the daemon had to say.
+class Diary final : public Facts {
+ public:
+  void board_missing(std::string_view why, double /*retry_in_s*/) override {
+    const std::lock_guard lock{mutex_};
+    losses.emplace_back(why);
+  }
+  void gap_seen(const daq::Gap& gap) override {
+    const std::lock_guard lock{mutex_};
+    gaps.push_back(gap);
+  }
+
+  std::vector<std::string> losses;
+  std::vector<daq::Gap> gaps;
+
+ private:
+  std::mutex mutex_;
+};
+
+constexpr double kRate_Hz = 1e9 / 2'857'000.0;  // 350 Hz in whole microseconds
+
+/// Pulled at a coefficient of 0.3: a test that does not end by itself.
+std::uint32_t loaded(std::int64_t /*scan*/) {
+  constexpr double kWeight_N = 9.80665;
+  constexpr double kForce_N = 0.3 * kWeight_N;
+  return static_cast<std::uint32_t>((kForce_N + 10.0) / 20.0 * 65535.0 + 0.5);
+}
+
+/// Runs the daemon through the lives of a board; stops after the last of them.
+class BoardFaults : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / fmt::format("stickslip-faults-{}", ::getpid());
+    std::filesystem::remove_all(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  Life& live() {
+    Life& life = lives_.emplace_back();
+    life.world.signal = loaded;
+    return life;
+  }
+
+  void run() {
+    DaemonConfig config;
+    config.board.driver = drivers::Driver::kComedi;
+    config.bench.sled_mass_kg = 1.0;
+    config.bench.load_cell_gain_N_per_V = 1.0;
+    config.record_folder = folder_;
+    AppWorld world;
+    auto clock = std::make_unique<ManualClock>();
+    ManualClock& time = *clock;
+    world.clock = std::move(clock);
+    world.first_retry = 0ms;
+    world.facts = &diary_;
+    world.status_changed = [this](const std::string& line) { lines_.push_back(line); };
+    world.finalise = [this](const std::filesystem::path& journal) -> base::Result<std::filesystem::path> {
+      const auto reading = record::read_journal(journal);
+      if (!reading) return tl::unexpected(reading.error());
+      records_.push_back(reading->record);
+      return journal;
+    };
+    App* app = nullptr;
+    world.open_board =
+        [&](const drivers::BoardConfig&, base::Clock&,
+            const std::optional<daq::Continuation>& continues) -> base::Result<drivers::OpenedBoard> {
+      if (app != nullptr) {
+        states_.push_back(app->status().state);
+        rates_.push_back(app->status().scan_rate_measured);
+      }
+      if (next_life_ == lives_.size()) {
+        if (app != nullptr) app->request_stop();
+        return base::failure("no more lives");
+      }
+      Life& life = lives_[next_life_++];
+      time.advance(life.absent);
+      if (!life.refused.empty()) return base::failure("{}", life.refused);
+      drivers::ComediBoardSettings settings;
+      settings.continues = continues;
+      auto board = drivers::make_comedi_board(settings, time, std::make_unique<FakeComedi>(life.world, time));
+      if (!board) return tl::unexpected(board.error());
+      return drivers::OpenedBoard{std::move(*board), nullptr, {}, {}, {}, nullptr};
+    };
+    App running{std::move(config), std::move(world)};
+    app = &running;
+    const auto ended = running.run();
+    ASSERT_TRUE(ended) << ended.error().message;
+    status_ = running.status();
+  }
+
+  std::filesystem::path folder_;
+  std::deque<Life> lives_;
+  std::size_t next_life_ = 0;
+  Diary diary_;
+  std::vector<std::string> lines_;
+  std::vector<std::string> states_;  ///< At each attempt to open the board.
+  std::vector<std::optional<daq::RateEstimate>> rates_;
+  std::vector<record::Record> records_;
+  Status status_;
+};
+
+TEST_F(BoardFaults, BoardThatGoesAndReturnsLeavesAnIncompleteTestAndAnEstimatedGap) {
+  live().world.removed_at_scan = 3500;
+  live().refused = "/dev/comedi0: no board behind this device";
+  lives_.back().absent = 20s;
+  live().absent = 40s;
+  lives_.back().world.removed_at_scan = 3500;
+  run();
+
+  // The state has its name whenever the daemon tries again.
+  EXPECT_EQ(states_,
+            (std::vector<std::string>{"starting", "board missing", "board missing", "board missing"}));
+  EXPECT_THAT(lines_, Contains(HasSubstr("board missing: /dev/comedi0: no board behind")));
+  EXPECT_THAT(diary_.losses, Contains(HasSubstr("no board behind")));
+  EXPECT_EQ(status_.board_loss_count, 2U);
+
+  ASSERT_EQ(records_.size(), 2U);
+  for (const record::Record& record : records_) {
+    ASSERT_TRUE(record.end);
+    EXPECT_EQ(record.end->status, record::Status::kIncomplete);
+    EXPECT_EQ(record.end->cause, "board-missing");
+    EXPECT_THAT(record.end->reasons, Contains(HasSubstr("went away")));
+  }
+  EXPECT_EQ(records_[1].header.test_number, 2);
+  EXPECT_GT(records_[1].scan.front(), records_[0].scan.back());
+
+  // Between the last scan read and the first of the returned board lies all that the clock counted: 60 s.
+  // The board went up to 8 ms (a wake-up) and 23 ms (a probe of read()) before that was noticed; rounded
+  // twice.
+  ASSERT_EQ(diary_.gaps.size(), 1U);
+  const daq::Gap gap = diary_.gaps[0];
+  EXPECT_EQ(gap.cause, daq::GapCause::kBoardMissing);
+  EXPECT_TRUE(gap.estimated);
+  EXPECT_EQ(gap.first, records_[0].scan.back() + 1);
+  EXPECT_NEAR(static_cast<double>(gap.count), (60.0 + 0.0155) * kRate_Hz, 0.0155 * kRate_Hz + 2.0);
+  EXPECT_EQ(status_.gap_count, 1U);
+  EXPECT_EQ(status_.lost_scan_count, gap.count);
+}
+
+TEST_F(BoardFaults, OverrunInATestIsAnEstimatedGapInItsRecord) {
+  live().world.overrun_at_scan = 3500;
+  lives_.back().world.halt = 7s;
+  lives_.back().world.removed_at_scan = 7000;
+  run();
+  ASSERT_EQ(records_.size(), 1U);
+  ASSERT_EQ(records_[0].gaps.size(), 1U);
+  const daq::Gap gap = records_[0].gaps[0];
+  EXPECT_EQ(gap.cause, daq::GapCause::kOverrun);
+  EXPECT_TRUE(gap.estimated);
+  EXPECT_EQ(gap.first, 3500);
+  // The last scan before the halt lies up to a wake-up of 8 ms before it; rounded twice.
+  EXPECT_NEAR(static_cast<double>(gap.count), (7.0 + 0.004) * kRate_Hz, 0.004 * kRate_Hz + 2.0);
+  EXPECT_EQ(status_.overrun_count, 1U);
+  // Its scans go on to the last one behind the gap.
+  EXPECT_GT(records_[0].scan.back(), gap.first + gap.count + 6000);
+}
+
+TEST_F(BoardFaults, AnotherOwnerIsNamedAndWaitedFor) {
+  live().world.used_by_another = true;
+  live().world.removed_at_scan = 100;
+  run();
+  EXPECT_THAT(diary_.losses, Contains(HasSubstr("another program is using it")));
+  EXPECT_EQ(status_.scan_count > 0, true);
+}
+
+TEST_F(BoardFaults, RateOfASlowQuartzIsMeasuredRecordedAndFlagged) {
+  live().world.clock_error = 1e-3;
+  lives_.back().world.removed_at_scan = 10'500;
+  run();
+  ASSERT_EQ(records_.size(), 1U);
+  const friction::TestResults& results = records_[0].end->results;
+  ASSERT_TRUE(results.scan_rate_measured.value) << results.scan_rate_measured.reason;
+  const double true_Hz = kRate_Hz / 1.001;
+  EXPECT_NEAR(*results.scan_rate_measured.value, true_Hz, 5.0 * *results.scan_rate_measured.standard_error);
+  EXPECT_LT(*results.scan_rate_measured.standard_error, 1e-5 * true_Hz);
+  EXPECT_GE(records_[0].anchors.size(), 50U);
+  // 1/1.001 of the granted rate.
+  EXPECT_THAT(results.findings, Contains(HasSubstr("are 0.99900")));
+  ASSERT_TRUE(rates_.back());
+  EXPECT_NEAR(rates_.back()->rate_Hz, true_Hz, 1e-4 * true_Hz);
+}
+
+TEST_F(BoardFaults, RateOfAGoodQuartzIsNotFlagged) {
+  live().world.clock_error = 50e-6;
+  lives_.back().world.removed_at_scan = 10'500;
+  run();
+  ASSERT_EQ(records_.size(), 1U);
+  EXPECT_TRUE(records_[0].end->results.scan_rate_measured.value);
+  EXPECT_TRUE(records_[0].end->results.findings.empty());
+}
+
+// Whatever happens in whatever order: each loss has a text, indices only rise, every jump is a gap of the
+// record or of the log, every test is recorded with its reason.
+TEST_F(BoardFaults, NoSequenceOfFaultsLeavesTheDaemonUnnamed) {
+  const unsigned seed = 20'261'122;
+  std::minstd_rand random{seed};
+  SCOPED_TRACE(seed);
+  const int lives = test::kSanitized ? 10 : 60;
+  for (int i = 0; i < lives; ++i) {
+    Life& life = live();
+    life.absent = std::chrono::milliseconds(random() % 5000);
+    const auto at = static_cast<std::int64_t>(random() % 2000);
+    switch (random() % 6) {
+      case 0:
+        life.refused = "/dev/comedi0: no such device";
+        break;
+      case 1:
+        life.world.used_by_another = true;
+        break;
+      case 2:
+        life.world.locked_by_another = true;
+        break;
+      case 3:
+        life.world.wake_interval = 10min;  // falls silent at once
+        break;
+      case 4:
+        life.world.overrun_at_scan = at / 2;
+        life.world.halt = std::chrono::milliseconds(random() % 20'000);
+        [[fallthrough]];
+      default:
+        life.world.removed_at_scan = at;
+    }
+  }
+  run();
+  EXPECT_EQ(next_life_, lives_.size());
+  for (const std::string& state : states_) EXPECT_THAT(state, testing::AnyOf("starting", "board missing"));
+  for (const std::string& loss : diary_.losses) EXPECT_FALSE(loss.empty());
+  EXPECT_EQ(diary_.losses.size(), lives_.size() + 1);  // the attempt after the last life is one too
+  daq::ScanIndex end = 0;
+  for (const record::Record& record : records_) {
+    ASSERT_TRUE(record.end);
+    EXPECT_EQ(record.end->status, record::Status::kIncomplete);
+    ASSERT_FALSE(record.scan.empty());
+    EXPECT_GE(record.scan.front(), end);
+    end = record.scan.back() + 1;
+  }
+  daq::ScanIndex after = 0;
+  std::int64_t lost = 0;
+  for (const daq::Gap& gap : diary_.gaps) {
+    EXPECT_GE(gap.first, after);
+    EXPECT_GT(gap.count, 0);
+    EXPECT_TRUE(gap.estimated);
+    EXPECT_NE(gap.cause, daq::GapCause::kUnknown);
+    after = gap.first + gap.count;
+    lost += gap.count;
+  }
+  EXPECT_EQ(status_.lost_scan_count, lost);
+  // Every index from the first to the last was read or is in a gap: none is claimed twice, none forgotten.
+  EXPECT_GE(static_cast<std::int64_t>(status_.scan_count) + lost, end);
+}
+
+}  // namespace
+}  // namespace stickslip::daemon
