@@ -28,6 +28,9 @@ class Judged:
     granted_Hz: float
     measured_Hz: float  # by the anchors
     cycles: dict
+    status: str         # of the record: complete, interrupted, recovered, incomplete
+    reasons: list
+    end_cause: str
 
 
 def text(value):
@@ -56,6 +59,14 @@ def rate_by(scan, monotonic_ns):
     return float(numpy.polyfit(seconds - seconds.mean(), scan - scan.mean(), 1)[0])
 
 
+def played_from(codes, counts):
+    """Which of the codes played was the first of these counts, all others following in order."""
+    head = numpy.lib.stride_tricks.sliding_window_view(codes, min(64, len(counts)))
+    [at] = numpy.flatnonzero((head == counts[:head.shape[1]]).all(axis=1))
+    numpy.testing.assert_array_equal(codes[at:at + len(counts)], counts)
+    return int(at)
+
+
 def judge(path):
     """Reads a record and checks that it agrees with itself. Raises AssertionError."""
     with h5py.File(path) as file:
@@ -74,4 +85,6 @@ def judge(path):
         anchors = entry["timing/scan"][()], entry["timing/monotonic_raw"][()]
         return Judged(scan, counts, gaps, results, [text(event) for event in entry["events/text"][()]], anchors,
                       float(entry["timing/scan_rate_granted"][()]), rate_by(*anchors),
-                      {name: data[()] for name, data in entry["cycles"].items()})
+                      {name: data[()] for name, data in entry["cycles"].items()},
+                      text(entry["process/status"][()]), [text(why) for why in entry["process/reasons"][()]],
+                      text(entry["process/end_cause"][()]))

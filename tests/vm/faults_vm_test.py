@@ -1,0 +1,121 @@
+"""Overrun, removal and return, a rival, a board without permission: what the daemon says, and what its records do.
+
+The codes that the virtual tester plays tell which scan is which, so an estimated gap is judged by what was really
+lost.
+"""
+
+import pathlib
+import tempfile
+import unittest
+
+import numpy
+
+import codes
+import support
+import verdict
+
+SCENE = "stick-slip-at-12-in-per-min"
+# Three tests, each with noise of its own.
+SEEDS = (101, 102, 103)
+TEST_DURATION_S = 14
+OVERRUN_SCANS = 700
+# Of an index found by the clock: the last read may have come one scan late, and so may the restart.
+INDEX_TOLERANCE = 2
+
+
+class Faults(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = pathlib.Path(temporary)
+            cls.codes = numpy.concatenate([codes.simulate(folder, SCENE, "--duration", f"{TEST_DURATION_S} s", "--seed",
+                                                          str(seed)) for seed in SEEDS])
+            lost = folder / "lost"
+            lost.write_text(f"{OVERRUN_SCANS}\n")
+            people = folder / "passwd"
+            people.write_text("root:x:0:0::/:/bin/sh\nstickslip:x:1000:1000::/:/bin/sh\n")
+            groups = folder / "group"
+            groups.write_text("root:x:0:\nstickslip:x:1000:\n")
+            cls.results = support.small_guest("faults", {
+                "/lib/firmware/stickslip-codes.bin": codes.write_codes(folder, cls.codes),
+                "/faults/overrun_scans": lost, "/etc/passwd": people, "/etc/group": groups})
+
+    def judged(self, daemon):
+        return [verdict.judge(path) for path in support.records(self.results, daemon)]
+
+    def status(self, daemon, when):
+        return support.status(self.results, daemon, when)
+
+    def place(self, scan, counts):
+        """By how many scans the index is ahead of the code played."""
+        return int(scan[0]) - verdict.played_from(self.codes, counts)
+
+    def test_an_overrun_is_a_gap_as_long_as_what_was_lost(self):
+        # The pulls that follow are none of its business.
+        record = self.judged("overrun")[0]
+        [gap] = record.gaps
+        self.assertEqual((gap.cause, gap.estimated), ("overrun", True))
+        before = record.scan < gap.first
+        self.assertEqual(self.place(record.scan[before], record.counts[before]), 0)
+        ahead = self.place(record.scan[~before], record.counts[~before])
+        print(f"\ngap of {gap.count} scans, {gap.count - ahead} were lost")
+        self.assertLessEqual(abs(ahead), INDEX_TOLERANCE)
+        self.assertGreaterEqual(gap.count - ahead, OVERRUN_SCANS)
+        status = self.status("overrun", "after")
+        self.assertEqual((status["overrun_count"], status["gap_count"], status["dropped_scan_count"]), (1, 1, 0))
+        # Stick and slip went on, and the test came to its own end. A gap of two seconds may leave the regime open,
+        # never wrong.
+        self.assertEqual((record.status, record.reasons), ("complete", []))
+        self.assertIn(record.results["regime"], ("stick-slip", "undecided"))
+        self.assertEqual(record.results["lost_scan_count"], gap.count)
+
+    def test_a_removal_ends_the_test_as_incomplete(self):
+        first = self.judged("removal")[0]
+        self.assertEqual(first.status, "incomplete")
+        self.assertIn("the board went away", " ".join(first.reasons))
+        self.assertEqual(first.end_cause, "board-missing")
+        self.assertEqual(first.gaps, [])
+        self.assertEqual(self.place(first.scan, first.counts), 0)
+        gone = self.status("removal", "gone")
+        self.assertEqual(gone["state"], "board missing")
+        self.assertIn("no such device; plug the board in", gone["detail"])
+
+    def test_a_returned_board_measures_on_and_the_index_tells_the_time(self):
+        first, *others = self.judged("removal")
+        self.assertEqual(self.status("removal", "returned")["state"], "acquiring")
+        self.assertGreaterEqual(len(others), 2)
+        self.assertIn("complete", [record.status for record in others])
+        for record in others:
+            self.assertEqual(record.gaps, [])
+            self.assertGreater(record.scan[0], first.scan[-1])
+            ahead = self.place(record.scan, record.counts)
+            print(f"\n{record.status} from scan {record.scan[0]}: index ahead by {ahead}")
+            self.assertLessEqual(abs(ahead), INDEX_TOLERANCE)
+        after = self.status("removal", "after")
+        self.assertEqual((after["board_loss_count"], after["overrun_count"]), (1, 0))
+
+    def test_a_rival_is_waited_for(self):
+        waiting = self.status("second", "waiting")
+        self.assertEqual(waiting["state"], "board missing")
+        self.assertIn("another program is using it", waiting["detail"])
+        self.assertEqual(self.status("second", "after")["state"], "acquiring")
+
+    def test_a_rival_that_comes_later_harms_nothing(self):
+        refused = self.status("rival", "refused")
+        self.assertEqual(refused["state"], "board missing")
+        self.assertIn("another program is using it", refused["detail"])
+        record = self.judged("second")[0]
+        self.assertEqual((record.gaps, record.status), ([], "complete"))
+        verdict.played_from(self.codes, record.counts)
+
+    def test_a_board_without_permission_is_named_and_waited_for(self):
+        refused = self.status("permission", "refused")
+        self.assertEqual(refused["state"], "board missing")
+        self.assertIn("permission denied; add the user to group iocard", refused["detail"])
+        record = self.judged("permission")[0]
+        self.assertEqual((record.gaps, record.status), ([], "complete"))
+        self.assertEqual(self.place(record.scan, record.counts), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

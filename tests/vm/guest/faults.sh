@@ -1,0 +1,90 @@
+# shellcheck shell=dash
+# What goes wrong at a bench. Each scenario has a board that begins with the first code, and a daemon of its own.
+. /lib.sh
+switches=/sys/module/stickslip_tester/parameters
+
+# board: a fresh one.
+board() {
+  [ ! -d "$switches" ] || rmmod stickslip_tester
+  modprobe stickslip_tester
+}
+
+# A test runs: the pull has begun and goes on for seconds.
+start_test() {
+  use "$1"
+  configure
+  start_daemon
+  await current_test '[0-9]'
+  sleep 2
+}
+
+board
+start_test overrun
+cat /faults/overrun_scans >"$switches/overrun"
+await overrun_count 1
+await test_count 1
+status after
+stop_daemon
+say "overrun: done"
+
+board
+start_test removal
+echo 0 >"$switches/attached"
+await state '"board missing"'
+status gone
+sleep 3
+echo 1 >"$switches/attached"
+await state '"acquiring"'
+status returned
+# The interrupted one, the rest of its pull and a whole one.
+await test_count 3 120
+status after
+stop_daemon
+say "removal: done"
+
+# A rival was there first: the daemon waits for it to go.
+board
+use rival
+configure
+start_daemon
+await state '"acquiring"'
+use second
+configure
+start_daemon
+await state '"board missing"'
+status waiting
+use rival
+stop_daemon
+use second
+await state '"acquiring"'
+await current_test '[0-9]'
+# A rival that comes later gets nothing and harms nothing.
+use rival
+start_daemon
+await state '"board missing"'
+status refused
+stop_daemon
+use second
+await test_count 1
+status after
+stop_daemon
+say "rival: done"
+
+# A board that the daemon's user may not open.
+as_user() { exec su -s /bin/sh stickslip -c "exec $*"; }
+board
+chmod 0600 /dev/comedi0
+use permission
+configure
+chown -R 1000:1000 "$folder" "/run/$name"
+start_daemon as_user
+await state '"board missing"'
+status refused
+# As adding the user to group iocard does.
+chgrp 1000 /dev/comedi0
+chmod 0660 /dev/comedi0
+await state '"acquiring"'
+await test_count 1
+status after
+stop_daemon
+say "permission: done"
