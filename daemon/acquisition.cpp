@@ -3,7 +3,6 @@
 #include <chrono>
 
 #include "core/base/contract.hpp"
-#include "daemon/realtime.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -13,8 +12,8 @@ constexpr std::chrono::milliseconds kReadTimeout{100};
 
 }  // namespace
 
-Acquisition::Acquisition(daq::Board& board, daq::ScanRing& ring, int realtime_priority)
-    : board_(board), ring_(ring), realtime_priority_(realtime_priority) {}
+Acquisition::Acquisition(daq::Board& board, daq::ScanRing& ring, RealtimeSettings realtime)
+    : board_(board), ring_(ring), realtime_(realtime) {}
 
 Acquisition::~Acquisition() {
   request_stop();
@@ -36,7 +35,7 @@ std::optional<Acquisition::End> Acquisition::ended() const noexcept {
 }
 
 void Acquisition::run() noexcept {
-  scheduling_ = use_realtime_scheduling(realtime_priority_);
+  scheduling_ = use_realtime_scheduling(realtime_);
   started_.release();
   const End end = read_to_the_end();
   board_.stop();

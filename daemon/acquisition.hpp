@@ -12,6 +12,7 @@
 #include "core/base/result.hpp"
 #include "core/daq/board.hpp"
 #include "core/daq/scan_ring.hpp"
+#include "daemon/realtime.hpp"
 
 namespace stickslip::daemon {
 
@@ -22,8 +23,7 @@ class Acquisition {
   enum class End : std::uint8_t { kStopped, kEndOfInput, kBoardMissing, kFailed };
 
   /// Board and ring must outlive this object.
-  /// \param realtime_priority  see use_realtime_scheduling().
-  Acquisition(daq::Board& board, daq::ScanRing& ring, int realtime_priority);
+  Acquisition(daq::Board& board, daq::ScanRing& ring, RealtimeSettings realtime);
   /// Stops and waits for the thread.
   ~Acquisition();
   Acquisition(const Acquisition&) = delete;
@@ -50,7 +50,7 @@ class Acquisition {
 
   daq::Board& board_;
   daq::ScanRing& ring_;
-  int realtime_priority_;
+  RealtimeSettings realtime_;
   std::string scheduling_;
   std::atomic<bool> stop_requested_{false};
   std::atomic<std::uint8_t> end_{kRunning};

@@ -89,6 +89,7 @@ base::Result<void> App::run() {
     if (!error) stop(signal == SIGINT ? "SIGINT" : "SIGTERM");
   });
 
+  process_facts_ = prepare_process(config_.realtime);
   if (base::Result<void> prepared = prepare_record_folder(); !prepared) return prepared;
   if (config_.control_socket) {
     auto control = ControlServer::listen(io_, *config_.control_socket, make_api([this] { return status(); }));
@@ -169,7 +170,7 @@ base::Result<void> App::open_session() {
       if (state_ == State::kStopping) return;
       state_ = State::kAcquiring;
       retry_after_ = world_.first_retry;
-      world_.facts->board_started(session_->board_info(), session_->scheduling());
+      world_.facts->board_started(session_->board_info(), realtime_facts());
       tell_status();
       notify_.ready();
     });
@@ -256,7 +257,8 @@ base::Result<SessionSettings> App::session_settings(const drivers::OpenedBoard& 
   const daq::BoardInfo& board = opened.board->info();
   SessionSettings settings;
   settings.load_cell = config_.bench.load_cell(opened.load_cell);
-  settings.realtime_priority = config_.realtime_priority;
+  // A board that runs faster than time may have no moment to wait, and RLIMIT_RTTIME would end it.
+  if (config_.clock_speed == 1.0) settings.realtime = config_.realtime;
   settings.clock_speed = config_.clock_speed;
   settings.processor.first_test_number = continues_.next_test_number;
   if (continues_.continuation) settings.processor.continues_at = continues_.continuation->end;
@@ -295,8 +297,12 @@ record::RecordHeader App::record_header(const SessionSettings& settings) const {
   header.process.method =
       with_estimator(method_text(settings.processor.analysis.method), settings.processor.analysis.estimator);
   header.process.characterisation = settings.characterisation;
-  header.process.realtime = session_->scheduling();
+  header.process.realtime = realtime_facts();
   return header;
+}
+
+std::string App::realtime_facts() const {
+  return fmt::format("{}, {}, kernel {}", session_->scheduling(), process_facts_, kernel_preemption());
 }
 
 void App::tell_status() {
@@ -344,7 +350,7 @@ Status App::status() const {
   if (session_) {
     status.board = session_->board_info();
     if (current_test_) status.live = session_->live();
-    status.scheduling = session_->scheduling();
+    status.scheduling = realtime_facts();
   }
   status.scan_count = counts_.scans.load(std::memory_order_relaxed);
   status.dropped_scan_count = counts_.dropped_scans.load(std::memory_order_relaxed);

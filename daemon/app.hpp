@@ -77,6 +77,8 @@ class App {
   [[nodiscard]] base::Result<SessionSettings> session_settings(const drivers::OpenedBoard& opened) const;
   [[nodiscard]] record::RecordHeader record_header(const SessionSettings& settings) const;
   [[nodiscard]] std::string status_line() const;
+  /// What the kernel granted; only while there is a session.
+  [[nodiscard]] std::string realtime_facts() const;
 
   DaemonConfig config_;
   AppWorld world_;
@@ -92,6 +94,7 @@ class App {
   std::shared_ptr<const friction::TruthSource> truth_;
   std::unique_ptr<Session> session_;
 
+  std::string process_facts_;  ///< Of prepare_process().
   State state_ = State::kStarting;
   std::string missing_why_;
   std::chrono::milliseconds retry_after_;

@@ -13,7 +13,9 @@ namespace {
 using base::Dimension;
 using base::Limits;
 using base::Settings;
+using drivers::AcquisitionMode;
 using drivers::AnalogReference;
+using drivers::CalibrationSource;
 using drivers::Driver;
 
 constexpr std::array<std::pair<std::string_view, Driver>, 3> kDrivers{
@@ -24,6 +26,17 @@ constexpr std::array<std::pair<std::string_view, AnalogReference>, 4> kReference
      {"common", AnalogReference::kCommon},
      {"differential", AnalogReference::kDifferential},
      {"other", AnalogReference::kOther}}};
+
+constexpr std::array<std::pair<std::string_view, CalibrationSource>, 4> kCalibrations{
+    {{"by-flag", CalibrationSource::kByFlag},
+     {"soft", CalibrationSource::kSoft},
+     {"hard", CalibrationSource::kHard},
+     {"none", CalibrationSource::kNone}}};
+
+constexpr std::array<std::pair<std::string_view, AcquisitionMode>, 3> kAcquisitions{
+    {{"by-flag", AcquisitionMode::kByFlag},
+     {"command", AcquisitionMode::kCommand},
+     {"polled", AcquisitionMode::kPolled}}};
 
 constexpr std::array<std::pair<std::string_view, LogLevel>, 4> kLogLevels{{{"debug", LogLevel::kDebug},
                                                                            {"info", LogLevel::kInfo},
@@ -46,6 +59,7 @@ constexpr double kLargestCoefficient = 10.0;
 constexpr double kLongestDwell_s = 3600.0;
 constexpr std::int64_t kMostRepeats = 1'000'000;
 constexpr std::int64_t kHighestChannel = 1023;
+constexpr std::int64_t kHighestProcessor = 1023;  ///< CPU_SETSIZE − 1
 
 std::filesystem::path resolved(const std::filesystem::path& folder, const std::string& name) {
   return folder / name;  // An absolute name stays as it is.
@@ -83,6 +97,8 @@ void read_comedi(Settings table, DaemonConfig& config) {
   comedi.range_max_V = table.quantity("range_max", Dimension::kVoltage, voltages, comedi.range_max_V);
   if (!(comedi.range_max_V > comedi.range_min_V)) table.refuse("range_max", "must be above range_min");
   comedi.reference = table.choice<AnalogReference>("reference", kReferences, comedi.reference);
+  comedi.calibration = table.choice<CalibrationSource>("calibration", kCalibrations, comedi.calibration);
+  comedi.acquisition = table.choice<AcquisitionMode>("acquisition", kAcquisitions, comedi.acquisition);
   comedi.scan_rate_tolerance = table.quantity("scan_rate_tolerance", Dimension::kDimensionless,
                                               Limits::between(0.0, 1.0), comedi.scan_rate_tolerance);
 }
@@ -98,8 +114,14 @@ void read_board(Settings table, const std::filesystem::path& folder, DaemonConfi
   if (config.board.driver == Driver::kComedi && config.clock_speed != 1.0) {
     table.refuse("clock_speed", "must be 1 for the driver \"comedi\": hardware keeps its own time");
   }
-  config.realtime_priority =
-      static_cast<int>(table.integer("realtime_priority", 0, 99, config.realtime_priority));
+  config.realtime.priority =
+      static_cast<int>(table.integer("realtime_priority", 0, 99, config.realtime.priority));
+  config.realtime.lock_memory = table.boolean("lock_memory", config.realtime.lock_memory);
+  if (table.has("processor")) {
+    config.realtime.processor = static_cast<int>(table.integer("processor", 0, kHighestProcessor));
+  } else {
+    static_cast<void>(table.integer("processor", 0, kHighestProcessor, 0));
+  }
   read_simulated(table.table("simulated"), folder, config);
   read_replay(table.table("replay"), folder, config);
   read_comedi(table.table("comedi"), config);

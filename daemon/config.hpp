@@ -14,6 +14,7 @@
 #include "core/friction/method.hpp"
 #include "core/friction/tester.hpp"
 #include "core/pipeline/segmenter.hpp"
+#include "daemon/realtime.hpp"
 #include "drivers/factory/board_config.hpp"
 
 namespace stickslip::daemon {
@@ -38,7 +39,7 @@ struct BenchConfig {
 struct DaemonConfig {
   drivers::BoardConfig board;
   double clock_speed = 1.0;  ///< Board time over wall time; for boards that are not hardware.
-  int realtime_priority = 50;
+  RealtimeSettings realtime;
   BenchConfig bench;
   pipeline::SegmenterSettings segmenter;  ///< Its scan rate is the board's.
   friction::Method method;

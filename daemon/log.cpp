@@ -69,6 +69,7 @@ class Log final : public Facts {
     logger_.info("board {} ({}, {}): {} Hz asked, {} Hz granted; acquisition thread {}", board.board_name,
                  board.driver, board.device, board.scan_rate_requested_Hz, board.scan_rate_granted_Hz,
                  scheduling);
+    if (!board.notes.empty()) logger_.info("board {}: {}", board.device, board.notes);
   }
   void sampling_checked(const friction::SamplingVerdict& verdict) override {
     using Kind = friction::SamplingVerdict::Kind;

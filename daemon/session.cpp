@@ -30,7 +30,7 @@ Session::Session(drivers::OpenedBoard board, const SessionSettings& settings,
       events_(std::move(events)),
       ring_(daq::ScanRing::capacity_for(board_.board->info().scan_rate_granted_Hz * settings.clock_speed)),
       processor_(settings.processor, calibration_of(board_, settings), std::move(sinks)),
-      acquisition_(*board_.board, ring_, settings.realtime_priority),
+      acquisition_(*board_.board, ring_, settings.realtime),
       counts_(counts),
       continues_(settings.processor.continues_at.has_value()) {}
 

@@ -24,7 +24,7 @@ struct SessionSettings {
   pipeline::ProcessorSettings processor;
   daq::LoadCell load_cell;
   std::string characterisation;  ///< Where processor.analysis.prior comes from, for the records; empty: none.
-  int realtime_priority = 0;
+  RealtimeSettings realtime{0, {}, false};
   double clock_speed = 1.0;  ///< Board time over wall time: the ring bridges wall time.
 };
 

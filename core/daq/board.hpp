@@ -43,6 +43,14 @@ struct BoardInfo {
   double expansion_origin = 0.0;
   double scan_rate_requested_Hz = 0.0;
   double scan_rate_granted_Hz = 0.0;
+  /// Where the polynomial comes from: "soft" (the board's calibration file), "hard" (the range as the board
+  /// reports it), "none" (the range, spread over the codes evenly); empty if quantity is not kCounts or
+  /// unknown.
+  std::string calibration;
+  /// "command" (the board's own timer) or "polled" (one reading at a time, timed by this computer); empty:
+  /// not said.
+  std::string acquisition;
+  std::string notes;  ///< What the board changed of what was asked; for the log.
 };
 
 /// How a read ended.

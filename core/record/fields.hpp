@@ -89,6 +89,8 @@ void for_each_converter_field(Info& board, Visitor&& visit) {
   visit(FieldName{"polynomial", "V", "voltage by ascending powers of (code - expansion_origin) [V]"},
         board.polynomial);
   visit(FieldName{"expansion_origin", "1", "origin of the polynomial, a code [1]"}, board.expansion_origin);
+  visit(FieldName{"calibration", "", ""}, board.calibration);
+  visit(FieldName{"acquisition", "", ""}, board.acquisition);
 }
 
 template <FieldsOf<daq::BoardInfo> Info, typename Visitor>

@@ -115,6 +115,15 @@ struct CompareCommand : ReportOptions {
 /// \param folder  of the methods; empty: where the program finds them.
 [[nodiscard]] base::Result<std::string> run_methods(const std::string& folder, bool json);
 
+struct BoardsOutput {
+  std::string text;
+  bool any_usable = false;
+};
+
+/// Boards under Linux Comedi, what they offer, and a configuration for each. \param devices  empty: all there
+/// are.
+[[nodiscard]] BoardsOutput run_boards(std::vector<std::string> devices, bool json);
+
 [[nodiscard]] base::Result<std::string> run_status(const std::string& socket);
 
 }  // namespace stickslip::daemon

@@ -35,6 +35,7 @@ constexpr const char* kExamples = R"(Examples:
   stickslip characterise ring-down.h5 -o tester.toml   omega and gamma of the tester, for --tester
   stickslip report records/*.h5 -o report.html         replicates, coefficient against speed, traces
   stickslip compare a*.h5 -- b*.h5                     do two materials differ, and how many tests would show it
+  stickslip boards                                     A/D boards, what they offer, what to configure
   stickslip status                                     what the daemon is doing)";
 
 int print(const base::Result<std::string>& output) {
@@ -305,6 +306,14 @@ int main_of(int count, char** arguments) {
   scenes->add_option("--folder", folder, "another folder of scenes")->type_name("DIR");
   scenes->add_flag("--json", scenes_json, "JSON instead of lines");
 
+  std::vector<std::string> devices;
+  bool boards_json = false;
+  CLI::App* boards = app.add_subcommand(
+      "boards",
+      "list the boards under Linux Comedi and what a configuration should say; 1 if none can be used");
+  boards->add_option("devices", devices, "only these; else all of /dev/comedi*")->type_name("DEVICE");
+  boards->add_flag("--json", boards_json, "JSON instead of text");
+
   std::string method_folder;
   bool methods_json = false;
   CLI::App* methods = app.add_subcommand("methods", "list the shipped test methods");
@@ -358,6 +367,11 @@ int main_of(int count, char** arguments) {
   if (analyze->parsed()) return print(run_analyze(analysis));
   if (characterise->parsed()) return print(run_characterise(characterisation));
   if (status->parsed()) return print(run_status(socket));
+  if (boards->parsed()) {
+    const BoardsOutput output = run_boards(devices, boards_json);
+    fmt::print("{}", output.text);
+    return output.any_usable && std::fflush(stdout) == 0 ? 0 : 1;
+  }
   if (scenes->parsed()) return print(run_scenes(folder, scenes_json));
   if (methods->parsed()) return print(run_methods(method_folder, methods_json));
   if (app.got_subcommand("plot")) return print(run_plot(plot));

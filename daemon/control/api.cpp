@@ -41,6 +41,9 @@ Json to_json(const daq::BoardInfo& board) {
   json["maxdata"] = board.maxdata;
   json["range_min"] = board.range_min_V;
   json["range_max"] = board.range_max_V;
+  json["calibration"] = board.calibration.empty() ? Json(nullptr) : Json(board.calibration);
+  json["acquisition"] = board.acquisition.empty() ? Json(nullptr) : Json(board.acquisition);
+  json["notes"] = board.notes;
   return json;
 }
 

@@ -12,7 +12,9 @@
 #include <span>
 #include <utility>
 
+#include "drivers/comedi/comedi_errors.hpp"
 #include "drivers/comedi/comedi_setup.hpp"
+#include "drivers/comedi/polled_board.hpp"
 
 namespace stickslip::drivers {
 namespace {
@@ -68,7 +70,15 @@ class ComediBoard final : public daq::Board {
     if (const int result = calls_->set_buffer_size(setup_.command.subdevice, buffer_size_); result < 0) {
       return refused(-result);
     }
-    if (const int result = calls_->command(setup_.command); result < 0) return refused(-result);
+    if (const int result = calls_->command(setup_.command); result < 0) {
+      // The file is open, so permission is not what is lacking.
+      if (result == -EACCES) {
+        error_ = EACCES;
+        return base::failure("{}: subdevice {} is locked by another program; stop that program",
+                             setup_.info.device, setup_.command.subdevice);
+      }
+      return refused(-result);
+    }
     const std::int64_t now_ns = clock_.monotonic_ns();
     if (const auto from = meter_.continuation(); from || continues_) {
       next_ = daq::first_scan_after(from ? *from : *continues_, now_ns);
@@ -223,6 +233,7 @@ base::Result<std::unique_ptr<daq::Board>> make_comedi_board(const ComediBoardSet
                                                             std::unique_ptr<ComediCalls> calls) {
   auto setup = agree_with_board(settings, *calls);
   if (!setup) return tl::unexpected(setup.error());
+  if (setup->polled) return make_polled_board(std::move(*setup), settings, clock, std::move(calls));
   return std::make_unique<ComediBoard>(std::move(*setup), settings, clock, std::move(calls));
 }
 

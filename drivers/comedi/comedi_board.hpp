@@ -22,6 +22,21 @@
 
 namespace stickslip::drivers {
 
+/// Where the polynomial from codes to volts comes from.
+enum class CalibrationSource {
+  kByFlag,  ///< Soft where the board says that it is calibrated so, else hard, else none.
+  kSoft,    ///< The board's calibration file.
+  kHard,    ///< As the range is reported.
+  kNone,    ///< The range, spread over the codes evenly.
+};
+
+/// Who times the scans.
+enum class AcquisitionMode {
+  kByFlag,   ///< The board where it can, else this computer.
+  kCommand,  ///< The board, by an asynchronous command.
+  kPolled,   ///< This computer, one reading at a time: worse by its wake-up latency.
+};
+
 /// What is asked of a board; BoardInfo says what was granted.
 struct ComediBoardSettings {
   std::string device = "/dev/comedi0";
@@ -31,6 +46,8 @@ struct ComediBoardSettings {
   double range_min_V = -10.0;
   double range_max_V = 10.0;
   AnalogReference reference = AnalogReference::kGround;
+  CalibrationSource calibration = CalibrationSource::kByFlag;
+  AcquisitionMode acquisition = AcquisitionMode::kByFlag;
   double scan_rate_Hz = 350.0;  ///< [Penner 1995]
   /// Largest relative difference between the rate asked and the rate granted.
   double scan_rate_tolerance = 0.01;

@@ -14,8 +14,8 @@ namespace {
 
 static_assert(trigger::kNone == TRIG_NONE && trigger::kNow == TRIG_NOW && trigger::kFollow == TRIG_FOLLOW &&
               trigger::kTimer == TRIG_TIMER && trigger::kCount == TRIG_COUNT);
-static_assert(kWakeEndOfScan == CMDF_WAKE_EOS);
-static_assert(subdevice_flag::kCanCommand == SDF_CMD_READ &&
+static_assert(kWakeEndOfScan == CMDF_WAKE_EOS && kAnalogInput == COMEDI_SUBD_AI);
+static_assert(subdevice_flag::kCanCommand == SDF_CMD_READ && subdevice_flag::kReadable == SDF_READABLE &&
               subdevice_flag::kSoftCalibrated == SDF_SOFT_CALIBRATED &&
               subdevice_flag::kGround == SDF_GROUND && subdevice_flag::kCommon == SDF_COMMON &&
               subdevice_flag::kDifferential == SDF_DIFF && subdevice_flag::kOther == SDF_OTHER &&
@@ -128,6 +128,12 @@ class RealComediCalls final : public ComediCalls {
     return checked(::comedi_get_n_channels(device_, subdevice));
   }
 
+  int subdevice_count() override { return checked(::comedi_get_n_subdevices(device_)); }
+
+  int subdevice_type(unsigned subdevice) override {
+    return checked(::comedi_get_subdevice_type(device_, subdevice));
+  }
+
   unsigned subdevice_flags(unsigned subdevice) override {
     // −1 where there is no such subdevice: then the flags would say yes to everything.
     const int flags = ::comedi_get_subdevice_flags(device_, subdevice);
@@ -195,6 +201,14 @@ class RealComediCalls final : public ComediCalls {
 
   int set_buffer_size(unsigned subdevice, unsigned size) override {
     return checked(::comedi_set_buffer_size(device_, subdevice, size));
+  }
+
+  int read_one(const ComediCommand& input, std::uint32_t& code) noexcept override {
+    lsampl_t value = 0;
+    const int result = checked(::comedi_data_read(device_, input.subdevice, input.channel, input.range,
+                                                  static_cast<unsigned>(input.reference), &value));
+    code = value;
+    return result;
   }
 
   int poll(std::chrono::milliseconds timeout) noexcept override {

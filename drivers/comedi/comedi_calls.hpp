@@ -33,6 +33,7 @@ inline constexpr unsigned kWakeEndOfScan = 0x20;
 /// Bits of the subdevice flags (SDF_…).
 namespace subdevice_flag {
 inline constexpr unsigned kCanCommand = 0x8000;       ///< SDF_CMD_READ
+inline constexpr unsigned kReadable = 0x10000;        ///< SDF_READABLE
 inline constexpr unsigned kSoftCalibrated = 0x2000;   ///< SDF_SOFT_CALIBRATED
 inline constexpr unsigned kGround = 0x100000;         ///< SDF_GROUND
 inline constexpr unsigned kCommon = 0x200000;         ///< SDF_COMMON
@@ -40,6 +41,8 @@ inline constexpr unsigned kDifferential = 0x400000;   ///< SDF_DIFF
 inline constexpr unsigned kOther = 0x800000;          ///< SDF_OTHER
 inline constexpr unsigned kLargeSample = 0x10000000;  ///< SDF_LSAMPL: a sample has 4 bytes, else 2
 }  // namespace subdevice_flag
+
+inline constexpr int kAnalogInput = 1;  ///< COMEDI_SUBD_AI
 
 /// Against what the input is measured (AREF_…).
 enum class AnalogReference : unsigned { kGround = 0, kCommon = 1, kDifferential = 2, kOther = 3 };
@@ -87,6 +90,9 @@ class ComediCalls {
   virtual std::string board_name() = 0;
   /// \return number of the first analog input subdevice.
   virtual int find_analog_input() = 0;
+  virtual int subdevice_count() = 0;
+  /// COMEDI_SUBD_…: kAnalogInput is 1.
+  virtual int subdevice_type(unsigned subdevice) = 0;
   virtual int channel_count(unsigned subdevice) = 0;
   virtual unsigned subdevice_flags(unsigned subdevice) = 0;
   virtual std::uint32_t maxdata(unsigned subdevice, unsigned channel) = 0;
@@ -107,6 +113,9 @@ class ComediCalls {
   virtual int cancel(unsigned subdevice) noexcept = 0;
   /// \return the size in use. The setting outlives close().
   virtual int set_buffer_size(unsigned subdevice, unsigned size) = 0;
+
+  /// One reading, now (comedi_data_read). Real-time safe. \return ≥ 0 and the code.
+  virtual int read_one(const ComediCommand& input, std::uint32_t& code) noexcept = 0;
 
   /// Waits until there may be something to read. \return 0 if the time is over: also when the board
   /// was removed, which no poll() reports. Real-time safe.

@@ -2,21 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <cerrno>
-#include <cmath>
+#include <cstdint>
 #include <limits>
-#include <system_error>
+#include <optional>
+#include <utility>
+
+#include "drivers/comedi/comedi_agreement.hpp"
+#include "drivers/comedi/comedi_errors.hpp"
 
 namespace stickslip::drivers {
 namespace {
 
 using base::Result;
-
-/// command_test answers 0 after at most this many rounds on the boards seen (3 → 4 → 0); more means
-/// that the board never agrees.
-constexpr int kMostTests = 5;
-constexpr double kNanosecondsPerSecond = 1e9;
 
 struct ReferenceName {
   unsigned flag;
@@ -73,135 +70,37 @@ Result<unsigned> choose_range(const ComediBoardSettings& settings, unsigned subd
                            offered.empty() ? "none in volts" : offered);
 }
 
-/// What the scans are timed by. Boards differ in what they can do; with one channel the three are the
-/// same measurement. Listed in order of preference.
-enum class Timing {
-  kScanTimer,             ///< A timer starts each scan, conversions follow at once.
-  kScanAndConvertTimers,  ///< The same on boards whose conversions have a timer of their own.
-  kConvertTimer,          ///< Scans follow each other; the conversion timer is the rate.
+struct Conversion {
+  ConversionPolynomial polynomial;
+  const char* source = "";
 };
 
-ComediCommand build(Timing timing, unsigned flags, unsigned period_ns) {
-  ComediCommand command;
-  command.flags = flags;
-  command.start_source = trigger::kNow;
-  command.scan_begin_source = timing == Timing::kConvertTimer ? trigger::kFollow : trigger::kTimer;
-  command.scan_begin_argument = timing == Timing::kConvertTimer ? 0 : period_ns;
-  command.convert_source = timing == Timing::kScanTimer ? trigger::kNow : trigger::kTimer;
-  // 0 where the scan timer rules: command_test raises it to the shortest that the board can do.
-  command.convert_argument = timing == Timing::kConvertTimer ? period_ns : 0;
-  command.scan_end_source = trigger::kCount;
-  command.scan_end_argument = 1;
-  command.stop_source = trigger::kNone;
-  return command;
+/// The range spread over the codes evenly: what a board without any calibration promises.
+Conversion uncalibrated(const InputRange& span, std::uint32_t maxdata) {
+  return {{{span.min, (span.max - span.min) / maxdata}, 0.0}, "none"};
 }
 
-unsigned period_of(const ComediCommand& command) {
-  return command.scan_begin_source == trigger::kTimer ? command.scan_begin_argument
-                                                      : command.convert_argument;
-}
-
-/// \return 0 and the command as the board takes it; > 0 if it never agrees; −errno.
-int test_until_agreed(ComediCommand& command, ComediCalls& calls) {
-  const ComediCommand asked = command;
-  int stage = 0;
-  for (int test = 0; test < kMostTests; ++test) {
-    stage = calls.command_test(command);
-    if (stage <= 0) break;
-    // Stages 1 and 2 object to a source: repeating does not help.
-    if (stage <= 2) return stage;
-  }
-  const bool same_sources = command.scan_begin_source == asked.scan_begin_source &&
-                            command.convert_source == asked.convert_source &&
-                            command.stop_source == asked.stop_source &&
-                            command.scan_end_argument == asked.scan_end_argument;
-  return stage == 0 && !same_sources ? 1 : stage;
-}
-
-Result<ComediCommand> agree_on_command(const ComediBoardSettings& settings, unsigned subdevice,
-                                       unsigned range, ComediCalls& calls) {
-  const double period_ns = std::round(kNanosecondsPerSecond / settings.scan_rate_Hz);
-  if (!(settings.scan_rate_Hz > 0.0) || !(period_ns >= 1.0) ||
-      period_ns > static_cast<double>(std::numeric_limits<unsigned>::max())) {
-    return base::usage_error("{}: scan rate {:g} Hz; allowed are 0.2329 Hz to 1 GHz", settings.device,
-                             settings.scan_rate_Hz);
-  }
-  double nearest_Hz = 0.0;
-  for (const Timing timing : {Timing::kScanTimer, Timing::kScanAndConvertTimers, Timing::kConvertTimer}) {
-    // Without kWakeEndOfScan some boards hand over half a FIFO at a time: 0.7 s at 350 Hz.
-    for (const unsigned flags : {kWakeEndOfScan, 0U}) {
-      ComediCommand command = build(timing, flags, static_cast<unsigned>(period_ns));
-      command.subdevice = subdevice;
-      command.channel = settings.channel;
-      command.range = range;
-      command.reference = settings.reference;
-      const int stage = test_until_agreed(command, calls);
-      if (stage == -ENODEV || stage == -EACCES || stage == -EPERM) {
-        return base::failure("{}", explain_comedi_error(settings.device, -stage));
-      }
-      if (stage != 0 || period_of(command) == 0) continue;
-      const double granted_Hz = kNanosecondsPerSecond / period_of(command);
-      const double difference = std::abs(granted_Hz / settings.scan_rate_Hz - 1.0);
-      if (difference <= settings.scan_rate_tolerance) return command;
-      if (nearest_Hz == 0.0 || difference < std::abs(nearest_Hz / settings.scan_rate_Hz - 1.0)) {
-        nearest_Hz = granted_Hz;
-      }
-    }
-  }
-  if (nearest_Hz > 0.0) {
-    return base::usage_error(
-        "{}: scan rate {:g} Hz; the nearest that the board grants is {:.9g} Hz, farther than the {:g} % "
-        "allowed; "
-        "ask for a rate that it has",
-        settings.device, settings.scan_rate_Hz, nearest_Hz, 100.0 * settings.scan_rate_tolerance);
-  }
-  return base::failure("{}: the board cannot acquire channel {} by a timer without end; use another board",
-                       settings.device, settings.channel);
-}
-
-Result<ConversionPolynomial> conversion(const ComediBoardSettings& settings, unsigned subdevice,
-                                        unsigned flags, unsigned range, ComediCalls& calls) {
-  if ((flags & subdevice_flag::kSoftCalibrated) != 0) {
+Result<Conversion> conversion(const ComediBoardSettings& settings, unsigned subdevice, unsigned flags,
+                              unsigned range, const InputRange& span, ComediCalls& calls) {
+  const bool by_flag = settings.calibration == CalibrationSource::kByFlag;
+  if (settings.calibration == CalibrationSource::kNone)
+    return uncalibrated(span, calls.maxdata(subdevice, settings.channel));
+  if (settings.calibration == CalibrationSource::kSoft ||
+      (by_flag && (flags & subdevice_flag::kSoftCalibrated) != 0)) {
     auto soft = calls.soft_calibration(subdevice, settings.channel, range);
     if (!soft) return base::failure("{}: calibration: {}", settings.device, soft.error().message);
-    return soft;
+    return Conversion{*std::move(soft), "soft"};
   }
-  auto hard = calls.hard_calibration(subdevice, settings.channel, range);
-  if (!hard) {
-    return base::failure("{}: the board names no conversion to volts for channel {}, range {}",
-                         settings.device, settings.channel, range);
-  }
-  return *hard;
+  if (auto hard = calls.hard_calibration(subdevice, settings.channel, range))
+    return Conversion{*std::move(hard), "hard"};
+  if (by_flag) return uncalibrated(span, calls.maxdata(subdevice, settings.channel));
+  return base::failure(
+      "{}: the board names no conversion to volts for channel {}, range {}; calibration = \"none\" "
+      "takes the range as it is",
+      settings.device, settings.channel, range);
 }
 
 }  // namespace
-
-std::string explain_comedi_error(const std::string& device, int error) {
-  switch (error) {
-    case EBUSY:
-      return fmt::format(
-          "{}: another program is using it; stop that program (\"fuser -v {}\" names it) and try again",
-          device, device);
-    case EACCES:
-    case EPERM:
-      return fmt::format(
-          "{}: permission denied; add the user to group iocard (\"sudo adduser USER iocard\") and log in "
-          "again",
-          device);
-    case ENOENT:
-      return fmt::format(
-          "{}: no such device; plug the board in or load its driver (\"cat /proc/comedi\" lists boards)",
-          device);
-    case ENODEV:
-    case ENXIO:
-      return fmt::format(
-          "{}: no board behind this device; plug it in or configure it (\"cat /proc/comedi\" lists "
-          "boards)",
-          device);
-    default:
-      return fmt::format("{}: {}", device, std::generic_category().message(error));
-  }
-}
 
 base::Result<ComediSetup> agree_with_board(const ComediBoardSettings& settings, ComediCalls& calls) {
   const auto failed = [&](int result) {
@@ -216,9 +115,17 @@ base::Result<ComediSetup> agree_with_board(const ComediBoardSettings& settings, 
     subdevice = static_cast<unsigned>(found);
   }
   const unsigned flags = calls.subdevice_flags(subdevice);
-  if ((flags & subdevice_flag::kCanCommand) == 0) {
-    return base::usage_error("{}: subdevice {} cannot acquire by itself (no streaming analog input)",
-                             settings.device, subdevice);
+  const bool can_command = (flags & subdevice_flag::kCanCommand) != 0;
+  if ((flags & subdevice_flag::kReadable) == 0) {
+    return base::usage_error("{}: subdevice {} is no analog input that can be read", settings.device,
+                             subdevice);
+  }
+  if (!can_command && settings.acquisition == AcquisitionMode::kCommand) {
+    return base::usage_error(
+        "{}: subdevice {} cannot acquire by itself (no streaming analog input); acquisition = \"polled\" "
+        "reads it "
+        "one scan at a time, timed by this computer",
+        settings.device, subdevice);
   }
   const int channels = calls.channel_count(subdevice);
   if (channels < 0) return failed(channels);
@@ -229,14 +136,17 @@ base::Result<ComediSetup> agree_with_board(const ComediBoardSettings& settings, 
   if (auto checked = check_reference(settings, flags); !checked) return tl::unexpected(checked.error());
   const auto range = choose_range(settings, subdevice, calls);
   if (!range) return tl::unexpected(range.error());
-  const auto polynomial = conversion(settings, subdevice, flags, *range, calls);
-  if (!polynomial) return tl::unexpected(polynomial.error());
-  const auto command = agree_on_command(settings, subdevice, *range, calls);
-  if (!command) return tl::unexpected(command.error());
+  const auto span = calls.range(subdevice, settings.channel, *range).value_or(InputRange{});
+  const auto converted = conversion(settings, subdevice, flags, *range, span, calls);
+  if (!converted) return tl::unexpected(converted.error());
+  const bool polled = settings.acquisition == AcquisitionMode::kPolled || !can_command;
+  const auto agreed = polled ? agree_on_polling(settings, subdevice, *range)
+                             : agree_on_command(settings, subdevice, *range, calls);
+  if (!agreed) return tl::unexpected(agreed.error());
 
-  const auto span = calls.range(subdevice, settings.channel, *range);
   ComediSetup setup;
-  setup.command = *command;
+  setup.command = agreed->command;
+  setup.polled = polled;
   setup.sample_size = (flags & subdevice_flag::kLargeSample) != 0 ? 4 : 2;
   setup.info.driver = "comedi";
   setup.info.board_name = fmt::format("{} ({})", calls.board_name(), calls.driver_name());
@@ -244,12 +154,15 @@ base::Result<ComediSetup> agree_with_board(const ComediBoardSettings& settings, 
   setup.info.subdevice = static_cast<int>(subdevice);
   setup.info.channel = static_cast<int>(settings.channel);
   setup.info.maxdata = calls.maxdata(subdevice, settings.channel);
-  setup.info.range_min_V = span ? span->min : 0.0;
-  setup.info.range_max_V = span ? span->max : 0.0;
-  setup.info.polynomial = polynomial->coefficients;
-  setup.info.expansion_origin = polynomial->expansion_origin;
+  setup.info.range_min_V = span.min;
+  setup.info.range_max_V = span.max;
+  setup.info.polynomial = converted->polynomial.coefficients;
+  setup.info.expansion_origin = converted->polynomial.expansion_origin;
   setup.info.scan_rate_requested_Hz = settings.scan_rate_Hz;
-  setup.info.scan_rate_granted_Hz = kNanosecondsPerSecond / period_of(*command);
+  setup.info.scan_rate_granted_Hz = agreed->scan_rate_Hz;
+  setup.info.calibration = converted->source;
+  setup.info.acquisition = polled ? "polled" : "command";
+  setup.info.notes = agreed->notes;
   return setup;
 }
 

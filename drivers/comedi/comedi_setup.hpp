@@ -2,7 +2,7 @@
 /// What a board grants: the checks and the bargaining before the first scan.
 #pragma once
 
-#include <string>
+#include <cstddef>
 
 #include "core/base/result.hpp"
 #include "core/daq/board.hpp"
@@ -16,13 +16,11 @@ struct ComediSetup {
   daq::BoardInfo info;
   ComediCommand command;  ///< As the board takes it, unchanged.
   std::size_t sample_size = 2;
+  bool polled = false;  ///< Of `command`, only subdevice, channel, range and reference count then.
 };
 
 /// Opens the board and agrees on a command. Does not touch the hardware.
 [[nodiscard]] base::Result<ComediSetup> agree_with_board(const ComediBoardSettings& settings,
                                                          ComediCalls& calls);
-
-/// One line for a person: what `error` (errno, > 0) means for this device and what to do.
-[[nodiscard]] std::string explain_comedi_error(const std::string& device, int error);
 
 }  // namespace stickslip::drivers

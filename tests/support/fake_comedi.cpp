@@ -36,6 +36,7 @@ std::optional<drivers::InputRange> FakeComedi::range(unsigned /*subdevice*/, uns
 std::optional<drivers::ConversionPolynomial> FakeComedi::hard_calibration(unsigned /*subdevice*/,
                                                                           unsigned /*channel*/,
                                                                           unsigned range) {
+  if (!world_.has_hard_calibration) return std::nullopt;
   const auto& span = world_.ranges.at(range);
   return drivers::ConversionPolynomial{{span.min, (span.max - span.min) / world_.maxdata}, 0.0};
 }
@@ -92,9 +93,11 @@ int FakeComedi::command(const ComediCommand& command) {
   if (world_.used_by_another || running_) return -EBUSY;
   ComediCommand copy = command;
   if (stage_of(copy) != 0) return -EAGAIN;
+  if ((command.flags & kPriority) != 0) return -EPERM;
   command_ = command;
   running_ = true;
   overrun_ = false;
+  ended_ = false;
   began_ns_ = clock_.monotonic_ns();
   taken_bytes_ = 0;
   read_bytes_ = 0;
@@ -134,6 +137,11 @@ void FakeComedi::run_board() noexcept {
   const double period_ns = static_cast<double>(this->period_ns()) * (1.0 + world_.clock_error);
   const auto taken = static_cast<std::int64_t>(static_cast<double>(last_wake_ns) / period_ns);
   taken_bytes_ = taken * sample_size();
+  if (world_.ends_after_scans >= 0 && taken >= world_.ends_after_scans) {
+    taken_bytes_ = world_.ends_after_scans * sample_size();
+    ended_ = true;
+    return;
+  }
   if (world_.removed_at_scan >= 0 && taken >= world_.removed_at_scan) {
     world_.removed = true;
     return;
@@ -167,7 +175,7 @@ int FakeComedi::poll(std::chrono::milliseconds timeout) noexcept {
       clock_.sleep_until(deadline_ns);
       return 0;
     }
-    if (taken_bytes_ > read_bytes_ || overrun_) return 1;
+    if (taken_bytes_ > read_bytes_ || overrun_ || ended_) return 1;
     const std::int64_t now_ns = clock_.monotonic_ns();
     if (now_ns >= deadline_ns) return 0;
     const std::int64_t interval_ns = world_.wake_interval.count();
@@ -176,12 +184,23 @@ int FakeComedi::poll(std::chrono::milliseconds timeout) noexcept {
   }
 }
 
+int FakeComedi::read_one(const ComediCommand& /*input*/, std::uint32_t& code) noexcept {
+  if (world_.removed) return -ENODEV;
+  if (world_.used_by_another || running_) return -EBUSY;
+  code = world_.reading(insn_count_++);
+  return 1;
+}
+
 int FakeComedi::read(std::span<std::byte> buffer) noexcept {
   if (world_.removed) return -ENODEV;
   if (!running_ || world_.cancelled_by_another) return -EINVAL;
   run_board();
   if (world_.removed) return -ENODEV;
   if (taken_bytes_ == read_bytes_) {
+    if (ended_) {
+      running_ = false;
+      return 0;
+    }
     if (!overrun_) return -EAGAIN;
     running_ = false;  // EPIPE is said once; then the subdevice is idle.
     return -EPIPE;

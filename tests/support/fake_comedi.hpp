@@ -22,7 +22,9 @@ namespace stickslip::test {
 /// change it at any moment.
 struct FakeComediWorld {
   // The board.
-  unsigned flags = drivers::subdevice_flag::kCanCommand | drivers::subdevice_flag::kGround;
+  unsigned flags = drivers::subdevice_flag::kCanCommand | drivers::subdevice_flag::kReadable |
+                   drivers::subdevice_flag::kGround;
+  bool has_hard_calibration = true;
   std::vector<drivers::InputRange> ranges{{-10.0, 10.0, true}, {-5.0, 5.0, true}};
   std::uint32_t maxdata = 65535;
   unsigned rounding_ns = 1000;  ///< Periods are rounded to this.
@@ -36,12 +38,13 @@ struct FakeComediWorld {
   bool used_by_another = false;  ///< Another program acquires.
   bool removed = false;          ///< Unplugged.
   bool cancelled_by_another = false;
-  bool locked_by_another = false;     ///< Another program holds comedi_lock() on the subdevice.
-  std::int64_t removed_at_scan = -1;  ///< Unplugged when it takes this one, counted from the command.
-  std::int64_t overrun_at_scan = -1;  ///< Halts at this one, once, as if the reader had slept …
-  std::chrono::nanoseconds halt{0};   ///< … and is asked again so much later.
-  double clock_error = 0.0;           ///< Its periods are longer by this part than it says.
-  int largest_read = 1 << 20;         ///< Bytes that one read() hands over at most.
+  bool locked_by_another = false;      ///< Another program holds comedi_lock() on the subdevice.
+  std::int64_t removed_at_scan = -1;   ///< Unplugged when it takes this one, counted from the command.
+  std::int64_t overrun_at_scan = -1;   ///< Halts at this one, once, as if the reader had slept …
+  std::chrono::nanoseconds halt{0};    ///< … and is asked again so much later.
+  std::int64_t ends_after_scans = -1;  ///< The command ends by itself, as with a stop count.
+  double clock_error = 0.0;            ///< Its periods are longer by this part than it says.
+  int largest_read = 1 << 20;          ///< Bytes that one read() hands over at most.
   std::chrono::nanoseconds wake_interval{std::chrono::milliseconds(8)};  ///< Of the driver's timer.
 
   // What was asked of it.
@@ -63,6 +66,9 @@ struct FakeComediWorld {
 /// Real-time safe where the real one is.
 class FakeComedi final : public drivers::ComediCalls {
  public:
+  /// CMDF_PRIORITY.
+  static constexpr unsigned kPriority = 0x8;
+
   /// Both must outlive it. poll() moves the clock.
   FakeComedi(FakeComediWorld& world, ManualClock& clock) : world_(world), clock_(clock) {}
 
@@ -70,6 +76,9 @@ class FakeComedi final : public drivers::ComediCalls {
   void close() noexcept override { running_ = false; }
   std::string driver_name() override { return "fake"; }
   std::string board_name() override { return "fake-board"; }
+  int subdevice_count() override { return 2; }
+  int subdevice_type(unsigned subdevice) override { return subdevice == 0 ? drivers::kAnalogInput : 2; }
+  int read_one(const drivers::ComediCommand& input, std::uint32_t& code) noexcept override;
   int find_analog_input() override { return world_.removed ? -ENODEV : 0; }
   int channel_count(unsigned subdevice) override;
   unsigned subdevice_flags(unsigned subdevice) override { return subdevice == 0 ? world_.flags : 0U; }
@@ -100,10 +109,12 @@ class FakeComedi final : public drivers::ComediCalls {
   ManualClock& clock_;
   drivers::ComediCommand command_;
   bool running_ = false;  ///< The subdevice is busy with a command of ours.
+  bool ended_ = false;    ///< As many scans as it was to take.
   bool overrun_ = false;  ///< It halted; what is stored can still be read.
   std::int64_t began_ns_ = 0;
   std::int64_t taken_bytes_ = 0;  ///< Since the command.
   std::int64_t read_bytes_ = 0;
+  std::int64_t insn_count_ = 0;
 };
 
 }  // namespace stickslip::test

@@ -83,6 +83,7 @@ class BoardFaults : public testing::Test {
     config.bench.sled_mass_kg = 1.0;
     config.bench.load_cell_gain_N_per_V = 1.0;
     config.record_folder = folder_;
+    config.realtime = {0, {}, false};  // With a clock moved by hand the thread never waits.
     AppWorld world;
     auto clock = std::make_unique<ManualClock>();
     ManualClock& time = *clock;

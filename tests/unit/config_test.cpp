@@ -57,7 +57,7 @@ TEST(Config, ShippedFileShowsTheDefaults) {
   ASSERT_TRUE(written) << written.error().message;
   const DaemonConfig plain = *read(kGood);
   EXPECT_EQ(written->clock_speed, plain.clock_speed);
-  EXPECT_EQ(written->realtime_priority, plain.realtime_priority);
+  EXPECT_EQ(written->realtime.priority, plain.realtime.priority);
   EXPECT_EQ(written->board.simulated.repeats, plain.board.simulated.repeats);
   EXPECT_EQ(written->board.comedi.device, plain.board.comedi.device);
   EXPECT_EQ(written->board.comedi.channel, plain.board.comedi.channel);

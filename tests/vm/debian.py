@@ -90,14 +90,14 @@ def disk_image(found, programs):
 
 
 def run_full_guest(folder, found, disk, files, limit_s=420):
-    """Boots it, unpacks `files` (name → path here) to /run/payload, runs run.sh there as root. Returns the results."""
+    """Boots it, unpacks `files` (name → path here) to /run/payload, runs run.sh there as root; its results."""
     payload = folder / "payload.tar"
     with tarfile.open(payload, "w") as archive:
         for name, path in files.items():
             archive.add(path, name)
+    disks = [*guest.drive("root", disk, ",snapshot=on"), *guest.drive("payload", payload, ",readonly=on")]
     try:
-        return guest.run_guest(folder, found, guest.VIRTUAL_TIME, 1024,
-                               [*guest.drive("root", disk, ",snapshot=on"), *guest.drive("payload", payload, ",readonly=on")],
-                               "root=/dev/nvme0n1 rw systemd.show_status=0", ["-device", "virtio-rng-pci"], limit_s)
+        return guest.run_guest(folder, found, 1024, disks, "root=/dev/nvme0n1 rw systemd.show_status=0",
+                               ["-device", "virtio-rng-pci"], limit_s)
     finally:
         payload.unlink()

@@ -4,6 +4,7 @@ Never KVM: where /dev/kvm exists but belongs to a virtual machine of its own, a 
 """
 
 import pathlib
+import resource
 import shutil
 import subprocess
 import tarfile
@@ -14,8 +15,6 @@ RESULTS_SIZE = 256 * 1024 * 1024
 # One instruction is 4 ns of the guest's time, and idle time is skipped: minutes at the bench take seconds, and
 # nothing depends on how busy this machine is.
 VIRTUAL_TIME = ["-icount", "shift=2,sleep=off", "-smp", "1"]
-# For what goes on in two processes and does not measure time.
-REAL_TIME = ["-smp", "2"]
 
 
 class GuestFailed(Exception):
@@ -26,13 +25,13 @@ def drive(name, path, more=""):
     return ["-drive", f"file={path},if=none,id={name},format=raw{more}", "-device", f"nvme,serial={name},drive={name}"]
 
 
-def run_guest(folder, kernel, time, memory_MB, disks, append, more=(), limit_s=420):
+def run_guest(folder, kernel, memory_MB, disks, append, more=(), limit_s=420):
     """Boots, waits for the power-off, unpacks the results to FOLDER/results. Raises GuestFailed."""
     results = folder / "results.raw"
     results.unlink(missing_ok=True)
     with open(results, "wb") as disk:
         disk.truncate(RESULTS_SIZE)
-    command = [QEMU, "-accel", "tcg", "-cpu", "max", *time, "-m", str(memory_MB), "-nodefaults", "-no-reboot",
+    command = [QEMU, "-accel", "tcg", "-cpu", "max", *VIRTUAL_TIME, "-m", str(memory_MB), "-nodefaults", "-no-reboot",
                "-display", "none", "-serial", "stdio", *disks, *drive("results", results), *more,
                "-kernel", str(kernel.image), "-append", f"console=ttyS0 quiet panic=-1 {append}"]
     serial = folder / "serial.log"
@@ -45,6 +44,8 @@ def run_guest(folder, kernel, time, memory_MB, disks, append, more=(), limit_s=4
             why = f"did not power off within {limit_s} s"
         except subprocess.CalledProcessError as error:
             why = f"qemu ended with {error.returncode}"
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    print(f"{folder.name}: {used.ru_utime + used.ru_stime:.0f} s of processor time so far", flush=True)
     text = serial.read_text(errors="replace")
     unpacked = folder / "results"
     shutil.rmtree(unpacked, ignore_errors=True)
@@ -64,7 +65,7 @@ def run_guest(folder, kernel, time, memory_MB, disks, append, more=(), limit_s=4
 
 
 def run_small_guest(folder, kernel, image, limit_s=420):
-    return run_guest(folder, kernel, VIRTUAL_TIME, 1024, [], "", ["-initrd", str(image)], limit_s)
+    return run_guest(folder, kernel, 1024, [], "", ["-initrd", str(image)], limit_s)
 
 
 def folder_for(build, name):

@@ -20,7 +20,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 # Longest first: what is begun last should be short.
 ORDER = ("stream", "service", "cycles", "faults", "tester")
 PROGRAMS = ("qemu-system-x86_64", "busybox", "cpio", "depmod", "mke2fs", "mmdebstrap", "make", "gcc", "strip")
-LIMIT_S = 480
+# Of one program, its Debian image included where it is made anew.
+LIMIT_S = 900
 
 
 def say(text):
@@ -55,8 +56,9 @@ def main():
     try:
         found = prepare(folder)
     except kernel.Unavailable as why:
-        say(f"SKIPPED: {why}")
-        return 1 if os.environ.get("CI") == "true" else 0
+        must = os.environ.get("CI") == "true"
+        say(f"{'FAILED' if must else 'SKIPPED'}: {why}")
+        return 1 if must else 0
     present = [name for name in ORDER if (HERE / f"{name}_vm_test.py").exists()]
     assert len(present) == len(list(HERE.glob("*_vm_test.py"))), "a test program is missing in ORDER"
     names = sys.argv[3:] or present

@@ -32,7 +32,7 @@ class Unit(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         found = kernel.find_kernel()
-        disk = debian.disk_image(found, [support.DAEMON, support.CLI])
+        disk = support.or_skip(debian.disk_image, found, [support.DAEMON, support.CLI])
         with tempfile.TemporaryDirectory() as temporary:
             folder = pathlib.Path(temporary)
             # A pull longer than the guest looks at it.

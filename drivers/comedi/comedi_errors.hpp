@@ -1,0 +1,12 @@
+/// \file
+/// Errors of a board in words: what it means, what to do.
+#pragma once
+
+#include <string>
+
+namespace stickslip::drivers {
+
+/// One line for a person: what `error` (errno, > 0) means for this device and what to do.
+[[nodiscard]] std::string explain_comedi_error(const std::string& device, int error);
+
+}  // namespace stickslip::drivers

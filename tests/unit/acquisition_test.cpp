@@ -1,0 +1,138 @@
+// The acquisition thread: what it never does, and what it asks of the kernel.
+
+#include "daemon/acquisition.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "daemon/latency_histogram.hpp"
+#include "drivers/comedi/comedi_board.hpp"
+#include "tests/support/allocation_count.hpp"
+#include "tests/support/fake_comedi.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+using namespace std::chrono_literals;
+
+/// Notes what its thread has allocated at each call.
+class Watched final : public daq::Board {
+ public:
+  explicit Watched(std::unique_ptr<daq::Board> board) : board_(std::move(board)) {}
+
+  [[nodiscard]] const daq::BoardInfo& info() const noexcept override { return board_->info(); }
+  [[nodiscard]] base::Result<void> start() override {
+    ++starts;
+    return board_->start();
+  }
+  [[nodiscard]] daq::ReadStatus read(daq::ScanBlock& block,
+                                     std::chrono::milliseconds timeout) noexcept override {
+    last = test::allocation_count();
+    if (reads++ == 0) first = last;
+    return board_->read(block, timeout);
+  }
+  void stop() noexcept override { board_->stop(); }
+
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;
+  int reads = 0;
+  int starts = 0;
+
+ private:
+  std::unique_ptr<daq::Board> board_;
+};
+
+// From the first read to the last, over an overrun and the restart after it: nothing.
+TEST(Acquisition, LoopNeverAllocates) {
+  test::ManualClock clock;
+  test::FakeComediWorld world;
+  world.overrun_at_scan = 2000;
+  world.halt = 10s;
+  world.removed_at_scan = 5000;
+  auto made = drivers::make_comedi_board({}, clock, std::make_unique<test::FakeComedi>(world, clock));
+  ASSERT_TRUE(made) << made.error().message;
+  Watched board{std::move(*made)};
+  daq::ScanRing ring{daq::ScanRing::capacity_for(350.0)};
+  Acquisition acquisition{board, ring, RealtimeSettings{0, {}, false}};
+  ASSERT_TRUE(acquisition.start());
+  while (!acquisition.ended()) acquisition.wait();
+  EXPECT_EQ(*acquisition.ended(), Acquisition::End::kBoardMissing);
+  EXPECT_EQ(board.starts, 2);
+  EXPECT_GT(board.reads, 1000);
+  EXPECT_EQ(board.last, board.first);
+}
+
+// Each block says what happened before it, so that nobody has to guess from counters that ran ahead.
+TEST(Acquisition, BlocksCarryTheHaltsBeforeThem) {
+  test::ManualClock clock;
+  test::FakeComediWorld world;
+  world.overrun_at_scan = 100;
+  world.removed_at_scan = 200;
+  auto made = drivers::make_comedi_board({}, clock, std::make_unique<test::FakeComedi>(world, clock));
+  ASSERT_TRUE(made) << made.error().message;
+  daq::ScanRing ring{1000};
+  Acquisition acquisition{**made, ring, RealtimeSettings{0, {}, false}};
+  ASSERT_TRUE(acquisition.start());
+  while (!acquisition.ended()) acquisition.wait();
+  std::vector<daq::ScanBlock> blocks(1000);
+  blocks.resize(ring.pop(blocks.data(), blocks.size()));
+  ASSERT_FALSE(blocks.empty());
+  for (const daq::ScanBlock& block : blocks) EXPECT_EQ(block.overrun_count, block.first < 100 ? 0U : 1U);
+  EXPECT_EQ(blocks.back().overrun_count, 1U);
+}
+
+TEST(Realtime, RefusalIsToldAndNotFatal) {
+  // Above the highest that there is: refused to everybody.
+  const std::string told = use_realtime_scheduling({1000, {}, false});
+  EXPECT_THAT(told, HasSubstr("SCHED_FIFO 1000 refused: "));
+  EXPECT_EQ(use_realtime_scheduling({0, {}, false}), "SCHED_OTHER");
+  EXPECT_THAT(use_realtime_scheduling({0, 1023, false}), HasSubstr("any processor (1023 refused: "));
+}
+
+/// Runs in a process of its own: without the rights of root, with this limit.
+[[noreturn]] void ask_as_nobody(rlim_t priority_limit) {
+  const rlimit limit{priority_limit, priority_limit};
+  constexpr uid_t kNobody = 65534;
+  if (::setrlimit(RLIMIT_RTPRIO, &limit) != 0 || (::geteuid() == 0 && ::setuid(kNobody) != 0)) {
+    std::fputs("the limit cannot be set here", stderr);
+    std::_Exit(0);
+  }
+  std::fputs(use_realtime_scheduling({50, {}, false}).c_str(), stderr);
+  std::_Exit(0);
+}
+
+TEST(RealtimeDeathTest, WithoutPermissionTheThreadGoesOnAsItIs) {
+  EXPECT_EXIT(ask_as_nobody(0), testing::ExitedWithCode(0), "SCHED_OTHER .SCHED_FIFO 50 refused");
+}
+
+TEST(RealtimeDeathTest, LowerPriorityIsTakenWhereOnlyThatIsAllowed) {
+  EXPECT_EXIT(ask_as_nobody(10), testing::ExitedWithCode(0),
+              "SCHED_FIFO 10 .50 refused|the limit cannot be set here");
+}
+
+TEST(LatencyHistogram, BinsAreOctavesAndNothingIsLost) {
+  LatencyHistogram latency;
+  latency.add(-5.0);      // the reference itself was late
+  latency.add(15'999.0);  // below 16 µs
+  latency.add(16'000.0);  // the limit belongs to the next bin
+  latency.add(1e10);      // 10 s
+  EXPECT_EQ(latency.counts()[0], 2U);
+  EXPECT_EQ(latency.counts()[1], 1U);
+  EXPECT_EQ(latency.counts()[LatencyHistogram::kBins - 1], 1U);
+  EXPECT_EQ(latency.largest_s(), 10.0);
+  EXPECT_EQ(LatencyHistogram::limit_s(0), 16e-6);
+  EXPECT_EQ(LatencyHistogram::limit_s(1), 32e-6);
+}
+
+}  // namespace
+}  // namespace stickslip::daemon
