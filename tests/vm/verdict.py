@@ -30,7 +30,7 @@ class Judged:
     cycles: dict
     status: str         # of the record: complete, interrupted, recovered, incomplete
     reasons: list
-    end_cause: str
+    end_cause: str      # empty where nobody lived to say it
 
 
 def text(value):
@@ -87,4 +87,4 @@ def judge(path):
                       float(entry["timing/scan_rate_granted"][()]), rate_by(*anchors),
                       {name: data[()] for name, data in entry["cycles"].items()},
                       text(entry["process/status"][()]), [text(why) for why in entry["process/reasons"][()]],
-                      text(entry["process/end_cause"][()]))
+                      text(entry["process/end_cause"][()]) if "process/end_cause" in entry else "")
