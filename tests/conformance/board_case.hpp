@@ -31,6 +31,8 @@ inline void PrintTo(const BoardCase& board_case, std::ostream* out) { *out << bo
 
 /// No end; the fake board gives the same readings after each start.
 [[nodiscard]] BoardCase comedi_case();
+/// The same without commands: read one scan at a time.
+[[nodiscard]] BoardCase polled_comedi_case();
 /// One repetition of the ring-down and of the stick-slip, then the end.
 [[nodiscard]] BoardCase simulated_case();
 /// The simulated board with a clock that is off, jitter and missing scans; two repetitions, then the end.

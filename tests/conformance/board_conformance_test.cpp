@@ -264,8 +264,8 @@ TEST_P(BoardEnd, EndOfInputRepeats) {
 std::string name_of(const ::testing::TestParamInfo<BoardCase>& instance) { return instance.param.name; }
 
 INSTANTIATE_TEST_SUITE_P(Boards, BoardConformance,
-                         ::testing::Values(comedi_case(), simulated_case(), simulated_gaps_case(),
-                                           replay_case()),
+                         ::testing::Values(comedi_case(), polled_comedi_case(), simulated_case(),
+                                           simulated_gaps_case(), replay_case()),
                          name_of);
 INSTANTIATE_TEST_SUITE_P(Boards, BoardEnd,
                          ::testing::Values(simulated_case(), simulated_gaps_case(), replay_case()), name_of);
