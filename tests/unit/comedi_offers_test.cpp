@@ -174,7 +174,7 @@ TEST_F(ComediOffers, BoardWithoutAnyConversionIsTakenByItsRange) {
 
 TEST(ComediPermission, NamesTheGroupOfTheDeviceOrSaysThatNoneIsAllowed) {
   const auto file = std::filesystem::temp_directory_path() / fmt::format("stickslip-node-{}", ::getpid());
-  std::ofstream{file};
+  std::ofstream{file} << "stands for a device";
   ASSERT_EQ(::chmod(file.c_str(), 0600), 0);
   EXPECT_THAT(drivers::explain_comedi_error(file.string(), EACCES),
               HasSubstr("no group may use it (mode 0600)"));
