@@ -164,6 +164,7 @@ std::vector<std::string> comedi_devices(const std::string& folder) {
   }
   std::sort(found.begin(), found.end());
   std::vector<std::string> devices;
+  devices.reserve(found.size());
   for (auto& [number, device] : found) devices.push_back(std::move(device));
   return devices;
 }

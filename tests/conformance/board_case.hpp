@@ -37,6 +37,8 @@ inline void PrintTo(const BoardCase& board_case, std::ostream* out) { *out << bo
 
 /// No end; the fake board gives the same readings after each start.
 [[nodiscard]] BoardCase comedi_case();
+/// The same without commands: read one scan at a time.
+[[nodiscard]] BoardCase polled_comedi_case();
 /// A board of the kernel, by the system's clock: the one that the environment variable
 /// STICKSLIP_COMEDI_DEVICE names, none without it. Its input repeats if STICKSLIP_COMEDI_REPEATS is set.
 [[nodiscard]] std::optional<BoardCase> comedi_device_case();

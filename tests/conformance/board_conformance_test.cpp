@@ -274,7 +274,8 @@ TEST_P(BoardEnd, EndOfInputRepeats) {
 std::string name_of(const ::testing::TestParamInfo<BoardCase>& instance) { return instance.param.name; }
 
 std::vector<BoardCase> all_cases() {
-  std::vector<BoardCase> cases{comedi_case(), simulated_case(), simulated_gaps_case(), replay_case()};
+  std::vector<BoardCase> cases{comedi_case(), polled_comedi_case(), simulated_case(), simulated_gaps_case(),
+                               replay_case()};
   if (auto device = comedi_device_case()) cases.push_back(*std::move(device));
   return cases;
 }

@@ -17,4 +17,16 @@ BoardCase comedi_case() {
   return {.name = "ComediOnAFakeTable", .make = make};
 }
 
+BoardCase polled_comedi_case() {
+  const auto make = [](ManualClock& clock) {
+    auto world = std::make_shared<FakeComediWorld>();
+    drivers::ComediBoardSettings settings;
+    settings.acquisition = drivers::AcquisitionMode::kPolled;
+    auto board = drivers::make_comedi_board(settings, clock, std::make_unique<FakeComedi>(*world, clock));
+    if (!board) throw std::runtime_error(board.error().message);
+    return BoardRig{std::move(world), std::move(*board)};
+  };
+  return {"PolledComediOnAFakeTable", make};
+}
+
 }  // namespace stickslip::test

@@ -10,7 +10,6 @@ using drivers::kWakeEndOfScan;
 namespace trigger = drivers::trigger;
 
 namespace {
-constexpr unsigned kShortestPeriod_ns = 1000;
 constexpr unsigned kPageSize = 4096;
 }  // namespace
 
@@ -63,8 +62,8 @@ int FakeComedi::stage_of(ComediCommand& command) const {
   if ((command.flags & kWakeEndOfScan) != 0 && !world_.takes_wake_end_of_scan) return 2;
   // 3: argument out of range, clamped.
   const ComediCommand asked = command;
-  const auto clamp = [](unsigned source, unsigned& argument) {
-    argument = source == trigger::kTimer ? std::max(argument, kShortestPeriod_ns) : 0;
+  const auto clamp = [this](unsigned source, unsigned& argument) {
+    argument = source == trigger::kTimer ? std::max(argument, world_.shortest_period_ns) : 0;
   };
   clamp(command.scan_begin_source, command.scan_begin_argument);
   clamp(command.convert_source, command.convert_argument);

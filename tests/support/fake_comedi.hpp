@@ -28,6 +28,7 @@ struct FakeComediWorld {
   std::vector<drivers::InputRange> ranges{{-10.0, 10.0, true}, {-5.0, 5.0, true}};
   std::uint32_t maxdata = 65535;
   unsigned rounding_ns = 1000;  ///< Periods are rounded to this.
+  unsigned shortest_period_ns = 1000;
   bool has_scan_timer = true;
   bool has_convert_now = true;
   bool takes_wake_end_of_scan = true;

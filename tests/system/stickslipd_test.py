@@ -277,6 +277,38 @@ socket = "control.sock"
         self.assertEqual(process.returncode, 0)
         self.assertFalse(control.exists())
 
+    def test_boards_that_cannot_be_used_are_listed_with_the_reason(self):
+        listed = run(CLI, "boards", "--json", "/dev/comedi-that-is-not-there")
+        self.assertEqual(listed.returncode, 1, listed.stderr)
+        [board] = json.loads(listed.stdout)["boards"]
+        self.assertFalse(board["usable"])
+        self.assertIn("no such device", board["problem"])
+        text = run(CLI, "boards", "/dev/comedi-that-is-not-there")
+        self.assertEqual(text.returncode, 1)
+        self.assertIn("/dev/comedi-that-is-not-there: no such device", text.stdout)
+
+    def test_the_machine_is_asked_for_real_time_and_answers_in_status_and_record(self):
+        import h5py
+        manager = Manager(self)
+        process = manager.start(self.simulated(repeats=0, speed=1, more='[control]\nsocket = "c.sock"\n'),
+                                self.folder)
+        self.addCleanup(process.kill)
+        manager.wait_for(lambda text: "test 1 running" in text)
+        status = json.loads(run(CLI, "status", "--socket", self.folder / "c.sock").stdout)
+        self.assertRegex(status["scheduling"], r"^SCHED_(FIFO|OTHER).*memory (not )?locked.*RLIMIT_RTTIME")
+        self.assertEqual(status["board_loss_count"], 0)
+        # The daemon's promise is 40 MB; a sanitizer brings its own. Locked on fault: stacks count as touched.
+        if BUILD.name in ("release", "dev"):
+            facts = pathlib.Path(f"/proc/{process.pid}/status").read_text(encoding="utf-8").splitlines()
+            resident_kB = int(next(line.split()[1] for line in facts if line.startswith("VmRSS")))
+            print(f"resident: {resident_kB} kB, {status['scheduling']}", file=sys.stderr)
+            self.assertLess(resident_kB, 40_000)
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=TIMEOUT_S)
+        [record] = self.records()
+        with h5py.File(record) as file:
+            self.assertEqual(file["entry/process/realtime"].asstr()[()], status["scheduling"])
+
     def test_status_tells_the_running_test(self):
         manager = Manager(self)
         process = manager.start(self.simulated(repeats=0, speed=5, more='[control]\nsocket = "c.sock"\n'),

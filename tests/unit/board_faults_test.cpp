@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <deque>
 #include <filesystem>
 #include <memory>
@@ -59,7 +60,7 @@ constexpr double kRate_Hz = 1e9 / 2'857'000.0;  // 350 Hz in whole microseconds
 std::uint32_t loaded(std::int64_t /*scan*/) {
   constexpr double kWeight_N = 9.80665;
   constexpr double kForce_N = 0.3 * kWeight_N;
-  return static_cast<std::uint32_t>((kForce_N + 10.0) / 20.0 * 65535.0 + 0.5);
+  return static_cast<std::uint32_t>(std::lround((kForce_N + 10.0) / 20.0 * 65535.0));
 }
 
 /// Runs the daemon through the lives of a board; stops after the last of them.
