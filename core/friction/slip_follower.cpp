@@ -136,8 +136,7 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
   }
 }
 
-bool SlipFollower::step(double now_s, double sigma) noexcept {
-  if (task_ == Task::kNone || now_s < next_task_s_) return false;
+bool SlipFollower::do_task(double now_s, double sigma) noexcept {
   switch (task_) {
     case Task::kFirstFit:
       first_fit(sigma);
