@@ -32,15 +32,20 @@ std::optional<Fall> FallFinder::add(double value, double hysteresis) {
 void FallFinder::step(std::size_t position, double median, double hysteresis,
                       std::optional<Fall>& fall) noexcept {
   if (direction_ == Direction::kUp) return rise(position, median, hysteresis);
-  const bool new_high = direction_ == Direction::kUnknown && median > high_.value;
-  const bool new_low = median < low_.value;
-  if (new_high) {
+  if (direction_ == Direction::kUnknown && median > high_.value) {
     restart_at_high(position, median);
   } else {
-    above_after_low_.add(position, median);
     below_.add(position, median);
+    if (!(median < low_.value)) {
+      above_after_low_.add(position, median);
+    } else if (above_after_low_.empty()) {  // Most of a fall: as fall_to(), by the direct way.
+      low_ = {position, median};
+      above_.add(position, median);
+    } else {
+      above_after_low_.add(position, median);
+      fall_to(position, median);
+    }
   }
-  if (new_low) fall_to(position, median);
 
   if (direction_ == Direction::kUnknown && median < high_.value - hysteresis) {
     // The high was a maximum, and the trace may have begun at it.

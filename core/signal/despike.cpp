@@ -20,7 +20,7 @@ constexpr double kNoiseSigmas = 5.0;
 constexpr std::size_t kReach = 2;
 
 /// Median of five by six comparisons [Knuth, TAOCP 3, 5.3.3]: no branch that noise could mislead.
-double median_of_five(double a, double b, double c, double d, double e) noexcept {
+inline double median_of_five(double a, double b, double c, double d, double e) noexcept {
   const double low = std::max(std::min(a, b), std::min(c, d));   // The two outermost of four …
   const double high = std::min(std::max(a, b), std::max(c, d));  // … cannot be in the middle of five.
   const double first = std::min(low, high);
@@ -36,7 +36,8 @@ double median_of_few(std::array<double, 2 * kReach + 1> values, std::size_t size
   return *middle;
 }
 
-/// Hampel's test of a value among `near`, at least three. \param value  replaced if it is a spike.
+/// Hampel's test of a value among its neighbours, with it at least three. \param value  replaced if it is a
+/// spike.
 DespikedScan hampel(double& value, std::span<const double> neighbours, double sigma) noexcept {
   const double noise_limit = kNoiseSigmas * sigma;
   std::array<double, 2 * kReach + 1> near{};

@@ -44,12 +44,14 @@ class Stairs {
     size_ = 0;
     cell_bits_ = 0;
   }
-  /// \param step  behind and below the last one.
-  void push(const CourseStep& step) noexcept {
+  /// Behind and below the last one.
+  void push(std::size_t position, double value) noexcept {
     if (cell_bits_ == 0 && size_ < kMostSteps) {
-      steps_[size_++] = step;
+      CourseStep& step = steps_[size_++];
+      step.position = position;
+      step.value = value;
     } else {
-      push_into_cells(step);
+      push_into_cells({position, value});
     }
   }
   void pop() noexcept { --size_; }
@@ -77,11 +79,12 @@ class Stairs {
 /// The last position with a value above a level.
 class LastAbove {
  public:
+  [[nodiscard]] bool empty() const noexcept { return stairs_.empty(); }
   void clear() noexcept { stairs_.clear(); }
   /// \param position  rises from call to call. Amortised O(1).
   void add(std::size_t position, double value) noexcept {
     while (!stairs_.empty() && stairs_.lowest() <= value) stairs_.pop();
-    stairs_.push({position, value});
+    stairs_.push(position, value);
   }
   /// Puts a later part of the course behind this one and empties it. Amortised O(1) for each value.
   void take(LastAbove& later) noexcept;
@@ -99,7 +102,7 @@ class FirstBelow {
   /// \param position  rises from call to call. Amortised O(1).
   void add(std::size_t position, double value) noexcept {
     if (!stairs_.empty() && !(value < stairs_.lowest())) return;
-    stairs_.push({position, value});
+    stairs_.push(position, value);
   }
   /// Nothing if no value is below the level. At least as late as the exact answer.
   [[nodiscard]] std::optional<std::size_t> find(double level) const noexcept;
