@@ -34,7 +34,8 @@ std::optional<double> capture_time_s(const SlipWaveform& slip, double belt_rate_
   const double t3 = t2 + std::numbers::pi / omega;
   const double rate_at_end = slip.rate(t3);
   if (!(rate_at_end >= belt_rate_per_s)) return std::nullopt;
-  if (slip.rate(t2) >= belt_rate_per_s) return t2;
+  // c′ turns round at t₃ and, half an oscillation before, at t₂: there it has the other sign.
+  if (!(belt_rate_per_s > 0.0) && slip.rate(t2) >= belt_rate_per_s) return t2;
   if (rate_at_end == belt_rate_per_s) return t3;
   // About its maximum c′ is nearly a cosine: from there Newton's steps. What leads out of the bracket, which
   // closes with each, is replaced by its middle.

@@ -16,9 +16,9 @@ namespace {
 /// logarithm finite.
 constexpr double kLogScatter = 0.5545;
 constexpr double kLeastRatio = 1e-6;
-/// Rows of a question: some forty a period, whose blocks differ from their curvature term by less than 10⁻⁵
-/// of the amplitude.
-constexpr std::size_t kMostRows = 64;
+/// Rows of a question: forty a period, whose blocks differ from their curvature term by less than 10⁻⁵ of the
+/// amplitude, and which have the same scans at the next question.
+constexpr double kRowsPerPeriod = 40.0;
 /// Four parameters, and a choice.
 constexpr std::size_t kFewestPoints = 8;
 /// Of reweighting: weights of a linear model settle in two or three rounds.
@@ -70,27 +70,33 @@ LiveJunction::Row LiveJunction::row_of(std::span<const CyclePoint> together, dou
 
 void LiveJunction::lay_out(std::span<const CyclePoint> points, const SharedParameters& shared,
                            double sigma) noexcept {
-  // Asked often: neighbours go together until there are no more rows than tell the course.
-  const std::size_t group = (points.size() + kMostRows - 1) / kMostRows;
+  const double first_s = points.front().time_s;
   const bool same_courses =
-      points.front().time_s == first_s_ && shared.omega == shared_.omega && shared.gamma == shared_.gamma;
+      first_s == first_s_ && shared.omega == shared_.omega && shared.gamma == shared_.gamma;
   const std::size_t before = same_courses ? size_ : 0;
+  const double rows_per_s = kRowsPerPeriod * shared.omega / (2.0 * std::numbers::pi);
+  const auto place = [&](const CyclePoint& point) {
+    return std::floor((point.time_s - first_s) * rows_per_s);
+  };
   size_ = 0;
   std::size_t unchanged = 0;
-  for (std::size_t begin = 0; begin < points.size(); begin += group) {
-    const auto together = points.subspan(begin, std::min(group, points.size() - begin));
+  for (auto begin = points.begin(); begin != points.end();) {
+    const double here = place(*begin);
+    const auto end =
+        std::find_if(begin + 1, points.end(), [&](const CyclePoint& point) { return place(point) != here; });
     Row& row = rows_[size_];
-    // Between these times there are the same scans as last time.
-    if (size_ < before && row.begin_s == together.front().time_s && row.end_s == together.back().time_s) {
+    // The scans that were there last time.
+    if (size_ < before && row.begin_s == begin->time_s && row.end_s == (end - 1)->time_s) {
       if (unchanged == size_) ++unchanged;
     } else {
-      row = row_of(together, points.front().time_s, shared);
+      row = row_of({begin, end}, first_s, shared);
     }
     row.scale = row.root_count / sigma;
     ++size_;
+    begin = end;
   }
   if (!(same_courses && sigma == sigma_ && unchanged >= common_count_)) common_count_ = 0;
-  first_s_ = points.front().time_s;
+  first_s_ = first_s;
   shared_ = shared;
   sigma_ = sigma;
 }

@@ -87,6 +87,7 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
   peak_s_ = peak_s;
   trough_s_ = trough_s;
   evidence_ = {};
+  question_from_s_ = kUnknown;
   if (!begins_from_stick) last_capture_s_ = kUnknown;
 
   const double half_s = std::max(trough_s - peak_s, scan_s_);
@@ -175,13 +176,17 @@ void SlipFollower::first_fit(double sigma) noexcept {
   const CycleFit fit = fit_cycle(between(buffer_.points(), window_from_s_, trough_s_), false, first_guess(),
                                  knowledge_, sigma);
   if (fit.converged) shared_ = fit.shared;
+  question_from_s_ = kUnknown;
+}
+
+double SlipFollower::slipping_before_peak_s() const noexcept {
+  if (!begins_from_stick_) return 0.0;
+  return kSurelySlipping * std::clamp(peak_s_ - first_guess().onset_s, 0.0, 0.25 * period_s());
 }
 
 bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
-  const double slipping_s = begins_from_stick_ ? kSurelySlipping * std::clamp(peak_s_ - first_guess().onset_s,
-                                                                              0.0, 0.25 * period_s())
-                                               : 0.0;
-  const auto points = buffer_.since(peak_s_ - slipping_s);
+  if (std::isnan(question_from_s_)) question_from_s_ = peak_s_ - slipping_before_peak_s();
+  const auto points = buffer_.since(question_from_s_);
   evidence_ = junction_.ask(points, shared_, sigma, typical_delta_mu_, last ? 0.0 : kDecisive);
   if (evidence_.known && evidence_.residual_sigmas > kMisfitSigmas) {
     // Neither course fits: perhaps the belt has another speed now, which the rise before this slip tells.
@@ -191,6 +196,7 @@ bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
     if (with_other.residual_sigmas < evidence_.residual_sigmas) {
       evidence_ = with_other;
       shared_ = other;
+      question_from_s_ = kUnknown;
     }
   }
   slip_.evidence = evidence_.known ? evidence_.log_likelihood_ratio : kUnknown;

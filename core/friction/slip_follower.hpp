@@ -68,6 +68,8 @@ class SlipFollower {
   void take_course(const SharedParameters& shared, const SlipParameters& slip) noexcept;
   void learn_typical(double delta_mu) noexcept;
   [[nodiscard]] SlipParameters first_guess() const noexcept;
+  /// How long before the peak it surely slips: the onset is a guess.
+  [[nodiscard]] double slipping_before_peak_s() const noexcept;
   [[nodiscard]] double period_s() const noexcept;
 
   EstimatorTier tier_;
@@ -87,6 +89,7 @@ class SlipFollower {
   double peak_s_ = 0.0;
   double trough_s_ = 0.0;
   double rise_slope_ = 0.0;
+  double question_from_s_ = 0.0;  ///< Scans from here on tell how it ends; NaN until asked.
   SharedParameters shared_;
   JunctionEvidence evidence_;
 
