@@ -1,21 +1,18 @@
 // The live detector, tier by tier: time for a scan over whole tests, and the slowest single scan, which is
 // one that closes a cycle. Beside it, in the same run and over the same scans, what is done with SciPy: a
-// median of five, a Savitzky–Golay filter and find_peaks (bench/scipy_chain.py), as a whole array at once,
-// and the raw maximum.
+// median of five, a Savitzky–Golay filter and find_peaks (daemon/peer/scipy_chain.py), as a whole array at
+// once, and the raw maximum.
 
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "daemon/peer/scipy_chain.hpp"
 #include "tests/support/live_trials.hpp"
 
 namespace {
@@ -54,20 +51,22 @@ friction::LiveSettings settings_of(const test::LiveScene& scene, friction::Estim
   return settings;
 }
 
+/// The least time of many, as Python tells it of SciPy's: what else the machine does only ever adds.
 void follow(benchmark::State& state, const test::LiveScene& scene, friction::EstimatorTier tier) {
+  using Clock = std::chrono::steady_clock;
   const std::vector<double> scans = scans_of(scene);
   std::int64_t cycles = 0;
+  double least_s = std::numeric_limits<double>::infinity();
   for (auto _ : state) {
+    const auto begin = Clock::now();
     friction::LiveDetector detector{settings_of(scene, tier)};
     cycles = 0;
     for (const double value : scans) cycles += detector.add(value, false) ? 1 : 0;
     benchmark::DoNotOptimize(detector);
+    least_s = std::min(least_s, std::chrono::duration<double>(Clock::now() - begin).count());
   }
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(scans.size()));
   state.counters["cycles"] = static_cast<double>(cycles);
-  state.counters["per_scan"] =
-      benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(scans.size()),
-                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["per_scan"] = least_s / static_cast<double>(scans.size());
 }
 
 /// The slowest scan: of several runs the least for each scan, so that what else the machine does does not
@@ -102,28 +101,21 @@ void peer_raw_maximum(benchmark::State& state) {
 }
 BENCHMARK(peer_raw_maximum)->Arg(350)->Arg(10'000);
 
-/// Python tells the least time of many itself.
-void peer_scipy_chain(benchmark::State& state) {
-  const test::LiveScene scene = fast_cycles(static_cast<double>(state.range(0)));
-  const std::vector<double> scans = scans_of(scene);
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("stickslip-scans-" + std::to_string(state.range(0)) + ".f64");
-  std::ofstream{file, std::ios::binary}.write(reinterpret_cast<const char*>(scans.data()),
-                                              static_cast<std::streamsize>(scans.size() * sizeof(double)));
-  const std::string command = "/usr/bin/python3 " STICKSLIP_SOURCE_DIR "/bench/scipy_chain.py " +
-                              file.string() + " " + std::to_string(scene.scan_rate_Hz) + " " +
-                              std::to_string(scene.frequency_Hz);
+/// Python tells the least time of many itself, of one test of `slips` slips.
+void peer_scipy_chain(benchmark::State& state, test::LiveScene scene, int slips) {
+  scene.slips = slips;
+  const std::vector<accuracy::TierScene> scenes{{scene.scan_rate_Hz, scene.frequency_Hz, {scans_of(scene)}}};
   double ns = 0.0;
   for (auto _ : state) {
-    std::FILE* python = popen(command.c_str(), "r");
-    if (python == nullptr || std::fscanf(python, "%lf", &ns) != 1)
-      state.SkipWithError("no SciPy: ./dev deps bench");
-    if (python != nullptr) pclose(python);
+    const auto outcomes = daemon::run_scipy_chain(scenes);
+    if (outcomes) {
+      ns = outcomes->front().ns_per_scan;
+    } else {
+      state.SkipWithError(outcomes.error().message.c_str());
+    }
   }
-  std::filesystem::remove(file);
   state.counters["per_scan"] = ns * 1e-9;
 }
-BENCHMARK(peer_scipy_chain)->Arg(350)->Arg(10'000)->Iterations(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 
@@ -131,7 +123,7 @@ int main(int argc, char** argv) {
   for (const auto tier : {friction::EstimatorTier::kPeak, friction::EstimatorTier::kInterpolated,
                           friction::EstimatorTier::kFit}) {
     const std::string tier_name{name(tier)};
-    for (const double rate_Hz : {350.0, 1000.0, 10'000.0, 100'000.0}) {
+    for (const double rate_Hz : {100.0, 350.0, 1000.0, 10'000.0, 100'000.0}) {
       const std::string at = tier_name + "/" + std::to_string(static_cast<int>(rate_Hz));
       benchmark::RegisterBenchmark(("follow/" + at).c_str(), [=](benchmark::State& state) {
         follow(state, fast_cycles(rate_Hz), tier);
@@ -144,6 +136,15 @@ int main(int argc, char** argv) {
         ("slowest_scan/2s_cycle/" + tier_name + "/100000").c_str(),
         [=](benchmark::State& state) { slowest_scan(state, slow_cycles(100'000.0), tier); })
         ->Iterations(1);
+  }
+  // A test as long as those above, and one so long that what SciPy does once for an array counts no more.
+  for (const double rate_Hz : {100.0, 350.0, 1000.0, 10'000.0}) {
+    for (const int slips : {30, 1000}) {
+      const std::string at = std::to_string(static_cast<int>(rate_Hz)) + "/" + std::to_string(slips);
+      benchmark::RegisterBenchmark(("peer_scipy_chain/" + at).c_str(), [=](benchmark::State& state) {
+        peer_scipy_chain(state, fast_cycles(rate_Hz), slips);
+      })->Iterations(1);
+    }
   }
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();

@@ -1,9 +1,13 @@
 # Run at build time: text files become functions of a C++ source.
 # cmake -DOUTPUT=… -DHEADER=… -DNAMES=a,b -DFILES=/…/a.js,/…/b.css -P embed.cmake
-# The header declares, in namespace stickslip::daemon::web, std::string_view NAME() noexcept for each name.
+# The header declares, in namespace stickslip::daemon::web or the one of -DNAMESPACE=…, std::string_view NAME()
+# noexcept for each name.
+if(NOT DEFINED NAMESPACE)
+  set(NAMESPACE stickslip::daemon::web)
+endif()
 string(REPLACE "," ";" names "${NAMES}")
 string(REPLACE "," ";" files "${FILES}")
-set(source "#include \"${HEADER}\"\n\nnamespace stickslip::daemon::web {\n")
+set(source "#include \"${HEADER}\"\n\nnamespace ${NAMESPACE} {\n")
 foreach(name file IN ZIP_LISTS names files)
   file(READ "${file}" text)
   string(FIND "${text}" ")stickslip\"" mark)
@@ -12,5 +16,5 @@ foreach(name file IN ZIP_LISTS names files)
   endif()
   string(APPEND source "\nstd::string_view ${name}() noexcept {\n  static constexpr char kText[] = R\"stickslip(${text})stickslip\";\n  return {kText, sizeof kText - 1};\n}\n")
 endforeach()
-string(APPEND source "\n}  // namespace stickslip::daemon::web\n")
+string(APPEND source "\n}  // namespace ${NAMESPACE}\n")
 file(WRITE "${OUTPUT}" "${source}")

@@ -9,6 +9,7 @@
 #include "core/daq/calibration.hpp"
 #include "core/sim/motion_solver.hpp"
 #include "daemon/method_text.hpp"
+#include "daemon/peer/scipy_chain.hpp"
 #include "daemon/simulate.hpp"
 
 namespace stickslip::daemon {
@@ -99,7 +100,7 @@ Result<AccuracyReport> measure_accuracy(const sim::Scene& scene, std::uint64_t s
   } else {
     report.detection = accuracy::compare_estimators(*test, accuracy::shipped_estimators(), clock);
   }
-  report.tiers = accuracy::compare_tiers(clock);
+  report.tiers = accuracy::compare_tiers(clock, {std::string{kScipyChain}, run_scipy_chain});
   if (progress) progress(1.0);
   return report;
 }

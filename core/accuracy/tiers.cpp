@@ -114,51 +114,96 @@ Estimates raw_maximum(const std::vector<double>& scans) {
   return {*largest - mean};
 }
 
-template <typename Estimator>
-TierRow row_of(double scan_rate_Hz, std::string name, const base::Clock& clock, const Estimator& estimator) {
+TierScene scene_at(double scan_rate_Hz) {
+  TierScene scene{scan_rate_Hz, kFrequency_Hz, {}};
+  for (int test = 1; test <= kTests; ++test)
+    scene.tests.push_back(one_test(scan_rate_Hz, static_cast<std::uint64_t>(test)));
+  return scene;
+}
+
+TierRow empty_row(double scan_rate_Hz, std::string_view name) {
   TierRow row;
   row.scan_rate_Hz = scan_rate_Hz;
   row.scans_per_cycle = scan_rate_Hz / kFrequency_Hz;
-  row.estimator = std::move(name);
-  const friction::SamplingVerdict verdict = friction::check_sampling(scan_rate_Hz, kFrequency_Hz);
-  if (verdict.kind == friction::SamplingVerdict::Kind::kRefused) {
-    row.reason = verdict.reason;
-    return row;
-  }
+  row.estimator = name;
+  return row;
+}
+
+void judge(TierRow& row, const Estimates& estimates) {
   double count = 0.0;
   double sum = 0.0;
   double squares = 0.0;
-  for (int test = 1; test <= kTests; ++test) {
-    for (const double found : estimator(one_test(scan_rate_Hz, static_cast<std::uint64_t>(test)))) {
-      const double error = found / (kS - kK) - 1.0;
-      count += 1.0;
-      sum += error;
-      squares += error * error;
-    }
+  for (const double found : estimates) {
+    const double error = found / (kS - kK) - 1.0;
+    count += 1.0;
+    sum += error;
+    squares += error * error;
   }
   if (count < 2.0) {
     row.reason = "no estimate";
-    return row;
+    return;
   }
   row.bias = sum / count;
   row.deviation = std::sqrt(std::max(squares - sum * sum / count, 0.0) / (count - 1.0));
-  row.over_bound = row.deviation * (kS - kK) / bound_of_a_cycle(scan_rate_Hz);
-  const std::vector<double> scans = one_test(scan_rate_Hz, 1);
-  constexpr double kNanosecondsPerMicrosecond = 1e3;
-  row.us_per_cycle = static_cast<double>(least_time_ns(clock, [&] { static_cast<void>(estimator(scans)); })) /
+  row.over_bound = row.deviation * (kS - kK) / bound_of_a_cycle(row.scan_rate_Hz);
+}
+
+constexpr double kNanosecondsPerMicrosecond = 1e3;
+
+template <typename Estimator>
+TierRow row_of(const TierScene& scene, std::string_view name, const base::Clock& clock,
+               const Estimator& estimator) {
+  TierRow row = empty_row(scene.scan_rate_Hz, name);
+  Estimates estimates;
+  for (const std::vector<double>& scans : scene.tests) {
+    const Estimates found = estimator(scans);
+    estimates.insert(estimates.end(), found.begin(), found.end());
+  }
+  judge(row, estimates);
+  if (!row.reason.empty()) return row;
+  const std::int64_t time_ns =
+      least_time_ns(clock, [&] { static_cast<void>(estimator(scene.tests.front())); });
+  row.us_per_cycle = static_cast<double>(time_ns) / kNanosecondsPerMicrosecond / kCycles;
+  return row;
+}
+
+TierRow peer_row(const TierScene& scene, std::string_view name, const PeerOutcome& outcome) {
+  TierRow row = empty_row(scene.scan_rate_Hz, name);
+  judge(row, outcome.estimates);
+  if (!row.reason.empty()) return row;
+  row.us_per_cycle = outcome.ns_per_scan * static_cast<double>(scene.tests.front().size()) /
                      kNanosecondsPerMicrosecond / kCycles;
   return row;
 }
 
 }  // namespace
 
-std::vector<TierRow> compare_tiers(const base::Clock& clock) {
+std::vector<TierRow> compare_tiers(const base::Clock& clock, const Peer& peer) {
+  constexpr std::string_view kRawMaximum = "raw maximum of the test";
   std::vector<TierRow> rows;
+  std::vector<TierScene> scenes;
   for (const double rate_Hz : kScanRates_Hz) {
-    rows.push_back(row_of(rate_Hz, "raw maximum of the test", clock, raw_maximum));
+    const friction::SamplingVerdict verdict = friction::check_sampling(rate_Hz, kFrequency_Hz);
+    if (verdict.kind != friction::SamplingVerdict::Kind::kRefused) {
+      scenes.push_back(scene_at(rate_Hz));
+      continue;
+    }
+    rows.push_back(empty_row(rate_Hz, "all"));
+    rows.back().reason = verdict.reason;
+  }
+  const base::Result<std::vector<PeerOutcome>> outcomes = peer.run(scenes);
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const TierScene& scene = scenes[i];
+    rows.push_back(row_of(scene, kRawMaximum, clock, raw_maximum));
+    if (outcomes) {
+      rows.push_back(peer_row(scene, peer.name, (*outcomes)[i]));
+    } else {
+      rows.push_back(empty_row(scene.scan_rate_Hz, peer.name));
+      rows.back().reason = outcomes.error().message;
+    }
     for (const auto& [tier, name] : friction::kEstimatorTierNames) {
-      rows.push_back(row_of(rate_Hz, std::string{name}, clock, [rate_Hz, tier = tier](const auto& scans) {
-        return live(scans, rate_Hz, tier);
+      rows.push_back(row_of(scene, name, clock, [&scene, tier = tier](const std::vector<double>& scans) {
+        return live(scans, scene.scan_rate_Hz, tier);
       }));
     }
   }

@@ -2,14 +2,17 @@
 /// What S − K of one cycle costs and is worth, live: each estimator at several scan rates, against the least
 /// error that any could have.
 ///
-///     for (const TierRow& row : compare_tiers(*clock)) …
+///     for (const TierRow& row : compare_tiers(*clock, peer)) …
 #pragma once
 
+#include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/base/clock.hpp"
+#include "core/base/result.hpp"
 
 namespace stickslip::accuracy {
 
@@ -30,8 +33,27 @@ struct TierRow {
   double us_per_cycle = 0.0;  ///< Of the whole detector over the whole test, by the cycles.
 };
 
-/// The tiers of friction::LiveDetector, and the raw maximum less the mean, at 50 … 10 000 scans/s. Seeded:
-/// the same numbers each time but for the times.
-[[nodiscard]] std::vector<TierRow> compare_tiers(const base::Clock& clock);
+/// What all estimators get at one scan rate: the force of several tests, scan by scan.
+struct TierScene {
+  double scan_rate_Hz = 0.0;
+  double frequency_Hz = 0.0;  ///< Of the oscillation.
+  std::vector<std::vector<double>> tests;
+};
+
+/// Of one scene by somebody else's program, which sees whole tests at once and measures its own time.
+struct PeerOutcome {
+  double ns_per_scan = 0.0;       ///< Of the first test.
+  std::vector<double> estimates;  ///< Of S − K, of the cycles of all tests but the first of each.
+};
+
+struct Peer {
+  std::string name;
+  /// An outcome for each scene. Its error is the reason in its rows.
+  std::function<base::Result<std::vector<PeerOutcome>>(std::span<const TierScene>)> run;
+};
+
+/// The tiers of friction::LiveDetector, the raw maximum less the mean, and a peer, at 50 … 10 000 scans/s.
+/// Seeded: the same numbers each time but for the times.
+[[nodiscard]] std::vector<TierRow> compare_tiers(const base::Clock& clock, const Peer& peer);
 
 }  // namespace stickslip::accuracy

@@ -41,15 +41,15 @@ void CycleBuffer::keep_fine(double from_s, double to_s, double longest_s) noexce
 
 void CycleBuffer::forget_before(double time_s) noexcept {
   const auto end = points_.begin() + static_cast<std::ptrdiff_t>(size_);
-  const auto kept =
-      std::find_if(points_.begin(), end, [&](const CyclePoint& point) { return point.last_s >= time_s; });
+  const auto kept = std::partition_point(points_.begin(), end,
+                                         [&](const CyclePoint& point) { return point.last_s < time_s; });
   size_ = static_cast<std::size_t>(std::move(kept, end, points_.begin()) - points_.begin());
 }
 
 std::span<const CyclePoint> CycleBuffer::since(double time_s) const noexcept {
   const std::span<const CyclePoint> all = points();
-  const auto first =
-      std::find_if(all.begin(), all.end(), [&](const CyclePoint& point) { return point.first_s >= time_s; });
+  const auto first = std::partition_point(all.begin(), all.end(),
+                                          [&](const CyclePoint& point) { return point.first_s < time_s; });
   return all.subspan(static_cast<std::size_t>(first - all.begin()));
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <tuple>
 
 namespace stickslip::friction {
@@ -14,53 +15,44 @@ double median_of_three(double a, double b, double c) noexcept {
 }  // namespace
 
 std::optional<Fall> FallFinder::add(double value, double hysteresis) {
-  std::copy(latest_.begin() + 1, latest_.end(), latest_.begin());
-  latest_.back() = value;
+  latest_.push(value);
   ++count_;
   std::optional<Fall> fall;
-  if (count_ == 1) {
-    // A median of one.
-    high_ = low_ = turn_ = Extreme{0, value, {}};
-    for (Extreme* first : {&high_, &low_}) complete(*first);
-    return fall;
-  }
-  for (Extreme* candidate : {&high_, &low_}) complete(*candidate);
-  if (count_ == 2) return fall;
-  const double median = median_of_three(latest_[2], latest_[3], latest_[4]);
+  // A median of one.
+  if (count_ == 1) high_ = low_ = turn_ = Extreme{0, value};
+  if (count_ <= 2) return fall;
+  keep_scans(high_, about_high_);
+  keep_scans(low_, about_low_);
+  const auto scans = latest_.values().last<3>();
+  const double median = median_of_three(scans[0], scans[1], scans[2]);
   step(count_ - 2, median, hysteresis, fall);
   return fall;
 }
 
-FallFinder::Extreme FallFinder::extreme(std::size_t position, double median) const noexcept {
-  // The newest scan is the one after the position.
-  Extreme extreme{position, median, {}};
-  std::copy(latest_.begin() + 1, latest_.end(), extreme.scans.begin());
-  return extreme;
-}
-
-void FallFinder::complete(Extreme& extreme) const noexcept {
-  const std::size_t offset = count_ - 1 - extreme.position;
-  if (offset <= kReach) extreme.scans[kReach + offset] = latest_.back();
-}
-
 void FallFinder::step(std::size_t position, double median, double hysteresis,
                       std::optional<Fall>& fall) noexcept {
-  const bool new_high = direction_ != Direction::kDown && median > high_.value;
-  const bool new_low = direction_ != Direction::kUp && median < low_.value;
-  if (new_high) {
+  if (direction_ == Direction::kUp) return rise(position, median, hysteresis);
+  if (direction_ == Direction::kUnknown && median > high_.value) {
     restart_at_high(position, median);
   } else {
-    above_after_low_.add(position, median);
     below_.add(position, median);
+    if (!(median < low_.value)) {
+      above_after_low_.add(position, median);
+    } else if (above_after_low_.empty()) {  // Most of a fall: as fall_to(), by the direct way.
+      low_ = {position, median};
+      above_.add(position, median);
+    } else {
+      above_after_low_.add(position, median);
+      fall_to(position, median);
+    }
   }
-  if (new_low) fall_to(position, median);
 
-  if (direction_ != Direction::kDown && median < high_.value - hysteresis) {
-    // The high was a maximum. While the direction is unknown the trace may have begun at it.
-    if (direction_ == Direction::kUnknown) turn_ = low_.position < high_.position ? low_ : high_;
+  if (direction_ == Direction::kUnknown && median < high_.value - hysteresis) {
+    // The high was a maximum, and the trace may have begun at it.
+    turn_ = low_.position < high_.position ? low_ : high_;
     direction_ = Direction::kDown;
     fall_to(position, median);
-  } else if (direction_ != Direction::kUp && median > low_.value + hysteresis) {
+  } else if (median > low_.value + hysteresis) {
     if (direction_ == Direction::kDown) fall = describe(high_, low_);
     direction_ = Direction::kUp;
     turn_ = low_;
@@ -68,22 +60,47 @@ void FallFinder::step(std::size_t position, double median, double hysteresis,
   }
 }
 
+void FallFinder::rise(std::size_t position, double median, double hysteresis) noexcept {
+  if (median > high_.value) {
+    restart_at_high(position, median);
+    return;
+  }
+  if (waiting_count_ == waiting_.size()) take_waiting(position);
+  waiting_[waiting_count_++] = median;
+  if (!(median < high_.value - hysteresis)) return;
+  // The high was a maximum.
+  take_waiting(position + 1);
+  direction_ = Direction::kDown;
+  fall_to(position, median);
+}
+
+void FallFinder::take_waiting(std::size_t end) noexcept {
+  std::size_t position = end - waiting_count_;
+  for (const double median : std::span{waiting_}.first(waiting_count_)) {
+    above_after_low_.add(position, median);
+    below_.add(position, median);
+    ++position;
+  }
+  waiting_count_ = 0;
+}
+
 void FallFinder::restart_at_high(std::size_t position, double median) noexcept {
-  high_ = extreme(position, median);
+  high_ = {position, median};
   above_.clear();
   above_after_low_.clear();
   below_.clear();
+  waiting_count_ = 0;
 }
 
 void FallFinder::fall_to(std::size_t position, double median) noexcept {
-  low_ = extreme(position, median);
+  low_ = {position, median};
   above_.take(above_after_low_);
 }
 
 Fall FallFinder::describe(const Extreme& peak, const Extreme& trough) const noexcept {
   Fall fall;
-  std::tie(fall.peak_at, fall.peak) = interpolate(peak, 1.0);
-  std::tie(fall.trough_at, fall.trough) = interpolate(trough, -1.0);
+  std::tie(fall.peak_at, fall.peak) = interpolate(peak, about_high_, 1.0);
+  std::tie(fall.trough_at, fall.trough) = interpolate(trough, about_low_, -1.0);
   const double drop = peak.value - trough.value;
   fall.robust_drop = drop;
   // 10–90 % as in rise times of instruments: ends of a fall are rounded and drown in noise.
@@ -96,9 +113,10 @@ Fall FallFinder::describe(const Extreme& peak, const Extreme& trough) const noex
   return fall;
 }
 
-std::pair<double, double> FallFinder::interpolate(const Extreme& extreme, double sign) noexcept {
+std::pair<double, double> FallFinder::interpolate(const Extreme& extreme, const Scans& scans,
+                                                  double sign) noexcept {
   // Whoever asks has seen more than kReach scans behind the extreme.
-  const auto at = [&](std::size_t position) { return extreme.scans[position + kReach - extreme.position]; };
+  const auto at = [&](std::size_t position) { return scans[position + kReach - extreme.position]; };
   std::size_t best = extreme.position;
   // The median of three lies at most one scan beside the true extreme scan.
   for (std::size_t position = std::max<std::size_t>(extreme.position, 1) - 1;

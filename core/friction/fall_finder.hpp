@@ -2,12 +2,14 @@
 /// Turning points of a noisy force: rises and falls that are large against the noise of a scan.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
 #include <utility>
 
 #include "core/signal/level_positions.hpp"
+#include "core/signal/sliding_window.hpp"
 
 namespace stickslip::friction {
 
@@ -52,38 +54,50 @@ class FallFinder {
 
   /// Scans before and after a turning point that its interpolation may look at.
   static constexpr std::size_t kReach = 2;
-  using Scans = std::array<double, 2 * kReach + 1>;
+  static constexpr std::size_t kScans = 2 * kReach + 1;
+
+  /// Those from position − kReach on, none before the trace.
+  using Scans = std::array<double, kScans>;
 
   /// A candidate for a turning point.
   struct Extreme {
     std::size_t position = 0;
     double value = 0.0;  ///< Median of three.
-    /// Those from position − kReach on: none before the trace, and no more than have come.
-    Scans scans{};
   };
 
-  [[nodiscard]] Extreme extreme(std::size_t position, double median) const noexcept;
-  /// Hands the newest scan to a candidate that it is close to.
-  void complete(Extreme& extreme) const noexcept;
+  /// Keeps the scans about a candidate when the last of them has come.
+  void keep_scans(const Extreme& extreme, Scans& scans) const noexcept {
+    if (count_ - 1 - extreme.position == kReach) std::ranges::copy(latest_.values(), scans.begin());
+  }
   void step(std::size_t position, double median, double hysteresis, std::optional<Fall>& fall) noexcept;
+  /// step() while the force rises.
+  void rise(std::size_t position, double median, double hysteresis) noexcept;
+  /// Into the stairs with those that wait. \param end  position behind the last of them.
+  void take_waiting(std::size_t end) noexcept;
   void restart_at_high(std::size_t position, double median) noexcept;
   void fall_to(std::size_t position, double median) noexcept;
   [[nodiscard]] Fall describe(const Extreme& peak, const Extreme& trough) const noexcept;
   /// Refines an extreme with a parabola through the largest scan near it and its neighbours.
   /// \param sign  +1 for a maximum, −1 for a minimum.
-  [[nodiscard]] static std::pair<double, double> interpolate(const Extreme& extreme, double sign) noexcept;
+  [[nodiscard]] static std::pair<double, double> interpolate(const Extreme& extreme, const Scans& scans,
+                                                             double sign) noexcept;
 
-  Scans latest_{};         ///< The newest last.
+  signal::SlidingWindow<kScans> latest_;
   std::size_t count_ = 0;  ///< Scans seen.
   Direction direction_ = Direction::kUnknown;
   Extreme high_;
   Extreme low_;
+  Scans about_high_{};  ///< From kReach scans behind it on; nobody asks before.
+  Scans about_low_{};
   Extreme turn_;  ///< The confirmed turning point before high_ (direction up) or peak (down).
 
   // Medians behind high_. While the force falls, those behind low_ are kept apart: the fall ends with low_.
   signal::LastAbove above_;
   signal::LastAbove above_after_low_;
   signal::FirstBelow below_;
+  /// The newest medians of a rise: most are forgotten with the next high, before they were worth a step.
+  std::array<double, 32> waiting_{};
+  std::size_t waiting_count_ = 0;
 };
 
 }  // namespace stickslip::friction

@@ -60,7 +60,7 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
   const auto amplitude = watch_.add(scan.value, usable);
 
   const auto fall = finder_.add(scan.value, SlipRule::kHysteresisSigmas * sigma);
-  if (finder_.falling()) {
+  if (finder_.falling() && follower_.keeps_scans()) {
     follower_.falls(time_of(static_cast<double>(finder_.high_at())),
                     time_of(static_cast<double>(finder_.low_at())));
   }

@@ -16,9 +16,9 @@ namespace {
 /// logarithm finite.
 constexpr double kLogScatter = 0.5545;
 constexpr double kLeastRatio = 1e-6;
-/// Rows of a question: some forty a period, whose blocks differ from their curvature term by less than 10⁻⁵
-/// of the amplitude.
-constexpr std::size_t kMostRows = 64;
+/// Rows of a question: forty a period, whose blocks differ from their curvature term by less than 10⁻⁵ of the
+/// amplitude, and which have the same scans at the next question.
+constexpr double kRowsPerPeriod = 40.0;
 /// Four parameters, and a choice.
 constexpr std::size_t kFewestPoints = 8;
 /// Of reweighting: weights of a linear model settle in two or three rounds.
@@ -27,70 +27,145 @@ constexpr int kMostIterations = 8;
 constexpr double kFirstDamping = 1e-3;
 /// Log-likelihood units: nothing against what decides.
 constexpr double kConverged = 1e-2;
+/// By so much the bounds may be wrong: what reweighting leaves of its way to the least cost.
+constexpr double kBoundsSlack = 1.0;
 
 }  // namespace
 
-void LiveJunction::lay_out(std::span<const CyclePoint> points, const SharedParameters& shared,
-                           double sigma) noexcept {
+LiveJunction::Row LiveJunction::row_of(std::span<const CyclePoint> together, double first_s,
+                                       const SharedParameters& shared) noexcept {
   const auto& [omega, gamma, r] = shared;
   const double omega0_squared = omega * omega + 0.25 * gamma * gamma;
-  // Asked often: neighbours go together until there are no more rows than tell the course.
-  const std::size_t group = (points.size() + kMostRows - 1) / kMostRows;
-  size_ = 0;
-  for (std::size_t begin = 0; begin < points.size(); begin += group) {
-    const auto together = points.subspan(begin, std::min(group, points.size() - begin));
-    Row sum;
-    double count = 0.0;
-    double squares = 0.0;  // Of times, for the spread of all scans together.
-    for (const CyclePoint& point : together) {
-      const double tau_s = point.time_s - points.front().time_s;
-      const double decay = std::exp(-0.5 * gamma * tau_s);
-      const double cosine = decay * std::cos(omega * tau_s);
-      const double sine = decay * std::sin(omega * tau_s) / omega;
-      const double by_D = cosine + 0.5 * gamma * sine;
-      // Both solve f″ = −γ f′ − ω₀² f; the first has f′ = −ω₀² sine, the second cosine − γ/2 sine.
-      const double rate_by_D = -omega0_squared * sine;
-      const double rate_by_rate = cosine - 0.5 * gamma * sine;
-      const double half_s2 = 0.5 * point.spread_s2;
-      sum.tau_s += point.count * tau_s;
-      sum.value += point.count * point.value;
-      sum.by_D += point.count * (by_D + half_s2 * (-gamma * rate_by_D - omega0_squared * by_D));
-      sum.by_rate += point.count * (sine + half_s2 * (-gamma * rate_by_rate - omega0_squared * sine));
-      squares += point.count * (tau_s * tau_s + point.spread_s2);
-      count += point.count;
-    }
-    Row& row = rows_[size_++];
-    row.tau_s = sum.tau_s / count;
-    row.value = sum.value / count;
-    row.by_D = sum.by_D / count;
-    row.by_rate = sum.by_rate / count;
-    row.scale = std::sqrt(count) / sigma;
-    row.half_spread_s2 = 0.5 * std::max(squares / count - row.tau_s * row.tau_s, 0.0);
+  Row sum;
+  double count = 0.0;
+  double squares = 0.0;  // Of times, for the spread of all scans together.
+  for (const CyclePoint& point : together) {
+    const double tau_s = point.time_s - first_s;
+    const double decay = std::exp(-0.5 * gamma * tau_s);
+    const double cosine = decay * std::cos(omega * tau_s);
+    const double sine = decay * std::sin(omega * tau_s) / omega;
+    const double by_D = cosine + 0.5 * gamma * sine;
+    // Both solve f″ = −γ f′ − ω₀² f; the first has f′ = −ω₀² sine, the second cosine − γ/2 sine.
+    const double rate_by_D = -omega0_squared * sine;
+    const double rate_by_rate = cosine - 0.5 * gamma * sine;
+    const double half_s2 = 0.5 * point.spread_s2;
+    sum.tau_s += point.count * tau_s;
+    sum.value += point.count * point.value;
+    sum.by_D += point.count * (by_D + half_s2 * (-gamma * rate_by_D - omega0_squared * by_D));
+    sum.by_rate += point.count * (sine + half_s2 * (-gamma * rate_by_rate - omega0_squared * sine));
+    squares += point.count * (tau_s * tau_s + point.spread_s2);
+    count += point.count;
   }
+  Row row;
+  row.tau_s = sum.tau_s / count;
+  row.value = sum.value / count;
+  row.by_D = sum.by_D / count;
+  row.by_rate = sum.by_rate / count;
+  row.root_count = std::sqrt(count);
+  row.half_spread_s2 = 0.5 * std::max(squares / count - row.tau_s * row.tau_s, 0.0);
+  row.begin_s = together.front().time_s;
+  row.end_s = together.back().time_s;
+  return row;
+}
+
+void LiveJunction::lay_out(std::span<const CyclePoint> points, const SharedParameters& shared,
+                           double sigma) noexcept {
+  const double first_s = points.front().time_s;
+  const bool same_courses =
+      first_s == first_s_ && shared.omega == shared_.omega && shared.gamma == shared_.gamma;
+  const std::size_t before = same_courses ? size_ : 0;
+  const double rows_per_s = kRowsPerPeriod * shared.omega / (2.0 * std::numbers::pi);
+  const auto place = [&](const CyclePoint& point) {
+    return std::floor((point.time_s - first_s) * rows_per_s);
+  };
+  size_ = 0;
+  std::size_t unchanged = 0;
+  for (auto begin = points.begin(); begin != points.end();) {
+    const double here = place(*begin);
+    const auto end =
+        std::find_if(begin + 1, points.end(), [&](const CyclePoint& point) { return place(point) != here; });
+    Row& row = rows_[size_];
+    // The scans that were there last time.
+    if (size_ < before && row.begin_s == begin->time_s && row.end_s == (end - 1)->time_s) {
+      if (unchanged == size_) ++unchanged;
+    } else {
+      row = row_of({begin, end}, first_s, shared);
+    }
+    row.scale = row.root_count / sigma;
+    ++size_;
+    begin = end;
+  }
+  if (!(same_courses && sigma == sigma_ && unchanged >= common_count_)) common_count_ = 0;
+  first_s_ = first_s;
+  shared_ = shared;
+  sigma_ = sigma;
 }
 
 double LiveJunction::fit_free(std::size_t count, Free& p) const noexcept {
   double cost = 0.0;
   for (int round = 0; round <= kRounds; ++round) {
-    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    // Written out: three numbers make poor vectors.
+    double n00 = 0.0;
+    double n01 = 0.0;
+    double n02 = 0.0;
+    double n11 = 0.0;
+    double n12 = 0.0;
+    double n22 = 0.0;
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     cost = 0.0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const Row& row = rows_[i];
-      const Eigen::Vector3d by{1.0, row.by_D, row.by_rate};
-      const double z = (row.value - by.dot(p)) * row.scale;
+    for (const Row& row : std::span{rows_}.first(count)) {
+      const double z = free_residual(row, p);
       cost += huber_cost(z);
       const double weight = (round == 0 ? 1.0 : huber_weight(z)) * row.scale * row.scale;
-      normal += (weight * by) * by.transpose();
-      right += weight * row.value * by;
+      const double weighted_D = weight * row.by_D;
+      const double weighted_rate = weight * row.by_rate;
+      n00 += weight;
+      n01 += weighted_D;
+      n02 += weighted_rate;
+      n11 += weighted_D * row.by_D;
+      n12 += weighted_rate * row.by_D;
+      n22 += weighted_rate * row.by_rate;
+      const double weighted_value = weight * row.value;
+      right[0] += weighted_value;
+      right[1] += weighted_value * row.by_D;
+      right[2] += weighted_value * row.by_rate;
     }
     if (round == kRounds) break;
+    Eigen::Matrix3d normal;
+    normal << n00, n01, n02, n01, n11, n12, n02, n12, n22;
     // by_rate is smaller than the others by ω: its own unit.
     const Eigen::Vector3d scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::Matrix3d scaled = scale.asDiagonal() * normal * scale.asDiagonal();
     const Eigen::Vector3d next = scale.cwiseProduct(scaled.ldlt().solve(scale.cwiseProduct(right)));
     if (next.allFinite()) p = next;
   }
+  return cost;
+}
+
+void LiveJunction::fit_common(const SharedParameters& shared, double typical_delta_mu) noexcept {
+  // Up to the trough, half an oscillation after the peak, the two are the same course.
+  const double half_s = std::numbers::pi / shared.omega;
+  std::size_t same = 0;
+  while (same < size_ && rows_[same].tau_s < half_s) ++same;
+  const std::size_t count = std::max<std::size_t>(std::min(size_, same), 4);
+  if (count == common_count_ && typical_delta_mu == common_typical_ && shared.r == common_r_) return;
+  common_count_ = count;
+  common_typical_ = typical_delta_mu;
+  common_r_ = shared.r;
+  common_ = Free::Zero();
+  common_cost_ = fit_free(count, common_);
+  common_capture_tau_s_ = events_of(usual_capture(typical_delta_mu), shared).capture_tau_s;
+}
+
+LiveJunction::Captured LiveJunction::usual_capture(double delta_mu) const noexcept {
+  Captured p;
+  p << common_, common_[0] + delta_mu;
+  return p;
+}
+
+double LiveJunction::carried_on_cost() const noexcept {
+  double cost = common_cost_;
+  for (std::size_t i = common_count_; i < size_; ++i) cost += huber_cost(free_residual(rows_[i], common_));
   return cost;
 }
 
@@ -158,9 +233,8 @@ LiveJunction::Assembled LiveJunction::assemble(const Captured& p, const SharedPa
   return sum;
 }
 
-double LiveJunction::fit_captured(Captured& p, const SharedParameters& shared, double sigma,
+double LiveJunction::fit_captured(Captured& p, Assembled now, const SharedParameters& shared, double sigma,
                                   double typical_delta_mu) const noexcept {
-  Assembled now = assemble(p, shared, typical_delta_mu);
   double damping = kFirstDamping;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     Eigen::Matrix4d normal = now.normal;
@@ -188,27 +262,35 @@ double LiveJunction::fit_captured(Captured& p, const SharedParameters& shared, d
 }
 
 JunctionEvidence LiveJunction::ask(std::span<const CyclePoint> points, const SharedParameters& shared,
-                                   double sigma, double typical_delta_mu) noexcept {
+                                   double sigma, double typical_delta_mu, double decisive) noexcept {
   JunctionEvidence evidence;
   if (points.size() < kFewestPoints || points.size() > rows_.size()) return evidence;
   evidence.known = true;
   lay_out(points, shared, sigma);
-  // Up to the trough, half an oscillation after the peak, the two are the same course.
-  const double half_s = std::numbers::pi / shared.omega;
-  std::size_t same = 0;
-  while (same < size_ && rows_[same].tau_s < half_s) ++same;
-  Free start = Free::Zero();
-  fit_free(std::max<std::size_t>(std::min(size_, same), 4), start);
-  Free free = start;
+  fit_common(shared, typical_delta_mu);
+  const auto count = static_cast<double>(size_);
+  const auto is_misfit = [&](double cost) { return 2.0 * cost > kMisfitSigmas * kMisfitSigmas * count; };
+
+  // Neither course can cost less than the common part alone, nor more than when it carries on from there as
+  // it usually does. Where these two bounds leave no room for a decisive answer, it is not worked out.
+  const double room = decisive - kBoundsSlack;
+  const double carried_on = carried_on_cost();
+  const bool all_free = rows_[size_ - 1].tau_s <= common_capture_tau_s_;
+  if (all_free && carried_on - common_cost_ < room && !is_misfit(carried_on)) return evidence;
+  const Assembled usual = assemble(usual_capture(typical_delta_mu), shared, typical_delta_mu);
+  if (std::max(carried_on, usual.cost) - common_cost_ < room && !is_misfit(carried_on)) return evidence;
+  Free free = common_;
   const double free_cost = fit_free(size_, free);
+  if (free_cost - common_cost_ < room && usual.cost - free_cost < room && !is_misfit(free_cost))
+    return evidence;
 
   double captured_cost = std::numeric_limits<double>::infinity();
   Captured best = Captured::Zero();
   // Two starts, as the cost has two valleys: S − K as usual, and hardly any.
   for (const double part : {1.0, 0.1}) {
-    Captured p;
-    p << start, start[0] + part * typical_delta_mu;
-    const double cost = fit_captured(p, shared, sigma, typical_delta_mu);
+    Captured p = usual_capture(part * typical_delta_mu);
+    const Assembled start = part == 1.0 ? usual : assemble(p, shared, typical_delta_mu);
+    const double cost = fit_captured(p, start, shared, sigma, typical_delta_mu);
     if (cost < captured_cost) {
       captured_cost = cost;
       best = p;
@@ -220,7 +302,7 @@ JunctionEvidence LiveJunction::ask(std::span<const CyclePoint> points, const Sha
   evidence.capture_s = points.front().time_s + events.capture_tau_s;
   evidence.next_onset_s = points.front().time_s + events.onset_tau_s;
   // Where both leave more than noise, the scans tell less than they seem to.
-  const double left = 2.0 * std::min(free_cost, captured_cost) / static_cast<double>(size_);
+  const double left = 2.0 * std::min(free_cost, captured_cost) / count;
   evidence.residual_sigmas = std::sqrt(left);
   evidence.log_likelihood_ratio = (free_cost - captured_cost) / std::max(left, 1.0);
   return evidence;

@@ -15,6 +15,9 @@
 
 namespace stickslip::friction {
 
+/// Residuals that many times the noise: neither course describes the scans.
+inline constexpr double kMisfitSigmas = 2.0;
+
 struct JunctionEvidence {
   /// Captured over free; about 0 as long as the scans cannot tell.
   double log_likelihood_ratio = 0.0;
@@ -29,17 +32,22 @@ class LiveJunction {
  public:
   /// \param points  from a maximum of the force on. \param shared  ω, γ and r, held fixed.
   /// \param sigma   noise of one scan. \param typical_delta_mu  S − K of the slips so far, roughly; > 0.
+  /// \param decisive  of the ratio's size. An answer that is certainly smaller is not worked out, which is
+  /// most of the time it costs: `known`, and nothing more. 0: always.
   [[nodiscard]] JunctionEvidence ask(std::span<const CyclePoint> points, const SharedParameters& shared,
-                                     double sigma, double typical_delta_mu) noexcept;
+                                     double sigma, double typical_delta_mu, double decisive = 0.0) noexcept;
 
  private:
   struct Row {
     double tau_s = 0.0;  ///< After the first point.
     double value = 0.0;  ///< Of the point.
     double scale = 0.0;  ///< √count/σ
+    double root_count = 0.0;
     double half_spread_s2 = 0.0;
     double by_D = 0.0;     ///< What c(0) − K adds, its mean over the point.
     double by_rate = 0.0;  ///< What c′(0) adds, s.
+    double begin_s = 0.0;  ///< Time of its first point,
+    double end_s = 0.0;    ///< and of its last.
   };
   using Free = Eigen::Vector3d;      ///< K, c(0) − K, c′(0)
   using Captured = Eigen::Vector4d;  ///< … and S of the next slip
@@ -52,9 +60,22 @@ class LiveJunction {
     double onset_tau_s = 0.0;
   };
 
+  /// Of neighbouring points.
+  [[nodiscard]] static Row row_of(std::span<const CyclePoint> together, double first_s,
+                                  const SharedParameters& shared) noexcept;
+  [[nodiscard]] static double free_residual(const Row& row, const Free& p) noexcept {
+    return (row.value - (p[0] + (row.by_D * p[1] + row.by_rate * p[2]))) * row.scale;
+  }
+  /// The rows of these points; those that were there at the last question are kept.
   void lay_out(std::span<const CyclePoint> points, const SharedParameters& shared, double sigma) noexcept;
   /// Best free course of the first `count` rows. \return its cost.
   double fit_free(std::size_t count, Free& p) const noexcept;
+  /// The course that both begin with, unless it is the same as at the last question.
+  void fit_common(const SharedParameters& shared, double typical_delta_mu) noexcept;
+  /// The common course as it goes on if it is captured, with so much S − K of the next slip.
+  [[nodiscard]] Captured usual_capture(double delta_mu) const noexcept;
+  /// Cost of all rows if the common course goes on freely.
+  [[nodiscard]] double carried_on_cost() const noexcept;
   [[nodiscard]] Events events_of(const Captured& p, const SharedParameters& shared) const noexcept;
   struct Assembled {
     Eigen::Matrix4d normal;
@@ -63,11 +84,22 @@ class LiveJunction {
   };
   [[nodiscard]] Assembled assemble(const Captured& p, const SharedParameters& shared,
                                    double typical_delta_mu) const noexcept;
-  double fit_captured(Captured& p, const SharedParameters& shared, double sigma,
+  /// \param now  assembled at p.
+  double fit_captured(Captured& p, Assembled now, const SharedParameters& shared, double sigma,
                       double typical_delta_mu) const noexcept;
 
   std::array<Row, CycleBuffer::kMostPoints> rows_;
   std::size_t size_ = 0;
+  // Of the last question.
+  double first_s_ = 0.0;
+  SharedParameters shared_;
+  double sigma_ = 0.0;
+  Free common_ = Free::Zero();
+  std::size_t common_count_ = 0;  ///< Rows of the common course; 0 if there is none.
+  double common_cost_ = 0.0;
+  double common_capture_tau_s_ = 0.0;
+  double common_typical_ = 0.0;
+  double common_r_ = 0.0;
 };
 
 }  // namespace stickslip::friction

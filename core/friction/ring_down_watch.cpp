@@ -28,8 +28,7 @@ void RingDownWatch::restart() noexcept {
   right_.setZero();
 }
 
-std::optional<RingDownWatch::Amplitude> RingDownWatch::add(double value, bool usable) noexcept {
-  if (!running_) return std::nullopt;
+std::optional<RingDownWatch::Amplitude> RingDownWatch::take(double value, bool usable) noexcept {
   if (usable) {
     if (count_ == 0.0) base_ = value;
     const double y = value - base_;

@@ -27,9 +27,13 @@ class RingDownWatch {
   [[nodiscard]] bool running() const noexcept { return running_; }
 
   /// \param usable  else the scan only passes time. \return the amplitude when this scan ends a period.
-  std::optional<Amplitude> add(double value, bool usable) noexcept;
+  std::optional<Amplitude> add(double value, bool usable) noexcept {
+    if (!running_) return std::nullopt;
+    return take(value, usable);
+  }
 
  private:
+  [[nodiscard]] std::optional<Amplitude> take(double value, bool usable) noexcept;
   [[nodiscard]] std::optional<Amplitude> close() noexcept;
   void restart() noexcept;
 

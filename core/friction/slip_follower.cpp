@@ -34,8 +34,6 @@ constexpr double kLeastReachScans = 1.6;
 /// Parts of a rise between which its slope is the stick rate.
 constexpr double kRiseFrom = 0.3;
 constexpr double kRiseTo = 0.7;
-/// Residuals that many times the noise with a stick rate that does not fit: the belt's speed has changed.
-constexpr double kMisfit = 2.0;
 /// Turning points know ω and r by such parts; only their ratio to what was known before matters.
 constexpr double kTurningPointSpread = 0.02;
 constexpr double kSlopeSpread = 0.05;
@@ -89,6 +87,7 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
   peak_s_ = peak_s;
   trough_s_ = trough_s;
   evidence_ = {};
+  question_from_s_ = kUnknown;
   if (!begins_from_stick) last_capture_s_ = kUnknown;
 
   const double half_s = std::max(trough_s - peak_s, scan_s_);
@@ -136,8 +135,7 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
   }
 }
 
-bool SlipFollower::step(double now_s, double sigma) noexcept {
-  if (task_ == Task::kNone || now_s < next_task_s_) return false;
+bool SlipFollower::do_task(double now_s, double sigma) noexcept {
   switch (task_) {
     case Task::kFirstFit:
       first_fit(sigma);
@@ -178,15 +176,19 @@ void SlipFollower::first_fit(double sigma) noexcept {
   const CycleFit fit = fit_cycle(between(buffer_.points(), window_from_s_, trough_s_), false, first_guess(),
                                  knowledge_, sigma);
   if (fit.converged) shared_ = fit.shared;
+  question_from_s_ = kUnknown;
+}
+
+double SlipFollower::slipping_before_peak_s() const noexcept {
+  if (!begins_from_stick_) return 0.0;
+  return kSurelySlipping * std::clamp(peak_s_ - first_guess().onset_s, 0.0, 0.25 * period_s());
 }
 
 bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
-  const double slipping_s = begins_from_stick_ ? kSurelySlipping * std::clamp(peak_s_ - first_guess().onset_s,
-                                                                              0.0, 0.25 * period_s())
-                                               : 0.0;
-  const auto points = buffer_.since(peak_s_ - slipping_s);
-  evidence_ = junction_.ask(points, shared_, sigma, typical_delta_mu_);
-  if (evidence_.known && evidence_.residual_sigmas > kMisfit) {
+  if (std::isnan(question_from_s_)) question_from_s_ = peak_s_ - slipping_before_peak_s();
+  const auto points = buffer_.since(question_from_s_);
+  evidence_ = junction_.ask(points, shared_, sigma, typical_delta_mu_, last ? 0.0 : kDecisive);
+  if (evidence_.known && evidence_.residual_sigmas > kMisfitSigmas) {
     // Neither course fits: perhaps the belt has another speed now, which the rise before this slip tells.
     SharedParameters other = shared_;
     other.r = rise_slope_;
@@ -194,6 +196,7 @@ bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
     if (with_other.residual_sigmas < evidence_.residual_sigmas) {
       evidence_ = with_other;
       shared_ = other;
+      question_from_s_ = kUnknown;
     }
   }
   slip_.evidence = evidence_.known ? evidence_.log_likelihood_ratio : kUnknown;
@@ -292,7 +295,7 @@ void SlipFollower::estimate_by_fit(double end_s, double sigma) noexcept {
   const bool is_captured = decided_ && captured();
   const auto points = between(buffer_.points(), window_from_s_, end_s);
   CycleFit fit = fit_cycle(points, is_captured, first_guess(), knowledge_, sigma);
-  if (fit.converged && fit.residual_sigmas > kMisfit && rise_slope_ > 0.0 &&
+  if (fit.converged && fit.residual_sigmas > kMisfitSigmas && rise_slope_ > 0.0 &&
       std::abs(std::log(rise_slope_ / knowledge_.best().r)) > kStickRateChange) {
     SharedKnowledge anew = knowledge_;
     anew.forget_stick_rate(rise_slope_);
@@ -306,7 +309,7 @@ void SlipFollower::estimate_by_fit(double end_s, double sigma) noexcept {
   take_course(fit.shared, fit.slip);
   slip_.cycle.delta_mu_standard_error = std::sqrt(std::max(fit.delta_mu_variance(), 0.0));
   learn_typical(fit.delta_mu());
-  if (fit.residual_sigmas < kMisfit) knowledge_.learn(fit.evidence);
+  if (fit.residual_sigmas < kMisfitSigmas) knowledge_.learn(fit.evidence);
 }
 
 void SlipFollower::estimate_by_turning_points() noexcept {

@@ -22,10 +22,12 @@ class SlipFollower {
 
   /// A usable scan.
   void add(double time_s, double value) noexcept {
-    if (tier_ != EstimatorTier::kPeak) buffer_.add(time_s, value);
+    if (keeps_scans()) buffer_.add(time_s, value);
   }
   /// The force falls: its peak and the lowest so far.
   void falls(double peak_s, double lowest_s) noexcept;
+  /// add() and falls() have a use.
+  [[nodiscard]] bool keeps_scans() const noexcept { return tier_ != EstimatorTier::kPeak; }
   /// Scans are missing: what was before does not belong to what comes.
   void gap() noexcept;
 
@@ -34,7 +36,9 @@ class SlipFollower {
   /// was captured; if it was not, but this one is too large for that, it begins from sticking all the same.
   void open(const Fall& fall, double peak_s, double trough_s, bool begins_from_stick, double sigma) noexcept;
   /// At most one task. \return true when this decided how the slip ends.
-  [[nodiscard]] bool step(double now_s, double sigma) noexcept;
+  [[nodiscard]] bool step(double now_s, double sigma) noexcept {
+    return task_ != Task::kNone && !(now_s < next_task_s_) && do_task(now_s, sigma);
+  }
   /// All that is left to do, with what is known. \param next  the slip that follows; nullptr if there is
   /// none. \return true when this decided how the slip ends.
   [[nodiscard]] bool force(double now_s, double sigma, const Fall* next) noexcept;
@@ -50,6 +54,7 @@ class SlipFollower {
  private:
   enum class Task { kNone, kFirstFit, kJudge, kFit };
 
+  [[nodiscard]] bool do_task(double now_s, double sigma) noexcept;
   void first_fit(double sigma) noexcept;
   [[nodiscard]] bool judge(double now_s, double sigma, bool last) noexcept;
   /// The next drop if it goes on freely.
@@ -63,6 +68,8 @@ class SlipFollower {
   void take_course(const SharedParameters& shared, const SlipParameters& slip) noexcept;
   void learn_typical(double delta_mu) noexcept;
   [[nodiscard]] SlipParameters first_guess() const noexcept;
+  /// How long before the peak it surely slips: the onset is a guess.
+  [[nodiscard]] double slipping_before_peak_s() const noexcept;
   [[nodiscard]] double period_s() const noexcept;
 
   EstimatorTier tier_;
@@ -82,6 +89,7 @@ class SlipFollower {
   double peak_s_ = 0.0;
   double trough_s_ = 0.0;
   double rise_slope_ = 0.0;
+  double question_from_s_ = 0.0;  ///< Scans from here on tell how it ends; NaN until asked.
   SharedParameters shared_;
   JunctionEvidence evidence_;
 

@@ -17,13 +17,16 @@ double SlipWaveform::rate(double t_s) const noexcept {
   return r * at.cosine - (oscillator.gamma_per_s * r / 2.0 + oscillator.omega0_squared() * D) * at.sine;
 }
 
-double SlipWaveform::acceleration(double t_s) const noexcept {
+double SlipWaveform::acceleration(double t_s) const noexcept { return motion(t_s).acceleration; }
+
+SlipWaveform::Motion SlipWaveform::motion(double t_s) const noexcept {
   const DampedBasis at = damped_basis(oscillator, t_s);
   const double gamma = oscillator.gamma_per_s;
   const double omega0_squared = oscillator.omega0_squared();
   const double start = -gamma * r - omega0_squared * D;
   // c″ is a solution of the same oscillator: from start, with the slope −γ c″ − ω₀² c′.
-  return start * at.cosine - (gamma * start / 2.0 + omega0_squared * r) * at.sine;
+  return {r * at.cosine - (gamma * r / 2.0 + omega0_squared * D) * at.sine,
+          start * at.cosine - (gamma * start / 2.0 + omega0_squared * r) * at.sine};
 }
 
 double SlipWaveform::peak_time_s() const noexcept {

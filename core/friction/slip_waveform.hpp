@@ -25,6 +25,12 @@ struct SlipWaveform {
   [[nodiscard]] double rate(double t_s) const noexcept;
   /// c″(t), 1/s².
   [[nodiscard]] double acceleration(double t_s) const noexcept;
+  struct Motion {
+    double rate;
+    double acceleration;
+  };
+  /// Both for the price of one.
+  [[nodiscard]] Motion motion(double t_s) const noexcept;
 
   // The following only if oscillator.oscillates().
 

@@ -71,7 +71,9 @@ double delta_mu_of_peak(double peak_above_K, double stick_rate_per_s, const Osci
     const double by_D = at.cosine + 0.5 * oscillator.gamma_per_s * at.sine;
     if (!(by_D > 0.0)) break;
     const double peak = D * by_D + stick_rate_per_s * at.sine;
+    const double before = D;
     D = std::max(D + (peak_above_K - peak) / by_D, 0.0);
+    if (D == before) break;
   }
   return D;
 }

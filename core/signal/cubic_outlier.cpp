@@ -43,7 +43,7 @@ double largest_second_difference(const Eigen::Matrix<double, 7, 1>& values) {
 
 }  // namespace
 
-std::optional<double> cubic_outlier(const std::array<double, kCubicWindow>& window, double sigma) noexcept {
+std::optional<double> cubic_outlier(std::span<const double, kCubicWindow> window, double sigma) noexcept {
   const Eigen::Map<const Eigen::Matrix<double, 7, 1>> values{window.data()};
   const Eigen::Matrix<double, 3, 7>& beyond = beyond_cubic();
   const Eigen::Vector3d misfit = beyond * values;

@@ -7,9 +7,11 @@
 ///     while (auto scan = despiker.flush(sigma)) use(scan->value, scan->spike);
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
+
+#include "core/signal/sliding_window.hpp"
 
 namespace stickslip::signal {
 
@@ -46,10 +48,12 @@ class Despiker {
   static constexpr std::size_t kWidth = 7;
   static constexpr std::size_t kDelay = 3;
 
-  [[nodiscard]] DespikedScan judge(std::size_t position, double sigma) noexcept;
+  /// With three on each side.
+  [[nodiscard]] DespikedScan judge_middle(double sigma) noexcept;
+  /// At the ends of the trace.
+  [[nodiscard]] DespikedScan judge_end(std::size_t position, double sigma) noexcept;
 
-  std::array<double, kWidth>
-      window_{};  ///< Oldest first; the first `size_` are in use; judged ones repaired.
+  SlidingWindow<kWidth> window_;  ///< The newest `size_` are in use; judged ones repaired.
   std::size_t size_ = 0;
   std::size_t judged_ = 0;  ///< Leading scans of the window that have been given out.
 };

@@ -4,47 +4,37 @@
 
 namespace stickslip::signal {
 
-void Stairs::clear() noexcept {
-  steps_.clear();
-  cell_bits_ = 0;
-}
-
 void Stairs::push_into_cells(const CourseStep& step) noexcept {
   if (join(step)) return;
-  while (steps_.size() == kMostSteps) {
+  while (size_ == kMostSteps) {
     widen_cells();
     if (join(step)) return;
   }
-  steps_.push_back(step);
+  steps_[size_++] = step;
 }
 
 bool Stairs::join(const CourseStep& step) noexcept {
-  if (cell_bits_ == 0 || steps_.empty() || !same_cell(steps_.back(), step)) return false;
-  if (keep_ == Keep::kLast) steps_.back() = step;
+  if (cell_bits_ == 0 || size_ == 0 || !same_cell(steps_[size_ - 1], step)) return false;
+  if (keep_ == Keep::kLast) steps_[size_ - 1] = step;
   return true;
 }
 
 void Stairs::widen_cells() noexcept {
   ++cell_bits_;
   std::size_t kept = 0;
-  for (const CourseStep& step : steps_) {
+  for (const CourseStep& step : steps()) {
     if (kept == 0 || !same_cell(steps_[kept - 1], step)) {
       steps_[kept++] = step;
     } else if (keep_ == Keep::kLast) {
       steps_[kept - 1] = step;
     }
   }
-  steps_.resize(kept);
+  size_ = kept;
 }
 
 // Of two steps in a cell the first one stays: whoever asks for a level between them, or below both, gets a
 // position of the same cell. The last one's position could not answer for a level just below the first's
 // value: the step before may be anywhere.
-
-void LastAbove::add(std::size_t position, double value) noexcept {
-  while (!stairs_.steps().empty() && stairs_.steps().back().value <= value) stairs_.pop();
-  stairs_.push({position, value});
-}
 
 void LastAbove::take(LastAbove& later) noexcept {
   for (const CourseStep& step : later.stairs_.steps()) add(step.position, step.value);
@@ -52,7 +42,7 @@ void LastAbove::take(LastAbove& later) noexcept {
 }
 
 std::optional<std::size_t> LastAbove::find(double level) const noexcept {
-  const std::vector<CourseStep>& steps = stairs_.steps();
+  const std::span<const CourseStep> steps = stairs_.steps();
   const auto after = std::partition_point(steps.begin(), steps.end(),
                                           [&](const CourseStep& step) { return step.value > level; });
   if (after == steps.begin()) return std::nullopt;
@@ -61,13 +51,8 @@ std::optional<std::size_t> LastAbove::find(double level) const noexcept {
 
 // Here the last one stays, for the same reason seen from the other end.
 
-void FirstBelow::add(std::size_t position, double value) noexcept {
-  if (!stairs_.steps().empty() && !(value < stairs_.steps().back().value)) return;
-  stairs_.push({position, value});
-}
-
 std::optional<std::size_t> FirstBelow::find(double level) const noexcept {
-  const std::vector<CourseStep>& steps = stairs_.steps();
+  const std::span<const CourseStep> steps = stairs_.steps();
   const auto first = std::partition_point(steps.begin(), steps.end(),
                                           [&](const CourseStep& step) { return !(step.value < level); });
   if (first == steps.end()) return std::nullopt;

@@ -9,6 +9,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "core/signal/sliding_window.hpp"
+
 namespace stickslip::signal {
 
 /// Standard deviation of white noise on single scans, from fourth differences: these let pass
@@ -18,10 +20,19 @@ namespace stickslip::signal {
 /// slips count. Streaming, O(1) memory and bounded time per scan; does not allocate.
 class NoiseEstimator {
  public:
+  static constexpr std::size_t kBlock = 64;
+
   /// \param floor  smallest answer: what one A/D step alone makes, step/√12.
   explicit NoiseEstimator(double floor) noexcept;
 
-  void add(double value) noexcept;
+  void add(double value) noexcept {
+    last_.push(value);
+    if (++seen_ < kDifference) return;
+    const auto v = last_.values();
+    const double fourth_difference = v[0] - 4.0 * v[1] + 6.0 * v[2] - 4.0 * v[3] + v[4];
+    block_[in_block_++] = std::abs(fourth_difference);
+    if (in_block_ == kBlock) close_block();
+  }
   /// Forgets the neighbours (not the estimate): differences do not reach across a gap.
   void gap() noexcept { seen_ = 0; }
 
@@ -31,7 +42,7 @@ class NoiseEstimator {
   [[nodiscard]] double sigma() const noexcept { return sigma_; }
 
  private:
-  static constexpr std::size_t kBlock = 64;
+  static constexpr std::size_t kDifference = 5;  ///< Values of a fourth difference.
   /// Medians of blocks kept: the latest 256, i.e. 47 s at 350 Hz.
   static constexpr std::size_t kBlocks = 256;
 
@@ -39,7 +50,7 @@ class NoiseEstimator {
 
   double floor_;
   double sigma_;
-  std::array<double, 5> last_{};
+  SlidingWindow<kDifference> last_;
   std::size_t seen_ = 0;
   std::array<double, kBlock> block_{};
   std::size_t in_block_ = 0;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "core/sim/propagator.hpp"
@@ -23,6 +24,14 @@ inline sim::Motion motion_at(double Q, double gamma_over_2omega, double mu_s = 0
   motion.gravity_m_per_s2 = kGravity;
   const double speed = Q * kOmega * (mu_s - mu_k) * kGravity / motion.oscillator.omega0_squared();
   motion.belt = {{1e12, speed, false}};
+  return motion;
+}
+
+/// At Q = 1's S and K, on a belt of these segments.
+inline sim::Motion on_belt(std::vector<sim::BeltSegment> belt, double damping = 0.022, bool one_way = false) {
+  sim::Motion motion = motion_at(1.0, damping);
+  motion.belt = std::move(belt);
+  motion.one_way_coupling = one_way;
   return motion;
 }
 

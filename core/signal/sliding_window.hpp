@@ -1,0 +1,40 @@
+/// \file
+/// The newest few values of a stream, side by side.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace stickslip::signal {
+
+/// The last kWidth values, oldest first; zeros before the first. They move through a room of several widths
+/// and only now and then back to its begin: to shift them at each scan would cost more than most tests of
+/// them.
+template <std::size_t kWidth>
+class SlidingWindow {
+ public:
+  void push(double value) noexcept {
+    if (end_ == room_.size()) {
+      std::copy(room_.end() - (kWidth - 1), room_.end(), room_.begin());
+      end_ = kWidth - 1;
+    }
+    room_[end_++] = value;
+  }
+
+  [[nodiscard]] std::span<const double, kWidth> values() const noexcept {
+    return std::span<const double, kWidth>{room_.data() + (end_ - kWidth), kWidth};
+  }
+  [[nodiscard]] std::span<double, kWidth> values() noexcept {
+    return std::span<double, kWidth>{room_.data() + (end_ - kWidth), kWidth};
+  }
+
+ private:
+  static constexpr std::size_t kRoom = 16 * kWidth;
+
+  std::array<double, kRoom> room_{};
+  std::size_t end_ = kWidth;
+};
+
+}  // namespace stickslip::signal
