@@ -7,26 +7,26 @@
 
 namespace stickslip::test {
 
-BoardCase comedi_case() {
-  const auto make = [](ManualClock& clock) {
+namespace {
+
+BoardCase fake_case(const char* name, const drivers::ComediBoardSettings& settings) {
+  const auto make = [settings](ManualClock& clock) {
     auto world = std::make_shared<FakeComediWorld>();
-    auto board = drivers::make_comedi_board({}, clock, std::make_unique<FakeComedi>(*world, clock));
+    auto board = drivers::make_comedi_board(settings, clock, std::make_unique<FakeComedi>(*world, clock));
     if (!board) throw std::runtime_error(board.error().message);
     return BoardRig{std::move(world), nullptr, std::move(*board)};
   };
-  return {.name = "ComediOnAFakeTable", .make = make};
+  return {.name = name, .make = make};
 }
 
+}  // namespace
+
+BoardCase comedi_case() { return fake_case("ComediOnAFakeTable", {}); }
+
 BoardCase polled_comedi_case() {
-  const auto make = [](ManualClock& clock) {
-    auto world = std::make_shared<FakeComediWorld>();
-    drivers::ComediBoardSettings settings;
-    settings.acquisition = drivers::AcquisitionMode::kPolled;
-    auto board = drivers::make_comedi_board(settings, clock, std::make_unique<FakeComedi>(*world, clock));
-    if (!board) throw std::runtime_error(board.error().message);
-    return BoardRig{std::move(world), std::move(*board)};
-  };
-  return {"PolledComediOnAFakeTable", make};
+  drivers::ComediBoardSettings settings;
+  settings.acquisition = drivers::AcquisitionMode::kPolled;
+  return fake_case("PolledComediOnAFakeTable", settings);
 }
 
 }  // namespace stickslip::test
