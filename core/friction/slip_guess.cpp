@@ -44,7 +44,7 @@ double slope_of_rise(const Trace& trace, const Fall& fall, double low, double hi
 
 /// Slope of the loading from rest: upper quartile of those over an eighth of it, or from scan to scan if it
 /// is shorter. It begins less steep, while a sled that a fast start of the belt has left behind catches up,
-/// and ends so, where it slips.
+/// and ends so, where it slips. There must be a scan before the peak.
 double slope_of_loading(const Trace& trace, const Fall& first) {
   constexpr double kFrom = 0.1;
   constexpr double kTo = 0.95;
@@ -112,8 +112,8 @@ SharedParameters first_guess(const Trace& trace, std::span<const Fall> slips) {
   shared.omega = std::numbers::pi / signal::median(half_periods);
   shared.gamma = 2.0 * kFirstGammaOver2Omega * shared.omega;
   const Fall& first = slips.front();
-  const bool from_loading =
-      trace.belt.is_constant() && level_before(trace, first) < kLoadingStartsBelow * first.peak;
+  const bool from_loading = trace.belt.is_constant() && scan_at(first.peak_at) > 0 &&
+                            level_before(trace, first) < kLoadingStartsBelow * first.peak;
   shared.r = from_loading ? slope_of_loading(trace, first) : slope_of_sticks(trace, slips);
   return shared;
 }

@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+"""How soon can an escape be told from a capture at all? The bound beside bench/live_limits (docs/detector.md).
+
+    python3 bench/escape_bound.py
+
+The scans of a slip that just escapes, without noise, are fitted by the nearest captured course: [11]-[13] up to
+the capture, stick at rate r, a second slip; free are the onset, S - K, K and S - K of the second slip, which is
+expected to be log-normal about the first with 0.5545 (core/friction/junction). omega, gamma and r are known. With
+d^2 the sum of squares left over the noise, the log likelihood ratio of scans with white noise is normal with mean
+d^2/2 and variance d^2 (Neyman and Pearson 1933), so that it exceeds ln 10^4 with probability
+Phi((d^2/2 - ln 10^4)/d). No rule that errs once in 10^4 does better on the same scans.
+"""
+import numpy as np
+from scipy.optimize import least_squares
+from scipy.stats import norm
+
+# The tester of tests/support/live_trials.hpp [Penner 1995, Table 1], 12 in/min.
+SCAN_RATE_HZ = 350.0
+FREQUENCY_HZ = 20.0
+GAMMA_OVER_2OMEGA = 0.022
+DELTA_MU = 0.05
+Q = 1.309
+NOISE = 0.02 * DELTA_MU
+LOG_SCATTER = 0.5545
+DECISIVE = np.log(1e4)  # As in core/friction/slip_follower.
+
+OMEGA = 2.0 * np.pi * FREQUENCY_HZ
+GAMMA = 2.0 * GAMMA_OVER_2OMEGA * OMEGA
+STICK_RATE = Q * OMEGA * DELTA_MU
+PERIOD_S = 1.0 / FREQUENCY_HZ
+
+
+def swing(delta_mu, t):
+    """c - K from the onset on (11)."""
+    b = (STICK_RATE + 0.5 * GAMMA * delta_mu) / OMEGA
+    return np.exp(-0.5 * GAMMA * t) * (delta_mu * np.cos(OMEGA * t) + b * np.sin(OMEGA * t))
+
+
+def rate(delta_mu, t):
+    """Its derivative (12)."""
+    b = (STICK_RATE + 0.5 * GAMMA * delta_mu) / OMEGA
+    return np.exp(-0.5 * GAMMA * t) * (
+        (OMEGA * b - 0.5 * GAMMA * delta_mu) * np.cos(OMEGA * t)
+        - (OMEGA * delta_mu + 0.5 * GAMMA * b) * np.sin(OMEGA * t)
+    )
+
+
+RISE_S = np.linspace(0.4, 1.0, 100_001) * PERIOD_S
+
+
+def threshold_delta_mu():
+    """Least S - K after which c' gets back to the stick rate (22), by bisection."""
+    low, high = 1e-4, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if rate(middle, RISE_S).max() > STICK_RATE:
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+def capture_s(delta_mu):
+    left = rate(delta_mu, RISE_S) - STICK_RATE
+    return RISE_S[np.argmax(left >= 0.0) if left.max() >= 0.0 else np.argmax(left)]
+
+
+def captured_course(onset_s, delta_mu, kinetic, next_delta_mu, t):
+    tau = t - onset_s
+    capture = capture_s(delta_mu)
+    at_capture = kinetic + swing(delta_mu, capture)
+    next_static = max(kinetic + next_delta_mu, at_capture)
+    next_onset = capture + (next_static - at_capture) / STICK_RATE
+    return np.select(
+        [tau < 0.0, tau <= capture, tau <= next_onset],
+        [
+            kinetic + delta_mu + STICK_RATE * tau,
+            kinetic + swing(delta_mu, tau),
+            at_capture + STICK_RATE * (tau - capture),
+        ],
+        kinetic + swing(next_static - kinetic, tau - next_onset),
+    )
+
+
+def distance(over_threshold, periods, threshold):
+    """d of the nearest captured course, from scans up to so many periods after the onset."""
+    truth = threshold / over_threshold
+    # From 30 scans of the stick before on; the onset lies a third of a scan after a scan.
+    t = (np.arange(-30, int(periods * PERIOD_S * SCAN_RATE_HZ) + 1) + 1.0 / 3.0) / SCAN_RATE_HZ
+    t = t[t <= periods * PERIOD_S]
+    free = np.where(t < 0.0, truth + STICK_RATE * t, swing(truth, t))
+
+    def residuals(p):
+        surprise = np.log(max(p[3] / truth, 1e-6)) / LOG_SCATTER
+        return np.append((captured_course(*p, t) - free) / NOISE, surprise)
+
+    fits = [
+        least_squares(
+            residuals,
+            [0.0, part * threshold, 0.0, next_part * threshold],
+            bounds=([-0.02, threshold, -1.0, 1e-6], [0.02, 1.0, 1.0, 1.0]),
+            x_scale=[1e-4, 1e-3, 1e-3, 1e-2],
+            diff_step=1e-5,
+        )
+        for part in (1.0 + 1e-9, 1.05)
+        for next_part in (0.02, 0.1, 0.5, 1.0)
+    ]
+    return np.sqrt(2.0 * min(fit.cost for fit in fits))
+
+
+def main():
+    threshold = threshold_delta_mu()
+    print(f"Q_th {STICK_RATE / OMEGA / threshold:.6f}, noise {NOISE} a scan\n")
+    print("| Q/Q_th of the escape | d within 1.5 periods | at best told, % | within 3 periods, % |\n|---|---|---|---|")
+    for over in (1.02, 1.05, 1.13, 1.35, 1.55, 2.0):
+        row = []
+        for periods in (1.5, 3.0):
+            d = distance(over, periods, threshold)
+            row.append((d, 100.0 * norm.cdf((0.5 * d * d - DECISIVE) / d)))
+        print(f"| {over} | {row[0][0]:.2f} | {row[0][1]:.1f} | {row[1][1]:.1f} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
