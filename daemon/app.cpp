@@ -217,7 +217,7 @@ void App::session_ended(Acquisition::End end) {
   SessionEnd ended = session_->end();
   // A session without a scan knows nothing of the index.
   if (!ended.continuation) ended.continuation = continues_.continuation;
-  continues_ = std::move(ended);
+  continues_ = ended;
   clocks_ = session_->clocks();
   session_.reset();
   if (state_ == State::kStopping) {
