@@ -12,15 +12,15 @@ namespace stickslip::friction {
 inline constexpr double kHuberLimit = 1.345;
 
 /// ρ(z): quadratic within the limit, linear outside.
-[[nodiscard]] inline double huber_cost(double z) noexcept {
+[[nodiscard]] inline double huber_cost(double z, double limit = kHuberLimit) noexcept {
   const double size = std::abs(z);
-  return size <= kHuberLimit ? 0.5 * z * z : kHuberLimit * (size - 0.5 * kHuberLimit);
+  return size <= limit ? 0.5 * z * z : limit * (size - 0.5 * limit);
 }
 
 /// ψ(z)/z: the weight of a residual in the normal equations.
-[[nodiscard]] inline double huber_weight(double z) noexcept {
+[[nodiscard]] inline double huber_weight(double z, double limit = kHuberLimit) noexcept {
   const double size = std::abs(z);
-  return size <= kHuberLimit ? 1.0 : kHuberLimit / size;
+  return size <= limit ? 1.0 : limit / size;
 }
 
 /// What a fit needs to know of all its residuals, each in units of σ.

@@ -19,6 +19,9 @@ constexpr double kLeastRatio = 1e-6;
 /// Rows of a question: forty a period, whose blocks differ from their curvature term by less than 10⁻⁵ of the
 /// amplitude, and which have the same scans at the next question.
 constexpr double kRowsPerPeriod = 40.0;
+/// Huber's limit for a choice. What tells two courses apart are residuals of several standard deviations of
+/// the wrong one; the limit of an estimate would cut what they tell to a half (docs/detector.md).
+constexpr double kLimit = 3.0;
 /// Four parameters, and a choice.
 constexpr std::size_t kFewestPoints = 8;
 /// Of reweighting: weights of a linear model settle in two or three rounds.
@@ -115,8 +118,8 @@ double LiveJunction::fit_free(std::size_t count, Free& p) const noexcept {
     cost = 0.0;
     for (const Row& row : std::span{rows_}.first(count)) {
       const double z = free_residual(row, p);
-      cost += huber_cost(z);
-      const double weight = (round == 0 ? 1.0 : huber_weight(z)) * row.scale * row.scale;
+      cost += huber_cost(z, kLimit);
+      const double weight = (round == 0 ? 1.0 : huber_weight(z, kLimit)) * row.scale * row.scale;
       const double weighted_D = weight * row.by_D;
       const double weighted_rate = weight * row.by_rate;
       n00 += weight;
@@ -165,7 +168,7 @@ LiveJunction::Captured LiveJunction::usual_capture(double delta_mu) const noexce
 
 double LiveJunction::carried_on_cost() const noexcept {
   double cost = common_cost_;
-  for (std::size_t i = common_count_; i < size_; ++i) cost += huber_cost(free_residual(rows_[i], common_));
+  for (std::size_t i = common_count_; i < size_; ++i) cost += huber_cost(free_residual(rows_[i], common_), kLimit);
   return cost;
 }
 
@@ -225,8 +228,8 @@ LiveJunction::Assembled LiveJunction::assemble(const Captured& p, const SharedPa
       by[0] += 1.0 - by_D;
     }
     const double z = (row.value - value) * row.scale;
-    sum.cost += huber_cost(z);
-    const double weight = huber_weight(z);
+    sum.cost += huber_cost(z, kLimit);
+    const double weight = huber_weight(z, kLimit);
     sum.normal += (weight * row.scale * row.scale * by) * by.transpose();
     sum.gradient += weight * z * row.scale * by;
   }
