@@ -22,6 +22,9 @@ constexpr double kRowsPerPeriod = 40.0;
 /// Huber's limit for a choice. What tells two courses apart are residuals of several standard deviations of
 /// the wrong one; the limit of an estimate would cut what they tell to a half (docs/detector.md).
 constexpr double kLimit = 3.0;
+/// By so much of itself the stick rate may be wrong that a loading and a slip or two have told. A capture
+/// needs c′ = r (20): where the course does not get there, the shortfall over this is one residual more.
+constexpr double kStickRateSpread = 0.01;
 /// Four parameters, and a choice.
 constexpr std::size_t kFewestPoints = 8;
 /// Of reweighting: weights of a linear model settle in two or three rounds.
@@ -168,7 +171,8 @@ LiveJunction::Captured LiveJunction::usual_capture(double delta_mu) const noexce
 
 double LiveJunction::carried_on_cost() const noexcept {
   double cost = common_cost_;
-  for (std::size_t i = common_count_; i < size_; ++i) cost += huber_cost(free_residual(rows_[i], common_), kLimit);
+  for (std::size_t i = common_count_; i < size_; ++i)
+    cost += huber_cost(free_residual(rows_[i], common_), kLimit);
   return cost;
 }
 
@@ -179,6 +183,8 @@ LiveJunction::Events LiveJunction::events_of(const Captured& p,
   events.capture_tau_s = capture_time_s(first, shared.r).value_or(first.rise_end_time_s());
   const DampedBasis basis = damped_basis(shared.oscillator(), std::max(events.capture_tau_s, 0.0));
   events.by_free = {1.0, basis.cosine + 0.5 * shared.gamma * basis.sine, basis.sine};
+  const double omega0_squared = shared.omega * shared.omega + 0.25 * shared.gamma * shared.gamma;
+  events.rate_by_free = {0.0, -omega0_squared * basis.sine, basis.cosine - 0.5 * shared.gamma * basis.sine};
   events.at_capture = events.by_free.dot(p.head<3>());
   events.onset_tau_s =
       events.capture_tau_s + (std::max(p[3], events.at_capture) - events.at_capture) / shared.r;
@@ -200,6 +206,15 @@ LiveJunction::Assembled LiveJunction::assemble(const Captured& p, const SharedPa
     sum.gradient -= surprise * by;
   }
   const auto& [omega, gamma, r] = shared;
+  // At the end of its rise c′ is stationary, so that the shift of that moment drops out.
+  const double shortfall = (r - events.rate_by_free.dot(p.head<3>())) / (kStickRateSpread * r);
+  if (shortfall > 0.0) {
+    Eigen::Vector4d by = Eigen::Vector4d::Zero();
+    by.head<3>() = -events.rate_by_free / (kStickRateSpread * r);
+    sum.cost += 0.5 * shortfall * shortfall;
+    sum.normal += by * by.transpose();
+    sum.gradient -= shortfall * by;
+  }
   const double B = (r + 0.5 * gamma * D) / omega;
   for (std::size_t i = 0; i < size_; ++i) {
     const Row& row = rows_[i];

@@ -56,7 +56,8 @@ class LiveJunction {
   struct Events {
     double capture_tau_s = 0.0;
     double at_capture = 0.0;
-    Eigen::Vector3d by_free = Eigen::Vector3d::Zero();  ///< Of at_capture.
+    Eigen::Vector3d by_free = Eigen::Vector3d::Zero();       ///< Of at_capture.
+    Eigen::Vector3d rate_by_free = Eigen::Vector3d::Zero();  ///< Of c′ there.
     double onset_tau_s = 0.0;
   };
 
