@@ -8,13 +8,12 @@
 
 #include "core/friction/capture.hpp"
 #include "core/friction/huber.hpp"
+#include "core/friction/junction.hpp"
 
 namespace stickslip::friction {
 namespace {
 
-/// As core/friction/junction: standard deviation of ln(S − K) of paper, √ln(1 + 0.6²), and what keeps the
-/// logarithm finite.
-constexpr double kLogScatter = 0.5545;
+/// Keeps the logarithm finite, as in core/friction/junction.
 constexpr double kLeastRatio = 1e-6;
 /// Rows of a question: forty a period, whose blocks differ from their curvature term by less than 10⁻⁵ of the
 /// amplitude, and which have the same scans at the next question.
@@ -198,10 +197,10 @@ LiveJunction::Assembled LiveJunction::assemble(const Captured& p, const SharedPa
   const double S = std::max(p[3], events.at_capture);
   const double D = S - p[0];
   const double ratio = D / typical_delta_mu;
-  const double surprise = std::log(std::max(ratio, kLeastRatio)) / kLogScatter;
+  const double surprise = std::log(std::max(ratio, kLeastRatio)) / kDeltaMuLogScatter;
   sum.cost = 0.5 * surprise * surprise;
   if (ratio > kLeastRatio) {
-    const Eigen::Vector4d by = Eigen::Vector4d{-1.0, 0.0, 0.0, 1.0} / (D * kLogScatter);
+    const Eigen::Vector4d by = Eigen::Vector4d{-1.0, 0.0, 0.0, 1.0} / (D * kDeltaMuLogScatter);
     sum.normal += by * by.transpose();
     sum.gradient -= surprise * by;
   }
@@ -291,6 +290,8 @@ JunctionEvidence LiveJunction::ask(std::span<const CyclePoint> points, const Sha
 
   // Neither course can cost less than the common part alone, nor more than when it carries on from there as
   // it usually does. Where these two bounds leave no room for a decisive answer, it is not worked out.
+  // (Before the usual capture the second leaves out what a shortfall of c′ would add: the answer may come
+  // later.)
   const double room = decisive - kBoundsSlack;
   const double carried_on = carried_on_cost();
   const bool all_free = rows_[size_ - 1].tau_s <= common_capture_tau_s_;

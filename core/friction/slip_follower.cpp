@@ -7,6 +7,7 @@
 
 #include "core/friction/capture.hpp"
 #include "core/friction/closed_forms.hpp"
+#include "core/friction/junction.hpp"
 #include "core/friction/slip_rule.hpp"
 #include "core/friction/turning_points.hpp"
 
@@ -43,8 +44,7 @@ constexpr double kStickRateChange = 0.05;
 constexpr double kMostlyStick = 3.0;
 /// The typical S − K follows the last so many.
 constexpr double kTypicalMemory = 16.0;
-/// Scatter of ln(S − K) as in core/friction/junction; peaks between scans are off by this part of a drop.
-constexpr double kLogScatter = 0.5545;
+/// Peaks between scans are off by this part of a drop.
 constexpr double kPeakError = 0.02;
 
 /// By which a drop is wrong at most: noise of both its ends as far as it makes no turning point, and what is
@@ -227,7 +227,7 @@ void SlipFollower::judge_by_heights(const Fall& next, double sigma) noexcept {
   const double noise = std::hypot(std::numbers::sqrt2 * sigma, kPeakError * free);
   if (typical_count_ == 0.0) typical_delta_mu_ = fall_.drop();
   const double usual = std::log(drop / typical_delta_mu_);
-  const double as_captured = log_normal_density(usual, 0.0, kLogScatter) - std::log(drop);
+  const double as_captured = log_normal_density(usual, 0.0, kDeltaMuLogScatter) - std::log(drop);
   decide(as_captured - log_normal_density(drop, free, noise), slip_.decided_time_s);
   // In this tier it is the drop that is typical.
   if (captured()) learn_typical(drop);
