@@ -35,7 +35,7 @@ bool is_own_leftover(const std::filesystem::path& path, std::span<const std::byt
          std::equal(content->begin(), content->end(), header.begin()) && JournalLock::take(path);
 }
 
-RecordHeader with_uuid(RecordHeader header) {
+const RecordHeader& with_uuid(RecordHeader& header) {
   if (header.uuid.empty()) header.uuid = make_uuid();
   return header;
 }
@@ -44,10 +44,7 @@ RecordHeader with_uuid(RecordHeader header) {
 
 PatientJournal::PatientJournal(std::filesystem::path path, RecordHeader header, std::size_t memory,
                                const FileCalls& calls)
-    : path_(std::move(path)),
-      calls_(&calls),
-      memory_(memory),
-      builder_(header = with_uuid(std::move(header))) {
+    : path_(std::move(path)), calls_(&calls), memory_(memory), builder_(with_uuid(header)) {
   const EntryBuilder::Bytes entry = builder_.header(header);
   header_.assign(entry.begin(), entry.end());
 }
@@ -109,6 +106,8 @@ bool PatientJournal::add_cycle(const friction::Cycle& cycle) { return keep_if_ro
 bool PatientJournal::add_anchor(const ClockAnchor& anchor) { return keep_if_room(builder_.anchor(anchor)); }
 
 void PatientJournal::add_gap(const daq::Gap& gap) { keep(builder_.gap(gap)); }
+
+void PatientJournal::add_event(const Event& event) { keep(builder_.event(event)); }
 
 void PatientJournal::add_end(EndRecord end) {
   tell_lost();

@@ -1,16 +1,19 @@
-// A flipped bit anywhere in a record is found. RapidCheck prints the seed.
+// A flipped bit anywhere in a record is found.
 
 #include <gmock/gmock.h>
-#include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <random>
 
 #include "core/record/finaliser.hpp"
 #include "core/record/verdict.hpp"
 #include "daemon/forked.hpp"
 #include "tests/support/bit_flips.hpp"
 #include "tests/support/record_samples.hpp"
+#include "tests/support/sanitized.hpp"
 
 namespace stickslip {
 namespace {
@@ -79,16 +82,34 @@ TEST(RecordFlips, TheRecordIsSoundBefore) {
   EXPECT_EQ(sound().chunks.size(), kRaw.size());
 }
 
-RC_GTEST_PROP(RecordFlips, InTheRawDataAreFoundAndPlaced, ()) {
-  const test::Extent chunk = sound().chunks[*rc::gen::inRange<std::size_t>(0, sound().chunks.size())];
-  const auto bit = *rc::gen::inRange<std::uint64_t>(0, 8 * chunk.size);
-  test::write_flipped(sound().flipped(), sound().content, 8 * chunk.first + bit);
+/// Printed, so that a failure can be had again with STICKSLIP_SEED.
+std::mt19937_64 seeded() {
+  const char* const given = std::getenv("STICKSLIP_SEED");
+  const std::uint64_t seed = given != nullptr ? std::strtoull(given, nullptr, 10) : std::random_device{}();
+  std::printf("STICKSLIP_SEED=%llu\n", static_cast<unsigned long long>(seed));
+  return std::mt19937_64{seed};
+}
 
-  const Verdict verdict = record::judge(sound().flipped());
+constexpr int kFlips = test::kSanitized ? 10 : 100;
 
-  RC_ASSERT(verdict.judgement == Judgement::kDamaged);
-  RC_ASSERT(names(verdict, "entry/raw/" + chunk.dataset + " rows "));
-  RC_ASSERT(names(verdict, "file"));  // The checksum of the whole file finds it too.
+std::uint64_t below(std::mt19937_64& random, std::uint64_t end) {
+  return std::uniform_int_distribution<std::uint64_t>{0, end - 1}(random);
+}
+
+TEST(RecordFlips, InTheRawDataAreFoundAndPlaced) {
+  std::mt19937_64 random = seeded();
+  for (int flip = 0; flip < kFlips; ++flip) {
+    const test::Extent chunk = sound().chunks[below(random, sound().chunks.size())];
+    const std::uint64_t bit = 8 * chunk.first + below(random, 8 * chunk.size);
+    test::write_flipped(sound().flipped(), sound().content, bit);
+
+    const Verdict verdict = record::judge(sound().flipped());
+
+    ASSERT_EQ(verdict.judgement, Judgement::kDamaged) << "bit " << bit;
+    ASSERT_TRUE(names(verdict, "entry/raw/" + chunk.dataset + " rows ")) << "bit " << bit;
+    // The checksum of the whole file finds it too.
+    ASSERT_TRUE(names(verdict, "file")) << "bit " << bit;
+  }
 }
 
 /// 'y' found, 'n' not found; nothing if the reader did not come back, which is found as well.
@@ -106,8 +127,12 @@ bool found(std::uint64_t bit) {
 }
 
 // Also where HDF5 has no checksum: results, indices of chunks, bytes that nobody uses.
-RC_GTEST_PROP(RecordFlips, AnywhereElseAreFound, ()) {
-  RC_ASSERT(found(*rc::gen::inRange<std::uint64_t>(0, 8 * sound().content.size())));
+TEST(RecordFlips, AnywhereElseAreFound) {
+  std::mt19937_64 random = seeded();
+  for (int flip = 0; flip < kFlips; ++flip) {
+    const std::uint64_t bit = below(random, 8 * sound().content.size());
+    ASSERT_TRUE(found(bit)) << "bit " << bit;
+  }
 }
 
 // With STICKSLIP_EVERY_BIT=N: every N-th bit of the file; figures in docs/reliability.md.

@@ -40,6 +40,16 @@ TEST(Config, ShippedFileIsGoodAndNamesExactlyTheKeysThatAreRead) {
   EXPECT_EQ(documented, std::set<std::string>(known.begin(), known.end()));
 }
 
+TEST(Config, RecordsMayStandInDatedFoldersReadOnly) {
+  EXPECT_EQ(read(kGood)->dated_folders, DatedFolders::kNone);
+  EXPECT_FALSE(read(kGood)->read_only_records);
+  const auto dated = read(std::string{kGood} + "[record]\ndated_folders = \"day\"\nread_only = true\n");
+  ASSERT_TRUE(dated) << dated.error().message;
+  EXPECT_EQ(dated->dated_folders, DatedFolders::kDay);
+  EXPECT_TRUE(dated->read_only_records);
+  EXPECT_FALSE(read(std::string{kGood} + "[record]\ndated_folders = \"year\"\n"));
+}
+
 // The values shown behind "# " are the defaults: with all of them in force nothing changes.
 TEST(Config, ShippedFileShowsTheDefaults) {
   std::ifstream in{kFile};
