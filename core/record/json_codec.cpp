@@ -229,10 +229,13 @@ std::string header_to_json(const RecordHeader& header) {
 
 RecordHeader header_from_json(std::string_view text) {
   const json object = json::parse(text);
-  if (object.at("format") != kFormat || object.at("format_version") != kFormatVersion) {
-    throw std::invalid_argument(fmt::format("format {} version {}, this program reads {} version {}",
-                                            object.at("format").dump(), object.at("format_version").dump(),
-                                            kFormat, kFormatVersion));
+  if (object.at("format") != kFormat) {
+    throw std::invalid_argument(
+        fmt::format("format {}, this program reads {}", object.at("format").dump(), kFormat));
+  }
+  if (const std::string refusal = version_refusal(object.at("format_version").get<std::int64_t>());
+      !refusal.empty()) {
+    throw std::invalid_argument(refusal);
   }
   RecordHeader header;
   const json& board = object.at("board");

@@ -23,6 +23,10 @@ namespace stickslip::record {
 
 inline constexpr std::string_view kFormat = "stickslip-record";
 inline constexpr std::int64_t kFormatVersion = 1;
+inline constexpr std::int64_t kOldestFormatVersion = 1;  ///< That is still read.
+
+/// What is wrong with a file or journal of this version, for the file's name to stand before; empty: nothing.
+[[nodiscard]] std::string version_refusal(std::int64_t version);
 
 /// How whole the record is.
 enum class Status {
