@@ -8,6 +8,8 @@
 #include <cmath>
 #include <span>
 
+#include "core/record/iso_time.hpp"
+
 namespace stickslip::daemon {
 namespace {
 
@@ -129,6 +131,8 @@ void Storage::handle(const Began& message) {
   header.trigger_scan = message.start.trigger;
   header.start_realtime_ns = message.start.stamp.realtime_ns;
   header.title = fmt::format("test {}", message.start.number);
+  if (message.start.self_check) header.self_check = *message.start.self_check;
+  const std::string expires = header.calibration.expires;
   const double rate_Hz = header.board.scan_rate_granted_Hz;
   pending_enough_ = static_cast<std::size_t>(std::max(1.0, std::floor(rate_Hz * kEntry_s)));
   auto journal = record::JournalWriter::create(free_journal_path(folder_, message.start), std::move(header));
@@ -136,6 +140,17 @@ void Storage::handle(const Began& message) {
     journal_.emplace(std::move(*journal));
   } else {
     fail(journal.error().message);
+  }
+  const pipeline::TestStart& start = message.start;
+  const auto event = [&](std::string text) {
+    note_event(start.trigger, start.stamp.realtime_ns, std::move(text));
+  };
+  event("test began: the force crossed the trigger");
+  if (!expires.empty() && record::iso_time(start.stamp.realtime_ns) >= expires) {
+    event(fmt::format("the calibration of the load cell expired on {}", expires));
+  }
+  if (start.self_check) {
+    for (const std::string& finding : start.self_check->findings) event("self-check: " + finding);
   }
   last_sync_ = std::chrono::steady_clock::now();
 }
@@ -154,6 +169,8 @@ void Storage::handle(const daq::ScanBlock& block) {
 void Storage::handle(const daq::Gap& gap) {
   append_pending();
   if (journal_ && !failed_) note(journal_->append_gap(gap));
+  note_event(gap.first, pending_stamp_.realtime_ns,
+             fmt::format("gap: {} scans missing: {}", gap.count, daq::name(gap.cause)));
 }
 
 void Storage::handle(const daq::ClockAnchor& anchor) {
@@ -170,6 +187,9 @@ void Storage::handle(const Ended& message) {
   if (!journal_) {
     tests_.set_file_error(number_, failed_.value_or("not recorded"));
     return;
+  }
+  if (!recorded_.empty()) {
+    note_event(recorded_.back().end - 1, pending_stamp_.realtime_ns, "test ended: " + message.end->cause);
   }
   record::EndRecord end = *message.end;
   end.end_realtime_ns = pending_stamp_.realtime_ns;
@@ -196,6 +216,10 @@ void Storage::handle(const Ended& message) {
     fail(file.error().message);
     tests_.set_file_error(number_, file.error().message);
   }
+}
+
+void Storage::note_event(daq::ScanIndex scan, std::int64_t realtime_ns, std::string text) {
+  if (journal_ && !failed_) note(journal_->append_event({scan, realtime_ns, std::move(text)}));
 }
 
 void Storage::append_pending() {

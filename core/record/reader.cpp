@@ -44,6 +44,8 @@ void check_facts(const Record& record) {
   if (board.quantity == daq::RawQuantity::kCounts && !record.header.load_cell) {
     throw HdfError("instrument/calibration/gain is missing, counts mean nothing without");
   }
+  if (board.polynomial.empty())
+    throw HdfError("instrument/adc/polynomial is missing, counts mean nothing without");
   if (board.quantity == daq::RawQuantity::kCounts &&
       std::any_of(record.raw.begin(), record.raw.end(),
                   [&](double count) { return count > static_cast<double>(board.maxdata); })) {

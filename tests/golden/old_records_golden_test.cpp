@@ -121,6 +121,11 @@ void compare_instrument(RecordListing& listing, const record::Record& record) {
   record::for_each_rate_field(header.board, ListedFields{listing, "entry/timing"});
   record::for_each_field(header.sample, ListedFields{listing, "entry/sample"});
   listing.expect_text("entry/user/name", header.sample.operator_name);
+  record::for_each_field(header.plan, ListedFields{listing, "entry/plan"});
+  if (!header.self_check) return;
+  record::for_each_field(*header.self_check, ListedFields{listing, "entry/self_check"});
+  const std::vector<std::uint16_t> idle(header.self_check->raw.begin(), header.self_check->raw.end());
+  if (!idle.empty()) listing.expect_column("entry/self_check/counts", "1", idle);
 }
 
 void compare_process(RecordListing& listing, const record::Record& record) {

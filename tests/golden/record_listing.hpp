@@ -95,7 +95,12 @@ class ListedFields {
     listing_.expect_text(path(name), text);
   }
   void operator()(const record::FieldName& name, const std::vector<double>& values) const {
+    if (values.empty()) return listing_.expect_absent(path(name));
     listing_.expect_column(path(name), name.unit, values);
+  }
+  void operator()(const record::FieldName& name, const std::vector<std::string>& texts) const {
+    if (texts.empty()) return listing_.expect_absent(path(name));
+    listing_.expect_texts(path(name), texts);
   }
   template <typename T>
   void operator()(const record::FieldName& name, const std::optional<T>& value) const {

@@ -50,7 +50,7 @@ with open(path, "rb") as raw_file:
     assert raw_file.read(9)[8] <= 2
 
 with h5py.File(path) as record:
-    assert record.attrs["format"] == "stickslip-record" and record.attrs["format_version"] == 1
+    assert record.attrs["format"] == "stickslip-record" and record.attrs["format_version"] == 2
     names = []
     record.visit(names.append)
     assert len(names) > 60, names
