@@ -17,8 +17,8 @@
 #include "core/pipeline/gain_uncertainty.hpp"
 #include "core/record/iso_time.hpp"
 #include "daemon/calibration_file.hpp"
-#include "daemon/finaliser.hpp"
 #include "daemon/method_text.hpp"
+#include "daemon/recovery.hpp"
 #include "daemon/tester_file.hpp"
 #include "daemon/version.hpp"
 
@@ -100,7 +100,8 @@ base::Result<void> App::run() {
     control_ = std::move(*control);
     world_.facts->control_listening(config_.control_socket->string());
   }
-  finalise_orphans();
+  // What cannot be recovered is told and kept; the measurement goes on.
+  static_cast<void>(recover_folder(config_.record_folder, world_.finalise, *world_.facts));
   if (base::Result<void> opened = open_session(); !opened) {
     if (opened.error().kind == base::ErrorKind::kUsage) return opened;
     board_is_missing(opened.error().message);
@@ -136,16 +137,6 @@ base::Result<void> App::prepare_record_folder() {
   ::close(descriptor);
   ::unlink(probe.c_str());
   return {};
-}
-
-void App::finalise_orphans() {
-  for (const std::filesystem::path& journal : journals_in(config_.record_folder)) {
-    if (const base::Result<std::filesystem::path> file = world_.finalise(journal)) {
-      world_.facts->orphan_finalised(*file);
-    } else {
-      world_.facts->orphan_kept(journal, file.error().message);
-    }
-  }
 }
 
 base::Result<void> App::open_session() {

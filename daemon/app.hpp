@@ -66,7 +66,6 @@ class App {
   enum class State { kStarting, kAcquiring, kBoardMissing, kStopping };
 
   [[nodiscard]] base::Result<void> prepare_record_folder();
-  void finalise_orphans();
   [[nodiscard]] base::Result<void> open_session();
   void board_is_missing(const std::string& why);
   void retry_board();

@@ -32,6 +32,8 @@ class Facts {
   virtual void recording_failed(std::int64_t /*test*/, std::string_view /*why*/) {}
   virtual void orphan_finalised(const std::filesystem::path& /*file*/) {}
   virtual void orphan_kept(const std::filesystem::path& /*journal*/, std::string_view /*why*/) {}
+  /// Nothing had been recorded; the journal is removed.
+  virtual void orphan_empty(const std::filesystem::path& /*journal*/) {}
   virtual void control_listening(std::string_view /*socket*/) {}
   virtual void stopping(std::string_view /*why*/) {}
 };

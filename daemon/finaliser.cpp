@@ -10,10 +10,15 @@
 #include <string>
 #include <system_error>
 
+#include "core/record/finaliser.hpp"
 #include "core/record/journal.hpp"
+#include "daemon/analyse.hpp"
 
 namespace stickslip::daemon {
 namespace {
+
+/// Folders below the one of the records: years and months.
+constexpr int kDeepest = 2;
 
 /// posix_spawn attributes that put the child into its own process group.
 class OwnProcessGroup {
@@ -75,14 +80,26 @@ base::Result<std::filesystem::path> run_finaliser(const std::filesystem::path& p
 }
 
 std::vector<std::filesystem::path> journals_in(const std::filesystem::path& folder) {
+  using Walk = std::filesystem::recursive_directory_iterator;
   std::vector<std::filesystem::path> journals;
   std::error_code error;
-  for (auto entry = std::filesystem::directory_iterator(folder, error);
-       !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+  for (Walk entry{folder, error}; !error && entry != Walk{}; entry.increment(error)) {
+    if (entry.depth() >= kDeepest) entry.disable_recursion_pending();
     if (entry->path().extension() == record::kJournalExtension) journals.push_back(entry->path());
   }
   std::sort(journals.begin(), journals.end());
   return journals;
+}
+
+base::Result<std::filesystem::path> finalise_here(const std::filesystem::path& journal) {
+  const auto evaluate = [](const record::Record& record) {
+    base::Result<record::EndRecord> end = analyse(record);
+    if (end) return *end;
+    record::EndRecord absent;
+    absent.results = record::absent_results(end.error().message);
+    return absent;
+  };
+  return record::finalise(journal, evaluate);
 }
 
 }  // namespace stickslip::daemon

@@ -20,7 +20,10 @@ namespace stickslip::daemon {
 [[nodiscard]] base::Result<std::filesystem::path> run_finaliser(const std::filesystem::path& program,
                                                                 const std::filesystem::path& journal);
 
-/// Journals in the folder, sorted; none if it cannot be read.
+/// What that process does: record::finalise(), with results for a test that was interrupted.
+[[nodiscard]] base::Result<std::filesystem::path> finalise_here(const std::filesystem::path& journal);
+
+/// Journals in the folder and in those of years and months below it, sorted; none if it cannot be read.
 [[nodiscard]] std::vector<std::filesystem::path> journals_in(const std::filesystem::path& folder);
 
 }  // namespace stickslip::daemon

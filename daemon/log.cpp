@@ -107,6 +107,9 @@ class Log final : public Facts {
   void orphan_kept(const std::filesystem::path& journal, std::string_view why) override {
     logger_.error("journal of an interrupted test kept: {}: {}", journal.string(), why);
   }
+  void orphan_empty(const std::filesystem::path& journal) override {
+    logger_.warn("removed, nothing was recorded in it before the program was stopped: {}", journal.string());
+  }
   void control_listening(std::string_view socket) override {
     logger_.info("control: listening at {}", socket);
   }

@@ -11,8 +11,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "core/record/finaliser.hpp"
-#include "daemon/analyse.hpp"
 #include "daemon/app.hpp"
 #include "daemon/config.hpp"
 #include "daemon/finaliser.hpp"
@@ -45,14 +43,7 @@ int check_config(const std::string& file) {
 }
 
 int finalise_journal(const std::string& journal) {
-  const auto evaluate = [](const record::Record& record) {
-    base::Result<record::EndRecord> end = analyse(record);
-    if (end) return *end;
-    record::EndRecord absent;
-    absent.results = record::absent_results(end.error().message);
-    return absent;
-  };
-  const base::Result<std::filesystem::path> file = record::finalise(journal, evaluate);
+  const base::Result<std::filesystem::path> file = finalise_here(journal);
   return file ? 0 : refused(file.error());
 }
 

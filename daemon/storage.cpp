@@ -174,6 +174,7 @@ void Storage::handle(const daq::Gap& gap) {
 }
 
 void Storage::handle(const daq::ClockAnchor& anchor) {
+  append_pending();  // A clock is not kept without the scan that it was read at.
   if (journal_ && !failed_) note(journal_->append_anchor(anchor));
 }
 

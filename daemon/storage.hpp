@@ -19,18 +19,16 @@
 #include "core/record/record.hpp"
 #include "daemon/bounded_queue.hpp"
 #include "daemon/facts.hpp"
+#include "daemon/recovery.hpp"
 #include "daemon/test_log.hpp"
 
 namespace stickslip::daemon {
-
-/// Builds the finished file of a journal; called on the storage thread.
-using Finalise = std::function<base::Result<std::filesystem::path>(const std::filesystem::path& journal)>;
 
 /// The record sink. As a sink it is bound to the processing thread, which waits here when the
 /// disk is slower than the board: the record loses nothing before the acquisition ring does.
 class Storage final : public pipeline::Sink {
  public:
-  /// \param folder  exists and is writable.
+  /// \param folder  exists and is writable. \param finalise  called on the storage thread.
   /// \param tests,facts  outlive this object.
   Storage(std::filesystem::path folder, Finalise finalise, TestLog& tests, Facts& facts);
   /// As stop().

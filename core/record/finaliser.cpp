@@ -11,8 +11,10 @@
 #include "core/record/hdf_write.hpp"
 #include "core/record/iso_time.hpp"
 #include "core/record/journal.hpp"
+#include "core/record/journal_care.hpp"
 #include "core/record/layout.hpp"
 #include "core/record/reader.hpp"
+#include "core/record/seal.hpp"
 
 namespace stickslip::record {
 namespace {
@@ -35,6 +37,7 @@ void build(const Record& record, const ScanSource& scans, const std::filesystem:
     write_tables(entry.get(), record);
     write_instrument(entry.get(), record);
     write_process(entry.get(), record, sha256);
+    write_seal(entry.get(), scans.size());
     if (record.end->truth) write_truth(entry.get(), *record.end->truth, scans);
   }
   check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), "flushing");
@@ -48,6 +51,7 @@ base::Result<void> build_verified(const Record& record, const ScanSource& scans,
   } catch (const std::exception& error) {
     return base::failure("{}: cannot be written: {}", part.string(), error.what());
   }
+  if (auto sealed = seal_file(part); !sealed) return sealed;
   // Synced before it is read back, so that what is compared is what a disk can keep.
   if (auto synced = sync_path(part); !synced) return synced;
   return verify_record(part, record, scans);
@@ -132,6 +136,8 @@ base::Result<void> publish_journal(const std::filesystem::path& journal, const R
 }
 
 base::Result<std::filesystem::path> finalise(const std::filesystem::path& journal, const Evaluate& evaluate) {
+  const auto lock = JournalLock::take(journal);
+  if (!lock) return tl::unexpected(lock.error());
   auto reading = read_journal(journal, JournalScans::kCount);
   if (reading && !reading->record.end && evaluate) reading = read_journal(journal);  // It needs the scans.
   if (!reading) return tl::unexpected(reading.error());

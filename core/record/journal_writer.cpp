@@ -8,6 +8,7 @@
 
 #include "core/base/contract.hpp"
 #include "core/record/journal.hpp"
+#include "core/record/journal_care.hpp"
 #include "core/record/json_codec.hpp"
 #include "core/record/words.hpp"
 
@@ -56,6 +57,7 @@ base::Result<JournalWriter> JournalWriter::create(const std::filesystem::path& p
   if (!file.open()) {
     return base::failure("{}: cannot be created: {}", path.string(), system_message(errno));
   }
+  if (!lock_journal(file.get())) return base::failure("{}: is another process's", path.string());
   JournalWriter journal{path, std::move(file), header.board};
   auto written = journal.append_text(EntryType::kHeader, 0, header_to_json(header));
   if (written && ::fsync(journal.file_.get()) != 0) {

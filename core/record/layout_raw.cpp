@@ -17,12 +17,6 @@
 namespace stickslip::record {
 namespace {
 
-/// Bits of raw/flags.
-enum ScanFlag : std::uint8_t {
-  kSpike = 1U << 0U,
-  kSaturated = 1U << 1U,
-  kReplacedForDetection = 1U << 2U,
-};
 const std::vector<std::string> kFlagMeaning{"spike", "saturated", "replaced_for_detection"};
 
 /// The flags of scans that rise from piece to piece.
@@ -208,6 +202,7 @@ void read_raw(hid_t entry, Record& record) {
   if (std::any_of(record.raw.begin(), record.raw.end(), [](double value) { return !std::isfinite(value); })) {
     throw HdfError("raw holds values that are not finite");
   }
+  if (!has(raw.get(), "flags")) return;
   const auto flags = read_column<std::uint8_t>(raw.get(), "flags", record.scan.size());
   for (std::size_t i = 0; i < flags.size(); ++i) {
     if ((flags[i] & kSpike) != 0) record.spikes.push_back(record.scan[i]);

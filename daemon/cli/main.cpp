@@ -33,6 +33,8 @@ constexpr const char* kExamples = R"(Examples:
   stickslip characterise ring-down.h5 -o tester.toml   omega and gamma of the tester, for --tester
   stickslip report records/*.h5 -o report.html         replicates, coefficient against speed, traces
   stickslip compare a*.h5 -- b*.h5                     do two materials differ, and how many tests would show it
+  stickslip verify records/*.h5                        whole or not, and why; exit status 0, 1, 3 or 4
+  stickslip recover records                            records from the journals that a stop left behind
   stickslip boards                                     A/D boards, what they offer, what to configure
   stickslip status                                     what the daemon is doing)";
 
@@ -65,6 +67,7 @@ int main_of(int count, char** arguments) {
   add_showing_commands(app, chosen);
   add_asking_commands(app, chosen);
   add_analysing_commands(app, chosen);
+  add_caring_commands(app, chosen);
   try {
     app.parse(words(count, arguments));
   } catch (const CLI::ParseError& error) {

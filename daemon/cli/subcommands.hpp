@@ -27,6 +27,7 @@ void add_making_commands(CLI::App& app, Chosen& chosen);     ///< import, simula
 void add_showing_commands(CLI::App& app, Chosen& chosen);    ///< plot, accuracy, report, compare
 void add_analysing_commands(CLI::App& app, Chosen& chosen);  ///< analyze, characterise
 void add_asking_commands(CLI::App& app, Chosen& chosen);     ///< scenes, methods, boards, status
+void add_caring_commands(CLI::App& app, Chosen& chosen);     ///< verify, recover
 
 /// What a command gave, on stdout, or its error on stderr. \return the exit status.
 [[nodiscard]] int print(const base::Result<std::string>& output);
