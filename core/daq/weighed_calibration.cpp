@@ -23,7 +23,11 @@ std::string refusal(const WeightReading& reading, const WeightReading& tare, dou
   if (!std::isfinite(reading.voltage_V)) return "no voltage was read";
   if (reading.saturated) return "saturated: the converter was at a rail";
   const double change_V = std::abs(reading.voltage_V - tare.voltage_V);
-  const double allowed_V = kLargestWander * (reading.mass_kg > 0.0 ? change_V : largest_change_V);
+  // A tare is held against the weights that follow, and as long as there are none against the converter.
+  double against_V = largest_change_V > 0.0 ? largest_change_V : span_V;
+  if (reading.mass_kg > 0.0) against_V = change_V;
+  const double allowed_V =
+      against_V > 0.0 ? kLargestWander * against_V : std::numeric_limits<double>::infinity();
   const double wander_V = reading.wander_V.value_or(0.0);
   if (reading.mass_kg > 0.0) {
     const double error_V =
