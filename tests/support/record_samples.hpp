@@ -63,6 +63,8 @@ inline record::RecordHeader sample_header() {
   header.board.range_max_V = 5.0;
   header.board.polynomial = {-5.0, 10.0 / 65535.0, 1e-12};
   header.board.expansion_origin = 2.0;
+  header.board.calibration = "soft";
+  header.board.acquisition = "command";
   header.board.scan_rate_requested_Hz = 350.0;
   header.board.scan_rate_granted_Hz = 350.0000350000035;
   header.load_cell = daq::LoadCell{9.8, 0.01};
@@ -140,6 +142,9 @@ inline friction::TestTruth sample_truth() {
   truth.pull_speed_m_per_s = 0.00508;
   truth.regime = friction::Regime::kStickSlip;
   truth.oscillation_frequency_Hz = 19.7;
+  truth.static_coefficient = 0.3813;
+  truth.kinetic_coefficient = 0.3019;
+  truth.amplitude = 0.0786;
   truth.modes = {{0.0, 0.03, friction::Mode::kStick}, {0.03, 0.05, friction::Mode::kSlip}};
   truth.cycles = {{0.03, 0.351, 0.299}};
   truth.solver = friction::SolverFacts{"exact closed forms", 1.8e-15, 1e-9, 84e-9};
