@@ -34,6 +34,7 @@ const fs::path kRecords{STICKSLIP_SOURCE_DIR "/tests/golden/records"};
 template <typename Row, typename Value>
 std::vector<Value> column_of(const auto& rows, Value Row::*member) {
   std::vector<Value> column;
+  column.reserve(rows.size());
   for (const Row& row : rows) column.push_back(row.*member);
   return column;
 }
