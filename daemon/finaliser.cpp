@@ -38,6 +38,24 @@ class OwnProcessGroup {
   posix_spawnattr_t attributes_{};
 };
 
+/// Nothing of the daemon's stays open in the child: Asio's sockets are not closed on exec, and a finaliser
+/// that outlives a killed daemon would keep the next one from listening.
+class NoDescriptors {
+ public:
+  NoDescriptors() {
+    posix_spawn_file_actions_init(&actions_);
+    posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1);
+  }
+  ~NoDescriptors() { posix_spawn_file_actions_destroy(&actions_); }
+  NoDescriptors(const NoDescriptors&) = delete;
+  NoDescriptors& operator=(const NoDescriptors&) = delete;
+
+  [[nodiscard]] const posix_spawn_file_actions_t* get() const noexcept { return &actions_; }
+
+ private:
+  posix_spawn_file_actions_t actions_{};
+};
+
 }  // namespace
 
 std::filesystem::path record_of(const std::filesystem::path& journal) {
@@ -54,9 +72,10 @@ base::Result<std::filesystem::path> run_finaliser(const std::filesystem::path& p
   const std::array<char*, 4> arguments{program_text.data(), option.data(), journal_text.data(), nullptr};
 
   const OwnProcessGroup attributes;
+  const NoDescriptors descriptors;
   pid_t child = 0;
-  if (const int error =
-          posix_spawn(&child, program_text.c_str(), nullptr, attributes.get(), arguments.data(), environ);
+  if (const int error = posix_spawn(&child, program_text.c_str(), descriptors.get(), attributes.get(),
+                                    arguments.data(), environ);
       error != 0) {
     return base::failure("{}: the finaliser {} cannot be started: {}", journal_text, program_text,
                          std::generic_category().message(error));

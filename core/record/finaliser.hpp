@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "core/base/result.hpp"
+#include "core/record/file_calls.hpp"
 #include "core/record/record.hpp"
 
 namespace stickslip::record {
@@ -24,7 +25,8 @@ using Evaluate = std::function<EndRecord(const Record&)>;
 ///                  the reason "interrupted". Its status is "interrupted" either way.
 /// \return the finished file. Errors: kUsage if the file is no journal, else kFailure.
 [[nodiscard]] base::Result<std::filesystem::path> finalise(const std::filesystem::path& journal,
-                                                           const Evaluate& evaluate = {});
+                                                           const Evaluate& evaluate = {},
+                                                           const FileCalls& calls = system_calls());
 
 /// Whether a record can be made at `path`: nothing stands there (kUsage), its folder does (kUsage).
 [[nodiscard]] base::Result<void> check_publishable(const std::filesystem::path& path);

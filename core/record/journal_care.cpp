@@ -12,6 +12,7 @@
 #include <cstring>
 #include <span>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "core/record/journal_format.hpp"
@@ -71,12 +72,19 @@ bool has_entry_behind(const std::filesystem::path& journal, std::uint64_t positi
   return has_entry(tail_of(journal, position), 1);
 }
 
-base::Result<JournalLock> JournalLock::take(const std::filesystem::path& journal) {
+base::Result<JournalLock> JournalLock::take(const std::filesystem::path& journal,
+                                            std::chrono::milliseconds longest) {
   Descriptor file{::open(journal.c_str(), O_RDONLY | O_CLOEXEC)};
   if (!file.open()) {
     if (errno == ENOENT || errno == ENOTDIR)
       return base::usage_error("{}: there is no such file", journal.string());
     return base::failure("{}: cannot be opened: {}", journal.string(), system_message(errno));
+  }
+  // Waiting inside flock() could not be given up.
+  constexpr std::chrono::milliseconds kPause{20};
+  while (!lock_journal(file.get()) && longest.count() > 0) {
+    std::this_thread::sleep_for(kPause);
+    longest -= kPause;
   }
   if (!lock_journal(file.get()))
     return base::failure("{}: is being written or finished by another process", journal.string());
@@ -86,8 +94,8 @@ base::Result<JournalLock> JournalLock::take(const std::filesystem::path& journal
   return JournalLock{std::move(file)};
 }
 
-base::Result<bool> remove_if_empty(const std::filesystem::path& journal) {
-  const auto lock = JournalLock::take(journal);
+base::Result<bool> remove_if_empty(const std::filesystem::path& journal, std::chrono::milliseconds longest) {
+  const auto lock = JournalLock::take(journal, longest);
   if (!lock) return tl::unexpected(base::Error{base::ErrorKind::kFailure, lock.error().message});
   struct stat found {};
   if (::lstat(journal.c_str(), &found) != 0)

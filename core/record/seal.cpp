@@ -61,7 +61,7 @@ void write_seal(hid_t entry, std::size_t scan_count) {
   write_text(process.get(), kSealName, std::string(kSealSize, '\0'));
 }
 
-base::Result<void> seal_file(const std::filesystem::path& path) {
+base::Result<void> seal_file(const std::filesystem::path& path, const FileCalls& calls) {
   try {
     std::uint64_t position = 0;
     {
@@ -71,9 +71,11 @@ base::Result<void> seal_file(const std::filesystem::path& path) {
       position = seal_position(open_group(entry.get(), "process").get());
     }
     const std::string digest = digest_of(path, position);
-    const Descriptor file{::open(path.c_str(), O_WRONLY | O_CLOEXEC)};
-    if (::pwrite(file.get(), digest.data(), digest.size(), static_cast<off_t>(position)) !=
-        static_cast<ssize_t>(digest.size())) {
+    const Descriptor file{calls.open(path.c_str(), O_WRONLY | O_CLOEXEC, 0)};
+    if (!file.open() ||
+        calls.pwrite(file.get(), digest.data(), digest.size(), static_cast<off_t>(position)) !=
+            static_cast<ssize_t>(digest.size()) ||
+        calls.fsync(file.get()) != 0) {
       return base::failure("{}: cannot be sealed: {}", path.string(), system_message(errno));
     }
     return {};

@@ -15,6 +15,7 @@
 #include <string>
 
 #include "core/base/result.hpp"
+#include "core/record/file_calls.hpp"
 #include "core/record/hdf.hpp"
 
 namespace stickslip::record {
@@ -22,8 +23,8 @@ namespace stickslip::record {
 /// Into the group process, which exists: scan_count and room for the checksum. Throws HdfError.
 void write_seal(hid_t entry, std::size_t scan_count);
 
-/// Puts the checksum into a closed file with write_seal(). Not synced. Errors: kFailure.
-[[nodiscard]] base::Result<void> seal_file(const std::filesystem::path& path);
+/// Puts the checksum into a closed file with write_seal() and syncs it. Errors: kFailure.
+[[nodiscard]] base::Result<void> seal_file(const std::filesystem::path& path, const FileCalls& calls);
 
 enum class Seal {
   kSound,

@@ -334,21 +334,27 @@ TEST(Recovery, MakesRecordsRemovesWhatIsEmptyAndKeepsTheRest) {
   test::write_content(folder / "d.journal", header);
   test::write_content(folder / "e.journal", std::string(300, '\0'));
   test::write_content(folder / "f.journal", "a stranger's diary");
-  auto writing = record::JournalWriter::create(folder / "g.journal", test::sample_header());
-  ASSERT_TRUE(writing);
-
   Heard heard;
   EXPECT_FALSE(recover_folder(folder.path(), finalise_plainly, heard));
 
   EXPECT_EQ(heard.text.substr(0, heard.text.find("kept f")),
             "made b.h5\nmade a.h5\nremoved c.journal\nremoved d.journal\nremoved e.journal\n");
   EXPECT_THAT(heard.text, HasSubstr("kept f.journal"));
-  EXPECT_THAT(heard.text, HasSubstr("is being written or finished by another process"));
   EXPECT_TRUE(fs::exists(folder / "f.journal"));
-  EXPECT_TRUE(fs::exists(folder / "g.journal"));
   EXPECT_FALSE(fs::exists(folder / "e.journal"));
   EXPECT_EQ(judge(folder / "2026/11/b.h5").judgement, Judgement::kComplete);
   EXPECT_EQ(judge(folder / "a.h5").status, "interrupted");
+}
+
+TEST(Recovery, NobodyTouchesAJournalThatIsBeingWritten) {
+  const TemporaryFolder folder;
+  const auto writing = record::JournalWriter::create(folder / "a.journal", test::sample_header());
+  ASSERT_TRUE(writing);
+  for (const auto& error : {finalise_plainly(folder / "a.journal").error(),
+                            record::remove_if_empty(folder / "a.journal").error()}) {
+    EXPECT_THAT(error.message, HasSubstr("is being written or finished by another process"));
+  }
+  EXPECT_TRUE(fs::exists(folder / "a.journal"));
 }
 
 // A header that was changed by the disk is no empty journal: what follows it is worth more than its removal.
