@@ -46,6 +46,7 @@ class RecordAnalysis {
 
   daq::Calibration calibration_;
   double scan_rate_granted_Hz_;
+  std::optional<double> gain_uncertainty_;  ///< Relative.
   friction::TestAnalysis analysis_;
   std::optional<daq::ScanIndex> next_;
 };

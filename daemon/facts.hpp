@@ -22,6 +22,8 @@ class Facts {
   virtual void board_started(const daq::BoardInfo& /*board*/, std::string_view /*scheduling*/) {}
   /// Before the start: do the scans come often enough?
   virtual void sampling_checked(const friction::SamplingVerdict& /*verdict*/) {}
+  /// Before the start: the load cell is due to be calibrated again.
+  virtual void calibration_expired(std::string_view /*expires*/) {}
   virtual void board_missing(std::string_view /*why*/, double /*retry_in_s*/) {}
   virtual void gap_seen(const daq::Gap& /*gap*/) {}
   virtual void test_began(const pipeline::TestStart& /*start*/) {}

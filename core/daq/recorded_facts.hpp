@@ -3,17 +3,19 @@
 /// missing.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "core/daq/clock_anchor.hpp"
 #include "core/daq/gap.hpp"
+#include "core/daq/self_check.hpp"
 
 namespace stickslip::daq {
 
-/// Both rise.
 struct RecordedFacts {
-  std::vector<ClockAnchor> anchors;
-  std::vector<Gap> gaps;
+  std::vector<ClockAnchor> anchors;             ///< Rising.
+  std::vector<Gap> gaps;                        ///< Rising.
+  std::shared_ptr<const SelfCheck> self_check;  ///< Null if there is none.
 };
 
 }  // namespace stickslip::daq

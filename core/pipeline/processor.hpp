@@ -25,6 +25,7 @@
 #include "core/daq/scan_block.hpp"
 #include "core/friction/test_analysis.hpp"
 #include "core/pipeline/segmenter.hpp"
+#include "core/pipeline/self_check.hpp"
 #include "core/pipeline/sink.hpp"
 
 namespace stickslip::pipeline {
@@ -40,6 +41,8 @@ struct ProcessorSettings {
   std::shared_ptr<const daq::RecordedFacts> recorded;
   /// The stamps are of the machine's own clock, so that they can measure the scan rate.
   bool clock_is_real = true;
+  /// Of the load cell's gain, relative to it: what every coefficient shares; absent where not known.
+  std::optional<double> gain_uncertainty;
 };
 
 /// Thread-bound: the processing thread.
@@ -77,6 +80,7 @@ class Processor {
   };
 
   void note_gap(daq::Gap gap);
+  [[nodiscard]] std::shared_ptr<const daq::SelfCheck> self_check() const;
   void note_anchor(const daq::ClockAnchor& anchor);
   /// Clock anchors of the test that ends at `end`, and what they say.
   void finish_clocks(daq::ScanIndex end);
@@ -92,6 +96,7 @@ class Processor {
   daq::GapTracker gaps_;
   Segmenter segmenter_;
   std::deque<Waiting> waiting_;  ///< Consecutive, the latest last.
+  IdleScans idle_;               ///< Those before them.
   std::optional<friction::TestAnalysis> analysis_;
   std::int64_t number_;
   daq::ScanIndex next_scan_ = 0;
