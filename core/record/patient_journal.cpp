@@ -109,8 +109,6 @@ bool PatientJournal::add_event(const Event& event) { return keep_if_room(builder
 
 void PatientJournal::add_gap(const daq::Gap& gap) { keep(builder_.gap(gap)); }
 
-void PatientJournal::add_event(const Event& event) { keep(builder_.event(event)); }
-
 void PatientJournal::add_end(EndRecord end) {
   tell_lost();
   if (const std::int64_t lost = lost_scan_count(); lost > 0) {

@@ -41,7 +41,6 @@ class PatientJournal {
   bool add_event(const Event& event);
   /// Kept whatever the memory.
   void add_gap(const daq::Gap& gap);
-  void add_event(const Event& event);
   /// The last entry, kept whatever the memory. Its status becomes incomplete if scans were lost.
   void add_end(EndRecord end);
   /// Waits, at most so long, until half of the memory is free. \return whether it is.
