@@ -15,6 +15,7 @@
 #include "core/friction/tester.hpp"
 #include "core/pipeline/segmenter.hpp"
 #include "core/record/record.hpp"
+#include "daemon/dated_folders.hpp"
 #include "daemon/realtime.hpp"
 #include "drivers/factory/board_config.hpp"
 
@@ -49,6 +50,8 @@ struct DaemonConfig {
   record::SampleFacts sample;
   friction::EstimatorTier estimator = friction::EstimatorTier::kFit;
   std::filesystem::path record_folder;
+  DatedFolders dated_folders = DatedFolders::kNone;
+  bool read_only_records = false;
   std::optional<std::filesystem::path> control_socket;
   LogLevel log_level = LogLevel::kInfo;
   bool report_table = false;

@@ -118,7 +118,14 @@ base::Result<std::filesystem::path> finalise_here(const std::filesystem::path& j
     absent.results = record::absent_results(end.error().message);
     return absent;
   };
-  return record::finalise(journal, evaluate);
+  auto file = record::finalise(journal, evaluate, record::system_calls(), kOthersTime);
+  if (!file && is_finished(journal)) return record_of(journal);
+  return file;
+}
+
+bool is_finished(const std::filesystem::path& journal) {
+  std::error_code ignored;
+  return !std::filesystem::exists(journal, ignored) && std::filesystem::exists(record_of(journal), ignored);
 }
 
 }  // namespace stickslip::daemon

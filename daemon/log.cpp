@@ -101,6 +101,13 @@ class Log final : public Facts {
   void recording_failed(std::int64_t test, std::string_view why) override {
     logger_.error("test {} is not recorded whole: {}", test, why);
   }
+  void storage_waits(std::string_view why) override {
+    logger_.error("the disk refuses, scans wait in memory: {}", why);
+  }
+  void storage_resumed() override { logger_.warn("the disk takes again: all that waited is written"); }
+  void little_room(std::int64_t test, double room_s) override {
+    logger_.error("test {} begins with room on the disk for {:.0f} s", test, room_s);
+  }
   void orphan_finalised(const std::filesystem::path& file) override {
     logger_.warn("made from the journal of an interrupted test: {}", file.string());
   }

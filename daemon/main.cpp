@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -66,6 +67,8 @@ void print_table(const TestLog& tests) {
 int run(const std::string& file) {
   base::Result<DaemonConfig> config = load_config(file);
   if (!config) return refused(config.error());
+  // A limit to the size of files is an error of writing (EFBIG), not an end.
+  static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
   const bool table = config->report_table;
   const bool terminal = table && ::isatty(STDOUT_FILENO) != 0;
   const std::unique_ptr<Facts> log = make_log(config->log_level);

@@ -46,6 +46,16 @@ base::Result<void> rename_to_new(const std::filesystem::path& from, const std::f
   return sync_path(folder_of(to), calls);
 }
 
+base::Result<void> make_folders(const std::filesystem::path& folder, const FileCalls& calls) {
+  std::error_code ignored;
+  if (folder.empty() || std::filesystem::is_directory(folder, ignored)) return {};
+  if (auto made = make_folders(folder.parent_path(), calls); !made) return made;
+  constexpr mode_t kMode = 0755;
+  if (calls.mkdir(folder.c_str(), kMode) != 0 && errno != EEXIST)
+    return base::failure("{}: cannot be made: {}", folder.string(), system_message(errno));
+  return sync_path(folder_of(folder), calls);
+}
+
 std::size_t write_all(int descriptor, std::span<const std::byte> bytes, const FileCalls& calls) {
   std::size_t written = 0;
   while (written < bytes.size()) {

@@ -49,6 +49,10 @@ class Descriptor {
                                                const std::filesystem::path& to,
                                                const FileCalls& calls = system_calls());
 
+/// Makes the folders that are missing and their names durable. Errors: kFailure.
+[[nodiscard]] base::Result<void> make_folders(const std::filesystem::path& folder,
+                                              const FileCalls& calls = system_calls());
+
 /// write() until all is written or an error. \return bytes written; errno says why if fewer.
 [[nodiscard]] std::size_t write_all(int descriptor, std::span<const std::byte> bytes, const FileCalls& calls);
 

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -37,6 +38,12 @@ class SystemCalls final : public FileCalls {
     return std::rename(from, to);
   }
   int unlink(const char* path) const override { return ::unlink(path); }
+  int mkdir(const char* path, mode_t mode) const override { return ::mkdir(path, mode); }
+  std::int64_t room(const char* folder) const override {
+    struct statvfs found {};
+    if (::statvfs(folder, &found) != 0) return -1;
+    return static_cast<std::int64_t>(found.f_bavail) * static_cast<std::int64_t>(found.f_frsize);
+  }
 };
 
 }  // namespace

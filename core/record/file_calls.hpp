@@ -7,6 +7,7 @@
 #include <sys/types.h>
 
 #include <cstddef>
+#include <cstdint>
 
 namespace stickslip::record {
 
@@ -26,6 +27,9 @@ class FileCalls {
   /// Renames without replacing: EEXIST if `to` is there.
   virtual int rename_to_new(const char* from, const char* to) const = 0;
   virtual int unlink(const char* path) const = 0;
+  virtual int mkdir(const char* path, mode_t mode) const = 0;
+  /// Bytes that may still be written in a folder, or −1.
+  virtual std::int64_t room(const char* folder) const = 0;
 };
 
 /// Those of the system.

@@ -155,8 +155,8 @@ base::Result<void> publish_journal(const std::filesystem::path& journal, const R
 }
 
 base::Result<std::filesystem::path> finalise(const std::filesystem::path& journal, const Evaluate& evaluate,
-                                             const FileCalls& calls) {
-  const auto lock = JournalLock::take(journal);
+                                             const FileCalls& calls, std::chrono::milliseconds longest) {
+  const auto lock = JournalLock::take(journal, longest);
   if (!lock) return tl::unexpected(lock.error());
   auto reading = read_journal(journal, JournalScans::kCount);
   if (reading && !reading->record.end && evaluate) reading = read_journal(journal);  // It needs the scans.

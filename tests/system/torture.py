@@ -3,7 +3,7 @@
 
 torture.py BUILD_DIR SOURCE_DIR [--kills N] [--seed N] [--real-time N]
 
-Simulated tests run one after the other, a hundred times as fast as on a bench. The daemon is killed while it runs,
+Simulated tests run one after the other, 25 times as fast as on a bench. The daemon is killed while it runs,
 while a finaliser works (the daemon alone, the finaliser alone, both), and while it recovers from the kill before.
 Before it is started again the journals are read by the reader below, which shares nothing with the program. Then:
 
@@ -38,7 +38,7 @@ import numpy
 
 TIMEOUT_S = 240
 SCAN_RATE_HZ = 350
-SPEED = 100
+SPEED = 25
 LONGEST_LOSS_S = 1.0
 HEAD = struct.Struct("<4sHHIIqq")
 HEADER, SCANS, END = 1, 2, 8
@@ -207,7 +207,7 @@ level = "warning"
     # ---- kills ----------------------------------------------------------------------------
 
     def kill_anywhere(self):
-        time.sleep(self.random.uniform(0.0, 0.25))
+        time.sleep(self.random.uniform(0.0, 0.5))
         self.counts["with a finaliser at work"] += bool(children(self.process.pid))
         self.end()
 
