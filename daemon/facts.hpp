@@ -22,7 +22,9 @@ class Facts {
   virtual void board_started(const daq::BoardInfo& /*board*/, std::string_view /*scheduling*/) {}
   /// Before the start: do the scans come often enough?
   virtual void sampling_checked(const friction::SamplingVerdict& /*verdict*/) {}
-  virtual void board_missing(std::string_view /*why*/, double /*retry_in_s*/) {}
+  /// \param state  of the daemon: "board missing", "board busy" or "no permission".
+  virtual void board_unavailable(std::string_view /*state*/, std::string_view /*why*/,
+                                 double /*retry_in_s*/) {}
   virtual void gap_seen(const daq::Gap& /*gap*/) {}
   virtual void test_began(const pipeline::TestStart& /*start*/) {}
   virtual void test_ended(const pipeline::TestEnd& /*end*/) {}

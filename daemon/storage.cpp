@@ -92,10 +92,14 @@ void Storage::test_ended(const pipeline::TestEnd& end) {
   record->results = end.results;
   record->cycles = end.cycles;
   record->spikes = end.spikes;
+  record->read_latency = end.read_latency;
   std::shared_ptr<friction::TrueForce> force;
   if (end.cause == pipeline::EndCause::kBoardMissing) {
     record->status = record::Status::kIncomplete;
     record->reasons.emplace_back("the board went away before the end of the test");
+  } else if (end.cause == pipeline::EndCause::kStopped) {
+    record->status = record::Status::kInterrupted;
+    record->reasons.emplace_back(record::kInterruptedWhy);
   }
   if (truth_ != nullptr) record->truth = truth_->truth(first_, end.end);
   if (record->truth) force = truth_->force(first_);

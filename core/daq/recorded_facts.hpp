@@ -3,17 +3,20 @@
 /// missing.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/daq/clock_anchor.hpp"
 #include "core/daq/gap.hpp"
+#include "core/daq/latency_histogram.hpp"
 
 namespace stickslip::daq {
 
-/// Both rise.
+/// Anchors and gaps rise.
 struct RecordedFacts {
   std::vector<ClockAnchor> anchors;
   std::vector<Gap> gaps;
+  std::optional<LatencyHistogram> read_latency;
 };
 
 }  // namespace stickslip::daq

@@ -61,9 +61,7 @@ void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause, bo
   }
   if (test_is_running()) {
     hand_over(block, not_handed_over, block.count);
-    if (settings_.clock_is_real && !settings_.recorded) {
-      if (const auto anchor = picker_.observe(block)) note_anchor(*anchor);
-    }
+    note_clocks(block);
     report_new_cycles();
   }
 }
@@ -100,6 +98,7 @@ void Processor::begin(daq::ScanIndex trigger, const daq::ClockStamp& stamp) {
   static_cast<void>(picker_.flush());
   anchors_.clear();
   test_gaps_.clear();
+  read_latency_.reset();
   const TestStart start{number_, waiting_.front().index, trigger, stamp};
   std::vector<double> raw;
   raw.reserve(waiting_.size());
@@ -130,8 +129,18 @@ void Processor::end(daq::ScanIndex end, EndCause cause) {
   add_true_rate(ended.results, anchors_, test_gaps_, settings_.analysis.scan_rate_Hz);
   ended.cycles = analysis_->cycles();
   ended.spikes = analysis_->spikes();
+  ended.read_latency = settings_.recorded ? settings_.recorded->read_latency : read_latency_;
   analysis_.reset();
   for (Sink* sink : sinks_) sink->test_ended(ended);
+}
+
+void Processor::note_clocks(const daq::ScanBlock& block) {
+  if (!settings_.clock_is_real || settings_.recorded) return;
+  if (const auto anchor = picker_.observe(block)) note_anchor(*anchor);
+  if (const auto late_ns = meter_.lateness_ns(block)) {
+    if (!read_latency_) read_latency_.emplace();
+    read_latency_->add(*late_ns);
+  }
 }
 
 void Processor::note_anchor(const daq::ClockAnchor& anchor) {

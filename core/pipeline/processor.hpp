@@ -77,6 +77,8 @@ class Processor {
   };
 
   void note_gap(daq::Gap gap);
+  /// What the stamp of a block of the running test tells.
+  void note_clocks(const daq::ScanBlock& block);
   void note_anchor(const daq::ClockAnchor& anchor);
   /// Clock anchors of the test that ends at `end`, and what they say.
   void finish_clocks(daq::ScanIndex end);
@@ -104,6 +106,7 @@ class Processor {
   daq::ScanIndex trigger_ = 0;
   std::vector<daq::ClockAnchor> anchors_;
   std::vector<daq::Gap> test_gaps_;
+  std::optional<daq::LatencyHistogram> read_latency_;
 };
 
 }  // namespace stickslip::pipeline

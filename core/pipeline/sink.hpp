@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/daq/clock_anchor.hpp"
 #include "core/daq/gap.hpp"
+#include "core/daq/latency_histogram.hpp"
 #include "core/daq/scan_block.hpp"
 #include "core/friction/cycle.hpp"
 #include "core/friction/results.hpp"
@@ -53,8 +55,9 @@ struct TestEnd {
   daq::ScanIndex end = 0;  ///< One past the last scan of the record.
   EndCause cause = EndCause::kUnloaded;
   friction::TestResults results;
-  base::LongColumn<friction::Cycle> cycles;  ///< Final values, after the whole-test estimate.
-  std::vector<daq::ScanIndex> spikes;        ///< Scans replaced for the detector.
+  base::LongColumn<friction::Cycle> cycles;           ///< Final values, after the whole-test estimate.
+  std::vector<daq::ScanIndex> spikes;                 ///< Scans replaced for the detector.
+  std::optional<daq::LatencyHistogram> read_latency;  ///< Of its blocks; none where no clock could tell.
 };
 
 /// Called from the processing thread, in order: began, (scans | gap | anchor | cycle)*, ended. Must not

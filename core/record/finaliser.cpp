@@ -79,7 +79,8 @@ void end_interrupted(JournalReading& reading, const Evaluate& evaluate) {
     end.spikes = record.spikes;
   }
   end.status = Status::kInterrupted;
-  end.reasons.emplace_back("the program stopped before the end of the test");
+  end.reasons.emplace_back(kInterruptedWhy);
+  end.cause = kProgramDied;
   if (!end.end_realtime_ns && !record.anchors.empty())
     end.end_realtime_ns = record.anchors.back().realtime_ns;
   set_end(record, std::move(end));

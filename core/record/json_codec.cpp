@@ -148,6 +148,14 @@ json results_to_json(const friction::TestResults& results) {
   return object;
 }
 
+json latency_to_json(const daq::LatencyHistogram& latency) {
+  return {{"counts", latency.counts()}, {"largest", latency.largest_s()}};
+}
+
+daq::LatencyHistogram latency_from_json(const json& object) {
+  return {object.at("counts").get<daq::LatencyHistogram::Counts>(), object.at("largest").get<double>()};
+}
+
 friction::TestResults results_from_json(const json& object) {
   friction::TestResults results;
   const auto regime = object.at("regime").get<std::string>();
@@ -296,6 +304,7 @@ std::string end_to_json(const EndRecord& end) {
               {"spikes", end.spikes}};
   put(object, "end_realtime_ns", end.end_realtime_ns);
   put(object, "compute_time", end.compute_time_s);
+  if (end.read_latency) object["read_latency"] = latency_to_json(*end.read_latency);
   object["cycle_count"] = end.cycles.size();
   object["cycle_columns"] = cycle_columns();
   if (end.truth) object["truth"] = truth_to_json(*end.truth);
@@ -393,6 +402,7 @@ EndRecord end_from_bytes(std::span<const std::byte> bytes) {
   object.at("cause").get_to(end.cause);
   take(object, "end_realtime_ns", end.end_realtime_ns);
   take(object, "compute_time", end.compute_time_s);
+  if (object.contains("read_latency")) end.read_latency = latency_from_json(object.at("read_latency"));
   end.results = results_from_json(object.at("results"));
   object.at("spikes").get_to(end.spikes);
   for (const json& row : object.value("cycles", json::array())) end.cycles.push_back(cycle_from_array(row));

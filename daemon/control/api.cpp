@@ -81,12 +81,12 @@ Json to_json(const std::optional<daq::RateEstimate>& rate) {
 }
 
 /// Bins without a read are left out.
-Json to_json(const LatencyHistogram& latency) {
+Json to_json(const daq::LatencyHistogram& latency) {
   Json bins = Json::array();
-  for (std::size_t bin = 0; bin < LatencyHistogram::kBins; ++bin) {
+  for (std::size_t bin = 0; bin < daq::LatencyHistogram::kBins; ++bin) {
     if (latency.counts()[bin] == 0) continue;
     bins.push_back(
-        {{"below", or_null(LatencyHistogram::limit_s(bin))}, {"read_count", latency.counts()[bin]}});
+        {{"below", or_null(daq::LatencyHistogram::limit_s(bin))}, {"read_count", latency.counts()[bin]}});
   }
   return {{"largest", latency.largest_s()}, {"bins", bins}};
 }

@@ -121,7 +121,7 @@ Result<Agreement> agree_on_command(const ComediBoardSettings& settings, unsigned
       std::string notes = flags == 0 ? "no wake-up at each scan" : "";
       const int stage = test_until_agreed(command, calls, notes);
       if (stage == -ENODEV || stage == -EACCES || stage == -EPERM) {
-        return base::failure("{}", explain_comedi_error(settings.device, -stage));
+        return tl::unexpected(comedi_error(settings.device, -stage));
       }
       if (stage != 0 || period_of(command) == 0) continue;
       const double granted_Hz = kNanosecondsPerSecond / period_of(command);

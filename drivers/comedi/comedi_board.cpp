@@ -74,8 +74,10 @@ class ComediBoard final : public daq::Board {
       // The file is open, so permission is not what is lacking.
       if (result == -EACCES) {
         error_ = EACCES;
-        return base::failure("{}: subdevice {} is locked by another program; stop that program",
-                             setup_.info.device, setup_.command.subdevice);
+        return tl::unexpected(
+            base::Error{base::ErrorKind::kBusy,
+                        fmt::format("{}: subdevice {} is locked by another program; stop that program",
+                                    setup_.info.device, setup_.command.subdevice)});
       }
       return refused(-result);
     }
@@ -202,7 +204,7 @@ class ComediBoard final : public daq::Board {
   [[nodiscard]] base::Result<void> refused(int error) {
     error_ = error;
     if (error == ENODEV) state_ = State::kMissing;
-    return base::failure("{}", explain_comedi_error(setup_.info.device, error));
+    return tl::unexpected(comedi_error(setup_.info.device, error));
   }
 
   ComediSetup setup_;

@@ -103,9 +103,7 @@ Result<Conversion> conversion(const ComediBoardSettings& settings, unsigned subd
 }  // namespace
 
 base::Result<ComediSetup> agree_with_board(const ComediBoardSettings& settings, ComediCalls& calls) {
-  const auto failed = [&](int result) {
-    return base::failure("{}", explain_comedi_error(settings.device, -result));
-  };
+  const auto failed = [&](int result) { return tl::unexpected(comedi_error(settings.device, -result)); };
   if (const int result = calls.open(settings.device); result < 0) return failed(result);
 
   unsigned subdevice = settings.subdevice.value_or(0);

@@ -37,7 +37,7 @@ class PolledBoard final : public daq::Board {
     std::uint32_t code = 0;
     if (const int result = calls_->read_one(setup_.command, code); result < 0) {
       static_cast<void>(ended(result));
-      return base::failure("{}", last_error());
+      return tl::unexpected(comedi_error(setup_.info.device, -result));
     }
     error_ = 0;
     pending_.reset();

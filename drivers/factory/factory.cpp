@@ -26,7 +26,8 @@ base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::C
   const friction::Tester tester = record->header.tester.tester();
   std::string characterisation = record->header.process.characterisation;
   auto recorded = std::make_shared<const daq::RecordedFacts>(
-      daq::RecordedFacts{std::move(record->anchors), std::move(record->gaps)});
+      daq::RecordedFacts{std::move(record->anchors), std::move(record->gaps),
+                         record->end ? record->end->read_latency : std::nullopt});
   Replay replay = make_replay(std::move(*record), clock);
   return OpenedBoard{std::move(replay.board),     std::move(replay.truth), load_cell, tester,
                      std::move(characterisation), std::move(recorded)};

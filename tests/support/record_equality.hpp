@@ -90,6 +90,7 @@ inline void expect_same_end(const record::EndRecord& a, const record::EndRecord&
   EXPECT_EQ(a.cause, b.cause);
   EXPECT_EQ(a.end_realtime_ns, b.end_realtime_ns);
   EXPECT_EQ(a.compute_time_s, b.compute_time_s);
+  EXPECT_EQ(a.read_latency, b.read_latency);
   EXPECT_EQ(a.results, b.results);
   ASSERT_EQ(a.truth.has_value(), b.truth.has_value());
   if (a.truth) expect_same_truth(*a.truth, *b.truth);

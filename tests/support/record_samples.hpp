@@ -136,6 +136,7 @@ inline record::EndRecord sample_end() {
   end.cause = "unloaded";
   end.end_realtime_ns = 1'795'265'583'000'000'001;
   end.compute_time_s = 0.012;
+  end.read_latency = daq::LatencyHistogram{{1200, 30, 0, 2}, 130e-6};
   end.results = sample_results();
   end.cycles = sample_cycles();
   end.spikes = {1003, 1041};

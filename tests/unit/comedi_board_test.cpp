@@ -268,7 +268,7 @@ TEST_F(ComediBoard, BoardInUseByAnotherProgramRefusesToStart) {
   world_.used_by_another = true;
   const auto started = board_->start();
   ASSERT_FALSE(started);
-  EXPECT_EQ(started.error().kind, base::ErrorKind::kFailure);
+  EXPECT_EQ(started.error().kind, base::ErrorKind::kBusy);
   EXPECT_THAT(started.error().message, HasSubstr("another program"));
   EXPECT_EQ(read(), ReadStatus::kTimeout);
   world_.used_by_another = false;

@@ -148,13 +148,19 @@ TEST_F(ComediSetup, SubdeviceThatCannotStreamIsRefused) {
 }
 
 TEST_F(ComediSetup, OpeningErrorsSayWhatToDo) {
-  const std::pair<int, std::string> cases[] = {{EACCES, "iocard"},          {EPERM, "iocard"},
-                                               {ENOENT, "load its driver"}, {ENODEV, "no board behind"},
-                                               {ENXIO, "no board behind"},  {EBUSY, "another program"},
-                                               {EIO, "Input/output error"}};
-  for (const auto& [error, part] : cases) {
-    world_.open_error = error;
-    expect_refusal(ErrorKind::kFailure, part);
+  struct Case {
+    int error;
+    ErrorKind kind;  ///< Who has to act.
+    std::string part;
+  };
+  const Case cases[] = {
+      {EACCES, ErrorKind::kNoPermission, "iocard"},     {EPERM, ErrorKind::kNoPermission, "iocard"},
+      {EBUSY, ErrorKind::kBusy, "another program"},     {ENOENT, ErrorKind::kFailure, "load its driver"},
+      {ENODEV, ErrorKind::kFailure, "no board behind"}, {ENXIO, ErrorKind::kFailure, "no board behind"},
+      {EIO, ErrorKind::kFailure, "Input/output error"}};
+  for (const Case& opened : cases) {
+    world_.open_error = opened.error;
+    expect_refusal(opened.kind, opened.part);
   }
 }
 

@@ -126,6 +126,23 @@ TEST_F(ProcessorTest, TellsAGapInsideATestAndForgetsWhatWasBeforeOneOutside) {
   EXPECT_EQ(diary_.ends.at(0).results.lost_scan_count.value, 10.0);
 }
 
+// The clocks of then are the record's: those of its replay say nothing of it.
+TEST_F(ProcessorTest, LatencyOfReadsIsThatOfTheRecordWhereOneIsReplayed) {
+  auto recorded = std::make_shared<daq::RecordedFacts>();
+  recorded->read_latency = daq::LatencyHistogram{{5, 4, 3}, 60e-6};
+  settings_.recorded = recorded;
+  Processor processor = make();
+  feed(processor, 0, kEnd);
+  EXPECT_EQ(diary_.ends.at(0).read_latency, recorded->read_latency);
+}
+
+TEST_F(ProcessorTest, NoLatencyIsToldByAClockThatIsNotTheMachines) {
+  settings_.clock_is_real = false;
+  Processor processor = make();
+  feed(processor, 0, kEnd);
+  EXPECT_FALSE(diary_.ends.at(0).read_latency);
+}
+
 TEST_F(ProcessorTest, EndsARunningTestWhenToldAndNothingElse) {
   Processor processor = make();
   feed(processor, 0, 200);

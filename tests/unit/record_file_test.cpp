@@ -169,6 +169,8 @@ TEST(Finalise, JournalWithoutEndBecomesAnInterruptedRecord) {
   const auto read = read_record(*file);
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->end->status, record::Status::kInterrupted);
+  EXPECT_EQ(read->end->cause, "program-died");
+  EXPECT_EQ(read->end->reasons, std::vector<std::string>{"the program stopped before the end of the test"});
   EXPECT_EQ(read->end->results, record::absent_results("interrupted"));
   EXPECT_EQ(read->raw, written.raw);
   test::expect_same_cycles(read->cycles, written.cycles);  // As noted while it ran.

@@ -4,6 +4,7 @@ When `stickslip verify` is there, `judge()` is the place to ask it too.
 """
 
 import dataclasses
+import pathlib
 
 import h5py
 import numpy
@@ -19,10 +20,12 @@ class Gap:
 
 @dataclasses.dataclass
 class Judged:
+    path: pathlib.Path
     scan: numpy.ndarray
     counts: numpy.ndarray
     gaps: list
     results: dict       # name -> float or text
+    findings: list      # texts
     events: list        # texts
     anchors: tuple      # scan, monotonic (ns)
     granted_Hz: float
@@ -83,7 +86,9 @@ def judge(path):
                 results[name] = text(data[()])
         assert int(results["gap_count"]) == len(gaps), results["gap_count"]
         anchors = entry["timing/scan"][()], entry["timing/monotonic_raw"][()]
-        return Judged(scan, counts, gaps, results, [text(event) for event in entry["events/text"][()]], anchors,
+        findings = [text(finding) for finding in entry["results/findings"][()]]
+        return Judged(path, scan, counts, gaps, results, findings,
+                      [text(event) for event in entry["events/text"][()]], anchors,
                       float(entry["timing/scan_rate_granted"][()]), rate_by(*anchors),
                       {name: data[()] for name, data in entry["cycles"].items()},
                       text(entry["process/status"][()]), [text(why) for why in entry["process/reasons"][()]],
