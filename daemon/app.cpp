@@ -265,6 +265,7 @@ base::Result<SessionSettings> App::session_settings(const drivers::OpenedBoard& 
   settings.processor.first_test_number = continues_.next_test_number;
   if (continues_.continuation) settings.processor.continues_at = continues_.continuation->end;
   settings.processor.recorded = opened.recorded;
+  settings.processor.second = board.second;
   settings.processor.clock_is_real = config_.clock_speed == 1.0;
   settings.processor.segmenter = config_.segmenter;
   settings.processor.segmenter.scan_rate_Hz = board.scan_rate_granted_Hz;

@@ -67,13 +67,19 @@ void Storage::test_began(const pipeline::TestStart& start) {
   queue_.push(Began{start, header_});
 }
 
-void Storage::scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp& stamp) {
+void Storage::scans(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second,
+                    const daq::ClockStamp& stamp) {
   while (!raw.empty()) {
     daq::ScanBlock block;
     block.first = first;
     block.stamp = stamp;
     block.count = static_cast<std::uint32_t>(std::min(raw.size(), daq::ScanBlock::kMaxScans));
     std::copy_n(raw.begin(), block.count, block.raw.begin());
+    block.has_second = !second.empty();
+    if (block.has_second) {
+      std::copy_n(second.begin(), block.count, block.second.begin());
+      second = second.subspan(block.count);
+    }
     queue_.push(block);
     first = block.end();
     raw = raw.subspan(block.count);
@@ -127,6 +133,7 @@ void Storage::handle(const Began& message) {
   number_ = message.start.number;
   failed_.reset();
   pending_.clear();
+  pending_second_.clear();
   recorded_.clear();
   record::RecordHeader header = *message.header;
   header.test_number = message.start.number;
@@ -151,6 +158,7 @@ void Storage::handle(const daq::ScanBlock& block) {
   }
   if (pending_.empty()) pending_first_ = block.first;
   pending_.insert(pending_.end(), block.scans().begin(), block.scans().end());
+  pending_second_.insert(pending_second_.end(), block.second_codes().begin(), block.second_codes().end());
   pending_stamp_ = block.stamp;
   if (pending_.size() >= pending_enough_) append_pending();
 }
@@ -204,7 +212,11 @@ void Storage::handle(const Ended& message) {
 
 void Storage::append_pending() {
   if (journal_ && !failed_ && !pending_.empty()) {
-    note(journal_->append_scans(pending_first_, pending_, pending_stamp_));
+    base::Result<void> appended = journal_->append_scans(pending_first_, pending_, pending_stamp_);
+    if (appended && !pending_second_.empty()) {
+      appended = journal_->append_second(pending_first_, pending_second_);
+    }
+    note(appended);
     // The stamp belongs to the last scan of the last block.
     const daq::ScanIndex last = pending_first_ + static_cast<daq::ScanIndex>(pending_.size()) - 1;
     if (!recorded_.empty() && recorded_.back().end == pending_first_) {
@@ -214,6 +226,7 @@ void Storage::append_pending() {
     }
   }
   pending_.clear();
+  pending_second_.clear();
 }
 
 base::Result<void> Storage::append_force(friction::TrueForce& force) {

@@ -68,8 +68,9 @@ class Sink {
 
   virtual void test_began(const TestStart& /*start*/) {}
   /// Raw scans of the running test, consecutive, oldest first.
+  /// \param second  codes of the second channel: as many, or none if there is no such channel.
   virtual void scans(daq::ScanIndex /*first*/, std::span<const double> /*raw*/,
-                     const daq::ClockStamp& /*stamp*/) {}
+                     std::span<const std::int32_t> /*second*/, const daq::ClockStamp& /*stamp*/) {}
   virtual void gap(const daq::Gap& /*gap*/) {}
   /// The clocks at a scan of the running test; rising, and after the scan itself.
   virtual void anchor(const daq::ClockAnchor& /*anchor*/) {}

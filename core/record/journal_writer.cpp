@@ -134,6 +134,13 @@ base::Result<void> JournalWriter::append_true_coefficients(daq::ScanIndex first,
   return append(EntryType::kTrueForce, Encoding::kF64, first, 0);
 }
 
+base::Result<void> JournalWriter::append_second(daq::ScanIndex first, std::span<const std::int32_t> codes) {
+  entry_.assign(kEntryHeadSize, std::byte{0});
+  const auto bytes = std::as_bytes(codes);
+  entry_.insert(entry_.end(), bytes.begin(), bytes.end());
+  return append(EntryType::kSecond, Encoding::kNone, first, 0);
+}
+
 base::Result<void> JournalWriter::append_spikes(std::span<const daq::ScanIndex> spikes) {
   entry_.assign(kEntryHeadSize, std::byte{0});
   for (const daq::ScanIndex spike : spikes) append_value(entry_, spike);

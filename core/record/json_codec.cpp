@@ -217,6 +217,10 @@ std::string header_to_json(const RecordHeader& header) {
   for_each_converter_field(header.board, putter(board));
   for_each_rate_field(header.board, putter(board));
   board["quantity"] = name(header.board.quantity).name;
+  if (header.board.second) {
+    board["second"] = facts_to_json(*header.board.second);
+    board["second"]["quantity"] = daq::name(header.board.second->quantity);
+  }
 
   json object{{"format", kFormat},
               {"format_version", kFormatVersion},
@@ -249,6 +253,12 @@ RecordHeader header_from_json(std::string_view text) {
   for_each_rate_field(header.board, taker(board));
   const auto quantity = board.at("quantity").get<std::string>();
   header.board.quantity = word(quantity, quantity_from_name(quantity));
+  if (board.contains("second")) {
+    daq::SecondChannel& second = header.board.second.emplace();
+    const auto measured = board.at("second").at("quantity").get<std::string>();
+    second.quantity = word(measured, daq::second_quantity_from_name(measured));
+    for_each_field(second, taker(board.at("second")));
+  }
   for_each_field(header.calibration, taker(object.at("calibration")));
   for_each_field(header.tester, taker(object.at("tester")));
   for_each_field(header.sample, taker(object.at("sample")));

@@ -146,6 +146,9 @@ struct Record {
   std::vector<double> raw;           ///< In board.quantity.
   /// Noise-free force of each scan (friction::TrueForce), NaN where not known; empty if of none.
   std::vector<double> true_coefficient;
+  /// Code of the second channel of each scan, daq::SecondChannel::kNoCode where it did not arrive; empty
+  /// unless header.board.second.
+  std::vector<std::int32_t> second;
   std::vector<daq::ScanIndex> spikes;
   std::vector<daq::Gap> gaps;
   base::LongColumn<friction::Cycle> cycles;

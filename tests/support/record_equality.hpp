@@ -35,6 +35,7 @@ inline void expect_same_header(const record::RecordHeader& a, const record::Reco
   EXPECT_EQ(a.board.expansion_origin, b.board.expansion_origin);
   EXPECT_EQ(a.board.scan_rate_requested_Hz, b.board.scan_rate_requested_Hz);
   EXPECT_EQ(a.board.scan_rate_granted_Hz, b.board.scan_rate_granted_Hz);
+  EXPECT_EQ(a.board.second, b.board.second);
   ASSERT_EQ(a.load_cell.has_value(), b.load_cell.has_value());
   if (a.load_cell) {
     EXPECT_EQ(a.load_cell->gain_N_per_V, b.load_cell->gain_N_per_V);
@@ -99,6 +100,7 @@ inline void expect_same_end(const record::EndRecord& a, const record::EndRecord&
 inline void expect_same_record(const record::Record& a, const record::Record& b) {
   expect_same_header(a.header, b.header);
   EXPECT_EQ(a.scan, b.scan);
+  EXPECT_EQ(a.second, b.second);
   ASSERT_EQ(a.raw.size(), b.raw.size());
   for (std::size_t i = 0; i < a.raw.size(); ++i) expect_same_bits(a.raw[i], b.raw[i], "raw");
   ASSERT_EQ(a.true_coefficient.size(), b.true_coefficient.size());
