@@ -44,6 +44,14 @@ Json to_json(const daq::BoardInfo& board) {
   json["calibration"] = board.calibration.empty() ? Json(nullptr) : Json(board.calibration);
   json["acquisition"] = board.acquisition.empty() ? Json(nullptr) : Json(board.acquisition);
   json["notes"] = board.notes;
+  json["second"] = nullptr;
+  if (board.second) {
+    json["second"] = {{"quantity", daq::name(board.second->quantity)},
+                      {"channel", board.second->channel},
+                      {"maxdata", board.second->maxdata},
+                      {"range_min", board.second->range_min_V},
+                      {"range_max", board.second->range_max_V}};
+  }
   return json;
 }
 

@@ -104,7 +104,7 @@ def disk_image(found, programs):
     return disk
 
 
-def run_full_guest(folder, found, disk, files, limit_s=420):
+def run_full_guest(folder, found, disk, files, limit_s=guest.LIMIT_S):
     """Boots it, unpacks `files` (name → path here) to /run/payload, runs run.sh there as root; its results."""
     payload = folder / "payload.tar"
     with tarfile.open(payload, "w") as archive:
