@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """How soon can an escape be told from a capture at all? The bound beside bench/live_limits (docs/detector.md).
 
-    python3 bench/escape_bound.py
+    python3 bench/escape_bound.py                  # a table by Q/Q_th
+    python3 bench/escape_bound.py escapes.csv      # the mean over the escapes that bench/escape_limits listed
 
 The scans of a slip that just escapes, without noise, are fitted by the nearest captured course: [11]-[13] up to
 the capture, stick at rate r, a second slip; free are the onset, S - K, K and S - K of the second slip, which is
@@ -10,6 +11,8 @@ d^2 the sum of squares left over the noise, the log likelihood ratio of scans wi
 d^2/2 and variance d^2 (Neyman and Pearson 1933), so that it exceeds ln 10^4 with probability
 Phi((d^2/2 - ln 10^4)/d). No rule that errs once in 10^4 does better on the same scans.
 """
+import sys
+
 import numpy as np
 from scipy.optimize import least_squares
 from scipy.stats import norm
@@ -108,15 +111,35 @@ def distance(over_threshold, periods, threshold):
     return np.sqrt(2.0 * min(fit.cost for fit in fits))
 
 
+def told(d):
+    """Chance that the log likelihood ratio of scans at this distance decides."""
+    return norm.cdf((0.5 * d * d - DECISIVE) / d)
+
+
+def print_mean(path, threshold):
+    """d grows with S - K over the noise; between the points of a table it is interpolated."""
+    over, noise = np.loadtxt(path, delimiter=",", unpack=True)
+    grid = np.array([1.001, 1.005, 1.01, 1.02, 1.03, 1.05, 1.08, 1.13, 1.2, 1.35, 1.6])
+    d_of_grid = np.array([distance(x, 1.5, threshold) for x in grid])
+    d = np.interp(over, grid, d_of_grid) * (NOISE / DELTA_MU) / noise
+    print("| Q/Q_th of the escape | escapes | at best told within 1.5 periods, % |\n|---|---|---|")
+    for low, high in ((1.0, 1.05), (1.05, 1.13), (1.13, 1.35), (1.35, 2.0), (2.0, np.inf), (0.0, np.inf)):
+        chosen = (over >= low) & (over < high)
+        print(f"| {low} to {high} | {chosen.sum()} | {100.0 * told(d[chosen]).mean():.1f} |")
+
+
 def main():
     threshold = threshold_delta_mu()
+    if len(sys.argv) > 1:
+        print_mean(sys.argv[1], threshold)
+        return
     print(f"Q_th {STICK_RATE / OMEGA / threshold:.6f}, noise {NOISE} a scan\n")
     print("| Q/Q_th of the escape | d within 1.5 periods | at best told, % | within 3 periods, % |\n|---|---|---|---|")
     for over in (1.02, 1.05, 1.13, 1.35, 1.55, 2.0):
         row = []
         for periods in (1.5, 3.0):
             d = distance(over, periods, threshold)
-            row.append((d, 100.0 * norm.cdf((0.5 * d * d - DECISIVE) / d)))
+            row.append((d, 100.0 * told(d)))
         print(f"| {over} | {row[0][0]:.2f} | {row[0][1]:.1f} | {row[1][1]:.1f} |", flush=True)
 
 

@@ -1,6 +1,7 @@
 #include "core/friction/junction.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -45,7 +46,8 @@ class FreeCourse {
     const double by_rate = per_omega_ * point.sine;
     return {p_[0] + p_[1] * by_D + p_[2] * by_rate, {1.0, by_D, by_rate}};
   }
-  [[nodiscard]] static CoursePoint<kCount> surprise() noexcept { return {0.0, Parameters<kCount>::Zero()}; }
+  [[nodiscard]] const Parameters<kCount>& parameters() const noexcept { return p_; }
+  [[nodiscard]] static std::array<CoursePoint<kCount>, 0> surprises() noexcept { return {}; }
 
  private:
   Parameters<kCount> p_;
@@ -75,6 +77,7 @@ class CapturedCourse {
     capture.cosine = decay * std::cos(omega_ * capture_s_);
     capture.sine = decay * std::sin(omega_ * capture_s_);
     at_capture_ = first_.at(capture);
+    shortfall_ = shortfall(capture);
     const double S = std::max({p[3], K_, at_capture_.value});
     D_ = S - K_;
     onset_s_ = capture_s_ + belt.climbing_time_s(r_, start_s + capture_s_, S - at_capture_.value);
@@ -90,11 +93,11 @@ class CapturedCourse {
     sure_ = ratio_ > kLeastRatio;
   }
 
-  /// How unusual its S − K is, in standard deviations.
-  [[nodiscard]] CoursePoint<kCount> surprise() const noexcept {
+  /// What of it is unusual, in standard deviations: its S − K, and a c′ that does not reach the stick rate.
+  [[nodiscard]] std::array<CoursePoint<kCount>, 2> surprises() const noexcept {
     CoursePoint<kCount> point{std::log(ratio_) / kDeltaMuLogScatter, Parameters<kCount>::Zero()};
     if (sure_) point.by << -1.0 / (D_ * kDeltaMuLogScatter), 0.0, 0.0, 1.0 / (D_ * kDeltaMuLogScatter);
-    return point;
+    return {point, shortfall_};
   }
 
   [[nodiscard]] CoursePoint<kCount> at(const JunctionPoint& point) const noexcept {
@@ -121,6 +124,16 @@ class CapturedCourse {
   }
 
  private:
+  /// \param at  the capture. At the end of its rise c′ is stationary, so that the shift of that moment drops
+  /// out.
+  [[nodiscard]] CoursePoint<kCount> shortfall(const JunctionPoint& at) const noexcept {
+    const double spread = kStickRateSpread * belt_.stick_rate(r_, start_s_ + capture_s_);
+    const double omega0_squared = omega_ * omega_ * (1.0 + damping_ * damping_);
+    const Eigen::Vector3d rate_by{0.0, -omega0_squared / omega_ * at.sine, at.cosine - damping_ * at.sine};
+    const double missing = belt_.stick_rate(r_, start_s_ + capture_s_) - rate_by.dot(first_.parameters());
+    if (!(missing > 0.0)) return {0.0, Parameters<kCount>::Zero()};
+    return widened({missing / spread, -rate_by / spread});
+  }
   [[nodiscard]] static CoursePoint<kCount> widened(const CoursePoint<3>& point) noexcept {
     return {point.value, {point.by[0], point.by[1], point.by[2], 0.0}};
   }
@@ -135,6 +148,7 @@ class CapturedCourse {
   double D_ = 0.0;  ///< S − K of the second slip.
   double capture_s_ = 0.0;
   CoursePoint<3> at_capture_;
+  CoursePoint<kCount> shortfall_;
   double onset_s_ = 0.0;
   double onset_rate_ = 0.0;   ///< Of the belt at the onset, 1/s,
   double onset_slope_ = 0.0;  ///< and its slope, 1/s².
@@ -145,7 +159,7 @@ class CapturedCourse {
 };
 
 /// Normal equations of Huber's cost (a spike that was not found counts no more for one course than for the
-/// other) with the surprise as one residual more.
+/// other) with what is unusual as more residuals.
 template <int kCount>
 struct Equations {
   Eigen::Matrix<double, kCount, kCount> normal = Eigen::Matrix<double, kCount, kCount>::Zero();
@@ -156,17 +170,18 @@ struct Equations {
 template <typename Course>
 Equations<Course::kCount> equations_of(const JunctionScans& scans, const Course& course, double sigma) {
   Equations<Course::kCount> equations;
-  const CoursePoint<Course::kCount> surprise = course.surprise();
-  equations.normal = surprise.by * surprise.by.transpose();
-  equations.gradient = -surprise.value * surprise.by;
-  equations.cost = 0.5 * surprise.value * surprise.value;
+  for (const CoursePoint<Course::kCount>& surprise : course.surprises()) {
+    equations.normal += surprise.by * surprise.by.transpose();
+    equations.gradient -= surprise.value * surprise.by;
+    equations.cost += 0.5 * surprise.value * surprise.value;
+  }
   const double per_sigma = 1.0 / sigma;
   for (const JunctionPoint& point : scans.points()) {
     const CoursePoint<Course::kCount> model = course.at(point);
     const double scale = point.root_count * per_sigma;
     const double z = scale * (point.value - model.value);
-    const double weight = scale * huber_weight(z);
-    equations.cost += huber_cost(z);
+    const double weight = scale * huber_weight(z, kChoiceLimit);
+    equations.cost += huber_cost(z, kChoiceLimit);
     equations.normal += (weight * scale) * model.by * model.by.transpose();
     equations.gradient += (weight * z) * model.by;
   }

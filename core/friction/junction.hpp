@@ -12,12 +12,20 @@ namespace stickslip::friction {
 /// Standard deviation of ln(S − K) of paper at most: √ln(1 + 0.6²), for a scatter of 60 %.
 inline constexpr double kDeltaMuLogScatter = 0.5545;
 
+/// Huber's limit for a choice. What tells two courses apart are residuals of several standard deviations of
+/// the wrong one; the limit of an estimate would cut what they tell to a half (docs/detector.md).
+inline constexpr double kChoiceLimit = 3.0;
+
+/// By so much of itself the stick rate may be wrong that a loading and a slip or two have told. A capture
+/// needs c′ = r (20): where the course does not get there, the shortfall over this is one residual more.
+inline constexpr double kStickRateSpread = 0.01;
+
 /// Log of the generalised likelihood ratio of "captured" over "continues free" on scans
 /// [first, end), which reach from one maximum of the force to the minimum after the next.
 ///
 /// Free: one decaying oscillation about one K (three parameters). Captured: the same until
-/// c′ = r (at the end of the rise of c′ if it does not get there), stick at rate r to a new
-/// S ≥ K, then a second slip with the same K (four parameters). After sticking the next amplitude
+/// c′ = r (at the end of the rise of c′ if it does not get there, which is held against it), stick at rate r
+/// to a new S ≥ K, then a second slip with the same K (four parameters). After sticking the next amplitude
 /// cannot be below r/ω, and below it a free oscillation cannot reach c′ = r: that is what decides
 /// close to the threshold. [Penner 1995, (20)–(22)]
 /// A capture that slips at once again, with S hardly above K, looks like no capture at all; so S − K of the

@@ -25,6 +25,7 @@ LiveDetector::LiveDetector(const LiveSettings& settings)
       noise_(std::max(signal::kRoundingSigma * settings.step_coefficient, kSmallestNoise)),
       follower_(settings.estimator, settings.scan_rate_Hz, settings.prior),
       lowest_(kInfinity),
+      loading_at_(kInfinity),
       highest_(-kInfinity) {}
 
 std::optional<LiveCycle> LiveDetector::add(double coefficient, bool saturated) {
@@ -64,8 +65,9 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
     follower_.falls(time_of(static_cast<double>(finder_.high_at())),
                     time_of(static_cast<double>(finder_.low_at())));
   }
-  if (state_.phase < Phase::kCycles) watch_phase(scan.value, sigma);
-  if (fall && rule_.is_slip(*fall, sigma)) return slip(*fall, sigma, now_s);
+  if (state_.phase < Phase::kCycles && usable) watch_phase(scan.value, sigma);
+  // What falls before anything was loaded are spikes that follow each other.
+  if (fall && rule_.is_slip(*fall, sigma) && fall->peak_at >= loading_at_) return slip(*fall, sigma, now_s);
   if (follower_.step(now_s, sigma)) take_decision();
   if (amplitude && amplitude->is_over()) {
     watch_.stop();
@@ -80,7 +82,9 @@ void LiveDetector::watch_phase(double value, double sigma) noexcept {
   if (state_.phase == Phase::kIdle) {
     lowest_ = std::min(lowest_, value);
     above_ = value - lowest_ > SlipRule::kSignificantSigmas * sigma ? above_ + 1 : 0;
-    if (above_ >= kLoadedScans) state_.phase = Phase::kLoading;
+    if (above_ < kLoadedScans) return;
+    state_.phase = Phase::kLoading;
+    loading_at_ = static_cast<double>(position_ - kLoadedScans);
     return;
   }
   if (state_.phase == Phase::kLoading && finder_.falling()) state_.phase = Phase::kFirstSlip;

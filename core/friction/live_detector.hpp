@@ -77,6 +77,7 @@ class LiveDetector {
 
   double lowest_ = 0.0;  ///< While idle.
   int above_ = 0;        ///< Scans in a row that are up from there.
+  double loading_at_;    ///< Position at which the loading was seen to begin.
 
   // The highest scan since the last slip, and the sums up to it, for the tradition.
   double highest_;

@@ -18,12 +18,10 @@ constexpr double kLeastRatio = 1e-6;
 /// Rows of a question: forty a period, whose blocks differ from their curvature term by less than 10⁻⁵ of the
 /// amplitude, and which have the same scans at the next question.
 constexpr double kRowsPerPeriod = 40.0;
-/// Huber's limit for a choice. What tells two courses apart are residuals of several standard deviations of
-/// the wrong one; the limit of an estimate would cut what they tell to a half (docs/detector.md).
-constexpr double kLimit = 3.0;
-/// By so much of itself the stick rate may be wrong that a loading and a slip or two have told. A capture
-/// needs c′ = r (20): where the course does not get there, the shortfall over this is one residual more.
-constexpr double kStickRateSpread = 0.01;
+/// Density, over that of noise at its middle, of scans that no course explains: one in twenty is a spike that
+/// was not found, anywhere within the ±6 σ that the despiker lets pass. −ln of it, 4.6, is the most that a
+/// scan tells: two strays cannot decide, three seldom meet.
+constexpr double kStrayDensity = 0.01;
 /// Four parameters, and a choice.
 constexpr std::size_t kFewestPoints = 8;
 /// Of reweighting: weights of a linear model settle in two or three rounds.
@@ -34,6 +32,9 @@ constexpr double kFirstDamping = 1e-3;
 constexpr double kConverged = 1e-2;
 /// By so much the bounds may be wrong: what reweighting leaves of its way to the least cost.
 constexpr double kBoundsSlack = 1.0;
+
+/// −ln of the likelihood of a scan that is z off, with noise or a stray.
+double mixture_cost(double z) noexcept { return -std::log(std::exp(-0.5 * z * z) + kStrayDensity); }
 
 }  // namespace
 
@@ -118,10 +119,10 @@ double LiveJunction::fit_free(std::size_t count, Free& p) const noexcept {
     double n22 = 0.0;
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     cost = 0.0;
-    for (const Row& row : std::span{rows_}.first(count)) {
+    for (const Row& row : rows().first(count)) {
       const double z = free_residual(row, p);
-      cost += huber_cost(z, kLimit);
-      const double weight = (round == 0 ? 1.0 : huber_weight(z, kLimit)) * row.scale * row.scale;
+      cost += huber_cost(z, kChoiceLimit);
+      const double weight = (round == 0 ? 1.0 : huber_weight(z, kChoiceLimit)) * row.scale * row.scale;
       const double weighted_D = weight * row.by_D;
       const double weighted_rate = weight * row.by_rate;
       n00 += weight;
@@ -171,7 +172,7 @@ LiveJunction::Captured LiveJunction::usual_capture(double delta_mu) const noexce
 double LiveJunction::carried_on_cost() const noexcept {
   double cost = common_cost_;
   for (std::size_t i = common_count_; i < size_; ++i)
-    cost += huber_cost(free_residual(rows_[i], common_), kLimit);
+    cost += huber_cost(free_residual(rows_[i], common_), kChoiceLimit);
   return cost;
 }
 
@@ -190,64 +191,89 @@ LiveJunction::Events LiveJunction::events_of(const Captured& p,
   return events;
 }
 
-LiveJunction::Assembled LiveJunction::assemble(const Captured& p, const SharedParameters& shared,
-                                               double typical_delta_mu) const noexcept {
-  Assembled sum{Eigen::Matrix4d::Zero(), Eigen::Vector4d::Zero(), 0.0};
-  const Events events = events_of(p, shared);
-  const double S = std::max(p[3], events.at_capture);
-  const double D = S - p[0];
-  const double ratio = D / typical_delta_mu;
-  const double surprise = std::log(std::max(ratio, kLeastRatio)) / kDeltaMuLogScatter;
-  sum.cost = 0.5 * surprise * surprise;
-  if (ratio > kLeastRatio) {
-    const Eigen::Vector4d by = Eigen::Vector4d{-1.0, 0.0, 0.0, 1.0} / (D * kDeltaMuLogScatter);
-    sum.normal += by * by.transpose();
-    sum.gradient -= surprise * by;
-  }
+LiveJunction::Point LiveJunction::captured_at(const Row& row, const Captured& p, const Events& events,
+                                              const SharedParameters& shared) noexcept {
   const auto& [omega, gamma, r] = shared;
-  // At the end of its rise c′ is stationary, so that the shift of that moment drops out.
-  const double shortfall = (r - events.rate_by_free.dot(p.head<3>())) / (kStickRateSpread * r);
-  if (shortfall > 0.0) {
-    Eigen::Vector4d by = Eigen::Vector4d::Zero();
-    by.head<3>() = -events.rate_by_free / (kStickRateSpread * r);
-    sum.cost += 0.5 * shortfall * shortfall;
-    sum.normal += by * by.transpose();
-    sum.gradient -= shortfall * by;
+  Point point;
+  if (row.tau_s <= events.capture_tau_s) {
+    point.by << 1.0, row.by_D, row.by_rate, 0.0;
+    point.value = point.by.dot(p);
+    return point;
   }
+  // c and c′ are continuous at the capture: its shift drops out.
+  point.by << events.by_free, 0.0;
+  if (row.tau_s <= events.onset_tau_s) {
+    point.value = events.at_capture + r * (row.tau_s - events.capture_tau_s);
+    return point;
+  }
+  const double D = std::max(p[3], events.at_capture) - p[0];
   const double B = (r + 0.5 * gamma * D) / omega;
-  for (std::size_t i = 0; i < size_; ++i) {
-    const Row& row = rows_[i];
-    double value = 0.0;
-    Eigen::Vector4d by = Eigen::Vector4d::Zero();
-    if (row.tau_s <= events.capture_tau_s) {
-      by << 1.0, row.by_D, row.by_rate, 0.0;
-      value = by.dot(p);
-    } else if (row.tau_s <= events.onset_tau_s) {
-      // c and c′ are continuous at the capture: its shift drops out.
-      by.head<3>() = events.by_free;
-      value = events.at_capture + r * (row.tau_s - events.capture_tau_s);
-    } else {
-      const double tau_s = row.tau_s - events.onset_tau_s;
-      const double decay = std::exp(-0.5 * gamma * tau_s);
-      const double cosine = decay * std::cos(omega * tau_s);
-      const double sine = decay * std::sin(omega * tau_s);
-      const double swing = D * cosine + B * sine;
-      const double rate = r * cosine - (0.5 * gamma * B + omega * D) * sine;
-      const double by_D = cosine + 0.5 * gamma / omega * sine;
-      value =
-          p[0] + swing - row.half_spread_s2 * (gamma * rate + (omega * omega + 0.25 * gamma * gamma) * swing);
-      // The onset comes later by 1/r for each S, and earlier by what the capture is higher.
-      by[3] = by_D - rate / r;
-      by.head<3>() = rate / r * events.by_free;
-      by[0] += 1.0 - by_D;
-    }
-    const double z = (row.value - value) * row.scale;
-    sum.cost += huber_cost(z, kLimit);
-    const double weight = huber_weight(z, kLimit);
-    sum.normal += (weight * row.scale * row.scale * by) * by.transpose();
-    sum.gradient += weight * z * row.scale * by;
+  const double tau_s = row.tau_s - events.onset_tau_s;
+  const double decay = std::exp(-0.5 * gamma * tau_s);
+  const double cosine = decay * std::cos(omega * tau_s);
+  const double sine = decay * std::sin(omega * tau_s);
+  const double swing = D * cosine + B * sine;
+  const double rate = r * cosine - (0.5 * gamma * B + omega * D) * sine;
+  const double by_D = cosine + 0.5 * gamma / omega * sine;
+  point.value =
+      p[0] + swing - row.half_spread_s2 * (gamma * rate + (omega * omega + 0.25 * gamma * gamma) * swing);
+  // The onset comes later by 1/r for each S, and earlier by what the capture is higher.
+  point.by *= rate / r;
+  point.by[0] += 1.0 - by_D;
+  point.by[3] = by_D - rate / r;
+  return point;
+}
+
+LiveJunction::Assembled LiveJunction::unusual(const Captured& p, const Events& events,
+                                              const SharedParameters& shared,
+                                              double typical_delta_mu) noexcept {
+  Assembled sum{Eigen::Matrix4d::Zero(), Eigen::Vector4d::Zero(), 0.0};
+  const auto add = [&](double residual, const Eigen::Vector4d& by) {
+    sum.cost += 0.5 * residual * residual;
+    sum.normal += by * by.transpose();
+    sum.gradient -= residual * by;
+  };
+  const double D = std::max(p[3], events.at_capture) - p[0];
+  const double ratio = D / typical_delta_mu;
+  Eigen::Vector4d by = Eigen::Vector4d::Zero();
+  if (ratio > kLeastRatio) by = Eigen::Vector4d{-1.0, 0.0, 0.0, 1.0} / (D * kDeltaMuLogScatter);
+  add(std::log(std::max(ratio, kLeastRatio)) / kDeltaMuLogScatter, by);
+  // At the end of its rise c′ is stationary, so that the shift of that moment drops out.
+  const double shortfall = (shared.r - events.rate_by_free.dot(p.head<3>())) / (kStickRateSpread * shared.r);
+  if (shortfall > 0.0) {
+    by.setZero();
+    by.head<3>() = -events.rate_by_free / (kStickRateSpread * shared.r);
+    add(shortfall, by);
   }
   return sum;
+}
+
+LiveJunction::Assembled LiveJunction::assemble(const Captured& p, const SharedParameters& shared,
+                                               double typical_delta_mu) const noexcept {
+  const Events events = events_of(p, shared);
+  Assembled sum = unusual(p, events, shared, typical_delta_mu);
+  for (const Row& row : rows()) {
+    const Point point = captured_at(row, p, events, shared);
+    const double z = (row.value - point.value) * row.scale;
+    sum.cost += huber_cost(z, kChoiceLimit);
+    const double weight = huber_weight(z, kChoiceLimit);
+    sum.normal += (weight * row.scale * row.scale * point.by) * point.by.transpose();
+    sum.gradient += weight * z * row.scale * point.by;
+  }
+  return sum;
+}
+
+double LiveJunction::log_likelihood_ratio(const Free& free, const Captured& captured,
+                                          const SharedParameters& shared, double typical_delta_mu,
+                                          double residual_sigmas) const noexcept {
+  const Events events = events_of(captured, shared);
+  const double per_sigma = 1.0 / std::max(residual_sigmas, 1.0);
+  double ratio = -unusual(captured, events, shared, typical_delta_mu).cost * per_sigma * per_sigma;
+  for (const Row& row : rows()) {
+    const double z = (row.value - captured_at(row, captured, events, shared).value) * row.scale;
+    ratio += mixture_cost(free_residual(row, free) * per_sigma) - mixture_cost(z * per_sigma);
+  }
+  return ratio;
 }
 
 double LiveJunction::fit_captured(Captured& p, Assembled now, const SharedParameters& shared, double sigma,
@@ -321,9 +347,9 @@ JunctionEvidence LiveJunction::ask(std::span<const CyclePoint> points, const Sha
   evidence.capture_s = points.front().time_s + events.capture_tau_s;
   evidence.next_onset_s = points.front().time_s + events.onset_tau_s;
   // Where both leave more than noise, the scans tell less than they seem to.
-  const double left = 2.0 * std::min(free_cost, captured_cost) / count;
-  evidence.residual_sigmas = std::sqrt(left);
-  evidence.log_likelihood_ratio = (free_cost - captured_cost) / std::max(left, 1.0);
+  evidence.residual_sigmas = std::sqrt(2.0 * std::min(free_cost, captured_cost) / count);
+  evidence.log_likelihood_ratio =
+      log_likelihood_ratio(free, best, shared, typical_delta_mu, evidence.residual_sigmas);
   return evidence;
 }
 

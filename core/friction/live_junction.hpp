@@ -67,6 +67,7 @@ class LiveJunction {
   [[nodiscard]] static double free_residual(const Row& row, const Free& p) noexcept {
     return (row.value - (p[0] + (row.by_D * p[1] + row.by_rate * p[2]))) * row.scale;
   }
+  [[nodiscard]] std::span<const Row> rows() const noexcept { return std::span{rows_}.first(size_); }
   /// The rows of these points; those that were there at the last question are kept.
   void lay_out(std::span<const CyclePoint> points, const SharedParameters& shared, double sigma) noexcept;
   /// Best free course of the first `count` rows. \return its cost.
@@ -78,13 +79,27 @@ class LiveJunction {
   /// Cost of all rows if the common course goes on freely.
   [[nodiscard]] double carried_on_cost() const noexcept;
   [[nodiscard]] Events events_of(const Captured& p, const SharedParameters& shared) const noexcept;
+  /// Value of the captured course, and its derivatives.
+  struct Point {
+    double value = 0.0;
+    Captured by = Captured::Zero();
+  };
+  [[nodiscard]] static Point captured_at(const Row& row, const Captured& p, const Events& events,
+                                         const SharedParameters& shared) noexcept;
   struct Assembled {
     Eigen::Matrix4d normal;
     Eigen::Vector4d gradient;
     double cost;
   };
+  /// What of a captured course is unusual: its S − K, and a c′ that does not reach the stick rate.
+  [[nodiscard]] static Assembled unusual(const Captured& p, const Events& events,
+                                         const SharedParameters& shared, double typical_delta_mu) noexcept;
   [[nodiscard]] Assembled assemble(const Captured& p, const SharedParameters& shared,
                                    double typical_delta_mu) const noexcept;
+  /// Captured over free, where a spike tells no more than one scan can.
+  [[nodiscard]] double log_likelihood_ratio(const Free& free, const Captured& captured,
+                                            const SharedParameters& shared, double typical_delta_mu,
+                                            double residual_sigmas) const noexcept;
   /// \param now  assembled at p.
   double fit_captured(Captured& p, Assembled now, const SharedParameters& shared, double sigma,
                       double typical_delta_mu) const noexcept;

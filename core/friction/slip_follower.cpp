@@ -18,6 +18,8 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// ln 10⁴: then one wrong end in ten thousand slips at most [Wald, Ann. Math. Stat. 16:117–186, 1945,
 /// (3:42)].
 constexpr double kDecisive = 9.210340371976184;
+/// ln 20, as at the end of a test (core/friction/regime_rule).
+constexpr double kUntold = 2.995732273553991;
 /// The question is asked so often in a period; first when c′ of a slip that escapes is nearly done with
 /// rising (t₃ is three quarters of a period after the peak at most), and answered after so many, come what
 /// may.
@@ -32,14 +34,18 @@ constexpr double kBlocksPerFall = 16.0;
 /// parabola by (π/8)⁴/24 = 0.1 % of the amplitude; at least the scan on each side.
 constexpr double kReachPerPeriod = 1.0 / 16.0;
 constexpr double kLeastReachScans = 1.6;
-/// Parts of a rise between which its slope is the stick rate.
+/// Parts of a rise between which its slope is the stick rate; the wider ones where a fast loading leaves so
+/// few scans between the others that a stray one could bend them.
 constexpr double kRiseFrom = 0.3;
 constexpr double kRiseTo = 0.7;
+constexpr double kFastRiseFrom = 0.1;
+constexpr double kFastRiseTo = 0.8;
+constexpr std::ptrdiff_t kFewestOfRise = 8;
 /// Turning points know ω and r by such parts; only their ratio to what was known before matters.
 constexpr double kTurningPointSpread = 0.02;
 constexpr double kSlopeSpread = 0.05;
-/// Change of ln r from which on the belt has another speed.
-constexpr double kStickRateChange = 0.05;
+/// After so many slips the stick rate is known from more than a loading, and one rise does not overturn it.
+constexpr double kKnownSlips = 2.0;
 /// Rises of so many falls are mostly stick, and their middle is.
 constexpr double kMostlyStick = 3.0;
 /// The typical S − K follows the last so many.
@@ -81,6 +87,7 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
       !begins_from_stick && fall.drop() > freely_next_drop() + peak_error(fall.drop(), sigma);
   if (contradicted) begins_from_stick = true;
   open_ = true;
+  ++slip_number_;
   decided_ = false;
   begins_from_stick_ = begins_from_stick;
   fall_ = fall;
@@ -100,8 +107,13 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
   }
   const auto before =
       between(buffer_.points(), std::max(window_from_s_, peak_s - fall.rise_duration * scan_s_), peak_s);
-  rise_slope_ = slope_between(before, fall.rise_from + kRiseFrom * rise, fall.rise_from + kRiseTo * rise)
-                    .value_or(rise / (std::max(fall.rise_duration, 1.0) * scan_s_));
+  const auto level = [&](double part) { return fall.rise_from + part * rise; };
+  const bool few = std::ranges::count_if(before, [&](const CyclePoint& point) {
+                     return point.value >= level(kRiseFrom) && point.value <= level(kRiseTo);
+                   }) < kFewestOfRise;
+  rise_slope_ =
+      slope_between(before, level(few ? kFastRiseFrom : kRiseFrom), level(few ? kFastRiseTo : kRiseTo), sigma)
+          .value_or(0.0);
   if (!(rise_slope_ > 0.0)) rise_slope_ = rise / (std::max(fall.rise_duration, 1.0) * scan_s_);
   if (!knowledge_.started()) knowledge_.start(std::numbers::pi / half_s, rise_slope_);
   if (contradicted) knowledge_.forget_stick_rate(rise_slope_);
@@ -193,20 +205,25 @@ bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
     SharedParameters other = shared_;
     other.r = rise_slope_;
     const JunctionEvidence with_other = junction_.ask(points, other, sigma, typical_delta_mu_);
-    if (with_other.residual_sigmas < evidence_.residual_sigmas) {
+    if (belt_changed(with_other.residual_sigmas, evidence_.residual_sigmas)) {
       evidence_ = with_other;
       shared_ = other;
       question_from_s_ = kUnknown;
     }
   }
   slip_.evidence = evidence_.known ? evidence_.log_likelihood_ratio : kUnknown;
-  const bool clear = evidence_.known && std::abs(evidence_.log_likelihood_ratio) > kDecisive;
+  // What neither course describes may be neither: an escape then takes more to be believed.
+  const double doubt = std::max(evidence_.residual_sigmas / kMisfitSigmas, 1.0);
+  const bool clear = evidence_.known && (evidence_.log_likelihood_ratio > kDecisive ||
+                                         evidence_.log_likelihood_ratio < -doubt * doubt * kDecisive);
   if (!clear && !last) {
     next_task_s_ = now_s + period_s() / kAskedPerPeriod;
     return false;
   }
   task_ = begins_from_stick_ ? Task::kFit : Task::kNone;
+  // At the next slip the sign decides; a sled that sticks goes on sticking as long as the scans tell nothing.
   if (!evidence_.known) return false;
+  if (evidence_.log_likelihood_ratio < 0.0 && evidence_.log_likelihood_ratio > -kUntold) return false;
   decide(evidence_.log_likelihood_ratio, now_s);
   if (std::abs(std::log(shared_.r / knowledge_.best().r)) > kStickRateChange && shared_.r == rise_slope_)
     knowledge_.forget_stick_rate(rise_slope_);
@@ -214,6 +231,12 @@ bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
     slip_.cycle.capture_time_s = last_capture_s_ = window_from_s_ = evidence_.capture_s;
   }
   return true;
+}
+
+bool SlipFollower::belt_changed(double residual_sigmas, double before_sigmas) noexcept {
+  if (!BeltChange::explains(residual_sigmas, before_sigmas)) return false;
+  const bool seen_before = belt_change_.seen(slip_number_, rise_slope_);
+  return seen_before || typical_count_ < kKnownSlips;
 }
 
 double SlipFollower::freely_next_drop() const noexcept {
@@ -300,7 +323,7 @@ void SlipFollower::estimate_by_fit(double end_s, double sigma) noexcept {
     SharedKnowledge anew = knowledge_;
     anew.forget_stick_rate(rise_slope_);
     const CycleFit other = fit_cycle(points, is_captured, first_guess(), anew, sigma);
-    if (other.converged && other.residual_sigmas < fit.residual_sigmas) {
+    if (other.converged && belt_changed(other.residual_sigmas, fit.residual_sigmas)) {
       knowledge_ = anew;
       fit = other;
     }

@@ -2,9 +2,11 @@
 /// One slip from its fall on: how does it end, and what are its S and K?
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <utility>
 
+#include "core/friction/belt_change.hpp"
 #include "core/friction/cycle_fit.hpp"
 #include "core/friction/fall_finder.hpp"
 #include "core/friction/live_cycle.hpp"
@@ -59,6 +61,9 @@ class SlipFollower {
   [[nodiscard]] bool judge(double now_s, double sigma, bool last) noexcept;
   /// The next drop if it goes on freely.
   [[nodiscard]] double freely_next_drop() const noexcept;
+  /// \param residual_sigmas  what this slip's scans leave with the slope of the rise before it as stick rate.
+  /// \param before_sigmas  with the one known.
+  [[nodiscard]] bool belt_changed(double residual_sigmas, double before_sigmas) noexcept;
   /// By the heights of this fall and the next alone.
   void judge_by_heights(const Fall& next, double sigma) noexcept;
   void decide(double evidence, double now_s) noexcept;
@@ -89,6 +94,8 @@ class SlipFollower {
   double peak_s_ = 0.0;
   double trough_s_ = 0.0;
   double rise_slope_ = 0.0;
+  BeltChange belt_change_;
+  std::int64_t slip_number_ = 0;
   double question_from_s_ = 0.0;  ///< Scans from here on tell how it ends; NaN until asked.
   SharedParameters shared_;
   JunctionEvidence evidence_;

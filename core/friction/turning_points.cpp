@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include "core/friction/huber.hpp"
 #include "core/friction/slip_waveform.hpp"
 
 namespace stickslip::friction {
@@ -35,24 +36,37 @@ std::optional<TurningPoint> parabola_vertex(std::span<const CyclePoint> points, 
   return TurningPoint{near_s + vertex * reach_s, base + c[0] + 0.5 * c[1] * vertex};
 }
 
-std::optional<double> slope_between(std::span<const CyclePoint> points, double low, double high) noexcept {
-  double n = 0.0;
+std::optional<double> slope_between(std::span<const CyclePoint> points, double low, double high,
+                                    double sigma) noexcept {
+  constexpr int kRounds = 4;  // Of reweighting; the first is least squares.
   double mean_t = 0.0;
   double mean_c = 0.0;
-  double s_tt = 0.0;
-  double s_tc = 0.0;
-  for (const CyclePoint& point : points) {
-    if (point.value < low || point.value > high) continue;
-    // Running means: no difference of large sums [Welford, Technometrics 4(3):419–420, 1962].
-    n += point.count;
-    const double dt = point.time_s - mean_t;
-    mean_t += point.count / n * dt;
-    mean_c += point.count / n * (point.value - mean_c);
-    s_tt += point.count * dt * (point.time_s - mean_t);
-    s_tc += point.count * dt * (point.value - mean_c);
+  double slope = 0.0;
+  for (int round = 0; round < kRounds; ++round) {
+    const double before_t = mean_t;
+    const double before_c = mean_c;
+    const double before_slope = slope;
+    double n = 0.0;
+    double s_tt = 0.0;
+    double s_tc = 0.0;
+    mean_t = mean_c = 0.0;
+    for (const CyclePoint& point : points) {
+      if (point.value < low || point.value > high) continue;
+      const double off = point.value - before_c - before_slope * (point.time_s - before_t);
+      const double weight = round == 0 ? 1.0 : huber_weight(off * std::sqrt(point.count) / sigma);
+      const double count = weight * point.count;
+      // Running means: no difference of large sums [Welford, Technometrics 4(3):419–420, 1962].
+      n += count;
+      const double dt = point.time_s - mean_t;
+      mean_t += count / n * dt;
+      mean_c += count / n * (point.value - mean_c);
+      s_tt += count * dt * (point.time_s - mean_t);
+      s_tc += count * dt * (point.value - mean_c);
+    }
+    if (!(s_tt > 0.0)) return std::nullopt;
+    slope = s_tc / s_tt;
   }
-  if (!(s_tt > 0.0)) return std::nullopt;
-  return s_tc / s_tt;
+  return slope;
 }
 
 double K_of_turning_points(double peak, double trough, const Oscillator& oscillator) noexcept {

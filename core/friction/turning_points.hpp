@@ -21,10 +21,11 @@ struct TurningPoint {
 [[nodiscard]] std::optional<TurningPoint> parabola_vertex(std::span<const CyclePoint> points, double near_s,
                                                           double reach_s, double sign) noexcept;
 
-/// Slope of the points between two parts of the rise from `low` to `high`, least squares.
-/// \return nothing with fewer than two points there.
-[[nodiscard]] std::optional<double> slope_between(std::span<const CyclePoint> points, double low,
-                                                  double high) noexcept;
+/// Slope of the points between `low` and `high`, with Huber's weights: of the few that a fast loading has,
+/// one spike that was not found would bend it by a tenth. \param sigma  noise of one scan. \return nothing
+/// with fewer than two points there.
+[[nodiscard]] std::optional<double> slope_between(std::span<const CyclePoint> points, double low, double high,
+                                                  double sigma) noexcept;
 
 /// K from a maximum and the minimum half an oscillation later, which is nearer to it by e^(−πγ/2ω).
 [[nodiscard]] double K_of_turning_points(double peak, double trough, const Oscillator& oscillator) noexcept;

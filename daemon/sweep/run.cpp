@@ -1,43 +1,27 @@
 #include "daemon/sweep/run.hpp"
 
-#include <array>
-#include <utility>
-
-#include "core/daq/calibration.hpp"
 #include "core/friction/test_analysis.hpp"
-#include "core/sim/scene_run.hpp"
 #include "core/sim/scene_truth.hpp"
 #include "daemon/simulate.hpp"
-#include "drivers/simulated/scene_facts.hpp"
+#include "daemon/sweep/scene_scans.hpp"
 
 namespace stickslip::daemon {
 namespace {
 
 friction::TestResults results_of(const sim::Scene& scene, std::uint64_t seed) {
-  const friction::Tester tester = drivers::tester_of({scene});
-  const daq::Calibration calibration{drivers::board_info_of({scene}, scene.scan_rate_Hz),
-                                     drivers::load_cell_of(scene), tester.normal_load_N()};
+  const daq::Calibration calibration = calibration_of(scene);
   friction::AnalysisSettings settings;
   settings.scan_rate_Hz = scene.scan_rate_Hz;
   settings.step_coefficient = calibration.step_coefficient();
-  settings.tester = tester;
+  settings.tester = drivers::tester_of({scene});
   friction::TestAnalysis analysis{settings};
-
-  sim::SceneRun run{scene, scene.scan_rate_Hz};
-  run.restart(seed);
-  std::array<double, 1024> raw{};
-  std::int64_t expected = -1;  // Nothing is missing before the first scan that arrives.
-  for (;;) {
-    std::int64_t scan = run.next_scan();
-    const std::size_t arrived = run.next(raw);
-    if (arrived == 0) break;
-    if (expected >= 0 && scan != expected) analysis.gap(expected, scan - expected);
-    for (std::size_t i = 0; i < arrived; ++i) {
-      analysis.add(scan++, calibration.coefficient(raw[i]), calibration.saturated(raw[i]));
-    }
-    expected = scan;
-  }
-  if (expected < 0) return record::absent_results("all scans are missing");
+  const bool any = play(
+      scene, seed, calibration,
+      [&](base::ScanIndex scan, double coefficient, bool saturated) {
+        analysis.add(scan, coefficient, saturated);
+      },
+      [&](base::ScanIndex first, std::int64_t count) { analysis.gap(first, count); });
+  if (!any) return record::absent_results("all scans are missing");
   return analysis.finish();
 }
 
