@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,8 +15,8 @@
 #include <boost/asio/post.hpp>
 
 #include "core/friction/sampling.hpp"
-#include "daemon/finaliser.hpp"
 #include "daemon/method_text.hpp"
+#include "daemon/recovery.hpp"
 #include "daemon/tester_file.hpp"
 #include "daemon/version.hpp"
 
@@ -24,6 +25,20 @@ namespace {
 
 /// Tries to open a missing board: after 1, 2, 4, 8, 16, 30, 30 … s.
 constexpr std::chrono::seconds kLongestRetry{30};
+
+/// Room for longer is not told in one line: 30 days without a pause.
+constexpr double kTellRoom_h = 720.0;
+
+/// As far as permissions go.
+Finalise read_only(Finalise finalise) {
+  return [finalise = std::move(finalise)](const std::filesystem::path& journal) {
+    auto file = finalise(journal);
+    constexpr mode_t kEverybodyReads = 0444;
+    // The record is whole; that it can be written to is no reason to refuse it.
+    if (file) static_cast<void>(::chmod(file->c_str(), kEverybodyReads));
+    return file;
+  };
+}
 
 }  // namespace
 
@@ -75,8 +90,10 @@ App::App(DaemonConfig config, AppWorld world)
       world_(std::move(world)),
       signals_(io_),
       retry_timer_(io_),
+      finalise_(config_.read_only_records ? read_only(world_.finalise) : world_.finalise),
       clock_(world_.clock ? std::move(world_.clock) : base::make_system_clock(config_.clock_speed)),
-      storage_(config_.record_folder, world_.finalise, tests_, *world_.facts),
+      storage_({.folder = config_.record_folder, .dated_folders = config_.dated_folders}, finalise_, tests_,
+               *world_.facts, [this] { boost::asio::post(io_, [this] { tell_status(); }); }),
       watcher_(std::make_unique<Watcher>(*this)),
       retry_after_(world_.first_retry) {}
 
@@ -97,7 +114,8 @@ base::Result<void> App::run() {
     control_ = std::move(*control);
     world_.facts->control_listening(config_.control_socket->string());
   }
-  finalise_orphans();
+  // What cannot be recovered is told and kept; the measurement goes on.
+  static_cast<void>(recover_folder(config_.record_folder, finalise_, *world_.facts));
   if (base::Result<void> opened = open_session(); !opened) {
     if (opened.error().kind == base::ErrorKind::kUsage) return opened;
     wait_for_board(opened.error());
@@ -133,16 +151,6 @@ base::Result<void> App::prepare_record_folder() {
   ::close(descriptor);
   ::unlink(probe.c_str());
   return {};
-}
-
-void App::finalise_orphans() {
-  for (const std::filesystem::path& journal : journals_in(config_.record_folder)) {
-    if (const base::Result<std::filesystem::path> file = world_.finalise(journal)) {
-      world_.facts->orphan_finalised(*file);
-    } else {
-      world_.facts->orphan_kept(journal, file.error().message);
-    }
-  }
 }
 
 base::Result<void> App::open_session() {
@@ -339,6 +347,18 @@ App::State App::waiting_state(base::ErrorKind kind) noexcept {
 }
 
 std::string App::status_line() const {
+  const DiskState disk = storage_.disk();
+  std::string line = state_line();
+  if (disk.trouble) {
+    line +=
+        fmt::format("; the disk refuses, {} kB wait in memory: {}", disk.waiting_size / 1000, *disk.trouble);
+  } else if (disk.room_h && *disk.room_h < kTellRoom_h) {
+    line += fmt::format("; room on the disk for {:.0f} h", *disk.room_h);
+  }
+  return line;
+}
+
+std::string App::state_line() const {
   switch (state_) {
     case State::kAcquiring: {
       const std::string rate =

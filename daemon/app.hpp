@@ -73,7 +73,6 @@ class App {
   [[nodiscard]] static State waiting_state(base::ErrorKind kind) noexcept;
 
   [[nodiscard]] base::Result<void> prepare_record_folder();
-  void finalise_orphans();
   [[nodiscard]] base::Result<void> open_session();
   void wait_for_board(const base::Error& why);
   void retry_board();
@@ -84,6 +83,7 @@ class App {
   [[nodiscard]] base::Result<SessionSettings> session_settings(const drivers::OpenedBoard& opened) const;
   [[nodiscard]] record::RecordHeader record_header(const SessionSettings& settings) const;
   [[nodiscard]] std::string status_line() const;
+  [[nodiscard]] std::string state_line() const;  ///< Without the disk.
   /// What the kernel granted; only while there is a session.
   [[nodiscard]] std::string realtime_facts() const;
 
@@ -92,6 +92,7 @@ class App {
   boost::asio::io_context io_{1};
   boost::asio::signal_set signals_;
   boost::asio::steady_timer retry_timer_;
+  Finalise finalise_;
   std::unique_ptr<base::Clock> clock_;
   Notify notify_;
   TestLog tests_;

@@ -48,6 +48,9 @@ constexpr std::array<std::pair<std::string_view, friction::EstimatorTier>, 3> kE
      {name(friction::EstimatorTier::kInterpolated), friction::EstimatorTier::kInterpolated},
      {name(friction::EstimatorTier::kFit), friction::EstimatorTier::kFit}}};
 
+constexpr std::array<std::pair<std::string_view, DatedFolders>, 3> kDatedFolders{
+    {{"none", DatedFolders::kNone}, {"month", DatedFolders::kMonth}, {"day", DatedFolders::kDay}}};
+
 /// A typing mistake of a factor of a thousand is refused; every real tester is far inside.
 constexpr double kFastestScanRate_Hz = 1e6;
 constexpr double kFastestClock = 1e4;
@@ -249,6 +252,8 @@ DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
   Settings record = settings.table("record");
   config.record_folder = record.text("folder", "records");
   if (config.record_folder.empty()) record.refuse("folder", "must name a folder");
+  config.dated_folders = record.choice<DatedFolders>("dated_folders", kDatedFolders, config.dated_folders);
+  config.read_only_records = record.boolean("read_only", config.read_only_records);
   Settings control = settings.table("control");
   if (const std::string socket = control.text("socket", ""); !socket.empty()) config.control_socket = socket;
   config.log_level = settings.table("log").choice<LogLevel>("level", kLogLevels, config.log_level);

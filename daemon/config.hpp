@@ -14,6 +14,7 @@
 #include "core/friction/method.hpp"
 #include "core/friction/tester.hpp"
 #include "core/pipeline/segmenter.hpp"
+#include "daemon/dated_folders.hpp"
 #include "daemon/realtime.hpp"
 #include "drivers/factory/board_config.hpp"
 
@@ -45,6 +46,8 @@ struct DaemonConfig {
   friction::Method method;
   friction::EstimatorTier estimator = friction::EstimatorTier::kFit;
   std::filesystem::path record_folder;
+  DatedFolders dated_folders = DatedFolders::kNone;
+  bool read_only_records = false;
   std::optional<std::filesystem::path> control_socket;
   LogLevel log_level = LogLevel::kInfo;
   bool report_table = false;

@@ -30,8 +30,16 @@ class Facts {
   virtual void test_ended(const pipeline::TestEnd& /*end*/) {}
   virtual void file_published(std::int64_t /*test*/, const std::filesystem::path& /*file*/) {}
   virtual void recording_failed(std::int64_t /*test*/, std::string_view /*why*/) {}
+  /// The disk refuses; what comes waits in memory.
+  virtual void storage_waits(std::string_view /*why*/) {}
+  /// All that waited is written.
+  virtual void storage_resumed() {}
+  /// A test begins, and there is room for so long only.
+  virtual void little_room(std::int64_t /*test*/, double /*room_s*/) {}
   virtual void orphan_finalised(const std::filesystem::path& /*file*/) {}
   virtual void orphan_kept(const std::filesystem::path& /*journal*/, std::string_view /*why*/) {}
+  /// Nothing had been recorded; the journal is removed.
+  virtual void orphan_empty(const std::filesystem::path& /*journal*/) {}
   virtual void control_listening(std::string_view /*socket*/) {}
   virtual void stopping(std::string_view /*why*/) {}
 };

@@ -10,10 +10,15 @@
 #include <string>
 #include <system_error>
 
+#include "core/record/finaliser.hpp"
 #include "core/record/journal.hpp"
+#include "daemon/analyse.hpp"
 
 namespace stickslip::daemon {
 namespace {
+
+/// Folders below the one of the records: years and months.
+constexpr int kDeepest = 2;
 
 /// posix_spawn attributes that put the child into its own process group.
 class OwnProcessGroup {
@@ -33,6 +38,24 @@ class OwnProcessGroup {
   posix_spawnattr_t attributes_{};
 };
 
+/// Nothing of the daemon's stays open in the child: Asio's sockets are not closed on exec, and a finaliser
+/// that outlives a killed daemon would keep the next one from listening.
+class NoDescriptors {
+ public:
+  NoDescriptors() {
+    posix_spawn_file_actions_init(&actions_);
+    posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1);
+  }
+  ~NoDescriptors() { posix_spawn_file_actions_destroy(&actions_); }
+  NoDescriptors(const NoDescriptors&) = delete;
+  NoDescriptors& operator=(const NoDescriptors&) = delete;
+
+  [[nodiscard]] const posix_spawn_file_actions_t* get() const noexcept { return &actions_; }
+
+ private:
+  posix_spawn_file_actions_t actions_{};
+};
+
 }  // namespace
 
 std::filesystem::path record_of(const std::filesystem::path& journal) {
@@ -49,9 +72,10 @@ base::Result<std::filesystem::path> run_finaliser(const std::filesystem::path& p
   const std::array<char*, 4> arguments{program_text.data(), option.data(), journal_text.data(), nullptr};
 
   const OwnProcessGroup attributes;
+  const NoDescriptors descriptors;
   pid_t child = 0;
-  if (const int error =
-          posix_spawn(&child, program_text.c_str(), nullptr, attributes.get(), arguments.data(), environ);
+  if (const int error = posix_spawn(&child, program_text.c_str(), descriptors.get(), attributes.get(),
+                                    arguments.data(), environ);
       error != 0) {
     return base::failure("{}: the finaliser {} cannot be started: {}", journal_text, program_text,
                          std::generic_category().message(error));
@@ -75,14 +99,33 @@ base::Result<std::filesystem::path> run_finaliser(const std::filesystem::path& p
 }
 
 std::vector<std::filesystem::path> journals_in(const std::filesystem::path& folder) {
+  using Walk = std::filesystem::recursive_directory_iterator;
   std::vector<std::filesystem::path> journals;
   std::error_code error;
-  for (auto entry = std::filesystem::directory_iterator(folder, error);
-       !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+  for (Walk entry{folder, error}; !error && entry != Walk{}; entry.increment(error)) {
+    if (entry.depth() >= kDeepest) entry.disable_recursion_pending();
     if (entry->path().extension() == record::kJournalExtension) journals.push_back(entry->path());
   }
   std::sort(journals.begin(), journals.end());
   return journals;
+}
+
+base::Result<std::filesystem::path> finalise_here(const std::filesystem::path& journal) {
+  const auto evaluate = [](const record::Record& record) {
+    base::Result<record::EndRecord> end = analyse(record);
+    if (end) return *end;
+    record::EndRecord absent;
+    absent.results = record::absent_results(end.error().message);
+    return absent;
+  };
+  auto file = record::finalise(journal, evaluate, record::system_calls(), kOthersTime);
+  if (!file && is_finished(journal)) return record_of(journal);
+  return file;
+}
+
+bool is_finished(const std::filesystem::path& journal) {
+  std::error_code ignored;
+  return !std::filesystem::exists(journal, ignored) && std::filesystem::exists(record_of(journal), ignored);
 }
 
 }  // namespace stickslip::daemon

@@ -3,6 +3,7 @@
 /// the measurement must not be in it.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <vector>
 
@@ -20,7 +21,18 @@ namespace stickslip::daemon {
 [[nodiscard]] base::Result<std::filesystem::path> run_finaliser(const std::filesystem::path& program,
                                                                 const std::filesystem::path& journal);
 
-/// Journals in the folder, sorted; none if it cannot be read.
+/// A finaliser whose daemon was killed goes on by itself; an hour of scans takes it 0.2 s. Others wait so
+/// long.
+inline constexpr std::chrono::seconds kOthersTime{10};
+
+/// Somebody else has made the record in the meantime.
+[[nodiscard]] bool is_finished(const std::filesystem::path& journal);
+
+/// What that process does: record::finalise(), with results for a test that was interrupted. It is done as
+/// well if somebody else did it.
+[[nodiscard]] base::Result<std::filesystem::path> finalise_here(const std::filesystem::path& journal);
+
+/// Journals in the folder and in those of years and months below it, sorted; none if it cannot be read.
 [[nodiscard]] std::vector<std::filesystem::path> journals_in(const std::filesystem::path& folder);
 
 }  // namespace stickslip::daemon

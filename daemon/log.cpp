@@ -97,11 +97,21 @@ class Log final : public Facts {
   void recording_failed(std::int64_t test, std::string_view why) override {
     logger_.error("test {} is not recorded whole: {}", test, why);
   }
+  void storage_waits(std::string_view why) override {
+    logger_.error("the disk refuses, scans wait in memory: {}", why);
+  }
+  void storage_resumed() override { logger_.warn("the disk takes again: all that waited is written"); }
+  void little_room(std::int64_t test, double room_s) override {
+    logger_.error("test {} begins with room on the disk for {:.0f} s", test, room_s);
+  }
   void orphan_finalised(const std::filesystem::path& file) override {
     logger_.warn("made from the journal of an interrupted test: {}", file.string());
   }
   void orphan_kept(const std::filesystem::path& journal, std::string_view why) override {
     logger_.error("journal of an interrupted test kept: {}: {}", journal.string(), why);
+  }
+  void orphan_empty(const std::filesystem::path& journal) override {
+    logger_.warn("removed, nothing was recorded in it before the program was stopped: {}", journal.string());
   }
   void control_listening(std::string_view socket) override {
     logger_.info("control: listening at {}", socket);

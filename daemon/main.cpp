@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -11,8 +12,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "core/record/finaliser.hpp"
-#include "daemon/analyse.hpp"
 #include "daemon/app.hpp"
 #include "daemon/config.hpp"
 #include "daemon/finaliser.hpp"
@@ -45,14 +44,7 @@ int check_config(const std::string& file) {
 }
 
 int finalise_journal(const std::string& journal) {
-  const auto evaluate = [](const record::Record& record) {
-    base::Result<record::EndRecord> end = analyse(record);
-    if (end) return *end;
-    record::EndRecord absent;
-    absent.results = record::absent_results(end.error().message);
-    return absent;
-  };
-  const base::Result<std::filesystem::path> file = record::finalise(journal, evaluate);
+  const base::Result<std::filesystem::path> file = finalise_here(journal);
   return file ? 0 : refused(file.error());
 }
 
@@ -75,6 +67,8 @@ void print_table(const TestLog& tests) {
 int run(const std::string& file) {
   base::Result<DaemonConfig> config = load_config(file);
   if (!config) return refused(config.error());
+  // A limit to the size of files is an error of writing (EFBIG), not an end.
+  static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
   const bool table = config->report_table;
   const bool terminal = table && ::isatty(STDOUT_FILENO) != 0;
   const std::unique_ptr<Facts> log = make_log(config->log_level);

@@ -5,33 +5,73 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <span>
+#include <utility>
+
+#include "core/record/journal.hpp"
+#include "core/record/words.hpp"
+#include "daemon/finaliser.hpp"
 
 namespace stickslip::daemon {
 namespace {
 
 /// Messages between processing and storage: half a minute of blocks at 350 scans/s.
 constexpr std::size_t kQueueCapacity = 4096;
-/// At most this much is lost at a power cut.
-constexpr std::chrono::seconds kSyncPeriod{1};
+/// The storage thread wakes at least so often.
+constexpr std::chrono::seconds kIdle{1};
 /// One journal entry holds this much time.
 constexpr double kEntry_s = 0.1;
 
 /// Scans in one journal entry of the noise-free force: 32 kB.
 constexpr std::size_t kForceEntry = 4096;
 
+/// So much is kept in memory while the disk refuses: scans, and what comes with them.
+constexpr double kLongestWait_s = 600.0;
+/// Heads of ten entries, two clock readings and twenty cycles as JSON of 400 bytes.
+constexpr double kOtherBytesPerSecond = 9000.0;
+/// A test that begins with less room is told of: no test of the tester lasts longer.
+constexpr double kLeastRoom_s = 600.0;
+
+double encoded_size(const daq::BoardInfo& board) {
+  if (board.quantity != daq::RawQuantity::kCounts) return sizeof(double);
+  return record::counts_fit_u16(board) ? sizeof(std::uint16_t) : sizeof(std::uint32_t);
+}
+
+/// Of journal and record together, the columns of the record (time, scan, value, force, flags) not
+/// compressed.
+double bytes_per_scan(const daq::BoardInfo& board) {
+  constexpr double kColumns = sizeof(double) + sizeof(std::int64_t) + sizeof(float) + sizeof(std::uint8_t);
+  return 2.0 * encoded_size(board) + kColumns;
+}
+
+std::filesystem::path dated(const StorageSettings& settings, std::time_t seconds) {
+  switch (settings.dated_folders) {
+    case DatedFolders::kNone:
+      break;
+    case DatedFolders::kMonth:
+      return settings.folder / fmt::format("{:%Y}", fmt::gmtime(seconds)) /
+             fmt::format("{:%m}", fmt::gmtime(seconds));
+    case DatedFolders::kDay:
+      return settings.folder / fmt::format("{:%Y-%m-%d}", fmt::gmtime(seconds));
+  }
+  return settings.folder;
+}
+
 /// "20261121T125252Z-0003", in UTC; a number is added while something of that name exists.
-std::filesystem::path free_journal_path(const std::filesystem::path& folder,
-                                        const pipeline::TestStart& start) {
+std::filesystem::path free_journal_path(const StorageSettings& settings, const pipeline::TestStart& start,
+                                        const std::filesystem::path& latest) {
   const std::time_t seconds = start.stamp.realtime_ns / 1'000'000'000;
+  const std::filesystem::path folder = dated(settings, seconds);
   const std::string stem = fmt::format("{:%Y%m%dT%H%M%SZ}-{:04}", fmt::gmtime(seconds), start.number);
   std::error_code error;
   for (int attempt = 1;; ++attempt) {
     const std::string name = attempt == 1 ? stem : fmt::format("{}-{}", stem, attempt);
     std::filesystem::path journal = folder / (name + std::string{record::kJournalExtension});
-    if (!std::filesystem::exists(journal, error) &&
-        !std::filesystem::exists(folder / (name + ".h5"), error)) {
+    if (!std::filesystem::exists(journal, error) && !std::filesystem::exists(record_of(journal), error) &&
+        journal != latest) {
       return journal;
     }
   }
@@ -39,17 +79,28 @@ std::filesystem::path free_journal_path(const std::filesystem::path& folder,
 
 }  // namespace
 
-Storage::Storage(std::filesystem::path folder, Finalise finalise, TestLog& tests, Facts& facts)
-    : folder_(std::move(folder)),
-      finalise_(std::move(finalise)),
+Storage::Storage(StorageSettings settings, Finalise finalise, TestLog& tests, Facts& facts,
+                 std::function<void()> changed)
+    : settings_(std::move(settings)),
       tests_(tests),
       facts_(facts),
       queue_(kQueueCapacity),
+      changed_(std::move(changed)),
+      finisher_(std::move(finalise),
+                [this](std::int64_t test, const base::Result<std::filesystem::path>& file) {
+                  record_made(test, file);
+                }),
+      disk_(
+          {.folder = settings_.folder, .calls = settings_.calls},
+          [this](std::int64_t test, const std::filesystem::path& journal,
+                 const std::optional<std::string>& why_not) { journal_ended(test, journal, why_not); },
+          [this](const DiskState& state) { disk_changed(state); }),
       thread_([this] { run(); }) {}
 
 Storage::~Storage() { stop(); }
 
 void Storage::use(record::RecordHeader header, const friction::TruthSource* truth) {
+  disk_.set_load(header.board.scan_rate_granted_Hz * bytes_per_scan(header.board) + kOtherBytesPerSecond);
   header_ = std::make_shared<const record::RecordHeader>(std::move(header));
   truth_ = truth;
 }
@@ -58,6 +109,8 @@ void Storage::stop() {
   if (!thread_.joinable()) return;
   queue_.push(Quit{});
   thread_.join();
+  disk_.stop();
+  finisher_.stop();
 }
 
 // Processing thread.
@@ -117,21 +170,26 @@ void Storage::test_ended(const pipeline::TestEnd& end) {
 void Storage::run() {
   for (;;) {
     Message message;
-    if (queue_.pop(message, kSyncPeriod)) {
-      if (std::holds_alternative<Quit>(message)) return;
-      std::visit(
-          [this](const auto& content) {
-            if constexpr (!std::is_same_v<std::decay_t<decltype(content)>, Quit>) handle(content);
-          },
-          message);
+    if (!queue_.pop(message, kIdle)) {
+      append_pending();
+      continue;
     }
-    sync_if_due();
+    if (std::holds_alternative<Quit>(message)) return;
+    std::visit(
+        [this](const auto& content) {
+          if constexpr (!std::is_same_v<std::decay_t<decltype(content)>, Quit>) handle(content);
+        },
+        message);
   }
+}
+
+void Storage::check_room(const record::RecordHeader& header) {
+  const std::optional<double> room_s = disk_.room_s();
+  if (room_s && *room_s < kLeastRoom_s) facts_.little_room(header.test_number.value_or(0), *room_s);
 }
 
 void Storage::handle(const Began& message) {
   number_ = message.start.number;
-  failed_.reset();
   pending_.clear();
   pending_second_.clear();
   recorded_.clear();
@@ -140,15 +198,16 @@ void Storage::handle(const Began& message) {
   header.trigger_scan = message.start.trigger;
   header.start_realtime_ns = message.start.stamp.realtime_ns;
   header.title = fmt::format("test {}", message.start.number);
+  check_room(header);
   const double rate_Hz = header.board.scan_rate_granted_Hz;
   pending_enough_ = static_cast<std::size_t>(std::max(1.0, std::floor(rate_Hz * kEntry_s)));
-  auto journal = record::JournalWriter::create(free_journal_path(folder_, message.start), std::move(header));
-  if (journal) {
-    journal_.emplace(std::move(*journal));
-  } else {
-    fail(journal.error().message);
-  }
-  last_sync_ = std::chrono::steady_clock::now();
+  const auto memory = static_cast<std::size_t>(kLongestWait_s *
+                                               (rate_Hz * encoded_size(header.board) + kOtherBytesPerSecond));
+  const std::size_t others = disk_.waiting_size();
+  latest_path_ = free_journal_path(settings_, message.start, latest_path_);
+  journal_ = std::make_shared<record::PatientJournal>(
+      latest_path_, std::move(header), memory > others ? memory - others : 0, *settings_.calls);
+  disk_.begin(number_, journal_);
 }
 
 void Storage::handle(const daq::ScanBlock& block) {
@@ -165,99 +224,91 @@ void Storage::handle(const daq::ScanBlock& block) {
 
 void Storage::handle(const daq::Gap& gap) {
   append_pending();
-  if (journal_ && !failed_) note(journal_->append_gap(gap));
+  if (journal_) journal_->add_gap(gap);
 }
 
 void Storage::handle(const daq::ClockAnchor& anchor) {
-  if (journal_ && !failed_) note(journal_->append_anchor(anchor));
+  append_pending();  // A clock is not kept without the scan that it was read at.
+  if (journal_) journal_->add_anchor(anchor);
 }
 
 void Storage::handle(const friction::Cycle& cycle) {
   append_pending();
-  if (journal_ && !failed_) note(journal_->append_cycle(cycle));
+  if (journal_) journal_->add_cycle(cycle);
 }
 
 void Storage::handle(const Ended& message) {
   append_pending();
-  if (!journal_) {
-    tests_.set_file_error(number_, failed_.value_or("not recorded"));
-    return;
-  }
   record::EndRecord end = *message.end;
   end.end_realtime_ns = pending_stamp_.realtime_ns;
-  if (failed_) {
-    end.status = record::Status::kIncomplete;
-    end.reasons.push_back(*failed_);
-  }
-  base::Result<void> written;
-  if (message.force && !failed_) written = append_force(*message.force);
-  if (written) written = journal_->append_end(end);
-  if (written) written = journal_->sync();
-  const std::filesystem::path path = journal_->path();
-  journal_.reset();
-  if (!written) {
-    fail(written.error().message);
-    tests_.set_file_error(number_, written.error().message);
-    return;
-  }
-  const base::Result<std::filesystem::path> file = finalise_(path);
-  if (file) {
-    tests_.set_file(number_, file->string());
-    facts_.file_published(number_, *file);
-  } else {
-    fail(file.error().message);
-    tests_.set_file_error(number_, file.error().message);
-  }
+  if (message.force) append_force(*message.force);
+  journal_->add_end(std::move(end));
+  disk_.end(std::exchange(journal_, nullptr));
 }
 
 void Storage::append_pending() {
-  if (journal_ && !failed_ && !pending_.empty()) {
-    base::Result<void> appended = journal_->append_scans(pending_first_, pending_, pending_stamp_);
-    if (appended && !pending_second_.empty()) {
-      appended = journal_->append_second(pending_first_, pending_second_);
-    }
-    note(appended);
+  if (journal_ && !pending_.empty()) {
     // The stamp belongs to the last scan of the last block.
-    const daq::ScanIndex last = pending_first_ + static_cast<daq::ScanIndex>(pending_.size()) - 1;
-    if (!recorded_.empty() && recorded_.back().end == pending_first_) {
-      recorded_.back().end = last + 1;
-    } else {
-      recorded_.push_back({pending_first_, last + 1});
+    const daq::ScanIndex end = pending_first_ + static_cast<daq::ScanIndex>(pending_.size());
+    if (journal_->add_scans(pending_first_, pending_, pending_stamp_, pending_second_)) {
+      if (!recorded_.empty() && recorded_.back().end == pending_first_) {
+        recorded_.back().end = end;
+      } else {
+        recorded_.push_back({pending_first_, end});
+      }
     }
+    disk_.wake();
   }
   pending_.clear();
   pending_second_.clear();
 }
 
-base::Result<void> Storage::append_force(friction::TrueForce& force) {
+void Storage::append_force(friction::TrueForce& force) {
   std::array<double, kForceEntry> coefficient{};
   for (Stretch stretch : recorded_) {
     while (stretch.first < stretch.end) {
       const auto left = static_cast<std::size_t>(stretch.end - stretch.first);
       const std::span<double> some = std::span{coefficient}.first(std::min(left, kForceEntry));
       force.next(stretch.first, some);
-      if (auto written = journal_->append_true_coefficients(stretch.first, some); !written) return written;
+      // Faster than any disk; with one that refuses, the record goes without.
+      while (!journal_->add_true_coefficients(stretch.first, some)) {
+        disk_.wake();
+        if (!journal_->wait_for_room(kIdle) && disk_.state().trouble) return;
+      }
       stretch.first += static_cast<daq::ScanIndex>(some.size());
     }
   }
-  return {};
 }
 
-void Storage::sync_if_due() {
-  const auto now = std::chrono::steady_clock::now();
-  if (!journal_ || failed_ || now - last_sync_ < kSyncPeriod) return;
-  append_pending();
-  if (!failed_) note(journal_->sync());
-  last_sync_ = now;
+// Disk thread.
+
+void Storage::journal_ended(std::int64_t test, const std::filesystem::path& journal,
+                            const std::optional<std::string>& why_not) {
+  if (!why_not) {
+    finisher_.finish(test, journal);
+    return;
+  }
+  facts_.recording_failed(test, *why_not);
+  tests_.set_file_error(test, *why_not);
 }
 
-void Storage::note(const base::Result<void>& written) {
-  if (!written) fail(written.error().message);
+void Storage::disk_changed(const DiskState& state) {
+  if (state.trouble && !waits_) facts_.storage_waits(*state.trouble);
+  if (!state.trouble && waits_) facts_.storage_resumed();
+  waits_ = state.trouble.has_value();
+  if (changed_) changed_();
 }
 
-void Storage::fail(const std::string& why) {
-  if (!failed_) facts_.recording_failed(number_, why);
-  failed_ = why;
+// The finisher's thread.
+
+void Storage::record_made(std::int64_t test, const base::Result<std::filesystem::path>& file) {
+  if (file) {
+    tests_.set_file(test, file->string());
+    facts_.file_published(test, *file);
+  } else {
+    facts_.recording_failed(test, file.error().message);
+    tests_.set_file_error(test, file.error().message);
+  }
 }
 
 }  // namespace stickslip::daemon

@@ -1,8 +1,8 @@
 /// \file
-/// The storage thread: every test becomes a journal while it runs and a finished file at its end.
+/// The storage thread: every test becomes a journal while it runs and a finished file at its end. It meets no
+/// disk: that is the disk thread's (disk_writer.hpp) and the finisher's.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -15,24 +15,31 @@
 
 #include "core/friction/truth.hpp"
 #include "core/pipeline/sink.hpp"
-#include "core/record/journal.hpp"
 #include "core/record/record.hpp"
 #include "daemon/bounded_queue.hpp"
+#include "daemon/dated_folders.hpp"
+#include "daemon/disk_writer.hpp"
 #include "daemon/facts.hpp"
+#include "daemon/finisher.hpp"
+#include "daemon/recovery.hpp"
 #include "daemon/test_log.hpp"
 
 namespace stickslip::daemon {
 
-/// Builds the finished file of a journal; called on the storage thread.
-using Finalise = std::function<base::Result<std::filesystem::path>(const std::filesystem::path& journal)>;
+struct StorageSettings {
+  std::filesystem::path folder;  ///< Made if absent, before the first test.
+  DatedFolders dated_folders = DatedFolders::kNone;
+  const record::FileCalls* calls = &record::system_calls();
+};
 
-/// The record sink. As a sink it is bound to the processing thread, which waits here when the
-/// disk is slower than the board: the record loses nothing before the acquisition ring does.
+/// The record sink. As a sink it is bound to the processing thread. What the disk does not take at once waits
+/// in memory, ten minutes of scans at least; what does not fit is a gap with the cause storage-full.
 class Storage final : public pipeline::Sink {
  public:
-  /// \param folder  exists and is writable.
-  /// \param tests,facts  outlive this object.
-  Storage(std::filesystem::path folder, Finalise finalise, TestLog& tests, Facts& facts);
+  /// \param finalise  called on the finisher's thread. \param tests,facts  outlive this object.
+  /// \param changed  called on the disk thread when it is otherwise with the disk; may not wait.
+  Storage(StorageSettings settings, Finalise finalise, TestLog& tests, Facts& facts,
+          std::function<void()> changed = {});
   /// As stop().
   ~Storage() override;
   Storage(const Storage&) = delete;
@@ -45,7 +52,9 @@ class Storage final : public pipeline::Sink {
   /// Writes all that was handed over, finalises, ends the thread. No sink calls afterwards.
   void stop();
 
-  /// Times the processing thread had to wait for the disk. Any thread.
+  /// How it is with the disk. Any thread.
+  [[nodiscard]] DiskState disk() const { return disk_.state(); }
+  /// Times the processing thread had to wait. Any thread.
   [[nodiscard]] std::uint64_t stall_count() const noexcept { return queue_.stall_count(); }
 
   void test_began(const pipeline::TestStart& start) override;
@@ -84,13 +93,14 @@ class Storage final : public pipeline::Sink {
   void handle(const Ended& message);
   void append_pending();
   /// The noise-free force of the scans that are in the journal.
-  [[nodiscard]] base::Result<void> append_force(friction::TrueForce& force);
-  void sync_if_due();
-  void note(const base::Result<void>& written);
-  void fail(const std::string& why);
+  void append_force(friction::TrueForce& force);
+  void check_room(const record::RecordHeader& header);
+  void journal_ended(std::int64_t test, const std::filesystem::path& journal,
+                     const std::optional<std::string>& why_not);
+  void record_made(std::int64_t test, const base::Result<std::filesystem::path>& file);
+  void disk_changed(const DiskState& state);
 
-  std::filesystem::path folder_;
-  Finalise finalise_;
+  StorageSettings settings_;
   TestLog& tests_;
   Facts& facts_;
   std::shared_ptr<const record::RecordHeader> header_;  ///< Processing thread.
@@ -99,15 +109,18 @@ class Storage final : public pipeline::Sink {
   BoundedQueue<Message> queue_;
 
   std::int64_t number_ = 0;
-  std::optional<record::JournalWriter> journal_;
+  std::filesystem::path latest_path_;  ///< Of a journal that need not be on the disk yet.
+  DiskWriter::Journal journal_;
   std::vector<double> pending_;               ///< Consecutive scans not yet appended.
   std::vector<std::int32_t> pending_second_;  ///< Of the same scans; none without a second channel.
   daq::ScanIndex pending_first_ = 0;
   daq::ClockStamp pending_stamp_;
   std::vector<Stretch> recorded_;   ///< All of them.
   std::size_t pending_enough_ = 1;  ///< Scans in one journal entry.
-  std::optional<std::string> failed_;
-  std::chrono::steady_clock::time_point last_sync_;
+  std::function<void()> changed_;
+  bool waits_ = false;  ///< Disk thread: as it was told last.
+  Finisher finisher_;   ///< Outlives the disk thread, which hands over to it.
+  DiskWriter disk_;
   std::thread thread_;
 };
 

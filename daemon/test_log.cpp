@@ -24,7 +24,10 @@ TestSummary* TestLog::find(std::int64_t number) {
 
 void TestLog::set_file(std::int64_t number, const std::string& file) {
   const std::lock_guard lock{mutex_};
-  if (TestSummary* test = find(number)) test->file = file;
+  if (TestSummary* test = find(number)) {
+    test->file = file;
+    test->file_error.clear();
+  }
 }
 
 void TestLog::set_file_error(std::int64_t number, const std::string& error) {

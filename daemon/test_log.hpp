@@ -35,6 +35,7 @@ class TestLog {
   static constexpr std::size_t kMaxTests = 1000;
 
   void add(TestSummary summary);
+  /// What was in the way before is forgotten.
   void set_file(std::int64_t number, const std::string& file);
   void set_file_error(std::int64_t number, const std::string& error);
 

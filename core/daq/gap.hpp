@@ -16,6 +16,7 @@ enum class GapCause {
   kRingFull,      ///< The processing thread was too slow: the ring dropped whole blocks.
   kBoardMissing,  ///< The board was unplugged.
   kMissingScans,  ///< The source itself says that they are missing (a replayed gap).
+  kStorageFull,   ///< They arrived; the disk refused them for longer than memory lasted.
 };
 
 [[nodiscard]] constexpr std::string_view name(GapCause cause) noexcept {
@@ -30,6 +31,8 @@ enum class GapCause {
       return "board-missing";
     case GapCause::kMissingScans:
       return "missing-scans";
+    case GapCause::kStorageFull:
+      return "storage-full";
   }
   return "unknown";
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/long_column.hpp"
 #include "core/daq/clock_anchor.hpp"
 #include "core/daq/gap.hpp"
 #include "core/daq/latency_histogram.hpp"

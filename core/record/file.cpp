@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <system_error>
 
 namespace stickslip::record {
@@ -26,26 +25,17 @@ std::filesystem::path folder_of(const std::filesystem::path& path) {
   return path.has_parent_path() ? path.parent_path() : std::filesystem::path{"."};
 }
 
-base::Result<void> sync_path(const std::filesystem::path& path) {
-  const Descriptor descriptor{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
-  if (!descriptor.open() || ::fsync(descriptor.get()) != 0) {
+base::Result<void> sync_path(const std::filesystem::path& path, const FileCalls& calls) {
+  const Descriptor descriptor{calls.open(path.c_str(), O_RDONLY | O_CLOEXEC, 0)};
+  if (!descriptor.open() || calls.fsync(descriptor.get()) != 0) {
     return base::failure("{}: cannot be made durable: {}", path.string(), system_message(errno));
   }
   return {};
 }
 
-base::Result<void> rename_to_new(const std::filesystem::path& from, const std::filesystem::path& to) {
-  // The RENAME_NOREPLACE flag closes the moment between looking and renaming; some file systems
-  // do not know it (EINVAL).
-  int status = ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE);
-  if (status != 0 && errno == EINVAL) {
-    struct stat found {};
-    if (::lstat(to.c_str(), &found) == 0) {
-      errno = EEXIST;
-    } else {
-      status = std::rename(from.c_str(), to.c_str());
-    }
-  }
+base::Result<void> rename_to_new(const std::filesystem::path& from, const std::filesystem::path& to,
+                                 const FileCalls& calls) {
+  const int status = calls.rename_to_new(from.c_str(), to.c_str());
   if (status != 0 && errno == EEXIST) {
     return base::usage_error("{}: exists already and is never overwritten: choose another name", to.string());
   }
@@ -53,7 +43,29 @@ base::Result<void> rename_to_new(const std::filesystem::path& from, const std::f
     return base::failure("{}: cannot be renamed to {}: {}", from.string(), to.string(),
                          system_message(errno));
   }
-  return sync_path(folder_of(to));
+  return sync_path(folder_of(to), calls);
+}
+
+base::Result<void> make_folders(const std::filesystem::path& folder, const FileCalls& calls) {
+  std::error_code ignored;
+  if (folder.empty() || std::filesystem::is_directory(folder, ignored)) return {};
+  if (auto made = make_folders(folder.parent_path(), calls); !made) return made;
+  constexpr mode_t kMode = 0755;
+  if (calls.mkdir(folder.c_str(), kMode) != 0 && errno != EEXIST)
+    return base::failure("{}: cannot be made: {}", folder.string(), system_message(errno));
+  return sync_path(folder_of(folder), calls);
+}
+
+std::size_t write_all(int descriptor, std::span<const std::byte> bytes, const FileCalls& calls) {
+  std::size_t written = 0;
+  while (written < bytes.size()) {
+    const ssize_t status = calls.write(descriptor, bytes.data() + written, bytes.size() - written);
+    if (status < 0 && errno == EINTR) continue;
+    if (status == 0) errno = EIO;
+    if (status <= 0) break;
+    written += static_cast<std::size_t>(status);
+  }
+  return written;
 }
 
 base::Result<std::vector<std::byte>> read_file(const std::filesystem::path& path) {

@@ -4,11 +4,13 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/base/result.hpp"
+#include "core/record/file_calls.hpp"
 
 namespace stickslip::record {
 
@@ -36,14 +38,23 @@ class Descriptor {
 [[nodiscard]] std::string system_message(int error);
 
 /// fsync of a file or a folder by its path.
-[[nodiscard]] base::Result<void> sync_path(const std::filesystem::path& path);
+[[nodiscard]] base::Result<void> sync_path(const std::filesystem::path& path,
+                                           const FileCalls& calls = system_calls());
 
 /// The folder that holds a file, "." for a bare name.
 [[nodiscard]] std::filesystem::path folder_of(const std::filesystem::path& path);
 
 /// Renames without ever replacing; kUsage if `to` exists. The folder is synced.
 [[nodiscard]] base::Result<void> rename_to_new(const std::filesystem::path& from,
-                                               const std::filesystem::path& to);
+                                               const std::filesystem::path& to,
+                                               const FileCalls& calls = system_calls());
+
+/// Makes the folders that are missing and their names durable. Errors: kFailure.
+[[nodiscard]] base::Result<void> make_folders(const std::filesystem::path& folder,
+                                              const FileCalls& calls = system_calls());
+
+/// write() until all is written or an error. \return bytes written; errno says why if fewer.
+[[nodiscard]] std::size_t write_all(int descriptor, std::span<const std::byte> bytes, const FileCalls& calls);
 
 /// The whole file. Errors: kUsage if it is no readable file at all (missing, a folder), else kFailure.
 [[nodiscard]] base::Result<std::vector<std::byte>> read_file(const std::filesystem::path& path);

@@ -11,15 +11,18 @@
 #include "core/record/hdf_write.hpp"
 #include "core/record/iso_time.hpp"
 #include "core/record/journal.hpp"
+#include "core/record/journal_care.hpp"
 #include "core/record/layout.hpp"
 #include "core/record/reader.hpp"
+#include "core/record/seal.hpp"
 
 namespace stickslip::record {
 namespace {
 
 /// \throws HdfError with the file in an unknown state: it is to be thrown away.
-void build(const Record& record, const ScanSource& scans, const std::filesystem::path& path) {
-  FileHandle file = create_file(path);
+void build(const Record& record, const ScanSource& scans, const std::filesystem::path& path,
+           const FileCalls& calls) {
+  FileHandle file = create_file(path, calls);
   write_attribute(file.get(), "NX_class", "NXroot");
   write_attribute(file.get(), "default", "entry");
   write_attribute(file.get(), "creator", record.header.process.program);
@@ -36,6 +39,7 @@ void build(const Record& record, const ScanSource& scans, const std::filesystem:
     write_instrument(entry.get(), record);
     write_second(entry.get(), record, scans);
     write_process(entry.get(), record, sha256);
+    write_seal(entry.get(), scans.size());
     if (record.end->truth) write_truth(entry.get(), *record.end->truth, scans);
   }
   check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), "flushing");
@@ -43,14 +47,14 @@ void build(const Record& record, const ScanSource& scans, const std::filesystem:
 }
 
 base::Result<void> build_verified(const Record& record, const ScanSource& scans,
-                                  const std::filesystem::path& part) {
+                                  const std::filesystem::path& part, const FileCalls& calls) {
   try {
-    build(record, scans, part);
+    build(record, scans, part, calls);
   } catch (const std::exception& error) {
     return base::failure("{}: cannot be written: {}", part.string(), error.what());
   }
   // Synced before it is read back, so that what is compared is what a disk can keep.
-  if (auto synced = sync_path(part); !synced) return synced;
+  if (auto sealed = seal_file(part, calls); !sealed) return sealed;
   return verify_record(part, record, scans);
 }
 
@@ -87,22 +91,23 @@ void end_interrupted(JournalReading& reading, const Evaluate& evaluate) {
   set_end(record, std::move(end));
 }
 
-base::Result<void> publish(const Record& record, const ScanSource& scans, const std::filesystem::path& path) {
+base::Result<void> publish(const Record& record, const ScanSource& scans, const std::filesystem::path& path,
+                           const FileCalls& calls) {
   STICKSLIP_EXPECTS(record.end);
   STICKSLIP_EXPECTS(record.header.board.quantity != daq::RawQuantity::kCounts || record.header.load_cell);
   if (auto is_new = check_new(path); !is_new) return is_new;
   const auto part = with_suffix(path, ".part");
-  auto published = build_verified(record, scans, part);
-  if (published) published = rename_to_new(part, path);
-  if (!published) ::unlink(part.c_str());
+  auto published = build_verified(record, scans, part, calls);
+  if (published) published = rename_to_new(part, path, calls);
+  if (!published) calls.unlink(part.c_str());
   return published;
 }
 
-base::Result<void> remove_journal(const std::filesystem::path& journal) {
-  if (::unlink(journal.c_str()) != 0) {
+base::Result<void> remove_journal(const std::filesystem::path& journal, const FileCalls& calls) {
+  if (calls.unlink(journal.c_str()) != 0) {
     return base::failure("{}: cannot be removed: {}", journal.string(), system_message(errno));
   }
-  return sync_path(folder_of(journal));
+  return sync_path(folder_of(journal), calls);
 }
 
 }  // namespace
@@ -121,7 +126,7 @@ base::Result<void> publish_record(const Record& record, const std::filesystem::p
   STICKSLIP_EXPECTS(record.scan.size() == record.raw.size());
   STICKSLIP_EXPECTS(record.second.empty() || record.second.size() == record.scan.size());
   STICKSLIP_EXPECTS(record.true_coefficient.empty() || record.true_coefficient.size() == record.scan.size());
-  return publish(record, RecordScans{record}, path);
+  return publish(record, RecordScans{record}, path, system_calls());
 }
 
 base::Result<void> publish_journal(const std::filesystem::path& journal, const Record& record,
@@ -131,10 +136,13 @@ base::Result<void> publish_journal(const std::filesystem::path& journal, const R
   if (!reading->stopped_by.empty()) {
     return base::failure("{}: cannot be read back: {}", journal.string(), reading->stopped_by);
   }
-  return publish(record, JournalScanSource{journal, *reading}, path);
+  return publish(record, JournalScanSource{journal, *reading}, path, system_calls());
 }
 
-base::Result<std::filesystem::path> finalise(const std::filesystem::path& journal, const Evaluate& evaluate) {
+base::Result<std::filesystem::path> finalise(const std::filesystem::path& journal, const Evaluate& evaluate,
+                                             const FileCalls& calls, std::chrono::milliseconds longest) {
+  const auto lock = JournalLock::take(journal, longest);
+  if (!lock) return tl::unexpected(lock.error());
   auto reading = read_journal(journal, JournalScans::kCount);
   if (reading && !reading->record.end && evaluate) reading = read_journal(journal);  // It needs the scans.
   if (!reading) return tl::unexpected(reading.error());
@@ -155,10 +163,10 @@ base::Result<std::filesystem::path> finalise(const std::filesystem::path& journa
       return base::failure("{}: exists already with other scans than {}: move one of them away",
                            target.string(), journal.string());
     }
-  } else if (auto published = publish(record, scans, target); !published) {
+  } else if (auto published = publish(record, scans, target, calls); !published) {
     return tl::unexpected(base::Error{base::ErrorKind::kFailure, published.error().message});
   }
-  if (auto removed = remove_journal(journal); !removed) return tl::unexpected(removed.error());
+  if (auto removed = remove_journal(journal, calls); !removed) return tl::unexpected(removed.error());
   return target;
 }
 

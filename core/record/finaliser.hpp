@@ -2,10 +2,12 @@
 /// From a journal to the finished file: built whole beside it, verified, published by one rename.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 
 #include "core/base/result.hpp"
+#include "core/record/file_calls.hpp"
 #include "core/record/record.hpp"
 
 namespace stickslip::record {
@@ -22,9 +24,12 @@ using Evaluate = std::function<EndRecord(const Record&)>;
 /// threads.
 /// \param evaluate  asked if the journal has no end; without it such a test gets no results, with
 ///                  the reason "interrupted". Its status is "interrupted" either way.
+/// \param longest  to wait for somebody else who finishes the journal.
 /// \return the finished file. Errors: kUsage if the file is no journal, else kFailure.
 [[nodiscard]] base::Result<std::filesystem::path> finalise(const std::filesystem::path& journal,
-                                                           const Evaluate& evaluate = {});
+                                                           const Evaluate& evaluate = {},
+                                                           const FileCalls& calls = system_calls(),
+                                                           std::chrono::milliseconds longest = {});
 
 /// Whether a record can be made at `path`: nothing stands there (kUsage), its folder does (kUsage).
 [[nodiscard]] base::Result<void> check_publishable(const std::filesystem::path& path);

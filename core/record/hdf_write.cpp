@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/record/hdf_driver.hpp"
 #include "core/record/scan_source.hpp"
 
 namespace stickslip::record {
@@ -73,15 +74,14 @@ AttributeHandle make_attribute(hid_t object, const std::string& name, hid_t type
 
 }  // namespace
 
-FileHandle create_file(const std::filesystem::path& path) {
+FileHandle create_file(const std::filesystem::path& path, const FileCalls& calls) {
   prepare_hdf5();
   const PropertyHandle access{H5Pcreate(H5P_FILE_ACCESS), "file access properties"};
   // Readable by HDF5 1.8, MATLAB before R2021b and JavaScript readers.
   check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "library version bounds");
   // A leaked handle makes closing fail instead of leaving the file half open.
   check(H5Pset_fclose_degree(access.get(), H5F_CLOSE_SEMI), "close degree");
-  // Where the file system has no locks, without.
-  check(H5Pset_file_locking(access.get(), true, true), "file locking");
+  write_through(access, calls);
   const PropertyHandle creation{H5Pcreate(H5P_FILE_CREATE), "file creation properties"};
   constexpr unsigned kTracked = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
   check(H5Pset_link_creation_order(creation.get(), kTracked), "creation order");

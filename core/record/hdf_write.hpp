@@ -11,12 +11,14 @@
 #include <vector>
 
 #include "core/record/fields.hpp"
+#include "core/record/file_calls.hpp"
 #include "core/record/hdf.hpp"
 
 namespace stickslip::record {
 
 /// A new file, or an old one emptied, that every HDF5 since 1.8 reads; open for writing.
-[[nodiscard]] FileHandle create_file(const std::filesystem::path& path);
+[[nodiscard]] FileHandle create_file(const std::filesystem::path& path,
+                                     const FileCalls& calls = system_calls());
 
 /// \param nx_class  NeXus class, e.g. "NXdata".
 [[nodiscard]] GroupHandle make_group(hid_t parent, const std::string& name, const std::string& nx_class);

@@ -15,14 +15,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/base/result.hpp"
-#include "core/record/file.hpp"
+#include "core/record/entry_builder.hpp"
+#include "core/record/journal_file.hpp"
 #include "core/record/journal_format.hpp"
 #include "core/record/record.hpp"
 #include "core/record/scan_source.hpp"
@@ -36,12 +36,13 @@ class JournalWriter {
  public:
   /// Creates the file, which must not exist, writes the header and makes file and name durable.
   /// A header without uuid gets one. Errors (kFailure) leave no file behind.
+  /// \param calls  outlive the journal.
   [[nodiscard]] static base::Result<JournalWriter> create(const std::filesystem::path& path,
-                                                          RecordHeader header);
+                                                          RecordHeader header,
+                                                          const FileCalls& calls = system_calls());
 
-  // Every append either adds a whole entry or returns why not (kFailure) and leaves the file as it
-  // was: after ENOSPC the same entry may be tried again. If even that cannot be done, all further
-  // appends fail with the first error.
+  // Every append either adds a whole entry or returns why not (kFailure) and leaves the file as it was: the
+  // same entry may be tried again.
 
   /// \param first  rises strictly over all scans of the journal.
   /// \param raw    consecutive, not empty; counts are whole numbers in 0 … maxdata (contract).
@@ -64,26 +65,16 @@ class JournalWriter {
   /// fdatasync: everything appended so far survives a power cut if this succeeds.
   [[nodiscard]] base::Result<void> sync();
 
-  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return file_.path(); }
   /// Bytes in whole entries.
-  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+  [[nodiscard]] std::uint64_t size() const noexcept { return file_.size(); }
 
  private:
-  JournalWriter(std::filesystem::path path, Descriptor file, const daq::BoardInfo& board);
-  /// Head and payload as one write(). \param entry  room for the head in front of the payload.
-  [[nodiscard]] base::Result<void> append(EntryType type, Encoding encoding, daq::ScanIndex first_scan,
-                                          std::int64_t time_ns);
-  [[nodiscard]] base::Result<void> append_text(EntryType type, daq::ScanIndex first_scan,
-                                               std::string_view json);
+  JournalWriter(JournalFile file, EntryBuilder builder)
+      : file_(std::move(file)), builder_(std::move(builder)) {}
 
-  std::filesystem::path path_;
-  Descriptor file_;
-  Encoding encoding_;
-  double maxdata_;
-  daq::ScanIndex next_scan_ = std::numeric_limits<daq::ScanIndex>::min();
-  std::uint64_t size_ = 0;
-  std::string broken_;            ///< The first error that could not be undone; empty if none.
-  std::vector<std::byte> entry_;  ///< The head and payload being built; reused.
+  JournalFile file_;
+  EntryBuilder builder_;
 };
 
 /// Consecutive scans.

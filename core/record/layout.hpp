@@ -9,6 +9,13 @@
 
 namespace stickslip::record {
 
+/// Bits of raw/flags.
+enum ScanFlag : std::uint8_t {
+  kSpike = 1U << 0U,
+  kSaturated = 1U << 1U,
+  kReplacedForDetection = 1U << 2U,
+};
+
 // Each takes the group /entry. The readers expect the raw data to be read first.
 
 void write_identity(hid_t entry, const Record& record, const ScanSource& scans);  ///< Title, uuid, times.

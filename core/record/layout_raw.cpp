@@ -17,12 +17,6 @@
 namespace stickslip::record {
 namespace {
 
-/// Bits of raw/flags.
-enum ScanFlag : std::uint8_t {
-  kSpike = 1U << 0U,
-  kSaturated = 1U << 1U,
-  kReplacedForDetection = 1U << 2U,
-};
 const std::vector<std::string> kFlagMeaning{"spike", "saturated", "replaced_for_detection"};
 
 /// The flags of scans that rise from piece to piece.

@@ -247,6 +247,38 @@ class Signals(Folder):
         self.assertEqual(process.returncode, 0)
 
 
+    def test_records_stand_in_dated_folders_read_only_and_are_recovered_there(self):
+        manager = Manager(self)
+        config = self.simulated(repeats=0, speed=5)
+        config.write_text(config.read_text().replace('folder = "records"',
+                                                     'folder = "records"\ndated_folders = "month"\nread_only = true'))
+        process = manager.start(config, self.folder)
+        manager.wait_for(lambda text: "test 1 running" in text)
+        journals = []
+        while not journals and process.poll() is None:
+            journals = [j for j in (self.folder / "records").rglob("*.journal") if holds_more_than_a_header(j)]
+        process.kill()
+        process.communicate(timeout=TIMEOUT_S)
+        self.assertRegex(str(journals[0].relative_to(self.folder)), r"^records/\d{4}/\d{2}/\d{8}T\d{6}Z-0001\.journal$")
+        recovered = run(CLI, "recover", "records", cwd=self.folder)
+        self.assertEqual(recovered.returncode, 0, recovered.stderr)
+        self.assertEqual(recovered.stdout, f"made     {journals[0].with_suffix('.h5').relative_to(self.folder)}\n")
+        finished = journals[0].with_suffix(".h5")
+        self.assertTrue(finished.exists())
+        verdict = run(CLI, "verify", finished)
+        self.assertEqual(verdict.returncode, 1, verdict.stdout)
+        self.assertIn("interrupted: the program stopped before the end of the test", verdict.stdout)
+
+        manager = Manager2(self)
+        config = self.simulated(repeats=1)
+        config.write_text(config.read_text().replace('folder = "records"', 'folder = "closed"\nread_only = true'))
+        done = run(DAEMON, "--config", config, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        [record] = (self.folder / "closed").glob("*.h5")
+        self.assertEqual(stat.S_IMODE(record.stat().st_mode), 0o444)
+        self.assertEqual(run(CLI, "verify", record).returncode, 0)
+
+
 class Manager2(Manager):
     """A second manager beside the first."""
 

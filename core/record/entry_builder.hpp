@@ -1,0 +1,50 @@
+/// \file
+/// The entries of a journal as bytes, ready to be written in one go.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/record/journal_format.hpp"
+#include "core/record/record.hpp"
+
+namespace stickslip::record {
+
+/// For one journal. What a function gives is valid until the next call; head and CRC are in it.
+class EntryBuilder {
+ public:
+  using Bytes = std::span<const std::byte>;
+
+  /// \param header  has a uuid, and a load cell if the board gives counts (contract).
+  explicit EntryBuilder(const RecordHeader& header);
+
+  [[nodiscard]] Bytes header(const RecordHeader& header);
+  /// \param first  rises strictly over all scans of the journal (contract).
+  /// \param raw    consecutive, not empty; counts are whole numbers in 0 … maxdata (contract).
+  [[nodiscard]] Bytes scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp& stamp);
+  [[nodiscard]] Bytes true_coefficients(daq::ScanIndex first, std::span<const double> coefficient);
+  /// Codes of the second channel of scans that stand before it.
+  [[nodiscard]] Bytes second(daq::ScanIndex first, std::span<const std::int32_t> codes);
+  [[nodiscard]] Bytes spikes(std::span<const daq::ScanIndex> spikes);
+  [[nodiscard]] Bytes gap(const daq::Gap& gap);
+  [[nodiscard]] Bytes cycle(const friction::Cycle& cycle);
+  [[nodiscard]] Bytes anchor(const ClockAnchor& anchor);
+  [[nodiscard]] Bytes event(const Event& event);
+  [[nodiscard]] Bytes end(const EndRecord& end);
+
+ private:
+  void begin();
+  [[nodiscard]] Bytes finish(EntryType type, Encoding encoding, daq::ScanIndex first_scan,
+                             std::int64_t time_ns);
+  [[nodiscard]] Bytes text(EntryType type, daq::ScanIndex first_scan, std::string_view json);
+
+  Encoding encoding_;
+  double maxdata_;
+  daq::ScanIndex next_scan_ = std::numeric_limits<daq::ScanIndex>::min();
+  std::vector<std::byte> entry_;  ///< Room for the head, then the payload; reused.
+};
+
+}  // namespace stickslip::record

@@ -1,0 +1,191 @@
+#include "core/record/hdf_driver.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <limits>
+#include <memory>
+
+#include "core/record/file.hpp"
+
+// A driver of HDF5 1.10 ["HDF5 Virtual File Layer", The HDF Group]: callbacks in C, no exception may leave
+// them.
+
+namespace stickslip::record {
+namespace {
+
+/// What the access properties carry.
+struct Info {
+  const FileCalls* calls;
+};
+
+/// HDF5 knows only the first member.
+struct File {
+  H5FD_t base;
+  const FileCalls* calls;
+  int descriptor;
+  haddr_t allocated;  ///< As far as HDF5 has given addresses away.
+  haddr_t size;
+};
+
+File& file_of(H5FD_t* base) { return *reinterpret_cast<File*>(base); }
+const File& file_of(const H5FD_t* base) { return *reinterpret_cast<const File*>(base); }
+
+/// Onto HDF5's stack of errors, from where HdfError takes it.
+herr_t refuse(const char* what, int error) noexcept {
+  H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_VFL, H5E_WRITEERROR, "%s: %s", what,
+           std::strerror(error));
+  return -1;
+}
+
+void* copy_info(const void* info) { return new (std::nothrow) Info(*static_cast<const Info*>(info)); }
+herr_t free_info(void* info) {
+  delete static_cast<Info*>(info);
+  return 0;
+}
+
+H5FD_t* open_file(const char* name, unsigned flags, hid_t access, haddr_t /*largest*/) {
+  const auto* info = static_cast<const Info*>(H5Pget_driver_info(access));
+  if (info == nullptr) return nullptr;
+  int how = O_CLOEXEC | ((flags & H5F_ACC_RDWR) != 0 ? O_RDWR : O_RDONLY);
+  if ((flags & H5F_ACC_TRUNC) != 0) how |= O_TRUNC;
+  if ((flags & H5F_ACC_CREAT) != 0) how |= O_CREAT;
+  if ((flags & H5F_ACC_EXCL) != 0) how |= O_EXCL;
+  constexpr mode_t kMode = 0644;
+  const int descriptor = info->calls->open(name, how, kMode);
+  if (descriptor < 0) {
+    refuse("open", errno);
+    return nullptr;
+  }
+  struct stat found {};
+  if (::fstat(descriptor, &found) != 0) {
+    refuse("fstat", errno);
+    ::close(descriptor);
+    return nullptr;
+  }
+  // HDF5 fills in the base itself.
+  auto* file = new (std::nothrow) File{{}, info->calls, descriptor, 0, static_cast<haddr_t>(found.st_size)};
+  if (file == nullptr) ::close(descriptor);
+  return reinterpret_cast<H5FD_t*>(file);
+}
+
+herr_t close_file(H5FD_t* base) {
+  const std::unique_ptr<File> file{&file_of(base)};
+  const int synced = file->calls->fsync(file->descriptor);
+  const int error = errno;
+  ::close(file->descriptor);
+  return synced == 0 ? 0 : refuse("fsync", error);
+}
+
+int compare(const H5FD_t* a, const H5FD_t* b) {
+  struct stat first {};
+  struct stat second {};
+  if (::fstat(file_of(a).descriptor, &first) != 0 || ::fstat(file_of(b).descriptor, &second) != 0)
+    return a < b ? -1 : 1;
+  if (first.st_dev != second.st_dev) return first.st_dev < second.st_dev ? -1 : 1;
+  if (first.st_ino != second.st_ino) return first.st_ino < second.st_ino ? -1 : 1;
+  return 0;
+}
+
+/// As the library's own driver for files: metadata gathered, small data too.
+herr_t query(const H5FD_t* /*file*/, unsigned long* flags) {
+  *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
+           H5FD_FEAT_AGGREGATE_SMALLDATA | H5FD_FEAT_POSIX_COMPAT_HANDLE | H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
+  return 0;
+}
+
+haddr_t allocated(const H5FD_t* file, H5FD_mem_t /*type*/) { return file_of(file).allocated; }
+herr_t allocate(H5FD_t* file, H5FD_mem_t /*type*/, haddr_t end) {
+  file_of(file).allocated = end;
+  return 0;
+}
+haddr_t size_of(const H5FD_t* file, H5FD_mem_t /*type*/) { return file_of(file).size; }
+
+herr_t handle_of(H5FD_t* file, hid_t /*access*/, void** handle) {
+  *handle = &file_of(file).descriptor;
+  return 0;
+}
+
+herr_t read_file(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t address, std::size_t size,
+                 void* bytes) {
+  auto* to = static_cast<std::byte*>(bytes);
+  while (size > 0) {
+    const ssize_t got = ::pread(file_of(base).descriptor, to, size, static_cast<off_t>(address));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return refuse("read", errno);
+    if (got == 0) {  // Behind the end of the file stand zeros.
+      std::memset(to, 0, size);
+      return 0;
+    }
+    to += got;
+    address += static_cast<haddr_t>(got);
+    size -= static_cast<std::size_t>(got);
+  }
+  return 0;
+}
+
+herr_t write_file(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t address, std::size_t size,
+                  const void* bytes) {
+  File& file = file_of(base);
+  const auto* from = static_cast<const std::byte*>(bytes);
+  while (size > 0) {
+    const ssize_t done = file.calls->pwrite(file.descriptor, from, size, static_cast<off_t>(address));
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) return refuse("write", done < 0 ? errno : EIO);
+    from += done;
+    address += static_cast<haddr_t>(done);
+    size -= static_cast<std::size_t>(done);
+  }
+  file.size = std::max(file.size, address);
+  return 0;
+}
+
+herr_t truncate_file(H5FD_t* base, hid_t /*transfer*/, hbool_t /*closing*/) {
+  File& file = file_of(base);
+  if (file.allocated == file.size) return 0;
+  if (file.calls->ftruncate(file.descriptor, static_cast<off_t>(file.allocated)) != 0)
+    return refuse("truncate", errno);
+  file.size = file.allocated;
+  return 0;
+}
+
+H5FD_class_t make_driver() {
+  H5FD_class_t driver{};
+  driver.name = "stickslip";
+  driver.maxaddr = static_cast<haddr_t>(std::numeric_limits<off_t>::max());
+  driver.fc_degree = H5F_CLOSE_SEMI;
+  driver.fapl_size = sizeof(Info);
+  driver.fapl_copy = copy_info;
+  driver.fapl_free = free_info;
+  driver.open = open_file;
+  driver.close = close_file;
+  driver.cmp = compare;
+  driver.query = query;
+  driver.get_eoa = allocated;
+  driver.set_eoa = allocate;
+  driver.get_eof = size_of;
+  driver.get_handle = handle_of;
+  driver.read = read_file;
+  driver.write = write_file;
+  driver.truncate = truncate_file;
+  // As H5FD_FLMAP_DICHOTOMY: raw data apart from metadata.
+  constexpr std::array<H5FD_mem_t, H5FD_MEM_NTYPES> kKinds = H5FD_FLMAP_DICHOTOMY;
+  std::copy(kKinds.begin(), kKinds.end(), driver.fl_map);
+  return driver;
+}
+
+}  // namespace
+
+void write_through(const PropertyHandle& access, const FileCalls& calls) {
+  static const H5FD_class_t driver = make_driver();
+  static const hid_t id = H5FDregister(&driver);
+  const Info info{&calls};
+  check(H5Pset_driver(access.get(), id, &info), "driver of files");
+}
+
+}  // namespace stickslip::record

@@ -1,0 +1,56 @@
+/// \file
+/// The file of a journal: whole entries or nothing.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "core/base/result.hpp"
+#include "core/record/file.hpp"
+#include "core/record/file_calls.hpp"
+
+namespace stickslip::record {
+
+/// Not thread-safe. Move-only. Destruction closes without syncing.
+class JournalFile {
+ public:
+  /// Makes the file, which must not exist, locks it (journal_care.hpp), writes its first entry and makes
+  /// content and name durable. Errors (kFailure) leave no file behind. \param calls  outlive the file.
+  [[nodiscard]] static base::Result<JournalFile> create(const std::filesystem::path& path,
+                                                        std::span<const std::byte> header,
+                                                        const FileCalls& calls);
+
+  /// Adds whole entries, or none: then the file is cut back to what it was, now or before the next attempt,
+  /// and the same may be tried again.
+  [[nodiscard]] base::Result<void> append(std::span<const std::byte> entries);
+
+  /// fdatasync: everything appended so far survives a power cut if this succeeds. If not, nothing is known of
+  /// what was appended since the last success: the kernel may have dropped it [fsync(2); Rebello et al. 2020,
+  /// "Can applications recover from fsync failures?"].
+  [[nodiscard]] base::Result<void> sync();
+
+  /// Forgets what was appended behind `size`, now or before the next attempt to append.
+  void cut_to(std::uint64_t size);
+
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  /// Bytes in whole entries.
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+
+ private:
+  JournalFile(std::filesystem::path path, Descriptor file, const FileCalls& calls)
+      : path_(std::move(path)), file_(std::move(file)), calls_(&calls) {}
+  [[nodiscard]] base::Result<void> cut();
+  void reserve(std::uint64_t size);
+
+  std::filesystem::path path_;
+  Descriptor file_;
+  const FileCalls* calls_;
+  std::uint64_t size_ = 0;
+  std::uint64_t reserved_ = 0;  ///< Bytes from the beginning on for which there is room on the disk.
+  bool has_rest_ = false;       ///< Something may stand behind size_.
+};
+
+}  // namespace stickslip::record

@@ -1,0 +1,166 @@
+#include "core/record/judge.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+
+#include "core/daq/rate_fit.hpp"
+#include "core/record/file.hpp"
+#include "core/record/journal_format.hpp"
+
+namespace stickslip::record {
+namespace {
+
+/// Largest relative difference of the rate that the clocks imply from the rate granted: what the daemon
+/// accepts at most of a board by default ([board.comedi] scan_rate_tolerance). Crystals differ by 1e-4.
+constexpr double kRateTolerance = 0.01;
+/// Of a normal distribution of the fitted rate: 1 in 3.5 million.
+constexpr double kCertain = 5.0;
+/// A clock that was set by more than this during a test is worth a word; NTP slews by 0.5 ms/s.
+constexpr std::int64_t kClockStep_ns = 1'000'000'000;
+
+bool begins_as_journal(const Descriptor& file) {
+  std::array<char, 4> magic{};
+  return ::pread(file.get(), magic.data(), magic.size(), 0) == static_cast<ssize_t>(magic.size()) &&
+         magic == EntryHead{}.magic;
+}
+
+Judgement worst(const std::vector<Finding>& findings) {
+  Judgement judgement = Judgement::kComplete;
+  for (const Finding& finding : findings) {
+    if (finding.weight == Finding::Weight::kDamage) return Judgement::kDamaged;
+    if (finding.weight == Finding::Weight::kIncomplete) judgement = Judgement::kIncomplete;
+  }
+  return judgement;
+}
+
+}  // namespace
+
+std::string_view name(Judgement judgement) noexcept {
+  switch (judgement) {
+    case Judgement::kComplete:
+      return "complete";
+    case Judgement::kIncomplete:
+      return "incomplete";
+    case Judgement::kDamaged:
+      return "damaged";
+    case Judgement::kNotJudged:
+      return "not judged";
+  }
+  return "not judged";
+}
+
+std::string_view name(Finding::Weight weight) noexcept {
+  switch (weight) {
+    case Finding::Weight::kNote:
+      return "note";
+    case Finding::Weight::kIncomplete:
+      return "incomplete";
+    case Finding::Weight::kDamage:
+      return "damage";
+  }
+  return "note";
+}
+
+void judge_clocks(const Record& record, daq::ScanIndex first, daq::ScanIndex end, Verdict& verdict) {
+  const std::vector<ClockAnchor>& anchors = record.anchors;
+  for (std::size_t i = 0; i < anchors.size(); ++i) {
+    const std::string place = fmt::format("timing row {}", i);
+    if (anchors[i].scan < first || anchors[i].scan >= end) {
+      const std::string text = fmt::format("scan {} is not of this test", anchors[i].scan);
+      // A stop can take the last scans and leave the clock that was read at them.
+      if (anchors[i].scan >= end && verdict.status != name(Status::kComplete)) {
+        verdict.note(place, text);
+      } else {
+        verdict.damage(place, text);
+      }
+    }
+    if (i == 0) continue;
+    if (anchors[i].scan <= anchors[i - 1].scan) verdict.damage(place, "the scans do not rise");
+    if (anchors[i].monotonic_ns <= anchors[i - 1].monotonic_ns)
+      verdict.damage(place, "the monotonic clock does not rise");
+  }
+  if (anchors.size() < 2 || worst(verdict.findings) == Judgement::kDamaged) return;
+  const auto step_ns = (anchors.back().realtime_ns - anchors.front().realtime_ns) -
+                       (anchors.back().monotonic_ns - anchors.front().monotonic_ns);
+  if (std::abs(step_ns) > kClockStep_ns) {
+    verdict.note("timing", fmt::format("the clock of the day was set by {:.3f} s during the test",
+                                       static_cast<double>(step_ns) * 1e-9));
+  }
+  const double granted_Hz = record.header.board.scan_rate_granted_Hz;
+  const auto rate = daq::fit_rate(anchors, record.gaps, granted_Hz);
+  if (!rate) return;
+  const double difference_Hz = std::abs(rate->rate_Hz - granted_Hz);
+  if (difference_Hz > kRateTolerance * granted_Hz + kCertain * rate->standard_error_Hz) {
+    verdict.incomplete("timing", fmt::format("the clocks say {:.3f} Hz, the board granted {:.3f} Hz: times "
+                                             "are not to be relied on",
+                                             rate->rate_Hz, granted_Hz));
+  }
+}
+
+void judge_facts(const RecordHeader& header, Verdict& verdict) {
+  const daq::BoardInfo& board = header.board;
+  if (!(board.scan_rate_granted_Hz > 0.0) || !std::isfinite(board.scan_rate_granted_Hz))
+    verdict.damage("timing/scan_rate_granted", "is not positive");
+  if (header.uuid.empty()) verdict.damage("entry_identifier_uuid", "is missing");
+  if (board.quantity == daq::RawQuantity::kCounts || board.quantity == daq::RawQuantity::kVolts) {
+    if (!header.load_cell)
+      verdict.damage("instrument/calibration/gain", "is missing: the raw values mean nothing without");
+  }
+  if (board.quantity == daq::RawQuantity::kCounts && board.polynomial.empty())
+    verdict.damage("instrument/adc/polynomial", "is missing: the counts mean nothing without");
+  if (header.process.program == "stickslipd" && header.process.configuration.empty())
+    verdict.incomplete("process/configuration", "is missing: how the test was configured is not known");
+  if (board.driver == "comedi" && header.calibration.date.empty())
+    verdict.note("instrument/calibration", "says no date of the load cell's calibration");
+}
+
+void judge_gaps(const std::vector<daq::Gap>& gaps, Verdict& verdict) {
+  verdict.gaps = gaps;
+  for (const daq::Gap& gap : gaps) {
+    verdict.incomplete(
+        "gaps", fmt::format("{}{} scans missing from scan {}: {}", gap.estimated ? "about " : "", gap.count,
+                            gap.first, daq::name(gap.cause)));
+  }
+}
+
+void judge_status(const EndRecord& end, Verdict& verdict) {
+  verdict.status = name(end.status);
+  if (end.status == Status::kComplete) return;
+  std::string why;
+  for (const std::string& reason : end.reasons) why += (why.empty() ? ": " : "; ") + reason;
+  verdict.incomplete("process/status", verdict.status + why);
+}
+
+Verdict judge(const std::filesystem::path& path) {
+  Verdict verdict;
+  // Not to wait for the other end of a pipe.
+  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+  struct stat found {};
+  if (!file.open() || ::fstat(file.get(), &found) != 0) {
+    verdict.note("file", errno == ENOENT || errno == ENOTDIR ? "there is no such file"
+                                                             : "cannot be opened: " + system_message(errno));
+    return verdict;
+  }
+  if (!S_ISREG(found.st_mode)) {
+    verdict.note("file", S_ISDIR(found.st_mode) ? "is a folder" : "is no file");
+    return verdict;
+  }
+  // By its content, or by its name where nothing of the content is left.
+  if (begins_as_journal(file) || path.extension() == ".journal") {
+    judge_journal(path, verdict);
+  } else {
+    judge_record(path, verdict);
+  }
+  if (!verdict.kind.empty()) verdict.judgement = worst(verdict.findings);
+  return verdict;
+}
+
+}  // namespace stickslip::record

@@ -1,0 +1,65 @@
+/// \file
+/// What is to be said of a file that ought to hold a test: complete or not, and why.
+///
+///     const Verdict verdict = judge(path);
+///     if (verdict.judgement == Judgement::kDamaged) for (const Finding& finding : verdict.findings) …
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/daq/gap.hpp"
+
+namespace stickslip::record {
+
+enum class Judgement {
+  kComplete,    ///< A finished record: everything is there and agrees with everything else.
+  kIncomplete,  ///< Sound, but something is missing for a reason that it says.
+  kDamaged,     ///< It contradicts its checksums or itself, or is cut short.
+  kNotJudged,   ///< No file, or none of a kind and version that this program reads.
+};
+
+[[nodiscard]] std::string_view name(Judgement judgement) noexcept;
+
+struct Finding {
+  enum class Weight { kNote, kIncomplete, kDamage };
+
+  Weight weight = Weight::kNote;
+  std::string place;  ///< Object of the file, with rows where it has any; "file" for the whole.
+  std::string text;
+};
+
+[[nodiscard]] std::string_view name(Finding::Weight weight) noexcept;
+
+struct Verdict {
+  Judgement judgement = Judgement::kNotJudged;
+  std::string kind;  ///< "record" or "journal"; empty if it is neither.
+  std::optional<std::int64_t> format_version;
+  std::optional<std::int64_t> scans_present;
+  std::optional<std::int64_t> scans_committed;  ///< As the finaliser counted them.
+  std::string status;                           ///< As the file says it.
+  std::vector<daq::Gap> gaps;
+  std::string sha256_stored;  ///< Of the raw values,
+  std::string sha256_found;   ///< and of those that stand there.
+  std::vector<Finding> findings;
+
+  void note(std::string place, std::string text) {
+    findings.push_back({Finding::Weight::kNote, std::move(place), std::move(text)});
+  }
+  void incomplete(std::string place, std::string text) {
+    findings.push_back({Finding::Weight::kIncomplete, std::move(place), std::move(text)});
+  }
+  void damage(std::string place, std::string text) {
+    findings.push_back({Finding::Weight::kDamage, std::move(place), std::move(text)});
+  }
+};
+
+/// Any file: reads every byte of a record and every entry of a journal. A file made to deceive HDF5 may still
+/// end the process; who judges strangers' files does so in a process of its own (daemon/verify.hpp). Throws
+/// only std::bad_alloc.
+[[nodiscard]] Verdict judge(const std::filesystem::path& path);
+
+}  // namespace stickslip::record

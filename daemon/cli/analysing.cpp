@@ -1,0 +1,57 @@
+// Subcommands that evaluate records: analyze, characterise.
+
+#include "daemon/cli/commands.hpp"
+#include "daemon/cli/subcommands.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+void add_analyze(CLI::App& app, Chosen& chosen) {
+  const auto kept = std::make_shared<AnalyzeCommand>();
+  AnalyzeCommand& analysis = *kept;
+  CLI::App* analyze = app.add_subcommand("analyze", "run the detector and the estimators over records");
+  analyze->add_option("files", analysis.files, "records")->required()->type_name("FILE.h5");
+  add_method_option(*analyze, analysis.method);
+  analyze
+      ->add_option(
+          "--tester", analysis.tester,
+          "what `stickslip characterise` wrote: S and K become surer, and what speaks against it is told")
+      ->type_name("FILE.toml");
+  analyze
+      ->add_option(
+          "--estimator", analysis.estimator,
+          "where S and K come from: \"peak\" (largest scan and mean of each cycle), \"interpolated\" "
+          "(turning points), \"fit\" (all scans); default: as the record says")
+      ->type_name("NAME");
+  analyze->add_flag("--json", analysis.json,
+                    "JSON instead of a table; names as in the record, null where absent");
+  choose(*analyze, chosen, [kept] { return run_analyze(*kept); });
+}
+
+void add_characterise(CLI::App& app, Chosen& chosen) {
+  const auto kept = std::make_shared<CharacteriseCommand>();
+  CharacteriseCommand& characterisation = *kept;
+  CLI::App* characterise =
+      app.add_subcommand("characterise", "omega and gamma of the tester from its ring-downs");
+  characterise->add_option("files", characterisation.files, "records of ring-downs")
+      ->required()
+      ->type_name("FILE.h5");
+  characterise
+      ->add_option("-o,--output", characterisation.output, "where to keep it, a file that does not exist")
+      ->type_name("FILE.toml");
+  characterise->add_flag("--json", characterisation.json, "JSON instead of a table");
+  characterise->footer(
+      "Examples:\n"
+      "  stickslip characterise ring-down-1.h5 ring-down-2.h5 -o tester.toml\n"
+      "  stickslip analyze records/*.h5 --tester tester.toml");
+  choose(*characterise, chosen, [kept] { return run_characterise(*kept); });
+}
+
+}  // namespace
+
+void add_analysing_commands(CLI::App& app, Chosen& chosen) {
+  add_analyze(app, chosen);
+  add_characterise(app, chosen);
+}
+
+}  // namespace stickslip::daemon

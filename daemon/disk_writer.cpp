@@ -1,0 +1,192 @@
+#include "daemon/disk_writer.hpp"
+
+#include <fcntl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/record/file.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+/// 90 minutes of 16-bit counts at 350 scans/s, and the record of a short test.
+constexpr std::int64_t kBallast = std::int64_t{4} << 20U;
+constexpr double kSecondsPerHour = 3600.0;
+
+}  // namespace
+
+Ballast::Ballast(const std::filesystem::path& folder, const record::FileCalls& calls)
+    : path_(folder / ".stickslip-ballast"), calls_(calls) {
+  take();
+}
+
+Ballast::~Ballast() {
+  if (kept_) calls_.unlink(path_.c_str());
+}
+
+bool Ballast::give() {
+  if (!kept_) return false;
+  kept_ = false;
+  return calls_.unlink(path_.c_str()) == 0;
+}
+
+void Ballast::take() {
+  constexpr std::int64_t kPlenty = 4 * kBallast;
+  if (kept_ || calls_.room(path_.parent_path().c_str()) < kPlenty) return;
+  constexpr mode_t kMode = 0600;
+  const record::Descriptor file{calls_.open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, kMode)};
+  kept_ = file.open();
+  // Where the file system cannot reserve, there is no ballast.
+  if (kept_ && calls_.reserve(file.get(), 0, kBallast) != 0) give();
+}
+
+DiskWriter::DiskWriter(Settings settings, Ended ended, std::function<void(const DiskState&)> changed)
+    : settings_(std::move(settings)),
+      ended_(std::move(ended)),
+      changed_(std::move(changed)),
+      ballast_(settings_.folder, *settings_.calls),
+      thread_([this] { run(); }) {}
+
+DiskWriter::~DiskWriter() { stop(); }
+
+void DiskWriter::begin(std::int64_t test, Journal journal) {
+  {
+    const std::lock_guard lock{mutex_};
+    jobs_.push_back({test, std::move(journal)});
+  }
+  wake();
+}
+
+void DiskWriter::wake() {
+  {
+    const std::lock_guard lock{mutex_};
+    has_news_ = true;
+  }
+  woken_.notify_one();
+}
+
+void DiskWriter::end(const Journal& journal) {
+  {
+    const std::lock_guard lock{mutex_};
+    for (Job& job : jobs_) {
+      if (job.journal == journal) job.ended = true;
+    }
+  }
+  wake();
+}
+
+DiskState DiskWriter::state() const {
+  const std::lock_guard lock{mutex_};
+  return state_;
+}
+
+std::size_t DiskWriter::waiting_size() const {
+  const std::lock_guard lock{mutex_};
+  std::size_t size = 0;
+  for (const Job& job : jobs_) size += job.journal->waiting_size();
+  return size;
+}
+
+std::optional<double> DiskWriter::room_s() const {
+  const std::int64_t room = settings_.calls->room(settings_.folder.c_str());
+  const double load = load_bytes_per_s_;
+  if (room < 0 || !(load > 0.0)) return std::nullopt;
+  return static_cast<double>(room) / load;
+}
+
+void DiskWriter::stop() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock{mutex_};
+    stopping_ = true;
+  }
+  woken_.notify_one();
+  thread_.join();
+}
+
+void DiskWriter::run() {
+  using Clock = std::chrono::steady_clock;
+  Time last_sync = Clock::now();
+  std::optional<Time> stopping_since;
+  std::optional<std::string> trouble;
+  for (;;) {
+    {
+      std::unique_lock lock{mutex_};
+      // A disk that refused is asked again after a while, not for each entry.
+      const bool refused = trouble.has_value();
+      woken_.wait_for(lock, refused ? settings_.retry_period : settings_.sync_period,
+                      [&] { return (stopping_ && !stopping_since) || (has_news_ && !refused); });
+      has_news_ = false;
+      if (stopping_ && !stopping_since) stopping_since = Clock::now();
+    }
+    const bool sync = stopping_since || trouble || Clock::now() - last_sync >= settings_.sync_period;
+    trouble = write_all(sync);
+    // What was begun may use what was kept back for it.
+    if (trouble && ballast_.give()) trouble = write_all(true);
+    if (sync || trouble) {
+      last_sync = Clock::now();
+      if (!trouble) ballast_.take();
+      tell(trouble);
+    }
+    if (!stopping_since) continue;
+    if (trouble && Clock::now() - *stopping_since >= settings_.patience) give_up(*trouble);
+    const std::lock_guard lock{mutex_};
+    if (jobs_.empty() ||
+        (!trouble && std::none_of(jobs_.begin(), jobs_.end(), [](const Job& job) { return job.ended; }))) {
+      return;
+    }
+  }
+}
+
+std::optional<std::string> DiskWriter::write_all(bool sync) {
+  std::vector<Job> jobs;
+  {
+    const std::lock_guard lock{mutex_};
+    jobs.assign(jobs_.begin(), jobs_.end());
+  }
+  for (Job& job : jobs) {
+    if (auto trouble = write(job, sync || job.ended)) return trouble;
+    if (!job.ended) continue;
+    const std::filesystem::path path = job.journal->path();
+    {
+      const std::lock_guard lock{mutex_};
+      jobs_.remove_if([&job](const Job& other) { return other.journal == job.journal; });
+    }
+    job.journal.reset();  // With it goes the lock of the file, which the finaliser needs.
+    ended_(job.test, path, std::nullopt);
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> DiskWriter::write(const Job& job, bool sync) {
+  return sync ? job.journal->settle() : job.journal->write();
+}
+
+void DiskWriter::tell(std::optional<std::string> trouble) {
+  DiskState state;
+  state.trouble = std::move(trouble);
+  if (const auto room = room_s()) state.room_h = std::floor(*room / kSecondsPerHour);
+  bool news = false;
+  {
+    const std::lock_guard lock{mutex_};
+    if (state.trouble) {
+      for (const Job& job : jobs_) state.waiting_size += job.journal->waiting_size();
+    }
+    news = !(state == state_);
+    state_ = state;
+  }
+  if (news) changed_(state);
+}
+
+void DiskWriter::give_up(const std::string& why) {
+  std::list<Job> jobs;
+  {
+    const std::lock_guard lock{mutex_};
+    jobs.swap(jobs_);
+  }
+  for (const Job& job : jobs) ended_(job.test, job.journal->path(), why);
+}
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,122 @@
+/// \file
+/// The disk thread: writes the journals, syncs them once a second, and goes on when the disk does not.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "core/record/patient_journal.hpp"
+
+namespace stickslip::daemon {
+
+/// How it is with the disk.
+struct DiskState {
+  std::optional<std::string> trouble;  ///< Why something waits in memory; nothing if all is written.
+  std::size_t waiting_size = 0;        ///< Bytes in memory then.
+  std::optional<double> room_h;        ///< For how long there is room at least, scanning all the time.
+
+  bool operator==(const DiskState&) const = default;
+};
+
+/// Room on a full disk for what has been begun: a file that is given away when the first write is refused.
+/// Gone with its owner.
+class Ballast {
+ public:
+  /// \param folder  exists. \param calls  outlive it.
+  Ballast(const std::filesystem::path& folder, const record::FileCalls& calls);
+  ~Ballast();
+  Ballast(const Ballast&) = delete;
+  Ballast& operator=(const Ballast&) = delete;
+
+  /// \return whether there was any to give.
+  bool give();
+  /// Takes it again where there is plenty of room.
+  void take();
+
+ private:
+  std::filesystem::path path_;
+  const record::FileCalls& calls_;
+  bool kept_ = false;
+};
+
+class DiskWriter {
+ public:
+  struct Settings {
+    std::filesystem::path folder;                 ///< Of the records.
+    std::chrono::milliseconds sync_period{1000};  ///< At most this much is lost at a power cut.
+    std::chrono::milliseconds retry_period{1000};
+    std::chrono::milliseconds patience{30'000};  ///< With a disk that refuses, when all is to end.
+    const record::FileCalls* calls = &record::system_calls();
+  };
+  using Journal = std::shared_ptr<record::PatientJournal>;
+
+  /// Of a test whose journal was ended: it is durable, or why it could not be made so.
+  using Ended = std::function<void(std::int64_t test, const std::filesystem::path& journal,
+                                   const std::optional<std::string>& why_not)>;
+
+  /// \param ended  called on the disk thread. \param changed  called on the disk thread when state() has
+  /// changed. Either may not wait.
+  DiskWriter(Settings settings, Ended ended, std::function<void(const DiskState&)> changed);
+  ~DiskWriter();
+  DiskWriter(const DiskWriter&) = delete;
+  DiskWriter& operator=(const DiskWriter&) = delete;
+
+  // Any thread.
+
+  /// Writes the journal from now on.
+  void begin(std::int64_t test, Journal journal);
+  /// Something was added to a journal.
+  void wake();
+  /// Nothing will be added to it any more.
+  void end(const Journal& journal);
+  /// Bytes that the disk takes in each second of a test: journal and record.
+  void set_load(double bytes_per_s) { load_bytes_per_s_ = bytes_per_s; }
+  [[nodiscard]] DiskState state() const;
+  /// Bytes of all journals that are not on the disk yet.
+  [[nodiscard]] std::size_t waiting_size() const;
+  /// For how long there is room now; nothing if nobody knows.
+  [[nodiscard]] std::optional<double> room_s() const;
+
+  /// Writes what can be written, ends the thread. What the disk refuses for too long is told as ended with a
+  /// reason.
+  void stop();
+
+ private:
+  struct Job {
+    std::int64_t test;
+    Journal journal;
+    bool ended = false;
+  };
+  using Time = std::chrono::steady_clock::time_point;
+
+  void run();
+  /// Writes all jobs, in order. \return why not.
+  [[nodiscard]] std::optional<std::string> write_all(bool sync);
+  [[nodiscard]] std::optional<std::string> write(const Job& job, bool sync);
+  void tell(std::optional<std::string> trouble);
+  void give_up(const std::string& why);
+
+  Settings settings_;
+  Ended ended_;
+  std::function<void(const DiskState&)> changed_;
+  std::atomic<double> load_bytes_per_s_{0.0};
+  Ballast ballast_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable woken_;
+  std::list<Job> jobs_;
+  bool has_news_ = false;
+  bool stopping_ = false;
+  DiskState state_;
+  std::thread thread_;
+};
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,62 @@
+/// \file
+/// The thread that makes records of ended journals, so that none of it holds up the writing.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "daemon/recovery.hpp"
+
+namespace stickslip::daemon {
+
+class Finisher {
+ public:
+  using Done = std::function<void(std::int64_t test, const base::Result<std::filesystem::path>& file)>;
+
+  /// \param finalise  called on the thread. \param done  too, after each attempt that gave something new.
+  /// \param first_retry  after a failure; then twice as long each time.
+  Finisher(Finalise finalise, Done done, std::chrono::milliseconds first_retry = std::chrono::seconds{5});
+  ~Finisher();
+  Finisher(const Finisher&) = delete;
+  Finisher& operator=(const Finisher&) = delete;
+
+  /// Any thread.
+  void finish(std::int64_t test, std::filesystem::path journal);
+
+  /// Tries each of those that are left once more, ends the thread.
+  void stop();
+
+ private:
+  using Time = std::chrono::steady_clock::time_point;
+  struct Job {
+    std::int64_t test;
+    std::filesystem::path journal;
+    Time due;
+    std::chrono::milliseconds pause;
+    std::string refused;   ///< What was told last.
+    bool is_last = false;  ///< Taken when all was to end.
+  };
+
+  void run();
+  /// The next job that is due, once there is one; nothing to end.
+  [[nodiscard]] std::optional<Job> next();
+
+  Finalise finalise_;
+  Done done_;
+  std::chrono::milliseconds first_retry_;
+  std::mutex mutex_;
+  std::condition_variable news_;
+  std::deque<Job> jobs_;
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace stickslip::daemon

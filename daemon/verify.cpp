@@ -1,0 +1,157 @@
+#include "daemon/verify.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <system_error>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/forked.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+using nlohmann::ordered_json;
+using record::Finding;
+using record::Judgement;
+using record::Verdict;
+
+/// Measured: 0.2 s for an hour at 350 scans/s (3 MB). A file that takes more is made to.
+constexpr std::chrono::seconds kLeastTime{60};
+constexpr std::uintmax_t kBytesPerSecond = 1'000'000;
+
+std::chrono::seconds time_for(const std::string& file) {
+  std::error_code ignored;
+  const std::uintmax_t size = std::filesystem::file_size(file, ignored);
+  if (ignored) return kLeastTime;
+  return kLeastTime + std::chrono::seconds{static_cast<std::int64_t>(size / kBytesPerSecond)};
+}
+
+template <typename T>
+ordered_json or_null(const std::optional<T>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+ordered_json text_or_null(const std::string& text) {
+  return text.empty() ? ordered_json(nullptr) : ordered_json(text);
+}
+
+/// Of a file whose reader did not come back.
+Verdict unreadable(const std::string& why) {
+  Verdict verdict;
+  verdict.judgement = Judgement::kDamaged;
+  verdict.damage("file", why);
+  return verdict;
+}
+
+ordered_json judged(const std::string& file) {
+  const auto dumped = [&] {
+    // Names and texts of a file may be anything; JSON is UTF-8.
+    return verdict_json(file, record::judge(file))
+        .dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  };
+  const base::Result<ForkedAnswer> answer = run_forked(dumped, time_for(file));
+  if (!answer) {
+    Verdict verdict;
+    verdict.note("file", answer.error().message);
+    return verdict_json(file, verdict);
+  }
+  if (answer->signal) {
+    return verdict_json(
+        file,
+        unreadable(*answer->signal == 0 ? std::string{"cannot be read: it asks for more memory than there is"}
+                                        : fmt::format("reading it ended by signal {} ({})", *answer->signal,
+                                                      ::strsignal(*answer->signal))));
+  }
+  return ordered_json::parse(answer->text);
+}
+
+std::string summary(const ordered_json& verdict) {
+  std::string text;
+  if (verdict["kind"].is_string()) {
+    text += verdict["kind"].get<std::string>();
+    if (verdict["format_version"].is_number())
+      text += fmt::format(" version {}", verdict["format_version"].get<std::int64_t>());
+  }
+  if (verdict["scans_present"].is_number())
+    text += fmt::format(", {} scans", verdict["scans_present"].get<std::int64_t>());
+  if (!verdict["gaps"].empty()) text += fmt::format(", {} gaps", verdict["gaps"].size());
+  if (verdict["status"].is_string() && verdict["status"] != "complete")
+    text += ", " + verdict["status"].get<std::string>();
+  return text;
+}
+
+std::string lines(const ordered_json& verdict) {
+  std::string text =
+      fmt::format("{:<10}  {}", verdict["judgement"].get<std::string>(), verdict["file"].get<std::string>());
+  if (const std::string more = summary(verdict); !more.empty()) text += ": " + more;
+  text += "\n";
+  for (const ordered_json& finding : verdict["findings"]) {
+    text += fmt::format("  {:<10}  {}: {}\n", finding["weight"].get<std::string>(),
+                        finding["place"].get<std::string>(), finding["text"].get<std::string>());
+  }
+  return text;
+}
+
+int exit_status_of(const ordered_json& verdict) {
+  const auto judgement = verdict["judgement"].get<std::string>();
+  if (judgement == record::name(Judgement::kComplete)) return kAllComplete;
+  if (judgement == record::name(Judgement::kIncomplete)) return kSomeIncomplete;
+  return judgement == record::name(Judgement::kDamaged) ? kSomeDamaged : kSomeNotJudged;
+}
+
+/// The one that somebody has to hear of first.
+int worse(int a, int b) {
+  constexpr std::array<int, 4> kRising{kAllComplete, kSomeIncomplete, kSomeNotJudged, kSomeDamaged};
+  return std::max(std::find(kRising.begin(), kRising.end(), a),
+                  std::find(kRising.begin(), kRising.end(), b))[0];
+}
+
+}  // namespace
+
+ordered_json verdict_json(const std::string& file, const Verdict& verdict) {
+  ordered_json json;
+  json["file"] = file;
+  json["judgement"] = record::name(verdict.judgement);
+  json["kind"] = text_or_null(verdict.kind);
+  json["format_version"] = or_null(verdict.format_version);
+  json["status"] = text_or_null(verdict.status);
+  json["scans_present"] = or_null(verdict.scans_present);
+  json["scans_committed"] = or_null(verdict.scans_committed);
+  json["sha256_stored"] = text_or_null(verdict.sha256_stored);
+  json["sha256_found"] = text_or_null(verdict.sha256_found);
+  json["gaps"] = ordered_json::array();
+  for (const daq::Gap& gap : verdict.gaps) {
+    json["gaps"].push_back({{"first_scan", gap.first},
+                            {"scan_count", gap.count},
+                            {"estimated", gap.estimated},
+                            {"cause", daq::name(gap.cause)}});
+  }
+  json["findings"] = ordered_json::array();
+  for (const Finding& finding : verdict.findings) {
+    json["findings"].push_back(
+        {{"weight", record::name(finding.weight)}, {"place", finding.place}, {"text", finding.text}});
+  }
+  return json;
+}
+
+VerifyOutput verify_files(const std::vector<std::string>& files, bool json) {
+  VerifyOutput output;
+  ordered_json all = ordered_json::array();
+  for (const std::string& file : files) {
+    const ordered_json verdict = judged(file);
+    output.exit_status = worse(output.exit_status, exit_status_of(verdict));
+    if (json) {
+      all.push_back(verdict);
+    } else {
+      output.text += lines(verdict);
+    }
+  }
+  if (json) output.text = ordered_json{{"files", all}}.dump(2) + "\n";
+  return output;
+}
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,127 @@
+// A flipped bit anywhere in a record is found. RapidCheck prints the seed.
+
+#include <gmock/gmock.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "core/record/finaliser.hpp"
+#include "core/record/verdict.hpp"
+#include "daemon/forked.hpp"
+#include "tests/support/bit_flips.hpp"
+#include "tests/support/record_samples.hpp"
+
+namespace stickslip {
+namespace {
+
+using record::Finding;
+using record::Judgement;
+using record::Verdict;
+
+const std::vector<std::string> kRaw{"counts", "scan", "time", "force", "flags"};
+
+/// A sound record with noise in it, made once.
+class Sound {
+ public:
+  Sound() {
+    record::Record record = test::sample_record();
+    record.scan.clear();
+    record.raw.clear();
+    record.true_coefficient.clear();
+    record.spikes.clear();
+    record.gaps = {{1020, 20, true, daq::GapCause::kOverrun}};
+    // A linear congruential generator [Knuth, TAOCP 2, 3.3.4, table 1, line 26].
+    std::uint64_t state = 1;
+    for (std::int64_t i = 0; i < kScans; ++i) {
+      state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+      record.scan.push_back(i < 20 ? 1000 + i : 1020 + i);
+      record.raw.push_back(30000.0 + 500.0 * std::sin(0.01 * static_cast<double>(i)) +
+                           static_cast<double>(state >> 60U));
+      record.raw.back() = std::floor(record.raw.back());
+    }
+    record.anchors = {{1000, 5'000'000'000, 1'795'265'582'000'000'000},
+                      {1059, 5'168'000'000, 1'795'265'582'168'000'000}};
+    record.end->status = record::Status::kComplete;
+    record.end->reasons.clear();
+    EXPECT_TRUE(record::publish_record(record, path()));
+    content = test::content_of(path());
+    chunks = test::chunks_of(path(), "/entry/raw", kRaw);
+  }
+  [[nodiscard]] std::filesystem::path path() const { return folder_ / "sound.h5"; }
+  [[nodiscard]] std::filesystem::path flipped() const { return folder_ / "flipped.h5"; }
+
+  std::string content;
+  std::vector<test::Extent> chunks;
+
+ private:
+  static constexpr std::int64_t kScans = 2'000;
+  test::TemporaryFolder folder_;
+};
+
+const Sound& sound() {
+  static const Sound sound;
+  return sound;
+}
+
+bool names(const Verdict& verdict, const std::string& place) {
+  return std::any_of(verdict.findings.begin(), verdict.findings.end(), [&](const Finding& finding) {
+    return finding.weight == Finding::Weight::kDamage && finding.place.find(place) == 0;
+  });
+}
+
+TEST(RecordFlips, TheRecordIsSoundBefore) {
+  const Verdict verdict = record::judge(sound().path());
+  // Incomplete for its gap alone.
+  ASSERT_EQ(verdict.findings.size(), 1U) << verdict.findings.back().place << verdict.findings.back().text;
+  EXPECT_EQ(verdict.findings.front().place, "gaps");
+  EXPECT_EQ(verdict.scans_present, verdict.scans_committed);
+  EXPECT_EQ(sound().chunks.size(), kRaw.size());
+}
+
+RC_GTEST_PROP(RecordFlips, InTheRawDataAreFoundAndPlaced, ()) {
+  const test::Extent chunk = sound().chunks[*rc::gen::inRange<std::size_t>(0, sound().chunks.size())];
+  const auto bit = *rc::gen::inRange<std::uint64_t>(0, 8 * chunk.size);
+  test::write_flipped(sound().flipped(), sound().content, 8 * chunk.first + bit);
+
+  const Verdict verdict = record::judge(sound().flipped());
+
+  RC_ASSERT(verdict.judgement == Judgement::kDamaged);
+  RC_ASSERT(names(verdict, "entry/raw/" + chunk.dataset + " rows "));
+  RC_ASSERT(names(verdict, "file"));  // The checksum of the whole file finds it too.
+}
+
+/// 'y' found, 'n' not found; nothing if the reader did not come back, which is found as well.
+bool found(std::uint64_t bit) {
+  test::write_flipped(sound().flipped(), sound().content, bit);
+  constexpr std::chrono::seconds kLongest{60};
+  const auto answer = daemon::run_forked(
+      [] {
+        const Judgement judgement = record::judge(sound().flipped()).judgement;
+        return std::string{judgement == Judgement::kDamaged || judgement == Judgement::kNotJudged ? "y"
+                                                                                                  : "n"};
+      },
+      kLongest);
+  return answer && (answer->signal || answer->text == "y");
+}
+
+// Also where HDF5 has no checksum: results, indices of chunks, bytes that nobody uses.
+RC_GTEST_PROP(RecordFlips, AnywhereElseAreFound, ()) {
+  RC_ASSERT(found(*rc::gen::inRange<std::uint64_t>(0, 8 * sound().content.size())));
+}
+
+// With STICKSLIP_EVERY_BIT=N: every N-th bit of the file; figures in docs/reliability.md.
+TEST(RecordFlips, EveryBitIsFound) {
+  const char* const stride = std::getenv("STICKSLIP_EVERY_BIT");
+  if (stride == nullptr) GTEST_SKIP() << "takes long: set STICKSLIP_EVERY_BIT=1 for every bit";
+  std::uint64_t tried = 0;
+  for (std::uint64_t bit = 0; bit < 8 * sound().content.size(); bit += std::strtoull(stride, nullptr, 10)) {
+    ASSERT_TRUE(found(bit)) << "bit " << bit;
+    ++tried;
+  }
+  std::printf("%llu of %zu bits flipped, each found\n", static_cast<unsigned long long>(tried),
+              8 * sound().content.size());
+}
+
+}  // namespace
+}  // namespace stickslip

@@ -1,0 +1,270 @@
+// The storage thread on a disk that is full, fails or takes its time: what was handed over is there in the
+// end, or is a gap with its cause.
+
+#include "daemon/storage.hpp"
+
+#include <gmock/gmock.h>
+
+#include <condition_variable>
+#include <mutex>
+
+#include "core/record/finaliser.hpp"
+#include "core/record/reader.hpp"
+#include "core/record/verdict.hpp"
+#include "tests/support/faulty_disk.hpp"
+#include "tests/support/record_samples.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+using test::FaultyDisk;
+using test::TemporaryFolder;
+namespace fs = std::filesystem;
+
+constexpr double kRate_Hz = 350.0;
+constexpr std::int64_t kTenMinutes = 600 * 350;
+
+/// What was told, and a way to wait for it.
+class Heard final : public Facts {
+ public:
+  void storage_waits(std::string_view why) override { add("waits: " + std::string{why}); }
+  void storage_resumed() override { add("resumed"); }
+  void little_room(std::int64_t test, double room_s) override {
+    add(fmt::format("test {} has room for {:.0f} s", test, room_s));
+  }
+  void recording_failed(std::int64_t test, std::string_view why) override {
+    add(fmt::format("test {} failed: {}", test, why));
+  }
+  void file_published(std::int64_t test, const fs::path& file) override {
+    {
+      const std::lock_guard lock{mutex_};
+      files_[test] = file;
+    }
+    add(fmt::format("test {} published", test));
+  }
+
+  void wait_for(const std::string& start) {
+    std::unique_lock lock{mutex_};
+    news_.wait(lock, [&] {
+      return std::any_of(told_.begin(), told_.end(),
+                         [&](const std::string& text) { return text.starts_with(start); });
+    });
+  }
+  [[nodiscard]] fs::path file(std::int64_t test) {
+    const std::lock_guard lock{mutex_};
+    return files_[test];
+  }
+  [[nodiscard]] std::vector<std::string> told() {
+    const std::lock_guard lock{mutex_};
+    return told_;
+  }
+
+ private:
+  void add(std::string text) {
+    const std::lock_guard lock{mutex_};
+    told_.push_back(std::move(text));
+    news_.notify_all();
+  }
+  std::mutex mutex_;
+  std::condition_variable news_;
+  std::vector<std::string> told_;
+  std::map<std::int64_t, fs::path> files_;
+};
+
+base::Result<fs::path> finalise_plainly(const fs::path& journal) { return record::finalise(journal); }
+
+record::RecordHeader header() {
+  record::RecordHeader header = test::sample_header();
+  header.uuid.clear();
+  header.board.scan_rate_granted_Hz = kRate_Hz;
+  return header;
+}
+
+void begin(Storage& storage, std::int64_t number, daq::ScanIndex first) {
+  storage.test_began({number, first, first, {0, 1'795'265'582'000'000'000, true}});
+}
+
+void feed(Storage& storage, daq::ScanIndex first, std::int64_t count) {
+  std::vector<double> raw(350);
+  for (std::int64_t done = 0; done < count; done += 350) {
+    for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = static_cast<double>((first + done) % 60000);
+    storage.scans(first + done, raw, {});
+  }
+}
+
+void end(Storage& storage, std::int64_t number, daq::ScanIndex end) {
+  pipeline::TestEnd ended;
+  ended.number = number;
+  ended.end = end;
+  ended.results = record::absent_results("not analysed");
+  storage.test_ended(ended);
+}
+
+void expect_whole(const fs::path& file, daq::ScanIndex first, std::int64_t count) {
+  const record::Verdict verdict = record::judge(file);
+  EXPECT_EQ(verdict.judgement, record::Judgement::kComplete)
+      << file << (verdict.findings.empty() ? "" : verdict.findings.front().text);
+  const auto read = record::read_record(file);
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_EQ(read->scan.size(), static_cast<std::size_t>(count));
+  EXPECT_EQ(read->scan.front(), first);
+  for (std::int64_t i = 0; i < count; i += 97) {
+    const auto row = static_cast<std::size_t>(i);
+    ASSERT_EQ(read->raw[row], static_cast<double>((first + i - i % 350) % 60000));
+  }
+}
+
+class RefusingDisk : public testing::TestWithParam<int> {};
+
+TEST_P(RefusingDisk, TenMinutesOfScansWaitInMemoryAndNothingIsLost) {
+  const TemporaryFolder folder;
+  FaultyDisk disk;
+  TestLog tests;
+  Heard heard;
+  Storage storage{{folder / "records", DatedFolders::kMonth, &disk}, finalise_plainly, tests, heard};
+  storage.use(header(), nullptr);
+  disk.refuse(GetParam());
+  begin(storage, 1, 0);
+  feed(storage, 0, kTenMinutes);
+  heard.wait_for("waits: ");
+  EXPECT_THAT(*storage.disk().trouble, testing::HasSubstr(std::strerror(GetParam())));
+  // A test ends and another begins meanwhile.
+  end(storage, 1, kTenMinutes);
+  begin(storage, 2, kTenMinutes + 700);
+  disk.works_again();
+  heard.wait_for("resumed");
+  EXPECT_EQ(storage.disk().trouble, std::nullopt);
+  feed(storage, kTenMinutes + 700, 3500);
+  end(storage, 2, kTenMinutes + 4200);
+  storage.stop();
+  EXPECT_EQ(heard.file(1).parent_path(), folder / "records" / "2026" / "11");
+  expect_whole(heard.file(1), 0, kTenMinutes);
+  expect_whole(heard.file(2), kTenMinutes + 700, 3500);
+}
+
+INSTANTIATE_TEST_SUITE_P(Errors, RefusingDisk, testing::Values(ENOSPC, EIO),
+                         [](const auto& error) { return std::string{::strerrorname_np(error.param)}; });
+
+TEST(Storage, ADiskThatTakesItsTimeHoldsNobodyUp) {
+  const TemporaryFolder folder;
+  std::mutex gate;
+  FaultyDisk disk;
+  disk.hold([&gate] { const std::lock_guard wait{gate}; });
+  TestLog tests;
+  Heard heard;
+  Storage storage{{folder.path(), DatedFolders::kDay, &disk}, finalise_plainly, tests, heard};
+  storage.use(header(), nullptr);
+  {
+    // No write returns while the gate is shut.
+    const std::lock_guard shut{gate};
+    begin(storage, 1, 0);
+    feed(storage, 0, kTenMinutes);
+    end(storage, 1, kTenMinutes);
+  }
+  storage.stop();
+  EXPECT_EQ(heard.file(1).parent_path(), folder / "2026-11-21");
+  expect_whole(heard.file(1), 0, kTenMinutes);
+}
+
+TEST(Storage, WhatDoesNotFitIsAGapAndTheTestGoesOn) {
+  const TemporaryFolder folder;
+  FaultyDisk disk;
+  TestLog tests;
+  Heard heard;
+  Storage storage{{folder.path(), DatedFolders::kNone, &disk}, finalise_plainly, tests, heard};
+  storage.use(header(), nullptr);
+  disk.refuse(ENOSPC);
+  begin(storage, 1, 0);
+  // The memory is sized with room for cycles and the like, which there are none of here: hours of scans fill
+  // it.
+  feed(storage, 0, 12 * kTenMinutes);
+  heard.wait_for("waits: ");
+  disk.works_again();
+  heard.wait_for("resumed");
+  feed(storage, 12 * kTenMinutes, 3500);
+  end(storage, 1, 12 * kTenMinutes + 3500);
+  storage.stop();
+  const record::Verdict verdict = record::judge(heard.file(1));
+  EXPECT_EQ(verdict.judgement, record::Judgement::kIncomplete);
+  ASSERT_EQ(verdict.gaps.size(), 1U);
+  EXPECT_EQ(verdict.gaps[0].cause, daq::GapCause::kStorageFull);
+  EXPECT_GE(verdict.gaps[0].first, kTenMinutes);
+  EXPECT_EQ(*verdict.scans_present + verdict.gaps[0].count, 12 * kTenMinutes + 3500);
+}
+
+TEST(Storage, LittleRoomIsToldBeforeATestBegins) {
+  const TemporaryFolder folder;
+  FaultyDisk disk;
+  disk.set_room(1'000'000);
+  TestLog tests;
+  Heard heard;
+  Storage storage{{folder.path(), DatedFolders::kNone, &disk}, finalise_plainly, tests, heard};
+  storage.use(header(), nullptr);
+  begin(storage, 1, 0);
+  end(storage, 1, 0);
+  storage.stop();
+  // 350 scans of 2 + 2 + 21 bytes and 9000 bytes of everything else in a second.
+  EXPECT_EQ(heard.told().front(), "test 1 has room for 56 s");
+}
+
+TEST(Storage, ARecordThatCouldNotBeMadeIsTriedAgain) {
+  const TemporaryFolder folder;
+  TestLog tests;
+  Heard heard;
+  std::atomic<int> tries{0};
+  const auto finalise = [&tries](const fs::path& journal) -> base::Result<fs::path> {
+    if (tries++ == 0) return base::failure("no room for the record");
+    return record::finalise(journal);
+  };
+  Storage storage{{folder.path()}, finalise, tests, heard};
+  storage.use(header(), nullptr);
+  begin(storage, 1, 0);
+  feed(storage, 0, 3500);
+  end(storage, 1, 3500);
+  heard.wait_for("test 1 failed: no room for the record");
+  storage.stop();
+  expect_whole(heard.file(1), 0, 3500);
+}
+
+TEST(Storage, ADiskThatStaysFullLetsTheDaemonEnd) {
+  const TemporaryFolder folder;
+  FaultyDisk disk;
+  disk.refuse(ENOSPC);
+  std::vector<std::string> ended;
+  DiskWriter writer{{.folder = folder.path(), .patience = std::chrono::milliseconds{0}, .calls = &disk},
+                    [&](std::int64_t test, const fs::path&, const std::optional<std::string>& why) {
+                      ended.push_back(fmt::format("{}: {}", test, why.value_or("written")));
+                    },
+                    [](const DiskState&) {}};
+  const auto journal =
+      std::make_shared<record::PatientJournal>(folder / "a.journal", test::sample_header(), 1000, disk);
+  writer.begin(1, journal);
+  writer.end(journal);
+  writer.stop();
+  ASSERT_EQ(ended.size(), 1U);
+  EXPECT_THAT(ended[0], testing::HasSubstr("1: "));
+  EXPECT_THAT(ended[0], testing::HasSubstr("No space left on device"));
+}
+
+// A disk that is full for real: what the ballast held is used for what was begun.
+TEST(Ballast, IsGivenWhenTheDiskRefusesAndTakenAgain) {
+  const TemporaryFolder folder;
+  FaultyDisk disk;
+  {
+    Ballast ballast{folder.path(), disk};
+    EXPECT_TRUE(fs::exists(folder / ".stickslip-ballast"));
+    EXPECT_TRUE(ballast.give());
+    EXPECT_FALSE(ballast.give());
+    EXPECT_FALSE(fs::exists(folder / ".stickslip-ballast"));
+    disk.set_room(10'000'000);
+    ballast.take();
+    EXPECT_FALSE(fs::exists(folder / ".stickslip-ballast"));
+    disk.set_room(100'000'000);
+    ballast.take();
+    EXPECT_TRUE(fs::exists(folder / ".stickslip-ballast"));
+  }
+  EXPECT_FALSE(fs::exists(folder / ".stickslip-ballast"));
+}
+
+}  // namespace
+}  // namespace stickslip::daemon
