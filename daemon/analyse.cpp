@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/pipeline/gain_uncertainty.hpp"
 #include "core/pipeline/true_rate.hpp"
 #include "daemon/method_text.hpp"
 #include "daemon/tester_file.hpp"
@@ -59,7 +60,10 @@ base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& he
       speed = *second;
       settings.speed_step_m_per_s = second->step();
     }
-    return RecordAnalysis{std::move(calibration), std::move(speed), settings, std::move(gaps)};
+    RecordAnalysis analysis{std::move(calibration), std::move(speed), settings, std::move(gaps)};
+    analysis.gain_uncertainty_ =
+        pipeline::relative_gain_uncertainty(header.load_cell, header.calibration.gain_standard_error_N_per_V);
+    return analysis;
   } catch (const std::invalid_argument& refused) {
     return base::usage_error("the record cannot be analysed: {}", refused.what());
   }
@@ -88,6 +92,7 @@ void RecordAnalysis::finish(record::EndRecord& end, std::span<const daq::ClockAn
                             std::span<const daq::Gap> gaps) {
   end.results = analysis_.finish();
   pipeline::add_true_rate(end.results, anchors, gaps, scan_rate_granted_Hz_);
+  pipeline::add_gain_uncertainty(end.results, gain_uncertainty_);
   end.cycles = analysis_.take_cycles();
   end.spikes = analysis_.spikes();
 }

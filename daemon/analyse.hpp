@@ -52,6 +52,7 @@ class RecordAnalysis {
   daq::Calibration calibration_;
   std::optional<daq::SecondChannel> speed_;  ///< If the second channel measures it.
   double scan_rate_granted_Hz_;
+  std::optional<double> gain_uncertainty_;  ///< Relative.
   friction::TestAnalysis analysis_;
   std::vector<daq::Gap> gaps_;
   std::optional<daq::ScanIndex> next_;

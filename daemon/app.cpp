@@ -15,6 +15,9 @@
 #include <boost/asio/post.hpp>
 
 #include "core/friction/sampling.hpp"
+#include "core/pipeline/gain_uncertainty.hpp"
+#include "core/record/iso_time.hpp"
+#include "daemon/calibration_file.hpp"
 #include "daemon/method_text.hpp"
 #include "daemon/recovery.hpp"
 #include "daemon/tester_file.hpp"
@@ -172,6 +175,10 @@ base::Result<void> App::open_session() {
     world_.facts->sampling_checked(verdict);
   }
 
+  if (expired(settings.calibration, record::iso_time(clock_->realtime_ns()))) {
+    world_.facts->calibration_expired(settings.calibration.expires);
+  }
+
   SessionEvents events;
   events.first_scan = [this] {
     boost::asio::post(io_, [this] {
@@ -274,6 +281,14 @@ base::Result<SessionSettings> App::session_settings(const drivers::OpenedBoard& 
   if (continues_.continuation) settings.processor.continues_at = continues_.continuation->end;
   settings.processor.recorded = opened.recorded;
   settings.processor.second = board.second;
+  const BenchConfig& bench = config_.bench;
+  if (bench.calibration) {
+    settings.calibration = *bench.calibration;
+  } else if (!bench.load_cell_gain_N_per_V && !bench.load_cell_zero_V) {
+    settings.calibration = opened.calibration;  // It belongs to the numbers that come with it.
+  }
+  settings.processor.gain_uncertainty = pipeline::relative_gain_uncertainty(
+      settings.load_cell, settings.calibration.gain_standard_error_N_per_V);
   settings.processor.clock_is_real = config_.clock_speed == 1.0;
   settings.processor.segmenter = config_.segmenter;
   settings.processor.segmenter.scan_rate_Hz = board.scan_rate_granted_Hz;
@@ -300,6 +315,11 @@ record::RecordHeader App::record_header(const SessionSettings& settings) const {
   if (quantity == daq::RawQuantity::kCounts || quantity == daq::RawQuantity::kVolts) {
     header.load_cell = settings.load_cell;
   }
+  if (header.load_cell) header.calibration = settings.calibration;
+  header.sample = config_.sample;
+  const pipeline::SegmenterSettings& segmenter = settings.processor.segmenter;
+  header.plan = {segmenter.start_coefficient, segmenter.start_dwell_s,  segmenter.pre_trigger_s,
+                 segmenter.end_coefficient,   segmenter.unload_dwell_s, segmenter.no_motion_dwell_s};
   header.tester = record::TesterFacts::of(settings.processor.analysis.tester);
   header.process.program = "stickslipd";
   header.process.version = kVersion;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/friction/method_file.hpp"
+#include "daemon/calibration_file.hpp"
 #include "daemon/tester_file.hpp"
 
 namespace stickslip::daemon {
@@ -170,6 +171,31 @@ void read_board(Settings table, const std::filesystem::path& folder, DaemonConfi
   read_comedi(table.table("comedi"), config);
 }
 
+void read_calibration(Settings& table, const std::filesystem::path& path, BenchConfig& bench) {
+  for (const char* key : {"load_cell_gain", "load_cell_zero"}) {
+    if (table.has(key)) table.refuse(key, "stands in the calibration");
+  }
+  const base::Result<StoredCalibration> stored = load_calibration(path);
+  if (!stored) {
+    table.refuse("calibration", stored.error().message);
+    return;
+  }
+  bench.load_cell_gain_N_per_V = stored->load_cell.gain_N_per_V;
+  bench.load_cell_zero_V = stored->load_cell.zero_V;
+  bench.calibration = stored->facts;
+}
+
+void read_sample(Settings table, record::SampleFacts& sample) {
+  sample.name = table.text("name", "");
+  sample.grade = table.text("grade", "");
+  sample.direction = table.text("direction", "");
+  sample.side = table.text("side", "");
+  constexpr std::int64_t kMostReplicates = 1'000'000;
+  const std::int64_t replicate = table.integer("replicate", 1, kMostReplicates, 1);
+  if (table.has("replicate")) sample.replicate = replicate;
+  sample.operator_name = table.text("operator", "");
+}
+
 void read_tester(Settings table, const std::filesystem::path& folder, DaemonConfig& config) {
   BenchConfig& bench = config.bench;
   bench.sled_mass_kg =
@@ -182,14 +208,17 @@ void read_tester(Settings table, const std::filesystem::path& folder, DaemonConf
   bench.load_cell_gain_N_per_V =
       table.quantity_if_given("load_cell_gain", Dimension::kForcePerVoltage, Limits::any());
   if (bench.load_cell_gain_N_per_V == 0.0) table.refuse("load_cell_gain", "must not be 0");
-  if (config.board.driver == Driver::kComedi && !table.has("load_cell_gain")) {
-    table.refuse("load_cell_gain", "is missing; hardware cannot know it: give it, such as \"2 N/V\"");
+  const std::string calibration = table.text("calibration", "");
+  if (config.board.driver == Driver::kComedi && !table.has("load_cell_gain") && calibration.empty()) {
+    table.refuse("load_cell_gain",
+                 "is missing; hardware cannot know it: give it, such as \"2 N/V\", or a calibration");
   }
   if (config.board.driver == Driver::kComedi && !table.has("sled_mass")) {
     table.refuse("sled_mass", "is missing; hardware cannot know it: give it, such as \"2331 g\"");
   }
   bench.load_cell_zero_V = table.quantity_if_given("load_cell_zero", Dimension::kVoltage,
                                                    Limits::between(-kHighestVoltage_V, kHighestVoltage_V));
+  if (!calibration.empty()) read_calibration(table, resolved(folder, calibration), bench);
   if (const std::string file = table.text("characterisation", ""); !file.empty()) {
     const base::Result<Settings> read = Settings::load(resolved(folder, file));
     if (!read) {
@@ -245,6 +274,7 @@ DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
   read_board(settings.table("board"), folder, config);
   read_tester(settings.table("tester"), folder, config);
   read_test(settings.table("test"), config.segmenter);
+  read_sample(settings.table("sample"), config.sample);
   read_method(settings.table("method"), folder, config.method);
   config.board.simulated.method = config.method;
   config.estimator =

@@ -14,6 +14,7 @@
 #include "core/friction/method.hpp"
 #include "core/friction/tester.hpp"
 #include "core/pipeline/segmenter.hpp"
+#include "core/record/record.hpp"
 #include "daemon/dated_folders.hpp"
 #include "daemon/realtime.hpp"
 #include "drivers/factory/board_config.hpp"
@@ -32,6 +33,8 @@ struct BenchConfig {
   std::optional<double> load_cell_gain_N_per_V;
   std::optional<double> load_cell_zero_V;
   std::string characterisation;  ///< Text of the file that `stickslip characterise` wrote; empty: none.
+  /// Of `stickslip calibrate`; it has given the load cell above.
+  std::optional<record::CalibrationFacts> calibration;
 
   [[nodiscard]] friction::Tester tester(const std::optional<friction::Tester>& known) const;
   [[nodiscard]] daq::LoadCell load_cell(const std::optional<daq::LoadCell>& known) const;
@@ -44,6 +47,7 @@ struct DaemonConfig {
   BenchConfig bench;
   pipeline::SegmenterSettings segmenter;  ///< Its scan rate is the board's.
   friction::Method method;
+  record::SampleFacts sample;
   friction::EstimatorTier estimator = friction::EstimatorTier::kFit;
   std::filesystem::path record_folder;
   DatedFolders dated_folders = DatedFolders::kNone;

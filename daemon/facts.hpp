@@ -22,6 +22,8 @@ class Facts {
   virtual void board_started(const daq::BoardInfo& /*board*/, std::string_view /*scheduling*/) {}
   /// Before the start: do the scans come often enough?
   virtual void sampling_checked(const friction::SamplingVerdict& /*verdict*/) {}
+  /// Before the start: the load cell is due to be calibrated again.
+  virtual void calibration_expired(std::string_view /*expires*/) {}
   /// \param state  of the daemon: "board missing", "board busy" or "no permission".
   virtual void board_unavailable(std::string_view /*state*/, std::string_view /*why*/,
                                  double /*retry_in_s*/) {}

@@ -71,6 +71,10 @@ class Log final : public Facts {
                  scheduling);
     if (!board.notes.empty()) logger_.info("board {}: {}", board.device, board.notes);
   }
+  void calibration_expired(std::string_view expires) override {
+    logger_.warn("the calibration of the load cell expired on {}: calibrate, see stickslip calibrate --help",
+                 expires);
+  }
   void sampling_checked(const friction::SamplingVerdict& verdict) override {
     using Kind = friction::SamplingVerdict::Kind;
     if (verdict.kind == Kind::kFew) logger_.warn("sampling: {}", verdict.reason);

@@ -23,6 +23,7 @@ namespace stickslip::daemon {
 struct SessionSettings {
   pipeline::ProcessorSettings processor;
   daq::LoadCell load_cell;
+  record::CalibrationFacts calibration;  ///< Of the load cell, for the records.
   std::string characterisation;  ///< Where processor.analysis.prior comes from, for the records; empty: none.
   RealtimeSettings realtime{0, {}, false};
   double clock_speed = 1.0;  ///< Board time over wall time: the ring bridges wall time.

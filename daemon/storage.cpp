@@ -11,6 +11,7 @@
 #include <span>
 #include <utility>
 
+#include "core/record/iso_time.hpp"
 #include "core/record/journal.hpp"
 #include "core/record/words.hpp"
 #include "daemon/finaliser.hpp"
@@ -198,6 +199,8 @@ void Storage::handle(const Began& message) {
   header.trigger_scan = message.start.trigger;
   header.start_realtime_ns = message.start.stamp.realtime_ns;
   header.title = fmt::format("test {}", message.start.number);
+  if (message.start.self_check) header.self_check = *message.start.self_check;
+  const std::string expires = header.calibration.expires;
   check_room(header);
   const double rate_Hz = header.board.scan_rate_granted_Hz;
   pending_enough_ = static_cast<std::size_t>(std::max(1.0, std::floor(rate_Hz * kEntry_s)));
@@ -208,6 +211,17 @@ void Storage::handle(const Began& message) {
   journal_ = std::make_shared<record::PatientJournal>(
       latest_path_, std::move(header), memory > others ? memory - others : 0, *settings_.calls);
   disk_.begin(number_, journal_);
+  const pipeline::TestStart& start = message.start;
+  const auto event = [&](std::string text) {
+    note_event(start.trigger, start.stamp.realtime_ns, std::move(text));
+  };
+  event("test began: the force crossed the trigger");
+  if (!expires.empty() && record::iso_time(start.stamp.realtime_ns) >= expires) {
+    event(fmt::format("the calibration of the load cell expired on {}", expires));
+  }
+  if (start.self_check) {
+    for (const std::string& finding : start.self_check->findings) event("self-check: " + finding);
+  }
 }
 
 void Storage::handle(const daq::ScanBlock& block) {
@@ -225,6 +239,8 @@ void Storage::handle(const daq::ScanBlock& block) {
 void Storage::handle(const daq::Gap& gap) {
   append_pending();
   if (journal_) journal_->add_gap(gap);
+  note_event(gap.first, pending_stamp_.realtime_ns,
+             fmt::format("gap: {} scans missing: {}", gap.count, daq::name(gap.cause)));
 }
 
 void Storage::handle(const daq::ClockAnchor& anchor) {
@@ -239,11 +255,18 @@ void Storage::handle(const friction::Cycle& cycle) {
 
 void Storage::handle(const Ended& message) {
   append_pending();
+  if (!recorded_.empty()) {
+    note_event(recorded_.back().end - 1, pending_stamp_.realtime_ns, "test ended: " + message.end->cause);
+  }
   record::EndRecord end = *message.end;
   end.end_realtime_ns = pending_stamp_.realtime_ns;
   if (message.force) append_force(*message.force);
   journal_->add_end(std::move(end));
   disk_.end(std::exchange(journal_, nullptr));
+}
+
+void Storage::note_event(daq::ScanIndex scan, std::int64_t realtime_ns, std::string text) {
+  if (journal_) journal_->add_event({scan, realtime_ns, std::move(text)});
 }
 
 void Storage::append_pending() {

@@ -92,6 +92,8 @@ class Storage final : public pipeline::Sink {
   void handle(const friction::Cycle& cycle);
   void handle(const Ended& message);
   void append_pending();
+  /// \param realtime_ns  when it happened.
+  void note_event(daq::ScanIndex scan, std::int64_t realtime_ns, std::string text);
   /// The noise-free force of the scans that are in the journal.
   void append_force(friction::TrueForce& force);
   void check_room(const record::RecordHeader& header);

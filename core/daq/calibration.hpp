@@ -31,6 +31,7 @@ class Calibration {
   /// Force over the normal load.
   [[nodiscard]] double coefficient(double raw) const noexcept;
 
+  [[nodiscard]] double normal_load_N() const noexcept { return normal_load_N_; }
   /// One A/D step as a coefficient; 0 if the reading is no count.
   [[nodiscard]] double step_coefficient() const noexcept { return step_coefficient_; }
   /// At a rail of the converter (code 0 or maxdata): the true value lies outside.

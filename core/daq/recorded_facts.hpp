@@ -3,19 +3,21 @@
 /// missing.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "core/daq/clock_anchor.hpp"
 #include "core/daq/gap.hpp"
 #include "core/daq/latency_histogram.hpp"
+#include "core/daq/self_check.hpp"
 
 namespace stickslip::daq {
 
-/// Anchors and gaps rise.
 struct RecordedFacts {
-  std::vector<ClockAnchor> anchors;
-  std::vector<Gap> gaps;
+  std::vector<ClockAnchor> anchors;             ///< Rising.
+  std::vector<Gap> gaps;                        ///< Rising.
+  std::shared_ptr<const SelfCheck> self_check;  ///< Null if there is none.
   std::optional<LatencyHistogram> read_latency;
 };
 

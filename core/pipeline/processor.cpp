@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/pipeline/gain_uncertainty.hpp"
 #include "core/pipeline/true_rate.hpp"
 
 namespace stickslip::pipeline {
@@ -22,6 +23,7 @@ Processor::Processor(const ProcessorSettings& settings, daq::Calibration calibra
       sinks_(std::move(sinks)),
       gaps_(settings.continues_at),
       segmenter_(complete(settings.segmenter, calibration_)),
+      idle_(settings.analysis.scan_rate_Hz),
       number_(settings.first_test_number),
       meter_(settings.analysis.scan_rate_Hz),
       picker_(settings.analysis.scan_rate_Hz) {
@@ -58,6 +60,7 @@ void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause, bo
       begin(index, block.stamp);
       not_handed_over = i + 1;
     } else if (waiting_.size() > settings_.segmenter.pre_trigger_scans()) {
+      idle_.add(waiting_.front().index, waiting_.front().raw);
       waiting_.pop_front();
     }
   }
@@ -86,6 +89,7 @@ void Processor::note_gap(daq::Gap gap) {
   if (!test_is_running()) {
     // What was before a gap cannot be shown to belong to the coming test.
     waiting_.clear();
+    idle_.clear();
     for (Sink* sink : sinks_) sink->gap_between_tests(gap);
     return;
   }
@@ -101,7 +105,8 @@ void Processor::begin(daq::ScanIndex trigger, const daq::ClockStamp& stamp) {
   anchors_.clear();
   test_gaps_.clear();
   read_latency_.reset();
-  const TestStart start{number_, waiting_.front().index, trigger, stamp};
+  const TestStart start{number_, waiting_.front().index, trigger, stamp, self_check()};
+  idle_.clear();
   std::vector<double> raw;
   raw.reserve(waiting_.size());
   std::vector<std::int32_t> second;
@@ -115,6 +120,13 @@ void Processor::begin(daq::ScanIndex trigger, const daq::ClockStamp& stamp) {
     sink->test_began(start);
     sink->scans(start.first, raw, second, stamp);
   }
+}
+
+std::shared_ptr<const daq::SelfCheck> Processor::self_check() const {
+  if (settings_.recorded && settings_.recorded->self_check) return settings_.recorded->self_check;
+  const auto rate = settings_.clock_is_real ? meter_.estimate() : std::nullopt;
+  const std::optional<daq::SelfCheck> check = idle_.check(calibration_, rate);
+  return check ? std::make_shared<const daq::SelfCheck>(*check) : nullptr;
 }
 
 void Processor::analyse(daq::ScanIndex index, double raw, std::int32_t second) {
@@ -132,6 +144,7 @@ void Processor::end(daq::ScanIndex end, EndCause cause) {
   ended.cause = cause;
   ended.results = analysis_->finish();
   add_true_rate(ended.results, anchors_, test_gaps_, settings_.analysis.scan_rate_Hz);
+  add_gain_uncertainty(ended.results, settings_.gain_uncertainty);
   ended.cycles = analysis_->cycles();
   ended.spikes = analysis_->spikes();
   ended.read_latency = settings_.recorded ? settings_.recorded->read_latency : read_latency_;

@@ -26,6 +26,7 @@
 #include "core/daq/second_channel.hpp"
 #include "core/friction/test_analysis.hpp"
 #include "core/pipeline/segmenter.hpp"
+#include "core/pipeline/self_check.hpp"
 #include "core/pipeline/sink.hpp"
 
 namespace stickslip::pipeline {
@@ -42,6 +43,8 @@ struct ProcessorSettings {
   std::optional<daq::SecondChannel> second;  ///< That of the board.
   /// The stamps are of the machine's own clock, so that they can measure the scan rate.
   bool clock_is_real = true;
+  /// Of the load cell's gain, relative to it: what every coefficient shares; absent where not known.
+  std::optional<double> gain_uncertainty;
 };
 
 /// Thread-bound: the processing thread.
@@ -82,6 +85,7 @@ class Processor {
   void note_gap(daq::Gap gap);
   /// What the stamp of a block of the running test tells.
   void note_clocks(const daq::ScanBlock& block);
+  [[nodiscard]] std::shared_ptr<const daq::SelfCheck> self_check() const;
   void note_anchor(const daq::ClockAnchor& anchor);
   /// Clock anchors of the test that ends at `end`, and what they say.
   void finish_clocks(daq::ScanIndex end);
@@ -100,6 +104,7 @@ class Processor {
   daq::GapTracker gaps_;
   Segmenter segmenter_;
   std::deque<Waiting> waiting_;  ///< Consecutive, the latest last.
+  IdleScans idle_;               ///< Those before them.
   std::optional<friction::TestAnalysis> analysis_;
   std::int64_t number_;
   daq::ScanIndex next_scan_ = 0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@
 #include "core/daq/gap.hpp"
 #include "core/daq/latency_histogram.hpp"
 #include "core/daq/scan_block.hpp"
+#include "core/daq/self_check.hpp"
 #include "core/friction/cycle.hpp"
 #include "core/friction/results.hpp"
 
@@ -20,10 +22,11 @@ namespace stickslip::pipeline {
 
 /// A test began. Its scans follow, pre-trigger scans first.
 struct TestStart {
-  std::int64_t number = 0;     ///< Since the start of the program, from 1.
-  daq::ScanIndex first = 0;    ///< First scan that belongs to the test's record.
-  daq::ScanIndex trigger = 0;  ///< Scan at which the force crossed the trigger.
-  daq::ClockStamp stamp;       ///< When the trigger was seen.
+  std::int64_t number = 0;                           ///< Since the start of the program, from 1.
+  daq::ScanIndex first = 0;                          ///< First scan that belongs to the test's record.
+  daq::ScanIndex trigger = 0;                        ///< Scan at which the force crossed the trigger.
+  daq::ClockStamp stamp;                             ///< When the trigger was seen.
+  std::shared_ptr<const daq::SelfCheck> self_check;  ///< Null if there was nothing to look at.
 };
 
 /// Why a test is over.

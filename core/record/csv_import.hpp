@@ -24,10 +24,10 @@ struct CsvImportRequest {
   ProcessFacts process;
 };
 
-/// Reads strictly [RFC 4180 with a header line]: every row as long as the header, every value a
-/// finite number, every step of the time column 1/rate within the rounding of its printed digits.
-/// \return the record, with an end that has no results (reason "not analysed") and scan 0 first.
-/// Errors: kUsage naming file:line, value and remedy; kFailure if the file cannot be read.
+/// Reads strictly [RFC 4180 with a header line, lines that begin with # before it left out]: every row as
+/// long as the header, every value a finite number, every step of the time column 1/rate within the rounding
+/// of its printed digits. \return the record, with an end that has no results (reason "not analysed") and
+/// scan 0 first. Errors: kUsage naming file:line, value and remedy; kFailure if the file cannot be read.
 [[nodiscard]] base::Result<Record> read_csv(const CsvImportRequest& request);
 
 }  // namespace stickslip::record

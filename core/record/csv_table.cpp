@@ -100,6 +100,7 @@ class Collector {
   }
 
   [[nodiscard]] const std::optional<base::Error>& error() const { return error_; }
+  [[nodiscard]] bool before_header() const { return !header_read_ && header_.empty(); }
 
   [[nodiscard]] base::Result<CsvTable> result() && {
     if (error_) return tl::unexpected(*error_);
@@ -195,6 +196,11 @@ base::Result<CsvTable> read_csv_table(const std::filesystem::path& path, const s
     const std::size_t newline = rest.find('\n');
     const std::string_view line = rest.substr(0, newline == std::string_view::npos ? newline : newline + 1);
     collector.line_begins(line == "\n" || line == "\r\n");
+    // What `stickslip export` and others tell of the data before the header.
+    if (collector.before_header() && line.front() == '#') {
+      rest.remove_prefix(line.size());
+      continue;
+    }
     if (csv_parse(&parser, line.data(), line.size(), on_field, on_row_end, &collector) != line.size()) {
       collector.refuse(
           "{}", csv_error(&parser) == CSV_EPARSE

@@ -4,7 +4,8 @@
 ///
 ///     for_each_field(header.tester, [](const FieldName& name, auto& value) { … });
 ///
-/// Values are strings (empty = not known), numbers, optional numbers or vectors of double.
+/// Values are strings (empty = not known), numbers, optional numbers, or vectors (empty = not known) of
+/// double or strings.
 #pragma once
 
 #include <concepts>
@@ -40,6 +41,55 @@ void for_each_field(Facts& facts, Visitor&& visit) {
   visit(FieldName{"certificate", "", ""}, facts.certificate);
   visit(FieldName{"gain_standard_error", "N/V", "standard error of the load cell gain [N/V]"},
         facts.gain_standard_error_N_per_V);
+  visit(FieldName{"zero_standard_error", "V", "standard error of the load cell zero [V]"},
+        facts.zero_standard_error_V);
+  visit(FieldName{"residual", "V", "standard deviation of the readings about the line [V]"},
+        facts.residual_V);
+  visit(FieldName{"hysteresis", "V", "reading under falling less that under rising loads [V]"},
+        facts.hysteresis_V);
+  visit(FieldName{"expires", "", ""}, facts.expires);
+  visit(FieldName{"weight_mass", "kg", "mass of each weight hung [kg]"}, facts.mass_kg);
+  visit(FieldName{"weight_force", "N", "force of each weight hung [N]"}, facts.force_N);
+  visit(FieldName{"weight_voltage", "V", "voltage under each weight [V]"}, facts.voltage_V);
+  visit(FieldName{"weight_voltage_standard_error", "V", "standard error of the voltage [V]"},
+        facts.voltage_standard_error_V);
+  visit(FieldName{"weight_residual", "V", "voltage under each weight less that of the line [V]"},
+        facts.point_residual_V);
+  visit(FieldName{"weight_refused", "", ""}, facts.refused);
+}
+
+template <FieldsOf<PlanFacts> Facts, typename Visitor>
+void for_each_field(Facts& facts, Visitor&& visit) {
+  visit(FieldName{"start_coefficient", "1", "a test begins above this coefficient [1]"},
+        facts.start_coefficient);
+  visit(FieldName{"start_dwell", "s", "for so long [s]"}, facts.start_dwell_s);
+  visit(FieldName{"pre_trigger", "s", "kept from before the trigger [s]"}, facts.pre_trigger_s);
+  visit(FieldName{"end_coefficient", "1", "a test ends below this coefficient [1]"}, facts.end_coefficient);
+  visit(FieldName{"end_dwell", "s", "for so long [s]"}, facts.end_dwell_s);
+  visit(FieldName{"no_motion_dwell", "s", "or when it lies flat for so long [s]"}, facts.no_motion_dwell_s);
+}
+
+/// All but the scans, which are stored like those of the record.
+template <FieldsOf<daq::SelfCheck> Check, typename Visitor>
+void for_each_field(Check& check, Visitor&& visit) {
+  visit(FieldName{"first_scan", "1", "first scan looked at [1]"}, check.first_scan);
+  visit(FieldName{"zero", "N", "mean force with no load [N]"}, check.zero_N);
+  visit(FieldName{"zero_standard_error", "N", "standard error of the mean force with no load [N]"},
+        check.zero_standard_error_N);
+  visit(FieldName{"drift", "N/s", "drift of the force with no load [N/s]"}, check.drift_N_per_s);
+  visit(FieldName{"drift_standard_error", "N/s", "standard error of the drift [N/s]"},
+        check.drift_standard_error_N_per_s);
+  visit(FieldName{"noise", "N", "standard deviation of one scan with no load [N]"}, check.noise_N);
+  visit(FieldName{"hum_at_50_Hz", "N", "amplitude of 50 Hz with no load [N]"}, check.hum_at_50_Hz_N);
+  visit(FieldName{"hum_at_60_Hz", "N", "amplitude of 60 Hz with no load [N]"}, check.hum_at_60_Hz_N);
+  visit(FieldName{"hum_standard_error", "N", "standard error of the amplitudes [N]"},
+        check.hum_standard_error_N);
+  visit(FieldName{"spike_count", "1", "spikes with no load [1]"}, check.spike_count);
+  visit(FieldName{"saturated_count", "1", "scans at a rail with no load [1]"}, check.saturated_count);
+  visit(FieldName{"scan_rate", "Hz", "scan rate by the clock, up to the test [Hz]"}, check.scan_rate_Hz);
+  visit(FieldName{"scan_rate_standard_error", "Hz", "standard error of the scan rate [Hz]"},
+        check.scan_rate_standard_error_Hz);
+  visit(FieldName{"findings", "", ""}, check.findings);
 }
 
 template <FieldsOf<daq::LoadCell> Facts, typename Visitor>

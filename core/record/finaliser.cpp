@@ -8,6 +8,7 @@
 
 #include "core/base/contract.hpp"
 #include "core/record/file.hpp"
+#include "core/record/hdf_read.hpp"
 #include "core/record/hdf_write.hpp"
 #include "core/record/iso_time.hpp"
 #include "core/record/journal.hpp"
@@ -18,6 +19,22 @@
 
 namespace stickslip::record {
 namespace {
+
+void link(hid_t from, const char* name, hid_t to) {
+  check(H5Lcreate_hard(from, name, to, name, H5P_DEFAULT, H5P_DEFAULT), std::string{"link to "} + name);
+}
+
+/// A second way to what has no texts: GNU Octave gives up a whole group for one UTF-8 text in it.
+void write_numbers(hid_t file, hid_t entry) {
+  const GroupHandle numbers = make_group(file, "numbers", "NXcollection");
+  for (const char* table : {"raw", "cycles"}) link(entry, table, numbers.get());
+  const GroupHandle from = open_group(entry, "results");
+  const GroupHandle to = make_group(numbers.get(), "results", "NXcollection");
+  const friction::TestResults names;
+  friction::for_each_result(names, [&](const friction::ResultName& name, const auto&) {
+    link(from.get(), std::string{name.name}.c_str(), to.get());
+  });
+}
 
 /// \throws HdfError with the file in an unknown state: it is to be thrown away.
 void build(const Record& record, const ScanSource& scans, const std::filesystem::path& path,
@@ -41,6 +58,7 @@ void build(const Record& record, const ScanSource& scans, const std::filesystem:
     write_process(entry.get(), record, sha256);
     write_seal(entry.get(), scans.size());
     if (record.end->truth) write_truth(entry.get(), *record.end->truth, scans);
+    write_numbers(file.get(), entry.get());
   }
   check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), "flushing");
   file.close("closing");

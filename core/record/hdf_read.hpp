@@ -55,7 +55,12 @@ class FieldReader {
     text = has(parent_, key) ? read_text(parent_, key) : std::string{};
   }
   void operator()(const FieldName& name, std::vector<double>& values) const {
-    values = read_column<double>(parent_, std::string{name.name});
+    const std::string key{name.name};
+    values = has(parent_, key) ? read_column<double>(parent_, key) : std::vector<double>{};
+  }
+  void operator()(const FieldName& name, std::vector<std::string>& texts) const {
+    const std::string key{name.name};
+    texts = has(parent_, key) ? read_texts(parent_, key) : std::vector<std::string>{};
   }
   template <typename T>
   void operator()(const FieldName& name, std::optional<T>& value) const {

@@ -145,7 +145,10 @@ class FieldWriter {
     if (!text.empty()) write_text(parent_, std::string{name.name}, text);
   }
   void operator()(const FieldName& name, const std::vector<double>& values) const {
-    write_column(parent_, name, std::span<const double>{values});
+    if (!values.empty()) write_column(parent_, name, std::span<const double>{values});
+  }
+  void operator()(const FieldName& name, const std::vector<std::string>& texts) const {
+    if (!texts.empty()) write_texts(parent_, std::string{name.name}, texts);
   }
   template <typename T>
   void operator()(const FieldName& name, const std::optional<T>& value) const {

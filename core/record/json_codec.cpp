@@ -22,6 +22,10 @@ template <typename T>
 struct IsOptional : std::false_type {};
 template <typename T>
 struct IsOptional<std::optional<T>> : std::true_type {};
+/// Empty stands for not known.
+template <typename T>
+concept Many = std::is_same_v<T, std::string> || std::is_same_v<T, std::vector<double>> ||
+    std::is_same_v<T, std::vector<std::string>>;
 
 json encode(double value) {
   if (std::isfinite(value)) return value;
@@ -61,13 +65,13 @@ void decode(const json& from, T& value) {
   }
 }
 
-/// Writes a value under its key; absent optionals and empty texts get none.
+/// Writes a value under its key; absent optionals, empty texts and columns get none.
 template <typename T>
 void put(json& object, std::string_view key, const T& value) {
   if constexpr (IsOptional<T>::value) {
     if (value) object[std::string{key}] = encode(*value);
-  } else if constexpr (std::is_same_v<T, std::string>) {
-    if (!value.empty()) object[std::string{key}] = value;
+  } else if constexpr (Many<T>) {
+    if (!value.empty()) object[std::string{key}] = encode(value);
   } else {
     object[std::string{key}] = encode(value);
   }
@@ -79,8 +83,9 @@ void take(const json& object, std::string_view key, T& value) {
   if constexpr (IsOptional<T>::value) {
     value.reset();
     if (found != object.end()) decode(*found, value.emplace());
-  } else if constexpr (std::is_same_v<T, std::string>) {
-    value = found == object.end() ? std::string{} : found->get<std::string>();
+  } else if constexpr (Many<T>) {
+    value.clear();
+    if (found != object.end()) decode(*found, value);
   } else {
     if (found == object.end()) throw std::invalid_argument(fmt::format("{} is missing", key));
     decode(*found, value);
@@ -236,15 +241,23 @@ std::string header_to_json(const RecordHeader& header) {
   put(object, "start_realtime_ns", header.start_realtime_ns);
   put(object, "operator", header.sample.operator_name);
   if (header.load_cell) object["load_cell"] = facts_to_json(*header.load_cell);
+  if (const json plan = facts_to_json(header.plan); !plan.empty()) object["plan"] = plan;
+  if (header.self_check) {
+    object["self_check"] = facts_to_json(*header.self_check);
+    put(object["self_check"], "raw", header.self_check->raw);
+  }
   return dump(object);
 }
 
 RecordHeader header_from_json(std::string_view text) {
   const json object = json::parse(text);
-  if (object.at("format") != kFormat || object.at("format_version") != kFormatVersion) {
-    throw std::invalid_argument(fmt::format("format {} version {}, this program reads {} version {}",
-                                            object.at("format").dump(), object.at("format_version").dump(),
-                                            kFormat, kFormatVersion));
+  if (object.at("format") != kFormat) {
+    throw std::invalid_argument(
+        fmt::format("format {}, this program reads {}", object.at("format").dump(), kFormat));
+  }
+  if (const std::string refusal = version_refusal(object.at("format_version").get<std::int64_t>());
+      !refusal.empty()) {
+    throw std::invalid_argument(refusal);
   }
   RecordHeader header;
   const json& board = object.at("board");
@@ -271,6 +284,12 @@ RecordHeader header_from_json(std::string_view text) {
   take(object, "operator", header.sample.operator_name);
   if (object.contains("load_cell")) {
     for_each_field(header.load_cell.emplace(), taker(object.at("load_cell")));
+  }
+  if (object.contains("plan")) for_each_field(header.plan, taker(object.at("plan")));
+  if (object.contains("self_check")) {
+    const json& check = object.at("self_check");
+    for_each_field(header.self_check.emplace(), taker(check));
+    take(check, "raw", header.self_check->raw);
   }
   return header;
 }

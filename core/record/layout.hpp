@@ -45,7 +45,7 @@ void check_tables(hid_t entry);
 void write_results(hid_t entry, const friction::TestResults& results);
 [[nodiscard]] friction::TestResults read_results(hid_t entry);
 
-void write_instrument(hid_t entry, const Record& record);  ///< instrument, timing, sample, user
+void write_instrument(hid_t entry, const Record& record);  ///< Also timing, sample, user, plan, self-check.
 void read_instrument(hid_t entry, Record& record);
 
 /// \param sha256  of the raw values.

@@ -1,9 +1,12 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 
 #include "core/record/hdf_read.hpp"
 #include "core/record/hdf_write.hpp"
 #include "core/record/layout.hpp"
+#include "core/record/words.hpp"
 
 namespace stickslip::record {
 namespace {
@@ -63,6 +66,58 @@ void read_timing(hid_t entry, Record& record) {
   record.end->read_latency = read_latency(group.get());
 }
 
+void write_plan(hid_t entry, const PlanFacts& plan) {
+  if (plan == PlanFacts{}) return;
+  for_each_field(plan, FieldWriter{make_group(entry, "plan", "NXcollection").get()});
+}
+
+/// The scans in the type and under the name of those of the test.
+template <typename Stored>
+void write_idle_scans(hid_t group, const FieldName& name, const std::vector<double>& raw) {
+  const std::vector<Stored> stored(raw.begin(), raw.end());
+  write_column(group, name, std::span<const Stored>{stored});
+}
+
+void write_self_check(hid_t entry, const RecordHeader& header) {
+  if (!header.self_check) return;
+  const GroupHandle group = make_group(entry, "self_check", "NXcollection");
+  const daq::SelfCheck& check = *header.self_check;
+  for_each_field(check, FieldWriter{group.get()});
+  if (check.raw.empty()) return;
+  const QuantityName quantity = name(header.board.quantity);
+  const std::string long_name = fmt::format("{} with no load [{}]", quantity.name, quantity.unit);
+  const FieldName field{quantity.name, quantity.unit, long_name};
+  if (header.board.quantity != daq::RawQuantity::kCounts) {
+    write_idle_scans<double>(group.get(), field, check.raw);
+  } else if (counts_fit_u16(header.board)) {
+    write_idle_scans<std::uint16_t>(group.get(), field, check.raw);
+  } else {
+    write_idle_scans<std::uint32_t>(group.get(), field, check.raw);
+  }
+}
+
+template <typename Stored>
+std::vector<double> read_idle_scans(hid_t group, const std::string& name) {
+  const auto stored = read_column<Stored>(group, name);
+  return {stored.begin(), stored.end()};
+}
+
+void read_self_check(hid_t entry, RecordHeader& header) {
+  if (!has(entry, "self_check")) return;
+  const GroupHandle group = open_group(entry, "self_check");
+  daq::SelfCheck& check = header.self_check.emplace();
+  for_each_field(check, FieldReader{group.get()});
+  const std::string quantity{name(header.board.quantity).name};
+  if (!has(group.get(), quantity)) return;
+  if (header.board.quantity != daq::RawQuantity::kCounts) {
+    check.raw = read_idle_scans<double>(group.get(), quantity);
+  } else if (counts_fit_u16(header.board)) {
+    check.raw = read_idle_scans<std::uint16_t>(group.get(), quantity);
+  } else {
+    check.raw = read_idle_scans<std::uint32_t>(group.get(), quantity);
+  }
+}
+
 }  // namespace
 
 void write_instrument(hid_t entry, const Record& record) {
@@ -82,6 +137,8 @@ void write_instrument(hid_t entry, const Record& record) {
   for_each_field(header.sample, FieldWriter{make_group(entry, "sample", "NXsample").get()});
   const GroupHandle user = make_group(entry, "user", "NXuser");
   FieldWriter{user.get()}(FieldName{"name", "", ""}, header.sample.operator_name);
+  write_plan(entry, header.plan);
+  write_self_check(entry, header);
 }
 
 void read_instrument(hid_t entry, Record& record) {
@@ -102,6 +159,8 @@ void read_instrument(hid_t entry, Record& record) {
   for_each_field(header.sample, FieldReader{open_group(entry, "sample").get()});
   const GroupHandle user = open_group(entry, "user");
   FieldReader{user.get()}(FieldName{"name", "", ""}, header.sample.operator_name);
+  if (has(entry, "plan")) for_each_field(header.plan, FieldReader{open_group(entry, "plan").get()});
+  read_self_check(entry, header);
 }
 
 }  // namespace stickslip::record

@@ -202,6 +202,7 @@ void read_raw(hid_t entry, Record& record) {
   if (std::any_of(record.raw.begin(), record.raw.end(), [](double value) { return !std::isfinite(value); })) {
     throw HdfError("raw holds values that are not finite");
   }
+  if (!has(raw.get(), "flags")) return;
   const auto flags = read_column<std::uint8_t>(raw.get(), "flags", record.scan.size());
   for (std::size_t i = 0; i < flags.size(); ++i) {
     if ((flags[i] & kSpike) != 0) record.spikes.push_back(record.scan[i]);

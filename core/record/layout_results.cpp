@@ -41,6 +41,7 @@ void write_results(hid_t entry, const friction::TestResults& results) {
 }
 
 friction::TestResults read_results(hid_t entry) {
+  if (!has(entry, "results")) return absent_results("the record holds no results");
   const GroupHandle group = open_group(entry, "results");
   friction::TestResults results;
   const std::string regime = read_text(group.get(), "regime");

@@ -32,6 +32,7 @@ void write_cycles(hid_t entry, const base::LongColumn<friction::Cycle>& cycles) 
 
 template <typename Use>
 void for_each_cycle(hid_t entry, const Use& use) {
+  if (!has(entry, "cycles")) return;
   const GroupHandle group = open_group(entry, "cycles");
   for_each_row<friction::Cycle>(
       group.get(), "cycle",
@@ -61,6 +62,7 @@ void write_gaps(hid_t entry, const std::vector<daq::Gap>& gaps) {
 }
 
 std::vector<daq::Gap> read_gaps(hid_t entry) {
+  if (!has(entry, "gaps")) return {};
   const GroupHandle group = open_group(entry, "gaps");
   const auto first = read_column<std::int64_t>(group.get(), "first_scan");
   const auto count = read_column<std::int64_t>(group.get(), "scan_count", first.size());
@@ -85,6 +87,7 @@ void write_events(hid_t entry, const std::vector<Event>& events) {
 }
 
 std::vector<Event> read_events(hid_t entry) {
+  if (!has(entry, "events")) return {};
   const GroupHandle group = open_group(entry, "events");
   const auto scan = read_column<std::int64_t>(group.get(), "scan");
   const auto realtime = read_column<std::int64_t>(group.get(), "realtime", scan.size());

@@ -110,6 +110,8 @@ bool PatientJournal::add_cycle(const friction::Cycle& cycle) { return keep_if_ro
 
 bool PatientJournal::add_anchor(const ClockAnchor& anchor) { return keep_if_room(builder_.anchor(anchor)); }
 
+bool PatientJournal::add_event(const Event& event) { return keep_if_room(builder_.event(event)); }
+
 void PatientJournal::add_gap(const daq::Gap& gap) { keep(builder_.gap(gap)); }
 
 void PatientJournal::add_end(EndRecord end) {

@@ -40,6 +40,7 @@ class PatientJournal {
   bool add_true_coefficients(daq::ScanIndex first, std::span<const double> coefficient);
   bool add_cycle(const friction::Cycle& cycle);
   bool add_anchor(const ClockAnchor& anchor);
+  bool add_event(const Event& event);
   /// Kept whatever the memory.
   void add_gap(const daq::Gap& gap);
   /// The last entry, kept whatever the memory. Its status becomes incomplete if scans were lost.

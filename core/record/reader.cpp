@@ -31,11 +31,8 @@ void check_format(const FileHandle& file) {
     throw HdfError("is an HDF5 file but no record of this program: attribute format is not stickslip-record");
   }
   const auto version = find_number_attribute<std::int64_t>(file.get(), "format_version");
-  if (version != kFormatVersion) {
-    throw HdfError(version ? fmt::format("is a record of format version {}, this program reads {}", *version,
-                                         kFormatVersion)
-                           : "is a record without format version");
-  }
+  if (!version) throw HdfError("is a record without format version");
+  if (const std::string refusal = version_refusal(*version); !refusal.empty()) throw HdfError(refusal);
 }
 
 /// Facts without which nothing can be computed from the raw values.
@@ -47,6 +44,8 @@ void check_facts(const Record& record) {
   if (board.quantity == daq::RawQuantity::kCounts && !record.header.load_cell) {
     throw HdfError("instrument/calibration/gain is missing, counts mean nothing without");
   }
+  if (board.polynomial.empty())
+    throw HdfError("instrument/adc/polynomial is missing, counts mean nothing without");
   if (board.quantity == daq::RawQuantity::kCounts &&
       std::any_of(record.raw.begin(), record.raw.end(),
                   [&](double count) { return count > static_cast<double>(board.maxdata); })) {

@@ -1,5 +1,7 @@
 #include "core/record/record.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <utility>
 
@@ -17,6 +19,13 @@ constexpr std::array<std::pair<Status, std::string_view>, 4> kStatusNames{{
 }};
 
 }  // namespace
+
+std::string version_refusal(std::int64_t version) {
+  if (version >= kOldestFormatVersion && version <= kFormatVersion) return {};
+  return fmt::format("is {} version {}; this program reads {} to {}: use {}", kFormat, version,
+                     kOldestFormatVersion, kFormatVersion,
+                     version > kFormatVersion ? "a newer one" : "one that made it");
+}
 
 std::string_view name(Status status) noexcept {
   for (const auto& [value, text] : kStatusNames) {

@@ -15,6 +15,7 @@
 #include "core/daq/clock_anchor.hpp"
 #include "core/daq/gap.hpp"
 #include "core/daq/latency_histogram.hpp"
+#include "core/daq/self_check.hpp"
 #include "core/friction/cycle.hpp"
 #include "core/friction/results.hpp"
 #include "core/friction/tester.hpp"
@@ -23,7 +24,11 @@
 namespace stickslip::record {
 
 inline constexpr std::string_view kFormat = "stickslip-record";
-inline constexpr std::int64_t kFormatVersion = 1;
+inline constexpr std::int64_t kFormatVersion = 2;
+inline constexpr std::int64_t kOldestFormatVersion = 1;  ///< That is still read.
+
+/// What is wrong with a file or journal of this version, for the file's name to stand before; empty: nothing.
+[[nodiscard]] std::string version_refusal(std::int64_t version);
 
 /// How whole the record is.
 enum class Status {
@@ -56,8 +61,31 @@ struct CalibrationFacts {
   std::string date;  ///< ISO 8601.
   std::string certificate;
   std::optional<double> gain_standard_error_N_per_V;
+  std::optional<double> zero_standard_error_V;
+  std::optional<double> residual_V;    ///< Standard deviation of the weights' readings about the line.
+  std::optional<double> hysteresis_V;  ///< As daq::LoadCellFit.
+  std::string expires;                 ///< ISO 8601: from then on a new one is due.
+  // One element for each weight that was hung, in that order; all empty where nobody said.
+  std::vector<double> mass_kg;
+  std::vector<double> force_N;
+  std::vector<double> voltage_V;
+  std::vector<double> voltage_standard_error_V;
+  std::vector<double> point_residual_V;  ///< Off the line.
+  std::vector<std::string> refused;      ///< Why it does not count; empty: it does.
 
   bool operator==(const CalibrationFacts&) const = default;
+};
+
+/// How the test was to be found in the force (pipeline::SegmenterSettings); absent where nobody looked.
+struct PlanFacts {
+  std::optional<double> start_coefficient;
+  std::optional<double> start_dwell_s;
+  std::optional<double> pre_trigger_s;
+  std::optional<double> end_coefficient;
+  std::optional<double> end_dwell_s;
+  std::optional<double> no_motion_dwell_s;
+
+  bool operator==(const PlanFacts&) const = default;
 };
 
 /// The sheet under the sled; empty where nobody said.
@@ -101,6 +129,8 @@ struct RecordHeader {
   TesterFacts tester;
   SampleFacts sample;
   ProcessFacts process;
+  PlanFacts plan;
+  std::optional<daq::SelfCheck> self_check;  ///< Absent where nothing was looked at before the test.
 };
 
 using daq::ClockAnchor;

@@ -36,6 +36,8 @@ constexpr const char* kExamples = R"(Examples:
   stickslip verify records/*.h5                        whole or not, and why; exit status 0, 1, 3 or 4
   stickslip recover records                            records from the journals that a stop left behind
   stickslip boards                                     A/D boards, what they offer, what to configure
+  stickslip export pull.h5 --csv > pull.csv            scans for a spreadsheet
+  stickslip calibrate --config stickslipd.toml         the load cell, by hanging known weights
   stickslip status                                     what the daemon is doing)";
 
 /// In `stickslip compare` a plain -- stands between two lists; to the parser that is an option with values,
@@ -68,6 +70,8 @@ int main_of(int count, char** arguments) {
   add_asking_commands(app, chosen);
   add_analysing_commands(app, chosen);
   add_caring_commands(app, chosen);
+  add_exporting_commands(app, chosen);
+  add_calibrating_commands(app, chosen);
   try {
     app.parse(words(count, arguments));
   } catch (const CLI::ParseError& error) {

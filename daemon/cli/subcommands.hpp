@@ -23,11 +23,13 @@ struct Chosen {
 /// Option before the second list of `stickslip compare`; a plain -- does the same.
 inline constexpr const char* kOtherMaterial = "--against";
 
-void add_making_commands(CLI::App& app, Chosen& chosen);     ///< import, simulate, sweep
-void add_showing_commands(CLI::App& app, Chosen& chosen);    ///< plot, accuracy, report, compare
-void add_analysing_commands(CLI::App& app, Chosen& chosen);  ///< analyze, characterise
-void add_asking_commands(CLI::App& app, Chosen& chosen);     ///< scenes, methods, boards, status
-void add_caring_commands(CLI::App& app, Chosen& chosen);     ///< verify, recover
+void add_making_commands(CLI::App& app, Chosen& chosen);       ///< import, simulate, sweep
+void add_showing_commands(CLI::App& app, Chosen& chosen);      ///< plot, accuracy, report, compare
+void add_analysing_commands(CLI::App& app, Chosen& chosen);    ///< analyze, characterise
+void add_asking_commands(CLI::App& app, Chosen& chosen);       ///< scenes, methods, boards, status
+void add_calibrating_commands(CLI::App& app, Chosen& chosen);  ///< calibrate
+void add_exporting_commands(CLI::App& app, Chosen& chosen);    ///< export
+void add_caring_commands(CLI::App& app, Chosen& chosen);       ///< verify, recover
 
 /// What a command gave, on stdout, or its error on stderr. \return the exit status.
 [[nodiscard]] int print(const base::Result<std::string>& output);

@@ -16,7 +16,8 @@ base::Result<OpenedBoard> open_simulated(const SimulatedBoardSettings& settings,
                      simulated->load_cell,
                      simulated->tester,
                      {},
-                     nullptr};
+                     nullptr,
+                     {}};
 }
 
 base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::Clock& clock) {
@@ -25,12 +26,17 @@ base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::C
   const std::optional<daq::LoadCell> load_cell = record->header.load_cell;
   const friction::Tester tester = record->header.tester.tester();
   std::string characterisation = record->header.process.characterisation;
-  auto recorded = std::make_shared<const daq::RecordedFacts>(
-      daq::RecordedFacts{std::move(record->anchors), std::move(record->gaps),
+  record::CalibrationFacts calibration = record->header.calibration;
+  auto recorded = std::make_shared<daq::RecordedFacts>(
+      daq::RecordedFacts{std::move(record->anchors), std::move(record->gaps), nullptr,
                          record->end ? record->end->read_latency : std::nullopt});
+  if (auto& check = record->header.self_check) {
+    recorded->self_check = std::make_shared<const daq::SelfCheck>(*std::move(check));
+  }
   Replay replay = make_replay(std::move(*record), clock);
-  return OpenedBoard{std::move(replay.board),     std::move(replay.truth), load_cell, tester,
-                     std::move(characterisation), std::move(recorded)};
+  return OpenedBoard{
+      std::move(replay.board), std::move(replay.truth), load_cell, tester, std::move(characterisation),
+      std::move(recorded),     std::move(calibration)};
 }
 
 base::Result<OpenedBoard> open_comedi(ComediBoardSettings settings, base::Clock& clock,
@@ -38,7 +44,7 @@ base::Result<OpenedBoard> open_comedi(ComediBoardSettings settings, base::Clock&
   settings.continues = continues;
   base::Result<std::unique_ptr<daq::Board>> board = make_comedi_board(settings, clock);
   if (!board) return tl::unexpected(board.error());
-  return OpenedBoard{std::move(*board), nullptr, std::nullopt, std::nullopt, {}, nullptr};
+  return OpenedBoard{std::move(*board), nullptr, std::nullopt, std::nullopt, {}, nullptr, {}};
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "core/daq/recorded_facts.hpp"
 #include "core/friction/tester.hpp"
 #include "core/friction/truth.hpp"
+#include "core/record/record.hpp"
 #include "drivers/factory/board_config.hpp"
 
 namespace stickslip::drivers {
@@ -25,6 +26,7 @@ struct OpenedBoard {
   std::optional<friction::Tester> tester;
   std::string characterisation;  ///< Of a replayed record: what was known of its tester beforehand.
   std::shared_ptr<const daq::RecordedFacts> recorded;  ///< Null unless a record is replayed.
+  record::CalibrationFacts calibration;                ///< Of load_cell, as a replayed record knows it.
 };
 
 /// \param clock  outlives the board.

@@ -33,6 +33,8 @@ inline void expect_same_header(const record::RecordHeader& a, const record::Reco
   EXPECT_EQ(a.board.range_max_V, b.board.range_max_V);
   EXPECT_EQ(a.board.polynomial, b.board.polynomial);
   EXPECT_EQ(a.board.expansion_origin, b.board.expansion_origin);
+  EXPECT_EQ(a.board.calibration, b.board.calibration);
+  EXPECT_EQ(a.board.acquisition, b.board.acquisition);
   EXPECT_EQ(a.board.scan_rate_requested_Hz, b.board.scan_rate_requested_Hz);
   EXPECT_EQ(a.board.scan_rate_granted_Hz, b.board.scan_rate_granted_Hz);
   EXPECT_EQ(a.board.second, b.board.second);
@@ -45,6 +47,8 @@ inline void expect_same_header(const record::RecordHeader& a, const record::Reco
   EXPECT_EQ(a.tester, b.tester);
   EXPECT_EQ(a.sample, b.sample);
   EXPECT_EQ(a.process, b.process);
+  EXPECT_EQ(a.plan, b.plan);
+  EXPECT_EQ(a.self_check, b.self_check);
 }
 
 inline void expect_same_cycles(const base::LongColumn<friction::Cycle>& a,
@@ -70,6 +74,8 @@ inline void expect_same_truth(const friction::TestTruth& a, const friction::Test
   EXPECT_EQ(a.regime, b.regime);
   EXPECT_EQ(a.oscillation_frequency_Hz, b.oscillation_frequency_Hz);
   EXPECT_EQ(a.amplitude, b.amplitude);
+  EXPECT_EQ(a.static_coefficient, b.static_coefficient);
+  EXPECT_EQ(a.kinetic_coefficient, b.kinetic_coefficient);
   EXPECT_EQ(a.solver, b.solver);
   ASSERT_EQ(a.modes.size(), b.modes.size());
   for (std::size_t i = 0; i < a.modes.size(); ++i) {

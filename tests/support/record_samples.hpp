@@ -63,12 +63,26 @@ inline record::RecordHeader sample_header() {
   header.board.range_max_V = 5.0;
   header.board.polynomial = {-5.0, 10.0 / 65535.0, 1e-12};
   header.board.expansion_origin = 2.0;
+  header.board.calibration = "soft";
+  header.board.acquisition = "command";
   header.board.scan_rate_requested_Hz = 350.0;
   header.board.scan_rate_granted_Hz = 350.0000350000035;
   header.board.second = daq::SecondChannel{daq::SecondQuantity::kPullSpeed, 4,   4095,   -2.5,   2.5,
                                            {-2.5, 5.0 / 4095.0, 1e-9},      1.0, "hard", 0.0021, 0.05};
   header.load_cell = daq::LoadCell{9.8, 0.01};
-  header.calibration = {"2026-05-01", "DKD-1234", 0.003};
+  header.calibration = {"2026-05-01",
+                        "DKD-1234",
+                        0.003,
+                        2e-5,
+                        4e-5,
+                        -1e-5,
+                        "2027-05-01",
+                        {0.0, 1.0, 2.0},
+                        {0.0, 9.81, 19.62},
+                        {0.01, 1.011, 2.012},
+                        {1e-5, 2e-5, 3e-5},
+                        {0.0, 1e-6, -2e-6},
+                        {"", "", "unsteady"}};
   header.tester = {2.331, 9.81, 0.00508, 4200.0, "0:0.00508 2.5:0.0101"};
   header.sample = {"linerboard 42", "kraft", "MD", "wire", 3, "Ada"};
   header.process = {"stickslipd",
@@ -80,6 +94,11 @@ inline record::RecordHeader sample_header() {
                     "[tester]\nomega = \"125.7 rad/s\"\n",
                     "SCHED_FIFO 20",
                     "exact closed forms"};
+  header.plan = {0.05, 0.01, 0.25, 0.02, 0.25, 0.5};
+  daq::SelfCheck& check = header.self_check.emplace();
+  check = {990, {2000.0, 2001.0, 1999.0}, 0.02, 1e-3, -2e-4, 3e-4, 0.005, 1e-4, 2e-4, 5e-5, 1, 2, 350.1, 0.02,
+           {}};
+  check.findings = {"hum of 0.0001 N at 50 Hz", "grün"};
   return header;
 }
 
@@ -125,6 +144,9 @@ inline friction::TestTruth sample_truth() {
   truth.pull_speed_m_per_s = 0.00508;
   truth.regime = friction::Regime::kStickSlip;
   truth.oscillation_frequency_Hz = 19.7;
+  truth.static_coefficient = 0.3813;
+  truth.kinetic_coefficient = 0.3019;
+  truth.amplitude = 0.0786;
   truth.modes = {{0.0, 0.03, friction::Mode::kStick}, {0.03, 0.05, friction::Mode::kSlip}};
   truth.cycles = {{0.03, 0.351, 0.299}};
   truth.solver = friction::SolverFacts{"exact closed forms", 1.8e-15, 1e-9, 84e-9};

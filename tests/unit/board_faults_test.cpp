@@ -119,7 +119,7 @@ class BoardFaults : public testing::Test {
       settings.continues = continues;
       auto board = drivers::make_comedi_board(settings, time, std::make_unique<FakeComedi>(life.world, time));
       if (!board) return tl::unexpected(board.error());
-      return drivers::OpenedBoard{std::move(*board), nullptr, {}, {}, {}, nullptr};
+      return drivers::OpenedBoard{std::move(*board), nullptr, {}, {}, {}, nullptr, {}};
     };
     App running{std::move(config), std::move(world)};
     app = &running;

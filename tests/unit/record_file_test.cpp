@@ -299,17 +299,6 @@ TEST(HostileFile, ThatIsHdf5ButNoRecord) {
                  "group entry is missing");
 }
 
-TEST(HostileFile, OfAnotherVersion) {
-  const TemporaryFolder folder;
-  const auto path = altered(folder, [](hid_t file) {
-    const hid_t attribute = H5Aopen(file, "format_version", H5P_DEFAULT);
-    const std::int64_t version = 2;
-    H5Awrite(attribute, H5T_NATIVE_INT64, &version);
-    H5Aclose(attribute);
-  });
-  expect_refused(path, "format version 2, this program reads 1");
-}
-
 TEST(HostileFile, WithOtherTypesOrShapes) {
   const TemporaryFolder folder;
   expect_refused(altered(folder, [](hid_t f) { H5Ldelete(f, "entry/raw/scan", H5P_DEFAULT); }),
