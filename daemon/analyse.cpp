@@ -1,5 +1,6 @@
 #include "daemon/analyse.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -24,14 +25,18 @@ friction::AnalysisSettings settings_of(const record::RecordHeader& header,
 
 }  // namespace
 
-RecordAnalysis::RecordAnalysis(daq::Calibration calibration, const friction::AnalysisSettings& settings)
+RecordAnalysis::RecordAnalysis(daq::Calibration calibration, std::optional<daq::SecondChannel> speed,
+                               const friction::AnalysisSettings& settings, std::vector<daq::Gap> gaps)
     : calibration_(std::move(calibration)),
+      speed_(std::move(speed)),
       scan_rate_granted_Hz_(settings.scan_rate_Hz),
-      analysis_(settings) {}
+      analysis_(settings),
+      gaps_(std::move(gaps)) {}
 
 base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& header,
                                                   const std::filesystem::path& scratch_folder,
-                                                  const friction::SharedPrior& prior) {
+                                                  const friction::SharedPrior& prior,
+                                                  std::vector<daq::Gap> gaps) {
   if (header.board.quantity == daq::RawQuantity::kCounts && !header.load_cell) {
     return base::usage_error("the record has counts but no load cell, so no forces");
   }
@@ -49,7 +54,13 @@ base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& he
     friction::AnalysisSettings settings = settings_of(header, calibration, *method);
     settings.scratch_folder = scratch_folder;
     settings.prior = prior.empty() ? recorded : prior;
-    RecordAnalysis analysis{std::move(calibration), settings};
+    std::optional<daq::SecondChannel> speed;
+    if (const auto& second = header.board.second;
+        second && second->quantity == daq::SecondQuantity::kPullSpeed) {
+      speed = *second;
+      settings.speed_step_m_per_s = second->step();
+    }
+    RecordAnalysis analysis{std::move(calibration), std::move(speed), settings, std::move(gaps)};
     analysis.gain_uncertainty_ =
         pipeline::relative_gain_uncertainty(header.load_cell, header.calibration.gain_standard_error_N_per_V);
     return analysis;
@@ -58,12 +69,19 @@ base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& he
   }
 }
 
-void RecordAnalysis::add(daq::ScanIndex first, std::span<const double> raw) {
+void RecordAnalysis::add(daq::ScanIndex first, std::span<const double> raw,
+                         std::span<const std::int32_t> second) {
   if (raw.empty()) return;
-  // A jump of the index is a gap, as for the processor; the gaps stored tell only the cause.
-  if (next_ && first != *next_) analysis_.gap(*next_, first - *next_);
-  for (const double value : raw) {
-    analysis_.add(first++, calibration_.coefficient(value), calibration_.saturated(value));
+  // A jump of the index is a gap, as for the processor; the gaps stored tell whether somebody counted.
+  if (next_ && first != *next_) {
+    const auto known = std::find_if(gaps_.begin(), gaps_.end(), [&](const daq::Gap& gap) {
+      return gap.first == *next_ && gap.count == first - *next_;
+    });
+    analysis_.gap(*next_, first - *next_, known != gaps_.end() && known->estimated);
+  }
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    if (speed_) analysis_.speed(speed_->value(second.empty() ? daq::SecondChannel::kNoCode : second[i]));
+    analysis_.add(first++, calibration_.coefficient(raw[i]), calibration_.saturated(raw[i]));
   }
   next_ = first;
   // Nobody looks on: the final ones come with the results.
@@ -81,10 +99,12 @@ void RecordAnalysis::finish(record::EndRecord& end, std::span<const daq::ClockAn
 
 base::Result<TesterAnalysis> analyse_with_tester(const record::Record& record,
                                                  const friction::SharedPrior& prior) {
-  base::Result<RecordAnalysis> analysis = RecordAnalysis::make(record.header, {}, prior);
+  base::Result<RecordAnalysis> analysis = RecordAnalysis::make(record.header, {}, prior, record.gaps);
   if (!analysis) return tl::unexpected(analysis.error());
   for (std::size_t i = 0; i < record.scan.size(); ++i) {
-    analysis->add(record.scan[i], std::span{record.raw}.subspan(i, 1));
+    const std::span<const std::int32_t> second{record.second};
+    analysis->add(record.scan[i], std::span{record.raw}.subspan(i, 1),
+                  second.empty() ? second : second.subspan(i, 1));
   }
   TesterAnalysis result;
   result.end = record.end.value_or(record::EndRecord{});

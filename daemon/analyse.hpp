@@ -18,15 +18,19 @@ class RecordAnalysis {
  public:
   /// \param scratch_folder  where the scans of a long record may lie for the time being; empty: in memory.
   /// \param prior  what is known of the tester beforehand; empty: what the record says was known.
+  /// \param gaps  what the record says of the jumps of its indices: which of them were counted by nobody.
   /// Errors: kUsage if the facts do not allow it (no scan rate, no load cell for counts).
   [[nodiscard]] static base::Result<RecordAnalysis> make(const record::RecordHeader& header,
                                                          const std::filesystem::path& scratch_folder = {},
-                                                         const friction::SharedPrior& prior = {});
+                                                         const friction::SharedPrior& prior = {},
+                                                         std::vector<daq::Gap> gaps = {});
 
   // Both may throw std::system_error where there is a scratch folder.
 
   /// Consecutive scans from `first` on, after all before; a jump is a gap.
-  void add(daq::ScanIndex first, std::span<const double> raw);
+  /// \param second  codes of the second channel, as record::Record::second: as many, or none if there is no
+  ///        such channel.
+  void add(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second = {});
 
   /// Fills in results, cycles and spikes. Call once.
   /// \param anchors,gaps  of the record, for the scan rate.
@@ -42,12 +46,15 @@ class RecordAnalysis {
   }
 
  private:
-  RecordAnalysis(daq::Calibration calibration, const friction::AnalysisSettings& settings);
+  RecordAnalysis(daq::Calibration calibration, std::optional<daq::SecondChannel> speed,
+                 const friction::AnalysisSettings& settings, std::vector<daq::Gap> gaps);
 
   daq::Calibration calibration_;
+  std::optional<daq::SecondChannel> speed_;  ///< If the second channel measures it.
   double scan_rate_granted_Hz_;
   std::optional<double> gain_uncertainty_;  ///< Relative.
   friction::TestAnalysis analysis_;
+  std::vector<daq::Gap> gaps_;
   std::optional<daq::ScanIndex> next_;
 };
 

@@ -121,7 +121,7 @@ base::Result<void> App::run() {
   static_cast<void>(recover_folder(config_.record_folder, finalise_, *world_.facts));
   if (base::Result<void> opened = open_session(); !opened) {
     if (opened.error().kind == base::ErrorKind::kUsage) return opened;
-    board_is_missing(opened.error().message);
+    wait_for_board(opened.error());
   }
   tell_status();
   // The threads of a session are no work that Asio knows of; leave_when_idle() ends the run.
@@ -210,21 +210,22 @@ base::Result<void> App::open_session() {
   return {};
 }
 
-void App::board_is_missing(const std::string& why) {
-  state_ = State::kBoardMissing;
-  missing_why_ = why;
-  world_.facts->board_missing(why, std::chrono::duration<double>(retry_after_).count());
+void App::wait_for_board(const base::Error& why) {
+  state_ = waiting_state(why.kind);
+  waiting_why_ = why.message;
+  world_.facts->board_unavailable(name(state_), why.message,
+                                  std::chrono::duration<double>(retry_after_).count());
   tell_status();
   notify_.ready();
   retry_timer_.expires_after(retry_after_);
   retry_after_ = std::min<std::chrono::milliseconds>(2 * retry_after_, kLongestRetry);
   retry_timer_.async_wait([this](boost::system::error_code error) {
-    if (!error && state_ == State::kBoardMissing) retry_board();
+    if (!error && state_ != State::kStopping) retry_board();
   });
 }
 
 void App::retry_board() {
-  if (base::Result<void> opened = open_session(); !opened) board_is_missing(opened.error().message);
+  if (base::Result<void> opened = open_session(); !opened) wait_for_board(opened.error());
 }
 
 void App::session_ended(Acquisition::End end) {
@@ -247,7 +248,8 @@ void App::session_ended(Acquisition::End end) {
     case Acquisition::End::kBoardMissing:
     case Acquisition::End::kFailed:
       ++board_loss_count_;
-      board_is_missing(why.empty() ? "it went away" : why);
+      // What became of it is told by the next try.
+      wait_for_board({base::ErrorKind::kFailure, why.empty() ? "it went away" : why});
       break;
   }
 }
@@ -278,6 +280,7 @@ base::Result<SessionSettings> App::session_settings(const drivers::OpenedBoard& 
   settings.processor.first_test_number = continues_.next_test_number;
   if (continues_.continuation) settings.processor.continues_at = continues_.continuation->end;
   settings.processor.recorded = opened.recorded;
+  settings.processor.second = board.second;
   const BenchConfig& bench = config_.bench;
   if (bench.calibration) {
     settings.calibration = *bench.calibration;
@@ -339,6 +342,30 @@ void App::tell_status() {
   if (world_.status_changed) world_.status_changed(line);
 }
 
+std::string_view App::name(State state) noexcept {
+  switch (state) {
+    case State::kStarting:
+      break;
+    case State::kAcquiring:
+      return "acquiring";
+    case State::kBoardMissing:
+      return "board missing";
+    case State::kBoardBusy:
+      return "board busy";
+    case State::kNoPermission:
+      return "no permission";
+    case State::kStopping:
+      return "stopping";
+  }
+  return "starting";
+}
+
+App::State App::waiting_state(base::ErrorKind kind) noexcept {
+  if (kind == base::ErrorKind::kBusy) return State::kBoardBusy;
+  if (kind == base::ErrorKind::kNoPermission) return State::kNoPermission;
+  return State::kBoardMissing;
+}
+
 std::string App::status_line() const {
   const DiskState disk = storage_.disk();
   std::string line = state_line();
@@ -353,8 +380,6 @@ std::string App::status_line() const {
 
 std::string App::state_line() const {
   switch (state_) {
-    case State::kStarting:
-      return "starting";
     case State::kAcquiring: {
       const std::string rate =
           session_ ? fmt::format(" at {:.1f} Hz", session_->board_info().scan_rate_granted_Hz) : "";
@@ -362,29 +387,19 @@ std::string App::state_line() const {
       return fmt::format("acquiring{}, {}, {} tests done", rate, activity, tests_.test_count());
     }
     case State::kBoardMissing:
-      return fmt::format("board missing: {}", missing_why_);
+    case State::kBoardBusy:
+    case State::kNoPermission:
+      return fmt::format("{}: {}", name(state_), waiting_why_);
+    case State::kStarting:
     case State::kStopping:
-      return "stopping";
+      break;
   }
-  return "starting";
+  return std::string{name(state_)};
 }
 
 Status App::status() const {
   Status status;
-  switch (state_) {
-    case State::kStarting:
-      status.state = "starting";
-      break;
-    case State::kAcquiring:
-      status.state = "acquiring";
-      break;
-    case State::kBoardMissing:
-      status.state = "board missing";
-      break;
-    case State::kStopping:
-      status.state = "stopping";
-      break;
-  }
+  status.state = name(state_);
   status.detail = status_line();
   status.version = kVersion;
   if (session_) {

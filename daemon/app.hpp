@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
@@ -41,7 +42,7 @@ struct AppWorld {
 
 /// Thread-bound: the main thread. States:
 ///
-///     starting → acquiring ⇄ board missing → stopping → (run() returns)
+///     starting → acquiring ⇄ board missing, board busy, no permission → stopping → (run() returns)
 class App {
  public:
   App(DaemonConfig config, AppWorld world);
@@ -63,11 +64,17 @@ class App {
 
  private:
   class Watcher;
-  enum class State { kStarting, kAcquiring, kBoardMissing, kStopping };
+  /// The three in the middle wait for the board: it is not there, another program has it, its device
+  /// file is not for this user.
+  enum class State { kStarting, kAcquiring, kBoardMissing, kBoardBusy, kNoPermission, kStopping };
+  /// The word in status and log.
+  [[nodiscard]] static std::string_view name(State state) noexcept;
+  /// The one to wait in after an error of this kind.
+  [[nodiscard]] static State waiting_state(base::ErrorKind kind) noexcept;
 
   [[nodiscard]] base::Result<void> prepare_record_folder();
   [[nodiscard]] base::Result<void> open_session();
-  void board_is_missing(const std::string& why);
+  void wait_for_board(const base::Error& why);
   void retry_board();
   void session_ended(Acquisition::End end);
   void stop(const std::string& why);
@@ -97,7 +104,7 @@ class App {
 
   std::string process_facts_;  ///< Of prepare_process().
   State state_ = State::kStarting;
-  std::string missing_why_;
+  std::string waiting_why_;  ///< While the board is waited for.
   std::chrono::milliseconds retry_after_;
   SessionEnd continues_;
   SessionCounts counts_;

@@ -76,6 +76,8 @@ void read_simulated(Settings table, const std::filesystem::path& folder, DaemonC
   }
   for (const std::string& scene : scenes) config.board.simulated.scenes.push_back(resolved(folder, scene));
   config.board.simulated.repeats = static_cast<int>(table.integer("repeats", 0, kMostRepeats, 1));
+  config.board.simulated.speed_gain_m_per_s_per_V =
+      table.quantity_if_given("speed_gain", Dimension::kSpeedPerVoltage, Limits::above(0.0));
 }
 
 void read_replay(Settings table, const std::filesystem::path& folder, DaemonConfig& config) {
@@ -84,6 +86,43 @@ void read_replay(Settings table, const std::filesystem::path& folder, DaemonConf
     table.refuse("file", "needs a record file for the driver \"replay\"");
   }
   config.board.replay_file = resolved(folder, file);
+}
+
+/// The speed or the position, whichever has a channel.
+std::optional<drivers::SecondInputSettings> read_second(Settings& table) {
+  drivers::SecondInputSettings second;
+  const Limits voltages = Limits::between(-kHighestVoltage_V, kHighestVoltage_V);
+  second.range_min_V = table.quantity("second_range_min", Dimension::kVoltage, voltages, second.range_min_V);
+  second.range_max_V = table.quantity("second_range_max", Dimension::kVoltage, voltages, second.range_max_V);
+  if (!(second.range_max_V > second.range_min_V)) {
+    table.refuse("second_range_max", "must be above second_range_min");
+  }
+  bool found = false;
+  const auto read = [&](const std::string& what, Dimension gain, daq::SecondQuantity quantity,
+                        const char* example) {
+    const std::string channel_key = what + "_channel";
+    const std::string gain_key = what + "_gain";
+    const bool given = table.has(channel_key);
+    const auto channel = static_cast<unsigned>(table.integer(channel_key, 0, kHighestChannel, 1));
+    const auto gain_per_V = table.quantity_if_given(gain_key, gain, Limits::any());
+    const double zero_V = table.quantity(what + "_zero", Dimension::kVoltage, voltages, 0.0);
+    if (!given) return;
+    if (found) table.refuse(channel_key, "cannot be read beside speed_channel: one second channel is all");
+    if (!gain_per_V) {
+      table.refuse(gain_key,
+                   fmt::format("is missing; hardware cannot know it: give it, such as \"{}\"", example));
+    } else if (*gain_per_V == 0.0) {
+      table.refuse(gain_key, "must not be 0");
+    }
+    found = true;
+    second.quantity = quantity;
+    second.channel = channel;
+    second.gain_per_V = gain_per_V.value_or(1.0);
+    second.zero_V = zero_V;
+  };
+  read("speed", Dimension::kSpeedPerVoltage, daq::SecondQuantity::kPullSpeed, "1 mm/s/V");
+  read("position", Dimension::kLengthPerVoltage, daq::SecondQuantity::kSledPosition, "20 mm/V");
+  return found ? std::optional{second} : std::nullopt;
 }
 
 void read_comedi(Settings table, DaemonConfig& config) {
@@ -100,6 +139,7 @@ void read_comedi(Settings table, DaemonConfig& config) {
   comedi.range_min_V = table.quantity("range_min", Dimension::kVoltage, voltages, comedi.range_min_V);
   comedi.range_max_V = table.quantity("range_max", Dimension::kVoltage, voltages, comedi.range_max_V);
   if (!(comedi.range_max_V > comedi.range_min_V)) table.refuse("range_max", "must be above range_min");
+  comedi.second = read_second(table);
   comedi.reference = table.choice<AnalogReference>("reference", kReferences, comedi.reference);
   comedi.calibration = table.choice<CalibrationSource>("calibration", kCalibrations, comedi.calibration);
   comedi.acquisition = table.choice<AcquisitionMode>("acquisition", kAcquisitions, comedi.acquisition);

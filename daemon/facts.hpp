@@ -24,7 +24,9 @@ class Facts {
   virtual void sampling_checked(const friction::SamplingVerdict& /*verdict*/) {}
   /// Before the start: the load cell is due to be calibrated again.
   virtual void calibration_expired(std::string_view /*expires*/) {}
-  virtual void board_missing(std::string_view /*why*/, double /*retry_in_s*/) {}
+  /// \param state  of the daemon: "board missing", "board busy" or "no permission".
+  virtual void board_unavailable(std::string_view /*state*/, std::string_view /*why*/,
+                                 double /*retry_in_s*/) {}
   virtual void gap_seen(const daq::Gap& /*gap*/) {}
   virtual void test_began(const pipeline::TestStart& /*start*/) {}
   virtual void test_ended(const pipeline::TestEnd& /*end*/) {}

@@ -80,8 +80,8 @@ class Log final : public Facts {
     if (verdict.kind == Kind::kFew) logger_.warn("sampling: {}", verdict.reason);
     if (verdict.kind == Kind::kNotVerifiable) logger_.info("sampling: {}", verdict.reason);
   }
-  void board_missing(std::string_view why, double retry_in_s) override {
-    logger_.warn("board missing: {}; next try in {} s", why, retry_in_s);
+  void board_unavailable(std::string_view state, std::string_view why, double retry_in_s) override {
+    logger_.warn("{}: {}; next try in {} s", state, why, retry_in_s);
   }
   void gap_seen(const daq::Gap& gap) override {
     logger_.warn("gap: {}{} scans missing from scan {}: {}", gap.estimated ? "about " : "", gap.count,

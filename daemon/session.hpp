@@ -12,10 +12,10 @@
 #include <thread>
 #include <vector>
 
+#include "core/daq/latency_histogram.hpp"
 #include "core/daq/scan_ring.hpp"
 #include "core/pipeline/processor.hpp"
 #include "daemon/acquisition.hpp"
-#include "daemon/latency_histogram.hpp"
 #include "drivers/factory/factory.hpp"
 
 namespace stickslip::daemon {
@@ -53,7 +53,7 @@ struct SessionCounts {
 /// A picture of what a session measures about itself.
 struct SessionClocks {
   std::optional<daq::RateEstimate> scan_rate;  ///< Of all scans so far.
-  LatencyHistogram latency;
+  daq::LatencyHistogram latency;
 };
 
 class Session {

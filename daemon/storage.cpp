@@ -121,13 +121,19 @@ void Storage::test_began(const pipeline::TestStart& start) {
   queue_.push(Began{start, header_});
 }
 
-void Storage::scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp& stamp) {
+void Storage::scans(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second,
+                    const daq::ClockStamp& stamp) {
   while (!raw.empty()) {
     daq::ScanBlock block;
     block.first = first;
     block.stamp = stamp;
     block.count = static_cast<std::uint32_t>(std::min(raw.size(), daq::ScanBlock::kMaxScans));
     std::copy_n(raw.begin(), block.count, block.raw.begin());
+    block.has_second = !second.empty();
+    if (block.has_second) {
+      std::copy_n(second.begin(), block.count, block.second.begin());
+      second = second.subspan(block.count);
+    }
     queue_.push(block);
     first = block.end();
     raw = raw.subspan(block.count);
@@ -146,10 +152,14 @@ void Storage::test_ended(const pipeline::TestEnd& end) {
   record->results = end.results;
   record->cycles = end.cycles;
   record->spikes = end.spikes;
+  record->read_latency = end.read_latency;
   std::shared_ptr<friction::TrueForce> force;
   if (end.cause == pipeline::EndCause::kBoardMissing) {
     record->status = record::Status::kIncomplete;
     record->reasons.emplace_back("the board went away before the end of the test");
+  } else if (end.cause == pipeline::EndCause::kStopped) {
+    record->status = record::Status::kInterrupted;
+    record->reasons.emplace_back(record::kInterruptedWhy);
   }
   if (truth_ != nullptr) record->truth = truth_->truth(first_, end.end);
   if (record->truth) force = truth_->force(first_);
@@ -182,6 +192,7 @@ void Storage::check_room(const record::RecordHeader& header) {
 void Storage::handle(const Began& message) {
   number_ = message.start.number;
   pending_.clear();
+  pending_second_.clear();
   recorded_.clear();
   record::RecordHeader header = *message.header;
   header.test_number = message.start.number;
@@ -220,6 +231,7 @@ void Storage::handle(const daq::ScanBlock& block) {
   }
   if (pending_.empty()) pending_first_ = block.first;
   pending_.insert(pending_.end(), block.scans().begin(), block.scans().end());
+  pending_second_.insert(pending_second_.end(), block.second_codes().begin(), block.second_codes().end());
   pending_stamp_ = block.stamp;
   if (pending_.size() >= pending_enough_) append_pending();
 }
@@ -261,7 +273,7 @@ void Storage::append_pending() {
   if (journal_ && !pending_.empty()) {
     // The stamp belongs to the last scan of the last block.
     const daq::ScanIndex end = pending_first_ + static_cast<daq::ScanIndex>(pending_.size());
-    if (journal_->add_scans(pending_first_, pending_, pending_stamp_)) {
+    if (journal_->add_scans(pending_first_, pending_, pending_stamp_, pending_second_)) {
       if (!recorded_.empty() && recorded_.back().end == pending_first_) {
         recorded_.back().end = end;
       } else {
@@ -271,6 +283,7 @@ void Storage::append_pending() {
     disk_.wake();
   }
   pending_.clear();
+  pending_second_.clear();
 }
 
 void Storage::append_force(friction::TrueForce& force) {

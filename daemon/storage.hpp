@@ -58,7 +58,8 @@ class Storage final : public pipeline::Sink {
   [[nodiscard]] std::uint64_t stall_count() const noexcept { return queue_.stall_count(); }
 
   void test_began(const pipeline::TestStart& start) override;
-  void scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp& stamp) override;
+  void scans(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second,
+             const daq::ClockStamp& stamp) override;
   void gap(const daq::Gap& gap) override;
   void anchor(const daq::ClockAnchor& anchor) override;
   void cycle(const friction::Cycle& cycle) override;
@@ -112,7 +113,8 @@ class Storage final : public pipeline::Sink {
   std::int64_t number_ = 0;
   std::filesystem::path latest_path_;  ///< Of a journal that need not be on the disk yet.
   DiskWriter::Journal journal_;
-  std::vector<double> pending_;  ///< Consecutive scans not yet appended.
+  std::vector<double> pending_;               ///< Consecutive scans not yet appended.
+  std::vector<std::int32_t> pending_second_;  ///< Of the same scans; none without a second channel.
   daq::ScanIndex pending_first_ = 0;
   daq::ClockStamp pending_stamp_;
   std::vector<Stretch> recorded_;   ///< All of them.

@@ -66,6 +66,10 @@ constexpr std::array kForcePerVoltageUnits{Unit{"N/V", 1, 1}, Unit{"mN/V", 1, 1e
 constexpr std::array kVoltagePerForceUnits{Unit{"V/N", 1, 1}, Unit{"mV/N", 1, 1e3},
                                            Unit{"V/kgf", 1, kKilogramForce_N},
                                            Unit{"V/lbf", 1, kPoundForce_N}};
+constexpr std::array kSpeedPerVoltageUnits{Unit{"m/s/V", 1, 1}, Unit{"mm/s/V", 1, 1e3},
+                                           Unit{"mm/min/V", 1, 60'000}, Unit{"in/min/V", kInch_m, 60}};
+constexpr std::array kLengthPerVoltageUnits{Unit{"m/V", 1, 1}, Unit{"cm/V", 1, 100}, Unit{"mm/V", 1, 1e3},
+                                            Unit{"in/V", kInch_m, 1}};
 constexpr std::array kTimePerLengthUnits{Unit{"s/m", 1, 1}, Unit{"s/cm", 100, 1}, Unit{"s/mm", 1e3, 1},
                                          Unit{"s/in", 1, kInch_m}, Unit{"min/in", 60, kInch_m}};
 constexpr std::array kAngleUnits{Unit{"rad", 1, 1}, Unit{"deg", std::numbers::pi, 180}};
@@ -104,6 +108,10 @@ std::span<const Unit> units_of(Dimension dimension) noexcept {
       return kForcePerVoltageUnits;
     case Dimension::kVoltagePerForce:
       return kVoltagePerForceUnits;
+    case Dimension::kSpeedPerVoltage:
+      return kSpeedPerVoltageUnits;
+    case Dimension::kLengthPerVoltage:
+      return kLengthPerVoltageUnits;
     case Dimension::kTimePerLength:
       return kTimePerLengthUnits;
     case Dimension::kAngle:

@@ -35,6 +35,8 @@ enum class Dimension {
   kStiffness,         ///< N/m
   kForcePerVoltage,   ///< N/V
   kVoltagePerForce,   ///< V/N
+  kSpeedPerVoltage,   ///< m/s/V
+  kLengthPerVoltage,  ///< m/V
   kTimePerLength,     ///< s/m
   kAngle,             ///< rad
 };

@@ -18,8 +18,10 @@ namespace stickslip::base {
 
 /// Who has to act, and thereby the exit status of a program that stops because of it.
 enum class ErrorKind {
-  kUsage,    ///< The request or its input is wrong (exit status 2).
-  kFailure,  ///< The request was right, the world was not: disk, board, permission (exit status 1).
+  kUsage,         ///< The request or its input is wrong (exit status 2).
+  kFailure,       ///< The request was right, the world was not: disk, board (exit status 1).
+  kBusy,          ///< Somebody else holds what is wanted (exit status 1).
+  kNoPermission,  ///< Somebody has to be given a right first (exit status 1).
   /// Somebody asked to stop; the same request goes on from there (exit status 130, as after Ctrl-C).
   kInterrupted,
 };
@@ -35,6 +37,8 @@ struct Error {
       case ErrorKind::kUsage:
         return 2;
       case ErrorKind::kFailure:
+      case ErrorKind::kBusy:
+      case ErrorKind::kNoPermission:
         return 1;
       case ErrorKind::kInterrupted:
         return 130;

@@ -16,6 +16,7 @@
 
 #include "core/base/result.hpp"
 #include "core/daq/scan_block.hpp"
+#include "core/daq/second_channel.hpp"
 
 namespace stickslip::daq {
 
@@ -50,7 +51,8 @@ struct BoardInfo {
   /// "command" (the board's own timer) or "polled" (one reading at a time, timed by this computer); empty:
   /// not said.
   std::string acquisition;
-  std::string notes;  ///< What the board changed of what was asked; for the log.
+  std::string notes;                    ///< What the board changed of what was asked; for the log.
+  std::optional<SecondChannel> second;  ///< Read in each scan too; only where quantity is kCounts.
 };
 
 /// How a read ended.

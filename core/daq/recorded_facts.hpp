@@ -4,10 +4,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/daq/clock_anchor.hpp"
 #include "core/daq/gap.hpp"
+#include "core/daq/latency_histogram.hpp"
 #include "core/daq/self_check.hpp"
 
 namespace stickslip::daq {
@@ -16,6 +18,7 @@ struct RecordedFacts {
   std::vector<ClockAnchor> anchors;             ///< Rising.
   std::vector<Gap> gaps;                        ///< Rising.
   std::shared_ptr<const SelfCheck> self_check;  ///< Null if there is none.
+  std::optional<LatencyHistogram> read_latency;
 };
 
 }  // namespace stickslip::daq

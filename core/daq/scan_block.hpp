@@ -1,5 +1,5 @@
 /// \file
-/// The unit that travels from the board to the detector: consecutive scans of one channel.
+/// The unit that travels from the board to the detector: consecutive scans of one channel, or of two.
 #pragma once
 
 #include <array>
@@ -36,9 +36,15 @@ struct ScanBlock {
   /// Raw readings: A/D counts (a double holds every count of up to 53 bits exactly), or the
   /// values of an imported trace in the unit that BoardInfo names.
   std::array<double, kMaxScans> raw{};
+  bool has_second = false;                       ///< As BoardInfo::second; the same in all blocks of a board.
+  std::array<std::int32_t, kMaxScans> second{};  ///< Its codes; SecondChannel::kNoCode where none came.
 
   [[nodiscard]] ScanIndex end() const noexcept { return first + static_cast<ScanIndex>(count); }
   [[nodiscard]] std::span<const double> scans() const noexcept { return {raw.data(), count}; }
+  /// As many as scans(), or none.
+  [[nodiscard]] std::span<const std::int32_t> second_codes() const noexcept {
+    return {second.data(), has_second ? count : 0};
+  }
 };
 
 }  // namespace stickslip::daq

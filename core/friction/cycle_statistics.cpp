@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include <boost/math/distributions/students_t.hpp>
 
@@ -19,14 +20,24 @@ constexpr std::size_t kFewestPeriods = 3;
 /// there turns K about the middle of the test by its own error.
 constexpr double kDriftLevel = 0.001;
 
+/// From one peak to the next, without a break between.
+std::size_t whole_cycles(const Trace& trace, const base::LongColumn<Fall>& slips) {
+  std::size_t count = slips.size() - std::min<std::size_t>(slips.size(), 1);
+  for (std::size_t i = 0; !trace.breaks.empty() && i + 1 < slips.size(); ++i) {
+    if (is_broken(trace, slips[i].peak_at, slips[i + 1].peak_at)) --count;
+  }
+  return count;
+}
+
 }  // namespace
 
 Estimate drift_of(const Trace& trace, const base::LongColumn<Fall>& slips) {
-  if (slips.size() < kFewestPeriods + 1) return Estimate::none("fewer than three cycles");
-  const std::size_t count = slips.size() - 1;
+  const std::size_t count = whole_cycles(trace, slips);
+  if (count < kFewestPeriods) return Estimate::none("fewer than three cycles");
   // Worked out twice, for the mean and for the slope: there may be more than memory should hold.
   const auto for_each_mean = [&](const auto& take) {
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
+      if (is_broken(trace, slips[i].peak_at, slips[i + 1].peak_at)) continue;
       const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
       const auto end = static_cast<std::size_t>(std::lround(slips[i + 1].peak_at));
       double mean = 0.0;
@@ -57,7 +68,7 @@ Estimate drift_of(const Trace& trace, const base::LongColumn<Fall>& slips) {
 Drift significant_drift(const Trace& trace, const base::LongColumn<Fall>& slips) {
   const Estimate slope = drift_of(trace, slips);
   if (!slope.value || !slope.standard_error) return {};
-  const auto freedom = static_cast<double>(slips.size() - 3);  // Of the means, one fewer than slips.
+  const auto freedom = static_cast<double>(whole_cycles(trace, slips) - 2);
   const double limit =
       boost::math::quantile(boost::math::complement(boost::math::students_t{freedom}, 0.5 * kDriftLevel));
   if (!(std::abs(*slope.value) > limit * *slope.standard_error)) return {};
@@ -75,10 +86,25 @@ void period_results(const Trace& trace, const base::LongColumn<Fall>& slips, Tes
     results.oscillation_frequency = Estimate::none(reason);
     return;
   }
-  const std::size_t count = slips.size() - 1;
-  const auto period = [&](std::size_t i) {
-    return time_at(trace, slips[i + 1].peak_at) - time_at(trace, slips[i].peak_at);
+  const std::size_t count = whole_cycles(trace, slips);
+  if (count == 0) {
+    results.period_median = results.oscillation_frequency =
+        Estimate::none("no two slips without a gap between");
+    return;
+  }
+  std::vector<std::size_t> first_slips;  // Of whole cycles, where some are broken.
+  double broken_s = 0.0;
+  const auto from_to = [&](std::size_t slip) {
+    return time_at(trace, slips[slip + 1].peak_at) - time_at(trace, slips[slip].peak_at);
   };
+  for (std::size_t i = 0; count + 1 < slips.size() && i + 1 < slips.size(); ++i) {
+    if (is_broken(trace, slips[i].peak_at, slips[i + 1].peak_at)) {
+      broken_s += from_to(i);
+    } else {
+      first_slips.push_back(i);
+    }
+  }
+  const auto period = [&](std::size_t i) { return from_to(first_slips.empty() ? i : first_slips[i]); };
   results.period_median = Estimate::of(signal::median_of(count, period));
   if (results.regime == Regime::kRingDown && results.omega.value) {
     results.oscillation_frequency =
@@ -87,7 +113,8 @@ void period_results(const Trace& trace, const base::LongColumn<Fall>& slips, Tes
     return;
   }
   const auto n = static_cast<double>(count);
-  const double span_s = time_at(trace, slips.back().peak_at) - time_at(trace, slips.front().peak_at);
+  const double span_s =
+      time_at(trace, slips.back().peak_at) - time_at(trace, slips.front().peak_at) - broken_s;
   const double mean_s = span_s / n;
   // A late peak lengthens one period and shortens the next: the error of the mean takes the covariance
   // of neighbours into account, but never less than the two end points leave.

@@ -272,8 +272,8 @@ std::vector<Cycle> cycle_table(const Trace& trace, std::span<const Fall> slips,
     Cycle cycle;
     cycle.number = static_cast<std::int64_t>(i);
     cycle.peak_time_s = time_at(trace, slip.peak_at);
-    cycle.period_s =
-        i + 1 < slips.size() ? time_at(trace, slips[i + 1].peak_at) - cycle.peak_time_s : kUnknown;
+    const bool has_next = i + 1 < slips.size() && !is_broken(trace, slip.peak_at, slips[i + 1].peak_at);
+    cycle.period_s = has_next ? time_at(trace, slips[i + 1].peak_at) - cycle.peak_time_s : kUnknown;
     cycle.peak = slip.peak;
     cycle.trough = slip.trough;
     cycle.force_drop = slip.drop();

@@ -30,8 +30,8 @@ std::vector<SlipEnd> judge_ends(const Trace& trace, std::span<const Fall> slips,
   const double typical = typical_delta_mu(trace, slips, shared);
   const bool cut = pull_ended_in_last_slip(trace, slips, shared);
   for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
-    if (pull_of(trace, slips[i]) != pull_of(trace, slips[i + 1])) {
-      // The belt stopped in between: its end is not known.
+    if (pull_of(trace, slips[i]) != pull_of(trace, slips[i + 1]) || follows_a_break(trace, slips, i + 1)) {
+      // The belt stopped in between, or nobody looked: its end is not known.
       estimates.log_likelihood_ratios.push_back(0.0);
       continue;
     }
@@ -241,7 +241,9 @@ SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, do
   // not too badly: then begin from the other end, as if each slip had been captured.
   std::vector<SlipEnd> captured(slips.size(), SlipEnd::kCaptured);
   for (std::size_t i = 1; i < slips.size(); ++i) {
-    if (begins_a_pull(trace, slips, i)) captured[i - 1] = SlipEnd::kUnknown;
+    if (begins_a_pull(trace, slips, i) || follows_a_break(trace, slips, i)) {
+      captured[i - 1] = SlipEnd::kUnknown;
+    }
   }
   captured.back() = SlipEnd::kUnknown;
   if (!describes_well(estimates, sigma)) try_too(guess, captured);

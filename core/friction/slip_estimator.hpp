@@ -19,11 +19,12 @@ namespace stickslip::friction {
 enum class SlipEnd {
   kCaptured,  ///< In sticking.
   kFree,      ///< The oscillation went on without sticking.
-  kUnknown,   ///< It is the last one: the trace or the pull ended first.
+  kUnknown,   ///< The trace, the pull or what is known of it ended first.
 };
 
 struct SlipEstimates {
-  /// The pull ended in this slip, the last one: it is not the model's.
+  /// It is not the model's: the pull ended in this slip, the last one, or it follows a gap, and how it began
+  /// is not known.
   static constexpr std::size_t kNoWindow = static_cast<std::size_t>(-1);
 
   Drift drift;                                ///< Of the trace: fitted S and K are without it.

@@ -135,7 +135,7 @@ SlipParameters first_guess(const Trace& trace, const Fall& slip, const SharedPar
 }
 
 double scans_per_s(const Trace& trace) {
-  return static_cast<double>(trace.size() - 1) / (trace.time_s.back() - trace.time_s.front());
+  return static_cast<double>(trace.size() - 1) / (trace.time_s.back() - trace.time_s.front() - trace.lost_s);
 }
 
 double trough_at(const Trace& trace, const Fall& slip, const SharedParameters& shared) {

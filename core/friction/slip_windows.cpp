@@ -32,7 +32,7 @@ bool pull_ended_in_last_slip(const Trace& trace, std::span<const Fall> slips,
   const double trough = trough_at(trace, slips.back(), shared);
   const std::size_t begin = scan_at(trough + 0.5 * period);
   const std::size_t end = scan_at(trough + 2.5 * period);
-  if (end >= trace.size()) return false;
+  if (end >= trace.size() || is_broken(trace, trough, static_cast<double>(end))) return false;
   const double rise = trace.value[end] - trace.value[begin];
   return rise <
          kClimbs * trace.belt.climb(shared.r, trace.time_s[begin], trace.time_s[end] - trace.time_s[begin]);
@@ -62,11 +62,19 @@ std::size_t start_of_loading(const Trace& trace, const Fall& first, const Shared
   for (std::size_t k = start; k < peak; ++k) {
     if (trace.value[k] < level) start = k + 1;
   }
+  for (const std::size_t after_gap : trace.breaks) {
+    if (after_gap <= peak) start = std::max(start, after_gap);
+  }
   return start;
 }
 
 bool begins_a_pull(const Trace& trace, std::span<const Fall> slips, std::size_t i) {
   return i == 0 || pull_of(trace, slips[i - 1]) != pull_of(trace, slips[i]);
+}
+
+bool follows_a_break(const Trace& trace, std::span<const Fall> slips, std::size_t i) {
+  const double from = i > 0 ? slips[i - 1].peak_at : slips[i].peak_at - slips[i].rise_duration;
+  return is_broken(trace, from, slips[i].peak_at);
 }
 
 void lay_windows(const Trace& trace, std::span<const Fall> slips, const SharedParameters& shared,
@@ -78,6 +86,12 @@ void lay_windows(const Trace& trace, std::span<const Fall> slips, const SharedPa
   for (std::size_t i = 0; i < slips.size(); ++i) {
     const bool loading = begins_a_pull(trace, slips, i);
     const bool begins = loading || estimates.ends[i - 1] == SlipEnd::kCaptured;
+    // After a break nobody knows whether the sled stuck, until a slip has ended in sticking.
+    const bool unknown = !begins && !estimates.has_window(i - 1);
+    if (unknown || ((i == 0 || !loading) && follows_a_break(trace, slips, i))) {
+      estimates.window_of_slip.push_back(SlipEstimates::kNoWindow);
+      continue;
+    }
     if (cut && i + 1 == slips.size() && estimates.ends[i - 1] != SlipEnd::kFree) {
       estimates.window_of_slip.push_back(SlipEstimates::kNoWindow);
       break;
@@ -91,7 +105,8 @@ void lay_windows(const Trace& trace, std::span<const Fall> slips, const SharedPa
     estimates.window_of_slip.push_back(estimates.windows.size() - 1);
     SlipWindow& window = estimates.windows.back();
     window.captured = estimates.ends[i] != SlipEnd::kFree;
-    if (i + 1 < slips.size() && !begins_a_pull(trace, slips, i + 1)) {
+    if (i + 1 < slips.size() && !begins_a_pull(trace, slips, i + 1) &&
+        !follows_a_break(trace, slips, i + 1)) {
       window.end = boundary(slips[i], slips[i + 1]);
     } else {
       // Up to the trough the two courses are the same; a free oscillation has a tail to learn from.
@@ -101,12 +116,15 @@ void lay_windows(const Trace& trace, std::span<const Fall> slips, const SharedPa
       window.end = scan_at(trough_at(trace, slips[i], shared) + tail) + 1;
     }
     window.end = std::min({window.end, trace.size(), end_of_pull(trace, slips[i])});
+    const auto after_gap =
+        std::upper_bound(trace.breaks.begin(), trace.breaks.end(), scan_at(slips[i].trough_at));
+    if (after_gap != trace.breaks.end()) window.end = std::min(window.end, *after_gap);
   }
 }
 
 bool windows_suffice(const Trace& trace, const std::vector<SlipWindow>& windows) {
   constexpr std::ptrdiff_t kFewestScans = 4;
-  return std::all_of(windows.begin(), windows.end(), [&](const SlipWindow& window) {
+  return !windows.empty() && std::all_of(windows.begin(), windows.end(), [&](const SlipWindow& window) {
     if (window.first >= window.end) return false;
     const auto first = trace.usable.begin() + static_cast<std::ptrdiff_t>(window.first);
     const auto end = trace.usable.begin() + static_cast<std::ptrdiff_t>(window.end);

@@ -17,6 +17,8 @@ namespace stickslip::friction {
 [[nodiscard]] std::size_t pull_of(const Trace& trace, const Fall& slip);
 /// Slip i is the first one of the test, or after the belt had stopped.
 [[nodiscard]] bool begins_a_pull(const Trace& trace, std::span<const Fall> slips, std::size_t i);
+/// What happened between slip i − 1 and slip i, or in the rise to the first one, is not known.
+[[nodiscard]] bool follows_a_break(const Trace& trace, std::span<const Fall> slips, std::size_t i);
 /// The first scan after the pull in which the slip lies.
 [[nodiscard]] std::size_t end_of_pull(const Trace& trace, const Fall& slip);
 /// The pull ended while the last slip was on its way: what follows its trough does not climb as a stick does.

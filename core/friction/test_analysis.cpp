@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/friction/belt_start.hpp"
 #include "core/friction/cycle_statistics.hpp"
 #include "core/friction/model_results.hpp"
 #include "core/friction/regime_rule.hpp"
@@ -68,25 +67,6 @@ void take_model_results(const TestResults& model, TestResults& results) {
   });
 }
 
-/// Lays the plan over the trace and forgets the falls outside its pulls: one that begins as the belt stops or
-/// turns is no slip.
-void follow_plan(const PullSpeed& plan, double gravity_m_per_s2, Trace& trace, base::LongColumn<Fall>& slips,
-                 const std::filesystem::path& scratch) {
-  constexpr double kScansBeforeStop = 1.5;  // The peak is interpolated between scans.
-  const std::optional<BeltCourse> belt =
-      belt_from_loading(trace, std::as_const(slips)[0], plan, gravity_m_per_s2);
-  if (!belt) return;
-  trace.belt = *belt;
-  base::LongColumn<Fall> kept{scratch};
-  for (const Fall& slip : std::as_const(slips)) {
-    const std::size_t pull = trace.belt.pull_of(time_at(trace, slip.peak_at));
-    const bool pulled = time_at(trace, slip.peak_at) >= trace.belt.pull_start_s(pull) &&
-                        time_at(trace, slip.peak_at + kScansBeforeStop) < trace.belt.pull_end_s(pull);
-    if (pulled) kept.push_back(slip);
-  }
-  slips = std::move(kept);
-}
-
 /// A stub of a test: without the noise there is no telling what is a slip.
 void too_short(std::size_t scan_count, TestResults& results) {
   results.regime_reason =
@@ -106,6 +86,7 @@ TestAnalysis::TestAnalysis(const AnalysisSettings& settings)
       indices_(settings.scratch_folder),
       coefficients_(settings.scratch_folder),
       saturated_(settings.scratch_folder),
+      speeds_m_per_s_(settings.scratch_folder),
       live_({settings.scan_rate_Hz, settings.step_coefficient, settings.estimator, settings.prior,
              settings.despike}),
       live_cycles_(settings.scratch_folder) {
@@ -114,6 +95,15 @@ TestAnalysis::TestAnalysis(const AnalysisSettings& settings)
   if (!(settings.scan_rate_Hz > 0.0) || !std::isfinite(settings.scan_rate_Hz)) {
     throw std::invalid_argument(fmt::format("scan rate {} Hz must be positive", settings.scan_rate_Hz));
   }
+}
+
+void TestAnalysis::speed(double speed_m_per_s) {
+  // What is not known is taken for what it was before.
+  if (std::isnan(speed_m_per_s)) {
+    speed_m_per_s =
+        speeds_m_per_s_.empty() ? 0.0 : std::as_const(speeds_m_per_s_)[speeds_m_per_s_.size() - 1];
+  }
+  speeds_m_per_s_.push_back(speed_m_per_s);
 }
 
 void TestAnalysis::add(base::ScanIndex index, double coefficient, bool saturated) {
@@ -135,8 +125,8 @@ void TestAnalysis::end_live() {
   if (const auto cycle = live_.end()) keep_live(*cycle);
 }
 
-void TestAnalysis::gap(base::ScanIndex first, std::int64_t count) {
-  gaps_.push_back({first, count});
+void TestAnalysis::gap(base::ScanIndex first, std::int64_t count, bool estimated) {
+  gaps_.push_back({first, count, estimated});
   live_.gap(count);
 }
 
@@ -164,12 +154,9 @@ TestResults TestAnalysis::finish() {
   }
   const double sigma = signal::scan_noise(trace.value, noise_floor(trace.value, settings_.step_coefficient));
   base::LongColumn<Fall> slips = find_slips(trace, sigma, settings_.scratch_folder);
-  // What the tester did counts before what the method asks.
-  const auto& plan =
-      settings_.tester.speed_course ? settings_.tester.speed_course : settings_.method.speed_course;
-  if (plan && !slips.empty()) {
-    follow_plan(*plan, settings_.tester.gravity_m_per_s2, trace, slips, settings_.scratch_folder);
-  }
+  break_at_gaps(trace, slips);
+  read_speeds(trace);
+  if (!slips.empty()) follow_speed(trace, slips);
   results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
   const TraditionalCoefficients traditional =
       traditional_coefficients(trace, slips, settings_.method, settings_.tester.pull_speed_m_per_s);
@@ -301,6 +288,9 @@ void TestAnalysis::keep_cycles(const base::LongColumn<Cycle>& cycles, const base
                     saturated.begin() + static_cast<std::ptrdiff_t>(std::min(end, saturated.size())),
                     [](std::uint8_t flag) { return flag != 0; })) {
       cycle.flags |= kCycleIsSaturated;
+    }
+    if (measured_speed_ && std::isnan(cycle.pull_speed_m_per_s) && std::isfinite(cycle.onset_time_s)) {
+      cycle.pull_speed_m_per_s = measured_speed_->speed_m_per_s(cycle.onset_time_s);
     }
     if (settings_.estimator != EstimatorTier::kFit) take_live_estimate(live_cycles_, live, cycle);
     cycles_.push_back(cycle);

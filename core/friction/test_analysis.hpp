@@ -21,6 +21,7 @@
 #include "core/friction/fall_finder.hpp"
 #include "core/friction/live_detector.hpp"
 #include "core/friction/method.hpp"
+#include "core/friction/pull_speed.hpp"
 #include "core/friction/results.hpp"
 #include "core/friction/sections.hpp"
 #include "core/friction/shared_prior.hpp"
@@ -43,6 +44,8 @@ struct AnalysisSettings {
   bool remove_drift = true;  ///< Off: to see what the drift did.
   /// Where to put the scans of a long test beside the latest few minutes; empty: they all stay in memory.
   std::filesystem::path scratch_folder;
+  /// The pull speed is measured: one A/D step of it, ≥ 0; absent: speed() is not called.
+  std::optional<double> speed_step_m_per_s;
 };
 
 /// Thread-bound. Memory grows with the test by about 34 bytes a scan and 0.2 kB a slip; with a scratch folder
@@ -52,11 +55,14 @@ class TestAnalysis {
   /// \throws std::invalid_argument unless the rate is positive and finite.
   explicit TestAnalysis(const AnalysisSettings& settings);
 
+  /// The pull speed at the next scan, m/s; NaN where it is not known. Before each add() if
+  /// settings.speed_step_m_per_s says so, else never.
+  void speed(double speed_m_per_s);
   /// \param index        rises; a jump is a gap. \param coefficient calibrated; must be finite.
   /// \param saturated    the converter was at a rail.
   void add(base::ScanIndex index, double coefficient, bool saturated);
-  /// Scans [first, first + count) did not arrive.
-  void gap(base::ScanIndex first, std::int64_t count);
+  /// Scans [first, first + count) did not arrive. \param estimated  nobody counted them.
+  void gap(base::ScanIndex first, std::int64_t count, bool estimated = false);
 
   /// Cycles completed since the last call, as the detector sees them live; finish() refines them. A cycle is
   /// complete when the next slip is seen, or the oscillation has died away.
@@ -84,11 +90,18 @@ class TestAnalysis {
   struct Gap {
     base::ScanIndex first;
     std::int64_t count;
+    bool estimated;
   };
 
   void keep_live(const LiveCycle& cycle);
+  /// Of the speed channel, with its resolution; fills measured_speed_.
+  void read_speeds(const Trace& trace);
+  /// The speed of the pull, as measured or else as planned, into the trace; forgets falls that are no slips.
+  void follow_speed(Trace& trace, base::LongColumn<Fall>& slips) const;
   /// All scans with the noise of the whole test known; fills spikes_.
   [[nodiscard]] Trace despiked_trace();
+  /// Breaks the trace at the gaps that may hide a slip, and forgets the slips that reach into one.
+  void break_at_gaps(Trace& trace, base::LongColumn<Fall>& slips) const;
   /// Into cycles_, with their flags.
   void keep_cycles(const base::LongColumn<Cycle>& cycles, const base::LongColumn<Fall>& slips);
   /// Fills pull_speed_measured and the findings.
@@ -100,6 +113,9 @@ class TestAnalysis {
   base::LongColumn<base::ScanIndex> indices_;
   base::LongColumn<double> coefficients_;
   base::LongColumn<std::uint8_t> saturated_;
+  base::LongColumn<double> speeds_m_per_s_;  ///< Empty unless measured.
+  std::optional<PullSpeed> measured_speed_;  ///< From the first scan on; in finish().
+  double speed_resolution_m_per_s_ = 0.0;
   std::vector<Gap> gaps_;
 
   LiveDetector live_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "core/base/long_column.hpp"
 #include "core/friction/belt_course.hpp"
@@ -32,10 +33,23 @@ struct Trace {
   /// Over the time of the trace.
   BeltCourse belt;
 
+  /// Scans before which the trace is broken: what the sled did between them and the scan before is not known.
+  /// Rising. Gaps of a few scans that were counted break nothing.
+  std::vector<std::size_t> breaks{};
+  double lost_s = 0.0;  ///< Time without scans, over all gaps.
+
   /// The coefficient without the drift.
   [[nodiscard]] double level(std::size_t scan) const noexcept { return value[scan] - drift.at(time_s[scan]); }
   [[nodiscard]] std::size_t size() const noexcept { return value.size(); }
 };
+
+/// There is a break between two positions.
+[[nodiscard]] inline bool is_broken(const Trace& trace, double from, double to) noexcept {
+  const auto at = [](std::size_t scan) { return static_cast<double>(scan) - 0.5; };
+  const auto first = std::upper_bound(trace.breaks.begin(), trace.breaks.end(), from,
+                                      [&](double position, std::size_t scan) { return position < at(scan); });
+  return first != trace.breaks.end() && at(*first) < to;
+}
 
 /// Position between scans → time of the trace.
 [[nodiscard]] inline double time_at(const Trace& trace, double position) noexcept {

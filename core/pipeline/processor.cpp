@@ -28,6 +28,7 @@ Processor::Processor(const ProcessorSettings& settings, daq::Calibration calibra
       meter_(settings.analysis.scan_rate_Hz),
       picker_(settings.analysis.scan_rate_Hz) {
   settings_.analysis.step_coefficient = calibration_.step_coefficient();
+  if (measures_speed()) settings_.analysis.speed_step_m_per_s = settings_.second->step();
 }
 
 void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause, bool halted) {
@@ -39,11 +40,12 @@ void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause, bo
   for (std::size_t i = 0; i < block.count; ++i) {
     const daq::ScanIndex index = block.first + static_cast<daq::ScanIndex>(i);
     const double raw = block.raw[i];
+    const std::int32_t second = block.second[i];
     next_scan_ = index + 1;
     const bool armed = segmenter_.armed();
     const Segmenter::Event event = segmenter_.observe(index, calibration_.coefficient(raw));
     if (test_is_running()) {
-      analyse(index, raw);
+      analyse(index, raw, second);
       if (event == Segmenter::Event::kUnloaded || event == Segmenter::Event::kNoRelativeMotion) {
         hand_over(block, not_handed_over, i + 1);
         end(next_scan_,
@@ -53,7 +55,7 @@ void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause, bo
     }
     // As the segmenter: what is left of the last test's force is no beginning of the next one.
     if (!armed) continue;
-    waiting_.push_back({index, raw});
+    waiting_.push_back({index, raw, second});
     if (event == Segmenter::Event::kTestStarts) {
       begin(index, block.stamp);
       not_handed_over = i + 1;
@@ -64,9 +66,7 @@ void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause, bo
   }
   if (test_is_running()) {
     hand_over(block, not_handed_over, block.count);
-    if (settings_.clock_is_real && !settings_.recorded) {
-      if (const auto anchor = picker_.observe(block)) note_anchor(*anchor);
-    }
+    note_clocks(block);
     report_new_cycles();
   }
 }
@@ -94,7 +94,7 @@ void Processor::note_gap(daq::Gap gap) {
     return;
   }
   test_gaps_.push_back(gap);
-  analysis_->gap(gap.first, gap.count);
+  analysis_->gap(gap.first, gap.count, gap.estimated);
   for (Sink* sink : sinks_) sink->gap(gap);
 }
 
@@ -104,18 +104,21 @@ void Processor::begin(daq::ScanIndex trigger, const daq::ClockStamp& stamp) {
   static_cast<void>(picker_.flush());
   anchors_.clear();
   test_gaps_.clear();
+  read_latency_.reset();
   const TestStart start{number_, waiting_.front().index, trigger, stamp, self_check()};
   idle_.clear();
   std::vector<double> raw;
   raw.reserve(waiting_.size());
+  std::vector<std::int32_t> second;
   for (const Waiting& scan : waiting_) {
     raw.push_back(scan.raw);
-    analyse(scan.index, scan.raw);
+    if (settings_.second) second.push_back(scan.second);
+    analyse(scan.index, scan.raw, scan.second);
   }
   waiting_.clear();
   for (Sink* sink : sinks_) {
     sink->test_began(start);
-    sink->scans(start.first, raw, stamp);
+    sink->scans(start.first, raw, second, stamp);
   }
 }
 
@@ -126,7 +129,8 @@ std::shared_ptr<const daq::SelfCheck> Processor::self_check() const {
   return check ? std::make_shared<const daq::SelfCheck>(*check) : nullptr;
 }
 
-void Processor::analyse(daq::ScanIndex index, double raw) {
+void Processor::analyse(daq::ScanIndex index, double raw, std::int32_t second) {
+  if (measures_speed()) analysis_->speed(settings_.second->value(second));
   analysis_->add(index, calibration_.coefficient(raw), calibration_.saturated(raw));
 }
 
@@ -143,8 +147,18 @@ void Processor::end(daq::ScanIndex end, EndCause cause) {
   add_gain_uncertainty(ended.results, settings_.gain_uncertainty);
   ended.cycles = analysis_->cycles();
   ended.spikes = analysis_->spikes();
+  ended.read_latency = settings_.recorded ? settings_.recorded->read_latency : read_latency_;
   analysis_.reset();
   for (Sink* sink : sinks_) sink->test_ended(ended);
+}
+
+void Processor::note_clocks(const daq::ScanBlock& block) {
+  if (!settings_.clock_is_real || settings_.recorded) return;
+  if (const auto anchor = picker_.observe(block)) note_anchor(*anchor);
+  if (const auto late_ns = meter_.lateness_ns(block)) {
+    if (!read_latency_) read_latency_.emplace();
+    read_latency_->add(*late_ns);
+  }
 }
 
 void Processor::note_anchor(const daq::ClockAnchor& anchor) {
@@ -164,8 +178,11 @@ void Processor::finish_clocks(daq::ScanIndex end) {
 
 void Processor::hand_over(const daq::ScanBlock& block, std::size_t from, std::size_t to) {
   if (from >= to) return;
+  const daq::ScanIndex first = block.first + static_cast<daq::ScanIndex>(from);
   const std::span<const double> raw = block.scans().subspan(from, to - from);
-  for (Sink* sink : sinks_) sink->scans(block.first + static_cast<daq::ScanIndex>(from), raw, block.stamp);
+  std::span<const std::int32_t> second;
+  if (settings_.second) second = std::span{block.second}.subspan(from, to - from);
+  for (Sink* sink : sinks_) sink->scans(first, raw, second, block.stamp);
 }
 
 void Processor::report_new_cycles() {

@@ -23,6 +23,7 @@
 #include "core/daq/rate_meter.hpp"
 #include "core/daq/recorded_facts.hpp"
 #include "core/daq/scan_block.hpp"
+#include "core/daq/second_channel.hpp"
 #include "core/friction/test_analysis.hpp"
 #include "core/pipeline/segmenter.hpp"
 #include "core/pipeline/self_check.hpp"
@@ -39,6 +40,7 @@ struct ProcessorSettings {
   std::optional<daq::ScanIndex> continues_at;
   /// Of a replayed record: takes the place of the blocks' stamps and of what is said about gaps.
   std::shared_ptr<const daq::RecordedFacts> recorded;
+  std::optional<daq::SecondChannel> second;  ///< That of the board.
   /// The stamps are of the machine's own clock, so that they can measure the scan rate.
   bool clock_is_real = true;
   /// Of the load cell's gain, relative to it: what every coefficient shares; absent where not known.
@@ -77,16 +79,22 @@ class Processor {
   struct Waiting {
     daq::ScanIndex index;
     double raw;
+    std::int32_t second;  ///< Means nothing where there is no second channel.
   };
 
   void note_gap(daq::Gap gap);
+  /// What the stamp of a block of the running test tells.
+  void note_clocks(const daq::ScanBlock& block);
   [[nodiscard]] std::shared_ptr<const daq::SelfCheck> self_check() const;
   void note_anchor(const daq::ClockAnchor& anchor);
   /// Clock anchors of the test that ends at `end`, and what they say.
   void finish_clocks(daq::ScanIndex end);
   void begin(daq::ScanIndex trigger, const daq::ClockStamp& stamp);
-  void analyse(daq::ScanIndex index, double raw);
+  void analyse(daq::ScanIndex index, double raw, std::int32_t second);
   void end(daq::ScanIndex end, EndCause cause);
+  [[nodiscard]] bool measures_speed() const noexcept {
+    return settings_.second && settings_.second->quantity == daq::SecondQuantity::kPullSpeed;
+  }
   void hand_over(const daq::ScanBlock& block, std::size_t from, std::size_t to);
   void report_new_cycles();
 
@@ -109,6 +117,7 @@ class Processor {
   daq::ScanIndex trigger_ = 0;
   std::vector<daq::ClockAnchor> anchors_;
   std::vector<daq::Gap> test_gaps_;
+  std::optional<daq::LatencyHistogram> read_latency_;
 };
 
 }  // namespace stickslip::pipeline

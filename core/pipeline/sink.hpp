@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "core/base/long_column.hpp"
 #include "core/daq/clock_anchor.hpp"
 #include "core/daq/gap.hpp"
+#include "core/daq/latency_histogram.hpp"
 #include "core/daq/scan_block.hpp"
 #include "core/daq/self_check.hpp"
 #include "core/friction/cycle.hpp"
@@ -57,8 +59,9 @@ struct TestEnd {
   daq::ScanIndex end = 0;  ///< One past the last scan of the record.
   EndCause cause = EndCause::kUnloaded;
   friction::TestResults results;
-  base::LongColumn<friction::Cycle> cycles;  ///< Final values, after the whole-test estimate.
-  std::vector<daq::ScanIndex> spikes;        ///< Scans replaced for the detector.
+  base::LongColumn<friction::Cycle> cycles;           ///< Final values, after the whole-test estimate.
+  std::vector<daq::ScanIndex> spikes;                 ///< Scans replaced for the detector.
+  std::optional<daq::LatencyHistogram> read_latency;  ///< Of its blocks; none where no clock could tell.
 };
 
 /// Called from the processing thread, in order: began, (scans | gap | anchor | cycle)*, ended. Must not
@@ -69,8 +72,9 @@ class Sink {
 
   virtual void test_began(const TestStart& /*start*/) {}
   /// Raw scans of the running test, consecutive, oldest first.
+  /// \param second  codes of the second channel: as many, or none if there is no such channel.
   virtual void scans(daq::ScanIndex /*first*/, std::span<const double> /*raw*/,
-                     const daq::ClockStamp& /*stamp*/) {}
+                     std::span<const std::int32_t> /*second*/, const daq::ClockStamp& /*stamp*/) {}
   virtual void gap(const daq::Gap& /*gap*/) {}
   /// The clocks at a scan of the running test; rising, and after the scan itself.
   virtual void anchor(const daq::ClockAnchor& /*anchor*/) {}

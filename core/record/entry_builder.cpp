@@ -85,6 +85,13 @@ EntryBuilder::Bytes EntryBuilder::true_coefficients(daq::ScanIndex first,
   return finish(EntryType::kTrueForce, Encoding::kF64, first, 0);
 }
 
+EntryBuilder::Bytes EntryBuilder::second(daq::ScanIndex first, std::span<const std::int32_t> codes) {
+  begin();
+  const auto bytes = std::as_bytes(codes);
+  entry_.insert(entry_.end(), bytes.begin(), bytes.end());
+  return finish(EntryType::kSecond, Encoding::kNone, first, 0);
+}
+
 EntryBuilder::Bytes EntryBuilder::spikes(std::span<const daq::ScanIndex> spikes) {
   begin();
   for (const daq::ScanIndex spike : spikes) append_value(entry_, spike);

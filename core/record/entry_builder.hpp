@@ -26,6 +26,8 @@ class EntryBuilder {
   /// \param raw    consecutive, not empty; counts are whole numbers in 0 … maxdata (contract).
   [[nodiscard]] Bytes scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp& stamp);
   [[nodiscard]] Bytes true_coefficients(daq::ScanIndex first, std::span<const double> coefficient);
+  /// Codes of the second channel of scans that stand before it.
+  [[nodiscard]] Bytes second(daq::ScanIndex first, std::span<const std::int32_t> codes);
   [[nodiscard]] Bytes spikes(std::span<const daq::ScanIndex> spikes);
   [[nodiscard]] Bytes gap(const daq::Gap& gap);
   [[nodiscard]] Bytes cycle(const friction::Cycle& cycle);

@@ -120,6 +120,24 @@ void for_each_field(Facts& facts, Visitor&& visit) {
   visit(FieldName{"simulation", "", ""}, facts.simulation);
 }
 
+/// The second channel, but what it measures: that has to be known before.
+template <FieldsOf<daq::SecondChannel> Channel, typename Visitor>
+void for_each_field(Channel& channel, Visitor&& visit) {
+  const bool speed = channel.quantity == daq::SecondQuantity::kPullSpeed;
+  visit(FieldName{"channel", "1", "number of the channel [1]"}, channel.channel);
+  visit(FieldName{"maxdata", "1", "largest code [1]"}, channel.maxdata);
+  visit(FieldName{"range_min", "V", "lower end of the input range [V]"}, channel.range_min_V);
+  visit(FieldName{"range_max", "V", "upper end of the input range [V]"}, channel.range_max_V);
+  visit(FieldName{"polynomial", "V", "voltage by ascending powers of (code - expansion_origin) [V]"},
+        channel.polynomial);
+  visit(FieldName{"expansion_origin", "1", "origin of the polynomial, a code [1]"}, channel.expansion_origin);
+  visit(FieldName{"calibration", "", ""}, channel.calibration);
+  visit(speed ? FieldName{"gain", "m/s/V", "speed per voltage [m/s/V]"}
+              : FieldName{"gain", "m/V", "distance per voltage [m/V]"},
+        channel.gain_per_V);
+  visit(FieldName{"zero", "V", "voltage at rest or at the origin [V]"}, channel.zero_V);
+}
+
 /// What the input is called.
 template <FieldsOf<daq::BoardInfo> Info, typename Visitor>
 void for_each_name_field(Info& board, Visitor&& visit) {

@@ -54,6 +54,7 @@ void build(const Record& record, const ScanSource& scans, const std::filesystem:
     write_results(entry.get(), record.end->results);
     write_tables(entry.get(), record);
     write_instrument(entry.get(), record);
+    write_second(entry.get(), record, scans);
     write_process(entry.get(), record, sha256);
     write_seal(entry.get(), scans.size());
     if (record.end->truth) write_truth(entry.get(), *record.end->truth, scans);
@@ -101,7 +102,8 @@ void end_interrupted(JournalReading& reading, const Evaluate& evaluate) {
     end.spikes = record.spikes;
   }
   end.status = Status::kInterrupted;
-  end.reasons.emplace_back("the program stopped before the end of the test");
+  end.reasons.emplace_back(kInterruptedWhy);
+  end.cause = kProgramDied;
   if (!end.end_realtime_ns && !record.anchors.empty())
     end.end_realtime_ns = record.anchors.back().realtime_ns;
   set_end(record, std::move(end));
@@ -140,6 +142,7 @@ base::Result<void> check_publishable(const std::filesystem::path& path) {
 
 base::Result<void> publish_record(const Record& record, const std::filesystem::path& path) {
   STICKSLIP_EXPECTS(record.scan.size() == record.raw.size());
+  STICKSLIP_EXPECTS(record.second.empty() || record.second.size() == record.scan.size());
   STICKSLIP_EXPECTS(record.true_coefficient.empty() || record.true_coefficient.size() == record.scan.size());
   return publish(record, RecordScans{record}, path, system_calls());
 }

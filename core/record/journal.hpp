@@ -52,6 +52,8 @@ class JournalWriter {
   /// \param first  rises strictly over all that are given. \param coefficient  consecutive.
   [[nodiscard]] base::Result<void> append_true_coefficients(daq::ScanIndex first,
                                                             std::span<const double> coefficient);
+  /// Codes of the second channel, of scans that are in the journal already. As above.
+  [[nodiscard]] base::Result<void> append_second(daq::ScanIndex first, std::span<const std::int32_t> codes);
   [[nodiscard]] base::Result<void> append_spikes(std::span<const daq::ScanIndex> spikes);
   [[nodiscard]] base::Result<void> append_gap(const daq::Gap& gap);
   [[nodiscard]] base::Result<void> append_cycle(const friction::Cycle& cycle);
@@ -90,10 +92,11 @@ struct ScanRun {
 
 /// What a journal held, up to the first entry that is not whole.
 struct JournalReading {
-  Record record;  ///< Without scan, raw and true_coefficient if they were not to be kept.
+  Record record;  ///< Without scan, raw, second and true_coefficient if they were not to be kept.
   std::size_t scan_count = 0;
   std::vector<ScanRun> runs;     ///< All scans.
   bool has_force = false;        ///< Of at least one scan.
+  bool has_second = false;       ///< Of at least one scan.
   std::uint64_t whole_size = 0;  ///< Bytes in whole entries.
   std::uint64_t file_size = 0;
   std::string stopped_by;  ///< Why reading stopped before the end of the file; empty if it did not.
@@ -121,9 +124,15 @@ class JournalScanSource final : public ScanSource {
   void for_each_piece(const std::function<void(const ScanPiece&)>& use) const override;
   [[nodiscard]] bool has_force() const override { return reading_.has_force; }
   void for_each_force_piece(const std::function<void(std::span<const double>)>& use) const override;
+  [[nodiscard]] bool has_second() const override { return reading_.has_second; }
+  void for_each_second_piece(const std::function<void(std::span<const std::int32_t>)>& use) const override;
 
  private:
   void for_each_entry(EntryType type, const std::function<void(const Entry&)>& use) const;
+  /// Values of all scans from entries of that type, in pieces as those of the scans.
+  template <typename Stored, typename Value>
+  void for_each_column_piece(EntryType type, Value absent,
+                             const std::function<void(std::span<const Value>)>& use) const;
 
   std::filesystem::path path_;
   const JournalReading& reading_;

@@ -29,6 +29,7 @@ enum class EntryType : std::uint16_t {
   kEvent = 7,      ///< JSON.
   kEnd = 8,        ///< JSON, a zero byte and the tables as f64, row by row: cycles, true modes, true cycles.
   kTrueForce = 9,  ///< f64: the noise-free coefficient of consecutive scans.
+  kSecond = 10,    ///< i32: codes of the second channel of consecutive scans, −1 where none came.
 };
 
 enum class Encoding : std::uint16_t { kNone = 0, kU16 = 1, kU32 = 2, kF64 = 3 };

@@ -12,6 +12,7 @@ namespace stickslip::record {
 namespace {
 
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+constexpr std::int32_t kNoCode = daq::SecondChannel::kNoCode;
 
 std::string_view text_of(const Entry& entry) {
   return {reinterpret_cast<const char*>(entry.payload.data()), entry.payload.size()};
@@ -53,6 +54,8 @@ class Content {
         return add_scans(entry);
       case EntryType::kTrueForce:
         return add_force(entry);
+      case EntryType::kSecond:
+        return add_second(entry);
       case EntryType::kSpikes: {
         const auto spikes = values_of<daq::ScanIndex>(entry.payload);
         record.spikes.insert(record.spikes.end(), spikes.begin(), spikes.end());
@@ -83,6 +86,7 @@ class Content {
 
   void finish() {
     if (keep_ && reading_.has_force) reading_.record.true_coefficient.resize(reading_.scan_count, kNotKnown);
+    if (keep_ && reading_.has_second) reading_.record.second.resize(reading_.scan_count, kNoCode);
   }
 
  private:
@@ -120,9 +124,30 @@ class Content {
     force.insert(force.end(), values.begin(), values.end());
   }
 
+  void add_second(const Entry& entry) {
+    const auto& channel = reading_.record.header.board.second;
+    if (!channel) throw std::invalid_argument("codes of a second channel that is not there");
+    const auto codes = values_of<std::int32_t>(entry.payload);
+    const std::size_t row = row_of(reading_.runs, entry.head.first_scan, codes.size());
+    if (row < next_second_row_) throw std::invalid_argument("second channel runs backwards");
+    const auto possible = [&](std::int32_t code) {
+      return code >= kNoCode && code <= static_cast<std::int64_t>(channel->maxdata);
+    };
+    if (!std::all_of(codes.begin(), codes.end(), possible)) {
+      throw std::invalid_argument("code of the second channel out of range");
+    }
+    next_second_row_ = row + codes.size();
+    reading_.has_second = true;
+    if (!keep_) return;
+    std::vector<std::int32_t>& second = reading_.record.second;
+    second.resize(row, kNoCode);
+    second.insert(second.end(), codes.begin(), codes.end());
+  }
+
   JournalReading& reading_;
   bool keep_;
   std::size_t next_force_row_ = 0;
+  std::size_t next_second_row_ = 0;
 };
 
 }  // namespace
@@ -136,7 +161,7 @@ std::size_t row_of(const std::vector<ScanRun>& runs, daq::ScanIndex first, std::
     const auto offset = static_cast<std::size_t>(first - run.first);
     if (offset <= run.count && count <= run.count - offset) return run.row + offset;
   }
-  throw std::invalid_argument("true force of scans that are not there");
+  throw std::invalid_argument("values of scans that are not there");
 }
 
 base::Result<JournalReading> read_journal(const std::filesystem::path& path, JournalScans scans) {
@@ -206,25 +231,36 @@ void JournalScanSource::for_each_piece(const std::function<void(const ScanPiece&
   pass_on();
 }
 
-void JournalScanSource::for_each_force_piece(const std::function<void(std::span<const double>)>& use) const {
-  std::vector<double> piece;
+template <typename Stored, typename Value>
+void JournalScanSource::for_each_column_piece(EntryType type, Value absent,
+                                              const std::function<void(std::span<const Value>)>& use) const {
+  std::vector<Value> piece;
   piece.reserve(kPiece);
   std::size_t row = 0;
-  const auto push = [&](double value) {
+  const auto push = [&](Value value) {
     piece.push_back(value);
     ++row;
     if (piece.size() < kPiece) return;
     use(piece);
     piece.clear();
   };
-  for_each_entry(EntryType::kTrueForce, [&](const Entry& entry) {
-    const std::vector<double> values = values_of<double>(entry.payload);
+  for_each_entry(type, [&](const Entry& entry) {
+    const std::vector<Stored> values = values_of<Stored>(entry.payload);
     const std::size_t first = row_of(reading_.runs, entry.head.first_scan, values.size());
-    while (row < first) push(kNotKnown);
-    for (const double value : values) push(value);
+    while (row < first) push(absent);
+    for (const Stored value : values) push(value);
   });
-  while (row < size()) push(kNotKnown);
+  while (row < size()) push(absent);
   if (!piece.empty()) use(piece);
+}
+
+void JournalScanSource::for_each_force_piece(const std::function<void(std::span<const double>)>& use) const {
+  for_each_column_piece<double>(EntryType::kTrueForce, kNotKnown, use);
+}
+
+void JournalScanSource::for_each_second_piece(
+    const std::function<void(std::span<const std::int32_t>)>& use) const {
+  for_each_column_piece<std::int32_t>(EntryType::kSecond, kNoCode, use);
 }
 
 }  // namespace stickslip::record

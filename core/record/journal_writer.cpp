@@ -25,6 +25,10 @@ base::Result<void> JournalWriter::append_true_coefficients(daq::ScanIndex first,
   return file_.append(builder_.true_coefficients(first, coefficient));
 }
 
+base::Result<void> JournalWriter::append_second(daq::ScanIndex first, std::span<const std::int32_t> codes) {
+  return file_.append(builder_.second(first, codes));
+}
+
 base::Result<void> JournalWriter::append_spikes(std::span<const daq::ScanIndex> spikes) {
   return file_.append(builder_.spikes(spikes));
 }

@@ -153,6 +153,14 @@ json results_to_json(const friction::TestResults& results) {
   return object;
 }
 
+json latency_to_json(const daq::LatencyHistogram& latency) {
+  return {{"counts", latency.counts()}, {"largest", latency.largest_s()}};
+}
+
+daq::LatencyHistogram latency_from_json(const json& object) {
+  return {object.at("counts").get<daq::LatencyHistogram::Counts>(), object.at("largest").get<double>()};
+}
+
 friction::TestResults results_from_json(const json& object) {
   friction::TestResults results;
   const auto regime = object.at("regime").get<std::string>();
@@ -214,6 +222,10 @@ std::string header_to_json(const RecordHeader& header) {
   for_each_converter_field(header.board, putter(board));
   for_each_rate_field(header.board, putter(board));
   board["quantity"] = name(header.board.quantity).name;
+  if (header.board.second) {
+    board["second"] = facts_to_json(*header.board.second);
+    board["second"]["quantity"] = daq::name(header.board.second->quantity);
+  }
 
   json object{{"format", kFormat},
               {"format_version", kFormatVersion},
@@ -254,6 +266,12 @@ RecordHeader header_from_json(std::string_view text) {
   for_each_rate_field(header.board, taker(board));
   const auto quantity = board.at("quantity").get<std::string>();
   header.board.quantity = word(quantity, quantity_from_name(quantity));
+  if (board.contains("second")) {
+    daq::SecondChannel& second = header.board.second.emplace();
+    const auto measured = board.at("second").at("quantity").get<std::string>();
+    second.quantity = word(measured, daq::second_quantity_from_name(measured));
+    for_each_field(second, taker(board.at("second")));
+  }
   for_each_field(header.calibration, taker(object.at("calibration")));
   for_each_field(header.tester, taker(object.at("tester")));
   for_each_field(header.sample, taker(object.at("sample")));
@@ -315,6 +333,7 @@ std::string end_to_json(const EndRecord& end) {
               {"spikes", end.spikes}};
   put(object, "end_realtime_ns", end.end_realtime_ns);
   put(object, "compute_time", end.compute_time_s);
+  if (end.read_latency) object["read_latency"] = latency_to_json(*end.read_latency);
   object["cycle_count"] = end.cycles.size();
   object["cycle_columns"] = cycle_columns();
   if (end.truth) object["truth"] = truth_to_json(*end.truth);
@@ -412,6 +431,7 @@ EndRecord end_from_bytes(std::span<const std::byte> bytes) {
   object.at("cause").get_to(end.cause);
   take(object, "end_realtime_ns", end.end_realtime_ns);
   take(object, "compute_time", end.compute_time_s);
+  if (object.contains("read_latency")) end.read_latency = latency_from_json(object.at("read_latency"));
   end.results = results_from_json(object.at("results"));
   object.at("spikes").get_to(end.spikes);
   for (const json& row : object.value("cycles", json::array())) end.cycles.push_back(cycle_from_array(row));

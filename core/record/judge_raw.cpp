@@ -119,6 +119,33 @@ void judge_columns(hid_t raw, const std::string& name, const Record& record, Ver
   if (origin) judge_clocks(record, *origin, next, verdict);
 }
 
+void judge_second(hid_t raw, const daq::SecondChannel& channel, std::int64_t size, Verdict& verdict) {
+  const std::string name{daq::name(channel.quantity)};
+  const std::string counts = name + "_counts";
+  if (!has(raw, counts)) return;
+  for (const std::string& column : {name, counts}) {
+    if (static_cast<std::int64_t>(row_count(raw, column)) != size)
+      throw HdfError(fmt::format("{} has another length than scan", column));
+  }
+  const DatasetHandle codes = open_dataset(raw, counts);
+  const DatasetHandle values = open_dataset(raw, name);
+  Once once{verdict};
+  for (std::size_t row = 0; row < static_cast<std::size_t>(size); row += ScanSource::kPiece) {
+    const std::size_t count = std::min(ScanSource::kPiece, static_cast<std::size_t>(size) - row);
+    std::vector<std::int32_t> code(count);
+    std::vector<float> value(count);
+    read_rows<std::int32_t>(codes, counts, row, code);
+    read_rows<float>(values, name, row, value);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (code[i] < daq::SecondChannel::kNoCode || code[i] > static_cast<std::int64_t>(channel.maxdata))
+        once.damage(counts.c_str(), row + i, "is no code of the second channel");
+      const auto expected = static_cast<float>(channel.value(code[i]));
+      if (value[i] != expected && !(std::isnan(value[i]) && std::isnan(expected)))
+        once.damage(name.c_str(), row + i, "does not follow from the codes");
+    }
+  }
+}
+
 }  // namespace
 
 void judge_raw(hid_t entry, const Record& record, Verdict& verdict) {
@@ -129,6 +156,9 @@ void judge_raw(hid_t entry, const Record& record, Verdict& verdict) {
     judge_columns<std::uint16_t>(raw.get(), "counts", record, verdict);
   } else {
     judge_columns<std::uint32_t>(raw.get(), "counts", record, verdict);
+  }
+  if (record.header.board.second) {
+    judge_second(raw.get(), *record.header.board.second, verdict.scans_present.value_or(0), verdict);
   }
 }
 

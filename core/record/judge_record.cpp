@@ -77,7 +77,12 @@ void judge_content(hid_t entry, Verdict& verdict) {
   record.end.emplace();
   bool known = attempt("entry/raw", verdict, [&] { read_quantity(entry, record.header.board); });
   known = attempt("entry", verdict, [&] { read_identity(entry, record); }) && known;
-  known = attempt("entry/instrument", verdict, [&] { read_instrument(entry, record); }) && known;
+  known = attempt("entry/instrument", verdict,
+                  [&] {
+                    read_instrument(entry, record);
+                    read_second_channel(entry, record);
+                  }) &&
+          known;
   known = attempt("entry/cycles, gaps, events", verdict, [&] { read_tables(entry, record); }) && known;
   attempt("entry/results", verdict, [&] { record.end->results = read_results(entry); });
   if (has(entry, "truth")) attempt("entry/truth", verdict, [&] { check_truth(entry); });

@@ -29,6 +29,14 @@ void read_quantity(hid_t entry, daq::BoardInfo& board);
 /// Throws unless scans, raw values and noise-free force are those of the source, to the last bit.
 void verify_scans(hid_t entry, const daq::BoardInfo& board, const ScanSource& scans);
 
+/// Second channel: columns of raw, and instrument/second. Expects both groups to be written.
+void write_second(hid_t entry, const Record& record, const ScanSource& scans);
+/// What is written there of the channel itself; sets header.board.second.
+void read_second_channel(hid_t entry, Record& record);
+void read_second(hid_t entry, Record& record);
+/// Throws unless its codes are those of the source.
+void verify_second(hid_t entry, const Record& record, const ScanSource& scans);
+
 void write_tables(hid_t entry, const Record& record);  ///< cycles, gaps, events
 void read_tables(hid_t entry, Record& record);
 /// Throws unless they could be read.

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <optional>
+
 #include "core/record/hdf_read.hpp"
 #include "core/record/hdf_write.hpp"
 #include "core/record/layout.hpp"
@@ -7,6 +10,32 @@
 
 namespace stickslip::record {
 namespace {
+
+constexpr FieldName kLatencyLimit{"below", "s", "upper limit of the bin, of the last one infinite [s]"};
+constexpr FieldName kLatencyCount{"read_count", "1", "reads that were so late [1]"};
+constexpr FieldName kLatencyLargest{"largest", "s", "lateness of the latest read [s]"};
+
+void write_latency(hid_t timing, const daq::LatencyHistogram& latency) {
+  TableWriter table{make_group(timing, "read_latency", "NXcollection")};
+  std::vector<double> limits_s;
+  for (std::size_t bin = 0; bin < daq::LatencyHistogram::kBins; ++bin) {
+    limits_s.push_back(daq::LatencyHistogram::limit_s(bin));
+  }
+  table.add(kLatencyLimit, limits_s);
+  table.add(kLatencyCount, std::vector<std::uint64_t>(latency.counts().begin(), latency.counts().end()));
+  write_scalar(table.group(), kLatencyLargest, latency.largest_s());
+}
+
+std::optional<daq::LatencyHistogram> read_latency(hid_t timing) {
+  // Records made before it was kept have none.
+  if (!has(timing, "read_latency")) return std::nullopt;
+  const GroupHandle group = open_group(timing, "read_latency");
+  const auto counts =
+      read_column<std::uint64_t>(group.get(), std::string{kLatencyCount.name}, daq::LatencyHistogram::kBins);
+  daq::LatencyHistogram::Counts bins{};
+  std::copy(counts.begin(), counts.end(), bins.begin());
+  return daq::LatencyHistogram{bins, read_scalar<double>(group.get(), std::string{kLatencyLargest.name})};
+}
 
 void write_timing(hid_t entry, const Record& record) {
   TableWriter table{make_group(entry, "timing", "NXcollection")};
@@ -22,6 +51,7 @@ void write_timing(hid_t entry, const Record& record) {
   table.add(FieldName{"scan", "1", "scan at which the clocks were read [1]"}, scan);
   table.add(FieldName{"monotonic_raw", "ns", "CLOCK_MONOTONIC_RAW [ns]"}, monotonic);
   table.add(FieldName{"realtime", "ns", "time since 1970-01-01T00:00:00Z [ns]"}, realtime);
+  if (record.end->read_latency) write_latency(table.group(), *record.end->read_latency);
 }
 
 void read_timing(hid_t entry, Record& record) {
@@ -33,6 +63,7 @@ void read_timing(hid_t entry, Record& record) {
   for (std::size_t i = 0; i < scan.size(); ++i) {
     record.anchors.push_back({scan[i], monotonic[i], realtime[i]});
   }
+  record.end->read_latency = read_latency(group.get());
 }
 
 void write_plan(hid_t entry, const PlanFacts& plan) {

@@ -72,12 +72,13 @@ void PatientJournal::tell_lost() {
 }
 
 bool PatientJournal::add_scans(daq::ScanIndex first, std::span<const double> raw,
-                               const daq::ClockStamp& stamp) {
+                               const daq::ClockStamp& stamp, std::span<const std::int32_t> second) {
   const auto count = static_cast<std::int64_t>(raw.size());
   const EntryBuilder::Bytes entry = builder_.scans(first, raw, stamp);
   {
     const std::lock_guard lock{mutex_};
-    if (!has_room(entry.size())) {
+    const std::size_t second_size = second.empty() ? 0 : kEntryHeadSize + second.size_bytes();
+    if (!has_room(entry.size() + second_size)) {
       lost_count_ += count;
       if (!lost_.empty() && lost_.back().first + lost_.back().count == first) {
         lost_.back().count += count;
@@ -94,6 +95,7 @@ bool PatientJournal::add_scans(daq::ScanIndex first, std::span<const double> raw
     tell_lost();
     keep(scans);
   }
+  if (!second.empty()) keep(builder_.second(first, second));
   return true;
 }
 

@@ -34,7 +34,9 @@ class PatientJournal {
 
   // The thread that adds. Contracts as in EntryBuilder. \return false: lost for want of memory.
 
-  bool add_scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp& stamp);
+  /// \param second  codes of the second channel: as many, or none if there is no such channel.
+  bool add_scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp& stamp,
+                 std::span<const std::int32_t> second = {});
   bool add_true_coefficients(daq::ScanIndex first, std::span<const double> coefficient);
   bool add_cycle(const friction::Cycle& cycle);
   bool add_anchor(const ClockAnchor& anchor);

@@ -66,6 +66,8 @@ Record read(const std::filesystem::path& path) {
   read_raw(entry.get(), record);
   read_identity(entry.get(), record);
   read_instrument(entry.get(), record);
+  read_second_channel(entry.get(), record);
+  read_second(entry.get(), record);
   read_tables(entry.get(), record);
   record.end->results = read_results(entry.get());
   read_process(entry.get(), record);
@@ -88,6 +90,9 @@ void verify(const std::filesystem::path& path, const Record& record, const ScanS
   if (back.header.board.quantity != record.header.board.quantity) throw HdfError("holds another quantity");
   read_identity(entry.get(), back);
   read_instrument(entry.get(), back);
+  read_second_channel(entry.get(), back);
+  if (back.header.board.second != record.header.board.second) throw HdfError("holds another second channel");
+  verify_second(entry.get(), record, scans);
   check_tables(entry.get());
   back.end->results = read_results(entry.get());
   read_process(entry.get(), back);

@@ -14,6 +14,7 @@
 #include "core/daq/calibration.hpp"
 #include "core/daq/clock_anchor.hpp"
 #include "core/daq/gap.hpp"
+#include "core/daq/latency_histogram.hpp"
 #include "core/daq/self_check.hpp"
 #include "core/friction/cycle.hpp"
 #include "core/friction/results.hpp"
@@ -32,7 +33,7 @@ inline constexpr std::int64_t kOldestFormatVersion = 1;  ///< That is still read
 /// How whole the record is.
 enum class Status {
   kComplete,     ///< The test ended and everything was written.
-  kInterrupted,  ///< The program stopped before the end of the test; made from an orphaned journal.
+  kInterrupted,  ///< The program stopped before the end of the test: told to, or killed.
   kRecovered,    ///< Something was lost or repaired on the way; see the reasons.
   kIncomplete,  ///< Scans could not be stored (disk full), or the board went away before the end of the test.
 };
@@ -143,13 +144,19 @@ struct Event {
   bool operator==(const Event&) const = default;
 };
 
+/// EndRecord::cause of a test that the program did not live to end.
+inline constexpr std::string_view kProgramDied = "program-died";
+/// The reason for Status::kInterrupted.
+inline constexpr std::string_view kInterruptedWhy = "the program stopped before the end of the test";
+
 /// Known after the last scan; the last entry of a journal.
 struct EndRecord {
   Status status = Status::kComplete;
   std::vector<std::string> reasons;  ///< Why the status is not complete.
-  std::string cause;                 ///< Why the test was over, e.g. pipeline::name(EndCause).
+  std::string cause;                 ///< Why the test was over: pipeline::name(EndCause), or kProgramDied.
   std::optional<std::int64_t> end_realtime_ns;
   std::optional<double> compute_time_s;
+  std::optional<daq::LatencyHistogram> read_latency;  ///< How late the blocks were read.
   friction::TestResults results;
   base::LongColumn<friction::Cycle> cycles;  ///< Final; replaces those noted during the test.
   std::vector<daq::ScanIndex> spikes;        ///< Scans replaced for the detector, rising; final as well.
@@ -169,6 +176,9 @@ struct Record {
   std::vector<double> raw;           ///< In board.quantity.
   /// Noise-free force of each scan (friction::TrueForce), NaN where not known; empty if of none.
   std::vector<double> true_coefficient;
+  /// Code of the second channel of each scan, daq::SecondChannel::kNoCode where it did not arrive; empty
+  /// unless header.board.second.
+  std::vector<std::int32_t> second;
   std::vector<daq::ScanIndex> spikes;
   std::vector<daq::Gap> gaps;
   base::LongColumn<friction::Cycle> cycles;

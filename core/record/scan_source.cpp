@@ -17,4 +17,10 @@ void RecordScans::for_each_force_piece(const std::function<void(std::span<const 
   }
 }
 
+void RecordScans::for_each_second_piece(const std::function<void(std::span<const std::int32_t>)>& use) const {
+  for (std::size_t row = 0; row < size(); row += kPiece) {
+    use(std::span{record_.second}.subspan(row, std::min(kPiece, size() - row)));
+  }
+}
+
 }  // namespace stickslip::record

@@ -35,6 +35,10 @@ class ScanSource {
   [[nodiscard]] virtual bool has_force() const = 0;
   /// As many values as scans, in pieces of the same lengths; NaN where not known.
   virtual void for_each_force_piece(const std::function<void(std::span<const double>)>& use) const = 0;
+  /// There are codes of a second channel.
+  [[nodiscard]] virtual bool has_second() const = 0;
+  /// As many codes as scans, in pieces of the same lengths; daq::SecondChannel::kNoCode where none came.
+  virtual void for_each_second_piece(const std::function<void(std::span<const std::int32_t>)>& use) const = 0;
 };
 
 /// Those of a record in memory, which outlives it.
@@ -49,6 +53,8 @@ class RecordScans final : public ScanSource {
   void for_each_piece(const std::function<void(const ScanPiece&)>& use) const override;
   [[nodiscard]] bool has_force() const override { return !record_.true_coefficient.empty(); }
   void for_each_force_piece(const std::function<void(std::span<const double>)>& use) const override;
+  [[nodiscard]] bool has_second() const override { return !record_.second.empty(); }
+  void for_each_second_piece(const std::function<void(std::span<const std::int32_t>)>& use) const override;
 
  private:
   const Record& record_;

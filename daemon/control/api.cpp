@@ -44,6 +44,14 @@ Json to_json(const daq::BoardInfo& board) {
   json["calibration"] = board.calibration.empty() ? Json(nullptr) : Json(board.calibration);
   json["acquisition"] = board.acquisition.empty() ? Json(nullptr) : Json(board.acquisition);
   json["notes"] = board.notes;
+  json["second"] = nullptr;
+  if (board.second) {
+    json["second"] = {{"quantity", daq::name(board.second->quantity)},
+                      {"channel", board.second->channel},
+                      {"maxdata", board.second->maxdata},
+                      {"range_min", board.second->range_min_V},
+                      {"range_max", board.second->range_max_V}};
+  }
   return json;
 }
 
@@ -81,12 +89,12 @@ Json to_json(const std::optional<daq::RateEstimate>& rate) {
 }
 
 /// Bins without a read are left out.
-Json to_json(const LatencyHistogram& latency) {
+Json to_json(const daq::LatencyHistogram& latency) {
   Json bins = Json::array();
-  for (std::size_t bin = 0; bin < LatencyHistogram::kBins; ++bin) {
+  for (std::size_t bin = 0; bin < daq::LatencyHistogram::kBins; ++bin) {
     if (latency.counts()[bin] == 0) continue;
     bins.push_back(
-        {{"below", or_null(LatencyHistogram::limit_s(bin))}, {"read_count", latency.counts()[bin]}});
+        {{"below", or_null(daq::LatencyHistogram::limit_s(bin))}, {"read_count", latency.counts()[bin]}});
   }
   return {{"largest", latency.largest_s()}, {"bins", bins}};
 }

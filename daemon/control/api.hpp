@@ -12,17 +12,18 @@
 #include <string>
 
 #include "core/daq/board.hpp"
+#include "core/daq/latency_histogram.hpp"
 #include "core/daq/rate_fit.hpp"
 #include "core/friction/live_cycle.hpp"
 #include "daemon/control/http.hpp"
-#include "daemon/latency_histogram.hpp"
 #include "daemon/test_log.hpp"
 
 namespace stickslip::daemon {
 
 /// A picture of the daemon at one moment.
 struct Status {
-  std::string state;   ///< "starting", "acquiring", "board missing", "stopping".
+  /// "starting", "acquiring", "board missing", "board busy", "no permission", "stopping".
+  std::string state;
   std::string detail;  ///< The line of STATUS=, for people.
   std::string version;
   std::optional<daq::BoardInfo> board;
@@ -34,7 +35,7 @@ struct Status {
   std::int64_t lost_scan_count = 0;                     ///< In gaps.
   std::uint64_t board_loss_count = 0;                   ///< Times the board went away or failed.
   std::optional<daq::RateEstimate> scan_rate_measured;  ///< Of the board's present life.
-  LatencyHistogram latency;                             ///< Of reads.
+  daq::LatencyHistogram latency;                        ///< Of reads.
   std::uint64_t storage_stall_count = 0;
   std::int64_t test_count = 0;               ///< Ended.
   std::optional<std::int64_t> current_test;  ///< Running now.

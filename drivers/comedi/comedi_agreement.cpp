@@ -33,14 +33,15 @@ Result<unsigned> period_of_rate(const ComediBoardSettings& settings) {
 }
 
 /// What the scans are timed by. Boards differ in what they can do; with one channel the three are the
-/// same measurement. Listed in order of preference.
+/// same measurement. With two the second conversion follows the first at once, or as fast as the board can,
+/// or half a period later. Listed in order of preference.
 enum class Timing {
   kScanTimer,             ///< A timer starts each scan, conversions follow at once.
   kScanAndConvertTimers,  ///< The same on boards whose conversions have a timer of their own.
   kConvertTimer,          ///< Scans follow each other; the conversion timer is the rate.
 };
 
-ComediCommand build(Timing timing, unsigned flags, unsigned period_ns) {
+ComediCommand build(Timing timing, unsigned flags, unsigned period_ns, unsigned channels) {
   ComediCommand command;
   command.flags = flags;
   command.start_source = trigger::kNow;
@@ -48,16 +49,16 @@ ComediCommand build(Timing timing, unsigned flags, unsigned period_ns) {
   command.scan_begin_argument = timing == Timing::kConvertTimer ? 0 : period_ns;
   command.convert_source = timing == Timing::kScanTimer ? trigger::kNow : trigger::kTimer;
   // 0 where the scan timer rules: command_test raises it to the shortest that the board can do.
-  command.convert_argument = timing == Timing::kConvertTimer ? period_ns : 0;
+  command.convert_argument = timing == Timing::kConvertTimer ? period_ns / channels : 0;
   command.scan_end_source = trigger::kCount;
-  command.scan_end_argument = 1;
+  command.scan_end_argument = channels;
   command.stop_source = trigger::kNone;
   return command;
 }
 
 unsigned period_of(const ComediCommand& command) {
   return command.scan_begin_source == trigger::kTimer ? command.scan_begin_argument
-                                                      : command.convert_argument;
+                                                      : command.convert_argument * command.channel_count();
 }
 
 /// Appends what the board changed, "stage 4: scan_begin_arg 2857143 -> 2857000".
@@ -106,14 +107,15 @@ int test_until_agreed(ComediCommand& command, ComediCalls& calls, std::string& n
 }  // namespace
 
 Result<Agreement> agree_on_command(const ComediBoardSettings& settings, unsigned subdevice, unsigned range,
-                                   ComediCalls& calls) {
+                                   ComediCalls& calls, const std::optional<ComediInput>& second) {
   const auto period_ns = period_of_rate(settings);
   if (!period_ns) return tl::unexpected(period_ns.error());
   double nearest_Hz = 0.0;
   for (const Timing timing : {Timing::kScanTimer, Timing::kScanAndConvertTimers, Timing::kConvertTimer}) {
     // Without kWakeEndOfScan some boards hand over half a FIFO at a time: 0.7 s at 350 Hz.
     for (const unsigned flags : {kWakeEndOfScan, 0U}) {
-      ComediCommand command = build(timing, flags, *period_ns);
+      ComediCommand command = build(timing, flags, *period_ns, second ? 2 : 1);
+      command.second = second;
       command.subdevice = subdevice;
       command.channel = settings.channel;
       command.range = range;
@@ -121,7 +123,7 @@ Result<Agreement> agree_on_command(const ComediBoardSettings& settings, unsigned
       std::string notes = flags == 0 ? "no wake-up at each scan" : "";
       const int stage = test_until_agreed(command, calls, notes);
       if (stage == -ENODEV || stage == -EACCES || stage == -EPERM) {
-        return base::failure("{}", explain_comedi_error(settings.device, -stage));
+        return tl::unexpected(comedi_error(settings.device, -stage));
       }
       if (stage != 0 || period_of(command) == 0) continue;
       const double granted_Hz = kNanosecondsPerSecond / period_of(command);
@@ -139,11 +141,14 @@ Result<Agreement> agree_on_command(const ComediBoardSettings& settings, unsigned
         "ask for a rate that it has",
         settings.device, settings.scan_rate_Hz, nearest_Hz, 100.0 * settings.scan_rate_tolerance);
   }
-  return base::failure("{}: the board cannot acquire channel {} by a timer without end; use another board",
-                       settings.device, settings.channel);
+  return base::failure("{}: the board cannot acquire {} by a timer without end; use another board",
+                       settings.device,
+                       second ? fmt::format("channels {} and {}", settings.channel, second->channel)
+                              : fmt::format("channel {}", settings.channel));
 }
 
-Result<Agreement> agree_on_polling(const ComediBoardSettings& settings, unsigned subdevice, unsigned range) {
+Result<Agreement> agree_on_polling(const ComediBoardSettings& settings, unsigned subdevice, unsigned range,
+                                   const std::optional<ComediInput>& second) {
   const auto period_ns = period_of_rate(settings);
   if (!period_ns) return tl::unexpected(period_ns.error());
   if (settings.scan_rate_Hz > kFastestPolling_Hz) {
@@ -157,6 +162,7 @@ Result<Agreement> agree_on_polling(const ComediBoardSettings& settings, unsigned
   agreement.command.channel = settings.channel;
   agreement.command.range = range;
   agreement.command.reference = settings.reference;
+  agreement.command.second = second;
   agreement.scan_rate_Hz = kNanosecondsPerSecond / *period_ns;
   agreement.notes = "read one scan at a time, timed by this computer";
   return agreement;

@@ -2,6 +2,7 @@
 /// The bargaining for a rate: what is asked of a board is changed by it, and read back.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/base/result.hpp"
@@ -18,11 +19,12 @@ struct Agreement {
 
 /// A command without end whose rate is within the tolerance. Errors name what the board would grant.
 [[nodiscard]] base::Result<Agreement> agree_on_command(const ComediBoardSettings& settings,
-                                                       unsigned subdevice, unsigned range,
-                                                       ComediCalls& calls);
+                                                       unsigned subdevice, unsigned range, ComediCalls& calls,
+                                                       const std::optional<ComediInput>& second = {});
 
 /// For a board that is read one scan at a time: the rate is this computer's, to the nanosecond.
 [[nodiscard]] base::Result<Agreement> agree_on_polling(const ComediBoardSettings& settings,
-                                                       unsigned subdevice, unsigned range);
+                                                       unsigned subdevice, unsigned range,
+                                                       const std::optional<ComediInput>& second = {});
 
 }  // namespace stickslip::drivers

@@ -29,7 +29,7 @@ constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 constexpr std::int64_t kProbePeriods = 8;
 /// … but not shorter than this, so that fast rates do not busy the processor.
 constexpr std::int64_t kShortestProbe_ms = 20;
-constexpr std::size_t kLargestSample_bytes = 4;
+constexpr std::size_t kLargestScan_bytes = 8;  ///< Two samples of 4.
 /// A board that says nothing for so long, and for so many periods, is as good as unplugged: some drivers
 /// neither deliver nor report when their device has gone.
 constexpr std::int64_t kLongestSilence_ns = 5'000'000'000;
@@ -74,8 +74,10 @@ class ComediBoard final : public daq::Board {
       // The file is open, so permission is not what is lacking.
       if (result == -EACCES) {
         error_ = EACCES;
-        return base::failure("{}: subdevice {} is locked by another program; stop that program",
-                             setup_.info.device, setup_.command.subdevice);
+        return tl::unexpected(
+            base::Error{base::ErrorKind::kBusy,
+                        fmt::format("{}: subdevice {} is locked by another program; stop that program",
+                                    setup_.info.device, setup_.command.subdevice)});
       }
       return refused(-result);
     }
@@ -101,7 +103,7 @@ class ComediBoard final : public daq::Board {
     }
     for (bool waited = false;;) {
       // At most what fits the block: the rest stays in the kernel's buffer, which is large.
-      const std::size_t wanted = ScanBlock::kMaxScans * setup_.sample_size - left_over_;
+      const std::size_t wanted = ScanBlock::kMaxScans * scan_size() - left_over_;
       const int result = calls_->read(std::span(bytes_).subspan(left_over_, wanted));
       if (result > 0) {
         if (deliver(static_cast<std::size_t>(result), waited, block)) return ReadStatus::kScans;
@@ -152,10 +154,17 @@ class ComediBoard final : public daq::Board {
   /// Turns `fresh_bytes` new bytes into scans. \return false if they do not complete one.
   bool deliver(std::size_t fresh_bytes, bool waited, ScanBlock& block) noexcept {
     const std::size_t bytes = left_over_ + fresh_bytes;
-    const std::size_t count = bytes / setup_.sample_size;
-    for (std::size_t i = 0; i < count; ++i) block.raw[i] = sample(i);
-    left_over_ = bytes % setup_.sample_size;
-    std::memmove(bytes_.data(), bytes_.data() + count * setup_.sample_size, left_over_);
+    const std::size_t count = bytes / scan_size();
+    const std::size_t channels = setup_.command.channel_count();
+    for (std::size_t i = 0; i < count; ++i) block.raw[i] = sample(i * channels);
+    block.has_second = setup_.command.second.has_value();
+    if (block.has_second) {
+      for (std::size_t i = 0; i < count; ++i) {
+        block.second[i] = static_cast<std::int32_t>(sample(i * channels + 1));
+      }
+    }
+    left_over_ = bytes % scan_size();
+    std::memmove(bytes_.data(), bytes_.data() + count * scan_size(), left_over_);
     if (count == 0) return false;
     block.first = next_;
     block.count = static_cast<std::uint32_t>(count);
@@ -166,6 +175,11 @@ class ComediBoard final : public daq::Board {
     next_ = block.end();
     meter_.observe(block);
     return true;
+  }
+
+  /// Bytes; samples of the channels follow each other.
+  [[nodiscard]] std::size_t scan_size() const noexcept {
+    return setup_.sample_size * setup_.command.channel_count();
   }
 
   [[nodiscard]] double sample(std::size_t i) const noexcept {
@@ -202,7 +216,7 @@ class ComediBoard final : public daq::Board {
   [[nodiscard]] base::Result<void> refused(int error) {
     error_ = error;
     if (error == ENODEV) state_ = State::kMissing;
-    return base::failure("{}", explain_comedi_error(setup_.info.device, error));
+    return tl::unexpected(comedi_error(setup_.info.device, error));
   }
 
   ComediSetup setup_;
@@ -217,8 +231,8 @@ class ComediBoard final : public daq::Board {
   daq::ScanIndex next_ = 0;
   std::int64_t heard_ns_ = 0;  ///< Of the latest scan, or of the start.
   int error_ = 0;
-  std::size_t left_over_ = 0;  ///< Bytes of a sample not complete yet: read() is byte-granular.
-  std::array<std::byte, ScanBlock::kMaxScans * kLargestSample_bytes> bytes_{};
+  std::size_t left_over_ = 0;  ///< Bytes of a scan not complete yet: read() is byte-granular.
+  std::array<std::byte, ScanBlock::kMaxScans * kLargestScan_bytes> bytes_{};
 };
 
 }  // namespace

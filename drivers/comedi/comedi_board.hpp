@@ -37,11 +37,23 @@ enum class AcquisitionMode {
   kPolled,   ///< This computer, one reading at a time: worse by its wake-up latency.
 };
 
+/// The second input of each scan, and what stands behind it: quantity = (voltage − zero) · gain.
+struct SecondInputSettings {
+  daq::SecondQuantity quantity = daq::SecondQuantity::kPullSpeed;
+  unsigned channel = 1;
+  /// As those of the force.
+  double range_min_V = -10.0;
+  double range_max_V = 10.0;
+  double gain_per_V = 1.0;  ///< m/s or m for each volt; finite and not 0.
+  double zero_V = 0.0;
+};
+
 /// What is asked of a board; BoardInfo says what was granted.
 struct ComediBoardSettings {
   std::string device = "/dev/comedi0";
   std::optional<unsigned> subdevice;  ///< The first analog input if absent.
   unsigned channel = 0;
+  std::optional<SecondInputSettings> second;
   /// Voltages that must fit; the narrowest span of the board that holds both is taken.
   double range_min_V = -10.0;
   double range_max_V = 10.0;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 
@@ -51,7 +52,10 @@ ConversionPolynomial copy_of(const comedi_polynomial_t& polynomial) {
 /// libcomedi's struct with room for its channel list.
 struct Native {
   explicit Native(const ComediCommand& from)
-      : entry(CR_PACK(from.channel, from.range, static_cast<unsigned>(from.reference))) {
+      : entries{CR_PACK(from.channel, from.range, static_cast<unsigned>(from.reference)), 0} {
+    if (from.second) {
+      entries[1] = CR_PACK(from.second->channel, from.second->range, static_cast<unsigned>(from.reference));
+    }
     command.subdev = from.subdevice;
     command.flags = from.flags;
     command.start_src = from.start_source;
@@ -64,8 +68,8 @@ struct Native {
     command.scan_end_arg = from.scan_end_argument;
     command.stop_src = from.stop_source;
     command.stop_arg = from.stop_argument;
-    command.chanlist = &entry;
-    command.chanlist_len = 1;
+    command.chanlist = entries.data();
+    command.chanlist_len = from.channel_count();
   }
   Native(const Native&) = delete;
   Native& operator=(const Native&) = delete;
@@ -85,7 +89,7 @@ struct Native {
     to.stop_argument = command.stop_arg;
   }
 
-  unsigned entry;
+  std::array<unsigned, 2> entries;
   comedi_cmd command{};
 };
 

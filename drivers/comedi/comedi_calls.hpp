@@ -47,7 +47,15 @@ inline constexpr int kAnalogInput = 1;  ///< COMEDI_SUBD_AI
 /// Against what the input is measured (AREF_…).
 enum class AnalogReference : unsigned { kGround = 0, kCommon = 1, kDifferential = 2, kOther = 3 };
 
-/// comedi_cmd for one channel.
+/// One entry of a channel list.
+struct ComediInput {
+  unsigned channel = 0;
+  unsigned range = 0;
+
+  bool operator==(const ComediInput&) const = default;
+};
+
+/// comedi_cmd for one channel or two.
 struct ComediCommand {
   unsigned subdevice = 0;
   unsigned flags = 0;
@@ -59,7 +67,9 @@ struct ComediCommand {
   unsigned channel = 0;
   unsigned range = 0;
   AnalogReference reference = AnalogReference::kGround;
+  std::optional<ComediInput> second;  ///< Converted right after the first, with the same reference.
 
+  [[nodiscard]] unsigned channel_count() const noexcept { return second ? 2 : 1; }
   bool operator==(const ComediCommand&) const = default;
 };
 
@@ -114,7 +124,7 @@ class ComediCalls {
   /// \return the size in use. The setting outlives close().
   virtual int set_buffer_size(unsigned subdevice, unsigned size) = 0;
 
-  /// One reading, now (comedi_data_read). Real-time safe. \return ≥ 0 and the code.
+  /// One reading of the first channel, now (comedi_data_read). Real-time safe. \return ≥ 0 and the code.
   virtual int read_one(const ComediCommand& input, std::uint32_t& code) noexcept = 0;
 
   /// Waits until there may be something to read. \return 0 if the time is over: also when the board

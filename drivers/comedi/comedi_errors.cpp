@@ -78,4 +78,12 @@ std::string explain_comedi_error(const std::string& device, int error) {
   }
 }
 
+base::Error comedi_error(const std::string& device, int error) {
+  const bool permission = error == EACCES || error == EPERM;
+  const auto kind = error == EBUSY ? base::ErrorKind::kBusy
+                    : permission   ? base::ErrorKind::kNoPermission
+                                   : base::ErrorKind::kFailure;
+  return {kind, explain_comedi_error(device, error)};
+}
+
 }  // namespace stickslip::drivers

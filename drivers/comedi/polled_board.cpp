@@ -26,7 +26,13 @@ class PolledBoard final : public daq::Board {
         clock_(clock),
         calls_(std::move(calls)),
         period_ns_(1e9 / setup_.info.scan_rate_granted_Hz),
-        continues_(settings.continues) {}
+        continues_(settings.continues) {
+    if (setup_.command.second) {
+      second_ = setup_.command;
+      second_.channel = setup_.command.second->channel;
+      second_.range = setup_.command.second->range;
+    }
+  }
 
   [[nodiscard]] const daq::BoardInfo& info() const noexcept override { return setup_.info; }
 
@@ -37,7 +43,7 @@ class PolledBoard final : public daq::Board {
     std::uint32_t code = 0;
     if (const int result = calls_->read_one(setup_.command, code); result < 0) {
       static_cast<void>(ended(result));
-      return base::failure("{}", last_error());
+      return tl::unexpected(comedi_error(setup_.info.device, -result));
     }
     error_ = 0;
     pending_.reset();
@@ -64,17 +70,22 @@ class PolledBoard final : public daq::Board {
         static_cast<daq::ScanIndex>(std::floor(static_cast<double>(now_ns - started_ns_) / period_ns_)) - 1;
     next_ = std::max(next_, due);
     block.first = next_;
+    block.has_second = setup_.command.second.has_value();
     const std::int64_t bundle_end_ns = std::min(deadline_ns, due_ns(next_) + kBundle_ns);
     while (block.count < daq::ScanBlock::kMaxScans && due_ns(next_) <= bundle_end_ns) {
       const bool prompt = clock_.monotonic_ns() <= due_ns(next_);
       clock_.sleep_until(due_ns(next_));
       std::uint32_t code = 0;
-      if (const int result = calls_->read_one(setup_.command, code); result < 0) {
+      std::uint32_t second_code = 0;
+      int result = calls_->read_one(setup_.command, code);
+      if (result >= 0 && block.has_second) result = calls_->read_one(second_, second_code);
+      if (result < 0) {
         const ReadStatus status = ended(result);
         if (block.count == 0) return status;
         pending_ = status;
         break;
       }
+      block.second[block.count] = static_cast<std::int32_t>(second_code);
       block.raw[block.count++] = code;
       block.stamp = {clock_.monotonic_ns(), clock_.realtime_ns(), prompt};
       // Its time is over before it was asked for: the bundle ends, the jump is seen at the next read.
@@ -112,6 +123,7 @@ class PolledBoard final : public daq::Board {
   }
 
   ComediSetup setup_;
+  ComediCommand second_;  ///< To read the second input, if there is one.
   base::Clock& clock_;
   std::unique_ptr<ComediCalls> calls_;
   double period_ns_;

@@ -28,7 +28,8 @@ base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::C
   std::string characterisation = record->header.process.characterisation;
   record::CalibrationFacts calibration = record->header.calibration;
   auto recorded = std::make_shared<daq::RecordedFacts>(
-      daq::RecordedFacts{std::move(record->anchors), std::move(record->gaps), nullptr});
+      daq::RecordedFacts{std::move(record->anchors), std::move(record->gaps), nullptr,
+                         record->end ? record->end->read_latency : std::nullopt});
   if (auto& check = record->header.self_check) {
     recorded->self_check = std::make_shared<const daq::SelfCheck>(*std::move(check));
   }

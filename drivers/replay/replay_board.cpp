@@ -19,6 +19,7 @@ class ReplayBoard final : public daq::Board {
       : info_(std::move(record.header.board)),
         scan_(std::move(record.scan)),
         raw_(std::move(record.raw)),
+        second_(std::move(record.second)),
         clock_(clock) {
     info_.driver = "replay";
   }
@@ -46,8 +47,10 @@ class ReplayBoard final : public daq::Board {
     block.first = scan_[next_];
     while (block.count < daq::ScanBlock::kMaxScans && next_ < scan_.size() && scan_[next_] == block.end() &&
            due_ns(scan_[next_]) <= now_ns) {
+      if (!second_.empty()) block.second[block.count] = second_[next_];
       block.raw[block.count++] = raw_[next_++];
     }
+    block.has_second = !second_.empty();
     block.stamp = {now_ns, clock_.realtime_ns()};
     return daq::ReadStatus::kScans;
   }
@@ -64,6 +67,7 @@ class ReplayBoard final : public daq::Board {
   daq::BoardInfo info_;
   std::vector<daq::ScanIndex> scan_;
   std::vector<double> raw_;
+  std::vector<std::int32_t> second_;  ///< Empty unless info_.second.
   base::Clock& clock_;
   bool running_ = false;
   std::size_t next_ = 0;

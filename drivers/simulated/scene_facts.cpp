@@ -5,7 +5,8 @@
 
 namespace stickslip::drivers {
 
-daq::BoardInfo board_info_of(const std::vector<sim::Scene>& scenes, double scan_rate_Hz) {
+daq::BoardInfo board_info_of(const std::vector<sim::Scene>& scenes, double scan_rate_Hz,
+                             std::optional<double> speed_gain_m_per_s_per_V) {
   daq::BoardInfo info;
   info.driver = "simulated";
   info.board_name = "simulated tester";
@@ -22,6 +23,14 @@ daq::BoardInfo board_info_of(const std::vector<sim::Scene>& scenes, double scan_
     info.range_max_V = converter->range_max_V;
     info.polynomial = {converter->range_min_V,
                        (converter->range_max_V - converter->range_min_V) / converter->maxdata()};
+  }
+  if (speed_gain_m_per_s_per_V) {
+    daq::SecondChannel& speed = info.second.emplace();
+    speed.maxdata = info.maxdata;
+    speed.range_min_V = info.range_min_V;
+    speed.range_max_V = info.range_max_V;
+    speed.polynomial = info.polynomial;
+    speed.gain_per_V = *speed_gain_m_per_s_per_V;
   }
   return info;
 }

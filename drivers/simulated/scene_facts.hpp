@@ -3,6 +3,7 @@
 /// first scene tells.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/daq/board.hpp"
@@ -13,7 +14,10 @@
 namespace stickslip::drivers {
 
 /// \param scenes  at least one.
-[[nodiscard]] daq::BoardInfo board_info_of(const std::vector<sim::Scene>& scenes, double scan_rate_Hz);
+/// \param speed_gain_m_per_s_per_V  of the second input; absent: there is none. Needs a converter in the
+/// scenes.
+[[nodiscard]] daq::BoardInfo board_info_of(const std::vector<sim::Scene>& scenes, double scan_rate_Hz,
+                                           std::optional<double> speed_gain_m_per_s_per_V = {});
 
 [[nodiscard]] daq::LoadCell load_cell_of(const sim::Scene& scene);
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "core/sim/belt.hpp"
 #include "core/sim/scene.hpp"
 #include "core/sim/scene_run.hpp"
 #include "drivers/simulated/playlist.hpp"
@@ -20,13 +21,17 @@ using daq::ReadStatus;
 
 class SimulatedBoard final : public daq::Board {
  public:
-  SimulatedBoard(std::shared_ptr<const Playlist> playlist, base::Clock& clock)
+  SimulatedBoard(std::shared_ptr<const Playlist> playlist, base::Clock& clock,
+                 std::optional<double> speed_gain_m_per_s_per_V)
       : playlist_(std::move(playlist)),
         clock_(clock),
-        info_(board_info_of(playlist_->scenes(), playlist_->scan_rate_Hz())),
+        info_(board_info_of(playlist_->scenes(), playlist_->scan_rate_Hz(), speed_gain_m_per_s_per_V)),
         true_scan_rate_Hz_(sim::true_scan_rate_Hz(playlist_->scenes().front(), playlist_->scan_rate_Hz())) {
     // All runs are built here: read() may not allocate.
-    for (const sim::Scene& scene : playlist_->scenes()) runs_.emplace_back(scene, playlist_->scan_rate_Hz());
+    for (const sim::Scene& scene : playlist_->scenes()) {
+      runs_.emplace_back(scene, playlist_->scan_rate_Hz());
+      belts_.push_back(sim::motion_of(scene).belt);
+    }
     play(0);
   }
 
@@ -90,14 +95,31 @@ class SimulatedBoard final : public daq::Board {
            due_ns(next_ + static_cast<std::int64_t>(wanted)) <= now_ns) {
       ++wanted;
     }
+    block.has_second = info_.second.has_value();
     std::size_t count = 0;
     while (count < wanted && next_ == block.first + static_cast<std::int64_t>(count) &&
            playlist_->has(playing_.number)) {
-      count += runs_[playing_.scene].next(std::span{block.raw}.subspan(count, wanted - count));
+      const std::size_t more =
+          runs_[playing_.scene].next(std::span{block.raw}.subspan(count, wanted - count));
+      if (block.has_second) read_speed(next_, std::span{block.second}.subspan(count, more));
+      count += more;
       next_ = next_of_playing();
       if (next_ == playing_.end()) play(playing_.number + 1);
     }
     block.count = static_cast<std::uint32_t>(count);
+  }
+
+  /// Of scans of the repetition that is playing.
+  void read_speed(base::ScanIndex first, std::span<std::int32_t> codes) const noexcept {
+    const daq::SecondChannel& channel = *info_.second;
+    const auto maxdata = static_cast<double>(channel.maxdata);
+    const double codes_per_V = maxdata / (channel.range_max_V - channel.range_min_V);
+    for (std::int32_t& code : codes) {
+      const double time_s = static_cast<double>(first++ - playing_.first) / true_scan_rate_Hz_;
+      const double volts = sim::belt_speed_m_per_s(belts_[playing_.scene], time_s) / channel.gain_per_V;
+      code = static_cast<std::int32_t>(
+          std::clamp(std::round((volts - channel.range_min_V) * codes_per_V), 0.0, maxdata));
+    }
   }
 
   std::shared_ptr<const Playlist> playlist_;
@@ -105,6 +127,7 @@ class SimulatedBoard final : public daq::Board {
   daq::BoardInfo info_;
   double true_scan_rate_Hz_;         ///< At which scans fall due; nobody is told.
   std::vector<sim::SceneRun> runs_;  ///< One for each scene.
+  std::vector<std::vector<sim::BeltSegment>> belts_;
   Repetition playing_;
   base::ScanIndex next_ = 0;
   bool running_ = false;
@@ -159,12 +182,18 @@ base::Result<SimulatedTester> make_simulated_tester(const SimulatedBoardSettings
                                scene.duration_s, rate_Hz);
     }
   }
+  if (settings.speed_gain_m_per_s_per_V && !scenes.front().quantisation) {
+    return base::usage_error(
+        "scene {}: lists no quantisation; a speed channel reads through a converter like that of the force",
+        scenes.front().name);
+  }
   SimulatedTester result;
   result.load_cell = load_cell_of(scenes.front());
   result.tester = tester_of(scenes);
   auto playlist = std::make_shared<const Playlist>(std::move(scenes), settings.repeats, rate_Hz);
   result.truth = make_simulated_truth(playlist, settings.method);
-  result.board = std::make_unique<SimulatedBoard>(std::move(playlist), clock);
+  result.board =
+      std::make_unique<SimulatedBoard>(std::move(playlist), clock, settings.speed_gain_m_per_s_per_V);
   return result;
 }
 

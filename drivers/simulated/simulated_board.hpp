@@ -26,6 +26,9 @@ struct SimulatedBoardSettings {
   int repeats = 1;  ///< Each scene so many times in a row; 0: the list round and round for ever.
   std::optional<double> scan_rate_Hz;  ///< Else that of the scenes. Granted as asked.
   friction::Method method{};           ///< By which the truth reads the traditional coefficients.
+  /// A second input reads the belt's speed through a converter like the force's, this much for each volt, not
+  /// 0; absent: there is none.
+  std::optional<double> speed_gain_m_per_s_per_V{};
 };
 
 /// Two equal implementations of the seams, made from one list of scenes, and the facts about the
@@ -42,7 +45,8 @@ struct SimulatedTester {
 ///
 /// The board waits while it is stopped: after the next start it goes on with the next scan.
 /// Usage error: a scene that cannot be read, no scene, negative repeats, rate not positive, scenes
-/// that disagree about tester, load cell, converter or (unless one is asked for) scan rate.
+/// a speed to be read but no converter in the scenes, scenes that disagree about tester, load cell, converter
+/// or (unless one is asked for) scan rate.
 [[nodiscard]] base::Result<SimulatedTester> make_simulated_tester(const SimulatedBoardSettings& settings,
                                                                   base::Clock& clock);
 

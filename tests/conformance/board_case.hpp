@@ -39,14 +39,23 @@ inline void PrintTo(const BoardCase& board_case, std::ostream* out) { *out << bo
 [[nodiscard]] BoardCase comedi_case();
 /// The same without commands: read one scan at a time.
 [[nodiscard]] BoardCase polled_comedi_case();
+/// Both with a second channel.
+[[nodiscard]] BoardCase comedi_second_case();
+[[nodiscard]] BoardCase polled_comedi_second_case();
 /// A board of the kernel, by the system's clock: the one that the environment variable
 /// STICKSLIP_COMEDI_DEVICE names, none without it. Its input repeats if STICKSLIP_COMEDI_REPEATS is set.
 [[nodiscard]] std::optional<BoardCase> comedi_device_case();
+/// The same with its channel 1 as a second channel; none unless STICKSLIP_COMEDI_SECOND is set.
+[[nodiscard]] std::optional<BoardCase> comedi_device_second_case();
 /// One repetition of the ring-down and of the stick-slip, then the end.
 [[nodiscard]] BoardCase simulated_case();
 /// The simulated board with a clock that is off, jitter and missing scans; two repetitions, then the end.
 [[nodiscard]] BoardCase simulated_gaps_case();
+/// One repetition of a ramp with the belt's speed as a second channel, then the end.
+[[nodiscard]] BoardCase simulated_speed_case();
 /// A record without gaps that does not begin at index 0, then the end.
 [[nodiscard]] BoardCase replay_case();
+/// The same with a second channel.
+[[nodiscard]] BoardCase replay_second_case();
 
 }  // namespace stickslip::test

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -43,13 +44,16 @@ class BoardConformance : public ::testing::TestWithParam<BoardCase> {
     return status;
   }
 
-  /// At least `least` readings from now on, fewer if the input ends.
+  /// At least `least` readings from now on, fewer if the input ends; those of the channels alternate.
   static std::vector<double> readings(daq::Board& board, std::size_t least,
                                       std::chrono::milliseconds timeout) {
     std::vector<double> all;
     ScanBlock block;
     while (all.size() < least && next(board, block, timeout) == ReadStatus::kScans) {
-      all.insert(all.end(), block.scans().begin(), block.scans().end());
+      for (std::uint32_t i = 0; i < block.count; ++i) {
+        all.push_back(block.raw[i]);
+        if (block.has_second) all.push_back(block.second[i]);
+      }
     }
     return all;
   }
@@ -82,6 +86,32 @@ TEST_P(BoardConformance, InfoIsPossible) {
   } else {
     EXPECT_EQ(info.maxdata, 0U);
     EXPECT_EQ(info.polynomial, (std::vector<double>{0.0, 1.0}));
+  }
+}
+
+TEST_P(BoardConformance, SecondChannelIsPossible) {
+  const auto& second = board().info().second;
+  if (!second) return;
+  EXPECT_EQ(board().info().quantity, daq::RawQuantity::kCounts);
+  EXPECT_GT(second->maxdata, 0U);
+  EXPECT_LE(second->maxdata, static_cast<std::uint32_t>(std::numeric_limits<std::int32_t>::max()));
+  ASSERT_GE(second->polynomial.size(), 2U);
+  EXPECT_NE(second->polynomial[1], 0.0);
+  EXPECT_NE(second->gain_per_V, 0.0);
+}
+
+TEST_P(BoardConformance, SecondChannelComesWithEveryScanOrWithNone) {
+  const auto& second = board().info().second;
+  start();
+  ScanBlock block;
+  block.has_second = !second;
+  for (int i = 0; i < 200 && next(block) == ReadStatus::kScans; ++i) {
+    ASSERT_EQ(block.has_second, second.has_value());
+    ASSERT_EQ(block.second_codes().size(), second ? block.count : 0U);
+    for (const std::int32_t code : block.second_codes()) {
+      ASSERT_GE(code, 0);
+      ASSERT_LE(code, static_cast<std::int64_t>(second->maxdata));
+    }
   }
 }
 
@@ -274,15 +304,20 @@ TEST_P(BoardEnd, EndOfInputRepeats) {
 std::string name_of(const ::testing::TestParamInfo<BoardCase>& instance) { return instance.param.name; }
 
 std::vector<BoardCase> all_cases() {
-  std::vector<BoardCase> cases{comedi_case(), polled_comedi_case(), simulated_case(), simulated_gaps_case(),
-                               replay_case()};
+  std::vector<BoardCase> cases{
+      comedi_case(),       polled_comedi_case(),  comedi_second_case(),   polled_comedi_second_case(),
+      simulated_case(),    simulated_gaps_case(), simulated_speed_case(), replay_case(),
+      replay_second_case()};
   if (auto device = comedi_device_case()) cases.push_back(*std::move(device));
+  if (auto device = comedi_device_second_case()) cases.push_back(*std::move(device));
   return cases;
 }
 
 INSTANTIATE_TEST_SUITE_P(Boards, BoardConformance, ::testing::ValuesIn(all_cases()), name_of);
 INSTANTIATE_TEST_SUITE_P(Boards, BoardEnd,
-                         ::testing::Values(simulated_case(), simulated_gaps_case(), replay_case()), name_of);
+                         ::testing::Values(simulated_case(), simulated_gaps_case(), simulated_speed_case(),
+                                           replay_case(), replay_second_case()),
+                         name_of);
 
 }  // namespace
 }  // namespace stickslip::test

@@ -29,4 +29,17 @@ BoardCase polled_comedi_case() {
   return fake_case("PolledComediOnAFakeTable", settings);
 }
 
+BoardCase comedi_second_case() {
+  drivers::ComediBoardSettings settings;
+  settings.second.emplace();
+  return fake_case("ComediWithSecondOnAFakeTable", settings);
+}
+
+BoardCase polled_comedi_second_case() {
+  drivers::ComediBoardSettings settings;
+  settings.acquisition = drivers::AcquisitionMode::kPolled;
+  settings.second.emplace();
+  return fake_case("PolledComediWithSecondOnAFakeTable", settings);
+}
+
 }  // namespace stickslip::test

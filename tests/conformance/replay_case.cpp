@@ -5,8 +5,10 @@
 
 namespace stickslip::test {
 
-BoardCase replay_case() {
-  const auto make = [](ManualClock& clock) {
+namespace {
+
+BoardCase recorded(const char* name, bool second) {
+  const auto make = [second](ManualClock& clock) {
     constexpr daq::ScanIndex kFirst = 10'000;
     constexpr daq::ScanIndex kCount = 2'000;
     record::Record record;
@@ -23,11 +25,19 @@ BoardCase replay_case() {
     for (daq::ScanIndex i = 0; i < kCount; ++i) {
       record.scan.push_back(kFirst + i);
       record.raw.push_back(static_cast<double>(i * 7919 % 65536));
+      if (second) record.second.push_back(static_cast<std::int32_t>(i * 31 % 4096));
     }
+    if (second) record.header.board.second.emplace().maxdata = 4095;
     drivers::Replay replay = drivers::make_replay(std::move(record), clock);
     return BoardRig{nullptr, nullptr, std::move(replay.board)};
   };
-  return {.name = "Replay", .make = make};
+  return {.name = name, .make = make};
 }
+
+}  // namespace
+
+BoardCase replay_case() { return recorded("Replay", false); }
+
+BoardCase replay_second_case() { return recorded("ReplayWithSecond", true); }
 
 }  // namespace stickslip::test

@@ -32,4 +32,17 @@ BoardCase simulated_gaps_case() {
   return {.name = "SimulatedGaps", .make = make};
 }
 
+BoardCase simulated_speed_case() {
+  const auto make = [](ManualClock& clock) {
+    const std::filesystem::path scenes = std::filesystem::path(STICKSLIP_SOURCE_DIR) / "config/scenes";
+    drivers::SimulatedBoardSettings settings;
+    settings.scenes = {scenes / "speed-ramp.toml"};
+    settings.speed_gain_m_per_s_per_V = 2e-3;
+    auto tester = drivers::make_simulated_tester(settings, clock);
+    if (!tester) throw std::runtime_error(tester.error().message);
+    return BoardRig{nullptr, nullptr, std::move(tester->board)};
+  };
+  return {.name = "SimulatedWithSpeed", .make = make};
+}
+
 }  // namespace stickslip::test

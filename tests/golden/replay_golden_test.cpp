@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -37,11 +39,13 @@ class Collector final : public pipeline::Sink {
     record.header.trigger_scan = start.trigger;
     records_.push_back(std::move(record));
   }
-  void scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp&) override {
+  void scans(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second,
+             const daq::ClockStamp&) override {
     for (const double value : raw) {
       records_.back().scan.push_back(first++);
       records_.back().raw.push_back(value);
     }
+    records_.back().second.insert(records_.back().second.end(), second.begin(), second.end());
   }
   void gap(const daq::Gap& gap) override { records_.back().gaps.push_back(gap); }
   void anchor(const daq::ClockAnchor& anchor) override { records_.back().anchors.push_back(anchor); }
@@ -80,6 +84,7 @@ std::vector<record::Record> run(drivers::OpenedBoard opened, unsigned seed, int 
   settings.analysis.scan_rate_Hz = info.scan_rate_granted_Hz;
   settings.analysis.tester = *opened.tester;
   settings.recorded = opened.recorded;
+  settings.second = info.second;
   if (!header.process.characterisation.empty()) {
     const auto known = parse_tester(header.process.characterisation, "characterisation");
     EXPECT_TRUE(known) << known.error().message;
@@ -101,6 +106,8 @@ std::vector<record::Record> run(drivers::OpenedBoard opened, unsigned seed, int 
       part.stamp = block.stamp;
       part.count = std::min(size(random), block.count - at);
       std::copy_n(block.raw.begin() + at, part.count, part.raw.begin());
+      part.has_second = block.has_second;
+      std::copy_n(block.second.begin() + at, part.count, part.second.begin());
       at += part.count;
       if (lost > 0 && part.first % lost == 0) continue;
       processor.process(part, daq::GapCause::kUnknown);
@@ -113,6 +120,7 @@ std::vector<record::Record> run(drivers::OpenedBoard opened, unsigned seed, int 
 void expect_same_results(const record::Record& a, const record::Record& b) {
   EXPECT_EQ(a.scan, b.scan);
   EXPECT_EQ(a.raw, b.raw);
+  EXPECT_EQ(a.second, b.second);
   EXPECT_EQ(a.spikes, b.spikes);
   EXPECT_EQ(a.anchors, b.anchors);
   EXPECT_EQ(a.end->results, b.end->results);
@@ -121,6 +129,7 @@ void expect_same_results(const record::Record& a, const record::Record& b) {
     test::expect_same_bits(a.cycles[i].peak, b.cycles[i].peak, "peak");
     test::expect_same_bits(a.cycles[i].onset_time_s, b.cycles[i].onset_time_s, "onset");
     test::expect_same_bits(a.cycles[i].delta_mu, b.cycles[i].delta_mu, "delta_mu");
+    test::expect_same_bits(a.cycles[i].pull_speed_m_per_s, b.cycles[i].pull_speed_m_per_s, "pull_speed");
   }
 }
 
@@ -137,10 +146,20 @@ TEST_P(ReplayGolden, LiveReplayAndBatchAgreeToTheLastBit) {
   const std::filesystem::path file = std::filesystem::temp_directory_path() /
                                      fmt::format("stickslip-golden-{}-{}.h5", ::getpid(), GetParam());
   std::filesystem::remove(file);
-  for (const char* name : {"ring-down-at-12-in-per-min.toml", "stick-slip-at-12-in-per-min.toml"}) {
-    SCOPED_TRACE(name);
+  struct Bench {
+    const char* scene;
+    std::optional<double> speed_gain_m_per_s_per_V;  ///< With a speed channel.
+  };
+  const std::array<Bench, 4> benches{{{"ring-down-at-12-in-per-min.toml", {}},
+                                      {"stick-slip-at-12-in-per-min.toml", {}},
+                                      {"stick-slip-at-12-in-per-min.toml", 1e-3},
+                                      {"speed-ramp.toml", 2e-3}}};
+  for (const Bench& bench : benches) {
+    SCOPED_TRACE(bench.scene);
     test::ManualClock clock;
-    auto simulated = drivers::open_board(scene(name), clock);
+    drivers::BoardConfig config = scene(bench.scene);
+    config.simulated.speed_gain_m_per_s_per_V = bench.speed_gain_m_per_s_per_V;
+    auto simulated = drivers::open_board(config, clock);
     ASSERT_TRUE(simulated) << simulated.error().message;
     const std::vector<record::Record> live = run(std::move(*simulated), 1, GetParam());
     ASSERT_EQ(live.size(), 1U);
@@ -150,10 +169,12 @@ TEST_P(ReplayGolden, LiveReplayAndBatchAgreeToTheLastBit) {
     ASSERT_TRUE(record::publish_record(live[0], file));
     const auto stored = record::read_record(file);
     ASSERT_TRUE(stored) << stored.error().message;
+    EXPECT_EQ(stored->second.size(), bench.speed_gain_m_per_s_per_V ? stored->raw.size() : 0U);
     const auto batch = analyse(*stored);
     ASSERT_TRUE(batch) << batch.error().message;
     EXPECT_EQ(batch->results, live[0].end->results);
     EXPECT_EQ(batch->spikes, live[0].spikes);
+    test::expect_same_cycles(batch->cycles, live[0].cycles);
 
     drivers::BoardConfig replay;
     replay.driver = drivers::Driver::kReplay;

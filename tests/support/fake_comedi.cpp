@@ -67,7 +67,12 @@ int FakeComedi::stage_of(ComediCommand& command) const {
   };
   clamp(command.scan_begin_source, command.scan_begin_argument);
   clamp(command.convert_source, command.convert_argument);
-  command.scan_end_argument = 1;
+  command.scan_end_argument = command.channel_count();
+  // All conversions of a scan must fit into it.
+  if (command.scan_begin_source == trigger::kTimer && command.convert_source == trigger::kTimer) {
+    command.scan_begin_argument =
+        std::max(command.scan_begin_argument, command.convert_argument * command.channel_count());
+  }
   if (!(command == asked)) return 3;
   // 4: rounded to nearest.
   const auto round = [this](unsigned source, unsigned& argument) {
@@ -82,6 +87,10 @@ int FakeComedi::stage_of(ComediCommand& command) const {
 int FakeComedi::command_test(ComediCommand& command) {
   if (world_.removed || command.subdevice != 0) return -ENODEV;
   if (command.channel >= kChannelCount || command.range >= world_.ranges.size()) return -EINVAL;
+  if (command.second &&
+      (command.second->channel >= kChannelCount || command.second->range >= world_.ranges.size())) {
+    return -EINVAL;
+  }
   world_.tested.push_back(command);
   return stage_of(command);
 }
@@ -122,9 +131,12 @@ std::int64_t FakeComedi::sample_size() const {
   return (world_.flags & drivers::subdevice_flag::kLargeSample) != 0 ? 4 : 2;
 }
 
+std::int64_t FakeComedi::scan_size() const { return sample_size() * command_.channel_count(); }
+
 std::int64_t FakeComedi::period_ns() const {
-  return command_.scan_begin_source == trigger::kTimer ? command_.scan_begin_argument
-                                                       : command_.convert_argument;
+  return command_.scan_begin_source == trigger::kTimer
+             ? command_.scan_begin_argument
+             : static_cast<std::int64_t>(command_.convert_argument) * command_.channel_count();
 }
 
 void FakeComedi::run_board() noexcept {
@@ -135,9 +147,9 @@ void FakeComedi::run_board() noexcept {
   const std::int64_t last_wake_ns = (clock_.monotonic_ns() - began_ns_) / interval_ns * interval_ns;
   const double period_ns = static_cast<double>(this->period_ns()) * (1.0 + world_.clock_error);
   const auto taken = static_cast<std::int64_t>(static_cast<double>(last_wake_ns) / period_ns);
-  taken_bytes_ = taken * sample_size();
+  taken_bytes_ = taken * scan_size();
   if (world_.ends_after_scans >= 0 && taken >= world_.ends_after_scans) {
-    taken_bytes_ = world_.ends_after_scans * sample_size();
+    taken_bytes_ = world_.ends_after_scans * scan_size();
     ended_ = true;
     return;
   }
@@ -146,7 +158,7 @@ void FakeComedi::run_board() noexcept {
     return;
   }
   if (world_.overrun_at_scan >= 0 && taken >= world_.overrun_at_scan) {
-    taken_bytes_ = std::max(read_bytes_, world_.overrun_at_scan * sample_size());
+    taken_bytes_ = std::max(read_bytes_, world_.overrun_at_scan * scan_size());
     world_.overrun_at_scan = -1;
     overrun_ = true;
     clock_.advance(world_.halt);
@@ -183,10 +195,12 @@ int FakeComedi::poll(std::chrono::milliseconds timeout) noexcept {
   }
 }
 
-int FakeComedi::read_one(const ComediCommand& /*input*/, std::uint32_t& code) noexcept {
+int FakeComedi::read_one(const ComediCommand& input, std::uint32_t& code) noexcept {
   if (world_.removed) return -ENODEV;
   if (world_.used_by_another || running_) return -EBUSY;
-  code = world_.reading(insn_count_++);
+  if (!first_channel_) first_channel_ = input.channel;
+  const bool first = input.channel == *first_channel_;
+  code = first ? world_.reading(insn_count_++) : world_.second_reading(insn_count_ - 1);
   return 1;
 }
 
@@ -207,7 +221,9 @@ int FakeComedi::read(std::span<std::byte> buffer) noexcept {
   const auto count = std::min({static_cast<std::int64_t>(buffer.size()), taken_bytes_ - read_bytes_,
                                static_cast<std::int64_t>(world_.largest_read)});
   for (std::int64_t i = 0; i < count; ++i, ++read_bytes_) {
-    const std::uint32_t reading = world_.reading(read_bytes_ / sample_size());
+    const std::int64_t scan = read_bytes_ / scan_size();
+    const bool first = read_bytes_ % scan_size() < sample_size();
+    const std::uint32_t reading = first ? world_.reading(scan) : world_.second_reading(scan);
     const auto byte = static_cast<unsigned>(read_bytes_ % sample_size());
     buffer[static_cast<std::size_t>(i)] = static_cast<std::byte>((reading >> (8U * byte)) & 0xFFU);
   }

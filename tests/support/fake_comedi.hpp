@@ -56,6 +56,13 @@ struct FakeComediWorld {
 
   /// What is measured at scan `i` since the command, a code; empty: see reading().
   std::function<std::uint32_t(std::int64_t)> signal;
+  std::function<std::uint32_t(std::int64_t)> second_signal;  ///< The same of second_reading().
+
+  /// The second channel of scan `i` since the command; repeats after 65521.
+  [[nodiscard]] std::uint32_t second_reading(std::int64_t i) const {
+    if (second_signal) return second_signal(i);
+    return static_cast<std::uint32_t>(i * 31 % (static_cast<std::int64_t>(maxdata) - 14));
+  }
 
   /// Reading number `i` since the command: covers all codes but the rails, repeats only after 65533.
   [[nodiscard]] std::uint32_t reading(std::int64_t i) const {
@@ -102,6 +109,7 @@ class FakeComedi final : public drivers::ComediCalls {
 
   [[nodiscard]] int stage_of(drivers::ComediCommand& command) const;
   [[nodiscard]] std::int64_t sample_size() const;
+  [[nodiscard]] std::int64_t scan_size() const;
   [[nodiscard]] std::int64_t period_ns() const;
   /// The driver's timer as of now: scans taken since the command, stopped by an overrun.
   void run_board() noexcept;
@@ -116,6 +124,7 @@ class FakeComedi final : public drivers::ComediCalls {
   std::int64_t taken_bytes_ = 0;  ///< Since the command.
   std::int64_t read_bytes_ = 0;
   std::int64_t insn_count_ = 0;
+  std::optional<unsigned> first_channel_;  ///< Of the readings one at a time.
 };
 
 }  // namespace stickslip::test

@@ -26,6 +26,9 @@ inline std::vector<std::uint64_t> write_journal(const std::filesystem::path& pat
     while (end < record.raw.size() && end - begin < 7 && record.scan[end] == record.scan[end - 1] + 1) ++end;
     wrote(journal->append_scans(record.scan[begin], std::span{record.raw}.subspan(begin, end - begin),
                                 {static_cast<std::int64_t>(begin), 0}));
+    if (!record.second.empty()) {
+      wrote(journal->append_second(record.scan[begin], std::span{record.second}.subspan(begin, end - begin)));
+    }
     if (!record.true_coefficient.empty()) {
       wrote(journal->append_true_coefficients(
           record.scan[begin], std::span{record.true_coefficient}.subspan(begin, end - begin)));

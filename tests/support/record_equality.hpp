@@ -37,6 +37,7 @@ inline void expect_same_header(const record::RecordHeader& a, const record::Reco
   EXPECT_EQ(a.board.acquisition, b.board.acquisition);
   EXPECT_EQ(a.board.scan_rate_requested_Hz, b.board.scan_rate_requested_Hz);
   EXPECT_EQ(a.board.scan_rate_granted_Hz, b.board.scan_rate_granted_Hz);
+  EXPECT_EQ(a.board.second, b.board.second);
   ASSERT_EQ(a.load_cell.has_value(), b.load_cell.has_value());
   if (a.load_cell) {
     EXPECT_EQ(a.load_cell->gain_N_per_V, b.load_cell->gain_N_per_V);
@@ -96,6 +97,7 @@ inline void expect_same_end(const record::EndRecord& a, const record::EndRecord&
   EXPECT_EQ(a.cause, b.cause);
   EXPECT_EQ(a.end_realtime_ns, b.end_realtime_ns);
   EXPECT_EQ(a.compute_time_s, b.compute_time_s);
+  EXPECT_EQ(a.read_latency, b.read_latency);
   EXPECT_EQ(a.results, b.results);
   ASSERT_EQ(a.truth.has_value(), b.truth.has_value());
   if (a.truth) expect_same_truth(*a.truth, *b.truth);
@@ -104,6 +106,7 @@ inline void expect_same_end(const record::EndRecord& a, const record::EndRecord&
 inline void expect_same_record(const record::Record& a, const record::Record& b) {
   expect_same_header(a.header, b.header);
   EXPECT_EQ(a.scan, b.scan);
+  EXPECT_EQ(a.second, b.second);
   ASSERT_EQ(a.raw.size(), b.raw.size());
   for (std::size_t i = 0; i < a.raw.size(); ++i) expect_same_bits(a.raw[i], b.raw[i], "raw");
   ASSERT_EQ(a.true_coefficient.size(), b.true_coefficient.size());

@@ -67,6 +67,8 @@ inline record::RecordHeader sample_header() {
   header.board.acquisition = "command";
   header.board.scan_rate_requested_Hz = 350.0;
   header.board.scan_rate_granted_Hz = 350.0000350000035;
+  header.board.second = daq::SecondChannel{daq::SecondQuantity::kPullSpeed, 4,   4095,   -2.5,   2.5,
+                                           {-2.5, 5.0 / 4095.0, 1e-9},      1.0, "hard", 0.0021, 0.05};
   header.load_cell = daq::LoadCell{9.8, 0.01};
   header.calibration = {"2026-05-01",
                         "DKD-1234",
@@ -158,6 +160,7 @@ inline record::EndRecord sample_end() {
   end.cause = "unloaded";
   end.end_realtime_ns = 1'795'265'583'000'000'001;
   end.compute_time_s = 0.012;
+  end.read_latency = daq::LatencyHistogram{{1200, 30, 0, 2}, 130e-6};
   end.results = sample_results();
   end.cycles = sample_cycles();
   end.spikes = {1003, 1041};
@@ -172,6 +175,7 @@ inline record::Record sample_record() {
   for (int i = 0; i < 40; ++i) {
     record.scan.push_back(i < 20 ? 1000 + i : 1020 + i);
     record.raw.push_back(i == 0 ? 0.0 : i == 39 ? 65535.0 : 30000.0 + 17.0 * i);
+    record.second.push_back(i == 7 ? daq::SecondChannel::kNoCode : i == 39 ? 4095 : 100 * i);
     record.true_coefficient.push_back(i == 5 ? std::nan("") : 0.3 + 0.01 * std::sin(0.1 * i));
   }
   record.gaps = {{1020, 20, true, daq::GapCause::kOverrun}};

@@ -31,11 +31,19 @@ struct AnalysedTest {
 };
 
 /// Plays the scene so many times and analyses every test that the segmenter finds.
-inline std::vector<AnalysedTest> analyse_scene(const std::filesystem::path& scene, int repeats) {
+/// \param speed_gain_m_per_s_per_V  of a speed channel, which then takes the place of the plan; absent: the
+/// plan
+///        is known.
+inline std::vector<AnalysedTest> analyse_scene(const std::filesystem::path& scene, int repeats,
+                                               std::optional<double> speed_gain_m_per_s_per_V = {}) {
   using Event = pipeline::Segmenter::Event;
   ManualClock clock;
-  auto tester =
-      drivers::make_simulated_tester({.scenes = {scene}, .repeats = repeats, .scan_rate_Hz = {}}, clock);
+  auto tester = drivers::make_simulated_tester({.scenes = {scene},
+                                                .repeats = repeats,
+                                                .scan_rate_Hz = {},
+                                                .method = {},
+                                                .speed_gain_m_per_s_per_V = speed_gain_m_per_s_per_V},
+                                               clock);
   if (!tester) throw std::runtime_error(tester.error().message);
   daq::Board& board = *tester->board;
   const daq::Calibration calibration{board.info(), tester->load_cell, tester->tester.normal_load_N()};
@@ -43,6 +51,11 @@ inline std::vector<AnalysedTest> analyse_scene(const std::filesystem::path& scen
   analysis_settings.scan_rate_Hz = board.info().scan_rate_granted_Hz;
   analysis_settings.step_coefficient = calibration.step_coefficient();
   analysis_settings.tester = tester->tester;
+  const std::optional<daq::SecondChannel> channel = board.info().second;
+  if (channel) {
+    analysis_settings.tester.speed_course.reset();
+    analysis_settings.speed_step_m_per_s = channel->step();
+  }
   pipeline::SegmenterSettings segmenter_settings;
   segmenter_settings.scan_rate_Hz = analysis_settings.scan_rate_Hz;
   segmenter_settings.step_coefficient = analysis_settings.step_coefficient;
@@ -51,8 +64,13 @@ inline std::vector<AnalysedTest> analyse_scene(const std::filesystem::path& scen
   std::vector<AnalysedTest> tests;
   std::unique_ptr<friction::TestAnalysis> analysis;
   AnalysedTest test;
-  std::deque<double> before;  // raw, from before the trigger
-  const auto add = [&](base::ScanIndex index, double raw) {
+  struct Scan {
+    double raw;
+    std::int32_t speed;
+  };
+  std::deque<Scan> before;  // from before the trigger
+  const auto add = [&](base::ScanIndex index, double raw, std::int32_t speed) {
+    if (channel) analysis->speed(channel->value(speed));
     analysis->add(index, calibration.coefficient(raw), calibration.saturated(raw));
   };
   const auto finish = [&](base::ScanIndex end, Event event) {
@@ -64,21 +82,21 @@ inline std::vector<AnalysedTest> analyse_scene(const std::filesystem::path& scen
     tests.push_back(std::move(test));
     analysis.reset();
   };
-  const auto take = [&](base::ScanIndex index, double raw) {
+  const auto take = [&](base::ScanIndex index, double raw, std::int32_t speed) {
     const Event event = segmenter.observe(index, calibration.coefficient(raw));
     if (analysis) {
-      add(index, raw);
+      add(index, raw, speed);
       if (event == Event::kUnloaded || event == Event::kNoRelativeMotion) finish(index + 1, event);
       return;
     }
-    before.push_back(raw);
+    before.push_back({raw, speed});
     if (event == Event::kTestStarts) {
       analysis = std::make_unique<friction::TestAnalysis>(analysis_settings);
       test = {};
       test.trigger = index;
       test.first = index + 1 - static_cast<base::ScanIndex>(before.size());
       for (std::size_t k = 0; k < before.size(); ++k) {
-        add(test.first + static_cast<base::ScanIndex>(k), before[k]);
+        add(test.first + static_cast<base::ScanIndex>(k), before[k].raw, before[k].speed);
       }
       before.clear();
     } else if (before.size() > segmenter_settings.pre_trigger_scans()) {
@@ -94,7 +112,7 @@ inline std::vector<AnalysedTest> analyse_scene(const std::filesystem::path& scen
     if (status == daq::ReadStatus::kTimeout) continue;
     if (status != daq::ReadStatus::kScans) break;
     for (std::uint32_t k = 0; k < block.count; ++k) {
-      take(block.first + static_cast<base::ScanIndex>(k), block.raw[k]);
+      take(block.first + static_cast<base::ScanIndex>(k), block.raw[k], block.second[k]);
     }
     end = block.end();
   }

@@ -42,6 +42,15 @@ def holds_more_than_a_header(journal):
     return journal.stat().st_size > len(head) + payload_size
 
 
+def ending(record):
+    """Status, reasons and cause of the end."""
+    import h5py
+    with h5py.File(record) as file:
+        process = file["entry/process"]
+        return (process["status"].asstr()[()], [why.decode() for why in process["reasons"][()]],
+                process["end_cause"].asstr()[()])
+
+
 class Folder(unittest.TestCase):
     """Each test works in a folder of its own."""
 
@@ -202,6 +211,7 @@ class Signals(Folder):
         manager.wait_for(lambda text: "STOPPING=1" in text)
         [record] = self.records()
         self.assertEqual([f for f in (self.folder / "records").iterdir() if f != record], [])
+        self.assertEqual(ending(record), ("interrupted", ["the program stopped before the end of the test"], "stopped"))
         shown = run(CLI, "analyze", "--json", record)
         self.assertEqual(shown.returncode, 0, shown.stderr)
 
@@ -230,6 +240,8 @@ class Signals(Folder):
         finished = journals[0].with_suffix(".h5")
         self.assertTrue(finished.exists())
         self.assertFalse(journals[0].exists())
+        self.assertEqual(ending(finished),
+                         ("interrupted", ["the program stopped before the end of the test"], "program-died"))
         process.send_signal(signal.SIGTERM)
         process.communicate(timeout=TIMEOUT_S)
         self.assertEqual(process.returncode, 0)

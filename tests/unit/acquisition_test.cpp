@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/latency_histogram.hpp"
+#include "core/daq/latency_histogram.hpp"
 #include "drivers/comedi/comedi_board.hpp"
 #include "tests/support/allocation_count.hpp"
 #include "tests/support/fake_comedi.hpp"
@@ -121,17 +121,17 @@ TEST(RealtimeDeathTest, LowerPriorityIsTakenWhereOnlyThatIsAllowed) {
 }
 
 TEST(LatencyHistogram, BinsAreOctavesAndNothingIsLost) {
-  LatencyHistogram latency;
+  daq::LatencyHistogram latency;
   latency.add(-5.0);      // the reference itself was late
   latency.add(15'999.0);  // below 16 µs
   latency.add(16'000.0);  // the limit belongs to the next bin
   latency.add(1e10);      // 10 s
   EXPECT_EQ(latency.counts()[0], 2U);
   EXPECT_EQ(latency.counts()[1], 1U);
-  EXPECT_EQ(latency.counts()[LatencyHistogram::kBins - 1], 1U);
+  EXPECT_EQ(latency.counts()[daq::LatencyHistogram::kBins - 1], 1U);
   EXPECT_EQ(latency.largest_s(), 10.0);
-  EXPECT_EQ(LatencyHistogram::limit_s(0), 16e-6);
-  EXPECT_EQ(LatencyHistogram::limit_s(1), 32e-6);
+  EXPECT_EQ(daq::LatencyHistogram::limit_s(0), 16e-6);
+  EXPECT_EQ(daq::LatencyHistogram::limit_s(1), 32e-6);
 }
 
 }  // namespace

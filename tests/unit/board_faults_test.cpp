@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
 #include <deque>
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <random>
 #include <string>
 #include <vector>
@@ -38,9 +40,9 @@ struct Life {
 /// Thread-safe; keeps what the daemon had to say.
 class Diary final : public Facts {
  public:
-  void board_missing(std::string_view why, double /*retry_in_s*/) override {
+  void board_unavailable(std::string_view state, std::string_view why, double /*retry_in_s*/) override {
     const std::lock_guard lock{mutex_};
-    losses.emplace_back(why);
+    losses.push_back(fmt::format("{}: {}", state, why));
   }
   void gap_seen(const daq::Gap& gap) override {
     const std::lock_guard lock{mutex_};
@@ -117,7 +119,7 @@ class BoardFaults : public testing::Test {
       settings.continues = continues;
       auto board = drivers::make_comedi_board(settings, time, std::make_unique<FakeComedi>(life.world, time));
       if (!board) return tl::unexpected(board.error());
-      return drivers::OpenedBoard{std::move(*board), nullptr, {}, {}, {}, nullptr};
+      return drivers::OpenedBoard{std::move(*board), nullptr, {}, {}, {}, nullptr, {}};
     };
     App running{std::move(config), std::move(world)};
     app = &running;
@@ -195,10 +197,26 @@ TEST_F(BoardFaults, OverrunInATestIsAnEstimatedGapInItsRecord) {
 
 TEST_F(BoardFaults, AnotherOwnerIsNamedAndWaitedFor) {
   live().world.used_by_another = true;
+  live().world.locked_by_another = true;
   live().world.removed_at_scan = 100;
   run();
-  EXPECT_THAT(diary_.losses, Contains(HasSubstr("another program is using it")));
-  EXPECT_EQ(status_.scan_count > 0, true);
+  // Whoever holds it, by a command or by a lock, the state says that somebody does.
+  EXPECT_EQ(states_, (std::vector<std::string>{"starting", "board busy", "board busy", "board missing"}));
+  EXPECT_THAT(diary_.losses, Contains(HasSubstr("board busy: /dev/comedi0: another program is using it")));
+  EXPECT_THAT(diary_.losses, Contains(HasSubstr("board busy: /dev/comedi0: subdevice 0 is locked by")));
+  EXPECT_THAT(lines_, Contains(HasSubstr("board busy: /dev/comedi0: another program is using it")));
+  EXPECT_GT(status_.scan_count, 0U);
+}
+
+TEST_F(BoardFaults, LackOfPermissionIsAStateOfItsOwnAndWaitedFor) {
+  live().world.open_error = EACCES;
+  live().world.removed_at_scan = 100;
+  run();
+  EXPECT_EQ(states_, (std::vector<std::string>{"starting", "no permission", "board missing"}));
+  // Which group it is for depends on the device file; that it is named, not.
+  EXPECT_THAT(lines_, Contains(HasSubstr("no permission: /dev/comedi0: permission denied")));
+  EXPECT_THAT(diary_.losses, Contains(HasSubstr("group iocard")));
+  EXPECT_GT(status_.scan_count, 0U);
 }
 
 TEST_F(BoardFaults, RateOfASlowQuartzIsMeasuredRecordedAndFlagged) {
@@ -225,6 +243,20 @@ TEST_F(BoardFaults, RateOfAGoodQuartzIsNotFlagged) {
   ASSERT_EQ(records_.size(), 1U);
   EXPECT_TRUE(records_[0].end->results.scan_rate_measured.value);
   EXPECT_TRUE(records_[0].end->results.findings.empty());
+}
+
+TEST_F(BoardFaults, HowLateTheScansOfATestWereReadStandsInItsRecord) {
+  live().world.removed_at_scan = 3500;
+  run();
+  ASSERT_EQ(records_.size(), 1U);
+  ASSERT_TRUE(records_[0].end->read_latency);
+  const daq::LatencyHistogram& latency = *records_[0].end->read_latency;
+  // The board wakes its reader each 8 ms, so that a last scan is read up to that late; three scans a block.
+  EXPECT_LE(latency.largest_s(), 0.008 + 1e-6);
+  EXPECT_GE(latency.largest_s(), 0.001);
+  const auto reads = std::accumulate(latency.counts().begin(), latency.counts().end(), std::uint64_t{0});
+  EXPECT_GE(reads, 1100U);
+  EXPECT_LE(reads, 1260U);
 }
 
 // Whatever happens in whatever order: each loss has a text, indices only rise, every jump is a gap of the
@@ -261,7 +293,9 @@ TEST_F(BoardFaults, NoSequenceOfFaultsLeavesTheDaemonUnnamed) {
   }
   run();
   EXPECT_EQ(next_life_, lives_.size());
-  for (const std::string& state : states_) EXPECT_THAT(state, testing::AnyOf("starting", "board missing"));
+  for (const std::string& state : states_) {
+    EXPECT_THAT(state, testing::AnyOf("starting", "board missing", "board busy"));
+  }
   for (const std::string& loss : diary_.losses) EXPECT_FALSE(loss.empty());
   EXPECT_EQ(diary_.losses.size(), lives_.size() + 1);  // the attempt after the last life is one too
   daq::ScanIndex end = 0;

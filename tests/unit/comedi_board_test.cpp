@@ -82,6 +82,43 @@ TEST_F(ComediBoard, SamplesCutInTwoAreJoined) {
   }
 }
 
+TEST_F(ComediBoard, ChannelsOfAScanStayTogetherHoweverTheyAreCut) {
+  settings_.second.emplace();
+  for (const unsigned large : {0U, drivers::subdevice_flag::kLargeSample}) {
+    world_.flags = (world_.flags & ~drivers::subdevice_flag::kLargeSample) | large;
+    for (const int size : {1, 3, 5, 1 << 20}) {
+      SCOPED_TRACE(size);
+      world_.largest_read = size;
+      make_and_start();
+      EXPECT_EQ(world_.tested.back().second, (drivers::ComediInput{1, 0}));
+      std::int64_t scan = 0;
+      while (scan < 300) {
+        ASSERT_EQ(read(), ReadStatus::kScans);
+        ASSERT_EQ(block_.second_codes().size(), block_.count);
+        for (std::uint32_t i = 0; i < block_.count; ++i, ++scan) {
+          ASSERT_EQ(block_.raw[i], static_cast<double>(world_.reading(scan)));
+          ASSERT_EQ(block_.second[i], static_cast<std::int64_t>(world_.second_reading(scan)));
+        }
+      }
+    }
+  }
+}
+
+TEST_F(ComediBoard, PolledBoardReadsBothChannelsOfAScan) {
+  settings_.second.emplace();
+  settings_.acquisition = drivers::AcquisitionMode::kPolled;
+  make_and_start();
+  // The first reading of each was spent on finding out whether the board answers.
+  std::int64_t reading = 1;
+  while (reading < 300) {
+    ASSERT_EQ(read(), ReadStatus::kScans);
+    for (std::uint32_t i = 0; i < block_.count; ++i, ++reading) {
+      ASSERT_EQ(block_.raw[i], static_cast<double>(world_.reading(reading)));
+      ASSERT_EQ(block_.second[i], static_cast<std::int64_t>(world_.second_reading(reading)));
+    }
+  }
+}
+
 // What was cut off before a restart must not be joined with what comes after it.
 TEST_F(ComediBoard, HalfASampleDoesNotSurviveARestart) {
   world_.largest_read = 3;
@@ -268,7 +305,7 @@ TEST_F(ComediBoard, BoardInUseByAnotherProgramRefusesToStart) {
   world_.used_by_another = true;
   const auto started = board_->start();
   ASSERT_FALSE(started);
-  EXPECT_EQ(started.error().kind, base::ErrorKind::kFailure);
+  EXPECT_EQ(started.error().kind, base::ErrorKind::kBusy);
   EXPECT_THAT(started.error().message, HasSubstr("another program"));
   EXPECT_EQ(read(), ReadStatus::kTimeout);
   world_.used_by_another = false;

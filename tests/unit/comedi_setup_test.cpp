@@ -125,6 +125,46 @@ TEST_F(ComediSetup, NarrowestRangeThatHoldsTheVoltagesIsTaken) {
   EXPECT_EQ(setup->info.range_max_V, 5.0);
 }
 
+TEST_F(ComediSetup, SecondChannelHasItsOwnRangeAndConversion) {
+  settings_.second = {daq::SecondQuantity::kSledPosition, 3, 0.0, 4.0, 0.02, 0.5};
+  const auto setup = agree();
+  ASSERT_TRUE(setup) << setup.error().message;
+  EXPECT_EQ(setup->command.range, 0U);
+  EXPECT_EQ(setup->command.second, (drivers::ComediInput{3, 1}));
+  EXPECT_EQ(setup->command.scan_end_argument, 2U);
+  ASSERT_TRUE(setup->info.second);
+  const daq::SecondChannel& second = *setup->info.second;
+  EXPECT_EQ(second.quantity, daq::SecondQuantity::kSledPosition);
+  EXPECT_EQ(second.channel, 3);
+  EXPECT_EQ(second.maxdata, 65535U);
+  EXPECT_EQ(second.range_max_V, 5.0);
+  EXPECT_EQ(second.calibration, "hard");
+  // (−5 V + 10 V · 65535/65535 − 0.5 V) · 20 mm/V
+  EXPECT_DOUBLE_EQ(second.value(65535), 4.5 * 0.02);
+  EXPECT_NEAR(second.step(), 10.0 / 65535.0 * 0.02, 1e-15);  // A difference of numbers of 0.1.
+  EXPECT_TRUE(std::isnan(second.value(daq::SecondChannel::kNoCode)));
+}
+
+TEST_F(ComediSetup, BoardThatConvertsByATimerAloneTakesTwoConversionsAScan) {
+  world_.has_scan_timer = false;
+  world_.has_convert_now = false;
+  settings_.second.emplace();
+  const auto setup = agree();
+  ASSERT_TRUE(setup) << setup.error().message;
+  EXPECT_EQ(setup->command.convert_argument, 1'429'000U);  // Half of 2857143 ns, rounded to 1 us.
+  EXPECT_DOUBLE_EQ(setup->info.scan_rate_granted_Hz, 1e9 / 2'858'000.0);
+}
+
+TEST_F(ComediSetup, SecondChannelThatCannotBeIsRefused) {
+  settings_.second.emplace().channel = settings_.channel;
+  expect_refusal(ErrorKind::kUsage, "is that of the force");
+  settings_.second->channel = 8;
+  expect_refusal(ErrorKind::kUsage, "channels 0 … 7");
+  settings_.second->channel = 1;
+  settings_.second->range_max_V = 20.0;
+  expect_refusal(ErrorKind::kUsage, "it offers: -10 … 10 V, -5 … 5 V");
+}
+
 TEST_F(ComediSetup, RangesInOtherUnitsAreNotVolts) {
   world_.ranges = {{-20.0, 20.0, false}, {-5.0, 5.0, true}};
   expect_refusal(ErrorKind::kUsage, "it offers: -5 … 5 V");
@@ -148,13 +188,19 @@ TEST_F(ComediSetup, SubdeviceThatCannotStreamIsRefused) {
 }
 
 TEST_F(ComediSetup, OpeningErrorsSayWhatToDo) {
-  const std::pair<int, std::string> cases[] = {{EACCES, "iocard"},          {EPERM, "iocard"},
-                                               {ENOENT, "load its driver"}, {ENODEV, "no board behind"},
-                                               {ENXIO, "no board behind"},  {EBUSY, "another program"},
-                                               {EIO, "Input/output error"}};
-  for (const auto& [error, part] : cases) {
-    world_.open_error = error;
-    expect_refusal(ErrorKind::kFailure, part);
+  struct Case {
+    int error;
+    ErrorKind kind;  ///< Who has to act.
+    std::string part;
+  };
+  const Case cases[] = {
+      {EACCES, ErrorKind::kNoPermission, "iocard"},     {EPERM, ErrorKind::kNoPermission, "iocard"},
+      {EBUSY, ErrorKind::kBusy, "another program"},     {ENOENT, ErrorKind::kFailure, "load its driver"},
+      {ENODEV, ErrorKind::kFailure, "no board behind"}, {ENXIO, ErrorKind::kFailure, "no board behind"},
+      {EIO, ErrorKind::kFailure, "Input/output error"}};
+  for (const Case& opened : cases) {
+    world_.open_error = opened.error;
+    expect_refusal(opened.kind, opened.part);
   }
 }
 

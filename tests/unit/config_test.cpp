@@ -57,7 +57,7 @@ TEST(Config, ShippedFileShowsTheDefaults) {
   const std::regex key{R"(^# ([a-z_]+ = .*))"};
   // These have no default, or one that cannot be written.
   const std::regex example{
-      R"(^# (scan_rate|file|subdevice|pull_speed|stiffness|socket|load_cell_gain|sled_mass|gravity|load_cell_zero|characterisation|replicate) = .*|^# calibration = "calibrations".*)"};
+      R"(^# (scan_rate|file|subdevice|pull_speed|stiffness|socket|speed_gain|speed_channel|position_gain|position_channel|load_cell_gain|sled_mass|gravity|load_cell_zero|characterisation|replicate) = .*|^# calibration = "calibrations".*)"};
   for (std::string line; std::getline(in, line);) {
     std::smatch match;
     const bool is_default = std::regex_match(line, match, key) && !std::regex_match(line, example);

@@ -16,11 +16,13 @@ class Diary final : public Sink {
     starts.push_back(start);
     next = start.first;
   }
-  void scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp&) override {
+  void scans(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second,
+             const daq::ClockStamp&) override {
     EXPECT_EQ(first, next) << "scans arrive in order, each once";
     next = first + static_cast<daq::ScanIndex>(raw.size());
     if (words.empty() || words.back() != "scans") words.push_back("scans");
     values.insert(values.end(), raw.begin(), raw.end());
+    codes.insert(codes.end(), second.begin(), second.end());
   }
   void gap(const daq::Gap& gap) override {
     words.push_back("gap");
@@ -36,6 +38,7 @@ class Diary final : public Sink {
   std::vector<std::string> words;
   std::vector<TestStart> starts;
   std::vector<double> values;
+  std::vector<std::int32_t> codes;
   std::vector<daq::Gap> gaps;
   std::vector<TestEnd> ends;
   daq::ScanIndex next = 0;
@@ -70,6 +73,7 @@ class ProcessorTest : public testing::Test {
       daq::ScanBlock block;
       block.first = first;
       while (first < end && static_cast<daq::ScanIndex>(block.count) < block_size) {
+        block.second[block.count] = static_cast<std::int32_t>(first);
         block.raw[block.count++] = reading(first++);
       }
       processor.process(block, daq::GapCause::kRingFull);
@@ -94,6 +98,24 @@ TEST_F(ProcessorTest, CutsTestsOutWithTheirPreTriggerScans) {
   EXPECT_EQ(diary_.ends[1].number, 2);
   EXPECT_EQ(processor.test_number(), 3);
   EXPECT_EQ(processor.scan_count(), 800U);
+}
+
+// The code of scan i is i.
+TEST_F(ProcessorTest, SecondChannelGoesWithItsScansThoseBeforeTheTriggerToo) {
+  board_.second.emplace().maxdata = 1000;
+  settings_.second = board_.second;
+  Processor processor = make();
+  feed(processor, 0, kEnd);
+  ASSERT_EQ(diary_.codes.size(), diary_.values.size());
+  for (std::size_t i = 0; i < diary_.codes.size(); ++i) {
+    ASSERT_EQ(diary_.codes[i], diary_.starts.at(0).first + static_cast<daq::ScanIndex>(i));
+  }
+}
+
+TEST_F(ProcessorTest, WithoutASecondChannelNoneIsTold) {
+  Processor processor = make();
+  feed(processor, 0, kEnd);
+  EXPECT_TRUE(diary_.codes.empty());
 }
 
 // How scans are divided into blocks is an accident of timing and must not matter.
@@ -124,6 +146,23 @@ TEST_F(ProcessorTest, TellsAGapInsideATestAndForgetsWhatWasBeforeOneOutside) {
   EXPECT_EQ(diary_.gaps[0].cause, daq::GapCause::kRingFull);
   EXPECT_EQ(processor.gap_count(), 2U);
   EXPECT_EQ(diary_.ends.at(0).results.lost_scan_count.value, 10.0);
+}
+
+// The clocks of then are the record's: those of its replay say nothing of it.
+TEST_F(ProcessorTest, LatencyOfReadsIsThatOfTheRecordWhereOneIsReplayed) {
+  auto recorded = std::make_shared<daq::RecordedFacts>();
+  recorded->read_latency = daq::LatencyHistogram{{5, 4, 3}, 60e-6};
+  settings_.recorded = recorded;
+  Processor processor = make();
+  feed(processor, 0, kEnd);
+  EXPECT_EQ(diary_.ends.at(0).read_latency, recorded->read_latency);
+}
+
+TEST_F(ProcessorTest, NoLatencyIsToldByAClockThatIsNotTheMachines) {
+  settings_.clock_is_real = false;
+  Processor processor = make();
+  feed(processor, 0, kEnd);
+  EXPECT_FALSE(diary_.ends.at(0).read_latency);
 }
 
 TEST_F(ProcessorTest, EndsARunningTestWhenToldAndNothingElse) {

@@ -88,12 +88,15 @@ TEST(RecordFile, HoldsSeveralChunksAndWideCounts) {
   for (const auto scan : record.scan) record.raw.push_back(static_cast<double>(scan * 7919 % 0xFF'FFFF));
   record.true_coefficient.clear();
   for (const auto scan : record.scan) record.true_coefficient.push_back(1.0 / static_cast<double>(scan));
+  record.second.clear();
+  for (const auto scan : record.scan) record.second.push_back(static_cast<std::int32_t>(scan * 31 % 4096));
   record.spikes.clear();
   ASSERT_TRUE(publish_record(record, folder / "a.h5"));
   const auto read = read_record(folder / "a.h5");
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->raw, record.raw);
   EXPECT_EQ(read->scan, record.scan);
+  EXPECT_EQ(read->second, record.second);
 }
 
 TEST(RecordFile, ATestWithoutScansIsStillARecord) {
@@ -169,6 +172,8 @@ TEST(Finalise, JournalWithoutEndBecomesAnInterruptedRecord) {
   const auto read = read_record(*file);
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->end->status, record::Status::kInterrupted);
+  EXPECT_EQ(read->end->cause, "program-died");
+  EXPECT_EQ(read->end->reasons, std::vector<std::string>{"the program stopped before the end of the test"});
   EXPECT_EQ(read->end->results, record::absent_results("interrupted"));
   EXPECT_EQ(read->raw, written.raw);
   test::expect_same_cycles(read->cycles, written.cycles);  // As noted while it ran.

@@ -132,9 +132,47 @@ TEST(Journal, TrueForceOfScansThatAreNotThereEndsTheReading) {
   }
   const auto read = read_journal(folder / "a.journal");
   ASSERT_TRUE(read);
-  EXPECT_EQ(read->stopped_by, "true force of scans that are not there");
+  EXPECT_EQ(read->stopped_by, "values of scans that are not there");
   EXPECT_EQ(read->record.raw.size(), 10U);
   EXPECT_TRUE(read->record.true_coefficient.empty());
+}
+
+// What a program killed between the two entries of the same scans leaves behind.
+TEST(Journal, ScansWhoseSecondChannelDidNotArriveAreKeptWithoutIt) {
+  const TemporaryFolder folder;
+  {
+    auto journal = JournalWriter::create(folder / "a.journal", test::sample_header());
+    ASSERT_TRUE(journal);
+    ASSERT_TRUE(journal->append_scans(100, std::vector<double>(3, 5.0), {}));
+    ASSERT_TRUE(journal->append_second(100, std::vector<std::int32_t>{7, 8, 9}));
+    ASSERT_TRUE(journal->append_scans(103, std::vector<double>(2, 5.0), {}));
+  }
+  const auto read = read_journal(folder / "a.journal");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->stopped_by, "");
+  EXPECT_EQ(read->record.second, (std::vector<std::int32_t>{7, 8, 9, -1, -1}));
+  const record::JournalScanSource source{folder / "a.journal", *read};
+  std::vector<std::int32_t> straight;
+  source.for_each_second_piece([&](std::span<const std::int32_t> piece) {
+    straight.insert(straight.end(), piece.begin(), piece.end());
+  });
+  EXPECT_EQ(straight, read->record.second);
+}
+
+TEST(Journal, ImpossibleCodesOfTheSecondChannelEndTheReading) {
+  for (const std::int32_t code : {4096, -2}) {
+    const TemporaryFolder folder;
+    {
+      auto journal = JournalWriter::create(folder / "a.journal", test::sample_header());
+      ASSERT_TRUE(journal);
+      ASSERT_TRUE(journal->append_scans(100, std::vector<double>(1, 5.0), {}));
+      ASSERT_TRUE(journal->append_second(100, std::vector<std::int32_t>{code}));
+    }
+    const auto read = read_journal(folder / "a.journal");
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->stopped_by, "code of the second channel out of range");
+    EXPECT_EQ(read->record.raw.size(), 1U);
+  }
 }
 
 // CRC-32C finds every single-bit error: no flip anywhere may go unnoticed.

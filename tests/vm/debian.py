@@ -9,6 +9,7 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tarfile
 
 import guest
@@ -65,6 +66,30 @@ def make_root(folder, found, packages):
     return root
 
 
+def make_disk(found, disk, packages):
+    """As root: owners and modes of files are what they are."""
+    folder = disk.with_suffix(".unfinished")
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    try:
+        root = make_root(folder, found, packages)
+        made = folder / "root.ext4"
+        subprocess.run(["mke2fs", "-q", "-t", "ext4", "-d", root, "-O", "^has_journal", made, IMAGE_SIZE], check=True,
+                       stdout=subprocess.DEVNULL)
+        made.rename(disk)
+    finally:
+        shutil.rmtree(folder)
+
+
+def make_disk_by_sudo(found, disk, packages):
+    if shutil.which("sudo") is None:
+        raise kernel.Unavailable("the image of the full guest is made as root, and there is no sudo here")
+    done = subprocess.run(["sudo", "-n", sys.executable, __file__, found.release, found.root, disk, *packages],
+                          capture_output=True, text=True, timeout=DEBOOTSTRAP_TIMEOUT_S, check=False)
+    if done.returncode != 0:
+        raise kernel.Unavailable(f"the image of the full guest is made as root: {done.stderr.strip()[-500:]}")
+
+
 def disk_image(found, programs):
     """The image, from the cache or made anew (a minute). Raises kernel.Unavailable."""
     packages = set(PACKAGES) | packages_of(programs)
@@ -73,23 +98,13 @@ def disk_image(found, programs):
     disk = kernel.cache_folder() / f"debian-{hashlib.sha256(recipe.encode()).hexdigest()[:16]}.ext4"
     if disk.exists():
         return disk
-    if os.geteuid() != 0:
-        raise kernel.Unavailable("the image of the full guest is made as root; run: sudo ./dev test-vm service")
-    for old in kernel.cache_folder().glob("debian-*"):
+    for old in kernel.cache_folder().glob("debian-*.ext4"):
         old.unlink()
-    folder = kernel.cache_folder() / "debian.unfinished"
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
-    root = make_root(folder, found, packages)
-    made = folder / "root.ext4"
-    subprocess.run(["mke2fs", "-q", "-t", "ext4", "-d", root, "-O", "^has_journal", made, IMAGE_SIZE], check=True,
-                   stdout=subprocess.DEVNULL)
-    made.rename(disk)
-    shutil.rmtree(folder)
+    (make_disk if os.geteuid() == 0 else make_disk_by_sudo)(found, disk, sorted(packages))
     return disk
 
 
-def run_full_guest(folder, found, disk, files, limit_s=420):
+def run_full_guest(folder, found, disk, files, limit_s=guest.LIMIT_S):
     """Boots it, unpacks `files` (name → path here) to /run/payload, runs run.sh there as root; its results."""
     payload = folder / "payload.tar"
     with tarfile.open(payload, "w") as archive:
@@ -101,3 +116,7 @@ def run_full_guest(folder, found, disk, files, limit_s=420):
                                ["-device", "virtio-rng-pci"], limit_s)
     finally:
         payload.unlink()
+
+
+if __name__ == "__main__":
+    make_disk(kernel.Kernel(sys.argv[1], pathlib.Path(sys.argv[2])), pathlib.Path(sys.argv[3]), sys.argv[4:])

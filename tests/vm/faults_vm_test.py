@@ -5,6 +5,7 @@ lost.
 """
 
 import pathlib
+import re
 import tempfile
 import unittest
 
@@ -15,6 +16,8 @@ import support
 import verdict
 
 SCENE = "stick-slip-at-12-in-per-min"
+# What the scene says; a test of ten seconds measures it to 0.001 and better.
+SCENE_MU_S, SCENE_MU_K = 0.35, 0.30
 # Three tests, each with noise of its own.
 SEEDS = (101, 102, 103)
 TEST_DURATION_S = 14
@@ -35,7 +38,7 @@ class Faults(unittest.TestCase):
             people = folder / "passwd"
             people.write_text("root:x:0:0::/:/bin/sh\nstickslip:x:1000:1000::/:/bin/sh\n")
             groups = folder / "group"
-            groups.write_text("root:x:0:\nstickslip:x:1000:\n")
+            groups.write_text("root:x:0:\niocard:x:999:\nstickslip:x:1000:\n")
             cls.results = support.small_guest("faults", {
                 "/lib/firmware/stickslip-codes.bin": codes.write_codes(folder, cls.codes),
                 "/faults/overrun_scans": lost, "/etc/passwd": people, "/etc/group": groups})
@@ -63,10 +66,11 @@ class Faults(unittest.TestCase):
         self.assertGreaterEqual(gap.count - ahead, OVERRUN_SCANS)
         status = self.status("overrun", "after")
         self.assertEqual((status["overrun_count"], status["gap_count"], status["dropped_scan_count"]), (1, 1, 0))
-        # Stick and slip went on, and the test came to its own end. A gap of two seconds may leave the regime open,
-        # never wrong.
+        # Stick and slip went on, and the test came to its own end: the gap cost the cycles that it touched.
         self.assertEqual((record.status, record.reasons), ("complete", []))
-        self.assertIn(record.results["regime"], ("stick-slip", "undecided"))
+        self.assertEqual(record.results["regime"], "stick-slip")
+        self.assertAlmostEqual(record.results["mu_s"], SCENE_MU_S, delta=0.005)
+        self.assertAlmostEqual(record.results["mu_k"], SCENE_MU_K, delta=0.005)
         self.assertEqual(record.results["lost_scan_count"], gap.count)
 
     def test_a_removal_ends_the_test_as_incomplete(self):
@@ -94,29 +98,52 @@ class Faults(unittest.TestCase):
         after = self.status("removal", "after")
         self.assertEqual((after["board_loss_count"], after["overrun_count"]), (1, 0))
 
+    def test_the_gap_between_the_tests_has_its_cause(self):
+        first, second, *_ = self.judged("removal")
+        log = (self.results / "removal" / "daemon.log").read_text()
+        [(count, start, cause)] = re.findall(r"gap: about (\d+) scans missing from scan (\d+): (\S+)", log)
+        self.assertEqual((int(start), cause), (int(first.scan[-1]) + 1, "board-missing"))
+        after = self.status("removal", "after")
+        self.assertEqual((after["gap_count"], after["lost_scan_count"]), (1, int(count)))
+        # By the codes: what the board played in between, and what the pre-trigger time left out behind it.
+        lost = verdict.played_from(self.codes, second.counts) - verdict.played_from(self.codes, first.counts) \
+            - len(first.counts)
+        unrecorded = int(second.scan[0]) - int(start) - int(count)
+        self.assertGreaterEqual(unrecorded, 0)
+        self.assertLessEqual(abs(int(count) + unrecorded - lost), INDEX_TOLERANCE)
+
     def test_a_rival_is_waited_for(self):
         waiting = self.status("second", "waiting")
-        self.assertEqual(waiting["state"], "board missing")
+        self.assertEqual(waiting["state"], "board busy")
         self.assertIn("another program is using it", waiting["detail"])
         self.assertEqual(self.status("second", "after")["state"], "acquiring")
 
     def test_a_rival_that_comes_later_harms_nothing(self):
         refused = self.status("rival", "refused")
-        self.assertEqual(refused["state"], "board missing")
+        self.assertEqual(refused["state"], "board busy")
         self.assertIn("another program is using it", refused["detail"])
         record = self.judged("second")[0]
         self.assertEqual((record.gaps, record.status), ([], "complete"))
         verdict.played_from(self.codes, record.counts)
 
     def test_a_board_without_permission_is_named_and_waited_for(self):
-        refused = self.status("permission", "refused")
-        self.assertEqual(refused["state"], "board missing")
-        self.assertIn("permission denied", refused["detail"])
-        # What has to be done depends on the mode and the group of the node.
-        self.assertIn("iocard", refused["detail"])
+        for when in ("no-group", "refused"):
+            self.assertEqual(self.status("permission", when)["state"], "no permission")
+            self.assertIn("permission denied", self.status("permission", when)["detail"])
+        # What has to be done depends on the mode and the group of the node: of root alone, then of a group.
+        self.assertIn("no group may use it (mode 0600)", self.status("permission", "no-group")["detail"])
+        refused = self.status("permission", "refused")["detail"]
+        self.assertIn("it is for group iocard: add the user (\"sudo adduser stickslip iocard\")", refused)
+        log = (self.results / "permission" / "daemon.log").read_text()
+        self.assertIn("warning: no permission: /dev/comedi0: permission denied", log)
         record = self.judged("permission")[0]
         self.assertEqual((record.gaps, record.status), ([], "complete"))
         self.assertEqual(self.place(record.scan, record.counts), 0)
+
+    def test_a_stop_inside_a_test_interrupts_it(self):
+        [record] = self.judged("stopped")
+        self.assertEqual((record.status, record.end_cause), ("interrupted", "stopped"))
+        self.assertEqual(record.gaps, [])
 
 
 if __name__ == "__main__":

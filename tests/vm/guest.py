@@ -12,6 +12,8 @@ import tarfile
 # qemu-system-x86_64 of Debian's qemu-system-x86.
 QEMU = "qemu-system-x86_64"
 RESULTS_SIZE = 256 * 1024 * 1024
+# Of the wall: the longest takes 150 s of a processor, which it may have to share.
+LIMIT_S = 1200
 # One instruction is 4 ns of the guest's time, and idle time is skipped: minutes at the bench take seconds, and
 # nothing depends on how busy this machine is.
 VIRTUAL_TIME = ["-icount", "shift=2,sleep=off", "-smp", "1"]
@@ -25,7 +27,7 @@ def drive(name, path, more=""):
     return ["-drive", f"file={path},if=none,id={name},format=raw{more}", "-device", f"nvme,serial={name},drive={name}"]
 
 
-def run_guest(folder, kernel, memory_MB, disks, append, more=(), limit_s=420):
+def run_guest(folder, kernel, memory_MB, disks, append, more=(), limit_s=LIMIT_S):
     """Boots, waits for the power-off, unpacks the results to FOLDER/results. Raises GuestFailed."""
     results = folder / "results.raw"
     results.unlink(missing_ok=True)
@@ -64,7 +66,7 @@ def run_guest(folder, kernel, memory_MB, disks, append, more=(), limit_s=420):
     return unpacked
 
 
-def run_small_guest(folder, kernel, image, limit_s=420):
+def run_small_guest(folder, kernel, image, limit_s=LIMIT_S):
     return run_guest(folder, kernel, 1024, [], "", ["-initrd", str(image)], limit_s)
 
 

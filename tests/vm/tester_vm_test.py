@@ -2,6 +2,7 @@
 
 import json
 import pathlib
+import re
 import subprocess
 import tempfile
 import unittest
@@ -19,6 +20,8 @@ RATE_ERROR_PPB = 1_000_000
 # error of a slope by 2 · 2.86 ms / 7 s, were all of them as bad as can be. Least squares over seven stamps or more
 # that are late at random is four times better.
 RATE_TOLERANCE = 2e-4
+# Two fits of one line: the daemon's and numpy's, in doubles.
+SAME_SLOPE = 1e-9
 # What depends on the clocks of the machine, not on the scans.
 BY_THE_CLOCK = {"scan_rate_measured"}
 
@@ -48,7 +51,7 @@ class SameBits(unittest.TestCase):
         text = (self.results / "conformance.txt").read_text()
         passed = text.count("[       OK ]")
         print(f"\n{passed} promises kept")
-        self.assertGreaterEqual(passed, 15, text)
+        self.assertGreaterEqual(passed, 17, text)
         self.assertNotIn("[  SKIPPED ]", text)
 
     def test_every_count_arrives_once_and_in_order(self):
@@ -96,6 +99,45 @@ class SameBits(unittest.TestCase):
         print(f"\nrate off by {error * 1e6:.1f} ppm, of {RATE_ERROR_PPB / 1e3:.0f}")
         self.assertEqual(record.gaps, [])
         self.assertLess(abs(error - RATE_ERROR_PPB * 1e-9), RATE_TOLERANCE)
+        self.measured_by_the_daemon(record, RATE_ERROR_PPB * 1e-9)
+        # Seen as well: 1000 ppm are beyond what a computer's own quartz may be off.
+        [finding] = [text for text in record.findings if text.startswith("scan rate:")]
+        factor = float(re.search(r"speeds are ([0-9.]+) times", finding)[1])
+        self.assertLess(abs(factor - 1 - RATE_ERROR_PPB * 1e-9), RATE_TOLERANCE)
+        status = support.status(self.results, "rate-error", "played")["scan_rate_measured"]
+        self.assertLess(abs(status["value"] / record.granted_Hz - 1 - RATE_ERROR_PPB * 1e-9), RATE_TOLERANCE)
+
+    def test_a_good_clock_is_not_flagged(self):
+        for path in self.kernel:
+            record = verdict.judge(path)
+            self.measured_by_the_daemon(record, 0.0)
+            self.assertEqual([text for text in record.findings if text.startswith("scan rate:")], [])
+
+    def measured_by_the_daemon(self, record, true_error):
+        """Its own number is the slope of the anchors that it kept, and right within the errors that it gives."""
+        with h5py.File(record.path) as file:
+            stored = file["entry/results/scan_rate_measured"]
+            value, error_Hz = stored[()], stored.attrs["standard_error"]
+        self.assertLess(abs(value / record.measured_Hz - 1), SAME_SLOPE)
+        off_Hz = abs(value - record.granted_Hz * (1 + true_error))
+        print(f"\nmeasured {value:.6f} +- {error_Hz:.6f} Hz: {off_Hz / error_Hz:.1f} standard errors off")
+        self.assertLess(off_Hz, RATE_TOLERANCE * record.granted_Hz)
+
+    def test_the_boards_are_listed_with_a_configuration_that_is_good(self):
+        [board] = json.loads((self.results / "boards.json").read_text())["boards"]
+        self.assertEqual((board["device"], board["board"], board["usable"]),
+                         ("/dev/comedi0", "stickslip_tester", True))
+        [input_] = board["subdevices"]
+        self.assertEqual([(r["min"], r["max"]) for r in input_["ranges"]], [(-10, 10), (-5, 5)])
+        self.assertEqual(input_["references"], ["ground"])
+        # 1 s and 10 us, as the driver has them.
+        self.assertEqual((input_["scan_rate_min"], input_["scan_rate_max"]), (1.0, 1e5))
+        self.assertEqual(board["configuration"].count("device = \"/dev/comedi0\""), 1)
+        self.assertIn(board["configuration"].rstrip(), (self.results / "boards.txt").read_text())
+        with tempfile.TemporaryDirectory() as temporary:
+            config = pathlib.Path(temporary) / "found.toml"
+            config.write_text(board["configuration"])
+            subprocess.run([support.DAEMON, "--check-config", config], check=True, stdout=subprocess.DEVNULL)
 
 
 if __name__ == "__main__":

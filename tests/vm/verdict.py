@@ -1,12 +1,18 @@
-"""Judges records with h5py, as somebody would who knows docs/record-file.md alone.
-
-When `stickslip verify` is there, `judge()` is the place to ask it too.
+"""Judges records twice: `stickslip verify` reads every byte, and h5py looks as somebody would who knows
+docs/record-file.md alone. What both say must agree.
 """
 
 import dataclasses
+import json
+import pathlib
+import subprocess
 
 import h5py
 import numpy
+
+import support
+
+VERIFY_TIMEOUT_S = 120
 
 
 @dataclasses.dataclass
@@ -19,10 +25,12 @@ class Gap:
 
 @dataclasses.dataclass
 class Judged:
+    path: pathlib.Path
     scan: numpy.ndarray
     counts: numpy.ndarray
     gaps: list
     results: dict       # name -> float or text
+    findings: list      # texts
     events: list        # texts
     anchors: tuple      # scan, monotonic (ns)
     granted_Hz: float
@@ -67,8 +75,25 @@ def played_from(codes, counts):
     return int(at)
 
 
+def verify(judged):
+    """The product's own verdict: whole, or incomplete for the reasons that the record gives and no other."""
+    done = subprocess.run([support.CLI, "verify", "--json", judged.path], capture_output=True, text=True,
+                          timeout=VERIFY_TIMEOUT_S, check=False)
+    assert done.stdout, done.stderr
+    [verdict] = json.loads(done.stdout)["files"]
+    expected = ["process/status"] * (judged.status != "complete") + ["gaps"] * len(judged.gaps)
+    found = [finding for finding in verdict["findings"] if finding["weight"] != "note"]
+    assert sorted(finding["place"] for finding in found) == sorted(expected), verdict
+    assert verdict["judgement"] == ("incomplete" if expected else "complete"), verdict
+    assert done.returncode == (1 if expected else 0), done.returncode
+    for finding in found:
+        if finding["place"] == "process/status":
+            assert finding["text"].startswith(judged.status), finding
+            assert all(reason in finding["text"] for reason in judged.reasons), finding
+
+
 def judge(path):
-    """Reads a record and checks that it agrees with itself. Raises AssertionError."""
+    """Reads a record and checks that it agrees with itself and with `stickslip verify`. Raises AssertionError."""
     with h5py.File(path) as file:
         assert text(file.attrs["format"]) == "stickslip-record"
         entry = file["entry"]
@@ -83,8 +108,12 @@ def judge(path):
                 results[name] = text(data[()])
         assert int(results["gap_count"]) == len(gaps), results["gap_count"]
         anchors = entry["timing/scan"][()], entry["timing/monotonic_raw"][()]
-        return Judged(scan, counts, gaps, results, [text(event) for event in entry["events/text"][()]], anchors,
+        findings = [text(finding) for finding in entry["results/findings"][()]]
+        judged = Judged(path, scan, counts, gaps, results, findings,
+                      [text(event) for event in entry["events/text"][()]], anchors,
                       float(entry["timing/scan_rate_granted"][()]), rate_by(*anchors),
                       {name: data[()] for name, data in entry["cycles"].items()},
                       text(entry["process/status"][()]), [text(why) for why in entry["process/reasons"][()]],
                       text(entry["process/end_cause"][()]) if "process/end_cause" in entry else "")
+    verify(judged)
+    return judged

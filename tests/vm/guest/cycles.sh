@@ -1,11 +1,22 @@
 # shellcheck shell=dash
-# The conformance suite on the kernel's own virtual board, then a hundred starts and stops of the daemon.
+# The conformance suite on the kernel's own virtual board, a test with two channels, then a hundred starts and stops
+# of the daemon.
 . /lib.sh
 modprobe comedi_test period=50000 amplitude=1000000
-use cycles
-STICKSLIP_COMEDI_DEVICE=/dev/comedi0 conformance_board --gtest_filter='*OnTheKernel*' >/results/conformance.txt ||
+STICKSLIP_COMEDI_DEVICE=/dev/comedi0 STICKSLIP_COMEDI_SECOND=1 conformance_board --gtest_filter='*OnTheKernel*' >/results/conformance.txt ||
   fail "conformance: $(cat /results/conformance.txt)"
 say "conforms"
+
+# Channel 1 of comedi_test is a square wave in step with the saw-tooth of channel 0.
+use second
+load_cell_zero="-5 V" configure '[board.comedi]' 'speed_channel = 1' 'speed_gain = "1 mm/s/V"'
+start_daemon
+await current_test '[0-9]'
+sleep 3
+stop_daemon
+say "two channels"
+
+use cycles
 # A trigger that the saw-tooth does not reach: no tests, no records.
 configure '[test]' 'start = 5'
 touch "$folder/daemon.log"

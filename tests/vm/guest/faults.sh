@@ -51,7 +51,7 @@ await state '"acquiring"'
 use second
 configure
 start_daemon
-await state '"board missing"'
+await state '"board busy"'
 status waiting
 use rival
 stop_daemon
@@ -61,7 +61,7 @@ await current_test '[0-9]'
 # A rival that comes later gets nothing and harms nothing.
 use rival
 start_daemon
-await state '"board missing"'
+await state '"board busy"'
 status refused
 stop_daemon
 use second
@@ -78,13 +78,22 @@ use permission
 configure
 chown -R 1000:1000 "$folder" "/run/$name"
 start_daemon as_user
-await state '"board missing"'
-status refused
-# As adding the user to group iocard does.
-chgrp 1000 /dev/comedi0
+await state '"no permission"'
+status no-group
+# As udev leaves it.
+chgrp iocard /dev/comedi0
 chmod 0660 /dev/comedi0
+await detail '"no permission.* it is for group iocard'
+status refused
+# As adding the user to the group does.
+chgrp stickslip /dev/comedi0
 await state '"acquiring"'
 await test_count 1
 status after
 stop_daemon
 say "permission: done"
+
+board
+start_test stopped
+stop_daemon
+say "stopped: done"

@@ -11,6 +11,10 @@ modprobe stickslip_tester
 use kernel
 configure
 start_daemon
+await current_test '[0-9]'
+# Looking at a board that is at work disturbs nobody.
+stickslip boards --json >/results/boards.json
+stickslip boards >/results/boards.txt
 await test_count "$(wc -l </scenes/list)" 120
 status played
 stop_daemon

@@ -8,13 +8,19 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace stickslip::daemon {
+namespace stickslip::daq {
 
 /// Bin 0 holds all below kFirstLimit_s, each further one twice as wide; the last holds all above.
 class LatencyHistogram {
  public:
   static constexpr std::size_t kBins = 18;
   static constexpr double kFirstLimit_s = 16e-6;  ///< The last limit is then 1.05 s.
+  using Counts = std::array<std::uint64_t, kBins>;
+
+  LatencyHistogram() = default;
+  /// One that was stored.
+  LatencyHistogram(const Counts& counts, double largest_s) noexcept
+      : counts_(counts), largest_s_(largest_s) {}
 
   /// Upper limit of a bin, s; infinite for the last.
   [[nodiscard]] static double limit_s(std::size_t bin) noexcept {
@@ -30,12 +36,13 @@ class LatencyHistogram {
     largest_s_ = std::max(largest_s_, late_s);
   }
 
-  [[nodiscard]] const std::array<std::uint64_t, kBins>& counts() const noexcept { return counts_; }
+  [[nodiscard]] const Counts& counts() const noexcept { return counts_; }
   [[nodiscard]] double largest_s() const noexcept { return largest_s_; }
+  bool operator==(const LatencyHistogram&) const = default;
 
  private:
-  std::array<std::uint64_t, kBins> counts_{};
+  Counts counts_{};
   double largest_s_ = 0.0;
 };
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::daq

@@ -1,0 +1,132 @@
+// Scans that were lost cost the cycles they belong to, not the test: neither its regime nor its numbers.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/daq/calibration.hpp"
+#include "core/friction/test_analysis.hpp"
+#include "drivers/simulated/simulated_board.hpp"
+#include "tests/support/manual_clock.hpp"
+#include "tests/support/sanitized.hpp"
+
+namespace stickslip {
+namespace {
+
+constexpr double kRate_Hz = 350.0;
+/// Both scenes: at rest for half a second, pulled for five.
+constexpr std::size_t kPullEnds = static_cast<std::size_t>(5.4 * kRate_Hz);
+
+struct Loss {
+  std::size_t at = 0;
+  std::size_t count = 0;
+  int misjudged = 0;  ///< Scans by which a clock took it for longer; then it is an estimate.
+};
+
+class Played {
+ public:
+  explicit Played(const char* scene) {
+    test::ManualClock clock;
+    drivers::SimulatedBoardSettings settings;
+    settings.scenes = {std::filesystem::path{STICKSLIP_SOURCE_DIR} / "config/scenes" / scene};
+    auto tester = drivers::make_simulated_tester(settings, clock);
+    if (!tester) throw std::runtime_error(tester.error().message);
+    const daq::Calibration calibration{tester->board->info(), tester->load_cell,
+                                       tester->tester.normal_load_N()};
+    settings_.scan_rate_Hz = kRate_Hz;
+    settings_.step_coefficient = calibration.step_coefficient();
+    settings_.tester = tester->tester;
+    EXPECT_TRUE(tester->board->start());
+    daq::ScanBlock block;
+    while (coefficients_.size() < kPullEnds &&
+           tester->board->read(block, std::chrono::milliseconds{1000}) == daq::ReadStatus::kScans) {
+      for (const double raw : block.scans()) coefficients_.push_back(calibration.coefficient(raw));
+    }
+    coefficients_.resize(kPullEnds);
+  }
+
+  [[nodiscard]] friction::TestResults analyse(const Loss& loss) const {
+    friction::TestAnalysis analysis{settings_};
+    for (std::size_t k = 0; k < coefficients_.size(); ++k) {
+      if (k >= loss.at && k < loss.at + loss.count) continue;
+      auto index = static_cast<base::ScanIndex>(k);
+      if (loss.count > 0 && k >= loss.at + loss.count) index += loss.misjudged;
+      if (loss.count > 0 && k == loss.at + loss.count) {
+        const auto first = static_cast<base::ScanIndex>(loss.at);
+        analysis.gap(first, index - first, loss.misjudged != 0);
+      }
+      analysis.add(index, coefficients_[k], false);
+    }
+    return analysis.finish();
+  }
+
+ private:
+  friction::AnalysisSettings settings_;
+  std::vector<double> coefficients_;
+};
+
+/// The same scans less some: further apart than four standard errors of the poorer ones, they differ.
+void expect_same(const friction::Estimate& with, const friction::Estimate& without, const char* what) {
+  ASSERT_TRUE(with.value) << what << ": " << with.reason;
+  ASSERT_TRUE(with.standard_error) << what;
+  EXPECT_NEAR(*with.value, *without.value, 4.0 * *with.standard_error) << what;
+}
+
+TEST(Gap, CostsStickSlipTheCyclesItTouches) {
+  const Played test{"stick-slip-at-12-in-per-min.toml"};
+  const friction::TestResults whole = test.analyse({});
+  ASSERT_EQ(whole.regime, friction::Regime::kStickSlip);
+  const std::size_t step = test::kSanitized ? 790 : 223;  // 12.4 cycles: all phases
+  int tried = 0;
+  for (const std::size_t count : {2, 9, 18, 60, 400}) {
+    // A clock is right to a scan or two.
+    for (const int misjudged : {-1, 0, 2}) {
+      for (std::size_t at = 240; at + count + 350 < kPullEnds; at += step, ++tried) {
+        SCOPED_TRACE(fmt::format("{} scans from {} on, off by {}", count, at, misjudged));
+        const friction::TestResults results = test.analyse({at, count, misjudged});
+        ASSERT_EQ(results.regime, whole.regime) << results.regime_reason;
+        // The slips on both sides, the one whose beginning was not seen, and those in between, 18 scans each.
+        const double most = 4.0 + std::ceil(static_cast<double>(count) / 17.0);
+        EXPECT_GE(*results.cycle_count.value, *whole.cycle_count.value - most);
+        EXPECT_LE(*results.cycle_count.value, *whole.cycle_count.value);
+        expect_same(results.mu_s, whole.mu_s, "S");
+        expect_same(results.mu_k, whole.mu_k, "K");
+        expect_same(results.delta_mu, whole.delta_mu, "S - K");
+        expect_same(results.oscillation_frequency, whole.oscillation_frequency, "frequency");
+      }
+    }
+  }
+  std::printf("%d gaps\n", tried);
+}
+
+/// Loaded for S g/(v ω₀²) = 43 ms, a slip of half a period, 25 ms. Without them nothing tells the stick rate.
+constexpr std::size_t kFirstSlipEnds = static_cast<std::size_t>((0.5 + 0.043 + 0.025) * kRate_Hz) + 6;
+
+TEST(Gap, NeverMakesStickingOfARingDown) {
+  const Played test{"ring-down-at-12-in-per-min.toml"};
+  const friction::TestResults whole = test.analyse({});
+  ASSERT_EQ(whole.regime, friction::Regime::kRingDown);
+  const std::size_t step = test::kSanitized ? 197 : 17;
+  int undecided = 0;
+  int tried = 0;
+  for (const std::size_t count : {9, 60}) {
+    for (const int misjudged : {0, 2}) {
+      for (std::size_t at = kFirstSlipEnds; at < 700; at += step, ++tried) {
+        SCOPED_TRACE(fmt::format("{} scans from {} on, off by {}", count, at, misjudged));
+        const friction::TestResults results = test.analyse({at, count, misjudged});
+        EXPECT_NE(results.regime, friction::Regime::kStickSlip) << results.regime_reason;
+        EXPECT_NE(results.regime, friction::Regime::kMixed) << results.regime_reason;
+        if (results.regime == friction::Regime::kUndecided) ++undecided;
+      }
+    }
+  }
+  std::printf("%d gaps, %d left it undecided\n", tried, undecided);
+}
+
+}  // namespace
+}  // namespace stickslip
