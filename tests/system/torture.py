@@ -400,12 +400,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("source", type=pathlib.Path)
-    parser.add_argument("--kills", type=int, default=30)
+    parser.add_argument("--kills", type=int, default=30, help="a fifth of them under sanitizers")
     parser.add_argument("--seed", type=int)
     parser.add_argument("--real-time", type=int, help="kills at the pace of a bench; else one in 25")
     options = parser.parse_args()
     seed = options.seed if options.seed is not None else random.SystemRandom().randrange(2**32)
     real_time = options.real_time if options.real_time is not None else max(1, options.kills // 25)
+    if options.build.resolve().name in ("asan", "tsan"):
+        options.kills = max(1, options.kills // 5)
     print(f"torture: {options.kills} kills, --seed {seed}", flush=True)
     with tempfile.TemporaryDirectory(prefix="stickslip-torture-") as name:
         torture = Torture(options.build.resolve(), options.source.resolve(), pathlib.Path(name), seed)
