@@ -34,8 +34,8 @@ class JournalLock {
 
 /// A journal without any whole entry is what a stop leaves before the header, which comes first, is written
 /// and synced: nothing was recorded. Files that begin in another way are not this program's and stay.
-/// \return whether it was one and is gone. Errors: kFailure if it cannot be read or removed, or somebody writes
-/// it for longer than `longest`.
+/// \return whether it was one and is gone. Errors: kFailure if it cannot be read or removed, or somebody
+/// writes it for longer than `longest`.
 [[nodiscard]] base::Result<bool> remove_if_empty(const std::filesystem::path& journal,
                                                  std::chrono::milliseconds longest = {});
 

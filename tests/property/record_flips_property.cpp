@@ -31,6 +31,8 @@ class Sound {
     record::Record record = test::sample_record();
     record.scan.clear();
     record.raw.clear();
+    record.second.clear();
+    record.header.board.second.reset();
     record.true_coefficient.clear();
     record.spikes.clear();
     record.gaps = {{1020, 20, true, daq::GapCause::kOverrun}};

@@ -76,19 +76,20 @@ base::Result<fs::path> finalise_plainly(const fs::path& journal) { return record
 record::RecordHeader header() {
   record::RecordHeader header = test::sample_header();
   header.uuid.clear();
+  header.board.second.reset();
   header.board.scan_rate_granted_Hz = kRate_Hz;
   return header;
 }
 
 void begin(Storage& storage, std::int64_t number, daq::ScanIndex first) {
-  storage.test_began({number, first, first, {0, 1'795'265'582'000'000'000, true}});
+  storage.test_began({number, first, first, {0, 1'795'265'582'000'000'000, true}, nullptr});
 }
 
 void feed(Storage& storage, daq::ScanIndex first, std::int64_t count) {
   std::vector<double> raw(350);
   for (std::int64_t done = 0; done < count; done += 350) {
     for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = static_cast<double>((first + done) % 60000);
-    storage.scans(first + done, raw, {});
+    storage.scans(first + done, raw, {}, {});
   }
 }
 
