@@ -244,13 +244,15 @@ void JournalScanSource::for_each_column_piece(EntryType type, Value absent,
     use(piece);
     piece.clear();
   };
+  const auto leave_out_up_to = [&](std::size_t end) {
+    for (std::size_t left = std::max(end, row) - row; left > 0; --left) push(absent);
+  };
   for_each_entry(type, [&](const Entry& entry) {
     const std::vector<Stored> values = values_of<Stored>(entry.payload);
-    const std::size_t first = row_of(reading_.runs, entry.head.first_scan, values.size());
-    while (row < first) push(absent);
+    leave_out_up_to(row_of(reading_.runs, entry.head.first_scan, values.size()));
     for (const Stored value : values) push(value);
   });
-  while (row < size()) push(absent);
+  leave_out_up_to(size());
   if (!piece.empty()) use(piece);
 }
 

@@ -35,7 +35,7 @@ constexpr double kTickDistance = 27.0;
 
 /// Between single quotes gnuplot replaces nothing; a quote is written twice. Control characters become
 /// blanks.
-std::string quoted(std::string_view text) {
+std::string gnuplot_text(std::string_view text) {
   std::string out = "'";
   for (const char c : text) {
     const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
@@ -197,13 +197,13 @@ class Script {
 
   void write_page_texts(int notes_px) {
     if (!figure_.title.empty()) {
-      add("set label {} at screen {:.6f},{:.6f} left noenhanced font ',15'\n", quoted(figure_.title),
+      add("set label {} at screen {:.6f},{:.6f} left noenhanced font ',15'\n", gnuplot_text(figure_.title),
           across(kLeft), up(kTitle * 0.5));
     }
     double y = figure_.height_px - notes_px + kNoteRow * 0.5;
     for (const std::string& note : figure_.notes) {
       add("set label {} at screen {:.6f},{:.6f} left noenhanced font ',11' textcolor rgb '#555555'\n",
-          quoted(note), across(kLeft), up(y));
+          gnuplot_text(note), across(kLeft), up(y));
       y += kNoteRow;
     }
   }
@@ -222,7 +222,7 @@ class Script {
       } else {
         write_sample(*entry.line, left, right, y);
       }
-      add("set label {} at screen {:.6f},{:.6f} left noenhanced\n", quoted(entry.label),
+      add("set label {} at screen {:.6f},{:.6f} left noenhanced\n", gnuplot_text(entry.label),
           across(entry.x_px + kLegendSample), y);
     }
   }
@@ -259,16 +259,16 @@ class Script {
     write_axis("y", panel.panel->y, panel.y_range, bottom - top);
     if (!panel.ticks_below) add("set format x ''\n");
     if (panel.ticks_below && !panel.x->label.empty()) {
-      add("set label {} at screen {:.6f},{:.6f} center noenhanced\n", quoted(panel.x->label),
+      add("set label {} at screen {:.6f},{:.6f} center noenhanced\n", gnuplot_text(panel.x->label),
           across((kLeft + right_px()) / 2.0), up(bottom + kTicks + kAxisLabel * 0.5));
     }
     // Not as gnuplot's label of the axis, so that those of all panels stand in one line.
     constexpr double kMiddleOfLabel = 18.0;
-    add("set label {} at screen {:.6f},{:.6f} center rotate by 90 noenhanced\n", quoted(panel.panel->y.label),
-        across(kMiddleOfLabel), up((top + bottom) / 2.0));
+    add("set label {} at screen {:.6f},{:.6f} center rotate by 90 noenhanced\n",
+        gnuplot_text(panel.panel->y.label), across(kMiddleOfLabel), up((top + bottom) / 2.0));
     for (const Marker& marker : panel.panel->markers) {
       add("set label {} at first {},{} left offset character 0.6,0.4 noenhanced font ',11' front\n",
-          quoted(marker.text), marker.x, marker.y);
+          gnuplot_text(marker.text), marker.x, marker.y);
     }
     write_data(panel);
   }

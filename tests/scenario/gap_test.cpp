@@ -83,7 +83,7 @@ TEST(Gap, CostsStickSlipTheCyclesItTouches) {
   ASSERT_EQ(whole.regime, friction::Regime::kStickSlip);
   const std::size_t step = test::kSanitized ? 790 : 223;  // 12.4 cycles: all phases
   int tried = 0;
-  for (const std::size_t count : {2, 9, 18, 60, 400}) {
+  for (const std::size_t count : {2U, 9U, 18U, 60U, 400U}) {
     // A clock is right to a scan or two.
     for (const int misjudged : {-1, 0, 2}) {
       for (std::size_t at = 240; at + count + 350 < kPullEnds; at += step, ++tried) {
@@ -114,7 +114,7 @@ TEST(Gap, NeverMakesStickingOfARingDown) {
   const std::size_t step = test::kSanitized ? 197 : 17;
   int undecided = 0;
   int tried = 0;
-  for (const std::size_t count : {9, 60}) {
+  for (const std::size_t count : {9U, 60U}) {
     for (const int misjudged : {0, 2}) {
       for (std::size_t at = kFirstSlipEnds; at < 700; at += step, ++tried) {
         SCOPED_TRACE(fmt::format("{} scans from {} on, off by {}", count, at, misjudged));

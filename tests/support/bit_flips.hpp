@@ -27,7 +27,7 @@ inline std::vector<Extent> chunks_of(const std::filesystem::path& path, const st
   std::vector<Extent> extents;
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   for (const std::string& name : names) {
-    const hid_t dataset = H5Dopen2(file, (group + "/" + name).c_str(), H5P_DEFAULT);
+    const hid_t dataset = H5Dopen2(file, (std::filesystem::path{group} / name).c_str(), H5P_DEFAULT);
     if (dataset < 0) throw std::runtime_error("no data set " + name);
     const hid_t space = H5Dget_space(dataset);
     hsize_t count = 0;
