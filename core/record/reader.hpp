@@ -10,11 +10,11 @@
 
 namespace stickslip::record {
 
-/// What can be computed from the raw values (results, cycles, flags) and what tells of them (gaps, events) may
-/// be missing from a file that was thinned out: it is then absent from the record as well.
-/// \return the record with `end` and `sha256` set. Errors are one line that names the file and what
-/// is wrong: kUsage if it is no HDF5 file, no record, another version, cut short, damaged or has
-/// data of other types or shapes; kFailure if it cannot be read.
+/// What can be computed from the raw values (results, cycles, flags) and what tells of them (gaps, events)
+/// may be missing from a file that was thinned out: it is then absent from the record as well. \return the
+/// record with `end` and `sha256` set. Errors are one line that names the file and what is wrong: kUsage if
+/// it is no HDF5 file, no record, another version, cut short, damaged or has data of other types or shapes;
+/// kFailure if it cannot be read.
 [[nodiscard]] base::Result<Record> read_record(const std::filesystem::path& path);
 
 /// Reads the whole file back, its scans piece by piece. Errors: kFailure if anything in it cannot be read
