@@ -8,6 +8,7 @@
 #include "core/friction/capture.hpp"
 #include "core/friction/closed_forms.hpp"
 #include "core/friction/junction.hpp"
+#include "core/friction/regime_rule.hpp"
 #include "core/friction/slip_rule.hpp"
 #include "core/friction/turning_points.hpp"
 
@@ -18,8 +19,6 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// ln 10⁴: then one wrong end in ten thousand slips at most [Wald, Ann. Math. Stat. 16:117–186, 1945,
 /// (3:42)].
 constexpr double kDecisive = 9.210340371976184;
-/// ln 20, as at the end of a test (core/friction/regime_rule).
-constexpr double kUntold = 2.995732273553991;
 /// The question is asked so often in a period; first when c′ of a slip that escapes is nearly done with
 /// rising (t₃ is three quarters of a period after the peak at most), and answered after so many, come what
 /// may.
@@ -223,7 +222,8 @@ bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
   task_ = begins_from_stick_ ? Task::kFit : Task::kNone;
   // At the next slip the sign decides; a sled that sticks goes on sticking as long as the scans tell nothing.
   if (!evidence_.known) return false;
-  if (evidence_.log_likelihood_ratio < 0.0 && evidence_.log_likelihood_ratio > -kUntold) return false;
+  const double told = std::log(kDecisiveLikelihoodRatio);
+  if (evidence_.log_likelihood_ratio < 0.0 && evidence_.log_likelihood_ratio > -told) return false;
   decide(evidence_.log_likelihood_ratio, now_s);
   if (std::abs(std::log(shared_.r / knowledge_.best().r)) > kStickRateChange && shared_.r == rise_slope_)
     knowledge_.forget_stick_rate(rise_slope_);

@@ -33,6 +33,7 @@ struct File {
   haddr_t size;
 };
 
+// HDF5 hands over the base, the first member of a File, as its C interface has it.
 File& file_of(H5FD_t* base) { return *reinterpret_cast<File*>(base); }
 const File& file_of(const H5FD_t* base) { return *reinterpret_cast<const File*>(base); }
 
