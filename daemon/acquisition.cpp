@@ -12,8 +12,9 @@ constexpr std::chrono::milliseconds kReadTimeout{100};
 
 }  // namespace
 
-Acquisition::Acquisition(daq::Board& board, daq::ScanRing& ring, RealtimeSettings realtime)
-    : board_(board), ring_(ring), realtime_(realtime) {}
+Acquisition::Acquisition(daq::Board& board, daq::ScanRing& ring, RealtimeSettings realtime,
+                         FullRing full_ring)
+    : board_(board), ring_(ring), realtime_(realtime), full_ring_(full_ring) {}
 
 Acquisition::~Acquisition() {
   request_stop();
@@ -43,6 +44,15 @@ void Acquisition::run() noexcept {
   news_.release();
 }
 
+void Acquisition::wait_for_room() const noexcept {
+  for (;;) {
+    // Looked at first: room that is made after the ring was seen full is not slept through.
+    const std::uint32_t seen = room_made_.load(std::memory_order_acquire);
+    if (ring_.has_room() || stop_requested_.load(std::memory_order_relaxed)) return;
+    room_made_.wait(seen, std::memory_order_acquire);
+  }
+}
+
 Acquisition::End Acquisition::read_to_the_end() noexcept {
   daq::ScanBlock block;
   while (!stop_requested_.load(std::memory_order_relaxed)) {
@@ -51,6 +61,7 @@ Acquisition::End Acquisition::read_to_the_end() noexcept {
         // A full ring counts what it drops; the jump in the index tells the consumer.
         block.overrun_count = overruns_;
         block.dropped_scan_count = ring_.dropped_scan_count();
+        if (full_ring_ == FullRing::kWait) wait_for_room();
         ring_.push(block);
         news_.release();
         break;
