@@ -9,6 +9,9 @@ namespace {
 
 /// Longest wait for scans, and thereby for a stop request to be seen.
 constexpr std::chrono::milliseconds kReadTimeout{100};
+/// The consumer is not woken more often, by the board's clock: a simulated board delivers each scan by
+/// itself. A Comedi board delivers every 8 ms, and people see no less.
+constexpr std::int64_t kNewsPeriod_ns = 10'000'000;
 
 }  // namespace
 
@@ -44,11 +47,30 @@ void Acquisition::run() noexcept {
   news_.release();
 }
 
-void Acquisition::wait_for_room() const noexcept {
+void Acquisition::tell() noexcept {
+  if (!untold_) return;
+  untold_ = false;
+  news_.release();
+}
+
+void Acquisition::hand_over(daq::ScanBlock& block) noexcept {
+  // A full ring counts what it drops; the jump in the index tells the consumer.
+  block.overrun_count = overruns_;
+  block.dropped_scan_count = ring_.dropped_scan_count();
+  if (full_ring_ == FullRing::kWait) wait_for_room();
+  ring_.push(block);
+  untold_ = true;
+  if (block.stamp.monotonic_ns - told_ns_ < kNewsPeriod_ns) return;
+  told_ns_ = block.stamp.monotonic_ns;
+  tell();
+}
+
+void Acquisition::wait_for_room() noexcept {
   for (;;) {
     // Looked at first: room that is made after the ring was seen full is not slept through.
     const std::uint32_t seen = room_made_.load(std::memory_order_acquire);
     if (ring_.has_room() || stop_requested_.load(std::memory_order_relaxed)) return;
+    tell();
     room_made_.wait(seen, std::memory_order_acquire);
   }
 }
@@ -58,14 +80,10 @@ Acquisition::End Acquisition::read_to_the_end() noexcept {
   while (!stop_requested_.load(std::memory_order_relaxed)) {
     switch (board_.read(block, kReadTimeout)) {
       case daq::ReadStatus::kScans:
-        // A full ring counts what it drops; the jump in the index tells the consumer.
-        block.overrun_count = overruns_;
-        block.dropped_scan_count = ring_.dropped_scan_count();
-        if (full_ring_ == FullRing::kWait) wait_for_room();
-        ring_.push(block);
-        news_.release();
+        hand_over(block);
         break;
       case daq::ReadStatus::kTimeout:
+        tell();
         break;
       case daq::ReadStatus::kOverrun:
         ++overruns_;

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
-#include <semaphore>
 #include <string>
 #include <thread>
 
@@ -13,6 +12,7 @@
 #include "core/daq/board.hpp"
 #include "core/daq/scan_ring.hpp"
 #include "daemon/realtime.hpp"
+#include "daemon/semaphore.hpp"
 
 namespace stickslip::daemon {
 
@@ -45,7 +45,8 @@ class Acquisition {
     made_room();
   }
 
-  /// Consumer: blocks until there is a block in the ring or the thread has ended.
+  /// Consumer: waits until there are blocks in the ring, the oldest at most 10 ms older than the latest, or
+  /// the thread has ended.
   void wait() noexcept { news_.acquire(); }
   /// Consumer: blocks were taken out of the ring. Needed with FullRing::kWait only.
   void made_room() noexcept {
@@ -60,7 +61,9 @@ class Acquisition {
 
  private:
   void run() noexcept;
-  void wait_for_room() const noexcept;
+  void hand_over(daq::ScanBlock& block) noexcept;
+  void wait_for_room() noexcept;
+  void tell() noexcept;
   [[nodiscard]] End read_to_the_end() noexcept;
 
   static constexpr std::uint8_t kRunning = 0xFF;
@@ -72,10 +75,13 @@ class Acquisition {
   std::string scheduling_;
   std::atomic<bool> stop_requested_{false};
   std::atomic<std::uint8_t> end_{kRunning};
-  std::uint64_t overruns_ = 0;  ///< Of the thread: blocks carry it.
-  std::counting_semaphore<> news_{0};
+  // Of the thread.
+  std::uint64_t overruns_ = 0;  ///< Blocks carry it.
+  bool untold_ = false;         ///< There are blocks in the ring that the consumer was not woken for.
+  std::int64_t told_ns_ = 0;    ///< Stamp of the latest block that it was woken for.
+  Semaphore news_;
   std::atomic<std::uint32_t> room_made_{0};  ///< Times; also counted when the thread is to stop.
-  std::binary_semaphore started_{0};
+  Semaphore started_;
   std::thread thread_;
 };
 

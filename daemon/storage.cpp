@@ -36,6 +36,10 @@ constexpr double kOtherBytesPerSecond = 9000.0;
 /// A test that begins with less room is told of: no test of the tester lasts longer.
 constexpr double kLeastRoom_s = 600.0;
 
+std::size_t scans_in_entry(const daq::BoardInfo& board) {
+  return static_cast<std::size_t>(std::max(1.0, std::floor(board.scan_rate_granted_Hz * kEntry_s)));
+}
+
 double encoded_size(const daq::BoardInfo& board) {
   if (board.quantity != daq::RawQuantity::kCounts) return sizeof(double);
   return record::counts_fit_u16(board) ? sizeof(std::uint16_t) : sizeof(std::uint32_t);
@@ -118,35 +122,55 @@ void Storage::stop() {
 
 void Storage::test_began(const pipeline::TestStart& start) {
   first_ = start.first;
+  collected_.count = 0;
+  // The queue is told of an entry, not of each scan.
+  collected_enough_ = std::min(scans_in_entry(header_->board), daq::ScanBlock::kMaxScans);
   queue_.push(Began{start, header_});
 }
 
 void Storage::scans(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second,
                     const daq::ClockStamp& stamp) {
   while (!raw.empty()) {
-    daq::ScanBlock block;
-    block.first = first;
-    block.stamp = stamp;
-    block.count = static_cast<std::uint32_t>(std::min(raw.size(), daq::ScanBlock::kMaxScans));
-    std::copy_n(raw.begin(), block.count, block.raw.begin());
-    block.has_second = !second.empty();
-    if (block.has_second) {
-      std::copy_n(second.begin(), block.count, block.second.begin());
-      second = second.subspan(block.count);
+    if (collected_.count > 0 && collected_.end() != first) hand_over_collected();
+    if (collected_.count == 0) collected_.first = first;
+    const std::size_t count = std::min(raw.size(), daq::ScanBlock::kMaxScans - collected_.count);
+    std::copy_n(raw.begin(), count, collected_.raw.begin() + collected_.count);
+    raw = raw.subspan(count);
+    collected_.has_second = !second.empty();
+    if (collected_.has_second) {
+      std::copy_n(second.begin(), count, collected_.second.begin() + collected_.count);
+      second = second.subspan(count);
     }
-    queue_.push(block);
-    first = block.end();
-    raw = raw.subspan(block.count);
+    collected_.stamp = stamp;
+    collected_.count += static_cast<std::uint32_t>(count);
+    first = collected_.end();
+    if (collected_.count >= collected_enough_) hand_over_collected();
   }
 }
 
-void Storage::gap(const daq::Gap& gap) { queue_.push(gap); }
+void Storage::hand_over_collected() {
+  if (collected_.count == 0) return;
+  queue_.push(collected_);
+  collected_.count = 0;
+}
 
-void Storage::anchor(const daq::ClockAnchor& anchor) { queue_.push(anchor); }
+void Storage::gap(const daq::Gap& gap) {
+  hand_over_collected();
+  queue_.push(gap);
+}
 
-void Storage::cycle(const friction::Cycle& cycle) { queue_.push(cycle); }
+void Storage::anchor(const daq::ClockAnchor& anchor) {
+  hand_over_collected();
+  queue_.push(anchor);
+}
+
+void Storage::cycle(const friction::Cycle& cycle) {
+  hand_over_collected();
+  queue_.push(cycle);
+}
 
 void Storage::test_ended(const pipeline::TestEnd& end) {
+  hand_over_collected();
   auto record = std::make_shared<record::EndRecord>();
   record->cause = pipeline::name(end.cause);
   record->results = end.results;
@@ -203,7 +227,7 @@ void Storage::handle(const Began& message) {
   const std::string expires = header.calibration.expires;
   check_room(header);
   const double rate_Hz = header.board.scan_rate_granted_Hz;
-  pending_enough_ = static_cast<std::size_t>(std::max(1.0, std::floor(rate_Hz * kEntry_s)));
+  pending_enough_ = scans_in_entry(header.board);
   const auto memory = static_cast<std::size_t>(kLongestWait_s *
                                                (rate_Hz * encoded_size(header.board) + kOtherBytesPerSecond));
   const std::size_t others = disk_.waiting_size();

@@ -83,6 +83,9 @@ class Storage final : public pipeline::Sink {
   using Message =
       std::variant<Quit, Began, daq::ScanBlock, daq::Gap, daq::ClockAnchor, friction::Cycle, Ended>;
 
+  // The processing thread's side.
+  void hand_over_collected();
+
   // The storage thread's side.
   void run();
   void handle(const Began& message);
@@ -108,6 +111,8 @@ class Storage final : public pipeline::Sink {
   std::shared_ptr<const record::RecordHeader> header_;  ///< Processing thread.
   const friction::TruthSource* truth_ = nullptr;        ///< Processing thread.
   daq::ScanIndex first_ = 0;                            ///< Processing thread.
+  daq::ScanBlock collected_;          ///< Processing thread: scans that the queue has not got yet.
+  std::size_t collected_enough_ = 1;  ///< Processing thread: to hand them over.
   BoundedQueue<Message> queue_;
 
   std::int64_t number_ = 0;
@@ -118,7 +123,7 @@ class Storage final : public pipeline::Sink {
   daq::ScanIndex pending_first_ = 0;
   daq::ClockStamp pending_stamp_;
   std::vector<Stretch> recorded_;   ///< All of them.
-  std::size_t pending_enough_ = 1;  ///< Scans in one journal entry.
+  std::size_t pending_enough_ = 1;  ///< scans_in_entry().
   std::function<void()> changed_;
   bool waits_ = false;  ///< Disk thread: as it was told last.
   Finisher finisher_;   ///< Outlives the disk thread, which hands over to it.
