@@ -9,9 +9,9 @@ namespace {
 
 /// Longest wait for scans, and thereby for a stop request to be seen.
 constexpr std::chrono::milliseconds kReadTimeout{100};
-/// The consumer is not woken more often, by the board's clock: a simulated board delivers each scan by
-/// itself. A Comedi board delivers every 8 ms, and people see no less.
-constexpr std::int64_t kNewsPeriod_ns = 10'000'000;
+/// The consumer is not woken more often, by the board's clock: a Comedi board may deliver each scan by
+/// itself, and people see no less.
+constexpr std::int64_t kNewsPeriod_ns = 20'000'000;
 
 }  // namespace
 
