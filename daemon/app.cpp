@@ -367,13 +367,14 @@ App::State App::waiting_state(base::ErrorKind kind) noexcept {
 }
 
 std::string App::status_line() const {
-  const DiskState disk = storage_.disk();
+  const StorageState storage = storage_.state();
   std::string line = state_line();
-  if (disk.trouble) {
-    line +=
-        fmt::format("; the disk refuses, {} kB wait in memory: {}", disk.waiting_size / 1000, *disk.trouble);
-  } else if (disk.room_h && *disk.room_h < kTellRoom_h) {
-    line += fmt::format("; room on the disk for {:.0f} h", *disk.room_h);
+  if (storage.kind == StorageState::Kind::kWaiting) {
+    line += "; " + storage.why;
+  } else if (storage.kind == StorageState::Kind::kShort) {
+    line += fmt::format("; storage short: {}; {}", storage.why, storage.to_do);
+  } else if (storage.room_h && *storage.room_h < kTellRoom_h) {
+    line += fmt::format("; room on the disk for {:.0f} h", *storage.room_h);
   }
   return line;
 }
@@ -417,6 +418,9 @@ Status App::status() const {
   if (config_.clock_speed == 1.0) status.scan_rate_measured = clocks.scan_rate;
   status.latency = clocks.latency;
   status.storage_stall_count = storage_.stall_count();
+  status.storage = storage_.state();
+  if (state_ == State::kAcquiring && status.storage.kind != StorageState::Kind::kOk)
+    status.state = fmt::format("storage {}", daemon::name(status.storage.kind));
   status.test_count = tests_.test_count();
   status.current_test = current_test_;
   status.latest_test = tests_.latest();

@@ -33,8 +33,6 @@ constexpr std::size_t kForceEntry = 4096;
 constexpr double kLongestWait_s = 600.0;
 /// Heads of ten entries, two clock readings and twenty cycles as JSON of 400 bytes.
 constexpr double kOtherBytesPerSecond = 9000.0;
-/// A test that begins with less room is told of: no test of the tester lasts longer.
-constexpr double kLeastRoom_s = 600.0;
 
 std::size_t scans_in_entry(const daq::BoardInfo& board) {
   return static_cast<std::size_t>(std::max(1.0, std::floor(board.scan_rate_granted_Hz * kEntry_s)));
@@ -96,7 +94,7 @@ Storage::Storage(StorageSettings settings, Finalise finalise, TestLog& tests, Fa
                   record_made(test, file);
                 }),
       disk_(
-          {.folder = settings_.folder, .calls = settings_.calls},
+          {.folder = settings_.folder, .sync_period = settings_.sync_period, .calls = settings_.calls},
           [this](std::int64_t test, const std::filesystem::path& journal,
                  const std::optional<std::string>& why_not) { journal_ended(test, journal, why_not); },
           [this](const DiskState& state) { disk_changed(state); }),
@@ -208,9 +206,9 @@ void Storage::run() {
   }
 }
 
-void Storage::check_room(const record::RecordHeader& header) {
+std::optional<double> Storage::little_room_s() const {
   const std::optional<double> room_s = disk_.room_s();
-  if (room_s && *room_s < kLeastRoom_s) facts_.little_room(header.test_number.value_or(0), *room_s);
+  return room_s && *room_s < kLeastRoom_s ? room_s : std::nullopt;
 }
 
 void Storage::handle(const Began& message) {
@@ -225,7 +223,8 @@ void Storage::handle(const Began& message) {
   header.title = fmt::format("test {}", message.start.number);
   if (message.start.self_check) header.self_check = *message.start.self_check;
   const std::string expires = header.calibration.expires;
-  check_room(header);
+  const std::optional<double> little_s = little_room_s();
+  if (little_s) facts_.little_room(number_, *little_s);
   const double rate_Hz = header.board.scan_rate_granted_Hz;
   pending_enough_ = scans_in_entry(header.board);
   const auto memory = static_cast<std::size_t>(kLongestWait_s *
@@ -243,6 +242,7 @@ void Storage::handle(const Began& message) {
   if (!expires.empty() && record::iso_time(start.stamp.realtime_ns) >= expires) {
     event(fmt::format("the calibration of the load cell expired on {}", expires));
   }
+  if (little_s) event(fmt::format("storage short: room on the disk for {:.0f} s of tests", *little_s));
   if (start.self_check) {
     for (const std::string& finding : start.self_check->findings) event("self-check: " + finding);
   }
@@ -343,6 +343,11 @@ void Storage::disk_changed(const DiskState& state) {
   if (state.trouble && !waits_) facts_.storage_waits(*state.trouble);
   if (!state.trouble && waits_) facts_.storage_resumed();
   waits_ = state.trouble.has_value();
+  if (state.is_short && !is_short_) {
+    facts_.storage_short(why_no_test(storage_state(state, settings_.folder)).value_or(""));
+  }
+  if (!state.is_short && is_short_) facts_.storage_has_room();
+  is_short_ = state.is_short;
   if (changed_) changed_();
 }
 

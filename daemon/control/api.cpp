@@ -99,6 +99,15 @@ Json to_json(const daq::LatencyHistogram& latency) {
   return {{"largest", latency.largest_s()}, {"bins", bins}};
 }
 
+Json to_json(const StorageState& storage) {
+  const auto or_nothing = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
+  return {{"state", name(storage.kind)},
+          {"room_h", storage.room_h ? Json(*storage.room_h) : Json(nullptr)},
+          {"waiting_size", storage.waiting_size},
+          {"why", or_nothing(storage.why)},
+          {"to_do", or_nothing(storage.to_do)}};
+}
+
 Json to_json(const Status& status) {
   Json json;
   json["state"] = status.state;
@@ -115,6 +124,7 @@ Json to_json(const Status& status) {
   json["scan_rate_measured"] = to_json(status.scan_rate_measured);
   json["read_latency"] = to_json(status.latency);
   json["storage_stall_count"] = status.storage_stall_count;
+  json["storage"] = to_json(status.storage);
   json["test_count"] = status.test_count;
   json["current_test"] = status.current_test ? Json(*status.current_test) : Json(nullptr);
   json["live"] = status.live ? to_json(*status.live) : Json(nullptr);

@@ -16,13 +16,15 @@
 #include "core/daq/rate_fit.hpp"
 #include "core/friction/live_cycle.hpp"
 #include "daemon/control/http.hpp"
+#include "daemon/storage_state.hpp"
 #include "daemon/test_log.hpp"
 
 namespace stickslip::daemon {
 
 /// A picture of the daemon at one moment.
 struct Status {
-  /// "starting", "acquiring", "board missing", "board busy", "no permission", "stopping".
+  /// "starting", "acquiring", "storage short", "storage waiting" (both while acquiring), "board missing",
+  /// "board busy", "no permission", "stopping".
   std::string state;
   std::string detail;  ///< The line of STATUS=, for people.
   std::string version;
@@ -37,6 +39,7 @@ struct Status {
   std::optional<daq::RateEstimate> scan_rate_measured;  ///< Of the board's present life.
   daq::LatencyHistogram latency;                        ///< Of reads.
   std::uint64_t storage_stall_count = 0;
+  StorageState storage;
   std::int64_t test_count = 0;               ///< Ended.
   std::optional<std::int64_t> current_test;  ///< Running now.
   std::optional<friction::LiveState> live;   ///< Of the current test.
