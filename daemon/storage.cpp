@@ -100,10 +100,12 @@ Storage::Storage(StorageSettings settings, Finalise finalise, TestLog& tests, Fa
 
 Storage::~Storage() { stop(); }
 
-void Storage::use(record::RecordHeader header, const friction::TruthSource* truth) {
+void Storage::use(record::RecordHeader header, const friction::TruthSource* truth,
+                  std::vector<std::string> remarks) {
   disk_.set_load(header.board.scan_rate_granted_Hz * bytes_per_scan(header.board) + kOtherBytesPerSecond);
   header_ = std::make_shared<const record::RecordHeader>(std::move(header));
   truth_ = truth;
+  remarks_ = std::move(remarks);
 }
 
 void Storage::stop() {
@@ -118,7 +120,7 @@ void Storage::stop() {
 
 void Storage::test_began(const pipeline::TestStart& start) {
   first_ = start.first;
-  queue_.push(Began{start, header_});
+  queue_.push(Began{start, header_, remarks_});
 }
 
 void Storage::scans(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second,
@@ -216,6 +218,7 @@ void Storage::handle(const Began& message) {
     note_event(start.trigger, start.stamp.realtime_ns, std::move(text));
   };
   event("test began: the force crossed the trigger");
+  for (const std::string& remark : message.remarks) event(remark);
   if (!expires.empty() && record::iso_time(start.stamp.realtime_ns) >= expires) {
     event(fmt::format("the calibration of the load cell expired on {}", expires));
   }
