@@ -5,16 +5,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
 #include "core/friction/cycle_statistics.hpp"
 #include "core/friction/model_results.hpp"
 #include "core/friction/regime_rule.hpp"
+#include "core/friction/sampling.hpp"
 #include "core/friction/sections.hpp"
 #include "core/friction/slip_list.hpp"
 #include "core/friction/traditional.hpp"
 #include "core/signal/statistics.hpp"
+#include "core/signal/whiteness.hpp"
 
 namespace stickslip::friction {
 namespace {
@@ -62,6 +65,10 @@ base::LongColumn<Fall> find_slips(const Trace& trace, double sigma, const std::f
   return kept_slips(std::move(slips), scratch);
 }
 
+constexpr const char* kHiddenOscillation =
+    "no fall stands out of the noise, but the noise is not white: hum, or an oscillation of fewer than nine "
+    "scans a cycle; scan more often";
+
 /// What the model has found, beside what needs no model.
 void take_model_results(const TestResults& model, TestResults& results) {
   std::vector<const Estimate*> from;
@@ -71,6 +78,19 @@ void take_model_results(const TestResults& model, TestResults& results) {
     const Estimate& found = *from[i++];
     if (found.value || !found.reason.empty()) estimate = found;
   });
+}
+
+/// Scans too few for the oscillation that was found.
+std::optional<std::string> sampling_finding(double scan_rate_Hz, const TestResults& results) {
+  const Estimate& cycles_Hz = results.oscillation_frequency;
+  if (!results.omega.value && !cycles_Hz.value) return std::nullopt;
+  const double frequency_Hz =
+      results.omega.value ? *results.omega.value / (2.0 * std::numbers::pi) : *cycles_Hz.value;
+  const double scans = scan_rate_Hz / frequency_Hz;
+  if (scans >= kFewScansACycle) return std::nullopt;
+  return fmt::format(
+      "{:.2g} scans a cycle of {:.3g} Hz: peaks are missed, and perhaps slips; {:.0f} scans/s or more", scans,
+      frequency_Hz, std::ceil(kFewScansACycle * frequency_Hz));
 }
 
 /// A stub of a test: without the noise there is no telling what is a slip.
@@ -177,6 +197,11 @@ TestResults TestAnalysis::finish() {
     results.regime = verdict.regime;
     results.regime_reason = verdict.reason;
     results.stick_cycle_count = Estimate::of(0.0);
+    if (signal::hides_an_oscillation(trace.value, noise_floor(trace.value, settings_.step_coefficient))) {
+      results.regime = Regime::kUndecided;
+      results.regime_reason = kHiddenOscillation;
+      results.cycle_count = results.stick_cycle_count = Estimate::none(kHiddenOscillation);
+    }
     no_model_results("no slip", results);
   } else {
     // Where the speed changes, the mean of a cycle does so too, without any drift of the paper.
@@ -200,6 +225,8 @@ TestResults TestAnalysis::finish() {
     keep_cycles(estimates, slips);
   }
   period_results(trace, slips, results);
+  if (auto finding = sampling_finding(settings_.scan_rate_Hz, results))
+    results.findings.push_back(*std::move(finding));
   results.drift_rate = drift_of(trace, slips);
   return results;
 }
