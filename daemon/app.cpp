@@ -164,15 +164,18 @@ base::Result<void> App::open_session() {
   const base::Result<SessionSettings> made = session_settings(*board);
   if (!made) return tl::unexpected(made.error());
   const SessionSettings& settings = *made;
+  std::vector<std::string> remarks;
   if (config_.board.driver != drivers::Driver::kReplay) {
-    // The plan alone is asked: a record is what it is.
+    // Not of a replayed record: that is what it is.
     friction::Tester plan = settings.processor.analysis.tester;
     plan.stiffness_N_per_m = config_.bench.stiffness_N_per_m;
-    const friction::SamplingVerdict verdict = friction::check_sampling(
-        board->board->info().scan_rate_granted_Hz, friction::expected_frequency_Hz(plan, {}));
+    const friction::SamplingVerdict verdict =
+        friction::check_sampling(board->board->info().scan_rate_granted_Hz,
+                                 friction::expected_frequency_Hz(plan, settings.processor.analysis.prior));
     if (verdict.kind == friction::SamplingVerdict::Kind::kRefused)
       return base::usage_error("[board] scan_rate: {}", verdict.reason);
     world_.facts->sampling_checked(verdict);
+    if (!verdict.reason.empty()) remarks.push_back("sampling: " + verdict.reason);
   }
 
   if (expired(settings.calibration, record::iso_time(clock_->realtime_ns()))) {
@@ -205,7 +208,7 @@ base::Result<void> App::open_session() {
     return started;
   }
   watcher_->use(truth_.get());
-  storage_.use(record_header(settings), truth_.get());
+  storage_.use(record_header(settings), truth_.get(), std::move(remarks));
   session_->start_processing();
   return {};
 }

@@ -102,10 +102,12 @@ Storage::Storage(StorageSettings settings, Finalise finalise, TestLog& tests, Fa
 
 Storage::~Storage() { stop(); }
 
-void Storage::use(record::RecordHeader header, const friction::TruthSource* truth) {
+void Storage::use(record::RecordHeader header, const friction::TruthSource* truth,
+                  std::vector<std::string> remarks) {
   disk_.set_load(header.board.scan_rate_granted_Hz * bytes_per_scan(header.board) + kOtherBytesPerSecond);
   header_ = std::make_shared<const record::RecordHeader>(std::move(header));
   truth_ = truth;
+  remarks_ = std::move(remarks);
 }
 
 void Storage::stop() {
@@ -123,7 +125,7 @@ void Storage::test_began(const pipeline::TestStart& start) {
   collected_.count = 0;
   // The queue is told of an entry, not of each scan.
   collected_enough_ = std::min(scans_in_entry(header_->board), daq::ScanBlock::kMaxScans);
-  queue_.push(Began{start, header_});
+  queue_.push(Began{start, header_, remarks_});
 }
 
 void Storage::scans(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second,
@@ -239,6 +241,7 @@ void Storage::handle(const Began& message) {
     note_event(start.trigger, start.stamp.realtime_ns, std::move(text));
   };
   event("test began: the force crossed the trigger");
+  for (const std::string& remark : message.remarks) event(remark);
   if (!expires.empty() && record::iso_time(start.stamp.realtime_ns) >= expires) {
     event(fmt::format("the calibration of the load cell expired on {}", expires));
   }

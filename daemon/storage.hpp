@@ -50,7 +50,9 @@ class Storage final : public pipeline::Sink {
 
   /// What the records of the coming tests say about board, tester and program.
   /// Only while no test can arrive: before a session starts.
-  void use(record::RecordHeader header, const friction::TruthSource* truth);
+  /// \param remarks  an event each, in every record.
+  void use(record::RecordHeader header, const friction::TruthSource* truth,
+           std::vector<std::string> remarks = {});
 
   /// Writes all that was handed over, finalises, ends the thread. No sink calls afterwards.
   void stop();
@@ -74,6 +76,7 @@ class Storage final : public pipeline::Sink {
   struct Began {
     pipeline::TestStart start;
     std::shared_ptr<const record::RecordHeader> header;
+    std::vector<std::string> remarks;
   };
   struct Ended {
     std::shared_ptr<const record::EndRecord> end;
@@ -115,6 +118,7 @@ class Storage final : public pipeline::Sink {
   TestLog& tests_;
   Facts& facts_;
   std::shared_ptr<const record::RecordHeader> header_;  ///< Processing thread.
+  std::vector<std::string> remarks_;                    ///< Processing thread.
   const friction::TruthSource* truth_ = nullptr;        ///< Processing thread.
   daq::ScanIndex first_ = 0;                            ///< Processing thread.
   daq::ScanBlock collected_;          ///< Processing thread: scans that the queue has not got yet.

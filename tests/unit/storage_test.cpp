@@ -148,6 +148,27 @@ TEST_P(RefusingDisk, TenMinutesOfScansWaitInMemoryAndNothingIsLost) {
 INSTANTIATE_TEST_SUITE_P(Errors, RefusingDisk, testing::Values(ENOSPC, EIO),
                          [](const auto& error) { return std::string{::strerrorname_np(error.param)}; });
 
+TEST(Storage, RemarksAreEventsOfEveryRecord) {
+  const TemporaryFolder folder;
+  FaultyDisk disk;
+  TestLog tests;
+  Heard heard;
+  Storage storage{{folder.path(), DatedFolders::kNone, &disk}, finalise_plainly, tests, heard};
+  storage.use(header(), nullptr, {"sampling: frequency not verifiable"});
+  for (const std::int64_t number : {1, 2}) {
+    begin(storage, number, 700 * number);
+    feed(storage, 700 * number, 350);
+    end(storage, number, 700 * number + 350);
+  }
+  storage.stop();
+  for (const std::int64_t number : {1, 2}) {
+    const auto read = record::read_record(heard.file(number));
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_THAT(read->events, testing::Contains(testing::Field(&record::Event::text,
+                                                               "sampling: frequency not verifiable")));
+  }
+}
+
 TEST(Storage, ADiskThatTakesItsTimeHoldsNobodyUp) {
   const TemporaryFolder folder;
   std::mutex gate;
