@@ -34,8 +34,10 @@ class Acquisition {
   /// Any thread; the thread ends within one read timeout.
   void request_stop() noexcept { stop_requested_.store(true, std::memory_order_relaxed); }
 
-  /// Consumer: blocks until there is a block in the ring or the thread has ended.
+  /// Consumer: blocks until there is a block in the ring, the thread has ended, or somebody called wake().
   void wait() noexcept { news_.acquire(); }
+  /// Any thread.
+  void wake() noexcept { news_.release(); }
   /// Once set, all blocks are in the ring: whoever sees it and then empties the ring has them all.
   [[nodiscard]] std::optional<End> ended() const noexcept;
 

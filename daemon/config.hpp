@@ -46,6 +46,7 @@ struct DaemonConfig {
   RealtimeSettings realtime;
   BenchConfig bench;
   pipeline::SegmenterSettings segmenter;  ///< Its scan rate is the board's.
+  bool begins_by_force = true;            ///< Else each test has to be armed or started.
   friction::Method method;
   record::SampleFacts sample;
   friction::EstimatorTier estimator = friction::EstimatorTier::kFit;

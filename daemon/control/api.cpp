@@ -102,6 +102,7 @@ Json to_json(const daq::LatencyHistogram& latency) {
 Json to_json(const Status& status) {
   Json json;
   json["state"] = status.state;
+  json["bench"] = pipeline::name(status.bench);
   json["detail"] = status.detail;
   json["version"] = status.version;
   json["board"] = status.board ? to_json(*status.board) : Json(nullptr);

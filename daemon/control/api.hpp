@@ -40,6 +40,7 @@ struct Status {
   std::int64_t test_count = 0;               ///< Ended.
   std::optional<std::int64_t> current_test;  ///< Running now.
   std::optional<friction::LiveState> live;   ///< Of the current test.
+  pipeline::BenchState bench = pipeline::BenchState::kDegraded;
   std::optional<TestSummary> latest_test;
 };
 
