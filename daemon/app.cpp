@@ -12,6 +12,7 @@
 
 #include "core/record/iso_time.hpp"
 #include "daemon/calibration_file.hpp"
+#include "daemon/control/token.hpp"
 #include "daemon/recovery.hpp"
 #include "daemon/session_setup.hpp"
 #include "daemon/version.hpp"
@@ -54,6 +55,14 @@ App::App(DaemonConfig config, AppWorld world)
                    tell_status();
                  });
                }),
+      live_(io_, [this] { return health_frame(status()); }),
+      desk_({.config = config_,
+             .tests = tests_,
+             .storage = storage_,
+             .status = [this] { return status(); },
+             .session = [this] { return session_.get(); },
+             .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); }}),
+      wall_(base::make_system_clock()),
       retry_after_(world_.first_retry) {}
 
 App::~App() = default;
@@ -67,12 +76,7 @@ base::Result<void> App::run() {
 
   process_facts_ = prepare_process(config_.realtime);
   if (base::Result<void> prepared = prepare_record_folder(config_.record_folder); !prepared) return prepared;
-  if (config_.control_socket) {
-    auto control = ControlServer::listen(io_, *config_.control_socket, make_api([this] { return status(); }));
-    if (!control) return tl::unexpected(control.error());
-    control_ = std::move(*control);
-    world_.facts->control_listening(config_.control_socket->string());
-  }
+  if (base::Result<void> opened = open_control(); !opened) return opened;
   // What cannot be recovered is told and kept; the measurement goes on.
   static_cast<void>(recover_folder(config_.record_folder, finalise_, *world_.facts));
   if (base::Result<void> opened = open_session(); !opened) {
@@ -85,12 +89,31 @@ base::Result<void> App::run() {
   io_.run();
 
   storage_.stop();
-  control_.reset();
+  live_.close();
+  control_.clear();
   return {};
 }
 
 void App::request_stop() {
   boost::asio::post(io_, [this] { stop("told to"); });
+}
+
+base::Result<void> App::open_control() {
+  if (!config_.control_socket && config_.http.empty()) return {};
+  const HttpHandler api = make_api(desk_, *wall_);
+  const auto keep = [this](base::Result<std::unique_ptr<ControlServer>> server) -> base::Result<void> {
+    if (!server) return tl::unexpected(server.error());
+    world_.facts->control_listening((*server)->address());
+    control_.push_back(*std::move(server));
+    return {};
+  };
+  if (config_.control_socket) {
+    auto kept = keep(ControlServer::listen(io_, *config_.control_socket, api, {}, &live_.hub()));
+    if (!kept || config_.http.empty()) return kept;
+  }
+  const base::Result<std::string> token = load_token(config_.token_file);
+  if (!token) return tl::unexpected(token.error());
+  return keep(ControlServer::listen_tcp(io_, config_.http, *token, api, {}, &live_.hub()));
 }
 
 base::Result<void> App::open_session() {
@@ -127,7 +150,7 @@ base::Result<void> App::open_session() {
   };
   try {
     session_ = std::make_unique<Session>(std::move(*board), settings,
-                                         std::vector<pipeline::Sink*>{&watcher_, &storage_},
+                                         std::vector<pipeline::Sink*>{&watcher_, &storage_, &live_.feed()},
                                          std::move(events), counts_);
   } catch (const std::invalid_argument& refused) {
     return base::usage_error("the board does not suit the configuration: {}", refused.what());
@@ -137,6 +160,7 @@ base::Result<void> App::open_session() {
     return started;
   }
   watcher_.use(truth_.get());
+  live_.feed().use(settings.processor.analysis.scan_rate_Hz, config_.clock_speed);
   storage_.use(record_header(config_, settings, session_->board_info(), realtime_facts()), truth_.get());
   session_->start_processing();
   return {};
@@ -291,6 +315,12 @@ Status App::status() const {
   status.test_count = tests_.test_count();
   status.current_test = current_test_;
   status.latest_test = tests_.latest();
+  DiskState disk = storage_.disk();
+  status.disk_room_h = disk.room_h;
+  status.disk_trouble = std::move(disk.trouble);
+  status.disk_waiting_size = disk.waiting_size;
+  status.live_client_count = static_cast<std::int64_t>(live_.hub().client_count());
+  status.live_dropped_count = live_.hub().dropped_count() + live_.lost_count();
   return status;
 }
 

@@ -16,10 +16,12 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "core/base/clock.hpp"
+#include "daemon/bench_desk.hpp"
 #include "daemon/config.hpp"
 #include "daemon/control/api.hpp"
 #include "daemon/control/server.hpp"
 #include "daemon/facts.hpp"
+#include "daemon/live/stream.hpp"
 #include "daemon/notify.hpp"
 #include "daemon/session.hpp"
 #include "daemon/storage.hpp"
@@ -83,6 +85,8 @@ class App {
   [[nodiscard]] std::string state_line() const;  ///< Without the disk.
   /// What the kernel granted; only while there is a session.
   [[nodiscard]] std::string realtime_facts() const;
+  /// Socket and port, as configured.
+  [[nodiscard]] base::Result<void> open_control();
 
   DaemonConfig config_;
   AppWorld world_;
@@ -95,7 +99,10 @@ class App {
   TestLog tests_;
   Storage storage_;
   TestWatcher watcher_;
-  std::unique_ptr<ControlServer> control_;
+  LiveStream live_;
+  BenchDesk desk_;
+  std::unique_ptr<base::Clock> wall_;  ///< Of leases: people's time.
+  std::vector<std::unique_ptr<ControlServer>> control_;
   std::shared_ptr<const friction::TruthSource> truth_;
   std::unique_ptr<Session> session_;
 

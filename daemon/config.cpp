@@ -290,6 +290,11 @@ DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
   config.read_only_records = record.boolean("read_only", config.read_only_records);
   Settings control = settings.table("control");
   if (const std::string socket = control.text("socket", ""); !socket.empty()) config.control_socket = socket;
+  config.http = control.text("http", "");
+  config.token_file = control.text("token_file", "");
+  if (!config.http.empty() && config.token_file.empty()) {
+    control.refuse("token_file", "is missing: who comes over http has to show the token that stands there");
+  }
   config.log_level = settings.table("log").choice<LogLevel>("level", kLogLevels, config.log_level);
   config.report_table = settings.table("report").boolean("table", config.report_table);
   config.text = settings.source_text();

@@ -54,6 +54,8 @@ struct DaemonConfig {
   DatedFolders dated_folders = DatedFolders::kNone;
   bool read_only_records = false;
   std::optional<std::filesystem::path> control_socket;
+  std::string http;                  ///< Address and port of this machine; empty: none.
+  std::filesystem::path token_file;  ///< For http.
   LogLevel log_level = LogLevel::kInfo;
   bool report_table = false;
   std::string text;  ///< The file as it was read, for the records.

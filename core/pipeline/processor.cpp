@@ -62,7 +62,8 @@ void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause, bo
     note_clocks(block);
     report_new_cycles();
   }
-  for (Sink* sink : sinks_) sink->observed(block.first, std::span{coefficients_}.first(block.count));
+  const friction::LiveState now = live();
+  for (Sink* sink : sinks_) sink->observed(block.first, std::span{coefficients_}.first(block.count), now);
 }
 
 std::optional<EndCause> Processor::observe(daq::ScanIndex index, double raw, std::int32_t second,

@@ -17,6 +17,7 @@
 #include "core/daq/scan_block.hpp"
 #include "core/daq/self_check.hpp"
 #include "core/friction/cycle.hpp"
+#include "core/friction/live_cycle.hpp"
 #include "core/friction/results.hpp"
 #include "core/pipeline/bench_state.hpp"
 
@@ -92,7 +93,9 @@ class Sink {
   /// Scans lost while no test was running.
   virtual void gap_between_tests(const daq::Gap& /*gap*/) {}
   /// Each scan, whether a test runs or not, in blocks; after all else that the block brought.
-  virtual void observed(daq::ScanIndex /*first*/, std::span<const double> /*coefficient*/) {}
+  /// \param live  after the last of them; idle between tests.
+  virtual void observed(daq::ScanIndex /*first*/, std::span<const double> /*coefficient*/,
+                        const friction::LiveState& /*live*/) {}
   /// The bench is in another state.
   virtual void bench_changed(BenchState /*state*/) {}
 };

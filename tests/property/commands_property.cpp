@@ -41,7 +41,7 @@ class Recorder final : public Sink {
     tests.back().end = end;
   }
   void bench_changed(BenchState state) override { told = state; }
-  void observed(daq::ScanIndex, std::span<const double> coefficient) override {
+  void observed(daq::ScanIndex, std::span<const double> coefficient, const friction::LiveState&) override {
     observed_count += coefficient.size();
   }
 
