@@ -46,8 +46,10 @@ class Acquisition {
   }
 
   /// Consumer: waits until there are blocks in the ring, the oldest at most 4 ms older than the latest, or
-  /// the thread has ended.
+  /// the thread has ended, or somebody called wake().
   void wait() noexcept { news_.acquire(); }
+  /// Any thread.
+  void wake() noexcept { news_.release(); }
   /// Consumer: blocks were taken out of the ring. Needed with FullRing::kWait only.
   void made_room() noexcept {
     room_made_.fetch_add(1, std::memory_order_release);

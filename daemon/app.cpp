@@ -1,26 +1,20 @@
 #include "daemon/app.hpp"
 
-#include <fcntl.h>
 #include <signal.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <stdexcept>
-#include <system_error>
 #include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
 
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/post.hpp>
 
-#include "core/friction/sampling.hpp"
-#include "core/pipeline/gain_uncertainty.hpp"
 #include "core/record/iso_time.hpp"
 #include "daemon/calibration_file.hpp"
-#include "daemon/method_text.hpp"
+#include "daemon/control/token.hpp"
 #include "daemon/recovery.hpp"
-#include "daemon/tester_file.hpp"
+#include "daemon/session_setup.hpp"
 #include "daemon/version.hpp"
 
 namespace stickslip::daemon {
@@ -45,49 +39,6 @@ Finalise read_only(Finalise finalise) {
 
 }  // namespace
 
-/// Sees the tests on the processing thread; adds them to the log, tells facts and main thread.
-class App::Watcher final : public pipeline::Sink {
- public:
-  explicit Watcher(App& app) : app_(app) {}
-
-  /// Only between sessions.
-  void use(const friction::TruthSource* truth) { truth_ = truth; }
-
-  void test_began(const pipeline::TestStart& start) override {
-    first_ = start.first;
-    app_.world_.facts->test_began(start);
-    post_current(start.number);
-  }
-
-  void gap(const daq::Gap& gap) override { app_.world_.facts->gap_seen(gap); }
-  void gap_between_tests(const daq::Gap& gap) override { app_.world_.facts->gap_seen(gap); }
-
-  void test_ended(const pipeline::TestEnd& end) override {
-    TestSummary summary;
-    summary.number = end.number;
-    summary.first = first_;
-    summary.end = end.end;
-    summary.cause = end.cause;
-    summary.results = end.results;
-    if (truth_ != nullptr) summary.truth = truth_->truth(first_, end.end);
-    app_.tests_.add(std::move(summary));
-    app_.world_.facts->test_ended(end);
-    post_current(std::nullopt);
-  }
-
- private:
-  void post_current(std::optional<std::int64_t> number) {
-    boost::asio::post(app_.io_, [&app = app_, number] {
-      app.current_test_ = number;
-      app.tell_status();
-    });
-  }
-
-  App& app_;
-  const friction::TruthSource* truth_ = nullptr;
-  daq::ScanIndex first_ = 0;
-};
-
 App::App(DaemonConfig config, AppWorld world)
     : config_(std::move(config)),
       world_(std::move(world)),
@@ -97,7 +48,21 @@ App::App(DaemonConfig config, AppWorld world)
       clock_(world_.clock ? std::move(world_.clock) : base::make_system_clock(config_.clock_speed)),
       storage_({.folder = config_.record_folder, .dated_folders = config_.dated_folders}, finalise_, tests_,
                *world_.facts, [this] { boost::asio::post(io_, [this] { tell_status(); }); }),
-      watcher_(std::make_unique<Watcher>(*this)),
+      watcher_(tests_, *world_.facts,
+               [this](std::optional<std::int64_t> number) {
+                 boost::asio::post(io_, [this, number] {
+                   current_test_ = number;
+                   tell_status();
+                 });
+               }),
+      live_(io_, [this] { return health_frame(status()); }),
+      desk_({.config = config_,
+             .tests = tests_,
+             .storage = storage_,
+             .status = [this] { return status(); },
+             .session = [this] { return session_.get(); },
+             .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); }}),
+      wall_(base::make_system_clock()),
       retry_after_(world_.first_retry) {}
 
 App::~App() = default;
@@ -110,13 +75,8 @@ base::Result<void> App::run() {
   });
 
   process_facts_ = prepare_process(config_.realtime);
-  if (base::Result<void> prepared = prepare_record_folder(); !prepared) return prepared;
-  if (config_.control_socket) {
-    auto control = ControlServer::listen(io_, *config_.control_socket, make_api([this] { return status(); }));
-    if (!control) return tl::unexpected(control.error());
-    control_ = std::move(*control);
-    world_.facts->control_listening(config_.control_socket->string());
-  }
+  if (base::Result<void> prepared = prepare_record_folder(config_.record_folder); !prepared) return prepared;
+  if (base::Result<void> opened = open_control(); !opened) return opened;
   // What cannot be recovered is told and kept; the measurement goes on.
   static_cast<void>(recover_folder(config_.record_folder, finalise_, *world_.facts));
   if (base::Result<void> opened = open_session(); !opened) {
@@ -129,7 +89,8 @@ base::Result<void> App::run() {
   io_.run();
 
   storage_.stop();
-  control_.reset();
+  live_.close();
+  control_.clear();
   return {};
 }
 
@@ -137,23 +98,22 @@ void App::request_stop() {
   boost::asio::post(io_, [this] { stop("told to"); });
 }
 
-base::Result<void> App::prepare_record_folder() {
-  std::error_code error;
-  std::filesystem::create_directories(config_.record_folder, error);
-  if (error) {
-    return base::failure("record folder {}: cannot be made: {}", config_.record_folder.string(),
-                         error.message());
+base::Result<void> App::open_control() {
+  if (!config_.control_socket && config_.http.empty()) return {};
+  const HttpHandler api = make_api(desk_, *wall_);
+  const auto keep = [this](base::Result<std::unique_ptr<ControlServer>> server) -> base::Result<void> {
+    if (!server) return tl::unexpected(server.error());
+    world_.facts->control_listening((*server)->address());
+    control_.push_back(*std::move(server));
+    return {};
+  };
+  if (config_.control_socket) {
+    auto kept = keep(ControlServer::listen(io_, *config_.control_socket, api, {}, &live_.hub()));
+    if (!kept || config_.http.empty()) return kept;
   }
-  // Permissions, read-only mounts and quotas: only an attempt tells.
-  const std::filesystem::path probe = config_.record_folder / fmt::format(".probe-{}", ::getpid());
-  const int descriptor = ::open(probe.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
-  if (descriptor < 0) {
-    return base::failure("record folder {}: cannot be written: {}", config_.record_folder.string(),
-                         std::generic_category().message(errno));
-  }
-  ::close(descriptor);
-  ::unlink(probe.c_str());
-  return {};
+  const base::Result<std::string> token = load_token(config_.token_file);
+  if (!token) return tl::unexpected(token.error());
+  return keep(ControlServer::listen_tcp(io_, config_.http, *token, api, {}, &live_.hub()));
 }
 
 base::Result<void> App::open_session() {
@@ -161,22 +121,14 @@ base::Result<void> App::open_session() {
       world_.open_board(config_.board, *clock_, continues_.continuation);
   if (!board) return tl::unexpected(board.error());
   truth_ = board->truth;
-  const base::Result<SessionSettings> made = session_settings(*board);
+  const base::Result<SessionSettings> made = session_settings(config_, *board, continues_);
   if (!made) return tl::unexpected(made.error());
   const SessionSettings& settings = *made;
+  const auto verdict = check_sampling(config_, settings);
+  if (!verdict) return tl::unexpected(verdict.error());
+  world_.facts->sampling_checked(*verdict);
   std::vector<std::string> remarks;
-  if (config_.board.driver != drivers::Driver::kReplay) {
-    // Not of a replayed record: that is what it is.
-    friction::Tester plan = settings.processor.analysis.tester;
-    plan.stiffness_N_per_m = config_.bench.stiffness_N_per_m;
-    const friction::SamplingVerdict verdict =
-        friction::check_sampling(board->board->info().scan_rate_granted_Hz,
-                                 friction::expected_frequency_Hz(plan, settings.processor.analysis.prior));
-    if (verdict.kind == friction::SamplingVerdict::Kind::kRefused)
-      return base::usage_error("[board] scan_rate: {}", verdict.reason);
-    world_.facts->sampling_checked(verdict);
-    if (!verdict.reason.empty()) remarks.push_back("sampling: " + verdict.reason);
-  }
+  if (!verdict->reason.empty()) remarks.push_back("sampling: " + verdict->reason);
 
   if (expired(settings.calibration, record::iso_time(clock_->realtime_ns()))) {
     world_.facts->calibration_expired(settings.calibration.expires);
@@ -198,7 +150,7 @@ base::Result<void> App::open_session() {
   };
   try {
     session_ = std::make_unique<Session>(std::move(*board), settings,
-                                         std::vector<pipeline::Sink*>{watcher_.get(), &storage_},
+                                         std::vector<pipeline::Sink*>{&watcher_, &storage_, &live_.feed()},
                                          std::move(events), counts_);
   } catch (const std::invalid_argument& refused) {
     return base::usage_error("the board does not suit the configuration: {}", refused.what());
@@ -207,8 +159,10 @@ base::Result<void> App::open_session() {
     session_.reset();
     return started;
   }
-  watcher_->use(truth_.get());
-  storage_.use(record_header(settings), truth_.get(), std::move(remarks));
+  watcher_.use(truth_.get());
+  live_.feed().use(settings.processor.analysis.scan_rate_Hz, config_.clock_speed);
+  storage_.use(record_header(config_, settings, session_->board_info(), realtime_facts()), truth_.get(),
+               std::move(remarks));
   session_->start_processing();
   return {};
 }
@@ -271,68 +225,6 @@ void App::stop(const std::string& why) {
 void App::leave_when_idle() {
   // A running session ends first, and calls again.
   if (!session_) io_.stop();
-}
-
-base::Result<SessionSettings> App::session_settings(const drivers::OpenedBoard& opened) const {
-  const daq::BoardInfo& board = opened.board->info();
-  SessionSettings settings;
-  settings.load_cell = config_.bench.load_cell(opened.load_cell);
-  // A board that runs faster than time may have no moment to wait, and RLIMIT_RTTIME would end it.
-  if (config_.clock_speed == 1.0) settings.realtime = config_.realtime;
-  settings.clock_speed = config_.clock_speed;
-  settings.processor.first_test_number = continues_.next_test_number;
-  if (continues_.continuation) settings.processor.continues_at = continues_.continuation->end;
-  settings.processor.recorded = opened.recorded;
-  settings.processor.second = board.second;
-  const BenchConfig& bench = config_.bench;
-  if (bench.calibration) {
-    settings.calibration = *bench.calibration;
-  } else if (!bench.load_cell_gain_N_per_V && !bench.load_cell_zero_V) {
-    settings.calibration = opened.calibration;  // It belongs to the numbers that come with it.
-  }
-  settings.processor.gain_uncertainty = pipeline::relative_gain_uncertainty(
-      settings.load_cell, settings.calibration.gain_standard_error_N_per_V);
-  settings.processor.clock_is_real = config_.clock_speed == 1.0;
-  settings.processor.segmenter = config_.segmenter;
-  settings.processor.segmenter.scan_rate_Hz = board.scan_rate_granted_Hz;
-  friction::AnalysisSettings& analysis = settings.processor.analysis;
-  analysis.scan_rate_Hz = board.scan_rate_granted_Hz;
-  analysis.tester = config_.bench.tester(opened.tester);
-  analysis.method = config_.method;
-  settings.characterisation =
-      config_.bench.characterisation.empty() ? opened.characterisation : config_.bench.characterisation;
-  if (!settings.characterisation.empty()) {
-    auto coupling = parse_tester(settings.characterisation, "characterisation");
-    // The configuration's was checked with it; a record's may be damaged.
-    if (!coupling) return tl::unexpected(coupling.error());
-    analysis.prior.coupling = *std::move(coupling);
-  }
-  analysis.estimator = config_.estimator;
-  return settings;
-}
-
-record::RecordHeader App::record_header(const SessionSettings& settings) const {
-  record::RecordHeader header;
-  header.board = session_->board_info();
-  const daq::RawQuantity quantity = header.board.quantity;
-  if (quantity == daq::RawQuantity::kCounts || quantity == daq::RawQuantity::kVolts) {
-    header.load_cell = settings.load_cell;
-  }
-  if (header.load_cell) header.calibration = settings.calibration;
-  header.sample = config_.sample;
-  const pipeline::SegmenterSettings& segmenter = settings.processor.segmenter;
-  header.plan = {segmenter.start_coefficient, segmenter.start_dwell_s,  segmenter.pre_trigger_s,
-                 segmenter.end_coefficient,   segmenter.unload_dwell_s, segmenter.no_motion_dwell_s};
-  header.tester = record::TesterFacts::of(settings.processor.analysis.tester);
-  header.process.program = "stickslipd";
-  header.process.version = kVersion;
-  header.process.commit = kCommit;
-  header.process.configuration = config_.text;
-  header.process.method =
-      with_estimator(method_text(settings.processor.analysis.method), settings.processor.analysis.estimator);
-  header.process.characterisation = settings.characterisation;
-  header.process.realtime = realtime_facts();
-  return header;
 }
 
 std::string App::realtime_facts() const {
@@ -408,6 +300,7 @@ Status App::status() const {
   status.version = kVersion;
   if (session_) {
     status.board = session_->board_info();
+    status.bench = session_->bench();
     if (current_test_) status.live = session_->live();
     status.scheduling = realtime_facts();
   }
@@ -427,6 +320,8 @@ Status App::status() const {
   status.test_count = tests_.test_count();
   status.current_test = current_test_;
   status.latest_test = tests_.latest();
+  status.live_client_count = static_cast<std::int64_t>(live_.hub().client_count());
+  status.live_dropped_count = live_.hub().dropped_count() + live_.lost_count();
   return status;
 }
 

@@ -16,14 +16,17 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "core/base/clock.hpp"
+#include "daemon/bench_desk.hpp"
 #include "daemon/config.hpp"
 #include "daemon/control/api.hpp"
 #include "daemon/control/server.hpp"
 #include "daemon/facts.hpp"
+#include "daemon/live/stream.hpp"
 #include "daemon/notify.hpp"
 #include "daemon/session.hpp"
 #include "daemon/storage.hpp"
 #include "daemon/test_log.hpp"
+#include "daemon/test_watcher.hpp"
 
 namespace stickslip::daemon {
 
@@ -63,7 +66,6 @@ class App {
   [[nodiscard]] Status status() const;
 
  private:
-  class Watcher;
   /// The three in the middle wait for the board: it is not there, another program has it, its device
   /// file is not for this user.
   enum class State { kStarting, kAcquiring, kBoardMissing, kBoardBusy, kNoPermission, kStopping };
@@ -72,7 +74,6 @@ class App {
   /// The one to wait in after an error of this kind.
   [[nodiscard]] static State waiting_state(base::ErrorKind kind) noexcept;
 
-  [[nodiscard]] base::Result<void> prepare_record_folder();
   [[nodiscard]] base::Result<void> open_session();
   void wait_for_board(const base::Error& why);
   void retry_board();
@@ -80,12 +81,12 @@ class App {
   void stop(const std::string& why);
   void leave_when_idle();
   void tell_status();
-  [[nodiscard]] base::Result<SessionSettings> session_settings(const drivers::OpenedBoard& opened) const;
-  [[nodiscard]] record::RecordHeader record_header(const SessionSettings& settings) const;
   [[nodiscard]] std::string status_line() const;
   [[nodiscard]] std::string state_line() const;  ///< Without the disk.
   /// What the kernel granted; only while there is a session.
   [[nodiscard]] std::string realtime_facts() const;
+  /// Socket and port, as configured.
+  [[nodiscard]] base::Result<void> open_control();
 
   DaemonConfig config_;
   AppWorld world_;
@@ -97,8 +98,11 @@ class App {
   Notify notify_;
   TestLog tests_;
   Storage storage_;
-  std::unique_ptr<Watcher> watcher_;
-  std::unique_ptr<ControlServer> control_;
+  TestWatcher watcher_;
+  LiveStream live_;
+  BenchDesk desk_;
+  std::unique_ptr<base::Clock> wall_;  ///< Of leases: people's time.
+  std::vector<std::unique_ptr<ControlServer>> control_;
   std::shared_ptr<const friction::TruthSource> truth_;
   std::unique_ptr<Session> session_;
 

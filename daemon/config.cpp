@@ -52,6 +52,8 @@ constexpr std::array<std::pair<std::string_view, friction::EstimatorTier>, 3> kE
 constexpr std::array<std::pair<std::string_view, DatedFolders>, 3> kDatedFolders{
     {{"none", DatedFolders::kNone}, {"month", DatedFolders::kMonth}, {"day", DatedFolders::kDay}}};
 
+constexpr std::array<std::pair<std::string_view, bool>, 2> kBeginnings{{{"force", true}, {"command", false}}};
+
 /// A typing mistake of a factor of a thousand is refused; every real tester is far inside.
 constexpr double kFastestScanRate_Hz = 1e6;
 constexpr double kFastestClock = 1e4;
@@ -231,7 +233,9 @@ void read_tester(Settings table, const std::filesystem::path& folder, DaemonConf
   }
 }
 
-void read_test(Settings table, pipeline::SegmenterSettings& segmenter) {
+void read_test(Settings table, DaemonConfig& config) {
+  config.begins_by_force = table.choice<bool>("begins", kBeginnings, config.begins_by_force);
+  pipeline::SegmenterSettings& segmenter = config.segmenter;
   const Limits coefficient = Limits::between(0.0, kLargestCoefficient);
   const Limits dwell = Limits::above_up_to(0.0, kLongestDwell_s);
   segmenter.start_coefficient =
@@ -273,7 +277,7 @@ DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
   DaemonConfig config;
   read_board(settings.table("board"), folder, config);
   read_tester(settings.table("tester"), folder, config);
-  read_test(settings.table("test"), config.segmenter);
+  read_test(settings.table("test"), config);
   read_sample(settings.table("sample"), config.sample);
   read_method(settings.table("method"), folder, config.method);
   config.board.simulated.method = config.method;
@@ -286,6 +290,11 @@ DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
   config.read_only_records = record.boolean("read_only", config.read_only_records);
   Settings control = settings.table("control");
   if (const std::string socket = control.text("socket", ""); !socket.empty()) config.control_socket = socket;
+  config.http = control.text("http", "");
+  config.token_file = control.text("token_file", "");
+  if (!config.http.empty() && config.token_file.empty()) {
+    control.refuse("token_file", "is missing: who comes over http has to show the token that stands there");
+  }
   config.log_level = settings.table("log").choice<LogLevel>("level", kLogLevels, config.log_level);
   config.report_table = settings.table("report").boolean("table", config.report_table);
   config.text = settings.source_text();

@@ -46,6 +46,7 @@ struct DaemonConfig {
   RealtimeSettings realtime;
   BenchConfig bench;
   pipeline::SegmenterSettings segmenter;  ///< Its scan rate is the board's.
+  bool begins_by_force = true;            ///< Else each test has to be armed or started.
   friction::Method method;
   record::SampleFacts sample;
   friction::EstimatorTier estimator = friction::EstimatorTier::kFit;
@@ -53,6 +54,8 @@ struct DaemonConfig {
   DatedFolders dated_folders = DatedFolders::kNone;
   bool read_only_records = false;
   std::optional<std::filesystem::path> control_socket;
+  std::string http;                  ///< Address and port of this machine; empty: none.
+  std::filesystem::path token_file;  ///< For http.
   LogLevel log_level = LogLevel::kInfo;
   bool report_table = false;
   std::string text;  ///< The file as it was read, for the records.

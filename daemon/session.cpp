@@ -7,6 +7,9 @@
 namespace stickslip::daemon {
 namespace {
 
+/// More than people can give; each of them waits for its answer.
+constexpr std::size_t kMostJobs = 64;
+
 pipeline::EndCause end_cause(Acquisition::End end) {
   switch (end) {
     case Acquisition::End::kStopped:
@@ -34,6 +37,7 @@ Session::Session(drivers::OpenedBoard board, const SessionSettings& settings,
       processor_(settings.processor, calibration_of(board_, settings), std::move(sinks)),
       acquisition_(*board_.board, ring_, settings.realtime, settings.full_ring),
       counts_(counts),
+      bench_(processor_.bench()),
       full_ring_(settings.full_ring),
       continues_(settings.processor.continues_at.has_value()) {
   STICKSLIP_EXPECTS(full_ring_ == FullRing::kDrop || !settings.processor.clock_is_real);
@@ -61,12 +65,45 @@ void Session::process() {
       if (full_ring_ == FullRing::kWait) acquisition_.made_room();
       for (std::size_t i = 0; i < count; ++i) process_block(blocks[i]);
     }
+    // Commands belong behind the scans that were there before them.
+    run_jobs();
     if (ended) {
       processor_.finish(end_cause(*ended));
+      close_jobs();
+      run_jobs();
       events_.ended(*ended);
       return;
     }
   }
+}
+
+bool Session::post(Job job) {
+  {
+    const std::lock_guard lock{jobs_mutex_};
+    if (jobs_closed_ || jobs_.size() >= kMostJobs) return false;
+    jobs_.push_back(std::move(job));
+  }
+  acquisition_.wake();
+  return true;
+}
+
+void Session::run_jobs() {
+  for (;;) {
+    Job job;
+    {
+      const std::lock_guard lock{jobs_mutex_};
+      if (jobs_.empty()) break;
+      job = std::move(jobs_.front());
+      jobs_.pop_front();
+    }
+    job(processor_);
+  }
+  bench_.store(processor_.bench(), std::memory_order_relaxed);
+}
+
+void Session::close_jobs() {
+  const std::lock_guard lock{jobs_mutex_};
+  jobs_closed_ = true;
 }
 
 void Session::process_block(const daq::ScanBlock& block) {
@@ -92,6 +129,7 @@ void Session::process_block(const daq::ScanBlock& block) {
     clocks_.scan_rate = meter.estimate();
     if (const auto late_ns = meter.lateness_ns(block)) clocks_.latency.add(*late_ns);
   }
+  bench_.store(processor_.bench(), std::memory_order_relaxed);
   counts_.dropped_scans.fetch_add(dropped, std::memory_order_relaxed);
   counts_.overruns.fetch_add(overruns, std::memory_order_relaxed);
   counts_.scans.fetch_add(block.count, std::memory_order_relaxed);

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -76,6 +77,12 @@ class Session {
   /// The board stops, the ring is drained, a running test ends; then comes events.ended.
   void request_stop() noexcept { acquisition_.request_stop(); }
 
+  /// What runs on the processing thread between two blocks, as soon as it can.
+  using Job = std::function<void(pipeline::Processor&)>;
+  /// From any thread. \return false if it will never be called: the session is over, or too many wait. After
+  /// the last scan jobs are still called, on a bench that is degraded.
+  [[nodiscard]] bool post(Job job);
+
   [[nodiscard]] const daq::BoardInfo& board_info() const noexcept { return board_.board->info(); }
   /// Why the board ended; only after events.ended.
   [[nodiscard]] std::string board_error() const { return board_.board->last_error(); }
@@ -85,6 +92,8 @@ class Session {
     const std::lock_guard lock{live_mutex_};
     return live_;
   }
+  /// From any thread.
+  [[nodiscard]] pipeline::BenchState bench() const noexcept { return bench_.load(std::memory_order_relaxed); }
   /// From any thread.
   [[nodiscard]] SessionClocks clocks() const {
     const std::lock_guard lock{live_mutex_};
@@ -98,6 +107,9 @@ class Session {
  private:
   void process();
   void process_block(const daq::ScanBlock& block);
+  void run_jobs();
+  /// No more jobs after this.
+  void close_jobs();
 
   drivers::OpenedBoard board_;
   SessionEvents events_;
@@ -107,10 +119,14 @@ class Session {
   SessionCounts& counts_;
   mutable std::mutex live_mutex_;  ///< Held for a copy; the acquisition thread has no part in it.
   friction::LiveState live_;
+  std::atomic<pipeline::BenchState> bench_;
   SessionClocks clocks_;
   std::uint64_t dropped_before_ = 0;
   std::uint64_t overruns_before_ = 0;
   FullRing full_ring_;
+  std::mutex jobs_mutex_;
+  std::deque<Job> jobs_;  ///< At most kMostJobs.
+  bool jobs_closed_ = false;
   bool any_scan_ = false;
   bool continues_;  ///< After another session: the gap before the first scan is that of a missing board.
   std::thread thread_;

@@ -110,6 +110,13 @@ void Storage::use(record::RecordHeader header, const friction::TruthSource* trut
   remarks_ = std::move(remarks);
 }
 
+void Storage::amend(const std::function<void(record::RecordHeader&)>& change) {
+  if (!header_) return;
+  record::RecordHeader header = *header_;
+  change(header);
+  header_ = std::make_shared<const record::RecordHeader>(std::move(header));
+}
+
 void Storage::stop() {
   if (!thread_.joinable()) return;
   queue_.push(Quit{});
@@ -167,6 +174,11 @@ void Storage::anchor(const daq::ClockAnchor& anchor) {
 void Storage::cycle(const friction::Cycle& cycle) {
   hand_over_collected();
   queue_.push(cycle);
+}
+
+void Storage::note(const daq::Note& note) {
+  hand_over_collected();
+  queue_.push(note);
 }
 
 void Storage::test_ended(const pipeline::TestEnd& end) {
@@ -240,7 +252,7 @@ void Storage::handle(const Began& message) {
   const auto event = [&](std::string text) {
     note_event(start.trigger, start.stamp.realtime_ns, std::move(text));
   };
-  event("test began: the force crossed the trigger");
+  event(start.by_command ? "test began: somebody started it" : "test began: the force crossed the trigger");
   for (const std::string& remark : message.remarks) event(remark);
   if (!expires.empty() && record::iso_time(start.stamp.realtime_ns) >= expires) {
     event(fmt::format("the calibration of the load cell expired on {}", expires));
@@ -278,6 +290,10 @@ void Storage::handle(const daq::ClockAnchor& anchor) {
 void Storage::handle(const friction::Cycle& cycle) {
   append_pending();
   if (journal_) journal_->add_cycle(cycle);
+}
+
+void Storage::handle(const daq::Note& note) {
+  note_event(note.scan, pending_stamp_.realtime_ns, daq::to_text(note));
 }
 
 void Storage::handle(const Ended& message) {

@@ -54,6 +54,10 @@ class Storage final : public pipeline::Sink {
   void use(record::RecordHeader header, const friction::TruthSource* truth,
            std::vector<std::string> remarks = {});
 
+  /// What the records of the coming tests say otherwise, of those that begin after this.
+  /// On the processing thread, or while no test can arrive.
+  void amend(const std::function<void(record::RecordHeader&)>& change);
+
   /// Writes all that was handed over, finalises, ends the thread. No sink calls afterwards.
   void stop();
 
@@ -70,6 +74,7 @@ class Storage final : public pipeline::Sink {
   void gap(const daq::Gap& gap) override;
   void anchor(const daq::ClockAnchor& anchor) override;
   void cycle(const friction::Cycle& cycle) override;
+  void note(const daq::Note& note) override;
   void test_ended(const pipeline::TestEnd& end) override;
 
  private:
@@ -88,8 +93,8 @@ class Storage final : public pipeline::Sink {
     daq::ScanIndex end;
   };
   struct Quit {};
-  using Message =
-      std::variant<Quit, Began, daq::ScanBlock, daq::Gap, daq::ClockAnchor, friction::Cycle, Ended>;
+  using Message = std::variant<Quit, Began, daq::ScanBlock, daq::Gap, daq::ClockAnchor, friction::Cycle,
+                               daq::Note, Ended>;
 
   // The processing thread's side.
   void hand_over_collected();
@@ -101,6 +106,7 @@ class Storage final : public pipeline::Sink {
   void handle(const daq::Gap& gap);
   void handle(const daq::ClockAnchor& anchor);
   void handle(const friction::Cycle& cycle);
+  void handle(const daq::Note& note);
   void handle(const Ended& message);
   void append_pending();
   /// \param realtime_ns  when it happened.

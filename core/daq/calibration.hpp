@@ -31,6 +31,18 @@ class Calibration {
   /// Force over the normal load.
   [[nodiscard]] double coefficient(double raw) const noexcept;
 
+  /// The same with another zero of the load cell, finite.
+  [[nodiscard]] Calibration with_zero(double zero_V) const {
+    Calibration other = *this;
+    other.load_cell_.zero_V = zero_V;
+    return other;
+  }
+  /// The load cell stands between reading and force.
+  [[nodiscard]] bool measures_voltage() const noexcept {
+    return quantity_ == RawQuantity::kCounts || quantity_ == RawQuantity::kVolts;
+  }
+  [[nodiscard]] const LoadCell& load_cell() const noexcept { return load_cell_; }
+
   [[nodiscard]] double normal_load_N() const noexcept { return normal_load_N_; }
   /// One A/D step as a coefficient; 0 if the reading is no count.
   [[nodiscard]] double step_coefficient() const noexcept { return step_coefficient_; }

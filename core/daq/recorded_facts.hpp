@@ -1,6 +1,6 @@
 /// \file
-/// What a record says about its scans that a replay cannot see: the clocks of then, and why scans are
-/// missing.
+/// What a record says about its scans that a replay cannot see: the clocks of then, why scans are missing,
+/// and what people did.
 #pragma once
 
 #include <memory>
@@ -10,6 +10,7 @@
 #include "core/daq/clock_anchor.hpp"
 #include "core/daq/gap.hpp"
 #include "core/daq/latency_histogram.hpp"
+#include "core/daq/note.hpp"
 #include "core/daq/self_check.hpp"
 
 namespace stickslip::daq {
@@ -19,6 +20,7 @@ struct RecordedFacts {
   std::vector<Gap> gaps;                        ///< Rising.
   std::shared_ptr<const SelfCheck> self_check;  ///< Null if there is none.
   std::optional<LatencyHistogram> read_latency;
+  std::vector<Note> notes{};  ///< Scans not falling.
 };
 
 }  // namespace stickslip::daq

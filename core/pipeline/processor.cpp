@@ -23,12 +23,19 @@ Processor::Processor(const ProcessorSettings& settings, daq::Calibration calibra
       sinks_(std::move(sinks)),
       gaps_(settings.continues_at),
       segmenter_(complete(settings.segmenter, calibration_)),
+      bench_(settings.automatic),
       idle_(settings.analysis.scan_rate_Hz),
       number_(settings.first_test_number),
       meter_(settings.analysis.scan_rate_Hz),
       picker_(settings.analysis.scan_rate_Hz) {
   settings_.analysis.step_coefficient = calibration_.step_coefficient();
   if (measures_speed()) settings_.analysis.speed_step_m_per_s = settings_.second->step();
+  if (settings_.recorded) {
+    const std::vector<daq::Note>& notes = settings_.recorded->notes;
+    recorded_start_ = std::any_of(notes.begin(), notes.end(),
+                                  [](const daq::Note& note) { return note.kind == daq::Note::Kind::kStart; });
+  }
+  static_cast<void>(happens(BenchEvent::kBoardBack));
 }
 
 void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause, bool halted) {
@@ -39,41 +46,64 @@ void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause, bo
   std::size_t not_handed_over = 0;  // First scan of the running test that the sinks have not seen.
   for (std::size_t i = 0; i < block.count; ++i) {
     const daq::ScanIndex index = block.first + static_cast<daq::ScanIndex>(i);
-    const double raw = block.raw[i];
-    const std::int32_t second = block.second[i];
+    const bool before = test_is_running();
+    coefficients_[i] = calibration_.coefficient(block.raw[i]);
     next_scan_ = index + 1;
-    const bool armed = segmenter_.armed();
-    const Segmenter::Event event = segmenter_.observe(index, calibration_.coefficient(raw));
-    if (test_is_running()) {
-      analyse(index, raw, second);
-      if (event == Segmenter::Event::kUnloaded || event == Segmenter::Event::kNoRelativeMotion) {
-        hand_over(block, not_handed_over, i + 1);
-        end(next_scan_,
-            event == Segmenter::Event::kUnloaded ? EndCause::kUnloaded : EndCause::kNoRelativeMotion);
-      }
-      continue;
+    const std::optional<EndCause> over = observe(index, block.raw[i], block.second[i], block.stamp);
+    if (!before && test_is_running()) not_handed_over = i + 1;
+    if (over) {
+      hand_over(block, not_handed_over, i + 1);
+      end(next_scan_, *over);
     }
-    // As the segmenter: what is left of the last test's force is no beginning of the next one.
-    if (!armed) continue;
-    waiting_.push_back({index, raw, second});
-    if (event == Segmenter::Event::kTestStarts) {
-      begin(index, block.stamp);
-      not_handed_over = i + 1;
-    } else if (waiting_.size() > settings_.segmenter.pre_trigger_scans()) {
-      idle_.add(waiting_.front().index, waiting_.front().raw);
-      waiting_.pop_front();
-    }
+    follow_bench();
   }
   if (test_is_running()) {
     hand_over(block, not_handed_over, block.count);
     note_clocks(block);
     report_new_cycles();
   }
+  const friction::LiveState now = live();
+  for (Sink* sink : sinks_) sink->observed(block.first, std::span{coefficients_}.first(block.count), now);
+}
+
+std::optional<EndCause> Processor::observe(daq::ScanIndex index, double raw, std::int32_t second,
+                                           const daq::ClockStamp& stamp) {
+  repeat_start(index);
+  const bool ready = segmenter_.ready();
+  const Segmenter::Event event = segmenter_.observe(index, calibration_.coefficient(raw));
+  if (test_is_running()) {
+    analyse(index, raw, second);
+    if (repeat_others(index)) return stop_again();
+    if (event == Segmenter::Event::kNone) return std::nullopt;
+    static_cast<void>(happens(BenchEvent::kForceEnded));
+    return event == Segmenter::Event::kUnloaded ? EndCause::kUnloaded : EndCause::kNoRelativeMotion;
+  }
+  // As the segmenter: what is left of the last test's force is no beginning of the next one.
+  if (!ready) return std::nullopt;
+  waiting_.push_back({index, raw, second});
+  if (event == Segmenter::Event::kTestStarts) {
+    static_cast<void>(happens(BenchEvent::kForceRose));
+    begin(index, stamp);
+    if (repeat_others(index)) return stop_again();
+  } else if (waiting_.size() > settings_.segmenter.pre_trigger_scans()) {
+    const Waiting& oldest = waiting_.front();
+    // A bench that is not armed may be loaded by hand, which says nothing of its zero.
+    if (bench_.state() == BenchState::kIdle &&
+        calibration_.coefficient(oldest.raw) >= settings_.segmenter.start_coefficient) {
+      idle_.clear();
+    } else {
+      idle_.add(oldest.index, oldest.raw);
+    }
+    waiting_.pop_front();
+  }
+  return std::nullopt;
 }
 
 void Processor::finish(EndCause cause) {
   if (test_is_running()) end(next_scan_, cause);
   waiting_.clear();
+  start_.reset();
+  static_cast<void>(happens(BenchEvent::kBoardLost));
 }
 
 void Processor::note_gap(daq::Gap gap) {
@@ -105,7 +135,8 @@ void Processor::begin(daq::ScanIndex trigger, const daq::ClockStamp& stamp) {
   anchors_.clear();
   test_gaps_.clear();
   read_latency_.reset();
-  const TestStart start{number_, waiting_.front().index, trigger, stamp, self_check()};
+  const bool by_command = start_.has_value() || recorded_start_;
+  const TestStart start{number_, waiting_.front().index, trigger, stamp, self_check(), by_command};
   idle_.clear();
   std::vector<double> raw;
   raw.reserve(waiting_.size());
@@ -119,6 +150,12 @@ void Processor::begin(daq::ScanIndex trigger, const daq::ClockStamp& stamp) {
   for (Sink* sink : sinks_) {
     sink->test_began(start);
     sink->scans(start.first, raw, second, stamp);
+  }
+  for (std::string& text : for_later_) tell({daq::Note::Kind::kBench, start.first, std::move(text)});
+  for_later_.clear();
+  if (start_) {
+    start_->scan = trigger;
+    tell(*std::exchange(start_, std::nullopt));
   }
 }
 

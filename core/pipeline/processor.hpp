@@ -11,11 +11,14 @@
 /// the same results to the last bit.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/daq/calibration.hpp"
@@ -25,6 +28,8 @@
 #include "core/daq/scan_block.hpp"
 #include "core/daq/second_channel.hpp"
 #include "core/friction/test_analysis.hpp"
+#include "core/pipeline/bench_state.hpp"
+#include "core/pipeline/command_report.hpp"
 #include "core/pipeline/segmenter.hpp"
 #include "core/pipeline/self_check.hpp"
 #include "core/pipeline/sink.hpp"
@@ -36,6 +41,7 @@ struct ProcessorSettings {
   SegmenterSettings segmenter;
   friction::AnalysisSettings analysis;
   std::int64_t first_test_number = 1;
+  bool automatic = true;  ///< The bench arms itself: the force begins each test.
   /// Where the acquisition before this one ended; absent for the first.
   std::optional<daq::ScanIndex> continues_at;
   /// Of a replayed record: takes the place of the blocks' stamps and of what is said about gaps.
@@ -61,6 +67,24 @@ class Processor {
   /// No more blocks: ends the running test, if any.
   void finish(EndCause cause);
 
+  // Commands, in commands.cpp; between two blocks.
+
+  /// The force may begin the next test.
+  [[nodiscard]] CommandReport arm(const std::string& who);
+  /// A test begins with the next scan.
+  [[nodiscard]] CommandReport start(const std::string& who);
+  /// The latest scan was the last of the running test; or the armed bench is idle.
+  [[nodiscard]] CommandReport stop(const std::string& who);
+  /// A remark at the latest scan of the running test.
+  [[nodiscard]] CommandReport mark(const std::string& text);
+  /// What the load cell shows now is its zero from here on.
+  [[nodiscard]] TareReport tare(const std::string& who);
+  /// Of the tests that begin from here on.
+  void plan_pull_speed(std::optional<double> speed_m_per_s) {
+    settings_.analysis.tester.pull_speed_m_per_s = speed_m_per_s;
+  }
+
+  [[nodiscard]] BenchState bench() const noexcept { return bench_.state(); }
   [[nodiscard]] bool test_is_running() const noexcept { return analysis_.has_value(); }
   /// Number of the running test, else of the next one.
   [[nodiscard]] std::int64_t test_number() const noexcept { return number_; }
@@ -83,6 +107,21 @@ class Processor {
   };
 
   void note_gap(daq::Gap gap);
+  /// One scan. \return why it was the last of a test, if it was.
+  [[nodiscard]] std::optional<EndCause> observe(daq::ScanIndex index, double raw, std::int32_t second,
+                                                const daq::ClockStamp& stamp);
+  /// Lets the machine take its step, and tells who wants to know. \return why it is refused.
+  [[nodiscard]] std::string_view happens(BenchEvent event);
+  /// What follows for the machine from the analysis and from the segmenter.
+  void follow_bench();
+  /// What the replayed record says was done before, and after, this scan was taken.
+  void repeat_start(daq::ScanIndex index);
+  /// \return true if that was to stop.
+  [[nodiscard]] bool repeat_others(daq::ScanIndex index);
+  [[nodiscard]] EndCause stop_again();
+  void tell(const daq::Note& note);
+  /// Before the next test; told when it begins.
+  void note_for_later(std::string text);
   /// What the stamp of a block of the running test tells.
   void note_clocks(const daq::ScanBlock& block);
   [[nodiscard]] std::shared_ptr<const daq::SelfCheck> self_check() const;
@@ -103,6 +142,7 @@ class Processor {
   std::vector<Sink*> sinks_;
   daq::GapTracker gaps_;
   Segmenter segmenter_;
+  BenchMachine bench_;
   std::deque<Waiting> waiting_;  ///< Consecutive, the latest last.
   IdleScans idle_;               ///< Those before them.
   std::optional<friction::TestAnalysis> analysis_;
@@ -112,6 +152,11 @@ class Processor {
   std::uint64_t gap_count_ = 0;
   std::int64_t lost_scan_count_ = 0;
   daq::RateMeter meter_;
+  std::array<double, daq::ScanBlock::kMaxScans> coefficients_{};  ///< Of the latest block.
+  std::optional<daq::Note> start_;  ///< The command that begins the next test; its scan is not known yet.
+  std::vector<std::string> for_later_;
+  std::size_t next_recorded_note_ = 0;
+  bool recorded_start_ = false;  ///< The replayed record was begun by a command.
   // Of the running test.
   daq::AnchorPicker picker_;
   daq::ScanIndex trigger_ = 0;

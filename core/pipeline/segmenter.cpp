@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "core/friction/slip_rule.hpp"
 #include "core/signal/statistics.hpp"
@@ -58,8 +59,29 @@ std::int64_t Segmenter::scans(double seconds) const noexcept {
   return std::max<std::int64_t>(2, std::llround(seconds * settings_.scan_rate_Hz));
 }
 
+bool Segmenter::arm() {
+  by_force_ = true;
+  const bool was_there = std::any_of(waiting_.begin(), waiting_.end(), [this](double coefficient) {
+    return coefficient >= settings_.start_coefficient;
+  });
+  if (was_there) {
+    waiting_.clear();
+    above_ = 0;
+  }
+  return was_there;
+}
+
+void Segmenter::start() noexcept { start_now_ = state_ == State::kReady; }
+
+void Segmenter::stop() noexcept {
+  start_now_ = false;
+  if (state_ != State::kRunning) return;
+  // As for a stop by force: what is left of the force is no beginning of the next test.
+  state_ = below_ >= scans(settings_.unload_dwell_s) ? State::kReady : State::kWaitingForUnload;
+}
+
 Segmenter::Event Segmenter::observe(base::ScanIndex index, double coefficient) {
-  if (next_ && index != *next_ && state_ == State::kArmed) {
+  if (next_ && index != *next_ && state_ == State::kReady) {
     waiting_.clear();
     above_ = 0;
   }
@@ -70,11 +92,11 @@ Segmenter::Event Segmenter::observe(base::ScanIndex index, double coefficient) {
 
   switch (state_) {
     case State::kWaitingForUnload:
-      if (unloaded) state_ = State::kArmed;
+      if (unloaded) state_ = State::kReady;
       return Event::kNone;
-    case State::kArmed:
+    case State::kReady:
       waiting_.push_back(coefficient);
-      if (above_ >= scans(settings_.start_dwell_s)) {
+      if (start_now_ || (by_force_ && loaded())) {
         begin();
         return Event::kTestStarts;
       }
@@ -82,8 +104,9 @@ Segmenter::Event Segmenter::observe(base::ScanIndex index, double coefficient) {
       return Event::kNone;
     case State::kRunning:
       follow(coefficient);
-      if (unloaded) {
-        state_ = State::kArmed;
+      was_loaded_ = was_loaded_ || loaded();
+      if (unloaded && was_loaded_) {
+        state_ = State::kReady;
         return Event::kUnloaded;
       }
       if (belt_has_stopped()) {
@@ -97,6 +120,9 @@ Segmenter::Event Segmenter::observe(base::ScanIndex index, double coefficient) {
 
 void Segmenter::begin() {
   state_ = State::kRunning;
+  was_loaded_ = !start_now_;
+  // What the force did before the record began may not count: a replay cannot see it.
+  if (std::exchange(start_now_, false)) above_ = below_ = 0;
   noise_ = signal::NoiseEstimator{noise_floor(settings_)};
   despiker_ = {};
   falls_ = {};

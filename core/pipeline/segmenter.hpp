@@ -4,8 +4,8 @@
 ///     Segmenter segmenter{settings};
 ///     if (segmenter.observe(index, coefficient) == Segmenter::Event::kTestStarts) …
 ///
-/// Only the force tells. A test begins when the force stays above a trigger. It ends when the force
-/// stays near zero again (the carriage has returned), or when a full oscillation stops from one
+/// The force tells, or somebody who commands. By the force a test begins when it stays above a trigger. It
+/// ends when it stays near zero again (the carriage has returned), or when a full oscillation stops from one
 /// period to the next and the force lies flat: then the belt has stopped with the coupling stretched.
 /// An oscillation that dies away into a flat force is no end: the sled slides steadily, and
 /// whether the belt still moves cannot be seen in the force.
@@ -48,12 +48,24 @@ class Segmenter {
   ///         0 ≤ end_coefficient < start_coefficient.
   explicit Segmenter(const SegmenterSettings& settings);
 
+  /// Whether a force above the trigger begins a test; at first it does. Changes nothing for a running test.
+  void trigger_by_force(bool on) noexcept { by_force_ = on; }
+  /// From here on a force above the trigger begins a test. \return true if it was there within the
+  /// pre-trigger time already: then what was kept is forgotten, because a replay, which cannot see when this
+  /// was called, would have begun the test there.
+  [[nodiscard]] bool arm();
+  /// The next scan begins a test, whatever its force; only while ready(). Until the force has once stayed
+  /// above the trigger, no unloading ends that test.
+  void start() noexcept;
+  /// The scan observed last was the last of the running test; or the start that was asked for is not to be.
+  void stop() noexcept;
+
   /// \param index rises; a jump forgets what was kept for the trigger.
   [[nodiscard]] Event observe(base::ScanIndex index, double coefficient);
 
-  /// Waits for a test: the next scan may belong to its record. False while the force of the last
-  /// test is still there.
-  [[nodiscard]] bool armed() const noexcept { return state_ == State::kArmed; }
+  /// The next scan may belong to the record of a test to come. False during a test, and while the force of
+  /// the last one is still there.
+  [[nodiscard]] bool ready() const noexcept { return state_ == State::kReady; }
 
   /// A test has started and not ended.
   [[nodiscard]] bool running() const noexcept { return state_ == State::kRunning; }
@@ -61,24 +73,29 @@ class Segmenter {
  private:
   enum class State {
     kWaitingForUnload,  ///< A test is over but the force is not.
-    kArmed,
+    kReady,
     kRunning,
   };
 
   [[nodiscard]] std::int64_t scans(double seconds) const noexcept;
+  /// The force has stayed above the trigger up to now.
+  [[nodiscard]] bool loaded() const noexcept { return above_ >= scans(settings_.start_dwell_s); }
   void begin();
   /// Follows turning points and flatness of the running test.
   void follow(double coefficient);
   [[nodiscard]] bool belt_has_stopped() const;
 
   SegmenterSettings settings_;
-  State state_ = State::kArmed;
+  State state_ = State::kReady;
+  bool by_force_ = true;
+  bool start_now_ = false;
   std::optional<base::ScanIndex> next_;
   std::deque<double> waiting_;  ///< As the record will begin with.
   std::int64_t above_ = 0;      ///< Consecutive scans at or above the trigger.
   std::int64_t below_ = 0;      ///< Consecutive scans below the end.
 
   // Of the running test.
+  bool was_loaded_ = false;  ///< The force has stayed above the trigger.
   signal::NoiseEstimator noise_;
   signal::Despiker despiker_;
   friction::FallFinder falls_;

@@ -13,10 +13,13 @@
 #include "core/daq/clock_anchor.hpp"
 #include "core/daq/gap.hpp"
 #include "core/daq/latency_histogram.hpp"
+#include "core/daq/note.hpp"
 #include "core/daq/scan_block.hpp"
 #include "core/daq/self_check.hpp"
 #include "core/friction/cycle.hpp"
+#include "core/friction/live_cycle.hpp"
 #include "core/friction/results.hpp"
+#include "core/pipeline/bench_state.hpp"
 
 namespace stickslip::pipeline {
 
@@ -24,9 +27,10 @@ namespace stickslip::pipeline {
 struct TestStart {
   std::int64_t number = 0;                           ///< Since the start of the program, from 1.
   daq::ScanIndex first = 0;                          ///< First scan that belongs to the test's record.
-  daq::ScanIndex trigger = 0;                        ///< Scan at which the force crossed the trigger.
+  daq::ScanIndex trigger = 0;                        ///< Scan that began it: the force or a command did.
   daq::ClockStamp stamp;                             ///< When the trigger was seen.
   std::shared_ptr<const daq::SelfCheck> self_check;  ///< Null if there was nothing to look at.
+  bool by_command = false;
 };
 
 /// Why a test is over.
@@ -34,6 +38,7 @@ enum class EndCause {
   kUnloaded,          ///< The force went back to zero.
   kNoRelativeMotion,  ///< The belt stopped; the coupling stays stretched.
   kEndOfInput,        ///< The source has no more scans.
+  kCommand,           ///< Somebody commanded it.
   kStopped,           ///< The program was told to stop.
   kBoardMissing,      ///< The board went away.
 };
@@ -46,6 +51,8 @@ enum class EndCause {
       return "no-relative-motion";
     case EndCause::kEndOfInput:
       return "end-of-input";
+    case EndCause::kCommand:
+      return "command";
     case EndCause::kStopped:
       return "stopped";
     case EndCause::kBoardMissing:
@@ -64,8 +71,8 @@ struct TestEnd {
   std::optional<daq::LatencyHistogram> read_latency;  ///< Of its blocks; none where no clock could tell.
 };
 
-/// Called from the processing thread, in order: began, (scans | gap | anchor | cycle)*, ended. Must not
-/// throw; may block only if it must never lose data (the record), and then stalls the walk.
+/// Called from the processing thread, in order: began, (scans | gap | anchor | cycle | note)*, ended. Must
+/// not throw; may block only if it must never lose data (the record), and then stalls the walk.
 class Sink {
  public:
   virtual ~Sink() = default;
@@ -80,9 +87,17 @@ class Sink {
   virtual void anchor(const daq::ClockAnchor& /*anchor*/) {}
   /// As soon as it is known, before the whole-test estimate refines it.
   virtual void cycle(const friction::Cycle& /*cycle*/) {}
+  /// What a person did, at a scan of the running test; in no order with its scans.
+  virtual void note(const daq::Note& /*note*/) {}
   virtual void test_ended(const TestEnd& /*end*/) {}
   /// Scans lost while no test was running.
   virtual void gap_between_tests(const daq::Gap& /*gap*/) {}
+  /// Each scan, whether a test runs or not, in blocks; after all else that the block brought.
+  /// \param live  after the last of them; idle between tests.
+  virtual void observed(daq::ScanIndex /*first*/, std::span<const double> /*coefficient*/,
+                        const friction::LiveState& /*live*/) {}
+  /// The bench is in another state.
+  virtual void bench_changed(BenchState /*state*/) {}
 };
 
 }  // namespace stickslip::pipeline

@@ -3,7 +3,10 @@
 /// printed and no file is left before all of it has succeeded.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/result.hpp"
@@ -125,5 +128,33 @@ struct BoardsOutput {
 [[nodiscard]] BoardsOutput run_boards(std::vector<std::string> devices, bool json);
 
 [[nodiscard]] base::Result<std::string> run_status(const std::string& socket);
+
+/// Of all that talk to the running daemon.
+struct BenchOptions {
+  std::string socket = "/run/stickslip/control.sock";
+  std::string who;  ///< Empty: user and host.
+  bool json = false;
+};
+
+struct BenchCommand {
+  std::string verb;  ///< "arm", "start", "stop", "mark", "tare".
+  std::string text;  ///< Of a mark.
+  std::optional<std::int64_t> test;
+  std::string key;  ///< Idempotency-Key; empty: none.
+};
+
+[[nodiscard]] base::Result<std::string> run_bench_command(const BenchOptions& options,
+                                                          const BenchCommand& command);
+
+struct PlanCommand {
+  bool clear = false;
+  std::vector<std::pair<std::string, std::string>> changes;  ///< Key and what is typed.
+};
+
+[[nodiscard]] base::Result<std::string> run_plan(const BenchOptions& options, const PlanCommand& command);
+[[nodiscard]] base::Result<std::string> run_list(const BenchOptions& options);
+[[nodiscard]] base::Result<std::string> run_show(const BenchOptions& options, std::int64_t number_of_test);
+/// Prints as it comes. \param tests  to wait for the end of; 0: for ever.
+[[nodiscard]] base::Result<std::string> run_watch(const BenchOptions& options, std::int64_t tests);
 
 }  // namespace stickslip::daemon

@@ -38,7 +38,10 @@ constexpr const char* kExamples = R"(Examples:
   stickslip boards                                     A/D boards, what they offer, what to configure
   stickslip export pull.h5 --csv > pull.csv            scans for a spreadsheet
   stickslip calibrate --config stickslipd.toml         the load cell, by hanging known weights
-  stickslip status                                     what the daemon is doing)";
+  stickslip status                                     what the daemon is doing
+  stickslip plan --name "liner 42" --replicate 3       what the tests to come are of
+  stickslip start; stickslip mark "sheet moved"; stickslip stop
+  stickslip watch                                      tests and cycles as they happen)";
 
 /// In `stickslip compare` a plain -- stands between two lists; to the parser that is an option with values,
 /// after which options may follow.
@@ -68,6 +71,7 @@ int main_of(int count, char** arguments) {
   add_making_commands(app, chosen);
   add_showing_commands(app, chosen);
   add_asking_commands(app, chosen);
+  add_commanding_commands(app, chosen);
   add_analysing_commands(app, chosen);
   add_caring_commands(app, chosen);
   add_exporting_commands(app, chosen);

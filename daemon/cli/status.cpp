@@ -7,7 +7,7 @@ namespace stickslip::daemon {
 
 base::Result<std::string> run_status(const std::string& socket) {
   constexpr std::chrono::milliseconds kTimeout{5000};
-  const base::Result<HttpReply> reply = request(socket, {"GET", "/v1/status", ""}, kTimeout);
+  const base::Result<HttpReply> reply = request(socket, {"GET", "/v1/status", {}, {}, {}}, kTimeout);
   if (!reply) return tl::unexpected(reply.error());
   if (reply->status != 200)
     return base::failure("{}: refused with {}: {}", socket, reply->status, reply->body);

@@ -28,8 +28,9 @@ void add_showing_commands(CLI::App& app, Chosen& chosen);      ///< plot, accura
 void add_analysing_commands(CLI::App& app, Chosen& chosen);    ///< analyze, characterise
 void add_asking_commands(CLI::App& app, Chosen& chosen);       ///< scenes, methods, boards, status
 void add_calibrating_commands(CLI::App& app, Chosen& chosen);  ///< calibrate
-void add_exporting_commands(CLI::App& app, Chosen& chosen);    ///< export
-void add_caring_commands(CLI::App& app, Chosen& chosen);       ///< verify, recover
+void add_commanding_commands(CLI::App& app, Chosen& chosen);  ///< arm, start, stop, mark, tare, plan, list …
+void add_exporting_commands(CLI::App& app, Chosen& chosen);   ///< export
+void add_caring_commands(CLI::App& app, Chosen& chosen);      ///< verify, recover
 
 /// What a command gave, on stdout, or its error on stderr. \return the exit status.
 [[nodiscard]] int print(const base::Result<std::string>& output);

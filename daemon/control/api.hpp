@@ -1,52 +1,21 @@
 /// \file
-/// What the control interface answers. Version 1:
+/// What the control interface answers, version 1. daemon/control/openapi.json describes it and is served at
+/// /v1/openapi.json.
 ///
-///     GET /v1/status   state, board, scan counts, tests; results by the names of the record
+/// Whoever reads needs no name. Who commands gives one in the header Stickslip-Controller and has the bench
+/// for half a minute; others are refused meanwhile. A request that changes something may carry an
+/// Idempotency-Key: repeated, it is answered as then, and nothing is done twice.
 ///
 /// Every refusal is JSON too: {"error": "what is wrong and what is allowed"}.
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <optional>
-#include <string>
-
-#include "core/daq/board.hpp"
-#include "core/daq/latency_histogram.hpp"
-#include "core/daq/rate_fit.hpp"
-#include "core/friction/live_cycle.hpp"
+#include "core/base/clock.hpp"
+#include "daemon/control/bench.hpp"
 #include "daemon/control/http.hpp"
-#include "daemon/storage_state.hpp"
-#include "daemon/test_log.hpp"
 
 namespace stickslip::daemon {
 
-/// A picture of the daemon at one moment.
-struct Status {
-  /// "starting", "acquiring", "storage short", "storage waiting" (both while acquiring), "board missing",
-  /// "board busy", "no permission", "stopping".
-  std::string state;
-  std::string detail;  ///< The line of STATUS=, for people.
-  std::string version;
-  std::optional<daq::BoardInfo> board;
-  std::string scheduling;
-  std::uint64_t scan_count = 0;
-  std::uint64_t dropped_scan_count = 0;  ///< By the ring.
-  std::uint64_t overrun_count = 0;       ///< By the board.
-  std::uint64_t gap_count = 0;
-  std::int64_t lost_scan_count = 0;                     ///< In gaps.
-  std::uint64_t board_loss_count = 0;                   ///< Times the board went away or failed.
-  std::optional<daq::RateEstimate> scan_rate_measured;  ///< Of the board's present life.
-  daq::LatencyHistogram latency;                        ///< Of reads.
-  std::uint64_t storage_stall_count = 0;
-  StorageState storage;
-  std::int64_t test_count = 0;               ///< Ended.
-  std::optional<std::int64_t> current_test;  ///< Running now.
-  std::optional<friction::LiveState> live;   ///< Of the current test.
-  std::optional<TestSummary> latest_test;
-};
-
-/// \param status  asked for each status request.
-[[nodiscard]] HttpHandler make_api(std::function<Status()> status);
+/// \param bench,clock  outlive the handler. \param clock  of the leases: wall time.
+[[nodiscard]] HttpHandler make_api(Bench& bench, const base::Clock& clock);
 
 }  // namespace stickslip::daemon

@@ -27,6 +27,8 @@ base::Result<HttpReply> request(const std::filesystem::path& socket, const HttpR
   message.method_string(request.method);
   message.set(http::field::host, "localhost");
   message.keep_alive(false);
+  if (!request.controller.empty()) message.set("Stickslip-Controller", request.controller);
+  if (!request.idempotency_key.empty()) message.set("Idempotency-Key", request.idempotency_key);
   message.body() = request.body;
   message.prepare_payload();
 
@@ -42,7 +44,9 @@ base::Result<HttpReply> request(const std::filesystem::path& socket, const HttpR
   io.run();
   if (error) return base::failure("{}: no whole answer: {}", socket.string(), error.message());
   return HttpReply{static_cast<int>(response.result_int()), response.body(),
-                   std::string{response[http::field::allow]}};
+                   std::string{response[http::field::allow]},
+                   std::string{response[http::field::content_type]},
+                   response.find("Idempotency-Replayed") != response.end()};
 }
 
 }  // namespace stickslip::daemon

@@ -11,15 +11,21 @@ struct HttpRequest {
   std::string method;  ///< "GET".
   std::string target;  ///< "/v1/status".
   std::string body;
+  std::string controller;       ///< Header Stickslip-Controller: who commands.
+  std::string idempotency_key;  ///< Header Idempotency-Key.
 };
 
 struct HttpReply {
   int status = 200;
-  std::string body;   ///< JSON text.
+  std::string body;   ///< JSON text, unless content_type says otherwise.
   std::string allow;  ///< Methods allowed, for status 405; else empty.
+  std::string content_type = "application/json";
+  bool replayed = false;  ///< The answer of then to a request that is repeated.
 };
 
-/// Answers on the main thread; must not throw.
-using HttpHandler = std::function<HttpReply(const HttpRequest&)>;
+using HttpAnswer = std::function<void(HttpReply)>;
+
+/// Called on the main thread; answers there too, once, at once or later. Must not throw.
+using HttpHandler = std::function<void(const HttpRequest&, HttpAnswer)>;
 
 }  // namespace stickslip::daemon

@@ -3,95 +3,102 @@
 #include <sys/stat.h>
 #include <sys/un.h>
 
+#include <charconv>
 #include <optional>
 #include <system_error>
 #include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
 
+#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
-#include <boost/beast/core.hpp>
-#include <boost/beast/http.hpp>
-#include <nlohmann/json.hpp>
+
+#include "core/base/contract.hpp"
+#include "daemon/control/connection.hpp"
 
 namespace stickslip::daemon {
 namespace asio = boost::asio;
-namespace beast = boost::beast;
-namespace http = boost::beast::http;
 using Local = asio::local::stream_protocol;
+using asio::ip::tcp;
 
 namespace {
 
 constexpr mode_t kOwnerAndGroup = S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP;
 
-HttpReply refusal(int status, const std::string& why) {
-  return {status, nlohmann::json{{"error", why}}.dump(), {}};
-}
-
-/// One connection: request, reply, and again while the client keeps it.
-class Connection : public std::enable_shared_from_this<Connection> {
+/// Accepts until it is closed.
+template <typename Protocol>
+class AcceptorOf : public ControlServer::Listener, public std::enable_shared_from_this<AcceptorOf<Protocol>> {
  public:
-  Connection(Local::socket socket, std::shared_ptr<const HttpHandler> handler, HttpLimits limits,
-             std::shared_ptr<int> connections)
-      : stream_(std::move(socket)),
-        handler_(std::move(handler)),
-        limits_(limits),
-        connections_(std::move(connections)) {
-    ++*connections_;
-  }
-  ~Connection() { --*connections_; }
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
+  AcceptorOf(asio::io_context& io, std::shared_ptr<Service> service)
+      : acceptor_(io), service_(std::move(service)) {}
 
-  void read() {
-    parser_.emplace();
-    parser_->header_limit(limits_.header_size);
-    parser_->body_limit(limits_.body_size);
-    stream_.expires_after(limits_.time);
-    http::async_read(
-        stream_, buffer_, *parser_,
-        [self = shared_from_this()](beast::error_code error, std::size_t) { self->was_read(error); });
+  void accept() {
+    acceptor_.async_accept(
+        [self = this->shared_from_this()](boost::system::error_code error, typename Protocol::socket socket) {
+          if (error == asio::error::operation_aborted) return;
+          if (!error && self->service_->connection_count < self->service_->limits.connections) {
+            serve_connection(AnySocket{std::move(socket)}, self->service_);
+          }
+          self->accept();
+        });
+  }
+
+  void close() override {
+    boost::system::error_code ignored;
+    acceptor_.close(ignored);
+  }
+
+ protected:
+  typename Protocol::acceptor acceptor_;
+  std::shared_ptr<Service> service_;
+};
+
+class LocalAcceptor final : public AcceptorOf<Local> {
+ public:
+  LocalAcceptor(asio::io_context& io, std::filesystem::path path, std::shared_ptr<Service> service)
+      : AcceptorOf(io, std::move(service)), path_(std::move(path)) {}
+
+  boost::system::error_code open() {
+    boost::system::error_code error;
+    const Local::endpoint endpoint{path_.string()};
+    acceptor_.open(endpoint.protocol(), error);
+    if (error) return error;
+    // Between bind and chmod nobody but the owner may come in.
+    const mode_t before = ::umask(~static_cast<mode_t>(S_IRUSR | S_IWUSR) & 0777U);
+    acceptor_.bind(endpoint, error);
+    ::umask(before);
+    if (error) return error;
+    bound_ = true;
+    if (::chmod(path_.c_str(), kOwnerAndGroup) != 0) return {errno, boost::system::system_category()};
+    acceptor_.listen(asio::socket_base::max_listen_connections, error);
+    return error;
+  }
+
+  void close() override {
+    AcceptorOf::close();
+    if (bound_) ::unlink(path_.c_str());
+    bound_ = false;
   }
 
  private:
-  void was_read(beast::error_code error) {
-    if (!error) {
-      const auto& request = parser_->get();
-      reply(
-          (*handler_)({std::string{request.method_string()}, std::string{request.target()}, request.body()}),
-          request.version(), request.keep_alive());
-    } else if (error == http::error::header_limit) {
-      reply(refusal(431, fmt::format("the header is longer than {} bytes", limits_.header_size)), 11, false);
-    } else if (error == http::error::body_limit) {
-      reply(refusal(413, fmt::format("the body is longer than {} bytes", limits_.body_size)), 11, false);
-    } else if (error.category() == http::make_error_code(http::error::bad_method).category() &&
-               error != http::error::end_of_stream && error != http::error::partial_message) {
-      reply(refusal(400, fmt::format("this is no HTTP request: {}", error.message())), 11, false);
-    }
-    // Else the client went away or was too slow: the stream closes with the last reference.
-  }
+  std::filesystem::path path_;
+  bool bound_ = false;
+};
 
-  void reply(const HttpReply& reply, unsigned version, bool keep_alive) {
-    response_ = {};
-    response_.result(static_cast<unsigned>(reply.status));
-    response_.version(version);
-    response_.keep_alive(keep_alive);
-    response_.set(http::field::content_type, "application/json");
-    if (!reply.allow.empty()) response_.set(http::field::allow, reply.allow);
-    response_.body() = reply.body;
-    response_.prepare_payload();
-    stream_.expires_after(limits_.time);
-    http::async_write(stream_, response_,
-                      [self = shared_from_this(), keep_alive](beast::error_code error, std::size_t) {
-                        if (!error && keep_alive) self->read();
-                      });
-  }
+class TcpAcceptor final : public AcceptorOf<tcp> {
+ public:
+  using AcceptorOf::AcceptorOf;
 
-  beast::basic_stream<Local> stream_;
-  std::shared_ptr<const HttpHandler> handler_;
-  HttpLimits limits_;
-  std::shared_ptr<int> connections_;
-  beast::flat_buffer buffer_;
-  std::optional<http::request_parser<http::string_body>> parser_;
-  http::response<http::string_body> response_;
+  boost::system::error_code open(const tcp::endpoint& endpoint) {
+    boost::system::error_code error;
+    acceptor_.open(endpoint.protocol(), error);
+    if (!error) acceptor_.set_option(tcp::acceptor::reuse_address{true}, error);
+    if (!error) acceptor_.bind(endpoint, error);
+    if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
+    return error;
+  }
+  [[nodiscard]] unsigned short port() const {
+    boost::system::error_code ignored;
+    return acceptor_.local_endpoint(ignored).port();
+  }
 };
 
 /// Removes what a daemon that was killed has left behind.
@@ -111,67 +118,43 @@ base::Result<void> remove_leftover(asio::io_context& io, const std::filesystem::
   return {};
 }
 
+/// No name is looked up: nothing but the machine itself can be meant.
+base::Result<tcp::endpoint> loopback(const std::string& address) {
+  const std::size_t colon = address.rfind(':');
+  std::string host = address.substr(0, colon);
+  unsigned short port = 0;
+  const char* const end = address.data() + address.size();
+  const bool number = colon != std::string::npos &&
+                      std::from_chars(address.data() + colon + 1, end, port).ptr == end &&
+                      colon + 1 < address.size();
+  if (host == "localhost") host = "127.0.0.1";
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  boost::system::error_code error;
+  const asio::ip::address ip = asio::ip::make_address(host, error);
+  if (!number || error) {
+    return base::usage_error(
+        "[control] http = \"{}\": must be an address and a port, such as \"127.0.0.1:8037\"", address);
+  }
+  if (!ip.is_loopback()) {
+    return base::usage_error(
+        "[control] http = \"{}\": must be of this machine, such as \"127.0.0.1:8037\"; for others "
+        "put a proxy with its own checks before it",
+        address);
+  }
+  return tcp::endpoint{ip, port};
+}
+
 }  // namespace
 
-class ControlServer::Impl : public std::enable_shared_from_this<Impl> {
- public:
-  Impl(asio::io_context& io, std::filesystem::path path, HttpHandler handler, HttpLimits limits)
-      : acceptor_(io),
-        path_(std::move(path)),
-        handler_(std::make_shared<const HttpHandler>(std::move(handler))),
-        limits_(limits) {}
+ControlServer::ControlServer(std::shared_ptr<Listener> listener, std::string address)
+    : listener_(std::move(listener)), address_(std::move(address)) {}
 
-  boost::system::error_code open() {
-    boost::system::error_code error;
-    const Local::endpoint endpoint{path_.string()};
-    acceptor_.open(endpoint.protocol(), error);
-    if (error) return error;
-    // Between bind and chmod nobody but the owner may come in.
-    const mode_t before = ::umask(~static_cast<mode_t>(S_IRUSR | S_IWUSR) & 0777U);
-    acceptor_.bind(endpoint, error);
-    ::umask(before);
-    if (error) return error;
-    bound_ = true;
-    if (::chmod(path_.c_str(), kOwnerAndGroup) != 0) return {errno, boost::system::system_category()};
-    acceptor_.listen(asio::socket_base::max_listen_connections, error);
-    return error;
-  }
-
-  void accept() {
-    acceptor_.async_accept(
-        [self = shared_from_this()](boost::system::error_code error, Local::socket socket) {
-          if (error == asio::error::operation_aborted) return;
-          if (!error && *self->connections_ < self->limits_.connections) {
-            std::make_shared<Connection>(std::move(socket), self->handler_, self->limits_, self->connections_)
-                ->read();
-          }
-          self->accept();
-        });
-  }
-
-  void close() {
-    boost::system::error_code ignored;
-    acceptor_.close(ignored);
-    if (bound_) ::unlink(path_.c_str());
-    bound_ = false;
-  }
-
- private:
-  Local::acceptor acceptor_;
-  std::filesystem::path path_;
-  std::shared_ptr<const HttpHandler> handler_;
-  HttpLimits limits_;
-  std::shared_ptr<int> connections_ = std::make_shared<int>(0);
-  bool bound_ = false;
-};
-
-ControlServer::ControlServer(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
-
-ControlServer::~ControlServer() { impl_->close(); }
+ControlServer::~ControlServer() { listener_->close(); }
 
 base::Result<std::unique_ptr<ControlServer>> ControlServer::listen(asio::io_context& io,
                                                                    const std::filesystem::path& socket,
-                                                                   HttpHandler handler, HttpLimits limits) {
+                                                                   HttpHandler handler, HttpLimits limits,
+                                                                   LiveHub* hub) {
   constexpr std::size_t kLongestPath = sizeof(sockaddr_un::sun_path) - 1;
   if (socket.native().size() > kLongestPath) {
     return base::usage_error("control socket {}: the path is longer than {} bytes, the limit of the system",
@@ -180,13 +163,36 @@ base::Result<std::unique_ptr<ControlServer>> ControlServer::listen(asio::io_cont
   if (base::Result<void> removed = remove_leftover(io, socket); !removed) {
     return tl::unexpected(removed.error());
   }
-  auto impl = std::make_shared<Impl>(io, socket, std::move(handler), limits);
-  if (const boost::system::error_code error = impl->open()) {
-    impl->close();
+  auto service = std::make_shared<Service>(Service{{}, std::move(handler), hub, limits, 0});
+  auto listener = std::make_shared<LocalAcceptor>(io, socket, std::move(service));
+  if (const boost::system::error_code error = listener->open()) {
+    listener->close();
     return base::failure("control socket {}: {}", socket.string(), error.message());
   }
-  impl->accept();
-  return std::unique_ptr<ControlServer>(new ControlServer(std::move(impl)));
+  listener->accept();
+  return std::unique_ptr<ControlServer>(new ControlServer(std::move(listener), socket.string()));
+}
+
+base::Result<std::unique_ptr<ControlServer>> ControlServer::listen_tcp(asio::io_context& io,
+                                                                       const std::string& address,
+                                                                       const std::string& token,
+                                                                       HttpHandler handler, HttpLimits limits,
+                                                                       LiveHub* hub) {
+  STICKSLIP_EXPECTS(!token.empty());
+  const base::Result<tcp::endpoint> endpoint = loopback(address);
+  if (!endpoint) return tl::unexpected(endpoint.error());
+  auto service = std::make_shared<Service>(Service{{false, {}, token}, std::move(handler), hub, limits, 0});
+  auto listener = std::make_shared<TcpAcceptor>(io, service);
+  if (const boost::system::error_code error = listener->open(*endpoint)) {
+    return base::failure("[control] http = \"{}\": {}", address, error.message());
+  }
+  const unsigned short port = listener->port();
+  for (const char* host : {"127.0.0.1", "localhost", "[::1]"})
+    service->door.hosts.push_back(fmt::format("{}:{}", host, port));
+  listener->accept();
+  const std::string host = address.substr(0, address.rfind(':'));
+  return std::unique_ptr<ControlServer>(
+      new ControlServer(std::move(listener), fmt::format("{}:{}", host, port)));
 }
 
 }  // namespace stickslip::daemon

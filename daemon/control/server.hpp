@@ -1,28 +1,22 @@
 /// \file
-/// JSON over HTTP on a Unix socket: the door for the command line and for curl.
+/// JSON over HTTP and a WebSocket: on a Unix socket for the command line and for curl, and where the
+/// configuration says so on a TCP port of this machine, for the page.
 ///
 ///     curl --unix-socket /run/stickslip/control.sock http://localhost/v1/status
 #pragma once
 
-#include <chrono>
-#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include <boost/asio/io_context.hpp>
 
 #include "core/base/result.hpp"
 #include "daemon/control/http.hpp"
+#include "daemon/control/limits.hpp"
+#include "daemon/live/hub.hpp"
 
 namespace stickslip::daemon {
-
-/// Limits of one connection: nobody can make the daemon hold more or wait longer.
-struct HttpLimits {
-  std::uint32_t header_size = 8 * 1024;                ///< Bytes.
-  std::uint64_t body_size = std::uint64_t{64} * 1024;  ///< Bytes.
-  std::chrono::milliseconds time{10'000};  ///< For one request to arrive, and for its reply to leave.
-  int connections = 32;                    ///< At once; further ones are closed.
-};
 
 /// Thread-bound: the thread that runs the io_context.
 class ControlServer {
@@ -33,16 +27,35 @@ class ControlServer {
   /// another process listens there or the system refuses.
   [[nodiscard]] static base::Result<std::unique_ptr<ControlServer>> listen(
       boost::asio::io_context& io, const std::filesystem::path& socket, HttpHandler handler,
-      HttpLimits limits = {});
+      HttpLimits limits = {}, LiveHub* hub = nullptr);
+
+  /// Listens at a TCP port of this machine.
+  /// \param address  "127.0.0.1:8037", "[::1]:8037" or "localhost:8037"; port 0: any, see address().
+  /// \param token    what every client but the reader of the page has to show; not empty (contract).
+  /// Errors: kUsage for an address that is none or is no loopback; kFailure if the system refuses.
+  [[nodiscard]] static base::Result<std::unique_ptr<ControlServer>> listen_tcp(
+      boost::asio::io_context& io, const std::string& address, const std::string& token, HttpHandler handler,
+      HttpLimits limits = {}, LiveHub* hub = nullptr);
+
   /// Closes the listener and removes the socket file; connections end with the io_context.
   ~ControlServer();
   ControlServer(const ControlServer&) = delete;
   ControlServer& operator=(const ControlServer&) = delete;
 
+  /// Where it listens: a path, or address and port.
+  [[nodiscard]] const std::string& address() const noexcept { return address_; }
+
+  /// What is behind it; one for each kind of socket.
+  class Listener {
+   public:
+    virtual ~Listener() = default;
+    virtual void close() = 0;
+  };
+
  private:
-  class Impl;
-  explicit ControlServer(std::shared_ptr<Impl> impl);
-  std::shared_ptr<Impl> impl_;
+  ControlServer(std::shared_ptr<Listener> listener, std::string address);
+  std::shared_ptr<Listener> listener_;
+  std::string address_;
 };
 
 }  // namespace stickslip::daemon

@@ -1,5 +1,6 @@
 #include "drivers/factory/factory.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/record/reader.hpp"
@@ -28,11 +29,19 @@ base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::C
   std::string characterisation = record->header.process.characterisation;
   record::CalibrationFacts calibration = record->header.calibration;
   auto recorded = std::make_shared<daq::RecordedFacts>(
-      daq::RecordedFacts{std::move(record->anchors), std::move(record->gaps), nullptr,
-                         record->end ? record->end->read_latency : std::nullopt});
+      daq::RecordedFacts{std::move(record->anchors),
+                         std::move(record->gaps),
+                         nullptr,
+                         record->end ? record->end->read_latency : std::nullopt,
+                         {}});
   if (auto& check = record->header.self_check) {
     recorded->self_check = std::make_shared<const daq::SelfCheck>(*std::move(check));
   }
+  for (const record::Event& event : record->events) {
+    if (auto note = daq::parse_note(event.scan, event.text)) recorded->notes.push_back(*std::move(note));
+  }
+  std::stable_sort(recorded->notes.begin(), recorded->notes.end(),
+                   [](const daq::Note& a, const daq::Note& b) { return a.scan < b.scan; });
   Replay replay = make_replay(std::move(*record), clock);
   return OpenedBoard{
       std::move(replay.board), std::move(replay.truth), load_cell, tester, std::move(characterisation),

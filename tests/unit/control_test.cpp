@@ -16,7 +16,9 @@
 
 #include "daemon/control/api.hpp"
 #include "daemon/control/client.hpp"
+#include "daemon/control/gate.hpp"
 #include "daemon/control/server.hpp"
+#include "tests/support/manual_clock.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -34,6 +36,7 @@ Status some_status() {
   status.latest_test->number = 7;
   status.latest_test->results.mu_s = friction::Estimate::of(0.35);
   status.latest_test->results.mu_k = friction::Estimate::none("no slip");
+  status.bench = pipeline::BenchState::kRunning;
   status.live.emplace();
   status.live->phase = friction::Phase::kCycles;
   status.live->regime = friction::Regime::kStickSlip;
@@ -45,11 +48,65 @@ Status some_status() {
   return status;
 }
 
-TEST(ControlApi, TellsTheStatusByTheNamesOfTheRecord) {
-  const HttpReply reply = make_api(some_status)({"GET", "/v1/status", ""});
+/// A bench that does what it is told, on paper.
+class PaperBench final : public Bench {
+ public:
+  [[nodiscard]] Status status() const override { return some_status(); }
+  [[nodiscard]] std::vector<TestSummary> tests() const override { return {*some_status().latest_test}; }
+  [[nodiscard]] Plan plan() const override { return plan_; }
+  void set_plan(Plan plan) override { plan_ = std::move(plan); }
+  void command(Command command, std::function<void(const Outcome&)> answer) override {
+    commands.push_back(command);
+    if (later) {
+      waiting = [answer, refusal = refusal] { answer(outcome(refusal)); };
+    } else {
+      answer(outcome(refusal));
+    }
+  }
+  static Outcome outcome(const std::string& refusal) {
+    Outcome outcome;
+    outcome.report.refusal = refusal;
+    outcome.report.state = pipeline::BenchState::kLoading;
+    outcome.report.test = 8;
+    outcome.report.scan = 1234;
+    return outcome;
+  }
+
+  std::vector<Command> commands;
+  std::string refusal;
+  bool later = false;
+  std::function<void()> waiting;
+
+ private:
+  Plan plan_;
+};
+
+class ControlApi : public testing::Test {
+ protected:
+  /// Status 0: it has not been answered yet.
+  HttpReply ask(const HttpRequest& request) {
+    const auto got = std::make_shared<HttpReply>();
+    got->status = 0;
+    api_(request, [got](HttpReply reply) { *got = std::move(reply); });
+    return *got;
+  }
+  HttpReply command(const std::string& path, const std::string& who, const std::string& body = "",
+                    const std::string& key = "") {
+    return ask({"POST", path, body, who, key});
+  }
+  static std::string error(const HttpReply& reply) { return json::parse(reply.body)["error"]; }
+
+  test::ManualClock clock_;
+  PaperBench bench_;
+  HttpHandler api_ = make_api(bench_, clock_);
+};
+
+TEST_F(ControlApi, TellsTheStatusByTheNamesOfTheRecord) {
+  const HttpReply reply = ask({"GET", "/v1/status", "", "", ""});
   EXPECT_EQ(reply.status, 200);
   const json status = json::parse(reply.body);
   EXPECT_EQ(status["state"], "acquiring");
+  EXPECT_EQ(status["bench"], "running");
   EXPECT_EQ(status["scan_count"], 42);
   EXPECT_EQ(status["board"]["scan_rate_granted"], 350.0);
   EXPECT_EQ(status["current_test"], nullptr);
@@ -66,25 +123,203 @@ TEST(ControlApi, TellsTheStatusByTheNamesOfTheRecord) {
   EXPECT_EQ(status["latest_test"]["results"]["mu_k"], nullptr);
 }
 
-TEST(ControlApi, RefusesWithTheReason) {
-  const HttpHandler api = make_api(some_status);
-  const HttpReply absent = api({"GET", "/v1/nothing\x01", ""});
+TEST_F(ControlApi, RefusesWithTheReason) {
+  const HttpReply absent = ask({"GET", "/v1/nothing\x01", "", "", ""});
   EXPECT_EQ(absent.status, 404);
-  EXPECT_EQ(json::parse(absent.body)["error"], "there is nothing at /v1/nothing?; there is: GET /v1/status");
-  const HttpReply method = api({"POST", "/v1/status", ""});
+  EXPECT_EQ(error(absent), "there is nothing at /v1/nothing?; /v1/openapi.json says what there is");
+  const HttpReply method = ask({"POST", "/v1/status", "", "", ""});
   EXPECT_EQ(method.status, 405);
   EXPECT_EQ(method.allow, "GET");
-  EXPECT_EQ(json::parse(method.body)["error"], "POST is not allowed at /v1/status; GET is");
+  EXPECT_EQ(error(method), "POST is not allowed at /v1/status; GET is");
+  EXPECT_EQ(ask({"POST", "/v1/plan", "", "ada", ""}).allow, "GET, PUT");
 }
 
 // Names of devices and files come from outside and may be no UTF-8.
-TEST(ControlApi, SurvivesNamesThatAreNoText) {
-  const HttpReply reply = make_api([] {
-    Status status;
-    status.detail = "\xff";
-    return status;
-  })({"GET", "/v1/status", ""});
-  EXPECT_TRUE(json::accept(reply.body));
+TEST_F(ControlApi, SurvivesNamesThatAreNoText) {
+  Status status;
+  status.detail = "\xff";
+  EXPECT_TRUE(json::accept(health_frame(status)));
+}
+
+TEST_F(ControlApi, ListsTestsAndShowsOneWithAllDetails) {
+  const json list = json::parse(ask({"GET", "/v1/tests", "", "", ""}).body);
+  ASSERT_EQ(list["tests"].size(), 1U);
+  EXPECT_EQ(list["tests"][0]["number"], 7);
+  EXPECT_FALSE(list["tests"][0]["results"].contains("details"));
+  const json shown = json::parse(ask({"GET", "/v1/tests/7", "", "", ""}).body);
+  EXPECT_EQ(shown["results"]["details"]["mu_k"]["reason"], "no slip");
+  for (const char* number : {"8", "7x", "-7", "99999999999999999999", "7/x", "%37"}) {
+    EXPECT_EQ(ask({"GET", std::string{"/v1/tests/"} + number, "", "", ""}).status, 404) << number;
+  }
+}
+
+TEST_F(ControlApi, NobodyCommandsWithoutAName) {
+  EXPECT_THAT(error(command("/v1/start", "")), testing::HasSubstr("Stickslip-Controller"));
+  EXPECT_EQ(command("/v1/start", std::string(65, 'a')).status, 400);
+  EXPECT_EQ(command("/v1/start", "\xff").status, 400);
+  EXPECT_EQ(command("/v1/start", "a\tb").status, 400);
+  EXPECT_TRUE(bench_.commands.empty());
+  const HttpReply done = command("/v1/start", "Ada \"the first\"");
+  EXPECT_EQ(done.status, 200);
+  EXPECT_EQ(json::parse(done.body),
+            json::parse(R"({"bench": "loading", "test": 8, "scan": 1234, "already": false})"));
+  EXPECT_EQ(bench_.commands.at(0).who, "Ada \"the first\"");
+}
+
+TEST_F(ControlApi, OneAtATimeCommandsUntilTheLeaseIsOver) {
+  EXPECT_EQ(command("/v1/arm", "ada").status, 200);
+  const HttpReply refused = command("/v1/stop", "bob");
+  EXPECT_EQ(refused.status, 409);
+  EXPECT_EQ(error(refused), "ada has the bench for another 30 s; one at a time commands, all may read");
+  EXPECT_EQ(bench_.commands.size(), 1U);
+  EXPECT_EQ(ask({"PUT", "/v1/plan", "{}", "bob", ""}).status, 409);
+  EXPECT_EQ(ask({"DELETE", "/v1/controller", "", "bob", ""}).status, 409);
+  EXPECT_EQ(json::parse(ask({"GET", "/v1/controller", "", "", ""}).body)["controller"], "ada");
+  clock_.advance(29'999'999'999ns);
+  EXPECT_EQ(command("/v1/stop", "bob").status, 409);
+  clock_.advance(1ns);
+  EXPECT_EQ(json::parse(ask({"GET", "/v1/controller", "", "", ""}).body)["controller"], nullptr);
+  EXPECT_EQ(command("/v1/stop", "bob").status, 200);
+  EXPECT_EQ(ask({"DELETE", "/v1/controller", "", "bob", ""}).status, 200);
+  EXPECT_EQ(ask({"PUT", "/v1/controller", R"({"seconds": 3600})", "ada", ""}).status, 200);
+  clock_.advance(3500s);
+  // A command makes a lease longer, never shorter.
+  EXPECT_EQ(command("/v1/arm", "ada").status, 200);
+  EXPECT_NEAR(json::parse(ask({"GET", "/v1/controller", "", "", ""}).body)["seconds_left"].get<double>(),
+              100.0, 1e-6);
+  for (const char* body :
+       {R"({"seconds": 0})", R"({"seconds": 3601})", R"({"seconds": "x"})", R"({"second": 1})", "[]", "{"}) {
+    EXPECT_EQ(ask({"PUT", "/v1/controller", body, "ada", ""}).status, 400) << body;
+  }
+}
+
+TEST_F(ControlApi, ARepeatedKeyIsAnsweredAsThenAndNothingIsDoneTwice) {
+  const HttpReply first = command("/v1/mark", "ada", R"({"text": "here"})", "k1");
+  const HttpReply again = command("/v1/mark", "ada", R"({"text": "here"})", "k1");
+  EXPECT_EQ(first.status, 200);
+  EXPECT_FALSE(first.replayed);
+  EXPECT_TRUE(again.replayed);
+  EXPECT_EQ(again.body, first.body);
+  EXPECT_EQ(bench_.commands.size(), 1U);
+  EXPECT_EQ(command("/v1/mark", "ada", R"({"text": "there"})", "k1").status, 422);
+  EXPECT_EQ(command("/v1/mark", "ada", R"({"text": "here"})", "k2").status, 200);
+  EXPECT_EQ(bench_.commands.size(), 2U);
+  EXPECT_EQ(command("/v1/mark", "ada", R"({"text": "here"})", std::string(129, 'k')).status, 400);
+  bench_.later = true;
+  EXPECT_EQ(command("/v1/arm", "ada", "", "k3").status, 0) << "no answer yet";
+  EXPECT_EQ(command("/v1/arm", "ada", "", "k3").status, 409);
+  bench_.waiting();
+  EXPECT_TRUE(command("/v1/arm", "ada", "", "k3").replayed);
+  // A refusal is an answer too.
+  bench_.later = false;
+  bench_.refusal = "no";
+  EXPECT_EQ(command("/v1/start", "ada", "", "k4").status, 409);
+  bench_.refusal.clear();
+  EXPECT_EQ(command("/v1/start", "ada", "", "k4").status, 409);
+}
+
+TEST_F(ControlApi, RefusalsOfTheBenchSayWhyAndInWhichState) {
+  bench_.refusal = "a test is running; stop it first";
+  const HttpReply reply = command("/v1/start", "ada");
+  EXPECT_EQ(reply.status, 409);
+  EXPECT_EQ(json::parse(reply.body),
+            json::parse(R"({"error": "a test is running; stop it first", "bench": "loading"})"));
+}
+
+TEST_F(ControlApi, TakesBodiesThatAreRightAndNoOthers) {
+  EXPECT_EQ(command("/v1/start", "ada", R"({"test": 8})").status, 200);
+  EXPECT_EQ(bench_.commands.back().test, 8);
+  for (const char* body :
+       {R"({"test": 0})", R"({"test": 1.5})", R"({"test": "8"})", R"({"tests": 8})", "8", "{", "\xff"}) {
+    EXPECT_EQ(command("/v1/start", "ada", body).status, 400) << body;
+  }
+  EXPECT_EQ(command("/v1/arm", "ada", R"({"test": 8})").status, 400);
+  for (const char* body : {"", "{}", R"({"text": ""})", R"({"text": 8})", R"({"text": "a\u0007"})"}) {
+    EXPECT_EQ(command("/v1/mark", "ada", body).status, 400) << body;
+  }
+  EXPECT_EQ(command("/v1/mark", "ada", json{{"text", std::string(201, 'x')}}.dump()).status, 400);
+  EXPECT_EQ(command("/v1/mark", "ada", R"({"text": "Blatt gewölbt \"links\""})").status, 200);
+  EXPECT_EQ(bench_.commands.back().text, "Blatt gewölbt \"links\"");
+}
+
+TEST_F(ControlApi, ThePlanIsReplacedAsAWhole) {
+  const HttpReply set = ask(
+      {"PUT", "/v1/plan",
+       R"({"name": "liner 42", "operator": "Ada", "replicate": 3, "pull_speed": "12 in/min"})", "ada", ""});
+  EXPECT_EQ(set.status, 200) << set.body;
+  EXPECT_EQ(bench_.plan().sample.name, "liner 42");
+  EXPECT_EQ(bench_.plan().sample.replicate, 3);
+  EXPECT_DOUBLE_EQ(*bench_.plan().pull_speed_m_per_s, 0.00508);
+  EXPECT_EQ(ask({"GET", "/v1/plan", "", "", ""}).body, set.body);
+  EXPECT_EQ(ask({"PUT", "/v1/plan", R"({"side": "wire", "pull_speed": 0.01})", "ada", ""}).status, 200);
+  EXPECT_EQ(bench_.plan().sample.name, "");
+  EXPECT_EQ(bench_.plan().pull_speed_m_per_s, 0.01);
+  for (const char* body :
+       {R"({"nam": "x"})", R"({"name": 1})", R"({"replicate": 0})", R"({"replicate": 1.5})",
+        R"({"pull_speed": 0})", R"({"pull_speed": "12 kg"})", R"({"pull_speed": 11})",
+        R"({"pull_speed": []})", R"({"name": "a\nb"})", "[]", "x"}) {
+    EXPECT_EQ(ask({"PUT", "/v1/plan", body, "ada", ""}).status, 400) << body;
+  }
+  EXPECT_EQ(bench_.plan().sample.side, "wire");
+}
+
+TEST_F(ControlApi, MetricsAreThoseOfTheStatus) {
+  const HttpReply reply = ask({"GET", "/metrics", "", "", ""});
+  EXPECT_EQ(reply.content_type, "text/plain; version=0.0.4; charset=utf-8");
+  EXPECT_THAT(reply.body,
+              testing::HasSubstr("\n# TYPE stickslip_scans_total counter\nstickslip_scans_total 42\n"));
+  EXPECT_THAT(reply.body, testing::HasSubstr("\nstickslip_bench_state{state=\"running\"} 1\n"));
+  EXPECT_THAT(reply.body, testing::HasSubstr("\nstickslip_bench_state{state=\"idle\"} 0\n"));
+  EXPECT_THAT(reply.body, testing::HasSubstr("\nstickslip_scan_rate_hertz 350\n"));
+}
+
+const Door kTcp{false, {"127.0.0.1:80", "localhost:80"}, "secret"};
+
+int status_at(const Door& door, const Knock& knock) {
+  const auto refused = refuse_at(door, knock);
+  return refused ? refused->status : 200;
+}
+
+TEST(Gate, TcpWantsHostOriginAndToken) {
+  const std::string_view host = "127.0.0.1:80";
+  const std::string_view bearer = "Bearer secret";
+  EXPECT_EQ(status_at({}, {"/v1/start", "anything", "http://evil", "", ""}), 200)
+      << "the Unix socket has its own guard";
+  EXPECT_EQ(status_at(kTcp, {"/v1/status", host, "", bearer, ""}), 200);
+  EXPECT_EQ(status_at(kTcp, {"/v1/status", "localhost:80", "http://localhost:80", bearer, ""}), 200);
+  // A name that somebody let point here.
+  for (const char* other : {"", "evil", "evil:80", "127.0.0.1", "127.0.0.1:81", "127.0.0.1:80.evil"}) {
+    EXPECT_EQ(status_at(kTcp, {"/v1/status", other, "", bearer, ""}), 403) << other;
+    EXPECT_EQ(status_at(kTcp, {"/", other, "", "", ""}), 403) << other;
+  }
+  for (const char* origin :
+       {"null", "http://evil", "https://127.0.0.1:80", "127.0.0.1:80", "http://127.0.0.1:80/x"}) {
+    EXPECT_EQ(status_at(kTcp, {"/v1/status", host, origin, bearer, ""}), 403) << origin;
+  }
+  for (const char* token :
+       {"", "Bearer ", "Bearer secre", "Bearer secret ", "Bearer SECRET", "secret", "Basic secret"}) {
+    EXPECT_EQ(status_at(kTcp, {"/v1/status", host, "", token, ""}), 401) << token;
+  }
+  EXPECT_EQ(status_at(kTcp, {"/v1/live", host, "", "", "stickslip.v1, token.secret"}), 200);
+  EXPECT_EQ(status_at(kTcp, {"/v1/live", host, "", "", "stickslip.v1, token.secrets"}), 401);
+  EXPECT_EQ(status_at(kTcp, {"/", host, "", "", ""}), 200) << "the page asks for the token itself";
+  EXPECT_EQ(status_at(kTcp, {"/page/live.js", host, "", "", ""}), 200);
+  EXPECT_EQ(status_at(kTcp, {"/metrics", host, "", "", ""}), 401);
+  EXPECT_EQ(status_at({false, {"127.0.0.1:80"}, ""}, {"/v1/status", host, "", "Bearer ", ""}), 401);
+}
+
+TEST(LiveQueue, DropsTheOldestAndSaysSo) {
+  LiveQueue queue;
+  for (std::size_t k = 0; k < LiveQueue::kMost; ++k) {
+    EXPECT_EQ(queue.push(std::make_shared<const std::string>(std::to_string(k))), 0U);
+  }
+  EXPECT_EQ(queue.push(std::make_shared<const std::string>("new")), 1U);
+  EXPECT_EQ(queue.dropped_count(), 1U);
+  EXPECT_EQ(*queue.pop(), R"({"type":"dropped","frame_count":1})");
+  EXPECT_EQ(*queue.pop(), "1");
+  for (std::size_t k = 2; k < LiveQueue::kMost; ++k) EXPECT_EQ(*queue.pop(), std::to_string(k));
+  EXPECT_EQ(*queue.pop(), "new");
+  EXPECT_TRUE(queue.empty());
 }
 
 /// A server in a temporary folder, run by a thread of its own.
@@ -103,7 +338,7 @@ class ControlServerTest : public testing::Test {
     std::filesystem::remove_all(folder_);
   }
   void serve(HttpLimits limits = {}) {
-    auto server = ControlServer::listen(io_, socket_, make_api(some_status), limits);
+    auto server = ControlServer::listen(io_, socket_, make_api(bench_, clock_), limits);
     ASSERT_TRUE(server) << server.error().message;
     server_ = std::move(*server);
     thread_ = std::thread{[this] { io_.run(); }};
@@ -127,6 +362,8 @@ class ControlServerTest : public testing::Test {
     return answer;
   }
 
+  test::ManualClock clock_;
+  PaperBench bench_;
   std::filesystem::path folder_;
   std::filesystem::path socket_;
   boost::asio::io_context io_{1};
@@ -140,7 +377,7 @@ TEST_F(ControlServerTest, AnswersOverTheSocketWhichOnlyOwnerAndGroupMayUse) {
   struct stat facts {};
   ASSERT_EQ(::stat(socket_.c_str(), &facts), 0);
   EXPECT_EQ(facts.st_mode & 0777U, 0660U);
-  const base::Result<HttpReply> reply = request(socket_, {"GET", "/v1/status", ""}, 10s);
+  const base::Result<HttpReply> reply = request(socket_, {"GET", "/v1/status", "", "", ""}, 10s);
   ASSERT_TRUE(reply) << reply.error().message;
   EXPECT_EQ(reply->status, 200);
   EXPECT_EQ(json::parse(reply->body)["scan_count"], 42);
@@ -169,7 +406,7 @@ TEST_F(ControlServerTest, RefusesMoreConnectionsThanItsLimit) {
   HttpLimits limits;
   limits.connections = 0;
   serve(limits);
-  EXPECT_FALSE(request(socket_, {"GET", "/v1/status", ""}, 10s));
+  EXPECT_FALSE(request(socket_, {"GET", "/v1/status", "", "", ""}, 10s));
 }
 
 TEST_F(ControlServerTest, ReplacesALeftOverSocketButNothingElse) {
@@ -183,21 +420,21 @@ TEST_F(ControlServerTest, ReplacesALeftOverSocketButNothingElse) {
     ::close(descriptor);
   }
   serve();
-  const auto second = ControlServer::listen(io_, socket_, make_api(some_status));
+  const auto second = ControlServer::listen(io_, socket_, make_api(bench_, clock_));
   ASSERT_FALSE(second);
   EXPECT_THAT(second.error().message, testing::HasSubstr("another process is listening"));
 
   std::ofstream{folder_ / "file"} << "x";
-  const auto file = ControlServer::listen(io_, folder_ / "file", make_api(some_status));
+  const auto file = ControlServer::listen(io_, folder_ / "file", make_api(bench_, clock_));
   ASSERT_FALSE(file);
   EXPECT_EQ(file.error().exit_status(), 2);
-  const auto longest = ControlServer::listen(io_, folder_ / std::string(200, 'x'), make_api(some_status));
+  const auto longest = ControlServer::listen(io_, folder_ / std::string(200, 'x'), make_api(bench_, clock_));
   ASSERT_FALSE(longest);
   EXPECT_EQ(longest.error().exit_status(), 2);
 }
 
 TEST(ControlClient, SaysThatNobodyAnswers) {
-  const base::Result<HttpReply> reply = request("/nonexistent/s", {"GET", "/", ""}, 1s);
+  const base::Result<HttpReply> reply = request("/nonexistent/s", {"GET", "/", "", "", ""}, 1s);
   ASSERT_FALSE(reply);
   EXPECT_THAT(reply.error().message, testing::HasSubstr("is stickslipd running"));
 }

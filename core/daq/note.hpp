@@ -1,0 +1,68 @@
+/// \file
+/// What a person did during a test, at a scan of it: kept in the record as an event, and done again at the
+/// same scan when the record is replayed.
+///
+///     "command: start, by ada"   "command: stop, by ada"   "mark: the sheet moved"   "bench: zero set to
+///     0.01 V"
+#pragma once
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/scan_index.hpp"
+
+namespace stickslip::daq {
+
+struct Note {
+  enum class Kind {
+    kStart,  ///< The test began here, whatever the force.
+    kStop,   ///< This was its last scan.
+    kMark,   ///< Nothing but the text.
+    kBench,  ///< Before the test: armed, tared. Stands at its first scan.
+  };
+  Kind kind = Kind::kMark;
+  base::ScanIndex scan = 0;
+  std::string text;  ///< Who; of a mark and of the bench: what.
+
+  bool operator==(const Note&) const = default;
+};
+
+namespace note_words {
+inline constexpr std::string_view kStart = "command: start, by ";
+inline constexpr std::string_view kStop = "command: stop, by ";
+inline constexpr std::string_view kMark = "mark: ";
+inline constexpr std::string_view kBench = "bench: ";
+}  // namespace note_words
+
+/// As in the record's events.
+[[nodiscard]] inline std::string to_text(const Note& note) {
+  switch (note.kind) {
+    case Note::Kind::kStart:
+      return fmt::format("{}{}", note_words::kStart, note.text);
+    case Note::Kind::kStop:
+      return fmt::format("{}{}", note_words::kStop, note.text);
+    case Note::Kind::kBench:
+      return fmt::format("{}{}", note_words::kBench, note.text);
+    case Note::Kind::kMark:
+      break;
+  }
+  return fmt::format("{}{}", note_words::kMark, note.text);
+}
+
+/// Nothing if the event is none of these.
+[[nodiscard]] inline std::optional<Note> parse_note(base::ScanIndex scan, std::string_view event) {
+  const auto as = [&](Note::Kind kind, std::string_view words) {
+    return Note{kind, scan, std::string{event.substr(words.size())}};
+  };
+  if (event.starts_with(note_words::kStart)) return as(Note::Kind::kStart, note_words::kStart);
+  if (event.starts_with(note_words::kStop)) return as(Note::Kind::kStop, note_words::kStop);
+  if (event.starts_with(note_words::kMark)) return as(Note::Kind::kMark, note_words::kMark);
+  if (event.starts_with(note_words::kBench)) return as(Note::Kind::kBench, note_words::kBench);
+  return std::nullopt;
+}
+
+}  // namespace stickslip::daq

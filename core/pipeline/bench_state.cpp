@@ -1,0 +1,94 @@
+#include "core/pipeline/bench_state.hpp"
+
+namespace stickslip::pipeline {
+namespace {
+
+constexpr std::string_view kTestRuns = "a test is running; stop it first";
+constexpr std::string_view kStillLoaded =
+    "the force of the last test is still there; let the carriage go back first";
+constexpr std::string_view kNothingToStop = "no test is running, and none is waited for";
+constexpr std::string_view kAlreadyOver = "the test is over already";
+constexpr std::string_view kNoBoard = "no scans come from the board; stickslip status says why";
+
+BenchStep idle(BenchEvent event) noexcept {
+  switch (event) {
+    case BenchEvent::kArm:
+      return {BenchState::kArmed, {}};
+    case BenchEvent::kStart:
+      return {BenchState::kLoading, {}};
+    case BenchEvent::kStop:
+      return {BenchState::kIdle, kNothingToStop};
+    default:
+      return {BenchState::kIdle, {}};
+  }
+}
+
+BenchStep armed(BenchEvent event) noexcept {
+  switch (event) {
+    case BenchEvent::kStart:
+    case BenchEvent::kForceRose:
+      return {BenchState::kLoading, {}};
+    case BenchEvent::kStop:
+      return {BenchState::kIdle, {}};
+    default:
+      return {BenchState::kArmed, {}};
+  }
+}
+
+/// Loading or running.
+BenchStep in_test(BenchState state, BenchEvent event) noexcept {
+  switch (event) {
+    case BenchEvent::kArm:
+    case BenchEvent::kStart:
+      return {state, kTestRuns};
+    case BenchEvent::kStop:
+    case BenchEvent::kForceEnded:
+      return {BenchState::kFinishing, {}};
+    case BenchEvent::kSlipped:
+      return {BenchState::kRunning, {}};
+    default:
+      return {state, {}};
+  }
+}
+
+BenchStep finishing(BenchEvent event, BenchState at_rest) noexcept {
+  switch (event) {
+    case BenchEvent::kArm:
+    case BenchEvent::kStart:
+      return {BenchState::kFinishing, kStillLoaded};
+    case BenchEvent::kStop:
+      return {BenchState::kFinishing, kAlreadyOver};
+    case BenchEvent::kUnloaded:
+      return {at_rest, {}};
+    default:
+      return {BenchState::kFinishing, {}};
+  }
+}
+
+BenchStep degraded(BenchEvent event, BenchState at_rest) noexcept {
+  if (event == BenchEvent::kBoardBack) return {at_rest, {}};
+  return {BenchState::kDegraded, event < kFirstNoCommand ? kNoBoard : std::string_view{}};
+}
+
+}  // namespace
+
+BenchStep step(BenchState state, BenchEvent event, bool automatic) noexcept {
+  const BenchState at_rest = automatic ? BenchState::kArmed : BenchState::kIdle;
+  if (event == BenchEvent::kBoardLost) return {BenchState::kDegraded, {}};
+  switch (state) {
+    case BenchState::kIdle:
+      return idle(event);
+    case BenchState::kArmed:
+      return armed(event);
+    case BenchState::kLoading:
+    case BenchState::kRunning:
+      return in_test(state, event);
+    case BenchState::kFinishing:
+      return finishing(event, at_rest);
+    case BenchState::kDegraded:
+      break;
+  }
+  return degraded(event, at_rest);
+}
+
+}  // namespace stickslip::pipeline

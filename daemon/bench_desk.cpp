@@ -1,0 +1,115 @@
+#include "daemon/bench_desk.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace stickslip::daemon {
+namespace {
+
+/// A start or stop that names its test may have been done; then it is told, not done again.
+std::optional<Outcome> done_already(const Command& command, const pipeline::Processor& processor) {
+  if (!command.test) return std::nullopt;
+  const std::int64_t meant = *command.test;
+  const std::int64_t next = processor.test_number();
+  Outcome outcome;
+  outcome.report.state = processor.bench();
+  outcome.report.test = meant;
+  const bool begun = pipeline::test_runs(processor.bench());
+  const bool starts = command.kind == Command::Kind::kStart;
+  if (meant < next || (starts && begun && meant == next)) {
+    outcome.already = true;
+    return outcome;
+  }
+  if (starts && meant > next) {
+    outcome.report.refusal = fmt::format("test {} cannot begin: the next is test {}", meant, next);
+    return outcome;
+  }
+  if (!starts && (meant > next || !begun)) {
+    outcome.report.refusal = fmt::format("test {} has not begun", meant);
+    return outcome;
+  }
+  return std::nullopt;
+}
+
+Outcome of(pipeline::CommandReport report) {
+  Outcome outcome;
+  static_cast<pipeline::CommandReport&>(outcome.report) = std::move(report);
+  return outcome;
+}
+
+}  // namespace
+
+Outcome carry_out(const Command& command, pipeline::Processor& processor) {
+  if (auto done = done_already(command, processor)) return *std::move(done);
+  switch (command.kind) {
+    case Command::Kind::kArm:
+      return of(processor.arm(command.who));
+    case Command::Kind::kStart:
+      return of(processor.start(command.who));
+    case Command::Kind::kStop:
+      return of(processor.stop(command.who));
+    case Command::Kind::kMark:
+      return of(processor.mark(command.text));
+    case Command::Kind::kTare:
+      break;
+  }
+  return {processor.tare(command.who), false};
+}
+
+Plan BenchDesk::plan() const { return {parts_.config.sample, parts_.config.bench.pull_speed_m_per_s}; }
+
+void BenchDesk::set_plan(Plan plan) {
+  parts_.config.sample = plan.sample;
+  parts_.config.bench.pull_speed_m_per_s = plan.pull_speed_m_per_s;
+  Session* const session = parts_.session();
+  if (session == nullptr) return;
+  // A session that is over takes it from the configuration.
+  static_cast<void>(
+      session->post([&storage = parts_.storage, plan = std::move(plan)](pipeline::Processor& processor) {
+        processor.plan_pull_speed(plan.pull_speed_m_per_s);
+        storage.amend([&plan](record::RecordHeader& header) {
+          header.sample = plan.sample;
+          header.tester.pull_speed_m_per_s = plan.pull_speed_m_per_s;
+        });
+      }));
+}
+
+void BenchDesk::command(Command command, std::function<void(const Outcome&)> answer) {
+  if (command.kind == Command::Kind::kArm || command.kind == Command::Kind::kStart) {
+    if (auto why_not = why_no_test(parts_.storage.state())) {
+      Outcome outcome;
+      outcome.report.refusal = *std::move(why_not);
+      outcome.report.state = parts_.status().bench;
+      answer(outcome);
+      return;
+    }
+  }
+  Session* const session = parts_.session();
+  const bool posted =
+      session != nullptr && session->post([this, command, answer](pipeline::Processor& processor) {
+        const Outcome outcome = carry_out(command, processor);
+        if (command.kind == Command::Kind::kTare && outcome.report.refusal.empty()) {
+          parts_.storage.amend([&outcome](record::RecordHeader& header) {
+            if (header.load_cell) header.load_cell->zero_V = outcome.report.zero_V;
+          });
+        }
+        parts_.on_main([this, command, answer, outcome] {
+          answered(command, outcome);
+          answer(outcome);
+        });
+      });
+  if (posted) return;
+  Outcome outcome;
+  outcome.report.refusal =
+      pipeline::step(pipeline::BenchState::kDegraded, pipeline::BenchEvent::kStart, false).refusal;
+  answer(outcome);
+}
+
+void BenchDesk::answered(const Command& command, const Outcome& outcome) {
+  if (command.kind == Command::Kind::kTare && outcome.report.refusal.empty()) {
+    parts_.config.bench.load_cell_zero_V = outcome.report.zero_V;
+  }
+}
+
+}  // namespace stickslip::daemon

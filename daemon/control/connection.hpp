@@ -1,0 +1,32 @@
+/// \file
+/// One connection of the control interface, over either kind of socket: request, reply, and again while the
+/// client keeps it; or the live stream from the request on that asks for it.
+#pragma once
+
+#include <memory>
+#include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
+
+#include <boost/asio/generic/stream_protocol.hpp>
+
+#include "daemon/control/gate.hpp"
+#include "daemon/control/http.hpp"
+#include "daemon/control/limits.hpp"
+#include "daemon/live/hub.hpp"
+
+namespace stickslip::daemon {
+
+/// What all connections of a listener share.
+struct Service {
+  Door door;
+  HttpHandler handler;
+  LiveHub* hub = nullptr;  ///< Null: no live stream. Outlives the connections.
+  HttpLimits limits;
+  int connection_count = 0;
+};
+
+using AnySocket = boost::asio::generic::stream_protocol::socket;
+
+/// Lives until the client goes, is too slow, or the io_context ends.
+void serve_connection(AnySocket socket, std::shared_ptr<Service> service);
+
+}  // namespace stickslip::daemon

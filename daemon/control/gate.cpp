@@ -1,0 +1,60 @@
+#include "daemon/control/gate.hpp"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+namespace stickslip::daemon {
+namespace {
+
+HttpReply refusal(int status, const char* why) { return {status, nlohmann::json{{"error", why}}.dump(), {}}; }
+
+/// Takes as long for every text of the same length.
+bool same_secret(std::string_view a, std::string_view b) noexcept {
+  if (a.size() != b.size()) return false;
+  unsigned char difference = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference = static_cast<unsigned char>(
+        difference | (static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i])));
+  }
+  return difference == 0;
+}
+
+bool has_token(const Knock& knock, const std::string& token) {
+  constexpr std::string_view kBearer = "Bearer ";
+  if (knock.authorization.starts_with(kBearer))
+    return same_secret(knock.authorization.substr(kBearer.size()), token);
+  for (std::string_view rest = knock.protocols; !rest.empty();) {
+    const std::size_t comma = rest.find(',');
+    std::string_view one = rest.substr(0, comma);
+    rest = comma == std::string_view::npos ? std::string_view{} : rest.substr(comma + 1);
+    while (one.starts_with(' ')) one.remove_prefix(1);
+    if (one.starts_with(kTokenProtocol)) return same_secret(one.substr(kTokenProtocol.size()), token);
+  }
+  return false;
+}
+
+}  // namespace
+
+bool is_page(std::string_view path) noexcept { return path == "/" || path.starts_with("/page/"); }
+
+std::optional<HttpReply> refuse_at(const Door& door, const Knock& knock) {
+  if (door.open) return std::nullopt;
+  const auto ours = [&door](std::string_view host) {
+    return std::find(door.hosts.begin(), door.hosts.end(), host) != door.hosts.end();
+  };
+  if (!ours(knock.host)) return refusal(403, "the Host of this request is not this daemon's");
+  constexpr std::string_view kScheme = "http://";
+  if (!knock.origin.empty() &&
+      !(knock.origin.starts_with(kScheme) && ours(knock.origin.substr(kScheme.size())))) {
+    return refusal(403, "the Origin of this request is another site");
+  }
+  if (is_page(knock.path)) return std::nullopt;
+  if (door.token.empty() || !has_token(knock, door.token)) {
+    return refusal(
+        401, "the token is missing or wrong: Authorization: Bearer TOKEN, from the daemon's token file");
+  }
+  return std::nullopt;
+}
+
+}  // namespace stickslip::daemon

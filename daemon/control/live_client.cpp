@@ -1,0 +1,39 @@
+#include "daemon/control/live_client.hpp"
+
+#include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/local/stream_protocol.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/websocket.hpp>
+
+namespace stickslip::daemon {
+
+base::Result<void> listen_live(const std::filesystem::path& socket,
+                               const std::function<bool(std::string_view frame)>& use) {
+  namespace asio = boost::asio;
+  namespace beast = boost::beast;
+  using Local = asio::local::stream_protocol;
+  asio::io_context io;
+  beast::websocket::stream<Local::socket> stream{io};
+  boost::system::error_code error;
+  stream.next_layer().connect(Local::endpoint{socket.string()}, error);
+  if (error) {
+    return base::failure("{}: nobody answers: {}; is stickslipd running with this control socket?",
+                         socket.string(), error.message());
+  }
+  stream.handshake("localhost", "/v1/live", error);
+  if (error) return base::failure("{}: no live stream: {}", socket.string(), error.message());
+  beast::flat_buffer buffer;
+  for (;;) {
+    buffer.clear();
+    stream.read(buffer, error);
+    // A daemon that ends does so without farewell.
+    if (error == beast::websocket::error::closed || error == asio::error::eof) return {};
+    if (error) return base::failure("{}: the stream broke off: {}", socket.string(), error.message());
+    const auto data = buffer.data();
+    if (!use({static_cast<const char*>(data.data()), data.size()})) return {};
+  }
+}
+
+}  // namespace stickslip::daemon

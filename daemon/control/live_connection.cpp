@@ -1,0 +1,104 @@
+#include "daemon/control/live_connection.hpp"
+
+#include <boost/beast/core.hpp>
+#include <boost/beast/websocket.hpp>
+
+namespace stickslip::daemon {
+namespace {
+
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+namespace websocket = boost::beast::websocket;
+
+/// Nothing that a client may send is longer.
+constexpr std::size_t kLongestMessage = 1024;
+
+class LiveConnection final : public LiveClient, public std::enable_shared_from_this<LiveConnection> {
+ public:
+  LiveConnection(AnySocket socket, http::request<http::string_body> request, std::shared_ptr<Service> service)
+      : stream_(std::move(socket)), request_(std::move(request)), service_(std::move(service)) {
+    ++service_->connection_count;
+  }
+  ~LiveConnection() override { --service_->connection_count; }
+  LiveConnection(const LiveConnection&) = delete;
+  LiveConnection& operator=(const LiveConnection&) = delete;
+
+  void open() {
+    stream_.set_option(
+        websocket::stream_base::timeout{service_->limits.time, service_->limits.live_idle, true});
+    stream_.set_option(websocket::stream_base::decorator([this](websocket::response_type& response) {
+      // A browser that named subprotocols wants one of them back; the one with the token never is.
+      const auto named = request_[http::field::sec_websocket_protocol];
+      const std::string_view asked{named.data(), named.size()};
+      if (asked.find(kLiveProtocol) != std::string_view::npos) {
+        response.set(http::field::sec_websocket_protocol, std::string{kLiveProtocol});
+      }
+    }));
+    stream_.read_message_max(kLongestMessage);
+    stream_.async_accept(request_, [self = shared_from_this()](beast::error_code error) {
+      if (error || !self->service_->hub->join(self.get())) return;
+      self->joined_ = self;
+      self->stream_.text(true);
+      self->read();
+    });
+  }
+
+  std::size_t offer(const LiveFrame& frame) override {
+    const std::size_t dropped = queue_.push(frame);
+    if (!writing_) write();
+    return dropped;
+  }
+
+  void close() override {
+    beast::get_lowest_layer(stream_).close();
+    leave();
+  }
+
+ private:
+  void read() {
+    stream_.async_read(buffer_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+      if (error) {
+        self->leave();
+        return;
+      }
+      self->buffer_.consume(self->buffer_.size());
+      self->read();
+    });
+  }
+
+  void write() {
+    writing_ = queue_.pop();
+    stream_.async_write(boost::asio::buffer(*writing_),
+                        [self = shared_from_this()](beast::error_code error, std::size_t) {
+                          self->writing_.reset();
+                          if (error) {
+                            self->leave();
+                          } else if (!self->queue_.empty()) {
+                            self->write();
+                          }
+                        });
+  }
+
+  /// After this the hub knows nothing of it; it ends with what is still under way.
+  void leave() {
+    service_->hub->leave(this);
+    joined_.reset();
+  }
+
+  websocket::stream<beast::basic_stream<boost::asio::generic::stream_protocol>> stream_;
+  http::request<http::string_body> request_;
+  std::shared_ptr<Service> service_;
+  std::shared_ptr<LiveConnection> joined_;  ///< Itself, while the hub knows it.
+  beast::flat_buffer buffer_;
+  LiveQueue queue_;
+  LiveFrame writing_;
+};
+
+}  // namespace
+
+void serve_live(AnySocket socket, http::request<http::string_body> request,
+                std::shared_ptr<Service> service) {
+  std::make_shared<LiveConnection>(std::move(socket), std::move(request), std::move(service))->open();
+}
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,108 @@
+#include "daemon/control/metrics.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <string_view>
+
+namespace stickslip::daemon {
+namespace {
+
+class Page {
+ public:
+  void head(std::string_view name, std::string_view type, std::string_view help) {
+    text_ += fmt::format("# HELP stickslip_{0} {1}\n# TYPE stickslip_{0} {2}\n", name, help, type);
+  }
+  template <typename Number>
+  void value(std::string_view name, Number number, std::string_view labels = {}) {
+    text_ += fmt::format("stickslip_{}{} {}\n", name, labels, number);
+  }
+  template <typename Number>
+  void counter(std::string_view name, std::string_view help, Number number) {
+    head(name, "counter", help);
+    value(name, number);
+  }
+  template <typename Number>
+  void gauge(std::string_view name, std::string_view help, Number number) {
+    head(name, "gauge", help);
+    value(name, number);
+  }
+  [[nodiscard]] std::string text() && { return std::move(text_); }
+
+ private:
+  std::string text_;
+};
+
+/// The bins of the status are the machine's: half a decade and wider would say less, finer ones more than
+/// needed.
+void latency(Page& page, const daq::LatencyHistogram& histogram) {
+  constexpr std::string_view kName = "read_latency_seconds";
+  page.head(kName, "histogram", "From the last scan of a block to the end of the read that brought it.");
+  std::uint64_t count = 0;
+  for (std::size_t bin = 0; bin < daq::LatencyHistogram::kBins; ++bin) {
+    count += static_cast<std::uint64_t>(histogram.counts()[bin]);
+    const double limit_s = daq::LatencyHistogram::limit_s(bin);
+    if (!std::isfinite(limit_s)) continue;
+    page.value("read_latency_seconds_bucket", count, fmt::format("{{le=\"{}\"}}", limit_s));
+  }
+  page.value("read_latency_seconds_bucket", count, "{le=\"+Inf\"}");
+  page.value("read_latency_seconds_count", count);
+}
+
+/// What a label may hold: backslash, quote and line feed are escaped.
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '\\' || c == '"') out += '\\';
+    if (c == '\n') {
+      out += "\\n";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string metrics_text(const Status& status) {
+  Page page;
+  page.head("build_info", "gauge", "Always 1; the label says which program this is.");
+  page.value("build_info", 1, fmt::format("{{version=\"{}\"}}", escaped(status.version)));
+  page.head("bench_state", "gauge", "1 for the state that the bench is in, 0 for the others.");
+  for (std::size_t i = 0; i < pipeline::kBenchStates; ++i) {
+    const auto state = static_cast<pipeline::BenchState>(i);
+    page.value("bench_state", status.bench == state ? 1 : 0,
+               fmt::format("{{state=\"{}\"}}", pipeline::name(state)));
+  }
+  page.gauge("board_acquiring", "1 while scans come from the board.", status.state == "acquiring" ? 1 : 0);
+  page.counter("scans_total", "Scans processed.", status.scan_count);
+  page.counter("gaps_total", "Jumps of the scan index.", status.gap_count);
+  page.counter("lost_scans_total", "Scans missing in gaps.", status.lost_scan_count);
+  page.counter("dropped_scans_total", "Scans that a full ring did not take.", status.dropped_scan_count);
+  page.counter("overruns_total", "Times the board lost scans and halted.", status.overrun_count);
+  page.counter("board_losses_total", "Times the board went away or failed.", status.board_loss_count);
+  page.counter("storage_stalls_total", "Times the processing thread waited for the storage thread.",
+               status.storage_stall_count);
+  page.counter("tests_total", "Tests ended.", status.test_count);
+  if (status.board) {
+    page.gauge("scan_rate_hertz", "Scan rate that the board granted.", status.board->scan_rate_granted_Hz);
+  }
+  if (status.scan_rate_measured) {
+    page.gauge("scan_rate_measured_hertz", "Scan rate by this computer's clock.",
+               status.scan_rate_measured->rate_Hz);
+  }
+  if (status.storage.room_h)
+    page.gauge("disk_room_hours", "Room on the disk, as time of recording.", *status.storage.room_h);
+  page.gauge("disk_refuses", "1 while the disk refuses what is to be recorded.",
+             status.storage.kind == StorageState::Kind::kWaiting ? 1 : 0);
+  page.gauge("disk_waiting_bytes", "Kept in memory for the disk.", status.storage.waiting_size);
+  page.gauge("live_clients", "Clients of the live stream.", status.live_client_count);
+  page.counter("live_dropped_frames_total", "Frames that slow clients of the live stream did not get.",
+               status.live_dropped_count);
+  latency(page, status.latency);
+  return std::move(page).text();
+}
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,16 @@
+/// \file
+/// The status as Prometheus reads it: text format 0.0.4
+/// (https://prometheus.io/docs/instrumenting/exposition_formats/).
+#pragma once
+
+#include <string>
+
+#include "daemon/control/status.hpp"
+
+namespace stickslip::daemon {
+
+inline constexpr const char* kMetricsType = "text/plain; version=0.0.4; charset=utf-8";
+
+[[nodiscard]] std::string metrics_text(const Status& status);
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,118 @@
+#include "daemon/control/plan_json.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/quantity.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kLongestText = 200;
+/// As in the configuration.
+constexpr double kFastestPull_m_per_s = 10.0;
+constexpr std::int64_t kMostReplicates = 1'000'000;
+
+constexpr std::array<std::pair<const char*, std::string record::SampleFacts::*>, 5> kTexts{{
+    {"name", &record::SampleFacts::name},
+    {"grade", &record::SampleFacts::grade},
+    {"direction", &record::SampleFacts::direction},
+    {"side", &record::SampleFacts::side},
+    {"operator", &record::SampleFacts::operator_name},
+}};
+constexpr const char* kReplicate = "replicate";
+constexpr const char* kSpeed = "pull_speed";
+
+base::Result<double> speed_of(const Json& value) {
+  base::Result<double> speed = 0.0;
+  if (value.is_number()) {
+    speed = value.get<double>();
+  } else if (value.is_string()) {
+    speed = base::parse_quantity(value.get<std::string>(), base::Dimension::kSpeed);
+    if (!speed) return base::usage_error("{}: {}", kSpeed, speed.error().message);
+  } else {
+    return base::usage_error("{}: must be a number in m/s, or text such as \"12 in/min\"", kSpeed);
+  }
+  if (!(*speed > 0.0 && *speed <= kFastestPull_m_per_s)) {
+    return base::usage_error("{}: {} m/s; must be above 0 and at most {} m/s", kSpeed, *speed,
+                             kFastestPull_m_per_s);
+  }
+  return speed;
+}
+
+}  // namespace
+
+std::string text_refusal(std::string_view text) {
+  if (text.size() > kLongestText) {
+    return fmt::format("is {} bytes long, at most {} are allowed", text.size(), kLongestText);
+  }
+  if (std::any_of(text.begin(), text.end(),
+                  [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; })) {
+    return "holds a control character";
+  }
+  // The parser of a body has looked at it; a header has not been looked at.
+  if (!Json::accept('"' + [&] {
+        std::string quoted;
+        for (const char c : text) {
+          if (c == '"' || c == '\\') quoted += '\\';
+          quoted += c;
+        }
+        return quoted;
+      }() + '"')) {
+    return "is no UTF-8";
+  }
+  return {};
+}
+
+Json plan_json(const Plan& plan) {
+  Json json;
+  for (const auto& [key, member] : kTexts) {
+    const std::string& text = plan.sample.*member;
+    json[key] = text.empty() ? Json(nullptr) : Json(text);
+  }
+  json[kReplicate] = plan.sample.replicate ? Json(*plan.sample.replicate) : Json(nullptr);
+  json[kSpeed] = plan.pull_speed_m_per_s ? Json(*plan.pull_speed_m_per_s) : Json(nullptr);
+  return json;
+}
+
+base::Result<Plan> plan_of(const Json& json) {
+  Plan plan;
+  for (const auto& [key, value] : json.items()) {
+    if (value.is_null()) continue;
+    const auto text = std::find_if(kTexts.begin(), kTexts.end(),
+                                   [&key = key](const auto& own) { return own.first == key; });
+    if (text != kTexts.end()) {
+      if (!value.is_string()) return base::usage_error("{}: must be text", key);
+      const std::string said = value.get<std::string>();
+      if (const std::string refusal = text_refusal(said); !refusal.empty())
+        return base::usage_error("{}: {}", key, refusal);
+      plan.sample.*(text->second) = said;
+    } else if (key == kReplicate) {
+      if (!value.is_number_integer() || value.get<std::int64_t>() < 1 ||
+          value.get<std::int64_t>() > kMostReplicates) {
+        return base::usage_error("{}: must be a whole number from 1 to {}", key, kMostReplicates);
+      }
+      plan.sample.replicate = value.get<std::int64_t>();
+    } else if (key == kSpeed) {
+      const base::Result<double> speed = speed_of(value);
+      if (!speed) return tl::unexpected(speed.error());
+      plan.pull_speed_m_per_s = *speed;
+    } else {
+      return base::usage_error(
+          "\"{}\": there is no such key; there are name, grade, direction, side, operator, replicate, "
+          "pull_speed",
+          key.substr(0, kLongestText));
+    }
+  }
+  return plan;
+}
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,23 @@
+/// \file
+/// The plan as JSON, by the names of the record.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "core/base/result.hpp"
+#include "daemon/control/bench.hpp"
+
+namespace stickslip::daemon {
+
+[[nodiscard]] nlohmann::ordered_json plan_json(const Plan& plan);
+/// What is absent or null is not said. pull_speed is m/s, or text with a unit. Errors (kUsage) name the key.
+[[nodiscard]] base::Result<Plan> plan_of(const nlohmann::ordered_json& json);
+
+/// Why this is no line of text for a record, for people; empty if it is one: UTF-8 without control
+/// characters, at most 200 bytes.
+[[nodiscard]] std::string text_refusal(std::string_view text);
+
+}  // namespace stickslip::daemon

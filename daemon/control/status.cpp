@@ -1,0 +1,140 @@
+#include "daemon/control/status.hpp"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/results_json.hpp"
+
+namespace stickslip::daemon {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json to_json(const daq::BoardInfo& board) {
+  Json json;
+  json["driver"] = board.driver;
+  json["name"] = board.board_name;
+  json["device"] = board.device;
+  json["subdevice"] = board.subdevice;
+  json["channel"] = board.channel;
+  json["scan_rate_requested"] = board.scan_rate_requested_Hz;
+  json["scan_rate_granted"] = board.scan_rate_granted_Hz;
+  json["maxdata"] = board.maxdata;
+  json["range_min"] = board.range_min_V;
+  json["range_max"] = board.range_max_V;
+  json["calibration"] = board.calibration.empty() ? Json(nullptr) : Json(board.calibration);
+  json["acquisition"] = board.acquisition.empty() ? Json(nullptr) : Json(board.acquisition);
+  json["notes"] = board.notes;
+  json["second"] = nullptr;
+  if (board.second) {
+    json["second"] = {{"quantity", daq::name(board.second->quantity)},
+                      {"channel", board.second->channel},
+                      {"maxdata", board.second->maxdata},
+                      {"range_min", board.second->range_min_V},
+                      {"range_max", board.second->range_max_V}};
+  }
+  return json;
+}
+
+Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json to_json(const std::optional<daq::RateEstimate>& rate) {
+  if (!rate) return nullptr;
+  return {{"value", rate->rate_Hz},
+          {"standard_error", rate->standard_error_Hz},
+          {"clock_reading_count", rate->anchor_count}};
+}
+
+/// Bins without a read are left out.
+Json to_json(const daq::LatencyHistogram& latency) {
+  Json bins = Json::array();
+  for (std::size_t bin = 0; bin < daq::LatencyHistogram::kBins; ++bin) {
+    if (latency.counts()[bin] == 0) continue;
+    bins.push_back(
+        {{"below", or_null(daq::LatencyHistogram::limit_s(bin))}, {"read_count", latency.counts()[bin]}});
+  }
+  return {{"largest", latency.largest_s()}, {"bins", bins}};
+}
+
+Json to_json(const StorageState& storage) {
+  const auto or_nothing = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
+  return {{"state", name(storage.kind)},
+          {"room_h", storage.room_h ? Json(*storage.room_h) : Json(nullptr)},
+          {"waiting_size", storage.waiting_size},
+          {"why", or_nothing(storage.why)},
+          {"to_do", or_nothing(storage.to_do)}};
+}
+
+}  // namespace
+
+Json test_json(const TestSummary& test, bool with_details) {
+  Json json;
+  json["number"] = test.number;
+  json["first_scan"] = test.first;
+  json["end_scan"] = test.end;
+  json["cause"] = pipeline::name(test.cause);
+  json["file"] = test.file.empty() ? Json(nullptr) : Json(test.file);
+  if (!test.file_error.empty()) json["file_error"] = test.file_error;
+  json["results"] = results_json(test.results, with_details);
+  return json;
+}
+
+/// Names and units as in the table of cycles of a record.
+Json live_json(const friction::LiveState& live) {
+  Json json;
+  json["phase"] = friction::name(live.phase);
+  json["regime"] = friction::name(live.regime);
+  json["slip_count"] = live.slip_count;
+  json["latest_cycle"] = nullptr;
+  if (live.latest) {
+    const friction::Cycle& cycle = live.latest->cycle;
+    json["latest_cycle"] = {{"number", cycle.number},
+                            {"captured", (cycle.flags & friction::kCycleCaptured) != 0},
+                            {"evidence", or_null(live.latest->evidence)},
+                            {"peak_time", or_null(cycle.peak_time_s)},
+                            {"period", or_null(cycle.period_s)},
+                            {"force_drop", or_null(cycle.force_drop)},
+                            {"mu_s", or_null(live.latest->S)},
+                            {"mu_k", or_null(live.latest->K)},
+                            {"delta_mu", or_null(cycle.delta_mu)},
+                            {"delta_mu_standard_error", or_null(cycle.delta_mu_standard_error)},
+                            {"slip_speed_ratio", or_null(cycle.slip_speed_ratio)}};
+  }
+  return json;
+}
+
+std::string health_frame(const Status& status) {
+  return Json{{"type", "health"}, {"status", status_json(status)}}.dump(-1, ' ', false,
+                                                                        Json::error_handler_t::replace);
+}
+
+Json status_json(const Status& status) {
+  Json json;
+  json["state"] = status.state;
+  json["bench"] = pipeline::name(status.bench);
+  json["detail"] = status.detail;
+  json["version"] = status.version;
+  json["board"] = status.board ? to_json(*status.board) : Json(nullptr);
+  json["scheduling"] = status.scheduling;
+  json["scan_count"] = status.scan_count;
+  json["dropped_scan_count"] = status.dropped_scan_count;
+  json["overrun_count"] = status.overrun_count;
+  json["gap_count"] = status.gap_count;
+  json["lost_scan_count"] = status.lost_scan_count;
+  json["board_loss_count"] = status.board_loss_count;
+  json["scan_rate_measured"] = to_json(status.scan_rate_measured);
+  json["read_latency"] = to_json(status.latency);
+  json["storage_stall_count"] = status.storage_stall_count;
+  json["storage"] = to_json(status.storage);
+  json["live_clients"] = {{"count", status.live_client_count},
+                          {"dropped_frame_count", status.live_dropped_count}};
+  json["test_count"] = status.test_count;
+  json["current_test"] = status.current_test ? Json(*status.current_test) : Json(nullptr);
+  json["live"] = status.live ? live_json(*status.live) : Json(nullptr);
+  json["latest_test"] = status.latest_test ? test_json(*status.latest_test, false) : Json(nullptr);
+  return json;
+}
+
+}  // namespace stickslip::daemon

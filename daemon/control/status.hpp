@@ -1,0 +1,58 @@
+/// \file
+/// A picture of the daemon, as GET /v1/status gives it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "core/daq/board.hpp"
+#include "core/daq/latency_histogram.hpp"
+#include "core/daq/rate_fit.hpp"
+#include "core/friction/live_cycle.hpp"
+#include "core/pipeline/bench_state.hpp"
+#include "daemon/storage_state.hpp"
+#include "daemon/test_log.hpp"
+
+namespace stickslip::daemon {
+
+/// A picture of the daemon at one moment.
+struct Status {
+  /// "starting", "acquiring", "storage short", "storage waiting" (both while acquiring), "board missing",
+  /// "board busy", "no permission", "stopping".
+  std::string state;
+  std::string detail;  ///< The line of STATUS=, for people.
+  std::string version;
+  std::optional<daq::BoardInfo> board;
+  std::string scheduling;
+  std::uint64_t scan_count = 0;
+  std::uint64_t dropped_scan_count = 0;  ///< By the ring.
+  std::uint64_t overrun_count = 0;       ///< By the board.
+  std::uint64_t gap_count = 0;
+  std::int64_t lost_scan_count = 0;                     ///< In gaps.
+  std::uint64_t board_loss_count = 0;                   ///< Times the board went away or failed.
+  std::optional<daq::RateEstimate> scan_rate_measured;  ///< Of the board's present life.
+  daq::LatencyHistogram latency;                        ///< Of reads.
+  std::uint64_t storage_stall_count = 0;
+  std::int64_t test_count = 0;               ///< Ended.
+  std::optional<std::int64_t> current_test;  ///< Running now.
+  std::optional<friction::LiveState> live;   ///< Of the current test.
+  pipeline::BenchState bench = pipeline::BenchState::kDegraded;
+  std::optional<TestSummary> latest_test;
+  StorageState storage;
+  std::int64_t live_client_count = 0;    ///< Of the live stream.
+  std::uint64_t live_dropped_count = 0;  ///< Frames that slow ones of them did not get.
+};
+
+/// By the names of the record.
+[[nodiscard]] nlohmann::ordered_json status_json(const Status& status);
+/// \param with_details  units, uncertainties and reasons of all results too.
+[[nodiscard]] nlohmann::ordered_json test_json(const TestSummary& test, bool with_details);
+/// A frame of the live stream: {"type": "health", "status": …}.
+[[nodiscard]] std::string health_frame(const Status& status);
+/// Phase, regime and latest cycle of a test that runs.
+[[nodiscard]] nlohmann::ordered_json live_json(const friction::LiveState& live);
+
+}  // namespace stickslip::daemon

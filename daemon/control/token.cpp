@@ -1,0 +1,71 @@
+#include "daemon/control/token.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+
+namespace stickslip::daemon {
+namespace {
+
+/// 256 bits: no guess reaches it.
+constexpr std::size_t kBytes = 32;
+constexpr std::size_t kShortest = 32;  ///< Of a token that somebody wrote by hand, in letters and digits.
+constexpr std::size_t kLongest = 256;
+
+std::string because() { return std::generic_category().message(errno); }
+
+base::Result<std::string> make_token(const std::filesystem::path& file) {
+  std::array<unsigned char, kBytes> random{};
+  if (::getrandom(random.data(), random.size(), 0) != static_cast<ssize_t>(random.size())) {
+    return base::failure("token file {}: no random numbers: {}", file.string(), because());
+  }
+  std::string token;
+  for (const unsigned char byte : random) token += fmt::format("{:02x}", byte);
+  const int descriptor = ::open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0640);
+  if (descriptor < 0) return base::failure("token file {}: cannot be made: {}", file.string(), because());
+  const std::string line = token + "\n";
+  const bool whole = ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+  const std::string why = because();
+  ::close(descriptor);
+  if (!whole) {
+    ::unlink(file.c_str());
+    return base::failure("token file {}: cannot be written: {}", file.string(), why);
+  }
+  return token;
+}
+
+}  // namespace
+
+base::Result<std::string> load_token(const std::filesystem::path& file) {
+  struct stat facts {};
+  if (::stat(file.c_str(), &facts) != 0) {
+    if (errno == ENOENT) return make_token(file);
+    return base::failure("token file {}: cannot be read: {}", file.string(), because());
+  }
+  if ((facts.st_mode & (S_IROTH | S_IWOTH)) != 0) {
+    return base::usage_error("token file {}: everybody may read or write it; chmod o-rw it", file.string());
+  }
+  std::ifstream input{file};
+  std::string token;
+  if (!std::getline(input, token)) return base::failure("token file {}: cannot be read", file.string());
+  const bool good = token.size() >= kShortest && token.size() <= kLongest &&
+                    std::all_of(token.begin(), token.end(), [](char c) {
+                      return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+                    });
+  if (!good) {
+    return base::usage_error(
+        "token file {}: must hold one line of {} to {} letters and digits; remove it, and a new one is made",
+        file.string(), kShortest, kLongest);
+  }
+  return token;
+}
+
+}  // namespace stickslip::daemon

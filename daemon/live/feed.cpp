@@ -1,0 +1,155 @@
+#include "daemon/live/feed.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/results_json.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Frames in a second: a picture that moves, and no more wake-ups than that.
+constexpr double kFrames_Hz = 20.0;
+/// Parts in a second: a window of 10 s has two for each pixel of 2000.
+constexpr double kParts_Hz = 400.0;
+/// Spikes told at the end of a test; the record has all.
+constexpr std::size_t kMostSpikes = 1000;
+
+Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+/// A coefficient as the page shows it: six decimals, a tenth of the finest step of a 16-bit board.
+void append(std::string& text, const std::vector<double>& values) {
+  for (const double value : values) {
+    if (text.back() != '[') text += ',';
+    text += std::isfinite(value) ? fmt::format("{:.6f}", value) : "null";
+  }
+}
+
+}  // namespace
+
+void LiveFeed::use(double scan_rate_Hz, double clock_speed) {
+  scan_rate_Hz_ = scan_rate_Hz;
+  const double wall_Hz = scan_rate_Hz * clock_speed;
+  bucket_ = static_cast<std::size_t>(std::max(1.0, std::ceil(wall_Hz / kParts_Hz)));
+  frame_parts_ = static_cast<std::size_t>(
+      std::max(1.0, std::round(wall_Hz / kFrames_Hz / static_cast<double>(bucket_))));
+  lowest_.clear();
+  highest_.clear();
+  in_part_ = 0;
+}
+
+void LiveFeed::observed(daq::ScanIndex first, std::span<const double> coefficient,
+                        const friction::LiveState& live) {
+  if (!heard()) {
+    lowest_.clear();
+    highest_.clear();
+    return;
+  }
+  if (first != next_) flush(live);
+  next_ = first + static_cast<daq::ScanIndex>(coefficient.size());
+  for (const double value : coefficient) {
+    if (lowest_.empty()) {
+      first_ = first;
+      in_part_ = 0;
+    }
+    ++first;
+    if (in_part_ == 0) {
+      lowest_.push_back(value);
+      highest_.push_back(value);
+    } else {
+      lowest_.back() = std::min(lowest_.back(), value);
+      highest_.back() = std::max(highest_.back(), value);
+    }
+    in_part_ = (in_part_ + 1) % bucket_;
+    if (in_part_ == 0 && lowest_.size() >= frame_parts_) flush(live);
+  }
+}
+
+void LiveFeed::flush(const friction::LiveState& live) {
+  if (lowest_.empty()) return;
+  std::string frame = fmt::format(
+      R"({{"type":"scans","first_scan":{},"scans_in_part":{},"scan_rate":{},"test":{},"phase":"{}","regime":"{}","slip_count":{},"lowest":[)",
+      first_, bucket_, scan_rate_Hz_, test_ == 0 ? "null" : std::to_string(test_), friction::name(live.phase),
+      friction::name(live.regime), live.slip_count);
+  append(frame, lowest_);
+  frame += R"(],"highest":[)";
+  append(frame, highest_);
+  frame += "]}";
+  lowest_.clear();
+  highest_.clear();
+  publish_(std::move(frame));
+}
+
+void LiveFeed::test_began(const pipeline::TestStart& start) {
+  test_ = start.number;
+  test_first_ = start.first;
+  if (!heard()) return;
+  publish_(Json{{"type", "test-began"},
+                {"test", start.number},
+                {"first_scan", start.first},
+                {"trigger_scan", start.trigger},
+                {"by_command", start.by_command}}
+               .dump());
+}
+
+void LiveFeed::cycle(const friction::Cycle& cycle) {
+  if (!heard()) return;
+  publish_(Json{{"type", "cycle"},
+                {"test", test_},
+                {"number", cycle.number},
+                {"first_scan", cycle.first_scan},
+                {"captured", (cycle.flags & friction::kCycleCaptured) != 0},
+                {"onset_time", or_null(cycle.onset_time_s)},
+                {"capture_time", or_null(cycle.capture_time_s)},
+                {"peak_time", or_null(cycle.peak_time_s)},
+                {"period", or_null(cycle.period_s)},
+                {"peak", or_null(cycle.peak)},
+                {"trough", or_null(cycle.trough)},
+                {"force_drop", or_null(cycle.force_drop)},
+                {"delta_mu", or_null(cycle.delta_mu)},
+                {"delta_mu_standard_error", or_null(cycle.delta_mu_standard_error)},
+                {"slip_speed_ratio", or_null(cycle.slip_speed_ratio)}}
+               .dump());
+}
+
+void LiveFeed::tell_gap(const daq::Gap& gap) {
+  if (!heard()) return;
+  publish_(Json{
+      {"type", "gap"}, {"first_scan", gap.first}, {"scan_count", gap.count}, {"cause", daq::name(gap.cause)}}
+               .dump());
+}
+
+void LiveFeed::note(const daq::Note& note) {
+  if (!heard()) return;
+  publish_(Json{{"type", "note"}, {"scan", note.scan}, {"text", daq::to_text(note)}}.dump(
+      -1, ' ', false, Json::error_handler_t::replace));
+}
+
+void LiveFeed::test_ended(const pipeline::TestEnd& end) {
+  test_ = 0;
+  if (!heard()) return;
+  Json spikes = Json::array();
+  for (const daq::ScanIndex spike : end.spikes) {
+    if (spikes.size() < kMostSpikes) spikes.push_back(spike);
+  }
+  publish_(Json{{"type", "test-ended"},
+                {"test", end.number},
+                {"first_scan", test_first_},
+                {"end_scan", end.end},
+                {"cause", pipeline::name(end.cause)},
+                {"spikes", std::move(spikes)},
+                {"results", results_json(end.results, false)}}
+               .dump());
+}
+
+void LiveFeed::bench_changed(pipeline::BenchState state) {
+  if (heard()) publish_(Json{{"type", "bench"}, {"bench", pipeline::name(state)}}.dump());
+}
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,58 @@
+/// \file
+/// The walk of the scans as frames of JSON for the live page: scans as lowest and highest of each part,
+/// cycles as they close, tests as they begin and end. What the frames hold: docs/control.md.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/pipeline/sink.hpp"
+
+namespace stickslip::daemon {
+
+/// Sink of the processing thread. Without listeners it does nothing.
+class LiveFeed final : public pipeline::Sink {
+ public:
+  /// \param publish  called on the processing thread for each frame; may not wait.
+  explicit LiveFeed(std::function<void(std::string)> publish) : publish_(std::move(publish)) {}
+
+  /// Any thread.
+  void listeners(std::size_t count) noexcept { listeners_.store(count, std::memory_order_relaxed); }
+  /// Before a session. \param clock_speed  board time over wall time.
+  void use(double scan_rate_Hz, double clock_speed);
+
+  void observed(daq::ScanIndex first, std::span<const double> coefficient,
+                const friction::LiveState& live) override;
+  void test_began(const pipeline::TestStart& start) override;
+  void cycle(const friction::Cycle& cycle) override;
+  void gap(const daq::Gap& gap) override { tell_gap(gap); }
+  void gap_between_tests(const daq::Gap& gap) override { tell_gap(gap); }
+  void note(const daq::Note& note) override;
+  void test_ended(const pipeline::TestEnd& end) override;
+  void bench_changed(pipeline::BenchState state) override;
+
+ private:
+  [[nodiscard]] bool heard() const noexcept { return listeners_.load(std::memory_order_relaxed) > 0; }
+  void tell_gap(const daq::Gap& gap);
+  void flush(const friction::LiveState& live);
+
+  std::function<void(std::string)> publish_;
+  std::atomic<std::size_t> listeners_{0};
+  double scan_rate_Hz_ = 0.0;
+  std::size_t bucket_ = 1;       ///< Scans in one part.
+  std::size_t frame_parts_ = 1;  ///< Parts in one frame.
+  std::int64_t test_ = 0;
+  daq::ScanIndex test_first_ = 0;
+
+  // Of the next frame.
+  daq::ScanIndex first_ = 0;
+  daq::ScanIndex next_ = 0;
+  std::size_t in_part_ = 0;
+  std::vector<double> lowest_;
+  std::vector<double> highest_;
+};
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,80 @@
+/// \file
+/// The live stream as a whole: frames from the processing thread, over a bounded way, to the clients on the
+/// main thread; and how the daemon is, once a second.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "daemon/live/feed.hpp"
+#include "daemon/live/hub.hpp"
+
+namespace stickslip::daemon {
+
+class LiveStream {
+ public:
+  /// Frames on their way to the main thread: seconds of them, and then they are dropped and counted.
+  static constexpr int kMostOnTheWay = 128;
+
+  /// \param health  a frame that says how the daemon is; asked while somebody listens.
+  LiveStream(boost::asio::io_context& io, std::function<std::string()> health)
+      : io_(io),
+        timer_(io),
+        health_(std::move(health)),
+        hub_([this](std::size_t count) { listeners(count); }),
+        feed_([this](std::string frame) { send(std::move(frame)); }) {}
+
+  [[nodiscard]] LiveFeed& feed() noexcept { return feed_; }
+  [[nodiscard]] LiveHub& hub() noexcept { return hub_; }
+  [[nodiscard]] const LiveHub& hub() const noexcept { return hub_; }
+  /// Frames that no client got, because the main thread was too slow. Any thread.
+  [[nodiscard]] std::uint64_t lost_count() const noexcept { return lost_.load(std::memory_order_relaxed); }
+  /// Main thread: ends it for all.
+  void close() {
+    timer_.cancel();
+    hub_.close();
+  }
+
+ private:
+  void listeners(std::size_t count) {
+    feed_.listeners(count);
+    const bool ticks = std::exchange(ticks_, count > 0);
+    if (!ticks && count > 0) tick();
+  }
+  void tick() {
+    hub_.publish(std::make_shared<const std::string>(health_()));
+    timer_.expires_after(std::chrono::seconds{1});
+    timer_.async_wait([this](boost::system::error_code error) {
+      if (!error && ticks_) tick();
+    });
+  }
+  void send(std::string frame) {
+    if (on_the_way_.fetch_add(1, std::memory_order_relaxed) >= kMostOnTheWay) {
+      on_the_way_.fetch_sub(1, std::memory_order_relaxed);
+      lost_.fetch_add(1, std::memory_order_relaxed);
+      return;
+    }
+    boost::asio::post(io_, [this, frame = std::make_shared<const std::string>(std::move(frame))] {
+      on_the_way_.fetch_sub(1, std::memory_order_relaxed);
+      hub_.publish(frame);
+    });
+  }
+
+  boost::asio::io_context& io_;
+  boost::asio::steady_timer timer_;
+  std::function<std::string()> health_;
+  LiveHub hub_;
+  LiveFeed feed_;
+  bool ticks_ = false;
+  std::atomic<int> on_the_way_{0};
+  std::atomic<std::uint64_t> lost_{0};
+};
+
+}  // namespace stickslip::daemon

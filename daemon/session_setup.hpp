@@ -1,0 +1,33 @@
+/// \file
+/// What follows for a session and its records from the configuration and from the board that was opened.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/base/result.hpp"
+#include "core/friction/sampling.hpp"
+#include "core/record/record.hpp"
+#include "daemon/config.hpp"
+#include "daemon/session.hpp"
+
+namespace stickslip::daemon {
+
+/// Makes the folder if it is absent, and tries to write there. Errors: kFailure.
+[[nodiscard]] base::Result<void> prepare_record_folder(const std::filesystem::path& folder);
+
+/// \param continues  where the session before this one ended. Errors: kUsage.
+[[nodiscard]] base::Result<SessionSettings> session_settings(const DaemonConfig& config,
+                                                             const drivers::OpenedBoard& opened,
+                                                             const SessionEnd& continues);
+
+/// What all records of the session begin with. \param realtime  what the kernel granted.
+[[nodiscard]] record::RecordHeader record_header(const DaemonConfig& config, const SessionSettings& settings,
+                                                 const daq::BoardInfo& board, const std::string& realtime);
+
+/// Do the scans come often enough for the tester as it is planned or characterised? Errors: kUsage where they
+/// cannot tell slips, but for a replay.
+[[nodiscard]] base::Result<friction::SamplingVerdict> check_sampling(const DaemonConfig& config,
+                                                                     const SessionSettings& settings);
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,56 @@
+/// \file
+/// Sees the tests on the processing thread: into the log, and told to who wants to know.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include "core/friction/truth.hpp"
+#include "core/pipeline/sink.hpp"
+#include "daemon/facts.hpp"
+#include "daemon/test_log.hpp"
+
+namespace stickslip::daemon {
+
+class TestWatcher final : public pipeline::Sink {
+ public:
+  /// \param current  told the number of the test that runs, or that none does; on the processing thread.
+  TestWatcher(TestLog& tests, Facts& facts, std::function<void(std::optional<std::int64_t>)> current)
+      : tests_(tests), facts_(facts), current_(std::move(current)) {}
+
+  /// Only between sessions.
+  void use(const friction::TruthSource* truth) { truth_ = truth; }
+
+  void test_began(const pipeline::TestStart& start) override {
+    first_ = start.first;
+    facts_.test_began(start);
+    current_(start.number);
+  }
+
+  void gap(const daq::Gap& gap) override { facts_.gap_seen(gap); }
+  void gap_between_tests(const daq::Gap& gap) override { facts_.gap_seen(gap); }
+
+  void test_ended(const pipeline::TestEnd& end) override {
+    TestSummary summary;
+    summary.number = end.number;
+    summary.first = first_;
+    summary.end = end.end;
+    summary.cause = end.cause;
+    summary.results = end.results;
+    if (truth_ != nullptr) summary.truth = truth_->truth(first_, end.end);
+    tests_.add(std::move(summary));
+    facts_.test_ended(end);
+    current_(std::nullopt);
+  }
+
+ private:
+  TestLog& tests_;
+  Facts& facts_;
+  std::function<void(std::optional<std::int64_t>)> current_;
+  const friction::TruthSource* truth_ = nullptr;
+  daq::ScanIndex first_ = 0;
+};
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,260 @@
+// Commands at any moment, to the whole walk: the machine, the segmenter and the record stay together, and a
+// replay of each record gives it again.
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "core/pipeline/processor.hpp"
+
+namespace stickslip::pipeline {
+namespace {
+
+constexpr double kRate_Hz = 100.0;
+
+struct Kept {
+  TestStart start;
+  std::vector<double> raw;
+  std::vector<daq::Note> notes;
+  TestEnd end;
+};
+
+/// Keeps the tests as records would, and looks whether the order is right.
+class Recorder final : public Sink {
+ public:
+  void test_began(const TestStart& start) override {
+    ++running;
+    tests.push_back({start, {}, {}, {}});
+  }
+  void scans(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t>,
+             const daq::ClockStamp&) override {
+    Kept& test = tests.back();
+    contiguous = contiguous && first == test.start.first + static_cast<daq::ScanIndex>(test.raw.size());
+    test.raw.insert(test.raw.end(), raw.begin(), raw.end());
+  }
+  void note(const daq::Note& note) override { tests.back().notes.push_back(note); }
+  void test_ended(const TestEnd& end) override {
+    --running;
+    tests.back().end = end;
+  }
+  void bench_changed(BenchState state) override { told = state; }
+  void observed(daq::ScanIndex, std::span<const double> coefficient, const friction::LiveState&) override {
+    observed_count += coefficient.size();
+  }
+
+  std::vector<Kept> tests;
+  int running = 0;
+  bool contiguous = true;
+  std::size_t observed_count = 0;
+  BenchState told = BenchState::kDegraded;
+};
+
+ProcessorSettings settings_of(bool automatic) {
+  ProcessorSettings settings;
+  settings.segmenter.scan_rate_Hz = kRate_Hz;
+  settings.segmenter.start_dwell_s = 0.02;
+  settings.segmenter.pre_trigger_s = 0.2;
+  settings.segmenter.unload_dwell_s = 0.1;
+  settings.analysis.scan_rate_Hz = kRate_Hz;
+  settings.automatic = automatic;
+  settings.clock_is_real = false;  // The stamps here say nothing, and a replay takes the clocks of then.
+  return settings;
+}
+
+daq::Calibration coefficients() {
+  daq::BoardInfo board;
+  board.quantity = daq::RawQuantity::kCoefficient;
+  return {board, {}, 1.0};
+}
+
+/// Rest, pulls with slips, and pulls that stand still, one after the other.
+std::vector<double> any_course() {
+  std::vector<double> force;
+  for (int pull = *rc::gen::inRange(1, 4); pull > 0; --pull) {
+    for (int k = *rc::gen::inRange(0, 60); k > 0; --k) force.push_back(0.0);
+    const int scans = *rc::gen::inRange(5, 150);
+    const double period = *rc::gen::inRange(8, 30);
+    for (int k = 0; k < scans; ++k) {
+      const double phase = std::fmod(k, period) / period;
+      force.push_back(0.3 + (phase < 0.8 ? 0.1 * phase : 0.4 * (1.0 - phase)));
+    }
+    for (int k = *rc::gen::inRange(0, 60); k > 0; --k) force.push_back(*rc::gen::element(0.0, 0.3));
+  }
+  return force;
+}
+
+bool same(const friction::TestResults& a, const friction::TestResults& b) {
+  bool equal = a.regime == b.regime;
+  friction::TestResults other = b;
+  friction::TestResults own = a;
+  std::vector<std::optional<double>> values;
+  friction::for_each_result(own, [&](const friction::ResultName&, const friction::Estimate& estimate) {
+    values.push_back(estimate.value);
+  });
+  std::size_t at = 0;
+  friction::for_each_result(other, [&](const friction::ResultName&, const friction::Estimate& estimate) {
+    equal = equal && values[at++] == estimate.value;
+  });
+  return equal;
+}
+
+/// \param first  index of values[0].
+void feed(Processor& processor, const std::vector<double>& values, daq::ScanIndex first, std::size_t most) {
+  for (std::size_t at = 0; at < values.size();) {
+    daq::ScanBlock block;
+    block.first = first + static_cast<daq::ScanIndex>(at);
+    while (at < values.size() && block.count < most) block.raw[block.count++] = values[at++];
+    processor.process(block, daq::GapCause::kRingFull);
+  }
+}
+
+void replay_gives(const Kept& test, bool automatic) {
+  ProcessorSettings settings = settings_of(automatic);
+  auto recorded = std::make_shared<daq::RecordedFacts>();
+  recorded->notes = test.notes;
+  recorded->self_check = test.start.self_check;
+  settings.recorded = recorded;
+  Recorder again;
+  Processor processor{settings, coefficients(), {&again}};
+  feed(processor, test.raw, test.start.first, static_cast<std::size_t>(*rc::gen::inRange(1, 65)));
+  processor.finish(EndCause::kEndOfInput);
+  RC_ASSERT(again.tests.size() == 1U);
+  const Kept& other = again.tests.front();
+  RC_ASSERT(other.start.first == test.start.first);
+  RC_ASSERT(other.start.trigger == test.start.trigger);
+  RC_ASSERT(other.start.by_command == test.start.by_command);
+  RC_ASSERT(other.raw == test.raw);
+  RC_ASSERT(other.notes == test.notes);
+  RC_ASSERT(other.end.end == test.end.end);
+  RC_ASSERT(other.end.cause == test.end.cause || test.end.cause == EndCause::kBoardMissing);
+  RC_ASSERT(same(other.end.results, test.end.results));
+}
+
+RC_GTEST_PROP(Commands, KeepMachineSegmenterAndRecordTogether, (bool automatic)) {
+  Recorder record;
+  Processor processor{settings_of(automatic), coefficients(), {&record}};
+  const std::vector<double> force = any_course();
+  const auto most = static_cast<std::size_t>(*rc::gen::inRange(1, 65));
+  daq::ScanIndex index = 0;
+  for (std::size_t at = 0; at < force.size();) {
+    if (*rc::gen::inRange(0, 4) == 0) {
+      const BenchState before = processor.bench();
+      CommandReport report;
+      switch (*rc::gen::inRange(0, 5)) {
+        case 0:
+          report = processor.arm("a");
+          break;
+        case 1:
+          report = processor.start("b");
+          break;
+        case 2:
+          report = processor.stop("c");
+          break;
+        case 3:
+          report = processor.mark("d");
+          break;
+        default:
+          report = processor.tare("e");
+          break;
+      }
+      RC_ASSERT(report.state == processor.bench());
+      if (!report.refusal.empty()) RC_ASSERT(processor.bench() == before);
+    }
+    const std::size_t count = std::min(most, force.size() - at);
+    feed(processor,
+         {force.begin() + static_cast<std::ptrdiff_t>(at),
+          force.begin() + static_cast<std::ptrdiff_t>(at + count)},
+         index, most);
+    at += count;
+    index += static_cast<daq::ScanIndex>(count);
+    // After each scan that came: a test is recorded exactly while the machine says so.
+    RC_ASSERT(processor.test_is_running() == test_runs(processor.bench()));
+    RC_ASSERT(record.running == (processor.test_is_running() ? 1 : 0));
+    RC_ASSERT(record.told == processor.bench());
+  }
+  RC_ASSERT(record.observed_count == force.size());
+  processor.finish(EndCause::kBoardMissing);
+  RC_ASSERT(processor.bench() == BenchState::kDegraded);
+  RC_ASSERT(record.running == 0);
+  RC_ASSERT(record.contiguous);
+  for (const Kept& test : record.tests) {
+    RC_ASSERT(test.end.end == test.start.first + static_cast<daq::ScanIndex>(test.raw.size()));
+    for (const daq::Note& note : test.notes) {
+      RC_ASSERT(note.scan >= test.start.first);
+      RC_ASSERT(note.scan < test.end.end);
+      RC_ASSERT(daq::parse_note(note.scan, daq::to_text(note)) == note);
+    }
+    // A test begun by force replays in the automatic mode, one begun by a command in either.
+    replay_gives(test, test.start.by_command ? *rc::gen::arbitrary<bool>() : true);
+  }
+}
+
+TEST(Commands, ATestBegunByHandWaitsForItsForceAndEndsWithIt) {
+  Recorder record;
+  Processor processor{settings_of(false), coefficients(), {&record}};
+  feed(processor, std::vector<double>(100, 0.0), 0, 10);
+  EXPECT_EQ(processor.bench(), BenchState::kIdle);
+  feed(processor, std::vector<double>(50, 0.3), 100, 10);
+  EXPECT_TRUE(record.tests.empty()) << "nobody armed it";
+  feed(processor, std::vector<double>(50, 0.0), 150, 10);
+  const CommandReport started = processor.start("ada");
+  EXPECT_EQ(started.refusal, "");
+  EXPECT_EQ(started.scan, 200);
+  EXPECT_EQ(started.test, 1);
+  feed(processor, std::vector<double>(100, 0.0), 200, 10);  // Longer than the dwell: no end yet.
+  EXPECT_EQ(processor.bench(), BenchState::kLoading);
+  feed(processor, std::vector<double>(100, 0.3), 300, 10);
+  feed(processor, std::vector<double>(100, 0.0), 400, 10);
+  ASSERT_EQ(record.tests.size(), 1U);
+  const Kept& test = record.tests[0];
+  EXPECT_EQ(test.start.trigger, 200);
+  EXPECT_EQ(test.start.first, 200 - 20);
+  EXPECT_TRUE(test.start.by_command);
+  EXPECT_EQ(test.end.cause, EndCause::kUnloaded);
+  EXPECT_EQ(test.end.end, 400 + 10);
+  EXPECT_EQ(test.notes, (std::vector<daq::Note>{{daq::Note::Kind::kStart, 200, "ada"}}));
+  EXPECT_EQ(processor.bench(), BenchState::kIdle);
+}
+
+TEST(Commands, AnArmedBenchTakesOneTestByForceAndIsIdleThen) {
+  Recorder record;
+  Processor processor{settings_of(false), coefficients(), {&record}};
+  feed(processor, std::vector<double>(100, 0.0), 0, 10);
+  EXPECT_EQ(processor.arm("ada").refusal, "");
+  EXPECT_EQ(processor.arm("ada").refusal, "") << "said twice is said once";
+  std::vector<double> pulls;
+  for (int k = 0; k < 2; ++k) {
+    pulls.insert(pulls.end(), 50, 0.3);
+    pulls.insert(pulls.end(), 50, 0.0);
+  }
+  feed(processor, pulls, 100, 10);
+  ASSERT_EQ(record.tests.size(), 1U);
+  EXPECT_EQ(record.tests[0].start.trigger, 101);
+  EXPECT_EQ(daq::to_text(record.tests[0].notes.at(0)), "bench: armed at scan 100, by ada");
+  EXPECT_EQ(processor.bench(), BenchState::kIdle);
+}
+
+TEST(Commands, StoppingLeavesTheForceToGoAway) {
+  Recorder record;
+  Processor processor{settings_of(true), coefficients(), {&record}};
+  feed(processor, std::vector<double>(100, 0.0), 0, 10);
+  feed(processor, std::vector<double>(50, 0.3), 100, 10);
+  EXPECT_EQ(processor.mark("here").scan, 149);
+  EXPECT_EQ(processor.stop("ada").refusal, "");
+  EXPECT_EQ(record.tests.at(0).end.cause, EndCause::kCommand);
+  EXPECT_EQ(record.tests.at(0).end.end, 150);
+  EXPECT_EQ(processor.bench(), BenchState::kFinishing);
+  EXPECT_NE(processor.start("ada").refusal, "");
+  EXPECT_NE(processor.stop("ada").refusal, "");
+  EXPECT_NE(processor.mark("there").refusal, "");
+  feed(processor, std::vector<double>(50, 0.3), 150, 10);
+  EXPECT_EQ(record.tests.size(), 1U) << "what is left of the force begins no test";
+  feed(processor, std::vector<double>(50, 0.0), 200, 10);
+  EXPECT_EQ(processor.bench(), BenchState::kArmed);
+}
+
+}  // namespace
+}  // namespace stickslip::pipeline

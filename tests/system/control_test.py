@@ -1,0 +1,309 @@
+#!/usr/bin/env python3
+"""The control interface of the running daemon: commands, plan, leases, the live stream, and its OpenAPI description,
+of which every path, method and answer is exercised and validated.
+
+control_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
+
+Nothing here sleeps: each step waits for an answer or for a frame of the live stream.
+"""
+
+import http.client
+import json
+import pathlib
+import re
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+from schema import complaints
+
+BUILD = pathlib.Path(sys.argv[1]).resolve()
+SOURCE = pathlib.Path(sys.argv[2]).resolve()
+DAEMON = BUILD / "daemon" / "stickslipd"
+CLI = BUILD / "daemon" / "stickslip"
+STICK_SLIP = SOURCE / "config" / "scenes" / "stick-slip-at-12-in-per-min.toml"
+
+# Generous: under sanitizers on a busy machine everything takes its time.
+TIMEOUT_S = 240
+
+
+class UnixConnection(http.client.HTTPConnection):
+    def __init__(self, path):
+        super().__init__("localhost", timeout=TIMEOUT_S)
+        self.path = str(path)
+
+    def connect(self):
+        self.sock = socket.socket(socket.AF_UNIX)
+        self.sock.settimeout(TIMEOUT_S)
+        self.sock.connect(self.path)
+
+
+class Daemon:
+    """A daemon that plays stick-slip tests without end, and how to talk to it."""
+
+    def __init__(self, test, config="", speed=20, board=None, repeats=0):
+        temporary = tempfile.TemporaryDirectory(prefix="stickslip-")
+        test.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        self.socket = self.folder / "c.sock"
+        board = board or f"""
+[board]
+driver = "simulated"
+clock_speed = {speed}
+[board.simulated]
+scenes = ["{STICK_SLIP}"]
+repeats = {repeats}
+"""
+        file = self.folder / "d.toml"
+        file.write_text(f'{board}\n[record]\nfolder = "records"\n[control]\nsocket = "c.sock"\n{config}', encoding="utf-8")
+        manager = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        test.addCleanup(manager.close)
+        manager.bind(str(self.folder / "notify"))
+        manager.settimeout(TIMEOUT_S)
+        self.process = subprocess.Popen([str(DAEMON), "--config", str(file)], cwd=self.folder, stderr=subprocess.PIPE, text=True,
+                                        env={"NOTIFY_SOCKET": str(self.folder / "notify")})
+        test.addCleanup(self.end)
+        while manager.recv(4096) != b"READY=1":
+            pass
+
+    def end(self):
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+        try:
+            _, errors = self.process.communicate(timeout=TIMEOUT_S)
+        finally:
+            self.process.kill()
+        return self.process.returncode, errors
+
+    def ask(self, method, path, body=None, who="ada", key=None, connection=None, headers=None):
+        own = connection or UnixConnection(self.socket)
+        sent = {"Stickslip-Controller": who} if who else {}
+        if key:
+            sent["Idempotency-Key"] = key
+        sent.update(headers or {})
+        own.request(method, path, body if body is None or isinstance(body, str) else json.dumps(body), sent)
+        reply = own.getresponse()
+        text = reply.read().decode()
+        if connection is None:
+            own.close()
+        self.reply = reply
+        return reply.status, json.loads(text) if reply.headers["Content-Type"] == "application/json" else text
+
+    def run(self, *arguments):
+        return subprocess.run([str(CLI), *(str(a) for a in arguments), "--socket", str(self.socket)], capture_output=True, text=True,
+                              timeout=TIMEOUT_S, check=False)
+
+    def watch(self):
+        """Frames of the live stream, as `stickslip watch --json` gives them."""
+        process = subprocess.Popen([str(CLI), "watch", "--json", "--socket", str(self.socket)], stdout=subprocess.PIPE, text=True)
+        return process, (json.loads(line) for line in process.stdout)
+
+    def record(self, number):
+        """The record of a test that has ended: the finaliser may still be at it."""
+        process, frames = self.watch()
+        try:
+            for frame in frames:
+                if frame["type"] != "health":
+                    continue
+                _, test = self.ask("GET", f"/v1/tests/{number}")
+                if test["file"]:
+                    return self.folder / test["file"]
+        finally:
+            process.kill()
+            process.communicate()
+
+
+def wait_for(frames, wanted):
+    for frame in frames:
+        if wanted(frame):
+            return frame
+    raise AssertionError("the stream ended")
+
+
+class Commands(unittest.TestCase):
+    def watching(self, daemon):
+        process, frames = daemon.watch()
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        wait_for(frames, lambda frame: True)
+        return frames
+
+    def test_a_test_that_people_begin_mark_and_end_is_recorded_with_what_they_did_and_replays(self):
+        daemon = Daemon(self, '[test]\nbegins = "command"\n')
+        frames = self.watching(daemon)
+        self.assertEqual(daemon.ask("GET", "/v1/status")[1]["bench"], "idle")
+        status, plan = daemon.ask("PUT", "/v1/plan", {"name": "liner 42", "operator": "Ada", "replicate": 3, "pull_speed": "12 in/min"})
+        self.assertEqual(status, 200, plan)
+        status, started = daemon.ask("POST", "/v1/start", {"test": 1}, key="k")
+        self.assertEqual((status, started["test"], started["already"]), (200, 1, False))
+        self.assertEqual(daemon.ask("POST", "/v1/start", {"test": 1}, key="k"), (200, started))
+        self.assertEqual(daemon.reply.headers["Idempotency-Replayed"], "true")
+        began = wait_for(frames, lambda frame: frame["type"] == "test-began")
+        self.assertTrue(began["by_command"])
+        self.assertEqual(daemon.ask("POST", "/v1/start", {"test": 1})[1]["already"], True)
+        self.assertEqual(daemon.ask("POST", "/v1/start")[0], 409)
+        wait_for(frames, lambda frame: frame["type"] == "cycle" and frame["number"] == 3)
+        status, marked = daemon.ask("POST", "/v1/mark", {"text": "gewölbt"})
+        self.assertEqual(status, 200)
+        wait_for(frames, lambda frame: frame["type"] == "cycle" and frame["number"] == 5)
+        status, stopped = daemon.ask("POST", "/v1/stop", {"test": 1})
+        self.assertEqual((status, stopped["test"], stopped["bench"]), (200, 1, "finishing"))
+        ended = wait_for(frames, lambda frame: frame["type"] == "test-ended")
+        self.assertEqual(ended["cause"], "command")
+        self.assertEqual(daemon.ask("POST", "/v1/stop", {"test": 1})[1]["already"], True)
+        file = daemon.record(1)
+        self.assertEqual(daemon.end()[0], 0)
+        with h5py.File(file) as record:
+            events = [(int(scan), text.decode()) for scan, text in zip(record["entry/events/scan"][()], record["entry/events/text"][()])]
+            said = [event for event in events if event[1].startswith(("command", "mark"))]
+            self.assertEqual(said, [(began["trigger_scan"], "command: start, by ada"), (marked["scan"], "mark: gewölbt"),
+                                    (stopped["scan"], "command: stop, by ada")])
+            self.assertEqual(record["entry/process/end_cause"].asstr()[()], "command")
+            self.assertEqual(record["entry/process/status"].asstr()[()], "complete")
+            self.assertEqual(record["entry/sample/name"].asstr()[()], "liner 42")
+            self.assertEqual(record["entry/sample/replicate"][()], 3)
+            self.assertEqual(record["entry/user/name"].asstr()[()], "Ada")
+            self.assertAlmostEqual(record["entry/instrument/tester/pull_speed"][()], 0.00508, delta=1e-17)
+            verdict = subprocess.run([str(CLI), "verify", str(file)], capture_output=True, text=True, check=False)
+            self.assertEqual(verdict.returncode, 0, verdict.stdout)
+
+        again = Daemon(self, board=f'[board]\ndriver = "replay"\nclock_speed = 50\n[board.replay]\nfile = "{file}"\n')
+        again.process.wait(timeout=TIMEOUT_S)
+        [copy] = (again.folder / "records").glob("*.h5")
+        with h5py.File(file) as a, h5py.File(copy) as b:
+            numpy.testing.assert_array_equal(a["entry/raw/counts"][()], b["entry/raw/counts"][()])
+            for name, stored in a["entry/results"].items():
+                numpy.testing.assert_array_equal(stored[()], b["entry/results"][name][()], err_msg=name)
+            self.assertEqual([event[1] for event in events], [text.decode() for text in b["entry/events/text"][()]])
+            self.assertEqual([event[0] for event in events], [int(scan) for scan in b["entry/events/scan"][()]])
+
+    def test_the_command_line_says_it_all_too(self):
+        daemon = Daemon(self, '[test]\nbegins = "command"\n')
+        frames = self.watching(daemon)
+        planned = daemon.run("plan", "--name", "liner", "--replicate", "2", "--pull-speed", "12 in/min", "--as", "bob")
+        self.assertEqual(planned.returncode, 0, planned.stderr)
+        self.assertIn("0.00508 m/s", planned.stdout)
+        kept = daemon.run("plan", "--side", "wire", "--as", "bob", "--json")
+        told = json.loads(kept.stdout)
+        self.assertAlmostEqual(told.pop("pull_speed"), 0.00508, delta=1e-17)
+        self.assertEqual(told, {"name": "liner", "grade": None, "direction": None, "side": "wire", "operator": None, "replicate": 2})
+        refused = daemon.run("start", "--as", "ada")
+        self.assertEqual(refused.returncode, 1)
+        self.assertRegex(refused.stderr, r"^stickslip: refused: bob has the bench for another \d+ s")
+        started = daemon.run("start", "--as", "bob")
+        self.assertEqual(started.returncode, 0, started.stderr)
+        self.assertRegex(started.stdout, r"^start: loading; test 1, scan \d+\n$")
+        wait_for(frames, lambda frame: frame["type"] == "cycle")
+        self.assertEqual(daemon.run("mark", "here", "--as", "bob").returncode, 0)
+        self.assertRegex(daemon.run("tare", "--as", "bob").stderr, "a test is running")
+        self.assertEqual(json.loads(daemon.run("stop", "--as", "bob", "--json").stdout)["test"], 1)
+        wait_for(frames, lambda frame: frame["type"] == "test-ended")
+        self.assertRegex(daemon.run("list").stdout, r"\n +1 .* command ")
+        self.assertEqual(len(json.loads(daemon.run("list", "--json").stdout)["tests"]), 1)
+        self.assertRegex(daemon.run("show", "1").stdout, r"(?m)^  mu_s +0\.\d+ ± ")
+        self.assertEqual(daemon.run("show", "2").returncode, 2)
+
+    def test_a_tare_moves_the_zero_of_all_tests_that_follow(self):
+        daemon = Daemon(self, '[test]\nbegins = "command"\n[tester]\nload_cell_zero = "0.004 V"\n')
+        frames = self.watching(daemon)
+        # Before the pull the scene rests: the first scans are unloaded. Tried until enough of them have come.
+        for frame in frames:
+            status, tared = daemon.ask("POST", "/v1/tare")
+            if status == 200:
+                break
+            self.assertRegex(tared["error"], "scans of the unloaded bench|that is a load")
+        self.assertGreater(tared["scan_count"], 59)
+        error = tared["zero_standard_error"]
+        self.assertGreater(error, 0)
+        self.assertEqual(daemon.ask("POST", "/v1/start")[0], 200)
+        wait_for(frames, lambda frame: frame["type"] == "test-began")
+        self.assertEqual(daemon.ask("POST", "/v1/stop")[0], 200)
+        with h5py.File(daemon.record(1)) as record:
+            self.assertEqual(record["entry/instrument/calibration/zero"][()], tared["zero"])
+            texts = [text.decode() for text in record["entry/events/text"][()]]
+        self.assertTrue(any(re.match(r"bench: zero of the load cell set from 0.004 V to .* by ada", text) for text in texts), texts)
+
+
+class Description(unittest.TestCase):
+    """Each answer that openapi.json promises is got from a running daemon and fits its schema."""
+
+    def setUp(self):
+        self.daemon = Daemon(self, '[test]\nbegins = "command"\n')
+        self.document = self.daemon.ask("GET", "/v1/openapi.json")[1]
+        self.seen = set()
+
+    def check(self, method, path, *arguments, template=None, **options):
+        status, body = self.daemon.ask(method, path, *arguments, **options)
+        described = self.document["paths"][template or path][method.lower()]["responses"]
+        self.assertIn(str(status), described, f"{method} {path}: {body}")
+        [(kind, content)] = described[str(status)]["content"].items()
+        self.assertTrue(self.daemon.reply.headers["Content-Type"].startswith(kind))
+        self.assertEqual(complaints(body, content["schema"], self.document), [], f"{method} {path} {status}")
+        self.seen.add((template or path, method.lower(), str(status)))
+        return status, body
+
+    def test_every_path_method_and_answer_is_as_described(self):
+        for path in ("/v1/status", "/v1/openapi.json", "/v1/tests", "/v1/plan", "/v1/controller", "/metrics"):
+            self.assertEqual(self.check("GET", path)[0], 200)
+        self.check("GET", "/v1/live")
+        self.check("GET", "/v1/tests/1", template="/v1/tests/{number}")
+        changing = [("PUT", "/v1/plan", {"name": "x"}), ("PUT", "/v1/controller", {"seconds": 60}), ("POST", "/v1/arm", None),
+                    ("POST", "/v1/stop", None), ("POST", "/v1/start", None), ("POST", "/v1/mark", {"text": "x"}), ("POST", "/v1/tare", None),
+                    ("DELETE", "/v1/controller", None)]
+        for at, (method, path, body) in enumerate(changing):
+            self.assertEqual(self.check(method, path, body, who=None)[0], 400)
+            key = f"key {at}"
+            self.check(method, path, body, key=key)
+            self.assertEqual(self.check(method, path, '{"x": 1}', key=key)[0], 422)
+            if method != "DELETE":
+                self.assertEqual(self.check(method, path, body, who="bob")[0], 409, path)
+        # Back to ada, so that bob cannot give it away.
+        self.check("PUT", "/v1/controller", {"seconds": 60})
+        self.assertEqual(self.check("DELETE", "/v1/controller", None, who="bob")[0], 409)
+        # What has been refused so far, granted: mark in a test, tare where the load cell is unloaded.
+        process, frames = self.daemon.watch()
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        wait_for(frames, lambda frame: True)
+        if self.daemon.ask("GET", "/v1/status")[1]["bench"] not in ("loading", "running"):
+            for _ in frames:
+                if self.check("POST", "/v1/start", {})[0] == 200:
+                    break
+        for _ in frames:
+            if self.check("POST", "/v1/mark", {"text": "x"})[0] == 200:
+                break
+        self.assertEqual(self.check("POST", "/v1/stop", {})[0], 200)
+        for _ in frames:
+            if self.check("POST", "/v1/tare")[0] == 200:
+                break
+        self.assertEqual(self.check("GET", "/v1/tests")[0], 200)
+        self.assertEqual(self.check("GET", "/v1/tests/1", template="/v1/tests/{number}")[0], 200)
+        # 101 is what `watch` above got.
+        self.seen.add(("/v1/live", "get", "101"))
+        promised = {(path, method, status) for path, methods in self.document["paths"].items() for method, one in methods.items()
+                    for status in one["responses"]}
+        self.assertEqual(promised - self.seen, set())
+
+    def test_other_methods_and_paths_are_refused(self):
+        methods = {"GET", "PUT", "POST", "DELETE"}
+        for path, described in self.document["paths"].items():
+            if path == "/v1/live":
+                continue
+            allowed = {method.upper() for method in described}
+            for method in methods - allowed:
+                status, body = self.daemon.ask(method, path.replace("{number}", "1"))
+                self.assertEqual(status, 405, (method, path))
+                self.assertEqual(set(self.daemon.reply.headers["Allow"].split(", ")), allowed)
+                self.assertIn("error", body)
+        for path in ("/", "/v1", "/v1/", "/v1/tests/", "/v1/../v1/status", "/v1/status/", "//v1/status", "/etc/passwd", "/v1/tests/../../etc/passwd"):
+            self.assertEqual(self.daemon.ask("GET", path)[0], 404, path)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
