@@ -10,8 +10,8 @@ namespace {
 /// Longest wait for scans, and thereby for a stop request to be seen.
 constexpr std::chrono::milliseconds kReadTimeout{100};
 /// The consumer is not woken more often, by the board's clock: a Comedi board may deliver each scan by
-/// itself, and people see no less.
-constexpr std::int64_t kNewsPeriod_ns = 20'000'000;
+/// itself. What is told live may be 5 ms old.
+constexpr std::int64_t kNewsPeriod_ns = 4'000'000;
 
 }  // namespace
 

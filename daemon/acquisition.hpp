@@ -45,7 +45,7 @@ class Acquisition {
     made_room();
   }
 
-  /// Consumer: waits until there are blocks in the ring, the oldest at most 20 ms older than the latest, or
+  /// Consumer: waits until there are blocks in the ring, the oldest at most 4 ms older than the latest, or
   /// the thread has ended.
   void wait() noexcept { news_.acquire(); }
   /// Consumer: blocks were taken out of the ring. Needed with FullRing::kWait only.
