@@ -39,7 +39,7 @@ void per_scan(benchmark::State& state, std::size_t scans) {
   state.counters["per_scan"] =
       benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(scans),
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * scans));
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * static_cast<std::int64_t>(scans));
 }
 
 /// A journal stays where it is: the record is made by another process, after the test.
@@ -291,6 +291,7 @@ void peer(benchmark::State& state) {
   const daq::Calibration calibration{board.board->info(), *board.load_cell, board.tester->normal_load_N()};
   const std::vector<double> raw = walk.raw();
   std::vector<double> coefficient;
+  coefficient.reserve(raw.size());
   for (const double code : raw) coefficient.push_back(calibration.coefficient(code));
   constexpr double kFrequency_Hz = 20.0;  // As the scene has it.
   for (auto _ : state) {
