@@ -16,6 +16,7 @@
 #include "daemon/recovery.hpp"
 #include "daemon/session_setup.hpp"
 #include "daemon/version.hpp"
+#include "daemon/web/site.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -100,7 +101,7 @@ void App::request_stop() {
 
 base::Result<void> App::open_control() {
   if (!config_.control_socket && config_.http.empty()) return {};
-  const HttpHandler api = make_api(desk_, *wall_);
+  const HttpHandler api = make_site(make_api(desk_, *wall_));
   const auto keep = [this](base::Result<std::unique_ptr<ControlServer>> server) -> base::Result<void> {
     if (!server) return tl::unexpected(server.error());
     world_.facts->control_listening((*server)->address());

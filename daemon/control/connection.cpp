@@ -76,7 +76,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     const Knock knock{path, header(http::field::host), header(http::field::origin),
                       header(http::field::authorization), header(http::field::sec_websocket_protocol)};
     if (auto refused = refuse_at(service_->door, knock)) {
-      reply(*refused, version, keep);
+      reply(*refused, version, false);
       return;
     }
     if (path == kLivePath && service_->hub != nullptr) {

@@ -124,9 +124,11 @@ base::Result<tcp::endpoint> loopback(const std::string& address) {
   std::string host = address.substr(0, colon);
   unsigned short port = 0;
   const char* const end = address.data() + address.size();
-  const bool number = colon != std::string::npos &&
-                      std::from_chars(address.data() + colon + 1, end, port).ptr == end &&
-                      colon + 1 < address.size();
+  bool number = false;
+  if (colon != std::string::npos && colon + 1 < address.size()) {
+    const auto [stopped, bad] = std::from_chars(address.data() + colon + 1, end, port);
+    number = bad == std::errc{} && stopped == end;
+  }
   if (host == "localhost") host = "127.0.0.1";
   if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
   boost::system::error_code error;

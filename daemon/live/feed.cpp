@@ -35,6 +35,7 @@ void append(std::string& text, const std::vector<double>& values) {
 
 void LiveFeed::use(double scan_rate_Hz, double clock_speed) {
   scan_rate_Hz_ = scan_rate_Hz;
+  clock_speed_ = clock_speed;
   const double wall_Hz = scan_rate_Hz * clock_speed;
   bucket_ = static_cast<std::size_t>(std::max(1.0, std::ceil(wall_Hz / kParts_Hz)));
   frame_parts_ = static_cast<std::size_t>(
@@ -74,9 +75,9 @@ void LiveFeed::observed(daq::ScanIndex first, std::span<const double> coefficien
 void LiveFeed::flush(const friction::LiveState& live) {
   if (lowest_.empty()) return;
   std::string frame = fmt::format(
-      R"({{"type":"scans","first_scan":{},"scans_in_part":{},"scan_rate":{},"test":{},"phase":"{}","regime":"{}","slip_count":{},"lowest":[)",
-      first_, bucket_, scan_rate_Hz_, test_ == 0 ? "null" : std::to_string(test_), friction::name(live.phase),
-      friction::name(live.regime), live.slip_count);
+      R"({{"type":"scans","first_scan":{},"scans_in_part":{},"scan_rate":{},"clock_speed":{},"test":{},"phase":"{}","regime":"{}","slip_count":{},"lowest":[)",
+      first_, bucket_, scan_rate_Hz_, clock_speed_, test_ == 0 ? "null" : std::to_string(test_),
+      friction::name(live.phase), friction::name(live.regime), live.slip_count);
   append(frame, lowest_);
   frame += R"(],"highest":[)";
   append(frame, highest_);
@@ -102,6 +103,8 @@ void LiveFeed::cycle(const friction::Cycle& cycle) {
   if (!heard()) return;
   publish_(Json{{"type", "cycle"},
                 {"test", test_},
+                {"test_first_scan", test_first_},
+                {"scan_rate", scan_rate_Hz_},
                 {"number", cycle.number},
                 {"first_scan", cycle.first_scan},
                 {"captured", (cycle.flags & friction::kCycleCaptured) != 0},

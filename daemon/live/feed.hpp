@@ -42,6 +42,7 @@ class LiveFeed final : public pipeline::Sink {
   std::function<void(std::string)> publish_;
   std::atomic<std::size_t> listeners_{0};
   double scan_rate_Hz_ = 0.0;
+  double clock_speed_ = 1.0;
   std::size_t bucket_ = 1;       ///< Scans in one part.
   std::size_t frame_parts_ = 1;  ///< Parts in one frame.
   std::int64_t test_ = 0;

@@ -91,11 +91,13 @@ class Chromium:
             self.events.append(self.message(deadline))
 
     def open(self, file, dark=False):
-        return Page(self, pathlib.Path(file), dark)
+        """A file, or an address that begins with http:"""
+        address = str(file) if str(file).startswith("http:") else pathlib.Path(file).resolve().as_uri()
+        return Page(self, address, dark)
 
 
 class Page:
-    def __init__(self, browser, file, dark):
+    def __init__(self, browser, address, dark):
         self.browser = browser
         target = browser.call("Target.createTarget", url="about:blank")["targetId"]
         self.session = browser.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
@@ -103,7 +105,7 @@ class Page:
             self.call(f"{domain}.enable")
         self.call("Emulation.setEmulatedMedia",
                   features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
-        self.call("Page.navigate", url=file.resolve().as_uri())
+        self.call("Page.navigate", url=address)
         browser.wait_for("Page.loadEventFired", self.session)
         self.settle()
 

@@ -7,123 +7,28 @@ control_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
 Nothing here sleeps: each step waits for an answer or for a frame of the live stream.
 """
 
-import http.client
 import json
 import pathlib
 import re
-import signal
-import socket
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import h5py
 import numpy
 
+from running_daemon import TIMEOUT_S, RunningDaemon, wait_for, wait_for_rest
 from schema import complaints
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-DAEMON = BUILD / "daemon" / "stickslipd"
 CLI = BUILD / "daemon" / "stickslip"
-STICK_SLIP = SOURCE / "config" / "scenes" / "stick-slip-at-12-in-per-min.toml"
-
-# Generous: under sanitizers on a busy machine everything takes its time.
-TIMEOUT_S = 240
 
 
-class UnixConnection(http.client.HTTPConnection):
-    def __init__(self, path):
-        super().__init__("localhost", timeout=TIMEOUT_S)
-        self.path = str(path)
-
-    def connect(self):
-        self.sock = socket.socket(socket.AF_UNIX)
-        self.sock.settimeout(TIMEOUT_S)
-        self.sock.connect(self.path)
-
-
-class Daemon:
-    """A daemon that plays stick-slip tests without end, and how to talk to it."""
-
-    def __init__(self, test, config="", speed=20, board=None, repeats=0):
-        temporary = tempfile.TemporaryDirectory(prefix="stickslip-")
-        test.addCleanup(temporary.cleanup)
-        self.folder = pathlib.Path(temporary.name)
-        self.socket = self.folder / "c.sock"
-        board = board or f"""
-[board]
-driver = "simulated"
-clock_speed = {speed}
-[board.simulated]
-scenes = ["{STICK_SLIP}"]
-repeats = {repeats}
-"""
-        file = self.folder / "d.toml"
-        file.write_text(f'{board}\n[record]\nfolder = "records"\n[control]\nsocket = "c.sock"\n{config}', encoding="utf-8")
-        manager = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
-        test.addCleanup(manager.close)
-        manager.bind(str(self.folder / "notify"))
-        manager.settimeout(TIMEOUT_S)
-        self.process = subprocess.Popen([str(DAEMON), "--config", str(file)], cwd=self.folder, stderr=subprocess.PIPE, text=True,
-                                        env={"NOTIFY_SOCKET": str(self.folder / "notify")})
-        test.addCleanup(self.end)
-        while manager.recv(4096) != b"READY=1":
-            pass
-
-    def end(self):
-        if self.process.poll() is None:
-            self.process.send_signal(signal.SIGTERM)
-        try:
-            _, errors = self.process.communicate(timeout=TIMEOUT_S)
-        finally:
-            self.process.kill()
-        return self.process.returncode, errors
-
-    def ask(self, method, path, body=None, who="ada", key=None, connection=None, headers=None):
-        own = connection or UnixConnection(self.socket)
-        sent = {"Stickslip-Controller": who} if who else {}
-        if key:
-            sent["Idempotency-Key"] = key
-        sent.update(headers or {})
-        own.request(method, path, body if body is None or isinstance(body, str) else json.dumps(body), sent)
-        reply = own.getresponse()
-        text = reply.read().decode()
-        if connection is None:
-            own.close()
-        self.reply = reply
-        return reply.status, json.loads(text) if reply.headers["Content-Type"] == "application/json" else text
-
-    def run(self, *arguments):
-        return subprocess.run([str(CLI), *(str(a) for a in arguments), "--socket", str(self.socket)], capture_output=True, text=True,
-                              timeout=TIMEOUT_S, check=False)
-
-    def watch(self):
-        """Frames of the live stream, as `stickslip watch --json` gives them."""
-        process = subprocess.Popen([str(CLI), "watch", "--json", "--socket", str(self.socket)], stdout=subprocess.PIPE, text=True)
-        return process, (json.loads(line) for line in process.stdout)
-
-    def record(self, number):
-        """The record of a test that has ended: the finaliser may still be at it."""
-        process, frames = self.watch()
-        try:
-            for frame in frames:
-                if frame["type"] != "health":
-                    continue
-                _, test = self.ask("GET", f"/v1/tests/{number}")
-                if test["file"]:
-                    return self.folder / test["file"]
-        finally:
-            process.kill()
-            process.communicate()
-
-
-def wait_for(frames, wanted):
-    for frame in frames:
-        if wanted(frame):
-            return frame
-    raise AssertionError("the stream ended")
+class Daemon(RunningDaemon):
+    def __init__(self, test, config="", **options):
+        # Slow enough that a pull of 5 s leaves time for all that is done in it.
+        super().__init__(test, BUILD, SOURCE, config, **{"speed": 4, **options})
 
 
 class Commands(unittest.TestCase):
@@ -140,6 +45,7 @@ class Commands(unittest.TestCase):
         self.assertEqual(daemon.ask("GET", "/v1/status")[1]["bench"], "idle")
         status, plan = daemon.ask("PUT", "/v1/plan", {"name": "liner 42", "operator": "Ada", "replicate": 3, "pull_speed": "12 in/min"})
         self.assertEqual(status, 200, plan)
+        wait_for_rest(frames)
         status, started = daemon.ask("POST", "/v1/start", {"test": 1}, key="k")
         self.assertEqual((status, started["test"], started["already"]), (200, 1, False))
         self.assertEqual(daemon.ask("POST", "/v1/start", {"test": 1}, key="k"), (200, started))
@@ -196,6 +102,7 @@ class Commands(unittest.TestCase):
         refused = daemon.run("start", "--as", "ada")
         self.assertEqual(refused.returncode, 1)
         self.assertRegex(refused.stderr, r"^stickslip: refused: bob has the bench for another \d+ s")
+        wait_for_rest(frames)
         started = daemon.run("start", "--as", "bob")
         self.assertEqual(started.returncode, 0, started.stderr)
         self.assertRegex(started.stdout, r"^start: loading; test 1, scan \d+\n$")
@@ -271,13 +178,13 @@ class Description(unittest.TestCase):
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         wait_for(frames, lambda frame: True)
-        if self.daemon.ask("GET", "/v1/status")[1]["bench"] not in ("loading", "running"):
-            for _ in frames:
-                if self.check("POST", "/v1/start", {})[0] == 200:
-                    break
+        self.check("POST", "/v1/stop")
+        wait_for_rest(frames)
         for _ in frames:
-            if self.check("POST", "/v1/mark", {"text": "x"})[0] == 200:
+            if self.check("POST", "/v1/start", {})[0] == 200:
                 break
+        wait_for(frames, lambda frame: frame["type"] == "cycle")
+        self.assertEqual(self.check("POST", "/v1/mark", {"text": "x"})[0], 200)
         self.assertEqual(self.check("POST", "/v1/stop", {})[0], 200)
         for _ in frames:
             if self.check("POST", "/v1/tare")[0] == 200:
@@ -301,7 +208,7 @@ class Description(unittest.TestCase):
                 self.assertEqual(status, 405, (method, path))
                 self.assertEqual(set(self.daemon.reply.headers["Allow"].split(", ")), allowed)
                 self.assertIn("error", body)
-        for path in ("/", "/v1", "/v1/", "/v1/tests/", "/v1/../v1/status", "/v1/status/", "//v1/status", "/etc/passwd", "/v1/tests/../../etc/passwd"):
+        for path in ("/page/", "/page/../live.js", "/page/live.html", "/v1", "/v1/", "/v1/tests/", "/v1/../v1/status", "/v1/status/", "//v1/status", "/etc/passwd", "/v1/tests/../../etc/passwd"):
             self.assertEqual(self.daemon.ask("GET", path)[0], 404, path)
 
 

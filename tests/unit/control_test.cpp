@@ -1,85 +1,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/socket.h>
-#include <sys/stat.h>
-#include <sys/un.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
 #include <string>
-#include <thread>
-#include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
 
-#include <boost/asio/executor_work_guard.hpp>
 #include <nlohmann/json.hpp>
 
 #include "daemon/control/api.hpp"
-#include "daemon/control/client.hpp"
 #include "daemon/control/gate.hpp"
-#include "daemon/control/server.hpp"
+#include "daemon/live/hub.hpp"
 #include "tests/support/manual_clock.hpp"
+#include "tests/unit/paper_bench.hpp"
 
 namespace stickslip::daemon {
 namespace {
 
 using nlohmann::json;
 using namespace std::chrono_literals;
-
-Status some_status() {
-  Status status;
-  status.state = "acquiring";
-  status.scan_count = 42;
-  status.board.emplace();
-  status.board->scan_rate_granted_Hz = 350.0;
-  status.latest_test.emplace();
-  status.latest_test->number = 7;
-  status.latest_test->results.mu_s = friction::Estimate::of(0.35);
-  status.latest_test->results.mu_k = friction::Estimate::none("no slip");
-  status.bench = pipeline::BenchState::kRunning;
-  status.live.emplace();
-  status.live->phase = friction::Phase::kCycles;
-  status.live->regime = friction::Regime::kStickSlip;
-  status.live->latest.emplace();
-  status.live->latest->S = 0.36;
-  status.storage.kind = StorageState::Kind::kShort;
-  status.storage.room_h = 0.1;
-  status.storage.why = "room for 6 min of tests, 10 are wanted";
-  return status;
-}
-
-/// A bench that does what it is told, on paper.
-class PaperBench final : public Bench {
- public:
-  [[nodiscard]] Status status() const override { return some_status(); }
-  [[nodiscard]] std::vector<TestSummary> tests() const override { return {*some_status().latest_test}; }
-  [[nodiscard]] Plan plan() const override { return plan_; }
-  void set_plan(Plan plan) override { plan_ = std::move(plan); }
-  void command(Command command, std::function<void(const Outcome&)> answer) override {
-    commands.push_back(command);
-    if (later) {
-      waiting = [answer, refusal = refusal] { answer(outcome(refusal)); };
-    } else {
-      answer(outcome(refusal));
-    }
-  }
-  static Outcome outcome(const std::string& refusal) {
-    Outcome outcome;
-    outcome.report.refusal = refusal;
-    outcome.report.state = pipeline::BenchState::kLoading;
-    outcome.report.test = 8;
-    outcome.report.scan = 1234;
-    return outcome;
-  }
-
-  std::vector<Command> commands;
-  std::string refusal;
-  bool later = false;
-  std::function<void()> waiting;
-
- private:
-  Plan plan_;
-};
 
 class ControlApi : public testing::Test {
  protected:
@@ -320,123 +256,6 @@ TEST(LiveQueue, DropsTheOldestAndSaysSo) {
   for (std::size_t k = 2; k < LiveQueue::kMost; ++k) EXPECT_EQ(*queue.pop(), std::to_string(k));
   EXPECT_EQ(*queue.pop(), "new");
   EXPECT_TRUE(queue.empty());
-}
-
-/// A server in a temporary folder, run by a thread of its own.
-class ControlServerTest : public testing::Test {
- protected:
-  void SetUp() override {
-    std::string pattern = (std::filesystem::temp_directory_path() / "stickslip-control-XXXXXX").string();
-    folder_ = ::mkdtemp(pattern.data());
-    socket_ = folder_ / "s";
-  }
-  void TearDown() override {
-    guard_.reset();
-    io_.stop();
-    if (thread_.joinable()) thread_.join();
-    server_.reset();
-    std::filesystem::remove_all(folder_);
-  }
-  void serve(HttpLimits limits = {}) {
-    auto server = ControlServer::listen(io_, socket_, make_api(bench_, clock_), limits);
-    ASSERT_TRUE(server) << server.error().message;
-    server_ = std::move(*server);
-    thread_ = std::thread{[this] { io_.run(); }};
-  }
-
-  /// Sends bytes as they are; returns all that comes back until the server closes.
-  std::string raw(const std::string& bytes) {
-    const int descriptor = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    socket_.string().copy(address.sun_path, sizeof address.sun_path - 1);
-    EXPECT_EQ(::connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-    EXPECT_EQ(::send(descriptor, bytes.data(), bytes.size(), MSG_NOSIGNAL),
-              static_cast<ssize_t>(bytes.size()));
-    std::string answer;
-    char buffer[4096];
-    for (ssize_t got = 0; (got = ::recv(descriptor, buffer, sizeof buffer, 0)) > 0;) {
-      answer.append(buffer, static_cast<std::size_t>(got));
-    }
-    ::close(descriptor);
-    return answer;
-  }
-
-  test::ManualClock clock_;
-  PaperBench bench_;
-  std::filesystem::path folder_;
-  std::filesystem::path socket_;
-  boost::asio::io_context io_{1};
-  boost::asio::executor_work_guard<boost::asio::io_context::executor_type> guard_{io_.get_executor()};
-  std::unique_ptr<ControlServer> server_;
-  std::thread thread_;
-};
-
-TEST_F(ControlServerTest, AnswersOverTheSocketWhichOnlyOwnerAndGroupMayUse) {
-  serve();
-  struct stat facts {};
-  ASSERT_EQ(::stat(socket_.c_str(), &facts), 0);
-  EXPECT_EQ(facts.st_mode & 0777U, 0660U);
-  const base::Result<HttpReply> reply = request(socket_, {"GET", "/v1/status", "", "", ""}, 10s);
-  ASSERT_TRUE(reply) << reply.error().message;
-  EXPECT_EQ(reply->status, 200);
-  EXPECT_EQ(json::parse(reply->body)["scan_count"], 42);
-}
-
-TEST_F(ControlServerTest, RefusesWhatIsTooLongOrNoHttp) {
-  HttpLimits limits;
-  limits.header_size = 256;
-  limits.body_size = 16;
-  serve(limits);
-  EXPECT_THAT(raw("GET /v1/status HTTP/1.1\r\nX: " + std::string(1000, 'x') + "\r\n\r\n"),
-              testing::StartsWith("HTTP/1.1 431 "));
-  EXPECT_THAT(raw("GET /v1/status HTTP/1.1\r\nContent-Length: 17\r\n\r\n"),
-              testing::StartsWith("HTTP/1.1 413 "));
-  EXPECT_THAT(raw("\x01\x02\x03\r\n\r\n"), testing::StartsWith("HTTP/1.1 400 "));
-}
-
-TEST_F(ControlServerTest, LeavesAClientThatSaysNothing) {
-  HttpLimits limits;
-  limits.time = 20ms;
-  serve(limits);
-  EXPECT_EQ(raw("GET /v1/st"), "");
-}
-
-TEST_F(ControlServerTest, RefusesMoreConnectionsThanItsLimit) {
-  HttpLimits limits;
-  limits.connections = 0;
-  serve(limits);
-  EXPECT_FALSE(request(socket_, {"GET", "/v1/status", "", "", ""}, 10s));
-}
-
-TEST_F(ControlServerTest, ReplacesALeftOverSocketButNothingElse) {
-  {
-    boost::asio::io_context dead;
-    const int descriptor = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    socket_.string().copy(address.sun_path, sizeof address.sun_path - 1);
-    ASSERT_EQ(::bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-    ::close(descriptor);
-  }
-  serve();
-  const auto second = ControlServer::listen(io_, socket_, make_api(bench_, clock_));
-  ASSERT_FALSE(second);
-  EXPECT_THAT(second.error().message, testing::HasSubstr("another process is listening"));
-
-  std::ofstream{folder_ / "file"} << "x";
-  const auto file = ControlServer::listen(io_, folder_ / "file", make_api(bench_, clock_));
-  ASSERT_FALSE(file);
-  EXPECT_EQ(file.error().exit_status(), 2);
-  const auto longest = ControlServer::listen(io_, folder_ / std::string(200, 'x'), make_api(bench_, clock_));
-  ASSERT_FALSE(longest);
-  EXPECT_EQ(longest.error().exit_status(), 2);
-}
-
-TEST(ControlClient, SaysThatNobodyAnswers) {
-  const base::Result<HttpReply> reply = request("/nonexistent/s", {"GET", "/", "", "", ""}, 1s);
-  ASSERT_FALSE(reply);
-  EXPECT_THAT(reply.error().message, testing::HasSubstr("is stickslipd running"));
 }
 
 }  // namespace

@@ -1,0 +1,111 @@
+// The live page: asks and commands over HTTP, listens over the WebSocket, and comes back by itself.
+"use strict";
+
+(() => {
+  const kRetry = 2000;  // ms
+  const text = (id, said) => { document.getElementById(id).textContent = said; };
+  // From #token=… of the address, which the browser sends to nobody; kept for this tab alone.
+  const given = new URLSearchParams(location.hash.slice(1)).get("token");
+  if (given) {
+    sessionStorage.setItem("token", given);
+    history.replaceState(null, "", location.pathname);
+  }
+  if (!sessionStorage.getItem("name")) sessionStorage.setItem("name", `page ${Math.random().toString(36).slice(2, 6)}`);
+  const token = () => sessionStorage.getItem("token") || "";
+  const say = (said, good) => { text("message", said); document.getElementById("message").className = good ? "good" : ""; };
+
+  async function ask(method, path, body) {
+    const headers = {Authorization: `Bearer ${token()}`, "Stickslip-Controller": sessionStorage.getItem("name")};
+    if (method !== "GET") headers["Idempotency-Key"] = `${Date.now()}-${Math.random()}`;
+    const reply = await fetch(path, {method, headers, body: body === undefined ? undefined : JSON.stringify(body)});
+    const json = await reply.json();
+    if (reply.status === 401) document.getElementById("access").hidden = false;
+    if (!reply.ok) throw new Error(json.error);
+    return json;
+  }
+  const attempt = async act => { try { await act(); } catch (error) { say(error.message); } };
+
+  async function refresh() {
+    Tables.tests((await ask("GET", "/v1/tests")).tests);
+    const lease = await ask("GET", "/v1/controller");
+    text("holder", lease.controller ? `${lease.controller === sessionStorage.getItem("name") ? "this page" : lease.controller} commands` : "");
+  }
+  async function command(verb, body) {
+    await attempt(async () => {
+      const done = await ask("POST", `/v1/${verb}`, body);
+      say(verb === "tare" ? `zero ${done.zero.toFixed(6)} V from ${done.scan_count} scans` : `${verb}: test ${done.test}, scan ${done.scan}`, true);
+      Tables.bench(done.bench);
+      await refresh();
+    });
+  }
+  for (const button of document.querySelectorAll("[data-command]")) button.addEventListener("click", () => command(button.dataset.command));
+  document.getElementById("mark").addEventListener("submit", event => {
+    event.preventDefault();
+    const field = document.getElementById("mark-text");
+    command("mark", {text: field.value}).then(() => { field.value = ""; });
+  });
+  document.getElementById("access").addEventListener("submit", event => {
+    event.preventDefault();
+    sessionStorage.setItem("token", document.getElementById("token").value);
+    event.target.hidden = true;
+    say("");
+    connect();
+  });
+
+  const plan = document.getElementById("plan");
+  function fillPlan(values) {
+    for (const field of plan.querySelectorAll("input")) {
+      const value = values[field.name];
+      field.value = value == null ? "" : field.name === "pull_speed" ? `${Number((value * 1000).toPrecision(6))} mm/s` : value;
+    }
+  }
+  plan.addEventListener("submit", event => {
+    event.preventDefault();
+    const values = {};
+    for (const field of plan.querySelectorAll("input")) if (field.value !== "") values[field.name] = field.type === "number" ? Number(field.value) : field.value;
+    attempt(async () => { fillPlan(await ask("PUT", "/v1/plan", values)); say("the plan is set, for the tests that begin from now on", true); });
+  });
+
+  const frames = {
+    scans(frame) { Scope.scans(frame); if (frame.test != null) Tables.regime(frame.regime); },
+    bench(frame) { Tables.bench(frame.bench); },
+    "test-began": frame => Scope.began(frame),
+    cycle(frame) { Scope.cycle(frame); Tables.cycle(frame); },
+    gap(frame) { say(`gap: ${frame.scan_count} scans missing: ${frame.cause}`); },
+    note() {},
+    dropped(frame) { say(`this browser was too slow for ${frame.frame_count} frames`); },
+    "test-ended": frame => { Scope.ended(frame); Tables.regime(frame.results.regime); attempt(refresh); },
+    health(frame) {
+      Tables.health(frame.status);
+      Tables.bench(frame.status.bench);
+      // Records appear a moment after their tests.
+      if (frame.status.latest_test && document.querySelector("#tests tbody td:last-child")?.textContent === "…") attempt(refresh);
+    },
+  };
+
+  let socket = null;
+  function listen() {
+    socket = new WebSocket(`ws://${location.host}/v1/live`, token() ? ["stickslip.v1", `token.${token()}`] : ["stickslip.v1"]);
+    socket.addEventListener("message", event => { const frame = JSON.parse(event.data); frames[frame.type]?.(frame); });
+    socket.addEventListener("close", () => {
+      Tables.bench("not connected");
+      setTimeout(connect, kRetry);
+    });
+  }
+  async function connect() {
+    if (socket && socket.readyState < WebSocket.CLOSING) return;
+    try {
+      const status = await ask("GET", "/v1/status");
+      Tables.health(status);
+      Tables.bench(status.bench);
+      fillPlan(await ask("GET", "/v1/plan"));
+      await refresh();
+      listen();
+    } catch (error) {
+      say(error instanceof TypeError ? "the daemon does not answer" : error.message);
+      Tables.bench("not connected");
+      if (document.getElementById("access").hidden) setTimeout(connect, kRetry);
+    }
+  }
+  connect();
+})();

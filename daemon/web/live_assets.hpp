@@ -1,0 +1,17 @@
+/// \file
+/// The parts of the live page, as they lie in daemon/web and in uPlot's package; built in by cmake/embed.cmake.
+#pragma once
+
+#include <string_view>
+
+namespace stickslip::daemon::live_page {
+
+[[nodiscard]] std::string_view live_html() noexcept;
+[[nodiscard]] std::string_view live_css() noexcept;
+[[nodiscard]] std::string_view live_js() noexcept;
+[[nodiscard]] std::string_view scope_js() noexcept;
+[[nodiscard]] std::string_view tables_js() noexcept;
+[[nodiscard]] std::string_view uplot_js() noexcept;
+[[nodiscard]] std::string_view uplot_css() noexcept;
+
+}  // namespace stickslip::daemon::live_page

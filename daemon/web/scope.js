@@ -1,0 +1,129 @@
+// The live charts. Times are scan index over scan rate: no clock of the browser has a say in them.
+"use strict";
+
+const Scope = (() => {
+  const kWindow = 10;  // s
+  const kMostParts = 20000;
+  const colour = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const forceBox = document.getElementById("force");
+  const slopeBox = document.getElementById("slope");
+  const deltaBox = document.getElementById("delta");
+
+  // Columns of the scope: time, lowest, highest, derivative of the middle.
+  const data = {time: [], lowest: [], highest: [], slope: [], scan: []};
+  const slips = [];   // {onset, capture, peak_time, peak, captured}
+  const spikes = [];  // {time, value}
+  const cycles = {number: [], delta: [], amplitude: []};
+  let rate = 0, speed = 1, dirty = false;
+
+  const height = part => Math.round(Math.max(90, window.innerHeight * part));
+  const axes = label => [{stroke: colour("--soft"), grid: {stroke: colour("--line")}, ticks: {stroke: colour("--line")}},
+    {stroke: colour("--soft"), grid: {stroke: colour("--line")}, ticks: {stroke: colour("--line")}, size: 58, label, labelSize: 0}];
+  const latest = () => (data.time.length ? data.time[data.time.length - 1] : kWindow);
+  const window_s = () => kWindow * speed;
+  const xRange = () => [latest() - window_s(), latest()];
+
+  function shade(u) {
+    const [from, to] = xRange(), ctx = u.ctx;
+    ctx.save();
+    let before = null;
+    for (const slip of slips) {
+      if (slip.peak_time < from - 1 || slip.onset == null) continue;
+      const x = t => u.valToPos(Math.min(Math.max(t, from), to), "x", true);
+      if (before != null && slip.onset > before) {
+        ctx.fillStyle = colour("--stick");
+        ctx.fillRect(x(before), u.bbox.top, x(slip.onset) - x(before), u.bbox.height);
+      }
+      if (slip.capture != null) {
+        ctx.fillStyle = colour("--slip");
+        ctx.fillRect(x(slip.onset), u.bbox.top, x(slip.capture) - x(slip.onset), u.bbox.height);
+      }
+      before = slip.capture;
+    }
+    ctx.restore();
+  }
+
+  function marks(u) {
+    const [from] = xRange(), ctx = u.ctx, size = 4 * devicePixelRatio;
+    ctx.save();
+    ctx.lineWidth = 2 * devicePixelRatio;
+    for (const slip of slips) {
+      if (slip.peak_time < from) continue;
+      ctx.beginPath();
+      ctx.arc(u.valToPos(slip.peak_time, "x", true), u.valToPos(slip.peak, "y", true), size, 0, 2 * Math.PI);
+      ctx.fillStyle = ctx.strokeStyle = colour("--mark");
+      if (slip.captured) ctx.fill(); else ctx.stroke();
+    }
+    ctx.strokeStyle = colour("--spike");
+    for (const spike of spikes) {
+      if (spike.time < from) continue;
+      const x = u.valToPos(spike.time, "x", true), y = u.valToPos(spike.value, "y", true);
+      ctx.beginPath();
+      ctx.moveTo(x - size, y - size); ctx.lineTo(x + size, y + size); ctx.moveTo(x + size, y - size); ctx.lineTo(x - size, y + size);
+      ctx.stroke();
+    }
+    ctx.restore();
+  }
+
+  const options = (box, part, series, more) => ({width: box.clientWidth || 600, height: height(part), legend: {show: false}, cursor: {show: false},
+    scales: {x: {time: false, range: xRange}}, axes: axes(), series: [{}, ...series], ...more});
+  const force = new uPlot(options(forceBox, 0.33, [{stroke: colour("--force"), width: 1.25, points: {show: false}},
+    {stroke: colour("--force"), width: 1.25, points: {show: false}}], {bands: [{series: [2, 1], fill: colour("--band")}], hooks: {drawClear: [shade], draw: [marks]}}), [[], [], []], forceBox);
+  const slope = new uPlot(options(slopeBox, 0.16, [{stroke: colour("--force"), width: 1.25, points: {show: false}}]), [[], []], slopeBox);
+  const strip = new uPlot({...options(deltaBox, 0.2, [{stroke: colour("--delta"), width: 0, points: {show: true, size: 6, fill: colour("--delta")}},
+    {stroke: colour("--amplitude"), width: 0, points: {show: true, size: 5, fill: colour("--amplitude")}}]),
+    scales: {x: {time: false}, y: {range: (u, low, high) => [0, Math.max(0.01, high * 1.1 || 0)]}}}, [[], [], []], deltaBox);
+
+  function draw() {
+    requestAnimationFrame(draw);
+    if (!dirty) return;
+    dirty = false;
+    force.setData([data.time, data.lowest, data.highest]);
+    slope.setData([data.time, data.slope]);
+    strip.setData([cycles.number, cycles.delta, cycles.amplitude]);
+  }
+  requestAnimationFrame(draw);
+
+  function scans(frame) {
+    rate = frame.scan_rate;
+    speed = Math.max(1, frame.clock_speed);
+    const step = frame.scans_in_part;
+    frame.lowest.forEach((low, k) => {
+      const scan = frame.first_scan + k * step, middle = (low + frame.highest[k]) / 2, at = data.scan.length - 1;
+      const follows = at >= 0 && scan - data.scan[at] === step && data.lowest[at] != null;
+      if (at >= 0 && !follows) {  // A gap is a gap in the line.
+        data.scan.push(scan - 1); data.time.push((scan - 1) / rate); data.lowest.push(null); data.highest.push(null); data.slope.push(null);
+      }
+      data.slope.push(follows ? (middle - (data.lowest[at] + data.highest[at]) / 2) * rate / step : null);
+      data.scan.push(scan); data.time.push(scan / rate); data.lowest.push(low); data.highest.push(frame.highest[k]);
+    });
+    const old = data.time.findIndex(t => t >= latest() - window_s() - 1);
+    const cut = Math.max(old, data.time.length - kMostParts);
+    if (cut > 500) for (const column of Object.values(data)) column.splice(0, cut);
+    dirty = true;
+  }
+  const began = () => { for (const column of Object.values(cycles)) column.length = 0; dirty = true; };
+  function cycle(frame) {
+    const at = t => (t == null ? null : frame.test_first_scan / frame.scan_rate + t);
+    if (frame.peak_time != null) slips.push({onset: at(frame.onset_time), capture: at(frame.capture_time), peak_time: at(frame.peak_time), peak: frame.peak, captured: frame.captured});
+    if (slips.length > 500) slips.shift();
+    cycles.number.push(frame.number); cycles.delta.push(frame.delta_mu); cycles.amplitude.push(frame.force_drop == null ? null : frame.force_drop / 2);
+    dirty = true;
+  }
+  function ended(frame) {
+    for (const scan of frame.spikes) {
+      const at = data.scan.lastIndexOf(scan);
+      if (at >= 0) spikes.push({time: scan / rate, value: data.highest[at]});
+    }
+    if (spikes.length > 500) spikes.splice(0, spikes.length - 500);
+    dirty = true;
+  }
+  const resize = () => {
+    force.setSize({width: forceBox.clientWidth, height: height(0.33)});
+    slope.setSize({width: slopeBox.clientWidth, height: height(0.16)});
+    strip.setSize({width: deltaBox.clientWidth, height: height(0.2)});
+  };
+  window.addEventListener("resize", resize);
+
+  return {scans, began, cycle, ended, data, slips, spikes, cycles};
+})();

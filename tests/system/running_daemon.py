@@ -1,0 +1,119 @@
+"""A daemon that plays stick-slip tests without end, and how tests talk to it. Nothing sleeps: each step waits for an
+answer or for a frame of the live stream."""
+
+import http.client
+import json
+import pathlib
+import re
+import signal
+import socket
+import subprocess
+import tempfile
+
+# Generous: under sanitizers on a busy machine everything takes its time.
+TIMEOUT_S = 240
+
+
+class UnixConnection(http.client.HTTPConnection):
+    def __init__(self, path):
+        super().__init__("localhost", timeout=TIMEOUT_S)
+        self.path = str(path)
+
+    def connect(self):
+        self.sock = socket.socket(socket.AF_UNIX)
+        self.sock.settimeout(TIMEOUT_S)
+        self.sock.connect(self.path)
+
+
+class RunningDaemon:
+    def __init__(self, test, build, source, config="", speed=20, board=None, repeats=0):
+        self.cli = build / "daemon" / "stickslip"
+        scene = source / "config" / "scenes" / "stick-slip-at-12-in-per-min.toml"
+        temporary = tempfile.TemporaryDirectory(prefix="stickslip-")
+        test.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        self.socket = self.folder / "c.sock"
+        board = board or f"""
+[board]
+driver = "simulated"
+clock_speed = {speed}
+[board.simulated]
+scenes = ["{scene}"]
+repeats = {repeats}
+"""
+        file = self.folder / "d.toml"
+        file.write_text(f'{board}\n[record]\nfolder = "records"\n[control]\nsocket = "c.sock"\n{config}', encoding="utf-8")
+        manager = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        manager.bind(str(self.folder / "notify"))
+        manager.settimeout(TIMEOUT_S)
+        self.process = subprocess.Popen([str(build / "daemon" / "stickslipd"), "--config", str(file)], cwd=self.folder, stderr=subprocess.PIPE, text=True,
+                                        env={"NOTIFY_SOCKET": str(self.folder / "notify")})
+        test.addCleanup(self.end)
+        while manager.recv(4096) != b"READY=1":
+            pass
+        manager.close()  # Notifications that nobody reads would fill it, and the daemon would wait.
+
+    def end(self):
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+        try:
+            _, errors = self.process.communicate(timeout=TIMEOUT_S)
+        finally:
+            self.process.kill()
+        return self.process.returncode, errors
+
+    def ask(self, method, path, body=None, who="ada", key=None, connection=None, headers=None):
+        own = connection or UnixConnection(self.socket)
+        sent = {"Stickslip-Controller": who} if who else {}
+        if key:
+            sent["Idempotency-Key"] = key
+        sent.update(headers or {})
+        own.request(method, path, body if body is None or isinstance(body, str) else json.dumps(body), sent)
+        reply = own.getresponse()
+        text = reply.read().decode()
+        if connection is None:
+            own.close()
+        self.reply = reply
+        return reply.status, json.loads(text) if reply.headers["Content-Type"] == "application/json" else text
+
+    def run(self, *arguments):
+        return subprocess.run([str(self.cli), *(str(a) for a in arguments), "--socket", str(self.socket)], capture_output=True, text=True,
+                              timeout=TIMEOUT_S, check=False)
+
+    def watch(self):
+        """Frames of the live stream, as `stickslip watch --json` gives them."""
+        process = subprocess.Popen([str(self.cli), "watch", "--json", "--socket", str(self.socket)], stdout=subprocess.PIPE, text=True)
+        return process, (json.loads(line) for line in process.stdout)
+
+    def port_line(self):
+        """What the log says of the TCP port."""
+        for line in self.process.stderr:
+            if found := re.search(r"control: listening at (127\.0\.0\.1:\d+)", line):
+                return found[1]
+        raise AssertionError("no port")
+
+    def record(self, number):
+        """The record of a test that has ended: the finaliser may still be at it."""
+        process, frames = self.watch()
+        try:
+            for frame in frames:
+                if frame["type"] != "health":
+                    continue
+                _, test = self.ask("GET", f"/v1/tests/{number}")
+                if test["file"]:
+                    return self.folder / test["file"]
+        finally:
+            process.kill()
+            process.communicate()
+
+
+def wait_for_rest(frames):
+    """Until the load cell is unloaded: a whole pull is to come."""
+    wait_for(frames, lambda frame: frame["type"] == "scans" and max(frame["highest"]) < 0.02)
+
+
+def wait_for(frames, wanted):
+    for frame in frames:
+        if wanted(frame):
+            return frame
+    raise AssertionError("the stream ended")

@@ -1,0 +1,311 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <filesystem>
+#include <fstream>
+#include <future>
+#include <mutex>
+#include <semaphore>
+#include <string>
+#include <thread>
+#include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
+#include <vector>
+
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/post.hpp>
+#include <nlohmann/json.hpp>
+
+#include "daemon/control/api.hpp"
+#include "daemon/control/client.hpp"
+#include "daemon/control/live_client.hpp"
+#include "daemon/control/server.hpp"
+#include "tests/support/manual_clock.hpp"
+#include "tests/unit/paper_bench.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+using nlohmann::json;
+using namespace std::chrono_literals;
+
+constexpr const char* kToken = "0123456789abcdef0123456789abcdef";
+
+/// A server in a temporary folder, run by a thread of its own.
+class ControlServerTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (std::filesystem::temp_directory_path() / "stickslip-control-XXXXXX").string();
+    folder_ = ::mkdtemp(pattern.data());
+    socket_ = folder_ / "s";
+  }
+  void TearDown() override {
+    guard_.reset();
+    io_.stop();
+    if (thread_.joinable()) thread_.join();
+    server_.reset();
+    std::filesystem::remove_all(folder_);
+  }
+  void serve(HttpLimits limits = {}) {
+    auto server = ControlServer::listen(io_, socket_, make_api(bench_, clock_), limits, &hub_);
+    ASSERT_TRUE(server) << server.error().message;
+    server_ = std::move(*server);
+    thread_ = std::thread{[this] { io_.run(); }};
+  }
+
+  void serve_tcp() {
+    auto server = ControlServer::listen_tcp(io_, "127.0.0.1:0", kToken, make_api(bench_, clock_), {}, &hub_);
+    ASSERT_TRUE(server) << server.error().message;
+    server_ = std::move(*server);
+    thread_ = std::thread{[this] { io_.run(); }};
+  }
+  [[nodiscard]] int connected() const {
+    const int descriptor = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    socket_.string().copy(address.sun_path, sizeof address.sun_path - 1);
+    EXPECT_EQ(::connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    return descriptor;
+  }
+  [[nodiscard]] int connected_by_tcp() const {
+    const int descriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(std::stoi(server_->address().substr(10))));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(::connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    return descriptor;
+  }
+  static void send(int descriptor, const std::string& bytes) {
+    EXPECT_EQ(::send(descriptor, bytes.data(), bytes.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(bytes.size()));
+  }
+
+  /// Sends bytes as they are; returns all that comes back until the server closes.
+  [[nodiscard]] std::string raw(const std::string& bytes) const { return raw(connected(), bytes); }
+  [[nodiscard]] static std::string raw(int descriptor, const std::string& bytes, bool half_close = false) {
+    send(descriptor, bytes);
+    if (half_close) ::shutdown(descriptor, SHUT_WR);
+    std::string answer;
+    char buffer[4096];
+    for (ssize_t got = 0; (got = ::recv(descriptor, buffer, sizeof buffer, 0)) > 0;) {
+      answer.append(buffer, static_cast<std::size_t>(got));
+    }
+    ::close(descriptor);
+    return answer;
+  }
+
+  test::ManualClock clock_;
+  PaperBench bench_;
+  std::filesystem::path folder_;
+  std::filesystem::path socket_;
+  boost::asio::io_context io_{1};
+  boost::asio::executor_work_guard<boost::asio::io_context::executor_type> guard_{io_.get_executor()};
+  LiveHub hub_{[this](std::size_t count) {
+    const std::lock_guard lock{mutex_};
+    listeners_ = count;
+    news_.notify_all();
+  }};
+  std::mutex mutex_;
+  std::condition_variable news_;
+  std::size_t listeners_ = 0;
+  std::unique_ptr<ControlServer> server_;
+  std::thread thread_;
+};
+
+TEST_F(ControlServerTest, AnswersOverTheSocketWhichOnlyOwnerAndGroupMayUse) {
+  serve();
+  struct stat facts {};
+  ASSERT_EQ(::stat(socket_.c_str(), &facts), 0);
+  EXPECT_EQ(facts.st_mode & 0777U, 0660U);
+  const base::Result<HttpReply> reply = request(socket_, {"GET", "/v1/status", "", "", ""}, 10s);
+  ASSERT_TRUE(reply) << reply.error().message;
+  EXPECT_EQ(reply->status, 200);
+  EXPECT_EQ(json::parse(reply->body)["scan_count"], 42);
+}
+
+TEST_F(ControlServerTest, RefusesWhatIsTooLongOrNoHttp) {
+  HttpLimits limits;
+  limits.header_size = 256;
+  limits.body_size = 16;
+  serve(limits);
+  EXPECT_THAT(raw("GET /v1/status HTTP/1.1\r\nX: " + std::string(1000, 'x') + "\r\n\r\n"),
+              testing::StartsWith("HTTP/1.1 431 "));
+  EXPECT_THAT(raw("GET /v1/status HTTP/1.1\r\nContent-Length: 17\r\n\r\n"),
+              testing::StartsWith("HTTP/1.1 413 "));
+  EXPECT_THAT(raw("\x01\x02\x03\r\n\r\n"), testing::StartsWith("HTTP/1.1 400 "));
+}
+
+TEST_F(ControlServerTest, LeavesAClientThatSaysNothing) {
+  HttpLimits limits;
+  limits.time = 20ms;
+  serve(limits);
+  EXPECT_EQ(raw("GET /v1/st"), "");
+}
+
+constexpr const char* kClose = "\r\nConnection: close\r\n\r\n";
+
+TEST_F(ControlServerTest, AnswersPipelinedRequestsInOrder) {
+  serve();
+  const std::string answer =
+      raw("GET /v1/status HTTP/1.1\r\n\r\nGET /v1/plan HTTP/1.1\r\n\r\nGET /nothing HTTP/1.1" +
+          std::string{kClose});
+  const std::size_t status = answer.find("\"scan_count\":42");
+  const std::size_t plan = answer.find("\"pull_speed\":null");
+  const std::size_t nothing = answer.find("HTTP/1.1 404 ");
+  EXPECT_LT(status, plan);
+  EXPECT_LT(plan, nothing);
+  EXPECT_NE(nothing, std::string::npos);
+}
+
+TEST_F(ControlServerTest, AnswersAClientThatHasClosedItsOwnSide) {
+  serve();
+  EXPECT_THAT(raw(connected(), "GET /v1/status HTTP/1.1\r\n\r\n", true),
+              testing::StartsWith("HTTP/1.1 200 "));
+  EXPECT_EQ(raw(connected(), "GET /v1/status HTTP/1.1\r\n", true), "") << "no whole request";
+}
+
+// Bytes that trickle do not hold a connection longer than a request may take.
+TEST_F(ControlServerTest, LeavesAClientThatTrickles) {
+  HttpLimits limits;
+  limits.time = 50ms;
+  serve(limits);
+  const int descriptor = connected();
+  std::string got;
+  for (char buffer[64]; ::send(descriptor, "X", 1, MSG_NOSIGNAL) == 1;) {
+    if (::recv(descriptor, buffer, sizeof buffer, MSG_DONTWAIT) == 0) break;
+    std::this_thread::yield();
+  }
+  ::close(descriptor);
+  EXPECT_TRUE(request(socket_, {"GET", "/v1/status", "", "", ""}, 10s));
+}
+
+TEST_F(ControlServerTest, OverTcpNothingComesWithoutHostAndToken) {
+  serve_tcp();
+  const std::string own = "\r\nHost: " + server_->address();
+  const std::string token = std::string{"\r\nAuthorization: Bearer "} + kToken;
+  const auto get = [&](const std::string& path, const std::string& headers) {
+    return raw(connected_by_tcp(), "GET " + path + " HTTP/1.1" + headers + kClose);
+  };
+  EXPECT_THAT(get("/v1/status", own + token), testing::StartsWith("HTTP/1.1 200 "));
+  EXPECT_THAT(get("/v1/status", own), testing::StartsWith("HTTP/1.1 401 "));
+  EXPECT_THAT(get("/v1/status", own + token + "x"), testing::StartsWith("HTTP/1.1 401 "));
+  EXPECT_THAT(get("/v1/status", "\r\nHost: evil" + token), testing::StartsWith("HTTP/1.1 403 "));
+  EXPECT_THAT(get("/v1/status", own + token + "\r\nOrigin: http://evil"),
+              testing::StartsWith("HTTP/1.1 403 "));
+  const std::string upgrade =
+      "\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: "
+      "dGhlIHNhbXBsZSBub25jZQ==";
+  EXPECT_THAT(get("/v1/live", own + upgrade), testing::StartsWith("HTTP/1.1 401 "));
+  EXPECT_THAT(get("/v1/live", own + token + upgrade + "\r\nOrigin: http://evil"),
+              testing::StartsWith("HTTP/1.1 403 "));
+  EXPECT_THAT(get("/v1/status", own + token),
+              testing::HasSubstr("\r\nContent-Security-Policy: default-src 'none'; "));
+}
+
+TEST_F(ControlServerTest, ListensOnThisMachineAlone) {
+  for (const char* address : {"0.0.0.0:0", "[::]:0", "192.0.2.1:80", "example.org:80", "127.0.0.1",
+                              "127.0.0.1:", "127.0.0.1:x", "127.0.0.1:99999", ""}) {
+    const auto server = ControlServer::listen_tcp(io_, address, kToken, make_api(bench_, clock_));
+    ASSERT_FALSE(server) << address;
+    EXPECT_EQ(server.error().exit_status(), 2) << address;
+  }
+}
+
+// Nineteen clients that read, one that does not: the nineteen get every frame, and what the one costs is
+// bounded.
+TEST_F(ControlServerTest, AStalledClientCostsTheOthersNothing) {
+  constexpr int kReaders = 19;
+  constexpr int kBatches = 40;
+  constexpr int kFrames = 32;  // Below LiveQueue::kMost: whoever reads loses nothing.
+  serve();
+  const int stalled = connected();
+  send(stalled,
+       "GET /v1/live HTTP/1.1\r\nHost: x\r\nConnection: Upgrade\r\nUpgrade: "
+       "websocket\r\nSec-WebSocket-Version: 13\r\n"
+       "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n");
+  std::atomic<int> wrong{0};
+  std::counting_semaphore<> arrived{0};
+  std::vector<std::thread> readers;
+  for (int k = 0; k < kReaders; ++k) {
+    readers.emplace_back([&] {
+      int next = 0;
+      const auto ended = listen_live(socket_, [&](std::string_view frame) {
+        if (frame.substr(0, frame.find(' ')) != std::to_string(next)) ++wrong;
+        arrived.release();
+        return ++next < kBatches * kFrames;
+      });
+      if (!ended) ++wrong;
+    });
+  }
+  {
+    std::unique_lock lock{mutex_};
+    news_.wait(lock, [&] { return listeners_ == kReaders + 1; });
+  }
+  for (int batch = 0; batch < kBatches; ++batch) {
+    boost::asio::post(io_, [this, batch] {
+      for (int k = 0; k < kFrames; ++k) {
+        hub_.publish(std::make_shared<const std::string>(std::to_string(batch * kFrames + k) +
+                                                         std::string(4000, ' ')));
+      }
+    });
+    for (int k = 0; k < kReaders * kFrames; ++k) arrived.acquire();
+  }
+  for (std::thread& reader : readers) reader.join();
+  EXPECT_EQ(wrong, 0);
+  std::promise<std::uint64_t> dropped;
+  boost::asio::post(io_, [&] { dropped.set_value(hub_.dropped_count()); });
+  const std::uint64_t count = dropped.get_future().get();
+  // 5 MB were meant for it; the kernel keeps what its buffers hold, the queue 64 frames, the rest is dropped.
+  EXPECT_GT(count, 500U);
+  EXPECT_LT(count, static_cast<std::uint64_t>(kBatches * kFrames));
+  ::close(stalled);
+  std::unique_lock lock{mutex_};
+  news_.wait(lock, [&] { return listeners_ == 0; });
+}
+
+TEST_F(ControlServerTest, RefusesMoreConnectionsThanItsLimit) {
+  HttpLimits limits;
+  limits.connections = 0;
+  serve(limits);
+  EXPECT_FALSE(request(socket_, {"GET", "/v1/status", "", "", ""}, 10s));
+}
+
+TEST_F(ControlServerTest, ReplacesALeftOverSocketButNothingElse) {
+  {
+    boost::asio::io_context dead;
+    const int descriptor = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    socket_.string().copy(address.sun_path, sizeof address.sun_path - 1);
+    ASSERT_EQ(::bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    ::close(descriptor);
+  }
+  serve();
+  const auto second = ControlServer::listen(io_, socket_, make_api(bench_, clock_));
+  ASSERT_FALSE(second);
+  EXPECT_THAT(second.error().message, testing::HasSubstr("another process is listening"));
+
+  std::ofstream{folder_ / "file"} << "x";
+  const auto file = ControlServer::listen(io_, folder_ / "file", make_api(bench_, clock_));
+  ASSERT_FALSE(file);
+  EXPECT_EQ(file.error().exit_status(), 2);
+  const auto longest = ControlServer::listen(io_, folder_ / std::string(200, 'x'), make_api(bench_, clock_));
+  ASSERT_FALSE(longest);
+  EXPECT_EQ(longest.error().exit_status(), 2);
+}
+
+TEST(ControlClient, SaysThatNobodyAnswers) {
+  const base::Result<HttpReply> reply = request("/nonexistent/s", {"GET", "/", "", "", ""}, 1s);
+  ASSERT_FALSE(reply);
+  EXPECT_THAT(reply.error().message, testing::HasSubstr("is stickslipd running"));
+}
+
+}  // namespace
+}  // namespace stickslip::daemon
