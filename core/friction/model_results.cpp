@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -15,6 +17,7 @@
 #include "core/friction/cycle_features.hpp"
 #include "core/friction/escape.hpp"
 #include "core/friction/threshold.hpp"
+#include "core/signal/statistics.hpp"
 
 namespace stickslip::friction {
 namespace {
@@ -67,10 +70,23 @@ void take(const UniformFit& uniform, Fitted& fitted) {
   }
 }
 
-Fitted gather(const SlipEstimates& estimates) {
-  const SlipFit& fit = estimates.fit;
+/// Slips that count in the means: not the first if there are others, and none whose S − K its few scans — a
+/// gap, spikes, the end of the pull — leave more uncertain than the typical S − K itself is large.
+std::vector<SlipWindow> slips_that_count(const SlipEstimates& estimates) {
   std::span<const SlipWindow> windows = estimates.windows;
   if (windows.size() >= kEnoughToLeaveOutTheFirst) windows = windows.subspan(1);
+  std::vector<double> sizes;
+  for (const SlipWindow& window : windows) sizes.push_back(std::abs(window.slip.S - window.slip.K));
+  const double typical = signal::median(sizes);
+  std::vector<SlipWindow> told;
+  std::copy_if(windows.begin(), windows.end(), std::back_inserter(told),
+               [&](const SlipWindow& window) { return estimates.fit.delta_mu_error(window) <= typical; });
+  return told.empty() ? std::vector<SlipWindow>{windows.begin(), windows.end()} : told;
+}
+
+Fitted gather(const SlipEstimates& estimates) {
+  const SlipFit& fit = estimates.fit;
+  const std::vector<SlipWindow> windows = slips_that_count(estimates);
 
   Fitted fitted;
   Sample S;
@@ -287,7 +303,6 @@ std::vector<Cycle> cycle_table(const Trace& trace, std::span<const Fall> slips,
     if (fit.converged && begins_from_stick && estimates.has_window(i)) {
       const SlipWindow& window = estimates.windows[estimates.window_of_slip[i]];
       const SlipModel model{fit.shared, window.slip, captured, estimates.belt};
-      const Eigen::Matrix3d covariance = fit.covariance(window);
       cycle.onset_time_s = window.slip.onset_s;
       if (!estimates.belt.is_constant()) {
         cycle.pull_speed_m_per_s =
@@ -295,7 +310,7 @@ std::vector<Cycle> cycle_table(const Trace& trace, std::span<const Fall> slips,
       }
       cycle.stick_time_s = window.slip.onset_s - last_capture_s;
       cycle.delta_mu = estimates.static_coefficient(window) - window.slip.K;
-      cycle.delta_mu_standard_error = std::sqrt(covariance(1, 1) + covariance(2, 2) - 2.0 * covariance(1, 2));
+      cycle.delta_mu_standard_error = fit.delta_mu_error(window);
       // [18], from the fitted waveform: difference quotients of scans read several per cent low.
       cycle.slip_speed_ratio =
           -model.waveform().rate(model.waveform().fastest_slip_time_s()) / model.waveform().r;

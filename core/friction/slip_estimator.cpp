@@ -61,8 +61,7 @@ bool free_the_doubtful(SlipEstimates& estimates) {
     if (estimates.ends[i] != SlipEnd::kCaptured || estimates.log_likelihood_ratios[i] > kDoubtful) continue;
     if (!estimates.has_window(i + 1)) continue;
     const SlipWindow& next = estimates.windows[estimates.window_of_slip[i + 1]];
-    const Eigen::Matrix3d covariance = estimates.fit.covariance(next);
-    const double error = std::sqrt(covariance(1, 1) + covariance(2, 2) - 2.0 * covariance(1, 2));
+    const double error = estimates.fit.delta_mu_error(next);
     if (estimates.fit.converged && next.slip.S - next.slip.K >= kInsignificant * error) continue;
     estimates.ends[i] = SlipEnd::kFree;
     changed = true;

@@ -205,4 +205,9 @@ Eigen::Matrix3d SlipFit::covariance(const SlipWindow& window) const {
   return window.inverse_curvature + window.coupling * shared_covariance * window.coupling.transpose();
 }
 
+double SlipFit::delta_mu_error(const SlipWindow& window) const {
+  const Eigen::Matrix3d own = covariance(window);
+  return std::sqrt(own(1, 1) + own(2, 2) - 2.0 * own(1, 2));
+}
+
 }  // namespace stickslip::friction

@@ -27,11 +27,10 @@ base::Result<std::string> make_token(const std::filesystem::path& file) {
   if (::getrandom(random.data(), random.size(), 0) != static_cast<ssize_t>(random.size())) {
     return base::failure("token file {}: no random numbers: {}", file.string(), because());
   }
-  std::string token;
-  for (const unsigned char byte : random) token += fmt::format("{:02x}", byte);
+  const std::string token = fmt::format("{:02x}", fmt::join(random, ""));
   const int descriptor = ::open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0640);
   if (descriptor < 0) return base::failure("token file {}: cannot be made: {}", file.string(), because());
-  const std::string line = token + "\n";
+  const std::string line = fmt::format("{}\n", token);
   const bool whole = ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
   const std::string why = because();
   ::close(descriptor);
