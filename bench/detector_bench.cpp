@@ -19,11 +19,11 @@ namespace {
 
 using namespace stickslip;
 
-/// Argument: scans a second. 0.05 s a cycle; 30 cycles.
-test::LiveScene fast_cycles(double scan_rate_Hz) {
+/// 0.05 s a cycle.
+test::LiveScene fast_cycles(double scan_rate_Hz, int slips = 30) {
   test::LiveScene scene;
   scene.scan_rate_Hz = scan_rate_Hz;
-  scene.slips = 30;
+  scene.slips = slips;
   return scene;
 }
 
@@ -35,6 +35,9 @@ test::LiveScene slow_cycles(double scan_rate_Hz) {
   scene.slips = 3;
   return scene;
 }
+
+/// Slips of a test so long that what is done once for a test, or once for an array, counts no more.
+constexpr int kLongTest = 1000;
 
 std::vector<double> scans_of(const test::LiveScene& scene) {
   test::LiveTrial trial{scene};
@@ -101,9 +104,8 @@ void peer_raw_maximum(benchmark::State& state) {
 }
 BENCHMARK(peer_raw_maximum)->Arg(350)->Arg(10'000);
 
-/// Python tells the least time of many itself, of one test of `slips` slips.
-void peer_scipy_chain(benchmark::State& state, test::LiveScene scene, int slips) {
-  scene.slips = slips;
+/// Python tells the least time of many itself.
+void peer_scipy_chain(benchmark::State& state, const test::LiveScene& scene) {
   const std::vector<accuracy::TierScene> scenes{{scene.scan_rate_Hz, scene.frequency_Hz, {scans_of(scene)}}};
   double ns = 0.0;
   for (auto _ : state) {
@@ -128,6 +130,11 @@ int main(int argc, char** argv) {
       benchmark::RegisterBenchmark(("follow/" + at).c_str(), [=](benchmark::State& state) {
         follow(state, fast_cycles(rate_Hz), tier);
       });
+      if (rate_Hz <= 10'000.0) {
+        benchmark::RegisterBenchmark(
+            ("follow/" + at + "/" + std::to_string(kLongTest)).c_str(),
+            [=](benchmark::State& state) { follow(state, fast_cycles(rate_Hz, kLongTest), tier); });
+      }
       benchmark::RegisterBenchmark(("slowest_scan/" + at).c_str(), [=](benchmark::State& state) {
         slowest_scan(state, fast_cycles(rate_Hz), tier);
       })->Iterations(1);
@@ -137,12 +144,11 @@ int main(int argc, char** argv) {
         [=](benchmark::State& state) { slowest_scan(state, slow_cycles(100'000.0), tier); })
         ->Iterations(1);
   }
-  // A test as long as those above, and one so long that what SciPy does once for an array counts no more.
   for (const double rate_Hz : {100.0, 350.0, 1000.0, 10'000.0}) {
-    for (const int slips : {30, 1000}) {
+    for (const int slips : {30, kLongTest}) {
       const std::string at = std::to_string(static_cast<int>(rate_Hz)) + "/" + std::to_string(slips);
       benchmark::RegisterBenchmark(("peer_scipy_chain/" + at).c_str(), [=](benchmark::State& state) {
-        peer_scipy_chain(state, fast_cycles(rate_Hz), slips);
+        peer_scipy_chain(state, fast_cycles(rate_Hz, slips));
       })->Iterations(1);
     }
   }

@@ -9,11 +9,15 @@ namespace {
 
 /// Longest wait for scans, and thereby for a stop request to be seen.
 constexpr std::chrono::milliseconds kReadTimeout{100};
+/// The consumer is not woken more often, by the board's clock: a Comedi board may deliver each scan by
+/// itself. What is told live may be 5 ms old.
+constexpr std::int64_t kNewsPeriod_ns = 4'000'000;
 
 }  // namespace
 
-Acquisition::Acquisition(daq::Board& board, daq::ScanRing& ring, RealtimeSettings realtime)
-    : board_(board), ring_(ring), realtime_(realtime) {}
+Acquisition::Acquisition(daq::Board& board, daq::ScanRing& ring, RealtimeSettings realtime,
+                         FullRing full_ring)
+    : board_(board), ring_(ring), realtime_(realtime), full_ring_(full_ring) {}
 
 Acquisition::~Acquisition() {
   request_stop();
@@ -43,18 +47,43 @@ void Acquisition::run() noexcept {
   news_.release();
 }
 
+void Acquisition::tell() noexcept {
+  if (!untold_) return;
+  untold_ = false;
+  news_.release();
+}
+
+void Acquisition::hand_over(daq::ScanBlock& block) noexcept {
+  // A full ring counts what it drops; the jump in the index tells the consumer.
+  block.overrun_count = overruns_;
+  block.dropped_scan_count = ring_.dropped_scan_count();
+  if (full_ring_ == FullRing::kWait) wait_for_room();
+  ring_.push(block);
+  untold_ = true;
+  if (block.stamp.monotonic_ns - told_ns_ < kNewsPeriod_ns) return;
+  told_ns_ = block.stamp.monotonic_ns;
+  tell();
+}
+
+void Acquisition::wait_for_room() noexcept {
+  for (;;) {
+    // Looked at first: room that is made after the ring was seen full is not slept through.
+    const std::uint32_t seen = room_made_.load(std::memory_order_acquire);
+    if (ring_.has_room() || stop_requested_.load(std::memory_order_relaxed)) return;
+    tell();
+    room_made_.wait(seen, std::memory_order_acquire);
+  }
+}
+
 Acquisition::End Acquisition::read_to_the_end() noexcept {
   daq::ScanBlock block;
   while (!stop_requested_.load(std::memory_order_relaxed)) {
     switch (board_.read(block, kReadTimeout)) {
       case daq::ReadStatus::kScans:
-        // A full ring counts what it drops; the jump in the index tells the consumer.
-        block.overrun_count = overruns_;
-        block.dropped_scan_count = ring_.dropped_scan_count();
-        ring_.push(block);
-        news_.release();
+        hand_over(block);
         break;
       case daq::ReadStatus::kTimeout:
+        tell();
         break;
       case daq::ReadStatus::kOverrun:
         ++overruns_;

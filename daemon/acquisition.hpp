@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
-#include <semaphore>
 #include <string>
 #include <thread>
 
@@ -13,8 +12,16 @@
 #include "core/daq/board.hpp"
 #include "core/daq/scan_ring.hpp"
 #include "daemon/realtime.hpp"
+#include "daemon/semaphore.hpp"
 
 namespace stickslip::daemon {
+
+/// What becomes of a block that finds the ring full.
+enum class FullRing : std::uint8_t {
+  kDrop,  ///< Dropped and counted: a board does not wait for its computer.
+  kWait,  ///< The thread waits. Only where the scans wait as well: simulated or replayed, and not in real
+          ///< time.
+};
 
 /// Between start and end its thread never allocates, locks, logs or formats.
 class Acquisition {
@@ -23,7 +30,8 @@ class Acquisition {
   enum class End : std::uint8_t { kStopped, kEndOfInput, kBoardMissing, kFailed };
 
   /// Board and ring must outlive this object.
-  Acquisition(daq::Board& board, daq::ScanRing& ring, RealtimeSettings realtime);
+  Acquisition(daq::Board& board, daq::ScanRing& ring, RealtimeSettings realtime,
+              FullRing full_ring = FullRing::kDrop);
   /// Stops and waits for the thread.
   ~Acquisition();
   Acquisition(const Acquisition&) = delete;
@@ -32,12 +40,21 @@ class Acquisition {
   /// Starts the board, then the thread. Once. Errors: those of the board.
   [[nodiscard]] base::Result<void> start();
   /// Any thread; the thread ends within one read timeout.
-  void request_stop() noexcept { stop_requested_.store(true, std::memory_order_relaxed); }
+  void request_stop() noexcept {
+    stop_requested_.store(true, std::memory_order_relaxed);
+    made_room();
+  }
 
-  /// Consumer: blocks until there is a block in the ring, the thread has ended, or somebody called wake().
+  /// Consumer: waits until there are blocks in the ring, the oldest at most 4 ms older than the latest, or
+  /// the thread has ended; or somebody called wake().
   void wait() noexcept { news_.acquire(); }
   /// Any thread.
   void wake() noexcept { news_.release(); }
+  /// Consumer: blocks were taken out of the ring. Needed with FullRing::kWait only.
+  void made_room() noexcept {
+    room_made_.fetch_add(1, std::memory_order_release);
+    room_made_.notify_one();
+  }
   /// Once set, all blocks are in the ring: whoever sees it and then empties the ring has them all.
   [[nodiscard]] std::optional<End> ended() const noexcept;
 
@@ -46,6 +63,9 @@ class Acquisition {
 
  private:
   void run() noexcept;
+  void hand_over(daq::ScanBlock& block) noexcept;
+  void wait_for_room() noexcept;
+  void tell() noexcept;
   [[nodiscard]] End read_to_the_end() noexcept;
 
   static constexpr std::uint8_t kRunning = 0xFF;
@@ -53,12 +73,17 @@ class Acquisition {
   daq::Board& board_;
   daq::ScanRing& ring_;
   RealtimeSettings realtime_;
+  FullRing full_ring_;
   std::string scheduling_;
   std::atomic<bool> stop_requested_{false};
   std::atomic<std::uint8_t> end_{kRunning};
-  std::uint64_t overruns_ = 0;  ///< Of the thread: blocks carry it.
-  std::counting_semaphore<> news_{0};
-  std::binary_semaphore started_{0};
+  // Of the thread.
+  std::uint64_t overruns_ = 0;  ///< Blocks carry it.
+  bool untold_ = false;         ///< There are blocks in the ring that the consumer was not woken for.
+  std::int64_t told_ns_ = 0;    ///< Stamp of the latest block that it was woken for.
+  Semaphore news_;
+  std::atomic<std::uint32_t> room_made_{0};  ///< Times; also counted when the thread is to stop.
+  Semaphore started_;
   std::thread thread_;
 };
 

@@ -125,10 +125,12 @@ base::Result<void> App::open_session() {
   const base::Result<SessionSettings> made = session_settings(config_, *board, continues_);
   if (!made) return tl::unexpected(made.error());
   const SessionSettings& settings = *made;
+  std::vector<std::string> remarks;
   if (config_.board.driver != drivers::Driver::kReplay) {
     const auto verdict = check_sampling(config_, settings);
     if (!verdict) return tl::unexpected(verdict.error());
     world_.facts->sampling_checked(*verdict);
+    if (!verdict->reason.empty()) remarks.push_back("sampling: " + verdict->reason);
   }
 
   if (expired(settings.calibration, record::iso_time(clock_->realtime_ns()))) {
@@ -162,7 +164,8 @@ base::Result<void> App::open_session() {
   }
   watcher_.use(truth_.get());
   live_.feed().use(settings.processor.analysis.scan_rate_Hz, config_.clock_speed);
-  storage_.use(record_header(config_, settings, session_->board_info(), realtime_facts()), truth_.get());
+  storage_.use(record_header(config_, settings, session_->board_info(), realtime_facts()), truth_.get(),
+               std::move(remarks));
   session_->start_processing();
   return {};
 }
@@ -262,13 +265,14 @@ App::State App::waiting_state(base::ErrorKind kind) noexcept {
 }
 
 std::string App::status_line() const {
-  const DiskState disk = storage_.disk();
+  const StorageState storage = storage_.state();
   std::string line = state_line();
-  if (disk.trouble) {
-    line +=
-        fmt::format("; the disk refuses, {} kB wait in memory: {}", disk.waiting_size / 1000, *disk.trouble);
-  } else if (disk.room_h && *disk.room_h < kTellRoom_h) {
-    line += fmt::format("; room on the disk for {:.0f} h", *disk.room_h);
+  if (storage.kind == StorageState::Kind::kWaiting) {
+    line += "; " + storage.why;
+  } else if (storage.kind == StorageState::Kind::kShort) {
+    line += fmt::format("; storage short: {}; {}", storage.why, storage.to_do);
+  } else if (storage.room_h && *storage.room_h < kTellRoom_h) {
+    line += fmt::format("; room on the disk for {:.0f} h", *storage.room_h);
   }
   return line;
 }
@@ -313,13 +317,12 @@ Status App::status() const {
   if (config_.clock_speed == 1.0) status.scan_rate_measured = clocks.scan_rate;
   status.latency = clocks.latency;
   status.storage_stall_count = storage_.stall_count();
+  status.storage = storage_.state();
+  if (state_ == State::kAcquiring && status.storage.kind != StorageState::Kind::kOk)
+    status.state = fmt::format("storage {}", daemon::name(status.storage.kind));
   status.test_count = tests_.test_count();
   status.current_test = current_test_;
   status.latest_test = tests_.latest();
-  DiskState disk = storage_.disk();
-  status.disk_room_h = disk.room_h;
-  status.disk_trouble = std::move(disk.trouble);
-  status.disk_waiting_size = disk.waiting_size;
   status.live_client_count = static_cast<std::int64_t>(live_.hub().client_count());
   status.live_dropped_count = live_.hub().dropped_count() + live_.lost_count();
   return status;

@@ -76,6 +76,15 @@ void BenchDesk::set_plan(Plan plan) {
 }
 
 void BenchDesk::command(Command command, std::function<void(const Outcome&)> answer) {
+  if (command.kind == Command::Kind::kArm || command.kind == Command::Kind::kStart) {
+    if (auto why = why_no_test(parts_.storage.state())) {
+      Outcome refused;
+      refused.report.refusal = *std::move(why);
+      refused.report.state = parts_.status().bench;
+      answer(refused);
+      return;
+    }
+  }
   Session* const session = parts_.session();
   const bool posted =
       session != nullptr && session->post([this, command, answer](pipeline::Processor& processor) {

@@ -7,10 +7,11 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <semaphore>
 #include <utility>
 
 #include <boost/lockfree/spsc_queue.hpp>
+
+#include "daemon/semaphore.hpp"
 
 namespace stickslip::daemon {
 
@@ -19,7 +20,7 @@ template <typename T>
 class BoundedQueue {
  public:
   explicit BoundedQueue(std::size_t capacity)
-      : queue_(capacity), free_slots_(static_cast<std::ptrdiff_t>(capacity)) {}
+      : queue_(capacity), free_slots_(static_cast<unsigned>(capacity)) {}
 
   /// Producer only; waits for room.
   void push(const T& item) {
@@ -45,8 +46,8 @@ class BoundedQueue {
 
  private:
   boost::lockfree::spsc_queue<T> queue_;
-  std::counting_semaphore<> free_slots_;
-  std::counting_semaphore<> items_{0};
+  Semaphore free_slots_;
+  Semaphore items_;
   std::atomic<std::uint64_t> stalls_{0};
 };
 

@@ -14,6 +14,7 @@ namespace {
 /// 90 minutes of 16-bit counts at 350 scans/s, and the record of a short test.
 constexpr std::int64_t kBallast = std::int64_t{4} << 20U;
 constexpr double kSecondsPerHour = 3600.0;
+constexpr double kSecondsPerMinute = 60.0;
 
 }  // namespace
 
@@ -167,13 +168,18 @@ std::optional<std::string> DiskWriter::write(const Job& job, bool sync) {
 void DiskWriter::tell(std::optional<std::string> trouble) {
   DiskState state;
   state.trouble = std::move(trouble);
-  if (const auto room = room_s()) state.room_h = std::floor(*room / kSecondsPerHour);
+  const auto room = room_s();
+  if (room) {
+    const double unit_s = *room < kSecondsPerHour ? kSecondsPerMinute : kSecondsPerHour;
+    state.room_h = std::floor(*room / unit_s) * unit_s / kSecondsPerHour;
+  }
   bool news = false;
   {
     const std::lock_guard lock{mutex_};
     if (state.trouble) {
       for (const Job& job : jobs_) state.waiting_size += job.journal->waiting_size();
     }
+    state.is_short = room && *room < (state_.is_short ? kRoomAgain_s : kLeastRoom_s);
     news = !(state == state_);
     state_ = state;
   }

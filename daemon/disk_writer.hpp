@@ -17,11 +17,18 @@
 
 namespace stickslip::daemon {
 
+/// No test of the tester lasts longer.
+inline constexpr double kLeastRoom_s = 600.0;
+/// When there is room again, so that a disk at the limit does not change its state each second.
+inline constexpr double kRoomAgain_s = 1.25 * kLeastRoom_s;
+
 /// How it is with the disk.
 struct DiskState {
   std::optional<std::string> trouble;  ///< Why something waits in memory; nothing if all is written.
   std::size_t waiting_size = 0;        ///< Bytes in memory then.
-  std::optional<double> room_h;        ///< For how long there is room at least, scanning all the time.
+  /// For how long there is room at least, scanning all the time: whole hours, below one whole minutes.
+  std::optional<double> room_h;
+  bool is_short = false;  ///< Room for less than kLeastRoom_s, and since then for no more than kRoomAgain_s.
 
   bool operator==(const DiskState&) const = default;
 };

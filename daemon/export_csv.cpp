@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <optional>
 #include <string_view>
 
 #include "core/daq/calibration.hpp"
+#include "core/daq/second_channel.hpp"
 #include "core/friction/results.hpp"
 #include "core/record/fields.hpp"
 #include "core/record/iso_time.hpp"
@@ -17,6 +19,10 @@ namespace stickslip::daemon {
 namespace {
 
 using record::FieldName;
+
+constexpr std::string_view unit(daq::SecondQuantity quantity) noexcept {
+  return quantity == daq::SecondQuantity::kPullSpeed ? "m/s" : "m";
+}
 
 /// One fact, on one line whatever is in it.
 void add_fact(std::string& text, std::string_view name, std::string_view value, std::string_view unit = "") {
@@ -61,6 +67,12 @@ std::string facts_text(const record::Record& record) {
   line(FieldName{"scan_rate_granted", "Hz", ""}, header.board.scan_rate_granted_Hz);
   if (header.load_cell) record::for_each_field(*header.load_cell, line);
   if (header.load_cell) add_fact(text, "calibrated", header.calibration.date);
+  if (header.board.second) {
+    const daq::SecondChannel& second = *header.board.second;
+    add_fact(text, fmt::format("{}_gain", daq::name(second.quantity)), fmt::format("{}", second.gain_per_V),
+             fmt::format("{}/V", unit(second.quantity)));
+    add_fact(text, fmt::format("{}_zero", daq::name(second.quantity)), fmt::format("{}", second.zero_V), "V");
+  }
   record::for_each_field(header.tester, line);
   for (const auto& [name, value] : {std::pair{"sample", &header.sample.name},
                                     {"grade", &header.sample.grade},
@@ -103,6 +115,18 @@ std::string field_text(T value) {
   }
 }
 
+/// ",pull_speed_counts,pull_speed_m_per_s"
+std::string second_columns(const daq::SecondChannel& channel) {
+  const std::string_view name = daq::name(channel.quantity);
+  return fmt::format(",{0}_counts,{0}{1}", name, unit_suffix(unit(channel.quantity)));
+}
+
+/// A code that did not arrive leaves both fields empty.
+void add_second(std::string& text, const daq::SecondChannel& channel, std::int32_t code) {
+  text += code == daq::SecondChannel::kNoCode ? "," : fmt::format(",{}", code);
+  text += "," + field_text(channel.value(code));
+}
+
 }  // namespace
 
 std::string scans_csv(const record::Record& record) {
@@ -124,6 +148,7 @@ std::string scans_csv(const record::Record& record) {
   if (volts) text += ",voltage_V";
   if (force) text += ",force_N";
   if (coefficient) text += ",coefficient";
+  if (!record.second.empty()) text += second_columns(*board.second);
   text += ",spike,saturated\n";
   auto spike = record.spikes.begin();
   const auto out = std::back_inserter(text);
@@ -135,6 +160,7 @@ std::string scans_csv(const record::Record& record) {
     if (volts) fmt::format_to(out, ",{}", calibration.volts(raw));
     if (force) fmt::format_to(out, ",{}", calibration.force_N(raw));
     if (coefficient) fmt::format_to(out, ",{}", calibration.coefficient(raw));
+    if (!record.second.empty()) add_second(text, *board.second, record.second[i]);
     while (spike != record.spikes.end() && *spike < record.scan[i]) ++spike;
     const bool is_spike = spike != record.spikes.end() && *spike == record.scan[i];
     fmt::format_to(out, ",{:d},{:d}\n", is_spike, calibration.saturated(raw));

@@ -36,6 +36,9 @@ class Facts {
   virtual void storage_waits(std::string_view /*why*/) {}
   /// All that waited is written.
   virtual void storage_resumed() {}
+  /// There is room for so few tests that none should be begun.
+  virtual void storage_short(std::string_view /*why*/) {}
+  virtual void storage_has_room() {}
   /// A test begins, and there is room for so long only.
   virtual void little_room(std::int64_t /*test*/, double /*room_s*/) {}
   virtual void orphan_finalised(const std::filesystem::path& /*file*/) {}

@@ -105,6 +105,8 @@ class Log final : public Facts {
     logger_.error("the disk refuses, scans wait in memory: {}", why);
   }
   void storage_resumed() override { logger_.warn("the disk takes again: all that waited is written"); }
+  void storage_short(std::string_view why) override { logger_.error("{}", why); }
+  void storage_has_room() override { logger_.warn("storage: there is room for tests again"); }
   void little_room(std::int64_t test, double room_s) override {
     logger_.error("test {} begins with room on the disk for {:.0f} s", test, room_s);
   }

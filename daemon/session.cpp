@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "core/base/contract.hpp"
+
 namespace stickslip::daemon {
 namespace {
 
@@ -33,10 +35,14 @@ Session::Session(drivers::OpenedBoard board, const SessionSettings& settings,
       events_(std::move(events)),
       ring_(daq::ScanRing::capacity_for(board_.board->info().scan_rate_granted_Hz * settings.clock_speed)),
       processor_(settings.processor, calibration_of(board_, settings), std::move(sinks)),
-      acquisition_(*board_.board, ring_, settings.realtime),
+      acquisition_(*board_.board, ring_, settings.realtime, settings.full_ring),
       counts_(counts),
       bench_(processor_.bench()),
-      continues_(settings.processor.continues_at.has_value()) {}
+      full_ring_(settings.full_ring),
+      continues_(settings.processor.continues_at.has_value()) {
+  STICKSLIP_EXPECTS(full_ring_ == FullRing::kDrop || !settings.processor.clock_is_real);
+  if (settings.clock_speed == 1.0) ring_.touch();
+}
 
 Session::~Session() {
   acquisition_.request_stop();
@@ -56,6 +62,7 @@ void Session::process() {
     // Asked before the ring is emptied: then nothing can come after.
     const std::optional<Acquisition::End> ended = acquisition_.ended();
     while (const std::size_t count = ring_.pop(blocks.data(), blocks.size())) {
+      if (full_ring_ == FullRing::kWait) acquisition_.made_room();
       for (std::size_t i = 0; i < count; ++i) process_block(blocks[i]);
     }
     // Commands belong behind the scans that were there before them.

@@ -28,6 +28,8 @@ struct SessionSettings {
   std::string characterisation;  ///< Where processor.analysis.prior comes from, for the records; empty: none.
   RealtimeSettings realtime{0, {}, false};
   double clock_speed = 1.0;  ///< Board time over wall time: the ring bridges wall time.
+  /// kWait needs a source that can wait, and so processor.clock_is_real = false.
+  FullRing full_ring = FullRing::kDrop;
 };
 
 /// Where a session left the index, for the next one.
@@ -124,6 +126,7 @@ class Session {
   std::mutex jobs_mutex_;
   std::deque<Job> jobs_;  ///< At most kMostJobs.
   bool jobs_closed_ = false;
+  FullRing full_ring_;
   bool any_scan_ = false;
   bool continues_;  ///< After another session: the gap before the first scan is that of a missing board.
   std::thread thread_;

@@ -33,8 +33,10 @@ constexpr std::size_t kForceEntry = 4096;
 constexpr double kLongestWait_s = 600.0;
 /// Heads of ten entries, two clock readings and twenty cycles as JSON of 400 bytes.
 constexpr double kOtherBytesPerSecond = 9000.0;
-/// A test that begins with less room is told of: no test of the tester lasts longer.
-constexpr double kLeastRoom_s = 600.0;
+
+std::size_t scans_in_entry(const daq::BoardInfo& board) {
+  return static_cast<std::size_t>(std::max(1.0, std::floor(board.scan_rate_granted_Hz * kEntry_s)));
+}
 
 double encoded_size(const daq::BoardInfo& board) {
   if (board.quantity != daq::RawQuantity::kCounts) return sizeof(double);
@@ -92,7 +94,7 @@ Storage::Storage(StorageSettings settings, Finalise finalise, TestLog& tests, Fa
                   record_made(test, file);
                 }),
       disk_(
-          {.folder = settings_.folder, .calls = settings_.calls},
+          {.folder = settings_.folder, .sync_period = settings_.sync_period, .calls = settings_.calls},
           [this](std::int64_t test, const std::filesystem::path& journal,
                  const std::optional<std::string>& why_not) { journal_ended(test, journal, why_not); },
           [this](const DiskState& state) { disk_changed(state); }),
@@ -100,10 +102,12 @@ Storage::Storage(StorageSettings settings, Finalise finalise, TestLog& tests, Fa
 
 Storage::~Storage() { stop(); }
 
-void Storage::use(record::RecordHeader header, const friction::TruthSource* truth) {
+void Storage::use(record::RecordHeader header, const friction::TruthSource* truth,
+                  std::vector<std::string> remarks) {
   disk_.set_load(header.board.scan_rate_granted_Hz * bytes_per_scan(header.board) + kOtherBytesPerSecond);
   header_ = std::make_shared<const record::RecordHeader>(std::move(header));
   truth_ = truth;
+  remarks_ = std::move(remarks);
 }
 
 void Storage::amend(const std::function<void(record::RecordHeader&)>& change) {
@@ -125,37 +129,60 @@ void Storage::stop() {
 
 void Storage::test_began(const pipeline::TestStart& start) {
   first_ = start.first;
-  queue_.push(Began{start, header_});
+  collected_.count = 0;
+  // The queue is told of an entry, not of each scan.
+  collected_enough_ = std::min(scans_in_entry(header_->board), daq::ScanBlock::kMaxScans);
+  queue_.push(Began{start, header_, remarks_});
 }
 
 void Storage::scans(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second,
                     const daq::ClockStamp& stamp) {
   while (!raw.empty()) {
-    daq::ScanBlock block;
-    block.first = first;
-    block.stamp = stamp;
-    block.count = static_cast<std::uint32_t>(std::min(raw.size(), daq::ScanBlock::kMaxScans));
-    std::copy_n(raw.begin(), block.count, block.raw.begin());
-    block.has_second = !second.empty();
-    if (block.has_second) {
-      std::copy_n(second.begin(), block.count, block.second.begin());
-      second = second.subspan(block.count);
+    if (collected_.count > 0 && collected_.end() != first) hand_over_collected();
+    if (collected_.count == 0) collected_.first = first;
+    const std::size_t count = std::min(raw.size(), daq::ScanBlock::kMaxScans - collected_.count);
+    std::copy_n(raw.begin(), count, collected_.raw.begin() + collected_.count);
+    raw = raw.subspan(count);
+    collected_.has_second = !second.empty();
+    if (collected_.has_second) {
+      std::copy_n(second.begin(), count, collected_.second.begin() + collected_.count);
+      second = second.subspan(count);
     }
-    queue_.push(block);
-    first = block.end();
-    raw = raw.subspan(block.count);
+    collected_.stamp = stamp;
+    collected_.count += static_cast<std::uint32_t>(count);
+    first = collected_.end();
+    if (collected_.count >= collected_enough_) hand_over_collected();
   }
 }
 
-void Storage::gap(const daq::Gap& gap) { queue_.push(gap); }
+void Storage::hand_over_collected() {
+  if (collected_.count == 0) return;
+  queue_.push(collected_);
+  collected_.count = 0;
+}
 
-void Storage::anchor(const daq::ClockAnchor& anchor) { queue_.push(anchor); }
+void Storage::gap(const daq::Gap& gap) {
+  hand_over_collected();
+  queue_.push(gap);
+}
 
-void Storage::cycle(const friction::Cycle& cycle) { queue_.push(cycle); }
+void Storage::anchor(const daq::ClockAnchor& anchor) {
+  hand_over_collected();
+  queue_.push(anchor);
+}
 
-void Storage::note(const daq::Note& note) { queue_.push(note); }
+void Storage::cycle(const friction::Cycle& cycle) {
+  hand_over_collected();
+  queue_.push(cycle);
+}
+
+void Storage::note(const daq::Note& note) {
+  hand_over_collected();
+  queue_.push(note);
+}
 
 void Storage::test_ended(const pipeline::TestEnd& end) {
+  hand_over_collected();
   auto record = std::make_shared<record::EndRecord>();
   record->cause = pipeline::name(end.cause);
   record->results = end.results;
@@ -193,9 +220,9 @@ void Storage::run() {
   }
 }
 
-void Storage::check_room(const record::RecordHeader& header) {
+std::optional<double> Storage::little_room_s() const {
   const std::optional<double> room_s = disk_.room_s();
-  if (room_s && *room_s < kLeastRoom_s) facts_.little_room(header.test_number.value_or(0), *room_s);
+  return room_s && *room_s < kLeastRoom_s ? room_s : std::nullopt;
 }
 
 void Storage::handle(const Began& message) {
@@ -210,9 +237,10 @@ void Storage::handle(const Began& message) {
   header.title = fmt::format("test {}", message.start.number);
   if (message.start.self_check) header.self_check = *message.start.self_check;
   const std::string expires = header.calibration.expires;
-  check_room(header);
+  const std::optional<double> little_s = little_room_s();
+  if (little_s) facts_.little_room(number_, *little_s);
   const double rate_Hz = header.board.scan_rate_granted_Hz;
-  pending_enough_ = static_cast<std::size_t>(std::max(1.0, std::floor(rate_Hz * kEntry_s)));
+  pending_enough_ = scans_in_entry(header.board);
   const auto memory = static_cast<std::size_t>(kLongestWait_s *
                                                (rate_Hz * encoded_size(header.board) + kOtherBytesPerSecond));
   const std::size_t others = disk_.waiting_size();
@@ -225,9 +253,11 @@ void Storage::handle(const Began& message) {
     note_event(start.trigger, start.stamp.realtime_ns, std::move(text));
   };
   event(start.by_command ? "test began: somebody started it" : "test began: the force crossed the trigger");
+  for (const std::string& remark : message.remarks) event(remark);
   if (!expires.empty() && record::iso_time(start.stamp.realtime_ns) >= expires) {
     event(fmt::format("the calibration of the load cell expired on {}", expires));
   }
+  if (little_s) event(fmt::format("storage short: room on the disk for {:.0f} s of tests", *little_s));
   if (start.self_check) {
     for (const std::string& finding : start.self_check->findings) event("self-check: " + finding);
   }
@@ -332,6 +362,11 @@ void Storage::disk_changed(const DiskState& state) {
   if (state.trouble && !waits_) facts_.storage_waits(*state.trouble);
   if (!state.trouble && waits_) facts_.storage_resumed();
   waits_ = state.trouble.has_value();
+  if (state.is_short && !is_short_) {
+    facts_.storage_short(why_no_test(storage_state(state, settings_.folder)).value_or(""));
+  }
+  if (!state.is_short && is_short_) facts_.storage_has_room();
+  is_short_ = state.is_short;
   if (changed_) changed_();
 }
 

@@ -3,6 +3,7 @@
 /// disk: that is the disk thread's (disk_writer.hpp) and the finisher's.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -22,6 +23,7 @@
 #include "daemon/facts.hpp"
 #include "daemon/finisher.hpp"
 #include "daemon/recovery.hpp"
+#include "daemon/storage_state.hpp"
 #include "daemon/test_log.hpp"
 
 namespace stickslip::daemon {
@@ -30,6 +32,7 @@ struct StorageSettings {
   std::filesystem::path folder;  ///< Made if absent, before the first test.
   DatedFolders dated_folders = DatedFolders::kNone;
   const record::FileCalls* calls = &record::system_calls();
+  std::chrono::milliseconds sync_period{1000};  ///< As that of DiskWriter.
 };
 
 /// The record sink. As a sink it is bound to the processing thread. What the disk does not take at once waits
@@ -47,7 +50,9 @@ class Storage final : public pipeline::Sink {
 
   /// What the records of the coming tests say about board, tester and program.
   /// Only while no test can arrive: before a session starts.
-  void use(record::RecordHeader header, const friction::TruthSource* truth);
+  /// \param remarks  an event each, in every record.
+  void use(record::RecordHeader header, const friction::TruthSource* truth,
+           std::vector<std::string> remarks = {});
 
   /// What the records of the coming tests say otherwise, of those that begin after this.
   /// On the processing thread, or while no test can arrive.
@@ -58,6 +63,8 @@ class Storage final : public pipeline::Sink {
 
   /// How it is with the disk. Any thread.
   [[nodiscard]] DiskState disk() const { return disk_.state(); }
+  /// The same for people and for those who begin tests, at most a second old. Any thread.
+  [[nodiscard]] StorageState state() const { return storage_state(disk_.state(), settings_.folder); }
   /// Times the processing thread had to wait. Any thread.
   [[nodiscard]] std::uint64_t stall_count() const noexcept { return queue_.stall_count(); }
 
@@ -74,6 +81,7 @@ class Storage final : public pipeline::Sink {
   struct Began {
     pipeline::TestStart start;
     std::shared_ptr<const record::RecordHeader> header;
+    std::vector<std::string> remarks;
   };
   struct Ended {
     std::shared_ptr<const record::EndRecord> end;
@@ -87,6 +95,9 @@ class Storage final : public pipeline::Sink {
   struct Quit {};
   using Message = std::variant<Quit, Began, daq::ScanBlock, daq::Gap, daq::ClockAnchor, friction::Cycle,
                                daq::Note, Ended>;
+
+  // The processing thread's side.
+  void hand_over_collected();
 
   // The storage thread's side.
   void run();
@@ -102,7 +113,8 @@ class Storage final : public pipeline::Sink {
   void note_event(daq::ScanIndex scan, std::int64_t realtime_ns, std::string text);
   /// The noise-free force of the scans that are in the journal.
   void append_force(friction::TrueForce& force);
-  void check_room(const record::RecordHeader& header);
+  /// For how long there is room, if that is too short for a test.
+  [[nodiscard]] std::optional<double> little_room_s() const;
   void journal_ended(std::int64_t test, const std::filesystem::path& journal,
                      const std::optional<std::string>& why_not);
   void record_made(std::int64_t test, const base::Result<std::filesystem::path>& file);
@@ -112,8 +124,11 @@ class Storage final : public pipeline::Sink {
   TestLog& tests_;
   Facts& facts_;
   std::shared_ptr<const record::RecordHeader> header_;  ///< Processing thread.
+  std::vector<std::string> remarks_;                    ///< Processing thread.
   const friction::TruthSource* truth_ = nullptr;        ///< Processing thread.
   daq::ScanIndex first_ = 0;                            ///< Processing thread.
+  daq::ScanBlock collected_;          ///< Processing thread: scans that the queue has not got yet.
+  std::size_t collected_enough_ = 1;  ///< Processing thread: to hand them over.
   BoundedQueue<Message> queue_;
 
   std::int64_t number_ = 0;
@@ -124,10 +139,11 @@ class Storage final : public pipeline::Sink {
   daq::ScanIndex pending_first_ = 0;
   daq::ClockStamp pending_stamp_;
   std::vector<Stretch> recorded_;   ///< All of them.
-  std::size_t pending_enough_ = 1;  ///< Scans in one journal entry.
+  std::size_t pending_enough_ = 1;  ///< scans_in_entry().
   std::function<void()> changed_;
-  bool waits_ = false;  ///< Disk thread: as it was told last.
-  Finisher finisher_;   ///< Outlives the disk thread, which hands over to it.
+  bool waits_ = false;  ///< Disk thread: as it was told last, as the next.
+  bool is_short_ = false;
+  Finisher finisher_;  ///< Outlives the disk thread, which hands over to it.
   DiskWriter disk_;
   std::thread thread_;
 };

@@ -27,6 +27,18 @@ class ScanRing {
     return static_cast<std::size_t>(bridge_s * (kReadsPerSecond + full_blocks_per_second)) + 1;
   }
 
+  /// Writes every page once, so that the producer's first round through the ring takes no page faults.
+  /// Before there is a producer or a consumer.
+  void touch() {
+    const ScanBlock block;
+    while (queue_.push(block)) {
+    }
+    queue_.reset();
+  }
+
+  /// Any thread; for the producer, true holds until its next push().
+  [[nodiscard]] bool has_room() const noexcept { return queue_.write_available() > 0; }
+
   /// Producer only. \return false if the block was dropped.
   bool push(const ScanBlock& block) noexcept {
     if (queue_.push(block)) return true;

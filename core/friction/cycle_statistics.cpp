@@ -17,8 +17,9 @@ namespace {
 
 constexpr std::size_t kFewestPeriods = 3;
 /// Probability with which a test without drift is taken to have one. It costs little: a slope that is not
-/// there turns K about the middle of the test by its own error.
-constexpr double kDriftLevel = 0.001;
+/// there turns K about the middle of the test by its own error; one that is there and stays in makes a short
+/// ring-down look as if its first slip had been captured.
+constexpr double kDriftLevel = 0.01;
 
 /// From one peak to the next, without a break between.
 std::size_t whole_cycles(const Trace& trace, const base::LongColumn<Fall>& slips) {

@@ -5,16 +5,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
 #include "core/friction/cycle_statistics.hpp"
 #include "core/friction/model_results.hpp"
 #include "core/friction/regime_rule.hpp"
+#include "core/friction/sampling.hpp"
 #include "core/friction/sections.hpp"
 #include "core/friction/slip_list.hpp"
 #include "core/friction/traditional.hpp"
 #include "core/signal/statistics.hpp"
+#include "core/signal/whiteness.hpp"
 
 namespace stickslip::friction {
 namespace {
@@ -31,13 +34,19 @@ double noise_floor(const base::LongColumn<double>& values, double step_coefficie
       {signal::kRoundingSigma * step, kSmallestRelativeNoise * largest, std::numeric_limits<double>::min()});
 }
 
-/// S − K of the cycle as the live side found it; NaN where it saw none there.
-/// \param next  where to look on, from cycle to cycle.
-void take_live_estimate(const base::LongColumn<LiveCycle>& live, std::size_t& next, Cycle& cycle) {
+/// What the live side said of the cycle; nothing where it saw none there.
+/// \param next  where to look on, from cycle to cycle. \param with_delta_mu  S − K too.
+void take_live_facts(const base::LongColumn<Cycle>& live, std::size_t& next, bool with_delta_mu,
+                     Cycle& cycle) {
   const double half_s = 0.5 * (std::isnan(cycle.period_s) ? 1.0 : cycle.period_s);
-  while (next < live.size() && live[next].cycle.peak_time_s < cycle.peak_time_s - half_s) ++next;
-  const bool found = next < live.size() && live[next].cycle.peak_time_s < cycle.peak_time_s + half_s;
-  cycle.delta_mu = found ? live[next].cycle.delta_mu : std::numeric_limits<double>::quiet_NaN();
+  while (next < live.size() && live[next].peak_time_s < cycle.peak_time_s - half_s) ++next;
+  const bool found = next < live.size() && live[next].peak_time_s < cycle.peak_time_s + half_s;
+  if (found) {
+    cycle.live_capture_evidence = live[next].live_capture_evidence;
+    cycle.live_decision_time_s = live[next].live_decision_time_s;
+  }
+  if (!with_delta_mu) return;
+  cycle.delta_mu = found ? live[next].delta_mu : std::numeric_limits<double>::quiet_NaN();
   cycle.delta_mu_standard_error = std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -56,6 +65,10 @@ base::LongColumn<Fall> find_slips(const Trace& trace, double sigma, const std::f
   return kept_slips(std::move(slips), scratch);
 }
 
+constexpr const char* kHiddenOscillation =
+    "no fall stands out of the noise, but the noise is not white: hum, or an oscillation of fewer than nine "
+    "scans a cycle; scan more often";
+
 /// What the model has found, beside what needs no model.
 void take_model_results(const TestResults& model, TestResults& results) {
   std::vector<const Estimate*> from;
@@ -65,6 +78,19 @@ void take_model_results(const TestResults& model, TestResults& results) {
     const Estimate& found = *from[i++];
     if (found.value || !found.reason.empty()) estimate = found;
   });
+}
+
+/// Scans too few for the oscillation that was found.
+std::optional<std::string> sampling_finding(double scan_rate_Hz, const TestResults& results) {
+  const Estimate& cycles_Hz = results.oscillation_frequency;
+  if (!results.omega.value && !cycles_Hz.value) return std::nullopt;
+  const double frequency_Hz =
+      results.omega.value ? *results.omega.value / (2.0 * std::numbers::pi) : *cycles_Hz.value;
+  const double scans = scan_rate_Hz / frequency_Hz;
+  if (scans >= kFewScansACycle) return std::nullopt;
+  return fmt::format(
+      "{:.2g} scans a cycle of {:.3g} Hz: peaks are missed, and perhaps slips; {:.0f} scans/s or more", scans,
+      frequency_Hz, std::ceil(kFewScansACycle * frequency_Hz));
 }
 
 /// A stub of a test: without the noise there is no telling what is a slip.
@@ -115,10 +141,14 @@ void TestAnalysis::add(base::ScanIndex index, double coefficient, bool saturated
 
 void TestAnalysis::keep_live(const LiveCycle& cycle) {
   new_cycles_.push_back(cycle.cycle);
-  new_cycles_.back().first_scan += indices_.front();
-  if (settings_.estimator == EstimatorTier::kFit) return;
-  means_.add(cycle);
-  live_cycles_.push_back(cycle);
+  Cycle& kept = new_cycles_.back();
+  kept.first_scan += indices_.front();
+  if (std::isfinite(cycle.decided_time_s)) {
+    kept.live_capture_evidence = cycle.evidence;
+    kept.live_decision_time_s = cycle.decided_time_s;
+  }
+  live_cycles_.push_back(kept);
+  if (settings_.estimator != EstimatorTier::kFit) means_.add(cycle);
 }
 
 void TestAnalysis::end_live() {
@@ -167,6 +197,11 @@ TestResults TestAnalysis::finish() {
     results.regime = verdict.regime;
     results.regime_reason = verdict.reason;
     results.stick_cycle_count = Estimate::of(0.0);
+    if (signal::hides_an_oscillation(trace.value, noise_floor(trace.value, settings_.step_coefficient))) {
+      results.regime = Regime::kUndecided;
+      results.regime_reason = kHiddenOscillation;
+      results.cycle_count = results.stick_cycle_count = Estimate::none(kHiddenOscillation);
+    }
     no_model_results("no slip", results);
   } else {
     // Where the speed changes, the mean of a cycle does so too, without any drift of the paper.
@@ -187,9 +222,11 @@ TestResults TestAnalysis::finish() {
       const Fall slip = std::as_const(slips)[*verdict.transition_slip];
       results.transition_time = Estimate::of(time_at(trace, slip.peak_at));
     }
-    keep_cycles(estimates.cycles, slips);
+    keep_cycles(estimates, slips);
   }
   period_results(trace, slips, results);
+  if (auto finding = sampling_finding(settings_.scan_rate_Hz, results))
+    results.findings.push_back(*std::move(finding));
   results.drift_rate = drift_of(trace, slips);
   return results;
 }
@@ -265,7 +302,9 @@ void TestAnalysis::speed_results(const Trace& trace, const TestEstimates& estima
   }
 }
 
-void TestAnalysis::keep_cycles(const base::LongColumn<Cycle>& cycles, const base::LongColumn<Fall>& slips) {
+void TestAnalysis::keep_cycles(const TestEstimates& estimates, const base::LongColumn<Fall>& slips) {
+  const base::LongColumn<Cycle>& cycles = estimates.cycles;
+  const base::LongColumn<double>& log_likelihood_ratios = estimates.log_likelihood_ratios;
   const base::LongColumn<base::ScanIndex>& indices = indices_;
   const base::LongColumn<std::uint8_t>& saturated = saturated_;
   cycles_ = base::LongColumn<Cycle>{settings_.scratch_folder};
@@ -292,7 +331,9 @@ void TestAnalysis::keep_cycles(const base::LongColumn<Cycle>& cycles, const base
     if (measured_speed_ && std::isnan(cycle.pull_speed_m_per_s) && std::isfinite(cycle.onset_time_s)) {
       cycle.pull_speed_m_per_s = measured_speed_->speed_m_per_s(cycle.onset_time_s);
     }
-    if (settings_.estimator != EstimatorTier::kFit) take_live_estimate(live_cycles_, live, cycle);
+    if (i < log_likelihood_ratios.size() && log_likelihood_ratios[i] != 0.0)
+      cycle.capture_evidence = log_likelihood_ratios[i];
+    take_live_facts(live_cycles_, live, settings_.estimator != EstimatorTier::kFit, cycle);
     cycles_.push_back(cycle);
   }
 }

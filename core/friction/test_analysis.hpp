@@ -48,7 +48,7 @@ struct AnalysisSettings {
   std::optional<double> speed_step_m_per_s;
 };
 
-/// Thread-bound. Memory grows with the test by about 34 bytes a scan and 0.2 kB a slip; with a scratch folder
+/// Thread-bound. Memory grows with the test by about 34 bytes a scan and 0.4 kB a slip; with a scratch folder
 /// it does not, but for 8 bytes of each spike, and all functions may throw std::system_error.
 class TestAnalysis {
  public:
@@ -103,7 +103,7 @@ class TestAnalysis {
   /// Breaks the trace at the gaps that may hide a slip, and forgets the slips that reach into one.
   void break_at_gaps(Trace& trace, base::LongColumn<Fall>& slips) const;
   /// Into cycles_, with their flags.
-  void keep_cycles(const base::LongColumn<Cycle>& cycles, const base::LongColumn<Fall>& slips);
+  void keep_cycles(const TestEstimates& estimates, const base::LongColumn<Fall>& slips);
   /// Fills pull_speed_measured and the findings.
   void speed_results(const Trace& trace, const TestEstimates& estimates, TestResults& results) const;
   /// With the prior, unless the test alone contradicts it; fills tester_ and tester_check_.
@@ -121,7 +121,7 @@ class TestAnalysis {
   LiveDetector live_;
   std::vector<Cycle> new_cycles_;  ///< With room for those of a second at 100 a second.
   TierMeans means_;
-  base::LongColumn<LiveCycle> live_cycles_;  ///< Only if they say what S − K of a cycle is.
+  base::LongColumn<Cycle> live_cycles_;  ///< As the live side saw them.
 
   base::LongColumn<Cycle> cycles_;
   std::optional<TesterEstimate> tester_;

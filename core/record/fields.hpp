@@ -220,6 +220,13 @@ void for_each_cycle_column(Visitor&& visit) {
   visit(FieldName{"flags", "1", "flags of the cycle, bits named in the attribute meaning [1]"},
         &Cycle::flags);
   visit(FieldName{"pull_speed", "m/s", "pull speed at the slip onset [m/s]"}, &Cycle::pull_speed_m_per_s);
+  visit(FieldName{"capture_evidence", "1", "log likelihood ratio of captured over free [1]"},
+        &Cycle::capture_evidence);
+  visit(FieldName{"live_capture_evidence", "1",
+                  "log likelihood ratio of captured over free when it was decided during the test [1]"},
+        &Cycle::live_capture_evidence);
+  visit(FieldName{"live_decision_time", "s", "when that was, after the first scan [s]"},
+        &Cycle::live_decision_time_s);
 }
 
 /// Columns of the table of true slips.

@@ -1,5 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <string_view>
+
 #include "core/record/hdf_read.hpp"
 #include "core/record/hdf_write.hpp"
 #include "core/record/layout.hpp"
@@ -30,6 +34,13 @@ void write_cycles(hid_t entry, const base::LongColumn<friction::Cycle>& cycles) 
   });
 }
 
+/// Columns that the first records do not have.
+bool came_later(std::string_view column) {
+  constexpr std::array kLater{std::string_view{"pull_speed"}, std::string_view{"capture_evidence"},
+                              std::string_view{"live_capture_evidence"}, std::string_view{"live_decision_time"}};
+  return std::ranges::find(kLater, column) != kLater.end();
+}
+
 template <typename Use>
 void for_each_cycle(hid_t entry, const Use& use) {
   if (!has(entry, "cycles")) return;
@@ -38,8 +49,7 @@ void for_each_cycle(hid_t entry, const Use& use) {
       group.get(), "cycle",
       [&](std::size_t first, std::vector<friction::Cycle>& rows, std::size_t count) {
         for_each_cycle_column([&](const FieldName& name, auto member) {
-          // Records made before the speed of each slip was kept have no such column.
-          if (name.name == "pull_speed" && !has(group.get(), std::string{name.name})) return;
+          if (came_later(name.name) && !has(group.get(), std::string{name.name})) return;
           read_member(group.get(), name, member, count, first, rows);
         });
       },

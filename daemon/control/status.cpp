@@ -58,6 +58,15 @@ Json to_json(const daq::LatencyHistogram& latency) {
   return {{"largest", latency.largest_s()}, {"bins", bins}};
 }
 
+Json to_json(const StorageState& storage) {
+  const auto or_nothing = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
+  return {{"state", name(storage.kind)},
+          {"room_h", storage.room_h ? Json(*storage.room_h) : Json(nullptr)},
+          {"waiting_size", storage.waiting_size},
+          {"why", or_nothing(storage.why)},
+          {"to_do", or_nothing(storage.to_do)}};
+}
+
 }  // namespace
 
 Json test_json(const TestSummary& test, bool with_details) {
@@ -118,9 +127,7 @@ Json status_json(const Status& status) {
   json["scan_rate_measured"] = to_json(status.scan_rate_measured);
   json["read_latency"] = to_json(status.latency);
   json["storage_stall_count"] = status.storage_stall_count;
-  json["disk"] = {{"room_hours", status.disk_room_h ? Json(*status.disk_room_h) : Json(nullptr)},
-                  {"trouble", status.disk_trouble ? Json(*status.disk_trouble) : Json(nullptr)},
-                  {"waiting_size", status.disk_waiting_size}};
+  json["storage"] = to_json(status.storage);
   json["live_clients"] = {{"count", status.live_client_count},
                           {"dropped_frame_count", status.live_dropped_count}};
   json["test_count"] = status.test_count;

@@ -13,13 +13,15 @@
 #include "core/daq/rate_fit.hpp"
 #include "core/friction/live_cycle.hpp"
 #include "core/pipeline/bench_state.hpp"
+#include "daemon/storage_state.hpp"
 #include "daemon/test_log.hpp"
 
 namespace stickslip::daemon {
 
 /// A picture of the daemon at one moment.
 struct Status {
-  /// "starting", "acquiring", "board missing", "board busy", "no permission", "stopping".
+  /// "starting", "acquiring", "storage short", "storage waiting" (both while acquiring), "board missing",
+  /// "board busy", "no permission", "stopping".
   std::string state;
   std::string detail;  ///< The line of STATUS=, for people.
   std::string version;
@@ -34,16 +36,14 @@ struct Status {
   std::optional<daq::RateEstimate> scan_rate_measured;  ///< Of the board's present life.
   daq::LatencyHistogram latency;                        ///< Of reads.
   std::uint64_t storage_stall_count = 0;
+  StorageState storage;
   std::int64_t test_count = 0;               ///< Ended.
   std::optional<std::int64_t> current_test;  ///< Running now.
   std::optional<friction::LiveState> live;   ///< Of the current test.
   pipeline::BenchState bench = pipeline::BenchState::kDegraded;
   std::optional<TestSummary> latest_test;
-  std::optional<double> disk_room_h;        ///< As time of recording; absent where not known.
-  std::optional<std::string> disk_trouble;  ///< What the disk refuses with.
-  std::size_t disk_waiting_size = 0;        ///< Bytes in memory for the disk.
-  std::int64_t live_client_count = 0;       ///< Of the live stream.
-  std::uint64_t live_dropped_count = 0;     ///< Frames that slow ones of them did not get.
+  std::int64_t live_client_count = 0;    ///< Of the live stream.
+  std::uint64_t live_dropped_count = 0;  ///< Frames that slow ones of them did not get.
 };
 
 /// By the names of the record.

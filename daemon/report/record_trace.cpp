@@ -12,7 +12,9 @@ namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-RecordTrace coefficients(const record::Record& record, const daq::Calibration& calibration) {
+/// \param value_of  of each row.
+template <typename ValueOf>
+RecordTrace trace_of(const record::Record& record, const ValueOf& value_of) {
   RecordTrace trace;
   const double rate_Hz = record.header.board.scan_rate_granted_Hz;
   for (std::size_t i = 0; i < record.scan.size(); ++i) {
@@ -24,7 +26,7 @@ RecordTrace coefficients(const record::Record& record, const daq::Calibration& c
       trace.value.push_back(kNothing);
     }
     trace.time_s.push_back(time_of(record.scan[i]));
-    trace.value.push_back(calibration.coefficient(record.raw[i]));
+    trace.value.push_back(value_of(i));
   }
   return trace;
 }
@@ -38,10 +40,16 @@ base::Result<RecordTrace> coefficient_trace(const record::Record& record) {
   try {
     const daq::Calibration calibration{record.header.board, record.header.load_cell.value_or(daq::LoadCell{}),
                                        record.header.tester.tester().normal_load_N()};
-    return coefficients(record, calibration);
+    return trace_of(record, [&](std::size_t row) { return calibration.coefficient(record.raw[row]); });
   } catch (const std::invalid_argument& refused) {
     return base::usage_error("the record cannot be drawn: {}", refused.what());
   }
+}
+
+std::optional<RecordTrace> second_trace(const record::Record& record) {
+  if (record.second.empty()) return std::nullopt;
+  const daq::SecondChannel& channel = *record.header.board.second;
+  return trace_of(record, [&](std::size_t row) { return channel.value(record.second[row]); });
 }
 
 RecordTrace derivative(const RecordTrace& trace, double factor) {

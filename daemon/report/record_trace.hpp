@@ -20,6 +20,10 @@ struct RecordTrace {
 /// Errors: kUsage if the record has counts but no load cell, or facts that allow no calibration.
 [[nodiscard]] base::Result<RecordTrace> coefficient_trace(const record::Record& record);
 
+/// The second channel at each scan, m/s or m; a break at each gap and where no code came. Nothing without
+/// one.
+[[nodiscard]] std::optional<RecordTrace> second_trace(const record::Record& record);
+
 /// Differences of neighbours over their distance, half-way between them; Fig. 4 of [Penner 1995].
 /// \param factor  to the unit shown.
 [[nodiscard]] RecordTrace derivative(const RecordTrace& trace, double factor);

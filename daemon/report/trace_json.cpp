@@ -96,6 +96,18 @@ Json modes_json(const base::LongColumn<friction::Cycle>& cycles, double end_s, b
   return json;
 }
 
+Json second_json(const record::Record& record) {
+  std::optional<RecordTrace> trace = second_trace(record);
+  if (!trace) return nullptr;
+  for (double& value : trace->value) value *= kMillimetresPerMetre;
+  const RecordTrace shown = thinned(*std::move(trace));
+  const daq::SecondQuantity quantity = record.header.board.second->quantity;
+  return {{"time", rounded(shown.time_s)},
+          {"value", rounded(shown.value)},
+          {"unit", quantity == daq::SecondQuantity::kPullSpeed ? "mm/s" : "mm"},
+          {"name", daq::name(quantity)}};
+}
+
 }  // namespace
 
 base::Result<Json> trace_json(const record::Record& record) {
@@ -117,6 +129,7 @@ base::Result<Json> trace_json(const record::Record& record) {
       {"time", rounded(slope.time_s)}, {"value", rounded(slope.value)}, {"unit", scaled ? "mm/s" : "1/s"}};
   const std::optional<double>& speed = record.header.tester.pull_speed_m_per_s;
   json["slope"]["limit"] = scaled && speed ? Json(*speed * kMillimetresPerMetre) : Json(nullptr);
+  json["second"] = second_json(record);
   json["cycles"] = cycles_json(record.cycles);
   // In a test that sticks the end of the pull cut the last slip short; nobody knows.
   const friction::Regime regime = record.end->results.regime;

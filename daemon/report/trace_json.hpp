@@ -16,10 +16,12 @@ namespace stickslip::daemon {
 inline constexpr std::size_t kMostPointsOnPage = 20'000;
 
 /// {"scan_count", "rate", "thinned", "force": {"time", "value"}, "slope": {"time", "value", "unit", "limit"},
-///  "cycles": {"time", "peak", "captured"}, "modes": [[from, to, "stick"|"slip"|"slide"], …], "transition"}.
-/// Times in s after the first scan, to the microsecond; coefficients to the millionth; null is a break.
-/// Modes are those that the detector found: a slip that did not end in sticking slides until the next onset,
-/// the last one of a ring-down until the force is taken away. Errors: as coefficient_trace().
+///  "second": {"time", "value", "unit", "name"}, "cycles": {"time", "peak", "captured"},
+///  "modes": [[from, to, "stick"|"slip"|"slide"], …], "transition"}.
+/// The second channel is null where there is none, else its values are in mm/s (pull_speed) or mm
+/// (sled_position). Times in s after the first scan, to the microsecond; coefficients to the millionth; null
+/// is a break. Modes are those that the detector found: a slip that did not end in sticking slides until the
+/// next onset, the last one of a ring-down until the force is taken away. Errors: as coefficient_trace().
 [[nodiscard]] base::Result<nlohmann::ordered_json> trace_json(const record::Record& record);
 
 }  // namespace stickslip::daemon

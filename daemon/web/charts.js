@@ -139,7 +139,11 @@ const Charts = (() => {
     const slope = trace.slope.unit === "mm/s" ? "stretching (mm/s)" : "rate of force / weight (1/s)";
     charts.push(chart(240, slope, trace.slope, 3, {draw: [u => {
       if (trace.slope.limit != null) line(u, trace.slope.limit, "--limit");
-    }]}, "time (s)"));
+    }]}, trace.second ? undefined : "time (s)"));
+    if (trace.second) {
+      const name = trace.second.name === "pull_speed" ? "pull speed" : "sled position";
+      charts.push(chart(200, `${name} (${trace.second.unit})`, trace.second, 3, {}, "time (s)"));
+    }
 
     const view = (from, to) => {
       const shortest = Math.min(end, 4 / trace.rate);

@@ -175,7 +175,7 @@
     });
     section(`traces-${m}`, two ? `Traces of ${nameOf(m)}` : "Traces",
       node("p", {class: "note"}, "Force, and below its derivative: the speed at which the coupling stretches, cut off at the pull speed while the sled sticks " +
-        "(Penner 1995, Fig. 4). Drag over a part to zoom in, double click for the whole test."),
+        "(Penner 1995, Fig. 4). Below that, where it was measured, the pull speed or the position of the sled. Drag over a part to zoom in, double click for the whole test."),
       node("div", {class: "tools"}, choice, button("◀", "previous test", () => viewer.show(Math.max(0, viewer.shown - 1))),
         button("▶", "next test", () => viewer.show(Math.min(material.tests.length - 1, viewer.shown + 1))), node("span", {class: "grow"}),
         button("+", "zoom in", keys["+"]), button("−", "zoom out", keys["-"]), button("←", "move left", keys.ArrowLeft),

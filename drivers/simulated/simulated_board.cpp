@@ -54,7 +54,7 @@ class SimulatedBoard final : public daq::Board {
       clock_.sleep_until(deadline_ns);
       return ReadStatus::kTimeout;
     }
-    clock_.sleep_until(due_ns(next_));
+    clock_.sleep_until(due_ns(last_of_delivery(deadline_ns)));
     fill(block, clock_.monotonic_ns());
     block.stamp = {clock_.monotonic_ns(), clock_.realtime_ns()};
     return ReadStatus::kScans;
@@ -63,6 +63,19 @@ class SimulatedBoard final : public daq::Board {
   void stop() noexcept override { running_ = false; }
 
  private:
+  /// As a board that interrupts when its FIFO holds so much; scan by scan the computer would do little but
+  /// wake up.
+  static constexpr double kDelivery_s = 0.020;
+
+  /// The last scan that is due within a delivery of the next one, and in time.
+  [[nodiscard]] base::ScanIndex last_of_delivery(std::int64_t deadline_ns) const noexcept {
+    const double more =
+        std::min(kDelivery_s * true_scan_rate_Hz_, static_cast<double>(daq::ScanBlock::kMaxScans - 1));
+    base::ScanIndex last = std::min(next_ + static_cast<std::int64_t>(more), playing_.end() - 1);
+    while (last > next_ && due_ns(last) > deadline_ns) --last;
+    return last;
+  }
+
   [[nodiscard]] std::int64_t due_ns(base::ScanIndex scan) const noexcept {
     constexpr double kNanosecondsPerSecond = 1e9;
     const auto periods = static_cast<double>(scan - start_scan_ + 1);

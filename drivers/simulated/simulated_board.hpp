@@ -41,7 +41,8 @@ struct SimulatedTester {
   friction::Tester tester;
 };
 
-/// \param clock  paces the board: scan i after a start is due (i + 1)/rate later. Outlives it.
+/// \param clock  paces the board: scan i after a start is due (i + 1)/rate later. Outlives it. A read waits
+/// for the scans of 20 ms, as many as come in time.
 ///
 /// The board waits while it is stopped: after the next start it goes on with the next scan.
 /// Usage error: a scene that cannot be read, no scene, negative repeats, rate not positive, scenes

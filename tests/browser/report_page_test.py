@@ -157,6 +157,33 @@ class Pages(unittest.TestCase):
             self.assertEqual(row[6:], ["> 10000" if own[key] is None else str(own[key])
                                        for key in ("tests_needed_80", "tests_needed_90")])
 
+    def test_a_measured_pull_speed_has_a_chart_of_its_own(self):
+        scene = pathlib.Path(__file__).resolve().parents[2] / "config" / "scenes" / "stick-slip-at-12-in-per-min.toml"
+        (self.folder / "speed.toml").write_text(f"""
+[board]
+driver = "simulated"
+clock_speed = 200
+[board.simulated]
+scenes = ["{scene}"]
+speed_gain = "1 mm/s/V"
+[record]
+folder = "speed"
+[log]
+level = "warning"
+""", encoding="utf-8")
+        subprocess.run([BUILD / "daemon" / "stickslipd", "--config", "speed.toml"], cwd=self.folder, check=True, timeout=TIMEOUT_S)
+        [record] = (self.folder / "speed").glob("*.h5")
+        run("report", record, "-o", "speed.html", cwd=self.folder)
+        page = self.page("speed.html")
+        with h5py.File(record) as file:
+            speed = file["entry/raw/pull_speed"][()]
+        self.assertEqual(page.value("stickslip.viewers[0].chart.charts.length"), 3)
+        drawn = page.value("stickslip.viewers[0].chart.charts[2].data[1]")
+        self.assertEqual(len(drawn), len(speed))
+        for i in range(0, len(speed), 97):
+            self.assertAlmostEqual(drawn[i], 1e3 * float(speed[i]), delta=1e-6)  # Half a millionth; 24 bits of 5 mm/s.
+        self.assertEqual(self.range(page, chart=2), self.range(page, chart=0))
+
     def test_dragging_zooms_both_charts_and_a_double_click_shows_the_whole_again(self):
         page = self.page()
         whole = self.range(page)

@@ -84,6 +84,11 @@ void compare_raw(RecordListing& listing, const record::Record& record) {
 
 void compare_tables(RecordListing& listing, const record::Record& record) {
   record::for_each_cycle_column([&](const FieldName& name, auto member) {
+    if (!listing.has("entry/cycles/" + std::string{name.name})) {  // Came later.
+      for (const friction::Cycle& cycle : record.cycles)
+        EXPECT_TRUE(std::isnan(static_cast<double>(cycle.*member)));
+      return;
+    }
     listing.expect_column("entry/cycles/" + std::string{name.name}, name.unit,
                           column_of<friction::Cycle>(record.cycles, member));
   });

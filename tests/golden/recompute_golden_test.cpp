@@ -62,7 +62,14 @@ TEST(Recompute, EveryResultCycleAndSpikeFromRawCountsAndFacts) {
   EXPECT_FALSE(whole->spikes.empty());
   EXPECT_FALSE(whole->gaps.empty());
   EXPECT_EQ(again->results, results);
-  test::expect_same_cycles(again->cycles, whole->cycles);
+  base::LongColumn<friction::Cycle> kept;  // That record was made before cycles had their evidence.
+  for (friction::Cycle cycle : again->cycles) {
+    EXPECT_TRUE(std::isfinite(cycle.capture_evidence) || kept.size() + 1 == again->cycles.size());
+    cycle.capture_evidence = cycle.live_capture_evidence = cycle.live_decision_time_s =
+        std::numeric_limits<double>::quiet_NaN();
+    kept.push_back(cycle);
+  }
+  test::expect_same_cycles(kept, whole->cycles);
   EXPECT_EQ(again->spikes, whole->spikes);
 }
 

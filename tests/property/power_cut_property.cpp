@@ -7,13 +7,16 @@
 
 #include <gmock/gmock.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
+#include <set>
 
 #include "core/record/finaliser.hpp"
 #include "core/record/journal.hpp"
 #include "core/record/journal_care.hpp"
+#include "core/record/patient_journal.hpp"
 #include "core/record/reader.hpp"
 #include "core/record/verdict.hpp"
 #include "tests/support/crash_disk.hpp"
@@ -48,7 +51,7 @@ std::optional<int> states_of_each_moment() {
   if (given == nullptr) return std::nullopt;
   return std::atoi(given);
 }
-constexpr double kMomentsByChance = test::kSanitized ? 8.0 : 40.0;
+constexpr double kMomentsByChance = test::kSanitized ? 5.0 : 20.0;
 
 constexpr std::size_t kScansInEntry = 35;
 
@@ -155,6 +158,97 @@ TEST(PowerCut, WhileAnInterruptedTestIsRecovered) {
   const CrashDisk disk;
   auto promises = write_test(disk, folder / "a.journal", false);
   // The recovery after it; its own power cuts are those of the second half of the log.
+  ASSERT_TRUE(record::finalise(folder / "a.journal", {}, disk));
+  promises.push_back({disk.promise(), promises.back().scans, true});
+  EXPECT_GT(cut_everywhere(disk, promises, seed()), 0);
+}
+
+/// A disk that refuses some calls and takes them the next time: of each kind the ones of these numbers, from
+/// 0. Of refused writes in a row the first has written half; of a refused sync nobody knows what is on the
+/// disk.
+class Faltering final : public test::ForwardingCalls {
+ public:
+  Faltering(const CrashDisk& disk, std::set<int> writes, std::set<int> syncs)
+      : disk_(disk), refused_writes_(std::move(writes)), refused_syncs_(std::move(syncs)) {}
+  int open(const char* path, int flags, mode_t mode) const override { return disk_.open(path, flags, mode); }
+  ssize_t write(int file, const void* bytes, std::size_t size) const override {
+    const int number = writes_++;
+    if (!refused_writes_.contains(number)) return disk_.write(file, bytes, size);
+    if (!refused_writes_.contains(number - 1) && size > 1) return disk_.write(file, bytes, size / 2);
+    errno = ENOSPC;
+    return -1;
+  }
+  int ftruncate(int file, off_t size) const override { return disk_.ftruncate(file, size); }
+  int reserve(int, off_t, off_t) const override { return 0; }
+  int fsync(int file) const override { return disk_.fsync(file); }
+  int fdatasync(int file) const override {
+    if (!refused_syncs_.contains(syncs_++)) return disk_.fdatasync(file);
+    errno = EIO;
+    return -1;
+  }
+  int unlink(const char* path) const override { return disk_.unlink(path); }
+
+ private:
+  const CrashDisk& disk_;
+  std::set<int> refused_writes_;
+  std::set<int> refused_syncs_;
+  mutable int writes_ = 0;
+  mutable int syncs_ = 0;
+};
+
+/// As storage thread and disk thread do it: entries into memory, written as they come, synced once a second.
+/// \param calls  of the journal; what they do ends in the log of the disk.
+std::vector<Promise> write_patiently(const CrashDisk& disk, const record::FileCalls& calls,
+                                     const fs::path& path) {
+  std::vector<Promise> promises{{disk.promise(), 0, false}};
+  record::RecordHeader header = test::sample_header();
+  header.board.second.reset();
+  header.process.configuration.assign(6000, '#');
+  constexpr std::size_t kPlenty = std::size_t{1} << 20U;
+  record::PatientJournal journal{path, header, kPlenty, calls};
+  daq::ScanIndex next = 0;
+  // What waits is written until the disk has taken it.
+  const auto settle = [&] {
+    while (journal.settle()) {
+    }
+    promises.push_back({disk.promise(), static_cast<std::size_t>(next), false});
+  };
+  for (int second = 0; second < 6; ++second) {
+    for (int entry = 0; entry < 4; ++entry) {
+      const std::vector<double> raw(kScansInEntry, 1000.0 + static_cast<double>(next));
+      EXPECT_TRUE(journal.add_scans(next, raw, {next, next}));
+      next += static_cast<daq::ScanIndex>(kScansInEntry);
+      if (entry == 1) {
+        EXPECT_TRUE(journal.add_cycle(test::sample_cycles().front()));
+      }
+      static_cast<void>(journal.write());
+    }
+    settle();
+  }
+  record::EndRecord end = test::sample_end();
+  end.status = record::Status::kComplete;
+  end.reasons.clear();
+  end.spikes.clear();
+  journal.add_end(std::move(end));
+  settle();
+  return promises;
+}
+
+TEST(PowerCut, WhileAPatientJournalIsWrittenAndFinished) {
+  const TemporaryFolder folder;
+  const CrashDisk disk;
+  auto promises = write_patiently(disk, disk, folder / "a.journal");
+  ASSERT_TRUE(record::finalise(folder / "a.journal", {}, disk));
+  promises.push_back({disk.promise(), promises.back().scans, true});
+  EXPECT_GT(cut_everywhere(disk, promises, seed()), 0);
+}
+
+// The way of a refused sync: back to the last good one, and all of it once more.
+TEST(PowerCut, WhileAPatientJournalIsRefusedAndTriesAgain) {
+  const TemporaryFolder folder;
+  const CrashDisk disk;
+  const Faltering calls{disk, {3, 4, 9, 10, 11, 17, 18}, {1, 3, 4}};
+  auto promises = write_patiently(disk, calls, folder / "a.journal");
   ASSERT_TRUE(record::finalise(folder / "a.journal", {}, disk));
   promises.push_back({disk.promise(), promises.back().scans, true});
   EXPECT_GT(cut_everywhere(disk, promises, seed()), 0);

@@ -46,6 +46,8 @@ scenes = ["{scene}"]
 repeats = 0
 [record]
 folder = "records"
+[control]
+socket = "c.sock"
 [log]
 level = "warning"
 """, encoding="utf-8")
@@ -90,6 +92,16 @@ def main():
         daemon = Daemon(build, source, folder)
         try:
             daemon.wait_for(lambda text: number_in(text) >= 2)
+            # Eight MiB are room for 7 min of tests, and short; tests go on.
+            with (records / "filler").open("wb") as filler:
+                room = os.statvfs(records)
+                os.posix_fallocate(filler.fileno(), 0, room.f_bavail * room.f_frsize - (8 << 20))
+            text = daemon.wait_for(lambda text: "storage short" in text)
+            asked = subprocess.run([str(build / "daemon" / "stickslip"), "status", "--socket", str(folder / "c.sock")],
+                                   capture_output=True, text=True, check=True, timeout=TIMEOUT_S)
+            status = json.loads(asked.stdout)
+            assert status["state"] == "storage short" and status["storage"]["state"] == "short", status
+            assert 0.0 < status["storage"]["room_h"] < 1.0 and str(records.name) in status["storage"]["to_do"], status
             # What the ballast gives back is filled too.
             text = daemon.wait_for(lambda text: "the disk refuses" in text, lambda: fill(records))
             assert "No space left on device" in text, text
@@ -103,6 +115,7 @@ def main():
             errors = daemon.process.communicate(timeout=TIMEOUT_S)[1]
             assert daemon.process.returncode == 0, errors
             assert "the disk refuses" in errors and "the disk takes again" in errors, errors
+            assert "storage short: room for" in errors and "there is room for tests again" in errors, errors
         finally:
             if daemon.process.poll() is None:
                 daemon.process.kill()

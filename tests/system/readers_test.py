@@ -109,6 +109,22 @@ assert plot.signal.attrs["units"] == "N" and plot.axes[0].attrs["units"] == "s"
         self.assertGreater(len(done.stdout), 100_000)
 
     @needs("python3-h5py", module("h5py"))
+    def test_hdf5_1_8_knows_every_part_of_the_file(self):
+        import h5py
+        import hdf5_1_8
+        objects, messages, indexes = hdf5_1_8.check("TEST.h5")
+        self.assertGreater(objects, 60)
+        self.assertGreater(messages, 5 * objects)
+        self.assertGreater(indexes, 10)
+        # The check can fail: what 1.10 writes if it may is refused, its superblock and the index of its chunks.
+        with h5py.File("new.h5", "w", libver="v110") as file:
+            file.create_dataset("column", data=range(100), chunks=(10,), maxshape=(None,), compression="gzip")
+            address = h5py.h5o.get_info(file["column"].id).addr
+        with self.assertRaisesRegex(hdf5_1_8.NotForOldReaders, "superblock of version 3"):
+            hdf5_1_8.check("new.h5")
+        with self.assertRaisesRegex(hdf5_1_8.NotForOldReaders, "column: message of type 0x8 and version 4"):
+            hdf5_1_8.File(pathlib.Path("new.h5").read_bytes()).check_object(address, "column")
+
     def test_nexus_rules(self):
         import h5py
 

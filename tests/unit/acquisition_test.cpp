@@ -8,13 +8,17 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "core/daq/latency_histogram.hpp"
 #include "drivers/comedi/comedi_board.hpp"
+#include "drivers/simulated/simulated_board.hpp"
 #include "tests/support/allocation_count.hpp"
 #include "tests/support/fake_comedi.hpp"
 
@@ -24,6 +28,10 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 using namespace std::chrono_literals;
+
+/// 8 s at 350 scans/s.
+const std::filesystem::path kStickSlip =
+    std::filesystem::path{STICKSLIP_SOURCE_DIR} / "config/scenes/stick-slip-at-12-in-per-min.toml";
 
 /// Notes what its thread has allocated at each call.
 class Watched final : public daq::Board {
@@ -89,6 +97,62 @@ TEST(Acquisition, BlocksCarryTheHaltsBeforeThem) {
   ASSERT_FALSE(blocks.empty());
   for (const daq::ScanBlock& block : blocks) EXPECT_EQ(block.overrun_count, block.first < 100 ? 0U : 1U);
   EXPECT_EQ(blocks.back().overrun_count, 1U);
+}
+
+// A source that can wait loses nothing to a ring of four blocks, however seldom it is emptied.
+TEST(Acquisition, WaitsForAFullRingWhereTheSourceCanWait) {
+  test::ManualClock clock;
+  auto tester = drivers::make_simulated_tester({{kStickSlip}, 1, {}}, clock);
+  ASSERT_TRUE(tester) << tester.error().message;
+  daq::ScanRing ring{4};
+  Acquisition acquisition{*tester->board, ring, RealtimeSettings{0, {}, false}, FullRing::kWait};
+  ASSERT_TRUE(acquisition.start());
+  std::vector<daq::ScanBlock> blocks(4);
+  daq::ScanIndex next = 0;
+  for (bool ended = false; !ended;) {
+    acquisition.wait();
+    ended = acquisition.ended().has_value();
+    // All of a full ring at a time, then nothing for as long as it takes to be full again.
+    while (!ended && ring.has_room() && !acquisition.ended()) std::this_thread::yield();
+    while (const std::size_t count = ring.pop(blocks.data(), blocks.size())) {
+      acquisition.made_room();
+      for (const daq::ScanBlock& block : std::span{blocks}.first(count)) {
+        EXPECT_EQ(block.first, next);
+        EXPECT_EQ(block.dropped_scan_count, 0U);
+        next = block.end();
+      }
+    }
+  }
+  EXPECT_EQ(*acquisition.ended(), Acquisition::End::kEndOfInput);
+  EXPECT_EQ(next, 8 * 350);  // The whole scene.
+  EXPECT_EQ(ring.dropped_scan_count(), 0U);
+}
+
+TEST(Acquisition, StopsWhileItWaitsForTheRing) {
+  test::ManualClock clock;
+  auto tester = drivers::make_simulated_tester({{kStickSlip}, 0, {}}, clock);
+  ASSERT_TRUE(tester) << tester.error().message;
+  daq::ScanRing ring{4};
+  Acquisition acquisition{*tester->board, ring, RealtimeSettings{0, {}, false}, FullRing::kWait};
+  ASSERT_TRUE(acquisition.start());
+  while (ring.has_room()) std::this_thread::yield();
+  acquisition.request_stop();
+  while (!acquisition.ended()) acquisition.wait();
+  EXPECT_EQ(*acquisition.ended(), Acquisition::End::kStopped);
+}
+
+TEST(ScanRing, IsEmptyAfterItsPagesWereTouched) {
+  daq::ScanRing ring{3};
+  ring.touch();
+  EXPECT_TRUE(ring.has_room());
+  EXPECT_EQ(ring.dropped_scan_count(), 0U);
+  daq::ScanBlock block;
+  EXPECT_EQ(ring.pop(&block, 1), 0U);
+  for (daq::ScanIndex first = 0; first < 3; ++first) {
+    block.first = first;
+    EXPECT_TRUE(ring.push(block));
+  }
+  EXPECT_FALSE(ring.has_room());
 }
 
 TEST(Realtime, RefusalIsToldAndNotFatal) {

@@ -50,6 +50,11 @@ TEST_F(ControlApi, TellsTheStatusByTheNamesOfTheRecord) {
   EXPECT_EQ(status["live"]["regime"], "stick-slip");
   EXPECT_EQ(status["live"]["latest_cycle"]["mu_s"], 0.36);
   EXPECT_EQ(status["live"]["latest_cycle"]["mu_k"], nullptr);
+  EXPECT_EQ(status["storage"]["state"], "short");
+  EXPECT_EQ(status["storage"]["room_h"], 0.1);
+  EXPECT_EQ(status["storage"]["waiting_size"], 0);
+  EXPECT_EQ(status["storage"]["why"], "room for 6 min of tests, 10 are wanted");
+  EXPECT_EQ(status["storage"]["to_do"], nullptr);
   EXPECT_EQ(status["latest_test"]["results"]["mu_s"], 0.35);
   EXPECT_EQ(status["latest_test"]["results"]["mu_k"], nullptr);
 }

@@ -1,7 +1,7 @@
 // Signals that laboratories do deliver: at the rails, of a few steps, far from zero, undersampled, with
 // spikes, hum, gaps and scatter. Each gets results that are right within their errors, or a reason.
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <cstdint>
@@ -213,6 +213,22 @@ TEST(HardSignals, ThreeToFourScansACycleHaveLargerErrors) {
     expect_true(coarse.results.delta_mu, kD);
     EXPECT_GT(*coarse.results.delta_mu.standard_error, *fine.results.delta_mu.standard_error)
         << scans_a_cycle;
+  }
+}
+
+TEST(HardSignals, AnOscillationOfFewScansACycleIsNeverSteadySliding) {
+  const Pull pull{std::vector<double>(100, kD)};
+  for (const double scans_a_cycle : {3.1, 3.5, 4.0, 4.6, 5.0, 5.5, 6.0, 6.5, 7.0, 7.5}) {
+    const double rate_Hz = scans_a_cycle * pull.frequency_Hz();
+    const Analysed coarse = analysed(pull.scans(kSigma, 14, rate_Hz), rate_Hz);
+    EXPECT_NE(coarse.results.regime, Regime::kSteadySliding) << scans_a_cycle;
+    if (coarse.cycles.empty()) {
+      EXPECT_THAT(coarse.results.regime_reason, testing::HasSubstr("scan more often")) << scans_a_cycle;
+      EXPECT_FALSE(coarse.results.cycle_count.value) << scans_a_cycle;
+    } else {
+      EXPECT_THAT(coarse.results.findings, testing::Contains(testing::HasSubstr("scans a cycle")))
+          << scans_a_cycle;
+    }
   }
 }
 

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "core/signal/whiteness.hpp"
+
 namespace stickslip::signal {
 namespace {
 
@@ -127,6 +129,44 @@ TEST(Noise, SmallestStepIsTheConvertersResolution) {
   EXPECT_EQ(smallest_step(std::vector<double>{0.5, 0.5}), 0.0);
   EXPECT_EQ(smallest_step(std::vector<double>{0.5}), 0.0);
   EXPECT_EQ(smallest_step(std::vector<double>{}), 0.0);
+}
+
+TEST(Whiteness, WhiteNoiseHidesNothingHoweverShort) {
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+    EXPECT_FALSE(hides_an_oscillation(white_noise(seed % 2 == 0 ? 68 : 1000, 0.01, seed), 1e-9)) << seed;
+  }
+}
+
+TEST(Whiteness, SeesAnOscillationThatFourthDifferencesTakeForNoise) {
+  for (const double scans_per_cycle : {3.0, 3.7, 4.61, 5.03, 6.53, 8.0}) {
+    std::vector<double> values = white_noise(2000, 0.001, 3);
+    for (std::size_t k = 0; k < values.size(); ++k)
+      values[k] += 0.05 * std::sin(2.0 * pi * static_cast<double>(k) / scans_per_cycle);
+    EXPECT_GT(scan_noise(values, 1e-9), 0.0013) << scans_per_cycle;
+    EXPECT_TRUE(hides_an_oscillation(values, 1e-9)) << scans_per_cycle;
+    for (std::size_t k = 0; k < values.size(); k += 50) values[k] += 2.0;  // Spikes that were left.
+    EXPECT_TRUE(hides_an_oscillation(values, 1e-9)) << scans_per_cycle;
+  }
+}
+
+TEST(Whiteness, DriftLoadingAndSlowWavesHideNothing) {
+  for (const double scans_per_cycle : {12.0, 17.5, 200.0}) {
+    for (const double sigma : {0.0, 1e-5, 0.001}) {
+      std::vector<double> values = white_noise(2000, sigma, 4);
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        const auto at = static_cast<double>(k);
+        values[k] += 0.05 * std::sin(2.0 * pi * at / scans_per_cycle) + 1e-4 * at;
+      }
+      EXPECT_FALSE(hides_an_oscillation(values, 1e-9)) << scans_per_cycle << " " << sigma;
+    }
+  }
+  EXPECT_FALSE(hides_an_oscillation(std::vector<double>(500, 0.3), 1e-9));
+}
+
+TEST(Whiteness, StepsOfTheConverterHideNothing) {
+  std::vector<double> values(1000);
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = std::floor(0.21 * static_cast<double>(k));
+  EXPECT_FALSE(hides_an_oscillation(values, 1.0 / std::sqrt(12.0)));
 }
 
 }  // namespace

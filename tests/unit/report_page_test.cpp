@@ -44,6 +44,19 @@ TEST(TraceJson, HasABreakAtAGapAndEachCycle) {
   EXPECT_DOUBLE_EQ(trace["slope"]["limit"], 5.08);
 }
 
+TEST(TraceJson, HasTheSecondChannelWithABreakWhereNoCodeCame) {
+  const record::Record record = test::sample_record();
+  const Json second = trace_json(record).value()["second"];
+  EXPECT_EQ(second["name"], "pull_speed");
+  EXPECT_EQ(second["unit"], "mm/s");
+  ASSERT_EQ(second["value"].size(), 41U);  // 40 scans and the gap behind 20 of them.
+  EXPECT_TRUE(second["value"][7].is_null());
+  EXPECT_TRUE(second["value"][20].is_null());
+  // To the millionth of a mm/s.
+  EXPECT_NEAR(second["value"][21], 1e3 * record.header.board.second->value(2000), 0.5e-6);
+  EXPECT_TRUE(trace_json(test::sample_imported()).value()["second"].is_null());
+}
+
 TEST(TraceJson, SlopeWithoutStiffnessIsARateWithoutALimit) {
   const Json trace = trace_json(test::sample_imported()).value();
   EXPECT_EQ(trace["slope"]["unit"], "1/s");

@@ -90,8 +90,13 @@ TEST(SimulatedBoard, WaitsAtMostTheTimeout) {
   EXPECT_EQ(clock.now_ns, 100'005'000);
   ASSERT_TRUE(tester.board->start());
   EXPECT_EQ(tester.board->read(block, 1ms), ReadStatus::kTimeout);  // A scan takes 2.86 ms.
-  EXPECT_EQ(tester.board->read(block, 10ms), ReadStatus::kScans);
+  EXPECT_EQ(tester.board->read(block, 4ms), ReadStatus::kScans);
   EXPECT_EQ(block.count, 1U);
+  // With time for it, the scans of 8 ms; the stamp is that of the last.
+  const std::int64_t first_ns = clock.now_ns;
+  EXPECT_EQ(tester.board->read(block, 100ms), ReadStatus::kScans);
+  EXPECT_EQ(block.count, 3U);
+  EXPECT_NEAR(static_cast<double>(clock.now_ns - first_ns), 3e9 / 350.0, 1.0);
   EXPECT_EQ(block.stamp.monotonic_ns, clock.now_ns);
   EXPECT_EQ(block.stamp.realtime_ns, clock.realtime_ns());
   clock.now_ns += 1'000'000'000;

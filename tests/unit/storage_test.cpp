@@ -29,6 +29,8 @@ class Heard final : public Facts {
  public:
   void storage_waits(std::string_view why) override { add("waits: " + std::string{why}); }
   void storage_resumed() override { add("resumed"); }
+  void storage_short(std::string_view why) override { add(std::string{why}); }
+  void storage_has_room() override { add("has room"); }
   void little_room(std::int64_t test, double room_s) override {
     add(fmt::format("test {} has room for {:.0f} s", test, room_s));
   }
@@ -146,6 +148,27 @@ TEST_P(RefusingDisk, TenMinutesOfScansWaitInMemoryAndNothingIsLost) {
 INSTANTIATE_TEST_SUITE_P(Errors, RefusingDisk, testing::Values(ENOSPC, EIO),
                          [](const auto& error) { return std::string{::strerrorname_np(error.param)}; });
 
+TEST(Storage, RemarksAreEventsOfEveryRecord) {
+  const TemporaryFolder folder;
+  FaultyDisk disk;
+  TestLog tests;
+  Heard heard;
+  Storage storage{{folder.path(), DatedFolders::kNone, &disk}, finalise_plainly, tests, heard};
+  storage.use(header(), nullptr, {"sampling: frequency not verifiable"});
+  for (const std::int64_t number : {1, 2}) {
+    begin(storage, number, 700 * number);
+    feed(storage, 700 * number, 350);
+    end(storage, number, 700 * number + 350);
+  }
+  storage.stop();
+  for (const std::int64_t number : {1, 2}) {
+    const auto read = record::read_record(heard.file(number));
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_THAT(read->events, testing::Contains(testing::Field(&record::Event::text,
+                                                               "sampling: frequency not verifiable")));
+  }
+}
+
 TEST(Storage, ADiskThatTakesItsTimeHoldsNobodyUp) {
   const TemporaryFolder folder;
   std::mutex gate;
@@ -205,7 +228,60 @@ TEST(Storage, LittleRoomIsToldBeforeATestBegins) {
   end(storage, 1, 0);
   storage.stop();
   // 350 scans of 2 + 2 + 21 bytes and 9000 bytes of everything else in a second.
-  EXPECT_EQ(heard.told().front(), "test 1 has room for 56 s");
+  EXPECT_THAT(heard.told(), testing::Contains("test 1 has room for 56 s"));
+  const auto read = record::read_record(heard.file(1));
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_THAT(read->events, testing::Contains(testing::Field(
+                                &record::Event::text, "storage short: room on the disk for 56 s of tests")));
+}
+
+TEST(Storage, TellsThatItIsShortUntilThereIsRoomToSpare) {
+  const TemporaryFolder folder;
+  FaultyDisk disk;
+  TestLog tests;
+  Heard heard;
+  Storage storage{{folder.path(), DatedFolders::kNone, &disk, std::chrono::milliseconds{1}},
+                  finalise_plainly,
+                  tests,
+                  heard};
+  EXPECT_EQ(storage.state().kind, StorageState::Kind::kOk);
+  storage.use(header(), nullptr);
+  constexpr double kLoad_per_s = 350.0 * 25.0 + 9000.0;
+  const auto set_room_s = [&disk](double room_s) {
+    disk.set_room(static_cast<std::int64_t>(room_s * kLoad_per_s));
+  };
+  set_room_s(599.0);
+  heard.wait_for("storage short: room for 9 min of tests, 10 are wanted; move records from ");
+  const StorageState little = storage.state();
+  EXPECT_EQ(little.kind, StorageState::Kind::kShort);
+  EXPECT_EQ(little.room_h, 9.0 / 60.0);
+  EXPECT_THAT(why_no_test(little).value(), testing::HasSubstr(folder.path().string()));
+  // A test that the force begins is recorded all the same.
+  begin(storage, 1, 0);
+  feed(storage, 0, 3500);
+  end(storage, 1, 3500);
+  heard.wait_for("test 1 published");
+  set_room_s(7300.0);
+  heard.wait_for("has room");
+  EXPECT_EQ(storage.state().kind, StorageState::Kind::kOk);
+  EXPECT_EQ(storage.state().room_h, 2.0);
+  EXPECT_EQ(why_no_test(storage.state()), std::nullopt);
+  storage.stop();
+  expect_whole(heard.file(1), 0, 3500);
+}
+
+TEST(StorageState, SaysWhyAndWhatToDo) {
+  DiskState disk;
+  disk.room_h = 0.2;
+  disk.is_short = true;
+  EXPECT_EQ(storage_state(disk, "records").why, "room for 12 min of tests, 10 are wanted");
+  disk.trouble = "No space left on device";
+  disk.waiting_size = 123'456;
+  const StorageState waiting = storage_state(disk, "records");
+  EXPECT_EQ(waiting.kind, StorageState::Kind::kWaiting);
+  EXPECT_EQ(waiting.waiting_size, 123'456U);
+  EXPECT_EQ(why_no_test(waiting).value().substr(0, 82),
+            "storage waiting: the disk refuses, 123 kB wait in memory: No space left on device;");
 }
 
 TEST(Storage, ARecordThatCouldNotBeMadeIsTriedAgain) {

@@ -20,7 +20,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 SUITE = "bookworm"
 PACKAGES = ("systemd-sysv", "udev", "dbus", "kmod", "procps", "libcomedi0")
 IMAGE_SIZE = "900M"
-DEBOOTSTRAP_TIMEOUT_S = 420
+DEBOOTSTRAP_TIMEOUT_S = 1200
 # What the cloud kernel has as modules and the guest needs; NVMe and ext4 are built in.
 MODULE_FOLDERS = ("kernel/drivers/comedi", "kernel/fs/autofs")
 

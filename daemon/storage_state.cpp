@@ -1,0 +1,37 @@
+#include "daemon/storage_state.hpp"
+
+#include <fmt/format.h>
+
+#include "daemon/disk_writer.hpp"
+
+namespace stickslip::daemon {
+
+StorageState storage_state(const DiskState& disk, const std::filesystem::path& folder) {
+  StorageState state;
+  state.room_h = disk.room_h;
+  if (disk.trouble) {
+    state.kind = StorageState::Kind::kWaiting;
+    state.waiting_size = disk.waiting_size;
+    state.why =
+        fmt::format("the disk refuses, {} kB wait in memory: {}", disk.waiting_size / 1000, *disk.trouble);
+    state.to_do = fmt::format(
+        "make room in {} or mend its disk; memory holds ten minutes of scans, and they are written as soon "
+        "as the "
+        "disk takes them",
+        folder.string());
+  } else if (disk.is_short) {
+    constexpr double kMinutesPerHour = 60.0;
+    state.kind = StorageState::Kind::kShort;
+    state.why = fmt::format("room for {:.0f} min of tests, {:.0f} are wanted",
+                            disk.room_h.value_or(0.0) * kMinutesPerHour, kLeastRoom_s / kMinutesPerHour);
+    state.to_do = fmt::format("move records from {} to another disk, or give it more room", folder.string());
+  }
+  return state;
+}
+
+std::optional<std::string> why_no_test(const StorageState& storage) {
+  if (storage.kind == StorageState::Kind::kOk) return std::nullopt;
+  return fmt::format("storage {}: {}; {}", name(storage.kind), storage.why, storage.to_do);
+}
+
+}  // namespace stickslip::daemon
