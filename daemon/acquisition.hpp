@@ -46,7 +46,7 @@ class Acquisition {
   }
 
   /// Consumer: waits until there are blocks in the ring, the oldest at most 4 ms older than the latest, or
-  /// the thread has ended; or somebody called wake().
+  /// the thread has ended, or somebody called wake().
   void wait() noexcept { news_.acquire(); }
   /// Any thread.
   void wake() noexcept { news_.release(); }

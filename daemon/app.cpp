@@ -125,13 +125,11 @@ base::Result<void> App::open_session() {
   const base::Result<SessionSettings> made = session_settings(config_, *board, continues_);
   if (!made) return tl::unexpected(made.error());
   const SessionSettings& settings = *made;
+  const auto verdict = check_sampling(config_, settings);
+  if (!verdict) return tl::unexpected(verdict.error());
+  world_.facts->sampling_checked(*verdict);
   std::vector<std::string> remarks;
-  if (config_.board.driver != drivers::Driver::kReplay) {
-    const auto verdict = check_sampling(config_, settings);
-    if (!verdict) return tl::unexpected(verdict.error());
-    world_.facts->sampling_checked(*verdict);
-    if (!verdict->reason.empty()) remarks.push_back("sampling: " + verdict->reason);
-  }
+  if (!verdict->reason.empty()) remarks.push_back("sampling: " + verdict->reason);
 
   if (expired(settings.calibration, record::iso_time(clock_->realtime_ns()))) {
     world_.facts->calibration_expired(settings.calibration.expires);

@@ -77,11 +77,11 @@ void BenchDesk::set_plan(Plan plan) {
 
 void BenchDesk::command(Command command, std::function<void(const Outcome&)> answer) {
   if (command.kind == Command::Kind::kArm || command.kind == Command::Kind::kStart) {
-    if (auto why = why_no_test(parts_.storage.state())) {
-      Outcome refused;
-      refused.report.refusal = *std::move(why);
-      refused.report.state = parts_.status().bench;
-      answer(refused);
+    if (auto why_not = why_no_test(parts_.storage.state())) {
+      Outcome outcome;
+      outcome.report.refusal = *std::move(why_not);
+      outcome.report.state = parts_.status().bench;
+      answer(outcome);
       return;
     }
   }

@@ -123,10 +123,10 @@ class Session {
   SessionClocks clocks_;
   std::uint64_t dropped_before_ = 0;
   std::uint64_t overruns_before_ = 0;
+  FullRing full_ring_;
   std::mutex jobs_mutex_;
   std::deque<Job> jobs_;  ///< At most kMostJobs.
   bool jobs_closed_ = false;
-  FullRing full_ring_;
   bool any_scan_ = false;
   bool continues_;  ///< After another session: the gap before the first scan is that of a missing board.
   std::thread thread_;

@@ -100,13 +100,14 @@ record::RecordHeader record_header(const DaemonConfig& config, const SessionSett
 
 base::Result<friction::SamplingVerdict> check_sampling(const DaemonConfig& config,
                                                        const SessionSettings& settings) {
-  // Not of a replayed record: that is what it is.
   friction::Tester plan = settings.processor.analysis.tester;
-  plan.stiffness_N_per_m = config.bench.stiffness_N_per_m;
+  if (config.bench.stiffness_N_per_m) plan.stiffness_N_per_m = config.bench.stiffness_N_per_m;
   friction::SamplingVerdict verdict =
       friction::check_sampling(settings.processor.analysis.scan_rate_Hz,
                                friction::expected_frequency_Hz(plan, settings.processor.analysis.prior));
-  if (verdict.kind == friction::SamplingVerdict::Kind::kRefused)
+  // What was recorded is replayed as it is.
+  const bool is_replay = config.board.driver == drivers::Driver::kReplay;
+  if (verdict.kind == friction::SamplingVerdict::Kind::kRefused && !is_replay)
     return base::usage_error("[board] scan_rate: {}", verdict.reason);
   return verdict;
 }

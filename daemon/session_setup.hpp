@@ -25,7 +25,8 @@ namespace stickslip::daemon {
 [[nodiscard]] record::RecordHeader record_header(const DaemonConfig& config, const SessionSettings& settings,
                                                  const daq::BoardInfo& board, const std::string& realtime);
 
-/// Do the scans come often enough for the tester as it is planned? Errors: kUsage where they cannot.
+/// Do the scans come often enough for the tester as it is planned or characterised? Errors: kUsage where they
+/// cannot tell slips, but for a replay.
 [[nodiscard]] base::Result<friction::SamplingVerdict> check_sampling(const DaemonConfig& config,
                                                                      const SessionSettings& settings);
 

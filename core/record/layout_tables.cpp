@@ -37,7 +37,8 @@ void write_cycles(hid_t entry, const base::LongColumn<friction::Cycle>& cycles) 
 /// Columns that the first records do not have.
 bool came_later(std::string_view column) {
   constexpr std::array kLater{std::string_view{"pull_speed"}, std::string_view{"capture_evidence"},
-                              std::string_view{"live_capture_evidence"}, std::string_view{"live_decision_time"}};
+                              std::string_view{"live_capture_evidence"},
+                              std::string_view{"live_decision_time"}};
   return std::ranges::find(kLater, column) != kLater.end();
 }
 

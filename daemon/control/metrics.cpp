@@ -76,7 +76,7 @@ std::string metrics_text(const Status& status) {
     page.value("bench_state", status.bench == state ? 1 : 0,
                fmt::format("{{state=\"{}\"}}", pipeline::name(state)));
   }
-  page.gauge("board_present", "1 while there is a board.", status.board ? 1 : 0);
+  page.gauge("board_acquiring", "1 while scans come from the board.", status.state == "acquiring" ? 1 : 0);
   page.counter("scans_total", "Scans processed.", status.scan_count);
   page.counter("gaps_total", "Jumps of the scan index.", status.gap_count);
   page.counter("lost_scans_total", "Scans missing in gaps.", status.lost_scan_count);
@@ -93,16 +93,11 @@ std::string metrics_text(const Status& status) {
     page.gauge("scan_rate_measured_hertz", "Scan rate by this computer's clock.",
                status.scan_rate_measured->rate_Hz);
   }
-  if (status.storage.room_h) {
-    page.gauge("storage_room_hours", "Room for records, as time of scanning.", *status.storage.room_h);
-  }
-  page.head("storage_state", "gauge", "1 for how it is with the room for records, 0 for the others.");
-  for (const auto kind :
-       {StorageState::Kind::kOk, StorageState::Kind::kShort, StorageState::Kind::kWaiting}) {
-    page.value("storage_state", status.storage.kind == kind ? 1 : 0,
-               fmt::format("{{state=\"{}\"}}", name(kind)));
-  }
-  page.gauge("storage_waiting_bytes", "Kept in memory while the disk refuses.", status.storage.waiting_size);
+  if (status.storage.room_h)
+    page.gauge("disk_room_hours", "Room on the disk, as time of recording.", *status.storage.room_h);
+  page.gauge("disk_refuses", "1 while the disk refuses what is to be recorded.",
+             status.storage.kind == StorageState::Kind::kWaiting ? 1 : 0);
+  page.gauge("disk_waiting_bytes", "Kept in memory for the disk.", status.storage.waiting_size);
   page.gauge("live_clients", "Clients of the live stream.", status.live_client_count);
   page.counter("live_dropped_frames_total", "Frames that slow clients of the live stream did not get.",
                status.live_dropped_count);

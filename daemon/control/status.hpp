@@ -36,12 +36,12 @@ struct Status {
   std::optional<daq::RateEstimate> scan_rate_measured;  ///< Of the board's present life.
   daq::LatencyHistogram latency;                        ///< Of reads.
   std::uint64_t storage_stall_count = 0;
-  StorageState storage;
   std::int64_t test_count = 0;               ///< Ended.
   std::optional<std::int64_t> current_test;  ///< Running now.
   std::optional<friction::LiveState> live;   ///< Of the current test.
   pipeline::BenchState bench = pipeline::BenchState::kDegraded;
   std::optional<TestSummary> latest_test;
+  StorageState storage;
   std::int64_t live_client_count = 0;    ///< Of the live stream.
   std::uint64_t live_dropped_count = 0;  ///< Frames that slow ones of them did not get.
 };

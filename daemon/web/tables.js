@@ -49,7 +49,7 @@ const Tables = (() => {
       ["rate", status.board ? `${Number(status.board.scan_rate_granted.toPrecision(7))} Hz` : "–"],
       ["measured", status.scan_rate_measured ? `${status.scan_rate_measured.value.toFixed(4)} Hz` : "–"],
       ["scans", String(status.scan_count)], ["gaps", `${status.gap_count} (${status.lost_scan_count} scans)`],
-      ["disk", status.storage.why || (status.storage.room_h == null ? status.storage.state : `${status.storage.room_h.toFixed(0)} h`)],
+      ["disk", status.storage.why != null ? `${status.storage.why}; ${status.storage.to_do}` : status.storage.room_h == null ? "–" : `${status.storage.room_h.toFixed(0)} h`],
       ["worst read", `${(1000 * latency.largest).toFixed(2)} ms`], ["tests", String(status.test_count)],
       ["readers", `${status.live_clients.count}, ${status.live_clients.dropped_frame_count} dropped`]];
     document.getElementById("health").replaceChildren(...facts.flatMap(([name, value]) => {

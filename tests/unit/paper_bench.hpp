@@ -22,14 +22,14 @@ inline Status some_status() {
   status.latest_test->results.mu_s = friction::Estimate::of(0.35);
   status.latest_test->results.mu_k = friction::Estimate::none("no slip");
   status.bench = pipeline::BenchState::kRunning;
-  status.storage.kind = StorageState::Kind::kShort;
-  status.storage.room_h = 0.1;
-  status.storage.why = "room for 6 min of tests, 10 are wanted";
   status.live.emplace();
   status.live->phase = friction::Phase::kCycles;
   status.live->regime = friction::Regime::kStickSlip;
   status.live->latest.emplace();
   status.live->latest->S = 0.36;
+  status.storage.kind = StorageState::Kind::kShort;
+  status.storage.room_h = 0.1;
+  status.storage.why = "room for 6 min of tests, 10 are wanted";
   return status;
 }
 

@@ -270,6 +270,38 @@ TEST(Storage, TellsThatItIsShortUntilThereIsRoomToSpare) {
   expect_whole(heard.file(1), 0, 3500);
 }
 
+// A disk at the limit does not change its state each second.
+TEST(DiskWriter, IsShortUntilThereIsRoomToSpare) {
+  const TemporaryFolder folder;
+  FaultyDisk disk;
+  disk.set_room(599'000);
+  std::mutex mutex;
+  std::condition_variable told;
+  std::optional<DiskState> latest;
+  DiskWriter writer{{.folder = folder.path(), .sync_period = std::chrono::milliseconds{1}, .calls = &disk},
+                    [](std::int64_t, const fs::path&, const std::optional<std::string>&) {},
+                    [&](const DiskState& state) {
+                      const std::lock_guard lock{mutex};
+                      latest = state;
+                      told.notify_all();
+                    }};
+  writer.set_load(1000.0);
+  const auto is_short_with_room_min = [&](double room_min) {
+    std::unique_lock lock{mutex};
+    told.wait(lock, [&] { return latest && latest->room_h == room_min * 60.0 / 3600.0; });
+    return latest->is_short;
+  };
+  EXPECT_TRUE(is_short_with_room_min(9.0));
+  disk.set_room(720'000);
+  EXPECT_TRUE(is_short_with_room_min(12.0));
+  disk.set_room(780'000);
+  EXPECT_FALSE(is_short_with_room_min(13.0));
+  disk.set_room(610'000);
+  EXPECT_FALSE(is_short_with_room_min(10.0));
+  disk.set_room(590'000);
+  EXPECT_TRUE(is_short_with_room_min(9.0));
+}
+
 TEST(StorageState, SaysWhyAndWhatToDo) {
   DiskState disk;
   disk.room_h = 0.2;
