@@ -81,7 +81,7 @@ class Api {
   }
 
  private:
-  using Function = void (Api::*)(const HttpRequest&, const std::string& rest, HttpAnswer);
+  using Function = void (Api::*)(const HttpRequest&, const std::string& rest, const HttpAnswer&);
   struct Route {
     std::string_view method;
     std::string_view path;  ///< A slash at its end: and one part more, the rest.
@@ -99,7 +99,7 @@ class Api {
   /// Names and repetitions first, for what changes something.
   void dispatch(const Route& route, const HttpRequest& request, const std::string& rest, HttpAnswer answer) {
     if (!route.changes) {
-      (this->*route.function)(request, rest, std::move(answer));
+      (this->*route.function)(request, rest, answer);
       return;
     }
     if (request.controller.empty()) {
@@ -136,7 +136,7 @@ class Api {
           break;
       }
     }
-    (this->*route.function)(request, rest, std::move(answer));
+    (this->*route.function)(request, rest, answer);
   }
 
   [[nodiscard]] std::int64_t now_ns() const { return clock_.monotonic_ns(); }
@@ -153,27 +153,27 @@ class Api {
 
   // Readers.
 
-  void status(const HttpRequest&, const std::string&, HttpAnswer answer) {
+  void status(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
     answer(reply_of(status_json(bench_.status())));
   }
 
-  void metrics(const HttpRequest&, const std::string&, HttpAnswer answer) {
+  void metrics(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
     HttpReply reply{200, metrics_text(bench_.status()), {}};
     reply.content_type = kMetricsType;
     answer(std::move(reply));
   }
 
-  void description(const HttpRequest&, const std::string&, HttpAnswer answer) {
+  void description(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
     answer({200, std::string{openapi()}, {}});
   }
 
-  void tests(const HttpRequest&, const std::string&, HttpAnswer answer) {
+  void tests(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
     Json list = Json::array();
     for (const TestSummary& test : bench_.tests()) list.push_back(test_json(test, false));
     answer(reply_of({{"tests", std::move(list)}}));
   }
 
-  void test(const HttpRequest&, const std::string& rest, HttpAnswer answer) {
+  void test(const HttpRequest&, const std::string& rest, const HttpAnswer& answer) {
     std::int64_t number = 0;
     const char* const end = rest.data() + rest.size();
     const auto [stopped, error] = std::from_chars(rest.data(), end, number);
@@ -188,11 +188,11 @@ class Api {
                                     printable(rest), TestLog::kMaxTests)));
   }
 
-  void plan(const HttpRequest&, const std::string&, HttpAnswer answer) {
+  void plan(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
     answer(reply_of(plan_json(bench_.plan())));
   }
 
-  void controller(const HttpRequest&, const std::string&, HttpAnswer answer) {
+  void controller(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
     answer(reply_of(lease_json()));
   }
 
@@ -204,7 +204,7 @@ class Api {
 
   // Who commands.
 
-  void take_control(const HttpRequest& request, const std::string&, HttpAnswer answer) {
+  void take_control(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
     const auto body = object_of(request.body, {"seconds"});
     if (!body) return answer(refusal(400, body.error().message));
     const Json seconds = body->value("seconds", Json(Lease::kCommand_s));
@@ -215,12 +215,12 @@ class Api {
     if (take(request, seconds.get<double>(), answer)) answer(reply_of(lease_json()));
   }
 
-  void release_control(const HttpRequest& request, const std::string&, HttpAnswer answer) {
+  void release_control(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
     if (lease_.release(request.controller, now_ns())) return answer(reply_of(lease_json()));
     answer(refusal(409, fmt::format("{} has the bench", *lease_.holder(now_ns()))));
   }
 
-  void set_plan(const HttpRequest& request, const std::string&, HttpAnswer answer) {
+  void set_plan(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
     const auto body = object_of(request.body, {});
     if (!body) return answer(refusal(400, body.error().message));
     base::Result<Plan> plan = plan_of(*body);
@@ -230,24 +230,25 @@ class Api {
     answer(reply_of(plan_json(bench_.plan())));
   }
 
-  void arm(const HttpRequest& request, const std::string&, HttpAnswer answer) {
-    command(Command::Kind::kArm, request, {}, std::move(answer));
+  void arm(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+    command(Command::Kind::kArm, request, {}, answer);
   }
-  void start(const HttpRequest& request, const std::string&, HttpAnswer answer) {
-    command(Command::Kind::kStart, request, "test", std::move(answer));
+  void start(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+    command(Command::Kind::kStart, request, "test", answer);
   }
-  void stop(const HttpRequest& request, const std::string&, HttpAnswer answer) {
-    command(Command::Kind::kStop, request, "test", std::move(answer));
+  void stop(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+    command(Command::Kind::kStop, request, "test", answer);
   }
-  void mark(const HttpRequest& request, const std::string&, HttpAnswer answer) {
-    command(Command::Kind::kMark, request, "text", std::move(answer));
+  void mark(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+    command(Command::Kind::kMark, request, "text", answer);
   }
-  void tare(const HttpRequest& request, const std::string&, HttpAnswer answer) {
-    command(Command::Kind::kTare, request, {}, std::move(answer));
+  void tare(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+    command(Command::Kind::kTare, request, {}, answer);
   }
 
   /// \param key  that its body may have; empty: none.
-  void command(Command::Kind kind, const HttpRequest& request, std::string_view key, HttpAnswer answer) {
+  void command(Command::Kind kind, const HttpRequest& request, std::string_view key,
+               const HttpAnswer& answer) {
     const auto body = object_of(request.body, {key});
     if (!body) return answer(refusal(400, body.error().message));
     Command command{kind, request.controller, {}, {}};
@@ -266,7 +267,7 @@ class Api {
         return answer(refusal(400, "text: " + why));
     }
     if (!take(request, Lease::kCommand_s, answer)) return;
-    bench_.command(std::move(command), [kind, answer = std::move(answer)](const Outcome& outcome) {
+    bench_.command(std::move(command), [kind, answer](const Outcome& outcome) {
       const pipeline::TareReport& report = outcome.report;
       if (!report.refusal.empty()) {
         answer({409, text_of({{"error", report.refusal}, {"bench", pipeline::name(report.state)}}), {}});

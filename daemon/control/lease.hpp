@@ -18,7 +18,7 @@ class Lease {
 
   /// Takes it or makes it longer, never shorter. \return who holds it, if that is somebody else.
   [[nodiscard]] std::optional<std::string> take(const std::string& who, double for_s, std::int64_t now_ns) {
-    if (const auto other = holder(now_ns); other && *other != who) return other;
+    if (auto other = holder(now_ns); other && *other != who) return other;
     const std::int64_t until_ns = now_ns + static_cast<std::int64_t>(for_s * 1e9);
     if (!holder(now_ns) || until_ns > until_ns_) until_ns_ = until_ns;
     who_ = who;

@@ -1,5 +1,6 @@
 /// \file
-/// The parts of the live page, as they lie in daemon/web and in uPlot's package; built in by cmake/embed.cmake.
+/// The parts of the live page, as they lie in daemon/web and in uPlot's package; built in by
+/// cmake/embed.cmake.
 #pragma once
 
 #include <string_view>

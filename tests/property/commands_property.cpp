@@ -156,9 +156,11 @@ RC_GTEST_PROP(Commands, KeepMachineSegmenterAndRecordTogether, (bool automatic))
         case 3:
           report = processor.mark("d");
           break;
-        default:
-          report = processor.tare("e");
-          break;
+        default: {
+          const TareReport tared = processor.tare("e");
+          report.refusal = tared.refusal;
+          report.state = tared.state;
+        } break;
       }
       RC_ASSERT(report.state == processor.bench());
       if (!report.refusal.empty()) RC_ASSERT(processor.bench() == before);

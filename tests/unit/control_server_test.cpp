@@ -233,6 +233,7 @@ TEST_F(ControlServerTest, AStalledClientCostsTheOthersNothing) {
   std::atomic<int> wrong{0};
   std::counting_semaphore<> arrived{0};
   std::vector<std::thread> readers;
+  readers.reserve(kReaders);
   for (int k = 0; k < kReaders; ++k) {
     readers.emplace_back([&] {
       int next = 0;
