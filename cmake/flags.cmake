@@ -6,6 +6,11 @@ target_compile_options(stickslip_flags INTERFACE
   # Live, replay and batch must give the same bits: the compiler may not fuse a*b+c.
   -ffp-contract=off)
 
+if(STICKSLIP_FUZZ)
+  # The edges of the program are counted. Which warnings count is what the compiler of all other builds says.
+  target_compile_options(stickslip_flags INTERFACE -fsanitize=fuzzer-no-link -Wno-error)
+endif()
+
 set(STICKSLIP_SANITIZE "" CACHE STRING "Sanitizers for -fsanitize=, e.g. address,undefined or thread")
 if(STICKSLIP_SANITIZE)
   target_compile_options(stickslip_flags INTERFACE

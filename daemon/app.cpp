@@ -47,23 +47,49 @@ App::App(DaemonConfig config, AppWorld world)
       retry_timer_(io_),
       finalise_(config_.read_only_records ? read_only(world_.finalise) : world_.finalise),
       clock_(world_.clock ? std::move(world_.clock) : base::make_system_clock(config_.clock_speed)),
-      storage_({.folder = config_.record_folder, .dated_folders = config_.dated_folders}, finalise_, tests_,
-               *world_.facts, [this] { boost::asio::post(io_, [this] { tell_status(); }); }),
+      storage_(
+          {.folder = config_.record_folder, .dated_folders = config_.dated_folders}, finalise_, tests_,
+          *world_.facts, [this] { boost::asio::post(io_, [this] { tell_status(); }); },
+          [this](std::int64_t test, const base::Result<std::filesystem::path>& file) {
+            boost::asio::post(io_, [this, test, file] {
+              if (file) {
+                batches_.record_published(test, *file);
+              } else {
+                batches_.record_failed(test);
+              }
+            });
+          }),
       watcher_(tests_, *world_.facts,
                [this](std::optional<std::int64_t> number) {
                  boost::asio::post(io_, [this, number] {
                    current_test_ = number;
+                   if (number) batches_.test_began(*number);
                    tell_status();
                  });
                }),
       live_(io_, [this] { return health_frame(status()); }),
+      batches_({.folder = config_.record_folder,
+                .program = "/proc/self/exe",
+                .plan = [this] { return desk_.plan(); },
+                .set_plan = [this](Plan plan) { desk_.set_plan(std::move(plan)); },
+                .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
+                .clock = clock_.get()}),
+      wall_(base::make_system_clock()),
+      calibrations_(
+          {.config = config_,
+           .storage = storage_,
+           .session = [this] { return session_.get(); },
+           .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
+           .date_ns = [this] { return wall_->realtime_ns(); },
+           .now_ns = [this] { return clock_->realtime_ns(); }}),
       desk_({.config = config_,
              .tests = tests_,
              .storage = storage_,
+             .calibrations = calibrations_,
              .status = [this] { return status(); },
              .session = [this] { return session_.get(); },
-             .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); }}),
-      wall_(base::make_system_clock()),
+             .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
+             .batches = &batches_}),
       retry_after_(world_.first_retry) {}
 
 App::~App() = default;
@@ -80,6 +106,8 @@ base::Result<void> App::run() {
   if (base::Result<void> opened = open_control(); !opened) return opened;
   // What cannot be recovered is told and kept; the measurement goes on.
   static_cast<void>(recover_folder(config_.record_folder, finalise_, *world_.facts));
+  batches_.open();
+  if (base::Result<void> opened = open_fleet(); !opened) return opened;
   if (base::Result<void> opened = open_session(); !opened) {
     if (opened.error().kind == base::ErrorKind::kUsage) return opened;
     wait_for_board(opened.error());
@@ -90,6 +118,12 @@ base::Result<void> App::run() {
   io_.run();
 
   storage_.stop();
+  // What the last record means for its batch.
+  io_.restart();
+  io_.poll();
+  batches_.close();
+  io_.poll();
+  if (fleet_) fleet_->stop();
   live_.close();
   control_.clear();
   return {};
@@ -115,6 +149,26 @@ base::Result<void> App::open_control() {
   const base::Result<std::string> token = load_token(config_.token_file);
   if (!token) return tl::unexpected(token.error());
   return keep(ControlServer::listen_tcp(io_, config_.http, *token, api, {}, &live_.hub()));
+}
+
+base::Result<void> App::open_fleet() {
+  if (!config_.fleet) return {};
+  if (base::Result<void> readable = check_files(*config_.fleet); !readable) return readable;
+  fleet_ = std::make_unique<Fleet>(io_, *config_.fleet,
+                                   Fleet::Parts{.status = [this] { return status(); },
+                                                .wall = *wall_,
+                                                .facts = *world_.facts,
+                                                .record_folder = config_.record_folder,
+                                                .program = "/proc/self/exe"});
+  storage_.tell_ends([this](const record::RecordHeader& header, const record::EndRecord& end,
+                            const std::filesystem::path& file) { fleet_->test_recorded(header, end, file); });
+  return {};
+}
+
+std::vector<pipeline::Sink*> App::sinks() {
+  std::vector<pipeline::Sink*> sinks{&watcher_, &storage_, &live_.feed()};
+  if (fleet_) sinks.push_back(fleet_.get());
+  return sinks;
 }
 
 base::Result<void> App::open_session() {
@@ -146,13 +200,13 @@ base::Result<void> App::open_session() {
       notify_.ready();
     });
   };
+  events.block = [this](const daq::ScanBlock& block) { calibrations_.block(block); };
   events.ended = [this](Acquisition::End end) {
+    calibrations_.blocks_ended();
     boost::asio::post(io_, [this, end] { session_ended(end); });
   };
   try {
-    session_ = std::make_unique<Session>(std::move(*board), settings,
-                                         std::vector<pipeline::Sink*>{&watcher_, &storage_, &live_.feed()},
-                                         std::move(events), counts_);
+    session_ = std::make_unique<Session>(std::move(*board), settings, sinks(), std::move(events), counts_);
   } catch (const std::invalid_argument& refused) {
     return base::usage_error("the board does not suit the configuration: {}", refused.what());
   }
@@ -160,6 +214,7 @@ base::Result<void> App::open_session() {
     session_.reset();
     return started;
   }
+  calibrations_.session_began(settings);
   watcher_.use(truth_.get());
   live_.feed().use(settings.processor.analysis.scan_rate_Hz, config_.clock_speed);
   storage_.use(record_header(config_, settings, session_->board_info(), realtime_facts()), truth_.get(),
@@ -194,6 +249,7 @@ void App::session_ended(Acquisition::End end) {
   continues_ = ended;
   clocks_ = session_->clocks();
   session_.reset();
+  calibrations_.session_ended();
   if (state_ == State::kStopping) {
     leave_when_idle();
     return;
@@ -236,6 +292,7 @@ void App::tell_status() {
   const std::string line = status_line();
   notify_.status(line);
   if (world_.status_changed) world_.status_changed(line);
+  if (fleet_) fleet_->state_changed();
 }
 
 std::string_view App::name(State state) noexcept {
@@ -316,11 +373,16 @@ Status App::status() const {
   status.latency = clocks.latency;
   status.storage_stall_count = storage_.stall_count();
   status.storage = storage_.state();
+  status.batch = batches_.progress();
   if (state_ == State::kAcquiring && status.storage.kind != StorageState::Kind::kOk)
     status.state = fmt::format("storage {}", daemon::name(status.storage.kind));
   status.test_count = tests_.test_count();
   status.current_test = current_test_;
   status.latest_test = tests_.latest();
+  const CalibrationView calibration = calibrations_.view();
+  status.calibration = {calibration.facts.date, calibration.facts.expires, calibration.expired,
+                        calibration.session ? calibration.session->who : std::string{}};
+  if (fleet_) status.fleet = fleet_->state();
   status.live_client_count = static_cast<std::int64_t>(live_.hub().client_count());
   status.live_dropped_count = live_.hub().dropped_count() + live_.lost_count();
   return status;

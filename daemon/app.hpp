@@ -16,11 +16,13 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "core/base/clock.hpp"
+#include "daemon/batch/leader.hpp"
 #include "daemon/bench_desk.hpp"
 #include "daemon/config.hpp"
 #include "daemon/control/api.hpp"
 #include "daemon/control/server.hpp"
 #include "daemon/facts.hpp"
+#include "daemon/fleet/fleet.hpp"
 #include "daemon/live/stream.hpp"
 #include "daemon/notify.hpp"
 #include "daemon/session.hpp"
@@ -87,6 +89,10 @@ class App {
   [[nodiscard]] std::string realtime_facts() const;
   /// Socket and port, as configured.
   [[nodiscard]] base::Result<void> open_control();
+  /// The broker, if one is configured.
+  [[nodiscard]] base::Result<void> open_fleet();
+  /// Who is told of the scans.
+  [[nodiscard]] std::vector<pipeline::Sink*> sinks();
 
   DaemonConfig config_;
   AppWorld world_;
@@ -100,8 +106,11 @@ class App {
   Storage storage_;
   TestWatcher watcher_;
   LiveStream live_;
+  BatchLeader batches_;
+  std::unique_ptr<base::Clock> wall_;  ///< Of leases, dates and messages: people's time.
+  CalibrationDesk calibrations_;
   BenchDesk desk_;
-  std::unique_ptr<base::Clock> wall_;  ///< Of leases: people's time.
+  std::unique_ptr<Fleet> fleet_;  ///< Null without a broker.
   std::vector<std::unique_ptr<ControlServer>> control_;
   std::shared_ptr<const friction::TruthSource> truth_;
   std::unique_ptr<Session> session_;

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "daemon/method_text.hpp"
+
 namespace stickslip::daemon {
 namespace {
 
@@ -57,33 +59,47 @@ Outcome carry_out(const Command& command, pipeline::Processor& processor) {
   return {processor.tare(command.who), false};
 }
 
-Plan BenchDesk::plan() const { return {parts_.config.sample, parts_.config.bench.pull_speed_m_per_s}; }
+Plan BenchDesk::plan() const {
+  Plan plan{parts_.config.sample, parts_.config.bench.pull_speed_m_per_s, std::nullopt};
+  if (!(parts_.config.method == configured_method_)) plan.method = parts_.config.method;
+  return plan;
+}
 
 void BenchDesk::set_plan(Plan plan) {
   parts_.config.sample = plan.sample;
   parts_.config.bench.pull_speed_m_per_s = plan.pull_speed_m_per_s;
+  parts_.config.method = plan.method.value_or(configured_method_);
   Session* const session = parts_.session();
   if (session == nullptr) return;
   // A session that is over takes it from the configuration.
   static_cast<void>(
-      session->post([&storage = parts_.storage, plan = std::move(plan)](pipeline::Processor& processor) {
+      session->post([&storage = parts_.storage, plan = std::move(plan), method = parts_.config.method,
+                     estimator = parts_.config.estimator](pipeline::Processor& processor) {
         processor.plan_pull_speed(plan.pull_speed_m_per_s);
-        storage.amend([&plan](record::RecordHeader& header) {
+        processor.plan_method(method);
+        storage.amend([&](record::RecordHeader& header) {
           header.sample = plan.sample;
           header.tester.pull_speed_m_per_s = plan.pull_speed_m_per_s;
+          header.process.method = with_estimator(method_text(method), estimator);
         });
       }));
 }
 
+std::optional<std::string> BenchDesk::refused_now(Command::Kind kind) const {
+  const bool test = kind == Command::Kind::kArm || kind == Command::Kind::kStart;
+  if (test || kind == Command::Kind::kTare) {
+    if (auto why_not = parts_.calibrations.why_no_test()) return why_not;
+  }
+  return test ? why_no_test(parts_.storage.state()) : std::nullopt;
+}
+
 void BenchDesk::command(Command command, std::function<void(const Outcome&)> answer) {
-  if (command.kind == Command::Kind::kArm || command.kind == Command::Kind::kStart) {
-    if (auto why_not = why_no_test(parts_.storage.state())) {
-      Outcome outcome;
-      outcome.report.refusal = *std::move(why_not);
-      outcome.report.state = parts_.status().bench;
-      answer(outcome);
-      return;
-    }
+  if (auto why_not = refused_now(command.kind)) {
+    Outcome outcome;
+    outcome.report.refusal = *std::move(why_not);
+    outcome.report.state = parts_.status().bench;
+    answer(outcome);
+    return;
   }
   Session* const session = parts_.session();
   const bool posted =

@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "daemon/calibration_desk.hpp"
 #include "daemon/config.hpp"
 #include "daemon/control/bench.hpp"
 #include "daemon/session.hpp"
@@ -20,22 +21,29 @@ class BenchDesk final : public Bench {
     DaemonConfig& config;  ///< What is planned and tared stands there, for the next session as well.
     const TestLog& tests;
     Storage& storage;
+    CalibrationDesk& calibrations;
     std::function<Status()> status;
     std::function<Session*()> session;                   ///< Null while there is none.
     std::function<void(std::function<void()>)> on_main;  ///< From any thread: to the main thread.
+    Batches* batches;
   };
-  explicit BenchDesk(Parts parts) : parts_(std::move(parts)) {}
+  explicit BenchDesk(Parts parts) : parts_(std::move(parts)), configured_method_(parts_.config.method) {}
 
   [[nodiscard]] Status status() const override { return parts_.status(); }
   [[nodiscard]] std::vector<TestSummary> tests() const override { return parts_.tests.tests(); }
   [[nodiscard]] Plan plan() const override;
   void set_plan(Plan plan) override;
   void command(Command command, std::function<void(const Outcome&)> answer) override;
+  [[nodiscard]] Calibrator& calibrator() override { return parts_.calibrations; }
+  [[nodiscard]] Batches& batches() override { return *parts_.batches; }
 
  private:
+  /// Before the processing thread is asked.
+  [[nodiscard]] std::optional<std::string> refused_now(Command::Kind kind) const;
   void answered(const Command& command, const Outcome& outcome);
 
   Parts parts_;
+  friction::Method configured_method_;
 };
 
 /// What the command does, between two blocks. Processing thread.

@@ -73,6 +73,16 @@ base::Result<StoredCalibration> read(base::Settings settings) {
   return result;
 }
 
+/// None where there is no folder.
+std::vector<std::filesystem::path> calibrations_in(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator{folder, error}) {
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  }
+  return files;
+}
+
 /// "20261122T101500Z" of an ISO time in UTC.
 std::string file_stem(const std::string& date) {
   std::string stem;
@@ -150,13 +160,13 @@ base::Result<StoredCalibration> parse_calibration(std::string_view text, std::st
   return read(*settings);
 }
 
+bool holds_calibration(const std::filesystem::path& folder) { return !calibrations_in(folder).empty(); }
+
 base::Result<StoredCalibration> load_calibration(const std::filesystem::path& path) {
   std::error_code error;
   std::vector<std::filesystem::path> files;
   if (std::filesystem::is_directory(path, error)) {
-    for (const auto& entry : std::filesystem::directory_iterator{path, error}) {
-      if (entry.path().extension() == ".toml") files.push_back(entry.path());
-    }
+    files = calibrations_in(path);
     if (files.empty()) {
       return base::usage_error("{}: holds no calibration: make one with stickslip calibrate", path.string());
     }
@@ -185,6 +195,28 @@ base::Result<std::filesystem::path> keep_calibration(const std::filesystem::path
     return tl::unexpected(written.error());
   }
   return file;
+}
+
+base::Result<KeptCalibration> keep_result(const daq::WeighedCalibration& result,
+                                          const CalibrationPaper& paper, const std::filesystem::path& folder,
+                                          std::int64_t now_ns) {
+  constexpr double kNanosecondsPerDay = 86'400e9;
+  const auto valid_ns = static_cast<std::int64_t>(paper.valid_days * kNanosecondsPerDay);
+  KeptCalibration kept{stored_calibration(result, record::iso_time(now_ns),
+                                          valid_ns > 0 ? record::iso_time(now_ns + valid_ns) : std::string{},
+                                          paper.certificate),
+                       {},
+                       std::nullopt};
+  std::error_code error;
+  if (std::filesystem::is_directory(folder, error) && !std::filesystem::is_empty(folder, error)) {
+    auto before = load_calibration(folder);
+    if (!before) return tl::unexpected(before.error());
+    kept.before = *std::move(before);
+  }
+  auto file = keep_calibration(folder, kept.stored);
+  if (!file) return tl::unexpected(file.error());
+  kept.file = *std::move(file);
+  return kept;
 }
 
 bool expired(const record::CalibrationFacts& facts, std::string_view now) {

@@ -80,6 +80,8 @@ void read_simulated(Settings table, const std::filesystem::path& folder, DaemonC
   config.board.simulated.repeats = static_cast<int>(table.integer("repeats", 0, kMostRepeats, 1));
   config.board.simulated.speed_gain_m_per_s_per_V =
       table.quantity_if_given("speed_gain", Dimension::kSpeedPerVoltage, Limits::above(0.0));
+  if (const std::string hanging = table.text("hanging", ""); !hanging.empty())
+    config.board.simulated.hanging = resolved(folder, hanging);
 }
 
 void read_replay(Settings table, const std::filesystem::path& folder, DaemonConfig& config) {
@@ -174,8 +176,15 @@ void read_board(Settings table, const std::filesystem::path& folder, DaemonConfi
 }
 
 void read_calibration(Settings& table, const std::filesystem::path& path, BenchConfig& bench) {
-  for (const char* key : {"load_cell_gain", "load_cell_zero"}) {
-    if (table.has(key)) table.refuse(key, "stands in the calibration");
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored) || path.extension() != ".toml") {
+    bench.calibration_folder = path;
+    // The gain of the data sheet holds until the first calibration is there, which may come while it is read.
+    if (table.has("load_cell_gain") && !holds_calibration(path)) return;
+  } else {
+    for (const char* key : {"load_cell_gain", "load_cell_zero"}) {
+      if (table.has(key)) table.refuse(key, "stands in the calibration");
+    }
   }
   const base::Result<StoredCalibration> stored = load_calibration(path);
   if (!stored) {
@@ -295,6 +304,7 @@ DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
   if (!config.http.empty() && config.token_file.empty()) {
     control.refuse("token_file", "is missing: who comes over http has to show the token that stands there");
   }
+  config.fleet = read_fleet(settings.table("fleet"), folder);
   config.log_level = settings.table("log").choice<LogLevel>("level", kLogLevels, config.log_level);
   config.report_table = settings.table("report").boolean("table", config.report_table);
   config.text = settings.source_text();

@@ -16,6 +16,7 @@
 #include "core/pipeline/segmenter.hpp"
 #include "core/record/record.hpp"
 #include "daemon/dated_folders.hpp"
+#include "daemon/fleet/fleet_settings.hpp"
 #include "daemon/realtime.hpp"
 #include "drivers/factory/board_config.hpp"
 
@@ -35,6 +36,7 @@ struct BenchConfig {
   std::string characterisation;  ///< Text of the file that `stickslip characterise` wrote; empty: none.
   /// Of `stickslip calibrate`; it has given the load cell above.
   std::optional<record::CalibrationFacts> calibration;
+  std::filesystem::path calibration_folder;  ///< Where new ones are kept; empty: nowhere.
 
   [[nodiscard]] friction::Tester tester(const std::optional<friction::Tester>& known) const;
   [[nodiscard]] daq::LoadCell load_cell(const std::optional<daq::LoadCell>& known) const;
@@ -54,8 +56,9 @@ struct DaemonConfig {
   DatedFolders dated_folders = DatedFolders::kNone;
   bool read_only_records = false;
   std::optional<std::filesystem::path> control_socket;
-  std::string http;                  ///< Address and port of this machine; empty: none.
-  std::filesystem::path token_file;  ///< For http.
+  std::string http;                    ///< Address and port of this machine; empty: none.
+  std::filesystem::path token_file;    ///< For http.
+  std::optional<FleetSettings> fleet;  ///< Nothing: no broker.
   LogLevel log_level = LogLevel::kInfo;
   bool report_table = false;
   std::string text;  ///< The file as it was read, for the records.

@@ -11,10 +11,11 @@
 #include "core/daq/gap.hpp"
 #include "core/friction/sampling.hpp"
 #include "core/pipeline/sink.hpp"
+#include "daemon/fleet/fleet_state.hpp"
 
 namespace stickslip::daemon {
 
-/// Thread-safe: called from the main, processing and storage threads, never from acquisition.
+/// Thread-safe: called from all threads but acquisition.
 class Facts {
  public:
   virtual ~Facts() = default;
@@ -45,6 +46,8 @@ class Facts {
   virtual void orphan_kept(const std::filesystem::path& /*journal*/, std::string_view /*why*/) {}
   /// Nothing had been recorded; the journal is removed.
   virtual void orphan_empty(const std::filesystem::path& /*journal*/) {}
+  /// The broker is there, or away, or away for another reason.
+  virtual void fleet_changed(const FleetState& /*state*/) {}
   virtual void control_listening(std::string_view /*socket*/) {}
   virtual void stopping(std::string_view /*why*/) {}
 };

@@ -60,7 +60,7 @@ class NoDescriptors {
 
 std::filesystem::path record_of(const std::filesystem::path& journal) {
   std::filesystem::path file = journal;
-  file.replace_extension(".h5");
+  file.replace_extension(record::kRecordExtension);
   return file;
 }
 

@@ -119,6 +119,14 @@ class Log final : public Facts {
   void orphan_empty(const std::filesystem::path& journal) override {
     logger_.warn("removed, nothing was recorded in it before the program was stopped: {}", journal.string());
   }
+  void fleet_changed(const FleetState& state) override {
+    if (state.link == FleetState::Link::kConnected) {
+      logger_.info("fleet: connected to {} as {}", state.broker, state.tester);
+    } else {
+      logger_.warn("fleet: {}: {}; results wait in the outbox, {} of them now", state.broker, state.why,
+                   state.outbox_count);
+    }
+  }
   void control_listening(std::string_view socket) override {
     logger_.info("control: listening at {}", socket);
   }

@@ -10,24 +10,17 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "daemon/app.hpp"
 #include "daemon/config.hpp"
+#include "daemon/daemon_options.hpp"
 #include "daemon/finaliser.hpp"
+#include "daemon/fleet/backlog.hpp"
 #include "daemon/log.hpp"
 #include "daemon/report/table.hpp"
 #include "daemon/version.hpp"
 
 namespace stickslip::daemon {
 namespace {
-
-constexpr const char* kExamples = R"(Examples:
-  stickslipd --config config/demo.toml                  ten simulated tests, then a table
-  stickslipd --config /etc/stickslip/stickslipd.toml    as the service does
-  stickslipd --check-config my.toml                     says what is wrong; exit status 0 or 2
-Each key is documented in config/stickslipd.toml. SIGTERM and SIGINT end a running test, finish
-its file and end the daemon with status 0.)";
 
 int refused(const base::Error& error) {
   fmt::print(stderr, "stickslipd: {}\n", error.message);
@@ -46,6 +39,13 @@ int check_config(const std::string& file) {
 int finalise_journal(const std::string& journal) {
   const base::Result<std::filesystem::path> file = finalise_here(journal);
   return file ? 0 : refused(file.error());
+}
+
+int print_result(const std::string& file) {
+  const base::Result<std::string> result = result_of_record(file);
+  if (!result) return refused(result.error());
+  fmt::print("{}", *result);
+  return 0;
 }
 
 /// Follows the daemon's state in one line of a terminal.
@@ -90,28 +90,21 @@ int run(const std::string& file) {
 }
 
 int main_of(int count, char** arguments) {
-  CLI::App options{"stickslipd: measures friction tests, one record per test"};
-  options.footer(kExamples);
-  std::string config;
-  std::string config_to_check;
-  std::string journal;
-  options.add_option("--config", config, "run with this configuration")->type_name("FILE");
-  options.add_option("--check-config", config_to_check, "check this configuration and the files it names")
-      ->type_name("FILE");
-  options.add_option("--finalise", journal, "build the record of a journal (the daemon calls this itself)")
-      ->type_name("JOURNAL");
-  options.set_version_flag("--version", fmt::format("stickslipd {} ({})", kVersion, kCommit));
-  options.require_option(1);
+  CLI::App parser{kDaemonPurpose, "stickslipd"};
+  DaemonOptions options;
+  declare_daemon_options(parser, options);
+  parser.set_version_flag("--version", fmt::format("stickslipd {} ({})", kVersion, kCommit));
   try {
-    options.parse(count, arguments);
+    parser.parse(count, arguments);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return options.exit(error);
+    if (error.get_exit_code() == 0) return parser.exit(error);
     fmt::print(stderr, "stickslipd: {}; see stickslipd --help\n", error.what());
     return 2;
   }
-  if (!config_to_check.empty()) return check_config(config_to_check);
-  if (!journal.empty()) return finalise_journal(journal);
-  return run(config);
+  if (!options.config_to_check.empty()) return check_config(options.config_to_check);
+  if (!options.journal.empty()) return finalise_journal(options.journal);
+  if (!options.record.empty()) return print_result(options.record);
+  return run(options.config);
 }
 
 }  // namespace

@@ -111,6 +111,7 @@ void Session::process_block(const daq::ScanBlock& block) {
     any_scan_ = true;
     events_.first_scan();
   }
+  if (events_.block) events_.block(block);
   const std::uint64_t overruns = block.overrun_count - std::exchange(overruns_before_, block.overrun_count);
   const std::uint64_t dropped =
       block.dropped_scan_count - std::exchange(dropped_before_, block.dropped_scan_count);

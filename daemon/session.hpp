@@ -42,6 +42,8 @@ struct SessionEnd {
 struct SessionEvents {
   std::function<void()> first_scan;
   std::function<void(Acquisition::End)> ended;  ///< All sinks have got everything.
+  /// Each block as it was read, before anything is made of it; empty: nobody looks.
+  std::function<void(const daq::ScanBlock&)> block;
 };
 
 /// What happens in all sessions of a program; readable from any thread at any time.

@@ -83,12 +83,13 @@ std::filesystem::path free_journal_path(const StorageSettings& settings, const p
 }  // namespace
 
 Storage::Storage(StorageSettings settings, Finalise finalise, TestLog& tests, Facts& facts,
-                 std::function<void()> changed)
+                 std::function<void()> changed, Made made)
     : settings_(std::move(settings)),
       tests_(tests),
       facts_(facts),
       queue_(kQueueCapacity),
       changed_(std::move(changed)),
+      made_(std::move(made)),
       finisher_(std::move(finalise),
                 [this](std::int64_t test, const base::Result<std::filesystem::path>& file) {
                   record_made(test, file);
@@ -235,8 +236,10 @@ void Storage::handle(const Began& message) {
   header.trigger_scan = message.start.trigger;
   header.start_realtime_ns = message.start.stamp.realtime_ns;
   header.title = fmt::format("test {}", message.start.number);
+  header.uuid = record::make_uuid();
   if (message.start.self_check) header.self_check = *message.start.self_check;
   const std::string expires = header.calibration.expires;
+  if (end_told_) begun_ = header;
   const std::optional<double> little_s = little_room_s();
   if (little_s) facts_.little_room(number_, *little_s);
   const double rate_Hz = header.board.scan_rate_granted_Hz;
@@ -304,6 +307,7 @@ void Storage::handle(const Ended& message) {
   record::EndRecord end = *message.end;
   end.end_realtime_ns = pending_stamp_.realtime_ns;
   if (message.force) append_force(*message.force);
+  if (end_told_) end_told_(begun_, end, record_of(latest_path_));
   journal_->add_end(std::move(end));
   disk_.end(std::exchange(journal_, nullptr));
 }
@@ -354,8 +358,7 @@ void Storage::journal_ended(std::int64_t test, const std::filesystem::path& jour
     finisher_.finish(test, journal);
     return;
   }
-  facts_.recording_failed(test, *why_not);
-  tests_.set_file_error(test, *why_not);
+  record_made(test, base::failure("{}", *why_not));
 }
 
 void Storage::disk_changed(const DiskState& state) {
@@ -370,7 +373,7 @@ void Storage::disk_changed(const DiskState& state) {
   if (changed_) changed_();
 }
 
-// The finisher's thread.
+// The finisher's thread, or the disk's where there is nothing to finish.
 
 void Storage::record_made(std::int64_t test, const base::Result<std::filesystem::path>& file) {
   if (file) {
@@ -380,6 +383,7 @@ void Storage::record_made(std::int64_t test, const base::Result<std::filesystem:
     facts_.recording_failed(test, file.error().message);
     tests_.set_file_error(test, file.error().message);
   }
+  if (made_) made_(test, file);
 }
 
 }  // namespace stickslip::daemon

@@ -40,9 +40,12 @@ struct StorageSettings {
 class Storage final : public pipeline::Sink {
  public:
   /// \param finalise  called on the finisher's thread. \param tests,facts  outlive this object.
+  /// What became of the record of a test.
+  using Made = std::function<void(std::int64_t test, const base::Result<std::filesystem::path>& file)>;
   /// \param changed  called on the disk thread when it is otherwise with the disk; may not wait.
+  /// \param made  called on the disk's or the finisher's thread; may not wait.
   Storage(StorageSettings settings, Finalise finalise, TestLog& tests, Facts& facts,
-          std::function<void()> changed = {});
+          std::function<void()> changed = {}, Made made = {});
   /// As stop().
   ~Storage() override;
   Storage(const Storage&) = delete;
@@ -57,6 +60,12 @@ class Storage final : public pipeline::Sink {
   /// What the records of the coming tests say otherwise, of those that begin after this.
   /// On the processing thread, or while no test can arrive.
   void amend(const std::function<void(record::RecordHeader&)>& change);
+
+  /// Told of each test that is over, with what its record begins and ends with and where that will stand.
+  using EndTold = std::function<void(const record::RecordHeader&, const record::EndRecord&,
+                                     const std::filesystem::path&)>;
+  /// Only while no test can arrive. \param told  called on the storage thread; may not wait.
+  void tell_ends(EndTold told) { end_told_ = std::move(told); }
 
   /// Writes all that was handed over, finalises, ends the thread. No sink calls afterwards.
   void stop();
@@ -131,7 +140,9 @@ class Storage final : public pipeline::Sink {
   std::size_t collected_enough_ = 1;  ///< Processing thread: to hand them over.
   BoundedQueue<Message> queue_;
 
+  EndTold end_told_;
   std::int64_t number_ = 0;
+  record::RecordHeader begun_;         ///< Of the test that runs, for end_told_.
   std::filesystem::path latest_path_;  ///< Of a journal that need not be on the disk yet.
   DiskWriter::Journal journal_;
   std::vector<double> pending_;               ///< Consecutive scans not yet appended.
@@ -141,6 +152,7 @@ class Storage final : public pipeline::Sink {
   std::vector<Stretch> recorded_;   ///< All of them.
   std::size_t pending_enough_ = 1;  ///< scans_in_entry().
   std::function<void()> changed_;
+  Made made_;
   bool waits_ = false;  ///< Disk thread: as it was told last, as the next.
   bool is_short_ = false;
   Finisher finisher_;  ///< Outlives the disk thread, which hands over to it.

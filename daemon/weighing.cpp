@@ -1,10 +1,7 @@
 #include "daemon/weighing.hpp"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <utility>
-#include <vector>
 
 #include "daemon/config.hpp"
 
@@ -14,9 +11,6 @@ namespace {
 constexpr std::chrono::milliseconds kReadTimeout{100};
 /// So long without a scan, and the board is taken for dead.
 constexpr int kMostTimeouts = 50;
-
-/// Volts are force over 1 N/V, whatever the load.
-daq::Calibration volts_of(const daq::BoardInfo& board) { return {board, {1.0, 0.0}, 1.0}; }
 
 }  // namespace
 
@@ -45,7 +39,7 @@ base::Result<WeighingPlace> load_weighing_place(const std::filesystem::path& con
 }
 
 Weighing::Weighing(std::unique_ptr<base::Clock> clock, drivers::OpenedBoard board)
-    : clock_(std::move(clock)), board_(std::move(board)), volts_(volts_of(board_.board->info())) {}
+    : clock_(std::move(clock)), board_(std::move(board)) {}
 
 base::Result<Weighing> Weighing::open(const WeighingPlace& place) {
   auto clock = base::make_system_clock(place.clock_speed);
@@ -63,38 +57,29 @@ double Weighing::span_V() const { return board().range_max_V - board().range_min
 
 base::Result<daq::WeightReading> Weighing::read(double mass_kg, const WeighingTimes& times) {
   daq::Board& board = *board_.board;
-  const double rate_Hz = board.info().scan_rate_granted_Hz;
-  const auto settle = static_cast<std::size_t>(std::llround(times.settle_s * rate_Hz));
-  const std::size_t wanted =
-      std::max(daq::kReadingParts, static_cast<std::size_t>(std::llround(times.reading_s * rate_Hz)));
+  WeightScans scans{board.info(), times};
   if (auto started = board.start(); !started) return tl::unexpected(started.error());
-  std::vector<double> voltages_V;
-  bool saturated = false;
-  std::size_t seen = 0;
   int timeouts = 0;
   daq::ScanBlock block;
-  while (voltages_V.size() < wanted) {
+  while (!scans.full()) {
     const daq::ReadStatus status = board.read(block, kReadTimeout);
     if (status == daq::ReadStatus::kTimeout && ++timeouts < kMostTimeouts) continue;
     if (status != daq::ReadStatus::kScans) {
       board.stop();
       const std::string why = board.last_error();
-      return base::failure("the board gave {} of {} scans{}{}", voltages_V.size(), wanted,
+      return base::failure("the board gave {} of {} scans{}{}", scans.count(), scans.wanted(),
                            why.empty() ? "" : ": ", why);
     }
     timeouts = 0;
     rest_.insert(rest_.end(), block.scans().begin(), block.scans().end());
     // What is left belongs to the time in which the next weight settles.
-    while (!rest_.empty() && voltages_V.size() < wanted) {
-      const double raw = rest_.front();
+    while (!rest_.empty() && !scans.full()) {
+      scans.add(rest_.front());
       rest_.pop_front();
-      if (seen++ < settle) continue;
-      voltages_V.push_back(volts_.volts(raw));
-      saturated = saturated || volts_.saturated(raw);
     }
   }
   board.stop();
-  return daq::reading_of(mass_kg, voltages_V, saturated);
+  return scans.reading(mass_kg);
 }
 
 }  // namespace stickslip::daemon

@@ -10,6 +10,7 @@
 #include "core/base/clock.hpp"
 #include "core/base/result.hpp"
 #include "core/daq/weighed_calibration.hpp"
+#include "daemon/weight_scans.hpp"
 #include "drivers/factory/factory.hpp"
 
 namespace stickslip::daemon {
@@ -24,12 +25,6 @@ struct WeighingPlace {
 
 /// Errors: kUsage as load_config().
 [[nodiscard]] base::Result<WeighingPlace> load_weighing_place(const std::filesystem::path& config);
-
-/// How long a weight is left to come to rest, and is read after that.
-struct WeighingTimes {
-  double settle_s = 1.0;
-  double reading_s = 2.0;
-};
 
 /// Owns the board; it acquires only while a weight is read, so that what was before is not counted.
 class Weighing {
@@ -48,7 +43,6 @@ class Weighing {
 
   std::unique_ptr<base::Clock> clock_;
   drivers::OpenedBoard board_;
-  daq::Calibration volts_;
   std::deque<double> rest_;  ///< Scans that came with the last of a reading.
 };
 

@@ -34,15 +34,22 @@ class LatencyHistogram {
     while (bin + 1 < kBins && late_s >= limit_s(bin)) ++bin;
     ++counts_[bin];
     largest_s_ = std::max(largest_s_, late_s);
+    sum_s_ += late_s;
   }
 
   [[nodiscard]] const Counts& counts() const noexcept { return counts_; }
   [[nodiscard]] double largest_s() const noexcept { return largest_s_; }
-  bool operator==(const LatencyHistogram&) const = default;
+  /// Of what was added to this one, not of what was stored: records keep no sum.
+  [[nodiscard]] double sum_s() const noexcept { return sum_s_; }
+  /// What a record keeps of both.
+  bool operator==(const LatencyHistogram& other) const noexcept {
+    return counts_ == other.counts_ && largest_s_ == other.largest_s_;
+  }
 
  private:
   Counts counts_{};
   double largest_s_ = 0.0;
+  double sum_s_ = 0.0;
 };
 
 }  // namespace stickslip::daq

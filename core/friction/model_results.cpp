@@ -177,6 +177,13 @@ bool feeds_the_oscillation(const SlipEstimates& estimates) noexcept {
   return gamma < -kNegativeDampingSigmas * error;
 }
 
+/// Damping as large as the fit admits (γ < 2ω), within its error: the scans hold no oscillation, or too few of each.
+bool is_overdamped(const SlipEstimates& estimates) noexcept {
+  constexpr double kSigmas = 2.0;
+  const auto [gamma, error] = damping_of(estimates);
+  return gamma + kSigmas * error > 2.0 * estimates.fit.shared.omega;
+}
+
 /// Why model_describes() says no.
 std::string why_not(const SlipEstimates& estimates, double sigma) {
   const SlipFit& fit = estimates.fit;
@@ -186,6 +193,10 @@ std::string why_not(const SlipEstimates& estimates, double sigma) {
                        fit.residual_sigma / sigma, kLargestResidualSigmas);
   }
   const auto [gamma, error] = damping_of(estimates);
+  if (is_overdamped(estimates)) {
+    return fmt::format("overdamped: gamma/2omega {:.2g} +- {:.1g}, the scans show no oscillation of the model",
+                       gamma / (2.0 * fit.shared.omega), error / (2.0 * fit.shared.omega));
+  }
   return fmt::format(
       "the model does not describe this friction: its damping, {:.2g} +- {:.1g} 1/s, would be negative",
       gamma, error);
@@ -195,7 +206,7 @@ std::string why_not(const SlipEstimates& estimates, double sigma) {
 
 bool model_describes(const SlipEstimates& estimates, double sigma) noexcept {
   return estimates.fit.converged && estimates.fit.residual_sigma <= kLargestResidualSigmas * sigma &&
-         !feeds_the_oscillation(estimates);
+         !feeds_the_oscillation(estimates) && !is_overdamped(estimates);
 }
 
 void no_model_results(const std::string& reason, TestResults& results) {

@@ -84,8 +84,9 @@ void take_model_results(const TestResults& model, TestResults& results) {
 std::optional<std::string> sampling_finding(double scan_rate_Hz, const TestResults& results) {
   const Estimate& cycles_Hz = results.oscillation_frequency;
   if (!results.omega.value && !cycles_Hz.value) return std::nullopt;
+  // No cycle is shorter than an oscillation; one that the model fits among too few scans may be a slower one.
   const double frequency_Hz =
-      results.omega.value ? *results.omega.value / (2.0 * std::numbers::pi) : *cycles_Hz.value;
+      std::max(results.omega.value.value_or(0.0) / (2.0 * std::numbers::pi), cycles_Hz.value.value_or(0.0));
   const double scans = scan_rate_Hz / frequency_Hz;
   if (scans >= kFewScansACycle) return std::nullopt;
   return fmt::format(

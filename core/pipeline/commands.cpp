@@ -101,6 +101,30 @@ TareReport Processor::tare(const std::string& who) {
   return report;
 }
 
+CommandReport Processor::recalibrate(daq::Calibration calibration, std::optional<double> gain_uncertainty,
+                                     const std::string& who) {
+  CommandReport report{{}, bench_.state(), number_, next_scan_};
+  if (bench_.state() != BenchState::kIdle) {
+    report.refusal = fmt::format("the bench is {}; a new calibration needs it idle", name(bench_.state()));
+    return report;
+  }
+  calibration_ = std::move(calibration);
+  const double step = calibration_.step_coefficient();
+  settings_.analysis.step_coefficient = step;
+  settings_.segmenter.step_coefficient = step;
+  settings_.gain_uncertainty = gain_uncertainty;
+  // What was kept for the next test was weighed otherwise: a replay, which knows one calibration, could not
+  // tell.
+  segmenter_ = Segmenter{settings_.segmenter};
+  segmenter_.trigger_by_force(false);
+  waiting_.clear();
+  idle_.clear();
+  const daq::LoadCell& cell = calibration_.load_cell();
+  note_for_later(fmt::format("load cell calibrated: {:.8g} N/V, zero {:.6g} V, from scan {}, by {}",
+                             cell.gain_N_per_V, cell.zero_V, next_scan_, who));
+  return report;
+}
+
 void Processor::note_for_later(std::string text) {
   if (for_later_.size() == kMostForLater) for_later_.erase(for_later_.begin());
   for_later_.push_back(std::move(text));

@@ -79,12 +79,19 @@ class Processor {
   [[nodiscard]] CommandReport mark(const std::string& text);
   /// What the load cell shows now is its zero from here on.
   [[nodiscard]] TareReport tare(const std::string& who);
+  /// Readings mean this from here on. Only on an idle bench, whose next test begins after all of this.
+  /// \param calibration  of the same board. \param gain_uncertainty  as in the settings.
+  [[nodiscard]] CommandReport recalibrate(daq::Calibration calibration,
+                                          std::optional<double> gain_uncertainty, const std::string& who);
   /// Of the tests that begin from here on.
   void plan_pull_speed(std::optional<double> speed_m_per_s) {
     settings_.analysis.tester.pull_speed_m_per_s = speed_m_per_s;
   }
+  /// Of the tests that begin from here on.
+  void plan_method(const friction::Method& method) { settings_.analysis.method = method; }
 
   [[nodiscard]] BenchState bench() const noexcept { return bench_.state(); }
+  [[nodiscard]] const daq::Calibration& calibration() const noexcept { return calibration_; }
   [[nodiscard]] bool test_is_running() const noexcept { return analysis_.has_value(); }
   /// Number of the running test, else of the next one.
   [[nodiscard]] std::int64_t test_number() const noexcept { return number_; }

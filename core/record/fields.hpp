@@ -105,6 +105,8 @@ void for_each_field(Facts& facts, Visitor&& visit) {
   visit(FieldName{"direction", "", ""}, facts.direction);
   visit(FieldName{"side", "", ""}, facts.side);
   visit(FieldName{"replicate", "1", "number of the replicate, from 1 [1]"}, facts.replicate);
+  visit(FieldName{"slide", "1", "number of the pull of this sheet, from 1 [1]"}, facts.slide);
+  visit(FieldName{"batch", "", ""}, facts.batch);
 }
 
 template <FieldsOf<ProcessFacts> Facts, typename Visitor>

@@ -174,7 +174,7 @@ base::Result<std::filesystem::path> finalise(const std::filesystem::path& journa
   }
 
   auto target = journal;
-  target.replace_extension(".h5");
+  target.replace_extension(kRecordExtension);
   if (is_there(target)) {
     // Left by a stop between the rename and the removal of the journal, or a stranger.
     if (!verify_record(target, record, scans)) {

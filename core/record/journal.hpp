@@ -30,6 +30,8 @@
 namespace stickslip::record {
 
 inline constexpr std::string_view kJournalExtension = ".journal";
+/// Of the finished file.
+inline constexpr std::string_view kRecordExtension = ".h5";
 
 /// Not thread-safe: the storage thread owns it. Move-only. Destruction closes without syncing.
 class JournalWriter {

@@ -2,6 +2,7 @@
 
 #include "core/record/hdf_read.hpp"
 #include "core/record/judge.hpp"
+#include "core/record/journal.hpp"
 #include "core/record/layout.hpp"
 #include "core/record/seal.hpp"
 
@@ -108,7 +109,7 @@ void judge_record(const std::filesystem::path& path, Verdict& verdict) {
     if (H5Fis_hdf5(path.c_str()) <= 0) {
       verdict.note("file", "is neither an HDF5 file nor a journal: no record");
       // A record that lost its first bytes is damaged, not a stranger.
-      if (path.extension() == ".h5") {
+      if (path.extension() == kRecordExtension) {
         verdict.kind = "record";
         verdict.damage("file", "is named as a record and does not begin as one: cut short or overwritten");
       }

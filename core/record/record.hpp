@@ -95,6 +95,8 @@ struct SampleFacts {
   std::string direction;
   std::string side;
   std::optional<std::int64_t> replicate;  ///< From 1.
+  std::optional<std::int64_t> slide;      ///< Which pull of the same sheet, from 1.
+  std::string batch;                      ///< Identifier of the batch that the test was planned in.
   std::string operator_name;
 
   bool operator==(const SampleFacts&) const = default;

@@ -56,9 +56,11 @@ void add_boards(CLI::App& app, Chosen& chosen) {
 
 void add_status(CLI::App& app, Chosen& chosen) {
   const auto socket = std::make_shared<std::string>("/run/stickslip/control.sock");
+  const auto json = std::make_shared<bool>(false);
   CLI::App* status = app.add_subcommand("status", "ask the running daemon");
   status->add_option("--socket", *socket, "its control socket")->capture_default_str()->type_name("PATH");
-  choose(*status, chosen, [socket] { return run_status(*socket); });
+  status->add_flag("--json", *json, "JSON as GET /v1/status gives it, instead of text");
+  choose(*status, chosen, [socket, json] { return run_status(*socket, *json); });
 }
 
 }  // namespace

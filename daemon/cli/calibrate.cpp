@@ -13,9 +13,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/settings.hpp"
-#include "core/record/iso_time.hpp"
 #include "daemon/calibration_file.hpp"
 #include "daemon/cli/options.hpp"
+#include "daemon/control/calibration_json.hpp"
 #include "daemon/weighing.hpp"
 
 namespace stickslip::daemon {
@@ -24,10 +24,6 @@ namespace {
 using base::Dimension;
 using base::Limits;
 using base::Result;
-
-constexpr double kHeaviestWeight_kg = 1e4;
-constexpr std::int64_t kLongestValid_days = 36'500;
-constexpr std::int64_t kNanosecondsPerDay = 86'400'000'000'000;
 
 /// All there is to judge.
 struct Weighed {
@@ -164,30 +160,18 @@ std::string text_of(const daq::WeighedCalibration& result, const StoredCalibrati
 std::string json_of(const daq::WeighedCalibration& result, const StoredCalibration& stored,
                     const std::string& file) {
   using Json = nlohmann::ordered_json;
-  const auto known = [](std::optional<double> value) {
-    return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
-  };
-  Json points = Json::array();
-  for (const daq::WeighedPoint& point : result.points) {
-    points.push_back({{"mass", point.reading.mass_kg},
-                      {"force", point.force_N},
-                      {"voltage", point.reading.voltage_V},
-                      {"standard_error", known(point.reading.standard_error_V)},
-                      {"residual", known(point.residual_V)},
-                      {"refused", point.refused}});
-  }
   const Json all{{"file", file},
                  {"date", stored.facts.date},
                  {"expires", stored.facts.expires},
                  {"certificate", stored.facts.certificate},
                  {"gain", stored.load_cell.gain_N_per_V},
-                 {"gain_standard_error", known(stored.facts.gain_standard_error_N_per_V)},
+                 {"gain_standard_error", known_json(stored.facts.gain_standard_error_N_per_V)},
                  {"zero", stored.load_cell.zero_V},
-                 {"zero_standard_error", known(stored.facts.zero_standard_error_V)},
-                 {"residual", known(stored.facts.residual_V)},
-                 {"hysteresis", known(stored.facts.hysteresis_V)},
+                 {"zero_standard_error", known_json(stored.facts.zero_standard_error_V)},
+                 {"residual", known_json(stored.facts.residual_V)},
+                 {"hysteresis", known_json(stored.facts.hysteresis_V)},
                  {"findings", result.findings},
-                 {"points", std::move(points)}};
+                 {"points", points_json(result)}};
   return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -212,7 +196,7 @@ Result<std::string> run_calibrate(const CalibrateCommand& command, std::istream&
     return base::usage_error("either --config with the board to read or --points with readings is needed");
   }
   const auto days = base::parse_number(command.valid_days);
-  if (!days || !(*days >= 0.0) || !(*days <= static_cast<double>(kLongestValid_days))) {
+  if (!days || !(*days >= 0.0) || !(*days <= kLongestValid_days)) {
     return base::usage_error("--valid-days {}: 0 (for ever) to {}", command.valid_days, kLongestValid_days);
   }
   std::optional<WeighingPlace> place;
@@ -234,22 +218,11 @@ Result<std::string> run_calibrate(const CalibrateCommand& command, std::istream&
     for (const daq::WeighedPoint& point : result.points) points += reading_line(point);
     return base::failure("no calibration: {}\n{}", result.fit.reason, points);
   }
-  const std::int64_t now_ns = base::make_system_clock()->realtime_ns();
-  const auto valid_ns = static_cast<std::int64_t>(*days) * kNanosecondsPerDay;
-  const StoredCalibration stored = stored_calibration(
-      result, record::iso_time(now_ns), valid_ns > 0 ? record::iso_time(now_ns + valid_ns) : std::string{},
-      command.certificate);
-  std::optional<StoredCalibration> before;
-  std::error_code error;
-  if (std::filesystem::is_directory(folder, error) && !std::filesystem::is_empty(folder, error)) {
-    auto loaded = load_calibration(folder);
-    if (!loaded) return tl::unexpected(loaded.error());
-    before = *std::move(loaded);
-  }
-  const auto file = keep_calibration(folder, stored);
-  if (!file) return tl::unexpected(file.error());
-  return command.json ? json_of(result, stored, file->string())
-                      : text_of(result, stored, file->string(), before);
+  const auto kept =
+      keep_result(result, {command.certificate, *days}, folder, base::make_system_clock()->realtime_ns());
+  if (!kept) return tl::unexpected(kept.error());
+  return command.json ? json_of(result, kept->stored, kept->file.string())
+                      : text_of(result, kept->stored, kept->file.string(), kept->before);
 }
 
 }  // namespace stickslip::daemon

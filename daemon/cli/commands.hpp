@@ -98,7 +98,8 @@ struct ReportOptions {
 };
 
 struct ReportCommand : ReportOptions {
-  std::vector<std::string> files;
+  std::vector<std::string> files;  ///< Of a batch: the folder of its records, one.
+  std::string batch;               ///< Its identifier or name; empty: the files are records.
 };
 
 [[nodiscard]] base::Result<std::string> run_report(const ReportCommand& command);
@@ -127,7 +128,7 @@ struct BoardsOutput {
 /// are.
 [[nodiscard]] BoardsOutput run_boards(std::vector<std::string> devices, bool json);
 
-[[nodiscard]] base::Result<std::string> run_status(const std::string& socket);
+[[nodiscard]] base::Result<std::string> run_status(const std::string& socket, bool json);
 
 /// Of all that talk to the running daemon.
 struct BenchOptions {
@@ -154,6 +155,28 @@ struct PlanCommand {
 [[nodiscard]] base::Result<std::string> run_plan(const BenchOptions& options, const PlanCommand& command);
 [[nodiscard]] base::Result<std::string> run_list(const BenchOptions& options);
 [[nodiscard]] base::Result<std::string> run_show(const BenchOptions& options, std::int64_t number_of_test);
+/// The current batch.
+[[nodiscard]] base::Result<std::string> run_batch_show(const BenchOptions& options);
+struct BatchCommand {
+  /// Key of the plan and what is typed; lists are given key by key.
+  std::vector<std::pair<std::string, std::string>> facts;
+  std::vector<std::string> pull_speeds;
+  std::optional<std::int64_t> replicates;
+  std::optional<std::int64_t> slides;
+  std::vector<std::string> limits;  ///< "mu_k=0.2:0.4"; either side may be absent.
+};
+[[nodiscard]] base::Result<std::string> run_batch_begin(const BenchOptions& options,
+                                                        const BatchCommand& command);
+[[nodiscard]] base::Result<std::string> run_batch_end(const BenchOptions& options);
+
+struct VoidCommand {
+  std::string test;  ///< A number of the running daemon, or a record's file.
+  std::string reason;
+  bool restore = false;
+};
+/// A file needs no daemon: the journal beside it is written.
+[[nodiscard]] base::Result<std::string> run_void(const BenchOptions& options, const VoidCommand& command);
+
 /// Prints as it comes. \param tests  to wait for the end of; 0: for ever.
 [[nodiscard]] base::Result<std::string> run_watch(const BenchOptions& options, std::int64_t tests);
 

@@ -38,6 +38,7 @@ constexpr const char* kExamples = R"(Examples:
   stickslip boards                                     A/D boards, what they offer, what to configure
   stickslip export pull.h5 --csv > pull.csv            scans for a spreadsheet
   stickslip calibrate --config stickslipd.toml         the load cell, by hanging known weights
+  stickslip doctor                                     is everything there that a test needs?
   stickslip status                                     what the daemon is doing
   stickslip plan --name "liner 42" --replicate 3       what the tests to come are of
   stickslip start; stickslip mark "sheet moved"; stickslip stop
@@ -63,7 +64,7 @@ std::string command_line(int count, char** arguments) {
 }
 
 int main_of(int count, char** arguments) {
-  CLI::App app{"stickslip: friction tests from the command line"};
+  CLI::App app{"stickslip: friction tests from the command line", "stickslip"};
   app.footer(kExamples);
   app.set_version_flag("--version", fmt::format("stickslip {} ({})", kVersion, kCommit));
   app.require_subcommand(1);
@@ -74,6 +75,8 @@ int main_of(int count, char** arguments) {
   add_commanding_commands(app, chosen);
   add_analysing_commands(app, chosen);
   add_caring_commands(app, chosen);
+  add_doctor(app, chosen);
+  add_manual(app, chosen);
   add_exporting_commands(app, chosen);
   add_calibrating_commands(app, chosen);
   try {

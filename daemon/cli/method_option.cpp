@@ -1,7 +1,7 @@
 #include "daemon/cli/method_option.hpp"
 
 #include "core/friction/method_file.hpp"
-#include "daemon/cli/library.hpp"
+#include "daemon/library.hpp"
 
 namespace stickslip::daemon {
 

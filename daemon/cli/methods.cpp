@@ -8,7 +8,7 @@
 
 #include "core/friction/method_file.hpp"
 #include "daemon/cli/commands.hpp"
-#include "daemon/cli/library.hpp"
+#include "daemon/library.hpp"
 
 namespace stickslip::daemon {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "core/base/wording.hpp"
 #include "core/record/finaliser.hpp"
+#include "core/record/journal.hpp"
 #include "core/record/reader.hpp"
 #include "core/sim/scene.hpp"
 #include "daemon/cli/commands.hpp"
@@ -41,7 +42,8 @@ Result<RecordView> view_of(const PlotCommand& command) {
 bool is_record(const std::string& input) {
   std::error_code ignored;
   const std::filesystem::path file{input};
-  return file.extension() != ".toml" && (file.extension() == ".h5" || std::filesystem::exists(file, ignored));
+  return file.extension() != ".toml" &&
+         (file.extension() == record::kRecordExtension || std::filesystem::exists(file, ignored));
 }
 
 /// \param title  becomes the scene's, in words.

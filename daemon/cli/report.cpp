@@ -51,7 +51,14 @@ Result<std::string> deliver(const ReportOptions& options, const std::string& csv
 
 Result<std::string> run_report(const ReportCommand& command) {
   if (auto free = check_outputs(command); !free) return tl::unexpected(free.error());
-  const Result<Material> material = read_material("", command.files, !command.page.empty());
+  if (!command.batch.empty() && command.files.size() != 1) {
+    return base::usage_error("--batch {}: one folder of records is to be named, not {}", command.batch,
+                             command.files.size());
+  }
+  const bool with_traces = !command.page.empty();
+  const Result<Material> material = command.batch.empty()
+                                        ? read_material("", command.files, with_traces)
+                                        : read_batch(command.batch, command.files.front(), with_traces);
   if (!material) return tl::unexpected(material.error());
   return deliver(command, report_csv(*material), command.page.empty() ? "" : report_page(*material),
                  report_json(*material), report_text(*material));

@@ -1,6 +1,6 @@
 #include "daemon/cli/scene_library.hpp"
 
-#include "daemon/cli/library.hpp"
+#include "daemon/library.hpp"
 
 namespace stickslip::daemon {
 

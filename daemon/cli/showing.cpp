@@ -68,6 +68,7 @@ scatter s_r, repeatability r = 2.8 s_r, 95 % confidence interval, outliers (name
 Examples:
   stickslip report records/*.h5
   stickslip report pull.h5 -o pull.html                one page with traces to zoom in; needs no network
+  stickslip report --batch "liner 42" records          the tests of a batch that were not voided, and its limits
   stickslip report records/*.h5 --json --csv tests.csv)";
 
 constexpr const char* kCompareExamples =
@@ -94,7 +95,11 @@ void add_report(CLI::App& app, Chosen& chosen) {
   CLI::App* report =
       app.add_subcommand("report", "replicates: means, repeatability, coefficient against speed");
   report->footer(kReportExamples);
-  report->add_option("files", command.files, "records")->required()->type_name("FILE.h5");
+  report->add_option("files", command.files, "records; with --batch the folder they are in")
+      ->required()
+      ->type_name("FILE.h5");
+  report->add_option("--batch", command.batch, "all tests of a batch, by its identifier or name")
+      ->type_name("BATCH");
   add_report_options(*report, command);
   choose(*report, chosen, [kept] { return run_report(*kept); });
 }

@@ -1,19 +1,155 @@
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/commands.hpp"
+#include "daemon/cli/paint.hpp"
 #include "daemon/control/client.hpp"
 
 namespace stickslip::daemon {
+namespace {
 
-base::Result<std::string> run_status(const std::string& socket) {
+using Json = nlohmann::ordered_json;
+
+std::string word(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_string() ? found->get<std::string>() : "–";
+}
+
+std::string number(const Json& json, const char* key, int decimals) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_number() ? fmt::format("{:.{}f}", found->get<double>(), decimals)
+                                                   : "–";
+}
+
+std::int64_t count(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_number_integer() ? found->get<std::int64_t>() : 0;
+}
+
+/// An object, empty if there is none.
+Json part(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_object() ? *found : Json::object();
+}
+
+Colour of_state(const std::string& state) {
+  if (state == "acquiring") return Colour::kGreen;
+  if (state == "starting" || state == "stopping") return Colour::kYellow;
+  return Colour::kRed;
+}
+
+Colour of_bench(const std::string& bench) {
+  if (bench == "idle") return Colour::kNone;
+  if (bench == "degraded") return Colour::kRed;
+  return bench == "armed" ? Colour::kYellow : Colour::kGreen;
+}
+
+/// As the page has them: each by word first, colour helps.
+Colour of_regime(const std::string& regime) {
+  if (regime == "stick-slip") return Colour::kBlue;
+  if (regime == "ring-down") return Colour::kYellow;
+  return regime == "steady-sliding" ? Colour::kGreen : Colour::kNone;
+}
+
+class Lines {
+ public:
+  explicit Lines(bool colours) : paint_(colours) {}
+  void line(const char* what, const std::string& text, Colour colour = Colour::kNone) {
+    text_ += paint_(Colour::kFaint, fmt::format("{:<8}", what)) + "  " + paint_(colour, text) + "\n";
+  }
+  [[nodiscard]] std::string painted(Colour colour, const std::string& text) const {
+    return paint_(colour, text);
+  }
+  [[nodiscard]] std::string text() && { return std::move(text_); }
+
+ private:
+  Paint paint_;
+  std::string text_;
+};
+
+void board(Lines& lines, const Json& status) {
+  const Json board = part(status, "board");
+  if (board.empty()) return lines.line("board", "none", Colour::kRed);
+  const Json measured = part(status, "scan_rate_measured");
+  const double granted_Hz = board.value("scan_rate_granted", 0.0);
+  std::string text = fmt::format("{} ({}), {} Hz", word(board, "name"), word(board, "driver"),
+                                 number(board, "scan_rate_granted", 2));
+  if (!measured.empty() && granted_Hz > 0.0) {
+    text += fmt::format(", by this computer's clock {:+.0f} ppm",
+                        1e6 * (measured.value("value", granted_Hz) / granted_Hz - 1.0));
+  }
+  lines.line("board", text);
+}
+
+void tests(Lines& lines, const Json& status) {
+  const Json live = part(status, "live");
+  if (status.contains("current_test") && status["current_test"].is_number()) {
+    const std::string regime = word(live, "regime");
+    lines.line("test",
+               fmt::format("{}: {}, {}, {} slips, S - K {}", status["current_test"].dump(),
+                           word(live, "phase"), lines.painted(of_regime(regime), regime),
+                           count(live, "slip_count"), number(part(live, "latest_cycle"), "delta_mu", 4)));
+  }
+  const Json latest = part(status, "latest_test");
+  if (latest.empty()) return lines.line("latest", "no test has ended");
+  const Json results = part(latest, "results");
+  const std::string regime = word(results, "regime");
+  lines.line("latest",
+             fmt::format("test {}: {}, S {}, K {}, S - K {}, {} cycles; {}", count(latest, "number"),
+                         lines.painted(of_regime(regime), regime), number(results, "mu_s", 4),
+                         number(results, "mu_k", 4), number(results, "delta_mu", 4),
+                         number(results, "cycle_count", 0), word(latest, "file")));
+}
+
+std::string text_of(const Json& status) {
+  Lines lines{wants_colours()};
+  const std::string state = word(status, "state");
+  const std::string bench = word(status, "bench");
+  lines.line("state", state, of_state(state));
+  lines.line("bench", bench, of_bench(bench));
+  lines.line("detail", word(status, "detail"));
+  board(lines, status);
+  const std::int64_t lost = count(status, "lost_scan_count");
+  lines.line("scans",
+             fmt::format("{}; {} lost in {} gaps, {} overruns", count(status, "scan_count"), lost,
+                         count(status, "gap_count"), count(status, "overrun_count")),
+             lost > 0 ? Colour::kYellow : Colour::kNone);
+  tests(lines, status);
+  lines.line("tests", fmt::format("{} ended", count(status, "test_count")));
+  const Json storage = part(status, "storage");
+  const bool stored = word(storage, "state") == "ok";
+  lines.line("storage",
+             stored ? fmt::format("ok{}", storage.contains("room_h") && storage["room_h"].is_number()
+                                              ? fmt::format(", room for {} h", number(storage, "room_h", 0))
+                                              : "")
+                    : fmt::format("{}: {}; {}", word(storage, "state"), word(storage, "why"),
+                                  word(storage, "to_do")),
+             stored ? Colour::kNone : Colour::kRed);
+  if (const Json fleet = part(status, "fleet"); !fleet.empty()) {
+    const bool connected = word(fleet, "state") == "connected";
+    lines.line(
+        "fleet",
+        fmt::format("{} at {} as {}{}; {} results wait, {} dropped", word(fleet, "state"),
+                    word(fleet, "broker"), word(fleet, "tester"), connected ? "" : ": " + word(fleet, "why"),
+                    count(fleet, "outbox_count"), count(fleet, "dropped_result_count")),
+        connected ? Colour::kNone : Colour::kYellow);
+  }
+  lines.line("version", word(status, "version"));
+  return std::move(lines).text();
+}
+
+}  // namespace
+
+base::Result<std::string> run_status(const std::string& socket, bool json) {
   constexpr std::chrono::milliseconds kTimeout{5000};
   const base::Result<HttpReply> reply = request(socket, {"GET", "/v1/status", {}, {}, {}}, kTimeout);
   if (!reply) return tl::unexpected(reply.error());
   if (reply->status != 200)
     return base::failure("{}: refused with {}: {}", socket, reply->status, reply->body);
-  const auto json = nlohmann::ordered_json::parse(reply->body, nullptr, false);
-  if (json.is_discarded()) return base::failure("{}: the answer is no JSON", socket);
-  return json.dump(2) + "\n";
+  const Json status = Json::parse(reply->body, nullptr, false);
+  if (!status.is_object()) return base::failure("{}: the answer is no JSON", socket);
+  return json ? status.dump(2) + "\n" : text_of(status);
 }
 
 }  // namespace stickslip::daemon

@@ -32,6 +32,12 @@ void add_commanding_commands(CLI::App& app, Chosen& chosen);  ///< arm, start, s
 void add_exporting_commands(CLI::App& app, Chosen& chosen);   ///< export
 void add_caring_commands(CLI::App& app, Chosen& chosen);      ///< verify, recover
 
+void add_doctor(CLI::App& app, Chosen& chosen);  ///< doctor
+
+/// man, completion: made from the parser itself.
+/// \param app  outlives the parser's run.
+void add_manual(CLI::App& app, Chosen& chosen);
+
 /// What a command gave, on stdout, or its error on stderr. \return the exit status.
 [[nodiscard]] int print(const base::Result<std::string>& output);
 

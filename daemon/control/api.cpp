@@ -10,11 +10,19 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/batch/batch_json.hpp"
+#include "daemon/control/batch_api.hpp"
+#include "daemon/control/calibration_api.hpp"
+#include "daemon/control/calibration_json.hpp"
 #include "daemon/control/lease.hpp"
 #include "daemon/control/metrics.hpp"
 #include "daemon/control/openapi.hpp"
 #include "daemon/control/plan_json.hpp"
+#include "daemon/control/record_request.hpp"
 #include "daemon/control/repeats.hpp"
+#include "daemon/control/reply.hpp"
+#include "daemon/control/request_body.hpp"
+#include "daemon/control/summary.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -23,40 +31,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLongestName = 64;
 
-/// Names of files and boards come from outside: bytes that are no UTF-8 are replaced.
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-HttpReply reply_of(const Json& json) { return {200, text_of(json), {}}; }
-
-HttpReply refusal(int status, const std::string& why, std::string allow = {}) {
-  return {status, text_of({{"error", why}}), std::move(allow)};
-}
-
-/// A request line may hold any bytes; an answer may not.
-std::string printable(const std::string& text) {
-  constexpr std::size_t kLongest = 100;
-  std::string shown;
-  for (const char c : text.substr(0, kLongest)) shown += c >= 0x20 && c < 0x7F ? c : '?';
-  return shown;
-}
-
-/// The JSON object of a body, with no keys but these; an empty body is an empty object.
-base::Result<Json> object_of(const std::string& body, std::initializer_list<std::string_view> keys) {
-  if (body.empty()) return Json::object();
-  Json json = Json::parse(body, nullptr, false);
-  if (!json.is_object()) return base::usage_error("the body must be a JSON object");
-  for (const auto& [key, value] : json.items()) {
-    if (keys.size() > 0 && std::find(keys.begin(), keys.end(), key) == keys.end()) {
-      return base::usage_error("\"{}\": there is no such key; there is {}", printable(key),
-                               fmt::join(keys, ", "));
-    }
-  }
-  return json;
-}
-
 class Api {
  public:
-  Api(Bench& bench, const base::Clock& clock) : bench_(bench), clock_(clock) {}
+  Api(Bench& bench, const base::Clock& clock) : bench_(bench), batches_(bench.batches()), clock_(clock) {}
 
   void handle(const HttpRequest& request, HttpAnswer answer) {
     const std::string path = request.target.substr(0, request.target.find('?'));
@@ -88,7 +65,7 @@ class Api {
     bool changes;
     Function function;
   };
-  static const std::array<Route, 15> kRoutes;
+  static const std::array<Route, 27> kRoutes;
 
   static std::optional<std::string> match(const Route& route, const std::string& path) {
     if (!route.path.ends_with('/')) return path == route.path ? std::optional<std::string>{""} : std::nullopt;
@@ -167,10 +144,20 @@ class Api {
     answer({200, std::string{openapi()}, {}});
   }
 
+  [[nodiscard]] Json described(const TestSummary& test, const BatchBook& book, bool with_details) const {
+    Json json = test_json(test, with_details);
+    json["voided"] = voiding_json(test.file.empty() ? nullptr : book.voided(batches_.name_of(test.file)));
+    return json;
+  }
+
   void tests(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
     Json list = Json::array();
-    for (const TestSummary& test : bench_.tests()) list.push_back(test_json(test, false));
-    answer(reply_of({{"tests", std::move(list)}}));
+    const BatchBook& book = batches_.book();
+    const std::vector<TestSummary> tests = bench_.tests();
+    for (const TestSummary& test : tests) list.push_back(described(test, book, false));
+    Json summary =
+        summary_json(tests, book, [this](const std::string& file) { return batches_.name_of(file); });
+    answer(reply_of({{"tests", std::move(list)}, {"summary", std::move(summary)}}));
   }
 
   void test(const HttpRequest&, const std::string& rest, const HttpAnswer& answer) {
@@ -180,12 +167,16 @@ class Api {
     if (error == std::errc{} && stopped == end) {
       for (const TestSummary& test : bench_.tests()) {
         if (test.number != number) continue;
-        answer(reply_of(test_json(test, true)));
+        answer(reply_of(described(test, batches_.book(), true)));
         return;
       }
     }
     answer(refusal(404, fmt::format("there is no test {} among the latest {}; GET /v1/tests lists them",
                                     printable(rest), TestLog::kMaxTests)));
+  }
+
+  void record(const HttpRequest&, const std::string& rest, const HttpAnswer& answer) {
+    answer(record_reply(rest, bench_.tests()));
   }
 
   void plan(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
@@ -225,9 +216,55 @@ class Api {
     if (!body) return answer(refusal(400, body.error().message));
     base::Result<Plan> plan = plan_of(*body);
     if (!plan) return answer(refusal(400, plan.error().message));
+    if (const auto progress = batches_.progress(); progress && progress->next) {
+      return answer(refusal(409, fmt::format("batch {} ({}) plans the tests; DELETE /v1/batch ends it",
+                                             progress->id, progress->name)));
+    }
     if (!take(request, Lease::kCommand_s, answer)) return;
     bench_.set_plan(*std::move(plan));
     answer(reply_of(plan_json(bench_.plan())));
+  }
+
+  void batch(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
+    answer(reply_of(batch_json(batches_)));
+  }
+
+  void begin_batch(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+    const auto body = object_of(request.body, {});
+    if (!body) return answer(refusal(400, body.error().message));
+    base::Result<BatchPlan> plan = batch_plan_of(*body);
+    if (!plan) return answer(refusal(400, plan.error().message));
+    if (!take(request, Lease::kCommand_s, answer)) return;
+    batches_.begin(*std::move(plan), request.controller, reply_with_batch(batches_, answer));
+  }
+
+  void end_batch(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+    if (!take(request, Lease::kCommand_s, answer)) return;
+    batches_.end(request.controller, reply_with_batch(batches_, answer));
+  }
+
+  void void_test(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+    const auto body = object_of(request.body, {"test", "record", "reason"});
+    if (!body) return answer(refusal(400, body.error().message));
+    const Json reason = body->value("reason", Json());
+    if (!reason.is_string() || reason.get<std::string>().empty())
+      return answer(refusal(400, "reason: is missing: why does the test not count?"));
+    if (const std::string why = text_refusal(reason.get<std::string>()); !why.empty())
+      return answer(refusal(400, "reason: " + why));
+    const base::Result<std::string> record = record_named(*body, bench_, batches_);
+    if (!record) return answer(refusal(400, record.error().message));
+    if (!take(request, Lease::kCommand_s, answer)) return;
+    batches_.void_test(*record, reason.get<std::string>(), request.controller,
+                       reply_with_batch(batches_, answer));
+  }
+
+  void restore_test(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+    const auto body = object_of(request.body, {"test", "record"});
+    if (!body) return answer(refusal(400, body.error().message));
+    const base::Result<std::string> record = record_named(*body, bench_, batches_);
+    if (!record) return answer(refusal(400, record.error().message));
+    if (!take(request, Lease::kCommand_s, answer)) return;
+    batches_.restore(*record, request.controller, reply_with_batch(batches_, answer));
   }
 
   void arm(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
@@ -287,19 +324,41 @@ class Api {
     });
   }
 
+  // The load cell's calibration.
+
+  void calibration(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
+    answer(reply_of(calibration_json(bench_.calibrator().view())));
+  }
+  void calibrate(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+    const base::Result<CalibrationStep> step = calibration_step(request);
+    if (!step) return answer(refusal(400, step.error().message));
+    if (!take(request, Lease::kCalibration_s, answer)) return;
+    Calibrator& calibrator = bench_.calibrator();
+    (*step)(calibrator, [&calibrator, answer](const std::string& why_not) {
+      answer(why_not.empty() ? reply_of(calibration_json(calibrator.view())) : refusal(409, why_not));
+    });
+  }
+
   Bench& bench_;
+  Batches& batches_;
   const base::Clock& clock_;
   Lease lease_;
   Repeats repeats_;
 };
 
-const std::array<Api::Route, 15> Api::kRoutes{{
+const std::array<Api::Route, 27> Api::kRoutes{{
     {"GET", "/v1/status", false, &Api::status},
     {"GET", "/v1/openapi.json", false, &Api::description},
     {"GET", "/v1/tests", false, &Api::tests},
     {"GET", "/v1/tests/", false, &Api::test},
+    {"GET", "/v1/records/", false, &Api::record},
     {"GET", "/v1/plan", false, &Api::plan},
     {"PUT", "/v1/plan", true, &Api::set_plan},
+    {"GET", "/v1/batch", false, &Api::batch},
+    {"POST", "/v1/batch", true, &Api::begin_batch},
+    {"DELETE", "/v1/batch", true, &Api::end_batch},
+    {"POST", "/v1/void", true, &Api::void_test},
+    {"POST", "/v1/restore", true, &Api::restore_test},
     {"GET", "/v1/controller", false, &Api::controller},
     {"PUT", "/v1/controller", true, &Api::take_control},
     {"DELETE", "/v1/controller", true, &Api::release_control},
@@ -308,6 +367,12 @@ const std::array<Api::Route, 15> Api::kRoutes{{
     {"POST", "/v1/stop", true, &Api::stop},
     {"POST", "/v1/mark", true, &Api::mark},
     {"POST", "/v1/tare", true, &Api::tare},
+    {"GET", "/v1/calibration", false, &Api::calibration},
+    {"POST", "/v1/calibration", true, &Api::calibrate},
+    {"DELETE", "/v1/calibration", true, &Api::calibrate},
+    {"POST", "/v1/calibration/weight", true, &Api::calibrate},
+    {"POST", "/v1/calibration/undo", true, &Api::calibrate},
+    {"POST", "/v1/calibration/finish", true, &Api::calibrate},
     {"GET", "/metrics", false, &Api::metrics},
 }};
 

@@ -9,8 +9,11 @@
 #include <vector>
 
 #include "core/base/scan_index.hpp"
+#include "core/friction/method.hpp"
 #include "core/pipeline/command_report.hpp"
 #include "core/record/record.hpp"
+#include "daemon/control/batches.hpp"
+#include "daemon/control/calibrator.hpp"
 #include "daemon/control/status.hpp"
 #include "daemon/test_log.hpp"
 
@@ -20,6 +23,7 @@ namespace stickslip::daemon {
 struct Plan {
   record::SampleFacts sample;
   std::optional<double> pull_speed_m_per_s;
+  std::optional<friction::Method> method;  ///< None: that of the configuration.
 
   bool operator==(const Plan&) const = default;
 };
@@ -51,6 +55,10 @@ class Bench {
   virtual void set_plan(Plan plan) = 0;
   /// \param answer  called on the main thread, once: at once, or when the processing thread has done it.
   virtual void command(Command command, std::function<void(const Outcome&)> answer) = 0;
+  /// Of the load cell. Outlives the bench.
+  [[nodiscard]] virtual Calibrator& calibrator() = 0;
+  /// Lives as long as this.
+  [[nodiscard]] virtual Batches& batches() = 0;
 };
 
 }  // namespace stickslip::daemon

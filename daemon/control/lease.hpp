@@ -14,6 +14,8 @@ class Lease {
  public:
   /// Each command keeps the bench for so long.
   static constexpr double kCommand_s = 30.0;
+  /// Each step of a calibration: somebody lifts a weight to the hook.
+  static constexpr double kCalibration_s = 300.0;
   static constexpr double kLongest_s = 3600.0;
 
   /// Takes it or makes it longer, never shorter. \return who holds it, if that is somebody else.

@@ -47,6 +47,7 @@ void latency(Page& page, const daq::LatencyHistogram& histogram) {
     page.value("read_latency_seconds_bucket", count, fmt::format("{{le=\"{}\"}}", limit_s));
   }
   page.value("read_latency_seconds_bucket", count, "{le=\"+Inf\"}");
+  page.value("read_latency_seconds_sum", histogram.sum_s());
   page.value("read_latency_seconds_count", count);
 }
 
@@ -101,6 +102,17 @@ std::string metrics_text(const Status& status) {
   page.gauge("live_clients", "Clients of the live stream.", status.live_client_count);
   page.counter("live_dropped_frames_total", "Frames that slow clients of the live stream did not get.",
                status.live_dropped_count);
+  if (status.fleet) {
+    page.gauge("fleet_connected", "1 while the broker of the fleet is there.",
+               status.fleet->link == FleetState::Link::kConnected ? 1 : 0);
+    page.gauge("fleet_outbox_results", "Results that the broker has not got.", status.fleet->outbox_count);
+    page.gauge("fleet_unsaved_results", "Those of them that wait in memory alone.",
+               status.fleet->unsaved_result_count);
+    page.counter("fleet_sent_results_total", "Results that the broker has acknowledged.",
+                 status.fleet->sent_result_count);
+    page.counter("fleet_dropped_results_total", "Results that a full outbox had no room for.",
+                 status.fleet->dropped_result_count);
+  }
   latency(page, status.latency);
   return std::move(page).text();
 }

@@ -31,24 +31,24 @@ constexpr std::array<std::pair<const char*, std::string record::SampleFacts::*>,
 constexpr const char* kReplicate = "replicate";
 constexpr const char* kSpeed = "pull_speed";
 
-base::Result<double> speed_of(const Json& value) {
+}  // namespace
+
+base::Result<double> pull_speed_of(std::string_view key, const Json& value) {
   base::Result<double> speed = 0.0;
   if (value.is_number()) {
     speed = value.get<double>();
   } else if (value.is_string()) {
     speed = base::parse_quantity(value.get<std::string>(), base::Dimension::kSpeed);
-    if (!speed) return base::usage_error("{}: {}", kSpeed, speed.error().message);
+    if (!speed) return base::usage_error("{}: {}", key, speed.error().message);
   } else {
-    return base::usage_error("{}: must be a number in m/s, or text such as \"12 in/min\"", kSpeed);
+    return base::usage_error("{}: must be a number in m/s, or text such as \"12 in/min\"", key);
   }
   if (!(*speed > 0.0 && *speed <= kFastestPull_m_per_s)) {
-    return base::usage_error("{}: {} m/s; must be above 0 and at most {} m/s", kSpeed, *speed,
+    return base::usage_error("{}: {} m/s; must be above 0 and at most {} m/s", key, *speed,
                              kFastestPull_m_per_s);
   }
   return speed;
 }
-
-}  // namespace
 
 std::string text_refusal(std::string_view text) {
   if (text.size() > kLongestText) {
@@ -102,7 +102,7 @@ base::Result<Plan> plan_of(const Json& json) {
       }
       plan.sample.replicate = value.get<std::int64_t>();
     } else if (key == kSpeed) {
-      const base::Result<double> speed = speed_of(value);
+      const base::Result<double> speed = pull_speed_of(kSpeed, value);
       if (!speed) return tl::unexpected(speed.error());
       plan.pull_speed_m_per_s = *speed;
     } else {

@@ -16,6 +16,9 @@ namespace stickslip::daemon {
 /// What is absent or null is not said. pull_speed is m/s, or text with a unit. Errors (kUsage) name the key.
 [[nodiscard]] base::Result<Plan> plan_of(const nlohmann::ordered_json& json);
 
+/// A speed above 0: a number in m/s, or text with a unit. \param key  for the error.
+[[nodiscard]] base::Result<double> pull_speed_of(std::string_view key, const nlohmann::ordered_json& value);
+
 /// Why this is no line of text for a record, for people; empty if it is one: UTF-8 without control
 /// characters, at most 200 bytes.
 [[nodiscard]] std::string text_refusal(std::string_view text);

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/batch/batch_json.hpp"
 #include "daemon/results_json.hpp"
 
 namespace stickslip::daemon {
@@ -58,13 +59,33 @@ Json to_json(const daq::LatencyHistogram& latency) {
   return {{"largest", latency.largest_s()}, {"bins", bins}};
 }
 
+Json or_nothing(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
+Json to_json(const Status::Calibration& calibration) {
+  return {{"date", or_nothing(calibration.date)},
+          {"expires", or_nothing(calibration.expires)},
+          {"expired", calibration.expired},
+          {"under_way_by", or_nothing(calibration.under_way_by)}};
+}
+
 Json to_json(const StorageState& storage) {
-  const auto or_nothing = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
   return {{"state", name(storage.kind)},
           {"room_h", storage.room_h ? Json(*storage.room_h) : Json(nullptr)},
           {"waiting_size", storage.waiting_size},
           {"why", or_nothing(storage.why)},
           {"to_do", or_nothing(storage.to_do)}};
+}
+
+Json to_json(const std::optional<FleetState>& fleet) {
+  if (!fleet) return nullptr;
+  return {{"broker", fleet->broker},
+          {"tester", fleet->tester},
+          {"state", name(fleet->link)},
+          {"why", fleet->why.empty() ? Json(nullptr) : Json(fleet->why)},
+          {"outbox_count", fleet->outbox_count},
+          {"sent_result_count", fleet->sent_result_count},
+          {"dropped_result_count", fleet->dropped_result_count},
+          {"unsaved_result_count", fleet->unsaved_result_count}};
 }
 
 }  // namespace
@@ -110,6 +131,16 @@ std::string health_frame(const Status& status) {
                                                                         Json::error_handler_t::replace);
 }
 
+Json progress_json(const std::optional<BatchProgress>& progress) {
+  if (!progress) return nullptr;
+  return {{"id", progress->id},
+          {"name", progress->name},
+          {"done", progress->done},
+          {"planned", progress->planned},
+          {"next", progress->next ? step_json(*progress->next) : Json(nullptr)},
+          {"trouble", progress->trouble.empty() ? Json(nullptr) : Json(progress->trouble)}};
+}
+
 Json status_json(const Status& status) {
   Json json;
   json["state"] = status.state;
@@ -128,11 +159,14 @@ Json status_json(const Status& status) {
   json["read_latency"] = to_json(status.latency);
   json["storage_stall_count"] = status.storage_stall_count;
   json["storage"] = to_json(status.storage);
+  json["calibration"] = to_json(status.calibration);
   json["live_clients"] = {{"count", status.live_client_count},
                           {"dropped_frame_count", status.live_dropped_count}};
+  json["fleet"] = to_json(status.fleet);
   json["test_count"] = status.test_count;
   json["current_test"] = status.current_test ? Json(*status.current_test) : Json(nullptr);
   json["live"] = status.live ? live_json(*status.live) : Json(nullptr);
+  json["batch"] = progress_json(status.batch);
   json["latest_test"] = status.latest_test ? test_json(*status.latest_test, false) : Json(nullptr);
   return json;
 }

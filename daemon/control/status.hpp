@@ -13,6 +13,8 @@
 #include "core/daq/rate_fit.hpp"
 #include "core/friction/live_cycle.hpp"
 #include "core/pipeline/bench_state.hpp"
+#include "daemon/control/batches.hpp"
+#include "daemon/fleet/fleet_state.hpp"
 #include "daemon/storage_state.hpp"
 #include "daemon/test_log.hpp"
 
@@ -42,6 +44,15 @@ struct Status {
   pipeline::BenchState bench = pipeline::BenchState::kDegraded;
   std::optional<TestSummary> latest_test;
   StorageState storage;
+  /// Of the load cell; texts are empty where there is nothing to say.
+  struct Calibration {
+    std::string date;
+    std::string expires;
+    bool expired = false;
+    std::string under_way_by;  ///< Who is at a new one.
+  } calibration;
+  std::optional<BatchProgress> batch;    ///< The current one.
+  std::optional<FleetState> fleet;       ///< Nothing without a broker.
   std::int64_t live_client_count = 0;    ///< Of the live stream.
   std::uint64_t live_dropped_count = 0;  ///< Frames that slow ones of them did not get.
 };
@@ -50,6 +61,8 @@ struct Status {
 [[nodiscard]] nlohmann::ordered_json status_json(const Status& status);
 /// \param with_details  units, uncertainties and reasons of all results too.
 [[nodiscard]] nlohmann::ordered_json test_json(const TestSummary& test, bool with_details);
+/// {"id": …, "name": …, "done": 3, "planned": 10, "next": {…}, "trouble": null}, or null.
+[[nodiscard]] nlohmann::ordered_json progress_json(const std::optional<BatchProgress>& progress);
 /// A frame of the live stream: {"type": "health", "status": …}.
 [[nodiscard]] std::string health_frame(const Status& status);
 /// Phase, regime and latest cycle of a test that runs.

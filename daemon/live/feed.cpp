@@ -75,9 +75,10 @@ void LiveFeed::observed(daq::ScanIndex first, std::span<const double> coefficien
 void LiveFeed::flush(const friction::LiveState& live) {
   if (lowest_.empty()) return;
   std::string frame = fmt::format(
-      R"({{"type":"scans","first_scan":{},"scans_in_part":{},"scan_rate":{},"clock_speed":{},"test":{},"phase":"{}","regime":"{}","slip_count":{},"lowest":[)",
+      R"({{"type":"scans","first_scan":{},"scans_in_part":{},"scan_rate":{},"clock_speed":{},"test":{},"read_time":{},"phase":"{}","regime":"{}","slip_count":{},"lowest":[)",
       first_, bucket_, scan_rate_Hz_, clock_speed_, test_ == 0 ? "null" : std::to_string(test_),
-      friction::name(live.phase), friction::name(live.regime), live.slip_count);
+      test_ == 0 ? "null" : fmt::format("{:.6f}", read_time_s()), friction::name(live.phase),
+      friction::name(live.regime), live.slip_count);
   append(frame, lowest_);
   frame += R"(],"highest":[)";
   append(frame, highest_);
@@ -99,12 +100,23 @@ void LiveFeed::test_began(const pipeline::TestStart& start) {
                .dump());
 }
 
+void LiveFeed::scans(daq::ScanIndex /*first*/, std::span<const double> /*raw*/,
+                     std::span<const std::int32_t> /*second*/, const daq::ClockStamp& stamp) {
+  read_realtime_ns_ = stamp.realtime_ns;
+}
+
+double LiveFeed::read_time_s() const noexcept {
+  constexpr double kNanosecond_s = 1e-9;
+  return static_cast<double>(read_realtime_ns_) * kNanosecond_s;
+}
+
 void LiveFeed::cycle(const friction::Cycle& cycle) {
   if (!heard()) return;
   publish_(Json{{"type", "cycle"},
                 {"test", test_},
                 {"test_first_scan", test_first_},
                 {"scan_rate", scan_rate_Hz_},
+                {"read_time", read_time_s()},
                 {"number", cycle.number},
                 {"first_scan", cycle.first_scan},
                 {"captured", (cycle.flags & friction::kCycleCaptured) != 0},

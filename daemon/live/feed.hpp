@@ -27,6 +27,8 @@ class LiveFeed final : public pipeline::Sink {
   void observed(daq::ScanIndex first, std::span<const double> coefficient,
                 const friction::LiveState& live) override;
   void test_began(const pipeline::TestStart& start) override;
+  void scans(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second,
+             const daq::ClockStamp& stamp) override;
   void cycle(const friction::Cycle& cycle) override;
   void gap(const daq::Gap& gap) override { tell_gap(gap); }
   void gap_between_tests(const daq::Gap& gap) override { tell_gap(gap); }
@@ -38,6 +40,8 @@ class LiveFeed final : public pipeline::Sink {
   [[nodiscard]] bool heard() const noexcept { return listeners_.load(std::memory_order_relaxed) > 0; }
   void tell_gap(const daq::Gap& gap);
   void flush(const friction::LiveState& live);
+  /// Since 1970: when the read of the latest block of the running test came back.
+  [[nodiscard]] double read_time_s() const noexcept;
 
   std::function<void(std::string)> publish_;
   std::atomic<std::size_t> listeners_{0};
@@ -47,6 +51,7 @@ class LiveFeed final : public pipeline::Sink {
   std::size_t frame_parts_ = 1;  ///< Parts in one frame.
   std::int64_t test_ = 0;
   daq::ScanIndex test_first_ = 0;
+  std::int64_t read_realtime_ns_ = 0;  ///< Of the latest block of the running test.
 
   // Of the next frame.
   daq::ScanIndex first_ = 0;

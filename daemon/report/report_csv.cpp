@@ -72,6 +72,7 @@ std::string report_csv(const Material& material) {
   Line header;
   header.text("file").text("title").text("method").text("pull_speed").text("regime");
   std::string text;
+  std::size_t cells = 7;  // Beside the results.
   for (std::size_t i = 0; i < material.tests.size(); ++i) {
     const report::MeasuredTest& measured = material.measured[i];
     Line line;
@@ -80,14 +81,24 @@ std::string report_csv(const Material& material) {
     std::string reasons;
     friction::for_each_result(
         measured.results, [&](const friction::ResultName& name, const friction::Estimate& estimate) {
-          if (i == 0) header.text(name.name);
+          if (i == 0) {
+            header.text(name.name);
+            ++cells;
+          }
           line.number(estimate.value);
           if (!estimate.value) {
             reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", name.name, estimate.reason);
           }
         });
-    if (i == 0) text = header.text("absent").end();
-    text += line.text(reasons).end();
+    if (i == 0) text = header.text("absent").text("voided").end();
+    text += line.text(reasons).text("").end();
+  }
+  // No numbers, so that nobody averages them.
+  for (const VoidedTest& test : material.voided) {
+    Line line;
+    line.text(test.file);
+    for (std::size_t cell = 1; cell + 1 < cells; ++cell) line.text("");
+    text += line.text(test.voiding.reason).end();
   }
   return text;
 }

@@ -82,7 +82,24 @@ Json comparison_json(const Comparison& comparison) {
 }  // namespace
 
 Json report_json(const Material& material) {
-  Json json{{"tests", Json::array()}, {"groups", Json::array()}};
+  Json json{{"tests", Json::array()},
+            {"groups", Json::array()},
+            {"voided", Json::array()},
+            {"limits", Json::array()}};
+  for (const VoidedTest& test : material.voided) {
+    json["voided"].push_back({{"file", test.file},
+                              {"reason", test.voiding.reason},
+                              {"by", test.voiding.who},
+                              {"at", test.voiding.at}});
+  }
+  for (const LimitVerdict& own : material.limits) {
+    json["limits"].push_back({{"quantity", own.quantity},
+                              {"lowest", or_null(own.limits.lowest)},
+                              {"highest", or_null(own.limits.highest)},
+                              {"pass", own.passes()},
+                              {"outside", own.outside},
+                              {"absent", own.absent}});
+  }
   for (std::size_t i = 0; i < material.tests.size(); ++i) {
     json["tests"].push_back(test_json(material.tests[i], material.measured[i]));
   }

@@ -95,6 +95,35 @@ std::string replicates_table(const Material& material, const SpeedGroup& group) 
   return text + notes;
 }
 
+std::string limits_lines(const Material& material) {
+  std::string text;
+  for (const LimitVerdict& own : material.limits) {
+    const auto side = [](const std::optional<double>& limit) {
+      return limit ? fmt::format("{}", *limit) : std::string{kAbsent};
+    };
+    text +=
+        fmt::format("{}  {} {} … {}: {} of {} inside", own.passes() ? "pass" : "FAIL", own.quantity,
+                    side(own.limits.lowest), side(own.limits.highest),
+                    material.tests.size() - own.outside.size() - own.absent.size(), material.tests.size());
+    for (const auto& [what, tests] : {std::pair{"outside", &own.outside}, {"no value", &own.absent}}) {
+      if (tests->empty()) continue;
+      text += fmt::format("; {}: test", what);
+      for (const std::size_t test : *tests) text += fmt::format(" {}", test + 1);
+    }
+    text += "\n";
+  }
+  return text.empty() ? text : "\nLimits of the batch\n" + text;
+}
+
+std::string voided_lines(const Material& material) {
+  std::string text;
+  for (const VoidedTest& test : material.voided) {
+    text += fmt::format("x  {}: void, left out: {} ({}, {})\n", test.file, test.voiding.reason,
+                        test.voiding.who, test.voiding.at);
+  }
+  return text;
+}
+
 std::string tests_table(const Material& material) {
   std::vector<TableRow> rows;
   for (std::size_t i = 0; i < material.tests.size(); ++i) {
@@ -106,7 +135,7 @@ std::string tests_table(const Material& material) {
     for (const std::string& line : material.tests[i].departures)
       text += fmt::format("!  test {}: {}\n", i + 1, line);
   }
-  return text;
+  return text + voided_lines(material);
 }
 
 std::string methods_line(const Material& material) {
@@ -181,7 +210,7 @@ std::string report_text(const Material& material) {
         fmt::format("\n{}, {}\n", speed_text(group.pull_speed_m_per_s), count_of_tests(group.tests.size()));
     text += replicates_table(material, group);
   }
-  return text;
+  return text + limits_lines(material);
 }
 
 std::string comparison_text(const Material& a, const Material& b, const MaterialComparison& comparison) {

@@ -1,21 +1,62 @@
 #include "daemon/report/test_report.hpp"
 
+#include <map>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/wording.hpp"
 #include "core/friction/method.hpp"
 #include "core/record/reader.hpp"
+#include "daemon/batch/journal.hpp"
 #include "daemon/method_text.hpp"
 #include "daemon/report/trace_json.hpp"
 
 namespace stickslip::daemon {
 
+namespace {
+
+/// What the journals beside records say; each is read once.
+class Voidings {
+ public:
+  base::Result<std::optional<Voiding>> of(const std::filesystem::path& file) {
+    const std::optional<std::filesystem::path> folder = journal_folder_of(file);
+    if (!folder) return std::optional<Voiding>{};
+    const auto [book, is_new] = books_.try_emplace(*folder);
+    if (is_new) {
+      const auto read = BatchJournal{*folder}.read_on(book->second);
+      if (!read) return tl::unexpected(read.error());
+    }
+    const Voiding* const voided = book->second.voided(name_in_journal(*folder, file));
+    return voided == nullptr ? std::optional<Voiding>{} : *voided;
+  }
+
+ private:
+  std::map<std::filesystem::path, BatchBook> books_;
+};
+
+/// "20261122T180301Z (liner 42), …", the latest first.
+std::string names_of(const BatchBook& book) {
+  std::string text;
+  for (auto batch = book.batches().rbegin(); batch != book.batches().rend(); ++batch)
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", batch->id, batch->plan.sample.name);
+  return text.empty() ? "none" : base::one_line(text, 400);
+}
+
+}  // namespace
+
 base::Result<Material> read_material(std::string label, std::span<const std::string> files,
                                      bool with_traces) {
   Material material;
   material.label = std::move(label);
+  Voidings voidings;
   for (const std::string& file : files) {
+    auto voided = voidings.of(file);
+    if (!voided) return tl::unexpected(voided.error());
+    if (*voided) {
+      material.voided.push_back({file, **std::move(voided)});
+      continue;
+    }
     base::Result<record::Record> record = record::read_record(file);
     if (!record) return tl::unexpected(record.error());
     const record::TesterFacts& tester = record->header.tester;
@@ -39,7 +80,31 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
     material.measured.push_back({tester.pull_speed_m_per_s, std::move(record->end->results)});
     material.tests.push_back(std::move(test));
   }
+  if (material.tests.empty() && !material.voided.empty()) {
+    return base::usage_error("{}: is void ({}), and so is all that was named; there is nothing to report",
+                             material.voided.front().file, material.voided.front().voiding.reason);
+  }
   material.groups = report::group_by_speed(material.measured);
+  return material;
+}
+
+base::Result<Material> read_batch(const std::string& id_or_name, const std::filesystem::path& folder,
+                                  bool with_traces) {
+  BatchBook book;
+  BatchJournal journal{folder};
+  if (const auto read = journal.read_on(book); !read) return tl::unexpected(read.error());
+  const Batch* const batch = book.find(id_or_name);
+  if (batch == nullptr) {
+    return base::usage_error("{}: has no batch \"{}\"; it has {}", journal.path().string(),
+                             base::one_line(id_or_name), names_of(book));
+  }
+  std::vector<std::string> files;
+  for (const BatchTest& test : batch->tests) files.push_back((folder / test.record).string());
+  if (files.empty()) return base::usage_error("batch {} has no test yet", batch->id);
+  base::Result<Material> material = read_material("", files, with_traces);
+  if (!material) return material;
+  for (const auto& [quantity, limits] : batch->plan.limits)
+    material->limits.push_back(judged(quantity, limits, material->measured));
   return material;
 }
 

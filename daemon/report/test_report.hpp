@@ -3,6 +3,7 @@
 /// and page show is made from this.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,8 @@
 #include "core/friction/truth.hpp"
 #include "core/record/record.hpp"
 #include "core/report/grouping.hpp"
+#include "daemon/batch/batch.hpp"
+#include "daemon/batch/verdict.hpp"
 
 namespace stickslip::daemon {
 
@@ -25,19 +28,33 @@ struct ReportedTest {
   std::string trace;  ///< For the page: trace_json() as text; empty unless asked for.
 };
 
+/// One record that does not count, and was not read.
+struct VoidedTest {
+  std::string file;
+  Voiding voiding;
+};
+
 /// Tests of one material. `tests` and `measured` have equal lengths.
 struct Material {
   std::string label;  ///< Empty where there is only one.
   std::vector<ReportedTest> tests;
   std::vector<report::MeasuredTest> measured;
   std::vector<report::SpeedGroup> groups;
+  std::vector<VoidedTest> voided;    ///< By the journals beside the records; in no number here.
+  std::vector<LimitVerdict> limits;  ///< Of a batch that has such.
 };
 
 /// Results are those in the files.
 /// \param with_traces  for the page.
-/// Error: of the first file that cannot be read, one line that names it.
+/// What is void is left out and listed. Errors, one line that names the file: of the first that cannot be
+/// read; kUsage if all are void.
 [[nodiscard]] base::Result<Material> read_material(std::string label, std::span<const std::string> files,
                                                    bool with_traces);
+
+/// The tests of a batch, with its limits. \param id_or_name  of the batch. \param folder  of its records.
+/// Errors: as above; kUsage if there is no such batch or it has no test.
+[[nodiscard]] base::Result<Material> read_batch(const std::string& id_or_name,
+                                                const std::filesystem::path& folder, bool with_traces);
 
 /// How many tests at one speed stuck again at least once (stick-slip, mixed), and how many never did
 /// (ring-down, steady sliding): the paper's qualitative difference between its two mills. Undecided ones are

@@ -23,10 +23,37 @@
     if (!reply.ok) throw new Error(json.error);
     return json;
   }
+  // The browser's own way to save a file cannot carry the token.
+  async function download(path, name) {
+    const reply = await fetch(path, {headers: {Authorization: `Bearer ${token()}`}});
+    if (!reply.ok) throw new Error((await reply.json()).error);
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(await reply.blob());
+    link.download = name;
+    link.click();
+    URL.revokeObjectURL(link.href);
+    say(`saved ${name}`, true);
+  }
   const attempt = async act => { try { await act(); } catch (error) { say(error.message); } };
 
+  // One at a time, and once more if something came meanwhile: the table must not fall behind a slow machine.
+  let refreshing = false, again = false;
   async function refresh() {
-    Tables.tests((await ask("GET", "/v1/tests")).tests);
+    again = true;
+    if (refreshing) return;
+    refreshing = true;
+    try {
+      while (again) {
+        again = false;
+        await show();
+      }
+    } finally {
+      refreshing = false;
+    }
+  }
+  async function show() {
+    const {tests, summary} = await ask("GET", "/v1/tests");
+    Tables.tests(tests, summary, (path, name) => attempt(() => download(path, name)));
     const lease = await ask("GET", "/v1/controller");
     text("holder", lease.controller ? `${lease.controller === sessionStorage.getItem("name") ? "this page" : lease.controller} commands` : "");
   }
@@ -52,6 +79,7 @@
     connect();
   });
 
+  Calibrate.connect(ask);
   const plan = document.getElementById("plan");
   function fillPlan(values) {
     for (const field of plan.querySelectorAll("input")) {
@@ -77,6 +105,7 @@
     "test-ended": frame => { Scope.ended(frame); Tables.regime(frame.results.regime); attempt(refresh); },
     health(frame) {
       Tables.health(frame.status);
+      Calibrate.health(frame.status);
       Tables.bench(frame.status.bench);
       // Records appear a moment after their tests.
       if (frame.status.latest_test && document.querySelector("#tests tbody td:last-child")?.textContent === "…") attempt(refresh);
@@ -89,6 +118,7 @@
     socket.addEventListener("message", event => { const frame = JSON.parse(event.data); frames[frame.type]?.(frame); });
     socket.addEventListener("close", () => {
       Tables.bench("not connected");
+      Tables.trouble("the daemon does not answer: what is shown is the past");
       setTimeout(connect, kRetry);
     });
   }
@@ -102,7 +132,7 @@
       await refresh();
       listen();
     } catch (error) {
-      say(error instanceof TypeError ? "the daemon does not answer" : error.message);
+      if (error instanceof TypeError) Tables.trouble("the daemon does not answer: what is shown is the past"); else say(error.message);
       Tables.bench("not connected");
       if (document.getElementById("access").hidden) setTimeout(connect, kRetry);
     }

@@ -209,6 +209,23 @@
       ...(notes.length > 0 ? [node("ul", {class: "notes"}, ...notes)] : []));
   }
 
+  // What the batch allows, and what was voided: not in any number of this page.
+  function writeLimits(m) {
+    const material = data.materials[m];
+    if (material.limits.length > 0) {
+      const side = value => (value == null ? "–" : String(value));
+      const named = tests => tests.map(i => i + 1).join(", ");
+      section(`limits-${m}`, "Limits", table(`limit-table-${m}`, ["result", "lowest", "highest", "verdict", "tests outside", "tests without it"],
+        material.limits.map(own => row(node("td", {class: "text"}, own.quantity), side(own.lowest), side(own.highest),
+          node("td", {class: "text"}, own.pass ? "✓ pass" : "✗ FAIL"), named(own.outside), named(own.absent)))));
+    }
+    if (material.voided.length > 0) {
+      section(`voided-${m}`, two ? `Void tests of ${nameOf(m)}` : "Void tests",
+        node("p", {class: "note"}, "Left out of all numbers here; their files are untouched."),
+        node("ul", {class: "notes"}, ...material.voided.map(v => node("li", {}, node("b", {}, v.file), `: ${v.reason} (${v.by}, ${v.at.slice(0, 16).replace("T", " ")})`))));
+    }
+  }
+
   // ---- The page ----------------------------------------------------------------------------------------
   const total = data.materials.reduce((sum, m) => sum + m.tests.length, 0);
   const heading = two ? `${data.materials[0].label} against ${data.materials[1].label}` :
@@ -229,7 +246,7 @@
   if (two) writeComparison();
   data.materials.forEach((_, m) => writeViewer(m));
   writeReplicates();
-  data.materials.forEach((_, m) => writeTests(m));
+  data.materials.forEach((_, m) => { writeTests(m); writeLimits(m); });
   drawFigure();
   viewers.forEach(viewer => viewer.show(0));
 

@@ -4,6 +4,8 @@
 const Scope = (() => {
   const kWindow = 10;  // s
   const kMostParts = 20000;
+  // One pixel of the screen: lines that are wider take a processor ten times as long.
+  const kLine = 1 / devicePixelRatio;
   const colour = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const forceBox = document.getElementById("force");
   const slopeBox = document.getElementById("slope");
@@ -14,7 +16,7 @@ const Scope = (() => {
   const slips = [];   // {onset, capture, peak_time, peak, captured}
   const spikes = [];  // {time, value}
   const cycles = {number: [], delta: [], amplitude: []};
-  let rate = 0, speed = 1, dirty = false;
+  let rate = 0, speed = 1, step = 1, dirty = false, newCycles = true;
 
   const height = part => Math.round(Math.max(90, window.innerHeight * part));
   const axes = label => [{stroke: colour("--soft"), grid: {stroke: colour("--line")}, ticks: {stroke: colour("--line")}},
@@ -26,11 +28,11 @@ const Scope = (() => {
   function shade(u) {
     const [from, to] = xRange(), ctx = u.ctx;
     ctx.save();
-    let before = null;
+    let before = null, test = null;  // Where one test's last slip ends, no stick of the next begins.
     for (const slip of slips) {
       if (slip.peak_time < from - 1 || slip.onset == null) continue;
       const x = t => u.valToPos(Math.min(Math.max(t, from), to), "x", true);
-      if (before != null && slip.onset > before) {
+      if (before != null && slip.test === test && slip.onset > before) {
         ctx.fillStyle = colour("--stick");
         ctx.fillRect(x(before), u.bbox.top, x(slip.onset) - x(before), u.bbox.height);
       }
@@ -39,6 +41,7 @@ const Scope = (() => {
         ctx.fillRect(x(slip.onset), u.bbox.top, x(slip.capture) - x(slip.onset), u.bbox.height);
       }
       before = slip.capture;
+      test = slip.test;
     }
     ctx.restore();
   }
@@ -67,9 +70,9 @@ const Scope = (() => {
 
   const options = (box, part, series, more) => ({width: box.clientWidth || 600, height: height(part), legend: {show: false}, cursor: {show: false},
     scales: {x: {time: false, range: xRange}}, axes: axes(), series: [{}, ...series], ...more});
-  const force = new uPlot(options(forceBox, 0.33, [{stroke: colour("--force"), width: 1.25, points: {show: false}},
-    {stroke: colour("--force"), width: 1.25, points: {show: false}}], {bands: [{series: [2, 1], fill: colour("--band")}], hooks: {drawClear: [shade], draw: [marks]}}), [[], [], []], forceBox);
-  const slope = new uPlot(options(slopeBox, 0.16, [{stroke: colour("--force"), width: 1.25, points: {show: false}}]), [[], []], slopeBox);
+  const force = new uPlot(options(forceBox, 0.33, [{stroke: colour("--force"), width: kLine, points: {show: false}},
+    {stroke: colour("--force"), width: kLine, points: {show: false}}], {bands: [{series: [2, 1], fill: colour("--band")}], hooks: {drawClear: [shade], draw: [marks]}}), [[], [], []], forceBox);
+  const slope = new uPlot(options(slopeBox, 0.16, [{stroke: colour("--force"), width: kLine, points: {show: false}}]), [[], []], slopeBox);
   const strip = new uPlot({...options(deltaBox, 0.2, [{stroke: colour("--delta"), width: 0, points: {show: true, size: 6, fill: colour("--delta")}},
     {stroke: colour("--amplitude"), width: 0, points: {show: true, size: 5, fill: colour("--amplitude")}}]),
     scales: {x: {time: false}, y: {range: (u, low, high) => [0, Math.max(0.01, high * 1.1 || 0)]}}}, [[], [], []], deltaBox);
@@ -78,8 +81,12 @@ const Scope = (() => {
     requestAnimationFrame(draw);
     if (!dirty) return;
     dirty = false;
+    // Where each part is one scan, lowest and highest are one line.
+    if (force.series[2].show !== step > 1) force.setSeries(2, {show: step > 1});
     force.setData([data.time, data.lowest, data.highest]);
     slope.setData([data.time, data.slope]);
+    if (!newCycles) return;
+    newCycles = false;
     strip.setData([cycles.number, cycles.delta, cycles.amplitude]);
   }
   requestAnimationFrame(draw);
@@ -87,7 +94,7 @@ const Scope = (() => {
   function scans(frame) {
     rate = frame.scan_rate;
     speed = Math.max(1, frame.clock_speed);
-    const step = frame.scans_in_part;
+    step = frame.scans_in_part;
     frame.lowest.forEach((low, k) => {
       const scan = frame.first_scan + k * step, middle = (low + frame.highest[k]) / 2, at = data.scan.length - 1;
       const follows = at >= 0 && scan - data.scan[at] === step && data.lowest[at] != null;
@@ -102,13 +109,13 @@ const Scope = (() => {
     if (cut > 500) for (const column of Object.values(data)) column.splice(0, cut);
     dirty = true;
   }
-  const began = () => { for (const column of Object.values(cycles)) column.length = 0; dirty = true; };
+  const began = () => { for (const column of Object.values(cycles)) column.length = 0; dirty = newCycles = true; };
   function cycle(frame) {
     const at = t => (t == null ? null : frame.test_first_scan / frame.scan_rate + t);
-    if (frame.peak_time != null) slips.push({onset: at(frame.onset_time), capture: at(frame.capture_time), peak_time: at(frame.peak_time), peak: frame.peak, captured: frame.captured});
+    if (frame.peak_time != null) slips.push({test: frame.test, onset: at(frame.onset_time), capture: at(frame.capture_time), peak_time: at(frame.peak_time), peak: frame.peak, captured: frame.captured});
     if (slips.length > 500) slips.shift();
     cycles.number.push(frame.number); cycles.delta.push(frame.delta_mu); cycles.amplitude.push(frame.force_drop == null ? null : frame.force_drop / 2);
-    dirty = true;
+    dirty = newCycles = true;
   }
   function ended(frame) {
     for (const scan of frame.spikes) {

@@ -18,13 +18,14 @@ struct Asset {
 constexpr const char* kScript = "text/javascript; charset=utf-8";
 constexpr const char* kStyle = "text/css; charset=utf-8";
 
-constexpr std::array<Asset, 7> kAssets{{
+constexpr std::array<Asset, 8> kAssets{{
     {"/", "text/html; charset=utf-8", live_page::live_html},
     {"/page/live.css", kStyle, live_page::live_css},
     {"/page/uplot.css", kStyle, live_page::uplot_css},
     {"/page/live.js", kScript, live_page::live_js},
     {"/page/scope.js", kScript, live_page::scope_js},
     {"/page/tables.js", kScript, live_page::tables_js},
+    {"/page/calibrate.js", kScript, live_page::calibrate_js},
     {"/page/uplot.js", kScript, live_page::uplot_js},
 }};
 

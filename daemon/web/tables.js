@@ -4,9 +4,8 @@
 const Tables = (() => {
   const columns = [["mu_s", "S", 4], ["mu_k", "K", 4], ["delta_mu", "S − K", 4], ["static_coefficient", "static", 4],
     ["kinetic_coefficient", "kinetic", 4], ["amplitude", "amplitude", 4], ["oscillation_frequency", "Hz", 3], ["cycle_count", "cycles", 0]];
-  const kRepeatability = 2.8;  // ISO 5725-6: r = 2.8 s_r
   const fixed = (value, decimals) => (value == null ? "–" : value.toFixed(decimals));
-  const cell = (text, kind) => { const td = document.createElement(kind === "th" ? "th" : "td"); td.textContent = text; if (kind === "text") td.className = "text"; return td; };
+  const cell = (text, kind) => { const td = document.createElement(kind === "th" ? "th" : "td"); td.textContent = text; if (kind && kind !== "th") td.className = kind; return td; };
   const row = cells => { const tr = document.createElement("tr"); tr.append(...cells); return tr; };
 
   // A word, a shape and a colour: any one of them tells.
@@ -22,33 +21,79 @@ const Tables = (() => {
   const bench = state => badge("bench", state, benches[state] || "cross", `--${benches[state] ? state : "degraded"}`);
   const regime = name => { const [shape, colour] = regimes[name] || ["ring", "--idle"]; badge("regime", name, shape, colour); };
 
-  function tests(list) {
+  // A link for the keyboard and the eye; what it does needs the token, which an address must not carry.
+  function recordCell(test, download) {
+    if (!test.file) return cell(test.file_error || "…", "text");
+    const td = cell("", "text"), link = document.createElement("a"), name = test.file.split("/").pop();
+    link.textContent = name;
+    link.href = `/v1/records/${encodeURIComponent(name)}`;
+    link.addEventListener("click", event => { event.preventDefault(); download(link.pathname, name); });
+    td.append(link);
+    return td;
+  }
+  const limitText = ({lowest, highest}, digits) => (lowest == null ? `≤ ${fixed(highest, digits)}` : highest == null ? `≥ ${fixed(lowest, digits)}` : `${fixed(lowest, digits)} … ${fixed(highest, digits)}`);
+
+  /// Numbers of the foot are the daemon's (GET /v1/tests), as stickslip report computes them.
+  function tests(list, summary, download) {
     const table = document.getElementById("tests");
     const head = ["test", "regime", ...columns.map(c => c[1]), "ended", "record"].map((text, k) => {
       const th = cell(text, "th"); th.scope = "col"; if (k === 1 || k > columns.length + 1) th.className = "text"; return th; });
     table.tHead.replaceChildren(row(head));
-    table.tBodies[0].replaceChildren(...list.slice(-200).reverse().map(test => row([cell(String(test.number)), cell(test.results.regime, "text"),
-      ...columns.map(([name, , digits]) => cell(fixed(test.results[name], digits))), cell(test.cause, "text"),
-      cell(test.file ? test.file.split("/").pop() : test.file_error || "…", "text")])));
-    const summary = (label, of) => row([cell(label), cell("", "text"), ...columns.map(([name, , digits]) => {
-      const values = list.map(test => test.results[name]).filter(value => value != null);
-      return cell(name === "cycle_count" ? "" : of(values, digits));
-    }), cell("", "text"), cell("", "text")]);
-    const mean = values => values.reduce((sum, value) => sum + value, 0) / values.length;
-    const scatter = values => Math.sqrt(values.reduce((sum, value) => sum + (value - mean(values)) ** 2, 0) / (values.length - 1));
-    table.tFoot.replaceChildren(...(list.length < 2 ? [] : [
-      summary("mean", (values, digits) => (values.length ? fixed(mean(values), digits) : "–")),
-      summary("r = 2.8 s", (values, digits) => (values.length > 1 ? fixed(kRepeatability * scatter(values), digits) : "–")),
-      summary("lowest", (values, digits) => (values.length ? fixed(Math.min(...values), digits) : "–")),
-      summary("highest", (values, digits) => (values.length ? fixed(Math.max(...values), digits) : "–"))]));
+    const limits = new Map(summary.limits.map(limit => [limit.quantity, limit]));
+    const value = (test, [name, , digits]) => {
+      const missed = limits.get(name)?.outside.includes(test.number);
+      return cell(`${fixed(test.results[name], digits)}${missed ? " ✗" : ""}`, missed ? "outside" : undefined);
+    };
+    table.tBodies[0].replaceChildren(...list.slice(-200).reverse().map(test => {
+      const tr = row([cell(String(test.number)), cell(test.results.regime, "text"), ...columns.map(column => value(test, column)),
+        cell(test.voided ? `void: ${test.voided.reason}` : test.cause, "text"), recordCell(test, download)]);
+      if (test.voided) tr.className = "void";
+      return tr;
+    }));
+    const of = new Map(summary.quantities.map(quantity => [quantity.name, quantity]));
+    const foot = (label, pick) => row([cell(label), cell("", "text"), ...columns.map(([name, , digits]) => cell(of.has(name) ? pick(of.get(name), digits, name) : "")), cell("", "text"), cell("", "text")]);
+    const number = key => (quantity, digits) => fixed(quantity[key], digits);
+    const rows = summary.tests.length < 2 ? [] : [foot("mean", number("mean")), foot("r = 2.8 s", number("repeatability")), foot("95 % from", number("mean_low")),
+      foot("95 % to", number("mean_high")), foot("lowest", number("lowest")), foot("highest", number("highest"))];
+    if (summary.limits.length > 0 && summary.tests.length > 0) {
+      const verdict = limit => `${limitText(limit, 4)} ${limit.passes ? "✓ kept" : "✗ missed"}`;
+      rows.push(row([cell("limits"), cell("", "text"), ...columns.map(([name]) => cell(limits.has(name) ? verdict(limits.get(name)) : "", limits.get(name)?.passes === false ? "outside" : undefined)), cell("", "text"), cell("", "text")]));
+    }
+    table.tFoot.replaceChildren(...rows);
+    document.getElementById("counted").textContent = summary.batch == null ? "" : `mean and limits of batch ${summary.batch}`;
+  }
+
+  const day = date => date.slice(0, 10);
+  function loadCell(calibration) {
+    if (calibration.under_way_by != null) return `${calibration.under_way_by} calibrates it`;
+    if (calibration.date == null) return "as configured";
+    const of = `calibrated ${day(calibration.date)}`;
+    if (calibration.expires == null) return of;
+    return calibration.expired ? `${of}, EXPIRED on ${day(calibration.expires)}` : `${of}, until ${day(calibration.expires)}`;
+  }
+
+  /// What somebody has to do something about, as long as it lasts; empty: nothing.
+  function troubles(status) {
+    const found = [];
+    if (["board missing", "board busy", "no permission"].includes(status.state)) found.push(status.detail);
+    if (status.storage.why != null) found.push(`storage ${status.storage.state}: ${status.storage.why}; ${status.storage.to_do}`);
+    if (status.calibration.expired) found.push(`the calibration of the load cell expired on ${day(status.calibration.expires)}: calibrate`);
+    return found.join(" · ");
+  }
+  function trouble(text) {
+    const box = document.getElementById("trouble");
+    if (box.textContent === text) return;  // Told once, not each second.
+    box.textContent = text;
+    box.hidden = text === "";
   }
 
   function health(status) {
+    trouble(troubles(status));
     const latency = status.read_latency;
     const facts = [["daemon", status.state], ["board", status.board ? status.board.name || status.board.driver : "–"],
       ["rate", status.board ? `${Number(status.board.scan_rate_granted.toPrecision(7))} Hz` : "–"],
       ["measured", status.scan_rate_measured ? `${status.scan_rate_measured.value.toFixed(4)} Hz` : "–"],
-      ["scans", String(status.scan_count)], ["gaps", `${status.gap_count} (${status.lost_scan_count} scans)`],
+      ["load cell", loadCell(status.calibration)], ["scans", String(status.scan_count)], ["gaps", `${status.gap_count} (${status.lost_scan_count} scans)`],
       ["disk", status.storage.why != null ? `${status.storage.why}; ${status.storage.to_do}` : status.storage.room_h == null ? "–" : `${status.storage.room_h.toFixed(0)} h`],
       ["worst read", `${(1000 * latency.largest).toFixed(2)} ms`], ["tests", String(status.test_count)],
       ["readers", `${status.live_clients.count}, ${status.live_clients.dropped_frame_count} dropped`]];
@@ -63,5 +108,5 @@ const Tables = (() => {
     document.getElementById("cycle").textContent = `cycle ${frame.number}: peak ${fixed(frame.peak, 4)}, S − K ${fixed(frame.delta_mu, 4)}`;
   }
 
-  return {bench, regime, tests, health, cycle, columns};
+  return {bench, regime, trouble, tests, health, cycle, columns};
 })();

@@ -10,6 +10,7 @@
 #include "core/sim/belt.hpp"
 #include "core/sim/scene.hpp"
 #include "core/sim/scene_run.hpp"
+#include "drivers/simulated/hanging_weight.hpp"
 #include "drivers/simulated/playlist.hpp"
 #include "drivers/simulated/scene_facts.hpp"
 #include "drivers/simulated/simulated_truth.hpp"
@@ -22,16 +23,18 @@ using daq::ReadStatus;
 class SimulatedBoard final : public daq::Board {
  public:
   SimulatedBoard(std::shared_ptr<const Playlist> playlist, base::Clock& clock,
-                 std::optional<double> speed_gain_m_per_s_per_V)
+                 const SimulatedBoardSettings& settings)
       : playlist_(std::move(playlist)),
         clock_(clock),
-        info_(board_info_of(playlist_->scenes(), playlist_->scan_rate_Hz(), speed_gain_m_per_s_per_V)),
+        info_(
+            board_info_of(playlist_->scenes(), playlist_->scan_rate_Hz(), settings.speed_gain_m_per_s_per_V)),
         true_scan_rate_Hz_(sim::true_scan_rate_Hz(playlist_->scenes().front(), playlist_->scan_rate_Hz())) {
     // All runs are built here: read() may not allocate.
     for (const sim::Scene& scene : playlist_->scenes()) {
       runs_.emplace_back(scene, playlist_->scan_rate_Hz());
       belts_.push_back(sim::motion_of(scene).belt);
     }
+    if (!settings.hanging.empty()) hanging_.emplace(settings.hanging, playlist_->scenes().front(), info_);
     play(0);
   }
 
@@ -56,6 +59,10 @@ class SimulatedBoard final : public daq::Board {
     }
     clock_.sleep_until(due_ns(last_of_delivery(deadline_ns)));
     fill(block, clock_.monotonic_ns());
+    if (hanging_) {
+      hanging_->look();
+      hanging_->read(block.first, std::span{block.raw}.first(block.count));
+    }
     block.stamp = {clock_.monotonic_ns(), clock_.realtime_ns()};
     return ReadStatus::kScans;
   }
@@ -141,6 +148,7 @@ class SimulatedBoard final : public daq::Board {
   double true_scan_rate_Hz_;         ///< At which scans fall due; nobody is told.
   std::vector<sim::SceneRun> runs_;  ///< One for each scene.
   std::vector<std::vector<sim::BeltSegment>> belts_;
+  std::optional<HangingWeight> hanging_;
   Repetition playing_;
   base::ScanIndex next_ = 0;
   bool running_ = false;
@@ -205,8 +213,7 @@ base::Result<SimulatedTester> make_simulated_tester(const SimulatedBoardSettings
   result.tester = tester_of(scenes);
   auto playlist = std::make_shared<const Playlist>(std::move(scenes), settings.repeats, rate_Hz);
   result.truth = make_simulated_truth(playlist, settings.method);
-  result.board =
-      std::make_unique<SimulatedBoard>(std::move(playlist), clock, settings.speed_gain_m_per_s_per_V);
+  result.board = std::make_unique<SimulatedBoard>(std::move(playlist), clock, settings);
   return result;
 }
 

@@ -29,6 +29,8 @@ struct SimulatedBoardSettings {
   /// A second input reads the belt's speed through a converter like the force's, this much for each volt, not
   /// 0; absent: there is none.
   std::optional<double> speed_gain_m_per_s_per_V{};
+  /// Says which weight hangs on the load cell in the place of the scene's force (HangingWeight); empty: none.
+  std::filesystem::path hanging{};
 };
 
 /// Two equal implementations of the seams, made from one list of scenes, and the facts about the

@@ -16,7 +16,7 @@ import tempfile
 import time
 
 # Generous: on a busy machine a browser takes its time to start.
-TIMEOUT_S = 120
+TIMEOUT_S = 300
 
 
 class Chromium:
@@ -90,6 +90,16 @@ class Chromium:
                     return event["params"]
             self.events.append(self.message(deadline))
 
+    def wait_for_download(self):
+        """The next that completes; Browser.setDownloadBehavior with eventsEnabled comes first."""
+        deadline = time.monotonic() + TIMEOUT_S
+        while True:
+            for event in self.events:
+                if event.get("method") == "Browser.downloadProgress" and event["params"]["state"] == "completed":
+                    self.events.remove(event)
+                    return
+            self.events.append(self.message(deadline))
+
     def open(self, file, dark=False):
         """A file, or an address that begins with http:"""
         address = str(file) if str(file).startswith("http:") else pathlib.Path(file).resolve().as_uri()
@@ -111,6 +121,14 @@ class Page:
 
     def call(self, method, **parameters):
         return self.browser.call(method, self.session, **parameters)
+
+    def reload(self):
+        self.own_events("Page.loadEventFired")
+        self.browser.events = [event for event in self.browser.events
+                               if (event.get("sessionId"), event.get("method")) != (self.session, "Page.loadEventFired")]
+        self.call("Page.reload")
+        self.browser.wait_for("Page.loadEventFired", self.session)
+        self.settle()
 
     def settle(self):
         """Until two frames are painted: uPlot draws before the next one."""

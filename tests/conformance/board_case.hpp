@@ -53,6 +53,8 @@ inline void PrintTo(const BoardCase& board_case, std::ostream* out) { *out << bo
 [[nodiscard]] BoardCase simulated_gaps_case();
 /// One repetition of a ramp with the belt's speed as a second channel, then the end.
 [[nodiscard]] BoardCase simulated_speed_case();
+/// A ring-down whose load cell carries a weight, then the end.
+[[nodiscard]] BoardCase simulated_hanging_case();
 /// A record without gaps that does not begin at index 0, then the end.
 [[nodiscard]] BoardCase replay_case();
 /// The same with a second channel.

@@ -306,9 +306,9 @@ std::string name_of(const ::testing::TestParamInfo<BoardCase>& instance) { retur
 
 std::vector<BoardCase> all_cases() {
   std::vector<BoardCase> cases{
-      comedi_case(),       polled_comedi_case(),  comedi_second_case(),   polled_comedi_second_case(),
-      simulated_case(),    simulated_gaps_case(), simulated_speed_case(), replay_case(),
-      replay_second_case()};
+      comedi_case(),    polled_comedi_case(),  comedi_second_case(),   polled_comedi_second_case(),
+      simulated_case(), simulated_gaps_case(), simulated_speed_case(), simulated_hanging_case(),
+      replay_case(),    replay_second_case()};
   if (auto device = comedi_device_case()) cases.push_back(*std::move(device));
   if (auto device = comedi_device_second_case()) cases.push_back(*std::move(device));
   return cases;
@@ -317,7 +317,7 @@ std::vector<BoardCase> all_cases() {
 INSTANTIATE_TEST_SUITE_P(Boards, BoardConformance, ::testing::ValuesIn(all_cases()), name_of);
 INSTANTIATE_TEST_SUITE_P(Boards, BoardEnd,
                          ::testing::Values(simulated_case(), simulated_gaps_case(), simulated_speed_case(),
-                                           replay_case(), replay_second_case()),
+                                           simulated_hanging_case(), replay_case(), replay_second_case()),
                          name_of);
 
 }  // namespace

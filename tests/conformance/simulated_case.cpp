@@ -1,9 +1,12 @@
 #include <filesystem>
+#include <fstream>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
 #include "drivers/simulated/simulated_board.hpp"
 #include "tests/conformance/board_case.hpp"
+#include "tests/support/record_samples.hpp"
 
 namespace stickslip::test {
 
@@ -43,6 +46,21 @@ BoardCase simulated_speed_case() {
     return BoardRig{nullptr, nullptr, std::move(tester->board)};
   };
   return {.name = "SimulatedWithSpeed", .make = make};
+}
+
+BoardCase simulated_hanging_case() {
+  const auto make = [](ManualClock& clock) {
+    const auto folder = std::make_shared<TemporaryFolder>();
+    drivers::SimulatedBoardSettings settings;
+    settings.scenes = {std::filesystem::path(STICKSLIP_SOURCE_DIR) /
+                       "config/scenes/ring-down-at-12-in-per-min.toml"};
+    settings.hanging = folder->path() / "hanging";
+    std::ofstream{settings.hanging} << "0.5 0.01";
+    auto tester = drivers::make_simulated_tester(settings, clock);
+    if (!tester) throw std::runtime_error(tester.error().message);
+    return BoardRig{folder, nullptr, std::move(tester->board)};
+  };
+  return {.name = "SimulatedHanging", .make = make};
 }
 
 }  // namespace stickslip::test

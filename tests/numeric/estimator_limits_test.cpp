@@ -33,6 +33,17 @@ TEST_P(EstimatorLimits, AreWithinATenthOfTheBound) {
   }
 }
 
+/// Two of 4000 noises for which the fit creeps along the narrow valley of a known speed for a hundred steps.
+TEST(EstimatorLimitsOfTheFit, NoNoiseIsLeftWithoutAResult) {
+  const test::LimitScene scene;
+  for (const int seed : {2234, 3110}) {
+    const test::LimitReport report = scene.run({.coupling_known = false, .speed_known = true}, 1, seed);
+    EXPECT_EQ(report.without_result, 0) << seed;
+    for (const test::LimitTally& tally : report.tallies)
+      EXPECT_LT(std::abs(tally.normalised_mean()), 4.0) << tally.what << ", seed " << seed;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Known, EstimatorLimits, testing::ValuesIn(test::kLimitCases),
                          [](const testing::TestParamInfo<test::LimitCase>& known) {
                            return std::string{known.param.coupling_known ? "Tester" : "Nothing"} +

@@ -130,8 +130,8 @@ class LimitScene {
     return friction::cramer_rao_bounds(parameters_, information_, prior(which));
   }
 
-  /// The same case with `seeds` different noises; what is known beforehand has its own error each time.
-  [[nodiscard]] LimitReport run(LimitCase which, int seeds) const {
+  /// The same case with so many different noises; what is known beforehand has its own error each time.
+  [[nodiscard]] LimitReport run(LimitCase which, int seeds, int first_seed = 1) const {
     const friction::UniformBounds bounds = this->bounds(which);
     LimitReport report;
     report.which = which;
@@ -141,7 +141,7 @@ class LimitScene {
                        {"gamma/2omega", parameters_.shared.gamma / (2.0 * parameters_.shared.omega),
                         bounds.gamma_over_2omega}}};
     const Eigen::Matrix2d spread = coupling_covariance_.llt().matrixL();
-    for (int seed = 1; seed <= seeds; ++seed) {
+    for (int seed = first_seed; seed < first_seed + seeds; ++seed) {
       std::mt19937_64 engine{static_cast<std::uint64_t>(seed)};
       std::normal_distribution<double> normal;
       friction::AnalysisSettings settings;

@@ -226,7 +226,8 @@ class Calibrate(unittest.TestCase):
         (self.folder / "readings.toml").write_text(READINGS, encoding="utf-8")
         self.assertIn("--folder is needed", self.calibrate("--points", "readings.toml").stderr)
         (self.folder / "daemon.toml").write_text(
-            DAEMON.format(scene="x.toml").replace("calibration =", 'load_cell_gain = "2 N/V"\ncalibration ='),
+            DAEMON.format(scene="x.toml").replace("calibration =", 'load_cell_gain = "2 N/V"\ncalibration =').replace(
+                '"calibrations"', '"one.toml"'),
             encoding="utf-8")
         done = self.run_program(STICKSLIPD, "--check-config", "daemon.toml")
         self.assertEqual(done.returncode, 2)

@@ -7,6 +7,7 @@ control_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
 Nothing here sleeps: each step waits for an answer or for a frame of the live stream.
 """
 
+import contextlib
 import json
 import pathlib
 import re
@@ -17,6 +18,7 @@ import unittest
 import h5py
 import numpy
 
+from hanging import Hanging, weighing_board
 from running_daemon import TIMEOUT_S, RunningDaemon, wait_for, wait_for_rest
 from schema import complaints
 
@@ -29,6 +31,17 @@ class Daemon(RunningDaemon):
     def __init__(self, test, config="", **options):
         # Slow enough that a pull of 5 s leaves time for all that is done in it.
         super().__init__(test, BUILD, SOURCE, config, **{"speed": 4, **options})
+
+
+@contextlib.contextmanager
+def unwritable(file):
+    """A folder in its place: what is no file cannot be appended to, by root either."""
+    kept = file.with_suffix(".kept")
+    file.rename(kept)
+    file.mkdir()
+    yield
+    file.rmdir()
+    kept.rename(file)
 
 
 class Commands(unittest.TestCase):
@@ -141,7 +154,8 @@ class Description(unittest.TestCase):
     """Each answer that openapi.json promises is got from a running daemon and fits its schema."""
 
     def setUp(self):
-        self.daemon = Daemon(self, '[test]\nbegins = "command"\n')
+        self.hanging = Hanging(self)
+        self.daemon = Daemon(self, '[test]\nbegins = "command"\n', board=weighing_board(self, SOURCE, speed=4))
         self.document = self.daemon.ask("GET", "/v1/openapi.json")[1]
         self.seen = set()
 
@@ -156,19 +170,23 @@ class Description(unittest.TestCase):
         return status, body
 
     def test_every_path_method_and_answer_is_as_described(self):
-        for path in ("/v1/status", "/v1/openapi.json", "/v1/tests", "/v1/plan", "/v1/controller", "/metrics"):
+        for path in ("/v1/status", "/v1/openapi.json", "/v1/tests", "/v1/plan", "/v1/batch", "/v1/controller", "/v1/calibration", "/metrics"):
             self.assertEqual(self.check("GET", path)[0], 200)
         self.check("GET", "/v1/live")
         self.check("GET", "/v1/tests/1", template="/v1/tests/{number}")
         changing = [("PUT", "/v1/plan", {"name": "x"}), ("PUT", "/v1/controller", {"seconds": 60}), ("POST", "/v1/arm", None),
                     ("POST", "/v1/stop", None), ("POST", "/v1/start", None), ("POST", "/v1/mark", {"text": "x"}), ("POST", "/v1/tare", None),
-                    ("DELETE", "/v1/controller", None)]
+                    ("POST", "/v1/calibration", None), ("POST", "/v1/calibration/weight", {"mass": 0}), ("POST", "/v1/calibration/undo", None),
+                    ("POST", "/v1/calibration/finish", None), ("DELETE", "/v1/calibration", None),
+                    ("POST", "/v1/batch", {"name": "liner"}), ("POST", "/v1/void", {"test": 1, "reason": "torn"}), ("POST", "/v1/restore", {"test": 1}),
+                    ("DELETE", "/v1/batch", None), ("DELETE", "/v1/controller", None)]
         for at, (method, path, body) in enumerate(changing):
             self.assertEqual(self.check(method, path, body, who=None)[0], 400)
             key = f"key {at}"
             self.check(method, path, body, key=key)
             self.assertEqual(self.check(method, path, '{"x": 1}', key=key)[0], 422)
-            if method != "DELETE":
+            # What cannot be done by anybody yet is refused for that.
+            if path not in ("/v1/controller", "/v1/void", "/v1/restore") or method == "PUT":
                 self.assertEqual(self.check(method, path, body, who="bob")[0], 409, path)
         # Back to ada, so that bob cannot give it away.
         self.check("PUT", "/v1/controller", {"seconds": 60})
@@ -179,6 +197,7 @@ class Description(unittest.TestCase):
         self.addCleanup(process.kill)
         wait_for(frames, lambda frame: True)
         self.check("POST", "/v1/stop")
+        self.calibrate(frames)
         wait_for_rest(frames)
         for _ in frames:
             if self.check("POST", "/v1/start", {})[0] == 200:
@@ -189,13 +208,62 @@ class Description(unittest.TestCase):
         for _ in frames:
             if self.check("POST", "/v1/tare")[0] == 200:
                 break
+        record = self.daemon.record(1)
+        self.assertEqual(self.check("POST", "/v1/restore", {"test": 1})[0], 409)
+        self.assertEqual(self.check("POST", "/v1/void", {"test": 1, "reason": "paper torn"})[0], 200)
+        self.assertEqual(self.check("POST", "/v1/void", {"record": record.name, "reason": "again"})[0], 409)
+        self.assertEqual(self.check("GET", "/v1/tests/1", template="/v1/tests/{number}")[1]["voided"]["reason"], "paper torn")
         self.assertEqual(self.check("GET", "/v1/tests")[0], 200)
-        self.assertEqual(self.check("GET", "/v1/tests/1", template="/v1/tests/{number}")[0], 200)
+        with unwritable(record.parent / "batches.jsonl"):
+            self.assertEqual(self.check("POST", "/v1/restore", {"test": 1})[0], 507)
+            self.assertEqual(self.check("POST", "/v1/batch", {"name": "liner"})[0], 507)
+        self.assertEqual(self.check("POST", "/v1/restore", {"record": record.name})[0], 200)
+        with unwritable(record.parent / "batches.jsonl"):
+            self.assertEqual(self.check("POST", "/v1/void", {"test": 1, "reason": "paper torn"})[0], 507)
+        self.assertEqual(self.check("POST", "/v1/batch", {"name": "liner", "limits": {"mu_k": {"highest": 0.4}}})[0], 200)
+        self.assertEqual(self.check("GET", "/v1/status")[1]["batch"]["next"]["slide"], 1)
+        self.assertEqual(self.check("PUT", "/v1/plan", {"name": "x"})[0], 409)
+        with unwritable(record.parent / "batches.jsonl"):
+            self.assertEqual(self.check("DELETE", "/v1/batch")[0], 507)
+        self.assertEqual(self.check("DELETE", "/v1/batch")[0], 200)
+        status, body = self.check("GET", f"/v1/records/{record.name}", template="/v1/records/{name}")
+        self.assertEqual((status, body), (200, record.read_bytes()))
+        # Names are compared and open nothing.
+        for name in ("x.h5", "..%2Fd.toml", "../d.toml", f"../records/{record.name}", f"./{record.name}", str(record), record.name + "%00", "."):
+            self.assertEqual(self.check("GET", f"/v1/records/{name}", template="/v1/records/{name}")[0], 404, name)
         # 101 is what `watch` above got.
         self.seen.add(("/v1/live", "get", "101"))
         promised = {(path, method, status) for path, methods in self.document["paths"].items() for method, one in methods.items()
                     for status in one["responses"]}
         self.assertEqual(promised - self.seen, set())
+
+    def calibrate(self, frames):
+        def weigh(mass):
+            self.hanging.hang(mass)
+            return self.check("POST", "/v1/calibration/weight", {"mass": mass})
+        self.hanging.hang(0)
+        wait_for(frames, lambda frame: frame["type"] == "health" and frame["status"]["bench"] == "idle")
+        for wrong in ({"settle": -1}, {"reading": "2 kg"}, {"reading": 61}, {"x": 1}):
+            self.assertEqual(self.check("POST", "/v1/calibration", wrong)[0], 400, wrong)
+        self.assertEqual(self.check("POST", "/v1/calibration", {"settle": 0.5, "reading": "0.5 s"})[0], 200)
+        self.assertEqual(self.check("POST", "/v1/calibration/undo")[0], 409)
+        for wrong in ({}, {"mass": -1}, {"mass": "1 V"}, {"mass": 1e5}, {"mass": None}):
+            self.assertEqual(self.check("POST", "/v1/calibration/weight", wrong)[0], 400, wrong)
+        for mass in (0, 0.5, 1, 1.5, 1, 0.5, 0):
+            self.assertEqual(weigh(mass)[0], 200)
+            if mass == 0.5:
+                self.assertEqual(self.check("POST", "/v1/calibration/undo")[0], 200)
+                self.assertEqual(weigh(mass)[0], 200)
+        for wrong in ({"certificate": 1}, {"valid_days": -1}, {"certificate": "\n"}):
+            self.assertEqual(self.check("POST", "/v1/calibration/finish", wrong)[0], 400, wrong)
+        self.assertEqual(self.check("POST", "/v1/calibration/finish", {"valid_days": 0})[0], 200)
+        self.assertIsNone(self.check("GET", "/v1/calibration")[1]["in_use"]["expires"])
+        self.assertEqual(self.check("POST", "/v1/calibration")[0], 200)
+        self.assertEqual(self.check("DELETE", "/v1/calibration")[0], 200)
+        self.hanging.nothing()
+        # What was sent meanwhile has been read, and the scene plays.
+        scan = self.daemon.ask("GET", "/v1/status")[1]["scan_count"]
+        wait_for(frames, lambda frame: frame["type"] == "scans" and frame["first_scan"] > scan)
 
     def test_other_methods_and_paths_are_refused(self):
         methods = {"GET", "PUT", "POST", "DELETE"}
@@ -204,7 +272,7 @@ class Description(unittest.TestCase):
                 continue
             allowed = {method.upper() for method in described}
             for method in methods - allowed:
-                status, body = self.daemon.ask(method, path.replace("{number}", "1"))
+                status, body = self.daemon.ask(method, path.replace("{number}", "1").replace("{name}", "x"))
                 self.assertEqual(status, 405, (method, path))
                 self.assertEqual(set(self.daemon.reply.headers["Allow"].split(", ")), allowed)
                 self.assertIn("error", body)

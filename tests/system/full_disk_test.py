@@ -16,20 +16,10 @@ import subprocess
 import sys
 import tempfile
 
+from small_disk import fill, leave, mount, own_mounts
+
 TIMEOUT_S = 240
 ROOM_MIB = 48  # Enough for the ballast, which is kept where there are 16 MiB.
-SKIPPED = 77
-
-
-def fill(folder):
-    """Leaves not a byte."""
-    with (folder / "filler").open("ab", buffering=0) as filler:
-        for size in (1 << 20, 1 << 12, 1):
-            try:
-                while True:
-                    filler.write(bytes(size))
-            except OSError:
-                continue
 
 
 class Daemon:
@@ -84,20 +74,14 @@ def main():
         folder = pathlib.Path(name)
         records = folder / "records"
         records.mkdir()
-        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={ROOM_MIB}m", "tmpfs", str(records)],
-                                 capture_output=True, text=True, check=False)
-        if mounted.returncode != 0:
-            print(f"skipped: no file system may be mounted here: {mounted.stderr.strip()}")
-            return SKIPPED
+        mount(records, ROOM_MIB)
         daemon = Daemon(build, source, folder)
         try:
             daemon.wait_for(lambda text: number_in(text) >= 2)
             # Eight MiB are room for 7 min of tests, and short; tests go on.
-            with (records / "filler").open("wb") as filler:
-                room = os.statvfs(records)
-                os.posix_fallocate(filler.fileno(), 0, room.f_bavail * room.f_frsize - (8 << 20))
+            leave(records, 8 << 20)
             text = daemon.wait_for(lambda text: "storage short" in text)
-            asked = subprocess.run([str(build / "daemon" / "stickslip"), "status", "--socket", str(folder / "c.sock")],
+            asked = subprocess.run([str(build / "daemon" / "stickslip"), "status", "--json", "--socket", str(folder / "c.sock")],
                                    capture_output=True, text=True, check=True, timeout=TIMEOUT_S)
             status = json.loads(asked.stdout)
             assert status["state"] == "storage short" and status["storage"]["state"] == "short", status
@@ -139,14 +123,5 @@ def main():
 
 
 if __name__ == "__main__":
-    if "STICKSLIP_OWN_MOUNTS" not in os.environ:
-        environment = dict(os.environ, STICKSLIP_OWN_MOUNTS="1")
-        own = subprocess.run(["unshare", "--mount", "--map-root-user" if os.geteuid() else "--mount", "true"],
-                             capture_output=True, text=True, check=False)
-        if own.returncode != 0:
-            print(f"skipped: no mount namespace here: {own.stderr.strip()}")
-            sys.exit(SKIPPED)
-        options = ["--mount"] + (["--map-root-user"] if os.geteuid() else [])
-        sys.exit(subprocess.run(["unshare", *options, sys.executable, *sys.argv], env=environment,
-                                check=False).returncode)
+    own_mounts()
     sys.exit(main())

@@ -26,13 +26,14 @@ class UnixConnection(http.client.HTTPConnection):
 
 
 class RunningDaemon:
-    def __init__(self, test, build, source, config="", speed=20, board=None, repeats=0):
+    def __init__(self, test, build, source, config="", speed=20, board=None, repeats=0, prepare=lambda folder: None):
         self.cli = build / "daemon" / "stickslip"
         scene = source / "config" / "scenes" / "stick-slip-at-12-in-per-min.toml"
         temporary = tempfile.TemporaryDirectory(prefix="stickslip-")
         test.addCleanup(temporary.cleanup)
         self.folder = pathlib.Path(temporary.name)
         self.socket = self.folder / "c.sock"
+        prepare(self.folder)
         board = board or f"""
 [board]
 driver = "simulated"
@@ -43,15 +44,26 @@ repeats = {repeats}
 """
         file = self.folder / "d.toml"
         file.write_text(f'{board}\n[record]\nfolder = "records"\n[control]\nsocket = "c.sock"\n{config}', encoding="utf-8")
-        manager = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
-        manager.bind(str(self.folder / "notify"))
-        manager.settimeout(TIMEOUT_S)
-        self.process = subprocess.Popen([str(build / "daemon" / "stickslipd"), "--config", str(file)], cwd=self.folder, stderr=subprocess.PIPE, text=True,
-                                        env={"NOTIFY_SOCKET": str(self.folder / "notify")})
+        self.command = [str(build / "daemon" / "stickslipd"), "--config", str(file)]
         test.addCleanup(self.end)
+        self.start()
+
+    def start(self):
+        """Returns when scans come."""
+        notify = self.folder / "notify"
+        notify.unlink(missing_ok=True)
+        manager = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        manager.bind(str(notify))
+        manager.settimeout(TIMEOUT_S)
+        self.process = subprocess.Popen(self.command, cwd=self.folder, stderr=subprocess.PIPE, text=True, env={"NOTIFY_SOCKET": str(notify)})
         while manager.recv(4096) != b"READY=1":
             pass
         manager.close()  # Notifications that nobody reads would fill it, and the daemon would wait.
+
+    def kill(self):
+        """As a power switch does: nothing is put in order."""
+        self.process.kill()
+        self.process.communicate(timeout=TIMEOUT_S)
 
     def end(self):
         if self.process.poll() is None:
@@ -70,7 +82,8 @@ repeats = {repeats}
         sent.update(headers or {})
         own.request(method, path, body if body is None or isinstance(body, str) else json.dumps(body), sent)
         reply = own.getresponse()
-        text = reply.read().decode()
+        body = reply.read()
+        text = body if reply.headers["Content-Type"] == "application/x-hdf5" else body.decode()
         if connection is None:
             own.close()
         self.reply = reply

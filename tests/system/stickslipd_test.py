@@ -312,7 +312,7 @@ socket = "control.sock"
 
         control = self.folder / "control.sock"
         self.assertEqual(stat.S_IMODE(control.stat().st_mode), 0o660)
-        status = run(CLI, "status", "--socket", control)
+        status = run(CLI, "status", "--json", "--socket", control)
         self.assertEqual(status.returncode, 0, status.stderr)
         self.assertEqual(json.loads(status.stdout)["state"], "board missing")
 
@@ -338,7 +338,7 @@ socket = "control.sock"
                                 self.folder)
         self.addCleanup(process.kill)
         manager.wait_for(lambda text: "test 1 running" in text)
-        status = json.loads(run(CLI, "status", "--socket", self.folder / "c.sock").stdout)
+        status = json.loads(run(CLI, "status", "--json", "--socket", self.folder / "c.sock").stdout)
         self.assertRegex(status["scheduling"], r"^SCHED_(FIFO|OTHER).*memory (not )?locked.*RLIMIT_RTTIME")
         self.assertEqual(status["board_loss_count"], 0)
         # The daemon's promise is 40 MB; a sanitizer brings its own. Locked on fault: stacks count as touched, the
@@ -364,7 +364,7 @@ socket = "control.sock"
                                 self.folder)
         self.addCleanup(process.kill)
         manager.wait_for(lambda text: "test 1 running" in text)
-        status = json.loads(run(CLI, "status", "--socket", self.folder / "c.sock").stdout)
+        status = json.loads(run(CLI, "status", "--json", "--socket", self.folder / "c.sock").stdout)
         self.assertEqual(status["state"], "acquiring")
         self.assertEqual(status["board"]["scan_rate_granted"], 350.0)
         self.assertGreater(status["scan_count"], 0)

@@ -13,6 +13,7 @@
 
 #include "tests/support/faulty_disk.hpp"
 #include "tests/support/record_samples.hpp"
+#include "tests/unit/paper_bench.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -57,12 +58,21 @@ class BenchDeskTest : public testing::Test {
       [](const std::filesystem::path& journal) { return base::Result<std::filesystem::path>{journal}; },
       tests_,
       heard_};
+  CalibrationDesk calibrations_{{.config = config_,
+                                 .storage = storage_,
+                                 .session = [] { return nullptr; },
+                                 .on_main = [](const std::function<void()>&) {},
+                                 .date_ns = [] { return 0; },
+                                 .now_ns = [] { return 0; }}};
+  PaperBatches batches_;
   BenchDesk desk_{{.config = config_,
                    .tests = tests_,
                    .storage = storage_,
+                   .calibrations = calibrations_,
                    .status = [] { return Status{}; },
                    .session = [] { return nullptr; },
-                   .on_main = [](const std::function<void()>&) {}}};
+                   .on_main = [](const std::function<void()>&) {},
+                   .batches = &batches_}};
 };
 
 TEST_F(BenchDeskTest, WithoutABoardCommandsAreRefused) {
@@ -70,6 +80,21 @@ TEST_F(BenchDeskTest, WithoutABoardCommandsAreRefused) {
     EXPECT_EQ(ask({kind, "ada", "x", {}}).report.refusal,
               "no scans come from the board; stickslip status says why");
   }
+}
+
+TEST_F(BenchDeskTest, WithoutABoardNoCalibrationBegins) {
+  std::string refusal;
+  const auto told = [&refusal](const std::string& why) { refusal = why; };
+  calibrations_.begin("ada", {}, told);
+  EXPECT_THAT(refusal, testing::HasSubstr("names no folder"));
+  config_.bench.calibration_folder = folder_.path();
+  calibrations_.begin("ada", {}, told);
+  EXPECT_THAT(refusal, testing::HasSubstr("no scans come from the board"));
+  EXPECT_FALSE(calibrations_.why_no_test());
+  calibrations_.weigh(0.0, told);
+  EXPECT_THAT(refusal, testing::HasSubstr("begin one first"));
+  EXPECT_THAT(calibrations_.undo(), testing::HasSubstr("begin one first"));
+  EXPECT_THAT(calibrations_.give_up(), testing::HasSubstr("begin one first"));
 }
 
 TEST_F(BenchDeskTest, AShortDiskRefusesTestsThatSomebodyAsksForAndNothingElse) {

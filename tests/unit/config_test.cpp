@@ -57,7 +57,7 @@ TEST(Config, ShippedFileShowsTheDefaults) {
   const std::regex key{R"(^# ([a-z_]+ = .*))"};
   // These have no default, or one that cannot be written.
   const std::regex example{
-      R"(^# (scan_rate|file|subdevice|pull_speed|stiffness|socket|speed_gain|speed_channel|position_gain|position_channel|load_cell_gain|sled_mass|gravity|load_cell_zero|characterisation|replicate) = .*|^# calibration = "calibrations".*)"};
+      R"(^# (scan_rate|file|hanging|subdevice|pull_speed|stiffness|socket|speed_gain|speed_channel|position_gain|position_channel|load_cell_gain|sled_mass|gravity|load_cell_zero|characterisation|replicate|broker|tester|user|password_file|ca_file|certificate_file|key_file) = .*|^# calibration = "calibrations".*)"};
   for (std::string line; std::getline(in, line);) {
     std::smatch match;
     const bool is_default = std::regex_match(line, match, key) && !std::regex_match(line, example);
@@ -84,6 +84,7 @@ TEST(Config, ShippedFileShowsTheDefaults) {
   EXPECT_EQ(written->method.name, plain.method.name);
   EXPECT_EQ(written->method.kinetic_cycles, plain.method.kinetic_cycles);
   EXPECT_EQ(written->record_folder, plain.record_folder);
+  EXPECT_FALSE(written->fleet);
   EXPECT_EQ(written->log_level, plain.log_level);
   EXPECT_EQ(written->report_table, plain.report_table);
   EXPECT_EQ(written->estimator, plain.estimator);

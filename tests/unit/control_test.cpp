@@ -37,6 +37,64 @@ class ControlApi : public testing::Test {
   HttpHandler api_ = make_api(bench_, clock_);
 };
 
+TEST_F(ControlApi, ACalibrationIsAskedForInNumbersOrWithUnits) {
+  EXPECT_EQ(command("/v1/calibration", "ada", R"({"settle": "500 ms", "reading": 3})").status, 200);
+  EXPECT_EQ(command("/v1/calibration/weight", "ada", R"({"mass": "500 g"})").status, 200);
+  EXPECT_EQ(command("/v1/calibration/weight", "ada", R"({"mass": 2})").status, 200);
+  EXPECT_EQ(error(command("/v1/calibration/undo", "ada")), "nothing has been read yet");
+  EXPECT_EQ(command("/v1/calibration/finish", "ada", R"({"certificate": "DKD", "valid_days": 0})").status,
+            200);
+  EXPECT_THAT(bench_.calibrations.asked,
+              testing::ElementsAre("ada begins 0.5 3", "weigh 0.5", "weigh 2", "ada finishes DKD 0"));
+  // Between two weights nobody else gets the bench: 31 s are more than a command has it.
+  clock_.advance(31s);
+  EXPECT_THAT(error(command("/v1/stop", "bob")), testing::HasSubstr("ada has the bench"));
+  const json told = json::parse(ask({"GET", "/v1/calibration", "", "", ""}).body);
+  EXPECT_EQ(told["in_use"]["gain"], 2.0);
+  EXPECT_EQ(told["in_use"]["date"], nullptr);
+}
+
+TEST_F(ControlApi, LeadsABatchWhichPeopleMayNotPlanAgainst) {
+  EXPECT_EQ(json::parse(ask({"GET", "/v1/batch", "", "", ""}).body)["batch"], nullptr);
+  EXPECT_EQ(command("/v1/batch", "ada", R"({"replicates": 2})").status, 400);
+  const HttpReply begun = command("/v1/batch", "ada", R"({"name": "liner", "replicates": 2})");
+  EXPECT_EQ(begun.status, 200) << begun.body;
+  const json batch = json::parse(begun.body)["batch"];
+  EXPECT_EQ(batch["planned"], 2);
+  EXPECT_EQ(batch["next"]["replicate"], 1);
+  EXPECT_EQ(batch["by"], "ada");
+  const HttpReply planned = ask({"PUT", "/v1/plan", R"({"name": "x"})", "ada", ""});
+  EXPECT_EQ(planned.status, 409);
+  EXPECT_THAT(error(planned), testing::HasSubstr("(liner) plans the tests; DELETE /v1/batch ends it"));
+  EXPECT_EQ(ask({"DELETE", "/v1/batch", "", "ada", ""}).status, 200);
+  EXPECT_EQ(ask({"PUT", "/v1/plan", R"({"name": "x"})", "ada", ""}).status, 200);
+}
+
+TEST_F(ControlApi, VoidsATestByItsNumberOrRecordAndSaysSoInTheList) {
+  for (const auto& [body, why] : std::initializer_list<std::pair<const char*, const char*>>{
+           {R"({"test": 7})", "reason: is missing"},
+           {R"({"test": 7, "reason": ""})", "reason: is missing"},
+           {R"({"test": 7, "reason": "a\nb"})", "control character"},
+           {R"({"reason": "torn"})", "which test?"},
+           {R"({"test": 7, "record": "x", "reason": "torn"})", "which test?"},
+           {R"({"test": 8, "reason": "torn"})", "there is no 8"},
+           {R"({"test": "7", "reason": "torn"})", "there is no \"7\""},
+           {R"({"record": "../../etc/passwd", "reason": "torn"})", "none of the latest tests"},
+           {R"({"record": 7, "reason": "torn"})", "record: must be text"},
+       }) {
+    const HttpReply refused = command("/v1/void", "ada", body);
+    EXPECT_EQ(refused.status, 400) << body;
+    EXPECT_THAT(error(refused), testing::HasSubstr(why)) << body;
+  }
+  EXPECT_EQ(command("/v1/void", "ada", R"({"test": 7, "reason": "paper torn"})").status, 200);
+  const json test = json::parse(ask({"GET", "/v1/tests/7", "", "", ""}).body);
+  EXPECT_EQ(test["voided"]["reason"], "paper torn");
+  EXPECT_EQ(json::parse(ask({"GET", "/v1/tests", "", "", ""}).body)["tests"][0]["voided"]["by"], "ada");
+  EXPECT_EQ(command("/v1/restore", "ada", R"({"record": "20261121T125252Z-0007.h5"})").status, 200);
+  EXPECT_EQ(command("/v1/restore", "ada", R"({"test": 7})").status, 409);
+  EXPECT_EQ(json::parse(ask({"GET", "/v1/tests/7", "", "", ""}).body)["voided"], nullptr);
+}
+
 TEST_F(ControlApi, TellsTheStatusByTheNamesOfTheRecord) {
   const HttpReply reply = ask({"GET", "/v1/status", "", "", ""});
   EXPECT_EQ(reply.status, 200);

@@ -2,6 +2,8 @@
 /// A bench that does what it is told, on paper.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <functional>
 #include <string>
 #include <utility>
@@ -19,6 +21,7 @@ inline Status some_status() {
   status.board->scan_rate_granted_Hz = 350.0;
   status.latest_test.emplace();
   status.latest_test->number = 7;
+  status.latest_test->file = "/records/20261121T125252Z-0007.h5";
   status.latest_test->results.mu_s = friction::Estimate::of(0.35);
   status.latest_test->results.mu_k = friction::Estimate::none("no slip");
   status.bench = pipeline::BenchState::kRunning;
@@ -33,12 +36,78 @@ inline Status some_status() {
   return status;
 }
 
+/// Grants everything and writes down what it was asked.
+class PaperCalibrator final : public Calibrator {
+ public:
+  [[nodiscard]] CalibrationView view() const override {
+    CalibrationView view;
+    view.load_cell = {2.0, 0.0123};
+    return view;
+  }
+  void begin(const std::string& who, const WeighingTimes& times, Answer answer) override {
+    asked.push_back(fmt::format("{} begins {} {}", who, times.settle_s, times.reading_s));
+    answer({});
+  }
+  void weigh(double mass_kg, Answer answer) override {
+    asked.push_back(fmt::format("weigh {}", mass_kg));
+    answer({});
+  }
+  [[nodiscard]] std::string undo() override { return "nothing has been read yet"; }
+  void finish(const std::string& who, const CalibrationPaper& paper, Answer answer) override {
+    asked.push_back(fmt::format("{} finishes {} {}", who, paper.certificate, paper.valid_days));
+    answer({});
+  }
+  [[nodiscard]] std::string give_up() override { return {}; }
+
+  std::vector<std::string> asked;
+};
+
+/// The book alone, without a journal.
+class PaperBatches final : public Batches {
+ public:
+  [[nodiscard]] const BatchBook& book() override { return book_; }
+  [[nodiscard]] std::optional<BatchProgress> progress() const override {
+    const Batch* const batch = book_.current();
+    if (batch == nullptr) return std::nullopt;
+    return BatchProgress{
+        batch->id, batch->plan.sample.name, 0, std::ssize(steps(batch->plan)), book_.next_step(*batch, {}),
+        {}};
+  }
+  [[nodiscard]] std::string name_of(const std::filesystem::path& record) const override {
+    return record.filename().string();
+  }
+  void begin(BatchPlan plan, std::string who, Answer answer) override {
+    happens(who, BatchBegun{"20261122T180301Z", std::move(plan)}, answer);
+  }
+  void end(std::string who, Answer answer) override { happens(who, BatchEnded{"20261122T180301Z"}, answer); }
+  void void_test(const std::string& record, std::string reason, std::string who, Answer answer) override {
+    happens(who, TestVoided{record, std::move(reason)}, answer);
+  }
+  void restore(const std::string& record, std::string who, Answer answer) override {
+    if (book_.voided(record) == nullptr) {
+      answer(tl::unexpected(base::Error{base::ErrorKind::kBusy, record + " is not void"}));
+      return;
+    }
+    happens(who, TestRestored{record}, answer);
+  }
+
+ private:
+  template <typename What>
+  void happens(const std::string& who, What what, const Answer& answer) {
+    book_.apply({"2026-11-22T18:03:01+00:00", who, std::move(what)});
+    answer({});
+  }
+
+  BatchBook book_;
+};
+
 class PaperBench final : public Bench {
  public:
   [[nodiscard]] Status status() const override { return some_status(); }
   [[nodiscard]] std::vector<TestSummary> tests() const override { return {*some_status().latest_test}; }
   [[nodiscard]] Plan plan() const override { return plan_; }
   void set_plan(Plan plan) override { plan_ = std::move(plan); }
+  [[nodiscard]] Batches& batches() override { return batches_; }
   void command(Command command, std::function<void(const Outcome&)> answer) override {
     commands.push_back(command);
     if (later) {
@@ -47,6 +116,7 @@ class PaperBench final : public Bench {
       answer(outcome(refusal));
     }
   }
+  [[nodiscard]] Calibrator& calibrator() override { return calibrations; }
   static Outcome outcome(const std::string& refusal) {
     Outcome outcome;
     outcome.report.refusal = refusal;
@@ -56,6 +126,7 @@ class PaperBench final : public Bench {
     return outcome;
   }
 
+  PaperCalibrator calibrations;
   std::vector<Command> commands;
   std::string refusal;
   bool later = false;
@@ -63,6 +134,7 @@ class PaperBench final : public Bench {
 
  private:
   Plan plan_;
+  PaperBatches batches_;
 };
 
 }  // namespace stickslip::daemon

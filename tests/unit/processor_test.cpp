@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,6 +31,10 @@ class Diary final : public Sink {
     gaps.push_back(gap);
     next = gap.first + gap.count;
   }
+  void note(const daq::Note& note) override { notes.push_back(note.text); }
+  void observed(daq::ScanIndex, std::span<const double> coefficient, const friction::LiveState&) override {
+    coefficients.insert(coefficients.end(), coefficient.begin(), coefficient.end());
+  }
   void test_ended(const TestEnd& end) override {
     words.push_back("ended");
     ends.push_back(end);
@@ -41,6 +47,8 @@ class Diary final : public Sink {
   std::vector<std::int32_t> codes;
   std::vector<daq::Gap> gaps;
   std::vector<TestEnd> ends;
+  std::vector<std::string> notes;
+  std::vector<double> coefficients;  ///< Of all scans.
   daq::ScanIndex next = 0;
 };
 
@@ -176,6 +184,59 @@ TEST_F(ProcessorTest, EndsARunningTestWhenToldAndNothingElse) {
   EXPECT_EQ(diary_.ends[0].end, 200);
   processor.finish(EndCause::kStopped);
   EXPECT_EQ(diary_.ends.size(), 1U);
+}
+
+TEST_F(ProcessorTest, ANewCalibrationCountsAsIfItHadAlwaysBeen) {
+  settings_.automatic = false;
+  settings_.gain_uncertainty = 0.1;
+  board_.quantity = daq::RawQuantity::kVolts;
+  const daq::LoadCell cell{2.0, 0.01};
+  Processor before{settings_, {board_, {1.5, 0.0}, 1.0}, {&diary_}};
+  feed(before, 0, 20);
+  const CommandReport report = before.recalibrate({board_, cell, 1.0}, 0.02, "ada");
+  EXPECT_EQ(report.refusal, "");
+  EXPECT_EQ(report.scan, 20);
+  settings_.gain_uncertainty = 0.02;
+  Diary other;
+  Processor always{settings_, {board_, cell, 1.0}, {&other}};
+  feed(always, 0, 20);
+  for (Processor* processor : {&before, &always}) {
+    feed(*processor, 20, 90);
+    EXPECT_EQ(processor->start("ada").refusal, "");
+    feed(*processor, 90, kEnd);
+  }
+  ASSERT_EQ(diary_.ends.size(), 1U);
+  ASSERT_EQ(other.ends.size(), 1U);
+  EXPECT_EQ(diary_.starts[0].first, other.starts[0].first);
+  EXPECT_EQ(diary_.ends[0].end, other.ends[0].end);
+  EXPECT_EQ(diary_.coefficients.back(), before.calibration().coefficient(reading(kEnd - 1)));
+  EXPECT_NE(diary_.coefficients.front(), diary_.coefficients[20]) << "the same voltage, before and after";
+  EXPECT_TRUE(std::equal(diary_.coefficients.begin() + 20, diary_.coefficients.end(),
+                         other.coefficients.begin() + 20, other.coefficients.end()));
+  std::vector<friction::Estimate> results;
+  const auto keep = [&results](const friction::ResultName&, const friction::Estimate& result) {
+    results.push_back(result);
+  };
+  friction::for_each_result(diary_.ends[0].results, keep);
+  std::size_t at = 0;
+  friction::for_each_result(other.ends[0].results,
+                            [&](const friction::ResultName& name, const friction::Estimate& result) {
+                              EXPECT_EQ(results[at].value, result.value) << name.name;
+                              EXPECT_EQ(results[at].systematic_uncertainty, result.systematic_uncertainty);
+                              ++at;
+                            });
+  ASSERT_FALSE(diary_.notes.empty());
+  EXPECT_EQ(diary_.notes[0], "load cell calibrated: 2 N/V, zero 0.01 V, from scan 20, by ada");
+}
+
+TEST_F(ProcessorTest, ANewCalibrationNeedsAnIdleBench) {
+  Processor armed = make();
+  EXPECT_EQ(armed.recalibrate({board_, {}, 2.0}, std::nullopt, "ada").refusal,
+            "the bench is armed; a new calibration needs it idle");
+  feed(armed, 0, 200);
+  EXPECT_EQ(armed.recalibrate({board_, {}, 2.0}, std::nullopt, "ada").refusal,
+            "the bench is loading; a new calibration needs it idle");
+  EXPECT_EQ(armed.calibration().normal_load_N(), 1.0);
 }
 
 }  // namespace

@@ -3,15 +3,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/daq/calibration.hpp"
+#include "tests/support/record_samples.hpp"
 
 namespace stickslip::drivers {
 namespace {
@@ -52,6 +56,49 @@ std::vector<double> read_all(daq::Board& board, std::chrono::milliseconds timeou
     raw.insert(raw.end(), block.scans().begin(), block.scans().end());
   }
   return raw;
+}
+
+TEST(SimulatedBoard, AWeightHangsOnTheLoadCellWhileAFileSaysSo) {
+  SleepingClock clock;
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "hanging";
+  auto tester = make_simulated_tester(
+      {.scenes = {kRingDown}, .repeats = 1, .scan_rate_Hz = {}, .hanging = file}, clock);
+  auto plain = make_simulated_tester({.scenes = {kRingDown}, .repeats = 1, .scan_rate_Hz = {}}, clock);
+  ASSERT_TRUE(tester && plain);
+  daq::Board& board = *tester->board;
+  daq::Board& other = *plain->board;
+  ASSERT_TRUE(board.start());
+  ASSERT_TRUE(other.start());
+  const daq::Calibration newtons{board.info(), tester->load_cell, 1.0};
+  constexpr double kGravity_m_per_s2 = 9.80665;
+  daq::ScanBlock block;
+  daq::ScanBlock scene;
+  /// The mean of one delivery, kg; the scene goes on behind it.
+  const auto felt_kg = [&] {
+    EXPECT_EQ(board.read(block, 1000ms), ReadStatus::kScans);
+    EXPECT_EQ(other.read(scene, 1000ms), ReadStatus::kScans);
+    EXPECT_EQ(block.first, scene.first);
+    double sum = 0.0;
+    for (const double raw : block.scans()) sum += newtons.force_N(raw) / kGravity_m_per_s2;
+    return sum / block.count;
+  };
+  const auto write = [&file](const char* text) { std::ofstream{file} << text; };
+  static_cast<void>(felt_kg());
+  EXPECT_TRUE(std::ranges::equal(block.scans(), scene.scans())) << "nothing hangs";
+  // Six standard deviations of the scene's noise of 0.001 of the sled's weight in a mean of 7 scans.
+  constexpr double kClose_kg = 6.0 * 0.001 * 2.331 / 2.6;
+  for (const auto& [text, mass_kg] :
+       {std::pair{"0.5", 0.5}, {"0", 0.0}, {"1.25 0\n", 1.25}, {"", 1.25}, {"half", 1.25}}) {
+    write(text);
+    EXPECT_NEAR(felt_kg(), mass_kg, kClose_kg) << '"' << text << '"';
+  }
+  write("1000");
+  static_cast<void>(felt_kg());
+  EXPECT_TRUE(newtons.saturated(block.raw[0]));
+  std::filesystem::remove(file);
+  static_cast<void>(felt_kg());
+  EXPECT_TRUE(std::ranges::equal(block.scans(), scene.scans())) << "the scene has gone on";
 }
 
 TEST(SimulatedBoard, PlaysEachSceneRepeatedlyAsOneStreamAndEnds) {

@@ -43,12 +43,12 @@ start_daemon() {
 daemon() { cat "/run/$name/pid"; }
 
 # status WHEN: keeps what the daemon says of itself.
-status() { stickslip status --socket "$socket" >"$folder/$1.json"; }
+status() { stickslip status --json --socket "$socket" >"$folder/$1.json"; }
 
 # await KEY VALUE [SECONDS]: until the status has it; VALUE is a regular expression.
 await() {
   key=$1 value=$2 left=${3:-60}
-  until [ -S "$socket" ] && stickslip status --socket "$socket" 2>/dev/null | grep -qE "^  \"$key\": $value"; do
+  until [ -S "$socket" ] && stickslip status --json --socket "$socket" 2>/dev/null | grep -qE "^  \"$key\": $value"; do
     kill -0 "$(daemon)" || fail "$name: the daemon ended while $key = $value was awaited"
     left=$((left - 1))
     [ "$left" -gt 0 ] || {

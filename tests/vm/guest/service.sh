@@ -18,12 +18,12 @@ property() { systemctl show --value --property "$1" "$unit"; }
 
 await() {
   left=60
-  until stickslip status --socket "$socket" 2>/dev/null | grep -qE "^  \"$1\": $2"; do
+  until stickslip status --json --socket "$socket" 2>/dev/null | grep -qE "^  \"$1\": $2"; do
     left=$((left - 1))
     [ "$left" -gt 0 ] || fail "$1 = $2 did not come"
     sleep 1
   done
-  stickslip status --socket "$socket" >"$results/$3.json"
+  stickslip status --json --socket "$socket" >"$results/$3.json"
 }
 
 # What an installed package leaves behind.

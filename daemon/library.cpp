@@ -1,4 +1,4 @@
-#include "daemon/cli/library.hpp"
+#include "daemon/library.hpp"
 
 #include <algorithm>
 #include <functional>

@@ -1,0 +1,82 @@
+/// \file
+/// Leads through a batch: plans the next test when one has begun, writes down what was recorded, and finds
+/// its place again after a restart.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include <boost/asio/thread_pool.hpp>
+
+#include "core/base/clock.hpp"
+#include "core/base/result.hpp"
+#include "daemon/batch/batch.hpp"
+#include "daemon/batch/journal.hpp"
+#include "daemon/control/batches.hpp"
+#include "daemon/control/bench.hpp"
+
+namespace stickslip::daemon {
+
+/// Main thread, but for the pool inside, which alone writes the journal and reads records.
+class BatchLeader final : public Batches {
+ public:
+  struct Parts {
+    std::filesystem::path folder;  ///< Of the records.
+    std::string program;           ///< Of place_of().
+    std::function<Plan()> plan;
+    std::function<void(Plan)> set_plan;
+    std::function<void(std::function<void()>)> on_main;  ///< From any thread: to the main thread.
+    const base::Clock* clock;                            ///< Outlives this object.
+  };
+  explicit BatchLeader(Parts parts);
+  /// As close().
+  ~BatchLeader() override;
+  BatchLeader(const BatchLeader&) = delete;
+  BatchLeader& operator=(const BatchLeader&) = delete;
+
+  /// Reads the journal, adds the records that a stop kept it from adding, plans the next test.
+  void open();
+
+  /// Waits for what is being written. Only what came before is told any more.
+  void close();
+
+  // What became of tests.
+  void test_began(std::int64_t number);
+  void record_published(std::int64_t number, const std::filesystem::path& file);
+  void record_failed(std::int64_t number);
+
+  [[nodiscard]] const BatchBook& book() override;
+  [[nodiscard]] std::optional<BatchProgress> progress() const override;
+  [[nodiscard]] std::string name_of(const std::filesystem::path& record) const override;
+  void begin(BatchPlan plan, std::string who, Answer answer) override;
+  void end(std::string who, Answer answer) override;
+  void void_test(const std::string& record, std::string reason, std::string who, Answer answer) override;
+  void restore(const std::string& record, std::string who, Answer answer) override;
+
+ private:
+  [[nodiscard]] std::string now() const;
+  [[nodiscard]] std::optional<BatchStep> next() const;
+  /// On the pool; then the book is read on, the next test planned, and `answer` told.
+  void append(BatchEvent event, Answer answer);
+  /// What the journal has got; trouble with it is kept for people.
+  void read_on();
+  /// Plans the next test, if that is another than was planned.
+  void lead();
+  /// The records of the current batch that the journal lacks.
+  void reconcile();
+
+  Parts parts_;
+  BatchJournal journal_;
+  BatchBook book_;
+  std::map<std::int64_t, BatchStep> under_way_;  ///< By the number of the test.
+  std::optional<BatchStep> planned_;             ///< What the next test will be.
+  std::string led_batch_;                        ///< Whose facts are in the plan; empty: of none.
+  std::string trouble_;
+  boost::asio::thread_pool pool_{1};
+};
+
+}  // namespace stickslip::daemon

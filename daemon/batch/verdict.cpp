@@ -1,0 +1,22 @@
+#include "daemon/batch/verdict.hpp"
+
+namespace stickslip::daemon {
+
+LimitVerdict judged(const std::string& quantity, const Limits& limits,
+                    std::span<const report::MeasuredTest> tests) {
+  LimitVerdict verdict{quantity, limits, {}, {}};
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    friction::for_each_result(tests[i].results,
+                              [&](const friction::ResultName& name, const friction::Estimate& estimate) {
+                                if (name.name != quantity) return;
+                                if (!estimate.value) {
+                                  verdict.absent.push_back(i);
+                                } else if (!limits.holds(*estimate.value)) {
+                                  verdict.outside.push_back(i);
+                                }
+                              });
+  }
+  return verdict;
+}
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,111 @@
+// Subcommand doctor: looks at the installation.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/cli/paint.hpp"
+#include "daemon/cli/subcommands.hpp"
+#include "daemon/doctor/checks.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kInstalledConfig = "/etc/stickslip/stickslipd.toml";
+constexpr const char* kInstalledFolder = "/var/lib/stickslip";
+
+constexpr const char* kHelp =
+    R"(Exit status: 0 all is good, 1 something is bad, 2 wrong usage, 3 there are warnings.
+Nothing is changed. Rights are those of the user who asks; those of the service:
+  sudo -u stickslip stickslip doctor)";
+
+struct DoctorOptions {
+  std::string config = kInstalledConfig;
+  std::string folder;
+  bool json = false;
+};
+
+Colour colour_of(Finding::Verdict verdict) {
+  switch (verdict) {
+    case Finding::Verdict::kGood:
+      return Colour::kGreen;
+    case Finding::Verdict::kUnknown:
+      return Colour::kFaint;
+    case Finding::Verdict::kWarning:
+      return Colour::kYellow;
+    case Finding::Verdict::kBad:
+      break;
+  }
+  return Colour::kRed;
+}
+
+std::string json_of(const std::vector<Finding>& findings) {
+  Json list = Json::array();
+  for (const Finding& finding : findings) {
+    list.push_back({{"check", finding.check},
+                    {"verdict", name(finding.verdict)},
+                    {"what", finding.what},
+                    {"to_do", finding.to_do.empty() ? Json(nullptr) : Json(finding.to_do)}});
+  }
+  return Json{{"exit_status", exit_status(findings)}, {"findings", std::move(list)}}.dump(
+             2, ' ', false, Json::error_handler_t::replace) +
+         "\n";
+}
+
+std::string text_of(const std::vector<Finding>& findings, const Paint& paint) {
+  std::string text;
+  for (const Finding& finding : findings) {
+    text += fmt::format("{}  {:<11}  {}\n",
+                        paint(colour_of(finding.verdict), fmt::format("{:<7}", name(finding.verdict))),
+                        finding.check, finding.what);
+    if (!finding.to_do.empty()) text += fmt::format("{:<22}→ {}\n", "", finding.to_do);
+  }
+  return text;
+}
+
+int run_doctor(const DoctorOptions& options) {
+  std::error_code error;
+  const std::filesystem::path config = std::filesystem::absolute(options.config, error);
+  std::string folder = options.folder;
+  if (folder.empty() && options.config == kInstalledConfig) folder = kInstalledFolder;
+  // As the service does: relative names in the configuration are of its working directory.
+  if (!folder.empty() && ::chdir(folder.c_str()) != 0 && !options.folder.empty()) {
+    fmt::print(stderr, "stickslip: --folder {}: {}\n", folder, std::generic_category().message(errno));
+    return 2;
+  }
+  const auto clock = base::make_system_clock();
+  const std::vector<Finding> findings =
+      examine(options.folder.empty() ? options.config : config.string(), this_world(*clock));
+  fmt::print("{}", options.json ? json_of(findings) : text_of(findings, Paint{wants_colours()}));
+  return std::fflush(stdout) == 0 ? exit_status(findings) : 1;
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, Chosen& chosen) {
+  const auto kept = std::make_shared<DoctorOptions>();
+  CLI::App* command = app.add_subcommand(
+      "doctor", "is everything there that a test needs? What is not, and what is to be done");
+  command->footer(kHelp);
+  command->add_option("--config", kept->config, "the daemon's configuration")
+      ->capture_default_str()
+      ->type_name("FILE");
+  command
+      ->add_option(
+          "--folder", kept->folder,
+          "where the daemon runs, for relative names in it; default: /var/lib/stickslip for the installed "
+          "configuration, else here")
+      ->type_name("DIR");
+  command->add_flag("--json", kept->json, "JSON instead of text");
+  command->callback([&chosen, kept] { chosen.run = [kept] { return run_doctor(*kept); }; });
+}
+
+}  // namespace stickslip::daemon

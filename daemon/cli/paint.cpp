@@ -1,0 +1,47 @@
+#include "daemon/cli/paint.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
+namespace stickslip::daemon {
+namespace {
+
+/// ECMA-48, SGR.
+std::string_view code_of(Colour colour) {
+  switch (colour) {
+    case Colour::kNone:
+      break;
+    case Colour::kGreen:
+      return "32";
+    case Colour::kYellow:
+      return "33";
+    case Colour::kRed:
+      return "31";
+    case Colour::kBlue:
+      return "34";
+    case Colour::kBold:
+      return "1";
+    case Colour::kFaint:
+      return "2";
+  }
+  return {};
+}
+
+}  // namespace
+
+bool wants_colours() {
+  const char* const no_color = std::getenv("NO_COLOR");
+  if (no_color != nullptr && *no_color != '\0') return false;
+  const char* const terminal = std::getenv("TERM");
+  return terminal != nullptr && std::string_view{terminal} != "dumb" && ::isatty(STDOUT_FILENO) != 0;
+}
+
+std::string Paint::operator()(Colour colour, std::string_view text) const {
+  const std::string_view code = code_of(colour);
+  if (!on_ || code.empty()) return std::string{text};
+  return fmt::format("\033[{}m{}\033[0m", code, text);
+}
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,26 @@
+/// \file
+/// The requests about batches and void tests; api.hpp has seen to names, repetitions and who has the bench.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "core/base/result.hpp"
+#include "daemon/control/batches.hpp"
+#include "daemon/control/bench.hpp"
+#include "daemon/control/http.hpp"
+
+namespace stickslip::daemon {
+
+/// {"batch": null}, or the current batch with its plan, tests and what comes next.
+[[nodiscard]] nlohmann::ordered_json batch_json(Batches& batches);
+/// The record that {"test": 7} or {"record": "…"} names: one of the latest tests, or one of a batch. Errors:
+/// kUsage.
+[[nodiscard]] base::Result<std::string> record_named(const nlohmann::ordered_json& body, const Bench& bench,
+                                                     Batches& batches);
+
+/// The answer of a request that changed something: the batch as it is now, or the refusal.
+[[nodiscard]] Batches::Answer reply_with_batch(Batches& batches, HttpAnswer answer);
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,32 @@
+#include "daemon/fleet/backlog.hpp"
+
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "core/record/reader.hpp"
+#include "daemon/child_process.hpp"
+#include "daemon/fleet/messages.hpp"
+
+namespace stickslip::daemon {
+
+std::optional<FleetResult> ask_result(const std::string& program, const std::string& tester,
+                                      const std::filesystem::path& record) {
+  const auto answer = ask_program(program, {"--result", record.string()}, {});
+  if (!answer || !*answer || (*answer)->status != 0) return std::nullopt;
+  const auto json = nlohmann::ordered_json::parse((*answer)->output, nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  return FleetResult{record.stem().string(), json.value("entry_identifier_uuid", ""),
+                     result_message(tester, json)};
+}
+
+base::Result<std::string> result_of_record(const std::filesystem::path& file) {
+  const base::Result<record::Record> record = record::read_record(file);
+  if (!record) return tl::unexpected(record.error());
+  if (!record->end) return base::usage_error("{}: holds no end of a test", file.string());
+  return result_json(record->header, *record->end, file)
+             .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
+         "\n";
+}
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,100 @@
+#include "daemon/fleet/fleet.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include <boost/asio/post.hpp>
+#include <nlohmann/json.hpp>
+
+#include "daemon/fleet/backlog.hpp"
+#include "daemon/fleet/messages.hpp"
+#include "daemon/records_above.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+/// The outbox as a former program has left it. One that never held anything begins with the tests to come: a
+/// tester that joins does not tell its whole past.
+Outbox open_outbox(const FleetSettings& settings, const std::filesystem::path& record_folder) {
+  Outbox outbox{settings.outbox, settings.outbox_results};
+  if (outbox.newest().empty()) {
+    const auto latest = records_above(record_folder, "", 1);
+    outbox.set_newest(latest.empty() ? "0" : latest.back().stem().string());
+  }
+  return outbox;
+}
+
+}  // namespace
+
+Fleet::Fleet(boost::asio::io_context& io, const FleetSettings& settings, Parts parts)
+    : io_(io), timer_(io), settings_(settings), parts_(std::move(parts)), publisher_([&] {
+        Outbox outbox = open_outbox(settings, parts_.record_folder);
+        auto untold = records_above(parts_.record_folder, outbox.newest(), settings.outbox_results);
+        return FleetPublisher{settings, std::move(outbox), world(std::move(untold))};
+      }()) {
+  // Once the daemon runs: its status says more then.
+  boost::asio::post(io_, [this] { tick(); });
+}
+
+FleetPublisher::World Fleet::world(std::vector<std::filesystem::path> untold) {
+  std::reverse(untold.begin(), untold.end());
+  return {.last_will = [this] { return last_will(settings_.tester, parts_.wall.realtime_ns()); },
+          .backlog = [this, untold = std::move(untold)]() mutable -> std::optional<FleetResult> {
+            while (!untold.empty()) {
+              const std::filesystem::path record = std::move(untold.back());
+              untold.pop_back();
+              if (auto result = ask_result(parts_.program, settings_.tester, record)) return result;
+            }
+            return std::nullopt;
+          },
+          .changed = [this](const FleetState& state) { link_changed(state); }};
+}
+
+void Fleet::test_recorded(const record::RecordHeader& header, const record::EndRecord& end,
+                          const std::filesystem::path& file) {
+  publisher_.tell_result(
+      {file.stem().string(), header.uuid, result_message(settings_.tester, result_json(header, end, file))});
+}
+
+void Fleet::state_changed() {
+  const Status status = parts_.status();
+  std::string now = state_message(settings_.tester, status, 0);
+  if (now == told_) return;
+  told_ = std::move(now);
+  publisher_.tell_state(state_message(settings_.tester, status, parts_.wall.realtime_ns()));
+}
+
+void Fleet::bench_changed(pipeline::BenchState /*state*/) {
+  if (on_the_way_.exchange(true)) return;
+  boost::asio::post(io_, [this] {
+    on_the_way_ = false;
+    state_changed();
+  });
+}
+
+void Fleet::link_changed(const FleetState& state) {
+  using Link = FleetState::Link;
+  if (state.link == Link::kConnecting) return;
+  const bool connected = state.link == Link::kConnected;
+  // A broker that is away is told once, not at each try.
+  if (connected == was_connected_ && state.why == why_told_) return;
+  was_connected_ = connected;
+  why_told_ = state.why;
+  parts_.facts.fleet_changed(state);
+}
+
+void Fleet::tick() {
+  publisher_.tell_health(health_message(settings_.tester, parts_.status(), parts_.wall.realtime_ns()));
+  timer_.expires_after(std::chrono::duration_cast<std::chrono::milliseconds>(
+      std::chrono::duration<double>(settings_.health_period_s)));
+  timer_.async_wait([this](boost::system::error_code error) {
+    if (!error) tick();
+  });
+}
+
+void Fleet::stop() {
+  timer_.cancel();
+  publisher_.stop(state_message(settings_.tester, parts_.status(), parts_.wall.realtime_ns(), "stopped"));
+}
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,77 @@
+#include "daemon/fleet/messages.hpp"
+
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "core/record/iso_time.hpp"
+#include "daemon/control/bench.hpp"
+#include "daemon/control/plan_json.hpp"
+#include "daemon/results_json.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+Json time_of(const std::optional<std::int64_t>& realtime_ns) {
+  return realtime_ns ? Json(record::iso_time(*realtime_ns)) : Json(nullptr);
+}
+
+Json or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
+}  // namespace
+
+Json result_json(const record::RecordHeader& header, const record::EndRecord& end,
+                 const std::filesystem::path& file) {
+  Json json;
+  json["entry_identifier_uuid"] = header.uuid;
+  json["number"] = header.test_number ? Json(*header.test_number) : Json(nullptr);
+  json["start_time"] = time_of(header.start_realtime_ns);
+  json["end_time"] = time_of(end.end_realtime_ns);
+  json["status"] = record::name(end.status);
+  json["reasons"] = end.reasons;
+  json["cause"] = end.cause;
+  json["file"] = file.string();
+  json["plan"] = plan_json({header.sample, header.tester.pull_speed_m_per_s, {}});
+  json["batch"] = or_null(header.sample.batch);
+  json["slide"] = header.sample.slide ? Json(*header.sample.slide) : Json(nullptr);
+  json["method"] = or_null(header.process.method);
+  json["estimator"] = or_null(header.process.estimator);
+  json["version"] = or_null(header.process.version);
+  json["results"] = results_json(end.results, true);
+  return json;
+}
+
+std::string result_message(const std::string& tester, const Json& result) {
+  Json json{{"tester", tester}};
+  json.update(result);
+  return text_of(json);
+}
+
+std::string state_message(const std::string& tester, const Status& status, std::int64_t realtime_ns,
+                          std::string_view state) {
+  Json json;
+  json["tester"] = tester;
+  json["time"] = record::iso_time(realtime_ns);
+  json["state"] = state.empty() ? std::string_view{status.state} : state;
+  json["bench"] = pipeline::name(status.bench);
+  json["detail"] = state.empty() ? Json(status.detail) : Json(nullptr);
+  json["version"] = status.version;
+  json["test_count"] = status.test_count;
+  json["current_test"] = status.current_test ? Json(*status.current_test) : Json(nullptr);
+  return text_of(json);
+}
+
+std::string last_will(const std::string& tester, std::int64_t realtime_ns) {
+  return text_of({{"tester", tester}, {"connected_since", record::iso_time(realtime_ns)}, {"state", "lost"}});
+}
+
+std::string health_message(const std::string& tester, const Status& status, std::int64_t realtime_ns) {
+  return text_of(
+      {{"tester", tester}, {"time", record::iso_time(realtime_ns)}, {"status", status_json(status)}});
+}
+
+}  // namespace stickslip::daemon

@@ -1,0 +1,179 @@
+#!/usr/bin/env python3
+"""Manual pages, completion and colours: made from the parsers, compared here with what --help says, both ways, and read
+by the programs that they are for.
+
+manual_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
+"""
+
+import os
+import pathlib
+import pty
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from running_daemon import RunningDaemon
+
+BUILD = pathlib.Path(sys.argv[1]).resolve()
+SOURCE = pathlib.Path(sys.argv[2]).resolve()
+PROGRAMS = {"stickslip": BUILD / "daemon" / "stickslip", "stickslipd": BUILD / "daemon" / "stickslipd"}
+PAGES = {"stickslip": 1, "stickslipd": 8, "stickslipd.toml": 5}
+TIMEOUT_S = 120
+
+
+def run(*words, **options):
+    return subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=TIMEOUT_S, check=False, **options)
+
+
+def printed(*words):
+    done = run(*words)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+class Help:
+    """What --help of a program, or of one of its commands, lists."""
+
+    def __init__(self, *words):
+        text = printed(*words, "--help")
+        self.options = set(re.findall(r"(?<![\w-])--[a-z][a-z0-9-]*", "\n".join(re.findall(r"(?m)^  (-\S*)", text))))
+        listed = re.search(r"(?ms)^Subcommands:\n(.*?)(?:\n\n|\Z)", text)
+        self.commands = re.findall(r"(?m)^  ([a-z]+)", listed[1]) if listed else []
+
+
+class Manual(unittest.TestCase):
+    def page(self, name):
+        return printed(PROGRAMS["stickslip"], "man", name)
+
+    def test_pages_are_read_without_a_warning(self):
+        for name, section in PAGES.items():
+            with self.subTest(page=name), tempfile.TemporaryDirectory() as folder:
+                file = pathlib.Path(folder) / f"{name}.{section}"
+                file.write_text(self.page(name), encoding="utf-8")
+                read = run("man", "--warnings=w", "-E", "UTF-8", "-l", file, env={**os.environ, "MANWIDTH": "100", "LC_ALL": "C.UTF-8", "MANPAGER": "cat"})
+                self.assertEqual((read.returncode, read.stderr), (0, ""))
+                self.assertGreater(len(read.stdout), 1000)
+                # They have no date: they are as old as the program that prints them.
+                lint = run("mandoc", "-Tlint", "-W", "warning", file).stdout.splitlines()
+                self.assertEqual([line for line in lint if not line.endswith('missing date, using "": TH')], [])
+
+    def test_each_command_and_option_of_the_help_is_in_the_page_and_no_other(self):
+        for program, path in PROGRAMS.items():
+            text = self.page(program).replace("\\-", "-")
+            top = Help(path)
+            parts = re.split(r"(?m)^\.SS (\S+)\n", text)
+            self.assertEqual(set(parts[1::2]), set(top.commands))
+            described = {"": parts[0], **dict(zip(parts[1::2], parts[2::2]))}
+            for command, part in described.items():
+                with self.subTest(program=program, command=command):
+                    options = set(re.findall(r"\\fB(--[a-z0-9-]+)\\fR", part.split(".SH EXAMPLES")[0]))
+                    self.assertEqual(options, (Help(path, command) if command else top).options)
+
+    def test_each_key_of_the_configuration_is_in_its_page_and_no_other(self):
+        def keys(text, header, key):
+            table, found = None, []
+            for line in text.splitlines():
+                if match := re.match(header, line):
+                    table = match[1]
+                elif match := re.match(key, line):
+                    found.append((table, match[1]))
+            return found
+
+        shipped = keys((SOURCE / "config" / "stickslipd.toml").read_text(encoding="utf-8"), r"\[([a-z_.]+)\]", r"(?:# )?([a-z_]+) = ")
+        self.assertGreater(len(shipped), 60)
+        page = keys(self.page("stickslipd.toml"), r"\.SH \[([a-z_.]+)\]", r"\\fB([a-z_]+) = ")
+        self.assertEqual(page, shipped)
+        # And what is said of them, word for word.
+        said, told = [], []
+        for line in (SOURCE / "config" / "stickslipd.toml").read_text(encoding="utf-8").partition("\n[")[2].splitlines():
+            comment = re.match(r'(?:[a-z_.]+\]|\[[a-z_.]+\]|(?:# )?[a-z_]+ = (?:"[^"]*"|\[[^\]]*\]|[^\s#]+))?\s*(?:#\s*(.*))?$', line)
+            said += (comment[1] or "").split()
+        for line in self.page("stickslipd.toml").replace("\\-", "-").replace("\\&", "").partition("\n.SH [")[2].partition("\n.SH SEE ALSO")[0].splitlines()[1:]:
+            told += line.split() if not line.startswith((".", "\\fB")) else []
+        self.assertEqual(told, said)
+
+
+class Completion(unittest.TestCase):
+    def words(self, program, *line):
+        """What bash offers after these words."""
+        script = printed(PROGRAMS["stickslip"], "completion", "bash", "--program", program)
+        array = " ".join(f"'{word}'" for word in (program, *line))
+        return set(printed("bash", "-c", f'{script}\nCOMP_WORDS=({array}) COMP_CWORD={len(line)}; _{program}; printf "%s\\n" "${{COMPREPLY[@]}}"').split())
+
+    def test_bash_offers_what_the_help_lists(self):
+        for program, path in PROGRAMS.items():
+            top = Help(path)
+            if top.commands:
+                self.assertEqual({word for word in self.words(program, "") if not word.startswith("-")}, set(top.commands))
+            self.assertEqual({word for word in self.words(program, "--")}, top.options)
+            for command in top.commands:
+                with self.subTest(command=command):
+                    self.assertEqual(self.words(program, command, "--"), Help(path, command).options)
+                    self.assertEqual(self.words(program, command, ""), set())  # A file.
+        self.assertEqual(self.words("stickslip", "ar"), {"arm"})
+
+    @unittest.skipUnless(shutil.which("fish"), "no fish")
+    def test_fish_offers_them_too(self):
+        top = Help(PROGRAMS["stickslip"])
+        with tempfile.TemporaryDirectory() as folder:
+            script = pathlib.Path(folder) / "stickslip.fish"
+            script.write_text(printed(PROGRAMS["stickslip"], "completion", "fish"), encoding="utf-8")
+
+            def offered(line):
+                text = printed("fish", "--no-config", "-c", f"source {script}; complete -C '{line}'")
+                return {entry.split("\t")[0] for entry in text.splitlines()}
+
+            self.assertEqual({word for word in offered("stickslip ") if re.fullmatch("[a-z]+", word)} & set(top.commands), set(top.commands))
+            self.assertEqual({word for word in offered("stickslip plot --") if word.startswith("--")}, Help(PROGRAMS["stickslip"], "plot").options)
+
+    @unittest.skipUnless(shutil.which("zsh"), "no zsh")
+    def test_zsh_takes_the_script_and_offers_them_too(self):
+        script = printed(PROGRAMS["stickslip"], "completion", "zsh")
+        # The list that would be described, without a terminal.
+        probe = ("compdef() { }; _files() { print FILES }; _describe() { print -l -- ${(@)found%%:*} }\n" + script
+                 + "\nwords=(stickslip '') CURRENT=2 PREFIX='' _stickslip; print -- ---; words=(stickslip plot --) CURRENT=3 PREFIX=-- _stickslip\n"
+                 + "print -- ---; words=(stickslip plot '') CURRENT=3 PREFIX='' _stickslip")
+        first, second, third = printed("zsh", "-f", "-c", probe).split("---\n")
+        self.assertEqual({word for word in first.split() if not word.startswith("-")}, set(Help(PROGRAMS["stickslip"]).commands))
+        self.assertEqual({word for word in second.split() if word.startswith("--")}, Help(PROGRAMS["stickslip"], "plot").options)
+        self.assertEqual(third, "FILES\n")
+
+
+class Colours(unittest.TestCase):
+    def at_a_terminal(self, daemon, **environment):
+        shown, terminal = pty.openpty()
+        with os.fdopen(shown, "rb") as output:
+            done = subprocess.run([str(PROGRAMS["stickslip"]), "status", "--socket", str(daemon.socket)], stdout=terminal, stderr=terminal,
+                                  timeout=TIMEOUT_S, check=True, env=environment)
+            self.assertEqual(done.returncode, 0)
+            os.close(terminal)
+            text = b""
+            try:
+                while part := output.read1(65536):
+                    text += part
+            except OSError:  # Linux says EIO at the end of a terminal.
+                pass
+        return text.decode()
+
+    def test_status_is_a_table_with_colours_at_terminals_that_want_them(self):
+        daemon = RunningDaemon(self, BUILD, SOURCE)
+        plain = daemon.run("status").stdout
+        self.assertNotIn("\033", plain)
+        self.assertRegex(plain, r"(?m)^state     acquiring$")
+        self.assertRegex(plain, r"(?m)^board     simulated tester \(simulated\), 350.00 Hz$")
+        self.assertRegex(plain, r"(?m)^storage   ok(, room for \d+ h)?$")
+        self.assertIn('"state": "acquiring"', daemon.run("status", "--json").stdout)
+        coloured = self.at_a_terminal(daemon, TERM="xterm")
+        self.assertIn("\033[32macquiring\033[0m", coloured)
+        self.assertIn("acquiring", re.sub(r"\033\[\d+m", "", coloured))
+        for environment in ({"TERM": "xterm", "NO_COLOR": "1"}, {"TERM": "dumb"}, {}):
+            with self.subTest(environment=environment):
+                self.assertNotIn("\033", self.at_a_terminal(daemon, **environment))
+        self.assertIn("\033[32m", self.at_a_terminal(daemon, TERM="xterm", NO_COLOR=""))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

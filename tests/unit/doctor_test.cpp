@@ -1,0 +1,111 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "daemon/doctor/checks.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+using Verdict = Finding::Verdict;
+
+/// All is well, but for what a test changes.
+class Doctor : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path{testing::TempDir()} /
+              (std::string{"doctor-"} + testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(folder_ / "records");
+    std::ofstream{folder_ / "d.toml"}
+        << "[board]\ndriver = \"simulated\"\nsimulated.scenes = [\"" STICKSLIP_SOURCE_DIR
+           "/config/scenes/stick-slip-at-12-in-per-min.toml\"]\n[record]\nfolder = \""
+        << (folder_ / "records").string() << "\"\n[control]\nsocket = \"" << (folder_ / "c.sock").string()
+        << "\"\n";
+    world_ = this_world(*clock_);
+    world_.ask_status = [this](const fs::path&) -> base::Result<HttpReply> {
+      if (status_.empty()) return base::failure("nobody answers");
+      return HttpReply{200, status_, {}};
+    };
+    world_.clock_is_synchronised = [] { return true; };
+    world_.realtime_priority = [] { return 99; };
+    world_.lockable_size = [] { return std::nullopt; };
+    world_.room = [](const fs::path&) { return std::int64_t{1} << 40; };
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Finding find(const std::string& check) {
+    for (const Finding& finding : examine(folder_ / "d.toml", world_)) {
+      if (finding.check == check) return finding;
+    }
+    return {check, Verdict::kUnknown, "absent", ""};
+  }
+
+  fs::path folder_;
+  std::unique_ptr<base::Clock> clock_ = base::make_system_clock();
+  DoctorWorld world_;
+  std::string status_;
+};
+
+TEST_F(Doctor, ClockThatNobodySets) {
+  EXPECT_EQ(find("clock").verdict, Verdict::kGood);
+  world_.clock_is_synchronised = [] { return false; };
+  EXPECT_EQ(find("clock").verdict, Verdict::kWarning);
+}
+
+// At 350 scans/s of 29 bytes and 9000 bytes of other entries a second: 10 min are 11.5 MB, 8 h are 552 MB.
+TEST_F(Doctor, RoomOnTheDisk) {
+  for (const auto& [room, verdict] :
+       {std::pair{std::int64_t{11'400'000}, Verdict::kBad},
+        std::pair{std::int64_t{11'600'000}, Verdict::kWarning},
+        std::pair{std::int64_t{551'000'000}, Verdict::kWarning},
+        std::pair{std::int64_t{553'000'000}, Verdict::kGood}, std::pair{std::int64_t{-1}, Verdict::kBad}}) {
+    world_.room = [room = room](const fs::path&) { return room; };
+    EXPECT_EQ(find("disk").verdict, verdict) << room;
+  }
+}
+
+TEST_F(Doctor, BoardThatSomebodyElseHas) {
+  world_.open_board = [](const drivers::BoardConfig&, base::Clock&) -> base::Result<drivers::OpenedBoard> {
+    return tl::unexpected(base::Error{base::ErrorKind::kBusy, "in use"});
+  };
+  EXPECT_EQ(find("board").verdict, Verdict::kBad);
+  // The daemon itself has it: then nobody else needs it, and it is not opened.
+  status_ = R"({"state": "acquiring", "detail": "acquiring", "board": {"name": "b", "driver": "comedi"}})";
+  EXPECT_EQ(find("board").verdict, Verdict::kGood);
+}
+
+TEST_F(Doctor, WhatTheRunningDaemonSaysOfItself) {
+  status_ = R"({"state": "board missing", "detail": "board missing: it went away"})";
+  EXPECT_EQ(find("daemon").verdict, Verdict::kBad);
+  EXPECT_THAT(find("daemon").what, testing::HasSubstr("it went away"));
+  status_ = R"({"state": "acquiring", "version": "0.0.1", "lost_scan_count": 12,
+    "scheduling": "SCHED_OTHER (SCHED_FIFO 50 refused: Operation not permitted), memory locked",
+    "board": {"scan_rate_granted": 350}, "scan_rate_measured": {"value": 360}})";
+  EXPECT_THAT(find("daemon").what, testing::HasSubstr("version 0.0.1 runs"));
+  EXPECT_EQ(find("scans").verdict, Verdict::kWarning);
+  EXPECT_EQ(find("realtime").verdict, Verdict::kWarning);
+  EXPECT_EQ(find("rate").verdict, Verdict::kWarning);
+  status_ = "no JSON";
+  EXPECT_EQ(find("daemon").verdict, Verdict::kBad);
+}
+
+TEST_F(Doctor, ExitStatusIsThatOfTheWorst) {
+  const auto of = [](const std::vector<Verdict>& verdicts) {
+    std::vector<Finding> findings;
+    findings.reserve(verdicts.size());
+    for (const Verdict verdict : verdicts) findings.push_back({"x", verdict, "", ""});
+    return exit_status(findings);
+  };
+  EXPECT_EQ(of({Verdict::kGood}), 0);
+  EXPECT_EQ(of({Verdict::kGood, Verdict::kWarning}), 3);
+  EXPECT_EQ(of({Verdict::kWarning, Verdict::kBad, Verdict::kGood}), 1);
+  EXPECT_EQ(of({Verdict::kUnknown}), 1);
+}
+
+}  // namespace
+}  // namespace stickslip::daemon

@@ -1,0 +1,245 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "daemon/config.hpp"
+#include "daemon/fleet/backlog.hpp"
+#include "daemon/fleet/outbox.hpp"
+#include "daemon/records_above.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+
+base::Result<DaemonConfig> read(const std::string& fleet) {
+  const auto settings = base::Settings::parse(
+      "[board]\ndriver = \"simulated\"\nsimulated.scenes = [\"a.toml\"]\n[fleet]\n" + fleet, "x.toml");
+  if (!settings) return tl::unexpected(settings.error());
+  return read_config(*settings, "/etc/stickslip");
+}
+
+TEST(FleetSettings, ReadWhatIsSaid) {
+  EXPECT_FALSE(read("")->fleet);
+  const auto config = read(R"(broker = "mqtts://broker.plant"
+tester = "bench-7"
+topic = "mill/paper-lab"
+user = "b7"
+password_file = "pw"
+ca_file = "/etc/ssl/ca.pem"
+outbox_results = 5
+health_period = "1 min"
+)");
+  ASSERT_TRUE(config) << config.error().message;
+  const FleetSettings& fleet = *config->fleet;
+  EXPECT_EQ(fleet.broker, (Broker{"broker.plant", 8883, true}));
+  EXPECT_EQ(fleet.topic_of("state"), "mill/paper-lab/bench-7/state");
+  EXPECT_EQ(fleet.password_file, "/etc/stickslip/pw");
+  EXPECT_EQ(fleet.ca_file, "/etc/ssl/ca.pem");
+  EXPECT_EQ(fleet.outbox_results, 5U);
+  EXPECT_EQ(fleet.health_period_s, 60.0);
+}
+
+// The values that config/stickslipd.toml shows as defaults.
+TEST(FleetSettings, DefaultsAreThoseThatTheShippedFileShows) {
+  const FleetSettings fleet = *read("broker = \"mqtt://b\"\ntester = \"t\"\n")->fleet;
+  const FleetSettings shown = *read(R"(broker = "mqtt://b"
+tester = "t"
+topic = "stickslip"
+outbox = "outbox"
+outbox_results = 1000
+health_period = "10 s"
+)")
+                                   ->fleet;
+  EXPECT_EQ(fleet.topic, shown.topic);
+  EXPECT_EQ(fleet.outbox, shown.outbox);
+  EXPECT_EQ(fleet.outbox_results, shown.outbox_results);
+  EXPECT_EQ(fleet.health_period_s, shown.health_period_s);
+  EXPECT_EQ(fleet.broker, (Broker{"b", 1883, false}));
+  std::ifstream in{STICKSLIP_SOURCE_DIR "/config/stickslipd.toml"};
+  const std::string text{std::istreambuf_iterator<char>{in}, {}};
+  for (const char* line : {"# topic = \"stickslip\"", "# outbox = \"outbox\"", "# outbox_results = 1000",
+                           "# health_period = \"10 s\""})
+    EXPECT_THAT(text, testing::HasSubstr(line));
+}
+
+TEST(FleetSettings, BrokersOfAllSpellings) {
+  EXPECT_EQ(*parse_broker("mqtt://10.0.0.7:1884"), (Broker{"10.0.0.7", 1884, false}));
+  EXPECT_EQ(*parse_broker("mqtts://[fe80::1]:8884"), (Broker{"fe80::1", 8884, true}));
+  EXPECT_EQ(*parse_broker("mqtt://[::1]"), (Broker{"::1", 1883, false}));
+  for (const char* wrong :
+       {"", "broker", "http://b", "mqtt://", "mqtt://b:", "mqtt://b:0", "mqtt://b:65536", "mqtt://b:1x",
+        "mqtt://b/x", "mqtt://[::1", "mqtt://[]", "mqtt://[::1]x", "mqtt://b c", "mqtt://u:p@b", "MQTT://b"})
+    EXPECT_FALSE(parse_broker(wrong)) << wrong;
+}
+
+struct Mistake {
+  const char* text;
+  const char* error;
+};
+
+class FleetRefuses : public testing::TestWithParam<Mistake> {};
+
+TEST_P(FleetRefuses, WithOneLine) {
+  const auto config = read(GetParam().text);
+  ASSERT_FALSE(config);
+  EXPECT_EQ(config.error().exit_status(), 2);
+  EXPECT_EQ(config.error().message, GetParam().error);
+}
+
+#define BROKER "broker = \"mqtt://b\"\n"
+#define TESTER "tester = \"t\"\n"
+INSTANTIATE_TEST_SUITE_P(
+    Mistakes, FleetRefuses,
+    testing::Values(
+        Mistake{
+            "broker = \"b\"\n" TESTER,
+            "x.toml:5: fleet.broker = \"b\": must be mqtt://HOST, mqtts://HOST for TLS, or one of the two "
+            "with :PORT after it"},
+        Mistake{"broker = \"mqtt://b:99999\"\n" TESTER,
+                "x.toml:5: fleet.broker = \"mqtt://b:99999\": the port must be a number from 1 to 65535"},
+        Mistake{BROKER,
+                "x.toml:4: fleet.tester: is missing: what is this tester called among those at the broker?"},
+        Mistake{BROKER "tester = \"a/b\"",
+                "x.toml:6: fleet.tester = \"a/b\": must be 1 to 64 letters, digits, - _ ."},
+        Mistake{
+            BROKER TESTER "topic = \"a/#\"",
+            "x.toml:7: fleet.topic = \"a/#\": must be words of letters, digits, - _ . with single slashes "
+            "between them, at most 200 bytes"},
+        Mistake{BROKER TESTER "user = \"u\"\npassword_file = \"p\"",
+                "x.toml:5: fleet.broker = \"mqtt://b\": must be mqtts:// where a password is sent to another "
+                "machine"},
+        Mistake{"broker = \"mqtts://b\"\n" TESTER "password_file = \"p\"",
+                "x.toml:4: fleet.user: is missing: a password alone is nobody's"},
+        Mistake{BROKER TESTER "ca_file = \"p\"",
+                "x.toml:5: fleet.broker = \"mqtt://b\": must be mqtts:// where certificates are named"},
+        Mistake{"broker = \"mqtts://b\"\n" TESTER "certificate_file = \"p\"",
+                "x.toml:4: fleet.key_file: is missing: a certificate and its key go together"},
+        Mistake{BROKER TESTER "outbox_results = 0",
+                "x.toml:7: fleet.outbox_results = 0: must be an integer from 1 to 100000"},
+        Mistake{BROKER TESTER "health_period = \"0.5 s\"",
+                "x.toml:7: fleet.health_period = \"0.5 s\": must be from 1 s to 3600 s"},
+        Mistake{BROKER TESTER "outbox = \"\"", "x.toml:7: fleet.outbox = \"\": must name a folder"}));
+
+class Folder : public testing::Test {
+ protected:
+  void SetUp() override {
+    path_ = fs::path{testing::TempDir()} /
+            (std::string{"fleet-"} + testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(path_);
+    fs::create_directories(path_);
+  }
+  void TearDown() override { fs::remove_all(path_); }
+  fs::path path_;
+};
+
+using Password = Folder;
+
+TEST_F(Password, ComesFromAFileThatNotEverybodyReadsAndIsInNoMessage) {
+  const fs::path file = path_ / "pw";
+  EXPECT_EQ(*read_password(""), std::nullopt);
+  EXPECT_EQ(read_password(file).error().kind, base::ErrorKind::kFailure);
+  std::ofstream{file} << "hush hush\nsecond line\n";
+  ::chmod(file.c_str(), 0640);
+  EXPECT_EQ(read_password(file)->value(), "hush hush");
+  ::chmod(file.c_str(), 0644);
+  const auto open_to_all = read_password(file);
+  ASSERT_FALSE(open_to_all);
+  EXPECT_EQ(open_to_all.error().kind, base::ErrorKind::kUsage);
+  EXPECT_THAT(open_to_all.error().message, testing::Not(testing::HasSubstr("hush")));
+  std::ofstream{file} << "\n";
+  ::chmod(file.c_str(), 0600);
+  EXPECT_EQ(read_password(file).error().kind, base::ErrorKind::kUsage);
+}
+
+using OutboxTest = Folder;
+
+FleetResult numbered(int number) {
+  return {fmt::format("20261122T100000Z-{:04}", number), fmt::format("id-{}", number),
+          fmt::format("{{\"number\": {}}}", number)};
+}
+
+std::vector<std::string> ids(const Outbox& outbox) {
+  std::vector<std::string> ids;
+  for (const FleetResult& result : outbox.results()) ids.push_back(result.id);
+  return ids;
+}
+
+TEST_F(OutboxTest, KeepsWhatTheBrokerHasNotGotOverTheEndOfTheProgram) {
+  {
+    Outbox outbox{path_ / "out", 10};
+    EXPECT_EQ(outbox.newest(), "");
+    for (int i = 1; i <= 3; ++i) EXPECT_TRUE(outbox.add(numbered(i)).is_new);
+    EXPECT_FALSE(outbox.add(numbered(2)).is_new) << "the same test twice";
+    EXPECT_TRUE(outbox.remove("id-2"));
+    EXPECT_FALSE(outbox.remove("id-2"));
+    EXPECT_EQ(outbox.unsaved_count(), 0U);
+  }
+  std::ofstream{path_ / "out" / "20261122T100000Z-0009_id-9.json"} << "{\"torn";
+  std::ofstream{path_ / "out" / "notes.txt"} << "somebody's";
+  const Outbox again{path_ / "out", 10};
+  EXPECT_THAT(ids(again), testing::ElementsAre("id-1", "id-3"));
+  EXPECT_EQ(again.results()[1].payload, numbered(3).payload);
+  EXPECT_EQ(again.newest(), numbered(3).record);
+  EXPECT_TRUE(fs::exists(path_ / "out" / "notes.txt"));
+}
+
+TEST_F(OutboxTest, IsBoundedAndDropsTheOldest) {
+  Outbox outbox{path_, 3};
+  for (int i = 1; i <= 3; ++i) EXPECT_FALSE(outbox.add(numbered(i)).dropped);
+  EXPECT_TRUE(outbox.add(numbered(4)).dropped);
+  EXPECT_THAT(ids(outbox), testing::ElementsAre("id-2", "id-3", "id-4"));
+  EXPECT_FALSE(fs::exists(path_ / (numbered(1).record + "_id-1.json")));
+  EXPECT_THAT(ids(Outbox(path_, 2)), testing::ElementsAre("id-3", "id-4")) << "a bound that was lowered";
+}
+
+// A disk that refuses: what is where the folder should be is a file.
+TEST_F(OutboxTest, KeepsInMemoryWhatTheDiskRefusesAndSavesItLater) {
+  std::ofstream{path_ / "out"} << "";
+  Outbox outbox{path_ / "out", 2};
+  EXPECT_TRUE(outbox.add(numbered(1)).is_new);
+  EXPECT_TRUE(outbox.add(numbered(2)).is_new);
+  EXPECT_EQ(outbox.unsaved_count(), 2U);
+  EXPECT_TRUE(outbox.add(numbered(3)).dropped);
+  EXPECT_THAT(ids(outbox), testing::ElementsAre("id-2", "id-3"));
+  fs::remove(path_ / "out");
+  fs::create_directory(path_ / "out");
+  EXPECT_TRUE(outbox.remove("id-2"));
+  outbox.add(numbered(4));
+  EXPECT_EQ(outbox.unsaved_count(), 0U);
+  EXPECT_THAT(ids(Outbox(path_ / "out", 9)), testing::ElementsAre("id-3", "id-4"));
+}
+
+using Backlog = Folder;
+
+TEST_F(Backlog, HoldsTheRecordsOfTheDaemonAboveTheNewestThatWasTold) {
+  const auto touch = [this](const std::string& name) {
+    fs::create_directories((path_ / name).parent_path());
+    std::ofstream{path_ / name} << "";
+  };
+  for (const char* name :
+       {"20261121T100000Z-0001.h5", "2026/11/20261122T100000Z-0001.h5",
+        "2026-11-23/20261123T100000Z-0001-2.h5", "pull.h5", "20261124T100000Z-0001.journal",
+        "20261124T100000Z-0001.h5.part", "a/b/c/20261125T100000Z-0001.h5"})
+    touch(name);
+  const auto names = [this](const std::string& newest, std::size_t most) {
+    std::vector<std::string> found;
+    for (const fs::path& path : records_above(path_, newest, most)) found.push_back(path.stem());
+    return found;
+  };
+  EXPECT_THAT(names("", 9), testing::ElementsAre("20261121T100000Z-0001", "20261122T100000Z-0001",
+                                                 "20261123T100000Z-0001-2"));
+  EXPECT_THAT(names("20261121T100000Z-0001", 9),
+              testing::ElementsAre("20261122T100000Z-0001", "20261123T100000Z-0001-2"));
+  EXPECT_THAT(names("", 1), testing::ElementsAre("20261123T100000Z-0001-2"));
+  EXPECT_TRUE(records_above(path_ / "nowhere", "", 9).empty());
+}
+
+}  // namespace
+}  // namespace stickslip::daemon

@@ -1,0 +1,123 @@
+#include "daemon/control/metrics.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace stickslip::daemon {
+namespace {
+
+/// A page of the exposition format, taken apart by its rules: HELP, TYPE and then the samples of one family
+/// at a time, each family once.
+struct Exposition {
+  struct Sample {
+    std::string name;
+    std::string labels;
+    double value;
+  };
+  std::map<std::string, std::string> types;
+  std::map<std::string, std::vector<Sample>> families;
+  std::vector<std::string> breaches;
+
+  explicit Exposition(const std::string& text) {
+    std::istringstream in{text};
+    const std::regex help{R"(# HELP ([a-z_:][a-z0-9_:]*) \S.*)"};
+    const std::regex type{R"(# TYPE ([a-z_:][a-z0-9_:]*) (counter|gauge|histogram))"};
+    // Of a label backslash, quote and line feed are escaped, and nothing else.
+    const std::string label = R"re([a-z_]+="(?:[^"\\]|\\[\\"n])*")re";
+    const std::regex sample{"([a-z_:][a-z0-9_:]*)(\\{" + label + "(?:," + label + ")*\\})? (\\S+)"};
+    std::string family;
+    std::string helped;
+    if (!text.ends_with('\n')) breaches.emplace_back("the last line has no end");
+    for (std::string line; std::getline(in, line);) {
+      std::smatch match;
+      if (std::regex_match(line, match, help)) {
+        helped = match[1];
+      } else if (std::regex_match(line, match, type)) {
+        family = match[1];
+        if (helped != family) breaches.push_back(family + ": no HELP before TYPE");
+        if (!types.emplace(family, match[2]).second) breaches.push_back(family + ": twice");
+      } else if (std::regex_match(line, match, sample)) {
+        const std::string name = match[1];
+        const bool histogram = types[family] == "histogram";
+        const bool own =
+            histogram ? name == family + "_bucket" || name == family + "_sum" || name == family + "_count"
+                      : name == family;
+        if (!own) breaches.push_back(fmt::format("{}: not of the family {}", name, family));
+        families[family].push_back({name, match[2], std::stod(match[3])});
+      } else {
+        breaches.push_back("no line of this format: " + line);
+      }
+    }
+  }
+};
+
+Status busy() {
+  Status status;
+  status.state = "acquiring";
+  status.version = "1.0 \"a\\b\"\nc";
+  status.fleet.emplace().dropped_result_count = 3;
+  status.latency.add(20e3);    // 20 µs
+  status.latency.add(500e3);   // 0.5 ms
+  status.latency.add(2500e6);  // 2.5 s, above all limits
+  return status;
+}
+
+TEST(Metrics, PageKeepsTheRulesOfTheFormat) {
+  const std::string text = metrics_text(busy());
+  const Exposition page{text};
+  EXPECT_EQ(page.breaches, std::vector<std::string>{}) << text;
+  EXPECT_GT(page.families.size(), 15U);
+  for (const auto& [family, type] : page.types) {
+    EXPECT_FALSE(page.families.at(family).empty()) << family;
+    EXPECT_EQ(family.ends_with("_total"), type == "counter") << family;
+  }
+}
+
+// Buckets are cumulative, the last is +Inf and equals the count; the sum is that of what was added.
+TEST(Metrics, HistogramsAreWhole) {
+  const Exposition page{metrics_text(busy())};
+  std::set<std::string> found;
+  for (const auto& [family, type] : page.types) {
+    if (type != "histogram") continue;
+    found.insert(family);
+    double before = 0.0;
+    double limit_before = 0.0;
+    std::string last;
+    std::map<std::string, double> totals;
+    for (const Exposition::Sample& sample : page.families.at(family)) {
+      if (sample.name != family + "_bucket") {
+        totals[sample.name.substr(family.size())] = sample.value;
+        continue;
+      }
+      EXPECT_GE(sample.value, before) << family << sample.labels;
+      before = sample.value;
+      last = sample.labels;
+      const std::string limit = sample.labels.substr(5, sample.labels.size() - 7);
+      if (limit == "+Inf") continue;
+      EXPECT_GT(std::stod(limit), limit_before) << family;
+      limit_before = std::stod(limit);
+    }
+    EXPECT_EQ(last, "{le=\"+Inf\"}") << family;
+    ASSERT_EQ(totals.size(), 2U) << family;
+    EXPECT_EQ(totals.at("_count"), before) << family;
+  }
+  EXPECT_TRUE(found.contains("stickslip_read_latency_seconds"));
+  for (const Exposition::Sample& sample : page.families.at("stickslip_read_latency_seconds")) {
+    // Three additions of numbers with 53 bits each.
+    if (sample.name.ends_with("_sum")) {
+      EXPECT_NEAR(sample.value, 2.50052, 1e-15 * 3 * 2.50052);
+    } else if (sample.name.ends_with("_count")) {
+      EXPECT_EQ(sample.value, 3.0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace stickslip::daemon
