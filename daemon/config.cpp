@@ -12,7 +12,6 @@ namespace stickslip::daemon {
 namespace {
 
 using base::Dimension;
-using base::Limits;
 using base::Settings;
 using drivers::AcquisitionMode;
 using drivers::AnalogReference;
@@ -79,7 +78,7 @@ void read_simulated(Settings table, const std::filesystem::path& folder, DaemonC
   for (const std::string& scene : scenes) config.board.simulated.scenes.push_back(resolved(folder, scene));
   config.board.simulated.repeats = static_cast<int>(table.integer("repeats", 0, kMostRepeats, 1));
   config.board.simulated.speed_gain_m_per_s_per_V =
-      table.quantity_if_given("speed_gain", Dimension::kSpeedPerVoltage, Limits::above(0.0));
+      table.quantity_if_given("speed_gain", Dimension::kSpeedPerVoltage, base::Limits::above(0.0));
   if (const std::string hanging = table.text("hanging", ""); !hanging.empty())
     config.board.simulated.hanging = resolved(folder, hanging);
 }
@@ -95,7 +94,7 @@ void read_replay(Settings table, const std::filesystem::path& folder, DaemonConf
 /// The speed or the position, whichever has a channel.
 std::optional<drivers::SecondInputSettings> read_second(Settings& table) {
   drivers::SecondInputSettings second;
-  const Limits voltages = Limits::between(-kHighestVoltage_V, kHighestVoltage_V);
+  const base::Limits voltages = base::Limits::between(-kHighestVoltage_V, kHighestVoltage_V);
   second.range_min_V = table.quantity("second_range_min", Dimension::kVoltage, voltages, second.range_min_V);
   second.range_max_V = table.quantity("second_range_max", Dimension::kVoltage, voltages, second.range_max_V);
   if (!(second.range_max_V > second.range_min_V)) {
@@ -108,7 +107,7 @@ std::optional<drivers::SecondInputSettings> read_second(Settings& table) {
     const std::string gain_key = what + "_gain";
     const bool given = table.has(channel_key);
     const auto channel = static_cast<unsigned>(table.integer(channel_key, 0, kHighestChannel, 1));
-    const auto gain_per_V = table.quantity_if_given(gain_key, gain, Limits::any());
+    const auto gain_per_V = table.quantity_if_given(gain_key, gain, base::Limits::any());
     const double zero_V = table.quantity(what + "_zero", Dimension::kVoltage, voltages, 0.0);
     if (!given) return;
     if (found) table.refuse(channel_key, "cannot be read beside speed_channel: one second channel is all");
@@ -139,7 +138,7 @@ void read_comedi(Settings table, DaemonConfig& config) {
     static_cast<void>(table.integer("subdevice", 0, kHighestChannel, 0));
   }
   comedi.channel = static_cast<unsigned>(table.integer("channel", 0, kHighestChannel, comedi.channel));
-  const Limits voltages = Limits::between(-kHighestVoltage_V, kHighestVoltage_V);
+  const base::Limits voltages = base::Limits::between(-kHighestVoltage_V, kHighestVoltage_V);
   comedi.range_min_V = table.quantity("range_min", Dimension::kVoltage, voltages, comedi.range_min_V);
   comedi.range_max_V = table.quantity("range_max", Dimension::kVoltage, voltages, comedi.range_max_V);
   if (!(comedi.range_max_V > comedi.range_min_V)) table.refuse("range_max", "must be above range_min");
@@ -148,17 +147,17 @@ void read_comedi(Settings table, DaemonConfig& config) {
   comedi.calibration = table.choice<CalibrationSource>("calibration", kCalibrations, comedi.calibration);
   comedi.acquisition = table.choice<AcquisitionMode>("acquisition", kAcquisitions, comedi.acquisition);
   comedi.scan_rate_tolerance = table.quantity("scan_rate_tolerance", Dimension::kDimensionless,
-                                              Limits::between(0.0, 1.0), comedi.scan_rate_tolerance);
+                                              base::Limits::between(0.0, 1.0), comedi.scan_rate_tolerance);
 }
 
 void read_board(Settings table, const std::filesystem::path& folder, DaemonConfig& config) {
   config.board.driver = table.choice<Driver>("driver", kDrivers);
   const std::optional<double> scan_rate_Hz = table.quantity_if_given(
-      "scan_rate", Dimension::kFrequency, Limits::above_up_to(0.0, kFastestScanRate_Hz));
+      "scan_rate", Dimension::kFrequency, base::Limits::above_up_to(0.0, kFastestScanRate_Hz));
   config.board.simulated.scan_rate_Hz = scan_rate_Hz;
   config.board.comedi.scan_rate_Hz = scan_rate_Hz.value_or(config.board.comedi.scan_rate_Hz);
   config.clock_speed = table.quantity("clock_speed", Dimension::kDimensionless,
-                                      Limits::above_up_to(0.0, kFastestClock), config.clock_speed);
+                                      base::Limits::above_up_to(0.0, kFastestClock), config.clock_speed);
   if (config.board.driver == Driver::kComedi && config.clock_speed != 1.0) {
     table.refuse("clock_speed", "must be 1 for the driver \"comedi\": hardware keeps its own time");
   }
@@ -209,15 +208,16 @@ void read_sample(Settings table, record::SampleFacts& sample) {
 
 void read_tester(Settings table, const std::filesystem::path& folder, DaemonConfig& config) {
   BenchConfig& bench = config.bench;
-  bench.sled_mass_kg =
-      table.quantity_if_given("sled_mass", Dimension::kMass, Limits::above_up_to(0.0, kHeaviestSled_kg));
-  bench.gravity_m_per_s2 = table.quantity_if_given("gravity", Dimension::kAcceleration,
-                                                   Limits::above_up_to(0.0, kStrongestGravity_m_per_s2));
+  bench.sled_mass_kg = table.quantity_if_given("sled_mass", Dimension::kMass,
+                                               base::Limits::above_up_to(0.0, kHeaviestSled_kg));
+  bench.gravity_m_per_s2 = table.quantity_if_given(
+      "gravity", Dimension::kAcceleration, base::Limits::above_up_to(0.0, kStrongestGravity_m_per_s2));
   bench.pull_speed_m_per_s = table.quantity_if_given("pull_speed", Dimension::kSpeed,
-                                                     Limits::above_up_to(0.0, kFastestPull_m_per_s));
-  bench.stiffness_N_per_m = table.quantity_if_given("stiffness", Dimension::kStiffness, Limits::above(0.0));
+                                                     base::Limits::above_up_to(0.0, kFastestPull_m_per_s));
+  bench.stiffness_N_per_m =
+      table.quantity_if_given("stiffness", Dimension::kStiffness, base::Limits::above(0.0));
   bench.load_cell_gain_N_per_V =
-      table.quantity_if_given("load_cell_gain", Dimension::kForcePerVoltage, Limits::any());
+      table.quantity_if_given("load_cell_gain", Dimension::kForcePerVoltage, base::Limits::any());
   if (bench.load_cell_gain_N_per_V == 0.0) table.refuse("load_cell_gain", "must not be 0");
   const std::string calibration = table.text("calibration", "");
   if (config.board.driver == Driver::kComedi && !table.has("load_cell_gain") && calibration.empty()) {
@@ -227,8 +227,8 @@ void read_tester(Settings table, const std::filesystem::path& folder, DaemonConf
   if (config.board.driver == Driver::kComedi && !table.has("sled_mass")) {
     table.refuse("sled_mass", "is missing; hardware cannot know it: give it, such as \"2331 g\"");
   }
-  bench.load_cell_zero_V = table.quantity_if_given("load_cell_zero", Dimension::kVoltage,
-                                                   Limits::between(-kHighestVoltage_V, kHighestVoltage_V));
+  bench.load_cell_zero_V = table.quantity_if_given(
+      "load_cell_zero", Dimension::kVoltage, base::Limits::between(-kHighestVoltage_V, kHighestVoltage_V));
   if (!calibration.empty()) read_calibration(table, resolved(folder, calibration), bench);
   if (const std::string file = table.text("characterisation", ""); !file.empty()) {
     const base::Result<Settings> read = Settings::load(resolved(folder, file));
@@ -245,13 +245,13 @@ void read_tester(Settings table, const std::filesystem::path& folder, DaemonConf
 void read_test(Settings table, DaemonConfig& config) {
   config.begins_by_force = table.choice<bool>("begins", kBeginnings, config.begins_by_force);
   pipeline::SegmenterSettings& segmenter = config.segmenter;
-  const Limits coefficient = Limits::between(0.0, kLargestCoefficient);
-  const Limits dwell = Limits::above_up_to(0.0, kLongestDwell_s);
+  const base::Limits coefficient = base::Limits::between(0.0, kLargestCoefficient);
+  const base::Limits dwell = base::Limits::above_up_to(0.0, kLongestDwell_s);
   segmenter.start_coefficient =
       table.quantity("start", Dimension::kDimensionless, coefficient, segmenter.start_coefficient);
   segmenter.start_dwell_s = table.quantity("start_dwell", Dimension::kTime, dwell, segmenter.start_dwell_s);
-  segmenter.pre_trigger_s = table.quantity("pre_trigger", Dimension::kTime,
-                                           Limits::between(0.0, kLongestDwell_s), segmenter.pre_trigger_s);
+  segmenter.pre_trigger_s = table.quantity(
+      "pre_trigger", Dimension::kTime, base::Limits::between(0.0, kLongestDwell_s), segmenter.pre_trigger_s);
   segmenter.end_coefficient =
       table.quantity("end", Dimension::kDimensionless, coefficient, segmenter.end_coefficient);
   segmenter.unload_dwell_s = table.quantity("end_dwell", Dimension::kTime, dwell, segmenter.unload_dwell_s);

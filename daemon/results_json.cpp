@@ -20,9 +20,8 @@ nlohmann::ordered_json number(const std::string& name, const friction::Estimate&
 }  // namespace
 
 nlohmann::ordered_json results_json(const friction::TestResults& results, bool with_details) {
-  using Json = nlohmann::ordered_json;
-  Json json;
-  Json details;
+  nlohmann::ordered_json json;
+  nlohmann::ordered_json details;
   json["regime"] = friction::name(results.regime);
   if (!results.regime_reason.empty()) details["regime"]["reason"] = results.regime_reason;
   json["findings"] = results.findings;
@@ -30,7 +29,7 @@ nlohmann::ordered_json results_json(const friction::TestResults& results, bool w
                             [&](const friction::ResultName& name, const friction::Estimate& estimate) {
                               const std::string key{name.name};
                               json[key] = number(key, estimate);
-                              Json& detail = details[key];
+                              nlohmann::ordered_json& detail = details[key];
                               detail["value"] = json[key];
                               detail["unit"] = name.unit;
                               if (estimate.standard_error)

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/forked.hpp"
+#include "daemon/or_null.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -28,15 +29,6 @@ std::chrono::seconds time_for(const std::string& file) {
   const std::uintmax_t size = std::filesystem::file_size(file, ignored);
   if (ignored) return kLeastTime;
   return kLeastTime + std::chrono::seconds{static_cast<std::int64_t>(size / kBytesPerSecond)};
-}
-
-template <typename T>
-ordered_json or_null(const std::optional<T>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
-ordered_json text_or_null(const std::string& text) {
-  return text.empty() ? ordered_json(nullptr) : ordered_json(text);
 }
 
 /// Of a file whose reader did not come back.
@@ -116,13 +108,13 @@ ordered_json verdict_json(const std::string& file, const Verdict& verdict) {
   ordered_json json;
   json["file"] = file;
   json["judgement"] = record::name(verdict.judgement);
-  json["kind"] = text_or_null(verdict.kind);
+  json["kind"] = or_null(verdict.kind);
   json["format_version"] = or_null(verdict.format_version);
-  json["status"] = text_or_null(verdict.status);
+  json["status"] = or_null(verdict.status);
   json["scans_present"] = or_null(verdict.scans_present);
   json["scans_committed"] = or_null(verdict.scans_committed);
-  json["sha256_stored"] = text_or_null(verdict.sha256_stored);
-  json["sha256_found"] = text_or_null(verdict.sha256_found);
+  json["sha256_stored"] = or_null(verdict.sha256_stored);
+  json["sha256_found"] = or_null(verdict.sha256_found);
   json["gaps"] = ordered_json::array();
   for (const daq::Gap& gap : verdict.gaps) {
     json["gaps"].push_back({{"first_scan", gap.first},

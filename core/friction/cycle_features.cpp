@@ -30,7 +30,7 @@ constexpr Eigen::Index kMean = 3;
 /// less than any slip lasts, and one scan more than the numbers fitted at the least. It must not depend on
 /// S − K: to leave out slips that are short of scans would leave out those with a large S − K.
 constexpr double kWidth_rad = 2.0;
-constexpr std::size_t kFewestScans = 4;
+constexpr std::size_t kFewestFitted = 4;
 
 /// Largest distance of two neighbouring scans within a cycle, in scans: further apart is a gap.
 constexpr double kGapFromScans = 1.5;
@@ -73,7 +73,7 @@ std::optional<Local> local_fit(const Trace& trace, double from_s, double to_s, d
     right += row * trace.level(k);
     ++count;
   }
-  if (count < kFewestScans) return std::nullopt;
+  if (count < kFewestFitted) return std::nullopt;
   const Eigen::Vector3d p = normal.colPivHouseholderQr().solve(right);
   if (!p.allFinite()) return std::nullopt;
   return Local{p[0] + p[1], shared.omega * p[2] - 0.5 * shared.gamma * p[1]};
@@ -104,7 +104,7 @@ std::optional<double> mean_between(const Trace& trace, double from_s, double to_
 std::optional<Features> features_of(const Trace& trace, const SlipModel& model, double onset_s,
                                     double next_onset_s, const SharedParameters& shared, double scan_s) {
   const SlipWaveform& slip = model.waveform();
-  const double width_s = std::max(kWidth_rad / shared.omega, static_cast<double>(kFewestScans + 1) * scan_s);
+  const double width_s = std::max(kWidth_rad / shared.omega, static_cast<double>(kFewestFitted + 1) * scan_s);
   if (width_s > model.capture_s()) return std::nullopt;
   const auto fit_at = [&](double tau_s) {
     const double begin_s = std::clamp(tau_s - 0.5 * width_s, 0.0, model.capture_s() - width_s);

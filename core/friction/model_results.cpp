@@ -177,11 +177,12 @@ bool feeds_the_oscillation(const SlipEstimates& estimates) noexcept {
   return gamma < -kNegativeDampingSigmas * error;
 }
 
-/// Damping as large as the fit admits (γ < 2ω), within its error: the scans hold no oscillation, or too few of each.
+/// Damping as large as the fit admits (γ < 2ω), within its error: the scans hold no oscillation, or too few
+/// of each.
 bool is_overdamped(const SlipEstimates& estimates) noexcept {
-  constexpr double kSigmas = 2.0;
+  constexpr double kSigmasOfDamping = 2.0;
   const auto [gamma, error] = damping_of(estimates);
-  return gamma + kSigmas * error > 2.0 * estimates.fit.shared.omega;
+  return gamma + kSigmasOfDamping * error > 2.0 * estimates.fit.shared.omega;
 }
 
 /// Why model_describes() says no.
@@ -194,8 +195,9 @@ std::string why_not(const SlipEstimates& estimates, double sigma) {
   }
   const auto [gamma, error] = damping_of(estimates);
   if (is_overdamped(estimates)) {
-    return fmt::format("overdamped: gamma/2omega {:.2g} +- {:.1g}, the scans show no oscillation of the model",
-                       gamma / (2.0 * fit.shared.omega), error / (2.0 * fit.shared.omega));
+    return fmt::format(
+        "overdamped: gamma/2omega {:.2g} +- {:.1g}, the scans show no oscillation of the model",
+        gamma / (2.0 * fit.shared.omega), error / (2.0 * fit.shared.omega));
   }
   return fmt::format(
       "the model does not describe this friction: its damping, {:.2g} +- {:.1g} 1/s, would be negative",

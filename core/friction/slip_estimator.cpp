@@ -16,7 +16,7 @@ namespace stickslip::friction {
 namespace {
 
 /// Rounds of deciding which slips were captured and fitting what follows from it.
-constexpr int kRounds = 3;
+constexpr int kDecisionRounds = 3;
 /// Log of the likelihood ratio up to which a capture is not believed against other evidence: 400 to 1.
 constexpr double kDoubtful = 6.0;
 /// Part by which another guess of the stick rate must differ to be worth a try.
@@ -132,7 +132,7 @@ SlipEstimates rounds(const Trace& trace, std::span<const Fall> slips, double sig
                         : SlipFit{};
   };
   std::vector<double> weighed;  // The ratios after the latest weighing.
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kDecisionRounds; ++round) {
     const SlipEstimates before = estimates;
     if (round > 0 || found.empty()) found = judge_ends(trace, slips, shared, sigma, estimates);
     if (round > 0 && found == before.ends) {

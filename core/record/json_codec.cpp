@@ -359,7 +359,7 @@ class TableReader {
 };
 
 /// As many rows as the object says, if they can be there at all.
-std::size_t row_count(const json& object, std::string_view key, const TableReader& table) {
+std::size_t rows_told(const json& object, std::string_view key, const TableReader& table) {
   const auto count = object.at(std::string{key}).get<std::size_t>();
   if (count > table.left()) throw std::invalid_argument("tables are cut short");
   return count;
@@ -375,7 +375,7 @@ friction::Mode mode_of(double number) {
 /// \param object  of the end.
 void read_tables(const json& object, TableReader table, EndRecord& end) {
   const auto columns = object.value("cycle_columns", kFirstCycleColumns);
-  for (std::size_t left = row_count(object, "cycle_count", table); left > 0; --left) {
+  for (std::size_t left = rows_told(object, "cycle_count", table); left > 0; --left) {
     friction::Cycle cycle;
     std::size_t column = 0;
     for_each_cycle_column([&](const FieldName&, auto member) {
@@ -385,11 +385,11 @@ void read_tables(const json& object, TableReader table, EndRecord& end) {
     end.cycles.push_back(cycle);
   }
   if (!end.truth) return;
-  for (std::size_t left = row_count(object.at("truth"), "mode_count", table); left > 0; --left) {
+  for (std::size_t left = rows_told(object.at("truth"), "mode_count", table); left > 0; --left) {
     end.truth->modes.push_back(
         {table.next(), table.next(), mode_of(table.next())});  // Braces keep the order.
   }
-  for (std::size_t left = row_count(object.at("truth"), "cycle_count", table); left > 0; --left) {
+  for (std::size_t left = rows_told(object.at("truth"), "cycle_count", table); left > 0; --left) {
     friction::TrueCycle cycle;
     for_each_true_cycle_column([&](const FieldName&, auto member) { cycle.*member = table.next(); });
     end.truth->cycles.push_back(cycle);

@@ -49,6 +49,9 @@ class NumericMotion {
                                                                         double scan_rate_Hz, double accuracy,
                                                                         MotionObserver* observer);
 
+/// A slip that lasts longer starts its clock anew, so that the clock keeps 2⁻⁵²·64 s = 1e-14 s.
+inline constexpr double kLongestPiece_s = 64.0;
+
 /// From the accuracy asked for to the tolerance of CVODE's steps.
 ///
 /// The errors of the steps add up over a cycle, and, since each cycle starts where the last one ended, over

@@ -12,13 +12,12 @@ using friction::Mode;
 namespace {
 
 /// Largest error of the coefficient over tolerance and cycles.
-constexpr double kGrowth = 60.0;
+constexpr double kRateAndStateGrowth = 60.0;
 /// Of x and ψ against that of c: V, and with it c′, is exponential in x/a.
 constexpr double kTightest = 1e-3;
 /// Newton's iteration ends at roundings of c − x.
-constexpr double kLeastTolerance = 1e-12;
-constexpr double kLongestPiece_s = 64.0;  // As in sliding_motion.cpp.
-constexpr double kOnset = 0.5;            // Of the belt's speed; why: the header.
+constexpr double kLeastRateAndStateTolerance = 1e-12;
+constexpr double kOnset = 0.5;  // Of the belt's speed; why: the header.
 constexpr double kCapture = 0.01;
 constexpr double kBeltAtRest = 0.01;
 constexpr double kSameSpeed = 1e-10;  // V has the roundings of x over a.
@@ -40,7 +39,7 @@ RateAndStateMotion::RateAndStateMotion(const Motion& motion, double scan_rate_Hz
       observer_(observer),
       omega0_rad_per_s_(std::sqrt(motion.oscillator.omega0_squared())),
       per_metre_(motion.oscillator.omega0_squared() / motion.gravity_m_per_s2),
-      choice_(ToleranceChoice::of(motion, accuracy, kGrowth, kLeastTolerance)),
+      choice_(ToleranceChoice::of(motion, accuracy, kRateAndStateGrowth, kLeastRateAndStateTolerance)),
       walk_(motion_, scan_rate_Hz),
       system_(*motion.rate_and_state, motion.oscillator, motion.gravity_m_per_s2),
       cvode_(Cvode::Method::kBdf, system_, 3, 0.1 / omega0_rad_per_s_) {

@@ -12,11 +12,9 @@ using friction::Mode;
 namespace {
 
 /// Largest error of the coefficient over tolerance and cycles.
-constexpr double kGrowth = 200.0;
+constexpr double kSlidingGrowth = 200.0;
 /// Of a coefficient of one: below, CVODE's error estimates are roundings.
-constexpr double kLeastTolerance = 16.0 * std::numeric_limits<double>::epsilon();
-/// A slip that lasts longer starts its clock anew, so that the clock keeps 2⁻⁵²·64 s = 1e-14 s.
-constexpr double kLongestPiece_s = 64.0;
+constexpr double kLeastSlidingTolerance = 16.0 * std::numeric_limits<double>::epsilon();
 /// Rates of the belt before and after a change that differ by less are the same: they came by sums.
 constexpr double kSameRate = 64.0 * std::numeric_limits<double>::epsilon();
 
@@ -28,7 +26,8 @@ SlidingMotion::SlidingMotion(const Motion& motion, double scan_rate_Hz, double a
       scan_rate_Hz_(scan_rate_Hz),
       observer_(observer),
       omega0_squared_(motion.oscillator.omega0_squared()),
-      choice_(ToleranceChoice::of(motion, accuracy, kGrowth, kLeastTolerance * std::fmax(motion.mu_s, 1.0))),
+      choice_(ToleranceChoice::of(motion, accuracy, kSlidingGrowth,
+                                  kLeastSlidingTolerance * std::fmax(motion.mu_s, 1.0))),
       stiff_(!motion.oscillator.oscillates()),
       paper_(motion.paper, {motion.mu_s, motion.mu_k}),
       place_length_(paper_.correlation_length_m() * omega0_squared_ / motion.gravity_m_per_s2),

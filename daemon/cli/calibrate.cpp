@@ -21,6 +21,7 @@
 namespace stickslip::daemon {
 namespace {
 
+using Json = nlohmann::ordered_json;
 using base::Dimension;
 using base::Limits;
 using base::Result;
@@ -159,7 +160,6 @@ std::string text_of(const daq::WeighedCalibration& result, const StoredCalibrati
 
 std::string json_of(const daq::WeighedCalibration& result, const StoredCalibration& stored,
                     const std::string& file) {
-  using Json = nlohmann::ordered_json;
   const Json all{{"file", file},
                  {"date", stored.facts.date},
                  {"expires", stored.facts.expires},

@@ -17,6 +17,7 @@
 namespace stickslip::daemon {
 namespace {
 
+using Json = nlohmann::ordered_json;
 using friction::Characterisation;
 using friction::TesterEstimate;
 
@@ -86,7 +87,6 @@ std::string table_of(const std::vector<std::string>& files, const RingDowns& rin
 
 std::string json_of(const std::vector<std::string>& files, const RingDowns& ring_downs,
                     const Characterisation& result, const std::string& date) {
-  using Json = nlohmann::ordered_json;
   Json tests = Json::array();
   for (std::size_t i = 0; i < files.size(); ++i) {
     const TesterEstimate& one = ring_downs.estimates[i];

@@ -33,18 +33,18 @@ struct DoctorOptions {
   bool json = false;
 };
 
-Colour colour_of(Finding::Verdict verdict) {
+Ink colour_of(Finding::Verdict verdict) {
   switch (verdict) {
     case Finding::Verdict::kGood:
-      return Colour::kGreen;
+      return Ink::kGreen;
     case Finding::Verdict::kUnknown:
-      return Colour::kFaint;
+      return Ink::kFaint;
     case Finding::Verdict::kWarning:
-      return Colour::kYellow;
+      return Ink::kYellow;
     case Finding::Verdict::kBad:
       break;
   }
-  return Colour::kRed;
+  return Ink::kRed;
 }
 
 std::string json_of(const std::vector<Finding>& findings) {

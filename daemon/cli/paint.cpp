@@ -9,21 +9,21 @@ namespace stickslip::daemon {
 namespace {
 
 /// ECMA-48, SGR.
-std::string_view code_of(Colour colour) {
+std::string_view code_of(Ink colour) {
   switch (colour) {
-    case Colour::kNone:
+    case Ink::kNone:
       break;
-    case Colour::kGreen:
+    case Ink::kGreen:
       return "32";
-    case Colour::kYellow:
+    case Ink::kYellow:
       return "33";
-    case Colour::kRed:
+    case Ink::kRed:
       return "31";
-    case Colour::kBlue:
+    case Ink::kBlue:
       return "34";
-    case Colour::kBold:
+    case Ink::kBold:
       return "1";
-    case Colour::kFaint:
+    case Ink::kFaint:
       return "2";
   }
   return {};
@@ -38,7 +38,7 @@ bool wants_colours() {
   return terminal != nullptr && std::string_view{terminal} != "dumb" && ::isatty(STDOUT_FILENO) != 0;
 }
 
-std::string Paint::operator()(Colour colour, std::string_view text) const {
+std::string Paint::operator()(Ink colour, std::string_view text) const {
   const std::string_view code = code_of(colour);
   if (!on_ || code.empty()) return std::string{text};
   return fmt::format("\033[{}m{}\033[0m", code, text);

@@ -7,7 +7,7 @@
 
 namespace stickslip::daemon {
 
-enum class Colour { kNone, kGreen, kYellow, kRed, kBlue, kBold, kFaint };
+enum class Ink { kNone, kGreen, kYellow, kRed, kBlue, kBold, kFaint };
 
 /// Whether stdout is a terminal that wants colours: NO_COLOR is absent or empty (https://no-color.org), TERM
 /// is there and not "dumb".
@@ -19,7 +19,7 @@ class Paint {
 
   /// Nothing but the text itself where there are no colours. A width for a table is to be given to the text
   /// before.
-  [[nodiscard]] std::string operator()(Colour colour, std::string_view text) const;
+  [[nodiscard]] std::string operator()(Ink colour, std::string_view text) const;
 
  private:
   bool on_;

@@ -18,6 +18,7 @@
 namespace stickslip::daemon {
 namespace {
 
+using Json = nlohmann::ordered_json;
 using base::Result;
 
 Result<Simulation> simulate_and_publish(const sim::Scene& scene, std::uint64_t seed,
@@ -34,7 +35,6 @@ Result<Simulation> simulate_and_publish(const sim::Scene& scene, std::uint64_t s
 }
 
 std::string json_of(const Simulation& simulation, const std::string& output) {
-  using Json = nlohmann::ordered_json;
   const record::Record& record = simulation.record;
   const double rate_Hz = record.header.board.scan_rate_granted_Hz;
   Json json{{"file", output},

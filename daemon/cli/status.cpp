@@ -33,32 +33,32 @@ Json part(const Json& json, const char* key) {
   return found != json.end() && found->is_object() ? *found : Json::object();
 }
 
-Colour of_state(const std::string& state) {
-  if (state == "acquiring") return Colour::kGreen;
-  if (state == "starting" || state == "stopping") return Colour::kYellow;
-  return Colour::kRed;
+Ink of_state(const std::string& state) {
+  if (state == "acquiring") return Ink::kGreen;
+  if (state == "starting" || state == "stopping") return Ink::kYellow;
+  return Ink::kRed;
 }
 
-Colour of_bench(const std::string& bench) {
-  if (bench == "idle") return Colour::kNone;
-  if (bench == "degraded") return Colour::kRed;
-  return bench == "armed" ? Colour::kYellow : Colour::kGreen;
+Ink of_bench(const std::string& bench) {
+  if (bench == "idle") return Ink::kNone;
+  if (bench == "degraded") return Ink::kRed;
+  return bench == "armed" ? Ink::kYellow : Ink::kGreen;
 }
 
 /// As the page has them: each by word first, colour helps.
-Colour of_regime(const std::string& regime) {
-  if (regime == "stick-slip") return Colour::kBlue;
-  if (regime == "ring-down") return Colour::kYellow;
-  return regime == "steady-sliding" ? Colour::kGreen : Colour::kNone;
+Ink of_regime(const std::string& regime) {
+  if (regime == "stick-slip") return Ink::kBlue;
+  if (regime == "ring-down") return Ink::kYellow;
+  return regime == "steady-sliding" ? Ink::kGreen : Ink::kNone;
 }
 
 class Lines {
  public:
   explicit Lines(bool colours) : paint_(colours) {}
-  void line(const char* what, const std::string& text, Colour colour = Colour::kNone) {
-    text_ += paint_(Colour::kFaint, fmt::format("{:<8}", what)) + "  " + paint_(colour, text) + "\n";
+  void line(const char* what, const std::string& text, Ink colour = Ink::kNone) {
+    text_ += paint_(Ink::kFaint, fmt::format("{:<8}", what)) + "  " + paint_(colour, text) + "\n";
   }
-  [[nodiscard]] std::string painted(Colour colour, const std::string& text) const {
+  [[nodiscard]] std::string painted(Ink colour, const std::string& text) const {
     return paint_(colour, text);
   }
   [[nodiscard]] std::string text() && { return std::move(text_); }
@@ -70,7 +70,7 @@ class Lines {
 
 void board(Lines& lines, const Json& status) {
   const Json board = part(status, "board");
-  if (board.empty()) return lines.line("board", "none", Colour::kRed);
+  if (board.empty()) return lines.line("board", "none", Ink::kRed);
   const Json measured = part(status, "scan_rate_measured");
   const double granted_Hz = board.value("scan_rate_granted", 0.0);
   std::string text = fmt::format("{} ({}), {} Hz", word(board, "name"), word(board, "driver"),
@@ -114,7 +114,7 @@ std::string text_of(const Json& status) {
   lines.line("scans",
              fmt::format("{}; {} lost in {} gaps, {} overruns", count(status, "scan_count"), lost,
                          count(status, "gap_count"), count(status, "overrun_count")),
-             lost > 0 ? Colour::kYellow : Colour::kNone);
+             lost > 0 ? Ink::kYellow : Ink::kNone);
   tests(lines, status);
   lines.line("tests", fmt::format("{} ended", count(status, "test_count")));
   const Json storage = part(status, "storage");
@@ -125,7 +125,7 @@ std::string text_of(const Json& status) {
                                               : "")
                     : fmt::format("{}: {}; {}", word(storage, "state"), word(storage, "why"),
                                   word(storage, "to_do")),
-             stored ? Colour::kNone : Colour::kRed);
+             stored ? Ink::kNone : Ink::kRed);
   if (const Json fleet = part(status, "fleet"); !fleet.empty()) {
     const bool connected = word(fleet, "state") == "connected";
     lines.line(
@@ -133,7 +133,7 @@ std::string text_of(const Json& status) {
         fmt::format("{} at {} as {}{}; {} results wait, {} dropped", word(fleet, "state"),
                     word(fleet, "broker"), word(fleet, "tester"), connected ? "" : ": " + word(fleet, "why"),
                     count(fleet, "outbox_count"), count(fleet, "dropped_result_count")),
-        connected ? Colour::kNone : Colour::kYellow);
+        connected ? Ink::kNone : Ink::kYellow);
   }
   lines.line("version", word(status, "version"));
   return std::move(lines).text();

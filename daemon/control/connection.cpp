@@ -5,9 +5,9 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
-#include <nlohmann/json.hpp>
 
 #include "daemon/control/live_connection.hpp"
+#include "daemon/control/reply.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -22,10 +22,6 @@ constexpr const char* kContentPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src data:; base-uri "
     "'none'; "
     "form-action 'none'; frame-ancestors 'none'";
-
-HttpReply refusal(int status, const std::string& why) {
-  return {status, nlohmann::json{{"error", why}}.dump(), {}};
-}
 
 std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
+#include "daemon/control/reply.hpp"
 
 namespace stickslip::daemon {
 namespace {
-
-HttpReply refusal(int status, const char* why) { return {status, nlohmann::json{{"error", why}}.dump(), {}}; }
 
 /// Takes as long for every text of the same length.
 bool same_secret(std::string_view a, std::string_view b) noexcept {

@@ -13,11 +13,11 @@ base::Result<void> listen_live(const std::filesystem::path& socket,
                                const std::function<bool(std::string_view frame)>& use) {
   namespace asio = boost::asio;
   namespace beast = boost::beast;
-  using Local = asio::local::stream_protocol;
+  using LocalProtocol = asio::local::stream_protocol;
   asio::io_context io;
-  beast::websocket::stream<Local::socket> stream{io};
+  beast::websocket::stream<LocalProtocol::socket> stream{io};
   boost::system::error_code error;
-  stream.next_layer().connect(Local::endpoint{socket.string()}, error);
+  stream.next_layer().connect(LocalProtocol::endpoint{socket.string()}, error);
   if (error) {
     return base::failure("{}: nobody answers: {}; is stickslipd running with this control socket?",
                          socket.string(), error.message());

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/batch/batch_json.hpp"
+#include "daemon/or_null.hpp"
 #include "daemon/results_json.hpp"
 
 namespace stickslip::daemon {
@@ -38,8 +39,6 @@ Json to_json(const daq::BoardInfo& board) {
   }
   return json;
 }
-
-Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json to_json(const std::optional<daq::RateEstimate>& rate) {
   if (!rate) return nullptr;

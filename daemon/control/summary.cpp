@@ -11,6 +11,7 @@
 #include "core/report/quantities.hpp"
 #include "core/report/replicates.hpp"
 #include "daemon/batch/verdict.hpp"
+#include "daemon/or_null.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -37,8 +38,6 @@ Counted counted(std::span<const TestSummary> tests, const BatchBook& book,
   }
   return result;
 }
-
-Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
 Json quantity_json(const report::Quantity& quantity, const Counted& counted) {
   std::vector<double> values;

@@ -7,6 +7,7 @@
 #include "core/record/iso_time.hpp"
 #include "daemon/control/bench.hpp"
 #include "daemon/control/plan_json.hpp"
+#include "daemon/or_null.hpp"
 #include "daemon/results_json.hpp"
 
 namespace stickslip::daemon {
@@ -19,8 +20,6 @@ std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::e
 Json time_of(const std::optional<std::int64_t>& realtime_ns) {
   return realtime_ns ? Json(record::iso_time(*realtime_ns)) : Json(nullptr);
 }
-
-Json or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/or_null.hpp"
 #include "daemon/results_json.hpp"
 
 namespace stickslip::daemon {
@@ -20,8 +21,6 @@ constexpr double kFrames_Hz = 20.0;
 constexpr double kParts_Hz = 400.0;
 /// Spikes told at the end of a test; the record has all.
 constexpr std::size_t kMostSpikes = 1000;
-
-Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 /// A coefficient as the page shows it: six decimals, a tenth of the finest step of a 16-bit board.
 void append(std::string& text, const std::vector<double>& values) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "daemon/manual/commands_of.hpp"
 #include "daemon/manual/pages.hpp"
 #include "daemon/manual/roff.hpp"
 
@@ -34,10 +35,6 @@ std::vector<const CLI::Option*> options_of(const CLI::App& app, bool positional)
   return app.get_options([positional](const CLI::Option* option) {
     return option->get_positional() == positional && !option->get_group().empty();
   });
-}
-
-std::vector<const CLI::App*> commands_of(const CLI::App& app) {
-  return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
 }
 
 std::string synopsis(const std::string& words, const CLI::App& app) {

@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "daemon/manual/commands_of.hpp"
+
 namespace stickslip::daemon {
 namespace {
 
@@ -24,10 +26,6 @@ std::vector<Word> options_of(const CLI::App& app) {
       words.push_back({"-" + name, option->get_description(), takes_value});
   }
   return words;
-}
-
-std::vector<const CLI::App*> commands_of(const CLI::App& app) {
-  return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
 }
 
 std::string list_of(const std::vector<Word>& words) {

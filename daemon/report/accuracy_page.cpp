@@ -40,7 +40,7 @@ std::string escaped(std::string_view text) {
   return html;
 }
 
-std::string motion_rows(const AccuracyReport& report) {
+std::string motion_table(const AccuracyReport& report) {
   const std::optional<double> exact_ns = report.motion.exact_ns_per_scan();
   std::string html;
   for (std::size_t i = 0; i < report.motion.rows.size(); ++i) {
@@ -60,7 +60,7 @@ std::string motion_rows(const AccuracyReport& report) {
   return html;
 }
 
-std::string grazing_rows(const AccuracyReport& report) {
+std::string grazing_table(const AccuracyReport& report) {
   std::string html = "<tr><th>method</th><th>setting</th>";
   for (int n = 1; n <= accuracy::kFinestStep; ++n) html += fmt::format("<th class=\"c\">{}</th>", n);
   html += "</tr>\n";
@@ -131,8 +131,8 @@ std::string accuracy_page(const AccuracyReport& report, std::string_view svg) {
       escaped(report.scene_name), kStyle, escaped(report.scene_description), report.scan_count,
       report.scan_rate_Hz, escaped(report.processor), escaped(report.motion.reference),
       report.motion.reference_uncertainty, report.motion.capture_count, report.asked_accuracy,
-      escaped(report.chosen_method), picture, motion_rows(report), report.grazing_gamma_over_2omega,
-      grazing_rows(report), detection_part(report), accuracy::kTierScene, tier_part(report));
+      escaped(report.chosen_method), picture, motion_table(report), report.grazing_gamma_over_2omega,
+      grazing_table(report), detection_part(report), accuracy::kTierScene, tier_part(report));
 }
 
 }  // namespace stickslip::daemon

@@ -9,6 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/or_null.hpp"
+
 namespace stickslip::daemon {
 namespace {
 
@@ -82,10 +84,6 @@ std::string tier_rows(const AccuracyReport& report) {
     }
   }
   return text;
-}
-
-Json or_null(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "daemon/report/millimetres.hpp"
+
 namespace stickslip::daemon {
 namespace {
-
-constexpr double kMillimetresPerMetre = 1e3;
 
 std::string with_error(const friction::Estimate& estimate, double scale, int decimals) {
   std::string value = fmt::format("{:.{}f}", scale * *estimate.value, decimals);

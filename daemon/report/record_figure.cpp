@@ -7,13 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/report/millimetres.hpp"
 #include "daemon/report/record_trace.hpp"
 
 namespace stickslip::daemon {
 namespace {
 
-constexpr double kMillimetresPerMetre = 1e3;
-/// With fewer scans than this in view each of them is to be seen.
 constexpr std::size_t kMostScansWithDots = 250;
 
 /// Two pixels each in a picture of the usual width.

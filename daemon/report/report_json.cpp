@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/or_null.hpp"
 #include "daemon/report/ramp_text.hpp"
 #include "daemon/results_json.hpp"
 
@@ -16,11 +17,6 @@ using Json = nlohmann::ordered_json;
 using report::Comparison;
 using report::GroupQuantity;
 using report::Interval;
-
-template <typename T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 Json interval_json(const std::optional<Interval>& interval) {
   return interval ? Json::array({interval->low, interval->high}) : Json(nullptr);

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/report/millimetres.hpp"
 #include "daemon/report/table.hpp"
 
 namespace stickslip::daemon {
@@ -21,7 +22,6 @@ using report::Quantity;
 using report::Replicates;
 using report::SpeedGroup;
 
-constexpr double kMillimetresPerMetre = 1e3;
 constexpr std::string_view kAbsent = "–";
 
 std::string speed_text(const std::optional<double>& speed_m_per_s) {

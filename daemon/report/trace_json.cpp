@@ -10,6 +10,7 @@
 #include "core/base/long_column.hpp"
 #include "daemon/plot/figure.hpp"
 #include "daemon/plot/thinning.hpp"
+#include "daemon/report/millimetres.hpp"
 #include "daemon/report/record_trace.hpp"
 
 namespace stickslip::daemon {
@@ -18,8 +19,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMillimetresPerMetre = 1e3;
-/// Below the noise of any load cell and the width of any pixel; keeps the page small.
 constexpr double kStepsPerUnit = 1e6;
 
 Json rounded(double value) {

@@ -13,7 +13,7 @@ namespace {
 
 using test::ModelCourse;
 
-constexpr double kSigma = 0.001;  // D/50, as in the shipped scenes
+constexpr double kJunctionSigma = 0.001;  // D/50, as in the shipped scenes
 constexpr double kDeltaMu = ModelCourse::kS - ModelCourse::kK;
 
 /// Ratio for the first junction of the course: from the first maximum to the minimum after the second.
@@ -34,7 +34,9 @@ double first_junction(const ModelCourse& course, const Trace& trace, double sigm
 int called_captured(const ModelCourse& course, int n) {
   int count = 0;
   for (int seed = 1; seed <= n; ++seed) {
-    if (first_junction(course, course.noisy(kSigma, static_cast<std::uint64_t>(seed)), kSigma) > 0.0) ++count;
+    if (first_junction(course, course.noisy(kJunctionSigma, static_cast<std::uint64_t>(seed)),
+                       kJunctionSigma) > 0.0)
+      ++count;
   }
   return count;
 }
@@ -81,9 +83,9 @@ TEST(Junction, SpikesThatWereNotFoundDoNotTurnTheVerdict) {
   for (const bool captured : {true, false}) {
     const ModelCourse course = captured ? ModelCourse::captured(1.3, 2) : ModelCourse::free(2.6, 3.0);
     for (std::size_t phase = 0; phase < 10; ++phase) {
-      Trace trace = course.noisy(kSigma, phase + 1);
-      for (std::size_t k = phase; k < trace.size(); k += 10) trace.value[k] += 10.0 * kSigma;
-      EXPECT_EQ(first_junction(course, trace, kSigma) > 0.0, captured) << phase;
+      Trace trace = course.noisy(kJunctionSigma, phase + 1);
+      for (std::size_t k = phase; k < trace.size(); k += 10) trace.value[k] += 10.0 * kJunctionSigma;
+      EXPECT_EQ(first_junction(course, trace, kJunctionSigma) > 0.0, captured) << phase;
     }
   }
 }
@@ -92,23 +94,24 @@ TEST(Junction, CaptureNeedsACredibleNextSlip) {
   // Just above the threshold a capture that slips at once, with S hardly above K, would look the same.
   const double Q_th = Q_threshold(ModelCourse::kGammaOver2Omega);
   const ModelCourse above = ModelCourse::free(1.003 * Q_th, 3.0);
-  EXPECT_LT(first_junction(above, above.trace, kSigma), -std::log(20.0));
+  EXPECT_LT(first_junction(above, above.trace, kJunctionSigma), -std::log(20.0));
 }
 
 TEST(Junction, FewerThanEightScansDecideNothing) {
   const ModelCourse course = ModelCourse::captured(1.3, 2);
-  EXPECT_EQ(capture_log_likelihood_ratio(course.trace, 20, 27, course.shared, kSigma, kDeltaMu), 0.0);
+  EXPECT_EQ(capture_log_likelihood_ratio(course.trace, 20, 27, course.shared, kJunctionSigma, kDeltaMu), 0.0);
   Trace unusable = course.trace;
   unusable.usable.assign(unusable.size(), 0);
-  EXPECT_EQ(capture_log_likelihood_ratio(unusable, 20, unusable.size(), course.shared, kSigma, kDeltaMu),
-            0.0);
+  EXPECT_EQ(
+      capture_log_likelihood_ratio(unusable, 20, unusable.size(), course.shared, kJunctionSigma, kDeltaMu),
+      0.0);
 }
 
 TEST(Junction, ConstantTraceGivesANumber) {
   Trace trace = ModelCourse::free(2.6, 3.0).trace;
   trace.value.assign(trace.size(), 0.3);
   EXPECT_TRUE(std::isfinite(
-      capture_log_likelihood_ratio(trace, 20, 50, ModelCourse::tester_at(1.3), kSigma, kDeltaMu)));
+      capture_log_likelihood_ratio(trace, 20, 50, ModelCourse::tester_at(1.3), kJunctionSigma, kDeltaMu)));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 
 using test::ModelCourse;
 
-constexpr double kSigma = 0.001;
+constexpr double kSectionSigma = 0.001;
 constexpr std::size_t kMost = 24;  // A hundred slips are five sections then.
 
 std::vector<Fall> slips_of(const Trace& trace) {
@@ -21,8 +21,8 @@ std::vector<Fall> slips_of(const Trace& trace) {
   SlipRule rule;
   std::vector<Fall> slips;
   for (const double value : trace.value) {
-    const auto fall = finder.add(value, SlipRule::kHysteresisSigmas * kSigma);
-    if (fall && rule.is_slip(*fall, kSigma)) slips.push_back(*fall);
+    const auto fall = finder.add(value, SlipRule::kHysteresisSigmas * kSectionSigma);
+    if (fall && rule.is_slip(*fall, kSectionSigma)) slips.push_back(*fall);
   }
   return slips;
 }
@@ -31,11 +31,11 @@ class Sections : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(Sections, SayWhatTheWholeSays) {
   const ModelCourse course = ModelCourse::captured(1.3, 100);
-  const Trace trace = course.noisy(kSigma, GetParam());
+  const Trace trace = course.noisy(kSectionSigma, GetParam());
   const std::vector<Fall> slips = slips_of(trace);
   ASSERT_GE(slips.size(), 95U);
-  const TestEstimates whole = estimate_in_sections(trace, slips, kSigma, {}, {});
-  const TestEstimates parts = estimate_in_sections(trace, slips, kSigma, {}, {}, {}, kMost);
+  const TestEstimates whole = estimate_in_sections(trace, slips, kSectionSigma, {}, {});
+  const TestEstimates parts = estimate_in_sections(trace, slips, kSectionSigma, {}, {}, {}, kMost);
   ASSERT_TRUE(whole.model_describes);
   ASSERT_TRUE(parts.model_describes);
   EXPECT_EQ(parts.captured, whole.captured);
@@ -80,10 +80,10 @@ INSTANTIATE_TEST_SUITE_P(Seeds, Sections, testing::Values(1, 2, 3, 4, 5));
 
 TEST(Sections, OneSectionIsTheFitOfAll) {
   const ModelCourse course = ModelCourse::captured(1.3, 20);
-  const Trace trace = course.noisy(kSigma, 1);
+  const Trace trace = course.noisy(kSectionSigma, 1);
   const std::vector<Fall> slips = slips_of(trace);
-  const TestEstimates exactly = estimate_in_sections(trace, slips, kSigma, {}, {}, {}, slips.size());
-  const TestEstimates easily = estimate_in_sections(trace, slips, kSigma, {}, {});
+  const TestEstimates exactly = estimate_in_sections(trace, slips, kSectionSigma, {}, {}, {}, slips.size());
+  const TestEstimates easily = estimate_in_sections(trace, slips, kSectionSigma, {}, {});
   EXPECT_EQ(exactly.results, easily.results);
 }
 

@@ -21,7 +21,7 @@ namespace {
 using Kind = Command::Kind;
 
 /// Waits for the storage to say that it is short.
-class Heard final : public Facts {
+class HeardOfRoom final : public Facts {
  public:
   void storage_short(std::string_view) override {
     const std::lock_guard lock{mutex_};
@@ -50,7 +50,7 @@ class BenchDeskTest : public testing::Test {
 
   test::TemporaryFolder folder_;
   test::FaultyDisk disk_;
-  Heard heard_;
+  HeardOfRoom heard_;
   TestLog tests_;
   DaemonConfig config_;
   Storage storage_{

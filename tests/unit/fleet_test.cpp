@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-base::Result<DaemonConfig> read(const std::string& fleet) {
+base::Result<DaemonConfig> read_fleet(const std::string& fleet) {
   const auto settings = base::Settings::parse(
       "[board]\ndriver = \"simulated\"\nsimulated.scenes = [\"a.toml\"]\n[fleet]\n" + fleet, "x.toml");
   if (!settings) return tl::unexpected(settings.error());
@@ -26,8 +26,8 @@ base::Result<DaemonConfig> read(const std::string& fleet) {
 }
 
 TEST(FleetSettings, ReadWhatIsSaid) {
-  EXPECT_FALSE(read("")->fleet);
-  const auto config = read(R"(broker = "mqtts://broker.plant"
+  EXPECT_FALSE(read_fleet("")->fleet);
+  const auto config = read_fleet(R"(broker = "mqtts://broker.plant"
 tester = "bench-7"
 topic = "mill/paper-lab"
 user = "b7"
@@ -48,8 +48,8 @@ health_period = "1 min"
 
 // The values that config/stickslipd.toml shows as defaults.
 TEST(FleetSettings, DefaultsAreThoseThatTheShippedFileShows) {
-  const FleetSettings fleet = *read("broker = \"mqtt://b\"\ntester = \"t\"\n")->fleet;
-  const FleetSettings shown = *read(R"(broker = "mqtt://b"
+  const FleetSettings fleet = *read_fleet("broker = \"mqtt://b\"\ntester = \"t\"\n")->fleet;
+  const FleetSettings shown = *read_fleet(R"(broker = "mqtt://b"
 tester = "t"
 topic = "stickslip"
 outbox = "outbox"
@@ -79,15 +79,15 @@ TEST(FleetSettings, BrokersOfAllSpellings) {
     EXPECT_FALSE(parse_broker(wrong)) << wrong;
 }
 
-struct Mistake {
+struct FleetMistake {
   const char* text;
   const char* error;
 };
 
-class FleetRefuses : public testing::TestWithParam<Mistake> {};
+class FleetRefuses : public testing::TestWithParam<FleetMistake> {};
 
 TEST_P(FleetRefuses, WithOneLine) {
-  const auto config = read(GetParam().text);
+  const auto config = read_fleet(GetParam().text);
   ASSERT_FALSE(config);
   EXPECT_EQ(config.error().exit_status(), 2);
   EXPECT_EQ(config.error().message, GetParam().error);
@@ -98,34 +98,37 @@ TEST_P(FleetRefuses, WithOneLine) {
 INSTANTIATE_TEST_SUITE_P(
     Mistakes, FleetRefuses,
     testing::Values(
-        Mistake{
+        FleetMistake{
             "broker = \"b\"\n" TESTER,
             "x.toml:5: fleet.broker = \"b\": must be mqtt://HOST, mqtts://HOST for TLS, or one of the two "
             "with :PORT after it"},
-        Mistake{"broker = \"mqtt://b:99999\"\n" TESTER,
-                "x.toml:5: fleet.broker = \"mqtt://b:99999\": the port must be a number from 1 to 65535"},
-        Mistake{BROKER,
-                "x.toml:4: fleet.tester: is missing: what is this tester called among those at the broker?"},
-        Mistake{BROKER "tester = \"a/b\"",
-                "x.toml:6: fleet.tester = \"a/b\": must be 1 to 64 letters, digits, - _ ."},
-        Mistake{
+        FleetMistake{
+            "broker = \"mqtt://b:99999\"\n" TESTER,
+            "x.toml:5: fleet.broker = \"mqtt://b:99999\": the port must be a number from 1 to 65535"},
+        FleetMistake{
+            BROKER,
+            "x.toml:4: fleet.tester: is missing: what is this tester called among those at the broker?"},
+        FleetMistake{BROKER "tester = \"a/b\"",
+                     "x.toml:6: fleet.tester = \"a/b\": must be 1 to 64 letters, digits, - _ ."},
+        FleetMistake{
             BROKER TESTER "topic = \"a/#\"",
             "x.toml:7: fleet.topic = \"a/#\": must be words of letters, digits, - _ . with single slashes "
             "between them, at most 200 bytes"},
-        Mistake{BROKER TESTER "user = \"u\"\npassword_file = \"p\"",
-                "x.toml:5: fleet.broker = \"mqtt://b\": must be mqtts:// where a password is sent to another "
-                "machine"},
-        Mistake{"broker = \"mqtts://b\"\n" TESTER "password_file = \"p\"",
-                "x.toml:4: fleet.user: is missing: a password alone is nobody's"},
-        Mistake{BROKER TESTER "ca_file = \"p\"",
-                "x.toml:5: fleet.broker = \"mqtt://b\": must be mqtts:// where certificates are named"},
-        Mistake{"broker = \"mqtts://b\"\n" TESTER "certificate_file = \"p\"",
-                "x.toml:4: fleet.key_file: is missing: a certificate and its key go together"},
-        Mistake{BROKER TESTER "outbox_results = 0",
-                "x.toml:7: fleet.outbox_results = 0: must be an integer from 1 to 100000"},
-        Mistake{BROKER TESTER "health_period = \"0.5 s\"",
-                "x.toml:7: fleet.health_period = \"0.5 s\": must be from 1 s to 3600 s"},
-        Mistake{BROKER TESTER "outbox = \"\"", "x.toml:7: fleet.outbox = \"\": must name a folder"}));
+        FleetMistake{
+            BROKER TESTER "user = \"u\"\npassword_file = \"p\"",
+            "x.toml:5: fleet.broker = \"mqtt://b\": must be mqtts:// where a password is sent to another "
+            "machine"},
+        FleetMistake{"broker = \"mqtts://b\"\n" TESTER "password_file = \"p\"",
+                     "x.toml:4: fleet.user: is missing: a password alone is nobody's"},
+        FleetMistake{BROKER TESTER "ca_file = \"p\"",
+                     "x.toml:5: fleet.broker = \"mqtt://b\": must be mqtts:// where certificates are named"},
+        FleetMistake{"broker = \"mqtts://b\"\n" TESTER "certificate_file = \"p\"",
+                     "x.toml:4: fleet.key_file: is missing: a certificate and its key go together"},
+        FleetMistake{BROKER TESTER "outbox_results = 0",
+                     "x.toml:7: fleet.outbox_results = 0: must be an integer from 1 to 100000"},
+        FleetMistake{BROKER TESTER "health_period = \"0.5 s\"",
+                     "x.toml:7: fleet.health_period = \"0.5 s\": must be from 1 s to 3600 s"},
+        FleetMistake{BROKER TESTER "outbox = \"\"", "x.toml:7: fleet.outbox = \"\": must name a folder"}));
 
 class Folder : public testing::Test {
  protected:

@@ -18,7 +18,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn_rad = std::numbers::pi;
 
 /// Over one second of 350 scans, so that whole hertz are bins: amplitude and phase of a sine.
 std::complex<double> sine_at(const std::vector<double>& volts, int frequency_Hz) {
@@ -26,7 +26,7 @@ std::complex<double> sine_at(const std::vector<double>& volts, int frequency_Hz)
   for (std::size_t i = 0; i < volts.size(); ++i) {
     const auto turns = static_cast<double>(static_cast<std::size_t>(frequency_Hz) * i % volts.size()) /
                        static_cast<double>(volts.size());
-    sum += volts[i] * std::polar(1.0, -2.0 * kPi * turns);
+    sum += volts[i] * std::polar(1.0, -2.0 * kHalfTurn_rad * turns);
   }
   // a sin(ωt + p) leaves a/(2i) e^(ip) in its bin.
   return sum * std::complex<double>{0.0, 2.0} / static_cast<double>(volts.size());
@@ -40,8 +40,8 @@ TEST(MainsHum, HasTheAmplitudesAndPhasesAskedForAndNothingElse) {
   // Order 5 at 300 Hz appears as −50 Hz: a sine of the opposite phase at 50 Hz.
   for (int frequency_Hz = 1; frequency_Hz < 175; ++frequency_Hz) {
     std::complex<double> expected;
-    if (frequency_Hz == 60) expected = std::polar(0.5, kPi / 6.0);
-    if (frequency_Hz == 120) expected = std::polar(0.15, -kPi / 2.0);
+    if (frequency_Hz == 60) expected = std::polar(0.5, kHalfTurn_rad / 6.0);
+    if (frequency_Hz == 120) expected = std::polar(0.15, -kHalfTurn_rad / 2.0);
     if (frequency_Hz == 50) expected = -0.05;
     // 350 terms below 1 V with a few ulp each.
     EXPECT_LT(std::abs(sine_at(volts, frequency_Hz) - expected), 1e-12) << frequency_Hz << " Hz";

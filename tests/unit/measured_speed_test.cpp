@@ -10,7 +10,7 @@
 namespace stickslip::friction {
 namespace {
 
-constexpr double kRate_Hz = 350.0;
+constexpr double kSpeedRate_Hz = 350.0;
 constexpr double kStep_m_per_s = 20.0 / 65535.0 * 1e-3;  // 16 bits over ±10 V at 1 mm/s/V: 0.3 µm/s
 
 /// What a channel of this step makes of v(t); noise on top, m/s.
@@ -19,8 +19,8 @@ MeasuredSpeed read(const std::function<double(double)>& speed, double duration_s
   std::mt19937 engine{seed};
   std::normal_distribution<double> noise{0.0, 1.0};
   MeasuredSpeed measured{MeasuredSpeed::resolution(noise_m_per_s, kStep_m_per_s)};
-  for (int i = 0; i < static_cast<int>(duration_s * kRate_Hz); ++i) {
-    const double t_s = i / kRate_Hz;
+  for (int i = 0; i < static_cast<int>(duration_s * kSpeedRate_Hz); ++i) {
+    const double t_s = i / kSpeedRate_Hz;
     const double v = speed(t_s) + noise_m_per_s * noise(engine);
     measured.add(t_s, std::round(v / kStep_m_per_s) * kStep_m_per_s);
   }
@@ -43,8 +43,8 @@ TEST(MeasuredSpeed, RampIsALineWithinAStepOfTheTruth) {
   }
   // What is less than the resolution is rest: one pull, from the jump to the stop, each within a scan.
   ASSERT_EQ(course->pulls().size(), 1U);
-  EXPECT_NEAR(course->pulls()[0].start_s, 1.0, 1.01 / kRate_Hz);
-  EXPECT_NEAR(course->pulls()[0].end_s, 7.0, 1.01 / kRate_Hz);
+  EXPECT_NEAR(course->pulls()[0].start_s, 1.0, 1.01 / kSpeedRate_Hz);
+  EXPECT_NEAR(course->pulls()[0].end_s, 7.0, 1.01 / kSpeedRate_Hz);
 }
 
 TEST(MeasuredSpeed, NoiseIsAveragedAway) {

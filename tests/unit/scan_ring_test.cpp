@@ -13,7 +13,7 @@ namespace {
 using daq::ScanBlock;
 using daq::ScanRing;
 
-ScanBlock block_at(daq::ScanIndex first, std::uint32_t count) {
+ScanBlock stamped_block(daq::ScanIndex first, std::uint32_t count) {
   ScanBlock block;
   block.first = first;
   block.count = count;
@@ -31,8 +31,8 @@ TEST(ScanRing, EmptyRingHandsOutNothing) {
 
 TEST(ScanRing, BlocksComeOutWholeAndInOrder) {
   ScanRing ring(4);
-  ASSERT_TRUE(ring.push(block_at(0, 3)));
-  ASSERT_TRUE(ring.push(block_at(3, 64)));
+  ASSERT_TRUE(ring.push(stamped_block(0, 3)));
+  ASSERT_TRUE(ring.push(stamped_block(3, 64)));
   std::array<ScanBlock, 4> out;
   ASSERT_EQ(ring.pop(out.data(), out.size()), 2U);
   EXPECT_EQ(out[0].end(), 3);
@@ -45,7 +45,7 @@ TEST(ScanRing, BlocksComeOutWholeAndInOrder) {
 
 TEST(ScanRing, PopNeverHandsOutMoreThanAsked) {
   ScanRing ring(4);
-  for (int i = 0; i < 4; ++i) ASSERT_TRUE(ring.push(block_at(i, 1)));
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(ring.push(stamped_block(i, 1)));
   std::array<ScanBlock, 4> out;
   EXPECT_EQ(ring.pop(out.data(), 3), 3U);
   EXPECT_EQ(ring.pop(out.data(), 3), 1U);
@@ -57,10 +57,10 @@ TEST(ScanRing, FullRingDropsAndCountsTheNewBlock) {
   constexpr std::size_t kCapacity = 4;
   ScanRing ring(kCapacity);
   daq::ScanIndex next = 0;
-  for (std::size_t i = 0; i < kCapacity; ++i, next += 7) ASSERT_TRUE(ring.push(block_at(next, 7)));
-  EXPECT_FALSE(ring.push(block_at(next, 7)));
+  for (std::size_t i = 0; i < kCapacity; ++i, next += 7) ASSERT_TRUE(ring.push(stamped_block(next, 7)));
+  EXPECT_FALSE(ring.push(stamped_block(next, 7)));
   next += 7;
-  EXPECT_FALSE(ring.push(block_at(next, 5)));
+  EXPECT_FALSE(ring.push(stamped_block(next, 5)));
   next += 5;
   EXPECT_EQ(ring.dropped_scan_count(), 12U);
 
@@ -69,7 +69,7 @@ TEST(ScanRing, FullRingDropsAndCountsTheNewBlock) {
   EXPECT_EQ(out[0].first, 0);
 
   // The consumer learns of it by the index.
-  ASSERT_TRUE(ring.push(block_at(next, 7)));
+  ASSERT_TRUE(ring.push(stamped_block(next, 7)));
   daq::GapTracker tracker;
   for (const ScanBlock& block : out) EXPECT_FALSE(tracker.observe(block));
   ASSERT_EQ(ring.pop(out.data(), 1), 1U);

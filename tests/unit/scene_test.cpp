@@ -13,6 +13,7 @@
 #include "core/friction/threshold.hpp"
 #include "core/sim/scene_run.hpp"
 #include "core/sim/scene_truth.hpp"
+#include "tests/unit/scene_text.hpp"
 
 namespace stickslip::sim {
 namespace {
@@ -46,13 +47,6 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 }
 
 /// The error's message, or "" if the scene is accepted.
-std::string refusal(const std::string& text) {
-  const base::Result<Scene> scene = parse_scene(text, "test.toml");
-  if (scene) return "";
-  EXPECT_EQ(scene.error().kind, base::ErrorKind::kUsage);
-  return scene.error().message;
-}
-
 std::vector<double> readings(const Scene& scene) {
   SceneRun run{scene, scene.scan_rate_Hz};
   std::vector<double> raw(static_cast<std::size_t>(scan_count(scene, scene.scan_rate_Hz)));
@@ -124,29 +118,31 @@ TEST(Scene, StiffnessAndFrequencyDescribeTheSameTester) {
 }
 
 TEST(Scene, MistakesAreNamedWithPlaceValueAndLimit) {
-  EXPECT_EQ(refusal(kBare), "");
-  EXPECT_THAT(refusal(replaced(kBare, "mu_s = 0.35", "mu_s = 0.25")),
+  EXPECT_EQ(refusal_of(kBare), "");
+  EXPECT_THAT(refusal_of(replaced(kBare, "mu_s = 0.35", "mu_s = 0.25")),
               AllOf(HasSubstr("test.toml:8"), HasSubstr("0.25"), HasSubstr("mu_k = 0.3")));
-  EXPECT_THAT(refusal(replaced(kBare, "2331 g", "-2331 g")),
+  EXPECT_THAT(refusal_of(replaced(kBare, "2331 g", "-2331 g")),
               AllOf(HasSubstr("test.toml:4"), HasSubstr("-2331 g")));
-  EXPECT_THAT(refusal(replaced(kBare, "2331 g", "2331")), AllOf(HasSubstr("test.toml:4"), HasSubstr("unit")));
-  EXPECT_THAT(refusal(replaced(kBare, "20 Hz", "0 Hz")), HasSubstr("test.toml:5"));
-  EXPECT_THAT(refusal("scan_rate = \"0 Hz\"\n" + kBare), AllOf(HasSubstr("test.toml:1"), HasSubstr("0 Hz")));
-  EXPECT_THAT(refusal(kBare + "[effects.witchcraft]\n"),
+  EXPECT_THAT(refusal_of(replaced(kBare, "2331 g", "2331")),
+              AllOf(HasSubstr("test.toml:4"), HasSubstr("unit")));
+  EXPECT_THAT(refusal_of(replaced(kBare, "20 Hz", "0 Hz")), HasSubstr("test.toml:5"));
+  EXPECT_THAT(refusal_of("scan_rate = \"0 Hz\"\n" + kBare),
+              AllOf(HasSubstr("test.toml:1"), HasSubstr("0 Hz")));
+  EXPECT_THAT(refusal_of(kBare + "[effects.witchcraft]\n"),
               AllOf(HasSubstr("test.toml:10"), HasSubstr("witchcraft"), HasSubstr("damping"),
                     HasSubstr("white_noise")));
-  EXPECT_THAT(refusal(kBare + "[effects.white_noise]\nsd = 0.1\nsize = 3\n"), HasSubstr("size"));
-  EXPECT_THAT(refusal(kBare + "[effects.white_noise]\n"), HasSubstr("sd"));
-  EXPECT_THAT(refusal(kBare + "[effects.white_noise]\nsd = 0.1\nsd_voltage = \"1 V\"\n"),
+  EXPECT_THAT(refusal_of(kBare + "[effects.white_noise]\nsd = 0.1\nsize = 3\n"), HasSubstr("size"));
+  EXPECT_THAT(refusal_of(kBare + "[effects.white_noise]\n"), HasSubstr("sd"));
+  EXPECT_THAT(refusal_of(kBare + "[effects.white_noise]\nsd = 0.1\nsd_voltage = \"1 V\"\n"),
               HasSubstr("sd_voltage"));
-  EXPECT_THAT(refusal(kBare + replaced(kConverter, "5 V", "-5 V")), HasSubstr("range_min = 0"));
-  EXPECT_THAT(refusal(kBare + replaced(kConverter, "12", "0")), HasSubstr("test.toml:11"));
-  EXPECT_THAT(refusal(replaced(kBare, "duration = \"1 s\"\n", "")), HasSubstr("duration"));
-  EXPECT_THAT(refusal(replaced(kBare, "frequency = \"20 Hz\"\n", "")), HasSubstr("frequency"));
-  EXPECT_THAT(
-      refusal(replaced(kBare, "frequency = \"20 Hz\"\n", "frequency = \"20 Hz\"\nstiffness = \"1 N/m\"\n")),
-      HasSubstr("stiffness"));
-  EXPECT_THAT(refusal("this is no TOML"), HasSubstr("test.toml:1"));
+  EXPECT_THAT(refusal_of(kBare + replaced(kConverter, "5 V", "-5 V")), HasSubstr("range_min = 0"));
+  EXPECT_THAT(refusal_of(kBare + replaced(kConverter, "12", "0")), HasSubstr("test.toml:11"));
+  EXPECT_THAT(refusal_of(replaced(kBare, "duration = \"1 s\"\n", "")), HasSubstr("duration"));
+  EXPECT_THAT(refusal_of(replaced(kBare, "frequency = \"20 Hz\"\n", "")), HasSubstr("frequency"));
+  EXPECT_THAT(refusal_of(replaced(kBare, "frequency = \"20 Hz\"\n",
+                                  "frequency = \"20 Hz\"\nstiffness = \"1 N/m\"\n")),
+              HasSubstr("stiffness"));
+  EXPECT_THAT(refusal_of("this is no TOML"), HasSubstr("test.toml:1"));
   const base::Result<Scene> missing = load_scene("/nonexistent/scene.toml");
   ASSERT_FALSE(missing);
   EXPECT_THAT(missing.error().message, HasSubstr("/nonexistent/scene.toml"));

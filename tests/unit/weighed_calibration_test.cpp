@@ -13,16 +13,16 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr double kGravity_m_per_s2 = 9.80665;
-constexpr double kGain_N_per_V = 2.0;
-constexpr double kZero_V = 0.0123;
+constexpr double kStandardGravity_m_per_s2 = 9.80665;
+constexpr double kCellGain_N_per_V = 2.0;
+constexpr double kCellZero_V = 0.0123;
 constexpr double kSpan_V = 20.0;
 constexpr unsigned kSeed = 20261122;
 
 WeightReading reading(double mass_kg, double off_V = 0.0) {
   WeightReading result;
   result.mass_kg = mass_kg;
-  result.voltage_V = kZero_V + mass_kg * kGravity_m_per_s2 / kGain_N_per_V + off_V;
+  result.voltage_V = kCellZero_V + mass_kg * kStandardGravity_m_per_s2 / kCellGain_N_per_V + off_V;
   result.standard_error_V = 1e-5;
   result.wander_V = 1e-4;
   return result;
@@ -36,21 +36,21 @@ std::vector<WeightReading> readings() {
 }
 
 WeighedCalibration weighed(const std::vector<WeightReading>& all) {
-  return weigh(all, kGravity_m_per_s2, kSpan_V);
+  return weigh(all, kStandardGravity_m_per_s2, kSpan_V);
 }
 
 TEST(WeighedCalibration, ExactReadingsGiveGainAndZero) {
   const WeighedCalibration result = weighed(readings());
   ASSERT_TRUE(result.fit.load_cell) << result.fit.reason;
   // Rounding of a handful of sums.
-  EXPECT_NEAR(result.fit.load_cell->gain_N_per_V, kGain_N_per_V, 1e-13);
-  EXPECT_NEAR(result.fit.load_cell->zero_V, kZero_V, 1e-13);
+  EXPECT_NEAR(result.fit.load_cell->gain_N_per_V, kCellGain_N_per_V, 1e-13);
+  EXPECT_NEAR(result.fit.load_cell->zero_V, kCellZero_V, 1e-13);
   EXPECT_EQ(result.fit.used, 7);
   EXPECT_THAT(result.findings, IsEmpty());
   for (const WeighedPoint& point : result.points) {
     EXPECT_THAT(point.refused, IsEmpty());
     EXPECT_NEAR(point.residual_V, 0.0, 1e-13);
-    EXPECT_EQ(point.force_N, point.reading.mass_kg * kGravity_m_per_s2);
+    EXPECT_EQ(point.force_N, point.reading.mass_kg * kStandardGravity_m_per_s2);
   }
 }
 
@@ -66,7 +66,7 @@ TEST(WeighedCalibration, StandardErrorsAreThoseOfRepeatedCalibrations) {
     for (WeightReading& one : all) one.voltage_V += noise(random);
     const WeighedCalibration result = weighed(all);
     ASSERT_TRUE(result.fit.load_cell) << result.fit.reason;
-    gain_errors += std::pow(result.fit.load_cell->gain_N_per_V - kGain_N_per_V, 2);
+    gain_errors += std::pow(result.fit.load_cell->gain_N_per_V - kCellGain_N_per_V, 2);
     gain_variances += std::pow(*result.fit.gain_standard_error_N_per_V, 2);
   }
   // The ratio of two χ²-like sums of 500 and 500·5 terms: √(2/500 + 2/2500) = 7 %; three of those.
@@ -96,7 +96,7 @@ TEST(WeighedCalibration, BadReadingsAreLeftOutWithTheReason) {
     EXPECT_THAT(result.points[4].refused, HasSubstr(reason));
     ASSERT_TRUE(result.fit.load_cell) << result.fit.reason;
     EXPECT_EQ(result.fit.used, 8);
-    EXPECT_NEAR(result.fit.load_cell->gain_N_per_V, kGain_N_per_V, 1e-13);
+    EXPECT_NEAR(result.fit.load_cell->gain_N_per_V, kCellGain_N_per_V, 1e-13);
   }
 }
 
