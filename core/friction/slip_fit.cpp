@@ -16,9 +16,11 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Nearly always a dozen is enough. A pull speed known to a millionth makes a narrow, bent valley of the
-/// cost, along which some fits need a hundred.
-constexpr int kMostIterations = 200;
+/// Nearly always a dozen is enough.
+constexpr int kMostIterations = 60;
+/// A pull speed known to a millionth makes a narrow, bent valley of the cost, along which some fits need a
+/// hundred.
+constexpr int kMostIterationsWithPrior = 200;
 /// Relative change of the cost below which the fit has converged.
 constexpr double kConverged = 1e-10;
 /// Damping: first value, factors after success and failure, and where there is no hope left.
@@ -154,7 +156,8 @@ SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows, const Sh
   if (windows.empty() || !admissible(shared)) return fit;
   NormalEquations equations = assemble(trace, windows, fit.shared, sigma, prior);
   double damping = kFirstDamping;
-  for (int iteration = 0; iteration < kMostIterations && !fit.converged && damping < kHopeless; ++iteration) {
+  const int most = prior.empty() ? kMostIterations : kMostIterationsWithPrior;
+  for (int iteration = 0; iteration < most && !fit.converged && damping < kHopeless; ++iteration) {
     const Step step = solve(equations, sigma, damping);
     SharedParameters trial = fit.shared;
     std::vector<SlipParameters> before;
