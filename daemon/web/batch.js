@@ -44,8 +44,8 @@ const Batch = (() => {
     try {
       show((await ask("POST", "/v1/restore", body)).batch);
       say(`${what} counts again`, true);
+      part(button)?.focus();  // The table keeps it when it is written anew.
       await changed();
-      part(button)?.focus();
     } catch (error) { say(error.message); }
   }
   function choose(body, what, button) {
@@ -63,8 +63,8 @@ const Batch = (() => {
       show((await ask("POST", "/v1/void", {...body, reason: part("void-reason").value})).batch);
       part("void-dialog").close();
       say(`${what} does not count; its record stays as it is`, true);
+      part(button)?.focus();  // The table keeps it when it is written anew.
       await changed();
-      part(button)?.focus();
     } catch (error) { refusal("void-message", error); }
   });
   part("void-close").addEventListener("click", () => part("void-dialog").close());
@@ -105,8 +105,8 @@ const Batch = (() => {
       show(null);
       part("end-dialog").close();
       say("the batch has ended", true);
+      part("batch-open").focus();  // At once: later it would take the keyboard from what somebody does next.
       await changed();
-      part("batch-open").focus();
     } catch (error) { refusal("end-message", error); }
   });
 
