@@ -74,6 +74,7 @@ App::App(DaemonConfig config, AppWorld world)
                 .set_plan = [this](Plan plan) { desk_.set_plan(std::move(plan)); },
                 .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
                 .clock = clock_.get()}),
+      reports_({.io = io_, .folder = config_.record_folder, .program = program_beside_this()}),
       wall_(base::make_system_clock()),
       calibrations_(
           {.config = config_,
@@ -89,7 +90,8 @@ App::App(DaemonConfig config, AppWorld world)
              .status = [this] { return status(); },
              .session = [this] { return session_.get(); },
              .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
-             .batches = &batches_}),
+             .batches = &batches_,
+             .reports = &reports_}),
       retry_after_(world_.first_retry) {}
 
 App::~App() = default;

@@ -25,6 +25,7 @@
 #include "daemon/fleet/fleet.hpp"
 #include "daemon/live/stream.hpp"
 #include "daemon/notify.hpp"
+#include "daemon/report_desk.hpp"
 #include "daemon/session.hpp"
 #include "daemon/storage.hpp"
 #include "daemon/test_log.hpp"
@@ -107,6 +108,7 @@ class App {
   TestWatcher watcher_;
   LiveStream live_;
   BatchLeader batches_;
+  ReportDesk reports_;
   std::unique_ptr<base::Clock> wall_;  ///< Of leases, dates and messages: people's time.
   CalibrationDesk calibrations_;
   BenchDesk desk_;

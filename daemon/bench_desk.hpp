@@ -26,6 +26,7 @@ class BenchDesk final : public Bench {
     std::function<Session*()> session;                   ///< Null while there is none.
     std::function<void(std::function<void()>)> on_main;  ///< From any thread: to the main thread.
     Batches* batches;
+    Reports* reports;
   };
   explicit BenchDesk(Parts parts) : parts_(std::move(parts)), configured_method_(parts_.config.method) {}
 
@@ -36,6 +37,7 @@ class BenchDesk final : public Bench {
   void command(Command command, std::function<void(const Outcome&)> answer) override;
   [[nodiscard]] Calibrator& calibrator() override { return parts_.calibrations; }
   [[nodiscard]] Batches& batches() override { return *parts_.batches; }
+  [[nodiscard]] Reports& reports() override { return *parts_.reports; }
 
  private:
   /// Before the processing thread is asked.

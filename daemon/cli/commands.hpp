@@ -92,8 +92,8 @@ struct AccuracyCommand : SceneOptions {
 [[nodiscard]] base::Result<std::string> run_accuracy(const AccuracyCommand& command);
 
 struct ReportOptions {
-  std::string csv;   ///< File to make; empty: none.
-  std::string page;  ///< HTML file to make; empty: none.
+  std::string csv;   ///< File to make; empty: none; "-": the standard output, instead of the text.
+  std::string page;  ///< HTML file to make; likewise.
   bool json = false;
 };
 
@@ -105,8 +105,10 @@ struct ReportCommand : ReportOptions {
 [[nodiscard]] base::Result<std::string> run_report(const ReportCommand& command);
 
 struct CompareCommand : ReportOptions {
-  std::vector<std::string> a;
+  std::vector<std::string> a;  ///< Of two batches: the folder of their records, one.
   std::vector<std::string> b;
+  std::string batch_a;  ///< Its identifier or name; empty: the files are records.
+  std::string batch_b;
   std::string label_a = "A";
   std::string label_b = "B";
 };

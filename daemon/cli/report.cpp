@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -19,10 +21,16 @@ namespace {
 using base::Result;
 using Json = nlohmann::ordered_json;
 
+/// Instead of a file to be made.
+constexpr const char* kStandardOutput = "-";
+
 /// Before the work, not only after it.
 Result<void> check_outputs(const ReportOptions& options) {
+  const std::array taken{options.csv == kStandardOutput, options.page == kStandardOutput, options.json};
+  if (std::count(taken.begin(), taken.end(), true) > 1)
+    return base::usage_error("-o -, --csv - and --json: one of them has the standard output to itself");
   for (const std::string& file : {options.csv, options.page}) {
-    if (file.empty()) continue;
+    if (file.empty() || file == kStandardOutput) continue;
     if (auto free = record::check_publishable(file); !free) return free;
   }
   if (!options.csv.empty() && options.csv == options.page) {
@@ -38,13 +46,16 @@ std::string dumped(const Json& json) {
 /// Files first, so that nothing is printed before all has succeeded.
 Result<std::string> deliver(const ReportOptions& options, const std::string& csv, const std::string& page,
                             const Json& json, const std::string& text) {
-  if (!options.csv.empty()) {
-    if (auto written = write_new_file(options.csv, csv); !written) return tl::unexpected(written.error());
+  std::string printed = options.json ? dumped(json) : text;
+  for (const auto& [file, made] : {std::pair{&options.csv, &csv}, {&options.page, &page}}) {
+    if (file->empty()) continue;
+    if (*file == kStandardOutput) {
+      printed = *made;
+    } else if (auto written = write_new_file(*file, *made); !written) {
+      return tl::unexpected(written.error());
+    }
   }
-  if (!options.page.empty()) {
-    if (auto written = write_new_file(options.page, page); !written) return tl::unexpected(written.error());
-  }
-  return options.json ? dumped(json) : text;
+  return printed;
 }
 
 }  // namespace
@@ -58,21 +69,32 @@ Result<std::string> run_report(const ReportCommand& command) {
   const bool with_traces = !command.page.empty();
   const Result<Material> material = command.batch.empty()
                                         ? read_material("", command.files, with_traces)
-                                        : read_batch(command.batch, command.files.front(), with_traces);
+                                        : read_batch("", command.batch, command.files.front(), with_traces);
   if (!material) return tl::unexpected(material.error());
   return deliver(command, report_csv(*material), command.page.empty() ? "" : report_page(*material),
                  report_json(*material), report_text(*material));
 }
 
 Result<std::string> run_compare(const CompareCommand& command) {
-  if (command.a.empty() || command.b.empty()) {
+  const bool batches = !command.batch_a.empty() || !command.batch_b.empty();
+  if (batches &&
+      (command.batch_a.empty() || command.batch_b.empty() || command.a.size() != 1 || !command.b.empty())) {
+    return base::usage_error("--batch-a, --batch-b: both are to be named, and one folder of records, not {}",
+                             command.a.size() + command.b.size());
+  }
+  if (!batches && (command.a.empty() || command.b.empty())) {
     return base::usage_error("compare needs records on both sides: stickslip compare A… -- B…");
   }
   if (auto free = check_outputs(command); !free) return tl::unexpected(free.error());
   const bool with_traces = !command.page.empty();
-  const Result<Material> a = read_material(command.label_a, command.a, with_traces);
+  const auto side = [&](const std::string& label, const std::string& batch,
+                        const std::vector<std::string>& files) {
+    return batches ? read_batch(label, batch, command.a.front(), with_traces)
+                   : read_material(label, files, with_traces);
+  };
+  const Result<Material> a = side(command.label_a, command.batch_a, command.a);
   if (!a) return tl::unexpected(a.error());
-  const Result<Material> b = read_material(command.label_b, command.b, with_traces);
+  const Result<Material> b = side(command.label_b, command.batch_b, command.b);
   if (!b) return tl::unexpected(b.error());
   const MaterialComparison comparison = compare_materials(*a, *b);
   return deliver(command, comparison_csv(*a, *b, comparison),

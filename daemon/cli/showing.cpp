@@ -78,14 +78,16 @@ many tests of each would have found a difference as large with 80 % and 90 % pro
 Examples:
   stickslip compare thorold/*.h5 -- baie-comeau/*.h5 --label-a Thorold --label-b "Baie Comeau"
   stickslip compare a*.h5 -- b*.h5 -o comparison.html
+  stickslip compare --batch-a "liner 42" --batch-b "liner 43" records -o comparison.html
   stickslip compare a*.h5 -- b*.h5 --json --csv comparison.csv)";
 
 void add_report_options(CLI::App& command, ReportOptions& options) {
   command
       .add_option("-o,--output", options.page,
-                  "page to make, one file with traces to zoom in; must not exist")
+                  "page to make, one file with traces to zoom in; must not exist; \"-\": standard output")
       ->type_name("FILE.html");
-  command.add_option("--csv", options.csv, "table to make; must not exist")->type_name("FILE.csv");
+  command.add_option("--csv", options.csv, "table to make; must not exist; \"-\": standard output")
+      ->type_name("FILE.csv");
   command.add_flag("--json", options.json, "JSON instead of tables; SI units, null where there is no number");
 }
 
@@ -109,9 +111,13 @@ void add_compare(CLI::App& app, Chosen& chosen) {
   CompareCommand& command = *kept;
   CLI::App* compare = app.add_subcommand("compare", "two materials: stickslip compare A… -- B…");
   compare->footer(kCompareExamples);
-  compare->add_option("a", command.a, "records of the one")->type_name("A.h5");
+  compare->add_option("a", command.a, "records of the one; with --batch-a the folder of both batches")
+      ->type_name("A.h5");
   compare->add_option(kOtherMaterial, command.b, "records of the other; a plain -- does the same")
       ->type_name("B.h5");
+  compare->add_option("--batch-a", command.batch_a, "all tests of a batch, by its identifier or name")
+      ->type_name("BATCH");
+  compare->add_option("--batch-b", command.batch_b, "all tests of the other batch")->type_name("BATCH");
   compare->add_option("--label-a", command.label_a, "what the one is called")->type_name("NAME");
   compare->add_option("--label-b", command.label_b, "what the other is called")->type_name("NAME");
   add_report_options(*compare, command);

@@ -21,6 +21,7 @@
 #include "daemon/control/record_request.hpp"
 #include "daemon/control/repeats.hpp"
 #include "daemon/control/reply.hpp"
+#include "daemon/control/report_api.hpp"
 #include "daemon/control/request_body.hpp"
 #include "daemon/control/summary.hpp"
 
@@ -65,7 +66,7 @@ class Api {
     bool changes;
     Function function;
   };
-  static const std::array<Route, 27> kRoutes;
+  static const std::array<Route, 30> kRoutes;
 
   static std::optional<std::string> match(const Route& route, const std::string& path) {
     if (!route.path.ends_with('/')) return path == route.path ? std::optional<std::string>{""} : std::nullopt;
@@ -267,6 +268,16 @@ class Api {
     batches_.restore(*record, request.controller, reply_with_batch(batches_, answer));
   }
 
+  void batches(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
+    answer(reply_of(batches_json(batches_.book())));
+  }
+  void report(const HttpRequest& request, const std::string& rest, const HttpAnswer& answer) {
+    answer_report(request, rest, batches_.book(), bench_.reports(), answer);
+  }
+  void compare(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+    answer_comparison(request, batches_.book(), bench_.reports(), answer);
+  }
+
   void arm(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
     command(Command::Kind::kArm, request, {}, answer);
   }
@@ -346,7 +357,7 @@ class Api {
   Repeats repeats_;
 };
 
-const std::array<Api::Route, 27> Api::kRoutes{{
+const std::array<Api::Route, 30> Api::kRoutes{{
     {"GET", "/v1/status", false, &Api::status},
     {"GET", "/v1/openapi.json", false, &Api::description},
     {"GET", "/v1/tests", false, &Api::tests},
@@ -357,6 +368,9 @@ const std::array<Api::Route, 27> Api::kRoutes{{
     {"GET", "/v1/batch", false, &Api::batch},
     {"POST", "/v1/batch", true, &Api::begin_batch},
     {"DELETE", "/v1/batch", true, &Api::end_batch},
+    {"GET", "/v1/batches", false, &Api::batches},
+    {"GET", "/v1/batches/", false, &Api::report},
+    {"GET", "/v1/compare", false, &Api::compare},
     {"POST", "/v1/void", true, &Api::void_test},
     {"POST", "/v1/restore", true, &Api::restore_test},
     {"GET", "/v1/controller", false, &Api::controller},

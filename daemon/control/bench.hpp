@@ -14,6 +14,7 @@
 #include "core/record/record.hpp"
 #include "daemon/control/batches.hpp"
 #include "daemon/control/calibrator.hpp"
+#include "daemon/control/reports.hpp"
 #include "daemon/control/status.hpp"
 #include "daemon/test_log.hpp"
 
@@ -59,6 +60,8 @@ class Bench {
   [[nodiscard]] virtual Calibrator& calibrator() = 0;
   /// Lives as long as this.
   [[nodiscard]] virtual Batches& batches() = 0;
+  /// Lives as long as this.
+  [[nodiscard]] virtual Reports& reports() = 0;
 };
 
 }  // namespace stickslip::daemon

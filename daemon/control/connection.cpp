@@ -99,7 +99,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
     response_.keep_alive(keep_alive);
     response_.set(http::field::content_type, reply.content_type);
     response_.set(http::field::cache_control, "no-store");
-    response_.set("Content-Security-Policy", kContentPolicy);
+    response_.set("Content-Security-Policy",
+                  reply.content_policy.empty() ? std::string{kContentPolicy} : reply.content_policy);
     response_.set("X-Content-Type-Options", "nosniff");
     response_.set("Referrer-Policy", "no-referrer");
     if (!reply.allow.empty()) response_.set(http::field::allow, reply.allow);

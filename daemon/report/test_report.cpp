@@ -88,8 +88,8 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
   return material;
 }
 
-base::Result<Material> read_batch(const std::string& id_or_name, const std::filesystem::path& folder,
-                                  bool with_traces) {
+base::Result<Material> read_batch(std::string label, const std::string& id_or_name,
+                                  const std::filesystem::path& folder, bool with_traces) {
   BatchBook book;
   BatchJournal journal{folder};
   if (const auto read = journal.read_on(book); !read) return tl::unexpected(read.error());
@@ -101,7 +101,7 @@ base::Result<Material> read_batch(const std::string& id_or_name, const std::file
   std::vector<std::string> files;
   for (const BatchTest& test : batch->tests) files.push_back((folder / test.record).string());
   if (files.empty()) return base::usage_error("batch {} has no test yet", batch->id);
-  base::Result<Material> material = read_material("", files, with_traces);
+  base::Result<Material> material = read_material(std::move(label), files, with_traces);
   if (!material) return material;
   for (const auto& [quantity, limits] : batch->plan.limits)
     material->limits.push_back(judged(quantity, limits, material->measured));

@@ -51,9 +51,9 @@ struct Material {
 [[nodiscard]] base::Result<Material> read_material(std::string label, std::span<const std::string> files,
                                                    bool with_traces);
 
-/// The tests of a batch, with its limits. \param id_or_name  of the batch. \param folder  of its records.
-/// Errors: as above; kUsage if there is no such batch or it has no test.
-[[nodiscard]] base::Result<Material> read_batch(const std::string& id_or_name,
+/// The tests of a batch, with its limits. \param label  as above. \param id_or_name  of the batch. \param
+/// folder  of its records. Errors: as above; kUsage if there is no such batch or it has no test.
+[[nodiscard]] base::Result<Material> read_batch(std::string label, const std::string& id_or_name,
                                                 const std::filesystem::path& folder, bool with_traces);
 
 /// How many tests at one speed stuck again at least once (stick-slip, mixed), and how many never did

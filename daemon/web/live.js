@@ -23,10 +23,14 @@
     if (!reply.ok) throw new Error(json.error);
     return json;
   }
-  // The browser's own way to save a file cannot carry the token.
-  async function download(path, name) {
+  async function fetched(path) {
     const reply = await fetch(path, {headers: {Authorization: `Bearer ${token()}`}});
     if (!reply.ok) throw new Error((await reply.json()).error);
+    return reply;
+  }
+  // The browser's own way to save a file cannot carry the token.
+  async function download(path, name) {
+    const reply = await fetched(path);
     const link = document.createElement("a");
     link.href = URL.createObjectURL(await reply.blob());
     link.download = name;
@@ -53,7 +57,7 @@
   }
   async function show() {
     const {tests, summary} = await ask("GET", "/v1/tests");
-    Tables.tests(tests, summary, (path, name) => attempt(() => download(path, name)));
+    Tables.tests(tests, summary, (path, name) => attempt(() => download(path, name)), Batch.voidCell);
     const lease = await ask("GET", "/v1/controller");
     text("holder", lease.controller ? `${lease.controller === sessionStorage.getItem("name") ? "this page" : lease.controller} commands` : "");
   }
@@ -80,11 +84,13 @@
   });
 
   Calibrate.connect(ask);
+  Batch.connect(ask, say, refresh);
+  Batches.connect(ask, fetched, download);
   const plan = document.getElementById("plan");
   function fillPlan(values) {
     for (const field of plan.querySelectorAll("input")) {
       const value = values[field.name];
-      field.value = value == null ? "" : field.name === "pull_speed" ? `${Number((value * 1000).toPrecision(6))} mm/s` : value;
+      field.value = value == null ? "" : field.name === "pull_speed" ? Tables.speed(value) : value;
     }
   }
   plan.addEventListener("submit", event => {
@@ -106,6 +112,7 @@
     health(frame) {
       Tables.health(frame.status);
       Calibrate.health(frame.status);
+      Batch.health(frame.status);
       Tables.bench(frame.status.bench);
       // Records appear a moment after their tests.
       if (frame.status.latest_test && document.querySelector("#tests tbody td:last-child")?.textContent === "…") attempt(refresh);
@@ -130,6 +137,7 @@
       Tables.bench(status.bench);
       fillPlan(await ask("GET", "/v1/plan"));
       await refresh();
+      await Batch.health(status);
       listen();
     } catch (error) {
       if (error instanceof TypeError) Tables.trouble("the daemon does not answer: what is shown is the past"); else say(error.message);

@@ -13,6 +13,9 @@ namespace stickslip::daemon::live_page {
 [[nodiscard]] std::string_view scope_js() noexcept;
 [[nodiscard]] std::string_view tables_js() noexcept;
 [[nodiscard]] std::string_view calibrate_js() noexcept;
+[[nodiscard]] std::string_view batch_js() noexcept;
+[[nodiscard]] std::string_view batches_js() noexcept;
+[[nodiscard]] std::string_view shown_html() noexcept;
 [[nodiscard]] std::string_view uplot_js() noexcept;
 [[nodiscard]] std::string_view uplot_css() noexcept;
 

@@ -8,6 +8,8 @@ const Tables = (() => {
   const cell = (text, kind) => { const td = document.createElement(kind === "th" ? "th" : "td"); td.textContent = text; if (kind && kind !== "th") td.className = kind; return td; };
   const row = cells => { const tr = document.createElement("tr"); tr.append(...cells); return tr; };
 
+  const speed = value => `${Number((value * 1000).toPrecision(6))} mm/s`;
+
   // A word, a shape and a colour: any one of them tells.
   const shapes = {circle: "M10 2a8 8 0 1 0 .01 0z", ring: "M10 2a8 8 0 1 0 .01 0zM10 6a4 4 0 1 1-.01 0z", triangle: "M10 2 19 18H1z", square: "M2 2h16v16H2z",
     bars: "M3 2h5v16H3zM12 2h5v16h-5z", cross: "M4 1l6 6 6-6 3 3-6 6 6 6-3 3-6-6-6 6-3-3 6-6-6-6z", diamond: "M10 1l9 9-9 9-9-9z", wave: "M1 12 6 3l5 12 4-8 4 6v5l-4-5-5 8L6 8l-5 9z"};
@@ -26,6 +28,7 @@ const Tables = (() => {
     if (!test.file) return cell(test.file_error || "…", "text");
     const td = cell("", "text"), link = document.createElement("a"), name = test.file.split("/").pop();
     link.textContent = name;
+    link.id = `record-${test.number}`;
     link.href = `/v1/records/${encodeURIComponent(name)}`;
     link.addEventListener("click", event => { event.preventDefault(); download(link.pathname, name); });
     td.append(link);
@@ -34,33 +37,39 @@ const Tables = (() => {
   const limitText = ({lowest, highest}, digits) => (lowest == null ? `≤ ${fixed(highest, digits)}` : highest == null ? `≥ ${fixed(lowest, digits)}` : `${fixed(lowest, digits)} … ${fixed(highest, digits)}`);
 
   /// Numbers of the foot are the daemon's (GET /v1/tests), as stickslip report computes them.
-  function tests(list, summary, download) {
+  /// \param voidCell  (id, body, what, voided) → a cell with the button of a test.
+  function tests(list, summary, download, voidCell) {
     const table = document.getElementById("tests");
-    const head = ["test", "regime", ...columns.map(c => c[1]), "ended", "record"].map((text, k) => {
+    const head = ["test", "regime", ...columns.map(c => c[1]), "ended", "", "record"].map((text, k) => {
       const th = cell(text, "th"); th.scope = "col"; if (k === 1 || k > columns.length + 1) th.className = "text"; return th; });
     table.tHead.replaceChildren(row(head));
+    const of = new Map(summary.quantities.map(quantity => [quantity.name, quantity]));
     const limits = new Map(summary.limits.map(limit => [limit.quantity, limit]));
     const value = (test, [name, , digits]) => {
-      const missed = limits.get(name)?.outside.includes(test.number);
-      return cell(`${fixed(test.results[name], digits)}${missed ? " ✗" : ""}`, missed ? "outside" : undefined);
+      const missed = limits.get(name)?.outside.includes(test.number), far = of.get(name)?.outlier_test === test.number;
+      return cell(`${fixed(test.results[name], digits)}${missed ? " ✗" : ""}${far ? " !" : ""}`, missed ? "outside" : far ? "far" : undefined);
     };
+    const focused = document.activeElement?.id;
     table.tBodies[0].replaceChildren(...list.slice(-200).reverse().map(test => {
       const tr = row([cell(String(test.number)), cell(test.results.regime, "text"), ...columns.map(column => value(test, column)),
-        cell(test.voided ? `void: ${test.voided.reason}` : test.cause, "text"), recordCell(test, download)]);
+        cell(test.voided ? `void: ${test.voided.reason}` : test.cause, "text"),
+        test.file ? voidCell(`void-${test.number}`, {test: test.number}, `test ${test.number}`, test.voided) : cell(""), recordCell(test, download)]);
       if (test.voided) tr.className = "void";
       return tr;
     }));
-    const of = new Map(summary.quantities.map(quantity => [quantity.name, quantity]));
-    const foot = (label, pick) => row([cell(label), cell("", "text"), ...columns.map(([name, , digits]) => cell(of.has(name) ? pick(of.get(name), digits, name) : "")), cell("", "text"), cell("", "text")]);
+    const foot = (label, pick) => row([cell(label), cell("", "text"), ...columns.map(([name, , digits]) => cell(of.has(name) ? pick(of.get(name), digits, name) : "")), cell("", "text"), cell(""), cell("", "text")]);
     const number = key => (quantity, digits) => fixed(quantity[key], digits);
     const rows = summary.tests.length < 2 ? [] : [foot("mean", number("mean")), foot("r = 2.8 s", number("repeatability")), foot("95 % from", number("mean_low")),
       foot("95 % to", number("mean_high")), foot("lowest", number("lowest")), foot("highest", number("highest"))];
     if (summary.limits.length > 0 && summary.tests.length > 0) {
       const verdict = limit => `${limitText(limit, 4)} ${limit.passes ? "✓ kept" : "✗ missed"}`;
-      rows.push(row([cell("limits"), cell("", "text"), ...columns.map(([name]) => cell(limits.has(name) ? verdict(limits.get(name)) : "", limits.get(name)?.passes === false ? "outside" : undefined)), cell("", "text"), cell("", "text")]));
+      rows.push(row([cell("limits"), cell("", "text"), ...columns.map(([name]) => cell(limits.has(name) ? verdict(limits.get(name)) : "", limits.get(name)?.passes === false ? "outside" : undefined)), cell("", "text"), cell(""), cell("", "text")]));
     }
     table.tFoot.replaceChildren(...rows);
-    document.getElementById("counted").textContent = summary.batch == null ? "" : `mean and limits of batch ${summary.batch}`;
+    if (/^(void|record)-\d+$/.test(focused ?? "")) document.getElementById(focused)?.focus();
+    const far = summary.quantities.some(quantity => quantity.outlier_test != null);
+    document.getElementById("counted").textContent = [summary.batch == null ? "" : `mean and limits of batch ${summary.batch}`,
+      far ? "! stands out (Grubbs' test, 5 %) and counts all the same" : ""].filter(text => text !== "").join(" · ");
   }
 
   const day = date => date.slice(0, 10);
@@ -108,5 +117,5 @@ const Tables = (() => {
     document.getElementById("cycle").textContent = `cycle ${frame.number}: peak ${fixed(frame.peak, 4)}, S − K ${fixed(frame.delta_mu, 4)}`;
   }
 
-  return {bench, regime, trouble, tests, health, cycle, columns};
+  return {cell, row, speed, bench, regime, trouble, tests, health, cycle, columns};
 })();

@@ -103,21 +103,37 @@ class Chromium:
     def open(self, file, dark=False):
         """A file, or an address that begins with http:"""
         address = str(file) if str(file).startswith("http:") else pathlib.Path(file).resolve().as_uri()
-        return Page(self, address, dark)
+        page = Page(self, self.call("Target.createTarget", url="about:blank")["targetId"])
+        page.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+        page.call("Page.navigate", url=address)
+        self.wait_for("Page.loadEventFired", page.session)
+        page.settle()
+        return page
+
+    def windows(self, ending):
+        """Of the browser, at addresses that end so."""
+        return [target["targetId"] for target in self.call("Target.getTargets")["targetInfos"]
+                if target["type"] == "page" and target["url"].endswith(ending)]
+
+    def opened(self, ending):
+        """The window that a page has opened."""
+        deadline = time.monotonic() + TIMEOUT_S
+        while time.monotonic() < deadline:
+            if found := self.windows(ending):
+                return Page(self, found[0])
+        raise RuntimeError(f"no window at {ending}")
 
 
 class Page:
-    def __init__(self, browser, address, dark):
+    def __init__(self, browser, target):
         self.browser = browser
-        target = browser.call("Target.createTarget", url="about:blank")["targetId"]
+        self.target = target
         self.session = browser.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
-        self.call("Emulation.setEmulatedMedia",
-                  features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
-        self.call("Page.navigate", url=address)
-        browser.wait_for("Page.loadEventFired", self.session)
-        self.settle()
+
+    def close(self):
+        self.browser.call("Target.closeTarget", targetId=self.target)
 
     def call(self, method, **parameters):
         return self.browser.call(method, self.session, **parameters)
@@ -186,13 +202,15 @@ class Page:
         self.mouse("mouseReleased", x + end * width, middle)
         self.settle()
 
-    def press(self, key, text=""):
+    def press(self, key, text="", settle=True):
+        """\param settle  not where a window opens: a page behind another paints no frames."""
         for kind in ("keyDown", "keyUp"):
             self.call("Input.dispatchKeyEvent", type=kind, key=key, **({"text": text} if text and kind == "keyDown" else {}))
-        self.settle()
+        if settle:
+            self.settle()
 
-    def screenshot(self, file):
-        height = self.value("Math.ceil(document.documentElement.scrollHeight)")
+    def screenshot(self, file, height=None):
+        height = height or self.value("Math.ceil(document.documentElement.scrollHeight)")
         picture = self.call("Page.captureScreenshot", captureBeyondViewport=True,
                             clip={"x": 0, "y": 0, "width": 1280, "height": height, "scale": 1})
         pathlib.Path(file).write_bytes(base64.b64decode(picture["data"]))

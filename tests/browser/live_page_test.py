@@ -83,7 +83,7 @@ class LivePage(unittest.TestCase):
                     if not numpy.isnan(value):
                         values[name].append(value)
                         compared += 1
-                self.assertEqual(row[-2], record["entry/process/end_cause"].asstr()[()])
+                self.assertEqual(row[-3], record["entry/process/end_cause"].asstr()[()])
         self.assertGreaterEqual(compared, 3 * (len(COLUMNS) - 1))
         def half_width(v):
             return student_t(len(v) - 1) * numpy.std(v, ddof=1) / numpy.sqrt(len(v))

@@ -30,9 +30,9 @@ class Batch(unittest.TestCase):
         self.assertEqual(done.returncode, status, done.stdout + done.stderr)
         return done.stdout if status == 0 else done.stderr
 
-    def report(self, *arguments, status=0):
-        # `report` talks to no daemon, and has no --socket.
-        done = subprocess.run([str(self.daemon.cli), "report", *map(str, arguments)], capture_output=True, text=True, check=False)
+    def report(self, *arguments, status=0, command="report"):
+        # It talks to no daemon, and has no --socket.
+        done = subprocess.run([str(self.daemon.cli), command, *map(str, arguments)], capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, status, done.stdout + done.stderr)
         return done.stdout if status == 0 else done.stderr
 
@@ -130,6 +130,14 @@ class Batch(unittest.TestCase):
         self.run_cli("batch", "end")
         self.assertIsNone(self.batch())
         self.run_cli("batch", "begin", "--name", "next")
+
+        # Two batches of one folder.
+        other = self.measure()
+        self.wait_for_tests(1)
+        compared = json.loads(self.report("--batch-a", "liner 42", "--batch-b", "next", folder, "--json", command="compare"))
+        self.assertEqual([len(compared["a"]["tests"]), [test["file"] for test in compared["b"]["tests"]]], [5, [str(folder / other.name)]])
+        for wrong in (["--batch-a", "next", folder], ["--batch-a", "next", "--batch-b", "liner 42"], ["--batch-a", "next", "--batch-b", "liner 42", folder, "--", folder]):
+            self.assertIn("both are to be named, and one folder", self.report(*wrong, status=2, command="compare"))
 
     def test_a_method_plans_its_speed_and_number_and_is_in_the_records(self):
         self.run_cli("batch", "begin", "--name", "liner", "--method", "iso-8295")

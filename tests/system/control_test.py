@@ -8,18 +8,23 @@ Nothing here sleeps: each step waits for an answer or for a frame of the live st
 """
 
 import contextlib
+import csv
+import io
 import json
+import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
+import tempfile
 import unittest
 
 import h5py
 import numpy
 
 from hanging import Hanging, weighing_board
-from running_daemon import TIMEOUT_S, RunningDaemon, wait_for, wait_for_rest
+from running_daemon import TIMEOUT_S, RunningDaemon, UnixConnection, wait_for, wait_for_rest
 from schema import complaints
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
@@ -155,7 +160,13 @@ class Description(unittest.TestCase):
 
     def setUp(self):
         self.hanging = Hanging(self)
-        self.daemon = Daemon(self, '[test]\nbegins = "command"\n', board=weighing_board(self, SOURCE, speed=4))
+        # The reports of this daemon come from a program that can be held: it reads a pipe first, where there is one.
+        folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="stickslip-")))
+        self.pipe = folder / "pipe"
+        shutil.copy(BUILD / "daemon" / "stickslipd", folder)
+        (folder / "stickslip").write_text(f'#!/bin/sh\n[ -p {self.pipe} ] && /bin/cat {self.pipe}\nexec {CLI} "$@"\n', encoding="utf-8")
+        (folder / "stickslip").chmod(0o700)
+        self.daemon = Daemon(self, '[test]\nbegins = "command"\n', board=weighing_board(self, SOURCE, speed=4), program=folder / "stickslipd")
         self.document = self.daemon.ask("GET", "/v1/openapi.json")[1]
         self.seen = set()
 
@@ -163,14 +174,13 @@ class Description(unittest.TestCase):
         status, body = self.daemon.ask(method, path, *arguments, **options)
         described = self.document["paths"][template or path][method.lower()]["responses"]
         self.assertIn(str(status), described, f"{method} {path}: {body}")
-        [(kind, content)] = described[str(status)]["content"].items()
-        self.assertTrue(self.daemon.reply.headers["Content-Type"].startswith(kind))
+        content = described[str(status)]["content"][self.daemon.reply.headers["Content-Type"].partition(";")[0]]
         self.assertEqual(complaints(body, content["schema"], self.document), [], f"{method} {path} {status}")
         self.seen.add((template or path, method.lower(), str(status)))
         return status, body
 
     def test_every_path_method_and_answer_is_as_described(self):
-        for path in ("/v1/status", "/v1/openapi.json", "/v1/tests", "/v1/plan", "/v1/batch", "/v1/controller", "/v1/calibration", "/metrics"):
+        for path in ("/v1/status", "/v1/openapi.json", "/v1/tests", "/v1/plan", "/v1/batch", "/v1/batches", "/v1/controller", "/v1/calibration", "/metrics"):
             self.assertEqual(self.check("GET", path)[0], 200)
         self.check("GET", "/v1/live")
         self.check("GET", "/v1/tests/1", template="/v1/tests/{number}")
@@ -225,6 +235,7 @@ class Description(unittest.TestCase):
         self.assertEqual(self.check("PUT", "/v1/plan", {"name": "x"})[0], 409)
         with unwritable(record.parent / "batches.jsonl"):
             self.assertEqual(self.check("DELETE", "/v1/batch")[0], 507)
+        self.reports(record)
         self.assertEqual(self.check("DELETE", "/v1/batch")[0], 200)
         status, body = self.check("GET", f"/v1/records/{record.name}", template="/v1/records/{name}")
         self.assertEqual((status, body), (200, record.read_bytes()))
@@ -236,6 +247,61 @@ class Description(unittest.TestCase):
         promised = {(path, method, status) for path, methods in self.document["paths"].items() for method, one in methods.items()
                     for status in one["responses"]}
         self.assertEqual(promised - self.seen, set())
+
+    def reports(self, record):
+        """On the batch that leads, which has no test yet, and on another; both compared."""
+        template = "/v1/batches/{id}/report"
+        batch = self.daemon.ask("GET", "/v1/batch")[1]["batch"]["id"]
+        report = f"/v1/batches/{batch}/report"
+        status, body = self.check("GET", report, template=template)
+        self.assertEqual((status, body["error"]), (409, f"there is no report: batch {batch} has no test yet"))
+        # As the daemon writes it when a test of the batch is recorded.
+        with (record.parent / "batches.jsonl").open("a", encoding="utf-8") as journal:
+            for event in ({"event": "begun", "batch": "b", "plan": {"name": "fluting"}},
+                          *({"event": "recorded", "batch": of, "record": record.name, "replicate": 1, "slide": 1} for of in (batch, "b"))):
+                journal.write(json.dumps({"at": "2026-11-22T18:03:01+00:00", "by": "ada", **event}) + "\n")
+        listed = self.check("GET", "/v1/batches")[1]["batches"]
+        self.assertEqual([(one["name"], one["counted"]) for one in listed[:2]], [("fluting", 1), ("liner", 1)])
+        compare = f"/v1/compare?a={batch}&b=b"
+        with h5py.File(record) as file:
+            mu_s = file["entry/results/mu_s"][()]
+        for path, described in ((report, template), (compare, "/v1/compare")):
+            mark = "&" if "?" in path else "?"
+            status, page = self.check("GET", path, template=described)
+            self.assertEqual(status, 200)
+            self.assertTrue(page.startswith("<!DOCTYPE html>"))
+            self.assertEqual(self.check("GET", f"{path}{mark}format=html", template=described), (200, page))
+            status, table = self.check("GET", f"{path}{mark}format=csv", template=described)
+            self.assertEqual(status, 200)
+            self.assertGreater(len(list(csv.DictReader(io.StringIO(table)))), 0)
+            status, told = self.check("GET", f"{path}{mark}format=json", template=described)
+            self.assertEqual(status, 200)
+            self.assertEqual((told.get("a") or told)["tests"][0]["mu_s"], None if numpy.isnan(mu_s) else mu_s)
+            for wrong in ("format=pdf", "x=1", "format=csv&format=csv"):
+                self.assertEqual(self.check("GET", f"{path}{mark}{wrong}", template=described)[0], 400, wrong)
+        self.assertEqual(self.check("GET", "/v1/compare", template="/v1/compare")[0], 400)
+        self.assertEqual(self.check("GET", f"/v1/compare?a={batch}&b={batch}", template="/v1/compare")[0], 400)
+        for name in ("x", "..", "..%2Fd.toml", "../records", str(record.parent), "--json", "liner"):
+            self.assertEqual(self.check("GET", f"/v1/batches/{name}/report", template=template)[0], 404, name)
+            self.assertEqual(self.check("GET", f"/v1/compare?a={batch}&b={name}", template="/v1/compare")[0], 404, name)
+        # One at a time; who reads and who measures is not held up by it.
+        os.mkfifo(self.pipe)
+        held = UnixConnection(self.daemon.socket)
+        held.request("GET", report)
+        with self.pipe.open("w", encoding="utf-8"):  # Opens when the program reads.
+            for path, described in ((report, template), (compare, "/v1/compare")):
+                self.assertEqual(self.check("GET", path, template=described)[0], 503)
+            self.assertEqual(self.check("GET", "/v1/status")[0], 200)
+        self.assertEqual(held.getresponse().status, 200)
+        held.close()
+        self.pipe.unlink()
+        # A record that is gone is told; its page is not made of what is left.
+        record.rename(record.with_suffix(".kept"))
+        for path, described in ((report, template), (compare, "/v1/compare")):
+            status, body = self.check("GET", path, template=described)
+            self.assertEqual(status, 409)
+            self.assertIn(f"{record.name}: there is no such file", body["error"])
+        record.with_suffix(".kept").rename(record)
 
     def calibrate(self, frames):
         def weigh(mass):
@@ -272,7 +338,7 @@ class Description(unittest.TestCase):
                 continue
             allowed = {method.upper() for method in described}
             for method in methods - allowed:
-                status, body = self.daemon.ask(method, path.replace("{number}", "1").replace("{name}", "x"))
+                status, body = self.daemon.ask(method, path.replace("{number}", "1").replace("{name}", "x").replace("{id}", "x"))
                 self.assertEqual(status, 405, (method, path))
                 self.assertEqual(set(self.daemon.reply.headers["Allow"].split(", ")), allowed)
                 self.assertIn("error", body)

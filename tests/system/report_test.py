@@ -188,6 +188,14 @@ class Reports(Folder):
         self.assertEqual(self.good("compare", "--json", "--label-a", "X", *self.a, "--", *self.b), plain)
         self.assertEqual(self.good("compare", *self.a, "--label-a", "X", "--json", "--against", *self.b), plain)
 
+    def test_one_output_may_be_the_standard_output(self):
+        self.good("report", *self.a, "-o", "whole.html", "--csv", "whole.csv")
+        self.assertEqual(self.good("report", *self.a, "-o", "-"), (self.folder / "whole.html").read_text(encoding="utf-8"))
+        self.assertEqual(self.good("report", *self.a, "--csv", "-"), (self.folder / "whole.csv").read_text(encoding="utf-8"))
+        self.assertTrue(self.good("compare", *self.a, "--", *self.b, "-o", "-").startswith("<!DOCTYPE html>"))
+        for both in (("-o", "-", "--json"), ("-o", "-", "--csv", "-")):
+            self.refused(2, "one of them has the standard output to itself", "report", self.a[0], *both)
+
     def test_a_single_test_has_no_scatter_and_an_absent_number_its_reason(self):
         self.simulate("film.h5", STICKS, "12 in/min", 9, "--method", "iso-8295")
         text = self.good("report", "film.h5")

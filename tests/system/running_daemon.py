@@ -26,7 +26,7 @@ class UnixConnection(http.client.HTTPConnection):
 
 
 class RunningDaemon:
-    def __init__(self, test, build, source, config="", speed=20, board=None, repeats=0, prepare=lambda folder: None):
+    def __init__(self, test, build, source, config="", speed=20, board=None, repeats=0, prepare=lambda folder: None, program=None):
         self.cli = build / "daemon" / "stickslip"
         scene = source / "config" / "scenes" / "stick-slip-at-12-in-per-min.toml"
         temporary = tempfile.TemporaryDirectory(prefix="stickslip-")
@@ -44,7 +44,7 @@ repeats = {repeats}
 """
         file = self.folder / "d.toml"
         file.write_text(f'{board}\n[record]\nfolder = "records"\n[control]\nsocket = "c.sock"\n{config}', encoding="utf-8")
-        self.command = [str(build / "daemon" / "stickslipd"), "--config", str(file)]
+        self.command = [str(program or build / "daemon" / "stickslipd"), "--config", str(file)]
         test.addCleanup(self.end)
         self.start()
 

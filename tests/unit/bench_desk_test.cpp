@@ -65,6 +65,7 @@ class BenchDeskTest : public testing::Test {
                                  .date_ns = [] { return 0; },
                                  .now_ns = [] { return 0; }}};
   PaperBatches batches_;
+  PaperReports reports_;
   BenchDesk desk_{{.config = config_,
                    .tests = tests_,
                    .storage = storage_,
@@ -72,7 +73,8 @@ class BenchDeskTest : public testing::Test {
                    .status = [] { return Status{}; },
                    .session = [] { return nullptr; },
                    .on_main = [](const std::function<void()>&) {},
-                   .batches = &batches_}};
+                   .batches = &batches_,
+                   .reports = &reports_}};
 };
 
 TEST_F(BenchDeskTest, WithoutABoardCommandsAreRefused) {

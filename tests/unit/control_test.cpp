@@ -95,6 +95,67 @@ TEST_F(ControlApi, VoidsATestByItsNumberOrRecordAndSaysSoInTheList) {
   EXPECT_EQ(json::parse(ask({"GET", "/v1/tests/7", "", "", ""}).body)["voided"], nullptr);
 }
 
+TEST_F(ControlApi, ListsBatchesTheLatestFirst) {
+  const auto list = [this] { return json::parse(ask({"GET", "/v1/batches", "", "", ""}).body)["batches"]; };
+  EXPECT_EQ(list(), json::array());
+  command("/v1/batch", "ada", R"({"name": "liner", "grade": "kraft"})");
+  command("/v1/batch", "ada", R"({"name": "fluting"})");
+  const json batches = list();
+  ASSERT_EQ(batches.size(), 2U);
+  EXPECT_EQ(batches[0]["name"], "fluting");
+  EXPECT_EQ(batches[0]["grade"], nullptr);
+  EXPECT_EQ(batches[0]["ended"], nullptr);
+  EXPECT_EQ(batches[1]["id"], "20261122T180301Z");
+  EXPECT_EQ(batches[1]["grade"], "kraft");
+  EXPECT_EQ(batches[1]["counted"], 0);
+  EXPECT_NE(batches[1]["ended"], nullptr);
+}
+
+TEST_F(ControlApi, ReportsOnABatchAndComparesTwo) {
+  command("/v1/batch", "ada", R"({"name": "liner"})");
+  command("/v1/batch", "ada", R"({"name": "fluting"})");
+  const auto get = [this](const std::string& target) { return ask({"GET", target, "", "", ""}); };
+  const std::string one = "/v1/batches/20261122T180301Z/report";
+  const std::string two = "/v1/compare?a=20261122T180301Z&b=20261122T180302Z";
+  for (const auto& [target, body, type] : std::initializer_list<std::array<std::string, 3>>{
+           {one, "form 0: 20261122T180301Z liner (20261122T180301Z)", "text/html; charset=utf-8"},
+           {one + "?format=csv", "form 1: 20261122T180301Z liner (20261122T180301Z)",
+            "text/csv; charset=utf-8"},
+           {one + "?format=json", "form 2: 20261122T180301Z liner (20261122T180301Z)", "application/json"},
+           {two,
+            "form 0: 20261122T180301Z liner (20261122T180301Z) 20261122T180302Z fluting (20261122T180302Z)",
+            "text/html; charset=utf-8"},
+       }) {
+    const HttpReply reply = get(target);
+    EXPECT_EQ(reply.status, 200) << target;
+    EXPECT_EQ(reply.body, body);
+    EXPECT_EQ(reply.content_type, type);
+  }
+  for (const auto& [target, status, why] : std::initializer_list<std::tuple<std::string, int, const char*>>{
+           {one + "?format=pdf", 400, "format: is html, csv or json, not pdf"},
+           {one + "?format", 400, "format: is html, csv or json, not "},
+           {one + "?form=csv", 400, "form: there is no such key"},
+           {one + "?format=csv&format=csv", 400, "format: stands there twice"},
+           {"/v1/batches/liner/report", 404, "there is no batch liner"},
+           {"/v1/batches/../report", 404, "there is no batch .."},
+           {"/v1/batches//report", 404, "there is no batch ;"},
+           {"/v1/batches/20261122T180301Z", 404, "/v1/batches/ID/report is the report"},
+           {"/v1/batches/20261122T180301Z/report/", 404, "/v1/batches/ID/report is the report"},
+           {"/v1/compare", 400, "which two batches?"},
+           {"/v1/compare?a=20261122T180301Z", 400, "which two batches?"},
+           {"/v1/compare?a=20261122T180301Z&b=x%0A", 404, "there is no batch x%0A"},
+           {"/v1/compare?a=20261122T180301Z&b=20261122T180301Z", 400, "are the same batch"},
+       }) {
+    const HttpReply refused = get(target);
+    EXPECT_EQ(refused.status, status) << target;
+    EXPECT_THAT(error(refused), testing::HasSubstr(why)) << target;
+  }
+  bench_.reported.refusal = base::Error{base::ErrorKind::kBusy, "another report"};
+  EXPECT_EQ(get(two).status, 503);
+  bench_.reported.refusal = base::Error{base::ErrorKind::kFailure, "no test yet"};
+  EXPECT_EQ(get(one).status, 409);
+}
+
 TEST_F(ControlApi, TellsTheStatusByTheNamesOfTheRecord) {
   const HttpReply reply = ask({"GET", "/v1/status", "", "", ""});
   EXPECT_EQ(reply.status, 200);

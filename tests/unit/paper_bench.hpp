@@ -77,9 +77,12 @@ class PaperBatches final : public Batches {
     return record.filename().string();
   }
   void begin(BatchPlan plan, std::string who, Answer answer) override {
-    happens(who, BatchBegun{"20261122T180301Z", std::move(plan)}, answer);
+    const std::size_t second = 1 + book_.batches().size();
+    happens(who, BatchBegun{fmt::format("20261122T18030{}Z", second), std::move(plan)}, answer);
   }
-  void end(std::string who, Answer answer) override { happens(who, BatchEnded{"20261122T180301Z"}, answer); }
+  void end(std::string who, Answer answer) override {
+    happens(who, BatchEnded{book_.batches().back().id}, answer);
+  }
   void void_test(const std::string& record, std::string reason, std::string who, Answer answer) override {
     happens(who, TestVoided{record, std::move(reason)}, answer);
   }
@@ -101,6 +104,19 @@ class PaperBatches final : public Batches {
   BatchBook book_;
 };
 
+/// Says what it was asked for.
+class PaperReports final : public Reports {
+ public:
+  void make(std::span<const ReportedBatch> batches, ReportForm form, Answer answer) override {
+    std::string text = fmt::format("form {}:", static_cast<int>(form));
+    for (const ReportedBatch& batch : batches) text += fmt::format(" {} {}", batch.id, batch.label);
+    if (refusal) return answer(tl::unexpected(*refusal));
+    answer(std::move(text));
+  }
+
+  std::optional<base::Error> refusal;
+};
+
 class PaperBench final : public Bench {
  public:
   [[nodiscard]] Status status() const override { return some_status(); }
@@ -108,6 +124,7 @@ class PaperBench final : public Bench {
   [[nodiscard]] Plan plan() const override { return plan_; }
   void set_plan(Plan plan) override { plan_ = std::move(plan); }
   [[nodiscard]] Batches& batches() override { return batches_; }
+  [[nodiscard]] Reports& reports() override { return reported; }
   void command(Command command, std::function<void(const Outcome&)> answer) override {
     commands.push_back(command);
     if (later) {
@@ -127,6 +144,7 @@ class PaperBench final : public Bench {
   }
 
   PaperCalibrator calibrations;
+  PaperReports reported;
   std::vector<Command> commands;
   std::string refusal;
   bool later = false;

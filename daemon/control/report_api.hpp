@@ -1,0 +1,30 @@
+/// \file
+/// The requests for all batches, for the report on one and for the comparison of two.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "daemon/batch/batch.hpp"
+#include "daemon/control/http.hpp"
+#include "daemon/control/reports.hpp"
+
+namespace stickslip::daemon {
+
+/// More are not listed; a report may still be asked for by the identifier.
+inline constexpr std::size_t kMostListed = 1000;
+
+/// {"batches": [{"id", "name", "grade", "begun", "ended", "counted", "voided"}, …]}, the latest first.
+[[nodiscard]] nlohmann::ordered_json batches_json(const BatchBook& book);
+
+/// GET /v1/batches/ID/report?format=html|csv|json. \param rest  ID/report: compared with the journal, and
+/// used for nothing else.
+void answer_report(const HttpRequest& request, const std::string& rest, const BatchBook& book,
+                   Reports& reports, const HttpAnswer& answer);
+
+/// GET /v1/compare?a=ID&b=ID&format=html|csv|json.
+void answer_comparison(const HttpRequest& request, const BatchBook& book, Reports& reports,
+                       const HttpAnswer& answer);
+
+}  // namespace stickslip::daemon

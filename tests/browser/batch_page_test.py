@@ -1,0 +1,345 @@
+#!/usr/bin/env python3
+"""A whole batch on the simulated tester, run from the live page by keyboard in a real browser: begun, led from test to
+test, one test void, ended, reported, compared with another; each number shown against the records'.
+
+batch_page_test.py BUILD_DIR CHROMIUM SOURCE_DIR [unittest arguments]
+
+With STICKSLIP_SCREENSHOTS=FOLDER in the environment pictures of the page are left there.
+"""
+
+import csv
+import io
+import json
+import os
+import pathlib
+import shutil
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+from chromium import Chromium
+from contrast import contrast, rgb
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "system"))
+from running_daemon import RunningDaemon  # noqa: E402
+
+BUILD = pathlib.Path(sys.argv[1]).resolve()
+CHROMIUM = shutil.which(sys.argv[2])
+SOURCE = pathlib.Path(sys.argv[3]).resolve()
+
+MESSAGE = "document.getElementById('message').textContent"
+SCENES = SOURCE / "config" / "scenes"
+
+
+class BatchPage(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = cls.enterClassContext(Chromium(CHROMIUM))
+
+    def open(self, config='[test]\nbegins = "command"\n', speed=2, dark=False, board=None):
+        self.daemon = RunningDaemon(self, BUILD, SOURCE, speed=speed, board=board, config=f'http = "127.0.0.1:0"\ntoken_file = "token"\n{config}')
+        self.records = self.daemon.folder / "records"
+        token = (self.daemon.folder / "token").read_text().strip()
+        self.page = self.browser.open(f"http://{self.daemon.port_line()}/#token={token}", dark=dark)
+        self.page.call("Emulation.setDeviceMetricsOverride", width=1280, height=720, deviceScaleFactor=1, mobile=False)
+        self.until("document.querySelectorAll('#health dd').length > 5 && Scope.data.scan.length > 100")
+
+    def until(self, condition, page=None):
+        """Frames of the page go by until it holds; the test's own time-out is the end of patience."""
+        (page or self.page).value(f"new Promise(done => {{ const look = () => ({condition}) ? done(true) : requestAnimationFrame(look); look(); }})")
+
+    def text(self, name):
+        return self.page.value(f"document.getElementById('{name}').textContent")
+
+    def enter(self, selector, key="Enter", typed="\r", settle=True):
+        """By keyboard: what cannot be reached cannot be pressed."""
+        self.page.value(f"document.querySelector(\"{selector}\").focus()")
+        self.assertTrue(self.page.value(f"document.activeElement === document.querySelector(\"{selector}\")"), selector)
+        self.page.press(key, typed, settle)
+
+    def type(self, selector, text):
+        self.page.value(f"document.querySelector(\"{selector}\").focus()")
+        self.page.value(f"document.querySelector(\"{selector}\").select()")
+        self.page.call("Input.insertText", text=text)
+
+    def begin(self, **fields):
+        self.enter("#batch-open")
+        for name, typed in fields.items():
+            self.type(f"#batch-begin [name={name}]", typed)
+        self.page.press("Enter", "\r")
+        self.until("!document.getElementById('batch-dialog').open")
+        batch = self.batch()
+        self.assertIn(batch["id"], self.text("message"))
+        return batch
+
+    def batch(self):
+        return self.daemon.ask("GET", "/v1/batch")[1]["batch"]
+
+    def step(self, step):
+        speed = "" if step["pull_speed"] is None else f"{1000 * step['pull_speed']:.6g} mm/s, "
+        return f"{speed}sheet {step['replicate']}, slide {step['slide']}"
+
+    def measure(self):
+        """The next test, begun and ended at the page. Returns its record, once its batch knows of it."""
+        number = self.daemon.ask("GET", "/v1/status")[1]["test_count"] + 1
+        known = len(self.batch()["tests"])
+        while True:
+            self.until("Scope.data.highest.slice(-50).every(force => force < 0.02)")  # A whole pull is to come.
+            self.page.value("document.getElementById('message').textContent = ''")
+            self.enter("[data-command=start]")
+            self.until(f"{MESSAGE} !== ''")
+            # Other remarks may come over the page's own.
+            if self.text("message").startswith("start: test") or self.daemon.ask("GET", "/v1/status")[1]["bench"] != "idle":
+                break
+        self.until(f"Scope.slips.filter(slip => slip.test === {number}).length > 4 || document.getElementById('bench-word').textContent === 'idle'")
+        self.enter("[data-command=stop]")
+        self.until(f"document.getElementById('record-{number}') && document.querySelectorAll('#batch-rows tr').length === {known + 1}")
+        return self.records / self.page.value(f"document.getElementById('record-{number}').textContent")
+
+    @staticmethod
+    def facts(record):
+        with h5py.File(record) as file:
+            sample = file["entry/sample"]
+            return (sample["batch"][()].decode(), sample["name"][()].decode(), round(float(file["entry/instrument/tester/pull_speed"][()]), 9),
+                    int(sample["replicate"][()]), int(sample["slide"][()]))
+
+    @staticmethod
+    def results(records, name):
+        values = []
+        for record in records:
+            with h5py.File(record) as file:
+                values.append(float(file[f"entry/results/{name}"][()]))
+        return numpy.array(values)
+
+    def row(self, number):
+        return self.page.value(f"(r => [r.className, ...[...r.cells].map(c => c.textContent)])(document.getElementById('void-{number}').closest('tr'))")
+
+    def shown(self, selector):
+        """The window that a button opens, with its report."""
+        self.enter(selector, settle=False)
+        shown = self.browser.opened("/page/report")
+        self.until("window.stickslip?.data", shown)
+        return shown
+
+    def close(self, shown):
+        self.assertEqual(shown.complaints(), [])
+        shown.close()
+        self.page.call("Page.bringToFront")
+        self.until("document.getElementById('batches-dialog').getAttribute('aria-busy') === 'false'")
+
+    def picture(self, name):
+        if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
+            self.page.screenshot(pathlib.Path(folder) / f"{name}.png")
+
+    def saved(self, act, name):
+        """What a click saves, as text."""
+        with tempfile.TemporaryDirectory(prefix="stickslip-") as folder:
+            self.browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=folder, eventsEnabled=True)
+            act()
+            self.until(f"document.getElementById('batches-message').textContent === 'saved {name}'")
+            self.browser.wait_for_download()
+            return (pathlib.Path(folder) / name).read_text(encoding="utf-8")
+
+    def test_a_whole_batch_by_keyboard_from_its_plan_to_its_comparison(self):
+        self.open()
+        self.assertIn("no batch", self.text("batch-name"))
+        batch = self.begin(name="liner 42", grade="kraft", pull_speeds="6 in/min, 12 in/min", replicates="1", slides="2")
+        self.assertEqual([round(speed, 9) for speed in batch["plan"]["pull_speeds"]], [0.00254, 0.00508])
+        asked = [(batch["id"], "liner 42", speed, 1, slide) for speed in (0.00254, 0.00508) for slide in (1, 2)]
+        records = []
+        for at, wanted in enumerate(asked):
+            self.assertEqual(self.text("batch-next"), f"Next: {self.step(self.batch()['next'])}")
+            self.assertEqual(self.text("batch-name"), f"liner 42, kraft: {at} of 4 tests made")
+            records.append(self.measure())
+            self.assertEqual(self.facts(records[-1]), wanted)
+        self.assertEqual(self.text("batch-next"), "All are made.")
+        # Torn: it is struck out, says why, counts in no number, and is asked for again.
+        self.enter("#void-2")
+        self.page.call("Input.insertText", text="paper torn")
+        self.page.press("Enter", "\r")
+        self.until("document.querySelector('#tests tr.void #void-2')")
+        self.assertIn("void: paper torn", self.row(2))
+        self.until("document.activeElement.id === 'void-2'")
+        self.assertIn("line-through", self.page.value("getComputedStyle(document.querySelector('#tests tr.void td')).textDecorationLine"))
+        self.assertEqual(self.text("batch-next"), "Next: 2.54 mm/s, sheet 1, slide 2")
+        self.assertIn("3 of 4", self.text("batch-name"))
+        # Voided by mistake, and then again.
+        self.enter("#void-2")
+        self.until("!document.querySelector('#tests tr.void')")
+        self.assertEqual(self.text("batch-next"), "All are made.")
+        self.enter("#void-2")
+        self.page.call("Input.insertText", text="paper torn")
+        self.page.press("Enter", "\r")
+        self.until("document.querySelector('#tests tr.void #void-2')")
+        untouched = records[1].read_bytes()
+        records.append(self.measure())
+        self.assertEqual(self.facts(records[-1]), asked[1])
+        self.assertEqual(records[1].read_bytes(), untouched)
+        self.until("document.getElementById('batch-next').textContent === 'All are made.'")
+        counted = [records[0], *records[2:]]
+        self.until("document.querySelectorAll('#tests tfoot tr').length >= 6")
+        mean = self.page.value("[...document.querySelector('#tests tfoot tr').cells].map(c => c.textContent)")
+        for cell, name in zip(mean[2:], ("mu_s", "mu_k", "delta_mu"), strict=False):
+            self.assertAlmostEqual(float(cell), self.results(counted, name).mean(), delta=0.5001e-4, msg=name)
+        # The tests of the batch, as the daemon lists them.
+        self.page.value("document.getElementById('batch-tests').open = true")
+        rows = self.page.value("[...document.querySelectorAll('#batch-rows tr')].map(r => [...r.cells].map(c => c.textContent))")
+        for row, test in zip(rows, self.batch()["tests"], strict=True):
+            self.assertEqual(row[1:4], [self.step(test), test["record"], "void: paper torn, by " + test["voided"]["by"] if test["voided"] else "counts"])
+        self.picture("batch")
+        self.end()
+
+        other = self.begin(name="liner 43", grade="", pull_speeds="12 in/min", replicates="2", slides="1")
+        others = [self.measure(), self.measure()]
+        self.end()
+        self.assertEqual(self.batch(), None)
+        self.report(batch["id"], counted, records[1])
+        self.compare(batch["id"], counted, other["id"], others)
+        self.assertEqual(self.page.complaints(), [])
+
+    def end(self):
+        self.enter("#batch-end")
+        self.enter("#end-sure")
+        self.until("!document.getElementById('end-dialog').open && document.getElementById('batch-end').hidden")
+
+    def report(self, batch, counted, voided):
+        self.enter("#batches-open")
+        self.until("document.querySelectorAll('#batches-rows tr').length === 2")
+        rows = self.page.value("[...document.querySelectorAll('#batches-rows tr')].map(r => [...r.cells].slice(2, 7).map(c => c.textContent))")
+        self.assertEqual([row[:2] + row[3:] for row in rows], [["liner 43", "–", "2", "0"], ["liner 42", "kraft", "4", "1"]])
+        self.assertEqual(rows[1][2], batch)
+        button = "#batches-rows tr:nth-child(2) button"
+        shown = self.shown(f"{button}:nth-of-type(1)")
+        quantities = shown.value("stickslip.data.quantities")
+        own = shown.value("[...document.querySelectorAll('#tests-0 tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
+        self.assertEqual([pathlib.Path(row[1]).name for row in own], [record.name for record in counted])
+        for k, quantity in enumerate(quantities):
+            values = self.results(counted, quantity["name"])
+            self.assertEqual([row[4 + k] for row in own], [f"{value:.{quantity['decimals']}f}" for value in values], quantity["name"])
+        self.assertIn("paper torn", shown.value("document.body.textContent"))
+        # It has no origin, and so nothing of the daemon's page.
+        self.assertEqual(shown.value("self.origin"), "null")
+        self.close(shown)
+        self.assertIn("</html>", self.saved(lambda: self.enter(f"{button}:nth-of-type(2)"), f"{batch}-report.html"))
+        table = list(csv.DictReader(io.StringIO(self.saved(lambda: self.enter(f"{button}:nth-of-type(3)"), f"{batch}-report.csv"))))
+        self.assertEqual([row["voided"] for row in table], 4 * [""] + ["paper torn"])
+        numpy.testing.assert_array_equal([float(row["mu_k"]) for row in table[:4]], self.results(counted, "mu_k"))
+        told = json.loads(self.saved(lambda: self.enter(f"{button}:nth-of-type(4)"), f"{batch}-report.json"))
+        self.assertEqual([pathlib.Path(test["file"]).name for test in told["voided"]], [voided.name])
+        self.assertEqual([group["quantities"]["mu_k"]["count"] for group in told["groups"]], [2, 2])
+
+    def compare(self, a, of_a, b, of_b):
+        self.enter("#compare-show")
+        self.until("document.getElementById('batches-message').textContent.startsWith('choose two batches')")
+        self.enter(f"#batches-rows [name=a][value='{a}']", " ", " ")
+        self.enter(f"#batches-rows [name=b][value='{b}']", " ", " ")
+        self.picture("batches")
+        shown = self.shown("#compare-show")
+        self.assertEqual(shown.value("document.getElementById('title').textContent"), f"liner 42 ({a}) against liner 43 ({b})")
+        self.assertEqual(shown.value("document.getElementById('comparison-0').textContent"), "no test of B at this speed")
+        fast = [record for record in of_a if self.facts(record)[2] == 0.00508]
+        quantities = shown.value("stickslip.data.quantities")
+        rows = shown.value("[...document.querySelectorAll('#comparison-1 tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
+        for row, quantity in zip(rows, quantities, strict=True):
+            difference = self.results(fast, quantity["name"]).mean() - self.results(of_b, quantity["name"]).mean()
+            self.assertAlmostEqual(float(row[1]), difference, delta=0.5001 * 10.0 ** -quantity["decimals"], msg=quantity["name"])
+        # Fig. 1: coefficient against speed, with a picture and its numbers.
+        self.assertGreater(shown.value("document.querySelector('#figure canvas').width"), 300)
+        means = shown.value("[...document.querySelectorAll('#speeds tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
+        self.assertEqual([(row[0], row[2]) for row in means], [("2.54 mm/s", "2"), ("5.08 mm/s", "2"), ("5.08 mm/s", "2")])
+        self.assertAlmostEqual(float(means[2][3].split(" ± ")[0]), self.results(of_b, quantities[0]["name"]).mean(), delta=0.5001 * 10.0 ** -quantities[0]["decimals"])
+        if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
+            shown.call("Emulation.setDeviceMetricsOverride", width=1280, height=720, deviceScaleFactor=1, mobile=False)
+            shown.settle()
+            shown.screenshot(pathlib.Path(folder) / "comparison.png", height=1400)
+        self.close(shown)
+        told = json.loads(self.saved(lambda: self.enter("#compare-json"), f"{a}-{b}-comparison.json"))
+        self.assertEqual([len(told[side]["tests"]) for side in "ab"], [4, 2])
+
+    def test_what_is_refused_is_told_where_it_was_asked(self):
+        self.open()
+        self.enter("#batch-open")
+        self.page.press("Enter", "\r")
+        self.assertTrue(self.page.value("document.getElementById('batch-dialog').open && document.querySelector('#batch-begin :invalid').name === 'name'"))
+        self.type("#batch-begin [name=name]", "liner")
+        self.type("#batch-begin [name=pull_speeds]", "12")
+        self.page.press("Enter", "\r")
+        self.until("document.getElementById('batch-message').textContent !== ''")
+        self.assertIn("pull_speeds", self.text("batch-message"))
+        self.type("#batch-begin [name=pull_speeds]", "12 in/min")
+        self.page.press("Enter", "\r")
+        self.until("!document.getElementById('batch-dialog').open")
+        # There is nothing to report yet: said in the dialog, and the window is gone again.
+        self.enter("#batches-open")
+        self.until("document.querySelectorAll('#batches-rows tr').length === 1")
+        self.enter("#batches-rows button", settle=False)
+        while "has no test yet" not in self.text("batches-message"):
+            pass
+        while self.browser.windows("/page/report"):
+            pass
+        self.page.call("Page.bringToFront")
+        self.assertEqual(self.page.complaints(), [f for f in self.page.complaints() if "409" in f or "400" in f])  # The browser's own words for a refusal.
+
+    def test_what_stands_out_is_marked_and_counts(self):
+        scenes = 8 * [SCENES / "stick-slip-at-12-in-per-min.toml"] + [SCENES / "ring-down-at-12-in-per-min.toml"]
+        listed = json.dumps([str(scene) for scene in scenes])
+        board = f'[board]\ndriver = "simulated"\nclock_speed = 40\n[board.simulated]\nscenes = {listed}\nrepeats = 0\n'
+        self.open(config="", board=board)
+        self.until("document.querySelector('#tests td.far')")
+        self.daemon.ask("POST", "/v1/stop")
+        self.until("document.getElementById('bench-word').textContent === 'idle' && ![...document.querySelectorAll('#tests tbody td:last-child')].some(c => c.textContent === '…')")
+        told = self.daemon.ask("GET", "/v1/tests")[1]
+        names = ["mu_s", "mu_k", "delta_mu", "static_coefficient", "kinetic_coefficient", "amplitude", "oscillation_frequency"]
+        far = {(quantity["name"], quantity["outlier_test"]) for quantity in told["summary"]["quantities"] if quantity["outlier_test"] and quantity["name"] in names}
+        marked = self.page.value("[...document.querySelectorAll('#tests td.far, #tests td.outside')].filter(c => c.textContent.endsWith(' !')).map(c => [c.cellIndex, Number(c.parentNode.cells[0].textContent)])")
+        self.assertEqual({(names[column - 2], number) for column, number in marked}, far)
+        self.assertGreater(len(far), 0)
+        self.assertIn("counts all the same", self.text("counted"))
+        self.assertEqual(len(told["summary"]["tests"]), len(told["tests"]))
+
+    def test_it_can_be_read_and_reached_in_both_colours(self):
+        for dark in (False, True):
+            self.open(dark=dark)
+            self.begin(name="liner", replicates="2")
+            self.measure()
+            self.page.value("document.getElementById('batch-tests').open = true")
+            self.legible("#batch", dark)
+            for opener, dialog, shut in (("#void-1", "void-dialog", "void-close"), ("#batch-end", "end-dialog", "end-leave"), ("#batches-open", "batches-dialog", "batches-close")):
+                self.enter(opener)
+                self.until(f"document.getElementById('{dialog}').matches(':modal')")
+                if dialog == "batches-dialog":
+                    self.until("document.querySelectorAll('#batches-rows tr').length === 1")
+                self.legible(f"#{dialog}", dark)
+                self.enter(f"#{shut}")
+                self.until(f"!document.getElementById('{dialog}').open")
+            self.end()
+            self.enter("#batch-open")
+            self.legible("#batch-dialog", dark)
+
+    def legible(self, within, dark):
+        """Each text in it on its ground, each control by keyboard and with a label, at the bench's screen and a tablet's."""
+        self.assertEqual(self.page.value(f"[...document.querySelectorAll('{within} button, {within} input')].filter(e => e.tabIndex < 0).length"), 0)
+        self.assertEqual(self.page.value(f"[...document.querySelectorAll('{within} input')].filter(e => !e.labels.length).length"), 0)
+        for width, height in ((820, 1180), (1280, 720)):
+            self.page.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+            self.page.settle()
+            box = self.page.value(f"(r => [r.left, r.top, r.right, r.bottom])(document.querySelector('{within}').getBoundingClientRect())")
+            self.assertTrue(0 <= box[0] and box[2] <= width, (within, box, width))
+            self.assertTrue(within == "#batch" or (0 <= box[1] and box[3] <= height), (within, box, height))
+        pairs = self.page.value(f"""[...document.querySelectorAll('{within} *')].filter(e => e.offsetParent && e.textContent.trim() + (e.value ?? '')).map(e => {{
+          let back = e;
+          while (getComputedStyle(back).backgroundColor === 'rgba(0, 0, 0, 0)') back = back.parentElement;
+          return [e.tagName + '.' + e.className, getComputedStyle(e).color, getComputedStyle(back).backgroundColor];
+        }})""")
+        self.assertGreater(len(pairs), 5)
+        for name, front, back in pairs:
+            self.assertGreaterEqual(contrast(rgb(front), rgb(back)), 4.5, f"{within} {name} {front} on {back}, dark {dark}")
+
+
+if __name__ == "__main__":
+    if CHROMIUM is None:
+        sys.exit(f"{sys.argv[2]} is not installed; ./dev deps test installs it")
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])
