@@ -20,9 +20,9 @@ struct HttpReply {
   std::string body;   ///< JSON text, unless content_type says otherwise.
   std::string allow;  ///< Methods allowed, for status 405; else empty.
   std::string content_type = "application/json";
+  bool replayed = false;  ///< The answer of then to a request that is repeated.
   /// Content-Security-Policy; empty: nothing but the daemon's own files.
   std::string content_policy = {};
-  bool replayed = false;  ///< The answer of then to a request that is repeated.
 };
 
 using HttpAnswer = std::function<void(HttpReply)>;
