@@ -23,11 +23,12 @@ formatted() { git ls-files -z '*.cpp' '*.hpp' | xargs -0 -r clang-format --dry-r
 scripts_are_sound() { git grep -lzE '^#!.*\b(ba)?sh$' -- . | xargs -0 -r shellcheck; }
 
 # One file per process, as many processes as processors. The files are those that the build compiles, most of them
-# bunches of sources, .cxx, and not what is generated; headers are checked through them. stderr only counts suppressed warnings.
+# bunches of sources, .cxx, and not what is generated; headers are checked through them. Tests, half of the time, are left
+# to GCC's warnings. stderr only counts suppressed warnings.
 # shellcheck disable=SC2317
 tidy() {
   sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' "$build/compile_commands.json" | sort -u |
-    grep -v "^$(realpath "$build")/.*\.cpp$" |
+    grep -v -e "^$(realpath "$build")/.*\.cpp$" -e /tests/ |
     xargs -r -P "$(nproc)" -n 1 clang-tidy -p "$build" --quiet 2>/dev/null
 }
 
