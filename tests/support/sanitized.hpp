@@ -3,9 +3,18 @@
 /// that repeat for the sake of statistics may then repeat less.
 #pragma once
 
+// GCC has macros for it, clang has features.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define STICKSLIP_SANITIZED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define STICKSLIP_SANITIZED
+#endif
+#endif
+
 namespace stickslip::test {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef STICKSLIP_SANITIZED
 inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;

@@ -81,7 +81,11 @@ class PaperBatches final : public Batches {
     happens(who, BatchBegun{fmt::format("20261122T18030{}Z", second), std::move(plan)}, answer);
   }
   void end(std::string who, Answer answer) override {
-    happens(who, BatchEnded{book_.batches().back().id}, answer);
+    if (book_.current() == nullptr) {
+      answer(tl::unexpected(base::Error{base::ErrorKind::kBusy, "there is no batch"}));
+      return;
+    }
+    happens(who, BatchEnded{book_.current()->id}, answer);
   }
   void void_test(const std::string& record, std::string reason, std::string who, Answer answer) override {
     happens(who, TestVoided{record, std::move(reason)}, answer);

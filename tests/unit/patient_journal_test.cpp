@@ -14,8 +14,9 @@
 #include "core/record/verdict.hpp"
 #include "tests/support/faulty_disk.hpp"
 #include "tests/support/record_samples.hpp"
+#include "tests/support/sanitized.hpp"
 
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef STICKSLIP_SANITIZED
 // HDF5 keeps what a failed close leaves, which is why the daemon finalises in a process of its own.
 extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier) asked by LSan
   return "leak:libhdf5";
