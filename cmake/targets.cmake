@@ -19,8 +19,8 @@ endfunction()
 
 # stickslip_test(NAME SOURCES ... LINK ... [LABELS ...]): one GoogleTest program, one CTest entry.
 # The label "threads" marks what runs under ThreadSanitizer; the target threads_tests builds just that. "statistics" marks
-# what repeats the same code over many random tests, "numeric" what compares it with references of many digits, "documents"
-# the commands of the documents: sanitizers would learn nothing new from them, and go without.
+# what repeats the same code over many random tests, "numeric" what compares it with references of many digits, "pages"
+# what a browser shows, "documents" the commands of the documents: sanitizers would learn nothing new from them, and go without.
 add_custom_target(threads_tests)
 function(stickslip_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})

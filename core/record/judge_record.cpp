@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include "core/record/hdf_read.hpp"
-#include "core/record/judge.hpp"
 #include "core/record/journal.hpp"
+#include "core/record/judge.hpp"
 #include "core/record/layout.hpp"
 #include "core/record/seal.hpp"
 
