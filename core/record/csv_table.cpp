@@ -10,6 +10,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core/base/wording.hpp"
 #include "core/record/file.hpp"
 
 namespace stickslip::record {
@@ -50,6 +51,9 @@ void count_digits(std::string_view text, CsvColumn& column) {
   column.decimals = std::max(column.decimals, decimals);
   column.significant_digits = std::max(column.significant_digits, significant);
 }
+
+/// What a refusal quotes of the file may have any length, and line breaks between quotes.
+constexpr std::size_t kLongestRefusal = 400;
 
 /// Collects rows while libcsv finds fields. Errors wait in `error`: nothing may be thrown through C.
 class Collector {
@@ -94,9 +98,10 @@ class Collector {
   template <typename... Args>
   void refuse(fmt::format_string<Args...> format, Args&&... args) {
     if (error_) return;
-    error_ =
-        base::Error{base::ErrorKind::kUsage,
-                    fmt::format("{}:{}: {}", path_, line_, fmt::format(format, std::forward<Args>(args)...))};
+    error_ = base::Error{
+        base::ErrorKind::kUsage,
+        fmt::format("{}:{}: {}", path_, line_,
+                    base::one_line(fmt::format(format, std::forward<Args>(args)...), kLongestRefusal))};
   }
 
   [[nodiscard]] const std::optional<base::Error>& error() const { return error_; }

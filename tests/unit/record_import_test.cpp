@@ -68,6 +68,7 @@ TEST_F(CsvImport, RefusesWhatIsNoTable) {
   expect_refused("", "is empty");
   expect_refused("F\n", "no rows after the header");
   expect_refused("a,b\n1,2\n", ":1: there is no column 'F'; there are: a, b");
+  expect_refused("a,\"b\nc\"\n1,2\n", "there is no column 'F'; there are: a, b\\x0ac");
   expect_refused("F,F\n1,2\n", ":1: there are several columns 'F'");
   expect_refused("F,b\n1,2\n1\n", ":3: row has 1 fields, the header has 2");
   expect_refused("F,b\n1,2\n1,2,3\n", ":3: row has 3 fields, the header has 2");
