@@ -59,14 +59,10 @@ class CalibrationPage(unittest.TestCase):
         address = f"http://{self.daemon.port_line()}/"
         token = (self.daemon.folder / "token").read_text().strip()
         self.page = self.browser.open(f"{address}#token={token}", dark=dark)
-        self.until("document.querySelectorAll('#health dd').length > 5")
+        self.page.until("document.querySelectorAll('#health dd').length > 5")
         self.focus("open")
         self.page.press("Enter", "\r")
-        self.until("document.getElementById('calibrate-dialog').open && document.getElementById('calibrate-in-use').textContent !== ''")
-
-    def until(self, condition):
-        """Frames of the page go by until it holds; the test's own time-out is the end of patience."""
-        self.page.value(f"new Promise(done => {{ const look = () => ({condition}) ? done(true) : requestAnimationFrame(look); look(); }})")
+        self.page.until("document.getElementById('calibrate-dialog').open && document.getElementById('calibrate-in-use').textContent !== ''")
 
     def text(self, part):
         return self.page.value(f"document.getElementById('calibrate-{part}').textContent")
@@ -84,13 +80,13 @@ class CalibrationPage(unittest.TestCase):
         return self.page.value("[...document.querySelectorAll('#calibrate-rows tr')].map(r => [...r.cells].map(c => c.textContent))")
 
     def settled(self):
-        self.until("document.getElementById('calibrate-dialog').getAttribute('aria-busy') === 'false'")
+        self.page.until("document.getElementById('calibrate-dialog').getAttribute('aria-busy') === 'false'")
 
     def begin(self):
         self.type("settle", "0.5")
         self.type("reading", "0.5 s")
         self.page.press("Enter", "\r")
-        self.until("!document.getElementById('calibrate-weigh').hidden")
+        self.page.until("!document.getElementById('calibrate-weigh').hidden")
         self.settled()
         self.assertIn("take everything off", self.text("step"))
 
@@ -103,7 +99,7 @@ class CalibrationPage(unittest.TestCase):
         else:
             self.focus("read")
         self.page.press("Enter", "\r")
-        self.until(f"document.querySelectorAll('#calibrate-rows tr').length === {before + 1}")
+        self.page.until(f"document.querySelectorAll('#calibrate-rows tr').length === {before + 1}")
         self.settled()
         return self.rows()[-1][-1]
 
@@ -129,7 +125,7 @@ class CalibrationPage(unittest.TestCase):
             rows = len(self.rows())
             self.focus("undo")
             self.page.press("Enter", "\r")
-            self.until(f"document.querySelectorAll('#calibrate-rows tr').length === {rows - 1}")
+            self.page.until(f"document.querySelectorAll('#calibrate-rows tr').length === {rows - 1}")
             self.settled()
         for typed in UP_AND_DOWN:
             self.assertTrue(self.page.value("document.getElementById('calibrate-save').hidden") or typed == "0")
@@ -143,7 +139,7 @@ class CalibrationPage(unittest.TestCase):
         self.type("certificate", "DKD-7")
         self.type("days", "180")
         self.page.press("Enter", "\r")
-        self.until("document.getElementById('calibrate-message').textContent.startsWith('kept in')")
+        self.page.until("document.getElementById('calibrate-message').textContent.startsWith('kept in')")
         [file] = (self.daemon.folder / "calibrations").iterdir()
         self.assertIn(file.name, self.text("message"))
 
@@ -174,39 +170,39 @@ class CalibrationPage(unittest.TestCase):
         self.shows(self.text("in-use").split("gain ")[1], result["gain"], 8)
         self.assertEqual(self.page.value("document.activeElement.id"), "calibrate-close")
         self.page.press("Enter", "\r")
-        self.until("!document.getElementById('calibrate-dialog').open")
-        self.until(f"document.getElementById('health').textContent.includes('calibrated {kept['calibration']['date'][:10]}, until {kept['calibration']['expires'][:10]}')")
+        self.page.until("!document.getElementById('calibrate-dialog').open")
+        self.page.until(f"document.getElementById('health').textContent.includes('calibrated {kept['calibration']['date'][:10]}, until {kept['calibration']['expires'][:10]}')")
         self.assertEqual(self.page.complaints(), [])
 
     def test_an_armed_bench_is_disarmed_first_and_who_gives_up_leaves_nothing(self):
         self.open(begins="force")
         self.hanging.hang(0)
-        self.until("!document.getElementById('calibrate-disarm').hidden")
+        self.page.until("!document.getElementById('calibrate-disarm').hidden")
         self.focus("start")
         self.page.press("Enter", "\r")
-        self.until("document.getElementById('calibrate-message').textContent.startsWith('the bench is armed')")
+        self.page.until("document.getElementById('calibrate-message').textContent.startsWith('the bench is armed')")
         self.settled()
         self.focus("disarm")
         self.page.press("Enter", "\r")
-        self.until("document.getElementById('calibrate-message').textContent.startsWith('the bench is idle')")
+        self.page.until("document.getElementById('calibrate-message').textContent.startsWith('the bench is idle')")
         self.begin()
         # A tare that swings does not count: it is told, and is not in the list.
         self.hanging.hang(0, swing=0.1)
         self.focus("read")
         self.page.press("Enter", "\r")
-        self.until("document.getElementById('calibrate-message').textContent.startsWith('the tare does not count: unstable')")
+        self.page.until("document.getElementById('calibrate-message').textContent.startsWith('the tare does not count: unstable')")
         self.assertEqual(self.rows(), [])
         self.settled()
         self.read("0")
         # A page that is opened anew finds it where it was left.
         self.page.reload()
-        self.until("document.querySelectorAll('#health dd').length > 5")
+        self.page.until("document.querySelectorAll('#health dd').length > 5")
         self.focus("open")
         self.page.press("Enter", "\r")
-        self.until("document.querySelectorAll('#calibrate-rows tr').length === 1")
+        self.page.until("document.querySelectorAll('#calibrate-rows tr').length === 1")
         self.focus("give-up")
         self.page.press("Enter", "\r")
-        self.until("document.getElementById('calibrate-message').textContent.startsWith('given up')")
+        self.page.until("document.getElementById('calibrate-message').textContent.startsWith('given up')")
         self.assertFalse((self.daemon.folder / "calibrations").exists())
 
     def test_one_that_has_expired_is_told(self):
@@ -215,7 +211,7 @@ class CalibrationPage(unittest.TestCase):
             self.open(calibrations=folder)
             self.assertIn("gain 2.0100000 N/V", self.text("in-use"))
             self.assertIn("of 2020-01-01, EXPIRED on 2021-01-01", self.text("in-use"))
-            self.until("document.getElementById('health').textContent.includes('calibrated 2020-01-01, EXPIRED on 2021-01-01')")
+            self.page.until("document.getElementById('health').textContent.includes('calibrated 2020-01-01, EXPIRED on 2021-01-01')")
 
     def test_it_can_be_read_and_reached_in_both_colours(self):
         for dark in (False, True):

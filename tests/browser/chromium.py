@@ -17,6 +17,8 @@ import time
 
 # Generous: on a busy machine a browser takes its time to start.
 TIMEOUT_S = 300
+# And what is waited for in a page.
+PATIENCE_S = 200
 
 
 class Chromium:
@@ -26,7 +28,9 @@ class Chromium:
         self.answers, answers_in = os.pipe()
         arguments = [program, "--headless=new", "--remote-debugging-pipe", f"--user-data-dir={self.folder.name}/profile",
                      "--no-first-run", "--no-default-browser-check", "--disable-gpu", "--disable-background-networking",
-                     "--disable-component-update", "--disable-dev-shm-usage", "--window-size=1280,1600", "--hide-scrollbars"]
+                     "--disable-component-update", "--disable-dev-shm-usage", "--window-size=1280,1600", "--hide-scrollbars",
+                     # A page behind another would have no frames and slow timers.
+                     "--disable-backgrounding-occluded-windows", "--disable-renderer-backgrounding", "--disable-background-timer-throttling"]
         if os.geteuid() == 0:
             arguments.append("--no-sandbox")  # It refuses root otherwise; the page is our own.
         # The browser reads commands from descriptor 3 and answers on 4.
@@ -156,6 +160,12 @@ class Page:
         if "exceptionDetails" in result:
             raise RuntimeError(f"{expression}: {result['exceptionDetails']['exception'].get('description')}")
         return result["result"].get("value")
+
+    def until(self, condition):
+        """Looks again and again until it holds."""
+        if not self.value("new Promise(done => { const end = performance.now() + %d, look = () => (%s) ? done(true) : performance.now() < end ?"
+                          "setTimeout(look, 20) : done(false); look(); })" % (1000 * PATIENCE_S, condition)):
+            raise AssertionError(f"not within {PATIENCE_S} s: {condition}")
 
     def own_events(self, method):
         self.value("0")  # What was under way has arrived before this answer.

@@ -44,11 +44,7 @@ class FaultsPage(unittest.TestCase):
         self.address = f"http://{self.daemon.port_line()}/"
         token = (self.daemon.folder / "token").read_text().strip()
         self.page = self.browser.open(f"{self.address}#token={token}")
-        self.until("document.querySelectorAll('#health dd').length > 5")
-
-    def until(self, condition):
-        """Frames of the page go by until it holds; the test's own time-out is the end of patience."""
-        self.page.value(f"new Promise(done => {{ const look = () => ({condition}) ? done(true) : requestAnimationFrame(look); look(); }})")
+        self.page.until("document.querySelectorAll('#health dd').length > 5")
 
     def mounted(self, folder):
         self.records = folder / "records"
@@ -66,17 +62,17 @@ class FaultsPage(unittest.TestCase):
 
     def test_a_full_disk_is_told_as_long_as_it_lasts_and_no_test_is_lost(self):
         self.open(prepare=self.mounted)
-        self.until(f"{RECORDS}.some(text => text.endsWith('.h5'))")
+        self.page.until(f"{RECORDS}.some(text => text.endsWith('.h5'))")
         self.assertTrue(self.page.value("document.getElementById('trouble').hidden"))
         # Eight MiB are room for 7 min of tests, and short; tests go on, and none can be asked for.
         leave(self.records, 8 << 20)
-        self.until(f"{TROUBLE}.startsWith('storage short: room for ')")
+        self.page.until(f"{TROUBLE}.startsWith('storage short: room for ')")
         self.assertIn("move records from records to another disk", self.page.value(TROUBLE))
         self.assertEqual(self.page.value("document.getElementById('trouble').getAttribute('role')"), "alert")
         self.can_be_read()
         self.assertEqual(self.page.value("document.querySelector('#health dd').textContent"), "storage short")
         self.press("start")
-        self.until("document.getElementById('message').textContent.startsWith('storage short: room for ')")
+        self.page.until("document.getElementById('message').textContent.startsWith('storage short: room for ')")
         # What the ballast gives back is filled too.
         while not self.page.value(f"{TROUBLE}.startsWith('storage waiting: ')"):
             fill(self.records)
@@ -85,16 +81,16 @@ class FaultsPage(unittest.TestCase):
         self.can_be_read()
         # Two tests begin and end meanwhile; their numbers are there, and their records to come.
         ended = self.page.value("document.querySelectorAll('#tests tbody tr').length")
-        self.until(f"document.querySelectorAll('#tests tbody tr').length >= {ended + 2}")
+        self.page.until(f"document.querySelectorAll('#tests tbody tr').length >= {ended + 2}")
         waiting = self.page.value("[...document.querySelectorAll('#tests tbody tr')].slice(0, 2).map(r => [...r.cells].map(c => c.textContent))")
         for row in waiting:
             self.assertFalse(row[-1].endswith(".h5"), row)
         if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
             self.page.screenshot(pathlib.Path(folder) / "full-disk.png")
         (self.records / "filler").unlink()
-        self.until("document.getElementById('trouble').hidden")
+        self.page.until("document.getElementById('trouble').hidden")
         numbers = [row[0] for row in waiting]
-        self.until(f"[...document.querySelectorAll('#tests tbody tr')].filter(r => {numbers}.includes(r.cells[0].textContent) && r.cells[r.cells.length - 1].textContent.endsWith('.h5')).length === 2")
+        self.page.until(f"[...document.querySelectorAll('#tests tbody tr')].filter(r => {numbers}.includes(r.cells[0].textContent) && r.cells[r.cells.length - 1].textContent.endsWith('.h5')).length === 2")
         for row in waiting:
             with h5py.File(self.daemon.record(int(row[0]))) as record:
                 self.assertEqual(record["entry/process/status"].asstr()[()], "complete")
@@ -105,27 +101,27 @@ class FaultsPage(unittest.TestCase):
 
     def test_a_board_that_is_not_there_is_told_and_commands_are_refused(self):
         self.open(board=NO_BOARD)
-        self.until(f"{TROUBLE}.startsWith('board missing: ')")
+        self.page.until(f"{TROUBLE}.startsWith('board missing: ')")
         self.assertIn("/dev/comedi-that-is-not-there", self.page.value(TROUBLE))
         self.can_be_read()
         self.assertEqual(self.page.value("document.getElementById('bench-word').textContent"), "degraded")
         self.press("start")
-        self.until("document.getElementById('message').textContent.startsWith('no scans come from the board')")
+        self.page.until("document.getElementById('message').textContent.startsWith('no scans come from the board')")
 
     def test_a_daemon_that_comes_back_is_found_again(self):
         self.open()
-        self.until("Scope.data.scan.length > 100")
+        self.page.until("Scope.data.scan.length > 100")
         first = self.address
         self.daemon.end()
-        self.until(f"{TROUBLE}.startsWith('the daemon does not answer')")
+        self.page.until(f"{TROUBLE}.startsWith('the daemon does not answer')")
         self.assertEqual(self.page.value("document.getElementById('bench-word').textContent"), "not connected")
         config = self.daemon.folder / "d.toml"
         port = first.rsplit(":", 1)[1].rstrip("/")
         config.write_text(config.read_text(encoding="utf-8").replace("127.0.0.1:0", f"127.0.0.1:{port}"), encoding="utf-8")
         self.daemon.start()
-        self.until("document.getElementById('trouble').hidden && document.getElementById('bench-word').textContent !== 'not connected'")
+        self.page.until("document.getElementById('trouble').hidden && document.getElementById('bench-word').textContent !== 'not connected'")
         scans = self.page.value("Scope.data.scan.at(-1)")
-        self.until(f"Scope.data.scan.at(-1) !== {scans}")
+        self.page.until(f"Scope.data.scan.at(-1) !== {scans}")
 
 
 if __name__ == "__main__":

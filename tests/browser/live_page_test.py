@@ -59,17 +59,13 @@ class LivePage(unittest.TestCase):
 
     def page(self, dark=False):
         page = self.browser.open(f"{self.address}#token={self.token}", dark=dark)
-        self.until(page, "document.querySelectorAll('#health dd').length > 5 && Scope.data.scan.length > 100")
+        page.until("document.querySelectorAll('#health dd').length > 5 && Scope.data.scan.length > 100")
         return page
-
-    def until(self, page, condition):
-        """Frames of the page go by until it holds; the test's own time-out is the end of patience."""
-        page.value(f"new Promise(done => {{ const look = () => ({condition}) ? done(true) : requestAnimationFrame(look); look(); }})")
 
     def test_each_number_in_the_table_is_the_records_to_the_digits_shown(self):
         daemon = self.daemon()
         page = self.page()
-        self.until(page, "[...document.querySelectorAll('#tests tbody td:last-child')].filter(c => c.textContent.endsWith('.h5')).length >= 3")
+        page.until("[...document.querySelectorAll('#tests tbody td:last-child')].filter(c => c.textContent.endsWith('.h5')).length >= 3")
         rows, foot = page.value("[['#tests tbody tr', '#tests tfoot tr'].map(s => [...document.querySelectorAll(s)].map(r => [...r.cells].map(c => c.textContent)))][0]")
         compared, values = 0, {name: [] for name, _ in COLUMNS}
         for row in rows:
@@ -101,7 +97,7 @@ class LivePage(unittest.TestCase):
         daemon = self.daemon()
         page = self.page()
         # A test has some hundred slips: at least one test that is over has its slips here, however slow this browser is.
-        self.until(page, "document.querySelectorAll('#tests tbody tr').length >= 2 && Scope.data.scan.length > 1200 && Scope.slips.length > 300")
+        page.until("document.querySelectorAll('#tests tbody tr').length >= 2 && Scope.data.scan.length > 1200 && Scope.slips.length > 300")
         shown = page.value("({scan: Scope.data.scan, lowest: Scope.data.lowest, highest: Scope.data.highest, slope: Scope.data.slope, time: Scope.data.time,"
                            "slips: Scope.slips})")
         compared = peaks = 0
@@ -161,28 +157,28 @@ class LivePage(unittest.TestCase):
             page.value(f"document.querySelector('#plan [name={name}]').focus()")
             page.call("Input.insertText", text=typed)
         page.press("Enter", "\r")
-        self.until(page, "document.getElementById('message').textContent.startsWith('the plan is set')")
+        page.until("document.getElementById('message').textContent.startsWith('the plan is set')")
         self.assertEqual(daemon.ask("GET", "/v1/plan")[1]["name"], "liner 42")
         self.assertEqual(page.value("document.querySelector('#plan [name=pull_speed]').value"), "5.08 mm/s")
-        self.until(page, "Scope.data.highest.slice(-50).every(force => force < 0.02)")  # A whole pull is to come.
+        page.until("Scope.data.highest.slice(-50).every(force => force < 0.02)")  # A whole pull is to come.
         page.value("document.querySelector('[data-command=start]').focus()")
         page.press("Enter", "\r")
-        self.until(page, f"['loading', 'running'].includes({word})")
-        self.until(page, f"{word} === 'running' && Scope.cycles.number.length > 2")
+        page.until(f"['loading', 'running'].includes({word})")
+        page.until(f"{word} === 'running' && Scope.cycles.number.length > 2")
         shapes["running"] = page.value("document.getElementById('bench-shape').getAttribute('d')")
         self.assertEqual(page.value("document.getElementById('regime-word').textContent"), "stick-slip")
         page.value("document.getElementById('mark-text').focus()")
         page.call("Input.insertText", text="sheet moved")
         page.press("Enter", "\r")
-        self.until(page, "document.getElementById('message').textContent.startsWith('mark: test 1')")
+        page.until("document.getElementById('message').textContent.startsWith('mark: test 1')")
         # Somebody else is told who has the bench, and the page is told why it is refused.
         self.assertRegex(daemon.ask("POST", "/v1/stop", who="bob")[1]["error"], "^page .... has the bench")
         page.value("document.querySelector('[data-command=arm]').focus()")
         page.press("Enter", "\r")
-        self.until(page, "document.getElementById('message').textContent.startsWith('a test is running')")
+        page.until("document.getElementById('message').textContent.startsWith('a test is running')")
         page.value("document.querySelector('[data-command=stop]').focus()")
         page.press("Enter", "\r")
-        self.until(page, "document.querySelectorAll('#tests tbody tr').length === 1")
+        page.until("document.querySelectorAll('#tests tbody tr').length === 1")
         self.assertNotEqual(shapes["idle"], shapes["running"])
         with h5py.File(daemon.record(1)) as record:
             texts = [text.decode() for text in record["entry/events/text"][()]]
@@ -197,7 +193,7 @@ class LivePage(unittest.TestCase):
         batch = begun["batch"]["id"]
         page = self.page()
         foot = "Object.fromEntries([...document.querySelectorAll('#tests tfoot tr')].map(r => [r.cells[0].textContent, [...r.cells].map(c => c.textContent)]))"
-        self.until(page, f"({foot}).limits && ({foot}).mean")
+        page.until(f"({foot}).limits && ({foot}).mean")
         self.assertEqual(page.value("document.getElementById('counted').textContent"), f"mean and limits of batch {batch}")
         # The scene has S − K = 0.05 and K = 0.30: one limit is kept, one missed by each test.
         limits = page.value(foot)["limits"]
@@ -211,7 +207,7 @@ class LivePage(unittest.TestCase):
         # What is void does not count, and says why.
         number = summary["tests"][0]
         self.assertEqual(daemon.ask("POST", "/v1/void", {"test": number, "reason": "paper torn"})[0], 200)
-        self.until(page, f"[...document.querySelectorAll('#tests tbody tr.void')].some(r => r.cells[0].textContent === '{number}' && r.textContent.includes('void: paper torn'))")
+        page.until(f"[...document.querySelectorAll('#tests tbody tr.void')].some(r => r.cells[0].textContent === '{number}' && r.textContent.includes('void: paper torn'))")
         summary = daemon.ask("GET", "/v1/tests")[1]["summary"]
         self.assertNotIn(number, summary["tests"])
         # Saved by keyboard, byte for byte.
@@ -219,7 +215,7 @@ class LivePage(unittest.TestCase):
             self.browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=folder, eventsEnabled=True)
             name = page.value("(() => { const links = document.querySelectorAll('#tests tbody a'), link = links[links.length - 1]; link.focus(); return link.textContent; })()")
             page.press("Enter", "\r")
-            self.until(page, f"document.getElementById('message').textContent === 'saved {name}'")
+            page.until(f"document.getElementById('message').textContent === 'saved {name}'")
             self.browser.wait_for_download()
             self.assertEqual((pathlib.Path(folder) / name).read_bytes(), (daemon.folder / "records" / name).read_bytes())
 
@@ -249,11 +245,11 @@ class LivePage(unittest.TestCase):
     def test_without_the_token_it_asks_for_it(self):
         self.daemon()
         page = self.browser.open(self.address)
-        self.until(page, "!document.getElementById('access').hidden")
+        page.until("!document.getElementById('access').hidden")
         page.value("document.getElementById('token').focus()")
         page.call("Input.insertText", text=self.token)
         page.press("Enter", "\r")
-        self.until(page, "Scope.data.scan.length > 10")
+        page.until("Scope.data.scan.length > 10")
         self.assertTrue(page.value("document.getElementById('access').hidden"))
 
 

@@ -15,7 +15,7 @@ import unittest
 
 import h5py
 
-from running_daemon import RunningDaemon, wait_for
+from running_daemon import RunningDaemon, wait_for, wait_for_rest
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
@@ -23,7 +23,8 @@ SOURCE = pathlib.Path(sys.argv[2]).resolve()
 
 class Batch(unittest.TestCase):
     def setUp(self):
-        self.daemon = RunningDaemon(self, BUILD, SOURCE, '[test]\nbegins = "command"\n')
+        # Slow enough that a pull of 5 s, which ends the test, is not over before its fifth cycle is seen.
+        self.daemon = RunningDaemon(self, BUILD, SOURCE, '[test]\nbegins = "command"\n', speed=8)
 
     def run_cli(self, *arguments, status=0):
         done = self.daemon.run(*arguments, *(() if "--as" in arguments or arguments == ("batch",) else ("--as", "ada")))
@@ -40,12 +41,12 @@ class Batch(unittest.TestCase):
         """One test, begun and ended by command. Returns its record."""
         process, frames = self.daemon.watch()
         try:
-            wait_for(frames, lambda frame: True)
-            for _ in frames:
+            status = 0
+            while status != 200:
+                wait_for_rest(frames)
                 status, started = self.daemon.ask("POST", "/v1/start", {})
-                if status == 200:
-                    break
-            wait_for(frames, lambda frame: frame["type"] == "cycle" and frame["number"] == 4)
+            last = wait_for(frames, lambda frame: frame["type"] == "test-ended" or frame["type"] == "cycle" and frame["number"] == 4)
+            self.assertEqual(last["type"], "cycle", "the pull is over")
             self.assertEqual(self.daemon.ask("POST", "/v1/stop", {})[0], 200)
         finally:
             process.kill()

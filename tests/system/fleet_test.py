@@ -126,10 +126,9 @@ class Messages(Case):
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         next(frame for frame in frames if any(file.stat().st_size > 8192 for file in daemon.folder.glob("records/*.journal")))
-        daemon.process.kill()
+        daemon.kill()
         lost = listener.wait_for_state("bench-7", "lost")[2]
         self.assertEqual(set(lost), {"tester", "connected_since", "state"})
-        daemon.process.communicate()
         again = self.restart(daemon)
         [result] = listener.results(1)
         self.assertEqual(result["status"], "interrupted")
@@ -148,8 +147,7 @@ class Outbox(Case):
         away = self.fleet_of(daemon, lambda found: found["outbox_count"] >= 2)
         self.assertEqual(away["state"] if away["state"] != "connecting" else "waiting", "waiting")
         # The first daemon is killed while all that it measured waits.
-        daemon.process.kill()
-        daemon.process.communicate()
+        daemon.kill()
         waiting = list((daemon.folder / "outbox").glob("*.json"))
         self.assertGreaterEqual(len(waiting), 2)
         again = self.restart(daemon)
@@ -187,8 +185,9 @@ class Outbox(Case):
     def test_a_broker_that_never_answers_holds_up_nothing(self):
         with socket.create_server(("127.0.0.1", 0)) as deaf:
             daemon = self.daemon(fleet(deaf.getsockname()[1]), speed=50, repeats=2)
-            _, errors = daemon.process.communicate(timeout=TIMEOUT_S)
-            self.assertEqual(daemon.process.returncode, 0, errors)
+            daemon.process.wait(TIMEOUT_S)  # The scenes are over.
+            status, errors = daemon.end()
+            self.assertEqual(status, 0, errors)
             self.assertEqual(len(records(daemon.folder)), 2)
             self.assertEqual(len(list((daemon.folder / "outbox").glob("*.json"))), 2)
 

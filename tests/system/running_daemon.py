@@ -4,11 +4,13 @@ answer or for a frame of the live stream."""
 import http.client
 import json
 import pathlib
+import queue
 import re
 import signal
 import socket
 import subprocess
 import tempfile
+import threading
 
 # Generous: under sanitizers on a busy machine everything takes its time.
 TIMEOUT_S = 240
@@ -56,23 +58,39 @@ repeats = {repeats}
         manager.bind(str(notify))
         manager.settimeout(TIMEOUT_S)
         self.process = subprocess.Popen(self.command, cwd=self.folder, stderr=subprocess.PIPE, text=True, env={"NOTIFY_SOCKET": str(notify)})
+        self.log, self.unread = [], queue.Queue()
+        self.reader = threading.Thread(target=self.read_log)
+        self.reader.start()
         while manager.recv(4096) != b"READY=1":
             pass
         manager.close()  # Notifications that nobody reads would fill it, and the daemon would wait.
 
+    def read_log(self):
+        """At once: a pipe that nobody reads fills up, and the daemon would wait for it."""
+        for line in self.process.stderr:
+            self.log.append(line)
+            self.unread.put(line)
+
+    def gone(self):
+        self.process.wait(TIMEOUT_S)
+        self.reader.join()
+        self.process.stderr.close()
+
     def kill(self):
         """As a power switch does: nothing is put in order."""
         self.process.kill()
-        self.process.communicate(timeout=TIMEOUT_S)
+        self.gone()
 
     def end(self):
+        """Returns its exit code and its log."""
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGTERM)
         try:
-            _, errors = self.process.communicate(timeout=TIMEOUT_S)
+            self.process.wait(TIMEOUT_S)
         finally:
             self.process.kill()
-        return self.process.returncode, errors
+            self.gone()
+        return self.process.returncode, "".join(self.log)
 
     def ask(self, method, path, body=None, who="ada", key=None, connection=None, headers=None):
         own = connection or UnixConnection(self.socket)
@@ -100,10 +118,9 @@ repeats = {repeats}
 
     def port_line(self):
         """What the log says of the TCP port."""
-        for line in self.process.stderr:
-            if found := re.search(r"control: listening at (127\.0\.0\.1:\d+)", line):
+        while True:
+            if found := re.search(r"control: listening at (127\.0\.0\.1:\d+)", self.unread.get(timeout=TIMEOUT_S)):
                 return found[1]
-        raise AssertionError("no port")
 
     def record(self, number):
         """The record of a test that has ended: the finaliser may still be at it."""
