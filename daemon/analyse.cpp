@@ -86,6 +86,7 @@ void RecordAnalysis::add(daq::ScanIndex first, std::span<const double> raw,
   next_ = first;
   // Nobody looks on: the final ones come with the results.
   static_cast<void>(analysis_.take_new_cycles());
+  static_cast<void>(analysis_.take_new_falls());
 }
 
 void RecordAnalysis::finish(record::EndRecord& end, std::span<const daq::ClockAnchor> anchors,

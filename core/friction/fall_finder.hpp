@@ -48,6 +48,7 @@ class FallFinder {
   /// the peak and of the trough so far.
   [[nodiscard]] std::size_t high_at() const noexcept { return high_.position; }
   [[nodiscard]] std::size_t low_at() const noexcept { return low_.position; }
+  [[nodiscard]] double high() const noexcept { return high_.value; }  ///< The median at high_at().
 
  private:
   enum class Direction { kUnknown, kUp, kDown };

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/base/scan_index.hpp"
 #include "core/friction/cycle.hpp"
 #include "core/friction/regime.hpp"
 
@@ -64,6 +65,13 @@ struct LiveCycle {
   /// Log of the likelihood ratio of captured over free that decided, or of what was known at the end.
   double evidence = std::numeric_limits<double>::quiet_NaN();
   double decided_time_s = std::numeric_limits<double>::quiet_NaN();  ///< When it was decided.
+};
+
+/// A fall of the force as soon as it is seen; whether it is a slip is known when it is over.
+struct FallBegun {
+  base::ScanIndex peak_scan = 0;  ///< Of the highest median of three scans.
+  double peak = 0.0;              ///< That median.
+  base::ScanIndex seen_scan = 0;  ///< The scan that showed it.
 };
 
 /// What holds at the moment.

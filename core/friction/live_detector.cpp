@@ -31,6 +31,7 @@ LiveDetector::LiveDetector(const LiveSettings& settings)
 std::optional<LiveCycle> LiveDetector::add(double coefficient, bool saturated) {
   noise_.add(coefficient);
   saturated_[static_cast<std::size_t>(come_++) % saturated_.size()] = saturated;
+  fall_begun_.reset();
   if (!settings_.despike) return follow({coefficient, false}, saturated);
   const auto scan = despiker_.add(coefficient, noise_.sigma());
   if (!scan) return std::nullopt;
@@ -60,6 +61,7 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
   if (usable) follower_.add(now_s, scan.value);
   const auto amplitude = watch_.add(scan.value, usable);
 
+  const bool was_falling = finder_.falling();
   const auto fall = finder_.add(scan.value, SlipRule::kHysteresisSigmas * sigma);
   if (finder_.falling() && follower_.keeps_scans()) {
     follower_.falls(time_of(static_cast<double>(finder_.high_at())),
@@ -67,6 +69,8 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
   }
   if (state_.phase < Phase::kCycles && usable) watch_phase(scan.value, sigma);
   // What falls before anything was loaded are spikes that follow each other.
+  if (!was_falling && finder_.falling() && static_cast<double>(finder_.high_at()) >= loading_at_)
+    fall_begun_ = {static_cast<base::ScanIndex>(finder_.high_at()), finder_.high(), come_ - 1};
   if (fall && rule_.is_slip(*fall, sigma) && fall->peak_at >= loading_at_) return slip(*fall, sigma, now_s);
   if (follower_.step(now_s, sigma)) take_decision();
   if (amplitude && amplitude->is_over()) {

@@ -7,6 +7,10 @@
 ///
 /// What it says depends on the scans alone, not on how they come in blocks. O(1) for a scan; the fits that a
 /// closing cycle needs are of bounded size and spread over scans. Never allocates after it is made.
+///
+/// A fall is told kFallDelayScans after the scan at which the force, the median of three scans, has fallen by
+/// the hysteresis below its highest. Where the highest scan stands alone its median is lower, and the scans
+/// themselves may have fallen as far a scan earlier.
 #pragma once
 
 #include <array>
@@ -35,6 +39,9 @@ struct LiveSettings {
 /// Thread-bound. 170 kB, taken when it is made.
 class LiveDetector {
  public:
+  /// The despiker holds three scans back, and the median of three waits for one.
+  static constexpr int kFallDelayScans = 4;
+
   explicit LiveDetector(const LiveSettings& settings);
 
   /// The next scan. \return the cycle that it closes: at the peak after the next trough its successor is
@@ -46,6 +53,8 @@ class LiveDetector {
   std::optional<LiveCycle> end() noexcept;
 
   [[nodiscard]] const LiveState& state() const noexcept { return state_; }
+  /// The fall that the last scan showed, if it did; its scans are counted from the first that came.
+  [[nodiscard]] const std::optional<FallBegun>& fall_begun() const noexcept { return fall_begun_; }
   /// The slip under way with what is known of it; nothing between none and the first.
   [[nodiscard]] const LiveCycle* under_way() const noexcept {
     return follower_.is_open() ? &follower_.slip() : nullptr;
@@ -68,6 +77,7 @@ class LiveDetector {
   SlipFollower follower_;
   RingDownWatch watch_;
   LiveState state_;
+  std::optional<FallBegun> fall_begun_;
 
   std::int64_t come_ = 0;         ///< Scans that came.
   std::int64_t position_ = 0;     ///< Scans followed, as the finder counts them.

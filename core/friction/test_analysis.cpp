@@ -119,6 +119,7 @@ TestAnalysis::TestAnalysis(const AnalysisSettings& settings)
       live_cycles_(settings.scratch_folder) {
   constexpr std::size_t kRoom = 100;
   new_cycles_.reserve(kRoom);
+  new_falls_.reserve(kRoom);
   if (!(settings.scan_rate_Hz > 0.0) || !std::isfinite(settings.scan_rate_Hz)) {
     throw std::invalid_argument(fmt::format("scan rate {} Hz must be positive", settings.scan_rate_Hz));
   }
@@ -138,6 +139,10 @@ void TestAnalysis::add(base::ScanIndex index, double coefficient, bool saturated
   coefficients_.push_back(coefficient);
   saturated_.push_back(saturated ? 1 : 0);
   if (const auto cycle = live_.add(coefficient, saturated)) keep_live(*cycle);
+  if (const auto& fall = live_.fall_begun()) {
+    const auto peak = static_cast<std::size_t>(fall->peak_scan);
+    new_falls_.push_back({std::as_const(indices_)[peak], fall->peak, index});
+  }
 }
 
 void TestAnalysis::keep_live(const LiveCycle& cycle) {
@@ -164,6 +169,12 @@ void TestAnalysis::gap(base::ScanIndex first, std::int64_t count, bool estimated
 std::vector<Cycle> TestAnalysis::take_new_cycles() {
   std::vector<Cycle> taken = new_cycles_;
   new_cycles_.clear();  // Their room stays.
+  return taken;
+}
+
+std::vector<FallBegun> TestAnalysis::take_new_falls() {
+  std::vector<FallBegun> taken = new_falls_;
+  new_falls_.clear();  // Their room stays.
   return taken;
 }
 

@@ -67,6 +67,8 @@ class TestAnalysis {
   /// Cycles completed since the last call, as the detector sees them live; finish() refines them. A cycle is
   /// complete when the next slip is seen, or the oscillation has died away.
   [[nodiscard]] std::vector<Cycle> take_new_cycles();
+  /// Falls of the force seen since the last call, LiveDetector::kFallDelayScans after they came.
+  [[nodiscard]] std::vector<FallBegun> take_new_falls();
   /// No more scans: the cycle under way is complete too. finish() does the same.
   void end_live();
   /// Phase and regime of the moment.
@@ -120,6 +122,7 @@ class TestAnalysis {
 
   LiveDetector live_;
   std::vector<Cycle> new_cycles_;  ///< With room for those of a second at 100 a second.
+  std::vector<FallBegun> new_falls_;
   TierMeans means_;
   base::LongColumn<Cycle> live_cycles_;  ///< As the live side saw them.
 

@@ -60,7 +60,7 @@ void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause, bo
   if (test_is_running()) {
     hand_over(block, not_handed_over, block.count);
     note_clocks(block);
-    report_new_cycles();
+    report_news();
   }
   const friction::LiveState now = live();
   for (Sink* sink : sinks_) sink->observed(block.first, std::span{coefficients_}.first(block.count), now);
@@ -173,7 +173,7 @@ void Processor::analyse(daq::ScanIndex index, double raw, std::int32_t second) {
 
 void Processor::end(daq::ScanIndex end, EndCause cause) {
   analysis_->end_live();
-  report_new_cycles();
+  report_news();
   finish_clocks(end);
   TestEnd ended;
   ended.number = number_++;
@@ -222,7 +222,10 @@ void Processor::hand_over(const daq::ScanBlock& block, std::size_t from, std::si
   for (Sink* sink : sinks_) sink->scans(first, raw, second, block.stamp);
 }
 
-void Processor::report_new_cycles() {
+void Processor::report_news() {
+  for (const friction::FallBegun& fall : analysis_->take_new_falls()) {
+    for (Sink* sink : sinks_) sink->fall(fall);
+  }
   for (const friction::Cycle& cycle : analysis_->take_new_cycles()) {
     for (Sink* sink : sinks_) sink->cycle(cycle);
   }

@@ -142,7 +142,7 @@ class Processor {
     return settings_.second && settings_.second->quantity == daq::SecondQuantity::kPullSpeed;
   }
   void hand_over(const daq::ScanBlock& block, std::size_t from, std::size_t to);
-  void report_new_cycles();
+  void report_news();
 
   ProcessorSettings settings_;
   daq::Calibration calibration_;

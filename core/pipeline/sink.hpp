@@ -71,8 +71,8 @@ struct TestEnd {
   std::optional<daq::LatencyHistogram> read_latency;  ///< Of its blocks; none where no clock could tell.
 };
 
-/// Called from the processing thread, in order: began, (scans | gap | anchor | cycle | note)*, ended. Must
-/// not throw; may block only if it must never lose data (the record), and then stalls the walk.
+/// Called from the processing thread, in order: began, (scans | gap | anchor | fall | cycle | note)*, ended.
+/// Must not throw; may block only if it must never lose data (the record), and then stalls the walk.
 class Sink {
  public:
   virtual ~Sink() = default;
@@ -85,6 +85,8 @@ class Sink {
   virtual void gap(const daq::Gap& /*gap*/) {}
   /// The clocks at a scan of the running test; rising, and after the scan itself.
   virtual void anchor(const daq::ClockAnchor& /*anchor*/) {}
+  /// As soon as it is seen: perhaps a slip, of which the cycle follows.
+  virtual void fall(const friction::FallBegun& /*fall*/) {}
   /// As soon as it is known, before the whole-test estimate refines it.
   virtual void cycle(const friction::Cycle& /*cycle*/) {}
   /// What a person did, at a scan of the running test; in no order with its scans.

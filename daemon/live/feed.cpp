@@ -109,6 +109,18 @@ double LiveFeed::read_time_s() const noexcept {
   return static_cast<double>(read_realtime_ns_) * kNanosecond_s;
 }
 
+void LiveFeed::fall(const friction::FallBegun& fall) {
+  if (!heard()) return;
+  publish_(Json{{"type", "fall"},
+                {"test", test_},
+                {"scan_rate", scan_rate_Hz_},
+                {"read_time", read_time_s()},
+                {"peak_scan", fall.peak_scan},
+                {"peak", fall.peak},
+                {"seen_scan", fall.seen_scan}}
+               .dump());
+}
+
 void LiveFeed::cycle(const friction::Cycle& cycle) {
   if (!heard()) return;
   publish_(Json{{"type", "cycle"},

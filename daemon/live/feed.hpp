@@ -29,6 +29,7 @@ class LiveFeed final : public pipeline::Sink {
   void test_began(const pipeline::TestStart& start) override;
   void scans(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second,
              const daq::ClockStamp& stamp) override;
+  void fall(const friction::FallBegun& fall) override;
   void cycle(const friction::Cycle& cycle) override;
   void gap(const daq::Gap& gap) override { tell_gap(gap); }
   void gap_between_tests(const daq::Gap& gap) override { tell_gap(gap); }

@@ -69,12 +69,32 @@ const Batch = (() => {
   });
   part("void-close").addEventListener("click", () => part("void-dialog").close());
 
+  // Two fields for each result of the table.
+  part("batch-limits").querySelector("div").replaceChildren(...Tables.columns.map(([name, label]) => {
+    const box = document.createElement("fieldset"), legend = document.createElement("legend");
+    legend.textContent = label;
+    box.append(legend, ...["lowest", "highest"].map(side => {
+      const said = document.createElement("label"), field = document.createElement("input");
+      said.textContent = side;
+      field.type = "number";
+      field.step = "any";
+      field.name = `${name}.${side}`;
+      said.append(field);
+      return said;
+    }));
+    return box;
+  }));
+
   // What is left empty has its default, that of the method where one is named.
   function asked() {
     const values = {};
     for (const field of plan.querySelectorAll("input")) {
-      const text = field.value.trim();
+      const text = field.value.trim(), [quantity, side] = field.name.split(".");
       if (text === "") continue;
+      if (side) {
+        ((values.limits ??= {})[quantity] ??= {})[side] = Number(text);
+        continue;
+      }
       values[field.name] = field.type === "number" ? Number(text) : field.name === "pull_speeds" ? text.split(",").map(speed => speed.trim()).filter(speed => speed !== "") : text;
     }
     return values;

@@ -104,6 +104,7 @@
     scans(frame) { Scope.scans(frame); if (frame.test != null) Tables.regime(frame.regime); },
     bench(frame) { Tables.bench(frame.bench); },
     "test-began": frame => Scope.began(frame),
+    fall: frame => Scope.fall(frame),
     cycle(frame) { Scope.cycle(frame); Tables.cycle(frame); },
     gap(frame) { say(`gap: ${frame.scan_count} scans missing: ${frame.cause}`); },
     note() {},

@@ -4,7 +4,7 @@
 const Scope = (() => {
   const kWindow = 10;  // s
   const kMostParts = 20000;
-  // One pixel of the screen: lines that are wider take a processor ten times as long.
+  // One pixel of the screen: without a graphics card wider lines are drawn much more slowly.
   const kLine = 1 / devicePixelRatio;
   const colour = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const forceBox = document.getElementById("force");
@@ -16,6 +16,7 @@ const Scope = (() => {
   const slips = [];   // {onset, capture, peak_time, peak, captured}
   const spikes = [];  // {time, value}
   const cycles = {number: [], delta: [], amplitude: []};
+  let falling = null;  // {time, peak} of the latest fall, until its cycle closes
   let rate = 0, speed = 1, step = 1, dirty = false, newCycles = true;
 
   const height = part => Math.round(Math.max(90, window.innerHeight * part));
@@ -56,6 +57,13 @@ const Scope = (() => {
       ctx.arc(u.valToPos(slip.peak_time, "x", true), u.valToPos(slip.peak, "y", true), size, 0, 2 * Math.PI);
       ctx.fillStyle = ctx.strokeStyle = colour("--mark");
       if (slip.captured) ctx.fill(); else ctx.stroke();
+    }
+    // A slip seen as it begins: a ring, until it is known what it was.
+    if (falling && falling.time >= from && falling.time > (slips.at(-1)?.peak_time ?? -Infinity) + 1 / rate) {
+      ctx.beginPath();
+      ctx.arc(u.valToPos(falling.time, "x", true), u.valToPos(falling.peak, "y", true), 1.5 * size, 0, 2 * Math.PI);
+      ctx.strokeStyle = colour("--mark");
+      ctx.stroke();
     }
     ctx.strokeStyle = colour("--spike");
     for (const spike of spikes) {
@@ -110,6 +118,10 @@ const Scope = (() => {
     dirty = true;
   }
   const began = () => { for (const column of Object.values(cycles)) column.length = 0; dirty = newCycles = true; };
+  function fall(frame) {
+    falling = {time: frame.peak_scan / frame.scan_rate, peak: frame.peak};
+    dirty = true;
+  }
   function cycle(frame) {
     const at = t => (t == null ? null : frame.test_first_scan / frame.scan_rate + t);
     if (frame.peak_time != null) slips.push({test: frame.test, onset: at(frame.onset_time), capture: at(frame.capture_time), peak_time: at(frame.peak_time), peak: frame.peak, captured: frame.captured});
@@ -118,6 +130,7 @@ const Scope = (() => {
     dirty = newCycles = true;
   }
   function ended(frame) {
+    falling = null;
     for (const scan of frame.spikes) {
       const at = data.scan.lastIndexOf(scan);
       if (at >= 0) spikes.push({time: scan / rate, value: data.highest[at]});
@@ -132,5 +145,5 @@ const Scope = (() => {
   };
   window.addEventListener("resize", resize);
 
-  return {scans, began, cycle, ended, data, slips, spikes, cycles};
+  return {scans, began, fall, cycle, ended, data, slips, spikes, cycles};
 })();

@@ -64,8 +64,10 @@ class BatchPage(unittest.TestCase):
 
     def begin(self, **fields):
         self.enter("#batch-open")
+        if any("." in name for name in fields):
+            self.enter("#batch-limits summary")
         for name, typed in fields.items():
-            self.type(f"#batch-begin [name={name}]", typed)
+            self.type(f"#batch-begin [name='{name}']", typed)
         self.page.press("Enter", "\r")
         self.page.until("!document.getElementById('batch-dialog').open")
         batch = self.batch()
@@ -189,8 +191,16 @@ class BatchPage(unittest.TestCase):
         self.picture("batch")
         self.end()
 
-        other = self.begin(name="liner 43", grade="", pull_speeds="12 in/min", replicates="2", slides="1")
+        other = self.begin(**{"name": "liner 43", "grade": "", "pull_speeds": "12 in/min", "replicates": "2", "slides": "1",
+                              "delta_mu.lowest": "0.03", "delta_mu.highest": "0.07", "mu_k.highest": "0.2"})
+        self.assertEqual(other["plan"]["limits"], {"delta_mu": {"lowest": 0.03, "highest": 0.07}, "mu_k": {"lowest": None, "highest": 0.2}})
         others = [self.measure(), self.measure()]
+        # The scene has S - K 0.05 and K 0.3.
+        self.page.until("document.querySelectorAll('#tests tbody td.outside').length === 2")
+        outside = self.page.value("[...document.querySelectorAll('#tests tbody td.outside')].map(c => [c.cellIndex, c.textContent])")
+        self.assertEqual([(column, text[-2:]) for column, text in outside], [(3, " ✗"), (3, " ✗")])
+        limits = self.page.value("[...document.querySelectorAll('#tests tfoot tr')].map(r => [...r.cells].map(c => c.textContent)).find(r => r[0].startsWith('limits'))")
+        self.assertEqual(limits[3:5], ["≤ 0.2000 ✗ missed", "0.0300 … 0.0700 ✓ kept"])
         self.end()
         self.assertEqual(self.batch(), None)
         self.report(batch["id"], counted, records[1])
@@ -267,6 +277,10 @@ class BatchPage(unittest.TestCase):
         self.page.until("document.getElementById('batch-message').textContent !== ''")
         self.assertIn("pull_speeds", self.text("batch-message"))
         self.type("#batch-begin [name=pull_speeds]", "12 in/min")
+        self.type("#batch-begin [name=method]", "iso")
+        self.page.press("Enter", "\r")
+        self.page.until("document.getElementById('batch-message').textContent.startsWith('method: ')")
+        self.type("#batch-begin [name=method]", "iso-8295")
         self.page.press("Enter", "\r")
         self.page.until("!document.getElementById('batch-dialog').open")
         # There is nothing to report yet: said in the dialog.

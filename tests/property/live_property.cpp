@@ -14,6 +14,11 @@ namespace {
 /// What the live side said, as bits: NaN equals NaN.
 class Listener final : public Sink {
  public:
+  void fall(const friction::FallBegun& fall) override {
+    falls.push_back(static_cast<std::uint64_t>(fall.peak_scan));
+    falls.push_back(static_cast<std::uint64_t>(fall.seen_scan));
+    falls.push_back(std::bit_cast<std::uint64_t>(fall.peak));
+  }
   void cycle(const friction::Cycle& cycle) override {
     bits.push_back(static_cast<std::uint64_t>(cycle.number));
     bits.push_back(static_cast<std::uint64_t>(cycle.first_scan));
@@ -26,6 +31,7 @@ class Listener final : public Sink {
     }
   }
   std::vector<std::uint64_t> bits;
+  std::vector<std::uint64_t> falls;  ///< Apart: between blocks falls are told before cycles.
 };
 
 constexpr daq::ScanIndex kLostFrom = 250;
@@ -48,6 +54,7 @@ std::vector<std::uint64_t> live_bits(const std::vector<double>& scans, const Pro
     processor.process(block, daq::GapCause::kRingFull);
   }
   processor.finish(EndCause::kEndOfInput);
+  listener.bits.insert(listener.bits.end(), listener.falls.begin(), listener.falls.end());
   return listener.bits;
 }
 

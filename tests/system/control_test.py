@@ -72,6 +72,12 @@ class Commands(unittest.TestCase):
         self.assertTrue(began["by_command"])
         self.assertEqual(daemon.ask("POST", "/v1/start", {"test": 1})[1]["already"], True)
         self.assertEqual(daemon.ask("POST", "/v1/start")[0], 409)
+        # A slip is told as it begins, and again with all that is known when it is over.
+        fell = wait_for(frames, lambda frame: frame["type"] == "fall")
+        slipped = wait_for(frames, lambda frame: frame["type"] == "cycle")
+        self.assertEqual((fell["test"], slipped["number"]), (1, 0))
+        self.assertLessEqual(abs(fell["peak_scan"] - slipped["first_scan"]), 1)
+        self.assertLess(fell["peak_scan"], fell["seen_scan"] - 3)
         wait_for(frames, lambda frame: frame["type"] == "cycle" and frame["number"] == 3)
         status, marked = daemon.ask("POST", "/v1/mark", {"text": "gewölbt"})
         self.assertEqual(status, 200)

@@ -88,6 +88,20 @@ class ProcessorTest : public testing::Test {
     }
   }
 
+  static void expect_same_results(const TestEnd& a, const TestEnd& b) {
+    std::vector<friction::Estimate> results;
+    friction::for_each_result(a.results, [&](const friction::ResultName&, const friction::Estimate& result) {
+      results.push_back(result);
+    });
+    std::size_t at = 0;
+    friction::for_each_result(b.results,
+                              [&](const friction::ResultName& name, const friction::Estimate& result) {
+                                EXPECT_EQ(results[at].value, result.value) << name.name;
+                                EXPECT_EQ(results[at].systematic_uncertainty, result.systematic_uncertainty);
+                                ++at;
+                              });
+  }
+
   ProcessorSettings settings_;
   daq::BoardInfo board_;
   Diary diary_;
@@ -213,20 +227,33 @@ TEST_F(ProcessorTest, ANewCalibrationCountsAsIfItHadAlwaysBeen) {
   EXPECT_NE(diary_.coefficients.front(), diary_.coefficients[20]) << "the same voltage, before and after";
   EXPECT_TRUE(std::equal(diary_.coefficients.begin() + 20, diary_.coefficients.end(),
                          other.coefficients.begin() + 20, other.coefficients.end()));
-  std::vector<friction::Estimate> results;
-  const auto keep = [&results](const friction::ResultName&, const friction::Estimate& result) {
-    results.push_back(result);
-  };
-  friction::for_each_result(diary_.ends[0].results, keep);
-  std::size_t at = 0;
-  friction::for_each_result(other.ends[0].results,
-                            [&](const friction::ResultName& name, const friction::Estimate& result) {
-                              EXPECT_EQ(results[at].value, result.value) << name.name;
-                              EXPECT_EQ(results[at].systematic_uncertainty, result.systematic_uncertainty);
-                              ++at;
-                            });
+  expect_same_results(diary_.ends[0], other.ends[0]);
   ASSERT_FALSE(diary_.notes.empty());
   EXPECT_EQ(diary_.notes[0], "load cell calibrated: 2 N/V, zero 0.01 V, from scan 20, by ada");
+}
+
+// The record states one zero: its scans from before the tare are read with it too, by the test and by any
+// replay.
+TEST_F(ProcessorTest, ScansFromBeforeATareCountWithTheNewZero) {
+  settings_.segmenter.pre_trigger_s = 0.2;
+  board_.quantity = daq::RawQuantity::kVolts;
+  Processor tared{settings_, {board_, {2.0, -0.01}, 1.0}, {&diary_}};
+  feed(tared, 0, 95);
+  const TareReport report = tared.tare("ada");
+  EXPECT_EQ(report.refusal, "");
+  EXPECT_EQ(report.scan, 95);
+  EXPECT_NEAR(report.zero_V, 0.0, 1e-15);
+  Diary other;
+  Processor always{settings_, {board_, {2.0, report.zero_V}, 1.0}, {&other}};
+  feed(always, 0, 95);
+  feed(tared, 95, kEnd);
+  feed(always, 95, kEnd);
+  ASSERT_EQ(diary_.ends.size(), 1U);
+  ASSERT_EQ(other.ends.size(), 1U);
+  EXPECT_LT(diary_.starts[0].first, report.scan);
+  EXPECT_EQ(diary_.starts[0].first, other.starts[0].first);
+  EXPECT_EQ(diary_.values, other.values) << "raw, whatever the zero";
+  expect_same_results(diary_.ends[0], other.ends[0]);
 }
 
 TEST_F(ProcessorTest, ANewCalibrationNeedsAnIdleBench) {
