@@ -22,6 +22,18 @@ formatted() { git ls-files -z '*.cpp' '*.hpp' | xargs -0 -r clang-format --dry-r
 # shellcheck disable=SC2317
 scripts_are_sound() { git grep -lzE '^#!.*\b(ba)?sh$' -- . | xargs -0 -r shellcheck; }
 
+# What the programs are made with, by ./dev, against the tables with licences.
+# shellcheck disable=SC2317
+dependencies_are_listed() {
+  local package missing=0
+  while read -r package; do
+    grep -E '^\|' docs/dependencies.md | tr '|,' '\n' | tr -d ' ' | grep -qxF "$package" && continue
+    echo "docs/dependencies.md lacks $package" >&2
+    missing=1
+  done < <(sed -n '/^build_packages=(/,/^)/p; /build_packages+=(/p; /^run_packages=(/p' dev | sed 's/#.*//; s/.*(//; s/).*//' | xargs -n 1)
+  return "$missing"
+}
+
 # One file per process, as many processes as processors. The files are those that the build compiles, most of them
 # bunches of sources, .cxx, and not what is generated; headers are checked through them. Tests, half of the time, are left
 # to GCC's warnings. So is shadowing: a bunch has names of several sources, and -Werror would not let the configuration
@@ -36,5 +48,6 @@ tidy() {
 check "who includes whom" python3 tools/lint/include_table.py
 check "clang-format" formatted
 check "shellcheck" scripts_are_sound
+check "dependencies" dependencies_are_listed
 check "clang-tidy" tidy
 exit "$failed"
