@@ -1,28 +1,55 @@
 #include "daemon/notify.hpp"
 
 #include <fmt/format.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <systemd/sd-daemon.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstdlib>
 
 namespace stickslip::daemon {
 namespace {
 
-/// A manager that cannot be reached must not stop the measurement: the result is not used.
-void send(const std::string& message) { static_cast<void>(sd_notify(0, message.c_str())); }
+/// As sd_notify(), which waits where the manager has ten messages that it has not read [unix(7)], and a main
+/// thread that waits takes no command and no signal. \return false if it would have to wait.
+bool send_at_once(const std::string& message) {
+  const char* const named = std::getenv("NOTIFY_SOCKET");
+  const std::string_view name = named == nullptr ? "" : named;
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (name.empty() || name.size() >= sizeof address.sun_path) return true;
+  std::ranges::copy(name, address.sun_path);
+  if (name[0] == '@') address.sun_path[0] = '\0';  // An abstract name.
+  const int socket = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (socket < 0) return true;
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + name.size());
+  const ssize_t sent = ::sendto(socket, message.data(), message.size(), MSG_DONTWAIT | MSG_NOSIGNAL,
+                                reinterpret_cast<const sockaddr*>(&address), size);
+  const bool must_wait = sent < 0 && errno == EAGAIN;
+  ::close(socket);
+  return !must_wait;
+}
 
 }  // namespace
 
 void Notify::ready() {
   if (is_ready_) return;
   is_ready_ = true;
-  send("READY=1");
+  // It ends a daemon that it does not hear this from: worth to wait for. One that cannot be reached must not
+  // stop the measurement: the result is not used.
+  static_cast<void>(sd_notify(0, "READY=1"));
 }
 
 void Notify::status(std::string_view text) {
   if (text == last_status_) return;
   last_status_ = text;
-  send(fmt::format("STATUS={}", text));
+  if (!send_at_once(fmt::format("STATUS={}", text))) last_status_.clear();
 }
 
-void Notify::stopping() { send("STOPPING=1"); }
+void Notify::stopping() { static_cast<void>(send_at_once("STOPPING=1")); }
 
 }  // namespace stickslip::daemon

@@ -11,11 +11,11 @@ namespace stickslip::daemon {
 /// Thread-bound: the main thread.
 class Notify {
  public:
-  /// READY=1, once; later calls do nothing.
+  /// READY=1, once; later calls do nothing. Waits until the manager has room for it.
   void ready();
-  /// STATUS=…; repeated texts are sent once.
+  /// STATUS=…; repeated texts are sent once. One that the manager has no room for is left out: never waits.
   void status(std::string_view text);
-  /// STOPPING=1.
+  /// STOPPING=1. Never waits.
   void stopping();
 
  private:
