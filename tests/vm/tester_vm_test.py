@@ -93,8 +93,8 @@ class SameBits(unittest.TestCase):
                 self.assertEqual(again["cycle_count"], file["entry/results/cycle_count"][()])
 
     def test_a_clock_that_is_fast_is_seen(self):
-        [path] = support.records(self.results, "rate-error")
-        record = verdict.judge(path)
+        # On a slow machine the next test has begun before the daemon is told to end.
+        record = verdict.judge(support.records(self.results, "rate-error")[0])
         error = record.measured_Hz / record.granted_Hz - 1
         print(f"\nrate off by {error * 1e6:.1f} ppm, of {RATE_ERROR_PPB / 1e3:.0f}")
         self.assertEqual(record.gaps, [])
