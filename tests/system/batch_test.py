@@ -15,7 +15,7 @@ import unittest
 
 import h5py
 
-from running_daemon import RunningDaemon, wait_for, wait_for_rest
+from running_daemon import RunningDaemon, wait_for
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
@@ -43,7 +43,7 @@ class Batch(unittest.TestCase):
         try:
             status = 0
             while status != 200:
-                wait_for_rest(frames)
+                self.daemon.wait_for_rest(frames)
                 status, started = self.daemon.ask("POST", "/v1/start", {})
             last = wait_for(frames, lambda frame: frame["type"] == "test-ended" or frame["type"] == "cycle" and frame["number"] == 4)
             self.assertEqual(last["type"], "cycle", "the pull is over")

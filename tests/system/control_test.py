@@ -24,7 +24,7 @@ import h5py
 import numpy
 
 from hanging import Hanging, weighing_board
-from running_daemon import TIMEOUT_S, RunningDaemon, UnixConnection, wait_for, wait_for_rest
+from running_daemon import TIMEOUT_S, RunningDaemon, UnixConnection, wait_for
 from schema import complaints
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
@@ -63,7 +63,7 @@ class Commands(unittest.TestCase):
         self.assertEqual(daemon.ask("GET", "/v1/status")[1]["bench"], "idle")
         status, plan = daemon.ask("PUT", "/v1/plan", {"name": "liner 42", "operator": "Ada", "replicate": 3, "pull_speed": "12 in/min"})
         self.assertEqual(status, 200, plan)
-        wait_for_rest(frames)
+        daemon.wait_for_rest(frames)
         status, started = daemon.ask("POST", "/v1/start", {"test": 1}, key="k")
         self.assertEqual((status, started["test"], started["already"]), (200, 1, False))
         self.assertEqual(daemon.ask("POST", "/v1/start", {"test": 1}, key="k"), (200, started))
@@ -126,7 +126,7 @@ class Commands(unittest.TestCase):
         refused = daemon.run("start", "--as", "ada")
         self.assertEqual(refused.returncode, 1)
         self.assertRegex(refused.stderr, r"^stickslip: refused: bob has the bench for another \d+ s")
-        wait_for_rest(frames)
+        daemon.wait_for_rest(frames)
         started = daemon.run("start", "--as", "bob")
         self.assertEqual(started.returncode, 0, started.stderr)
         self.assertRegex(started.stdout, r"^start: loading; test 1, scan \d+\n$")
@@ -214,7 +214,7 @@ class Description(unittest.TestCase):
         wait_for(frames, lambda frame: True)
         self.check("POST", "/v1/stop")
         self.calibrate(frames)
-        wait_for_rest(frames)
+        self.daemon.wait_for_rest(frames)
         for _ in frames:
             if self.check("POST", "/v1/start", {})[0] == 200:
                 break

@@ -122,6 +122,14 @@ repeats = {repeats}
             if found := re.search(r"control: listening at (127\.0\.0\.1:\d+)", self.unread.get(timeout=TIMEOUT_S)):
                 return found[1]
 
+    def wait_for_rest(self, frames):
+        """Until the load cell is unloaded: a whole pull is to come. Frames that nobody has read meanwhile tell of the past."""
+        def rests(frame):
+            if frame["type"] != "scans" or max(frame["highest"]) >= 0.02:
+                return False
+            return self.ask("GET", "/v1/status")[1]["scan_count"] - frame["first_scan"] < frame["scan_rate"]
+        wait_for(frames, rests)
+
     def record(self, number):
         """The record of a test that has ended: the finaliser may still be at it."""
         process, frames = self.watch()
@@ -135,11 +143,6 @@ repeats = {repeats}
         finally:
             process.kill()
             process.communicate()
-
-
-def wait_for_rest(frames):
-    """Until the load cell is unloaded: a whole pull is to come."""
-    wait_for(frames, lambda frame: frame["type"] == "scans" and max(frame["highest"]) < 0.02)
 
 
 def wait_for(frames, wanted):
