@@ -27,6 +27,7 @@ bool send_at_once(const std::string& message) {
   const int socket = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (socket < 0) return true;
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + name.size());
+  // The cast is what the sockets interface asks for; Asio would need a loop of its own for each message.
   const ssize_t sent = ::sendto(socket, message.data(), message.size(), MSG_DONTWAIT | MSG_NOSIGNAL,
                                 reinterpret_cast<const sockaddr*>(&address), size);
   const bool must_wait = sent < 0 && errno == EAGAIN;

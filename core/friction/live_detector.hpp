@@ -39,7 +39,7 @@ struct LiveSettings {
 /// Thread-bound. 170 kB, taken when it is made.
 class LiveDetector {
  public:
-  /// The despiker holds three scans back, and the median of three waits for one.
+  /// The despiker holds three scans back, and the median of three waits for one; without despiking it is one.
   static constexpr int kFallDelayScans = 4;
 
   explicit LiveDetector(const LiveSettings& settings);

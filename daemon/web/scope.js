@@ -16,7 +16,7 @@ const Scope = (() => {
   const slips = [];   // {onset, capture, peak_time, peak, captured}
   const spikes = [];  // {time, value}
   const cycles = {number: [], delta: [], amplitude: []};
-  let falling = null;  // {time, peak} of the latest fall, until its cycle closes
+  let falling = null;  // {time, peak} of the latest fall; its ring goes when its cycle closes
   let rate = 0, speed = 1, step = 1, dirty = false, newCycles = true;
 
   const height = part => Math.round(Math.max(90, window.innerHeight * part));

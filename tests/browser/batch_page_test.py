@@ -268,6 +268,8 @@ class BatchPage(unittest.TestCase):
 
     def test_what_is_refused_is_told_where_it_was_asked(self):
         self.open()
+        offered = self.page.value("[...document.querySelectorAll('#batch-methods option')].map(o => o.value)")
+        self.assertEqual(sorted(offered), sorted(method.stem for method in (SOURCE / "config" / "methods").glob("*.toml")))
         self.enter("#batch-open")
         self.page.press("Enter", "\r")
         self.assertTrue(self.page.value("document.getElementById('batch-dialog').open && document.querySelector('#batch-begin :invalid').name === 'name'"))
