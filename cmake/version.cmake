@@ -1,6 +1,7 @@
-# Run at every build: writes version.cpp anew only if the commit has changed.
+# Run at every build: writes version.cpp, and the changelog of the package, anew only if the commit has changed.
 # cmake -DSOURCE_DIR=… -DTEMPLATE=… -DOUTPUT=… -DPROJECT_VERSION=… -P version.cmake
 set(STICKSLIP_COMMIT "unknown")
+set(STICKSLIP_DATE "Thu, 01 Jan 1970 00:00:00 +0000")
 find_package(Git QUIET)
 if(Git_FOUND)
   execute_process(COMMAND ${GIT_EXECUTABLE} describe --always --dirty --abbrev=12 --exclude=*
@@ -8,6 +9,11 @@ if(Git_FOUND)
     ERROR_QUIET RESULT_VARIABLE STATUS)
   if(STATUS EQUAL 0)
     set(STICKSLIP_COMMIT "${DESCRIBED}")
+  endif()
+  execute_process(COMMAND ${GIT_EXECUTABLE} log -1 --format=%cd --date=rfc WORKING_DIRECTORY ${SOURCE_DIR}
+    OUTPUT_VARIABLE DATED OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE STATUS)
+  if(STATUS EQUAL 0)
+    set(STICKSLIP_DATE "${DATED}")
   endif()
 endif()
 configure_file(${TEMPLATE} ${OUTPUT} @ONLY)

@@ -131,7 +131,8 @@ void Storage::stop() {
 void Storage::test_began(const pipeline::TestStart& start) {
   first_ = start.first;
   collected_.count = 0;
-  // The queue is told of an entry, not of each scan.
+  collected_cycles_.clear();
+  // The queue is told of an entry, not of each scan or cycle.
   collected_enough_ = std::min(scans_in_entry(header_->board), daq::ScanBlock::kMaxScans);
   queue_.push(Began{start, header_, remarks_});
 }
@@ -157,9 +158,10 @@ void Storage::scans(daq::ScanIndex first, std::span<const double> raw, std::span
 }
 
 void Storage::hand_over_collected() {
-  if (collected_.count == 0) return;
-  queue_.push(collected_);
+  if (collected_.count > 0) queue_.push(collected_);
   collected_.count = 0;
+  for (const friction::Cycle& cycle : collected_cycles_) queue_.push(cycle);
+  collected_cycles_.clear();
 }
 
 void Storage::gap(const daq::Gap& gap) {
@@ -172,10 +174,7 @@ void Storage::anchor(const daq::ClockAnchor& anchor) {
   queue_.push(anchor);
 }
 
-void Storage::cycle(const friction::Cycle& cycle) {
-  hand_over_collected();
-  queue_.push(cycle);
-}
+void Storage::cycle(const friction::Cycle& cycle) { collected_cycles_.push_back(cycle); }
 
 void Storage::note(const daq::Note& note) {
   hand_over_collected();

@@ -136,8 +136,9 @@ class Storage final : public pipeline::Sink {
   std::vector<std::string> remarks_;                    ///< Processing thread.
   const friction::TruthSource* truth_ = nullptr;        ///< Processing thread.
   daq::ScanIndex first_ = 0;                            ///< Processing thread.
-  daq::ScanBlock collected_;          ///< Processing thread: scans that the queue has not got yet.
-  std::size_t collected_enough_ = 1;  ///< Processing thread: to hand them over.
+  daq::ScanBlock collected_;  ///< Processing thread: scans that the queue has not got yet.
+  std::vector<friction::Cycle> collected_cycles_;  ///< Processing thread: to follow them.
+  std::size_t collected_enough_ = 1;               ///< Processing thread: to hand them over.
   BoundedQueue<Message> queue_;
 
   EndTold end_told_;

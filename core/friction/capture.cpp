@@ -20,9 +20,11 @@ double root_between(const Function& function, double low, double high, double at
   return 0.5 * (bracket.first + bracket.second);
 }
 
-/// A step of Newton's by this part leaves its square, below rounding; where the root is nearly double, so
-/// that steps only halve the error, it is known to √ε = 1.5e-8 at best.
-constexpr double kSettled = 1e-9;
+/// What a step may leave of the error, as a part of the time: half of the last digit.
+constexpr double kSettled = 1e-16;
+/// Where the root is nearly double, so that steps only divide the error by three, it is known to √ε = 1.5e-8
+/// at best.
+constexpr double kSettledStep = 1e-9;
 /// Halving alone needs 50.
 constexpr int kMostSteps = 60;
 
@@ -37,8 +39,10 @@ std::optional<double> capture_time_s(const SlipWaveform& slip, double belt_rate_
   // c′ turns round at t₃ and, half an oscillation before, at t₂: there it has the other sign.
   if (!(belt_rate_per_s > 0.0) && slip.rate(t2) >= belt_rate_per_s) return t2;
   if (rate_at_end == belt_rate_per_s) return t3;
-  // About its maximum c′ is nearly a cosine: from there Newton's steps. What leads out of the bracket, which
-  // closes with each, is replaced by its middle.
+  // About its maximum c′ is nearly a cosine: from there Halley's steps, for which c‴ = −γ c″ − ω₀² c′ is at
+  // hand. What leads out of the bracket, which closes with each, is replaced by its middle.
+  const double gamma = slip.oscillator.gamma_per_s;
+  const double omega0_squared = slip.oscillator.omega0_squared();
   double low = t2;
   double high = t3;
   double t = t3 - std::acos(std::clamp(belt_rate_per_s / rate_at_end, -1.0, 1.0)) / omega;
@@ -46,9 +50,17 @@ std::optional<double> capture_time_s(const SlipWaveform& slip, double belt_rate_
     const SlipWaveform::Motion motion = slip.motion(t);
     const double excess = motion.rate - belt_rate_per_s;
     (excess < 0.0 ? low : high) = t;
-    double next = t - excess / motion.acceleration;
-    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
-    const bool settled = std::abs(next - t) <= kSettled * t3;
+    const double newton = excess / motion.acceleration;
+    const double bend =
+        -0.5 * newton * (gamma * motion.acceleration + omega0_squared * motion.rate) / motion.acceleration;
+    double next = t - newton / (1.0 - bend);
+    // The error left is the step times the squares of what bends c′ over it [Traub, Iterative Methods,
+    // 1964, 5.1].
+    const double phase = omega * newton;
+    const bool exact = std::abs(newton) * (bend * bend + phase * phase) <= kSettled * t3;
+    const bool inside = next >= low && next <= high;
+    if (!inside) next = 0.5 * (low + high);
+    const bool settled = (exact && inside) || std::abs(next - t) <= kSettledStep * t3;
     t = next;
     if (settled) break;
   }

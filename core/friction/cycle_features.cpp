@@ -152,23 +152,27 @@ struct Numbers {
   std::array<double, 3> condition{};
 };
 
-using Inverses = std::array<std::optional<InvertedSpeed>, 3>;
-
-Inverses inverses_of(const Features& features, const SharedParameters& shared) {
+/// \param feature  kAmplitude, kPeriod or kSlipSpeed.
+std::optional<InvertedSpeed> inverse_of(Eigen::Index feature, double value, const SharedParameters& shared) {
   const double t = shared.gamma / (2.0 * shared.omega);
-  return {Q_of_amplitude(features[kAmplitude] * shared.omega / shared.r, t),
-          Q_of_period(shared.omega * features[kPeriod], t), Q_of_slip_speed_ratio(features[kSlipSpeed], t)};
+  switch (feature) {
+    case kAmplitude:
+      return Q_of_amplitude(value * shared.omega / shared.r, t);
+    case kPeriod:
+      return Q_of_period(shared.omega * value, t);
+    default:
+      return Q_of_slip_speed_ratio(value, t);
+  }
 }
 
 /// \return nothing where a feature has no inverse. K has the excess of the mean by `delta_mu`.
 std::optional<Numbers> numbers_of(const Features& features, const SharedParameters& shared, double delta_mu) {
   const double belt = shared.r / shared.omega;
-  const Inverses speeds = inverses_of(features, shared);
   const auto excess = cycle_mean_excess(belt / delta_mu, shared.gamma / (2.0 * shared.omega));
   if (!excess) return std::nullopt;
   Numbers numbers;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const auto& speed = speeds[static_cast<std::size_t>(i)];
+    const auto speed = inverse_of(i, features[i], shared);
     if (!speed) return std::nullopt;
     numbers.value[i] = belt / speed->Q;
     numbers.condition[static_cast<std::size_t>(i)] = speed->condition;
@@ -184,7 +188,7 @@ void average_each(const std::vector<Features>& cycles, const SharedParameters& s
   for (const Eigen::Index i : {kAmplitude, kSlipSpeed}) {
     double sum = 0.0;
     for (const Features& cycle : cycles) {
-      const auto speed = inverses_of(cycle, shared)[static_cast<std::size_t>(i)];
+      const auto speed = inverse_of(i, cycle[i], shared);
       if (!speed) return;  // Noise, close to the threshold: the mean has to do.
       sum += belt / speed->Q;
     }

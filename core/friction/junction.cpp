@@ -31,7 +31,7 @@ using Parameters = Eigen::Matrix<double, kCount, 1>;
 template <int kCount>
 struct CoursePoint {
   double value = 0.0;
-  Parameters<kCount> by;
+  Parameters<kCount> by = Parameters<kCount>::Zero();
 };
 
 class FreeCourse {
@@ -71,13 +71,15 @@ class CapturedCourse {
         omega_(shared.omega),
         K_(p[0]) {
     const SlipWaveform slip{p[0], p[1], p[2], shared.oscillator()};
-    capture_s_ = capture_time_s(slip, belt, r_, start_s).value_or(slip.rise_end_time_s());
+    const auto captured_s = capture_time_s(slip, belt, r_, start_s);
+    capture_s_ = captured_s.value_or(slip.rise_end_time_s());
     JunctionPoint capture;
     const double decay = std::exp(-0.5 * shared.gamma * capture_s_);
     capture.cosine = decay * std::cos(omega_ * capture_s_);
     capture.sine = decay * std::sin(omega_ * capture_s_);
     at_capture_ = first_.at(capture);
-    shortfall_ = shortfall(capture);
+    // At a capture c′ is the stick rate but for rounding, which is not a shortfall.
+    if (!captured_s) shortfall_ = shortfall(capture);
     const double S = std::max({p[3], K_, at_capture_.value});
     D_ = S - K_;
     onset_s_ = capture_s_ + belt.climbing_time_s(r_, start_s + capture_s_, S - at_capture_.value);

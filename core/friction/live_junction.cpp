@@ -180,7 +180,9 @@ LiveJunction::Events LiveJunction::events_of(const Captured& p,
                                              const SharedParameters& shared) const noexcept {
   const SlipWaveform first{p[0], p[1], p[2], shared.oscillator()};
   Events events;
-  events.capture_tau_s = capture_time_s(first, shared.r).value_or(first.rise_end_time_s());
+  const auto captured_s = capture_time_s(first, shared.r);
+  events.is_captured = captured_s.has_value();
+  events.capture_tau_s = captured_s.value_or(first.rise_end_time_s());
   const DampedBasis basis = damped_basis(shared.oscillator(), std::max(events.capture_tau_s, 0.0));
   events.by_free = {1.0, basis.cosine + 0.5 * shared.gamma * basis.sine, basis.sine};
   const double omega0_squared = shared.omega * shared.omega + 0.25 * shared.gamma * shared.gamma;
@@ -238,6 +240,8 @@ LiveJunction::Assembled LiveJunction::unusual(const Captured& p, const Events& e
   Eigen::Vector4d by = Eigen::Vector4d::Zero();
   if (ratio > kLeastRatio) by = Eigen::Vector4d{-1.0, 0.0, 0.0, 1.0} / (D * kDeltaMuLogScatter);
   add(std::log(std::max(ratio, kLeastRatio)) / kDeltaMuLogScatter, by);
+  // At a capture c′ is the stick rate but for rounding, which is not a shortfall.
+  if (events.is_captured) return sum;
   // At the end of its rise c′ is stationary, so that the shift of that moment drops out.
   const double shortfall = (shared.r - events.rate_by_free.dot(p.head<3>())) / (kStickRateSpread * shared.r);
   if (shortfall > 0.0) {

@@ -55,6 +55,7 @@ class LiveJunction {
   /// The events of a captured course.
   struct Events {
     double capture_tau_s = 0.0;
+    bool is_captured = false;  ///< Else capture_tau_s is where c′ comes closest to the stick rate.
     double at_capture = 0.0;
     Eigen::Vector3d by_free = Eigen::Vector3d::Zero();       ///< Of at_capture.
     Eigen::Vector3d rate_by_free = Eigen::Vector3d::Zero();  ///< Of c′ there.

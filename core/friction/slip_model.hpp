@@ -56,6 +56,7 @@ class SlipModel {
   const BeltCourse* belt_;
   SlipWaveform waveform_;
   double capture_s_;
+  SlipModelPoint at_capture_;  ///< If captured; ∂/∂onset without the stick's part.
 };
 
 }  // namespace stickslip::friction

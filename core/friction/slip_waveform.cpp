@@ -12,10 +12,7 @@ double SlipWaveform::value(double t_s) const noexcept {
   return K + (D * at.cosine + (r + oscillator.gamma_per_s * D / 2.0) * at.sine);
 }
 
-double SlipWaveform::rate(double t_s) const noexcept {
-  const DampedBasis at = damped_basis(oscillator, t_s);
-  return r * at.cosine - (oscillator.gamma_per_s * r / 2.0 + oscillator.omega0_squared() * D) * at.sine;
-}
+double SlipWaveform::rate(double t_s) const noexcept { return rate(damped_basis(oscillator, t_s)); }
 
 double SlipWaveform::acceleration(double t_s) const noexcept { return motion(t_s).acceleration; }
 
@@ -25,8 +22,7 @@ SlipWaveform::Motion SlipWaveform::motion(double t_s) const noexcept {
   const double omega0_squared = oscillator.omega0_squared();
   const double start = -gamma * r - omega0_squared * D;
   // c″ is a solution of the same oscillator: from start, with the slope −γ c″ − ω₀² c′.
-  return {r * at.cosine - (gamma * r / 2.0 + omega0_squared * D) * at.sine,
-          start * at.cosine - (gamma * start / 2.0 + omega0_squared * r) * at.sine};
+  return {rate(at), start * at.cosine - (gamma * start / 2.0 + omega0_squared * r) * at.sine};
 }
 
 double SlipWaveform::peak_time_s() const noexcept {

@@ -23,6 +23,10 @@ struct SlipWaveform {
   [[nodiscard]] double value(double t_s) const noexcept;
   /// c′(t) [12], 1/s.
   [[nodiscard]] double rate(double t_s) const noexcept;
+  /// The same where damped_basis(oscillator, t) is known.
+  [[nodiscard]] double rate(const DampedBasis& at) const noexcept {
+    return r * at.cosine - (oscillator.gamma_per_s * r / 2.0 + oscillator.omega0_squared() * D) * at.sine;
+  }
   /// c″(t), 1/s².
   [[nodiscard]] double acceleration(double t_s) const noexcept;
   struct Motion {

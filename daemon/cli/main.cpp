@@ -19,6 +19,7 @@ namespace stickslip::daemon {
 namespace {
 
 constexpr const char* kExamples = R"(Examples:
+  stickslip demo                                       ten simulated tests, without a board
   stickslip import pull.csv --column force --rate 350 --unit N --sled-mass "2331 g" -o pull.h5
   stickslip import trace.csv --column mu --rate "2 kHz" --unit coefficient --speed "12 in/min" -o trace.h5
   stickslip scenes                                     the shipped scenes, one line each
@@ -69,6 +70,7 @@ int main_of(int count, char** arguments) {
   app.set_version_flag("--version", fmt::format("stickslip {} ({})", kVersion, kCommit));
   app.require_subcommand(1);
   Chosen chosen{command_line(count, arguments), {}};
+  add_demo(app, chosen);
   add_making_commands(app, chosen);
   add_showing_commands(app, chosen);
   add_asking_commands(app, chosen);

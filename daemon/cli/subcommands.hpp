@@ -33,6 +33,7 @@ void add_exporting_commands(CLI::App& app, Chosen& chosen);   ///< export
 void add_caring_commands(CLI::App& app, Chosen& chosen);      ///< verify, recover
 
 void add_doctor(CLI::App& app, Chosen& chosen);  ///< doctor
+void add_demo(CLI::App& app, Chosen& chosen);    ///< demo
 
 /// man, completion: made from the parser itself.
 /// \param app  outlives the parser's run.

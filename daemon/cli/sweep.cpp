@@ -31,6 +31,8 @@
 namespace stickslip::daemon {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 using base::Result;
 
 constexpr std::uint64_t kMostThreads = 256;
@@ -180,7 +182,6 @@ Result<Pace> work(const Sweep& sweep, std::int64_t threads, PartFile& part, cons
 
 std::string json_of(const Sweep& sweep, const record::SweepTable& table, const SweepCommand& command,
                     std::int64_t threads, const Pace& pace) {
-  using Json = nlohmann::ordered_json;
   Json axes = Json::array();
   for (const record::SweepAxis& axis : sweep.facts.axes) {
     Json& entry = axes.emplace_back(Json{{"key", axis.key}, {"unit", axis.unit}});

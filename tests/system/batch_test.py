@@ -23,8 +23,7 @@ SOURCE = pathlib.Path(sys.argv[2]).resolve()
 
 class Batch(unittest.TestCase):
     def setUp(self):
-        # Slow enough that a pull of 5 s, which ends the test, is not over before its fifth cycle is seen.
-        self.daemon = RunningDaemon(self, BUILD, SOURCE, '[test]\nbegins = "command"\n', speed=8)
+        self.daemon = RunningDaemon(self, BUILD, SOURCE, '[test]\nbegins = "command"\n')
 
     def run_cli(self, *arguments, status=0):
         done = self.daemon.run(*arguments, *(() if "--as" in arguments or arguments == ("batch",) else ("--as", "ada")))
@@ -38,16 +37,14 @@ class Batch(unittest.TestCase):
         return done.stdout if status == 0 else done.stderr
 
     def measure(self):
-        """One test, begun and ended by command. Returns its record."""
+        """One test, begun by command while the sled rests, ended by the end of the pull. Returns its record."""
         process, frames = self.daemon.watch()
         try:
             status = 0
             while status != 200:
                 self.daemon.wait_for_rest(frames)
                 status, started = self.daemon.ask("POST", "/v1/start", {})
-            last = wait_for(frames, lambda frame: frame["type"] == "test-ended" or frame["type"] == "cycle" and frame["number"] == 4)
-            self.assertEqual(last["type"], "cycle", "the pull is over")
-            self.assertEqual(self.daemon.ask("POST", "/v1/stop", {})[0], 200)
+            wait_for(frames, lambda frame: frame["type"] == "test-ended")
         finally:
             process.kill()
             process.communicate()

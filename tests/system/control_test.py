@@ -34,8 +34,7 @@ CLI = BUILD / "daemon" / "stickslip"
 
 class Daemon(RunningDaemon):
     def __init__(self, test, config="", **options):
-        # Slow enough that a pull of 5 s leaves time for all that is done in it.
-        super().__init__(test, BUILD, SOURCE, config, **{"speed": 4, **options})
+        super().__init__(test, BUILD, SOURCE, config, speed=10, patient=True, **options)
 
 
 @contextlib.contextmanager
@@ -172,7 +171,7 @@ class Description(unittest.TestCase):
         shutil.copy(BUILD / "daemon" / "stickslipd", folder)
         (folder / "stickslip").write_text(f'#!/bin/sh\n[ -p {self.pipe} ] && /bin/cat {self.pipe}\nexec {CLI} "$@"\n', encoding="utf-8")
         (folder / "stickslip").chmod(0o700)
-        self.daemon = Daemon(self, '[test]\nbegins = "command"\n', board=weighing_board(self, SOURCE, speed=4), program=folder / "stickslipd")
+        self.daemon = Daemon(self, '[test]\nbegins = "command"\n', board=weighing_board(self, SOURCE, speed=10), program=folder / "stickslipd")
         self.document = self.daemon.ask("GET", "/v1/openapi.json")[1]
         self.seen = set()
 

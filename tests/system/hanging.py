@@ -4,6 +4,8 @@ import os
 import pathlib
 import tempfile
 
+from running_daemon import patient_scene
+
 
 class Hanging:
     # Of the scene below.
@@ -30,7 +32,7 @@ class Hanging:
 def weighing_board(test, source, calibrations="calibrations", speed=50):
     """For RunningDaemon: a tester whose load cell has a zero of its own, and gain by its data sheet."""
     hanging = test.hanging
-    scene = (source / "config" / "scenes" / "stick-slip-at-12-in-per-min.toml").read_text(encoding="utf-8")
+    scene = patient_scene(source)
     assert scene.count('load_cell_zero = "0 V"') == 1 and f'load_cell_gain = "{hanging.GAIN:g} N/V"' in scene
     own = hanging.folder / "scene.toml"
     assert scene.count("\nsd = 0.001 ") == 1

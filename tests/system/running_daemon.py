@@ -16,6 +16,18 @@ import threading
 TIMEOUT_S = 240
 
 
+SCENE = "config/scenes/stick-slip-at-12-in-per-min.toml"
+
+
+def patient_scene(source):
+    """Text of the shipped scene with a pull and rests so long that several commands fit in each, on a busy machine too."""
+    scene = (source / SCENE).read_text(encoding="utf-8")
+    for old, new in (("\nidle = \"0.5 s\"", "\nidle = \"3 s\""), ("\npull = \"5 s\"", "\npull = \"30 s\""), ("\nrest = \"1 s\"", "\nrest = \"3 s\"")):
+        assert scene.count(old) == 1, old
+        scene = scene.replace(old, new)
+    return scene
+
+
 class UnixConnection(http.client.HTTPConnection):
     def __init__(self, path):
         super().__init__("localhost", timeout=TIMEOUT_S)
@@ -28,14 +40,17 @@ class UnixConnection(http.client.HTTPConnection):
 
 
 class RunningDaemon:
-    def __init__(self, test, build, source, config="", speed=20, board=None, repeats=0, prepare=lambda folder: None, program=None):
+    def __init__(self, test, build, source, config="", speed=20, board=None, repeats=0, patient=False, prepare=lambda folder: None, program=None):
         self.cli = build / "daemon" / "stickslip"
-        scene = source / "config" / "scenes" / "stick-slip-at-12-in-per-min.toml"
         temporary = tempfile.TemporaryDirectory(prefix="stickslip-")
         test.addCleanup(temporary.cleanup)
         self.folder = pathlib.Path(temporary.name)
         self.socket = self.folder / "c.sock"
         prepare(self.folder)
+        scene = source / SCENE
+        if patient:
+            scene = self.folder / "patient.toml"
+            scene.write_text(patient_scene(source), encoding="utf-8")
         board = board or f"""
 [board]
 driver = "simulated"

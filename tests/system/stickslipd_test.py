@@ -107,7 +107,8 @@ class Manager:
 
 class Demo(Folder):
     def test_ends_by_itself_with_ten_records_and_a_table(self):
-        done = run(DAEMON, "--config", SOURCE / "config" / "demo.toml", cwd=self.folder)
+        done = run(CLI, "demo", "--folder", "new/place", cwd=self.folder)
+        self.folder = self.folder / "new" / "place"
         self.assertEqual(done.returncode, 0, done.stderr)
         records = sorted((self.folder / "records" / "demo").glob("*.h5"))
         self.assertEqual(len(records), 10)
@@ -404,6 +405,7 @@ class Refusals(Folder):
         self.refused(2, CLI)
         self.refused(2, CLI, "analyse", "x.h5")
         self.refused(2, CLI, "analyze", self.folder / "absent.h5")
+        self.assertIn("--folder", self.refused(2, CLI, "demo", "--folder", "/dev/null/demo"))
         self.refused(1, CLI, "status", "--socket", self.folder / "absent.sock")
 
     def test_a_record_folder_that_cannot_be_written_ends_with_1(self):
@@ -413,7 +415,7 @@ class Refusals(Folder):
         self.assertIn("records", message)
 
     def test_the_shipped_configurations_are_good(self):
-        for name in ("stickslipd.toml", "demo.toml"):
+        for name in ("stickslipd.toml", "demo.toml", "bench.toml"):
             done = run(DAEMON, "--check-config", SOURCE / "config" / name)
             self.assertEqual(done.returncode, 0, done.stderr)
 

@@ -1,6 +1,8 @@
-"""The unit in a whole Debian 12: its user and groups, a board that goes and returns, an orderly end."""
+"""The package in a whole Debian 12: installed, its user and groups, a board that goes and returns, an orderly end, an
+upgrade, removal."""
 
 import pathlib
+import subprocess
 import tempfile
 import unittest
 
@@ -12,23 +14,22 @@ import support
 import verdict
 
 SCENE = "stick-slip-at-12-in-per-min"
-CONFIGURATION = """[board]
-driver = "comedi"
-[tester]
-sled_mass = "2331 g"
-load_cell_gain = "2 N/V"
-[record]
-folder = "/var/lib/stickslip/records"
-[control]
-socket = "/run/stickslip/control.sock"
-"""
-
-
 def lines(path):
     return path.read_text().splitlines()
 
 
-class Unit(unittest.TestCase):
+def newer(package, folder):
+    """The same, as of a later version."""
+    unpacked, made = folder / "unpacked", folder / "newer.deb"
+    subprocess.run(["dpkg-deb", "-R", package, unpacked], check=True)
+    control = unpacked / "DEBIAN" / "control"
+    text = control.read_text()
+    control.write_text(text.replace("\nVersion: ", "\nVersion: 1000."))
+    subprocess.run(["dpkg-deb", "--root-owner-group", "-Znone", "-b", unpacked, made], check=True, stdout=subprocess.DEVNULL)
+    return made
+
+
+class Package(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         found = kernel.find_kernel()
@@ -37,16 +38,27 @@ class Unit(unittest.TestCase):
             folder = pathlib.Path(temporary)
             # A pull longer than the guest looks at it.
             played = codes.write_codes(folder, codes.simulate(folder, SCENE, "--duration", "5 min"))
-            configuration = folder / "stickslipd.toml"
-            configuration.write_text(CONFIGURATION)
-            files = {"run.sh": support.HERE / "guest" / "service.sh", "stickslipd": support.DAEMON,
-                     "stickslip": support.CLI, "stickslip_tester.ko": support.tester_module(found),
-                     "stickslipd.service": support.SOURCE / "systemd" / "stickslipd.service",
-                     "stickslipd.toml": configuration, "codes.bin": played}
+            [package] = support.PACKAGE.glob("*.deb")
+            files = {"run.sh": support.HERE / "guest" / "service.sh", "stickslip.deb": package,
+                     "stickslip-newer.deb": newer(package, folder),
+                     "stickslip_tester.ko": support.tester_module(found), "codes.bin": played}
             cls.results = debian.run_full_guest(guest.folder_for(support.FOLDER, "service"), found, disk, files)
 
     def status(self, when):
         return support.status(self.results, ".", when)
+
+    def test_installed_without_a_board_it_waits(self):
+        self.assertEqual(self.status("installed")["state"], "board missing")
+
+    def test_the_demo_needs_no_privilege(self):
+        self.assertEqual((self.results / "demo.txt").read_text().count("  truth  "), 10)
+
+    def test_it_acquires_from_the_board_of_the_kernel(self):
+        self.assertEqual(self.status("test-board")["state"], "acquiring")
+
+    def test_the_service_has_little_to_lose(self):
+        [line] = [line for line in lines(self.results / "security.txt") if "Overall exposure level" in line]
+        self.assertLessEqual(float(line.split(":")[1].split()[0]), 2.0, line)
 
     def test_the_board_belongs_to_group_iocard(self):
         self.assertEqual(lines(self.results / "device"), ["660 root iocard"])
@@ -81,8 +93,17 @@ class Unit(unittest.TestCase):
         self.assertEqual(len(files), 2, files)
         for file in files:
             self.assertRegex(file, r"^640 stickslip stickslip /.*\.h5$")
-        for path in support.records(self.results, "."):
+        for path in sorted((self.results / "records").glob("*.h5")):
             verdict.judge(path)
+
+    def test_an_upgrade_goes_on(self):
+        self.assertEqual(self.status("upgraded")["state"], "acquiring")
+        self.assertTrue(lines(self.results / "version")[0].startswith("1000."))
+
+    def test_a_purge_leaves_nothing_but_the_data(self):
+        left = [path for path in lines(self.results / "left") if path != "/var/lib/stickslip"]
+        self.assertEqual(left, ["/usr/lib/firmware/stickslip-codes.bin"])
+        self.assertEqual((self.results / "audit").read_text(), "")
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@ BUILD = pathlib.Path(os.environ.get("STICKSLIP_VM_BUILD", SOURCE / "build" / "re
 FOLDER = pathlib.Path(os.environ.get("STICKSLIP_VM_FOLDER", SOURCE / "build" / "vm")).resolve()
 DAEMON = BUILD / "daemon" / "stickslipd"
 CLI = BUILD / "daemon" / "stickslip"
+PACKAGE = FOLDER / "package"  # Of the same build, made by ./dev.
 CONFORMANCE = BUILD / "tests" / "conformance" / "conformance_board"
 SCENES = SOURCE / "config" / "scenes"
 

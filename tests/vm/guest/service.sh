@@ -1,8 +1,10 @@
 # shellcheck shell=dash
-# The unit in a whole Debian: started, at work, without a board, with it again, stopped.
+# The package in a whole Debian: installed without a board, at work with the kernel's own test board and with ours,
+# a board that goes and returns, an upgrade, removal and purge.
 set -eu
 unit=stickslipd.service
 socket=/run/stickslip/control.sock
+config=/etc/stickslip/stickslipd.toml
 switches=/sys/module/stickslip_tester/parameters
 results=/results
 
@@ -16,6 +18,7 @@ fail() {
 
 property() { systemctl show --value --property "$1" "$unit"; }
 
+# await KEY VALUE WHEN: until the status has it; keeps the status.
 await() {
   left=60
   until stickslip status --json --socket "$socket" 2>/dev/null | grep -qE "^  \"$1\": $2"; do
@@ -26,28 +29,36 @@ await() {
   stickslip status --json --socket "$socket" >"$results/$3.json"
 }
 
-# What an installed package leaves behind.
-install -m 0755 stickslipd stickslip /usr/bin/
-install -D -m 0644 stickslipd.service "/etc/systemd/system/$unit"
-install -D -m 0644 stickslipd.toml /etc/stickslip/stickslipd.toml
-install -D -m 0644 codes.bin /lib/firmware/stickslip-codes.bin
-echo 'u stickslip - "stickslip" /var/lib/stickslip' | systemd-sysusers -
-systemctl daemon-reload
+dpkg -i stickslip.deb >"$results/dpkg.txt" 2>&1 || fail "dpkg -i: $(cat "$results/dpkg.txt")"
+say "installed"
+systemctl is-enabled "$unit"
+await state '"board missing"' installed
+systemctl is-active "$unit"
+mkdir -m 777 /run/demo
+(cd /run/demo && setpriv --reuid=nobody --regid=nogroup --clear-groups stickslip demo) >"$results/demo.txt" 2>&1 ||
+  fail "stickslip demo: $(cat "$results/demo.txt")"
+say "demo ran"
 
-modprobe comedi
+modprobe comedi_test
+await state '"acquiring"' test-board
+systemctl stop "$unit"
+rmmod comedi_test
+say "board of the kernel"
+
+sed -i 's|^load_cell_gain = .*|load_cell_gain = "2 N/V"|' "$config"
+install -D -m 0644 codes.bin /lib/firmware/stickslip-codes.bin
 insmod ./stickslip_tester.ko
 udevadm settle
 stat -c '%a %U %G' /dev/comedi0 >"$results/device"
-
 systemctl start "$unit"
 say "started"
-systemctl is-active "$unit"
 await state '"acquiring"' started
 await current_test '[0-9]' testing
 pid=$(property MainPID)
 cp "/proc/$pid/status" "$results/process"
 getent group iocard | cut -d: -f3 >"$results/iocard"
 id -u stickslip >"$results/user"
+systemd-analyze --no-pager security "$unit" >"$results/security.txt" || true
 say "at work"
 
 echo 0 >"$switches/attached"
@@ -66,7 +77,31 @@ for name in ActiveState Result ExecMainStatus NRestarts; do
   echo "$name=$(property $name)"
 done >"$results/end"
 [ ! -e "$socket" ] || fail "the control socket outlived the daemon"
-stat -c '%a %U %G %n' /var/lib/stickslip/records/* >"$results/files"
-cp -r /var/lib/stickslip/records "$results/"
-journalctl --no-pager -u "$unit" >"$results/unit.txt"
+data=/var/lib/stickslip/records
+find "$data" -name '*.h5' -exec stat -c '%a %U %G %n' {} + >"$results/files"
+mkdir "$results/records"
+find "$data" -name '*.h5' -exec cp {} "$results/records" ';'
 say "stopped"
+
+# An upgrade keeps what was configured, and starts the service that is on.
+dpkg -i stickslip-newer.deb >>"$results/dpkg.txt" 2>&1 || fail "upgrade: $(cat "$results/dpkg.txt")"
+grep -q '^load_cell_gain = "2 N/V"' "$config" || fail "the upgrade changed $config"
+await state '"acquiring"' upgraded
+dpkg-query -W -f '${Version}\n' stickslip >"$results/version"
+say "upgraded"
+
+kept() { find "$data" -name '*.h5' -exec sha256sum {} + | sort | grep -F -f "$results/sums" | sha256sum; }
+find "$data" -name '*.h5' -exec sha256sum {} + | sort >"$results/sums"
+before=$(kept)
+dpkg -r stickslip >>"$results/dpkg.txt" 2>&1 || fail "dpkg -r"
+! systemctl is-active --quiet "$unit" || fail "the service outlived its program"
+[ -e "$config" ] || fail "removal took the configuration"
+[ ! -e /usr/bin/stickslipd ] || fail "removal left the program"
+dpkg -P stickslip >>"$results/dpkg.txt" 2>&1 || fail "dpkg -P"
+[ ! -e "$config" ] || fail "purge left the configuration"
+[ "$(kept)" = "$before" ] || fail "removal touched records"
+! systemctl cat "$unit" >/dev/null 2>&1 || fail "purge left the unit"
+find / -xdev \( -path /proc -o -path /sys -o -path /run -o -path /results -o -path "$data" -o -path /var/log \) -prune -o -name '*stickslip*' -print >"$results/left"
+dpkg --audit >"$results/audit"
+journalctl --no-pager -u "$unit" >"$results/unit.txt"
+say "removed"
