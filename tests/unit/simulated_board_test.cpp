@@ -139,11 +139,11 @@ TEST(SimulatedBoard, WaitsAtMostTheTimeout) {
   EXPECT_EQ(tester.board->read(block, 1ms), ReadStatus::kTimeout);  // A scan takes 2.86 ms.
   EXPECT_EQ(tester.board->read(block, 4ms), ReadStatus::kScans);
   EXPECT_EQ(block.count, 1U);
-  // With time for it, the next scan and those of 20 ms after it; the stamp is that of the last.
+  // With time for it, the next scan and those of 30 ms after it; the stamp is that of the last.
   const std::int64_t first_ns = clock.now_ns;
   EXPECT_EQ(tester.board->read(block, 100ms), ReadStatus::kScans);
-  EXPECT_EQ(block.count, 8U);
-  EXPECT_NEAR(static_cast<double>(clock.now_ns - first_ns), 8e9 / 350.0, 1.0);
+  EXPECT_EQ(block.count, 11U);
+  EXPECT_NEAR(static_cast<double>(clock.now_ns - first_ns), 11e9 / 350.0, 1.0);
   EXPECT_EQ(block.stamp.monotonic_ns, clock.now_ns);
   EXPECT_EQ(block.stamp.realtime_ns, clock.realtime_ns());
   clock.now_ns += 1'000'000'000;
