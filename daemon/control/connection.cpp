@@ -1,7 +1,9 @@
 #include "daemon/control/connection.hpp"
 
+#include <memory>
 #include <optional>
 
+#include <boost/asio/dispatch.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
@@ -125,7 +127,12 @@ class Connection : public std::enable_shared_from_this<Connection> {
 }  // namespace
 
 void serve_connection(AnySocket socket, std::shared_ptr<Service> service) {
-  std::make_shared<Connection>(std::move(socket), std::move(service))->read();
+  // Who answers may be the last to let go, on any thread; a socket belongs to its own.
+  const auto executor = socket.get_executor();
+  const auto end_there = [executor](Connection* connection) {
+    boost::asio::dispatch(executor, [owned = std::unique_ptr<Connection>{connection}] {});
+  };
+  std::shared_ptr<Connection> { new Connection{std::move(socket), std::move(service)}, end_there } -> read();
 }
 
 }  // namespace stickslip::daemon
