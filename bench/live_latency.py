@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""How long a scan takes from the board's read to a program that listens to the live stream, with few listeners and many.
+"""How long a scan takes from the board's read to a sink of the daemon, and to a program that listens to the live stream.
 
     bench/live_latency.py BUILD_DIR [SECONDS [CLIENTS]]
 
 Runs the daemon at 350 scans/s on the simulated board and listens for so long (60 s) alone, then beside so many others
-(20), each a `stickslip watch --json` of its own. Of each frame of scans: the time at which its line is read here less the
-time at which read() had come back in the daemon (`read_time`). The way to the listener goes through the ring, the
-detector, the feed, the main thread, the socket, and the listener's own program and pipe.
+(20), each a `stickslip watch --json` of its own, and again: two rounds. Of each frame: the time at which the event came to
+the sink that made it (`sink_time`), and the time at which its line is read here, less the time at which read() had come
+back in the daemon (`read_time`). The way to the sink goes through the ring and the detector; the way to the listener goes on
+through the feed, the main thread, the socket, and the listener's own program and pipe.
 """
 
 import json
@@ -16,18 +17,21 @@ import sys
 import tempfile
 import time
 
+ROUNDS = 2
 SCENE = pathlib.Path(__file__).resolve().parent.parent / "config/scenes/stick-slip-at-12-in-per-min.toml"
 
 
 def latencies_ms(command, seconds):
-    found = {"scans": [], "cycle": []}
+    """{(kind of frame, how far): latencies in ms}"""
+    found = {(kind, to): [] for kind in ("scans", "cycle") for to in ("sink", "listener")}
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as listener:
         end = time.monotonic() + seconds
         for line in listener.stdout:
             now = time.time()
             frame = json.loads(line)
-            if frame["type"] in found and frame.get("read_time"):
-                found[frame["type"]].append(1e3 * (now - frame["read_time"]))
+            if frame["type"] in ("scans", "cycle") and frame.get("read_time"):
+                found[frame["type"], "sink"].append(1e3 * (frame["sink_time"] - frame["read_time"]))
+                found[frame["type"], "listener"].append(1e3 * (now - frame["read_time"]))
             if time.monotonic() > end:
                 listener.kill()
                 break
@@ -60,19 +64,20 @@ level = "warning"
             try:
                 while not (pathlib.Path(folder) / "c.sock").exists():
                     time.sleep(0.05)
-                medians = {}
-                for others in (0, int(clients)):
+                found = {}
+                for others in (0, int(clients)) * ROUNDS:
                     beside = [subprocess.Popen(watch, stdout=subprocess.DEVNULL) for _ in range(others)]
-                    found = latencies_ms(watch, float(seconds))
+                    for (kind, to), values in latencies_ms(watch, float(seconds)).items():
+                        found.setdefault((kind, to, others), []).extend(values)
                     for other in beside:
                         other.kill()
                         other.wait()
-                    for kind, values in found.items():
-                        medians[kind, others] = part(values, 0.5)
-                        print(f"{others:>3} others  {kind:<6} {len(values):>6} frames   median {part(values, 0.5):6.2f} ms   99 % {part(values, 0.99):6.2f} ms"
-                              f"   largest {max(values):6.2f} ms")
-                for kind in ("scans", "cycle"):
-                    print(f"median of {kind} with {clients} others over that without: {medians[kind, int(clients)] / medians[kind, 0]:.2f}")
+                for (kind, to, others), values in found.items():
+                    print(f"{kind:<6} to the {to:<9} {others:>3} others {len(values):>6} frames   median {part(values, 0.5):6.3f} ms"
+                          f"   99 % {part(values, 0.99):6.2f} ms   largest {max(values):6.2f} ms")
+                for kind, to in sorted({key[:2] for key in found}):
+                    ratio = part(found[kind, to, int(clients)], 0.5) / part(found[kind, to, 0], 0.5)
+                    print(f"median of {kind} to the {to}, with {clients} others over that without: {ratio:.2f}")
             finally:
                 daemon.terminate()
 

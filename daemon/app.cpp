@@ -67,7 +67,7 @@ App::App(DaemonConfig config, AppWorld world)
                    tell_status();
                  });
                }),
-      live_(io_, [this] { return health_frame(status()); }),
+      live_(io_, *clock_, [this] { return health_frame(status()); }),
       batches_({.folder = config_.record_folder,
                 .program = "/proc/self/exe",
                 .plan = [this] { return desk_.plan(); },

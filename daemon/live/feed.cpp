@@ -21,6 +21,7 @@ constexpr double kFrames_Hz = 20.0;
 constexpr double kParts_Hz = 400.0;
 /// Spikes told at the end of a test; the record has all.
 constexpr std::size_t kMostSpikes = 1000;
+constexpr double kNanosecond_s = 1e-9;
 
 /// A coefficient as the page shows it: six decimals, a tenth of the finest step of a 16-bit board.
 void append(std::string& text, const std::vector<double>& values) {
@@ -74,9 +75,10 @@ void LiveFeed::observed(daq::ScanIndex first, std::span<const double> coefficien
 void LiveFeed::flush(const friction::LiveState& live) {
   if (lowest_.empty()) return;
   std::string frame = fmt::format(
-      R"({{"type":"scans","first_scan":{},"scans_in_part":{},"scan_rate":{},"clock_speed":{},"test":{},"read_time":{},"phase":"{}","regime":"{}","slip_count":{},"lowest":[)",
+      R"({{"type":"scans","first_scan":{},"scans_in_part":{},"scan_rate":{},"clock_speed":{},"test":{},"read_time":{},"sink_time":{},"phase":"{}","regime":"{}","slip_count":{},"lowest":[)",
       first_, bucket_, scan_rate_Hz_, clock_speed_, test_ == 0 ? "null" : std::to_string(test_),
-      test_ == 0 ? "null" : fmt::format("{:.6f}", read_time_s()), friction::name(live.phase),
+      test_ == 0 ? "null" : fmt::format("{:.6f}", read_time_s()),
+      test_ == 0 ? "null" : fmt::format("{:.6f}", sink_time_s()), friction::name(live.phase),
       friction::name(live.regime), live.slip_count);
   append(frame, lowest_);
   frame += R"(],"highest":[)";
@@ -105,9 +107,10 @@ void LiveFeed::scans(daq::ScanIndex /*first*/, std::span<const double> /*raw*/,
 }
 
 double LiveFeed::read_time_s() const noexcept {
-  constexpr double kNanosecond_s = 1e-9;
   return static_cast<double>(read_realtime_ns_) * kNanosecond_s;
 }
+
+double LiveFeed::sink_time_s() const { return static_cast<double>(clock_.realtime_ns()) * kNanosecond_s; }
 
 void LiveFeed::fall(const friction::FallBegun& fall) {
   if (!heard()) return;
@@ -115,6 +118,7 @@ void LiveFeed::fall(const friction::FallBegun& fall) {
                 {"test", test_},
                 {"scan_rate", scan_rate_Hz_},
                 {"read_time", read_time_s()},
+                {"sink_time", sink_time_s()},
                 {"peak_scan", fall.peak_scan},
                 {"peak", fall.peak},
                 {"seen_scan", fall.seen_scan}}
@@ -128,6 +132,7 @@ void LiveFeed::cycle(const friction::Cycle& cycle) {
                 {"test_first_scan", test_first_},
                 {"scan_rate", scan_rate_Hz_},
                 {"read_time", read_time_s()},
+                {"sink_time", sink_time_s()},
                 {"number", cycle.number},
                 {"first_scan", cycle.first_scan},
                 {"captured", (cycle.flags & friction::kCycleCaptured) != 0},

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/clock.hpp"
 #include "core/pipeline/sink.hpp"
 
 namespace stickslip::daemon {
@@ -16,8 +17,10 @@ namespace stickslip::daemon {
 /// Sink of the processing thread. Without listeners it does nothing.
 class LiveFeed final : public pipeline::Sink {
  public:
+  /// \param clock    the board's; outlives the feed.
   /// \param publish  called on the processing thread for each frame; may not wait.
-  explicit LiveFeed(std::function<void(std::string)> publish) : publish_(std::move(publish)) {}
+  LiveFeed(const base::Clock& clock, std::function<void(std::string)> publish)
+      : clock_(clock), publish_(std::move(publish)) {}
 
   /// Any thread.
   void listeners(std::size_t count) noexcept { listeners_.store(count, std::memory_order_relaxed); }
@@ -43,7 +46,10 @@ class LiveFeed final : public pipeline::Sink {
   void flush(const friction::LiveState& live);
   /// Since 1970: when the read of the latest block of the running test came back.
   [[nodiscard]] double read_time_s() const noexcept;
+  /// Since 1970: now, when an event has come to its sink.
+  [[nodiscard]] double sink_time_s() const;
 
+  const base::Clock& clock_;
   std::function<void(std::string)> publish_;
   std::atomic<std::size_t> listeners_{0};
   double scan_rate_Hz_ = 0.0;

@@ -23,13 +23,14 @@ class LiveStream {
   /// Frames on their way to the main thread: seconds of them, and then they are dropped and counted.
   static constexpr int kMostOnTheWay = 128;
 
+  /// \param clock   the board's; outlives the stream.
   /// \param health  a frame that says how the daemon is; asked while somebody listens.
-  LiveStream(boost::asio::io_context& io, std::function<std::string()> health)
+  LiveStream(boost::asio::io_context& io, const base::Clock& clock, std::function<std::string()> health)
       : io_(io),
         timer_(io),
         health_(std::move(health)),
         hub_([this](std::size_t count) { listeners(count); }),
-        feed_([this](std::string frame) { send(std::move(frame)); }) {}
+        feed_(clock, [this](std::string frame) { send(std::move(frame)); }) {}
 
   [[nodiscard]] LiveFeed& feed() noexcept { return feed_; }
   [[nodiscard]] LiveHub& hub() noexcept { return hub_; }
