@@ -12,7 +12,7 @@ install(FILES config/bench.toml DESTINATION etc/stickslip RENAME stickslipd.toml
 install(DIRECTORY config/scenes config/methods DESTINATION usr/share/stickslip FILES_MATCHING PATTERN "*.toml")
 install(FILES config/demo.toml DESTINATION usr/share/stickslip)
 
-install(FILES systemd/stickslipd.service DESTINATION lib/systemd/system)
+install(FILES systemd/stickslipd.service systemd/stickslipd.socket DESTINATION lib/systemd/system)
 install(FILES systemd/sysusers.conf DESTINATION usr/lib/sysusers.d RENAME stickslip.conf)
 install(FILES systemd/tmpfiles.conf DESTINATION usr/lib/tmpfiles.d RENAME stickslip.conf)
 install(FILES systemd/udev.rules DESTINATION lib/udev/rules.d RENAME 60-stickslip.rules)

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "core/base/contract.hpp"
+#include "daemon/thread_name.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -39,6 +40,7 @@ std::optional<Acquisition::End> Acquisition::ended() const noexcept {
 }
 
 void Acquisition::run() noexcept {
+  name_this_thread("acquisition");
   scheduling_ = use_realtime_scheduling(realtime_);
   started_.release();
   const End end = read_to_the_end();
@@ -54,6 +56,7 @@ void Acquisition::tell() noexcept {
 }
 
 void Acquisition::hand_over(daq::ScanBlock& block) noexcept {
+  delivered_.fetch_add(block.count, std::memory_order_relaxed);
   // A full ring counts what it drops; the jump in the index tells the consumer.
   block.overrun_count = overruns_;
   block.dropped_scan_count = ring_.dropped_scan_count();

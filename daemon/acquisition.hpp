@@ -58,6 +58,11 @@ class Acquisition {
   /// Once set, all blocks are in the ring: whoever sees it and then empties the ring has them all.
   [[nodiscard]] std::optional<End> ended() const noexcept;
 
+  /// Any thread: scans that the board has delivered.
+  [[nodiscard]] std::uint64_t delivered_scan_count() const noexcept {
+    return delivered_.load(std::memory_order_relaxed);
+  }
+
   /// Scheduling in use; valid after start().
   [[nodiscard]] const std::string& scheduling() const noexcept { return scheduling_; }
 
@@ -77,6 +82,7 @@ class Acquisition {
   std::string scheduling_;
   std::atomic<bool> stop_requested_{false};
   std::atomic<std::uint8_t> end_{kRunning};
+  std::atomic<std::uint64_t> delivered_{0};
   // Of the thread.
   std::uint64_t overruns_ = 0;  ///< Blocks carry it.
   bool untold_ = false;         ///< There are blocks in the ring that the consumer was not woken for.

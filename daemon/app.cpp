@@ -1,5 +1,6 @@
 #include "daemon/app.hpp"
 
+#include <fmt/ranges.h>
 #include <signal.h>
 #include <sys/stat.h>
 
@@ -45,6 +46,7 @@ App::App(DaemonConfig config, AppWorld world)
       world_(std::move(world)),
       signals_(io_),
       retry_timer_(io_),
+      reload_timer_(io_),
       finalise_(config_.read_only_records ? read_only(world_.finalise) : world_.finalise),
       clock_(world_.clock ? std::move(world_.clock) : base::make_system_clock(config_.clock_speed)),
       storage_(
@@ -92,6 +94,13 @@ App::App(DaemonConfig config, AppWorld world)
              .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
              .batches = &batches_,
              .reports = &reports_}),
+      watchdog_(io_, Notify::watchdog_interval(), watched_parts(),
+                {.feed = [this] { notify_.alive(); },
+                 .hanging =
+                     [this](const std::vector<std::string>& parts) {
+                       world_.facts->hanging(fmt::format("{}", fmt::join(parts, ", ")));
+                       tell_status();
+                     }}),
       retry_after_(world_.first_retry) {}
 
 App::~App() = default;
@@ -99,9 +108,9 @@ App::~App() = default;
 base::Result<void> App::run() {
   signals_.add(SIGTERM);
   signals_.add(SIGINT);
-  signals_.async_wait([this](boost::system::error_code error, int signal) {
-    if (!error) stop(signal == SIGINT ? "SIGINT" : "SIGTERM");
-  });
+  if (world_.check_config) signals_.add(SIGHUP);
+  wait_for_signal();
+  if (world_.stop_asked && world_.stop_asked()) request_stop();
 
   process_facts_ = prepare_process(config_.realtime);
   if (base::Result<void> prepared = prepare_record_folder(config_.record_folder); !prepared) return prepared;
@@ -129,6 +138,66 @@ base::Result<void> App::run() {
   live_.close();
   control_.clear();
   return {};
+}
+
+std::vector<WatchedPart> App::watched_parts() {
+  // Without scans the state of the daemon says why: no board, or it begins or ends.
+  const auto of_scans = [this](std::uint64_t count) {
+    return Pulse{count, !session_ || state_ != State::kAcquiring};
+  };
+  // A disk of which a call returns late is slow, not hung: the kernel tries again for three minutes before it
+  // says that a disk fails (30 s, six times: sd's timeout and retries), and memory has room for ten.
+  constexpr int kDiskPatience = 4;
+  return {
+      {"acquisition", [=, this] { return of_scans(session_ ? session_->delivered_scan_count() : 0); }},
+      {"detector", [=, this] { return of_scans(counts_.scans.load(std::memory_order_relaxed)); }},
+      {"storage", [this] { return Pulse{storage_.storage_rounds()}; }, kDiskPatience},
+      {"disk", [this] { return Pulse{storage_.disk_rounds()}; }, kDiskPatience},
+  };
+}
+
+void App::tell_ready() {
+  notify_.ready();
+  watchdog_.start();
+}
+
+void App::wait_for_signal() {
+  signals_.async_wait([this](boost::system::error_code error, int signal) {
+    if (error) return;
+    if (signal == SIGHUP) {
+      reload();
+    } else {
+      reloads_ = false;
+      stop(signal == SIGINT ? "SIGINT" : "SIGTERM");
+    }
+    wait_for_signal();
+  });
+}
+
+void App::reload() {
+  if (state_ == State::kStopping) return;
+  if (const base::Result<void> good = world_.check_config(); !good) {
+    world_.facts->reload_refused(good.error().message);
+    return;
+  }
+  if (std::exchange(reload_asked_, true)) return;
+  world_.facts->reload_waits();
+  reload_when_idle();
+}
+
+void App::reload_when_idle() {
+  if (state_ == State::kStopping) return;
+  if (!current_test_ && !calibrations_.view().session) {
+    reloads_ = true;
+    notify_.reloading();
+    stop("to read the configuration again");
+    return;
+  }
+  constexpr std::chrono::seconds kLookAgain{1};
+  reload_timer_.expires_after(kLookAgain);
+  reload_timer_.async_wait([this](boost::system::error_code error) {
+    if (!error) reload_when_idle();
+  });
 }
 
 void App::request_stop() {
@@ -199,7 +268,7 @@ base::Result<void> App::open_session() {
       retry_after_ = world_.first_retry;
       world_.facts->board_started(session_->board_info(), realtime_facts());
       tell_status();
-      notify_.ready();
+      tell_ready();
     });
   };
   events.block = [this](const daq::ScanBlock& block) { calibrations_.block(block); };
@@ -231,7 +300,7 @@ void App::wait_for_board(const base::Error& why) {
   world_.facts->board_unavailable(name(state_), why.message,
                                   std::chrono::duration<double>(retry_after_).count());
   tell_status();
-  notify_.ready();
+  tell_ready();
   retry_timer_.expires_after(retry_after_);
   retry_after_ = std::min<std::chrono::milliseconds>(2 * retry_after_, kLongestRetry);
   retry_timer_.async_wait([this](boost::system::error_code error) {
@@ -274,9 +343,10 @@ void App::stop(const std::string& why) {
   if (state_ == State::kStopping) return;
   state_ = State::kStopping;
   world_.facts->stopping(why);
-  notify_.stopping();
+  if (!reloads_) notify_.stopping();
   tell_status();
   retry_timer_.cancel();
+  reload_timer_.cancel();
   if (session_) session_->request_stop();
   leave_when_idle();
 }
@@ -324,6 +394,8 @@ App::State App::waiting_state(base::ErrorKind kind) noexcept {
 std::string App::status_line() const {
   const StorageState storage = storage_.state();
   std::string line = state_line();
+  if (!watchdog_.hanging().empty())
+    line += fmt::format("; does not move: {}", fmt::join(watchdog_.hanging(), ", "));
   if (storage.kind == StorageState::Kind::kWaiting) {
     line += "; " + storage.why;
   } else if (storage.kind == StorageState::Kind::kShort) {

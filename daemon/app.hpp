@@ -30,6 +30,7 @@
 #include "daemon/storage.hpp"
 #include "daemon/test_log.hpp"
 #include "daemon/test_watcher.hpp"
+#include "daemon/watchdog.hpp"
 
 namespace stickslip::daemon {
 
@@ -42,6 +43,10 @@ struct AppWorld {
   Facts* facts = nullptr;  ///< Outlives the App.
   /// Told each new line of STATUS=, on the main thread; may be empty.
   std::function<void(const std::string&)> status_changed;
+  /// Whether a signal to end came before run(); may be empty.
+  std::function<bool()> stop_asked;
+  /// SIGHUP: whether the configuration as it is now is good. Empty: SIGHUP ends the program.
+  std::function<base::Result<void>()> check_config;
   std::unique_ptr<base::Clock> clock;           ///< Null: the machine's, as fast as configured.
   std::chrono::milliseconds first_retry{1000};  ///< Of a missing board; then twice as long each time.
 };
@@ -56,13 +61,16 @@ class App {
   App(const App&) = delete;
   App& operator=(const App&) = delete;
 
-  /// Runs until SIGTERM, SIGINT or the end of the input: drains, ends the running test, finishes
-  /// its file. Errors mean that it never got ready: kUsage (configuration), kFailure (record
+  /// Runs until SIGTERM, SIGINT or the end of the input: drains, ends the running test, finishes its file. Or,
+  /// after a SIGHUP, until no test and no calibration is under way. Errors mean that it never got ready: kUsage (configuration), kFailure (record
   /// folder or control socket).
   [[nodiscard]] base::Result<void> run();
 
   /// Any thread, any time after construction: as SIGTERM.
   void request_stop();
+
+  /// run() ended so that another App, with the configuration as it is now, takes its place.
+  [[nodiscard]] bool is_to_be_reloaded() const noexcept { return reloads_; }
 
   /// Tests so far.
   [[nodiscard]] const TestLog& tests() const noexcept { return tests_; }
@@ -77,6 +85,13 @@ class App {
   /// The one to wait in after an error of this kind.
   [[nodiscard]] static State waiting_state(base::ErrorKind kind) noexcept;
 
+  void wait_for_signal();
+  void reload();
+  void reload_when_idle();
+  /// What the service manager watches.
+  [[nodiscard]] std::vector<WatchedPart> watched_parts();
+  /// The daemon is ready to be used, whether or not there is a board.
+  void tell_ready();
   [[nodiscard]] base::Result<void> open_session();
   void wait_for_board(const base::Error& why);
   void retry_board();
@@ -100,6 +115,7 @@ class App {
   boost::asio::io_context io_{1};
   boost::asio::signal_set signals_;
   boost::asio::steady_timer retry_timer_;
+  boost::asio::steady_timer reload_timer_;
   Finalise finalise_;
   std::unique_ptr<base::Clock> clock_;
   Notify notify_;
@@ -117,6 +133,9 @@ class App {
   std::shared_ptr<const friction::TruthSource> truth_;
   std::unique_ptr<Session> session_;
 
+  Watchdog watchdog_;
+  bool reload_asked_ = false;
+  bool reloads_ = false;
   std::string process_facts_;  ///< Of prepare_process().
   State state_ = State::kStarting;
   std::string waiting_why_;  ///< While the board is waited for.

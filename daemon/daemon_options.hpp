@@ -24,7 +24,8 @@ inline void declare_daemon_options(CLI::App& app, DaemonOptions& options) {
   stickslipd --config /etc/stickslip/stickslipd.toml    as the service does
   stickslipd --check-config my.toml                     says what is wrong; exit status 0 or 2
 Each key is documented in config/stickslipd.toml. SIGTERM and SIGINT end a running test, finish
-its file and end the daemon with status 0.)");
+its file and end the daemon with status 0. SIGHUP has the configuration read again between two
+tests; in a terminal it ends the daemon.)");
   app.add_option("--config", options.config, "run with this configuration")->type_name("FILE");
   app.add_option("--check-config", options.config_to_check, "check this configuration and the files it names")
       ->type_name("FILE");

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/record/file.hpp"
+#include "daemon/thread_name.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -112,7 +113,9 @@ void DiskWriter::run() {
   Time last_sync = Clock::now();
   std::optional<Time> stopping_since;
   std::optional<std::string> trouble;
+  name_this_thread("disk");
   for (;;) {
+    rounds_.fetch_add(1, std::memory_order_relaxed);
     {
       std::unique_lock lock{mutex_};
       // A disk that refused is asked again after a while, not for each entry.

@@ -89,6 +89,8 @@ class DiskWriter {
   [[nodiscard]] DiskState state() const;
   /// Bytes of all journals that are not on the disk yet.
   [[nodiscard]] std::size_t waiting_size() const;
+  /// Times that the thread has come round: each second, unless a call of the disk does not return.
+  [[nodiscard]] std::uint64_t rounds() const noexcept { return rounds_.load(std::memory_order_relaxed); }
   /// For how long there is room now; nothing if nobody knows.
   [[nodiscard]] std::optional<double> room_s() const;
 
@@ -123,6 +125,7 @@ class DiskWriter {
   bool has_news_ = false;
   bool stopping_ = false;
   DiskState state_;
+  std::atomic<std::uint64_t> rounds_{0};
   std::thread thread_;
 };
 

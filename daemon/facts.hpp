@@ -49,6 +49,13 @@ class Facts {
   /// The broker is there, or away, or away for another reason.
   virtual void fleet_changed(const FleetState& /*state*/) {}
   virtual void control_listening(std::string_view /*socket*/) {}
+  /// Parts of the daemon that do not move any more, so that the service manager will start it again; none
+  /// if they move again. \param parts  separated by commas.
+  virtual void hanging(std::string_view /*parts*/) {}
+  /// A changed configuration is wrong and not used.
+  virtual void reload_refused(std::string_view /*why*/) {}
+  /// It is used as soon as nothing is being measured.
+  virtual void reload_waits() {}
   virtual void stopping(std::string_view /*why*/) {}
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <system_error>
 
+#include "daemon/thread_name.hpp"
+
 namespace stickslip::daemon {
 namespace {
 
@@ -57,6 +59,7 @@ std::optional<Finisher::Job> Finisher::next() {
 }
 
 void Finisher::run() {
+  name_this_thread("finisher");
   while (std::optional<Job> job = next()) {
     const base::Result<std::filesystem::path> file = finalise_(job->journal);
     const std::string refused = file ? std::string{} : file.error().message;

@@ -127,6 +127,17 @@ class Log final : public Facts {
                    state.outbox_count);
     }
   }
+  void hanging(std::string_view parts) override {
+    if (parts.empty()) {
+      logger_.warn("watchdog: all parts move again");
+    } else {
+      logger_.error("watchdog: not moving: {}; the service manager will start the daemon again", parts);
+    }
+  }
+  void reload_refused(std::string_view why) override {
+    logger_.error("reload: the configuration stays as it was: {}", why);
+  }
+  void reload_waits() override { logger_.info("reload: the configuration is good; used between two tests"); }
   void control_listening(std::string_view socket) override {
     logger_.info("control: listening at {}", socket);
   }

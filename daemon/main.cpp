@@ -7,8 +7,14 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <memory>
+#include <optional>
 #include <string>
+#include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
 #include <vector>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
 
 #include "daemon/app.hpp"
 #include "daemon/config.hpp"
@@ -27,11 +33,16 @@ int refused(const base::Error& error) {
   return error.exit_status();
 }
 
+base::Result<DaemonConfig> good_config(const std::string& file) {
+  base::Result<DaemonConfig> config = load_config(file);
+  if (!config) return config;
+  if (base::Result<void> board = drivers::check_board(config->board); !board)
+    return tl::unexpected(board.error());
+  return config;
+}
+
 int check_config(const std::string& file) {
-  const base::Result<DaemonConfig> config = load_config(file);
-  if (!config) return refused(config.error());
-  if (const base::Result<void> board = drivers::check_board(config->board); !board)
-    return refused(board.error());
+  if (const auto config = good_config(file); !config) return refused(config.error());
   fmt::print("{}: good\n", file);
   return 0;
 }
@@ -64,28 +75,64 @@ void print_table(const TestLog& tests) {
   if (!rows.empty()) fmt::print("{}", format_table(rows));
 }
 
+/// Keeps what the signals do while one App has gone and the next has not come, each of which handles them itself.
+class SignalsBetween {
+ public:
+  explicit SignalsBetween(bool reloads) {
+    if (reloads) hangups_.add(SIGHUP);
+    stops_.async_wait([this](boost::system::error_code error, int /*signal*/) { stop_asked_ = !error; });
+  }
+  /// SIGTERM or SIGINT came, ever.
+  [[nodiscard]] bool stop_asked() {
+    io_.poll();
+    return stop_asked_;
+  }
+
+ private:
+  bool stop_asked_ = false;
+  boost::asio::io_context io_{1};
+  boost::asio::signal_set stops_{io_, SIGTERM, SIGINT};
+  boost::asio::signal_set hangups_{io_};
+};
+
 int run(const std::string& file) {
   base::Result<DaemonConfig> config = load_config(file);
   if (!config) return refused(config.error());
   // A limit to the size of files is an error of writing (EFBIG), not an end.
   static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
-  const bool table = config->report_table;
-  const bool terminal = table && ::isatty(STDOUT_FILENO) != 0;
-  const std::unique_ptr<Facts> log = make_log(config->log_level);
+  // In a terminal a SIGHUP says that the terminal is gone.
+  const bool reloads = ::isatty(STDIN_FILENO) == 0;
+  SignalsBetween signals{reloads};
+  for (std::optional<DaemonConfig> next{*std::move(config)}; next;) {
+    const bool table = next->report_table;
+    const bool terminal = table && ::isatty(STDOUT_FILENO) != 0;
+    const std::unique_ptr<Facts> log = make_log(next->log_level);
 
-  AppWorld world;
-  world.open_board = drivers::open_board;
-  world.finalise = [](const std::filesystem::path& journal) {
-    return run_finaliser("/proc/self/exe", journal);
-  };
-  world.facts = log.get();
-  if (terminal) world.status_changed = show_status;
+    AppWorld world;
+    world.open_board = drivers::open_board;
+    world.finalise = [](const std::filesystem::path& journal) {
+      return run_finaliser("/proc/self/exe", journal);
+    };
+    world.facts = log.get();
+    world.stop_asked = [&signals] { return signals.stop_asked(); };
+    // Kept as it was found good: it may be used much later.
+    if (reloads) {
+      world.check_config = [&file, &next]() -> base::Result<void> {
+        base::Result<DaemonConfig> found = good_config(file);
+        if (!found) return tl::unexpected(found.error());
+        next = *std::move(found);
+        return {};
+      };
+    }
+    if (terminal) world.status_changed = show_status;
 
-  App app{std::move(*config), std::move(world)};
-  const base::Result<void> ended = app.run();
-  if (terminal) show_status("");
-  if (!ended) return refused(ended.error());
-  if (table) print_table(app.tests());
+    App app{*std::exchange(next, std::nullopt), std::move(world)};
+    const base::Result<void> ended = app.run();
+    if (terminal) show_status("");
+    if (!ended) return refused(ended.error());
+    if (table) print_table(app.tests());
+    if (!app.is_to_be_reloaded()) return 0;
+  }
   return 0;
 }
 

@@ -9,7 +9,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
+#include <ctime>
 
 namespace stickslip::daemon {
 namespace {
@@ -49,6 +51,23 @@ void Notify::status(std::string_view text) {
   if (text == last_status_) return;
   last_status_ = text;
   if (!send_at_once(fmt::format("STATUS={}", text))) last_status_.clear();
+}
+
+void Notify::reloading() {
+  // The time is for managers that ask for it (Type=notify-reload).
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  const std::int64_t now_us = std::int64_t{now.tv_sec} * 1'000'000 + now.tv_nsec / 1000;
+  is_ready_ = false;
+  static_cast<void>(sd_notify(0, fmt::format("RELOADING=1\nMONOTONIC_USEC={}", now_us).c_str()));
+}
+
+void Notify::alive() { static_cast<void>(send_at_once("WATCHDOG=1")); }
+
+std::chrono::microseconds Notify::watchdog_interval() {
+  std::uint64_t interval_us = 0;
+  const bool watches = sd_watchdog_enabled(0, &interval_us) > 0;
+  return std::chrono::microseconds{watches ? interval_us : 0};
 }
 
 void Notify::stopping() { static_cast<void>(send_at_once("STOPPING=1")); }

@@ -3,6 +3,7 @@
 /// environment every call does nothing.
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,12 @@ class Notify {
   void ready();
   /// STATUS=…; repeated texts are sent once. One that the manager has no room for is left out: never waits.
   void status(std::string_view text);
+  /// RELOADING=1, to be followed by ready(). Waits until the manager has room for it.
+  void reloading();
+  /// WATCHDOG=1. Never waits.
+  void alive();
+  /// In which alive() is to be called again [sd_watchdog_enabled(3)]; 0: nobody watches.
+  [[nodiscard]] static std::chrono::microseconds watchdog_interval();
   /// STOPPING=1. Never waits.
   void stopping();
 

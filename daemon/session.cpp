@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/base/contract.hpp"
+#include "daemon/thread_name.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -56,6 +57,7 @@ void Session::start_processing() {
 }
 
 void Session::process() {
+  name_this_thread("processing");
   std::vector<daq::ScanBlock> blocks(64);
   for (;;) {
     acquisition_.wait();

@@ -101,6 +101,10 @@ class Session {
     const std::lock_guard lock{live_mutex_};
     return clocks_;
   }
+  /// From any thread: scans that the board has delivered.
+  [[nodiscard]] std::uint64_t delivered_scan_count() const noexcept {
+    return acquisition_.delivered_scan_count();
+  }
   /// Only after events.ended.
   [[nodiscard]] SessionEnd end() const {
     return {processor_.test_number(), processor_.rate_meter().continuation()};

@@ -15,6 +15,7 @@
 #include "core/record/journal.hpp"
 #include "core/record/words.hpp"
 #include "daemon/finaliser.hpp"
+#include "daemon/thread_name.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -205,7 +206,9 @@ void Storage::test_ended(const pipeline::TestEnd& end) {
 // Storage thread.
 
 void Storage::run() {
+  name_this_thread("storage");
   for (;;) {
+    rounds_.fetch_add(1, std::memory_order_relaxed);
     Message message;
     if (!queue_.pop(message, kIdle)) {
       append_pending();

@@ -77,6 +77,13 @@ class Storage final : public pipeline::Sink {
   /// Times the processing thread had to wait. Any thread.
   [[nodiscard]] std::uint64_t stall_count() const noexcept { return queue_.stall_count(); }
 
+  /// Times that the storage thread, and the disk thread, have come round; at rest or not they do so each
+  /// second. Any thread.
+  [[nodiscard]] std::uint64_t storage_rounds() const noexcept {
+    return rounds_.load(std::memory_order_relaxed);
+  }
+  [[nodiscard]] std::uint64_t disk_rounds() const noexcept { return disk_.rounds(); }
+
   void test_began(const pipeline::TestStart& start) override;
   void scans(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second,
              const daq::ClockStamp& stamp) override;
@@ -158,6 +165,7 @@ class Storage final : public pipeline::Sink {
   bool is_short_ = false;
   Finisher finisher_;  ///< Outlives the disk thread, which hands over to it.
   DiskWriter disk_;
+  std::atomic<std::uint64_t> rounds_{0};
   std::thread thread_;
 };
 

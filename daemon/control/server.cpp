@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 #include <sys/un.h>
+#include <unistd.h>
 
 #include <charconv>
 #include <optional>
@@ -13,6 +14,7 @@
 
 #include "core/base/contract.hpp"
 #include "daemon/control/connection.hpp"
+#include "daemon/control/inherited_socket.hpp"
 
 namespace stickslip::daemon {
 namespace asio = boost::asio;
@@ -55,6 +57,14 @@ class LocalAcceptor final : public AcceptorOf<Local> {
  public:
   LocalAcceptor(asio::io_context& io, std::filesystem::path path, std::shared_ptr<Service> service)
       : AcceptorOf(io, std::move(service)), path_(std::move(path)) {}
+
+  /// \param socket  that listens already; the acceptor's from now on.
+  boost::system::error_code adopt(int socket) {
+    boost::system::error_code error;
+    acceptor_.assign(Local{}, socket, error);
+    if (error) ::close(socket);
+    return error;
+  }
 
   boost::system::error_code open() {
     boost::system::error_code error;
@@ -162,12 +172,14 @@ base::Result<std::unique_ptr<ControlServer>> ControlServer::listen(asio::io_cont
     return base::usage_error("control socket {}: the path is longer than {} bytes, the limit of the system",
                              socket.string(), kLongestPath);
   }
-  if (base::Result<void> removed = remove_leftover(io, socket); !removed) {
-    return tl::unexpected(removed.error());
+  const std::optional<int> inherited = inherited_socket(socket);
+  if (!inherited) {
+    if (base::Result<void> removed = remove_leftover(io, socket); !removed)
+      return tl::unexpected(removed.error());
   }
   auto service = std::make_shared<Service>(Service{{}, std::move(handler), hub, limits, 0});
   auto listener = std::make_shared<LocalAcceptor>(io, socket, std::move(service));
-  if (const boost::system::error_code error = listener->open()) {
+  if (const boost::system::error_code error = inherited ? listener->adopt(*inherited) : listener->open()) {
     listener->close();
     return base::failure("control socket {}: {}", socket.string(), error.message());
   }

@@ -22,7 +22,7 @@ namespace stickslip::daemon {
 class ControlServer {
  public:
   /// Listens at `socket` with mode 0660 (owner and group). A socket file that nobody answers is
-  /// left over and replaced.
+  /// left over and replaced. If the service manager listens there already, its socket is used, and stays.
   /// Errors: kUsage if the path is too long for a socket or is another kind of file; kFailure if
   /// another process listens there or the system refuses.
   [[nodiscard]] static base::Result<std::unique_ptr<ControlServer>> listen(

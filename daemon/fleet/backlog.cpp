@@ -14,10 +14,20 @@ std::optional<FleetResult> ask_result(const std::string& program, const std::str
                                       const std::filesystem::path& record) {
   const auto answer = ask_program(program, {"--result", record.string()}, {});
   if (!answer || !*answer || (*answer)->status != 0) return std::nullopt;
-  const auto json = nlohmann::ordered_json::parse((*answer)->output, nullptr, false);
+  return parse_result(record.stem().string(), tester, (*answer)->output);
+}
+
+std::optional<FleetResult> parse_result(const std::string& record, const std::string& tester,
+                                        const std::string& printed) {
+  const auto json = nlohmann::ordered_json::parse(printed, nullptr, false);
   if (!json.is_object()) return std::nullopt;
-  return FleetResult{record.stem().string(), json.value("entry_identifier_uuid", ""),
-                     result_message(tester, json)};
+  const auto id = json.find("entry_identifier_uuid");
+  if (id == json.end() || !id->is_string()) return std::nullopt;
+  // The outbox names a file by it, and anybody may have written the record.
+  const auto& uuid = id->get_ref<const std::string&>();
+  if (uuid.empty() || uuid.find_first_not_of("0123456789abcdefABCDEF-") != std::string::npos)
+    return std::nullopt;
+  return FleetResult{record, uuid, result_message(tester, json)};
 }
 
 base::Result<std::string> result_of_record(const std::filesystem::path& file) {

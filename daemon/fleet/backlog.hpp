@@ -19,6 +19,10 @@ namespace stickslip::daemon {
 [[nodiscard]] std::optional<FleetResult> ask_result(const std::string& program, const std::string& tester,
                                                     const std::filesystem::path& record);
 
+/// \param printed  by that process. Nothing unless it is a result whose id is a UUID.
+[[nodiscard]] std::optional<FleetResult> parse_result(const std::string& record, const std::string& tester,
+                                                      const std::string& printed);
+
 /// What that process prints: result_json(). Errors as record::read_record().
 [[nodiscard]] base::Result<std::string> result_of_record(const std::filesystem::path& file);
 

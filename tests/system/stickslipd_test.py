@@ -7,15 +7,15 @@ Nothing here sleeps: each step waits for an event (a notification, the end of a 
 """
 
 import json
-import os
 import pathlib
 import signal
-import socket
 import stat
 import subprocess
 import sys
 import tempfile
 import unittest
+
+from service_manager import TIMEOUT_S, Manager
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
@@ -23,9 +23,6 @@ DAEMON = BUILD / "daemon" / "stickslipd"
 CLI = BUILD / "daemon" / "stickslip"
 SCENES = SOURCE / "config" / "scenes"
 STICK_SLIP = SCENES / "stick-slip-at-12-in-per-min.toml"
-
-# Generous: under sanitizers on a busy machine everything takes its time.
-TIMEOUT_S = 240
 
 
 def run(*arguments, cwd=None):
@@ -79,30 +76,6 @@ folder = "records"
 
     def records(self):
         return sorted((self.folder / "records").glob("*.h5"))
-
-
-class Manager:
-    """Stands for systemd: a datagram socket that collects notifications."""
-
-    def __init__(self, test):
-        self.path = test.folder / "notify"
-        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
-        test.addCleanup(self.socket.close)
-        self.socket.bind(str(self.path))
-        self.socket.settimeout(TIMEOUT_S)
-        self.messages = []
-
-    def start(self, config, cwd):
-        environment = dict(os.environ, NOTIFY_SOCKET=str(self.path))
-        return subprocess.Popen([str(DAEMON), "--config", str(config)], cwd=cwd, env=environment,
-                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-
-    def wait_for(self, wanted):
-        """Reads notifications until one satisfies wanted(text)."""
-        while True:
-            self.messages.append(self.socket.recv(4096).decode())
-            if wanted(self.messages[-1]):
-                return self.messages[-1]
 
 
 class Demo(Folder):
@@ -200,9 +173,9 @@ folder = "replayed"
 
 class Signals(Folder):
     def end_with(self, number):
-        manager = Manager(self)
+        manager = Manager(self, self.folder)
         # Slow enough that the signal surely comes inside the test of 7.5 s: 1.5 s of the wall.
-        process = manager.start(self.simulated(repeats=0, speed=5), self.folder)
+        process = manager.start(DAEMON, self.simulated(repeats=0, speed=5), self.folder)
         self.addCleanup(process.kill)
         manager.wait_for(lambda text: "test 1 running" in text)
         process.send_signal(number)
@@ -223,9 +196,9 @@ class Signals(Folder):
         self.end_with(signal.SIGINT)
 
     def test_a_killed_daemon_leaves_a_journal_that_the_next_one_finishes(self):
-        manager = Manager(self)
+        manager = Manager(self, self.folder)
         config = self.simulated(repeats=0, speed=5)
-        process = manager.start(config, self.folder)
+        process = manager.start(DAEMON, config, self.folder)
         manager.wait_for(lambda text: "test 1 running" in text)
         # The storage thread begins the journal at about the same time; nobody announces it. The first
         # entry is the header: kill once there is more than that.
@@ -235,8 +208,8 @@ class Signals(Folder):
         process.kill()
         process.communicate(timeout=TIMEOUT_S)
         self.assertEqual(len(journals), 1)
-        manager = Manager2(self)
-        process = manager.start(config, self.folder)
+        manager = Manager(self, self.folder)
+        process = manager.start(DAEMON, config, self.folder)
         manager.wait_for(lambda text: text == "READY=1")
         finished = journals[0].with_suffix(".h5")
         self.assertTrue(finished.exists())
@@ -249,11 +222,11 @@ class Signals(Folder):
 
 
     def test_records_stand_in_dated_folders_read_only_and_are_recovered_there(self):
-        manager = Manager(self)
+        manager = Manager(self, self.folder)
         config = self.simulated(repeats=0, speed=5)
         config.write_text(config.read_text().replace('folder = "records"',
                                                      'folder = "records"\ndated_folders = "month"\nread_only = true'))
-        process = manager.start(config, self.folder)
+        process = manager.start(DAEMON, config, self.folder)
         manager.wait_for(lambda text: "test 1 running" in text)
         journals = []
         while not journals and process.poll() is None:
@@ -270,7 +243,7 @@ class Signals(Folder):
         self.assertEqual(verdict.returncode, 1, verdict.stdout)
         self.assertIn("interrupted: the program stopped before the end of the test", verdict.stdout)
 
-        manager = Manager2(self)
+        manager = Manager(self, self.folder)
         config = self.simulated(repeats=1)
         config.write_text(config.read_text().replace('folder = "records"', 'folder = "closed"\nread_only = true'))
         done = run(DAEMON, "--config", config, cwd=self.folder)
@@ -280,17 +253,9 @@ class Signals(Folder):
         self.assertEqual(run(CLI, "verify", record).returncode, 0)
 
 
-class Manager2(Manager):
-    """A second manager beside the first."""
-
-    def __init__(self, test):
-        (test.folder / "notify").unlink()
-        super().__init__(test)
-
-
 class Service(Folder):
     def test_a_missing_board_is_a_state_and_not_an_end(self):
-        manager = Manager(self)
+        manager = Manager(self, self.folder)
         config = self.config("""
 [board]
 driver = "comedi"
@@ -304,7 +269,7 @@ folder = "records"
 [control]
 socket = "control.sock"
 """)
-        process = manager.start(config, self.folder)
+        process = manager.start(DAEMON, config, self.folder)
         self.addCleanup(process.kill)
         manager.wait_for(lambda text: text == "READY=1")
         told = [text for text in manager.messages if text.startswith("STATUS=board missing: ")]
@@ -334,8 +299,8 @@ socket = "control.sock"
 
     def test_the_machine_is_asked_for_real_time_and_answers_in_status_and_record(self):
         import h5py
-        manager = Manager(self)
-        process = manager.start(self.simulated(repeats=0, speed=1, more='[control]\nsocket = "c.sock"\n'),
+        manager = Manager(self, self.folder)
+        process = manager.start(DAEMON, self.simulated(repeats=0, speed=1, more='[control]\nsocket = "c.sock"\n'),
                                 self.folder)
         self.addCleanup(process.kill)
         manager.wait_for(lambda text: "test 1 running" in text)
@@ -360,8 +325,8 @@ socket = "control.sock"
             self.assertEqual(file["entry/process/realtime"].asstr()[()], status["scheduling"])
 
     def test_status_tells_the_running_test(self):
-        manager = Manager(self)
-        process = manager.start(self.simulated(repeats=0, speed=5, more='[control]\nsocket = "c.sock"\n'),
+        manager = Manager(self, self.folder)
+        process = manager.start(DAEMON, self.simulated(repeats=0, speed=5, more='[control]\nsocket = "c.sock"\n'),
                                 self.folder)
         self.addCleanup(process.kill)
         manager.wait_for(lambda text: "test 1 running" in text)

@@ -221,6 +221,20 @@ TEST_F(OutboxTest, KeepsInMemoryWhatTheDiskRefusesAndSavesItLater) {
 
 using Backlog = Folder;
 
+TEST_F(Backlog, TakesNoIdThatCouldNameAnotherFile) {
+  const auto id = [](const std::string& printed) -> std::string {
+    const auto result = parse_result("20261121T100000Z-0001", "t", printed);
+    return result ? result->id : "none";
+  };
+  EXPECT_EQ(id(R"({"entry_identifier_uuid": "0f8fad5b-d9cb-469f-a165-70867728950e"})"),
+            "0f8fad5b-d9cb-469f-a165-70867728950e");
+  EXPECT_EQ(id(R"({"entry_identifier_uuid": "../../../etc/passwd"})"), "none");
+  EXPECT_EQ(id(R"({"entry_identifier_uuid": ""})"), "none");
+  EXPECT_EQ(id(R"({"entry_identifier_uuid": 7})"), "none");
+  EXPECT_EQ(id("{}"), "none");
+  EXPECT_EQ(id("Segmentation fault"), "none");
+}
+
 TEST_F(Backlog, HoldsTheRecordsOfTheDaemonAboveTheNewestThatWasTold) {
   const auto touch = [this](const std::string& name) {
     fs::create_directories((path_ / name).parent_path());

@@ -48,6 +48,33 @@ class Manager {
   int socket_;
 };
 
+TEST(Notify, IsAliveAndReadyAgainAfterAReload) {
+  Manager manager;
+  Notify notify;
+  notify.ready();
+  notify.alive();
+  notify.alive();
+  notify.reloading();
+  notify.ready();
+  const std::vector<std::string> messages = manager.read();
+  ASSERT_EQ(messages.size(), 5U);
+  EXPECT_EQ(messages[1], "WATCHDOG=1");
+  EXPECT_EQ(messages[2], "WATCHDOG=1");
+  EXPECT_TRUE(messages[3].starts_with("RELOADING=1\nMONOTONIC_USEC=")) << messages[3];
+  EXPECT_EQ(messages[4], "READY=1");
+}
+
+TEST(Notify, KnowsHowOftenItIsToBeHeard) {
+  EXPECT_EQ(Notify::watchdog_interval().count(), 0);
+  ::setenv("WATCHDOG_USEC", "60000000", 1);
+  EXPECT_EQ(Notify::watchdog_interval(), std::chrono::seconds{60});
+  // Meant for another process.
+  ::setenv("WATCHDOG_PID", "1", 1);
+  EXPECT_EQ(Notify::watchdog_interval().count(), 0);
+  ::unsetenv("WATCHDOG_PID");
+  ::unsetenv("WATCHDOG_USEC");
+}
+
 TEST(Notify, TellsEachStatusOnce) {
   Manager manager;
   Notify notify;

@@ -41,7 +41,8 @@ class Package(unittest.TestCase):
             [package] = support.PACKAGE.glob("*.deb")
             files = {"run.sh": support.HERE / "guest" / "service.sh", "stickslip.deb": package,
                      "stickslip-newer.deb": newer(package, folder),
-                     "stickslip_tester.ko": support.tester_module(found), "codes.bin": played}
+                     "stickslip_tester.ko": support.tester_module(found), "codes.bin": played,
+                     "freeze_thread": support.FREEZE_THREAD}
             cls.results = debian.run_full_guest(guest.folder_for(support.FOLDER, "service"), found, disk, files)
 
     def status(self, when):
@@ -95,6 +96,20 @@ class Package(unittest.TestCase):
             self.assertRegex(file, r"^640 stickslip stickslip /.*\.h5$")
         for path in sorted((self.results / "records").glob("*.h5")):
             verdict.judge(path)
+
+    def test_a_reload_is_no_new_start(self):
+        self.assertEqual(self.status("reloaded")["state"], "board missing")
+
+    def test_each_thread_that_hangs_has_the_daemon_started_again(self):
+        log = (self.results / "watchdog.txt").read_text()
+        self.assertEqual(log.count("Watchdog timeout"), 4, log)
+        for part in ("acquisition", "detector", "disk"):
+            self.assertRegex(log, f"watchdog: not moving: .*{part}")
+        for thread in ("acquisition", "processing", "disk", "stickslipd"):
+            self.assertEqual(self.status(f"after-{thread}")["state"], "acquiring")
+
+    def test_who_asks_by_the_socket_starts_the_daemon(self):
+        self.assertIn('"state"', (self.results / "activated.json").read_text())
 
     def test_an_upgrade_goes_on(self):
         self.assertEqual(self.status("upgraded")["state"], "acquiring")

@@ -18,6 +18,7 @@ FOLDER = pathlib.Path(os.environ.get("STICKSLIP_VM_FOLDER", SOURCE / "build" / "
 DAEMON = BUILD / "daemon" / "stickslipd"
 CLI = BUILD / "daemon" / "stickslip"
 PACKAGE = FOLDER / "package"  # Of the same build, made by ./dev.
+FREEZE_THREAD = BUILD / "tests" / "system" / "freeze_thread"
 CONFORMANCE = BUILD / "tests" / "conformance" / "conformance_board"
 SCENES = SOURCE / "config" / "scenes"
 

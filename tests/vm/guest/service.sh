@@ -34,6 +34,18 @@ say "installed"
 systemctl is-enabled "$unit"
 await state '"board missing"' installed
 systemctl is-active "$unit"
+# Without a board it waits; a reload has it read its configuration again, in the same process.
+pid=$(property MainPID)
+systemctl reload "$unit"
+left=60
+until journalctl --no-pager -u "$unit" | grep -q 'reload: the configuration is good'; do
+  left=$((left - 1))
+  [ "$left" -gt 0 ] || fail "no reload"
+  sleep 1
+done
+await state '"board missing"' reloaded
+[ "$(property MainPID)" = "$pid" ] || fail "a reload started another process"
+say "reloaded"
 mkdir -m 777 /run/demo
 (cd /run/demo && setpriv --reuid=nobody --regid=nogroup --clear-groups stickslip demo) >"$results/demo.txt" 2>&1 ||
   fail "stickslip demo: $(cat "$results/demo.txt")"
@@ -82,6 +94,40 @@ find "$data" -name '*.h5' -exec stat -c '%a %U %G %n' {} + >"$results/files"
 mkdir "$results/records"
 find "$data" -name '*.h5' -exec cp {} "$results/records" ';'
 say "stopped"
+
+# What hangs is started again. A shorter watchdog than as shipped: a disk may take four of its intervals.
+mkdir -p "/run/systemd/system/$unit.d"
+printf '[Service]\nWatchdogSec=8\n' >"/run/systemd/system/$unit.d/watchdog.conf"
+systemctl daemon-reload
+systemctl start "$unit"
+for thread in acquisition processing disk stickslipd; do
+  await state '"acquiring"' "before-$thread"
+  restarts=$(property NRestarts)
+  mkfifo "/run/hold-$thread"
+  ./freeze_thread "$(property MainPID)" "$thread" <"/run/hold-$thread" &
+  exec 9>"/run/hold-$thread"
+  left=120
+  until [ "$(property NRestarts)" -gt "$restarts" ]; do
+    left=$((left - 1))
+    [ "$left" -gt 0 ] || fail "a frozen $thread is not noticed"
+    sleep 1
+  done
+  exec 9>&-
+  await state '"acquiring"' "after-$thread"
+  say "$thread froze: started again"
+done
+journalctl --no-pager -u "$unit" >"$results/watchdog.txt"
+rm -r "/run/systemd/system/$unit.d"
+systemctl daemon-reload
+systemctl stop "$unit"
+
+# The socket of the service manager: who asks starts the daemon, and is answered.
+systemctl start stickslipd.socket
+! systemctl is-active --quiet "$unit" || fail "the daemon runs before anybody asks"
+stickslip status --json --socket "$socket" >"$results/activated.json" || fail "no answer by the socket"
+systemctl is-active "$unit"
+systemctl stop stickslipd.socket "$unit"
+say "socket"
 
 # An upgrade keeps what was configured, and starts the service that is on.
 dpkg -i stickslip-newer.deb >>"$results/dpkg.txt" 2>&1 || fail "upgrade: $(cat "$results/dpkg.txt")"
