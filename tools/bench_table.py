@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Every figure that README quotes, measured now, beside what README says: `./dev bench --table`.
+
+    tools/bench_table.py BENCH_BUILD RELEASE_BUILD README
+
+Runs the benchmarks, the scenes of the demo and the daemon, some minutes in all; writes BENCH_BUILD/table.md and prints it.
+Exit status 1 if a figure is not where README says it is, or off by more than its kind may be: accuracy is computed and
+the same everywhere but for the last digit; ratios were measured side by side; times and shares are those of the machine.
+"""
+
+import dataclasses
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+FACTORS = {"accuracy": 1.1, "ratio": 1.5, "time": 2.0}
+# As README writes them.
+UNITS = {"ns": 1e-9, "µs": 1e-6, "ms": 1e-3, "s": 1.0, "million": 1e6, "MB": 1e6, "%": 1.0, "×": 1.0, "": 1.0}
+
+
+@dataclasses.dataclass
+class Figure:
+    what: str
+    kind: str
+    value: float
+    said: str  # What README says around it: one group for the number, one for its unit if it has one.
+
+
+def benchmarks(program, pattern):
+    """{name: row} of a Google Benchmark program."""
+    done = subprocess.run([program, f"--benchmark_filter={pattern}", "--benchmark_format=json"], capture_output=True, text=True, check=True)
+    return {re.sub(r"/(iterations:1|manual_time|process_time)", "", row["name"]): row for row in json.loads(done.stdout)["benchmarks"]}
+
+
+def row(first, *cells):
+    """The pattern of a row of a table: `cells` after the cell that begins with `first`."""
+    return r"\| " + re.escape(first) + r"[^|]*\|" + "".join(cells)
+
+
+def accuracy(release):
+    done = subprocess.run([release / "tests/scenario/scenario_demo_scenes"], capture_output=True, text=True, check=True)
+    errors = {}
+    for name, value in re.findall(r"^(\w+) +true .* rms error ([\d.e-]+) ", done.stdout, re.MULTILINE):
+        errors.setdefault(name, []).append(float(value))
+    for name, label in (("delta_mu", "S − K"), ("mu_k", "K"), ("gamma_over_2omega", "γ/2ω")):
+        stick_slip, ring_down = errors[name]
+        yield Figure(f"rms error of {label}, ring-down", "accuracy", ring_down, rf"\| {label}[^|]*\| ([\d.]+)() \|")
+        yield Figure(f"rms error of {label}, stick-slip", "accuracy", stick_slip, rf"\| {label}[^|]*\|[^|]*\| ([\d.]+)() \|")
+
+
+def simulator(bench):
+    rows = benchmarks(bench / "bench_simulator", "exact_solver$|exact_solver_with|bench_hour|cvode|odeint")
+    exact, solved = (1 / rows[name]["items_per_second"] for name in ("exact_solver", "exact_solver_with_each_slip_solved"))
+    cvode, odeint = (rows[name] for name in ("cvode_at_error_1e_9", "peer_odeint_dopri5_at_error_1e_9"))
+    time, ratio, skip = r" ([\d.]+) (ns|µs|ms)[^|]*\|", r" ([\d.]+) (×) \|", r"[^|]*\|"
+    yield Figure("one simulated scan", "time", exact, row("one simulated scan", time))
+    yield Figure("its peer, CVODE", "time", 1 / cvode["items_per_second"], row("one simulated scan", skip, time))
+    yield Figure("CVODE over exact", "ratio", cvode["times_exact"], row("one simulated scan", skip, skip, ratio))
+    yield Figure("a scan where no slip repeats", "time", solved, row("the same where no slip", time))
+    yield Figure("CVODE over that", "ratio", 1 / cvode["items_per_second"] / solved, row("the same where no slip", skip, skip, ratio))
+    yield Figure("its peer, odeint", "time", 1 / odeint["items_per_second"], row("the same", skip, r" ([\d.]+) (ns|µs|ms), Boost[^|]*\|"))
+    yield Figure("odeint over exact", "ratio", odeint["times_exact"], row("the same", skip, r"[^|]*Boost[^|]*\|", ratio))
+    yield Figure("one bench hour", "time", 1e-3 * rows["bench_hour"]["cpu_time"], row("one bench hour", time))
+
+
+def others(bench):
+    time, ratio, skip = r" ([\d.]+) (ns|µs|ms)[^|]*\|", r" ([\d.]+) (×) \|", r"[^|]*\|"
+    ring = benchmarks(bench / "bench_ring", ".")
+    here, peer = (1e-9 * ring[name]["cpu_time"] for name in ("ring_hand_over", "peer_mutex_deque_hand_over"))
+    yield Figure("hand-over of 64 scans", "time", here, row("hand-over", time))
+    yield Figure("its peer", "time", peer, row("hand-over", skip, time))
+    yield Figure("peer over here", "ratio", peer / here, row("hand-over", skip, skip, ratio))
+    detector = benchmarks(bench / "bench_detector", "^follow/peak/350/|^peer_scipy_chain/350/[0-9][0-9][0-9]")
+    [here] = [one["per_scan"] for name, one in detector.items() if name.startswith("follow")]
+    [peer] = [one["per_scan"] for name, one in detector.items() if name.startswith("peer")]
+    yield Figure("live detector, a scan", "time", here, row("live detector", time))
+    yield Figure("its peer, SciPy", "time", peer, row("live detector", skip, time))
+    yield Figure("SciPy over here", "ratio", peer / here, row("live detector", skip, skip, ratio))
+    analysis = benchmarks(bench / "bench_analysis", "whole_test_fit")["analysis_with_whole_test_fit"]
+    yield Figure("all results of a test", "time", 1e-9 * analysis["cpu_time"], row("all results", time))
+    pipeline = benchmarks(bench / "bench_pipeline", "^whole/interpolated")
+    for rate_Hz, said in ((10_000, row("the whole pipeline", r" ([\d.]+) (million); ")), (350, row("the whole pipeline", r"[^|]*; ([\d.]+) (million) \|"))):
+        yield Figure(f"scans a second at {rate_Hz} Hz", "time", pipeline[f"whole/interpolated/{rate_Hz}"]["running_scans_per_s"], said)
+
+
+def daemon(release):
+    done = subprocess.run([sys.executable, pathlib.Path(__file__).parents[1] / "bench/daemon_load.py", release, "30"],
+                          capture_output=True, text=True, check=True)
+    yield Figure("processor of the daemon", "time", float(re.search(r"processor +([\d.]+) %", done.stdout)[1]), r"takes ([\d.]+) (%) of a processor")
+    yield Figure("memory of the daemon", "time", 1e6 * float(re.search(r"memory +([\d.]+) MB", done.stdout)[1]), r"of a processor and ([\d.]+) (MB)")
+
+
+def main(bench, release, readme):
+    bench, release = pathlib.Path(bench).resolve(), pathlib.Path(release).resolve()
+    text = pathlib.Path(readme).read_text(encoding="utf-8")
+    lines, wrong = ["| figure | measured | README | of it | |", "|---|---|---|---|---|"], 0
+    for part in (accuracy(release), simulator(bench / "bench"), others(bench / "bench"), daemon(release)):
+        for figure in part:
+            found = re.search(figure.said, text)
+            said = float(found[1]) * UNITS[found[2]] if found else None
+            quotient = figure.value / said if said else float("nan")
+            good = 1 / FACTORS[figure.kind] <= quotient <= FACTORS[figure.kind]
+            wrong += not good
+            lines.append(f"| {figure.what} | {figure.value:.3g} | {'not there' if said is None else f'{said:.3g}'} | {quotient:.2f} | "
+                         f"{'' if good else 'WRONG'} |")
+            print(lines[-1], file=sys.stderr, flush=True)
+    (bench / "table.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    print("\n".join(lines))
+    print(f"{len(lines) - 2} figures, {wrong} of them not as README says; {bench / 'table.md'}")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
