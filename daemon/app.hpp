@@ -61,9 +61,9 @@ class App {
   App(const App&) = delete;
   App& operator=(const App&) = delete;
 
-  /// Runs until SIGTERM, SIGINT or the end of the input: drains, ends the running test, finishes its file. Or,
-  /// after a SIGHUP, until no test and no calibration is under way. Errors mean that it never got ready: kUsage (configuration), kFailure (record
-  /// folder or control socket).
+  /// Runs until SIGTERM, SIGINT or the end of the input: drains, ends the running test, finishes its file.
+  /// Or, after a SIGHUP, until no test and no calibration is under way. Errors mean that it never got ready:
+  /// kUsage (configuration), kFailure (record folder or control socket).
   [[nodiscard]] base::Result<void> run();
 
   /// Any thread, any time after construction: as SIGTERM.

@@ -75,7 +75,8 @@ void print_table(const TestLog& tests) {
   if (!rows.empty()) fmt::print("{}", format_table(rows));
 }
 
-/// Keeps what the signals do while one App has gone and the next has not come, each of which handles them itself.
+/// Keeps what the signals do while one App has gone and the next has not come, each of which handles them
+/// itself.
 class SignalsBetween {
  public:
   explicit SignalsBetween(bool reloads) {

@@ -12,7 +12,8 @@ const std::vector<std::string>& PulseWatch::look() {
     const Pulse now = watched.part.pulse();
     const bool moved = now.at_rest || now.count != std::exchange(watched.before, now.count);
     watched.looks_still = moved ? 0 : watched.looks_still + 1;
-    if (watched.looks_still > watched.part.patience * kLooksPerInterval) hanging_.push_back(watched.part.name);
+    if (watched.looks_still > watched.part.patience * kLooksPerInterval)
+      hanging_.push_back(watched.part.name);
   }
   return hanging_;
 }

@@ -1,6 +1,7 @@
 /// \file
-/// The service manager's watchdog [WatchdogSec= of systemd.service(5)] is fed while all parts of the daemon move: a thread
-/// that hangs has the daemon started again. The main thread, whose timer this is, feeds nothing while it hangs itself.
+/// The service manager's watchdog [WatchdogSec= of systemd.service(5)] is fed while all parts of the daemon
+/// move: a thread that hangs has the daemon started again. The main thread, whose timer this is, feeds
+/// nothing while it hangs itself.
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,5 @@
-// Any text is a calibration of a load cell (or a characterisation of a tester) or is refused in one line; what is taken
-// is written in a way that gives the same again.
+// Any text is a calibration of a load cell (or a characterisation of a tester) or is refused in one line;
+// what is taken is written in a way that gives the same again.
 
 #include <bit>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Whatever stands in a journal, with checksums that are right: it is read up to the first entry that makes no sense, and
-// judged. The first byte says whether a header comes before it.
+// Whatever stands in a journal, with checksums that are right: it is read up to the first entry that makes no
+// sense, and judged. The first byte says whether a header comes before it.
 
 #include <fuzzer/FuzzedDataProvider.h>
 #include <sys/mman.h>

@@ -1,13 +1,14 @@
-// A record that somebody changed with HDF5's own tools in any way: other values, types, shapes, attributes, things missing
-// or in each other's place. It is read or refused in one line, and judged. (Files whose HDF5 structure is damaged are read
-// in a process of their own: they may crash the library. tests/property/record_flips_test.cpp flips bits of them.)
+// A record that somebody changed with HDF5's own tools in any way: other values, types, shapes, attributes,
+// things missing or in each other's place. It is read or refused in one line, and judged. (Files whose HDF5
+// structure is damaged are read in a process of their own: they may crash the library.
+// tests/property/record_flips_test.cpp flips bits of them.)
 
 #include <fuzzer/FuzzedDataProvider.h>
 #include <hdf5.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,8 @@ struct Original {
 };
 
 herr_t note_object(hid_t, const char* name, const H5O_info_t* info, void* objects) {
-  if (std::string_view{name} != ".") static_cast<std::vector<Object>*>(objects)->push_back({name, info->type});
+  if (std::string_view{name} != ".")
+    static_cast<std::vector<Object>*>(objects)->push_back({name, info->type});
   return 0;
 }
 
@@ -89,7 +91,8 @@ void put_data_set(hid_t file, const std::string& path, FuzzedDataProvider& input
 }
 
 void put_attribute(hid_t file, const std::string& path, FuzzedDataProvider& input) {
-  static constexpr std::array kNames{"units", "signal", "axes", "NX_class", "format_version", "default", "creator"};
+  static constexpr std::array kNames{"units",          "signal",  "axes",   "NX_class",
+                                     "format_version", "default", "creator"};
   const char* const name = input.PickValueInArray(kNames);
   H5Adelete_by_name(file, path.c_str(), name, H5P_DEFAULT);
   const hid_t type = any_type(input);
@@ -168,13 +171,11 @@ void change(hid_t file, const std::vector<Object>& objects, FuzzedDataProvider& 
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const Original original = make_original();
-  static const int memory = ::memfd_create("record.h5", MFD_CLOEXEC);
-  static const std::string name = "/proc/self/fd/" + std::to_string(memory);
+  static const test::TemporaryFolder folder;
+  static const std::string name = folder / "record.h5";
   FuzzedDataProvider input{data, size};
-  STICKSLIP_EXPECTS(::ftruncate(memory, 0) == 0);
-  STICKSLIP_EXPECTS(::pwrite(memory, original.bytes.data(), original.bytes.size(), 0) ==
-                    static_cast<ssize_t>(original.bytes.size()));
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // Most changes of changes are refused.
+  test::write_content(name, original.bytes);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // Most changes of changes are refused.
   const hid_t file = H5Fopen(name.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   STICKSLIP_EXPECTS(file >= 0);
   while (input.remaining_bytes() > 0) change(file, original.objects, input);

@@ -1,6 +1,6 @@
-// freeze_thread PID NAME: stops one thread of a process, as a thread that hangs; it goes on when the standard input ends.
-// Only while it waits in the kernel, so that it holds nothing that the others need. Says "frozen" when it is so; exit
-// status 1 if the thread cannot be stopped.
+// freeze_thread PID NAME: stops one thread of a process, as a thread that hangs; it goes on when the standard
+// input ends. Only while it waits in the kernel, so that it holds nothing that the others need. Says "frozen"
+// when it is so; exit status 1 if the thread cannot be stopped.
 
 #include <sys/ptrace.h>
 #include <sys/wait.h>

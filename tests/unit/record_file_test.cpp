@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <functional>
+#include <limits>
 #include <numeric>
 
 #include "core/record/finaliser.hpp"
@@ -228,9 +229,15 @@ TEST(IsoTime, GoesThereAndBackExactly) {
     EXPECT_EQ(record::ns_from_iso_time(record::iso_time(ns)), ns);
   }
   for (const char* bad :
-       {"", "2026-11-21", "2026-13-21T13:06:22.123456789+00:00", "2026-11-21T13:06:22.1+00:00"}) {
+       {"", "2026-11-21", "2026-13-21T13:06:22.123456789+00:00", "2026-11-21T13:06:22.1+00:00",
+        "2723-11-21T13:06:22.123456789+00:00", "0001-01-01T00:00:00.000000000+00:00"}) {
     EXPECT_FALSE(record::ns_from_iso_time(bad)) << bad;
   }
+  // The ends of the range, by date -u -d @-9223372037 and @9223372036.
+  EXPECT_EQ(record::iso_time(std::numeric_limits<std::int64_t>::min()),
+            "1677-09-21T00:12:43.145224192+00:00");
+  EXPECT_EQ(record::iso_time(std::numeric_limits<std::int64_t>::max()),
+            "2262-04-11T23:47:16.854775807+00:00");
 }
 
 // --- Files that are no records -------------------------------------------------------------------

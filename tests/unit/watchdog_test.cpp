@@ -77,7 +77,8 @@ TEST_F(Watched, IsFedWhileAllMoveAndTellsOnceWhatHangs) {
   Watchdog watchdog{io,
                     std::chrono::microseconds{1000},
                     {moving, part("a", 1)},
-                    {[&fed] { ++fed; }, [&told](const std::vector<std::string>& parts) {
+                    {[&fed] { ++fed; },
+                     [&told](const std::vector<std::string>& parts) {
                        told.push_back(parts.empty() ? "" : parts.front());
                      }}};
   watchdog.start();
