@@ -2,13 +2,12 @@
 // input ends. Only while it waits in the kernel, so that it holds nothing that the others need. Says "frozen"
 // when it is so; exit status 1 if the thread cannot be stopped.
 
+#include <poll.h>
 #include <sys/ptrace.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -51,7 +50,12 @@ int main(int count, char** arguments) {
   }
   std::puts("frozen");
   std::fflush(stdout);
-  while (std::getchar() != EOF) {
+  // Of a process that is killed a traced thread stays until its tracer has asked for it.
+  constexpr int kLook_ms = 100;
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  while (::poll(&input, 1, kLook_ms) == 0) {
+    int status = 0;
+    if (::waitpid(thread, &status, WNOHANG | __WALL) != 0) return 0;
   }
   return 0;  // The kernel lets go of what is traced by a process that ends.
 }

@@ -88,6 +88,9 @@ class Package(unittest.TestCase):
         self.assertEqual(lines(self.results / "end"),
                          ["ActiveState=inactive", "Result=success", "ExecMainStatus=0", "NRestarts=0"])
 
+        # In the guest, whose processor is translated.
+        self.assertLess(int(lines(self.results / "stop-seconds")[0]), 10)
+
     def test_every_scan_is_in_records_of_its_user(self):
         files = lines(self.results / "files")
         # The test that the removal ended, and the one that the end of the daemon ended.

@@ -84,7 +84,9 @@ property StatusText >"$results/text-returned"
 [ "$(property MainPID)" = "$pid" ] || fail "the daemon was started again"
 say "board back"
 
+began=$(cut -d. -f1 /proc/uptime)
 systemctl stop "$unit"
+echo $(($(cut -d. -f1 /proc/uptime) - began)) >"$results/stop-seconds"
 for name in ActiveState Result ExecMainStatus NRestarts; do
   echo "$name=$(property $name)"
 done >"$results/end"
