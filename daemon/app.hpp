@@ -88,6 +88,8 @@ class App {
   void wait_for_signal();
   void reload();
   void reload_when_idle();
+  void reload_now();
+  void look_again_for_reload();
   /// What the service manager watches.
   [[nodiscard]] std::vector<WatchedPart> watched_parts();
   /// The daemon is ready to be used, whether or not there is a board.

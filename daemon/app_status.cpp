@@ -1,0 +1,128 @@
+// How the daemon is: its state in a word, a line for people, all of it, and what its watchdog looks at.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "daemon/app.hpp"
+#include "daemon/version.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+/// Room for longer is not told in one line: 30 days without a pause.
+constexpr double kTellRoom_h = 720.0;
+
+}  // namespace
+
+std::vector<WatchedPart> App::watched_parts() {
+  // Without scans the state of the daemon says why: no board, or it begins or ends.
+  const auto of_scans = [this](std::uint64_t count) {
+    return Pulse{count, !session_ || state_ != State::kAcquiring};
+  };
+  // A disk of which a call returns late is slow, not hung: the kernel tries again for three minutes before it
+  // says that a disk fails (30 s, six times: sd's timeout and retries), and memory has room for ten.
+  constexpr int kDiskPatience = 4;
+  return {
+      {"acquisition", [=, this] { return of_scans(session_ ? session_->delivered_scan_count() : 0); }},
+      {"detector", [=, this] { return of_scans(counts_.scans.load(std::memory_order_relaxed)); }},
+      {"storage", [this] { return Pulse{storage_.storage_rounds()}; }, kDiskPatience},
+      {"disk", [this] { return Pulse{storage_.disk_rounds()}; }, kDiskPatience},
+  };
+}
+
+std::string_view App::name(State state) noexcept {
+  switch (state) {
+    case State::kStarting:
+      break;
+    case State::kAcquiring:
+      return "acquiring";
+    case State::kBoardMissing:
+      return "board missing";
+    case State::kBoardBusy:
+      return "board busy";
+    case State::kNoPermission:
+      return "no permission";
+    case State::kStopping:
+      return "stopping";
+  }
+  return "starting";
+}
+
+App::State App::waiting_state(base::ErrorKind kind) noexcept {
+  if (kind == base::ErrorKind::kBusy) return State::kBoardBusy;
+  if (kind == base::ErrorKind::kNoPermission) return State::kNoPermission;
+  return State::kBoardMissing;
+}
+
+std::string App::status_line() const {
+  const StorageState storage = storage_.state();
+  std::string line = state_line();
+  if (!watchdog_.hanging().empty())
+    line += fmt::format("; does not move: {}", fmt::join(watchdog_.hanging(), ", "));
+  if (storage.kind == StorageState::Kind::kWaiting) {
+    line += "; " + storage.why;
+  } else if (storage.kind == StorageState::Kind::kShort) {
+    line += fmt::format("; storage short: {}; {}", storage.why, storage.to_do);
+  } else if (storage.room_h && *storage.room_h < kTellRoom_h) {
+    line += fmt::format("; room on the disk for {:.0f} h", *storage.room_h);
+  }
+  return line;
+}
+
+std::string App::state_line() const {
+  switch (state_) {
+    case State::kAcquiring: {
+      const std::string rate =
+          session_ ? fmt::format(" at {:.1f} Hz", session_->board_info().scan_rate_granted_Hz) : "";
+      const std::string activity = current_test_ ? fmt::format("test {} running", *current_test_) : "idle";
+      return fmt::format("acquiring{}, {}, {} tests done", rate, activity, tests_.test_count());
+    }
+    case State::kBoardMissing:
+    case State::kBoardBusy:
+    case State::kNoPermission:
+      return fmt::format("{}: {}", name(state_), waiting_why_);
+    case State::kStarting:
+    case State::kStopping:
+      break;
+  }
+  return std::string{name(state_)};
+}
+
+Status App::status() const {
+  Status status;
+  status.state = name(state_);
+  status.detail = status_line();
+  status.version = kVersion;
+  if (session_) {
+    status.board = session_->board_info();
+    status.bench = session_->bench();
+    if (current_test_) status.live = session_->live();
+    status.scheduling = realtime_facts();
+  }
+  status.scan_count = counts_.scans.load(std::memory_order_relaxed);
+  status.dropped_scan_count = counts_.dropped_scans.load(std::memory_order_relaxed);
+  status.overrun_count = counts_.overruns.load(std::memory_order_relaxed);
+  status.gap_count = counts_.gaps.load(std::memory_order_relaxed);
+  status.lost_scan_count = counts_.lost_scans.load(std::memory_order_relaxed);
+  status.board_loss_count = board_loss_count_;
+  const SessionClocks clocks = session_ ? session_->clocks() : clocks_;
+  if (config_.clock_speed == 1.0) status.scan_rate_measured = clocks.scan_rate;
+  status.latency = clocks.latency;
+  status.storage_stall_count = storage_.stall_count();
+  status.storage = storage_.state();
+  status.batch = batches_.progress();
+  if (state_ == State::kAcquiring && status.storage.kind != StorageState::Kind::kOk)
+    status.state = fmt::format("storage {}", daemon::name(status.storage.kind));
+  status.test_count = tests_.test_count();
+  status.current_test = current_test_;
+  status.latest_test = tests_.latest();
+  const CalibrationView calibration = calibrations_.view();
+  status.calibration = {calibration.facts.date, calibration.facts.expires, calibration.expired,
+                        calibration.session ? calibration.session->who : std::string{}};
+  if (fleet_) status.fleet = fleet_->state();
+  status.live_client_count = static_cast<std::int64_t>(live_.hub().client_count());
+  status.live_dropped_count = live_.hub().dropped_count() + live_.lost_count();
+  return status;
+}
+
+}  // namespace stickslip::daemon
