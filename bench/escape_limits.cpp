@@ -1,7 +1,7 @@
 // How soon the live detector declares an escape in random tests, with the tester characterised, and how often
 // it takes a captured slip for one: the table of docs/detector.md.
 //
-//     escape_limits [TESTS [SEED [FILE]]]      # 10000 tests, seed 1
+//     escape_limits [TESTS [SEED [FILE [SPIKES_PER_S]]]]      # 10000 tests, seed 1, 20 spikes a second
 //
 // FILE gets Q/Q_th and the noise over S - K of each escape, for the bound (escape_bound.py).
 
@@ -52,7 +52,8 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "{}\n", base.error().message);
     return 1;
   }
-  const test::Disturbance disturbance;
+  test::Disturbance disturbance;
+  if (argc > 4) disturbance.spikes_per_s = std::strtod(argv[4], nullptr);
   const std::vector<test::EscapeTrial> trials = test::escape_trials(*base, disturbance, count, seed);
   if (argc > 3) {
     std::ofstream list{argv[3]};

@@ -12,8 +12,7 @@ import subprocess
 import tempfile
 import threading
 
-# Generous: under sanitizers on a busy machine everything takes its time.
-TIMEOUT_S = 240
+from service_manager import TIMEOUT_S
 
 
 SCENE = "config/scenes/stick-slip-at-12-in-per-min.toml"
