@@ -57,14 +57,18 @@ App::App(DaemonConfig config, AppWorld world)
               }
             });
           }),
-      watcher_(tests_, *world_.facts,
-               [this](std::optional<std::int64_t> number) {
-                 boost::asio::post(io_, [this, number] {
-                   current_test_ = number;
-                   if (number) batches_.test_began(*number);
-                   tell_status();
-                 });
-               }),
+      watcher_(
+          tests_, *world_.facts,
+          [this](std::optional<std::int64_t> number) {
+            boost::asio::post(io_, [this, number] {
+              current_test_ = number;
+              if (number) batches_.test_began(*number);
+              tell_status();
+            });
+          },
+          [this] {
+            if (reload_at_rest_.exchange(false)) reload_at_rest(*session_);
+          }),
       live_(io_, *clock_, [this] { return health_frame(status()); }),
       batches_({.folder = config_.record_folder,
                 .program = "/proc/self/exe",
@@ -276,6 +280,7 @@ void App::session_ended(Acquisition::End end) {
       ++board_loss_count_;
       // What became of it is told by the next try.
       wait_for_board({base::ErrorKind::kFailure, why.empty() ? "it went away" : why});
+      if (reload_asked_) reload_when_idle();
       break;
   }
 }

@@ -2,6 +2,7 @@
 /// stickslipd as a whole: who lives how long, and what follows from what.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -88,6 +89,8 @@ class App {
   void wait_for_signal();
   void reload();
   void reload_when_idle();
+  /// On the processing thread: the bench rests.
+  void reload_at_rest(Session& session);
   void reload_now();
   void look_again_for_reload();
   /// What the service manager watches.
@@ -137,6 +140,7 @@ class App {
 
   Watchdog watchdog_;
   bool reload_asked_ = false;
+  std::atomic<bool> reload_at_rest_{false};  ///< The processing thread begins it when no test is under way.
   bool reloads_ = false;
   std::string process_facts_;  ///< Of prepare_process().
   State state_ = State::kStarting;

@@ -46,14 +46,18 @@ void App::reload_when_idle() {
     reload_now();
     return;
   }
-  // Asked where tests begin: what is known here is known later.
+  // Decided where tests begin: what is known here is known later.
+  reload_at_rest_ = true;
   const bool asked = session->post([this, session](pipeline::Processor& processor) {
-    const pipeline::BenchState bench = processor.bench();
-    const bool rests = bench == pipeline::BenchState::kIdle || bench == pipeline::BenchState::kArmed;
-    if (rests) session->request_stop();
-    boost::asio::post(io_, [this, rests] { rests ? reload_now() : look_again_for_reload(); });
+    if (pipeline::rests(processor.bench()) && reload_at_rest_.exchange(false)) reload_at_rest(*session);
   });
+  // The session is over, and the board is waited for.
   if (!asked) look_again_for_reload();
+}
+
+void App::reload_at_rest(Session& session) {
+  session.request_stop();
+  boost::asio::post(io_, [this] { reload_now(); });
 }
 
 void App::reload_now() {

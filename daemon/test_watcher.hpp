@@ -17,8 +17,10 @@ namespace stickslip::daemon {
 class TestWatcher final : public pipeline::Sink {
  public:
   /// \param current  told the number of the test that runs, or that none does; on the processing thread.
-  TestWatcher(TestLog& tests, Facts& facts, std::function<void(std::optional<std::int64_t>)> current)
-      : tests_(tests), facts_(facts), current_(std::move(current)) {}
+  /// \param rests    told that no force is left, on the processing thread: the next test has not begun.
+  TestWatcher(TestLog& tests, Facts& facts, std::function<void(std::optional<std::int64_t>)> current,
+              std::function<void()> rests)
+      : tests_(tests), facts_(facts), current_(std::move(current)), rests_(std::move(rests)) {}
 
   /// Only between sessions.
   void use(const friction::TruthSource* truth) { truth_ = truth; }
@@ -29,6 +31,9 @@ class TestWatcher final : public pipeline::Sink {
     current_(start.number);
   }
 
+  void bench_changed(pipeline::BenchState state) override {
+    if (pipeline::rests(state)) rests_();
+  }
   void gap(const daq::Gap& gap) override { facts_.gap_seen(gap); }
   void gap_between_tests(const daq::Gap& gap) override { facts_.gap_seen(gap); }
 
@@ -49,6 +54,7 @@ class TestWatcher final : public pipeline::Sink {
   TestLog& tests_;
   Facts& facts_;
   std::function<void(std::optional<std::int64_t>)> current_;
+  std::function<void()> rests_;
   const friction::TruthSource* truth_ = nullptr;
   daq::ScanIndex first_ = 0;
 };

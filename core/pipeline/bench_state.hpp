@@ -24,6 +24,11 @@ enum class BenchState {
 };
 inline constexpr std::size_t kBenchStates = 6;
 
+/// No test runs, and no force of the last one is left.
+[[nodiscard]] constexpr bool rests(BenchState state) noexcept {
+  return state == BenchState::kIdle || state == BenchState::kArmed;
+}
+
 /// What can happen to it.
 enum class BenchEvent {
   // Commands: each may be refused.
