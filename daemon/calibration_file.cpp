@@ -34,7 +34,7 @@ std::string line(std::string_view key, std::optional<double> value, std::string_
   return fmt::format("{} = \"{} {}\"  # {}\n", key, *value, unit, comment);
 }
 
-base::Result<StoredCalibration> read(base::Settings settings) {
+base::Result<StoredCalibration> calibration_of(base::Settings settings) {
   StoredCalibration result;
   record::CalibrationFacts& facts = result.facts;
   base::Settings table = settings.table("calibration");
@@ -157,7 +157,7 @@ std::string calibration_text(const StoredCalibration& calibration) {
 base::Result<StoredCalibration> parse_calibration(std::string_view text, std::string_view name) {
   base::Result<base::Settings> settings = base::Settings::parse(text, name);
   if (!settings) return tl::unexpected(settings.error());
-  return read(*settings);
+  return calibration_of(*settings);
 }
 
 bool holds_calibration(const std::filesystem::path& folder) { return !calibrations_in(folder).empty(); }
@@ -177,7 +177,7 @@ base::Result<StoredCalibration> load_calibration(const std::filesystem::path& pa
   for (const std::filesystem::path& file : files) {
     base::Result<base::Settings> settings = base::Settings::load(file);
     if (!settings) return tl::unexpected(settings.error());
-    base::Result<StoredCalibration> one = read(*settings);
+    base::Result<StoredCalibration> one = calibration_of(*settings);
     if (!one) return tl::unexpected(one.error());
     // Dates are UTC of equal length: they order as texts.
     if (!latest || one->facts.date > latest->facts.date) latest = *std::move(one);

@@ -11,4 +11,7 @@ enum class DatedFolders {
   kDay,    ///< 2026-11-21
 };
 
+/// Folders below the one of the records in which records stand: years and months, or days.
+inline constexpr int kDeepestRecordFolder = 2;
+
 }  // namespace stickslip::daemon

@@ -22,6 +22,10 @@ inline constexpr double kLeastRoom_s = 600.0;
 /// When there is room again, so that a disk at the limit does not change its state each second.
 inline constexpr double kRoomAgain_s = 1.25 * kLeastRoom_s;
 
+/// What a journal takes beside the scans, bytes/s: heads of ten entries, two clock readings and twenty cycles
+/// as JSON of 400 bytes.
+inline constexpr double kOtherBytesPerSecond = 9000.0;
+
 /// How it is with the disk.
 struct DiskState {
   std::optional<std::string> trouble;  ///< Why something waits in memory; nothing if all is written.

@@ -13,12 +13,10 @@
 #include "core/record/finaliser.hpp"
 #include "core/record/journal.hpp"
 #include "daemon/analyse.hpp"
+#include "daemon/dated_folders.hpp"
 
 namespace stickslip::daemon {
 namespace {
-
-/// Folders below the one of the records: years and months.
-constexpr int kDeepest = 2;
 
 /// posix_spawn attributes that put the child into its own process group.
 class OwnProcessGroup {
@@ -103,7 +101,7 @@ std::vector<std::filesystem::path> journals_in(const std::filesystem::path& fold
   std::vector<std::filesystem::path> journals;
   std::error_code error;
   for (Walk entry{folder, error}; !error && entry != Walk{}; entry.increment(error)) {
-    if (entry.depth() >= kDeepest) entry.disable_recursion_pending();
+    if (entry.depth() >= kDeepestRecordFolder) entry.disable_recursion_pending();
     if (entry->path().extension() == record::kJournalExtension) journals.push_back(entry->path());
   }
   std::sort(journals.begin(), journals.end());

@@ -19,7 +19,7 @@ namespace {
 constexpr rlim_t kLongestBurst_us = 1'000'000;
 constexpr rlim_t kKillAfter_us = 2'000'000;
 
-std::string text_of(int error) { return std::generic_category().message(error); }
+std::string error_text(int error) { return std::generic_category().message(error); }
 
 /// \return 0 or errno.
 int set_fifo(int priority) {
@@ -38,9 +38,9 @@ std::string use_fifo(int priority) {
       allowed.rlim_cur < static_cast<rlim_t>(priority)) {
     const auto lower = static_cast<int>(allowed.rlim_cur);
     if (set_fifo(lower) == 0)
-      return fmt::format("SCHED_FIFO {} ({} refused: {})", lower, priority, text_of(error));
+      return fmt::format("SCHED_FIFO {} ({} refused: {})", lower, priority, error_text(error));
   }
-  return fmt::format("SCHED_OTHER (SCHED_FIFO {} refused: {})", priority, text_of(error));
+  return fmt::format("SCHED_OTHER (SCHED_FIFO {} refused: {})", priority, error_text(error));
 }
 
 std::string use_processor(int processor) {
@@ -50,22 +50,22 @@ std::string use_processor(int processor) {
   // Returns the error; −1 is never one of them.
   const int error = ::pthread_setaffinity_np(::pthread_self(), sizeof only, &only);
   if (error == 0) return fmt::format("processor {}", processor);
-  return fmt::format("any processor ({} refused: {})", processor, text_of(error));
+  return fmt::format("any processor ({} refused: {})", processor, error_text(error));
 }
 
 /// On fault only: locking all at once would pull in every untouched page of each thread's stack, 8 MB a
 /// thread.
 std::string lock_memory() {
   if (::mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0) return "memory locked";
-  return fmt::format("memory not locked ({})", text_of(errno));
+  return fmt::format("memory not locked ({})", error_text(errno));
 }
 
 std::string limit_burst() {
   rlimit limit{};
-  if (::getrlimit(RLIMIT_RTTIME, &limit) != 0) return fmt::format("no RLIMIT_RTTIME ({})", text_of(errno));
+  if (::getrlimit(RLIMIT_RTTIME, &limit) != 0) return fmt::format("no RLIMIT_RTTIME ({})", error_text(errno));
   limit.rlim_cur = std::min(kLongestBurst_us, limit.rlim_max);
   limit.rlim_max = std::min(kKillAfter_us, limit.rlim_max);
-  if (::setrlimit(RLIMIT_RTTIME, &limit) != 0) return fmt::format("no RLIMIT_RTTIME ({})", text_of(errno));
+  if (::setrlimit(RLIMIT_RTTIME, &limit) != 0) return fmt::format("no RLIMIT_RTTIME ({})", error_text(errno));
   return fmt::format("RLIMIT_RTTIME {:g} s", 1e-6 * static_cast<double>(limit.rlim_cur));
 }
 

@@ -4,14 +4,9 @@
 #include <regex>
 #include <system_error>
 
+#include "daemon/dated_folders.hpp"
+
 namespace stickslip::daemon {
-namespace {
-
-/// Folders below the one of the records: years and months.
-constexpr int kDeepest = 2;
-
-}  // namespace
-
 std::vector<std::filesystem::path> records_above(const std::filesystem::path& folder,
                                                  const std::string& newest, std::size_t most) {
   // As storage.cpp names them.
@@ -21,7 +16,7 @@ std::vector<std::filesystem::path> records_above(const std::filesystem::path& fo
   const auto options = std::filesystem::directory_options::skip_permission_denied;
   for (std::filesystem::recursive_directory_iterator at{folder, options, error}, end; !error && at != end;
        at.increment(error)) {
-    if (at.depth() >= kDeepest) at.disable_recursion_pending();
+    if (at.depth() >= kDeepestRecordFolder) at.disable_recursion_pending();
     const std::filesystem::path& path = at->path();
     if (path.stem().string() > newest && std::regex_match(path.filename().string(), own)) {
       found.push_back(path);

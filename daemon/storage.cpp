@@ -32,8 +32,6 @@ constexpr std::size_t kForceEntry = 4096;
 
 /// So much is kept in memory while the disk refuses: scans, and what comes with them.
 constexpr double kLongestWait_s = 600.0;
-/// Heads of ten entries, two clock readings and twenty cycles as JSON of 400 bytes.
-constexpr double kOtherBytesPerSecond = 9000.0;
 
 std::size_t scans_in_entry(const daq::BoardInfo& board) {
   return static_cast<std::size_t>(std::max(1.0, std::floor(board.scan_rate_granted_Hz * kEntry_s)));

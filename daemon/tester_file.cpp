@@ -14,7 +14,7 @@ namespace {
 using base::Dimension;
 using base::Limits;
 
-base::Result<friction::SharedPrior::Coupling> read(base::Settings settings) {
+base::Result<friction::SharedPrior::Coupling> coupling_of(base::Settings settings) {
   base::Settings table = settings.table("tester");
   // For people, and checked as all keys are.
   (void)table.text("characterised", std::string{});
@@ -64,13 +64,13 @@ std::string tester_text(const friction::Characterisation& characterisation, std:
 base::Result<friction::SharedPrior::Coupling> parse_tester(std::string_view text, std::string_view name) {
   base::Result<base::Settings> settings = base::Settings::parse(text, name);
   if (!settings) return tl::unexpected(settings.error());
-  return read(*settings);
+  return coupling_of(*settings);
 }
 
 base::Result<friction::SharedPrior::Coupling> load_tester(const std::filesystem::path& file) {
   base::Result<base::Settings> settings = base::Settings::load(file);
   if (!settings) return tl::unexpected(settings.error());
-  return read(*settings);
+  return coupling_of(*settings);
 }
 
 }  // namespace stickslip::daemon

@@ -16,7 +16,6 @@ namespace stickslip::daemon {
 namespace {
 
 using nlohmann::ordered_json;
-using record::Finding;
 using record::Judgement;
 using record::Verdict;
 
@@ -123,7 +122,7 @@ ordered_json verdict_json(const std::string& file, const Verdict& verdict) {
                             {"cause", daq::name(gap.cause)}});
   }
   json["findings"] = ordered_json::array();
-  for (const Finding& finding : verdict.findings) {
+  for (const record::Finding& finding : verdict.findings) {
     json["findings"].push_back(
         {{"weight", record::name(finding.weight)}, {"place", finding.place}, {"text", finding.text}});
   }

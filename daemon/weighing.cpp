@@ -8,7 +8,7 @@
 namespace stickslip::daemon {
 namespace {
 
-constexpr std::chrono::milliseconds kReadTimeout{100};
+constexpr std::chrono::milliseconds kWeighingReadTimeout{100};
 /// So long without a scan, and the board is taken for dead.
 constexpr int kMostTimeouts = 50;
 
@@ -62,7 +62,7 @@ base::Result<daq::WeightReading> Weighing::read(double mass_kg, const WeighingTi
   int timeouts = 0;
   daq::ScanBlock block;
   while (!scans.full()) {
-    const daq::ReadStatus status = board.read(block, kReadTimeout);
+    const daq::ReadStatus status = board.read(block, kWeighingReadTimeout);
     if (status == daq::ReadStatus::kTimeout && ++timeouts < kMostTimeouts) continue;
     if (status != daq::ReadStatus::kScans) {
       board.stop();

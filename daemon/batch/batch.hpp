@@ -20,23 +20,23 @@
 namespace stickslip::daemon {
 
 /// What a result may be; none: no limit on that side.
-struct Limits {
+struct ResultLimits {
   std::optional<double> lowest;
   std::optional<double> highest;
 
   [[nodiscard]] bool holds(double value) const noexcept {
     return !(lowest && value < *lowest) && !(highest && value > *highest);
   }
-  bool operator==(const Limits&) const = default;
+  bool operator==(const ResultLimits&) const = default;
 };
 
 struct BatchPlan {
   record::SampleFacts sample;  ///< Of all its tests; replicate, slide and batch are those of each step.
   std::string method;          ///< As in a record's process/method; empty: that of the daemon.
-  std::vector<double> pull_speeds_m_per_s;  ///< In this order; empty: one, whatever the bench has.
-  std::int64_t replicates = 1;              ///< Sheets at each speed, ≥ 1.
-  std::int64_t slides = 1;                  ///< Pulls of each sheet, ≥ 1.
-  std::map<std::string, Limits> limits;     ///< By the name of the result.
+  std::vector<double> pull_speeds_m_per_s;     ///< In this order; empty: one, whatever the bench has.
+  std::int64_t replicates = 1;                 ///< Sheets at each speed, ≥ 1.
+  std::int64_t slides = 1;                     ///< Pulls of each sheet, ≥ 1.
+  std::map<std::string, ResultLimits> limits;  ///< By the name of the result.
 
   bool operator==(const BatchPlan&) const = default;
 };

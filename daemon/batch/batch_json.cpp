@@ -67,15 +67,15 @@ base::Result<std::vector<double>> speeds_of(const Json& value) {
   return speeds;
 }
 
-base::Result<std::map<std::string, Limits>> limits_of(const Json& value) {
+base::Result<std::map<std::string, ResultLimits>> limits_of(const Json& value) {
   if (!value.is_object())
     return base::usage_error("{}: must be an object such as {{\"mu_k\": {{\"highest\": 0.4}}}}", kLimits);
-  std::map<std::string, Limits> all;
+  std::map<std::string, ResultLimits> all;
   for (const auto& [name, pair] : value.items()) {
     const std::string shown = base::one_line(name, 60);
     if (!is_result(name)) return base::usage_error("{}: there is no result called \"{}\"", kLimits, shown);
     if (!pair.is_object()) return base::usage_error("{}: {} must have lowest or highest", kLimits, shown);
-    Limits limits;
+    ResultLimits limits;
     for (const auto& [side, number] : pair.items()) {
       if (side != "lowest" && side != "highest")
         return base::usage_error("{}: {} has lowest and highest, no \"{}\"", kLimits, shown,

@@ -2,7 +2,7 @@
 
 namespace stickslip::daemon {
 
-LimitVerdict judged(const std::string& quantity, const Limits& limits,
+LimitVerdict judged(const std::string& quantity, const ResultLimits& limits,
                     std::span<const report::MeasuredTest> tests) {
   LimitVerdict verdict{quantity, limits, {}, {}};
   for (std::size_t i = 0; i < tests.size(); ++i) {

@@ -15,14 +15,14 @@ namespace stickslip::daemon {
 /// How the tests keep a limit of their batch.
 struct LimitVerdict {
   std::string quantity;  ///< Name of the result.
-  Limits limits;
+  ResultLimits limits;
   std::vector<std::size_t> outside;  ///< Indices among the tests.
   std::vector<std::size_t> absent;   ///< Those without such a result.
 
   [[nodiscard]] bool passes() const noexcept { return outside.empty() && absent.empty(); }
 };
 
-[[nodiscard]] LimitVerdict judged(const std::string& quantity, const Limits& limits,
+[[nodiscard]] LimitVerdict judged(const std::string& quantity, const ResultLimits& limits,
                                   std::span<const report::MeasuredTest> tests);
 
 }  // namespace stickslip::daemon

@@ -52,7 +52,7 @@ base::Result<std::string> told(const BenchOptions& options, const base::Result<J
   return options.json ? answer->dump(2) + "\n" : batch_text(*answer);
 }
 
-std::optional<double> number_of(std::string_view text) {
+std::optional<double> number_in(std::string_view text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
@@ -72,7 +72,7 @@ base::Result<void> add_limit(Json& limits, const std::string& text) {
   for (const auto& [side, typed] : {std::pair{"lowest", text.substr(equals + 1, colon - equals - 1)},
                                     {"highest", text.substr(colon + 1)}}) {
     if (typed.empty()) continue;
-    const auto value = number_of(typed);
+    const auto value = number_in(typed);
     if (!value) return wrong();
     limit[side] = *value;
   }

@@ -10,23 +10,13 @@
 
 #include "daemon/cli/ask.hpp"
 #include "daemon/cli/commands.hpp"
+#include "daemon/cli/json_words.hpp"
 #include "daemon/control/live_client.hpp"
 
 namespace stickslip::daemon {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string number(const Json& json, const char* key, int decimals) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_number() ? fmt::format("{:.{}f}", found->get<double>(), decimals)
-                                                   : "–";
-}
-
-std::string word(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_string() ? found->get<std::string>() : "–";
-}
 
 std::string line_of_test(const Json& test) {
   const Json& results = test["results"];

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/commands.hpp"
+#include "daemon/cli/json_words.hpp"
 #include "daemon/cli/paint.hpp"
 #include "daemon/control/client.hpp"
 
@@ -10,17 +11,6 @@ namespace stickslip::daemon {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string word(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_string() ? found->get<std::string>() : "–";
-}
-
-std::string number(const Json& json, const char* key, int decimals) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_number() ? fmt::format("{:.{}f}", found->get<double>(), decimals)
-                                                   : "–";
-}
 
 std::int64_t count(const Json& json, const char* key) {
   const auto found = json.find(key);

@@ -19,8 +19,7 @@
 namespace stickslip::daemon {
 namespace {
 
-using Json = nlohmann::json;
-using Verdict = Finding::Verdict;
+using Json = nlohmann::ordered_json;
 
 constexpr double kSecondsPerDay = 86'400.0;
 /// Before a calibration expires, somebody should have time to hang the weights.
@@ -28,9 +27,8 @@ constexpr double kCalibrationDue_s = 30 * kSecondsPerDay;
 /// Less than a working day of scanning is worth a word.
 constexpr double kLittleRoom_s = 8 * 3600.0;
 /// Journal and record of one scan at its largest (counts of 32 bits: twice 4 bytes, and time, scan, force,
-/// flags), and a second's entries of other kinds: as storage.cpp reckons.
+/// flags): as storage.cpp reckons.
 constexpr double kBytesPerScan = 2 * 4.0 + 8 + 8 + 4 + 1;
-constexpr double kOtherBytesPerSecond = 9000.0;
 /// mlockall() counts what is mapped, touched or not: 287 MB of a daemon at 350 Hz, 28 MB of them touched.
 constexpr std::uint64_t kLockedSize = 512ULL << 20;
 
@@ -53,17 +51,17 @@ class Examination {
 
  private:
   void good(std::string check, std::string what) {
-    findings_.push_back({std::move(check), Verdict::kGood, std::move(what), {}});
+    findings_.push_back({std::move(check), Finding::Verdict::kGood, std::move(what), {}});
   }
   void unknown(std::string check) {
     findings_.push_back(
-        {std::move(check), Verdict::kUnknown, "not looked at", "mend what is said above first"});
+        {std::move(check), Finding::Verdict::kUnknown, "not looked at", "mend what is said above first"});
   }
   void warn(std::string check, std::string what, std::string to_do) {
-    findings_.push_back({std::move(check), Verdict::kWarning, std::move(what), std::move(to_do)});
+    findings_.push_back({std::move(check), Finding::Verdict::kWarning, std::move(what), std::move(to_do)});
   }
   void bad(std::string check, std::string what, std::string to_do) {
-    findings_.push_back({std::move(check), Verdict::kBad, std::move(what), std::move(to_do)});
+    findings_.push_back({std::move(check), Finding::Verdict::kBad, std::move(what), std::move(to_do)});
   }
   /// A running daemon says so of itself.
   [[nodiscard]] bool acquiring() const {

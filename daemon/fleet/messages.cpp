@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string json_text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 Json time_of(const std::optional<std::int64_t>& realtime_ns) {
   return realtime_ns ? Json(record::iso_time(*realtime_ns)) : Json(nullptr);
@@ -47,7 +47,7 @@ Json result_json(const record::RecordHeader& header, const record::EndRecord& en
 std::string result_message(const std::string& tester, const Json& result) {
   Json json{{"tester", tester}};
   json.update(result);
-  return text_of(json);
+  return json_text(json);
 }
 
 std::string state_message(const std::string& tester, const Status& status, std::int64_t realtime_ns,
@@ -61,15 +61,16 @@ std::string state_message(const std::string& tester, const Status& status, std::
   json["version"] = status.version;
   json["test_count"] = status.test_count;
   json["current_test"] = status.current_test ? Json(*status.current_test) : Json(nullptr);
-  return text_of(json);
+  return json_text(json);
 }
 
 std::string last_will(const std::string& tester, std::int64_t realtime_ns) {
-  return text_of({{"tester", tester}, {"connected_since", record::iso_time(realtime_ns)}, {"state", "lost"}});
+  return json_text(
+      {{"tester", tester}, {"connected_since", record::iso_time(realtime_ns)}, {"state", "lost"}});
 }
 
 std::string health_message(const std::string& tester, const Status& status, std::int64_t realtime_ns) {
-  return text_of(
+  return json_text(
       {{"tester", tester}, {"time", record::iso_time(realtime_ns)}, {"status", status_json(status)}});
 }
 

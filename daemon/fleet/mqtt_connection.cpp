@@ -46,7 +46,7 @@ class Properties {
 
 const char* text_or_null(const std::filesystem::path& path) { return path.empty() ? nullptr : path.c_str(); }
 
-std::string text_of(int code) {
+std::string reason_of(int code) {
   if (code == MOSQ_ERR_ERRNO) return std::generic_category().message(errno);
   return code >= kFirstRefusal ? mosquitto_reason_string(code) : mosquitto_strerror(code);
 }
@@ -64,7 +64,7 @@ base::Result<std::unique_ptr<MqttConnection>> MqttConnection::open(const MqttTar
   std::unique_ptr<MqttConnection> connection{new MqttConnection(std::move(events))};
   // A clean start: what was not acknowledged is sent again by the owner, no session has to be kept for that.
   connection->client_.reset(mosquitto_new(target.client.c_str(), true, connection.get()));
-  if (!connection->client_) return base::failure("no MQTT client: {}", text_of(MOSQ_ERR_ERRNO));
+  if (!connection->client_) return base::failure("no MQTT client: {}", reason_of(MOSQ_ERR_ERRNO));
   connection->set_callbacks();
   if (auto done = connection->set_up(target, will); !done) return tl::unexpected(done.error());
   errno = 0;
@@ -108,19 +108,19 @@ void MqttConnection::set_callbacks() {
                                       if (code == 0) {
                                         connection.events_.connected();
                                       } else {
-                                        connection.why_ = text_of(code);
+                                        connection.why_ = reason_of(code);
                                       }
                                     });
   mosquitto_disconnect_v5_callback_set(client,
                                        [](mosquitto*, void* self, int code, const mosquitto_property*) {
                                          auto& connection = *static_cast<MqttConnection*>(self);
                                          if (connection.why_.empty() && code >= kFirstRefusal)
-                                           connection.why_ = text_of(code);
+                                           connection.why_ = reason_of(code);
                                        });
   mosquitto_publish_v5_callback_set(
       client, [](mosquitto*, void* self, int message, int code, const mosquitto_property*) {
         static_cast<MqttConnection*>(self)->events_.acknowledged(
-            message, code >= kFirstRefusal ? text_of(code) : std::string{});
+            message, code >= kFirstRefusal ? reason_of(code) : std::string{});
       });
   // What OpenSSL finds wrong is told nowhere else.
   mosquitto_log_callback_set(client, [](mosquitto*, void* self, int level, const char* text) {
@@ -131,7 +131,7 @@ void MqttConnection::set_callbacks() {
 
 base::Result<void> MqttConnection::result_of(int code) {
   if (code == MOSQ_ERR_SUCCESS) return {};
-  return base::failure("{}", why_.empty() ? text_of(code) : why_);
+  return base::failure("{}", why_.empty() ? reason_of(code) : why_);
 }
 
 int MqttConnection::socket() const { return mosquitto_socket(client_.get()); }

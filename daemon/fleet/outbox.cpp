@@ -19,7 +19,7 @@ namespace {
 constexpr const char* kExtension = ".json";
 constexpr char kMark = '_';  ///< Between the name of the record and its id; in neither of them.
 
-std::string text_of(const std::filesystem::path& file) {
+std::string whole_text(const std::filesystem::path& file) {
   std::ostringstream text;
   text << std::ifstream{file}.rdbuf();
   return text.str();
@@ -30,7 +30,7 @@ std::optional<FleetResult> read_result(const std::filesystem::path& file) {
   const std::string stem = file.stem().string();
   const std::size_t mark = stem.rfind(kMark);
   if (file.extension() != kExtension || mark == std::string::npos) return std::nullopt;
-  FleetResult result{stem.substr(0, mark), stem.substr(mark + 1), text_of(file)};
+  FleetResult result{stem.substr(0, mark), stem.substr(mark + 1), whole_text(file)};
   if (!nlohmann::json::accept(result.payload)) return std::nullopt;
   return result;
 }

@@ -20,7 +20,7 @@ using std::chrono::milliseconds;
 constexpr std::size_t kMostNews = 64;
 /// Results sent and not acknowledged; below the 20 of Mosquitto's max_inflight_messages.
 constexpr std::size_t kMostInFlight = 16;
-constexpr milliseconds kLongestRetry{30'000};
+constexpr milliseconds kLongestBrokerPause{30'000};
 /// For a broker to answer, from the first packet to its acknowledgement.
 constexpr milliseconds kConnectTime{10'000};
 /// A connection that ends sooner was not meant to be: the pauses grow as if there had been none.
@@ -31,7 +31,7 @@ constexpr int kSuspicious = 2;
 /// For the last words.
 constexpr milliseconds kGrace{2'000};
 /// libmosquitto wants to be asked once a second for its keep-alive.
-constexpr milliseconds kIdle{1'000};
+constexpr milliseconds kIdleWait{1'000};
 /// While it connects: TLS does not say what it waits for.
 constexpr milliseconds kImpatient{50};
 
@@ -116,7 +116,7 @@ void FleetPublisher::run() {
     const bool was_connected = connect_once();
     if (was_connected && Clock::now() - begun > kWholeLife) pause = world_.first_retry;
     const Time again = Clock::now() + pause;
-    pause = std::min(2 * pause, kLongestRetry);
+    pause = std::min(2 * pause, kLongestBrokerPause);
     while (!stopping() && Clock::now() < again) {
       static_cast<void>(
           wait(-1, false, std::chrono::ceil<milliseconds>(again - Clock::now()) + milliseconds{1}));
@@ -197,7 +197,7 @@ base::Result<void> FleetPublisher::talk() {
       return {};
     }
     const auto [readable, writable] =
-        wait(connection_->socket(), connection_->wants_write(), connected_ ? kIdle : kImpatient);
+        wait(connection_->socket(), connection_->wants_write(), connected_ ? kIdleWait : kImpatient);
     if (auto served = connection_->serve(readable, writable); !served) return served;
     if (!refusal_.empty()) return base::failure("the broker refuses what it is told: {}", refusal_);
   }

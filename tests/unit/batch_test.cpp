@@ -88,11 +88,11 @@ TEST(BatchPlan, RefusesWhatItCannotLeadThroughAndSaysWhy) {
   }
 }
 
-TEST(Limits, HoldTheirEnds) {
-  const Limits limits{0.2, 0.4};
+TEST(ResultLimits, HoldTheirEnds) {
+  const ResultLimits limits{0.2, 0.4};
   EXPECT_TRUE(limits.holds(0.2) && limits.holds(0.4));
   EXPECT_FALSE(limits.holds(0.19) || limits.holds(0.41));
-  EXPECT_TRUE((Limits{std::nullopt, 0.4}.holds(-1.0)));
+  EXPECT_TRUE((ResultLimits{std::nullopt, 0.4}.holds(-1.0)));
 }
 
 class BatchJournalTest : public testing::Test {
