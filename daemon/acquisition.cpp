@@ -17,8 +17,8 @@ constexpr std::int64_t kNewsPeriod_ns = 4'000'000;
 }  // namespace
 
 Acquisition::Acquisition(daq::Board& board, daq::ScanRing& ring, RealtimeSettings realtime,
-                         FullRing full_ring)
-    : board_(board), ring_(ring), realtime_(realtime), full_ring_(full_ring) {}
+                         FullRing full_ring, std::optional<daq::ScanIndex> issued_before)
+    : board_(board), ring_(ring), realtime_(realtime), full_ring_(full_ring), issued_end_(issued_before) {}
 
 Acquisition::~Acquisition() {
   request_stop();
@@ -56,11 +56,16 @@ void Acquisition::tell() noexcept {
 }
 
 void Acquisition::hand_over(daq::ScanBlock& block) noexcept {
+  if (full_ring_ == FullRing::kWait) {
+    wait_for_room();
+    if (!ring_.has_room()) return;  // Told to stop: as if it had not been read.
+  }
   delivered_.fetch_add(block.count, std::memory_order_relaxed);
+  issued_.fetch_add(block.end() - issued_end_.value_or(block.first), std::memory_order_relaxed);
+  issued_end_ = block.end();
   // A full ring counts what it drops; the jump in the index tells the consumer.
   block.overrun_count = overruns_;
   block.dropped_scan_count = ring_.dropped_scan_count();
-  if (full_ring_ == FullRing::kWait) wait_for_room();
   ring_.push(block);
   untold_ = true;
   if (block.stamp.monotonic_ns - told_ns_ < kNewsPeriod_ns) return;

@@ -30,8 +30,10 @@ class Acquisition {
   enum class End : std::uint8_t { kStopped, kEndOfInput, kBoardMissing, kFailed };
 
   /// Board and ring must outlive this object.
+  /// \param issued_before  where the indices of the board before this one ended, of which it goes on; none:
+  /// there was none.
   Acquisition(daq::Board& board, daq::ScanRing& ring, RealtimeSettings realtime,
-              FullRing full_ring = FullRing::kDrop);
+              FullRing full_ring = FullRing::kDrop, std::optional<daq::ScanIndex> issued_before = {});
   /// Stops and waits for the thread.
   ~Acquisition();
   Acquisition(const Acquisition&) = delete;
@@ -63,6 +65,11 @@ class Acquisition {
     return delivered_.load(std::memory_order_relaxed);
   }
 
+  /// Any thread: indices that the board has given, of scans that it delivered or lost.
+  [[nodiscard]] std::int64_t issued_index_count() const noexcept {
+    return issued_.load(std::memory_order_relaxed);
+  }
+
   /// Scheduling in use; valid after start().
   [[nodiscard]] const std::string& scheduling() const noexcept { return scheduling_; }
 
@@ -83,7 +90,9 @@ class Acquisition {
   std::atomic<bool> stop_requested_{false};
   std::atomic<std::uint8_t> end_{kRunning};
   std::atomic<std::uint64_t> delivered_{0};
+  std::atomic<std::int64_t> issued_{0};
   // Of the thread.
+  std::optional<daq::ScanIndex> issued_end_;
   std::uint64_t overruns_ = 0;  ///< Blocks carry it.
   bool untold_ = false;         ///< There are blocks in the ring that the consumer was not woken for.
   std::int64_t told_ns_ = 0;    ///< Stamp of the latest block that it was woken for.

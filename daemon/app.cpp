@@ -24,6 +24,13 @@ namespace {
 /// Tries to open a missing board: after 1, 2, 4, 8, 16, 30, 30 … s.
 constexpr std::chrono::seconds kLongestRetry{30};
 
+std::unique_ptr<base::Clock> clock_of(const DaemonConfig& config) {
+  std::unique_ptr<base::Clock> clock = base::make_system_clock(config.clock_speed);
+  if (config.board.driver != drivers::Driver::kSimulated || !config.clock_steps_every_s) return clock;
+  return base::make_stepping_clock(std::move(clock), *config.clock_steps_every_s,
+                                   config.board.simulated.faults.seed);
+}
+
 /// As far as permissions go.
 Finalise read_only(Finalise finalise) {
   return [finalise = std::move(finalise)](const std::filesystem::path& journal) {
@@ -44,7 +51,7 @@ App::App(DaemonConfig config, AppWorld world)
       retry_timer_(io_),
       reload_timer_(io_),
       finalise_(config_.read_only_records ? read_only(world_.finalise) : world_.finalise),
-      clock_(world_.clock ? std::move(world_.clock) : base::make_system_clock(config_.clock_speed)),
+      clock_(world_.clock ? std::move(world_.clock) : clock_of(config_)),
       storage_(
           {.folder = config_.record_folder, .dated_folders = config_.dated_folders}, finalise_, tests_,
           *world_.facts, [this] { boost::asio::post(io_, [this] { tell_status(); }); },
@@ -129,6 +136,7 @@ base::Result<void> App::run() {
   io_.run();
 
   storage_.stop();
+  world_.facts->scans_accounted(scan_account());
   // What the last record means for its batch.
   io_.restart();
   io_.poll();
@@ -264,6 +272,7 @@ void App::session_ended(Acquisition::End end) {
   if (!ended.continuation) ended.continuation = continues_.continuation;
   continues_ = ended;
   clocks_ = session_->clocks();
+  issued_before_ += session_->issued_index_count();
   session_.reset();
   calibrations_.session_ended();
   if (state_ == State::kStopping) {

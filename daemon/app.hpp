@@ -76,6 +76,7 @@ class App {
   /// Tests so far.
   [[nodiscard]] const TestLog& tests() const noexcept { return tests_; }
   [[nodiscard]] Status status() const;
+  [[nodiscard]] ScanAccount scan_account() const;
 
  private:
   /// The three in the middle wait for the board: it is not there, another program has it, its device
@@ -149,7 +150,8 @@ class App {
   SessionEnd continues_;
   SessionCounts counts_;
   std::uint64_t board_loss_count_ = 0;
-  SessionClocks clocks_;  ///< Of the latest session.
+  std::int64_t issued_before_ = 0;  ///< Indices, by the sessions that are over.
+  SessionClocks clocks_;            ///< Of the latest session.
   std::optional<std::int64_t> current_test_;
 };
 

@@ -88,6 +88,17 @@ std::string App::state_line() const {
   return std::string{name(state_)};
 }
 
+ScanAccount App::scan_account() const {
+  ScanAccount account;
+  account.issued = issued_before_ + (session_ ? session_->issued_index_count() : 0);
+  account.idle = counts_.idle_scans.load(std::memory_order_relaxed);
+  const DiskWriter::ScanCounts stored = storage_.scan_counts();
+  account.in_gaps = counts_.lost_scans.load(std::memory_order_relaxed) + stored.lost;
+  account.recorded = stored.recorded;
+  account.unsaved = stored.unsaved;
+  return account;
+}
+
 Status App::status() const {
   Status status;
   status.state = name(state_);
@@ -105,6 +116,7 @@ Status App::status() const {
   status.gap_count = counts_.gaps.load(std::memory_order_relaxed);
   status.lost_scan_count = counts_.lost_scans.load(std::memory_order_relaxed);
   status.board_loss_count = board_loss_count_;
+  status.scans = scan_account();
   const SessionClocks clocks = session_ ? session_->clocks() : clocks_;
   if (config_.clock_speed == 1.0) status.scan_rate_measured = clocks.scan_rate;
   status.latency = clocks.latency;

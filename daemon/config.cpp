@@ -63,11 +63,25 @@ constexpr double kHighestVoltage_V = 1e3;
 constexpr double kLargestCoefficient = 10.0;
 constexpr double kLongestDwell_s = 3600.0;
 constexpr std::int64_t kMostRepeats = 1'000'000;
+constexpr std::int64_t kHighestFirstScan = std::int64_t{1}
+                                           << 52;  ///< There a double still tells half a scan.
 constexpr std::int64_t kHighestChannel = 1023;
 constexpr std::int64_t kHighestProcessor = 1023;  ///< CPU_SETSIZE − 1
 
 std::filesystem::path resolved(const std::filesystem::path& folder, const std::string& name) {
   return folder / name;  // An absolute name stays as it is.
+}
+
+void read_faults(Settings table, DaemonConfig& config) {
+  drivers::SimulatedFaults& faults = config.board.simulated.faults;
+  // Kinds that come more often than each second leave nothing to measure between them.
+  const auto every_s = [&](const char* key) {
+    return table.quantity_if_given(key, Dimension::kTime, base::Limits::at_least(1.0));
+  };
+  faults.overruns_every_s = every_s("overruns_every").value_or(0.0);
+  faults.losses_every_s = every_s("losses_every").value_or(0.0);
+  config.clock_steps_every_s = every_s("clock_steps_every");
+  faults.seed = static_cast<std::uint64_t>(table.integer("seed", 0, kHighestFirstScan, 1));
 }
 
 void read_simulated(Settings table, const std::filesystem::path& folder, DaemonConfig& config) {
@@ -81,6 +95,8 @@ void read_simulated(Settings table, const std::filesystem::path& folder, DaemonC
       table.quantity_if_given("speed_gain", Dimension::kSpeedPerVoltage, base::Limits::above(0.0));
   if (const std::string hanging = table.text("hanging", ""); !hanging.empty())
     config.board.simulated.hanging = resolved(folder, hanging);
+  config.board.simulated.first_scan = table.integer("first_scan", 0, kHighestFirstScan, 0);
+  read_faults(table.table("faults"), config);
 }
 
 void read_replay(Settings table, const std::filesystem::path& folder, DaemonConfig& config) {

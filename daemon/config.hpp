@@ -44,6 +44,7 @@ struct BenchConfig {
 
 struct DaemonConfig {
   drivers::BoardConfig board;
+  std::optional<double> clock_steps_every_s;  ///< Of a simulated bench whose date is put right; none: never.
   double clock_speed = 1.0;  ///< Board time over wall time; for boards that are not hardware.
   RealtimeSettings realtime;
   BenchConfig bench;

@@ -144,6 +144,11 @@ void DiskWriter::run() {
   }
 }
 
+DiskWriter::ScanCounts DiskWriter::scan_counts() const {
+  const std::lock_guard lock{mutex_};
+  return scans_;
+}
+
 std::optional<std::string> DiskWriter::write_all(bool sync) {
   std::vector<Job> jobs;
   {
@@ -153,10 +158,13 @@ std::optional<std::string> DiskWriter::write_all(bool sync) {
   for (Job& job : jobs) {
     if (auto trouble = write(job, sync || job.ended)) return trouble;
     if (!job.ended) continue;
+    job.journal->give_room_back();
     const std::filesystem::path path = job.journal->path();
     {
       const std::lock_guard lock{mutex_};
       jobs_.remove_if([&job](const Job& other) { return other.journal == job.journal; });
+      scans_.recorded += job.journal->kept_scan_count();
+      scans_.lost += job.journal->lost_scan_count();
     }
     job.journal.reset();  // With it goes the lock of the file, which the finaliser needs.
     ended_(job.test, path, std::nullopt);
@@ -194,6 +202,10 @@ void DiskWriter::give_up(const std::string& why) {
   {
     const std::lock_guard lock{mutex_};
     jobs.swap(jobs_);
+    for (const Job& job : jobs) {
+      scans_.unsaved += job.journal->kept_scan_count();
+      scans_.lost += job.journal->lost_scan_count();
+    }
   }
   for (const Job& job : jobs) ended_(job.test, job.journal->path(), why);
 }

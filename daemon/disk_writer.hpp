@@ -95,6 +95,13 @@ class DiskWriter {
   [[nodiscard]] std::size_t waiting_size() const;
   /// Times that the thread has come round: each second, unless a call of the disk does not return.
   [[nodiscard]] std::uint64_t rounds() const noexcept { return rounds_.load(std::memory_order_relaxed); }
+  /// Scans of the journals that have ended.
+  struct ScanCounts {
+    std::int64_t recorded = 0;  ///< Durable.
+    std::int64_t lost = 0;      ///< Gaps for want of memory, in the same journals.
+    std::int64_t unsaved = 0;   ///< Of journals that the disk refused to the end.
+  };
+  [[nodiscard]] ScanCounts scan_counts() const;
   /// For how long there is room now; nothing if nobody knows.
   [[nodiscard]] std::optional<double> room_s() const;
 
@@ -129,6 +136,7 @@ class DiskWriter {
   bool has_news_ = false;
   bool stopping_ = false;
   DiskState state_;
+  ScanCounts scans_;
   std::atomic<std::uint64_t> rounds_{0};
   std::thread thread_;
 };

@@ -12,6 +12,7 @@
 #include "core/friction/sampling.hpp"
 #include "core/pipeline/sink.hpp"
 #include "daemon/fleet/fleet_state.hpp"
+#include "daemon/scan_account.hpp"
 
 namespace stickslip::daemon {
 
@@ -57,6 +58,8 @@ class Facts {
   /// It is used as soon as nothing is being measured.
   virtual void reload_waits() {}
   virtual void stopping(std::string_view /*why*/) {}
+  /// At the end, when nothing is under way.
+  virtual void scans_accounted(const ScanAccount& /*scans*/) {}
 };
 
 }  // namespace stickslip::daemon

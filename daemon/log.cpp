@@ -142,6 +142,20 @@ class Log final : public Facts {
     logger_.info("control: listening at {}", socket);
   }
   void stopping(std::string_view why) override { logger_.info("stopping: {}", why); }
+  void scans_accounted(const ScanAccount& scans) override {
+    const std::string account =
+        fmt::format("scans: {} indices = {} in records + {} between tests + {} in gaps", scans.issued,
+                    scans.recorded, scans.idle, scans.in_gaps);
+    if (scans.unsaved > 0)
+      logger_.error("scans: {} of tests that the disk did not take are in no record", scans.unsaved);
+    if (scans.under_way() == 0) {
+      logger_.info("{}{}", account,
+                   scans.unsaved > 0 ? fmt::format(" + {} in no record", scans.unsaved) : "");
+    } else {
+      logger_.error("{}: {} are unaccounted for, which is a defect of this program; please report it",
+                    account, scans.under_way());
+    }
+  }
 
  private:
   spdlog::logger logger_;

@@ -24,6 +24,13 @@ pipeline::EndCause end_cause(Acquisition::End end) {
   return pipeline::EndCause::kBoardMissing;
 }
 
+std::size_t ring_capacity(const daq::BoardInfo& board, const SessionSettings& settings) {
+  const double scans_per_s = board.scan_rate_granted_Hz * settings.clock_speed;
+  // A source that waits needs no more than what keeps it busy.
+  return settings.full_ring == FullRing::kWait ? daq::ScanRing::capacity_for(scans_per_s, 1.0)
+                                               : daq::ScanRing::capacity_for(scans_per_s);
+}
+
 daq::Calibration calibration_of(const drivers::OpenedBoard& board, const SessionSettings& settings) {
   return {board.board->info(), settings.load_cell, settings.processor.analysis.tester.normal_load_N()};
 }
@@ -34,15 +41,16 @@ Session::Session(drivers::OpenedBoard board, const SessionSettings& settings,
                  std::vector<pipeline::Sink*> sinks, SessionEvents events, SessionCounts& counts)
     : board_(std::move(board)),
       events_(std::move(events)),
-      ring_(daq::ScanRing::capacity_for(board_.board->info().scan_rate_granted_Hz * settings.clock_speed)),
+      ring_(ring_capacity(board_.board->info(), settings)),
       processor_(settings.processor, calibration_of(board_, settings), std::move(sinks)),
-      acquisition_(*board_.board, ring_, settings.realtime, settings.full_ring),
+      acquisition_(*board_.board, ring_, settings.realtime, settings.full_ring,
+                   settings.processor.continues_at),
       counts_(counts),
       bench_(processor_.bench()),
       full_ring_(settings.full_ring),
       continues_(settings.processor.continues_at.has_value()) {
   STICKSLIP_EXPECTS(full_ring_ == FullRing::kDrop || !settings.processor.clock_is_real);
-  if (settings.clock_speed == 1.0) ring_.touch();
+  ring_.touch();
 }
 
 Session::~Session() {
@@ -70,7 +78,13 @@ void Session::process() {
     // Commands belong behind the scans that were there before them.
     run_jobs();
     if (ended) {
+      const std::int64_t idle_before = processor_.idle_scan_count();
       processor_.finish(end_cause(*ended));
+      // The last blocks that a full ring dropped: no later one says so.
+      counts_.lost_scans.fetch_add(acquisition_.issued_index_count() - processor_.lost_scan_count() -
+                                       static_cast<std::int64_t>(processor_.scan_count()),
+                                   std::memory_order_relaxed);
+      counts_.idle_scans.fetch_add(processor_.idle_scan_count() - idle_before, std::memory_order_relaxed);
       close_jobs();
       run_jobs();
       events_.ended(*ended);
@@ -124,6 +138,7 @@ void Session::process_block(const daq::ScanBlock& block) {
   if (continues) cause = daq::GapCause::kBoardMissing;
   const std::uint64_t gaps_before = processor_.gap_count();
   const std::int64_t lost_before = processor_.lost_scan_count();
+  const std::int64_t idle_before = processor_.idle_scan_count();
   processor_.process(block, cause, continues || overruns > 0);
   const daq::RateMeter& meter = processor_.rate_meter();
   {
@@ -138,6 +153,7 @@ void Session::process_block(const daq::ScanBlock& block) {
   counts_.scans.fetch_add(block.count, std::memory_order_relaxed);
   counts_.gaps.fetch_add(processor_.gap_count() - gaps_before, std::memory_order_relaxed);
   counts_.lost_scans.fetch_add(processor_.lost_scan_count() - lost_before, std::memory_order_relaxed);
+  counts_.idle_scans.fetch_add(processor_.idle_scan_count() - idle_before, std::memory_order_relaxed);
 }
 
 }  // namespace stickslip::daemon

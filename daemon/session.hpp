@@ -53,6 +53,7 @@ struct SessionCounts {
   std::atomic<std::uint64_t> overruns{0};
   std::atomic<std::uint64_t> gaps{0};
   std::atomic<std::int64_t> lost_scans{0};  ///< In gaps.
+  std::atomic<std::int64_t> idle_scans{0};  ///< That no test wanted.
 };
 
 /// A picture of what a session measures about itself.
@@ -105,6 +106,8 @@ class Session {
   [[nodiscard]] std::uint64_t delivered_scan_count() const noexcept {
     return acquisition_.delivered_scan_count();
   }
+  /// From any thread: indices that the board has given, of scans that it delivered or lost.
+  [[nodiscard]] std::int64_t issued_index_count() const noexcept { return acquisition_.issued_index_count(); }
   /// Only after events.ended.
   [[nodiscard]] SessionEnd end() const {
     return {processor_.test_number(), processor_.rate_meter().continuation()};

@@ -55,6 +55,8 @@ base::Result<SessionSettings> session_settings(const DaemonConfig& config, const
       settings.load_cell, settings.calibration.gain_standard_error_N_per_V);
   settings.processor.automatic = config.begins_by_force;
   settings.processor.clock_is_real = config.clock_speed == 1.0;
+  // A bench that runs faster than the wall must not lose what this machine cannot follow.
+  settings.full_ring = settings.processor.clock_is_real ? FullRing::kDrop : FullRing::kWait;
   settings.processor.segmenter = config.segmenter;
   settings.processor.segmenter.scan_rate_Hz = board.scan_rate_granted_Hz;
   friction::AnalysisSettings& analysis = settings.processor.analysis;

@@ -77,6 +77,8 @@ class Storage final : public pipeline::Sink {
   /// Times the processing thread had to wait. Any thread.
   [[nodiscard]] std::uint64_t stall_count() const noexcept { return queue_.stall_count(); }
 
+  /// What became of the scans of tests that have ended. Any thread.
+  [[nodiscard]] DiskWriter::ScanCounts scan_counts() const { return disk_.scan_counts(); }
   /// Times that the storage thread, and the disk thread, have come round; at rest or not they do so each
   /// second. Any thread.
   [[nodiscard]] std::uint64_t storage_rounds() const noexcept {

@@ -4,8 +4,11 @@
 #include <time.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <random>
 #include <stdexcept>
+#include <utility>
 
 namespace stickslip::base {
 namespace {
@@ -56,7 +59,42 @@ class SystemClock final : public Clock {
   std::int64_t origin_realtime_ns_;
 };
 
+class SteppingClock final : public Clock {
+ public:
+  SteppingClock(std::unique_ptr<Clock> clock, double every_s, std::uint64_t seed)
+      : clock_(std::move(clock)), every_s_(every_s), begin_ns_(clock_->monotonic_ns()) {
+    // Drawn here: who reads a clock may be a thread that may not allocate.
+    std::mt19937_64 random{seed};
+    std::uniform_real_distribution<double> step_s{-kLargestClockStep_s, kLargestClockStep_s};
+    for (std::int64_t& step : steps_ns_) step = std::llround(1e9 * step_s(random));
+    steps_ns_.front() = 0;
+  }
+
+  [[nodiscard]] std::int64_t monotonic_ns() const override { return clock_->monotonic_ns(); }
+  [[nodiscard]] std::int64_t realtime_ns() const override {
+    const double elapsed_s = 1e-9 * static_cast<double>(clock_->monotonic_ns() - begin_ns_);
+    return clock_->realtime_ns() + steps_ns_[static_cast<std::size_t>(elapsed_s / every_s_) % kSteps];
+  }
+  void sleep_until(std::int64_t deadline_ns) override { clock_->sleep_until(deadline_ns); }
+
+ private:
+  static constexpr std::size_t kSteps = 1024;  ///< Then they come again.
+
+  std::unique_ptr<Clock> clock_;
+  double every_s_;
+  std::array<std::int64_t, kSteps> steps_ns_{};
+  std::int64_t begin_ns_;
+};
+
 }  // namespace
+
+std::unique_ptr<Clock> make_stepping_clock(std::unique_ptr<Clock> clock, double every_s, std::uint64_t seed) {
+  if (!(every_s > 0.0) || !std::isfinite(every_s)) {
+    throw std::invalid_argument(
+        fmt::format("steps of the clock every {} s must be positive and finite", every_s));
+  }
+  return std::make_unique<SteppingClock>(std::move(clock), every_s, seed);
+}
 
 std::unique_ptr<Clock> make_system_clock(double speed) {
   if (!(speed > 0.0) || !std::isfinite(speed)) {

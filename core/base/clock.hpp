@@ -27,4 +27,12 @@ class Clock {
 /// \throws std::invalid_argument unless speed is positive and finite.
 [[nodiscard]] std::unique_ptr<Clock> make_system_clock(double speed = 1.0);
 
+/// The same clock, but that its date is put right now and then: in each stretch of `every_s` of its time,
+/// from the second on, realtime_ns() is off by another amount, uniform to ±kLargestClockStep_s, that follows
+/// from the seed. \throws std::invalid_argument unless every_s is positive and finite.
+[[nodiscard]] std::unique_ptr<Clock> make_stepping_clock(std::unique_ptr<Clock> clock, double every_s,
+                                                         std::uint64_t seed);
+
+inline constexpr double kLargestClockStep_s = 3600.0;
+
 }  // namespace stickslip::base

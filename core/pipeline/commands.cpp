@@ -21,7 +21,7 @@ CommandReport Processor::arm(const std::string& who) {
   const bool armed_already = bench_.state() == BenchState::kArmed;
   const std::string_view refusal = happens(BenchEvent::kArm);
   if (refusal.empty() && !armed_already) {
-    if (segmenter_.arm()) waiting_.clear();
+    if (segmenter_.arm()) discard_waiting();
     note_for_later(fmt::format("armed at scan {}, by {}", next_scan_, who));
   }
   return {std::string{refusal}, bench_.state(), number_, next_scan_};
@@ -117,7 +117,7 @@ CommandReport Processor::recalibrate(daq::Calibration calibration, std::optional
   // tell.
   segmenter_ = Segmenter{settings_.segmenter};
   segmenter_.trigger_by_force(false);
-  waiting_.clear();
+  discard_waiting();
   idle_.clear();
   const daq::LoadCell& cell = calibration_.load_cell();
   note_for_later(fmt::format("load cell calibrated: {:.8g} N/V, zero {:.6g} V, from scan {}, by {}",

@@ -79,7 +79,10 @@ std::optional<EndCause> Processor::observe(daq::ScanIndex index, double raw, std
     return event == Segmenter::Event::kUnloaded ? EndCause::kUnloaded : EndCause::kNoRelativeMotion;
   }
   // As the segmenter: what is left of the last test's force is no beginning of the next one.
-  if (!ready) return std::nullopt;
+  if (!ready) {
+    ++idle_scan_count_;
+    return std::nullopt;
+  }
   waiting_.push_back({index, raw, second});
   if (event == Segmenter::Event::kTestStarts) {
     static_cast<void>(happens(BenchEvent::kForceRose));
@@ -95,15 +98,21 @@ std::optional<EndCause> Processor::observe(daq::ScanIndex index, double raw, std
       idle_.add(oldest.index, oldest.raw);
     }
     waiting_.pop_front();
+    ++idle_scan_count_;
   }
   return std::nullopt;
 }
 
 void Processor::finish(EndCause cause) {
   if (test_is_running()) end(next_scan_, cause);
-  waiting_.clear();
+  discard_waiting();
   start_.reset();
   static_cast<void>(happens(BenchEvent::kBoardLost));
+}
+
+void Processor::discard_waiting() noexcept {
+  idle_scan_count_ += static_cast<std::int64_t>(waiting_.size());
+  waiting_.clear();
 }
 
 void Processor::note_gap(daq::Gap gap) {
@@ -118,7 +127,7 @@ void Processor::note_gap(daq::Gap gap) {
   if (gap.estimated) meter_.restarted();
   if (!test_is_running()) {
     // What was before a gap cannot be shown to belong to the coming test.
-    waiting_.clear();
+    discard_waiting();
     idle_.clear();
     for (Sink* sink : sinks_) sink->gap_between_tests(gap);
     return;

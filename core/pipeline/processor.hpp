@@ -102,6 +102,8 @@ class Processor {
   [[nodiscard]] std::uint64_t scan_count() const noexcept { return scan_count_; }
   [[nodiscard]] std::uint64_t gap_count() const noexcept { return gap_count_; }
   [[nodiscard]] std::int64_t lost_scan_count() const noexcept { return lost_scan_count_; }
+  /// Scans that no test wanted.
+  [[nodiscard]] std::int64_t idle_scan_count() const noexcept { return idle_scan_count_; }
   /// The true scan rate of all scans so far, and where the index is.
   [[nodiscard]] const daq::RateMeter& rate_meter() const noexcept { return meter_; }
 
@@ -135,6 +137,7 @@ class Processor {
   void note_anchor(const daq::ClockAnchor& anchor);
   /// Clock anchors of the test that ends at `end`, and what they say.
   void finish_clocks(daq::ScanIndex end);
+  void discard_waiting() noexcept;
   void begin(daq::ScanIndex trigger, const daq::ClockStamp& stamp);
   void analyse(daq::ScanIndex index, double raw, std::int32_t second);
   void end(daq::ScanIndex end, EndCause cause);
@@ -158,6 +161,7 @@ class Processor {
   std::uint64_t scan_count_ = 0;
   std::uint64_t gap_count_ = 0;
   std::int64_t lost_scan_count_ = 0;
+  std::int64_t idle_scan_count_ = 0;
   daq::RateMeter meter_;
   std::array<double, daq::ScanBlock::kMaxScans> coefficients_{};  ///< Of the latest block.
   std::optional<daq::Note> start_;  ///< The command that begins the next test; its scan is not known yet.

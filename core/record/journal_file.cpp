@@ -60,6 +60,11 @@ void JournalFile::cut_to(std::uint64_t size) {
   static_cast<void>(cut());
 }
 
+void JournalFile::give_room_back() {
+  has_rest_ = reserved_ > size_;
+  static_cast<void>(cut());
+}
+
 base::Result<void> JournalFile::cut() {
   if (!has_rest_) return {};
   if (calls_->ftruncate(file_.get(), static_cast<off_t>(size_)) != 0)

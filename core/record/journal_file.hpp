@@ -34,6 +34,8 @@ class JournalFile {
 
   /// Forgets what was appended behind `size`, now or before the next attempt to append.
   void cut_to(std::uint64_t size);
+  /// What was reserved behind the end; before the next attempt to append at the latest.
+  void give_room_back();
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
   /// Bytes in whole entries.

@@ -87,6 +87,7 @@ bool PatientJournal::add_scans(daq::ScanIndex first, std::span<const double> raw
       }
       return false;
     }
+    kept_count_ += count;
   }
   if (lost_.empty()) {
     keep(entry);
@@ -123,6 +124,11 @@ void PatientJournal::add_end(EndRecord end) {
 bool PatientJournal::wait_for_room(std::chrono::milliseconds longest) const {
   std::unique_lock lock{mutex_};
   return taken_.wait_for(lock, longest, [this] { return has_room(memory_ / 2); });
+}
+
+std::int64_t PatientJournal::kept_scan_count() const {
+  const std::lock_guard lock{mutex_};
+  return kept_count_;
 }
 
 std::int64_t PatientJournal::lost_scan_count() const {
@@ -197,6 +203,10 @@ std::optional<std::string> PatientJournal::settle() {
   unsynced_.insert(unsynced_.end(), waiting_.begin(), waiting_.end());
   waiting_ = std::exchange(unsynced_, {});
   return trouble;
+}
+
+void PatientJournal::give_room_back() {
+  if (file_) file_->give_room_back();
 }
 
 }  // namespace stickslip::record

@@ -48,7 +48,8 @@ class PatientJournal {
   /// Waits, at most so long, until half of the memory is free. \return whether it is.
   bool wait_for_room(std::chrono::milliseconds longest) const;
 
-  /// Scans that were lost so far for want of memory. Any thread, as the next.
+  /// Scans that were kept so far, and those that were lost for want of memory. Any thread, as the next.
+  [[nodiscard]] std::int64_t kept_scan_count() const;
   [[nodiscard]] std::int64_t lost_scan_count() const;
   /// Bytes that are not on the disk yet.
   [[nodiscard]] std::size_t waiting_size() const;
@@ -58,6 +59,8 @@ class PatientJournal {
   [[nodiscard]] std::optional<std::string> write();
   /// The same, and makes it durable. What an fsync refused is written again.
   [[nodiscard]] std::optional<std::string> settle();
+  /// After the last entry: the room that was reserved behind the end is free for others, such as the record.
+  void give_room_back();
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
@@ -85,6 +88,7 @@ class PatientJournal {
   mutable std::condition_variable taken_;
   std::vector<std::byte> waiting_;
   std::size_t in_hand_ = 0;  ///< Bytes taken out to be written.
+  std::int64_t kept_count_ = 0;
   std::int64_t lost_count_ = 0;
 
   // Writing.

@@ -15,6 +15,7 @@
 #include "core/pipeline/bench_state.hpp"
 #include "daemon/control/batches.hpp"
 #include "daemon/fleet/fleet_state.hpp"
+#include "daemon/scan_account.hpp"
 #include "daemon/storage_state.hpp"
 #include "daemon/test_log.hpp"
 
@@ -33,7 +34,8 @@ struct Status {
   std::uint64_t dropped_scan_count = 0;  ///< By the ring.
   std::uint64_t overrun_count = 0;       ///< By the board.
   std::uint64_t gap_count = 0;
-  std::int64_t lost_scan_count = 0;                     ///< In gaps.
+  std::int64_t lost_scan_count = 0;  ///< In gaps.
+  ScanAccount scans;
   std::uint64_t board_loss_count = 0;                   ///< Times the board went away or failed.
   std::optional<daq::RateEstimate> scan_rate_measured;  ///< Of the board's present life.
   daq::LatencyHistogram latency;                        ///< Of reads.

@@ -9,7 +9,9 @@
 namespace stickslip::drivers {
 namespace {
 
-base::Result<OpenedBoard> open_simulated(const SimulatedBoardSettings& settings, base::Clock& clock) {
+base::Result<OpenedBoard> open_simulated(SimulatedBoardSettings settings, base::Clock& clock,
+                                         const std::optional<daq::Continuation>& continues) {
+  settings.continues = continues;
   base::Result<SimulatedTester> simulated = make_simulated_tester(settings, clock);
   if (!simulated) return tl::unexpected(simulated.error());
   return OpenedBoard{std::move(simulated->board),
@@ -62,7 +64,7 @@ base::Result<OpenedBoard> open_board(const BoardConfig& config, base::Clock& clo
                                      const std::optional<daq::Continuation>& continues) {
   switch (config.driver) {
     case Driver::kSimulated:
-      return open_simulated(config.simulated, clock);
+      return open_simulated(config.simulated, clock, continues);
     case Driver::kReplay:
       return open_replay(config.replay_file, clock);
     case Driver::kComedi:

@@ -1,6 +1,7 @@
 #include "drivers/simulated/simulated_board.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -26,6 +27,7 @@ class SimulatedBoard final : public daq::Board {
                  const SimulatedBoardSettings& settings)
       : playlist_(std::move(playlist)),
         clock_(clock),
+        continues_(settings.continues),
         info_(
             board_info_of(playlist_->scenes(), playlist_->scan_rate_Hz(), settings.speed_gain_m_per_s_per_V)),
         true_scan_rate_Hz_(sim::true_scan_rate_Hz(playlist_->scenes().front(), playlist_->scan_rate_Hz())) {
@@ -35,7 +37,7 @@ class SimulatedBoard final : public daq::Board {
       belts_.push_back(sim::motion_of(scene).belt);
     }
     if (!settings.hanging.empty()) hanging_.emplace(settings.hanging, playlist_->scenes().front(), info_);
-    play(0);
+    if (!continues_) seek(settings.first_scan);
   }
 
   [[nodiscard]] const daq::BoardInfo& info() const noexcept override { return info_; }
@@ -43,8 +45,10 @@ class SimulatedBoard final : public daq::Board {
   [[nodiscard]] base::Result<void> start() override {
     if (running_) return {};
     running_ = true;
-    start_scan_ = next_;
     start_ns_ = clock_.monotonic_ns();
+    if (const auto from = std::exchange(continues_, std::nullopt))
+      seek(daq::first_scan_after(*from, start_ns_));
+    start_scan_ = next_;
     return {};
   }
 
@@ -102,6 +106,18 @@ class SimulatedBoard final : public daq::Board {
     }
   }
 
+  /// The next scan is this one, or the first after it that arrives.
+  void seek(base::ScanIndex scan) noexcept {
+    play(playlist_->repetition_of(scan));
+    std::array<double, daq::ScanBlock::kMaxScans> passed{};
+    while (next_ < scan && playlist_->has(playing_.number)) {
+      const auto left = static_cast<std::size_t>(scan - next_);
+      runs_[playing_.scene].next(std::span{passed}.first(std::min(left, passed.size())));
+      next_ = next_of_playing();
+      if (next_ == playing_.end()) play(playing_.number + 1);
+    }
+  }
+
   [[nodiscard]] base::ScanIndex next_of_playing() const noexcept {
     return playing_.first + runs_[playing_.scene].next_scan();
   }
@@ -144,6 +160,7 @@ class SimulatedBoard final : public daq::Board {
 
   std::shared_ptr<const Playlist> playlist_;
   base::Clock& clock_;
+  std::optional<daq::Continuation> continues_;  ///< Until the first start.
   daq::BoardInfo info_;
   double true_scan_rate_Hz_;         ///< At which scans fall due; nobody is told.
   std::vector<sim::SceneRun> runs_;  ///< One for each scene.
@@ -184,6 +201,9 @@ base::Result<SimulatedTester> make_simulated_tester(const SimulatedBoardSettings
     return base::usage_error("repeats = {} of the simulated board must be 0 (for ever) or more",
                              settings.repeats);
   }
+  if (settings.first_scan < 0) {
+    return base::usage_error("first scan {} of the simulated board must be 0 or more", settings.first_scan);
+  }
   std::vector<sim::Scene> scenes;
   for (const std::filesystem::path& file : settings.scenes) {
     base::Result<sim::Scene> scene = sim::load_scene(file);
@@ -214,6 +234,8 @@ base::Result<SimulatedTester> make_simulated_tester(const SimulatedBoardSettings
   auto playlist = std::make_shared<const Playlist>(std::move(scenes), settings.repeats, rate_Hz);
   result.truth = make_simulated_truth(playlist, settings.method);
   result.board = std::make_unique<SimulatedBoard>(std::move(playlist), clock, settings);
+  if (settings.faults.overruns_every_s > 0.0 || settings.faults.losses_every_s > 0.0)
+    result.board = with_faults(std::move(result.board), settings.faults);
   return result;
 }
 

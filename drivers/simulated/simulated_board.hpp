@@ -15,9 +15,11 @@
 #include "core/base/result.hpp"
 #include "core/daq/board.hpp"
 #include "core/daq/calibration.hpp"
+#include "core/daq/rate_meter.hpp"
 #include "core/friction/method.hpp"
 #include "core/friction/tester.hpp"
 #include "core/friction/truth.hpp"
+#include "drivers/simulated/simulated_faults.hpp"
 
 namespace stickslip::drivers {
 
@@ -31,6 +33,11 @@ struct SimulatedBoardSettings {
   std::optional<double> speed_gain_m_per_s_per_V{};
   /// Says which weight hangs on the load cell in the place of the scene's force (HangingWeight); empty: none.
   std::filesystem::path hanging{};
+  SimulatedFaults faults{};
+  /// Index of the first scan, ≥ 0: as of a board that has been running since index 0.
+  base::ScanIndex first_scan = 0;
+  /// Of a board before this one that was pulled out; it comes back where the clock says.
+  std::optional<daq::Continuation> continues{};
 };
 
 /// Two equal implementations of the seams, made from one list of scenes, and the facts about the
@@ -47,7 +54,7 @@ struct SimulatedTester {
 /// for the scans of 30 ms, as many as come in time.
 ///
 /// The board waits while it is stopped: after the next start it goes on with the next scan.
-/// Usage error: a scene that cannot be read, no scene, negative repeats, rate not positive, scenes
+/// Usage error: a scene that cannot be read, no scene, negative repeats or first scan, rate not positive,
 /// a speed to be read but no converter in the scenes, scenes that disagree about tester, load cell, converter
 /// or (unless one is asked for) scan rate.
 [[nodiscard]] base::Result<SimulatedTester> make_simulated_tester(const SimulatedBoardSettings& settings,

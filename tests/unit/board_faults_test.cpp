@@ -49,8 +49,14 @@ class Diary final : public Facts {
     gaps.push_back(gap);
   }
 
+  void scans_accounted(const ScanAccount& scans) override {
+    const std::lock_guard lock{mutex_};
+    account = scans;
+  }
+
   std::vector<std::string> losses;
   std::vector<daq::Gap> gaps;
+  std::optional<ScanAccount> account;
 
  private:
   std::mutex mutex_;
@@ -126,6 +132,22 @@ class BoardFaults : public testing::Test {
     const auto ended = running.run();
     ASSERT_TRUE(ended) << ended.error().message;
     status_ = running.status();
+    expect_all_accounted_for();
+  }
+
+  /// Whatever became of the board: by the counters of those who did it, and by what stands in the journals.
+  void expect_all_accounted_for() const {
+    ASSERT_TRUE(diary_.account);
+    const ScanAccount& scans = *diary_.account;
+    EXPECT_EQ(scans.under_way(), 0) << scans.issued << " issued";
+    EXPECT_EQ(scans.unsaved, 0);
+    std::size_t recorded = 0;
+    for (const record::Record& record : records_) recorded += record.scan.size();
+    EXPECT_EQ(scans.recorded, static_cast<std::int64_t>(recorded));
+    std::int64_t in_gaps = 0;
+    for (const daq::Gap& gap : diary_.gaps) in_gaps += gap.count;
+    EXPECT_EQ(scans.in_gaps, in_gaps);
+    EXPECT_EQ(scans.issued, static_cast<std::int64_t>(status_.scan_count) + in_gaps);
   }
 
   std::filesystem::path folder_;

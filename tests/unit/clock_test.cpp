@@ -54,6 +54,26 @@ TEST(SystemClock, SpeedMultipliesTheElapsedTime) {
   EXPECT_LE(fast_ns, kSpeed * static_cast<double>(outer_ended_ns - outer_began_ns) + 1.0);
 }
 
+TEST(SteppingClock, PutsItsDateRightNowAndThenAndNeverItsPace) {
+  auto manual = std::make_unique<ManualClock>();
+  ManualClock& time = *manual;
+  const auto clock = base::make_stepping_clock(std::move(manual), 60.0, 7);
+  const auto off_s = [&] { return 1e-9 * static_cast<double>(clock->realtime_ns() - time.realtime_ns()); };
+  EXPECT_EQ(off_s(), 0.0);
+  double before = 0.0;
+  int steps = 0;
+  for (int minute = 0; minute < 100; ++minute) {
+    time.advance(61s);
+    EXPECT_EQ(clock->monotonic_ns(), time.monotonic_ns());
+    EXPECT_LE(std::abs(off_s()), base::kLargestClockStep_s);
+    if (off_s() != before) ++steps;
+    before = off_s();
+  }
+  EXPECT_EQ(steps, 100);
+  EXPECT_THROW(static_cast<void>(base::make_stepping_clock(base::make_system_clock(), 0.0, 1)),
+               std::invalid_argument);
+}
+
 TEST(SystemClock, SleepUntilThePastReturnsAtOnce) {
   const auto clock = base::make_system_clock();
   clock->sleep_until(clock->monotonic_ns() - 1);

@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <csignal>
 
@@ -57,6 +58,25 @@ int write_test(PatientJournal& journal, int seconds) {
   }
   journal.add_end(sound_end());
   return refused;
+}
+
+// A disk that was full has room for the record of a test as soon as its journal is over.
+TEST(PatientJournal, RoomReservedBehindTheEndIsGivenBack) {
+  const test::TemporaryFolder folder;
+  PatientJournal journal{folder.path() / "a.journal", test::sample_header(), kMemory};
+  write_test(journal, 2);
+  ASSERT_FALSE(journal.settle());
+  const auto allocated = [&] {
+    struct stat facts {};
+    EXPECT_EQ(::stat(journal.path().c_str(), &facts), 0);
+    constexpr std::int64_t kUnit = 512;  // Of st_blocks.
+    return facts.st_blocks * kUnit - facts.st_size;
+  };
+  constexpr std::int64_t kFileSystemBlock = 64 << 10;
+  if (allocated() <= kFileSystemBlock) GTEST_SKIP() << "this file system reserves nothing";
+  journal.give_room_back();
+  EXPECT_LE(allocated(), kFileSystemBlock);
+  EXPECT_FALSE(journal.settle());
 }
 
 /// All scans in order, each value the first scan of its entry.

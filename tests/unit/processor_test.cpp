@@ -155,6 +155,56 @@ TEST_F(ProcessorTest, DoesNotDependOnTheSizeOfBlocks) {
   EXPECT_EQ(values[0], values[2]);
 }
 
+// Each index is in a test, in a gap, or discarded by who discards it; at no moment elsewhere but in the
+// stretch before a test.
+TEST_F(ProcessorTest, EveryIndexIsRecordedIdleOrInAGap) {
+  Processor processor = make();
+  constexpr daq::ScanIndex kPreTrigger = 50;
+  feed(processor, 0, 30);
+  EXPECT_EQ(processor.idle_scan_count(), 0) << "all of them may belong to a coming test";
+  feed(processor, 30, 90);
+  EXPECT_EQ(processor.idle_scan_count(), 90 - kPreTrigger);
+  feed(processor, 95, 150);  // Outside of a test: what was before the gap is given up.
+  EXPECT_EQ(processor.idle_scan_count(), 90);
+  feed(processor, 160, 3 * kEnd);  // Inside of one.
+  processor.finish(EndCause::kStopped);
+  EXPECT_EQ(diary_.ends.size(), 3U);
+  EXPECT_EQ(processor.lost_scan_count(), 15);
+  EXPECT_EQ(static_cast<daq::ScanIndex>(diary_.values.size()) + processor.idle_scan_count() +
+                processor.lost_scan_count(),
+            3 * kEnd);
+}
+
+TEST_F(ProcessorTest, ScansGivenUpByCommandsAreIdle) {
+  settings_.automatic = false;
+  Processor processor = make();
+  feed(processor, 0, 90);
+  static_cast<void>(processor.arm("ada"));
+  feed(processor, 90, kEnd);
+  processor.finish(EndCause::kStopped);
+  EXPECT_EQ(static_cast<daq::ScanIndex>(diary_.values.size()) + processor.idle_scan_count(), kEnd);
+}
+
+// A bench that scans for 142 days at 350 Hz passes 2^32; nothing may be cut to 32 bits on the way, nor lose
+// digits.
+TEST_F(ProcessorTest, TheSameScansBeyond32BitsOfTheIndexGiveTheSameResults) {
+  Processor early = make();
+  feed(early, 0, kEnd);
+  early.finish(EndCause::kEndOfInput);
+  // A multiple of kEnd, so that the readings are the same, and 2^32 is among the scans of the record.
+  constexpr daq::ScanIndex kWrap = daq::ScanIndex{1} << 32;
+  constexpr daq::ScanIndex kShift = kWrap - kWrap % kEnd;
+  static_assert(kShift + kLoaded - 50 < kWrap && kWrap < kShift + kUnloaded);
+  Processor late = make();
+  feed(late, kShift, kShift + kEnd);
+  late.finish(EndCause::kEndOfInput);
+  ASSERT_EQ(diary_.ends.size(), 2U);
+  EXPECT_EQ(diary_.starts[1].trigger, diary_.starts[0].trigger + kShift);
+  EXPECT_EQ(diary_.ends[1].end, diary_.ends[0].end + kShift);
+  expect_same_results(diary_.ends[0], diary_.ends[1]);
+  EXPECT_EQ(late.idle_scan_count(), early.idle_scan_count());
+}
+
 TEST_F(ProcessorTest, TellsAGapInsideATestAndForgetsWhatWasBeforeOneOutside) {
   Processor processor = make();
   feed(processor, 0, 90);

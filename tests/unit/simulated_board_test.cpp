@@ -58,6 +58,100 @@ std::vector<double> read_all(daq::Board& board, std::chrono::milliseconds timeou
   return raw;
 }
 
+SimulatedBoardSettings faulty(const SimulatedFaults& faults) {
+  return {.scenes = {kRingDown}, .repeats = 0, .scan_rate_Hz = {}, .faults = faults};
+}
+
+// What is lost is drawn from the seed, and what is delivered is what the board without faults delivers there.
+TEST(SimulatedBoard, AnOverrunLosesScansAndHaltsUntilStartedAgain) {
+  SleepingClock clock;
+  auto troubled =
+      make_simulated_tester(faulty({.overruns_every_s = 10.0, .losses_every_s = 0.0, .seed = 5}), clock);
+  auto sound = make_simulated_tester(faulty({}), clock);
+  ASSERT_TRUE(troubled && sound);
+  daq::Board& board = *troubled->board;
+  ASSERT_TRUE(board.start());
+  ASSERT_TRUE(sound->board->start());
+  std::vector<double> whole;
+  daq::ScanBlock block;
+  constexpr std::size_t kScans = 350 * 200;
+  while (whole.size() < kScans && sound->board->read(block, 1000ms) == ReadStatus::kScans)
+    whole.insert(whole.end(), block.scans().begin(), block.scans().end());
+  base::ScanIndex next = 0;
+  int overruns = 0;
+  base::ScanIndex longest = 0;
+  while (next < static_cast<base::ScanIndex>(kScans) - 2000) {
+    const ReadStatus status = board.read(block, 1000ms);
+    if (status == ReadStatus::kOverrun) {
+      ++overruns;
+      ASSERT_TRUE(board.start());
+      do {
+      } while (board.read(block, 1000ms) == ReadStatus::kTimeout);
+      ASSERT_GT(block.first, next) << "scans were lost";
+      longest = std::max(longest, block.first - next);
+    } else {
+      ASSERT_EQ(status, ReadStatus::kScans);
+      ASSERT_EQ(block.first, next);
+    }
+    for (std::size_t i = 0; i < block.count; ++i)
+      ASSERT_EQ(block.raw[i], whole[static_cast<std::size_t>(block.first) + i]);
+    next = block.end();
+  }
+  // 20 in 200 s on the average; Poisson: outside of 3 and 50 in less than one seed of 10⁵.
+  EXPECT_GT(overruns, 3);
+  EXPECT_LT(overruns, 50);
+  // What the block held behind the loss goes with it.
+  EXPECT_LE(longest, std::llround(kLongestOverrun_s * 350.0) +
+                         static_cast<base::ScanIndex>(daq::ScanBlock::kMaxScans));
+}
+
+TEST(SimulatedBoard, OneThatWasPulledOutStaysAwayAndTheNextGoesOnByTheClock) {
+  SleepingClock clock;
+  SimulatedBoardSettings settings = faulty({.overruns_every_s = 0.0, .losses_every_s = 20.0, .seed = 5});
+  auto first = make_simulated_tester(settings, clock);
+  ASSERT_TRUE(first);
+  ASSERT_TRUE(first->board->start());
+  daq::RateMeter meter{350.0};
+  daq::ScanBlock block;
+  ReadStatus status = ReadStatus::kScans;
+  while ((status = first->board->read(block, 1000ms)) == ReadStatus::kScans) meter.observe(block);
+  EXPECT_EQ(status, ReadStatus::kBoardMissing);
+  EXPECT_EQ(first->board->read(block, 1000ms), ReadStatus::kBoardMissing);
+  EXPECT_FALSE(first->board->start());
+  EXPECT_THAT(first->board->last_error(), HasSubstr("pulled out"));
+  settings.continues = meter.continuation();
+  ASSERT_TRUE(settings.continues);
+  constexpr std::int64_t kAway_s = 60;
+  clock.now_ns += kAway_s * 1'000'000'000;
+  auto second = make_simulated_tester(settings, clock);
+  ASSERT_TRUE(second);
+  ASSERT_TRUE(second->board->start());
+  ASSERT_EQ(second->board->read(block, 1000ms), ReadStatus::kScans);
+  // The last anchor is a second old at most, a delivery 30 ms; then each of two roundings.
+  EXPECT_NEAR(static_cast<double>(block.first - settings.continues->end), 350.0 * kAway_s,
+              0.030 * 350.0 + 2.0);
+}
+
+TEST(SimulatedBoard, MayHaveBeenRunningForLong) {
+  SleepingClock clock;
+  constexpr base::ScanIndex kLate = (base::ScanIndex{1} << 32) - 5;
+  auto late = make_simulated_tester(
+      {.scenes = {kRingDown}, .repeats = 0, .scan_rate_Hz = {}, .first_scan = kLate}, clock);
+  ASSERT_TRUE(late);
+  ASSERT_TRUE(late->board->start());
+  daq::ScanBlock block;
+  base::ScanIndex next = kLate;
+  while (next < kLate + 100) {
+    ASSERT_EQ(late->board->read(block, 1000ms), ReadStatus::kScans);
+    ASSERT_EQ(block.first, next);
+    next = block.end();
+  }
+  const auto wrong = make_simulated_tester(
+      {.scenes = {kRingDown}, .repeats = 0, .scan_rate_Hz = {}, .first_scan = -1}, clock);
+  ASSERT_FALSE(wrong);
+  EXPECT_THAT(wrong.error().message, HasSubstr("first scan -1"));
+}
+
 TEST(SimulatedBoard, AWeightHangsOnTheLoadCellWhileAFileSaysSo) {
   SleepingClock clock;
   const test::TemporaryFolder folder;

@@ -1,0 +1,318 @@
+#!/usr/bin/env python3
+"""Days of virtual time through the whole daemon, with troubles at random: nothing may be unaccounted for, nothing may grow.
+
+soak.py BUILD_DIR SOURCE_DIR [--days N] [--seed N] [--speed N]
+
+A simulated tester pulls one paper after the other, faster than a bench, and its scan index passes 2^32 on the first day. The
+simulated board loses scans and is pulled out, its date is put right now and then ([board.simulated.faults]); from outside the disk is
+filled, the broker goes and comes, clients connect and never read. In the first fifth of the time the daemon is killed as well;
+after it memory and file handles are watched.
+
+Each record is read with h5py as soon as it is there, then removed. At the end of a life the daemon says what became of each index
+that its boards gave: in records, between tests, in gaps. Here the same is counted from the records and from the status, and must be the same.
+Of a daemon that was killed at most the last second is missing.
+"""
+
+import argparse
+import collections
+import contextlib
+import math
+import pathlib
+import queue
+import random
+import re
+import socket
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+import h5py
+
+import broker
+import small_disk
+from running_daemon import RunningDaemon
+from service_manager import TIMEOUT_S
+
+SCAN_RATE_HZ = 350
+DAY_S = 86_400
+WRAP = 1 << 32
+DISK_MIB = 96
+#: So large a part of the memory may come or go between two quarters of the watched time.
+FLAT = 0.01
+#: 21000 scans; 2^32 is scan 5296 of one, in the pull.
+SCENE = """
+description = "a minute of which 8 s are a pull"
+seed = {seed}
+scan_rate = "350 Hz"
+[tester]
+sled_mass = "2331 g"
+frequency = "20 Hz"
+load_cell_gain = "2 N/V"
+[paper]
+mu_s = 0.35
+mu_k = 0.30
+[effects.damping]
+gamma_over_2omega = 0.022
+[effects.constant_speed]
+idle = "13 s"
+pull_speed = "12 in/min"
+pull = "8 s"
+stop = "1 s"
+return_speed = "12 in/min"
+return = "1 s"
+rest = "37 s"
+[effects.one_way_coupling]
+[effects.white_noise]
+sd = 0.001
+[effects.quantisation]
+bits = 16
+range_min = "-10 V"
+range_max = "10 V"
+"""
+
+
+#: kMaxTests of daemon/test_log.hpp.
+REMEMBERED_TESTS = 1000
+
+
+class Failure(Exception):
+    """A promise that was not kept."""
+
+
+def expect(truth, what):
+    if not truth:
+        raise Failure(what)
+
+
+class DeafClient:
+    """Asks for the live stream and never reads it."""
+
+    def __init__(self, path):
+        self.socket = socket.socket(socket.AF_UNIX)
+        self.socket.connect(str(path))
+        self.socket.sendall(b"GET /v1/live HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+                            b"Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n")
+
+    def close(self):
+        self.socket.close()
+
+
+def memory_kB(pid):
+    found = re.search(r"VmRSS:\s+(\d+) kB", pathlib.Path(f"/proc/{pid}/status").read_text(encoding="ascii"))
+    return int(found[1])
+
+
+def handle_count(pid):
+    return len(list(pathlib.Path(f"/proc/{pid}/fd").iterdir()))
+
+
+class Soak:
+    def __init__(self, stack, build, source, days, seed, speed):
+        self.random = random.Random(seed)
+        self.days, self.speed = days, speed
+        self.addCleanup = stack.callback
+        self.counts = collections.Counter()
+        self.rows = 0  # In the records of this life of the daemon.
+        self.rows_of_all = 0
+        self.virtual_s = 0.0
+        self.began = time.monotonic()
+        self.deaf = None
+        self.full_until = None
+        self.watched = []
+        self.broker_folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="stickslip-soak-")))
+        self.broker = broker.Broker(self, self.broker_folder)
+
+        def prepare(folder):
+            (folder / "records").mkdir()
+            small_disk.mount(folder / "records", DISK_MIB)
+            self.addCleanup(lambda: subprocess.run(["umount", "-l", str(folder / "records")], check=False))
+            (folder / "scene.toml").write_text(SCENE.format(seed=seed % (1 << 31)), encoding="utf-8")
+
+        first_scan = WRAP - int(0.1 * DAY_S * SCAN_RATE_HZ)
+        board = f"""
+[board]
+driver = "simulated"
+clock_speed = {speed}
+[board.simulated]
+scenes = ["scene.toml"]
+repeats = 0
+first_scan = {first_scan}
+[board.simulated.faults]
+overruns_every = "1 h"
+losses_every = "6 h"
+clock_steps_every = "1 h"
+seed = {seed}
+"""
+        config = f'[fleet]\nbroker = "mqtt://127.0.0.1:{self.broker.port}"\ntester = "soak"\n'
+        self.daemon = RunningDaemon(self, build, source, config=config, board=board, prepare=prepare)
+        self.records = self.daemon.folder / "records"
+
+    def status(self):
+        return self.daemon.ask("GET", "/v1/status")[1]
+
+    def stems(self):
+        return {path.stem for path in self.records.rglob("2*.*")}
+
+    def take_records(self, of=None):
+        """Each record that is there, or of these names: its rows are counted, then it goes."""
+        for path in sorted(self.records.rglob("*.h5")):
+            if of is not None and path.stem not in of:
+                continue
+            with h5py.File(path) as file:
+                entry = file["entry"]
+                scans = entry["raw/scan"][:]
+                gaps = entry["gaps"] if "gaps" in entry else None
+                stretches = [] if gaps is None else [(int(first), int(first + count)) for first, count in zip(gaps["first_scan"], gaps["scan_count"])]
+                lost = sum(end - first for first, end in stretches)
+                expect(len(scans) > 0, f"{path.name}: no scan")
+                # A full disk may have taken the first or the last scans of a test.
+                begin = min([int(scans[0])] + [first for first, _ in stretches])
+                end = max([int(scans[-1]) + 1] + [end for _, end in stretches])
+                expect(end - begin == len(scans) + lost,
+                       f"{path.name}: {len(scans)} scans and {lost} in gaps are not the {end - begin} indices from {begin} on")
+                self.counts["across 2^32"] += int(scans[0] < WRAP <= scans[-1])
+            self.rows += len(scans)
+            self.counts["records"] += 1
+            path.unlink()
+
+    def free(self):
+        (self.records / "filler").unlink(missing_ok=True)
+        self.full_until = None
+
+    def trouble(self, test):
+        """At the end of a test; of each kind a few a day."""
+        if self.full_until is not None:
+            if test >= self.full_until:
+                self.free()
+        elif self.random.random() < 1 / 300:
+            small_disk.fill(self.records)
+            # 60 tests of 10 s are what the daemon keeps in memory; beyond that, gaps.
+            self.full_until = test + self.random.randint(1, 80)
+            self.counts["full disks"] += 1
+        if self.random.random() < 1 / 400:
+            self.broker.stop()
+            self.broker.start()
+            self.counts["broker restarts"] += 1
+        if self.random.random() < 1 / 200:
+            if self.deaf:
+                self.deaf.close()
+            self.deaf = DeafClient(self.daemon.socket)
+            self.counts["clients that do not read"] += 1
+
+    def kill(self):
+        before = self.status()["scans"]
+        self.daemon.kill()
+        self.counts["kills"] += 1
+        self.free()
+        left = self.stems()
+        self.daemon.start()  # Makes records of the journals before it is ready.
+        self.take_records(left)
+        missing = before["issued"] - before["idle"] - before["in_gaps"] - self.rows
+        # A second of wall time is not synced; a test waits for its beginning; a full disk keeps 600 s in memory.
+        allowed = (self.speed * 1.0 + 600) * SCAN_RATE_HZ
+        expect(missing <= allowed, f"killed: {missing} scans of {before} are in no record")
+        self.counts["scans under way at kills"] += max(missing, 0)
+        self.end_life(before["issued"])
+
+    def end_life(self, issued):
+        self.rows_of_all += self.rows
+        self.rows = 0
+        self.virtual_s += issued / SCAN_RATE_HZ
+        self.counts["indices"] += issued
+        self.deaf = None
+
+    def run(self):
+        total_s = self.days * DAY_S
+        tests = of_this_life = 0
+        while True:
+            line = self.daemon.unread.get(timeout=TIMEOUT_S)
+            if "unaccounted" in line or "defect" in line:
+                raise Failure(line)
+            if not re.search(r"test \d+ ended at scan", line):
+                continue
+            tests += 1
+            of_this_life += 1
+            self.take_records()
+            status = self.status()
+            now_s = self.virtual_s + status["scans"]["issued"] / SCAN_RATE_HZ
+            self.progress(now_s, total_s, tests)
+            if now_s >= total_s:
+                break
+            self.trouble(tests)
+            first_kill_is_due = self.counts["kills"] == 0 and now_s >= total_s / 10
+            if now_s < total_s / 5 and (first_kill_is_due or self.random.random() < 1 / 300):
+                self.kill()
+                of_this_life = 0
+            # The daemon remembers so many tests; then its memory is as large as it gets.
+            watching = now_s >= total_s / 5 and of_this_life > REMEMBERED_TESTS
+            # Scans that wait for a full disk are in memory, as they should be.
+            if watching and self.full_until is None and status["storage"]["waiting_size"] == 0:
+                self.watched.append((memory_kB(self.daemon.process.pid), handle_count(self.daemon.process.pid)))
+        self.counts["tests"] = tests
+        self.stop()
+        expect(self.counts["across 2^32"] > 0, "no record crosses index 2^32")
+        self.judge_growth()
+
+    def stop(self):
+        self.free()
+        status = self.status()
+        self.counts["gaps of the last life"] = status["gap_count"]
+        self.counts["boards lost in the last life"] = status["board_loss_count"]
+        code, log = self.daemon.end()
+        expect(code == 0, f"the daemon ended with {code}: {log[-2000:]}")
+        self.take_records()
+        journals = [path.name for path in self.records.rglob("*.journal")]
+        expect(not journals, f"not made into records: {journals}")
+        found = re.findall(r"scans: (\d+) indices = (\d+) in records \+ (\d+) between tests \+ (\d+) in gaps", log)
+        expect(found, log[-2000:])
+        issued, recorded, idle, in_gaps = (int(n) for n in found[-1])
+        expect(issued == recorded + idle + in_gaps, f"unaccounted for: {found[-1]}")
+        expect(recorded == self.rows, f"the daemon says {recorded} scans in records; h5py finds {self.rows}")
+        self.counts.update({"idle of the last life": idle, "in gaps of the last life": in_gaps, "recorded in the last life": recorded})
+        print(f"\nthe last life: {issued} indices = {recorded} in records + {idle} between tests + {in_gaps} in gaps")
+        self.end_life(issued)
+
+    def judge_growth(self):
+        expect(len(self.watched) >= 8, f"watched only {len(self.watched)} times")
+        quarter = len(self.watched) // 4
+        early, late = self.watched[quarter:2 * quarter], self.watched[-quarter:]
+        memory = [statistics.median(kB for kB, _ in some) for some in (early, late)]
+        handles = [statistics.median(count for _, count in some) for some in (early, late)]
+        print(f"memory {memory[0]:.0f} kB in the second quarter of the watched time, {memory[1]:.0f} kB in the last; handles {handles[0]:.0f} and {handles[1]:.0f}")
+        expect(abs(memory[1] - memory[0]) <= FLAT * memory[0], f"memory is not flat: {memory} kB")
+        expect(math.isclose(handles[0], handles[1], abs_tol=1), f"file handles are not flat: {handles}")
+
+    def progress(self, now_s, total_s, tests):
+        if sys.stdout.isatty():
+            wall_s = time.monotonic() - self.began
+            print(f"\r{now_s / DAY_S:7.2f} of {total_s / DAY_S:g} days, {tests} tests, {now_s / wall_s:.0f} times real time ", end="", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("source", type=pathlib.Path)
+    parser.add_argument("--days", type=float, default=30.0)
+    parser.add_argument("--seed", type=int, default=None)
+    parser.add_argument("--speed", type=float, default=700.0)
+    arguments = parser.parse_args()
+    small_disk.own_mounts()
+    seed = arguments.seed if arguments.seed is not None else random.SystemRandom().randrange(1 << 31)
+    print(f"soak: {arguments.days:g} days, --seed {seed}", flush=True)
+    with contextlib.ExitStack() as stack:
+        soak = Soak(stack, arguments.build.resolve(), arguments.source.resolve(), arguments.days, seed, arguments.speed)
+        try:
+            soak.run()
+        except (Failure, queue.Empty) as failure:
+            print(f"\nFAILED: {failure!r}\n{''.join(soak.daemon.log[-40:])}", file=sys.stderr)
+            return 1
+        finally:
+            for what, count in sorted(soak.counts.items()):
+                print(f"  {count:>12} {what}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
