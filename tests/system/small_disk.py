@@ -3,8 +3,21 @@
 import os
 import subprocess
 import sys
+import tempfile
 
 SKIPPED = 77
+
+
+def namespace():
+    """The command that begins a mount namespace."""
+    return ["unshare", "--mount"] + (["--map-root-user"] if os.geteuid() else [])
+
+
+def why_none():
+    """Why no small file system can be had here; None: it can."""
+    with tempfile.TemporaryDirectory(prefix="stickslip-") as folder:
+        tried = subprocess.run([*namespace(), "mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", folder], capture_output=True, text=True, check=False)
+    return tried.stderr.strip() if tried.returncode != 0 else None
 
 
 def own_mounts():
@@ -13,22 +26,15 @@ def own_mounts():
     if "STICKSLIP_OWN_MOUNTS" in os.environ:
         return
     environment = dict(os.environ, STICKSLIP_OWN_MOUNTS="1")
-    own = subprocess.run(["unshare", "--mount", "--map-root-user" if os.geteuid() else "--mount", "true"],
-                         capture_output=True, text=True, check=False)
-    if own.returncode != 0:
-        print(f"skipped: no mount namespace here: {own.stderr.strip()}")
+    if (why := why_none()) is not None:
+        print(f"skipped: no file system may be mounted here: {why}")
         sys.exit(SKIPPED)
-    options = ["--mount"] + (["--map-root-user"] if os.geteuid() else [])
-    sys.exit(subprocess.run(["unshare", *options, sys.executable, *sys.argv], env=environment, check=False).returncode)
+    sys.exit(subprocess.run([*namespace(), sys.executable, *sys.argv], env=environment, check=False).returncode)
 
 
 def mount(folder, size_MiB):
-    """Ends the program as skipped where nothing may be mounted."""
-    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size_MiB}m", "tmpfs", str(folder)],
-                             capture_output=True, text=True, check=False)
-    if mounted.returncode != 0:
-        print(f"skipped: no file system may be mounted here: {mounted.stderr.strip()}")
-        sys.exit(SKIPPED)
+    """In the namespace of own_mounts()."""
+    subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size_MiB}m", "tmpfs", str(folder)], check=True)
 
 
 def leave(folder, size):
