@@ -100,10 +100,13 @@ std::string text_of(const Json& status) {
   lines.line("bench", bench, of_bench(bench));
   lines.line("detail", word(status, "detail"));
   board(lines, status);
-  const std::int64_t lost = count(status, "lost_scan_count");
+  const Json scans = part(status, "scans");
+  const std::int64_t lost = count(scans, "in_gaps");
   lines.line("scans",
-             fmt::format("{}; {} lost in {} gaps, {} overruns", count(status, "scan_count"), lost,
-                         count(status, "gap_count"), count(status, "overrun_count")),
+             fmt::format("{}: {} in records, {} between tests, {} under way; {} lost in {} gaps, {} overruns",
+                         count(status, "scan_count"), count(scans, "recorded"), count(scans, "idle"),
+                         count(scans, "under_way"), lost, count(status, "gap_count"),
+                         count(status, "overrun_count")),
              lost > 0 ? Ink::kYellow : Ink::kNone);
   tests(lines, status);
   lines.line("tests", fmt::format("{} ended", count(status, "test_count")));

@@ -21,6 +21,11 @@ TIMEOUT_S = 300
 PATIENCE_S = 200
 
 
+def may_have_user_namespaces():
+    """What the sandbox is made of. In a chroot, for one, nobody may."""
+    return subprocess.run(["unshare", "--user", "true"], capture_output=True, check=False).returncode == 0
+
+
 class Chromium:
     def __init__(self, program):
         self.folder = tempfile.TemporaryDirectory(prefix="stickslip-browser-", ignore_cleanup_errors=True)
@@ -31,8 +36,8 @@ class Chromium:
                      "--disable-component-update", "--disable-dev-shm-usage", "--window-size=1280,1600", "--hide-scrollbars",
                      # A page behind another would have no frames and slow timers.
                      "--disable-backgrounding-occluded-windows", "--disable-renderer-backgrounding", "--disable-background-timer-throttling"]
-        if os.geteuid() == 0:
-            arguments.append("--no-sandbox")  # It refuses root otherwise; the page is our own.
+        if os.geteuid() == 0 or not may_have_user_namespaces():
+            arguments.append("--no-sandbox")  # It refuses to run otherwise; the page is our own.
         # The browser reads commands from descriptor 3 and answers on 4.
         shell = f'exec "$@" 3<&{commands_out} 4>&{answers_in}'
         environment = dict(os.environ, HOME=self.folder.name)
