@@ -28,9 +28,8 @@ namespace stickslip::daemon {
 /// object.
 [[nodiscard]] inline base::Result<nlohmann::ordered_json> object_of(
     const std::string& body, std::initializer_list<std::string_view> keys) {
-  using Json = nlohmann::ordered_json;
-  if (body.empty()) return Json::object();
-  Json json = Json::parse(body, nullptr, false);
+  if (body.empty()) return nlohmann::ordered_json::object();
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(body, nullptr, false);
   if (!json.is_object()) return base::usage_error("the body must be a JSON object");
   for (const auto& [key, value] : json.items()) {
     if (keys.size() > 0 && std::find(keys.begin(), keys.end(), key) == keys.end()) {

@@ -9,10 +9,9 @@
 #include "daemon/results_json.hpp"
 
 namespace stickslip::daemon {
+namespace {
 
 using Json = nlohmann::ordered_json;
-
-namespace {
 
 Json to_json(const daq::BoardInfo& board) {
   Json json;
