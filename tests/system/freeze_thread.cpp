@@ -1,12 +1,17 @@
 // freeze_thread PID NAME: stops one thread of a process, as a thread that hangs; it goes on when the standard
-// input ends. Only while it waits in the kernel, so that it holds nothing that the others need. Says "frozen"
-// when it is so; exit status 1 if the thread cannot be stopped.
+// input ends. Only while it waits for something to happen, so that it holds nothing that the others need: in
+// other calls, such as one that wakes a thread, it may hold a lock. Says "frozen" when it is so; exit status
+// 1 if the thread cannot be stopped.
 
+#include <linux/futex.h>
 #include <poll.h>
 #include <sys/ptrace.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -18,6 +23,24 @@ std::string first_word(const std::filesystem::path& file) {
   std::string word;
   std::ifstream{file} >> word;
   return word;
+}
+
+/// In a call that waits: the first words of /proc/PID/task/TID/syscall are its number and its arguments.
+bool waits(const std::filesystem::path& task) {
+  std::ifstream file{task / "syscall"};
+  std::string call;
+  file >> call;
+  if (call.empty() || call == "running" || call == "-1") return false;
+  const long number = std::stol(call);
+  if (number == SYS_futex) {
+    std::string address;
+    std::string operation;
+    file >> address >> operation;
+    const auto command = static_cast<int>(std::stoul(operation, nullptr, 16)) & FUTEX_CMD_MASK;
+    return command == FUTEX_WAIT || command == FUTEX_WAIT_BITSET;
+  }
+  return number == SYS_clock_nanosleep || number == SYS_epoll_wait || number == SYS_poll ||
+         number == SYS_ppoll;
 }
 
 pid_t thread_of(const std::filesystem::path& tasks, const std::string& name) {
@@ -43,9 +66,7 @@ int main(int count, char** arguments) {
       std::perror(arguments[2]);
       return 1;
     }
-    // The number of the call that it was stopped in; −1: none.
-    const std::string call = first_word(tasks / std::to_string(thread) / "syscall");
-    if (call != "-1" && call != "running" && !call.empty()) break;
+    if (waits(tasks / std::to_string(thread))) break;
     ::ptrace(PTRACE_CONT, thread, nullptr, nullptr);
   }
   std::puts("frozen");

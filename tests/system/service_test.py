@@ -102,7 +102,8 @@ socket = "control.sock"
 
     def hangs(self, thread, part):
         """The watchdog is fed no more, which the log and the state say, until the thread goes on."""
-        self.configure()
+        # At a pace that leaves each thread time to wait, with a sanitizer too: it is stopped while it does.
+        self.configure(speed=2)
         self.start(WATCHDOG_USEC=str(WATCHDOG_S * 1_000_000))
         self.told("WATCHDOG=1")
         process = self.frozen(thread)
