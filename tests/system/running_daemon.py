@@ -18,10 +18,10 @@ from service_manager import TIMEOUT_S
 SCENE = "config/scenes/stick-slip-at-12-in-per-min.toml"
 
 
-def patient_scene(source):
-    """Text of the shipped scene with a pull and rests so long that several commands fit in each, on a busy machine too."""
+def patient_scene(source, idle="3 s", pull="60 s", rest="3 s"):
+    """Text of the shipped scene with another pull and other rests: so long that several commands fit in each, on a busy machine too."""
     scene = (source / SCENE).read_text(encoding="utf-8")
-    for old, new in (("\nidle = \"0.5 s\"", "\nidle = \"3 s\""), ("\npull = \"5 s\"", "\npull = \"60 s\""), ("\nrest = \"1 s\"", "\nrest = \"3 s\"")):
+    for old, new in (("\nidle = \"0.5 s\"", f"\nidle = \"{idle}\""), ("\npull = \"5 s\"", f"\npull = \"{pull}\""), ("\nrest = \"1 s\"", f"\nrest = \"{rest}\"")):
         assert scene.count(old) == 1, old
         scene = scene.replace(old, new)
     return scene

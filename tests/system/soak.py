@@ -32,7 +32,7 @@ import h5py
 
 import broker
 import small_disk
-from running_daemon import RunningDaemon
+from running_daemon import RunningDaemon, patient_scene
 from service_manager import TIMEOUT_S
 
 SCAN_RATE_HZ = 350
@@ -41,38 +41,8 @@ WRAP = 1 << 32
 DISK_MIB = 96
 #: So large a part of the memory may come or go between two quarters of the watched time.
 FLAT = 0.01
-#: 21000 scans; 2^32 is scan 5296 of one, in the pull.
-SCENE = """
-description = "a minute of which 8 s are a pull"
-seed = {seed}
-scan_rate = "350 Hz"
-[tester]
-sled_mass = "2331 g"
-frequency = "20 Hz"
-load_cell_gain = "2 N/V"
-[paper]
-mu_s = 0.35
-mu_k = 0.30
-[effects.damping]
-gamma_over_2omega = 0.022
-[effects.constant_speed]
-idle = "13 s"
-pull_speed = "12 in/min"
-pull = "8 s"
-stop = "1 s"
-return_speed = "12 in/min"
-return = "1 s"
-rest = "37 s"
-[effects.one_way_coupling]
-[effects.white_noise]
-sd = 0.001
-[effects.quantisation]
-bits = 16
-range_min = "-10 V"
-range_max = "10 V"
-"""
-
-
+#: A minute with the stop of 1 s and the return of 0.5 s: 21000 scans; 2^32 is scan 5296 of one, in the pull.
+TIMES = {"idle": "13 s", "pull": "8 s", "rest": "37.5 s"}
 #: kMaxTests of daemon/test_log.hpp.
 REMEMBERED_TESTS = 1000
 
@@ -115,7 +85,6 @@ class Soak:
         self.addCleanup = stack.callback
         self.counts = collections.Counter()
         self.rows = 0  # In the records of this life of the daemon.
-        self.rows_of_all = 0
         self.virtual_s = 0.0
         self.began = time.monotonic()
         self.deaf = None
@@ -129,7 +98,7 @@ class Soak:
             if disk_may_be_full:
                 small_disk.mount(folder / "records", DISK_MIB)
                 self.addCleanup(lambda: subprocess.run(["umount", "-l", str(folder / "records")], check=False))
-            (folder / "scene.toml").write_text(SCENE.format(seed=seed % (1 << 31)), encoding="utf-8")
+            (folder / "scene.toml").write_text(patient_scene(source, **TIMES), encoding="utf-8")
 
         first_scan = WRAP - int(0.1 * DAY_S * SCAN_RATE_HZ)
         board = f"""
@@ -218,7 +187,6 @@ seed = {seed}
         self.end_life(before["issued"])
 
     def end_life(self, issued):
-        self.rows_of_all += self.rows
         self.rows = 0
         self.virtual_s += issued / SCAN_RATE_HZ
         self.counts["indices"] += issued
