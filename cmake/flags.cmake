@@ -36,16 +36,7 @@ if(STICKSLIP_SANITIZE)
   target_link_options(stickslip_flags INTERFACE -fsanitize=${STICKSLIP_SANITIZE})
   if(STICKSLIP_SANITIZE MATCHES "undefined")
     # What reads or writes through a bad pointer AddressSanitizer finds as well; asked before each access, these
-    # checks make GCC take three times as long over code that Eigen has expanded.
+    # checks make compilers take three times as long over code that Eigen has expanded.
     target_compile_options(stickslip_flags INTERFACE -fno-sanitize=null,alignment,object-size,vptr)
-  endif()
-  if(STICKSLIP_SANITIZE MATCHES "address")
-    # With instrumentation GCC 12 sees uninitialised members inside Beast that are none; the plain
-    # presets keep the warning.
-    target_compile_options(stickslip_flags INTERFACE -Wno-maybe-uninitialized)
-  endif()
-  if(STICKSLIP_SANITIZE MATCHES "thread")
-    # GCC's ThreadSanitizer does not model the atomic_thread_fence inside Asio.
-    target_compile_options(stickslip_flags INTERFACE -Wno-tsan)
   endif()
 endif()

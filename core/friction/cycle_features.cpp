@@ -54,11 +54,7 @@ struct Local {
 /// A damped sinusoid of known ω and γ about any level, laid by least squares through the scans in [from, to]
 /// and evaluated at a place that does not depend on their noise: linear, so without bias.
 std::optional<Local> local_fit(const Trace& trace, double from_s, double to_s, double at_s,
-                               const SharedParameters& shared) {
-  const auto begin = std::lower_bound(trace.time_s.begin(), trace.time_s.end(), from_s);
-  const auto end = std::upper_bound(begin, trace.time_s.end(), to_s);
-  const auto first = static_cast<std::size_t>(begin - trace.time_s.begin());
-  const auto last = static_cast<std::size_t>(end - trace.time_s.begin());
+                               const SharedParameters& shared, std::size_t near) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   std::size_t count = 0;
@@ -66,7 +62,8 @@ std::optional<Local> local_fit(const Trace& trace, double from_s, double to_s, d
     const double decay = std::exp(-0.5 * shared.gamma * tau);
     return Eigen::Vector3d{1.0, decay * std::cos(shared.omega * tau), decay * std::sin(shared.omega * tau)};
   };
-  for (std::size_t k = first; k < last; ++k) {
+  for (std::size_t k = scan_at_or_after(trace, from_s, near); k < trace.size() && trace.time_s[k] <= to_s;
+       ++k) {
     if (trace.usable[k] == 0) continue;
     const Eigen::Vector3d row = basis(trace.time_s[k] - at_s);
     normal += row * row.transpose();
@@ -81,9 +78,9 @@ std::optional<Local> local_fit(const Trace& trace, double from_s, double to_s, d
 
 /// Mean of the level between two times, straight from scan to scan: a slip begins and ends with the same
 /// slope, so that the error of the trapezia cancels [Euler and Maclaurin].
-std::optional<double> mean_between(const Trace& trace, double from_s, double to_s, double scan_s) {
-  const auto begin = std::lower_bound(trace.time_s.begin(), trace.time_s.end(), from_s);
-  auto k = static_cast<std::size_t>(begin - trace.time_s.begin());
+std::optional<double> mean_between(const Trace& trace, double from_s, double to_s, double scan_s,
+                                   std::size_t near) {
+  std::size_t k = scan_at_or_after(trace, from_s, near);
   if (k == 0 || !(to_s > from_s) || to_s > trace.time_s.back()) return std::nullopt;
   double integral = 0.0;
   double done_s = from_s;
@@ -102,18 +99,19 @@ std::optional<double> mean_between(const Trace& trace, double from_s, double to_
 }
 
 std::optional<Features> features_of(const Trace& trace, const SlipModel& model, double onset_s,
-                                    double next_onset_s, const SharedParameters& shared, double scan_s) {
+                                    double next_onset_s, const SharedParameters& shared, double scan_s,
+                                    std::size_t near) {
   const SlipWaveform& slip = model.waveform();
   const double width_s = std::max(kWidth_rad / shared.omega, static_cast<double>(kFewestFitted + 1) * scan_s);
   if (width_s > model.capture_s()) return std::nullopt;
   const auto fit_at = [&](double tau_s) {
     const double begin_s = std::clamp(tau_s - 0.5 * width_s, 0.0, model.capture_s() - width_s);
-    return local_fit(trace, onset_s + begin_s, onset_s + begin_s + width_s, onset_s + tau_s, shared);
+    return local_fit(trace, onset_s + begin_s, onset_s + begin_s + width_s, onset_s + tau_s, shared, near);
   };
   const auto peak = fit_at(slip.peak_time_s());
   const auto steepest = fit_at(slip.fastest_slip_time_s());
   const auto trough = fit_at(slip.trough_time_s());
-  const auto mean = mean_between(trace, onset_s, next_onset_s, scan_s);
+  const auto mean = mean_between(trace, onset_s, next_onset_s, scan_s, near);
   if (!peak || !steepest || !trough || !mean) return std::nullopt;
   Features features;
   features << 0.5 * (peak->value - trough->value), next_onset_s - onset_s, -steepest->rate_per_s / shared.r,
@@ -137,8 +135,9 @@ Cycles cycles_of(const Trace& trace, std::span<const Fall> slips, const SlipEsti
     const SlipWindow& window = estimates.windows[estimates.window_of_slip[i]];
     const SlipWindow& next = estimates.windows[estimates.window_of_slip[i + 1]];
     const SlipModel model{estimates.fit.shared, window.slip, true};
+    const auto near = static_cast<std::size_t>(slips[i].peak_at);
     if (const auto features =
-            features_of(trace, model, window.slip.onset_s, next.slip.onset_s, shared, scan_s)) {
+            features_of(trace, model, window.slip.onset_s, next.slip.onset_s, shared, scan_s, near)) {
       found.features.push_back(*features);
       found.drift_sum += trace.drift.at(window.slip.onset_s);
     }

@@ -60,4 +60,22 @@ struct Trace {
          (position - static_cast<double>(before)) * (trace.time_s[after] - trace.time_s[before]);
 }
 
+/// First scan at or after a time; the size of the trace if there is none. It is looked for from \p near on,
+/// in steps that double [Bentley and Yao 1976]: scans far away may have to be fetched from a file.
+[[nodiscard]] inline std::size_t scan_at_or_after(const Trace& trace, double time_s, std::size_t near) {
+  const std::size_t size = trace.size();
+  std::size_t first = std::min(near, size);
+  std::size_t end = first;
+  for (std::size_t step = 1; first > 0 && trace.time_s[first - 1] >= time_s; step *= 2) {
+    end = first - 1;
+    first -= std::min(step, first);
+  }
+  for (std::size_t step = 1; end < size && trace.time_s[end] < time_s; step *= 2) {
+    first = end + 1;
+    end += std::min(step, size - end);
+  }
+  const auto at = [&](std::size_t scan) { return trace.time_s.begin() + static_cast<std::ptrdiff_t>(scan); };
+  return static_cast<std::size_t>(std::lower_bound(at(first), at(end), time_s) - trace.time_s.begin());
+}
+
 }  // namespace stickslip::friction

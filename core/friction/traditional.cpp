@@ -33,11 +33,6 @@ std::pair<std::size_t, std::size_t> loaded_part(const Trace& trace) {
           trace.size() - static_cast<std::size_t>(last - trace.value.rbegin())};
 }
 
-std::size_t first_at_or_after(const Trace& trace, double time_s) {
-  const auto found = std::lower_bound(trace.time_s.begin(), trace.time_s.end(), time_s);
-  return static_cast<std::size_t>(found - trace.time_s.begin());
-}
-
 /// Largest scan of the peak.
 Estimate largest_scan(const Trace& trace, const Fall& slip) {
   const auto peak = static_cast<std::size_t>(std::lround(slip.peak_at));
@@ -64,7 +59,7 @@ Estimate mean_of_cycles(const Trace& trace, const base::LongColumn<Fall>& slips,
     }
     end_s = wanted_end_s;
   }
-  return Estimate::of(mean_of(trace, first_at_or_after(trace, begin_s), first_at_or_after(trace, end_s)));
+  return Estimate::of(mean_of(trace, scan_at_or_after(trace, begin_s, 0), scan_at_or_after(trace, end_s, 0)));
 }
 
 /// \param start_s  of the travel.
@@ -78,8 +73,8 @@ Estimate mean_of_travel(const Trace& trace, double start_s, const TravelWindow& 
     return Estimate::none(fmt::format("{:.4g} m of travel after the first peak, the method wants {:.4g} m",
                                       (trace.time_s.back() - start_s) * *pull_speed_m_per_s, window.to_m));
   }
-  const std::size_t first = first_at_or_after(trace, start_s + window.from_m / *pull_speed_m_per_s);
-  const std::size_t end = first_at_or_after(trace, end_s);
+  const std::size_t first = scan_at_or_after(trace, start_s + window.from_m / *pull_speed_m_per_s, 0);
+  const std::size_t end = scan_at_or_after(trace, end_s, first);
   if (first == end) return Estimate::none("no scan within the method's travel");
   return Estimate::of(mean_of(trace, first, end));
 }

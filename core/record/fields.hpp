@@ -16,6 +16,10 @@
 
 namespace stickslip::record {
 
+/// Attributes of a result, and the columns of a sweep that have the same.
+inline constexpr const char* kStandardError = "standard_error";
+inline constexpr const char* kSystematic = "systematic_uncertainty";
+
 struct FieldName {
   std::string_view name;
   std::string_view unit;       ///< SI, "1" for a ratio, a number or a count; empty for text.

@@ -112,7 +112,7 @@ herr_t handle_of(H5FD_t* file, hid_t /*access*/, void** handle) {
   return 0;
 }
 
-herr_t read_file(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t address, std::size_t size,
+herr_t read_at(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t address, std::size_t size,
                  void* bytes) {
   auto* to = static_cast<std::byte*>(bytes);
   while (size > 0) {
@@ -130,7 +130,7 @@ herr_t read_file(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t 
   return 0;
 }
 
-herr_t write_file(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t address, std::size_t size,
+herr_t write_at(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t address, std::size_t size,
                   const void* bytes) {
   File& file = file_of(base);
   const auto* from = static_cast<const std::byte*>(bytes);
@@ -171,8 +171,8 @@ H5FD_class_t make_driver() {
   driver.set_eoa = allocate;
   driver.get_eof = size_of;
   driver.get_handle = handle_of;
-  driver.read = read_file;
-  driver.write = write_file;
+  driver.read = read_at;
+  driver.write = write_at;
   driver.truncate = truncate_file;
   // As H5FD_FLMAP_DICHOTOMY: raw data apart from metadata.
   constexpr std::array<H5FD_mem_t, H5FD_MEM_NTYPES> kKinds = H5FD_FLMAP_DICHOTOMY;

@@ -11,8 +11,6 @@
 namespace stickslip::record {
 namespace {
 
-constexpr const char* kStandardError = "standard_error";
-constexpr const char* kSystematic = "systematic_uncertainty";
 constexpr const char* kReason = "reason";
 constexpr const char* kFindings = "findings";
 /// The last result that every record has; those after it came later.

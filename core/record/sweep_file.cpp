@@ -15,8 +15,6 @@ namespace stickslip::record {
 namespace {
 
 constexpr const char* kValue = "value";
-constexpr const char* kStandardError = "standard_error";
-constexpr const char* kSystematic = "systematic_uncertainty";
 constexpr const char* kRepeat = "repeat";
 /// Shown when nothing else is asked for.
 constexpr const char* kDefaultResult = "delta_mu";

@@ -208,12 +208,6 @@ bool FleetPublisher::all_said() const {
 }
 
 base::Result<void> FleetPublisher::send_due() {
-  if (state_due_ && !state_message_) {
-    const auto sent = connection_->publish({settings_.topic_of("state"), state_, 1, true});
-    if (!sent) return tl::unexpected(sent.error());
-    state_message_ = *sent;
-    state_due_ = false;
-  }
   for (const FleetResult& result : outbox_.results()) {
     if (in_flight_.size() >= kMostInFlight) break;
     const bool sent_already = std::any_of(in_flight_.begin(), in_flight_.end(),
@@ -222,6 +216,13 @@ base::Result<void> FleetPublisher::send_due() {
     const auto sent = connection_->publish({settings_.topic_of("result"), result.payload, 1, false});
     if (!sent) return tl::unexpected(sent.error());
     in_flight_[*sent] = result.id;
+  }
+  // After the results, so that "stopped" does not come before the result of the test that was stopped.
+  if (state_due_ && !state_message_) {
+    const auto sent = connection_->publish({settings_.topic_of("state"), state_, 1, true});
+    if (!sent) return tl::unexpected(sent.error());
+    state_message_ = *sent;
+    state_due_ = false;
   }
   if (health_) {
     const auto sent =

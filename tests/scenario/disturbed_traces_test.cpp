@@ -112,13 +112,11 @@ TEST_P(DisturbedTraces, TwentySpikesASecond) {
 
 TEST_P(DisturbedTraces, ScaledAndMoved) {
   // Differences of values and ratios of them are what decides.
-  for (const double gain : {1e-3, 0.3, 7.0, 1e4}) {
-    for (const double offset : {-2.0, 0.0, 0.5}) {
-      if (test::kSanitized && (offset != 0.5 || gain != 7.0)) continue;
-      Course course = whole_;
-      for (double& value : course.values) value = gain * (value + offset);
-      EXPECT_EQ(peaks_of(course), peaks_) << "gain " << gain << ", offset " << offset;
-    }
+  for (const auto& [gain, offset] : {std::pair{1e-3, -2.0}, {0.3, 0.0}, {7.0, 0.5}, {1e4, -2.0}}) {
+    if (test::kSanitized && gain != 7.0) continue;
+    Course course = whole_;
+    for (double& value : course.values) value = gain * (value + offset);
+    EXPECT_EQ(peaks_of(course), peaks_) << "gain " << gain << ", offset " << offset;
   }
 }
 
@@ -128,7 +126,7 @@ TEST_P(DisturbedTraces, CutAnywhere) {
   // seen can look like a slip: up to one more. The noise is measured inside the cut alone, and moves limits
   // with it: 5 % as above.
   constexpr std::uint64_t kSeed = 17;
-  constexpr int kCuts = test::kSanitized ? 2 : 40;
+  constexpr int kCuts = test::kSanitized ? 2 : 15;
   std::mt19937_64 engine{kSeed};
   std::uniform_int_distribution<std::size_t> place{0, whole_.values.size()};
   for (int cut = 0; cut < kCuts; ++cut) {

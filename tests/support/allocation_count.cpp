@@ -1,7 +1,10 @@
 #include "tests/support/allocation_count.hpp"
 
+#include <cstddef>
 #include <cstdlib>
 #include <new>
+
+#include "tests/support/sanitized.hpp"
 
 namespace {
 
@@ -15,6 +18,16 @@ std::uint64_t allocation_count() noexcept { return allocations; }
 
 }  // namespace stickslip::test
 
+#ifdef STICKSLIP_SANITIZED
+
+// A sanitizer keeps its own operators, and tells of each piece that they or malloc() give.
+// NOLINTNEXTLINE(bugprone-reserved-identifier): its name [compiler-rt, sanitizer/allocator_interface.h].
+extern "C" void __sanitizer_malloc_hook(const volatile void* /*memory*/, std::size_t /*size*/) {
+  ++allocations;
+}
+
+#else
+
 // The array and nothrow forms of the library call these; over-aligned types are not counted.
 void* operator new(std::size_t size) {
   ++allocations;
@@ -25,3 +38,5 @@ void* operator new(std::size_t size) {
 void operator delete(void* memory) noexcept { std::free(memory); }
 
 void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }
+
+#endif

@@ -50,7 +50,8 @@ class Calibration(unittest.TestCase):
         self.hanging = Hanging(self)
 
     def test_a_calibration_is_kept_used_at_once_and_carried_by_the_records(self):
-        daemon = self.start()
+        # So slow that what is read of the sled is less than a second of its time old.
+        daemon = self.start(weighing_board(self, SOURCE, speed=10))
         self.assertEqual(daemon.ask("GET", "/v1/calibration")[1]["in_use"]["gain"], 1.9)
         self.assertEqual(self.post("/v1/calibration", TIMES)[0], 200)
         for mass in UP_AND_DOWN:
@@ -93,7 +94,7 @@ class Calibration(unittest.TestCase):
         process, frames = daemon.watch()
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
-        wait_for(frames, lambda frame: True)
+        daemon.wait_for_rest(frames)
         self.assertEqual(self.post("/v1/start")[0], 200)
         wait_for(frames, lambda frame: frame["type"] == "test-ended")
         record_file = daemon.record(1)
