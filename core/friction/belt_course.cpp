@@ -1,13 +1,10 @@
 #include "core/friction/belt_course.hpp"
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace stickslip::friction {
 namespace {
-
-constexpr double kForEver = std::numeric_limits<double>::infinity();
 
 /// First t ≥ 0 with rate t + slope t²/2 = gain ≥ 0; infinity if there is none. Without a difference of
 /// numbers that are nearly equal.

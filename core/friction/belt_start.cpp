@@ -17,7 +17,7 @@ constexpr double kFromRest = 0.5;
 /// below, a sled that the start left behind catches up.
 constexpr double kLow = 0.2;
 constexpr double kHigh = 0.8;
-constexpr std::size_t kFewestScans = 4;
+constexpr std::size_t kFewestStartScans = 4;
 /// Scans before the start from which the zero is taken, and how long before it they end.
 constexpr std::size_t kFewestIdle = 16;
 constexpr double kIdleEndsBefore_s = 0.01;
@@ -133,7 +133,7 @@ std::optional<BeltCourse> belt_from_loading(const Trace& trace, const Fall& firs
   if (plan.is_constant()) return BeltCourse{};
   if (!(first.rise_from < kFromRest * first.peak)) return std::nullopt;
   const Loading loading = loading_of(trace, first);
-  if (loading.value.size() < kFewestScans || !(loading.slope > 0.0)) return std::nullopt;
+  if (loading.value.size() < kFewestStartScans || !(loading.slope > 0.0)) return std::nullopt;
   const auto since_s = time_since_start(plan, loading.mean / loading.slope);
   if (!since_s) return std::nullopt;
   Line line{loading.slope / plan.speed_m_per_s(*since_s), loading.mean_s - *since_s};

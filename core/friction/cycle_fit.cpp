@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "core/friction/capture.hpp"
+#include "core/friction/damping.hpp"
 #include "core/friction/huber.hpp"
 
 namespace stickslip::friction {
@@ -17,22 +18,21 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = CycleCourse::Row;
 
 /// Each takes up to 256 points: what bounds the time of the scan that closes a cycle.
-constexpr int kMostIterations = 12;
+constexpr int kMostCycleIterations = 12;
 /// Change of the cost, in units of log-likelihood, below which nothing that matters changes: a parameter
 /// moves by √(2 · this) of its standard error.
-constexpr double kConverged = 1e-5;
-constexpr double kFirstDamping = 1e-3;
-constexpr double kEasier = 0.1;
-constexpr double kHarder = 10.0;
+constexpr double kCycleConverged = 1e-5;
+constexpr double kCycleEasier = 0.1;
+constexpr double kCycleHarder = 10.0;
 /// S may fall below K by what noise does to them, as in the fit of the whole test.
 constexpr double kLowestSigmas = 6.0;
-constexpr std::size_t kFewestPoints = 4;
+constexpr std::size_t kFewestCyclePoints = 4;
 /// What Huber's weights cost of Gaussian noise [Huber 1964].
 constexpr double kHuberVariance = 1.0 / 0.95;
 /// Standard deviation of residuals of n scans is known to 1/√2n; so many of these are no chance.
-constexpr double kMisfitSigmas = 3.0;
+constexpr double kCycleMisfitSigmas = 3.0;
 
-struct Equations {
+struct CycleEquations {
   Matrix6d scans = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();  ///< Of scans alone, down the cost.
   PriorTerms known;
@@ -40,9 +40,10 @@ struct Equations {
   double cost = 0.0;
 };
 
-Equations assemble(std::span<const CyclePoint> points, bool captured, const SlipParameters& slip,
-                   const SharedParameters& shared, const SharedKnowledge& knowledge, double sigma) noexcept {
-  Equations equations;
+CycleEquations assemble(std::span<const CyclePoint> points, bool captured, const SlipParameters& slip,
+                        const SharedParameters& shared, const SharedKnowledge& knowledge,
+                        double sigma) noexcept {
+  CycleEquations equations;
   const CycleCourse course{shared, slip, captured};
   for (const CyclePoint& point : points) {
     const CycleCourse::Point at = course.mean_over(point);
@@ -65,7 +66,7 @@ bool admissible(const SlipParameters& slip, const SharedParameters& shared, doub
 }
 
 /// Solves with each parameter in a unit of its own: onsets are milliseconds, ω hundreds.
-Vector6d step_of(const Equations& equations, double damping) noexcept {
+Vector6d step_of(const CycleEquations& equations, double damping) noexcept {
   Matrix6d normal = equations.scans;
   normal.diagonal() *= 1.0 + damping;
   normal.bottomRightCorner<3, 3>() += equations.known.information;
@@ -78,7 +79,7 @@ Vector6d step_of(const Equations& equations, double damping) noexcept {
 }
 
 /// What the scans alone say about (ω, γ, r): their equations without the slip's own parameters.
-SharedEvidence evidence_of(const Equations& equations, const SharedParameters& shared) noexcept {
+SharedEvidence evidence_of(const CycleEquations& equations, const SharedParameters& shared) noexcept {
   const Eigen::Matrix3d own = equations.scans.topLeftCorner<3, 3>();
   const Eigen::Matrix3d mixed = equations.scans.topRightCorner<3, 3>();
   const Eigen::Matrix3d inverse = own.inverse();
@@ -90,7 +91,7 @@ SharedEvidence evidence_of(const Equations& equations, const SharedParameters& s
   return evidence;
 }
 
-void finish(CycleFit& fit, const Equations& equations) noexcept {
+void finish(CycleFit& fit, const CycleEquations& equations) noexcept {
   constexpr double kOwnParameters = 3.0;
   Matrix6d normal = equations.scans;
   normal.bottomRightCorner<3, 3>() += equations.known.information;
@@ -101,7 +102,7 @@ void finish(CycleFit& fit, const Equations& equations) noexcept {
   fit.residual_sigmas = equations.sums.residual_sigma(kOwnParameters);
   // Where the model leaves more than noise, that is what it is uncertain by. Few scans do not tell their
   // noise better than σ is known.
-  const double expected = 1.0 + kMisfitSigmas / std::sqrt(2.0 * std::max(equations.sums.count(), 1.0));
+  const double expected = 1.0 + kCycleMisfitSigmas / std::sqrt(2.0 * std::max(equations.sums.count(), 1.0));
   const double variance = fit.residual_sigmas > expected
                               ? std::max(equations.sums.covariance_scale(kOwnParameters), kHuberVariance)
                               : kHuberVariance;
@@ -172,30 +173,30 @@ CycleFit fit_cycle(std::span<const CyclePoint> points, bool captured, const Slip
   CycleFit fit;
   fit.slip = start;
   fit.shared = knowledge.best();
-  if (points.size() < kFewestPoints || !admissible(start, fit.shared, sigma)) return fit;
-  Equations equations = assemble(points, captured, fit.slip, fit.shared, knowledge, sigma);
+  if (points.size() < kFewestCyclePoints || !admissible(start, fit.shared, sigma)) return fit;
+  CycleEquations equations = assemble(points, captured, fit.slip, fit.shared, knowledge, sigma);
   double damping = kFirstDamping;
-  while (!fit.converged && fit.iterations < kMostIterations) {
+  while (!fit.converged && fit.iterations < kMostCycleIterations) {
     ++fit.iterations;
     const Vector6d step = step_of(equations, damping);
     const SlipParameters slip{fit.slip.onset_s + step[0], fit.slip.S + step[1], fit.slip.K + step[2]};
     const SharedParameters shared{fit.shared.omega + step[3], fit.shared.gamma + step[4],
                                   fit.shared.r + step[5]};
     if (!step.allFinite() || !admissible(slip, shared, sigma)) {
-      damping *= kHarder;
+      damping *= kCycleHarder;
       continue;
     }
-    const Equations trial = assemble(points, captured, slip, shared, knowledge, sigma);
+    const CycleEquations trial = assemble(points, captured, slip, shared, knowledge, sigma);
     const double fallen = equations.cost - trial.cost;
     // At the optimum the cost cannot fall, and rounding decides its sign.
-    fit.converged = std::abs(fallen) <= kConverged;
+    fit.converged = std::abs(fallen) <= kCycleConverged;
     if (fallen >= 0.0) {
       fit.slip = slip;
       fit.shared = shared;
       equations = trial;
-      damping *= kEasier;
+      damping *= kCycleEasier;
     } else {
-      damping *= kHarder;
+      damping *= kCycleHarder;
     }
   }
   finish(fit, equations);

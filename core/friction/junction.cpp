@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "core/friction/capture.hpp"
+#include "core/friction/damping.hpp"
 #include "core/friction/huber.hpp"
 #include "core/friction/junction_scans.hpp"
 
@@ -15,13 +16,9 @@ namespace stickslip::friction {
 namespace {
 
 /// Fewest scans on which four parameters and a choice make sense.
-constexpr std::size_t kFewestScans = 8;
-constexpr int kMostIterations = 40;
-constexpr double kFirstDamping = 1e-3;
-constexpr double kHopeless = 1e8;
-constexpr double kConverged = 1e-6;  ///< Log-likelihood units.
-/// Keeps the logarithm finite.
-constexpr double kLeastRatio = 1e-6;
+constexpr std::size_t kFewestJunctionScans = 8;
+constexpr int kMostJunctionIterations = 40;
+constexpr double kJunctionConverged = 1e-6;  ///< Log-likelihood units.
 
 /// K, c(0) − K, c′(0), and for "captured" the S of the next slip.
 template <int kCount>
@@ -163,15 +160,16 @@ class CapturedCourse {
 /// Normal equations of Huber's cost (a spike that was not found counts no more for one course than for the
 /// other) with what is unusual as more residuals.
 template <int kCount>
-struct Equations {
+struct JunctionEquations {
   Eigen::Matrix<double, kCount, kCount> normal = Eigen::Matrix<double, kCount, kCount>::Zero();
   Parameters<kCount> gradient = Parameters<kCount>::Zero();
   double cost = 0.0;
 };
 
 template <typename Course>
-Equations<Course::kCount> equations_of(const JunctionScans& scans, const Course& course, double sigma) {
-  Equations<Course::kCount> equations;
+JunctionEquations<Course::kCount> equations_of(const JunctionScans& scans, const Course& course,
+                                               double sigma) {
+  JunctionEquations<Course::kCount> equations;
   for (const CoursePoint<Course::kCount>& surprise : course.surprises()) {
     equations.normal += surprise.by * surprise.by.transpose();
     equations.gradient -= surprise.value * surprise.by;
@@ -193,19 +191,19 @@ Equations<Course::kCount> equations_of(const JunctionScans& scans, const Course&
 /// Levenberg–Marquardt. \param make  called as make(parameters) → course.
 template <int kCount, typename Make>
 double least_cost(const JunctionScans& scans, const Make& make, Parameters<kCount> p, double sigma) {
-  Equations<kCount> equations = equations_of(scans, make(p), sigma);
+  JunctionEquations<kCount> equations = equations_of(scans, make(p), sigma);
   double damping = kFirstDamping;
-  for (int iteration = 0; iteration < kMostIterations && damping < kHopeless; ++iteration) {
+  for (int iteration = 0; iteration < kMostJunctionIterations && damping < kHopeless; ++iteration) {
     Eigen::Matrix<double, kCount, kCount> damped = equations.normal;
     damped.diagonal() *= 1.0 + damping;
     const Parameters<kCount> trial = p + damped.ldlt().solve(equations.gradient);
     if (!trial.allFinite()) return equations.cost;
-    const Equations<kCount> there = equations_of(scans, make(trial), sigma);
+    const JunctionEquations<kCount> there = equations_of(scans, make(trial), sigma);
     if (!(there.cost <= equations.cost)) {
       damping *= 10.0;
       continue;
     }
-    const bool converged = equations.cost - there.cost < kConverged;
+    const bool converged = equations.cost - there.cost < kJunctionConverged;
     p = trial;
     equations = there;
     damping *= 0.1;
@@ -220,7 +218,7 @@ double capture_log_likelihood_ratio(const Trace& trace, std::size_t first, std::
                                     const SharedParameters& shared, double sigma, double typical_delta_mu) {
   JunctionScans scans;
   scans.read(trace, first, end, shared);
-  if (scans.scan_count() < kFewestScans) return 0.0;
+  if (scans.scan_count() < kFewestJunctionScans) return 0.0;
 
   const double swing = scans.highest() - scans.lowest();
   const double middle = 0.5 * (scans.lowest() + scans.highest());

@@ -20,6 +20,9 @@ inline constexpr double kChoiceLimit = 3.0;
 /// needs c′ = r (20): where the course does not get there, the shortfall over this is one residual more.
 inline constexpr double kStickRateSpread = 0.01;
 
+/// Of S − K to what is typical: keeps its logarithm finite.
+inline constexpr double kLeastRatio = 1e-6;
+
 /// Log of the generalised likelihood ratio of "captured" over "continues free" on scans
 /// [first, end), which reach from one maximum of the force to the minimum after the next.
 ///

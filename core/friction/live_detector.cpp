@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/friction/unknown.hpp"
 #include "core/signal/statistics.hpp"
 
 namespace stickslip::friction {
@@ -16,7 +17,6 @@ constexpr std::int64_t kHeldBack = 3;
 /// As for the whole test: a trace without noise still has rounding.
 constexpr double kSmallestNoise = 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 

@@ -7,14 +7,13 @@
 #include <Eigen/Cholesky>
 
 #include "core/friction/capture.hpp"
+#include "core/friction/damping.hpp"
 #include "core/friction/huber.hpp"
 #include "core/friction/junction.hpp"
 
 namespace stickslip::friction {
 namespace {
 
-/// Keeps the logarithm finite, as in core/friction/junction.
-constexpr double kLeastRatio = 1e-6;
 /// Rows of a question: forty a period, whose blocks differ from their curvature term by less than 10⁻⁵ of the
 /// amplitude, and which have the same scans at the next question.
 constexpr double kRowsPerPeriod = 40.0;
@@ -23,13 +22,12 @@ constexpr double kRowsPerPeriod = 40.0;
 /// scan tells: two strays cannot decide, three seldom meet.
 constexpr double kStrayDensity = 0.01;
 /// Four parameters, and a choice.
-constexpr std::size_t kFewestPoints = 8;
+constexpr std::size_t kFewestLivePoints = 8;
 /// Of reweighting: weights of a linear model settle in two or three rounds.
-constexpr int kRounds = 3;
-constexpr int kMostIterations = 8;
-constexpr double kFirstDamping = 1e-3;
+constexpr int kLiveRounds = 3;
+constexpr int kMostLiveIterations = 8;
 /// Log-likelihood units: nothing against what decides.
-constexpr double kConverged = 1e-2;
+constexpr double kLiveConverged = 1e-2;
 /// By so much the bounds may be wrong: what reweighting leaves of its way to the least cost.
 constexpr double kBoundsSlack = 1.0;
 
@@ -109,7 +107,7 @@ void LiveJunction::lay_out(std::span<const CyclePoint> points, const SharedParam
 
 double LiveJunction::fit_free(std::size_t count, Free& p) const noexcept {
   double cost = 0.0;
-  for (int round = 0; round <= kRounds; ++round) {
+  for (int round = 0; round <= kLiveRounds; ++round) {
     // Written out: three numbers make poor vectors.
     double n00 = 0.0;
     double n01 = 0.0;
@@ -136,7 +134,7 @@ double LiveJunction::fit_free(std::size_t count, Free& p) const noexcept {
       right[1] += weighted_value * row.by_D;
       right[2] += weighted_value * row.by_rate;
     }
-    if (round == kRounds) break;
+    if (round == kLiveRounds) break;
     Eigen::Matrix3d normal;
     normal << n00, n01, n02, n01, n11, n12, n02, n12, n22;
     // by_rate is smaller than the others by ω: its own unit.
@@ -283,7 +281,7 @@ double LiveJunction::log_likelihood_ratio(const Free& free, const Captured& capt
 double LiveJunction::fit_captured(Captured& p, Assembled now, const SharedParameters& shared, double sigma,
                                   double typical_delta_mu) const noexcept {
   double damping = kFirstDamping;
-  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+  for (int iteration = 0; iteration < kMostLiveIterations; ++iteration) {
     Eigen::Matrix4d normal = now.normal;
     normal.diagonal() *= 1.0 + damping;
     const Eigen::Vector4d scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -303,7 +301,7 @@ double LiveJunction::fit_captured(Captured& p, Assembled now, const SharedParame
     } else {
       damping *= 10.0;
     }
-    if (std::abs(fallen) < kConverged) break;
+    if (std::abs(fallen) < kLiveConverged) break;
   }
   return now.cost;
 }
@@ -311,7 +309,7 @@ double LiveJunction::fit_captured(Captured& p, Assembled now, const SharedParame
 JunctionEvidence LiveJunction::ask(std::span<const CyclePoint> points, const SharedParameters& shared,
                                    double sigma, double typical_delta_mu, double decisive) noexcept {
   JunctionEvidence evidence;
-  if (points.size() < kFewestPoints || points.size() > rows_.size()) return evidence;
+  if (points.size() < kFewestLivePoints || points.size() > rows_.size()) return evidence;
   evidence.known = true;
   lay_out(points, shared, sigma);
   fit_common(shared, typical_delta_mu);

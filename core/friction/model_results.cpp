@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -17,12 +16,12 @@
 #include "core/friction/cycle_features.hpp"
 #include "core/friction/escape.hpp"
 #include "core/friction/threshold.hpp"
+#include "core/friction/unknown.hpp"
 #include "core/signal/statistics.hpp"
 
 namespace stickslip::friction {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// From this many slips on, the first — often not representative [Penner 1995] — is left out of means.
 constexpr std::size_t kEnoughToLeaveOutTheFirst = 3;
 
@@ -58,9 +57,10 @@ double half_range(const SlipWaveform& slip) {
 
 /// The six numbers of a course that all slips share.
 void take(const UniformFit& uniform, Fitted& fitted) {
-  using P = UniformParameters;
-  constexpr std::array<Eigen::Index, 5> kOrder{P::kOmega, P::kGamma, P::kR, P::kS, P::kK};
-  const P::Vector value = uniform.parameters.vector();
+  using Uniform = UniformParameters;
+  constexpr std::array<Eigen::Index, 5> kOrder{Uniform::kOmega, Uniform::kGamma, Uniform::kR, Uniform::kS,
+                                               Uniform::kK};
+  const Uniform::Vector value = uniform.parameters.vector();
   for (Eigen::Index i = 0; i < 5; ++i) {
     const Eigen::Index from = kOrder[static_cast<std::size_t>(i)];
     fitted.value[i] = value[from];
@@ -163,10 +163,10 @@ constexpr double kNegativeDampingSigmas = 4.0;
 
 /// γ with its standard error.
 std::pair<double, double> damping_of(const SlipEstimates& estimates) noexcept {
-  using P = UniformParameters;
+  using Uniform = UniformParameters;
   if (estimates.uniform) {
     return {estimates.uniform->parameters.shared.gamma,
-            std::sqrt(estimates.uniform->covariance(P::kGamma, P::kGamma))};
+            std::sqrt(estimates.uniform->covariance(Uniform::kGamma, Uniform::kGamma))};
   }
   return {estimates.fit.shared.gamma, std::sqrt(estimates.fit.shared_covariance(1, 1))};
 }

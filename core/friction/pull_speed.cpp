@@ -5,13 +5,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace stickslip::friction {
 namespace {
-
-constexpr double kForEver = std::numeric_limits<double>::infinity();
 
 bool read_number(std::string_view text, double& number) {
   const char* const end = text.data() + text.size();

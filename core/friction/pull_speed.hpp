@@ -6,12 +6,16 @@
 ///     const double v = ramp->speed_m_per_s(1.5);
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace stickslip::friction {
+
+/// The end of what does not end, in seconds.
+inline constexpr double kForEver = std::numeric_limits<double>::infinity();
 
 /// At t seconds after the belt has started.
 struct SpeedPoint {

@@ -13,11 +13,11 @@ constexpr double kUsualGammaOver2Omega = 0.022;
 constexpr double kGammaOver2OmegaSpread = 0.05;
 /// How far turning points and the slope of a rise are off at most, in parts: three scans from peak to trough.
 constexpr double kOmegaSpread = 0.15;
-constexpr double kStickRateSpread = 0.3;
+constexpr double kFirstStickRateSpread = 0.3;
 /// Part of what was known that the next cycle leaves: 32 cycles count.
 constexpr double kKept = 31.0 / 32.0;
 /// Rounds of making what is known beforehand linear, where the answer is.
-constexpr int kRounds = 3;
+constexpr int kKnowledgeRounds = 3;
 
 double inverse_square(double x) noexcept { return 1.0 / (x * x); }
 
@@ -41,7 +41,7 @@ void SharedKnowledge::start(double omega, double stick_rate_per_s) {
   if (prior_.belt) {
     best_.r = prior_.belt->speed_over_gravity_s * best_.oscillator().omega0_squared();
   } else {
-    learnt_.information(2, 2) = inverse_square(kStickRateSpread * stick_rate_per_s);
+    learnt_.information(2, 2) = inverse_square(kFirstStickRateSpread * stick_rate_per_s);
   }
   learnt_.weighted = learnt_.information * vector_of(best_);
 }
@@ -64,7 +64,7 @@ void SharedKnowledge::forget_stick_rate(double stick_rate_per_s) {
   }
   learnt_.information.row(2).setZero();
   learnt_.information.col(2).setZero();
-  learnt_.information(2, 2) = inverse_square(kStickRateSpread * stick_rate_per_s);
+  learnt_.information(2, 2) = inverse_square(kFirstStickRateSpread * stick_rate_per_s);
   learnt_.weighted[2] = learnt_.information(2, 2) * stick_rate_per_s;
   best_.r = stick_rate_per_s;
 }
@@ -84,7 +84,7 @@ PriorTerms SharedKnowledge::at(const SharedParameters& shared) const {
 }
 
 void SharedKnowledge::update_best() {
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kKnowledgeRounds; ++round) {
     const PriorTerms terms = at(best_);
     // Scales of ω, γ and r differ by orders: each by its own.
     const Eigen::Vector3d scale = terms.information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();

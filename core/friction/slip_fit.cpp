@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "core/friction/damping.hpp"
 #include "core/friction/huber.hpp"
 
 namespace stickslip::friction {
@@ -17,18 +18,15 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 /// Nearly always a dozen is enough.
-constexpr int kMostIterations = 60;
+constexpr int kMostFitIterations = 60;
 /// A pull speed known to a millionth makes a narrow, bent valley of the cost, along which some fits need a
 /// hundred.
-constexpr int kMostIterationsWithPrior = 200;
+constexpr int kMostFitIterationsWithPrior = 200;
 /// Relative change of the cost below which the fit has converged.
-constexpr double kConverged = 1e-10;
-/// Damping: first value, factors after success and failure, and where there is no hope left.
-constexpr double kFirstDamping = 1e-3;
-constexpr double kSmallestDamping = 1e-12;
-constexpr double kEasier = 0.2;
-constexpr double kHarder = 5.0;
-constexpr double kHopeless = 1e8;
+constexpr double kFitConverged = 1e-10;
+/// Factors of the damping after success and failure.
+constexpr double kFitEasier = 0.2;
+constexpr double kFitHarder = 5.0;
 
 /// Normal equations of one slip.
 struct SlipBlock {
@@ -87,9 +85,9 @@ bool admissible(const SharedParameters& shared) {
 /// S may fall below K by what noise does to them, no further: a free oscillation also meets the line of the
 /// stick half a turn before its onset, with S far below K, and a step can land in that valley.
 bool admissible(const std::vector<SlipWindow>& windows, double sigma) {
-  constexpr double kLowestSigmas = 6.0;  // Half of the least fall that is a slip.
+  constexpr double kLowestFitSigmas = 6.0;  // Half of the least fall that is a slip.
   return std::all_of(windows.begin(), windows.end(), [&](const SlipWindow& window) {
-    return window.slip.S - window.slip.K >= -kLowestSigmas * sigma;
+    return window.slip.S - window.slip.K >= -kLowestFitSigmas * sigma;
   });
 }
 
@@ -156,7 +154,7 @@ SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows, const Sh
   if (windows.empty() || !admissible(shared)) return fit;
   NormalEquations equations = assemble(trace, windows, fit.shared, sigma, prior);
   double damping = kFirstDamping;
-  const int most = prior.empty() ? kMostIterations : kMostIterationsWithPrior;
+  const int most = prior.empty() ? kMostFitIterations : kMostFitIterationsWithPrior;
   for (int iteration = 0; iteration < most && !fit.converged && damping < kHopeless; ++iteration) {
     const Step step = solve(equations, sigma, damping);
     SharedParameters trial = fit.shared;
@@ -179,15 +177,15 @@ SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows, const Sh
       }
     }
     if (there.cost <= equations.cost) {
-      fit.converged = equations.cost - there.cost <= kConverged * equations.cost;
+      fit.converged = equations.cost - there.cost <= kFitConverged * equations.cost;
       fit.shared = trial;
       equations = std::move(there);
-      damping = std::max(damping * kEasier, kSmallestDamping);
+      damping = std::max(damping * kFitEasier, kSmallestDamping);
     } else {
       // At the optimum the cost cannot fall, and rounding decides its sign.
-      fit.converged = there.cost - equations.cost <= kConverged * equations.cost;
+      fit.converged = there.cost - equations.cost <= kFitConverged * equations.cost;
       for (std::size_t i = 0; i < windows.size(); ++i) windows[i].slip = before[i];
-      damping *= kHarder;
+      damping *= kFitHarder;
     }
   }
   finish(fit, windows, equations, sigma);

@@ -11,11 +11,11 @@
 #include "core/friction/regime_rule.hpp"
 #include "core/friction/slip_rule.hpp"
 #include "core/friction/turning_points.hpp"
+#include "core/friction/unknown.hpp"
 
 namespace stickslip::friction {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// ln 10⁴: then one wrong end in ten thousand slips at most [Wald, Ann. Math. Stat. 16:117–186, 1945,
 /// (3:42)].
 constexpr double kDecisive = 9.210340371976184;

@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "core/friction/damping.hpp"
 #include "core/friction/huber.hpp"
 
 namespace stickslip::friction {
@@ -15,17 +16,14 @@ namespace {
 
 using P = UniformParameters;
 
-constexpr int kMostIterations = 60;
+constexpr int kMostUniformIterations = 60;
 /// Decrease of the cost relative to it below which the fit has converged.
-constexpr double kConverged = 1e-10;
-constexpr double kFirstDamping = 1e-3;
-constexpr double kSmallestDamping = 1e-12;
-constexpr double kEasier = 0.1;
-constexpr double kHarder = 5.0;
-constexpr double kHopeless = 1e8;
+constexpr double kUniformConverged = 1e-10;
+constexpr double kUniformEasier = 0.1;
+constexpr double kUniformHarder = 5.0;
 
 /// In units of σ.
-struct Equations {
+struct UniformEquations {
   P::Matrix normal = P::Matrix::Zero();
   P::Vector gradient = P::Vector::Zero();
   P::Matrix prior = P::Matrix::Zero();
@@ -33,9 +31,9 @@ struct Equations {
   double cost = std::numeric_limits<double>::infinity();
 };
 
-Equations assemble(const Trace& trace, std::size_t first, std::size_t end, const P& parameters, double sigma,
-                   const SharedPrior& prior) {
-  Equations equations;
+UniformEquations assemble(const Trace& trace, std::size_t first, std::size_t end, const P& parameters,
+                          double sigma, const SharedPrior& prior) {
+  UniformEquations equations;
   const auto course = UniformCourse::make(parameters);
   if (!course) return equations;
   for (std::size_t k = first; k < end; ++k) {
@@ -75,10 +73,10 @@ UniformFit fit_uniform(const Trace& trace, std::size_t first, std::size_t end, c
                        const SharedPrior& prior) {
   UniformFit fit;
   fit.parameters = guess;
-  Equations equations = assemble(trace, first, end, guess, sigma, prior);
+  UniformEquations equations = assemble(trace, first, end, guess, sigma, prior);
   double damping = kFirstDamping;
-  for (int iteration = 0;
-       iteration < kMostIterations && !fit.converged && damping < kHopeless && std::isfinite(equations.cost);
+  for (int iteration = 0; iteration < kMostUniformIterations && !fit.converged && damping < kHopeless &&
+                          std::isfinite(equations.cost);
        ++iteration) {
     // Only what the scans say is damped: a step along what the prior holds fixed must stay easy.
     P::Matrix damped = equations.normal + equations.prior;
@@ -86,16 +84,16 @@ UniformFit fit_uniform(const Trace& trace, std::size_t first, std::size_t end, c
     const P::Vector step = solve(damped, equations.gradient);
     if (!step.allFinite()) break;
     const P trial = P::from(fit.parameters.vector() + step);
-    Equations there = assemble(trace, first, end, trial, sigma, prior);
+    UniformEquations there = assemble(trace, first, end, trial, sigma, prior);
     if (there.cost <= equations.cost) {
-      fit.converged = equations.cost - there.cost <= kConverged * equations.cost;
+      fit.converged = equations.cost - there.cost <= kUniformConverged * equations.cost;
       fit.parameters = trial;
       equations = there;
-      damping = std::max(damping * kEasier, kSmallestDamping);
+      damping = std::max(damping * kUniformEasier, kSmallestDamping);
     } else {
       // At the optimum the cost cannot fall, and rounding decides its sign.
-      fit.converged = there.cost - equations.cost <= kConverged * equations.cost;
-      damping *= kHarder;
+      fit.converged = there.cost - equations.cost <= kUniformConverged * equations.cost;
+      damping *= kUniformHarder;
     }
   }
   const auto count = static_cast<double>(P::Vector::RowsAtCompileTime);

@@ -1,0 +1,11 @@
+/// \file
+#pragma once
+
+#include <limits>
+
+namespace stickslip::friction {
+
+/// A number that nobody knows.
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace stickslip::friction
