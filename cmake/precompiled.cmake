@@ -43,7 +43,8 @@ target_compile_options(stickslip_test_headers PRIVATE ${quick_options} -g0)
 target_precompile_headers(stickslip_test_headers PRIVATE ${common_headers} <gmock/gmock.h> <gtest/gtest.h>
   <rapidcheck.h>)
 
-# stickslip_precompiled(NAME HEADERS): HEADERS is stickslip_library_headers or stickslip_test_headers.
+# stickslip_precompiled(NAME HEADERS): HEADERS is stickslip_library_headers, stickslip_test_headers or, with a sanitizer,
+# stickslip_program_headers.
 function(stickslip_precompiled name headers)
   if(STICKSLIP_SANITIZE AND CMAKE_CURRENT_SOURCE_DIR MATCHES "^${CMAKE_SOURCE_DIR}/daemon")
     set(headers stickslip_program_headers)

@@ -113,7 +113,7 @@ herr_t handle_of(H5FD_t* file, hid_t /*access*/, void** handle) {
 }
 
 herr_t read_at(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t address, std::size_t size,
-                 void* bytes) {
+               void* bytes) {
   auto* to = static_cast<std::byte*>(bytes);
   while (size > 0) {
     const ssize_t got = ::pread(file_of(base).descriptor, to, size, static_cast<off_t>(address));
@@ -131,7 +131,7 @@ herr_t read_at(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t ad
 }
 
 herr_t write_at(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t address, std::size_t size,
-                  const void* bytes) {
+                const void* bytes) {
   File& file = file_of(base);
   const auto* from = static_cast<const std::byte*>(bytes);
   while (size > 0) {
