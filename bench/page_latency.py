@@ -54,7 +54,7 @@ def part(values, share):
 
 def main(build, seconds="60", chromium="chromium"):
     with contextlib.ExitStack() as stack:
-        browser = stack.enter_context(Chromium(shutil.which(chromium)))
+        browser = stack.enter_context(Chromium(shutil.which(chromium), build))
         daemon = RunningDaemon(Stack(stack), pathlib.Path(build).resolve(), SOURCE, speed=1,
                                config='http = "127.0.0.1:0"\ntoken_file = "token"\n')
         address = f"http://{daemon.port_line()}/"

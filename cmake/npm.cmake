@@ -1,10 +1,10 @@
-# stickslip_npm(FOLDER FILES ...): what FOLDER/package-lock.json pins, installed once for each build directory into
-# its web/node_modules. FILES, relative to node_modules, are then there to depend on; the lock file's hashes say that
+# stickslip_npm(FOLDER NAME FILES ...): what FOLDER/package-lock.json pins, installed once for each build directory into
+# its NAME/node_modules. FILES, relative to node_modules, are then there to depend on; the lock file's hashes say that
 # they are the right ones. With all of them present npm is not run, nor needed.
 find_program(STICKSLIP_NPM npm)
-function(stickslip_npm folder)
+function(stickslip_npm folder name)
   cmake_parse_arguments(ARG "" "" "FILES" ${ARGN})
-  set(installed ${CMAKE_BINARY_DIR}/web)
+  set(installed ${CMAKE_BINARY_DIR}/${name})
   list(TRANSFORM ARG_FILES PREPEND ${installed}/node_modules/ OUTPUT_VARIABLE files)
   foreach(file IN LISTS files)
     if(NOT STICKSLIP_NPM AND NOT EXISTS ${file})

@@ -37,7 +37,7 @@ SCENES = SOURCE / "config" / "scenes"
 class BatchPage(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.browser = cls.enterClassContext(Chromium(CHROMIUM))
+        cls.browser = cls.enterClassContext(Chromium(CHROMIUM, BUILD))
 
     def open(self, config='[test]\nbegins = "command"\n', speed=2, dark=False, **options):
         self.daemon = RunningDaemon(self, BUILD, SOURCE, speed=speed, **options, config=f'http = "127.0.0.1:0"\ntoken_file = "token"\n{config}')
@@ -45,22 +45,22 @@ class BatchPage(unittest.TestCase):
         token = (self.daemon.folder / "token").read_text().strip()
         self.page = self.browser.open(f"http://{self.daemon.port_line()}/#token={token}", dark=dark)
         self.addCleanup(self.page.close)
-        self.page.call("Emulation.setDeviceMetricsOverride", width=1280, height=720, deviceScaleFactor=1, mobile=False)
+        self.page.resize(1280, 720)
         self.page.until("document.querySelectorAll('#health dd').length > 5 && Scope.data.scan.length > 100")
 
     def text(self, name):
         return self.page.value(f"document.getElementById('{name}').textContent")
 
-    def enter(self, selector, key="Enter", typed="\r", settle=True):
+    def enter(self, selector, key="Enter", settle=True):
         """By keyboard: what cannot be reached cannot be pressed."""
         self.page.value(f"document.querySelector(\"{selector}\").focus()")
         self.assertTrue(self.page.value(f"document.activeElement === document.querySelector(\"{selector}\")"), selector)
-        self.page.press(key, typed, settle)
+        self.page.press(key, settle)
 
     def type(self, selector, text):
         self.page.value(f"document.querySelector(\"{selector}\").focus()")
         self.page.value(f"document.querySelector(\"{selector}\").select()")
-        self.page.call("Input.insertText", text=text)
+        self.page.type(text)
 
     def begin(self, **fields):
         self.enter("#batch-open")
@@ -68,7 +68,7 @@ class BatchPage(unittest.TestCase):
             self.enter("#batch-limits summary")
         for name, typed in fields.items():
             self.type(f"#batch-begin [name='{name}']", typed)
-        self.page.press("Enter", "\r")
+        self.page.press("Enter")
         self.page.until("!document.getElementById('batch-dialog').open")
         batch = self.batch()
         self.assertIn(batch["id"], self.text("message"))
@@ -126,7 +126,7 @@ class BatchPage(unittest.TestCase):
     def close(self, shown):
         self.assertEqual(shown.complaints(), [])
         shown.close()
-        self.page.call("Page.bringToFront")
+        self.page.bring_to_front()
         self.page.until("document.getElementById('batches-dialog').getAttribute('aria-busy') === 'false'")
 
     def picture(self, name):
@@ -136,7 +136,7 @@ class BatchPage(unittest.TestCase):
     def saved(self, act, name):
         """What a click saves, as text."""
         with tempfile.TemporaryDirectory(prefix="stickslip-") as folder:
-            self.browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=folder, eventsEnabled=True)
+            self.browser.save_downloads(folder)
             act()
             self.page.until(f"document.getElementById('batches-message').textContent === 'saved {name}'")
             self.browser.wait_for_download()
@@ -157,8 +157,8 @@ class BatchPage(unittest.TestCase):
         self.assertEqual(self.text("batch-next"), "All are made.")
         # Torn: it is struck out, says why, counts in no number, and is asked for again.
         self.enter("#void-2")
-        self.page.call("Input.insertText", text="paper torn")
-        self.page.press("Enter", "\r")
+        self.page.type("paper torn")
+        self.page.press("Enter")
         self.page.until("document.querySelector('#tests tr.void #void-2')")
         self.assertIn("void: paper torn", self.row(2))
         self.page.until("document.activeElement.id === 'void-2'")
@@ -170,8 +170,8 @@ class BatchPage(unittest.TestCase):
         self.page.until("!document.querySelector('#tests tr.void')")
         self.assertEqual(self.text("batch-next"), "All are made.")
         self.enter("#void-2")
-        self.page.call("Input.insertText", text="paper torn")
-        self.page.press("Enter", "\r")
+        self.page.type("paper torn")
+        self.page.press("Enter")
         self.page.until("document.querySelector('#tests tr.void #void-2')")
         untouched = records[1].read_bytes()
         records.append(self.measure())
@@ -241,8 +241,8 @@ class BatchPage(unittest.TestCase):
     def compare(self, a, of_a, b, of_b):
         self.enter("#compare-show")
         self.page.until("document.getElementById('batches-message').textContent.startsWith('choose two batches')")
-        self.enter(f"#batches-rows [name=a][value='{a}']", " ", " ")
-        self.enter(f"#batches-rows [name=b][value='{b}']", " ", " ")
+        self.enter(f"#batches-rows [name=a][value='{a}']", " ")
+        self.enter(f"#batches-rows [name=b][value='{b}']", " ")
         self.picture("batches")
         shown = self.shown("#compare-show")
         self.assertEqual(shown.value("document.getElementById('title').textContent"), f"liner 42 ({a}) against liner 43 ({b})")
@@ -259,7 +259,7 @@ class BatchPage(unittest.TestCase):
         self.assertEqual([(row[0], row[2]) for row in means], [("2.54 mm/s", "2"), ("5.08 mm/s", "2"), ("5.08 mm/s", "2")])
         self.assertAlmostEqual(float(means[2][3].split(" ± ")[0]), self.results(of_b, quantities[0]["name"]).mean(), delta=0.5001 * 10.0 ** -quantities[0]["decimals"])
         if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
-            shown.call("Emulation.setDeviceMetricsOverride", width=1280, height=720, deviceScaleFactor=1, mobile=False)
+            shown.resize(1280, 720)
             shown.settle()
             shown.screenshot(pathlib.Path(folder) / "comparison.png", height=1400)
         self.close(shown)
@@ -271,19 +271,19 @@ class BatchPage(unittest.TestCase):
         offered = self.page.value("[...document.querySelectorAll('#batch-methods option')].map(o => o.value)")
         self.assertEqual(sorted(offered), sorted(method.stem for method in (SOURCE / "config" / "methods").glob("*.toml")))
         self.enter("#batch-open")
-        self.page.press("Enter", "\r")
+        self.page.press("Enter")
         self.assertTrue(self.page.value("document.getElementById('batch-dialog').open && document.querySelector('#batch-begin :invalid').name === 'name'"))
         self.type("#batch-begin [name=name]", "liner")
         self.type("#batch-begin [name=pull_speeds]", "12")
-        self.page.press("Enter", "\r")
+        self.page.press("Enter")
         self.page.until("document.getElementById('batch-message').textContent !== ''")
         self.assertIn("pull_speeds", self.text("batch-message"))
         self.type("#batch-begin [name=pull_speeds]", "12 in/min")
         self.type("#batch-begin [name=method]", "iso")
-        self.page.press("Enter", "\r")
+        self.page.press("Enter")
         self.page.until("document.getElementById('batch-message').textContent.startsWith('method: ')")
         self.type("#batch-begin [name=method]", "iso-8295")
-        self.page.press("Enter", "\r")
+        self.page.press("Enter")
         self.page.until("!document.getElementById('batch-dialog').open")
         # There is nothing to report yet: said in the dialog.
         self.enter("#batches-open")
@@ -291,7 +291,7 @@ class BatchPage(unittest.TestCase):
         self.enter("#batches-rows button", settle=False)
         while "has no test yet" not in self.text("batches-message"):
             pass
-        self.page.call("Page.bringToFront")
+        self.page.bring_to_front()
         self.assertEqual(self.page.complaints(), [f for f in self.page.complaints() if "409" in f or "400" in f])  # The browser's own words for a refusal.
 
     def test_what_stands_out_is_marked_and_counts(self):
@@ -335,7 +335,7 @@ class BatchPage(unittest.TestCase):
         self.assertEqual(self.page.value(f"[...document.querySelectorAll('{within} button, {within} input')].filter(e => e.tabIndex < 0).length"), 0)
         self.assertEqual(self.page.value(f"[...document.querySelectorAll('{within} input')].filter(e => !e.labels.length).length"), 0)
         for width, height in ((820, 1180), (1280, 720)):
-            self.page.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+            self.page.resize(width, height)
             self.page.settle()
             box = self.page.value(f"(r => [r.left, r.top, r.right, r.bottom])(document.querySelector('{within}').getBoundingClientRect())")
             self.assertTrue(0 <= box[0] and box[2] <= width, (within, box, width))

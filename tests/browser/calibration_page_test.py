@@ -50,7 +50,7 @@ def quantity(text):
 class CalibrationPage(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.browser = cls.enterClassContext(Chromium(CHROMIUM))
+        cls.browser = cls.enterClassContext(Chromium(CHROMIUM, BUILD))
 
     def open(self, begins="command", dark=False, calibrations="calibrations"):
         self.hanging = Hanging(self)
@@ -61,7 +61,7 @@ class CalibrationPage(unittest.TestCase):
         self.page = self.browser.open(f"{address}#token={token}", dark=dark)
         self.page.until("document.querySelectorAll('#health dd').length > 5")
         self.focus("open")
-        self.page.press("Enter", "\r")
+        self.page.press("Enter")
         self.page.until("document.getElementById('calibrate-dialog').open && document.getElementById('calibrate-in-use').textContent !== ''")
 
     def text(self, part):
@@ -74,7 +74,7 @@ class CalibrationPage(unittest.TestCase):
     def type(self, part, text):
         self.focus(part)
         self.page.value(f"document.getElementById('calibrate-{part}').select()")
-        self.page.call("Input.insertText", text=text)
+        self.page.type(text)
 
     def rows(self):
         return self.page.value("[...document.querySelectorAll('#calibrate-rows tr')].map(r => [...r.cells].map(c => c.textContent))")
@@ -85,7 +85,7 @@ class CalibrationPage(unittest.TestCase):
     def begin(self):
         self.type("settle", "0.5")
         self.type("reading", "0.5 s")
-        self.page.press("Enter", "\r")
+        self.page.press("Enter")
         self.page.until("!document.getElementById('calibrate-weigh').hidden")
         self.settled()
         self.assertIn("take everything off", self.text("step"))
@@ -98,7 +98,7 @@ class CalibrationPage(unittest.TestCase):
             self.type("mass", typed)
         else:
             self.focus("read")
-        self.page.press("Enter", "\r")
+        self.page.press("Enter")
         self.page.until(f"document.querySelectorAll('#calibrate-rows tr').length === {before + 1}")
         self.settled()
         return self.rows()[-1][-1]
@@ -124,7 +124,7 @@ class CalibrationPage(unittest.TestCase):
             self.assertIn(why, self.text("message"))
             rows = len(self.rows())
             self.focus("undo")
-            self.page.press("Enter", "\r")
+            self.page.press("Enter")
             self.page.until(f"document.querySelectorAll('#calibrate-rows tr').length === {rows - 1}")
             self.settled()
         for typed in UP_AND_DOWN:
@@ -138,7 +138,7 @@ class CalibrationPage(unittest.TestCase):
             self.page.screenshot(pathlib.Path(folder) / "calibration.png")
         self.type("certificate", "DKD-7")
         self.type("days", "180")
-        self.page.press("Enter", "\r")
+        self.page.press("Enter")
         self.page.until("document.getElementById('calibrate-message').textContent.startsWith('kept in')")
         [file] = (self.daemon.folder / "calibrations").iterdir()
         self.assertIn(file.name, self.text("message"))
@@ -169,7 +169,7 @@ class CalibrationPage(unittest.TestCase):
         self.assertEqual(self.daemon.ask("GET", "/v1/calibration")[1]["in_use"]["gain"], result["gain"])
         self.shows(self.text("in-use").split("gain ")[1], result["gain"], 8)
         self.assertEqual(self.page.value("document.activeElement.id"), "calibrate-close")
-        self.page.press("Enter", "\r")
+        self.page.press("Enter")
         self.page.until("!document.getElementById('calibrate-dialog').open")
         self.page.until(f"document.getElementById('health').textContent.includes('calibrated {kept['calibration']['date'][:10]}, until {kept['calibration']['expires'][:10]}')")
         self.assertEqual(self.page.complaints(), [])
@@ -179,17 +179,17 @@ class CalibrationPage(unittest.TestCase):
         self.hanging.hang(0)
         self.page.until("!document.getElementById('calibrate-disarm').hidden")
         self.focus("start")
-        self.page.press("Enter", "\r")
+        self.page.press("Enter")
         self.page.until("document.getElementById('calibrate-message').textContent.startsWith('the bench is armed')")
         self.settled()
         self.focus("disarm")
-        self.page.press("Enter", "\r")
+        self.page.press("Enter")
         self.page.until("document.getElementById('calibrate-message').textContent.startsWith('the bench is idle')")
         self.begin()
         # A tare that swings does not count: it is told, and is not in the list.
         self.hanging.hang(0, swing=0.1)
         self.focus("read")
-        self.page.press("Enter", "\r")
+        self.page.press("Enter")
         self.page.until("document.getElementById('calibrate-message').textContent.startsWith('the tare does not count: unstable')")
         self.assertEqual(self.rows(), [])
         self.settled()
@@ -198,10 +198,10 @@ class CalibrationPage(unittest.TestCase):
         self.page.reload()
         self.page.until("document.querySelectorAll('#health dd').length > 5")
         self.focus("open")
-        self.page.press("Enter", "\r")
+        self.page.press("Enter")
         self.page.until("document.querySelectorAll('#calibrate-rows tr').length === 1")
         self.focus("give-up")
-        self.page.press("Enter", "\r")
+        self.page.press("Enter")
         self.page.until("document.getElementById('calibrate-message').textContent.startsWith('given up')")
         self.assertFalse((self.daemon.folder / "calibrations").exists())
 
@@ -225,7 +225,7 @@ class CalibrationPage(unittest.TestCase):
             inside = self.page.value("document.getElementById('calibrate-dialog').matches(':modal')")
             self.assertTrue(inside)
             for width, height in ((1280, 720), (820, 1180)):
-                self.page.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+                self.page.resize(width, height)
                 self.page.settle()
                 self.assertLessEqual(self.page.value("document.getElementById('calibrate-dialog').getBoundingClientRect().right"), width)
             pairs = self.page.value("""[...document.querySelectorAll('dialog *')].filter(e => e.offsetParent && e.textContent.trim() + (e.value ?? '')).map(e => {

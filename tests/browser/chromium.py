@@ -1,23 +1,19 @@
-"""A real browser without a window, driven over the Chrome DevTools protocol by a pair of pipes: nothing but Python's
-own library, no port, no network.
+"""A real browser without a window, driven by playwright-core (driver.mjs) over a pair of pipes: no port, no network.
 
-    with Chromium("/usr/bin/chromium") as browser:
+    with Chromium("/usr/bin/chromium", build) as browser:
         page = browser.open(file)
         page.value("document.title")
 """
 
-import base64
 import json
 import os
 import pathlib
 import select
+import shutil
 import subprocess
-import tempfile
-import time
 
-# Generous: on a busy machine a browser takes its time to start.
+# Generous: on a busy machine a browser takes its time to start. And what is waited for in a page.
 TIMEOUT_S = 300
-# And what is waited for in a page.
 PATIENCE_S = 200
 
 
@@ -27,132 +23,72 @@ def may_have_user_namespaces():
 
 
 class Chromium:
-    def __init__(self, program):
-        self.folder = tempfile.TemporaryDirectory(prefix="stickslip-browser-", ignore_cleanup_errors=True)
-        commands_out, self.commands = os.pipe()
-        self.answers, answers_in = os.pipe()
-        arguments = [program, "--headless=new", "--remote-debugging-pipe", f"--user-data-dir={self.folder.name}/profile",
-                     "--no-first-run", "--no-default-browser-check", "--disable-gpu", "--disable-background-networking",
-                     "--disable-component-update", "--disable-dev-shm-usage", "--window-size=1280,1600", "--hide-scrollbars",
-                     # A page behind another would have no frames and slow timers.
-                     "--disable-backgrounding-occluded-windows", "--disable-renderer-backgrounding", "--disable-background-timer-throttling"]
-        if os.geteuid() == 0 or not may_have_user_namespaces():
-            arguments.append("--no-sandbox")  # It refuses to run otherwise; the page is our own.
-        # The browser reads commands from descriptor 3 and answers on 4.
-        shell = f'exec "$@" 3<&{commands_out} 4>&{answers_in}'
-        environment = dict(os.environ, HOME=self.folder.name)
-        self.process = subprocess.Popen(["bash", "-c", shell, "bash", *arguments], pass_fds=(commands_out, answers_in),
-                                        env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        os.close(commands_out)
-        os.close(answers_in)
-        self.buffer = b""
-        self.last = 0
-        self.events = []
+    def __init__(self, program, build):
+        """build: the build directory, into which playwright-core is installed."""
+        # As root Chromium refuses to have a sandbox; the page is our own.
+        sandbox = os.geteuid() != 0 and may_have_user_namespaces()
+        self.process = subprocess.Popen(
+            [shutil.which("node"), pathlib.Path(__file__).with_name("driver.mjs"), pathlib.Path(build).resolve() / "browser" / "node_modules",
+             program, json.dumps(sandbox), str(1000 * PATIENCE_S)],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE)
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
+        self.process.stdin.close()
         try:
-            self.call("Browser.close")
             self.process.wait(TIMEOUT_S)
-        except (OSError, RuntimeError, subprocess.TimeoutExpired):
+        finally:
             self.process.kill()
-            self.process.wait()
-        os.close(self.commands)
-        os.close(self.answers)
-        self.folder.cleanup()
+            self.process.stdout.close()
 
-    def message(self, deadline):
-        while b"\0" not in self.buffer:
-            ready, _, _ = select.select([self.answers], [], [], max(0, deadline - time.monotonic()))
-            if not ready:
-                raise RuntimeError("the browser does not answer")
-            more = os.read(self.answers, 1 << 20)
-            if not more:
-                raise RuntimeError("the browser has ended")
-            self.buffer += more
-        text, self.buffer = self.buffer.split(b"\0", 1)
-        return json.loads(text)
-
-    def call(self, method, session=None, **parameters):
-        self.last += 1
-        command = {"id": self.last, "method": method, "params": parameters}
-        if session:
-            command["sessionId"] = session
-        os.write(self.commands, json.dumps(command).encode() + b"\0")
-        deadline = time.monotonic() + TIMEOUT_S
-        while True:
-            answer = self.message(deadline)
-            if answer.get("id") != self.last:
-                self.events.append(answer)
-                continue
-            if "error" in answer:
-                raise RuntimeError(f"{method}: {answer['error']['message']}")
-            return answer["result"]
-
-    def wait_for(self, method, session):
-        deadline = time.monotonic() + TIMEOUT_S
-        while True:
-            for event in self.events:
-                if event.get("method") == method and event.get("sessionId") == session:
-                    return event["params"]
-            self.events.append(self.message(deadline))
-
-    def wait_for_download(self):
-        """The next that completes; Browser.setDownloadBehavior with eventsEnabled comes first."""
-        deadline = time.monotonic() + TIMEOUT_S
-        while True:
-            for event in self.events:
-                if event.get("method") == "Browser.downloadProgress" and event["params"]["state"] == "completed":
-                    self.events.remove(event)
-                    return
-            self.events.append(self.message(deadline))
+    def call(self, do, page=None, **parameters):
+        """What driver.mjs answers to a command."""
+        self.process.stdin.write(json.dumps({"do": do, "page": page, **parameters}).encode() + b"\n")
+        self.process.stdin.flush()
+        ready, _, _ = select.select([self.process.stdout], [], [], TIMEOUT_S)
+        line = self.process.stdout.readline() if ready else b""
+        if not line:
+            raise RuntimeError("the browser has ended" if ready else "the browser does not answer")
+        answer = json.loads(line)
+        if "error" in answer:
+            raise RuntimeError(f"{do} {parameters}: {answer['error']}")
+        return answer["value"]
 
     def open(self, file, dark=False):
         """A file, or an address that begins with http:"""
         address = str(file) if str(file).startswith("http:") else pathlib.Path(file).resolve().as_uri()
-        page = Page(self, self.call("Target.createTarget", url="about:blank")["targetId"])
-        page.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
-        page.call("Page.navigate", url=address)
-        self.wait_for("Page.loadEventFired", page.session)
+        page = Page(self, self.call("open", address=address, dark=dark))
         page.settle()
         return page
 
-    def windows(self, ending):
-        """Of the browser, at addresses that end so."""
-        return [target["targetId"] for target in self.call("Target.getTargets")["targetInfos"]
-                if target["type"] == "page" and target["url"].endswith(ending)]
-
     def opened(self, ending):
         """The window that a page has opened."""
-        deadline = time.monotonic() + TIMEOUT_S
-        while time.monotonic() < deadline:
-            if found := self.windows(ending):
-                return Page(self, found[0])
-        raise RuntimeError(f"no window at {ending}")
+        return Page(self, self.call("opened", ending=ending))
+
+    def save_downloads(self, folder):
+        """From now on."""
+        self.call("save_downloads", folder=str(folder))
+
+    def wait_for_download(self):
+        """The file of the next that completes."""
+        return pathlib.Path(self.call("wait_for_download"))
 
 
 class Page:
-    def __init__(self, browser, target):
+    def __init__(self, browser, number):
         self.browser = browser
-        self.target = target
-        self.session = browser.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
-        for domain in ("Page", "Runtime", "Log", "Network"):
-            self.call(f"{domain}.enable")
+        self.number = number
+
+    def call(self, do, **parameters):
+        return self.browser.call(do, self.number, **parameters)
 
     def close(self):
-        self.browser.call("Target.closeTarget", targetId=self.target)
-
-    def call(self, method, **parameters):
-        return self.browser.call(method, self.session, **parameters)
+        self.call("close")
 
     def reload(self):
-        self.own_events("Page.loadEventFired")
-        self.browser.events = [event for event in self.browser.events
-                               if (event.get("sessionId"), event.get("method")) != (self.session, "Page.loadEventFired")]
-        self.call("Page.reload")
-        self.browser.wait_for("Page.loadEventFired", self.session)
+        self.call("reload")
         self.settle()
 
     def settle(self):
@@ -161,71 +97,44 @@ class Page:
 
     def value(self, expression):
         """Of a JavaScript expression, as JSON carries it; a promise is waited for."""
-        result = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
-        if "exceptionDetails" in result:
-            raise RuntimeError(f"{expression}: {result['exceptionDetails']['exception'].get('description')}")
-        return result["result"].get("value")
+        return self.call("value", expression=expression)
 
     def until(self, condition):
         """Looks again and again until it holds."""
-        if not self.value("new Promise(done => { const end = performance.now() + %d, look = () => (%s) ? done(true) : performance.now() < end ?"
-                          "setTimeout(look, 20) : done(false); look(); })" % (1000 * PATIENCE_S, condition)):
-            raise AssertionError(f"not within {PATIENCE_S} s: {condition}")
-
-    def own_events(self, method):
-        self.value("0")  # What was under way has arrived before this answer.
-        return [event["params"] for event in self.browser.events
-                if event.get("sessionId") == self.session and event.get("method") == method]
+        self.call("until", condition=condition)
 
     def complaints(self):
         """Uncaught exceptions, and everything logged as an error or a warning."""
-        found = [event["exceptionDetails"]["text"] for event in self.own_events("Runtime.exceptionThrown")]
-        found += [event["entry"]["text"] for event in self.own_events("Log.entryAdded")
-                  if event["entry"]["level"] in ("error", "warning")]
-        found += [str(event["args"]) for event in self.own_events("Runtime.consoleAPICalled")
-                  if event["type"] in ("error", "warning", "assert")]
-        return found
+        return self.call("complaints")
 
     def requests(self):
-        return [event["request"]["url"] for event in self.own_events("Network.requestWillBeSent")]
-
-    def box(self, selector, index=0):
-        """(x, y, width, height) in the window, after scrolling it into view."""
-        return self.value(f"(() => {{ const e = document.querySelectorAll({json.dumps(selector)})[{index}];"
-                          "e.scrollIntoView({block: 'center', behavior: 'instant'}); const r = e.getBoundingClientRect();"
-                          "return [r.x, r.y, r.width, r.height]; })()")
-
-    def mouse(self, kind, x, y, clicks=1):
-        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=clicks,
-                  buttons=0 if kind == "mouseReleased" else 1)
+        return self.call("requests")
 
     def click(self, selector, index=0, times=1):
-        x, y, width, height = self.box(selector, index)
-        for count in range(1, times + 1):
-            self.mouse("mousePressed", x + width / 2, y + height / 2, count)
-            self.mouse("mouseReleased", x + width / 2, y + height / 2, count)
+        self.call("click", selector=selector, index=index, times=times)
         self.settle()
 
     def drag(self, selector, start, end, index=0):
         """Over parts of its width, half-way down."""
-        x, y, width, height = self.box(selector, index)
-        middle = y + height / 2
-        self.call("Input.dispatchMouseEvent", type="mouseMoved", x=x + start * width, y=middle)
-        self.mouse("mousePressed", x + start * width, middle)
-        for part in (0.5, 1.0):
-            self.mouse("mouseMoved", x + (start + part * (end - start)) * width, middle)
-        self.mouse("mouseReleased", x + end * width, middle)
+        self.call("drag", selector=selector, index=index, start=start, end=end)
         self.settle()
 
-    def press(self, key, text="", settle=True):
-        """\param settle  not where a window opens: a page behind another paints no frames."""
-        for kind in ("keyDown", "keyUp"):
-            self.call("Input.dispatchKeyEvent", type=kind, key=key, **({"text": text} if text and kind == "keyDown" else {}))
+    def press(self, key, settle=True):
+        """settle: not where a window opens, since a page behind another paints no frames."""
+        self.call("press", key=key)
         if settle:
             self.settle()
 
+    def type(self, text):
+        self.call("type", text=text)
+
+    def resize(self, width, height):
+        self.call("resize", width=width, height=height)
+        self.settle()
+
+    def bring_to_front(self):
+        self.call("bring_to_front")
+
     def screenshot(self, file, height=None):
-        height = height or self.value("Math.ceil(document.documentElement.scrollHeight)")
-        picture = self.call("Page.captureScreenshot", captureBeyondViewport=True,
-                            clip={"x": 0, "y": 0, "width": 1280, "height": height, "scale": 1})
-        pathlib.Path(file).write_bytes(base64.b64decode(picture["data"]))
+        """Of all of it, or of so many pixels from its top."""
+        self.call("screenshot", file=str(file), height=height)

@@ -37,7 +37,7 @@ NO_BOARD = '[board]\ndriver = "comedi"\n[board.comedi]\ndevice = "/dev/comedi-th
 class FaultsPage(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.browser = cls.enterClassContext(Chromium(CHROMIUM))
+        cls.browser = cls.enterClassContext(Chromium(CHROMIUM, BUILD))
 
     def open(self, port=0, **options):
         self.daemon = RunningDaemon(self, BUILD, SOURCE, config=f'http = "127.0.0.1:{port}"\ntoken_file = "token"\n', **options)
@@ -54,7 +54,7 @@ class FaultsPage(unittest.TestCase):
 
     def press(self, command):
         self.page.value(f"document.querySelector('[data-command={command}]').focus()")
-        self.page.press("Enter", "\r")
+        self.page.press("Enter")
 
     def can_be_read(self):
         front, back = self.page.value("(() => { const s = getComputedStyle(document.getElementById('trouble')); return [s.color, s.backgroundColor]; })()")

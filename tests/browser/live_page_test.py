@@ -49,7 +49,7 @@ def student_t(freedom):
 class LivePage(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.browser = cls.enterClassContext(Chromium(CHROMIUM))
+        cls.browser = cls.enterClassContext(Chromium(CHROMIUM, BUILD))
 
     def daemon(self, config="", speed=20, board=None):
         daemon = RunningDaemon(self, BUILD, SOURCE, speed=speed, board=board, config=f'http = "127.0.0.1:0"\ntoken_file = "token"\n{config}')
@@ -155,29 +155,29 @@ class LivePage(unittest.TestCase):
         shapes = {"idle": page.value("document.getElementById('bench-shape').getAttribute('d')")}
         for name, typed in (("name", "liner 42"), ("operator", "Ada"), ("replicate", "3"), ("pull_speed", "12 in/min")):
             page.value(f"document.querySelector('#plan [name={name}]').focus()")
-            page.call("Input.insertText", text=typed)
-        page.press("Enter", "\r")
+            page.type(typed)
+        page.press("Enter")
         page.until("document.getElementById('message').textContent.startsWith('the plan is set')")
         self.assertEqual(daemon.ask("GET", "/v1/plan")[1]["name"], "liner 42")
         self.assertEqual(page.value("document.querySelector('#plan [name=pull_speed]').value"), "5.08 mm/s")
         page.until("Scope.data.highest.slice(-50).every(force => force < 0.02)")  # A whole pull is to come.
         page.value("document.querySelector('[data-command=start]').focus()")
-        page.press("Enter", "\r")
+        page.press("Enter")
         page.until(f"['loading', 'running'].includes({word})")
         page.until(f"{word} === 'running' && Scope.cycles.number.length > 2")
         shapes["running"] = page.value("document.getElementById('bench-shape').getAttribute('d')")
         self.assertEqual(page.value("document.getElementById('regime-word').textContent"), "stick-slip")
         page.value("document.getElementById('mark-text').focus()")
-        page.call("Input.insertText", text="sheet moved")
-        page.press("Enter", "\r")
+        page.type("sheet moved")
+        page.press("Enter")
         page.until("document.getElementById('message').textContent.startsWith('mark: test 1')")
         # Somebody else is told who has the bench, and the page is told why it is refused.
         self.assertRegex(daemon.ask("POST", "/v1/stop", who="bob")[1]["error"], "^page .... has the bench")
         page.value("document.querySelector('[data-command=arm]').focus()")
-        page.press("Enter", "\r")
+        page.press("Enter")
         page.until("document.getElementById('message').textContent.startsWith('a test is running')")
         page.value("document.querySelector('[data-command=stop]').focus()")
-        page.press("Enter", "\r")
+        page.press("Enter")
         page.until("document.querySelectorAll('#tests tbody tr').length === 1")
         self.assertNotEqual(shapes["idle"], shapes["running"])
         with h5py.File(daemon.record(1)) as record:
@@ -212,9 +212,9 @@ class LivePage(unittest.TestCase):
         self.assertNotIn(number, summary["tests"])
         # Saved by keyboard, byte for byte.
         with tempfile.TemporaryDirectory(prefix="stickslip-") as folder:
-            self.browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=folder, eventsEnabled=True)
+            self.browser.save_downloads(folder)
             name = page.value("(() => { const links = document.querySelectorAll('#tests tbody a'), link = links[links.length - 1]; link.focus(); return link.textContent; })()")
-            page.press("Enter", "\r")
+            page.press("Enter")
             page.until(f"document.getElementById('message').textContent === 'saved {name}'")
             self.browser.wait_for_download()
             self.assertEqual((pathlib.Path(folder) / name).read_bytes(), (daemon.folder / "records" / name).read_bytes())
@@ -224,7 +224,7 @@ class LivePage(unittest.TestCase):
         for dark in (False, True):
             page = self.page(dark=dark)
             for width, height in ((1280, 720), (820, 1180)):
-                page.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+                page.resize(width, height)
                 page.settle()
                 self.assertLessEqual(page.value("document.documentElement.scrollWidth"), width)
             self.assertEqual(page.value("[...document.querySelectorAll('button, input')].filter(e => e.tabIndex < 0).length"), 0)
@@ -247,8 +247,8 @@ class LivePage(unittest.TestCase):
         page = self.browser.open(self.address)
         page.until("!document.getElementById('access').hidden")
         page.value("document.getElementById('token').focus()")
-        page.call("Input.insertText", text=self.token)
-        page.press("Enter", "\r")
+        page.type(self.token)
+        page.press("Enter")
         page.until("Scope.data.scan.length > 10")
         self.assertTrue(page.value("document.getElementById('access').hidden"))
 
