@@ -83,7 +83,7 @@ class Messages(Case):
         self.assertEqual(set(state), {"tester", "time", "state", "bench", "detail", "version", "test_count", "current_test"})
         results = listener.results(2)
         self.assertEqual(daemon.end()[0], 0)
-        listener.wait_for_state("bench-7", "stopped")
+        listener.wait_for_state("bench-7", "stopped")  # The last word: it comes after the results.
         health = next(body for topic, retained, body in listener.seen if topic == "stickslip/bench-7/health" and not retained)
         self.assertEqual(health["status"]["fleet"]["tester"], "bench-7")
         made = records(daemon.folder)
