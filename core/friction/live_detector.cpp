@@ -76,7 +76,7 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
   if (amplitude && amplitude->is_over()) {
     watch_.stop();
     state_.regime = Regime::kSteadySliding;
-    state_.ring_down_since_s = kUnknown;
+    state_.ring_down_since_s = kNotKnown;
     return close();
   }
   return std::nullopt;
@@ -131,7 +131,7 @@ void LiveDetector::take_decision() noexcept {
   if (state_.phase == Phase::kFirstSlip) state_.phase = Phase::kCycles;
   if (follower_.captured()) {
     state_.regime = Regime::kStickSlip;
-    state_.ring_down_since_s = kUnknown;
+    state_.ring_down_since_s = kNotKnown;
     watch_.stop();
     return;
   }

@@ -295,20 +295,20 @@ std::vector<Cycle> cycle_table(const Trace& trace, std::span<const Fall> slips,
                                const SlipEstimates& estimates) {
   const SlipFit& fit = estimates.fit;
   std::vector<Cycle> cycles;
-  double last_capture_s = kUnknown;
+  double last_capture_s = kNotKnown;
   for (std::size_t i = 0; i < slips.size(); ++i) {
     const Fall& slip = slips[i];
     Cycle cycle;
     cycle.number = static_cast<std::int64_t>(i);
     cycle.peak_time_s = time_at(trace, slip.peak_at);
     const bool has_next = i + 1 < slips.size() && !is_broken(trace, slip.peak_at, slips[i + 1].peak_at);
-    cycle.period_s = has_next ? time_at(trace, slips[i + 1].peak_at) - cycle.peak_time_s : kUnknown;
+    cycle.period_s = has_next ? time_at(trace, slips[i + 1].peak_at) - cycle.peak_time_s : kNotKnown;
     cycle.peak = slip.peak;
     cycle.trough = slip.trough;
     cycle.force_drop = slip.drop();
-    cycle.onset_time_s = cycle.capture_time_s = cycle.stick_time_s = cycle.slip_time_s = kUnknown;
-    cycle.delta_mu = cycle.delta_mu_standard_error = cycle.slip_speed_ratio = kUnknown;
-    cycle.pull_speed_m_per_s = kUnknown;
+    cycle.onset_time_s = cycle.capture_time_s = cycle.stick_time_s = cycle.slip_time_s = kNotKnown;
+    cycle.delta_mu = cycle.delta_mu_standard_error = cycle.slip_speed_ratio = kNotKnown;
+    cycle.pull_speed_m_per_s = kNotKnown;
     if (i == 0) cycle.flags |= kCycleIsFirst;
     const bool captured = estimates.ends[i] == SlipEnd::kCaptured;
     if (captured) cycle.flags |= kCycleCaptured;

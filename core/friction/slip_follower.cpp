@@ -93,8 +93,8 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
   peak_s_ = peak_s;
   trough_s_ = trough_s;
   evidence_ = {};
-  question_from_s_ = kUnknown;
-  if (!begins_from_stick) last_capture_s_ = kUnknown;
+  question_from_s_ = kNotKnown;
+  if (!begins_from_stick) last_capture_s_ = kNotKnown;
 
   const double half_s = std::max(trough_s - peak_s, scan_s_);
   const double rise = fall.peak - fall.rise_from;
@@ -133,7 +133,7 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
   for (double* unknown :
        {&cycle.onset_time_s, &cycle.capture_time_s, &cycle.period_s, &cycle.stick_time_s, &cycle.slip_time_s,
         &cycle.delta_mu, &cycle.delta_mu_standard_error, &cycle.slip_speed_ratio}) {
-    *unknown = kUnknown;
+    *unknown = kNotKnown;
   }
   next_task_s_ = -std::numeric_limits<double>::infinity();
   if (tier_ == EstimatorTier::kPeak) {
@@ -187,7 +187,7 @@ void SlipFollower::first_fit(double sigma) noexcept {
   const CycleFit fit = fit_cycle(between(buffer_.points(), window_from_s_, trough_s_), false, first_guess(),
                                  knowledge_, sigma);
   if (fit.converged) shared_ = fit.shared;
-  question_from_s_ = kUnknown;
+  question_from_s_ = kNotKnown;
 }
 
 double SlipFollower::slipping_before_peak_s() const noexcept {
@@ -207,10 +207,10 @@ bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
     if (belt_changed(with_other.residual_sigmas, evidence_.residual_sigmas)) {
       evidence_ = with_other;
       shared_ = other;
-      question_from_s_ = kUnknown;
+      question_from_s_ = kNotKnown;
     }
   }
-  slip_.evidence = evidence_.known ? evidence_.log_likelihood_ratio : kUnknown;
+  slip_.evidence = evidence_.known ? evidence_.log_likelihood_ratio : kNotKnown;
   // What neither course describes may be neither: an escape then takes more to be believed.
   const double doubt = std::max(evidence_.residual_sigmas / kMisfitSigmas, 1.0);
   const bool clear = evidence_.known && (evidence_.log_likelihood_ratio > kDecisive ||
@@ -289,7 +289,7 @@ void SlipFollower::take_course(const SharedParameters& shared, const SlipParamet
   cycle.delta_mu = slip.S - slip.K;
   const SlipWaveform waveform{slip.K, slip.S - slip.K, shared.r, shared.oscillator()};
   cycle.slip_speed_ratio = -waveform.rate(waveform.fastest_slip_time_s()) / shared.r;
-  last_capture_s_ = kUnknown;
+  last_capture_s_ = kNotKnown;
   if (!captured()) return;
   cycle.slip_time_s = capture_time_s(waveform, shared.r).value_or(waveform.rise_end_time_s());
   cycle.capture_time_s = slip.onset_s + cycle.slip_time_s;

@@ -6,6 +6,6 @@
 namespace stickslip::friction {
 
 /// A number that nobody knows.
-inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace stickslip::friction
