@@ -11,6 +11,9 @@ namespace stickslip::friction {
 /// Huber's limit in standard deviations: 95 % efficiency for Gaussian noise.
 inline constexpr double kHuberLimit = 1.345;
 
+/// Noise is that far off once in two million scans: what is farther is a spike that the despiker let pass.
+inline constexpr double kStraySigmas = 5.0;
+
 /// ρ(z): quadratic within the limit, linear outside.
 [[nodiscard]] inline double huber_cost(double z, double limit = kHuberLimit) noexcept {
   const double size = std::abs(z);

@@ -23,6 +23,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 LiveDetector::LiveDetector(const LiveSettings& settings)
     : settings_(settings),
       noise_(std::max(signal::kRoundingSigma * settings.step_coefficient, kSmallestNoise)),
+      usable_noise_(noise_),
       follower_(settings.estimator, settings.scan_rate_Hz, settings.prior),
       lowest_(kInfinity),
       loading_at_(kInfinity),
@@ -58,7 +59,14 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
   sum_ += scan.value;
   count_ += 1.0;
   const bool usable = !scan.spike && !saturated;
-  if (usable) follower_.add(now_s, scan.value);
+  if (follower_.keeps_scans()) {
+    if (usable) {
+      follower_.add(now_s, scan.value);
+      usable_noise_.add(scan.value);
+    } else {
+      usable_noise_.gap();
+    }
+  }
   const auto amplitude = watch_.add(scan.value, usable);
 
   const bool was_falling = finder_.falling();
@@ -71,8 +79,8 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
   // What falls before anything was loaded are spikes that follow each other.
   if (!was_falling && finder_.falling() && static_cast<double>(finder_.high_at()) >= loading_at_)
     fall_begun_ = {static_cast<base::ScanIndex>(finder_.high_at()), finder_.high(), come_ - 1};
-  if (fall && rule_.is_slip(*fall, sigma) && fall->peak_at >= loading_at_) return slip(*fall, sigma, now_s);
-  if (follower_.step(now_s, sigma)) take_decision();
+  if (fall && rule_.is_slip(*fall, sigma) && fall->peak_at >= loading_at_) return slip(*fall, now_s);
+  if (follower_.step(now_s, usable_sigma())) take_decision();
   if (amplitude && amplitude->is_over()) {
     watch_.stop();
     state_.regime = Regime::kSteadySliding;
@@ -97,8 +105,8 @@ void LiveDetector::watch_phase(double value, double sigma) noexcept {
     state_.phase = Phase::kLoading;
 }
 
-std::optional<LiveCycle> LiveDetector::slip(const Fall& fall, double sigma, double now_s) noexcept {
-  if (follower_.is_open() && follower_.force(now_s, sigma, &fall)) take_decision();
+std::optional<LiveCycle> LiveDetector::slip(const Fall& fall, double now_s) noexcept {
+  if (follower_.is_open() && follower_.force(now_s, usable_sigma(), &fall)) take_decision();
   // The cycle before reaches from its peak to this one.
   std::optional<LiveCycle> closed;
   const double peak_s = time_of(fall.peak_at);
@@ -115,7 +123,7 @@ std::optional<LiveCycle> LiveDetector::slip(const Fall& fall, double sigma, doub
     state_.latest = closed;
   }
   const bool begins_from_stick = state_.regime != Regime::kRingDown;
-  follower_.open(fall, peak_s, time_of(fall.trough_at), begins_from_stick, sigma);
+  follower_.open(fall, peak_s, time_of(fall.trough_at), begins_from_stick, usable_sigma());
   if (state_.phase < Phase::kFirstSlip) state_.phase = Phase::kFirstSlip;
   ++state_.slip_count;
   cycle_S_ = highest_;
@@ -162,6 +170,7 @@ std::optional<LiveCycle> LiveDetector::close() noexcept {
 
 void LiveDetector::gap(std::int64_t count) noexcept {
   noise_.gap();
+  usable_noise_.gap();
   lost_before_ = lost_;
   lost_ += count;
   gap_at_ = come_;
@@ -173,8 +182,7 @@ void LiveDetector::gap(std::int64_t count) noexcept {
 
 std::optional<LiveCycle> LiveDetector::end() noexcept {
   const double now_s = time_of(static_cast<double>(position_));
-  const double sigma = noise_.sigma();
-  if (follower_.is_open() && follower_.force(now_s, sigma, nullptr)) take_decision();
+  if (follower_.is_open() && follower_.force(now_s, usable_sigma(), nullptr)) take_decision();
   cycle_flags_ |= flags_to_highest_ | flags_after_;
   state_.phase = Phase::kEnd;
   return close();

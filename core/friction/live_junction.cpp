@@ -21,8 +21,12 @@ constexpr double kRowsPerPeriod = 40.0;
 /// was not found, anywhere within the ±6 σ that the despiker lets pass. −ln of it, 4.6, is the most that a
 /// scan tells: two strays cannot decide, three seldom meet.
 constexpr double kStrayDensity = 0.01;
+/// Of so many rows one may be left out, and of all no more than three: more are no strays, but neither
+/// course.
+constexpr std::size_t kRowsPerStray = 5;
+constexpr std::size_t kMostStrays = 3;
 /// Four parameters, and a choice.
-constexpr std::size_t kFewestLivePoints = 8;
+constexpr std::size_t kFewestRows = 8;
 /// Of reweighting: weights of a linear model settle in two or three rounds.
 constexpr int kLiveRounds = 3;
 constexpr int kMostLiveIterations = 8;
@@ -95,11 +99,15 @@ void LiveJunction::lay_out(std::span<const CyclePoint> points, const SharedParam
     } else {
       row = row_of({begin, end}, first_s, shared);
     }
-    row.scale = row.root_count / sigma;
     ++size_;
     begin = end;
   }
   if (!(same_courses && sigma == sigma_ && unchanged >= common_count_)) common_count_ = 0;
+  for (std::size_t i = 0; i < size_; ++i) {
+    // What strays from the common course does so until that is fitted anew.
+    rows_[i].stray = rows_[i].stray && i < common_count_;
+    rows_[i].scale = rows_[i].stray ? 0.0 : rows_[i].root_count / sigma;
+  }
   first_s_ = first_s;
   shared_ = shared;
   sigma_ = sigma;
@@ -146,6 +154,34 @@ double LiveJunction::fit_free(std::size_t count, Free& p) const noexcept {
   return cost;
 }
 
+template <typename SigmasOff>
+bool LiveJunction::leave_out_a_stray(std::span<Row> among, SigmasOff sigmas_off) noexcept {
+  Row* farthest = nullptr;
+  double off = kStraySigmas;
+  std::size_t left_out = 1;
+  for (Row& row : among) {
+    if (row.stray) ++left_out;
+    if (const double z = std::abs(sigmas_off(row)); z > off) {
+      off = z;
+      farthest = &row;
+    }
+  }
+  if (farthest == nullptr || left_out > kMostStrays || kRowsPerStray * left_out > size_) return false;
+  farthest->stray = true;
+  farthest->scale = 0.0;
+  return true;
+}
+
+bool LiveJunction::leave_out_a_stray_of_both(const Courses& courses,
+                                             const SharedParameters& shared) noexcept {
+  const Events events = events_of(courses.captured, shared);
+  return leave_out_a_stray(std::span{rows_}.first(size_).subspan(common_count_), [&](const Row& row) {
+    const double captured =
+        (row.value - captured_at(row, courses.captured, events, shared).value) * row.scale;
+    return std::min(std::abs(free_residual(row, courses.free)), std::abs(captured));
+  });
+}
+
 void LiveJunction::fit_common(const SharedParameters& shared, double typical_delta_mu) noexcept {
   // Up to the trough, half an oscillation after the peak, the two are the same course.
   const double half_s = std::numbers::pi / shared.omega;
@@ -156,8 +192,15 @@ void LiveJunction::fit_common(const SharedParameters& shared, double typical_del
   common_count_ = count;
   common_typical_ = typical_delta_mu;
   common_r_ = shared.r;
+  for (Row& row : std::span{rows_}.first(count)) {
+    row.stray = false;
+    row.scale = row.root_count / sigma_;
+  }
   common_ = Free::Zero();
-  common_cost_ = fit_free(count, common_);
+  do {
+    common_cost_ = fit_free(count, common_);
+  } while (leave_out_a_stray(std::span{rows_}.first(count),
+                             [&](const Row& row) { return free_residual(row, common_); }));
   common_capture_tau_s_ = events_of(usual_capture(typical_delta_mu), shared).capture_tau_s;
 }
 
@@ -278,7 +321,7 @@ double LiveJunction::log_likelihood_ratio(const Free& free, const Captured& capt
   return ratio;
 }
 
-double LiveJunction::fit_captured(Captured& p, Assembled now, const SharedParameters& shared, double sigma,
+double LiveJunction::fit_captured(Captured& p, Assembled now, const SharedParameters& shared,
                                   double typical_delta_mu) const noexcept {
   double damping = kFirstDamping;
   for (int iteration = 0; iteration < kMostLiveIterations; ++iteration) {
@@ -288,7 +331,7 @@ double LiveJunction::fit_captured(Captured& p, Assembled now, const SharedParame
     const Eigen::Matrix4d scaled = scale.asDiagonal() * normal * scale.asDiagonal();
     const Eigen::Vector4d step = scale.cwiseProduct(scaled.ldlt().solve(scale.cwiseProduct(now.gradient)));
     const Captured trial = p + step;
-    if (!step.allFinite() || !(trial[3] - trial[0] > -sigma)) {
+    if (!step.allFinite() || !(trial[3] - trial[0] > -sigma_)) {
       damping *= 10.0;
       continue;
     }
@@ -306,12 +349,31 @@ double LiveJunction::fit_captured(Captured& p, Assembled now, const SharedParame
   return now.cost;
 }
 
+void LiveJunction::fit_captured_course(Courses& courses, const Assembled& usual,
+                                       const SharedParameters& shared,
+                                       double typical_delta_mu) const noexcept {
+  courses.captured_cost = std::numeric_limits<double>::infinity();
+  // Two starts, as the cost has two valleys: S − K as usual, and hardly any.
+  for (const double part : {1.0, 0.1}) {
+    Captured p = usual_capture(part * typical_delta_mu);
+    const Assembled start = part == 1.0 ? usual : assemble(p, shared, typical_delta_mu);
+    const double cost = fit_captured(p, start, shared, typical_delta_mu);
+    if (cost < courses.captured_cost) {
+      courses.captured_cost = cost;
+      courses.captured = p;
+    }
+    // The second slip has not begun, and nothing says that it should have.
+    if (cost <= courses.free_cost && events_of(p, shared).onset_tau_s > rows_[size_ - 1].tau_s) break;
+  }
+}
+
 JunctionEvidence LiveJunction::ask(std::span<const CyclePoint> points, const SharedParameters& shared,
                                    double sigma, double typical_delta_mu, double decisive) noexcept {
   JunctionEvidence evidence;
-  if (points.size() < kFewestLivePoints || points.size() > rows_.size()) return evidence;
-  evidence.known = true;
+  if (points.empty() || points.size() > rows_.size()) return evidence;
   lay_out(points, shared, sigma);
+  if (size_ < kFewestRows) return evidence;
+  evidence.known = true;
   fit_common(shared, typical_delta_mu);
   const auto count = static_cast<double>(size_);
   const auto is_misfit = [&](double cost) { return 2.0 * cost > kMisfitSigmas * kMisfitSigmas * count; };
@@ -326,32 +388,26 @@ JunctionEvidence LiveJunction::ask(std::span<const CyclePoint> points, const Sha
   if (all_free && carried_on - common_cost_ < room && !is_misfit(carried_on)) return evidence;
   const Assembled usual = assemble(usual_capture(typical_delta_mu), shared, typical_delta_mu);
   if (std::max(carried_on, usual.cost) - common_cost_ < room && !is_misfit(carried_on)) return evidence;
-  Free free = common_;
-  const double free_cost = fit_free(size_, free);
-  if (free_cost - common_cost_ < room && usual.cost - free_cost < room && !is_misfit(free_cost))
+  Courses courses;
+  courses.free = common_;
+  courses.free_cost = fit_free(size_, courses.free);
+  if (courses.free_cost - common_cost_ < room && usual.cost - courses.free_cost < room &&
+      !is_misfit(courses.free_cost))
     return evidence;
-
-  double captured_cost = std::numeric_limits<double>::infinity();
-  Captured best = Captured::Zero();
-  // Two starts, as the cost has two valleys: S − K as usual, and hardly any.
-  for (const double part : {1.0, 0.1}) {
-    Captured p = usual_capture(part * typical_delta_mu);
-    const Assembled start = part == 1.0 ? usual : assemble(p, shared, typical_delta_mu);
-    const double cost = fit_captured(p, start, shared, sigma, typical_delta_mu);
-    if (cost < captured_cost) {
-      captured_cost = cost;
-      best = p;
-    }
-    // The second slip has not begun, and nothing says that it should have.
-    if (cost <= free_cost && events_of(p, shared).onset_tau_s > rows_[size_ - 1].tau_s) break;
+  fit_captured_course(courses, usual, shared, typical_delta_mu);
+  while (leave_out_a_stray_of_both(courses, shared)) {
+    courses.free_cost = fit_free(size_, courses.free);
+    fit_captured_course(courses, assemble(usual_capture(typical_delta_mu), shared, typical_delta_mu), shared,
+                        typical_delta_mu);
   }
+  const Captured& best = courses.captured;
   const Events events = events_of(best, shared);
   evidence.capture_s = points.front().time_s + events.capture_tau_s;
   evidence.next_onset_s = points.front().time_s + events.onset_tau_s;
   // Where both leave more than noise, the scans tell less than they seem to.
-  evidence.residual_sigmas = std::sqrt(2.0 * std::min(free_cost, captured_cost) / count);
+  evidence.residual_sigmas = std::sqrt(2.0 * std::min(courses.free_cost, courses.captured_cost) / count);
   evidence.log_likelihood_ratio =
-      log_likelihood_ratio(free, best, shared, typical_delta_mu, evidence.residual_sigmas);
+      log_likelihood_ratio(courses.free, best, shared, typical_delta_mu, evidence.residual_sigmas);
   return evidence;
 }
 

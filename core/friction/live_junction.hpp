@@ -41,13 +41,14 @@ class LiveJunction {
   struct Row {
     double tau_s = 0.0;  ///< After the first point.
     double value = 0.0;  ///< Of the point.
-    double scale = 0.0;  ///< √count/σ
+    double scale = 0.0;  ///< √count/σ; 0 for a stray.
     double root_count = 0.0;
     double half_spread_s2 = 0.0;
     double by_D = 0.0;     ///< What c(0) − K adds, its mean over the point.
     double by_rate = 0.0;  ///< What c′(0) adds, s.
     double begin_s = 0.0;  ///< Time of its first point,
     double end_s = 0.0;    ///< and of its last.
+    bool stray = false;    ///< No course explains it: left out.
   };
   using Free = Eigen::Vector3d;      ///< K, c(0) − K, c′(0)
   using Captured = Eigen::Vector4d;  ///< … and S of the next slip
@@ -73,6 +74,10 @@ class LiveJunction {
   void lay_out(std::span<const CyclePoint> points, const SharedParameters& shared, double sigma) noexcept;
   /// Best free course of the first `count` rows. \return its cost.
   double fit_free(std::size_t count, Free& p) const noexcept;
+  /// Leaves out the row among these that is farthest off, if no noise is so far off and not too many are left
+  /// out already. \param sigmas_off  of a row, how far from what explains it best. \return whether it did.
+  template <typename SigmasOff>
+  bool leave_out_a_stray(std::span<Row> among, SigmasOff sigmas_off) noexcept;
   /// The course that both begin with, unless it is the same as at the last question.
   void fit_common(const SharedParameters& shared, double typical_delta_mu) noexcept;
   /// The common course as it goes on if it is captured, with so much S − K of the next slip.
@@ -102,8 +107,21 @@ class LiveJunction {
                                             const SharedParameters& shared, double typical_delta_mu,
                                             double residual_sigmas) const noexcept;
   /// \param now  assembled at p.
-  double fit_captured(Captured& p, Assembled now, const SharedParameters& shared, double sigma,
+  double fit_captured(Captured& p, Assembled now, const SharedParameters& shared,
                       double typical_delta_mu) const noexcept;
+
+  /// Both courses, each at its best.
+  struct Courses {
+    Free free = Free::Zero();
+    double free_cost = 0.0;
+    Captured captured = Captured::Zero();
+    double captured_cost = std::numeric_limits<double>::infinity();
+  };
+  /// \param courses  its free course is known. \param usual  assembled at usual_capture().
+  void fit_captured_course(Courses& courses, const Assembled& usual, const SharedParameters& shared,
+                           double typical_delta_mu) const noexcept;
+  /// After the common course. \return whether there was one.
+  bool leave_out_a_stray_of_both(const Courses& courses, const SharedParameters& shared) noexcept;
 
   std::array<Row, CycleBuffer::kMostPoints> rows_;
   std::size_t size_ = 0;

@@ -21,9 +21,9 @@ struct TurningPoint {
 [[nodiscard]] std::optional<TurningPoint> parabola_vertex(std::span<const CyclePoint> points, double near_s,
                                                           double reach_s, double sign) noexcept;
 
-/// Slope of the points between `low` and `high`, with Huber's weights: of the few that a fast loading has,
-/// one spike that was not found would bend it by a tenth. \param sigma  noise of one scan. \return nothing
-/// with fewer than two points there.
+/// Slope of the points between `low` and `high`, with Huber's weights about their median line: of the few
+/// that a fast loading has, one spike that was not found would bend it by a tenth. \param sigma  noise of one
+/// scan. \return nothing with fewer than two points there.
 [[nodiscard]] std::optional<double> slope_between(std::span<const CyclePoint> points, double low, double high,
                                                   double sigma) noexcept;
 
