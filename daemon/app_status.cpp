@@ -120,6 +120,8 @@ Status App::status() const {
   const SessionClocks clocks = session_ ? session_->clocks() : clocks_;
   if (config_.clock_speed == 1.0) status.scan_rate_measured = clocks.scan_rate;
   status.latency = clocks.latency;
+  if (session_) status.ring = session_->ring_use();
+  status.commit_time = storage_.commit_time();
   status.storage_stall_count = storage_.stall_count();
   status.storage = storage_.state();
   status.batch = batches_.progress();

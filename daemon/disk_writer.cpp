@@ -109,7 +109,6 @@ void DiskWriter::stop() {
 }
 
 void DiskWriter::run() {
-  using Clock = std::chrono::steady_clock;
   Time last_sync = Clock::now();
   std::optional<Time> stopping_since;
   std::optional<std::string> trouble;
@@ -149,6 +148,11 @@ DiskWriter::ScanCounts DiskWriter::scan_counts() const {
   return scans_;
 }
 
+daq::LatencyHistogram DiskWriter::commit_time() const {
+  const std::lock_guard lock{mutex_};
+  return commit_time_;
+}
+
 std::optional<std::string> DiskWriter::write_all(bool sync) {
   std::vector<Job> jobs;
   {
@@ -173,7 +177,16 @@ std::optional<std::string> DiskWriter::write_all(bool sync) {
 }
 
 std::optional<std::string> DiskWriter::write(const Job& job, bool sync) {
-  return sync ? job.journal->settle() : job.journal->write();
+  if (!sync) return job.journal->write();
+  if (job.journal->settled()) return std::nullopt;
+  const Time began = Clock::now();
+  auto trouble = job.journal->settle();
+  const std::chrono::nanoseconds took = Clock::now() - began;
+  if (!trouble) {
+    const std::lock_guard lock{mutex_};
+    commit_time_.add(static_cast<double>(took.count()));
+  }
+  return trouble;
 }
 
 void DiskWriter::tell(std::optional<std::string> trouble) {

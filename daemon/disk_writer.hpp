@@ -13,6 +13,7 @@
 #include <string>
 #include <thread>
 
+#include "core/daq/latency_histogram.hpp"
 #include "core/record/patient_journal.hpp"
 
 namespace stickslip::daemon {
@@ -102,6 +103,8 @@ class DiskWriter {
     std::int64_t unsaved = 0;   ///< Of journals that the disk refused to the end.
   };
   [[nodiscard]] ScanCounts scan_counts() const;
+  /// How long it took, each time, to write and sync what a journal held; what the disk refused is not in it.
+  [[nodiscard]] daq::LatencyHistogram commit_time() const;
   /// For how long there is room now; nothing if nobody knows.
   [[nodiscard]] std::optional<double> room_s() const;
 
@@ -115,7 +118,8 @@ class DiskWriter {
     Journal journal;
     bool ended = false;
   };
-  using Time = std::chrono::steady_clock::time_point;
+  using Clock = std::chrono::steady_clock;
+  using Time = Clock::time_point;
 
   void run();
   /// Writes all jobs, in order. \return why not.
@@ -137,6 +141,7 @@ class DiskWriter {
   bool stopping_ = false;
   DiskState state_;
   ScanCounts scans_;
+  daq::LatencyHistogram commit_time_;
   std::atomic<std::uint64_t> rounds_{0};
   std::thread thread_;
 };

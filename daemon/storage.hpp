@@ -77,6 +77,8 @@ class Storage final : public pipeline::Sink {
   /// Times the processing thread had to wait. Any thread.
   [[nodiscard]] std::uint64_t stall_count() const noexcept { return queue_.stall_count(); }
 
+  /// As that of DiskWriter. Any thread.
+  [[nodiscard]] daq::LatencyHistogram commit_time() const { return disk_.commit_time(); }
   /// What became of the scans of tests that have ended. Any thread.
   [[nodiscard]] DiskWriter::ScanCounts scan_counts() const { return disk_.scan_counts(); }
   /// Times that the storage thread, and the disk thread, have come round; at rest or not they do so each

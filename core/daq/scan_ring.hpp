@@ -17,7 +17,7 @@ namespace stickslip::daq {
 class ScanRing {
  public:
   /// \param capacity blocks; choose it for at least 60 s (see capacity_for()).
-  explicit ScanRing(std::size_t capacity) : queue_(capacity) {}
+  explicit ScanRing(std::size_t capacity) : queue_(capacity), capacity_(capacity) {}
 
   /// Blocks needed to bridge `bridge_s` seconds when a read may deliver as little as one block
   /// every 5 ms (a Comedi wake-up at 250 Hz delivers every 8 ms) or as much as full blocks.
@@ -47,7 +47,24 @@ class ScanRing {
   }
 
   /// Consumer only. \return blocks copied to `out`, at most `most`.
-  std::size_t pop(ScanBlock* out, std::size_t most) noexcept { return queue_.pop(out, most); }
+  std::size_t pop(ScanBlock* out, std::size_t most) noexcept {
+    // Between two pops the ring only fills: the most that ever waited is what some pop finds.
+    const std::size_t waiting = queue_.read_available();
+    if (waiting > high_water_.load(std::memory_order_relaxed)) {
+      high_water_.store(waiting, std::memory_order_relaxed);
+    }
+    return queue_.pop(out, most);
+  }
+
+  /// In blocks.
+  struct Use {
+    std::size_t capacity = 0;
+    std::size_t high_water = 0;  ///< Most that waited at once, as far as the consumer has come.
+  };
+  /// Any thread.
+  [[nodiscard]] Use use() const noexcept {
+    return {capacity_, high_water_.load(std::memory_order_relaxed)};
+  }
 
   /// Any thread.
   [[nodiscard]] std::uint64_t dropped_scan_count() const noexcept {
@@ -56,6 +73,8 @@ class ScanRing {
 
  private:
   boost::lockfree::spsc_queue<ScanBlock> queue_;
+  std::size_t capacity_;
+  std::atomic<std::size_t> high_water_{0};
   std::atomic<std::uint64_t> dropped_scans_{0};
 };
 

@@ -59,6 +59,8 @@ class PatientJournal {
   [[nodiscard]] std::optional<std::string> write();
   /// The same, and makes it durable. What an fsync refused is written again.
   [[nodiscard]] std::optional<std::string> settle();
+  /// Whether settle() has nothing to do. A journal that is not on the disk yet has its header to write.
+  [[nodiscard]] bool settled() const { return file_ && unsynced_.empty() && waiting_size() == 0; }
   /// After the last entry: the room that was reserved behind the end is free for others, such as the record.
   void give_room_back();
 

@@ -36,19 +36,20 @@ class Page {
 
 /// The bins of the status are the machine's: half a decade and wider would say less, finer ones more than
 /// needed.
-void latency(Page& page, const daq::LatencyHistogram& histogram) {
-  constexpr std::string_view kName = "read_latency_seconds";
-  page.head(kName, "histogram", "From the last scan of a block to the end of the read that brought it.");
+void histogram(Page& page, std::string_view name, std::string_view help,
+               const daq::LatencyHistogram& histogram) {
+  page.head(name, "histogram", help);
+  const std::string bucket = fmt::format("{}_bucket", name);
   std::uint64_t count = 0;
   for (std::size_t bin = 0; bin < daq::LatencyHistogram::kBins; ++bin) {
     count += static_cast<std::uint64_t>(histogram.counts()[bin]);
     const double limit_s = daq::LatencyHistogram::limit_s(bin);
     if (!std::isfinite(limit_s)) continue;
-    page.value("read_latency_seconds_bucket", count, fmt::format("{{le=\"{}\"}}", limit_s));
+    page.value(bucket, count, fmt::format("{{le=\"{}\"}}", limit_s));
   }
-  page.value("read_latency_seconds_bucket", count, "{le=\"+Inf\"}");
-  page.value("read_latency_seconds_sum", histogram.sum_s());
-  page.value("read_latency_seconds_count", count);
+  page.value(bucket, count, "{le=\"+Inf\"}");
+  page.value(fmt::format("{}_sum", name), histogram.sum_s());
+  page.value(fmt::format("{}_count", name), count);
 }
 
 /// What a label may hold: backslash, quote and line feed are escaped.
@@ -84,6 +85,12 @@ std::string metrics_text(const Status& status) {
   page.counter("dropped_scans_total", "Scans that a full ring did not take.", status.dropped_scan_count);
   page.counter("overruns_total", "Times the board lost scans and halted.", status.overrun_count);
   page.counter("board_losses_total", "Times the board went away or failed.", status.board_loss_count);
+  if (status.ring) {
+    page.gauge("ring_capacity_blocks", "Blocks that the ring between acquisition and detector holds.",
+               status.ring->capacity);
+    page.gauge("ring_high_water_blocks", "Most of them that waited at once since the board was opened.",
+               status.ring->high_water);
+  }
   page.counter("storage_stalls_total", "Times the processing thread waited for the storage thread.",
                status.storage_stall_count);
   page.counter("tests_total", "Tests ended.", status.test_count);
@@ -113,7 +120,10 @@ std::string metrics_text(const Status& status) {
     page.counter("fleet_dropped_results_total", "Results that a full outbox had no room for.",
                  status.fleet->dropped_result_count);
   }
-  latency(page, status.latency);
+  histogram(page, "read_latency_seconds", "From the last scan of a block to the end of the read that brought it.",
+            status.latency);
+  histogram(page, "commit_seconds", "To write and sync what a running test had handed over.",
+            status.commit_time);
   return std::move(page).text();
 }
 

@@ -46,15 +46,21 @@ Json to_json(const std::optional<daq::RateEstimate>& rate) {
           {"clock_reading_count", rate->anchor_count}};
 }
 
-/// Bins without a read are left out.
-Json to_json(const daq::LatencyHistogram& latency) {
+/// Empty bins are left out.
+/// \param of_what  name of the number in a bin.
+Json to_json(const daq::LatencyHistogram& latency, const char* of_what) {
   Json bins = Json::array();
   for (std::size_t bin = 0; bin < daq::LatencyHistogram::kBins; ++bin) {
     if (latency.counts()[bin] == 0) continue;
     bins.push_back(
-        {{"below", or_null(daq::LatencyHistogram::limit_s(bin))}, {"read_count", latency.counts()[bin]}});
+        {{"below", or_null(daq::LatencyHistogram::limit_s(bin))}, {of_what, latency.counts()[bin]}});
   }
   return {{"largest", latency.largest_s()}, {"bins", bins}};
+}
+
+Json to_json(const std::optional<daq::ScanRing::Use>& ring) {
+  if (!ring) return nullptr;
+  return {{"capacity_block_count", ring->capacity}, {"high_water_block_count", ring->high_water}};
 }
 
 Json or_nothing(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
@@ -157,7 +163,9 @@ Json status_json(const Status& status) {
                    {"unsaved", status.scans.unsaved}, {"under_way", status.scans.under_way()}};
   json["board_loss_count"] = status.board_loss_count;
   json["scan_rate_measured"] = to_json(status.scan_rate_measured);
-  json["read_latency"] = to_json(status.latency);
+  json["read_latency"] = to_json(status.latency, "read_count");
+  json["ring"] = to_json(status.ring);
+  json["commit_time"] = to_json(status.commit_time, "commit_count");
   json["storage_stall_count"] = status.storage_stall_count;
   json["storage"] = to_json(status.storage);
   json["calibration"] = to_json(status.calibration);

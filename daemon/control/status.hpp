@@ -11,6 +11,7 @@
 #include "core/daq/board.hpp"
 #include "core/daq/latency_histogram.hpp"
 #include "core/daq/rate_fit.hpp"
+#include "core/daq/scan_ring.hpp"
 #include "core/friction/live_cycle.hpp"
 #include "core/pipeline/bench_state.hpp"
 #include "daemon/control/batches.hpp"
@@ -39,6 +40,8 @@ struct Status {
   std::uint64_t board_loss_count = 0;                   ///< Times the board went away or failed.
   std::optional<daq::RateEstimate> scan_rate_measured;  ///< Of the board's present life.
   daq::LatencyHistogram latency;                        ///< Of reads.
+  std::optional<daq::ScanRing::Use> ring;               ///< Of the board's present life.
+  daq::LatencyHistogram commit_time;  ///< Of the disk: until what a journal was given was durable.
   std::uint64_t storage_stall_count = 0;
   std::int64_t test_count = 0;               ///< Ended.
   std::optional<std::int64_t> current_test;  ///< Running now.

@@ -104,7 +104,8 @@ const Tables = (() => {
       ["measured", status.scan_rate_measured ? `${status.scan_rate_measured.value.toFixed(4)} Hz` : "–"],
       ["load cell", loadCell(status.calibration)], ["scans", String(status.scan_count)], ["gaps", `${status.gap_count} (${status.lost_scan_count} scans)`],
       ["disk", status.storage.why != null ? `${status.storage.why}; ${status.storage.to_do}` : status.storage.room_h == null ? "–" : `${status.storage.room_h.toFixed(0)} h`],
-      ["worst read", `${(1000 * latency.largest).toFixed(2)} ms`], ["tests", String(status.test_count)],
+      ["worst read", `${(1000 * latency.largest).toFixed(2)} ms`], ["worst commit", `${(1000 * status.commit_time.largest).toFixed(1)} ms`],
+      ["ring", status.ring ? `${(100 * status.ring.high_water_block_count / status.ring.capacity_block_count).toFixed(1)} % at most` : "–"], ["tests", String(status.test_count)],
       ["readers", `${status.live_clients.count}, ${status.live_clients.dropped_frame_count} dropped`]];
     document.getElementById("health").replaceChildren(...facts.flatMap(([name, value]) => {
       const dt = document.createElement("dt"), dd = document.createElement("dd");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <map>
 #include <regex>
 #include <set>
@@ -66,6 +67,8 @@ Status busy() {
   status.latency.add(20e3);    // 20 µs
   status.latency.add(500e3);   // 0.5 ms
   status.latency.add(2500e6);  // 2.5 s, above all limits
+  status.commit_time.add(3e6);
+  status.ring = {.capacity = 12000, .high_water = 40};
   return status;
 }
 
@@ -78,6 +81,26 @@ TEST(Metrics, PageKeepsTheRulesOfTheFormat) {
     EXPECT_FALSE(page.families.at(family).empty()) << family;
     EXPECT_EQ(family.ends_with("_total"), type == "counter") << family;
   }
+}
+
+// docs/control.md has a row for each, and for nothing else.
+TEST(Metrics, EachIsDocumented) {
+  Status status = busy();
+  status.board.emplace();
+  status.scan_rate_measured.emplace();
+  status.storage.room_h = 3.0;
+  std::set<std::string> served;
+  for (const auto& [family, type] : Exposition{metrics_text(status)}.types) served.insert(family);
+  std::set<std::string> documented;
+  std::ifstream in{STICKSLIP_SOURCE_DIR "/docs/control.md"};
+  const std::regex name{"`(stickslip_[a-z_]+)"};
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with("| `stickslip_")) continue;
+    const std::string names = line.substr(0, line.find(" | "));
+    for (std::sregex_iterator it{names.begin(), names.end(), name}, end; it != end; ++it)
+      documented.insert((*it)[1]);
+  }
+  EXPECT_EQ(documented, served);
 }
 
 // Buckets are cumulative, the last is +Inf and equals the count; the sum is that of what was added.
@@ -108,7 +131,7 @@ TEST(Metrics, HistogramsAreWhole) {
     ASSERT_EQ(totals.size(), 2U) << family;
     EXPECT_EQ(totals.at("_count"), before) << family;
   }
-  EXPECT_TRUE(found.contains("stickslip_read_latency_seconds"));
+  EXPECT_EQ(found, (std::set<std::string>{"stickslip_read_latency_seconds", "stickslip_commit_seconds"}));
   for (const Exposition::Sample& sample : page.families.at("stickslip_read_latency_seconds")) {
     // Three additions of numbers with 53 bits each.
     if (sample.name.ends_with("_sum")) {

@@ -79,6 +79,24 @@ TEST(ScanRing, FullRingDropsAndCountsTheNewBlock) {
   EXPECT_EQ(gap->count, 12);
 }
 
+// What waited at once: neither what went through nor what waits now.
+TEST(ScanRing, HighWaterIsTheMostThatWaitedAtOnce) {
+  constexpr std::size_t kCapacity = 4;
+  ScanRing ring(kCapacity);
+  EXPECT_EQ(ring.use().capacity, kCapacity);
+  EXPECT_EQ(ring.use().high_water, 0U);
+  std::array<ScanBlock, kCapacity> out;
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(ring.push(stamped_block(i, 1)));
+  ASSERT_EQ(ring.pop(out.data(), 2), 2U);
+  EXPECT_EQ(ring.use().high_water, 3U);
+  ASSERT_TRUE(ring.push(stamped_block(3, 1)));
+  ASSERT_EQ(ring.pop(out.data(), kCapacity), 2U);
+  EXPECT_EQ(ring.use().high_water, 3U);
+  for (int i = 4; i < 9; ++i) ring.push(stamped_block(i, 1));
+  ASSERT_EQ(ring.pop(out.data(), kCapacity), kCapacity);
+  EXPECT_EQ(ring.use().high_water, kCapacity);
+}
+
 // A Comedi wake-up comes every 4 to 8 ms (HZ = 250) with 1 to 3 scans at 350 Hz.
 TEST(ScanRing, CapacityBridgesAMinuteOfSmallBlocks) {
   EXPECT_GE(ScanRing::capacity_for(350.0), 60.0 / 0.008);

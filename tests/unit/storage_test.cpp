@@ -190,6 +190,35 @@ TEST(Storage, ADiskThatTakesItsTimeHoldsNobodyUp) {
   expect_whole(heard.file(1), 0, kTenMinutes);
 }
 
+// Each call of this disk takes a millisecond, and no commit is without a call.
+TEST(Storage, ToldHowLongTheDiskTakes) {
+  using Clock = std::chrono::steady_clock;
+  const TemporaryFolder folder;
+  FaultyDisk disk;
+  disk.hold([] {
+    for (const auto until = Clock::now() + std::chrono::milliseconds{1}; Clock::now() < until;) {
+    }
+  });
+  TestLog tests;
+  Heard heard;
+  Storage storage{{folder.path(), DatedFolders::kNone, &disk}, finalise_plainly, tests, heard};
+  storage.use(header(), nullptr);
+  begin(storage, 1, 0);
+  feed(storage, 0, 3500);
+  end(storage, 1, 3500);
+  storage.stop();
+  const daq::LatencyHistogram took = storage.commit_time();
+  EXPECT_GE(took.largest_s(), 1e-3);
+  std::uint64_t commits = 0;
+  for (std::size_t bin = 0; bin < daq::LatencyHistogram::kBins; ++bin) {
+    commits += took.counts()[bin];
+    if (daq::LatencyHistogram::limit_s(bin) <= 1e-3) {
+      EXPECT_EQ(took.counts()[bin], 0U) << bin;
+    }
+  }
+  EXPECT_GE(commits, 1U);
+}
+
 TEST(Storage, WhatDoesNotFitIsAGapAndTheTestGoesOn) {
   const TemporaryFolder folder;
   FaultyDisk disk;
