@@ -7,6 +7,7 @@ extern "C" {  // glibc 2.36 leaves it out.
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -89,7 +90,8 @@ class LimitsEnd {
   posix_spawnattr_t attributes_{};
 };
 
-/// From outside: posix_spawn knows no limits. What a child does in its first microseconds is little.
+/// From outside: posix_spawn knows no limits. What a child does before is little, except where this process
+/// is kept from its processor for a while: wait() looks at what it wrote.
 void limit(pid_t child, const ChildLimits& limits) {
   const rlimit no_core{0, 0};
   ::prlimit(child, RLIMIT_CORE, &no_core, nullptr);
@@ -139,18 +141,23 @@ base::Result<std::optional<ChildProcess>> ChildProcess::start(const std::string&
     return base::failure("{} cannot be started: {}", program, record::system_message(error));
   }
   limit(child, limits);
-  return ChildProcess{program, child, std::move(output), std::move(errors)};
+  return ChildProcess{program, child, std::move(output), std::move(errors), limits.output_size};
 }
 
 ChildProcess::ChildProcess(std::string program, pid_t child, record::Descriptor output,
-                           record::Descriptor errors)
-    : program_(std::move(program)), child_(child), output_(std::move(output)), errors_(std::move(errors)) {}
+                           record::Descriptor errors, std::size_t output_limit)
+    : program_(std::move(program)),
+      child_(child),
+      output_(std::move(output)),
+      errors_(std::move(errors)),
+      output_limit_(output_limit) {}
 
 ChildProcess::ChildProcess(ChildProcess&& other) noexcept
     : program_(std::move(other.program_)),
       child_(std::exchange(other.child_, 0)),
       output_(std::move(other.output_)),
-      errors_(std::move(other.errors_)) {}
+      errors_(std::move(other.errors_)),
+      output_limit_(other.output_limit_) {}
 
 ChildProcess::~ChildProcess() {
   if (child_ == 0) return;
@@ -170,12 +177,18 @@ base::Result<ChildAnswer> ChildProcess::wait() {
       return base::failure("{} cannot be waited for: {}", program_, record::system_message(errno));
   }
   child_ = 0;
+  constexpr int kSignalled = 128;  // As shells count.
   ChildAnswer answer;
+  answer.status = WIFSIGNALED(status) ? kSignalled + WTERMSIG(status) : WEXITSTATUS(status);
+  struct stat written {};
+  if (output_limit_ > 0 && fstat(output_.get(), &written) == 0 &&
+      static_cast<std::size_t>(written.st_size) > output_limit_) {
+    answer.status = kSignalled + SIGXFSZ;
+    return answer;
+  }
   if (!read_all(output_.get(), answer.output) || !read_all(errors_.get(), answer.errors)) {
     return base::failure("what {} wrote cannot be read: {}", program_, record::system_message(errno));
   }
-  constexpr int kSignalled = 128;  // As shells count.
-  answer.status = WIFSIGNALED(status) ? kSignalled + WTERMSIG(status) : WEXITSTATUS(status);
   return answer;
 }
 

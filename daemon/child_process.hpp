@@ -53,12 +53,14 @@ class ChildProcess {
   [[nodiscard]] base::Result<ChildAnswer> wait();
 
  private:
-  ChildProcess(std::string program, pid_t child, record::Descriptor output, record::Descriptor errors);
+  ChildProcess(std::string program, pid_t child, record::Descriptor output, record::Descriptor errors,
+               std::size_t output_limit);
 
   std::string program_;
   pid_t child_;  ///< 0: it has been waited for.
   record::Descriptor output_;
   record::Descriptor errors_;
+  std::size_t output_limit_;  ///< 0: none.
 };
 
 /// Starts a program without the user's environment, gives it the input and waits for its end.
