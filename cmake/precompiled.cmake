@@ -14,8 +14,11 @@ set(CMAKE_UNITY_BUILD ON)
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 0)
 # Tests are compiled more often than run, debugged with the preset dev, and compute little by themselves. So do the
 # programs, which sanitizers build to be watched: Clang takes less than half of the time over them without
-# optimisation. What computes is core.
-set(quick_options -O0)
+# optimisation. What computes is core. Without tests, as the preset fuzz is, all of it is to run fast.
+set(quick_options)
+if(STICKSLIP_TESTS)
+  set(quick_options -O0)
+endif()
 
 file(WRITE ${CMAKE_BINARY_DIR}/precompiled.cpp "// Only so that its headers are compiled.\n")
 set(common_headers
@@ -37,11 +40,13 @@ if(STICKSLIP_SANITIZE)
   target_compile_options(stickslip_program_headers PRIVATE ${quick_options})
   target_precompile_headers(stickslip_program_headers PRIVATE ${common_headers})
 endif()
-find_package(GTest REQUIRED)
-stickslip_precompiled_headers(stickslip_test_headers GTest::gmock)
-target_compile_options(stickslip_test_headers PRIVATE ${quick_options} -g0)
-target_precompile_headers(stickslip_test_headers PRIVATE ${common_headers} <gmock/gmock.h> <gtest/gtest.h>
-  <rapidcheck.h>)
+if(STICKSLIP_TESTS)
+  find_package(GTest REQUIRED)
+  stickslip_precompiled_headers(stickslip_test_headers GTest::gmock)
+  target_compile_options(stickslip_test_headers PRIVATE ${quick_options} -g0)
+  target_precompile_headers(stickslip_test_headers PRIVATE ${common_headers} <gmock/gmock.h> <gtest/gtest.h>
+    <rapidcheck.h>)
+endif()
 
 # stickslip_precompiled(NAME HEADERS): HEADERS is stickslip_library_headers, stickslip_test_headers or, with a sanitizer,
 # stickslip_program_headers.
