@@ -15,7 +15,7 @@ namespace stickslip::friction {
 
 namespace {
 
-struct Line {
+struct MedianLine {
   double time_s = 0.0;
   double value = 0.0;
   double slope = 0.0;
@@ -24,7 +24,7 @@ struct Line {
 /// Through points whose value is within [low, high]: the median of the slopes between any two of them, and
 /// the median of what that leaves. Right as long as no more than 29 % of them are strays. [Theil 1950; Sen,
 /// J. Am. Stat. Assoc. 63:1379–1389, 1968]
-std::optional<Line> median_line(std::span<const CyclePoint> points, double low, double high) noexcept {
+std::optional<MedianLine> median_line(std::span<const CyclePoint> points, double low, double high) noexcept {
   constexpr std::size_t kMost = 24;  // Of more, so many at equal distances.
   const auto within = [&](const CyclePoint& point) { return point.value >= low && point.value <= high; };
   const auto count = static_cast<std::size_t>(std::ranges::count_if(points, within));
@@ -50,7 +50,7 @@ std::optional<Line> median_line(std::span<const CyclePoint> points, double low, 
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
   };
-  Line line{chosen[0]->time_s, 0.0, median(std::span{slopes}.first(pairs))};
+  MedianLine line{chosen[0]->time_s, 0.0, median(std::span{slopes}.first(pairs))};
   std::array<double, kMost> levels{};
   for (std::size_t i = 0; i < size; ++i)
     levels[i] = chosen[i]->value - line.slope * (chosen[i]->time_s - line.time_s);
