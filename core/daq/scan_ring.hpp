@@ -62,9 +62,7 @@ class ScanRing {
     std::size_t high_water = 0;  ///< Most that waited at once, as far as the consumer has come.
   };
   /// Any thread.
-  [[nodiscard]] Use use() const noexcept {
-    return {capacity_, high_water_.load(std::memory_order_relaxed)};
-  }
+  [[nodiscard]] Use use() const noexcept { return {capacity_, high_water_.load(std::memory_order_relaxed)}; }
 
   /// Any thread.
   [[nodiscard]] std::uint64_t dropped_scan_count() const noexcept {

@@ -120,8 +120,8 @@ std::string metrics_text(const Status& status) {
     page.counter("fleet_dropped_results_total", "Results that a full outbox had no room for.",
                  status.fleet->dropped_result_count);
   }
-  histogram(page, "read_latency_seconds", "From the last scan of a block to the end of the read that brought it.",
-            status.latency);
+  histogram(page, "read_latency_seconds",
+            "From the last scan of a block to the end of the read that brought it.", status.latency);
   histogram(page, "commit_seconds", "To write and sync what a running test had handed over.",
             status.commit_time);
   return std::move(page).text();
