@@ -102,7 +102,7 @@ class Session {
     const std::lock_guard lock{live_mutex_};
     return clocks_;
   }
-  /// Of this session. From any thread.
+  /// From any thread: how full the ring is and was.
   [[nodiscard]] daq::ScanRing::Use ring_use() const noexcept { return ring_.use(); }
   /// From any thread: scans that the board has delivered.
   [[nodiscard]] std::uint64_t delivered_scan_count() const noexcept {

@@ -10,6 +10,7 @@
 
 #include "core/friction/huber.hpp"
 #include "core/friction/slip_waveform.hpp"
+#include "core/signal/statistics.hpp"
 
 namespace stickslip::friction {
 
@@ -45,16 +46,11 @@ std::optional<MedianLine> median_line(std::span<const CyclePoint> points, double
     }
   }
   if (pairs == 0) return std::nullopt;
-  const auto median = [](std::span<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-  };
-  MedianLine line{chosen[0]->time_s, 0.0, median(std::span{slopes}.first(pairs))};
+  MedianLine line{chosen[0]->time_s, 0.0, signal::median(std::span{slopes}.first(pairs))};
   std::array<double, kMost> levels{};
   for (std::size_t i = 0; i < size; ++i)
     levels[i] = chosen[i]->value - line.slope * (chosen[i]->time_s - line.time_s);
-  line.value = median(std::span{levels}.first(size));
+  line.value = signal::median(std::span{levels}.first(size));
   return line;
 }
 
