@@ -110,7 +110,7 @@ void whole(benchmark::State& state, friction::EstimatorTier tier) {
     daemon::Session session{std::move(board),
                             settings,
                             {&storage, &latest},
-                            {[] {}, [&ended](daemon::Acquisition::End) { ended.set_value(); }},
+                            {[] {}, [&ended](daemon::Acquisition::End) { ended.set_value(); }, {}},
                             counts};
     const auto begin = std::chrono::steady_clock::now();
     if (!session.start()) state.SkipWithError("the board does not start");

@@ -24,13 +24,23 @@ class BoundedQueue {
 
   /// Producer only; waits for room.
   void push(const T& item) {
+    put(item);
+    announce();
+  }
+
+  /// Producer only; waits for room. The consumer is not told until announce(): several items wake it once.
+  void put(const T& item) {
     if (!free_slots_.try_acquire()) {
       stalls_.fetch_add(1, std::memory_order_relaxed);
+      announce();  // It could wait for items that it does not know of, while this waits for it.
       free_slots_.acquire();
     }
     // The slot was free before it was acquired, so this cannot fail.
     queue_.push(item);
-    items_.release();
+    ++put_;
+  }
+  void announce() noexcept {
+    for (; put_ > 0; --put_) items_.release();
   }
 
   /// Consumer only; waits for an item, at most `timeout`. \return false if none came.
@@ -49,6 +59,7 @@ class BoundedQueue {
   Semaphore free_slots_;
   Semaphore items_;
   std::atomic<std::uint64_t> stalls_{0};
+  unsigned put_ = 0;  ///< The producer's: not announced yet.
 };
 
 }  // namespace stickslip::daemon

@@ -157,10 +157,11 @@ void Storage::scans(daq::ScanIndex first, std::span<const double> raw, std::span
 }
 
 void Storage::hand_over_collected() {
-  if (collected_.count > 0) queue_.push(collected_);
+  if (collected_.count > 0) queue_.put(collected_);
   collected_.count = 0;
-  for (const friction::Cycle& cycle : collected_cycles_) queue_.push(cycle);
+  for (const friction::Cycle& cycle : collected_cycles_) queue_.put(cycle);
   collected_cycles_.clear();
+  queue_.announce();
 }
 
 void Storage::gap(const daq::Gap& gap) {

@@ -28,6 +28,31 @@ constexpr double kSettledStep = 1e-9;
 /// Halving alone needs 50.
 constexpr int kMostSteps = 60;
 
+/// Halley's step towards c′ = belt rate, for which c‴ = −γ c″ − ω₀² c′ is at hand.
+struct Step {
+  double length_s = 0.0;
+  double excess = 0.0;        ///< c′ less the rate, before it.
+  double acceleration = 0.0;  ///< c″, before it.
+  /// Nothing is left of the error but rounding.
+  bool exact = false;
+};
+
+Step step_from(double t_s, const SlipWaveform& slip, double belt_rate_per_s) noexcept {
+  const SlipWaveform::Motion motion = slip.motion(t_s);
+  const Oscillator& oscillator = slip.oscillator;
+  const double omega0_squared = oscillator.omega0_squared();
+  const double excess = motion.rate - belt_rate_per_s;
+  const double newton = excess / motion.acceleration;
+  const double bend = -0.5 * newton *
+                      (oscillator.gamma_per_s * motion.acceleration + omega0_squared * motion.rate) /
+                      motion.acceleration;
+  // The error left is the step times the squares of what bends c′ over it [Traub, Iterative Methods,
+  // 1964, 5.1].
+  const double phase_squared = oscillator.omega_squared * newton * newton;
+  const bool exact = std::abs(newton) * (bend * bend + phase_squared) <= kSettled * t_s;
+  return {-newton / (1.0 - bend), excess, motion.acceleration, exact};
+}
+
 }  // namespace
 
 std::optional<double> capture_time_s(const SlipWaveform& slip, double belt_rate_per_s) noexcept {
@@ -39,32 +64,37 @@ std::optional<double> capture_time_s(const SlipWaveform& slip, double belt_rate_
   // c′ turns round at t₃ and, half an oscillation before, at t₂: there it has the other sign.
   if (!(belt_rate_per_s > 0.0) && slip.rate(t2) >= belt_rate_per_s) return t2;
   if (rate_at_end == belt_rate_per_s) return t3;
-  // About its maximum c′ is nearly a cosine: from there Halley's steps, for which c‴ = −γ c″ − ω₀² c′ is at
-  // hand. What leads out of the bracket, which closes with each, is replaced by its middle.
-  const double gamma = slip.oscillator.gamma_per_s;
-  const double omega0_squared = slip.oscillator.omega0_squared();
+  // About its maximum c′ is nearly a cosine: from there by steps. What leads out of the bracket, which closes
+  // with each, is replaced by its middle.
   double low = t2;
   double high = t3;
   double t = t3 - std::acos(std::clamp(belt_rate_per_s / rate_at_end, -1.0, 1.0)) / omega;
   for (int step = 0; step < kMostSteps; ++step) {
-    const SlipWaveform::Motion motion = slip.motion(t);
-    const double excess = motion.rate - belt_rate_per_s;
-    (excess < 0.0 ? low : high) = t;
-    const double newton = excess / motion.acceleration;
-    const double bend =
-        -0.5 * newton * (gamma * motion.acceleration + omega0_squared * motion.rate) / motion.acceleration;
-    double next = t - newton / (1.0 - bend);
-    // The error left is the step times the squares of what bends c′ over it [Traub, Iterative Methods,
-    // 1964, 5.1].
-    const double phase = omega * newton;
-    const bool exact = std::abs(newton) * (bend * bend + phase * phase) <= kSettled * t3;
+    const Step taken = step_from(t, slip, belt_rate_per_s);
+    (taken.excess < 0.0 ? low : high) = t;
+    double next = t + taken.length_s;
     const bool inside = next >= low && next <= high;
     if (!inside) next = 0.5 * (low + high);
-    const bool settled = (exact && inside) || std::abs(next - t) <= kSettledStep * t3;
+    const bool settled = (taken.exact && inside) || std::abs(next - t) <= kSettledStep * t3;
     t = next;
     if (settled) break;
   }
   return t;
+}
+
+std::optional<double> capture_time_near_s(const SlipWaveform& slip, double belt_rate_per_s,
+                                          double near_s) noexcept {
+  constexpr int kMostNearSteps = 6;
+  const double quarter_s = 0.5 * std::numbers::pi / slip.oscillator.omega_rad_per_s();
+  double t = near_s;
+  for (int step = 0; step < kMostNearSteps; ++step) {
+    const Step taken = step_from(t, slip, belt_rate_per_s);
+    t += taken.length_s;
+    // c′ rises from t₂ to t₃ alone.
+    if (!(taken.acceleration > 0.0 && std::abs(t - near_s) < quarter_s)) return std::nullopt;
+    if (taken.exact) return t;
+  }
+  return std::nullopt;
 }
 
 double deciding_time_s(const SlipWaveform& slip, const BeltCourse& belt, double r, double onset_s) noexcept {

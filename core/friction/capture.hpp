@@ -16,6 +16,11 @@ namespace stickslip::friction {
 /// \return seconds after the onset; nothing if the sled does not stick again.
 [[nodiscard]] std::optional<double> capture_time_s(const SlipWaveform& slip, double belt_rate_per_s) noexcept;
 
+/// The same where the capture of a course that differs a little is known: nothing where it is not found
+/// within a quarter of an oscillation of that, by steps that only it can end. \param near_s  of that capture.
+[[nodiscard]] std::optional<double> capture_time_near_s(const SlipWaveform& slip, double belt_rate_per_s,
+                                                        double near_s) noexcept;
+
 /// The same on a belt whose speed may change: the last upward crossing of c′ and the belt's rate about t₃. It
 /// exists exactly when c′ less the rate is not negative at its maximum, which a steady acceleration moves
 /// from t₃ to where c″ is the slope of the rate; that is looked for within a quarter of an oscillation of t₃,

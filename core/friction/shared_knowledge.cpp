@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 namespace stickslip::friction {
 namespace {
@@ -89,7 +89,7 @@ void SharedKnowledge::update_best() {
     // Scales of ω, γ and r differ by orders: each by its own.
     const Eigen::Vector3d scale = terms.information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::Matrix3d scaled = scale.asDiagonal() * terms.information * scale.asDiagonal();
-    const Eigen::Vector3d step = scale.cwiseProduct(scaled.ldlt().solve(scale.cwiseProduct(terms.gradient)));
+    const Eigen::Vector3d step = scale.cwiseProduct(scaled.inverse() * scale.cwiseProduct(terms.gradient));
     const SharedParameters next{best_.omega + step[0], best_.gamma + step[1], best_.r + step[2]};
     if (!step.allFinite() || !(next.omega > 0.0) || !(next.r > 0.0) ||
         !(std::abs(next.gamma) < 2.0 * next.omega)) {

@@ -7,7 +7,6 @@ manual_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
 
 import os
 import pathlib
-import pty
 import re
 import shutil
 import subprocess
@@ -16,6 +15,7 @@ import tempfile
 import unittest
 
 from running_daemon import RunningDaemon
+from terminal import run_at_a_terminal
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
@@ -144,18 +144,8 @@ class Completion(unittest.TestCase):
 
 class Colours(unittest.TestCase):
     def at_a_terminal(self, daemon, **environment):
-        shown, terminal = pty.openpty()
-        with os.fdopen(shown, "rb") as output:
-            done = subprocess.run([str(PROGRAMS["stickslip"]), "status", "--socket", str(daemon.socket)], stdout=terminal, stderr=terminal,
-                                  timeout=TIMEOUT_S, check=True, env=environment)
-            self.assertEqual(done.returncode, 0)
-            os.close(terminal)
-            text = b""
-            try:
-                while part := output.read1(65536):
-                    text += part
-            except OSError:  # Linux says EIO at the end of a terminal.
-                pass
+        text, code, _ = run_at_a_terminal([PROGRAMS["stickslip"], "status", "--socket", daemon.socket], timeout_s=TIMEOUT_S, env=environment)
+        self.assertEqual(code, 0)
         return text.decode()
 
     def test_status_is_a_table_with_colours_at_terminals_that_want_them(self):

@@ -5,9 +5,7 @@ simulate_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
 """
 
 import json
-import os
 import pathlib
-import pty
 import subprocess
 import sys
 import tempfile
@@ -15,6 +13,8 @@ import unittest
 
 import h5py
 import numpy
+
+from terminal import run_at_a_terminal
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
@@ -236,15 +236,12 @@ folder = "records"
                          f"stickslip simulate {SCENE} -o {record.filename}")
 
     def test_progress_is_shown_on_a_terminal(self):
-        terminal, end = pty.openpty()
-        done = subprocess.run([str(CLI), "simulate", SCENE, "-o", str(self.folder / "x.h5")], stderr=end,
-                              stdout=subprocess.PIPE, timeout=TIMEOUT_S, check=True)
-        os.close(end)
-        shown = os.read(terminal, 100_000)
-        os.close(terminal)
+        shown, code, output = run_at_a_terminal([CLI, "simulate", SCENE, "-o", self.folder / "x.h5"],
+                                                timeout_s=TIMEOUT_S, stdout=subprocess.PIPE)
+        self.assertEqual(code, 0)
         self.assertIn(b"100 %", shown)
         self.assertTrue(shown.endswith(b"\r\x1b[K"), shown)
-        self.assertNotIn(b"\x1b", done.stdout)
+        self.assertNotIn(b"\x1b", output)
 
 
 class Scenes(Folder):

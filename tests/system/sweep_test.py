@@ -5,9 +5,7 @@ sweep_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
 """
 
 import json
-import os
 import pathlib
-import pty
 import signal
 import subprocess
 import sys
@@ -17,6 +15,8 @@ import unittest
 
 import h5py
 import numpy
+
+from terminal import run_at_a_terminal
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
@@ -147,15 +147,12 @@ class Sweep(Folder):
         self.assertRegex(printed, r"(?m)^ +3 ( [SRMGU]){7}$")
 
     def test_progress_is_shown_on_a_terminal(self):
-        terminal, end = pty.openpty()
-        done = subprocess.run([str(CLI), "sweep", SCENE, *QUICK, "--repeat", "3", "-o", str(self.folder / "a.h5")],
-                              stderr=end, stdout=subprocess.PIPE, timeout=TIMEOUT_S, check=True)
-        os.close(end)
-        shown = os.read(terminal, 100_000)
-        os.close(terminal)
+        shown, code, output = run_at_a_terminal([CLI, "sweep", SCENE, *QUICK, "--repeat", "3", "-o", self.folder / "a.h5"],
+                                                timeout_s=TIMEOUT_S, stdout=subprocess.PIPE)
+        self.assertEqual(code, 0)
         self.assertIn(b"3/3 runs, 0 s left", shown)
         self.assertTrue(shown.endswith(b"\r\x1b[K"), shown)
-        self.assertNotIn(b"\x1b", done.stdout)
+        self.assertNotIn(b"\x1b", output)
 
 
 class Interrupted(Folder):
