@@ -7,10 +7,12 @@ Runs the daemon at 350 scans/s on the simulated board and listens for so long (6
 (20), each a `stickslip watch --json` of its own, and again: two rounds. Of each frame: the time at which the event came to
 the sink that made it (`sink_time`), and the time at which its line is read here, less the time at which read() had come
 back in the daemon (`read_time`). The way to the sink goes through the ring and the detector; the way to the listener goes on
-through the feed, the main thread, the socket, and the listener's own program and pipe.
+through the feed, the main thread, the socket, and the listener's own program and pipe. Beside them, at the same time, how late
+a program wakes up that does nothing but sleep 4 ms: what the machine itself takes, which no program can be faster than.
 """
 
 import json
+import multiprocessing
 import pathlib
 import subprocess
 import sys
@@ -19,6 +21,19 @@ import time
 
 ROUNDS = 2
 SCENE = pathlib.Path(__file__).resolve().parent.parent / "config/scenes/stick-slip-at-12-in-per-min.toml"
+
+
+SLEEP_S = 4e-3
+
+
+def sleeper(end, late_ms):
+    """Sends how late it woke up, again and again until `end` is set, as one list."""
+    late = []
+    while not end.is_set():
+        begun = time.monotonic()
+        time.sleep(SLEEP_S)
+        late.append(1e3 * (time.monotonic() - begun - SLEEP_S))
+    late_ms.send(late)
 
 
 def latencies_ms(command, seconds):
@@ -65,13 +80,23 @@ level = "warning"
                 while not (pathlib.Path(folder) / "c.sock").exists():
                     time.sleep(0.05)
                 found = {}
+                late = {}
                 for others in (0, int(clients)) * ROUNDS:
                     beside = [subprocess.Popen(watch, stdout=subprocess.DEVNULL) for _ in range(others)]
+                    end, (received, sent) = multiprocessing.Event(), multiprocessing.Pipe(duplex=False)
+                    sleeping = multiprocessing.Process(target=sleeper, args=(end, sent))
+                    sleeping.start()
                     for (kind, to), values in latencies_ms(watch, float(seconds)).items():
                         found.setdefault((kind, to, others), []).extend(values)
+                    end.set()
+                    late.setdefault(others, []).extend(received.recv())
+                    sleeping.join()
                     for other in beside:
                         other.kill()
                         other.wait()
+                for others, values in late.items():
+                    print(f"a program that only sleeps {others:>3} others {len(values):>5} times    median {part(values, 0.5):6.3f} ms"
+                          f"   99 % {part(values, 0.99):6.2f} ms   largest {max(values):6.2f} ms")
                 for (kind, to, others), values in found.items():
                     print(f"{kind:<6} to the {to:<9} {others:>3} others {len(values):>6} frames   median {part(values, 0.5):6.3f} ms"
                           f"   99 % {part(values, 0.99):6.2f} ms   largest {max(values):6.2f} ms")

@@ -36,16 +36,16 @@ foreach(section 1 5 8)
 endforeach()
 stickslip_install_compressed(${CMAKE_SOURCE_DIR}/CHANGELOG.md usr/share/doc/stickslip changelog)
 
-# Of the package itself. Its date is that of the last commit.
+# Of the package itself. Its date is that of the last commit, which is asked each time.
 set(debian_changelog ${CMAKE_BINARY_DIR}/package/debian_changelog)
-add_custom_command(OUTPUT ${debian_changelog}
+add_custom_target(package_changelog
   COMMAND ${CMAKE_COMMAND} -DSOURCE_DIR=${CMAKE_SOURCE_DIR} -DTEMPLATE=${CMAKE_SOURCE_DIR}/package/changelog.in
     -DOUTPUT=${debian_changelog} -DPROJECT_VERSION=${PROJECT_VERSION} -P ${CMAKE_SOURCE_DIR}/cmake/version.cmake
-  DEPENDS ${CMAKE_SOURCE_DIR}/package/changelog.in VERBATIM)
+  BYPRODUCTS ${debian_changelog} VERBATIM)
 stickslip_install_compressed(${debian_changelog} usr/share/doc/stickslip changelog.Debian)
 get_property(compressed GLOBAL PROPERTY STICKSLIP_COMPRESSED)
 add_custom_target(package_files DEPENDS ${compressed})
-add_dependencies(package_files manual)
+add_dependencies(package_files manual package_changelog)
 
 install(FILES package/copyright README.md SECURITY.md DESTINATION usr/share/doc/stickslip)
 install(DIRECTORY docs DESTINATION usr/share/doc/stickslip FILES_MATCHING PATTERN "*.md")
