@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <iterator>
 #include <vector>
 
 #include "core/friction/test_analysis.hpp"
@@ -39,7 +40,7 @@ void analysis_streaming(benchmark::State& state) {
     for (const double value : scans) analysis.add(index++, value, false);
     benchmark::DoNotOptimize(analysis);
   }
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * scans.size()));
+  state.SetItemsProcessed(state.iterations() * std::ssize(scans));
 }
 BENCHMARK(analysis_streaming);
 
@@ -53,14 +54,14 @@ void analysis_with_whole_test_fit(benchmark::State& state) {
     cycles = analysis.finish().cycle_count.value.value_or(0.0);
   }
   state.counters["cycles"] = cycles;
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * scans.size()));
+  state.SetItemsProcessed(state.iterations() * std::ssize(scans));
 }
 BENCHMARK(analysis_with_whole_test_fit);
 
 void peer_raw_maximum(benchmark::State& state) {
   const std::vector<double> scans = one_test();
   for (auto _ : state) benchmark::DoNotOptimize(*std::max_element(scans.begin(), scans.end()));
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * scans.size()));
+  state.SetItemsProcessed(state.iterations() * std::ssize(scans));
 }
 BENCHMARK(peer_raw_maximum);
 

@@ -44,6 +44,7 @@ void print(const test::RampTrials& trials) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(bugprone-exception-escape): what std::terminate says is enough of a message for a bench.
 int main(int argc, char** argv) {
   const auto count = static_cast<int>(argc > 1 ? number(argv[1]) : 100);
   const std::uint64_t seed = argc > 2 ? number(argv[2]) : 1;

@@ -26,7 +26,7 @@ void ring_hand_over(benchmark::State& state) {
     ring.push(block);
     benchmark::DoNotOptimize(ring.pop(&block, 1));
   }
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * ScanBlock::kMaxScans);
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ScanBlock::kMaxScans));
 }
 BENCHMARK(ring_hand_over);
 
@@ -44,7 +44,7 @@ void peer_mutex_deque_hand_over(benchmark::State& state) {
     queue.pop_front();
     benchmark::DoNotOptimize(block);
   }
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * ScanBlock::kMaxScans);
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ScanBlock::kMaxScans));
 }
 BENCHMARK(peer_mutex_deque_hand_over);
 

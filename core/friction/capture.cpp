@@ -29,7 +29,7 @@ constexpr double kSettledStep = 1e-9;
 constexpr int kMostSteps = 60;
 
 /// Halley's step towards c′ = belt rate, for which c‴ = −γ c″ − ω₀² c′ is at hand.
-struct Step {
+struct CaptureStep {
   double length_s = 0.0;
   double excess = 0.0;        ///< c′ less the rate, before it.
   double acceleration = 0.0;  ///< c″, before it.
@@ -37,7 +37,7 @@ struct Step {
   bool exact = false;
 };
 
-Step step_from(double t_s, const SlipWaveform& slip, double belt_rate_per_s) noexcept {
+CaptureStep step_from(double t_s, const SlipWaveform& slip, double belt_rate_per_s) noexcept {
   const SlipWaveform::Motion motion = slip.motion(t_s);
   const Oscillator& oscillator = slip.oscillator;
   const double omega0_squared = oscillator.omega0_squared();
@@ -70,7 +70,7 @@ std::optional<double> capture_time_s(const SlipWaveform& slip, double belt_rate_
   double high = t3;
   double t = t3 - std::acos(std::clamp(belt_rate_per_s / rate_at_end, -1.0, 1.0)) / omega;
   for (int step = 0; step < kMostSteps; ++step) {
-    const Step taken = step_from(t, slip, belt_rate_per_s);
+    const CaptureStep taken = step_from(t, slip, belt_rate_per_s);
     (taken.excess < 0.0 ? low : high) = t;
     double next = t + taken.length_s;
     const bool inside = next >= low && next <= high;
@@ -88,7 +88,7 @@ std::optional<double> capture_time_near_s(const SlipWaveform& slip, double belt_
   const double quarter_s = 0.5 * std::numbers::pi / slip.oscillator.omega_rad_per_s();
   double t = near_s;
   for (int step = 0; step < kMostNearSteps; ++step) {
-    const Step taken = step_from(t, slip, belt_rate_per_s);
+    const CaptureStep taken = step_from(t, slip, belt_rate_per_s);
     t += taken.length_s;
     // c′ rises from t₂ to t₃ alone.
     if (!(taken.acceleration > 0.0 && std::abs(t - near_s) < quarter_s)) return std::nullopt;
