@@ -121,7 +121,7 @@ double K_of_turning_points(double peak, double trough, const Oscillator& oscilla
 }
 
 double delta_mu_of_peak(double peak_above_K, double stick_rate_per_s, const Oscillator& oscillator) noexcept {
-  constexpr int kRounds = 8;         // Of Newton, from [2]; the peak rises with D and is convex in it.
+  constexpr int kRounds = 8;             // Of Newton, from [2]; the peak rises with D and is convex in it.
   constexpr double kSettledPart = 1e-8;  // Of itself: the next round would change it by the square.
   const double belt = stick_rate_per_s / oscillator.omega_rad_per_s();
   double D = std::sqrt(std::max(peak_above_K * peak_above_K - belt * belt, 0.0));
