@@ -134,10 +134,11 @@ FittedCapture fit_captured(const FittedCapture& first, std::span<const LiveRow> 
   double damping = kFirstDamping;
   for (int iteration = 0; iteration < kMostLiveIterations; ++iteration) {
     const LiveCapturedCourse::Equations& now = best.equations;
-    // In units of each parameter's own, and only shifted: its diagonal is one.
+    // In units of each parameter's own; the diagonal is one then, also for S where no row lies behind its
+    // onset.
     const Eigen::Vector4d scale = now.normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     Eigen::Matrix4d scaled = scale.asDiagonal() * now.normal * scale.asDiagonal();
-    scaled.diagonal() *= 1.0 + damping;
+    scaled.diagonal().setConstant(1.0 + damping);
     const Eigen::Vector4d step = scale.cwiseProduct(scaled.inverse() * scale.cwiseProduct(now.gradient));
     // What the step would gain, were the course linear.
     if (0.5 * step.dot(now.gradient) < kLiveConverged) break;

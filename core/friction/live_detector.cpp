@@ -46,6 +46,11 @@ double LiveDetector::time_of(double position) const noexcept {
 
 std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, bool saturated) {
   const double sigma = noise_.known() ? noise_.sigma() : kInfinity;
+  // The despiker still held scans from before the gap when it was told.
+  if (position_ == gap_at_ && lost_ > lost_before_) {
+    usable_noise_.gap();
+    follower_.gap();
+  }
   const double now_s = time_of(static_cast<double>(position_++));
   if (scan.spike) flags_after_ |= kCycleHasSpike;
   if (saturated) flags_after_ |= kCycleIsSaturated;

@@ -74,7 +74,7 @@ class LiveDetector {
   }
 
   LiveSettings settings_;
-  signal::NoiseEstimator noise_;         ///< Of scans as they come: what the despiker asks for.
+  signal::NoiseEstimator noise_;  ///< Of scans as they come: what despiker, finder and slip rule ask for.
   signal::NoiseEstimator usable_noise_;  ///< Of those that the follower gets.
   signal::Despiker despiker_;
   std::array<bool, 4> saturated_{};  ///< Of the scans that the despiker still holds, and one.

@@ -29,7 +29,7 @@ double fit_free(std::span<const LiveRow> rows, LiveFreeCourse& p) noexcept {
     // by_rate is smaller than the others by ω: its own unit.
     const Eigen::Vector3d scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::Matrix3d scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-    // Of three equal scales: what cofactors leave of the error the next round takes off.
+    // Of three equal scales: cofactors are exact enough.
     const Eigen::Vector3d step = scale.cwiseProduct(scaled.inverse() * scale.cwiseProduct(sum.gradient()));
     if (step.allFinite()) p += step;
   }

@@ -9,8 +9,8 @@ namespace stickslip::friction {
 namespace {
 
 /// Density, over that of noise at its middle, of scans that no course explains: one in twenty is a spike that
-/// was not found, anywhere within the ±6 σ that the despiker lets pass. −ln of it, 4.6, is the most that a
-/// scan tells: two strays cannot decide, three seldom meet.
+/// was not found, anywhere within the ±6 σ that the despiker lets pass. A scan tells ln 101 = 4.6 at most:
+/// two strays hardly decide, three seldom meet.
 constexpr double kStrayDensity = 0.01;
 /// Four parameters, and a choice.
 constexpr std::size_t kFewestRows = 8;
@@ -56,7 +56,7 @@ void LiveJunction::lay_out(std::span<const CyclePoint> points, const SharedParam
 }
 
 bool LiveJunction::leave_out_a_stray_of_both(const Courses& courses) noexcept {
-  // One alone costs as much.
+  // One stray alone costs as much: below that there is none.
   const double least = huber_cost(kStraySigmas, kChoiceLimit);
   if (courses.free_cost < least || courses.captured.equations.cost < least) return false;
   return rows_.leave_out_a_stray(common_count_, rows_.size(), [&](const LiveRow& row) {

@@ -14,6 +14,8 @@ constexpr double kRowsPerPeriod = 40.0;
 /// course.
 constexpr std::size_t kRowsPerStray = 5;
 constexpr std::size_t kMostStrays = 3;
+/// Of a free course, which through as many rows goes without leaving anything.
+constexpr std::size_t kFreeParameters = 3;
 
 }  // namespace
 
@@ -104,9 +106,13 @@ void LiveRows::readmit(std::size_t from, std::size_t to) noexcept {
 }
 
 bool LiveRows::leave_out(std::size_t which, std::size_t from, std::size_t to) noexcept {
-  const auto among = all().subspan(from, to - from);
-  const auto left_out = 1 + static_cast<std::size_t>(std::ranges::count_if(among, &LiveRow::stray));
+  const auto strays = [](std::span<const LiveRow> rows) {
+    return static_cast<std::size_t>(std::ranges::count_if(rows, &LiveRow::stray));
+  };
+  const std::size_t left_out = 1 + strays(all());
   if (left_out > kMostStrays || kRowsPerStray * left_out > size_) return false;
+  const std::size_t left = to - from - strays(all().subspan(from, to - from)) - 1;
+  if (left <= kFreeParameters) return false;
   rows_[which].stray = true;
   rows_[which].scale = 0.0;
   return true;

@@ -38,7 +38,8 @@ class SharedKnowledge {
   void update_best();
 
   SharedPrior prior_;
-  SharedEvidence learnt_;
+  SharedEvidence learnt_;   ///< lasting_ is part of it.
+  SharedEvidence lasting_;  ///< Of the first knowledge, what does not fade.
   SharedParameters best_;
   bool started_ = false;
 };

@@ -90,15 +90,19 @@ std::optional<double> slope_between(std::span<const CyclePoint> points, double l
     const double before_t = mean_t;
     const double before_c = mean_c;
     const double before_slope = slope;
+    int inside = 0;
+    int followed = 0;
     double n = 0.0;
     double s_tt = 0.0;
     double s_tc = 0.0;
     mean_t = mean_c = 0.0;
     for (const CyclePoint& point : points) {
       if (point.value < low || point.value > high) continue;
+      ++inside;
       const double off = point.value - before_c - before_slope * (point.time_s - before_t);
       const double z = off * std::sqrt(point.count) / sigma;
       if (std::abs(z) > kStraySigmas) continue;
+      ++followed;
       const double count = huber_weight(z) * point.count;
       // Running means: no difference of large sums [Welford, Technometrics 4(3):419–420, 1962].
       n += count;
@@ -108,8 +112,8 @@ std::optional<double> slope_between(std::span<const CyclePoint> points, double l
       s_tt += count * dt * (point.time_s - mean_t);
       s_tc += count * dt * (point.value - mean_c);
     }
-    // A bent rise has no line that describes it: its median line then.
-    if (!(s_tt > 0.0)) return before_slope;
+    // A bent rise has no line that describes it, and the few points that one happens to meet have no say.
+    if (2 * followed <= inside || !(s_tt > 0.0)) return start->slope;
     slope = s_tc / s_tt;
   }
   return slope;

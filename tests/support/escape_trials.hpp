@@ -18,6 +18,7 @@
 #include "core/sim/scene.hpp"
 #include "core/sim/scene_truth.hpp"
 #include "daemon/sweep/scene_scans.hpp"
+#include "tests/support/characterised.hpp"
 #include "tests/support/random_tests.hpp"
 
 namespace stickslip::test {
@@ -33,19 +34,6 @@ struct EscapeTrial {
   /// Of that slip, from its onset to the declaration; infinite if there was none.
   double periods = 0.0;
 };
-
-/// ω and γ from one ring-down of 1.5 s, to 0.013 % and 0.51 % (docs/detector.md).
-inline friction::SharedPrior characterised(const sim::Scene& scene) {
-  const double omega = scene.oscillator.omega_rad_per_s();
-  const double gamma_over_2omega = scene.oscillator.gamma_over_2omega();
-  friction::SharedPrior prior;
-  prior.coupling = friction::SharedPrior::Coupling{};
-  prior.coupling->omega = omega;
-  prior.coupling->gamma_over_2omega = gamma_over_2omega;
-  prior.coupling->covariance =
-      Eigen::Vector2d{std::pow(1.3e-4 * omega, 2), std::pow(5.1e-3 * gamma_over_2omega, 2)}.asDiagonal();
-  return prior;
-}
 
 inline EscapeTrial escape_trial(const sim::Scene& scene, const Disturbance& disturbance) {
   EscapeTrial trial;
@@ -73,7 +61,8 @@ inline EscapeTrial escape_trial(const sim::Scene& scene, const Disturbance& dist
   friction::LiveSettings settings;
   settings.scan_rate_Hz = scene.scan_rate_Hz;
   settings.step_coefficient = calibration.step_coefficient();
-  settings.prior = characterised(scene);
+  settings.prior =
+      characterised(scene.oscillator.omega_rad_per_s(), scene.oscillator.gamma_over_2omega(), scene.seed);
   friction::LiveDetector detector{settings};
   friction::Regime before = friction::Regime::kUndecided;
   std::optional<double> declared_s;

@@ -13,6 +13,7 @@
 
 #include "core/friction/live_detector.hpp"
 #include "core/friction/slip_model.hpp"
+#include "tests/support/characterised.hpp"
 
 namespace stickslip::test {
 
@@ -35,15 +36,9 @@ struct LiveScene {
   [[nodiscard]] friction::SharedParameters shared() const {
     return {omega(), 2.0 * gamma_over_2omega * omega(), Q * omega() * (S - K)};
   }
-  /// ω and γ from a ring-down, as docs/detector.md has them: 0.013 % and 0.51 %.
+  /// ω and γ from a ring-down, with its error.
   [[nodiscard]] friction::SharedPrior characterised() const {
-    friction::SharedPrior prior;
-    prior.coupling = friction::SharedPrior::Coupling{};
-    prior.coupling->omega = omega();
-    prior.coupling->gamma_over_2omega = gamma_over_2omega;
-    prior.coupling->covariance =
-        Eigen::Vector2d{std::pow(1.3e-4 * omega(), 2), std::pow(5.1e-3 * gamma_over_2omega, 2)}.asDiagonal();
-    return prior;
+    return test::characterised(omega(), gamma_over_2omega, seed);
   }
 };
 

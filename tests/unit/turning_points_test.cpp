@@ -84,5 +84,21 @@ TEST(SlopeBetween, ABentRiseHasASlopeOfItsOwn) {
   EXPECT_NEAR(slope_within(points), chord, 0.2 * chord);
 }
 
+// Points of many scans each tell a bend of 30 % from noise, so that most of them are off any line: the few
+// that are not have no say, and the slope is the median of all slopes, which is that of the chord by
+// symmetry.
+TEST(SlopeBetween, OfABentRiseOfManyScansItIsTheMedian) {
+  std::vector<CyclePoint> points = line_of(20);
+  const double length_s = points.back().time_s - 3.0;
+  for (CyclePoint& point : points) {
+    const double part = (point.time_s - 3.0) / length_s;
+    point.value = kLineSlope * length_s * (0.7 * part + 0.3 * part * part);
+    point.count = 25.0;
+  }
+  // A difference quotient of two of n points is the chord's slope where their middle is the middle; medians
+  // of n (n − 1)/2 of them are within one point of it: 0.6 of a slope over n points.
+  EXPECT_NEAR(slope_within(points), kLineSlope, 0.6 / 20.0 * kLineSlope);
+}
+
 }  // namespace
 }  // namespace stickslip::friction
