@@ -4,10 +4,12 @@
     bench/daemon_load.py BUILD_DIR [SECONDS]
 
 Runs the daemon at 350 scans/s on the simulated board, tests of 5.25 s one after the other, for so long (60), and prints
-the processor time of its threads as a part of one processor, its memory, and for comparison what this machine takes for
+the processor time of its threads as a part of one processor, beside it that of the processes that make the records, its
+memory, and for comparison what this machine takes for
 a thread that does nothing but wake up 50 and 350 times a second: on virtual machines that is most of it.
 """
 
+import os
 import pathlib
 import subprocess
 import sys
@@ -22,6 +24,12 @@ def thread_times_s(process):
     for thread in pathlib.Path(f"/proc/{process.pid}/task").iterdir():
         times_s[thread.name] = int((thread / "schedstat").read_text(encoding="ascii").split()[0]) / 1e9
     return times_s
+
+
+def records_time_s(process):
+    """Of the finalisers that have ended: a child's user and system time [proc(5), stat, fields 16 and 17]."""
+    fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
+    return sum(int(ticks) for ticks in fields[13:15]) / os.sysconf("SC_CLK_TCK")
 
 
 def sizes_kB(process):
@@ -59,16 +67,17 @@ level = "warning"
         with subprocess.Popen([daemon, "--config", config], cwd=folder) as process:
             try:
                 time.sleep(2)
-                before_s = thread_times_s(process)
+                before_s, records_before_s = thread_times_s(process), records_time_s(process)
                 begin = time.monotonic()
                 time.sleep(seconds)
-                after_s = thread_times_s(process)
+                after_s, records_after_s = thread_times_s(process), records_time_s(process)
                 took_s = time.monotonic() - begin
                 memory_kB = sizes_kB(process)
             finally:
                 process.terminate()
     used = sorted((100 * (after_s[name] - before_s.get(name, 0)) / took_s for name in after_s), reverse=True)
     print(f"processor  {sum(used):.2f} % of one, over {took_s:.0f} s; its threads {', '.join(f'{part:.2f}' for part in used)} %")
+    print(f"records    {100 * (records_after_s - records_before_s) / took_s:.2f} % of one: a process for each test, at its end")
     print(f"memory     {memory_kB['VmRSS'] / 1000:.1f} MB resident, {memory_kB['VmHWM'] / 1000:.1f} MB at most")
     for rate_Hz in (50, 350):
         print(f"waking up {rate_Hz} times a second and nothing else takes {waking_percent(rate_Hz, 8):.2f} %")

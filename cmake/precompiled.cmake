@@ -14,7 +14,7 @@ set(CMAKE_UNITY_BUILD ON)
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 0)
 # Tests are compiled more often than run, debugged with the preset dev, and compute little by themselves. So do the
 # programs, which sanitizers build to be watched: Clang takes less than half of the time over them without
-# optimisation. What computes is core. Without tests, as the preset fuzz is, all of it is to run fast.
+# optimisation. What computes is core. Without tests, as the preset fuzz-fast is, all of it is to run fast.
 set(quick_options)
 if(STICKSLIP_TESTS)
   set(quick_options -O0)
