@@ -64,7 +64,7 @@
   async function command(verb, body) {
     await attempt(async () => {
       const done = await ask("POST", `/v1/${verb}`, body);
-      say(verb === "tare" ? `zero ${done.zero.toFixed(6)} V from ${done.scan_count} scans` : `${verb}: test ${done.test}, scan ${done.scan}`, true);
+      say(`${verb}: test ${done.test}, scan ${done.scan}`, true);
       Tables.bench(done.bench);
       await refresh();
     });
@@ -83,6 +83,7 @@
     connect();
   });
 
+  Tare.connect(ask, refresh);
   Calibrate.connect(ask);
   Batch.connect(ask, say, refresh);
   Batches.connect(ask, fetched, download);
@@ -101,8 +102,8 @@
   });
 
   const frames = {
-    scans(frame) { Scope.scans(frame); if (frame.test != null) Tables.regime(frame.regime); },
-    bench(frame) { Tables.bench(frame.bench); },
+    scans(frame) { Scope.scans(frame); Tare.scans(frame); if (frame.test != null) Tables.regime(frame.regime); },
+    bench(frame) { Tables.bench(frame.bench); Tare.bench(frame.bench); },
     "test-began": frame => Scope.began(frame),
     fall: frame => Scope.fall(frame),
     cycle(frame) { Scope.cycle(frame); Tables.cycle(frame); },
@@ -112,6 +113,7 @@
     "test-ended": frame => { Scope.ended(frame); Tables.regime(frame.results.regime); attempt(refresh); },
     health(frame) {
       Tables.health(frame.status);
+      Tare.health(frame.status);
       Calibrate.health(frame.status);
       Batch.health(frame.status);
       Tables.bench(frame.status.bench);
@@ -126,6 +128,7 @@
     socket.addEventListener("message", event => { const frame = JSON.parse(event.data); frames[frame.type]?.(frame); });
     socket.addEventListener("close", () => {
       Tables.bench("not connected");
+      Tare.gone();
       Tables.trouble("the daemon does not answer: what is shown is the past");
       setTimeout(connect, kRetry);
     });

@@ -25,13 +25,14 @@ constexpr const char* kReportPolicy =
 constexpr const char* kScript = "text/javascript; charset=utf-8";
 constexpr const char* kStyle = "text/css; charset=utf-8";
 
-constexpr std::array<Asset, 11> kAssets{{
+constexpr std::array<Asset, 12> kAssets{{
     {"/", "text/html; charset=utf-8", live_page::live_html},
     {"/page/live.css", kStyle, live_page::live_css},
     {"/page/uplot.css", kStyle, live_page::uplot_css},
     {"/page/live.js", kScript, live_page::live_js},
     {"/page/scope.js", kScript, live_page::scope_js},
     {"/page/tables.js", kScript, live_page::tables_js},
+    {"/page/tare.js", kScript, live_page::tare_js},
     {"/page/calibrate.js", kScript, live_page::calibrate_js},
     {"/page/batch.js", kScript, live_page::batch_js},
     {"/page/batches.js", kScript, live_page::batches_js},
