@@ -4,7 +4,7 @@ daemon that goes away and comes back.
 
 faults_page_test.py BUILD_DIR CHROMIUM SOURCE_DIR [unittest arguments]
 
-The disk is a small file system in memory; without the permission to mount one all of it is skipped, and says so.
+The disk is a small file system in memory; without the permission to mount one that test is skipped, and says so.
 """
 
 import os
@@ -34,6 +34,9 @@ RECORDS = "[...document.querySelectorAll('#tests tbody td:last-child')].map(cell
 NO_BOARD = '[board]\ndriver = "comedi"\n[board.comedi]\ndevice = "/dev/comedi-that-is-not-there"\n[tester]\nload_cell_gain = "2 N/V"\nsled_mass = "2331 g"\n'
 
 
+no_mounts = None  # Why there are none here.
+
+
 class FaultsPage(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -61,6 +64,8 @@ class FaultsPage(unittest.TestCase):
         self.assertGreaterEqual(contrast(rgb(front), rgb(back)), 4.5)
 
     def test_a_full_disk_is_told_as_long_as_it_lasts_and_no_test_is_lost(self):
+        if no_mounts:
+            self.skipTest(no_mounts)
         self.open(prepare=self.mounted)
         self.page.until(f"{RECORDS}.some(text => text.endsWith('.h5'))")
         self.assertTrue(self.page.value("document.getElementById('trouble').hidden"))
@@ -127,5 +132,6 @@ class FaultsPage(unittest.TestCase):
 if __name__ == "__main__":
     if CHROMIUM is None:
         sys.exit(f"{sys.argv[2]} is not installed; ./dev deps test installs it")
-    own_mounts()
+    if no_mounts := own_mounts(needed=False):
+        print(f"the test of the full disk is skipped: {no_mounts}")
     unittest.main(argv=[sys.argv[0], *sys.argv[4:]])

@@ -20,14 +20,17 @@ def why_none():
     return tried.stderr.strip() if tried.returncode != 0 else None
 
 
-def own_mounts():
-    """Runs the program again in a mount namespace of its own; returns there. Without the permission the program ends as
-    skipped, and says so."""
+def own_mounts(needed=True):
+    """Runs the program again in a mount namespace of its own; returns there. Without the permission: where all of it needs
+    one, the program ends as skipped, and says so; else returns why there is none, for skipTest()."""
     if "STICKSLIP_OWN_MOUNTS" in os.environ:
-        return
+        return None
     environment = dict(os.environ, STICKSLIP_OWN_MOUNTS="1")
     if (why := why_none()) is not None:
-        print(f"skipped: no file system may be mounted here: {why}")
+        told = f"no file system may be mounted here: {why}"
+        if not needed:
+            return told
+        print(f"skipped: {told}")
         sys.exit(SKIPPED)
     sys.exit(subprocess.run([*namespace(), sys.executable, *sys.argv], env=environment, check=False).returncode)
 
