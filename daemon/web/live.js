@@ -125,6 +125,7 @@
   let socket = null;
   function listen() {
     socket = new WebSocket(`ws://${location.host}/v1/live`, token() ? ["stickslip.v1", `token.${token()}`] : ["stickslip.v1"]);
+    Scope.clear();
     socket.addEventListener("message", event => { const frame = JSON.parse(event.data); frames[frame.type]?.(frame); });
     socket.addEventListener("close", () => {
       Tables.bench("not connected");

@@ -6,7 +6,13 @@ const Scope = (() => {
   const kMostParts = 20000;
   // One pixel of the screen: without a graphics card wider lines are drawn much more slowly.
   const kLine = 1 / devicePixelRatio;
-  const colour = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  // Asked for at each drawing, read once: again where the reader's liking for dark or light changes.
+  const colours = new Map();
+  const colour = name => {
+    if (!colours.has(name)) colours.set(name, getComputedStyle(document.documentElement).getPropertyValue(name).trim());
+    return colours.get(name);
+  };
+  const paint = name => () => colour(name);
   const forceBox = document.getElementById("force");
   const slopeBox = document.getElementById("slope");
   const deltaBox = document.getElementById("delta");
@@ -14,14 +20,15 @@ const Scope = (() => {
   // Columns of the scope: time, lowest, highest, derivative of the middle.
   const data = {time: [], lowest: [], highest: [], slope: [], scan: []};
   const slips = [];   // {onset, capture, peak_time, peak, captured}
-  const spikes = [];  // {time, value}
+  const spikes = [];  // {scan, time, value}
+  let toMark = [];    // Scans of spikes: a test's last scans may come after its end is told.
   const cycles = {number: [], delta: [], amplitude: []};
   let falling = null;  // {time, peak} of the latest fall; its ring goes when its cycle closes
   let rate = 0, speed = 1, step = 1, dirty = false, newCycles = true;
 
   const height = part => Math.round(Math.max(90, window.innerHeight * part));
-  const axes = label => [{stroke: colour("--soft"), grid: {stroke: colour("--line")}, ticks: {stroke: colour("--line")}},
-    {stroke: colour("--soft"), grid: {stroke: colour("--line")}, ticks: {stroke: colour("--line")}, size: 58, label, labelSize: 0}];
+  const axes = label => [{stroke: paint("--soft"), grid: {stroke: paint("--line")}, ticks: {stroke: paint("--line")}},
+    {stroke: paint("--soft"), grid: {stroke: paint("--line")}, ticks: {stroke: paint("--line")}, size: 58, label, labelSize: 0}];
   const latest = () => (data.time.length ? data.time[data.time.length - 1] : kWindow);
   const window_s = () => kWindow * speed;
   const xRange = () => [latest() - window_s(), latest()];
@@ -78,11 +85,11 @@ const Scope = (() => {
 
   const options = (box, part, series, more) => ({width: box.clientWidth || 600, height: height(part), legend: {show: false}, cursor: {show: false},
     scales: {x: {time: false, range: xRange}}, axes: axes(), series: [{}, ...series], ...more});
-  const force = new uPlot(options(forceBox, 0.33, [{stroke: colour("--force"), width: kLine, points: {show: false}},
-    {stroke: colour("--force"), width: kLine, points: {show: false}}], {bands: [{series: [2, 1], fill: colour("--band")}], hooks: {drawClear: [shade], draw: [marks]}}), [[], [], []], forceBox);
-  const slope = new uPlot(options(slopeBox, 0.16, [{stroke: colour("--force"), width: kLine, points: {show: false}}]), [[], []], slopeBox);
-  const strip = new uPlot({...options(deltaBox, 0.2, [{stroke: colour("--delta"), width: 0, points: {show: true, size: 6, fill: colour("--delta")}},
-    {stroke: colour("--amplitude"), width: 0, points: {show: true, size: 5, fill: colour("--amplitude")}}]),
+  const force = new uPlot(options(forceBox, 0.33, [{stroke: paint("--force"), width: kLine, points: {show: false}},
+    {stroke: paint("--force"), width: kLine, points: {show: false}}], {bands: [{series: [2, 1], fill: paint("--band")}], hooks: {drawClear: [shade], draw: [marks]}}), [[], [], []], forceBox);
+  const slope = new uPlot(options(slopeBox, 0.16, [{stroke: paint("--force"), width: kLine, points: {show: false}}]), [[], []], slopeBox);
+  const strip = new uPlot({...options(deltaBox, 0.2, [{stroke: paint("--delta"), width: 0, points: {show: true, size: 6, fill: paint("--delta")}},
+    {stroke: paint("--amplitude"), width: 0, points: {show: true, size: 5, fill: paint("--amplitude")}}]),
     scales: {x: {time: false}, y: {range: (u, low, high) => [0, Math.max(0.01, high * 1.1 || 0)]}}}, [[], [], []], deltaBox);
 
   function draw() {
@@ -112,10 +119,32 @@ const Scope = (() => {
       data.slope.push(follows ? (middle - (data.lowest[at] + data.highest[at]) / 2) * rate / step : null);
       data.scan.push(scan); data.time.push(scan / rate); data.lowest.push(low); data.highest.push(frame.highest[k]);
     });
+    markSpikes();
     const old = data.time.findIndex(t => t >= latest() - window_s() - 1);
     const cut = Math.max(old, data.time.length - kMostParts);
     if (cut > 500) for (const column of Object.values(data)) column.splice(0, cut);
     dirty = true;
+  }
+  /// The part that holds a scan: its index in the columns; −1: none.
+  function partOf(scan) {
+    let low = 0, high = data.scan.length;  // data.scan[low − 1] ≤ scan < data.scan[high]
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (data.scan[middle] <= scan) low = middle + 1; else high = middle;
+    }
+    return low > 0 && data.lowest[low - 1] != null && scan - data.scan[low - 1] < step ? low - 1 : -1;
+  }
+  function markSpikes() {
+    const end = data.scan.length ? data.scan.at(-1) + step : 0;
+    for (const scan of toMark) {
+      const at = partOf(scan);
+      if (at < 0) continue;
+      // Of a part with many scans, the end that is further from the part before.
+      const before = data.lowest[at - 1] == null ? data.lowest[at] : (data.lowest[at - 1] + data.highest[at - 1]) / 2;
+      spikes.push({scan, time: scan / rate, value: data.highest[at] - before >= before - data.lowest[at] ? data.highest[at] : data.lowest[at]});
+    }
+    toMark = toMark.filter(scan => scan >= end);
+    if (spikes.length > 500) spikes.splice(0, spikes.length - 500);
   }
   const began = () => { for (const column of Object.values(cycles)) column.length = 0; dirty = newCycles = true; };
   function fall(frame) {
@@ -131,12 +160,15 @@ const Scope = (() => {
   }
   function ended(frame) {
     falling = null;
-    for (const scan of frame.spikes) {
-      const at = data.scan.lastIndexOf(scan);
-      if (at >= 0) spikes.push({time: scan / rate, value: data.highest[at]});
-    }
-    if (spikes.length > 500) spikes.splice(0, spikes.length - 500);
+    toMark.push(...frame.spikes);
+    markSpikes();
     dirty = true;
+  }
+  /// A stream begins: perhaps of a daemon that counts its scans from 0 again.
+  function clear() {
+    for (const column of [...Object.values(data), ...Object.values(cycles), slips, spikes, toMark]) column.length = 0;
+    falling = null;
+    dirty = newCycles = true;
   }
   const resize = () => {
     force.setSize({width: forceBox.clientWidth, height: height(0.33)});
@@ -144,6 +176,10 @@ const Scope = (() => {
     strip.setSize({width: deltaBox.clientWidth, height: height(0.2)});
   };
   window.addEventListener("resize", resize);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    colours.clear();
+    for (const chart of [force, slope, strip]) chart.redraw(false);
+  });
 
-  return {scans, began, fall, cycle, ended, data, slips, spikes, cycles};
+  return {scans, began, fall, cycle, ended, clear, data, slips, spikes, cycles, force};
 })();

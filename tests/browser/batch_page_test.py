@@ -266,6 +266,49 @@ class BatchPage(unittest.TestCase):
         told = json.loads(self.saved(lambda: self.enter("#compare-json"), f"{a}-{b}-comparison.json"))
         self.assertEqual([len(told[side]["tests"]) for side in "ab"], [4, 2])
 
+    def test_a_daemon_that_comes_back_goes_on_with_the_batch(self):
+        self.open()
+        batch = self.begin(name="liner 44", grade="kraft", pull_speeds="12 in/min", replicates="3")
+        records = [self.measure(), self.measure()]
+        self.enter("#void-2")
+        self.page.type("sled askew")
+        self.page.press("Enter")
+        self.page.until("document.querySelector('#tests tr.void #void-2') && document.querySelector('#batch-rows tr.void')")
+        shown = """({name: document.getElementById('batch-name').textContent, next: document.getElementById('batch-next').textContent,
+          rows: [...document.querySelectorAll('#batch-rows tr')].map(r => [...r.cells].map(c => c.textContent)),
+          tests: [...document.querySelectorAll('#tests tbody tr')].map(r => [...r.cells].map(c => c.textContent))})"""
+        before = self.page.value(shown)
+        self.assertEqual(len(before["rows"]), 2)
+        config = self.daemon.folder / "d.toml"
+        port = self.page.value("location.port")
+        config.write_text(config.read_text(encoding="utf-8").replace("127.0.0.1:0", f"127.0.0.1:{port}"), encoding="utf-8")
+        self.daemon.end()
+        self.page.until("document.getElementById('trouble').textContent.startsWith('the daemon does not answer')")
+        # What is shown is the past, and stays.
+        self.assertEqual(self.page.value(shown), before)
+        self.daemon.start()
+        # The scope begins anew when all else has been asked for.
+        self.page.until("document.getElementById('trouble').hidden && document.getElementById('bench-word').textContent === 'idle' && Scope.slips.length === 0 && Scope.data.scan.length > 0")
+        after = self.page.value(shown)
+        for name in ("name", "next", "rows"):
+            self.assertEqual(after[name], before[name], name)
+        known = [str(test["number"]) for test in self.daemon.ask("GET", "/v1/tests")[1]["tests"]]
+        self.assertEqual([row[0] for row in reversed(after["tests"])], known)
+        # It goes on where it was, and ends with the sheets that were planned.
+        records += [self.measure(), self.measure()]
+        self.assertEqual([self.facts(record)[0] for record in records], 4 * [batch["id"]])
+        self.assertEqual([self.facts(record)[3] for record in records], [1, 2, 2, 3])
+        self.page.until("document.getElementById('batch-next').textContent === 'All are made.'")
+        self.assertEqual(self.text("batch-name"), "liner 44, kraft: 3 of 3 tests made")
+        after = self.page.value(shown)
+        self.assertEqual(after["rows"][:2], before["rows"])
+        self.assertEqual([row[2] for row in after["rows"]], [record.name for record in records])
+        for row, record in zip(after["tests"], reversed(records), strict=False):
+            self.assertEqual(row[-1], record.name)
+            for cell, name in zip(row[2:5], ("mu_s", "mu_k", "delta_mu"), strict=True):
+                self.assertEqual(cell, f"{self.results([record], name)[0]:.4f}", name)
+        self.end()
+
     def test_what_is_refused_is_told_where_it_was_asked(self):
         self.open()
         offered = self.page.value("[...document.querySelectorAll('#batch-methods option')].map(o => o.value)")

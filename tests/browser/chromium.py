@@ -56,10 +56,10 @@ class Chromium:
             raise RuntimeError(f"{do} {parameters}: {answer['error']}")
         return answer["value"]
 
-    def open(self, file, dark=False):
-        """A file, or an address that begins with http:"""
+    def open(self, file, dark=False, touch=False):
+        """A file, or an address that begins with http:; touch: on a tablet, where fingers point."""
         address = str(file) if str(file).startswith("http:") else pathlib.Path(file).resolve().as_uri()
-        page = Page(self, self.call("open", address=address, dark=dark))
+        page = Page(self, self.call("open", address=address, dark=dark, touch=touch))
         page.settle()
         return page
 
@@ -113,6 +113,20 @@ class Page:
     def click(self, selector, index=0, times=1):
         self.call("click", selector=selector, index=index, times=times)
         self.settle()
+
+    def tap(self, selector, index=0):
+        """With a finger, on a page opened with touch."""
+        self.call("tap", selector=selector, index=index)
+        self.settle()
+
+    def print(self, on=True):
+        """Shown as a printer would have it, or as on a screen again."""
+        self.call("print", on=on)
+        self.settle()
+
+    def pdf(self, file):
+        """Printed on A4."""
+        self.call("pdf", file=str(file))
 
     def drag(self, selector, start, end, index=0):
         """Over parts of its width, half-way down."""

@@ -19,15 +19,13 @@ const browser = await chromium.launch({
   args: ['--disable-dev-shm-usage', '--hide-scrollbars', '--disable-backgrounding-occluded-windows',
     '--disable-renderer-backgrounding', '--disable-background-timer-throttling'],
 });
-const context = await browser.newContext({ acceptDownloads: true, viewport: { width: 1280, height: 1600 } });
-context.setDefaultTimeout(PATIENCE_MS);
-
+const VIEWPORT = { width: 1280, height: 1600 };
 const pages = [];
 let downloadFolder = null;
 const downloads = [];  // One promise for each, of the file.
 
 /** What a page said and asked for, from its begin on. */
-context.on('page', (page) => {
+const heed = (page) => {
   const seen = { page, complaints: [], requests: [] };
   pages.push(seen);
   page.on('pageerror', (error) => seen.complaints.push(String(error)));
@@ -39,7 +37,17 @@ context.on('page', (page) => {
     const file = path.join(downloadFolder, download.suggestedFilename());
     downloads.push(download.saveAs(file).then(() => file));
   });
-});
+};
+
+/** Windows with a mouse, and those of a tablet, on which fingers point. */
+const context = async (more) => {
+  const made = await browser.newContext({ acceptDownloads: true, viewport: VIEWPORT, ...more });
+  made.setDefaultTimeout(PATIENCE_MS);
+  made.on('page', heed);
+  return made;
+};
+const mouse = await context({});
+const tablet = await context({ hasTouch: true, isMobile: true });
 
 /** What is asked for again and again until it is there. */
 const until = async (found) => {
@@ -55,8 +63,8 @@ const until = async (found) => {
 const element = (page, { selector, index }) => page.locator(selector).nth(index);
 
 const commands = {
-  async open(_, { address, dark }) {
-    const page = await context.newPage();
+  async open(_, { address, dark, touch }) {
+    const page = await (touch ? tablet : mouse).newPage();
     await page.emulateMedia({ colorScheme: dark ? 'dark' : 'light' });
     await page.goto(address);
     return pages.findIndex((seen) => seen.page === page);
@@ -92,6 +100,10 @@ const commands = {
   press: ({ page }, { key }) => page.keyboard.press(key),
   type: ({ page }, { text }) => page.keyboard.insertText(text),
   resize: ({ page }, { width, height }) => page.setViewportSize({ width, height }),
+  tap: ({ page }, command) => element(page, command).tap(),
+  /** As for a printer, or as on a screen again. */
+  print: ({ page }, { on }) => page.emulateMedia({ media: on ? 'print' : 'screen' }),
+  pdf: ({ page }, { file }) => page.pdf({ path: file, format: 'A4', printBackground: false }).then(() => null),
   bring_to_front: ({ page }) => page.bringToFront(),
   screenshot: ({ page }, { file, height }) =>
     page.screenshot({ path: file, fullPage: true, ...(height && { clip: { x: 0, y: 0, width: 1280, height } }) }).then(() => null),

@@ -10,9 +10,11 @@ import functools
 import math
 import os
 import pathlib
+import queue
 import shutil
 import sys
 import tempfile
+import threading
 import unittest
 
 import h5py
@@ -23,6 +25,7 @@ from contrast import contrast, rgb
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "system"))
 from running_daemon import RunningDaemon  # noqa: E402
+from service_manager import TIMEOUT_S  # noqa: E402
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 CHROMIUM = shutil.which(sys.argv[2])
@@ -46,19 +49,40 @@ def student_t(freedom):
     return low
 
 
+def until_ended(frames, test):
+    """Frames until a test has ended."""
+    for frame in frames:
+        yield frame
+        if frame["type"] == "test-ended" and frame["test"] == test:
+            return
+
+
 class LivePage(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.browser = cls.enterClassContext(Chromium(CHROMIUM, BUILD))
 
-    def daemon(self, config="", speed=20, board=None):
-        daemon = RunningDaemon(self, BUILD, SOURCE, speed=speed, board=board, config=f'http = "127.0.0.1:0"\ntoken_file = "token"\n{config}')
+    def daemon(self, config="", speed=20, **options):
+        daemon = RunningDaemon(self, BUILD, SOURCE, speed=speed, **options, config=f'http = "127.0.0.1:0"\ntoken_file = "token"\n{config}')
         self.address = f"http://{daemon.port_line()}/"
         self.token = (daemon.folder / "token").read_text().strip()
         return daemon
 
-    def page(self, dark=False):
-        page = self.browser.open(f"{self.address}#token={self.token}", dark=dark)
+    def scene(self, name, speed, **changed):
+        """A board that plays a shipped scene, with texts of it replaced."""
+        text = (SOURCE / "config" / "scenes" / f"{name}.toml").read_text(encoding="utf-8")
+        for old, new in changed.get("texts", []):
+            self.assertEqual(text.count(old), 1, old)
+            text = text.replace(old, new)
+        place = tempfile.TemporaryDirectory(prefix="stickslip-")
+        self.addCleanup(place.cleanup)
+        file = pathlib.Path(place.name) / "scene.toml"
+        file.write_text(text, encoding="utf-8")
+        return f'[board]\ndriver = "simulated"\nclock_speed = {speed}\n[board.simulated]\nscenes = ["{file}"]\nrepeats = 0\n'
+
+    def page(self, dark=False, touch=False):
+        page = self.browser.open(f"{self.address}#token={self.token}", dark=dark, touch=touch)
+        self.addCleanup(page.close)
         page.until("document.querySelectorAll('#health dd').length > 5 && Scope.data.scan.length > 100")
         return page
 
@@ -145,6 +169,192 @@ class LivePage(unittest.TestCase):
           }
           return columns / canvas.width;
         })()"""), 0.5)
+
+    def listen(self, daemon):
+        """Frames of the live stream, kept from now on: read at once, for the daemon drops what waits too long."""
+        process, frames = daemon.watch()
+        kept = queue.Queue()
+        reader = threading.Thread(target=lambda: [kept.put(frame) for frame in frames])
+        reader.start()
+        self.addCleanup(process.stdout.close)
+        self.addCleanup(reader.join)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return iter(lambda: kept.get(timeout=TIMEOUT_S), None)
+
+    def start(self, page):
+        """A test, where a whole pull is to come."""
+        page.until("Scope.data.highest.slice(-50).every(force => force < 0.02)")
+        page.value("document.querySelector('[data-command=start]').focus()")
+        page.press("Enter")
+        page.until("['loading', 'running'].includes(document.getElementById('bench-word').textContent)")
+
+    def stop(self, page, tests):
+        page.value("document.querySelector('[data-command=stop]').focus()")
+        page.press("Enter")
+        page.until(f"document.querySelectorAll('#tests tbody tr').length === {tests}")
+
+    def check_cycles(self, shown, record, frames):
+        """The strip, the peaks and the remark under the strip. Peaks and falls are measured once; S − K is estimated again at the end,
+        with what the whole test says of the motion: four of its standard errors."""
+        cycles = {name: column[()] for name, column in record["entry/cycles"].items() if hasattr(column, "shape")}
+        first = record["entry/raw/scan"][0]
+        rate = float(record["entry/timing/scan_rate_granted"][()])
+        numbers = shown["cycles"]["number"]
+        told = {frame["number"]: frame for frame in frames}
+        self.assertGreater(len(numbers), 10)
+        self.assertEqual(numbers, list(range(numbers[0], numbers[0] + len(numbers))))
+        for number, delta, amplitude in zip(numbers, shown["cycles"]["delta"], shown["cycles"]["amplitude"], strict=True):
+            self.assertEqual(cycles["cycle"][number], number)
+            self.assertAlmostEqual(amplitude, cycles["force_drop"][number] / 2, delta=1e-12)
+            self.assertEqual(delta, told[number]["delta_mu"])
+            if delta is not None:
+                self.assertAlmostEqual(delta, cycles["delta_mu"][number], delta=4 * cycles["delta_mu_standard_error"][number])
+        peaks = [slip for slip in shown["slips"] if first / rate <= slip["peak_time"]]
+        self.assertEqual(len(peaks), len(numbers))
+        for number, slip in zip(numbers, peaks):
+            self.assertAlmostEqual(slip["peak"], cycles["peak"][number], delta=1e-12)
+            self.assertAlmostEqual(slip["peak_time"], first / rate + cycles["peak_time"][number], delta=1e-9)
+        last = told[numbers[-1]]
+        delta = "–" if last["delta_mu"] is None else f"{last['delta_mu']:.4f}"
+        self.assertEqual(shown["cycle"], f"cycle {numbers[-1]}: peak {cycles['peak'][numbers[-1]]:.4f}, S − K {delta}")
+
+    SHOWN = "({cycles: Scope.cycles, slips: Scope.slips, spikes: Scope.spikes, cycle: document.getElementById('cycle').textContent, scan: Scope.data.scan, step: Scope.data.scan.at(-1) - Scope.data.scan.at(-2)})"
+
+    def test_cycles_peaks_and_spikes_are_the_records(self):
+        # Spikes of one size, four a second, far above noise. At this speed a part of the scope has two scans.
+        daemon = self.daemon('[test]\nbegins = "command"\n', board=self.scene("drift-hum-and-spikes", 2, texts=[
+            ('rate = "1 1/s"', 'rate = "4 1/s"'), ('sizes = "exponential"', 'sizes = "fixed"')]))
+        frames = self.listen(daemon)
+        page = self.page()
+        self.start(page)
+        page.until("Scope.cycles.number.length > 40")
+        self.stop(page, 1)
+        record = daemon.record(1)
+        cycles = [frame for frame in until_ended(frames, 1) if frame["type"] == "cycle"]
+        with h5py.File(record) as file:
+            scans, flags = file["entry/raw/scan"][()], file["entry/raw/flags"][()]
+            spikes = scans[(flags & 1) != 0]
+            force = file["entry/raw/force"][()] / (file["entry/instrument/tester/sled_mass"][()] * file["entry/instrument/tester/gravity"][()])
+            page.until(f"Scope.data.scan.at(-1) > {scans[-1]}")
+            shown = page.value(self.SHOWN)
+            self.check_cycles(shown, file, cycles)
+        # Each spike that the window still has, with the force of its scan.
+        self.assertEqual(shown["step"], 2)
+        self.assertEqual([spike["scan"] for spike in shown["spikes"]], [scan for scan in spikes if scan >= shown["spikes"][0]["scan"]])
+        self.assertGreater(len(shown["spikes"]), 3)
+        self.assertTrue(all(scan < shown["scan"][0] for scan in spikes if scan < shown["spikes"][0]["scan"]))
+        for spike in shown["spikes"]:
+            self.assertAlmostEqual(spike["value"], force[spike["scan"] - scans[0]], delta=1e-6)  # Six decimals on the way.
+        # They are drawn, in the colours of the legend: where the strokes of the cross meet, and in the middle of the disc.
+        drawn = page.value("""(() => {
+          const probe = document.createElement('canvas').getContext('2d'), style = getComputedStyle(document.documentElement), u = Scope.force;
+          const rgba = name => { probe.fillStyle = style.getPropertyValue(name); probe.fillRect(0, 0, 1, 1); return [...probe.getImageData(0, 0, 1, 1).data]; };
+          const at = (time, value) => [...u.ctx.getImageData(Math.round(u.valToPos(time, 'x', true)), Math.round(u.valToPos(value, 'y', true)), 1, 1).data];
+          const inView = time => time > u.scales.x.min + 0.2 && time < u.scales.x.max - 0.2;
+          return {mark: rgba('--mark'), spike: rgba('--spike'), peaks: Scope.slips.filter(s => s.captured && inView(s.peak_time)).map(s => at(s.peak_time, s.peak)),
+            spikes: Scope.spikes.filter(s => inView(s.time)).map(s => at(s.time, s.value))};
+        })()""")
+        for kind, colour in (("peaks", "mark"), ("spikes", "spike")):
+            self.assertGreater(len(drawn[kind]), 2, kind)
+            alike = [pixel for pixel in drawn[kind] if max(abs(a - b) for a, b in zip(pixel, drawn[colour])) < 60]
+            self.assertGreaterEqual(len(alike), 0.8 * len(drawn[kind]), (kind, drawn))  # One may lie on another.
+
+    def test_the_health_list_is_the_status_to_the_digits_shown(self):
+        # With scans that go missing; in the world's time, by which alone the rate is measured.
+        daemon = self.daemon(board=self.scene("clock-and-missing-scans", 1))
+        page = self.page()
+        page.value("(() => { const own = Tables.health; Tables.health = status => { own(status); window.told = status; }; })()")
+        page.until("document.querySelectorAll('#tests tbody tr').length >= 2 && window.told?.gap_count > 2 && window.told.scan_rate_measured")
+        earlier = daemon.ask("GET", "/v1/status")[1]
+        page.until(f"window.told.scan_count > {earlier['scan_count']}")
+        shown, told = page.value("[Object.fromEntries([...document.querySelectorAll('#health dt')].map(dt => [dt.textContent, dt.nextSibling.textContent])), window.told]")
+        later = daemon.ask("GET", "/v1/status")[1]
+
+        def number(name, value, decimals, unit):
+            digits, _, rest = shown[name].partition(" ")
+            self.assertEqual(rest, unit, name)
+            self.assertEqual(len(digits.partition(".")[2]), decimals, name)
+            self.assertAlmostEqual(float(digits), value, delta=0.5001 * 10.0 ** -decimals, msg=name)
+        self.assertEqual(shown["daemon"], told["state"])
+        self.assertEqual(shown["board"], told["board"]["name"])
+        self.assertEqual(shown["rate"], "350 Hz")
+        self.assertEqual(told["board"]["scan_rate_granted"], 350)
+        number("measured", told["scan_rate_measured"]["value"], 4, "Hz")
+        self.assertEqual(shown["load cell"], "as configured")
+        self.assertEqual(shown["scans"], str(told["scan_count"]))
+        self.assertEqual(shown["gaps"], f"{told['gap_count']} ({told['lost_scan_count']} scans)")
+        number("disk", told["storage"]["room_h"], 0, "h")
+        number("worst read", 1000 * told["read_latency"]["largest"], 2, "ms")
+        number("worst commit", 1000 * told["commit_time"]["largest"], 1, "ms")
+        number("ring", 100 * told["ring"]["high_water_block_count"] / told["ring"]["capacity_block_count"], 1, "% at most")
+        self.assertEqual(shown["tests"], str(told["test_count"]))
+        self.assertEqual(shown["readers"], f"{told['live_clients']['count']}, {told['live_clients']['dropped_frame_count']} dropped")
+        # What it was told is what anybody is told who asks: between two answers, as these numbers only grow.
+        for of in (lambda s: s["scan_count"], lambda s: s["gap_count"], lambda s: s["lost_scan_count"], lambda s: s["test_count"], lambda s: s["read_latency"]["largest"],
+                   lambda s: s["commit_time"]["largest"], lambda s: s["ring"]["high_water_block_count"]):
+            self.assertLessEqual(of(earlier), of(told))
+            self.assertLessEqual(of(told), of(later))
+        self.assertEqual(earlier["board"], told["board"])
+        # The records: the rate, and the gaps inside the tests. Between tests scans go missing as well.
+        ended = [test for test in daemon.ask("GET", "/v1/tests")[1]["tests"] if test["number"] <= told["test_count"]]
+        self.assertEqual(len(ended), told["test_count"])
+        gaps = lost = 0
+        for test in ended:
+            with h5py.File(daemon.record(test["number"])) as record:
+                self.assertEqual(float(record["entry/timing/scan_rate_granted"][()]), told["board"]["scan_rate_granted"])
+                missing = numpy.diff(record["entry/raw/scan"][()]) - 1
+                gaps += numpy.count_nonzero(missing)
+                lost += missing.sum()
+        self.assertGreater(gaps, 0)
+        self.assertTrue(gaps <= told["gap_count"] and lost <= told["lost_scan_count"], (gaps, lost, told["gap_count"], told["lost_scan_count"]))
+
+    def test_a_page_that_is_reloaded_in_the_middle_of_a_test_goes_on(self):
+        daemon = self.daemon('[test]\nbegins = "command"\n', speed=4, patient=True)
+        frames = self.listen(daemon)
+        page = self.page()
+        self.start(page)
+        page.until("Scope.cycles.number.length > 20")
+        self.stop(page, 1)
+        page.until("document.getElementById('record-1')")
+        self.start(page)
+        page.until("Scope.cycles.number.length > 20 && document.getElementById('regime-word').textContent === 'stick-slip'")
+        table = "[...document.querySelectorAll('#tests tbody tr')].map(r => [...r.cells].map(c => c.textContent))"
+        before = page.value(f"({{table: {table}, cycle: Scope.cycles.number.at(-1), scan: Scope.data.scan.at(-1), name: sessionStorage.getItem('name')}})")
+        page.reload()
+        # The state and the table at once, the scope and its cycles from here on; without the token in the address.
+        page.until("document.getElementById('bench-word').textContent === 'running' && Scope.data.scan.length > 100 && Scope.cycles.number.length > 15")
+        after = page.value(f"({{table: {table}, cycle: Scope.cycles.number[0], scan: Scope.data.scan[0], name: sessionStorage.getItem('name'), holder: document.getElementById('holder').textContent}})")
+        self.assertEqual(after["table"], before["table"])
+        self.assertGreater(after["cycle"], before["cycle"])
+        self.assertGreater(after["scan"], before["scan"])
+        self.assertEqual((after["name"], after["holder"]), (before["name"], "this page commands"))
+        self.assertEqual(page.value("document.getElementById('regime-word').textContent"), "stick-slip")
+        self.assertEqual(page.value("document.getElementById('message').textContent"), "")
+        self.stop(page, 2)
+        page.until("document.getElementById('record-2')")
+        rows = page.value(table)
+        self.assertEqual(rows[1], before["table"][0])
+        cycles = [frame for frame in until_ended(frames, 2) if frame["type"] == "cycle" and frame["test"] == 2]
+        with h5py.File(daemon.record(2)) as record:
+            for cell, (name, digits) in zip(rows[0][2:], COLUMNS):
+                value = float(record[f"entry/results/{name}"][()])
+                self.assertEqual(cell, "–" if numpy.isnan(value) else f"{value:.{digits}f}", name)
+            self.check_cycles(page.value(self.SHOWN), record, cycles)
+            scans, force = record["entry/raw/scan"][()], record["entry/raw/force"][()]
+            weight = record["entry/instrument/tester/sled_mass"][()] * record["entry/instrument/tester/gravity"][()]
+            shown = page.value("({scan: Scope.data.scan, lowest: Scope.data.lowest, highest: Scope.data.highest})")
+            step, compared = int(numpy.median(numpy.diff(shown["scan"]))), 0
+            for scan, low, high in zip(shown["scan"], shown["lowest"], shown["highest"], strict=True):
+                at = scan - scans[0]
+                if low is None or at < 0 or at + step > len(scans):
+                    continue
+                part = force[at:at + step] / weight
+                self.assertAlmostEqual(low, part.min(), delta=1e-6)
+                self.assertAlmostEqual(high, part.max(), delta=1e-6)
+                compared += 1
+            self.assertGreater(compared, 100)
+        self.assertEqual(page.complaints(), [])
 
     def test_people_plan_begin_mark_and_end_a_test_by_keyboard(self):
         # Slow enough that a pull of 5 s leaves time for all that is done in it.
