@@ -238,6 +238,8 @@
 
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const setTheme = theme => { document.documentElement.dataset.theme = theme; };
+  const kPaper = 700;  // Pixels of a chart on paper: A4 between its margins.
+  let liked = null;    // The theme of the screen, while it is printed.
   const redraw = () => { drawFigure(); for (const viewer of viewers) { const at = viewer.chart.inView(); viewer.show(viewer.shown); viewer.chart.view(...at); } };
   setTheme(dark.matches ? "dark" : "light");
 
@@ -251,10 +253,31 @@
   viewers.forEach(viewer => viewer.show(0));
 
   document.getElementById("theme").addEventListener("click", () => { setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"); redraw(); });
-  dark.addEventListener("change", () => { setTheme(dark.matches ? "dark" : "light"); redraw(); });
-  new ResizeObserver(() => {
+  dark.addEventListener("change", () => { if (liked == null) setTheme(dark.matches ? "dark" : "light"); redraw(); });
+  const fit = () => {
+    if (liked != null) return;
     if (figure) figure.setSize({width: Charts.width(figureBox), height: figure.height});
     for (const viewer of viewers) viewer.chart.resize();
-  }).observe(main);
+  };
+  new ResizeObserver(fit).observe(main);
+
+  // Charts are pictures: for a printer they are drawn anew, light and as wide as the paper.
+  const print = on => {
+    if (on === (liked != null)) return;
+    if (on) {
+      liked = document.documentElement.dataset.theme;
+      setTheme("light");
+      Charts.onPaper(kPaper);
+    } else {
+      setTheme(liked);
+      liked = null;
+      Charts.onPaper(null);
+    }
+    redraw();
+  };
+  addEventListener("beforeprint", () => print(true));
+  addEventListener("afterprint", () => print(false));
+  const printer = matchMedia("print");
+  printer.addEventListener("change", () => print(printer.matches));
   window.stickslip = {data, viewers, figure: () => figure};  // For tests and for the curious.
 })();

@@ -19,6 +19,7 @@ import h5py
 import numpy
 
 from chromium import Chromium
+from contrast import CONTROLS, MARK, TARGETS, TARGET_PX, TEXT, TEXTS, colours, contrast, rgb
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 CHROMIUM = shutil.which(sys.argv[2])
@@ -226,6 +227,76 @@ level = "warning"
             self.assertIn("cycles marked", page.value("document.getElementById('marked-0').textContent"))
         self.assertGreater(brightness[False], 600)
         self.assertLess(brightness[True], 150)
+
+    def check_contrast(self, page, what):
+        texts = page.value(f"{TEXTS}('body, body *')")
+        self.assertGreater(len(texts), 50)
+        for name, front, back in texts:
+            self.assertGreaterEqual(contrast(rgb(front), rgb(back)), TEXT, f"{name} {front} on {back}, {what}")
+        drawn = colours(page, "--card", "--soft", "--a", "--b", "--limit", "--mark", "--free", "--accent")
+        self.assertGreaterEqual(contrast(drawn["--soft"], drawn["--card"]), TEXT, f"names of the axes, {what}")
+        for name in ("--a", "--b", "--limit", "--mark", "--free", "--accent"):
+            self.assertGreaterEqual(contrast(drawn[name], drawn["--card"]), MARK, f"{name}, {what}")
+        for name in ("--a", "--b"):  # Single tests, drawn through: charts.js.
+            mixed = [0.75 * front + 0.25 * back for front, back in zip(drawn[name], drawn["--card"])]
+            self.assertGreaterEqual(contrast(mixed, drawn["--card"]), MARK, f"single tests in {name}, {what}")
+
+    def test_it_can_be_read_in_both_colours(self):
+        for name in ("report.html", "compare.html"):
+            for dark in (False, True):
+                self.check_contrast(self.page(name, dark=dark), f"{name}, dark {dark}")
+
+    # The strongest ink of the numbers at the left of the first trace, on white paper.
+    DARKEST = """(() => {
+      const u = stickslip.viewers[0].chart.charts[0], {data} = u.ctx.getImageData(0, 0, Math.floor(u.bbox.left) - 4, u.ctx.canvas.height);
+      let found = [255, 255, 255];
+      for (let at = 0; at < data.length; at += 4) {
+        const alpha = data[at + 3] / 255, on = [0, 1, 2].map(k => alpha * data[at + k] + (1 - alpha) * 255);
+        if (on[0] + on[1] + on[2] < found[0] + found[1] + found[2]) found = on;
+      }
+      return found;
+    })()"""
+
+    def test_on_paper_it_is_light_whatever_the_screen_is(self):
+        for name in ("report.html", "compare.html"):
+            page = self.page(name, dark=True)
+            ink = "[getComputedStyle(document.body).color, stickslip.viewers[0].chart.charts[0].axes[0].stroke()]"
+            screen = page.value(ink)
+            page.resize(718, 1000)  # A4 between Chromium's margins, at 96 pixels an inch.
+            page.print()
+            page.settle()
+            self.check_contrast(page, f"{name} printed")
+            self.assertEqual(page.value("getComputedStyle(document.body).backgroundColor"), "rgb(255, 255, 255)")
+            # Charts are drawn anew: their numbers in dark ink, and no wider than the paper.
+            self.assertGreaterEqual(contrast(page.value(self.DARKEST), (255, 255, 255)), TEXT)
+            self.assertLessEqual(page.value("Math.max(...[...document.querySelectorAll('.uplot')].map(u => u.getBoundingClientRect().right))"), 718)
+            self.assertLessEqual(page.value("document.documentElement.scrollWidth"), 718)
+            if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
+                page.screenshot(pathlib.Path(folder) / name.replace(".html", "-printed.png"))
+            page.print(False)
+            page.settle()
+            self.assertEqual(page.value(ink), screen)
+            # Printed in earnest: looked at before the page knows that the printer is done.
+            page.value(f"addEventListener('afterprint', () => {{ window.printed = {self.DARKEST}; }}, {{capture: true}})")
+            page.pdf(self.folder / "printed.pdf")
+            self.assertGreaterEqual(contrast(page.value("window.printed"), (255, 255, 255)), TEXT)
+            self.assertEqual((self.folder / "printed.pdf").read_bytes()[:5], b"%PDF-")
+            # As it was, when the printer is done.
+            self.assertEqual(page.value(ink), screen)
+
+    def test_fingers_meet_its_controls_on_a_tablet(self):
+        for name in ("report.html", "compare.html"):
+            page = self.page(name, touch=True)
+            self.assertTrue(page.value("matchMedia('(pointer: coarse)').matches"))
+            for width, height in ((820, 1180), (1280, 720)):
+                page.resize(width, height)
+                self.assertLessEqual(page.value("document.documentElement.scrollWidth"), width)
+                targets = page.value(f"{TARGETS}('{CONTROLS}')")
+                self.assertGreater(len(targets), 10)
+                for target, wide, high in targets:
+                    self.assertGreaterEqual(min(wide, high), TARGET_PX, f"{target} {wide} x {high}, {name} at {width}")
+            page.tap("#traces-0 button[aria-label='next test']")
+            self.assertEqual(page.value("stickslip.viewers[0].shown"), 1)
 
     def test_no_text_becomes_markup(self):
         page = self.page("compare.html")
