@@ -107,6 +107,7 @@ const Batch = (() => {
       const {batch} = await ask("POST", "/v1/batch", asked());
       show(batch);
       part("batch-dialog").close();
+      part("batch-end").focus();  // What opened the dialog is gone.
       say(`batch ${batch.id} has begun: ${batch.planned} tests`, true);
       await changed();
     } catch (error) { refusal("batch-message", error); }

@@ -119,6 +119,11 @@ class Page:
         self.call("tap", selector=selector, index=index)
         self.settle()
 
+    def like(self, dark):
+        """The reader's liking for dark or light changes."""
+        self.call("like", dark=dark)
+        self.settle()
+
     def print(self, on=True):
         """Shown as a printer would have it, or as on a screen again."""
         self.call("print", on=on)

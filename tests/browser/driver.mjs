@@ -101,6 +101,7 @@ const commands = {
   type: ({ page }, { text }) => page.keyboard.insertText(text),
   resize: ({ page }, { width, height }) => page.setViewportSize({ width, height }),
   tap: ({ page }, command) => element(page, command).tap(),
+  like: ({ page }, { dark }) => page.emulateMedia({ colorScheme: dark ? 'dark' : 'light' }),
   /** As for a printer, or as on a screen again. */
   print: ({ page }, { on }) => page.emulateMedia({ media: on ? 'print' : 'screen' }),
   pdf: ({ page }, { file }) => page.pdf({ path: file, format: 'A4', printBackground: false }).then(() => null),

@@ -21,7 +21,7 @@ import h5py
 import numpy
 
 from chromium import Chromium
-from contrast import contrast, rgb
+from contrast import CONTROLS, MARK, TARGETS, TARGET_PX, TEXT, TEXTS, colours, contrast, rgb
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "system"))
 from running_daemon import RunningDaemon  # noqa: E402
@@ -446,11 +446,141 @@ class LivePage(unittest.TestCase):
             })""")
             for name, front, back in pairs:
                 self.assertGreaterEqual(contrast(rgb(front), rgb(back)), 4.5, f"{name} {front} on {back}, dark {dark}")
-            # Each state of the bench and of the regime as well, on the paper.
+            for name, front, back in page.value(f"{TEXTS}('body, body *')"):
+                self.assertGreaterEqual(contrast(rgb(front), rgb(back)), TEXT, f"{name} {front} on {back}, dark {dark}")
+            for name, front, back in page.value("[...document.querySelectorAll('input[placeholder]')].map(e => [e.id || e.name, getComputedStyle(e, '::placeholder').color, getComputedStyle(e).backgroundColor])"):
+                self.assertGreaterEqual(contrast(rgb(front), rgb(back)), TEXT, f"what may be typed into {name}, dark {dark}")
+            # Each state of the bench and each regime as well, on the paper.
             paper = rgb(page.value("getComputedStyle(document.body).backgroundColor"))
-            for state in ("idle", "armed", "loading", "running", "finishing", "degraded"):
-                colour = page.value(f"(() => {{ Tables.bench('{state}'); return getComputedStyle(document.getElementById('bench')).color; }})()")
-                self.assertGreaterEqual(contrast(rgb(colour), paper), 4.5, state)
+            for kind, words in (("bench", ("idle", "armed", "loading", "running", "finishing", "degraded", "not connected")),
+                                ("regime", ("stick-slip", "ring-down", "mixed", "steady-sliding", "undecided"))):
+                for word in words:
+                    colour, back = page.value(f"(() => {{ Tables.{kind}('{word}'); const s = getComputedStyle(document.getElementById('{kind}')); return [s.color, s.backgroundColor]; }})()")
+                    self.assertEqual(back, "rgba(0, 0, 0, 0)")
+                    self.assertGreaterEqual(contrast(rgb(colour), paper), TEXT, f"{word}, dark {dark}")
+            # What the canvases are drawn with: numbers of the axes, lines and marks, these on the shades as well.
+            self.check_drawn(page, dark)
+
+    def check_drawn(self, page, dark):
+        drawn = colours(page, "--card", "--soft", "--force", "--delta", "--amplitude", "--mark", "--spike", "--accent")
+        self.assertGreaterEqual(contrast(drawn["--soft"], drawn["--card"]), TEXT, f"dark {dark}")
+        alpha = page.value("""['--slip', '--stick'].map(name => getComputedStyle(document.documentElement).getPropertyValue(name).match(/[0-9.]+/g).map(Number))""")
+        grounds = [drawn["--card"], *([part * shade[3] + own * (1 - shade[3]) for part, own in zip(shade, drawn["--card"])] for shade in alpha)]
+        for name in ("--force", "--delta", "--amplitude", "--mark", "--spike", "--accent"):
+            for ground in grounds:
+                self.assertGreaterEqual(contrast(drawn[name], ground), MARK, f"{name} on {ground}, dark {dark}")
+        # The canvas has them, and has others when the reader's liking changes.
+        axis = "[Scope.force.axes[0].stroke(), Scope.force.series[1].stroke()].map(c => c.trim())"
+        own = "['--soft', '--force'].map(name => getComputedStyle(document.documentElement).getPropertyValue(name).trim())"
+        self.assertEqual(page.value(axis), page.value(own))
+        before = page.value(axis)
+        page.like(not dark)
+        self.assertEqual(page.value(axis), page.value(own))
+        self.assertNotEqual(page.value(axis), before)
+        page.like(dark)
+
+    # What has the keyboard: how it is known, whether it is seen, and where it is.
+    HELD = """(() => {
+      const e = document.activeElement, style = getComputedStyle(e), box = e.getBoundingClientRect();
+      let back = e.parentElement;
+      while (back && getComputedStyle(back).backgroundColor === 'rgba(0, 0, 0, 0)') back = back.parentElement;
+      const all = [...document.querySelectorAll('*')];
+      return {at: all.indexOf(e), name: `${e.tagName}#${e.id} ${e.name ?? ''} ${e.textContent.trim().slice(0, 30)}`, body: e === document.body, outline: style.outlineStyle, width: parseFloat(style.outlineWidth),
+        colour: style.outlineColor, back: back ? getComputedStyle(back).backgroundColor : 'rgb(255, 255, 255)', inView: box.bottom > 0 && box.top < innerHeight && box.right > 0 && box.left < innerWidth};
+    })()"""
+    REACHABLE = """(within => { const all = [...document.querySelectorAll('*')];
+      return [...document.querySelectorAll(within)].filter(e => e.checkVisibility({visibilityProperty: true}) && !e.disabled && e.tabIndex >= 0).map(e => all.indexOf(e)); })"""
+
+    def walk(self, page, key, steps):
+        """Where the keyboard goes, press by press, until it comes back to its first place."""
+        held = []
+        for _ in range(steps):
+            page.press(key)
+            now = page.value(self.HELD)
+            if held and now["at"] == held[0]["at"]:
+                return held
+            if now["body"]:  # Between the last control and the first.
+                continue
+            held.append(now)
+            self.assertTrue(now["outline"] != "none" and now["width"] >= 2, now)
+            self.assertGreaterEqual(contrast(rgb(now["colour"]), rgb(now["back"])), MARK, now)
+            self.assertTrue(now["inView"], now)
+        self.fail(f"{key} does not come back after {steps} presses: {[h['name'] for h in held]}")
+
+    def test_the_tab_key_goes_through_all_controls_in_order_and_comes_back(self):
+        # Nothing changes the page meanwhile: the bench is idle; one test and its batch are in the tables.
+        daemon = self.daemon('[test]\nbegins = "command"\n', speed=4)
+        self.assertEqual(daemon.ask("POST", "/v1/batch", {"name": "liner", "replicates": 2})[0], 200)
+        self.assertEqual(daemon.ask("DELETE", "/v1/controller")[0], 200)
+        page = self.page()
+        page.resize(1280, 720)
+        self.start(page)
+        page.until("Scope.cycles.number.length > 3")
+        self.stop(page, 1)
+        page.until("document.getElementById('record-1') && document.querySelectorAll('#batch-rows tr').length === 1")
+        page.value("document.getElementById('batch-tests').open = true")
+        page.value("document.activeElement.blur()")
+        wanted = page.value(f"{self.REACHABLE}('{CONTROLS}')")
+        self.assertGreater(len(wanted), 18)
+        forward = self.walk(page, "Tab", 3 * len(wanted))
+        places = [held["at"] for held in forward]
+        begin = places.index(min(places))
+        places = places[begin:] + places[:begin]
+        self.assertEqual(places, sorted(places), [held["name"] for held in forward])  # As it is read.
+        self.assertEqual([at for at in places if at in wanted], wanted)
+        backward = [held["at"] for held in self.walk(page, "Shift+Tab", 3 * len(wanted))]
+        self.assertEqual(sorted(backward), places)
+        # A dialog keeps the keyboard, lets it go by Escape, and gives it back to what opened it.
+        for opener in ("tare-open", "calibrate-open", "batch-end", "batches-open", "void-1", "batch-void-0"):
+            page.value(f"document.getElementById('{opener}').focus()")
+            page.press("Enter")
+            page.until("document.querySelector('dialog:modal') && document.activeElement.closest('dialog')")
+            page.until("document.querySelector('dialog:modal').getAttribute('aria-busy') !== 'true'")
+            wanted = page.value(f"{self.REACHABLE}('dialog:modal :is({CONTROLS})')")
+            inside = [held["at"] for held in self.walk(page, "Tab", 3 * len(wanted) + 3)]
+            self.assertTrue(set(wanted) <= set(inside), opener)
+            self.assertTrue(page.value("document.activeElement.closest('dialog') !== null"))
+            page.press("Escape")
+            page.until(f"!document.querySelector('dialog:modal') && document.activeElement.id === '{opener}'")
+
+    def test_fingers_meet_its_controls_on_a_tablet(self):
+        daemon = self.daemon('[test]\nbegins = "command"\n', speed=4)
+        page = self.page(touch=True)
+        self.assertTrue(page.value("matchMedia('(pointer: coarse)').matches"))
+        page.resize(820, 1180)
+        page.until("Scope.data.highest.slice(-50).every(force => force < 0.02)")
+        page.tap("[data-command=start]")
+        page.until("Scope.cycles.number.length > 3")
+        page.tap("[data-command=stop]")
+        page.until("document.getElementById('record-1')")
+        page.tap("#batch-open")
+        page.value("document.querySelector('#batch-begin [name=name]').value = 'liner'")
+        page.tap("#batch-begin > button")
+        page.until("!document.querySelector('dialog:modal')")
+        self.assertEqual(daemon.ask("GET", "/v1/batch")[1]["batch"]["name"], "liner")
+        for width, height in ((820, 1180), (1280, 720)):
+            page.resize(width, height)
+            self.assertLessEqual(page.value("document.documentElement.scrollWidth"), width)
+            self.fingers(page, "body", width)
+            for opener in ("tare-open", "calibrate-open", "batch-end", "batches-open", "void-1"):
+                page.tap(f"#{opener}")
+                page.until("document.querySelector('dialog:modal')")
+                if opener == "batches-open":
+                    page.until("document.querySelectorAll('#batches-rows tr').length === 1")
+                self.fingers(page, "dialog:modal", width)
+                left, right = page.value("(r => [r.left, r.right])(document.querySelector('dialog:modal').getBoundingClientRect())")
+                self.assertTrue(0 <= left and right <= width, opener)
+                page.press("Escape")
+                page.until("!document.querySelector('dialog:modal')")
+        if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
+            page.resize(820, 1180)
+            page.screenshot(pathlib.Path(folder) / "tablet.png")
+
+    def fingers(self, page, within, width):
+        targets = page.value(f"{TARGETS}('{within} :is({CONTROLS})')")
+        self.assertGreater(len(targets), 1, within)
+        for name, wide, high in targets:
+            self.assertGreaterEqual(min(wide, high), TARGET_PX, f"{name} {wide} x {high} at {width}")
 
     def test_without_the_token_it_asks_for_it(self):
         self.daemon()
