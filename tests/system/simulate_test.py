@@ -244,6 +244,20 @@ folder = "records"
         self.assertNotIn(b"\x1b", output)
 
 
+class Terminal(unittest.TestCase):
+    """What the tests at a terminal rest on."""
+
+    def test_more_than_a_pipe_and_a_terminal_hold_is_read_from_both(self):
+        size = 1 << 20  # A pipe holds 64 kB.
+        program = f"import sys; sys.stdout.write('x' * {size}); sys.stderr.write('y' * {size}); sys.stdout.write('z')"
+        shown, code, output = run_at_a_terminal([sys.executable, "-c", program], timeout_s=TIMEOUT_S, stdout=subprocess.PIPE)
+        self.assertEqual((code, len(shown), len(output)), (0, size, size + 1))
+
+    def test_a_program_that_does_not_end_is_killed(self):
+        with self.assertRaises(subprocess.TimeoutExpired):
+            run_at_a_terminal(["sleep", "1000"], timeout_s=0.2)
+
+
 class Scenes(Folder):
     def test_all_shipped_scenes_are_listed_and_run_by_their_names(self):
         listed = run(CLI, "scenes")
