@@ -60,13 +60,14 @@ void Acquisition::hand_over(daq::ScanBlock& block) noexcept {
     wait_for_room();
     if (!ring_.has_room()) return;  // Told to stop: as if it had not been read.
   }
+  const std::int64_t lost = block.first - issued_end_.value_or(block.first);
   delivered_.fetch_add(block.count, std::memory_order_relaxed);
-  issued_.fetch_add(block.end() - issued_end_.value_or(block.first), std::memory_order_relaxed);
+  issued_.fetch_add(lost + block.count, std::memory_order_relaxed);
   issued_end_ = block.end();
   // A full ring counts what it drops; the jump in the index tells the consumer.
   block.overrun_count = overruns_;
   block.dropped_scan_count = ring_.dropped_scan_count();
-  ring_.push(block);
+  untold_lost_ = ring_.push(block) ? 0 : untold_lost_ + lost;
   untold_ = true;
   if (block.stamp.monotonic_ns - told_ns_ < kNewsPeriod_ns) return;
   told_ns_ = block.stamp.monotonic_ns;

@@ -70,6 +70,10 @@ class Acquisition {
     return issued_.load(std::memory_order_relaxed);
   }
 
+  /// Only after ended(): indices that the board lost after the latest block that the ring took and before a
+  /// later one, which the ring dropped. No block tells the consumer of them.
+  [[nodiscard]] std::int64_t untold_lost_count() const noexcept { return untold_lost_; }
+
   /// Scheduling in use; valid after start().
   [[nodiscard]] const std::string& scheduling() const noexcept { return scheduling_; }
 
@@ -93,6 +97,7 @@ class Acquisition {
   std::atomic<std::int64_t> issued_{0};
   // Of the thread.
   std::optional<daq::ScanIndex> issued_end_;
+  std::int64_t untold_lost_ = 0;
   std::uint64_t overruns_ = 0;  ///< Blocks carry it.
   bool untold_ = false;         ///< There are blocks in the ring that the consumer was not woken for.
   std::int64_t told_ns_ = 0;    ///< Stamp of the latest block that it was woken for.

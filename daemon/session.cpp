@@ -78,19 +78,41 @@ void Session::process() {
     // Commands belong behind the scans that were there before them.
     run_jobs();
     if (ended) {
-      const std::int64_t idle_before = processor_.idle_scan_count();
-      processor_.finish(end_cause(*ended));
-      // The last blocks that a full ring dropped: no later one says so.
-      counts_.lost_scans.fetch_add(acquisition_.issued_index_count() - processor_.lost_scan_count() -
-                                       static_cast<std::int64_t>(processor_.scan_count()),
-                                   std::memory_order_relaxed);
-      counts_.idle_scans.fetch_add(processor_.idle_scan_count() - idle_before, std::memory_order_relaxed);
+      finish(*ended);
       close_jobs();
       run_jobs();
       events_.ended(*ended);
       return;
     }
   }
+}
+
+void Session::finish(Acquisition::End ended) {
+  const Progress before = progress();
+  processor_.finish(end_cause(ended));
+  // The last blocks that a full ring dropped, and what the board lost between them: no later block says so.
+  const std::uint64_t dropped = ring_.dropped_scan_count() - dropped_before_;
+  lost_at_end_ = static_cast<std::int64_t>(dropped) + acquisition_.untold_lost_count();
+  processor_.lost_at_end(lost_at_end_);
+  counts_.dropped_scans.fetch_add(dropped, std::memory_order_relaxed);
+  count_since(before);
+}
+
+Session::Progress Session::progress() const noexcept {
+  return {processor_.gap_count(), processor_.lost_scan_count(), processor_.idle_scan_count()};
+}
+
+void Session::count_since(const Progress& before) noexcept {
+  const Progress now = progress();
+  counts_.gaps.fetch_add(now.gaps - before.gaps, std::memory_order_relaxed);
+  counts_.lost_scans.fetch_add(now.lost_scans - before.lost_scans, std::memory_order_relaxed);
+  counts_.idle_scans.fetch_add(now.idle_scans - before.idle_scans, std::memory_order_relaxed);
+}
+
+SessionEnd Session::end() const {
+  SessionEnd end{processor_.test_number(), processor_.rate_meter().continuation()};
+  if (end.continuation) end.continuation->end += lost_at_end_;
+  return end;
 }
 
 bool Session::post(Job job) {
@@ -136,9 +158,7 @@ void Session::process_block(const daq::ScanBlock& block) {
   if (overruns > 0) cause = daq::GapCause::kOverrun;
   if (dropped > 0) cause = daq::GapCause::kRingFull;
   if (continues) cause = daq::GapCause::kBoardMissing;
-  const std::uint64_t gaps_before = processor_.gap_count();
-  const std::int64_t lost_before = processor_.lost_scan_count();
-  const std::int64_t idle_before = processor_.idle_scan_count();
+  const Progress before = progress();
   processor_.process(block, cause, continues || overruns > 0);
   const daq::RateMeter& meter = processor_.rate_meter();
   {
@@ -151,9 +171,7 @@ void Session::process_block(const daq::ScanBlock& block) {
   counts_.dropped_scans.fetch_add(dropped, std::memory_order_relaxed);
   counts_.overruns.fetch_add(overruns, std::memory_order_relaxed);
   counts_.scans.fetch_add(block.count, std::memory_order_relaxed);
-  counts_.gaps.fetch_add(processor_.gap_count() - gaps_before, std::memory_order_relaxed);
-  counts_.lost_scans.fetch_add(processor_.lost_scan_count() - lost_before, std::memory_order_relaxed);
-  counts_.idle_scans.fetch_add(processor_.idle_scan_count() - idle_before, std::memory_order_relaxed);
+  count_since(before);
 }
 
 }  // namespace stickslip::daemon

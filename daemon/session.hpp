@@ -111,12 +111,21 @@ class Session {
   /// From any thread: indices that the board has given, of scans that it delivered or lost.
   [[nodiscard]] std::int64_t issued_index_count() const noexcept { return acquisition_.issued_index_count(); }
   /// Only after events.ended.
-  [[nodiscard]] SessionEnd end() const {
-    return {processor_.test_number(), processor_.rate_meter().continuation()};
-  }
+  [[nodiscard]] SessionEnd end() const;
 
  private:
+  /// What the processor has counted so far.
+  struct Progress {
+    std::uint64_t gaps;
+    std::int64_t lost_scans;
+    std::int64_t idle_scans;
+  };
+
   void process();
+  /// After the last block.
+  void finish(Acquisition::End ended);
+  [[nodiscard]] Progress progress() const noexcept;
+  void count_since(const Progress& before) noexcept;
   void process_block(const daq::ScanBlock& block);
   void run_jobs();
   /// No more jobs after this.
@@ -134,6 +143,7 @@ class Session {
   SessionClocks clocks_;
   std::uint64_t dropped_before_ = 0;
   std::uint64_t overruns_before_ = 0;
+  std::int64_t lost_at_end_ = 0;
   FullRing full_ring_;
   std::mutex jobs_mutex_;
   std::deque<Job> jobs_;  ///< At most kMostJobs.

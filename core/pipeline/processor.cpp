@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/contract.hpp"
 #include "core/pipeline/gain_uncertainty.hpp"
 #include "core/pipeline/true_rate.hpp"
 
@@ -108,6 +109,11 @@ void Processor::finish(EndCause cause) {
   discard_waiting();
   start_.reset();
   static_cast<void>(happens(BenchEvent::kBoardLost));
+}
+
+void Processor::lost_at_end(std::int64_t count) {
+  STICKSLIP_EXPECTS(!test_is_running());
+  if (count > 0) note_gap({next_scan_, count, false, daq::GapCause::kRingFull});
 }
 
 void Processor::discard_waiting() noexcept {

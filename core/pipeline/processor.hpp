@@ -66,6 +66,8 @@ class Processor {
 
   /// No more blocks: ends the running test, if any.
   void finish(EndCause cause);
+  /// After finish(): so many scans came after the latest block and were lost on the way here; 0 is allowed.
+  void lost_at_end(std::int64_t count);
 
   // Commands, in commands.cpp; between two blocks.
 
