@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 #include "core/daq/board.hpp"
@@ -29,7 +30,8 @@ class Facts {
   /// \param state  of the daemon: "board missing", "board busy" or "no permission".
   virtual void board_unavailable(std::string_view /*state*/, std::string_view /*why*/,
                                  double /*retry_in_s*/) {}
-  virtual void gap_seen(const daq::Gap& /*gap*/) {}
+  /// \param test  the one that runs, if one does.
+  virtual void gap_seen(const daq::Gap& /*gap*/, std::optional<std::int64_t> /*test*/) {}
   virtual void test_began(const pipeline::TestStart& /*start*/) {}
   virtual void test_ended(const pipeline::TestEnd& /*end*/) {}
   virtual void file_published(std::int64_t /*test*/, const std::filesystem::path& /*file*/) {}

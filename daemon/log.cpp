@@ -1,168 +1,200 @@
 #include "daemon/log.hpp"
 
-#include <spdlog/pattern_formatter.h>
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
-#include <systemd/sd-daemon.h>
+#include <fmt/format.h>
 
-#include <cstdlib>
+#include <utility>
 
 namespace stickslip::daemon {
 namespace {
 
-/// %* in a pattern: the level as journald reads it at the start of a line.
-class JournalLevel final : public spdlog::custom_flag_formatter {
- public:
-  void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& out) override {
-    const std::string_view prefix = prefix_of(message.level);
-    out.append(prefix.data(), prefix.data() + prefix.size());
-  }
-  [[nodiscard]] std::unique_ptr<custom_flag_formatter> clone() const override {
-    return std::make_unique<JournalLevel>();
-  }
-
- private:
-  static std::string_view prefix_of(spdlog::level::level_enum level) {
-    switch (level) {
-      case spdlog::level::critical:
-      case spdlog::level::err:
-        return SD_ERR;
-      case spdlog::level::warn:
-        return SD_WARNING;
-      case spdlog::level::info:
-        return SD_INFO;
-      default:
-        return SD_DEBUG;
-    }
-  }
-};
-
-spdlog::level::level_enum to_spdlog(LogLevel level) {
-  switch (level) {
-    case LogLevel::kDebug:
-      return spdlog::level::debug;
-    case LogLevel::kInfo:
-      return spdlog::level::info;
-    case LogLevel::kWarning:
-      return spdlog::level::warn;
-    case LogLevel::kError:
-      return spdlog::level::err;
-  }
-  return spdlog::level::info;
-}
-
 class Log final : public Facts {
  public:
-  explicit Log(LogLevel level) : logger_("stickslipd", std::make_shared<spdlog::sinks::stderr_sink_mt>()) {
-    auto formatter = std::make_unique<spdlog::pattern_formatter>();
-    if (std::getenv("JOURNAL_STREAM") != nullptr) {
-      formatter->add_flag<JournalLevel>('*').set_pattern("%*%v");
-    } else {
-      formatter->set_pattern("%H:%M:%S.%e %l: %v");
-    }
-    logger_.set_formatter(std::move(formatter));
-    logger_.set_level(to_spdlog(level));
-    logger_.flush_on(spdlog::level::trace);
-  }
+  Log(LogLevel level, std::unique_ptr<LogOutput> output) : level_(level), output_(std::move(output)) {}
 
   void board_started(const daq::BoardInfo& board, std::string_view scheduling) override {
-    logger_.info("board {} ({}, {}): {} Hz asked, {} Hz granted; acquisition thread {}", board.board_name,
-                 board.driver, board.device, board.scan_rate_requested_Hz, board.scan_rate_granted_Hz,
-                 scheduling);
-    if (!board.notes.empty()) logger_.info("board {}: {}", board.device, board.notes);
+    tell({.event = "board-started",
+          .message = fmt::format("board {} ({}, {}): {} Hz asked, {} Hz granted; acquisition thread {}",
+                                 board.board_name, board.driver, board.device, board.scan_rate_requested_Hz,
+                                 board.scan_rate_granted_Hz, scheduling),
+          .state = "acquiring"});
+    if (board.notes.empty()) return;
+    tell({.event = "board-notes", .message = fmt::format("board {}: {}", board.device, board.notes)});
   }
   void calibration_expired(std::string_view expires) override {
-    logger_.warn("the calibration of the load cell expired on {}: calibrate, see stickslip calibrate --help",
-                 expires);
+    tell({.level = LogLevel::kWarning,
+          .event = "calibration-expired",
+          .message = fmt::format("the calibration of the load cell expired on {}: calibrate, see stickslip "
+                                 "calibrate --help",
+                                 expires)});
   }
   void sampling_checked(const friction::SamplingVerdict& verdict) override {
     using Kind = friction::SamplingVerdict::Kind;
-    if (verdict.kind == Kind::kFew) logger_.warn("sampling: {}", verdict.reason);
-    if (verdict.kind == Kind::kNotVerifiable) logger_.info("sampling: {}", verdict.reason);
+    if (verdict.kind != Kind::kFew && verdict.kind != Kind::kNotVerifiable) return;
+    tell({.level = verdict.kind == Kind::kFew ? LogLevel::kWarning : LogLevel::kInfo,
+          .event = "sampling",
+          .message = fmt::format("sampling: {}", verdict.reason)});
   }
   void board_unavailable(std::string_view state, std::string_view why, double retry_in_s) override {
-    logger_.warn("{}: {}; next try in {} s", state, why, retry_in_s);
+    tell({.level = LogLevel::kWarning,
+          .event = "board-unavailable",
+          .message = fmt::format("{}: {}; next try in {} s", state, why, retry_in_s),
+          .state = state});
   }
-  void gap_seen(const daq::Gap& gap) override {
-    logger_.warn("gap: {}{} scans missing from scan {}: {}", gap.estimated ? "about " : "", gap.count,
-                 gap.first, daq::name(gap.cause));
+  void gap_seen(const daq::Gap& gap, std::optional<std::int64_t> test) override {
+    tell({.level = LogLevel::kWarning,
+          .event = "gap",
+          .message = fmt::format("gap: {}{} scans missing from scan {}: {}", gap.estimated ? "about " : "",
+                                 gap.count, gap.first, daq::name(gap.cause)),
+          .test = test,
+          .cause = daq::name(gap.cause),
+          .first_scan = gap.first,
+          .scan_count = gap.count});
   }
   void test_began(const pipeline::TestStart& start) override {
-    logger_.info("test {} began: trigger at scan {}, record from scan {}", start.number, start.trigger,
-                 start.first);
+    tell({.event = "test-began",
+          .message = fmt::format("test {} began: trigger at scan {}, record from scan {}", start.number,
+                                 start.trigger, start.first),
+          .test = start.number});
   }
   void test_ended(const pipeline::TestEnd& end) override {
-    logger_.info("test {} ended at scan {} ({}): {}, {} cycles", end.number, end.end,
-                 pipeline::name(end.cause), friction::name(end.results.regime), end.cycles.size());
+    tell({.event = "test-ended",
+          .message =
+              fmt::format("test {} ended at scan {} ({}): {}, {} cycles", end.number, end.end,
+                          pipeline::name(end.cause), friction::name(end.results.regime), end.cycles.size()),
+          .test = end.number,
+          .cause = pipeline::name(end.cause)});
   }
   void file_published(std::int64_t test, const std::filesystem::path& file) override {
-    logger_.info("test {}: {}", test, file.string());
+    tell({.event = "record-finished",
+          .message = fmt::format("test {}: {}", test, file.string()),
+          .test = test,
+          .record = file.string()});
   }
   void recording_failed(std::int64_t test, std::string_view why) override {
-    logger_.error("test {} is not recorded whole: {}", test, why);
+    tell({.level = LogLevel::kError,
+          .event = "record-failed",
+          .message = fmt::format("test {} is not recorded whole: {}", test, why),
+          .test = test});
   }
   void storage_waits(std::string_view why) override {
-    logger_.error("the disk refuses, scans wait in memory: {}", why);
+    tell({.level = LogLevel::kError,
+          .event = "storage-waiting",
+          .message = fmt::format("the disk refuses, scans wait in memory: {}", why)});
   }
-  void storage_resumed() override { logger_.warn("the disk takes again: all that waited is written"); }
-  void storage_short(std::string_view why) override { logger_.error("{}", why); }
-  void storage_has_room() override { logger_.warn("storage: there is room for tests again"); }
+  void storage_resumed() override {
+    tell({.level = LogLevel::kWarning,
+          .event = "storage-resumed",
+          .message = "the disk takes again: all that waited is written"});
+  }
+  void storage_short(std::string_view why) override {
+    tell({.level = LogLevel::kError, .event = "storage-short", .message = std::string{why}});
+  }
+  void storage_has_room() override {
+    tell({.level = LogLevel::kWarning,
+          .event = "storage-has-room",
+          .message = "storage: there is room for tests again"});
+  }
   void little_room(std::int64_t test, double room_s) override {
-    logger_.error("test {} begins with room on the disk for {:.0f} s", test, room_s);
+    tell({.level = LogLevel::kError,
+          .event = "little-room",
+          .message = fmt::format("test {} begins with room on the disk for {:.0f} s", test, room_s),
+          .test = test});
   }
   void orphan_finalised(const std::filesystem::path& file) override {
-    logger_.warn("made from the journal of an interrupted test: {}", file.string());
+    tell({.level = LogLevel::kWarning,
+          .event = "record-recovered",
+          .message = fmt::format("made from the journal of an interrupted test: {}", file.string()),
+          .record = file.string()});
   }
   void orphan_kept(const std::filesystem::path& journal, std::string_view why) override {
-    logger_.error("journal of an interrupted test kept: {}: {}", journal.string(), why);
+    tell({.level = LogLevel::kError,
+          .event = "journal-kept",
+          .message = fmt::format("journal of an interrupted test kept: {}: {}", journal.string(), why),
+          .record = journal.string()});
   }
   void orphan_empty(const std::filesystem::path& journal) override {
-    logger_.warn("removed, nothing was recorded in it before the program was stopped: {}", journal.string());
+    tell({.level = LogLevel::kWarning,
+          .event = "journal-removed",
+          .message = fmt::format("removed, nothing was recorded in it before the program was stopped: {}",
+                                 journal.string()),
+          .record = journal.string()});
   }
   void fleet_changed(const FleetState& state) override {
     if (state.link == FleetState::Link::kConnected) {
-      logger_.info("fleet: connected to {} as {}", state.broker, state.tester);
+      tell({.event = "broker-connected",
+            .message = fmt::format("fleet: connected to {} as {}", state.broker, state.tester)});
     } else {
-      logger_.warn("fleet: {}: {}; results wait in the outbox, {} of them now", state.broker, state.why,
-                   state.outbox_count);
+      tell({.level = LogLevel::kWarning,
+            .event = "broker-away",
+            .message = fmt::format("fleet: {}: {}; results wait in the outbox, {} of them now", state.broker,
+                                   state.why, state.outbox_count)});
     }
   }
   void hanging(std::string_view parts) override {
     if (parts.empty()) {
-      logger_.warn("watchdog: all parts move again");
+      tell({.level = LogLevel::kWarning,
+            .event = "watchdog-fed",
+            .message = "watchdog: all parts move again"});
     } else {
-      logger_.error("watchdog: not moving: {}; the service manager will start the daemon again", parts);
+      tell({.level = LogLevel::kError,
+            .event = "watchdog-hungry",
+            .message = fmt::format(
+                "watchdog: not moving: {}; the service manager will start the daemon again", parts)});
     }
   }
   void reload_refused(std::string_view why) override {
-    logger_.error("reload: the configuration stays as it was: {}", why);
+    tell({.level = LogLevel::kError,
+          .event = "reload-refused",
+          .message = fmt::format("reload: the configuration stays as it was: {}", why)});
   }
-  void reload_waits() override { logger_.info("reload: the configuration is good; used between two tests"); }
+  void reload_waits() override {
+    tell({.event = "reload-waiting", .message = "reload: the configuration is good; used between two tests"});
+  }
   void control_listening(std::string_view socket) override {
-    logger_.info("control: listening at {}", socket);
+    tell({.event = "control-listening", .message = fmt::format("control: listening at {}", socket)});
   }
-  void stopping(std::string_view why) override { logger_.info("stopping: {}", why); }
+  void stopping(std::string_view why) override {
+    tell({.event = "stopping", .message = fmt::format("stopping: {}", why), .state = "stopping"});
+  }
   void scans_accounted(const ScanAccount& scans) override {
     const std::string account =
         fmt::format("scans: {} indices = {} in records + {} between tests + {} in gaps", scans.issued,
                     scans.recorded, scans.idle, scans.in_gaps);
-    if (scans.unsaved > 0)
-      logger_.error("scans: {} of tests that the disk did not take are in no record", scans.unsaved);
+    if (scans.unsaved > 0) {
+      tell({.level = LogLevel::kError,
+            .event = "scans-unsaved",
+            .message =
+                fmt::format("scans: {} of tests that the disk did not take are in no record", scans.unsaved),
+            .scan_count = scans.unsaved});
+    }
     if (scans.under_way() == 0) {
-      logger_.info("{}{}", account,
-                   scans.unsaved > 0 ? fmt::format(" + {} in no record", scans.unsaved) : "");
+      tell({.event = "scans-accounted",
+            .message = fmt::format(
+                "{}{}", account,
+                scans.unsaved > 0 ? fmt::format(" + {} in no record", scans.unsaved) : std::string{})});
     } else {
-      logger_.error("{}: {} are unaccounted for, which is a defect of this program; please report it",
-                    account, scans.under_way());
+      tell({.level = LogLevel::kError,
+            .event = "scans-unaccounted",
+            .message =
+                fmt::format("{}: {} are unaccounted for, which is a defect of this program; please report it",
+                            account, scans.under_way()),
+            .scan_count = scans.under_way()});
     }
   }
 
  private:
-  spdlog::logger logger_;
+  void tell(const LogEntry& entry) {
+    if (entry.level >= level_) output_->write(entry);
+  }
+
+  LogLevel level_;
+  std::unique_ptr<LogOutput> output_;
 };
 
 }  // namespace
 
-std::unique_ptr<Facts> make_log(LogLevel level) { return std::make_unique<Log>(level); }
+std::unique_ptr<Facts> make_log(LogLevel level, std::unique_ptr<LogOutput> output) {
+  return std::make_unique<Log>(level, std::move(output));
+}
 
 }  // namespace stickslip::daemon

@@ -1,16 +1,17 @@
 /// \file
-/// The daemon's facts as log lines on stderr.
+/// The daemon's facts as lines of the log.
 #pragma once
 
 #include <memory>
 
 #include "daemon/config.hpp"
 #include "daemon/facts.hpp"
+#include "daemon/log_output.hpp"
 
 namespace stickslip::daemon {
 
-/// With time and level for people; under journald (JOURNAL_STREAM is set) with the level as
-/// sd-daemon(3) prefix and without time.
-[[nodiscard]] std::unique_ptr<Facts> make_log(LogLevel level);
+/// \param level  lines below it are left out.
+[[nodiscard]] std::unique_ptr<Facts> make_log(LogLevel level,
+                                              std::unique_ptr<LogOutput> output = make_log_output());
 
 }  // namespace stickslip::daemon

@@ -27,6 +27,7 @@ class TestWatcher final : public pipeline::Sink {
 
   void test_began(const pipeline::TestStart& start) override {
     first_ = start.first;
+    number_ = start.number;
     facts_.test_began(start);
     current_(start.number);
   }
@@ -34,8 +35,8 @@ class TestWatcher final : public pipeline::Sink {
   void bench_changed(pipeline::BenchState state) override {
     if (pipeline::rests(state)) rests_();
   }
-  void gap(const daq::Gap& gap) override { facts_.gap_seen(gap); }
-  void gap_between_tests(const daq::Gap& gap) override { facts_.gap_seen(gap); }
+  void gap(const daq::Gap& gap) override { facts_.gap_seen(gap, number_); }
+  void gap_between_tests(const daq::Gap& gap) override { facts_.gap_seen(gap, std::nullopt); }
 
   void test_ended(const pipeline::TestEnd& end) override {
     TestSummary summary;
@@ -56,7 +57,8 @@ class TestWatcher final : public pipeline::Sink {
   std::function<void(std::optional<std::int64_t>)> current_;
   std::function<void()> rests_;
   const friction::TruthSource* truth_ = nullptr;
-  daq::ScanIndex first_ = 0;
+  daq::ScanIndex first_ = 0;  ///< Of the running test, as its number.
+  std::int64_t number_ = 0;
 };
 
 }  // namespace stickslip::daemon

@@ -44,7 +44,7 @@ class Diary final : public Facts {
     const std::lock_guard lock{mutex_};
     losses.push_back(fmt::format("{}: {}", state, why));
   }
-  void gap_seen(const daq::Gap& gap) override {
+  void gap_seen(const daq::Gap& gap, std::optional<std::int64_t> /*test*/) override {
     const std::lock_guard lock{mutex_};
     gaps.push_back(gap);
   }

@@ -1,6 +1,7 @@
 """The package in a whole Debian 12: installed, its user and groups, a board that goes and returns, an orderly end, an
 upgrade, removal."""
 
+import json
 import pathlib
 import subprocess
 import tempfile
@@ -99,6 +100,24 @@ class Package(unittest.TestCase):
             self.assertRegex(file, r"^640 stickslip stickslip /.*\.h5$")
         for path in sorted((self.results / "records").glob("*.h5")):
             verdict.judge(path)
+
+    def test_the_journal_has_fields_to_filter_by(self):
+        def events(file, event):
+            return [entry for entry in map(json.loads, lines(self.results / file)) if entry.get("STICKSLIP_EVENT") == event]
+        self.assertIn("board missing", {entry["STICKSLIP_STATE"] for entry in events("journal.json", "board-unavailable")})
+        [began, *_] = events("journal.json", "test-began")
+        self.assertEqual((began["STICKSLIP_TEST"], began["PRIORITY"], began["SYSLOG_IDENTIFIER"]), ("1", "6", "stickslipd"))
+        self.assertIn("test 1 began", began["MESSAGE"])
+        # Its daemon lived on: the board went.
+        ended = {entry["STICKSLIP_TEST"]: entry["STICKSLIP_CAUSE"] for entry in events("journal.json", "test-ended")}
+        self.assertEqual(ended["1"], "board-missing")
+        finished = {entry["STICKSLIP_TEST"]: entry["STICKSLIP_RECORD"] for entry in events("journal.json", "record-finished")}
+        self.assertRegex(finished["1"], r"^/var/lib/stickslip/records/.*\.h5$")
+        # By the field alone, as an administrator asks.
+        [gap, *_] = [gap for gap in events("gaps.json", "gap") if gap["STICKSLIP_CAUSE"] == "board-missing"]
+        self.assertEqual(gap["PRIORITY"], "4")
+        self.assertGreater(int(gap["STICKSLIP_SCAN_COUNT"]), 0)
+        self.assertNotIn("STICKSLIP_TEST", gap)
 
     def test_a_reload_is_no_new_start(self):
         self.assertEqual(self.status("reloaded")["state"], "board missing")

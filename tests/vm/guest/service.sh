@@ -91,6 +91,9 @@ for name in ActiveState Result ExecMainStatus NRestarts; do
   echo "$name=$(property $name)"
 done >"$results/end"
 [ ! -e "$socket" ] || fail "the control socket outlived the daemon"
+journalctl --sync
+journalctl --no-pager -u "$unit" -o json >"$results/journal.json"
+journalctl --no-pager STICKSLIP_EVENT=gap -o json >"$results/gaps.json"
 data=/var/lib/stickslip/records
 find "$data" -name '*.h5' -exec stat -c '%a %U %G %n' {} + >"$results/files"
 mkdir "$results/records"
