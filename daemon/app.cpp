@@ -172,7 +172,11 @@ base::Result<void> App::open_control() {
   }
   const base::Result<std::string> token = load_token(config_.token_file);
   if (!token) return tl::unexpected(token.error());
-  return keep(ControlServer::listen_tcp(io_, config_.http, *token, api, {}, &live_.hub()));
+  if (auto kept = keep(ControlServer::listen_tcp(io_, config_.http, *token, api, {}, &live_.hub())); !kept)
+    return kept;
+  page_ = Status::Page{fmt::format("http://{}/", control_.back()->address()),
+                       std::filesystem::absolute(config_.token_file).lexically_normal().string()};
+  return {};
 }
 
 base::Result<void> App::open_fleet() {

@@ -136,6 +136,7 @@ class App {
   BenchDesk desk_;
   std::unique_ptr<Fleet> fleet_;  ///< Null without a broker.
   std::vector<std::unique_ptr<ControlServer>> control_;
+  std::optional<Status::Page> page_;  ///< While it is served.
   std::shared_ptr<const friction::TruthSource> truth_;
   std::unique_ptr<Session> session_;
 

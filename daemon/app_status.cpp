@@ -133,6 +133,7 @@ Status App::status() const {
   const CalibrationView calibration = calibrations_.view();
   status.calibration = {calibration.facts.date, calibration.facts.expires, calibration.expired,
                         calibration.session ? calibration.session->who : std::string{}};
+  status.page = page_;
   if (fleet_) status.fleet = fleet_->state();
   status.live_client_count = static_cast<std::int64_t>(live_.hub().client_count());
   status.live_dropped_count = live_.hub().dropped_count() + live_.lost_count();

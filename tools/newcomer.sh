@@ -28,7 +28,7 @@ fetch() {
   exec 3>&-
 }
 
-# The page of a daemon that plays tests: its address with the token is what `stickslip status` says.
+# The page of a daemon that plays tests: `stickslip status` says its address, and the file in which the token stands.
 page() {
   cat >"$work/page.toml" <<TOML
 [board]

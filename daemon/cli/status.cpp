@@ -128,6 +128,10 @@ std::string text_of(const Json& status) {
                     count(fleet, "outbox_count"), count(fleet, "dropped_result_count")),
         connected ? Ink::kNone : Ink::kYellow);
   }
+  if (const Json page = part(status, "page"); !page.empty()) {
+    // To be copied into a shell: the token itself is for those who may read its file.
+    lines.line("page", fmt::format("{}#token=$(cat '{}')", word(page, "address"), word(page, "token_file")));
+  }
   lines.line("version", word(status, "version"));
   return std::move(lines).text();
 }

@@ -80,6 +80,11 @@ Json to_json(const StorageState& storage) {
           {"to_do", or_nothing(storage.to_do)}};
 }
 
+Json to_json(const std::optional<Status::Page>& page) {
+  if (!page) return nullptr;
+  return {{"address", page->address}, {"token_file", page->token_file}};
+}
+
 Json to_json(const std::optional<FleetState>& fleet) {
   if (!fleet) return nullptr;
   return {{"broker", fleet->broker},
@@ -171,6 +176,7 @@ Json status_json(const Status& status) {
   json["calibration"] = to_json(status.calibration);
   json["live_clients"] = {{"count", status.live_client_count},
                           {"dropped_frame_count", status.live_dropped_count}};
+  json["page"] = to_json(status.page);
   json["fleet"] = to_json(status.fleet);
   json["test_count"] = status.test_count;
   json["current_test"] = status.current_test ? Json(*status.current_test) : Json(nullptr);

@@ -56,8 +56,14 @@ struct Status {
     bool expired = false;
     std::string under_way_by;  ///< Who is at a new one.
   } calibration;
-  std::optional<BatchProgress> batch;    ///< The current one.
-  std::optional<FleetState> fleet;       ///< Nothing without a broker.
+  std::optional<BatchProgress> batch;  ///< The current one.
+  std::optional<FleetState> fleet;     ///< Nothing without a broker.
+  /// The live page over TCP.
+  struct Page {
+    std::string address;     ///< "http://127.0.0.1:8037/"
+    std::string token_file;  ///< Absolute; the token itself is told to nobody.
+  };
+  std::optional<Page> page;              ///< Nothing without [control] http.
   std::int64_t live_client_count = 0;    ///< Of the live stream.
   std::uint64_t live_dropped_count = 0;  ///< Frames that slow ones of them did not get.
 };

@@ -142,6 +142,24 @@ class Commands(unittest.TestCase):
         self.assertRegex(daemon.run("show", "1").stdout, r"(?m)^  mu_s +0\.\d+ ± ")
         self.assertEqual(daemon.run("show", "2").returncode, 2)
 
+    def test_the_status_says_where_the_page_is_and_tells_nobody_its_token(self):
+        daemon = Daemon(self, 'http = "127.0.0.1:0"\ntoken_file = "token"\n')
+        token_file = daemon.folder / "token"
+        page = daemon.ask("GET", "/v1/status")[1]["page"]
+        self.assertEqual(page, {"address": f"http://{daemon.port_line()}/", "token_file": str(token_file)})
+        said = daemon.run("status").stdout
+        token = token_file.read_text(encoding="ascii").strip()
+        self.assertNotIn(token, said)
+        # Pasted into a shell it is the whole address.
+        pasted = re.search(r"(?m)^page +(\S.*)$", said)[1]
+        shell = subprocess.run(["bash", "-c", f'echo "{pasted}"'], capture_output=True, text=True, check=True, timeout=TIMEOUT_S)
+        self.assertEqual(shell.stdout, f"{page['address']}#token={token}\n")
+
+    def test_without_a_port_there_is_no_page(self):
+        daemon = Daemon(self)
+        self.assertIsNone(daemon.ask("GET", "/v1/status")[1]["page"])
+        self.assertNotRegex(daemon.run("status").stdout, "(?m)^page")
+
     def test_a_tare_moves_the_zero_of_all_tests_that_follow(self):
         daemon = Daemon(self, '[test]\nbegins = "command"\n[tester]\nload_cell_zero = "0.004 V"\n')
         frames = self.watching(daemon)

@@ -43,6 +43,8 @@ def complaints(value, schema, document, place="$"):
                 found += complaints(one, schema["properties"][key], document, f"{place}.{key}")
             elif schema.get("additionalProperties") is False:
                 found.append(f"{place}: {key} is not described")
+            elif "additionalProperties" in schema:
+                found += complaints(one, schema["additionalProperties"], document, f"{place}.{key}")
     if isinstance(value, list) and "items" in schema:
         for at, one in enumerate(value):
             found += complaints(one, schema["items"], document, f"{place}[{at}]")
