@@ -142,5 +142,24 @@ TEST(Metrics, HistogramsAreWhole) {
   }
 }
 
+// Prometheus takes a counter that falls for a new start; one in 142 days of scans would be one too many, and
+// so would one that stands still for want of digits.
+TEST(Metrics, CountersBeyond32BitsAreWholeToTheLastDigit) {
+  constexpr std::uint64_t kBeyond = (std::uint64_t{1} << 32) + 1;
+  Status status = busy();
+  status.scan_count = kBeyond;
+  status.gap_count = kBeyond + 1;
+  status.lost_scan_count = static_cast<std::int64_t>(kBeyond + 2);
+  status.dropped_scan_count = kBeyond + 3;
+  status.latency = {daq::LatencyHistogram::Counts{kBeyond, 1}, 1e-3};
+  const std::string text = metrics_text(status);
+  for (const char* line :
+       {"stickslip_scans_total 4294967297", "stickslip_gaps_total 4294967298",
+        "stickslip_lost_scans_total 4294967299", "stickslip_dropped_scans_total 4294967300",
+        "stickslip_read_latency_seconds_count 4294967298"}) {
+    EXPECT_NE(text.find(fmt::format("\n{}\n", line)), std::string::npos) << line << '\n' << text;
+  }
+}
+
 }  // namespace
 }  // namespace stickslip::daemon

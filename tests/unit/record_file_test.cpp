@@ -60,6 +60,32 @@ TEST(RecordFile, ImportedValuesKeepEveryBitAndNothingIsInvented) {
   EXPECT_FALSE(read->header.start_realtime_ns);
 }
 
+// 2³¹ s and 2³² s after 1970 are in 2038 and 2106: where a count of seconds with 32 bits turns over. Dates by
+// `date -u -d @2147483648`.
+TEST(RecordFile, TimesBeyond32BitsOfSecondsKeepTheirNanoseconds) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  for (const auto& [bits, text] :
+       {std::pair{31, "2038-01-19T03:14:08"}, std::pair{32, "2106-02-07T06:28:16"}}) {
+    const std::int64_t turn_ns = (std::int64_t{1} << bits) * kSecond_ns;
+    EXPECT_EQ(record::iso_time(turn_ns), std::string{text} + ".000000000+00:00");
+    EXPECT_EQ(record::ns_from_iso_time(record::iso_time(turn_ns - 1)), turn_ns - 1);
+    const TemporaryFolder folder;
+    record::Record written = test::sample_record();
+    const std::int64_t shift_ns = turn_ns - written.anchors.at(1).realtime_ns;
+    written.header.start_realtime_ns = *written.header.start_realtime_ns + shift_ns;
+    written.end->end_realtime_ns = *written.end->end_realtime_ns + shift_ns;
+    for (daq::ClockAnchor& anchor : written.anchors) {
+      anchor.realtime_ns += shift_ns;
+      anchor.monotonic_ns += turn_ns;  // A machine that has run for as long.
+    }
+    ASSERT_LT(written.anchors.front().realtime_ns, turn_ns);
+    ASSERT_TRUE(publish_record(written, folder / "a.h5"));
+    const auto read = read_record(folder / "a.h5");
+    ASSERT_TRUE(read) << read.error().message;
+    test::expect_same_record(*read, written);
+  }
+}
+
 // Computed independently, with Python: sha256 of
 // struct.pack('<3d', 1.0, -2.5, 0.1).
 TEST(RecordFile, Sha256IsThatOfTheStoredBytes) {
