@@ -40,7 +40,7 @@ DECISIVE = np.log(1e4)  # As in core/friction/slip_follower.
 SPIKES_PER_S = 20.0  # As in tests/support/random_tests.hpp,
 SPIKE_SIGMAS = DELTA_MU / NOISE  # and so is their mean size.
 SPIKED_TESTS = 40_000
-LARGEST_D = norm.isf(ERRORS) - norm.ppf(1.0 / SPIKED_TESTS)  # Of which so many tests tell less than all.
+LARGEST_D = norm.isf(ERRORS) - norm.ppf(1.0 / SPIKED_TESTS)  # Beyond it the drawn tests would all be told.
 SEED = 1
 
 OMEGA = 2.0 * np.pi * FREQUENCY_HZ

@@ -20,10 +20,8 @@ import tempfile
 import time
 
 ROUNDS = 2
-SCENE = pathlib.Path(__file__).resolve().parent.parent / "config/scenes/stick-slip-at-12-in-per-min.toml"
-
-
 SLEEP_S = 4e-3
+SCENE = pathlib.Path(__file__).resolve().parent.parent / "config/scenes/stick-slip-at-12-in-per-min.toml"
 
 
 def sleeper(end, late_ms):
@@ -84,7 +82,7 @@ level = "warning"
                 for others in (0, int(clients)) * ROUNDS:
                     beside = [subprocess.Popen(watch, stdout=subprocess.DEVNULL) for _ in range(others)]
                     end, (received, sent) = multiprocessing.Event(), multiprocessing.Pipe(duplex=False)
-                    sleeping = multiprocessing.Process(target=sleeper, args=(end, sent))
+                    sleeping = multiprocessing.Process(target=sleeper, args=(end, sent), daemon=True)
                     sleeping.start()
                     for (kind, to), values in latencies_ms(watch, float(seconds)).items():
                         found.setdefault((kind, to, others), []).extend(values)
