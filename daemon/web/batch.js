@@ -6,6 +6,7 @@ const Batch = (() => {
   const plan = part("batch-begin");
   let ask = null, say = null, changed = null;
   let told = null;    // What the health said of the batch, as text.
+  let done = 0;       // Tests of the batch that count.
   let chosen = null;  // The test to be void: {body, what, button}.
 
   const stepText = step => `${step.pull_speed == null ? "" : `${Tables.speed(step.pull_speed)}, `}sheet ${step.replicate}, slide ${step.slide}`;
@@ -13,6 +14,7 @@ const Batch = (() => {
 
   function show(batch) {
     const leads = batch != null, complete = leads && batch.next == null && batch.done === batch.planned;
+    done = leads ? batch.done : 0;
     part("batch-name").textContent = leads ? `${batch.name}${batch.plan.grade ? `, ${batch.plan.grade}` : ""}: ${batch.done} of ${batch.planned} tests made` : "no batch: tests are as planned below";
     part("batch-next").textContent = !leads ? "" : batch.next != null ? `Next: ${stepText(batch.next)}` : complete ? "All are made." : "The last is under way.";
     part("batch-trouble").textContent = leads && batch.trouble != null ? batch.trouble : "";
@@ -108,7 +110,7 @@ const Batch = (() => {
       show(batch);
       part("batch-dialog").close();
       part("batch-end").focus();  // What opened the dialog is gone.
-      say(`batch ${batch.id} has begun: ${batch.planned} tests`, true);
+      say(`batch ${batch.id} has begun: ${batch.planned} test${batch.planned === 1 ? "" : "s"}`, true);
       await changed();
     } catch (error) { refusal("batch-message", error); }
   });
@@ -150,5 +152,6 @@ const Batch = (() => {
       }
     },
     voidCell,
+    done: () => done,
   };
 })();

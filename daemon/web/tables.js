@@ -37,8 +37,9 @@ const Tables = (() => {
   const limitText = ({lowest, highest}, digits) => (lowest == null ? `≤ ${fixed(highest, digits)}` : highest == null ? `≥ ${fixed(lowest, digits)}` : `${fixed(lowest, digits)} … ${fixed(highest, digits)}`);
 
   /// Numbers of the foot are the daemon's (GET /v1/tests), as stickslip report computes them.
+  /// \param made  how many tests of the batch count, as far as its journal goes back: the table knows those since the daemon began.
   /// \param voidCell  (id, body, what, voided) → a cell with the button of a test.
-  function tests(list, summary, download, voidCell) {
+  function tests(list, summary, made, download, voidCell) {
     const table = document.getElementById("tests");
     const head = ["test", "regime", ...columns.map(c => c[1]), "ended", "", "record"].map((text, k) => {
       const th = cell(text, "th"); th.scope = "col"; if (k === 1 || k > columns.length + 1) th.className = "text"; return th; });
@@ -68,7 +69,9 @@ const Tables = (() => {
     table.tFoot.replaceChildren(...rows);
     if (/^(void|record)-\d+$/.test(focused ?? "")) document.getElementById(focused)?.focus();
     const far = summary.quantities.some(quantity => quantity.outlier_test != null);
-    document.getElementById("counted").textContent = [summary.batch == null ? "" : `mean and limits of batch ${summary.batch}`,
+    const known = summary.tests.length, ofBatch = known < made ? `${known} of the ${made} tests made of batch ${summary.batch}: the others are from before the daemon began, and in its report` :
+      `batch ${summary.batch}`;
+    document.getElementById("counted").textContent = [summary.batch == null ? "" : `mean and limits of ${ofBatch}`,
       far ? "! stands out (Grubbs' test, 5 %) and counts all the same" : ""].filter(text => text !== "").join(" · ");
   }
 

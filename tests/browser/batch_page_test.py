@@ -294,6 +294,8 @@ class BatchPage(unittest.TestCase):
             self.assertEqual(after[name], before[name], name)
         known = [str(test["number"]) for test in self.daemon.ask("GET", "/v1/tests")[1]["tests"]]
         self.assertEqual([row[0] for row in reversed(after["tests"])], known)
+        # Mean and limits are of the tests that the daemon has seen itself, and say so.
+        self.assertEqual(self.text("counted"), f"mean and limits of 0 of the 1 tests made of batch {batch['id']}: the others are from before the daemon began, and in its report")
         # It goes on where it was, and ends with the sheets that were planned.
         records += [self.measure(), self.measure()]
         self.assertEqual([self.facts(record)[0] for record in records], 4 * [batch["id"]])

@@ -68,10 +68,10 @@ class LivePage(unittest.TestCase):
         self.token = (daemon.folder / "token").read_text().strip()
         return daemon
 
-    def scene(self, name, speed, **changed):
+    def scene(self, name, speed, texts=()):
         """A board that plays a shipped scene, with texts of it replaced."""
         text = (SOURCE / "config" / "scenes" / f"{name}.toml").read_text(encoding="utf-8")
-        for old, new in changed.get("texts", []):
+        for old, new in texts:
             self.assertEqual(text.count(old), 1, old)
             text = text.replace(old, new)
         place = tempfile.TemporaryDirectory(prefix="stickslip-")
@@ -310,7 +310,7 @@ class LivePage(unittest.TestCase):
         self.assertTrue(gaps <= told["gap_count"] and lost <= told["lost_scan_count"], (gaps, lost, told["gap_count"], told["lost_scan_count"]))
 
     def test_a_page_that_is_reloaded_in_the_middle_of_a_test_goes_on(self):
-        daemon = self.daemon('[test]\nbegins = "command"\n', speed=4, patient=True)
+        daemon = self.daemon('[test]\nbegins = "command"\n', speed=2, patient=True)
         frames = self.listen(daemon)
         page = self.page()
         self.start(page)
@@ -509,7 +509,7 @@ class LivePage(unittest.TestCase):
 
     def test_the_tab_key_goes_through_all_controls_in_order_and_comes_back(self):
         # Nothing changes the page meanwhile: the bench is idle; one test and its batch are in the tables.
-        daemon = self.daemon('[test]\nbegins = "command"\n', speed=4)
+        daemon = self.daemon('[test]\nbegins = "command"\n', speed=2)
         self.assertEqual(daemon.ask("POST", "/v1/batch", {"name": "liner", "replicates": 2})[0], 200)
         self.assertEqual(daemon.ask("DELETE", "/v1/controller")[0], 200)
         page = self.page()
@@ -544,7 +544,7 @@ class LivePage(unittest.TestCase):
             page.until(f"!document.querySelector('dialog:modal') && document.activeElement.id === '{opener}'")
 
     def test_fingers_meet_its_controls_on_a_tablet(self):
-        daemon = self.daemon('[test]\nbegins = "command"\n', speed=4)
+        daemon = self.daemon('[test]\nbegins = "command"\n', speed=2)
         page = self.page(touch=True)
         self.assertTrue(page.value("matchMedia('(pointer: coarse)').matches"))
         page.resize(820, 1180)
