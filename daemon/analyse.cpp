@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/base/wording.hpp"
 #include "core/pipeline/gain_uncertainty.hpp"
 #include "core/pipeline/true_rate.hpp"
 #include "daemon/method_text.hpp"
@@ -13,13 +14,15 @@ namespace stickslip::daemon {
 namespace {
 
 friction::AnalysisSettings settings_of(const record::RecordHeader& header,
-                                       const daq::Calibration& calibration, const friction::Method& method) {
+                                       const daq::Calibration& calibration, const friction::Method& method,
+                                       const friction::Kept& kept) {
   friction::AnalysisSettings settings;
   settings.scan_rate_Hz = header.board.scan_rate_granted_Hz;
   settings.step_coefficient = calibration.step_coefficient();
   settings.tester = header.tester.tester();
   settings.method = method;
   settings.estimator = estimator_from_text(header.process.method);
+  settings.kept = kept;
   return settings;
 }
 
@@ -42,6 +45,12 @@ base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& he
   }
   const base::Result<friction::Method> method = method_from_text(header.process.method);
   if (!method) return tl::unexpected(method.error());
+  const std::optional<friction::Kept> kept = friction::kept_from_text(header.process.kept);
+  if (!kept) {
+    return base::usage_error(
+        "process/kept \"{}\" is not of \"spikes\", \"drift\" and \"first-slip\" with commas between",
+        base::one_line(header.process.kept, 100));
+  }
   friction::SharedPrior recorded;
   if (prior.empty() && !header.process.characterisation.empty()) {
     const auto coupling = parse_tester(header.process.characterisation, "the record's characterisation");
@@ -51,7 +60,7 @@ base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& he
   try {
     daq::Calibration calibration{header.board, header.load_cell.value_or(daq::LoadCell{}),
                                  header.tester.tester().normal_load_N()};
-    friction::AnalysisSettings settings = settings_of(header, calibration, *method);
+    friction::AnalysisSettings settings = settings_of(header, calibration, *method, *kept);
     settings.scratch_folder = scratch_folder;
     settings.prior = prior.empty() ? recorded : prior;
     std::optional<daq::SecondChannel> speed;

@@ -306,8 +306,11 @@ DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
   read_sample(settings.table("sample"), config.sample);
   read_method(settings.table("method"), folder, config.method);
   config.board.simulated.method = config.method;
-  config.estimator =
-      settings.table("analysis").choice<friction::EstimatorTier>("estimator", kEstimators, config.estimator);
+  Settings analysis = settings.table("analysis");
+  config.estimator = analysis.choice<friction::EstimatorTier>("estimator", kEstimators, config.estimator);
+  config.kept = {.spikes = analysis.boolean("keep_spikes", false),
+                 .drift = analysis.boolean("keep_drift", false),
+                 .first_slip = analysis.boolean("keep_first_slip", false)};
   Settings record = settings.table("record");
   config.record_folder = record.text("folder", "records");
   if (config.record_folder.empty()) record.refuse("folder", "must name a folder");

@@ -10,6 +10,7 @@
 #include "core/base/result.hpp"
 #include "core/base/settings.hpp"
 #include "core/daq/calibration.hpp"
+#include "core/friction/kept.hpp"
 #include "core/friction/live_cycle.hpp"
 #include "core/friction/method.hpp"
 #include "core/friction/tester.hpp"
@@ -53,6 +54,7 @@ struct DaemonConfig {
   friction::Method method;
   record::SampleFacts sample;
   friction::EstimatorTier estimator = friction::EstimatorTier::kFit;
+  friction::Kept kept;
   std::filesystem::path record_folder;
   DatedFolders dated_folders = DatedFolders::kNone;
   bool read_only_records = false;

@@ -72,6 +72,9 @@ base::Result<SessionSettings> session_settings(const DaemonConfig& config, const
     analysis.prior.coupling = *std::move(coupling);
   }
   analysis.estimator = config.estimator;
+  // A damaged word of a record keeps nothing; `stickslip analyze` refuses it.
+  analysis.kept =
+      friction::either(config.kept, friction::kept_from_text(opened.kept).value_or(friction::Kept{}));
   return settings;
 }
 
@@ -95,6 +98,7 @@ record::RecordHeader record_header(const DaemonConfig& config, const SessionSett
   header.process.configuration = config.text;
   header.process.method =
       with_estimator(method_text(settings.processor.analysis.method), settings.processor.analysis.estimator);
+  header.process.kept = friction::text_of(settings.processor.analysis.kept);
   header.process.characterisation = settings.characterisation;
   header.process.realtime = realtime;
   return header;

@@ -41,6 +41,10 @@ double slip_speed_ratio(double Q, double gamma_over_2omega) noexcept {
   return std::exp(-t * fastest_phase) / (std::hypot(1.0, t) * std::sin(peak_phase));
 }
 
+double slip_speed_ratio_threshold(double gamma_over_2omega) noexcept {
+  return std::exp(std::numbers::pi * gamma_over_2omega);
+}
+
 double gamma_over_2omega_of_half_life(double cycles) noexcept {
   return std::numbers::ln2 / (2.0 * pi * cycles);
 }

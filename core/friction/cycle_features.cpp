@@ -129,8 +129,9 @@ Cycles cycles_of(const Trace& trace, std::span<const Fall> slips, const SlipEsti
   Cycles found;
   const double scan_s = (trace.time_s.back() - trace.time_s.front() - trace.lost_s) /
                         static_cast<double>(std::max<std::size_t>(trace.size(), 2) - 1);
-  for (std::size_t i = 1; i + 1 < slips.size(); ++i) {
-    if (estimates.ends[i - 1] != SlipEnd::kCaptured || estimates.ends[i] != SlipEnd::kCaptured) continue;
+  for (std::size_t i = estimates.first_counts ? 0 : 1; i + 1 < slips.size(); ++i) {
+    if (i > 0 && estimates.ends[i - 1] != SlipEnd::kCaptured) continue;
+    if (estimates.ends[i] != SlipEnd::kCaptured) continue;
     if (!estimates.has_window(i) || !estimates.has_window(i + 1)) continue;
     const SlipWindow& window = estimates.windows[estimates.window_of_slip[i]];
     const SlipWindow& next = estimates.windows[estimates.window_of_slip[i + 1]];

@@ -19,8 +19,9 @@ inline constexpr std::size_t kFewestFeatureCycles = 3;
 
 /// Fills delta_mu_from_amplitude, delta_mu_from_timing, delta_mu_from_slip_speed, delta_mu_combined,
 /// mu_k_from_mean and mu_s_from_amplitude, or the reason why there are none: no sticking seen, too few
-/// cycles, no inverse. The first slip does not count. Standard errors hold the scatter from cycle to cycle
-/// and what ω, γ and r are uncertain by. \param estimates  model_describes(); of these slips.
+/// cycles, no inverse. The first slip does not count, unless estimates.first_counts. Standard errors hold the
+/// scatter from cycle to cycle and what ω, γ and r are uncertain by. \param estimates  model_describes(); of
+/// these slips.
 void feature_results(const Trace& trace, std::span<const Fall> slips, const SlipEstimates& estimates,
                      TestResults& results);
 

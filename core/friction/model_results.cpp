@@ -70,11 +70,12 @@ void take(const UniformFit& uniform, Fitted& fitted) {
   }
 }
 
-/// Slips that count in the means: not the first if there are others, and none whose S − K its few scans — a
-/// gap, spikes, the end of the pull — leave more uncertain than the typical S − K itself is large.
+/// Slips that count in the means: not the first if there are others (unless it is kept), and none whose S − K
+/// its few scans — a gap, spikes, the end of the pull — leave more uncertain than the typical S − K itself is
+/// large.
 std::vector<SlipWindow> slips_that_count(const SlipEstimates& estimates) {
   std::span<const SlipWindow> windows = estimates.windows;
-  if (windows.size() >= kEnoughToLeaveOutTheFirst) windows = windows.subspan(1);
+  if (!estimates.first_counts && windows.size() >= kEnoughToLeaveOutTheFirst) windows = windows.subspan(1);
   std::vector<double> sizes;
   for (const SlipWindow& window : windows) sizes.push_back(std::abs(window.slip.S - window.slip.K));
   const double typical = signal::median(sizes);
@@ -214,8 +215,8 @@ bool model_describes(const SlipEstimates& estimates, double sigma) noexcept {
 void no_model_results(const std::string& reason, TestResults& results) {
   for (Estimate* estimate :
        {&results.mu_s, &results.mu_k, &results.delta_mu, &results.omega, &results.gamma_over_2omega,
-        &results.Q, &results.Q_threshold, &results.threshold_speed, &results.amplitude,
-        &results.delta_mu_scatter, &results.escape_speed, &results.escape_speed_corrected,
+        &results.Q, &results.Q_threshold, &results.threshold_speed, &results.slip_speed_ratio_threshold,
+        &results.amplitude, &results.delta_mu_scatter, &results.escape_speed, &results.escape_speed_corrected,
         &results.pull_speed_measured}) {
     *estimate = Estimate::none(reason);
   }
@@ -269,6 +270,10 @@ void model_results(std::span<const Fall> slips, const SlipEstimates& estimates, 
       n >= 3.0 ? Estimate::of(std::sqrt(fitted.D.variance), std::sqrt(fitted.D.variance / (2.0 * (n - 1.0))))
                : Estimate::none("fewer than three slips to compare");
 
+  results.slip_speed_ratio_threshold =
+      estimates.belt.is_constant()
+          ? derived(fitted, [](const P& p) { return slip_speed_ratio_threshold(p[1] / (2.0 * p[0])); })
+          : Estimate::none(std::string{kSpeedChanges});
   const double delta_mu = fitted.value[3] - fitted.value[4];
   if (!(delta_mu > 0.0)) {
     results.Q = results.Q_threshold = results.threshold_speed =

@@ -19,7 +19,8 @@ inline constexpr double kLargestResidualSigmas = 5.0;
 /// feeds the oscillation.
 [[nodiscard]] bool model_describes(const SlipEstimates& estimates, double sigma) noexcept;
 
-/// Fills mu_s, mu_k, delta_mu, omega, gamma_over_2omega, Q, Q_threshold, threshold_speed, amplitude
+/// Fills mu_s, mu_k, delta_mu, omega, gamma_over_2omega, Q, Q_threshold, threshold_speed,
+/// slip_speed_ratio_threshold, amplitude
 /// and delta_mu_scatter, each with its standard error or the reason why there is none.
 /// γ v/g is the systematic uncertainty of S and S − K: whether the coupling's damper counts at
 /// the slip onset is a convention that no trace can tell (here: spring only, [Penner 1995, (13)]).

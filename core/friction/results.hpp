@@ -49,7 +49,7 @@ struct TestResults {
   Regime regime = Regime::kUndecided;
   std::string regime_reason;  ///< What decided it, for people.
 
-  Estimate transition_time;        ///< s after the record's first scan; only for mixed.
+  Estimate transition_time;        ///< s after the record's first scan, onset of the escape; only for mixed.
   Estimate cycle_count;            ///< Falls that are slips.
   Estimate stick_cycle_count;      ///< Those that ended in sticking.
   Estimate period_median;          ///< s
@@ -76,13 +76,14 @@ struct TestResults {
       escape_speed_corrected;  ///< m/s, threshold speed of the mean paper, from that slip and all before.
 
   // From features of the cycles that stick, core/friction/cycle_features.
-  Estimate delta_mu_from_amplitude;   ///< S − K by the amplitude ratio [17].
-  Estimate delta_mu_from_timing;      ///< S − K by the period.
-  Estimate delta_mu_from_slip_speed;  ///< S − K by the slip-to-stick speed ratio [18].
-  Estimate delta_mu_combined;         ///< The three, weighted by condition number and scatter.
-  Estimate mu_k_from_mean;            ///< K: the mean less what damping adds to it.
-  Estimate mu_s_from_amplitude;       ///< S: mu_k_from_mean + delta_mu_from_amplitude.
-  Estimate pull_speed_measured;       ///< m/s, from the stick slope and ω₀.
+  Estimate delta_mu_from_amplitude;     ///< S − K by the amplitude ratio [17].
+  Estimate delta_mu_from_timing;        ///< S − K by the period.
+  Estimate delta_mu_from_slip_speed;    ///< S − K by the slip-to-stick speed ratio [18].
+  Estimate delta_mu_combined;           ///< The three, weighted by condition number and scatter.
+  Estimate mu_k_from_mean;              ///< K: the mean less what damping adds to it.
+  Estimate mu_s_from_amplitude;         ///< S: mu_k_from_mean + delta_mu_from_amplitude.
+  Estimate pull_speed_measured;         ///< m/s, from the stick slope and ω₀.
+  Estimate slip_speed_ratio_threshold;  ///< Of [18]: at or above, a slip ends in sticking.
 
   /// What somebody should look at: the tester disagrees with its characterisation, the plan's speed is wrong.
   std::vector<std::string> findings;
@@ -143,6 +144,9 @@ void for_each_result(Results& results, Visitor&& visit) {
   visit(ResultName{"mu_s_from_amplitude", "1", "S from mean and amplitude"}, results.mu_s_from_amplitude);
   visit(ResultName{"pull_speed_measured", "m/s", "pull speed from the slope of the sticks"},
         results.pull_speed_measured);
+  visit(ResultName{"slip_speed_ratio_threshold", "1",
+                   "largest slip speed over drive speed from which on a slip ends in sticking"},
+        results.slip_speed_ratio_threshold);
 }
 
 }  // namespace stickslip::friction

@@ -9,6 +9,7 @@
 #include "core/friction/cycle_features.hpp"
 #include "core/friction/model_results.hpp"
 #include "core/friction/slip_estimator.hpp"
+#include "core/friction/unknown.hpp"
 
 namespace stickslip::friction {
 namespace {
@@ -138,10 +139,12 @@ void append(const std::vector<Cycle>& rows, std::size_t count, std::size_t first
 
 TestEstimates estimate_in_sections(const Trace& trace, const base::LongColumn<Fall>& slips, double sigma,
                                    const SharedPrior& prior, const Tester& tester,
-                                   const std::filesystem::path& scratch, std::size_t most) {
+                                   const std::filesystem::path& scratch, std::size_t most,
+                                   bool first_counts) {
   TestEstimates whole;
   whole.log_likelihood_ratios = base::LongColumn<double>{scratch};
   whole.cycles = base::LongColumn<Cycle>{scratch};
+  whole.onset_errors_s = base::LongColumn<double>{scratch};
   PooledResults results;
   PooledTester testers;
   double last_capture_s = std::nan("");
@@ -152,7 +155,8 @@ TestEstimates estimate_in_sections(const Trace& trace, const base::LongColumn<Fa
     std::vector<Fall> section;
     section.reserve(size);
     for (std::size_t i = 0; i < size; ++i) section.push_back(slips[first + i]);
-    const SlipEstimates estimates = estimate_slips(trace, section, sigma, prior);
+    // The first slip of a later section also was the last of the section before.
+    const SlipEstimates estimates = estimate_slips(trace, section, sigma, prior, first_counts && first == 0);
     whole.model_describes = whole.model_describes && model_describes(estimates, sigma);
     testers.add(estimates);
     TestResults own;
@@ -167,6 +171,12 @@ TestEstimates estimate_in_sections(const Trace& trace, const base::LongColumn<Fa
     const std::size_t count = first + size < slips.size() ? begin_of_next(estimates) : size;
     const std::vector<Cycle> rows = cycle_table(trace, section, estimates);
     append(rows, count, first, last_capture_s, whole);
+    for (std::size_t i = 0; i < count; ++i) {
+      whole.onset_errors_s.push_back(
+          std::isfinite(rows[i].onset_time_s)
+              ? estimates.fit.onset_error_s(estimates.windows[estimates.window_of_slip[i]])
+              : kNotKnown);
+    }
     last_capture_s = rows[count - 1].capture_time_s;
     const auto& ratios = estimates.log_likelihood_ratios;
     for (std::size_t i = 0; i < std::min(count, ratios.size()); ++i) {

@@ -29,18 +29,20 @@ struct TestEstimates {
   TestResults results;
   base::LongColumn<double> log_likelihood_ratios;  ///< Captured over free, one fewer than slips.
   base::LongColumn<Cycle> cycles;                  ///< One for each slip, as from cycle_table().
-  std::int64_t captured = 0;                       ///< Slips that ended in sticking.
-  bool model_describes = true;                     ///< Each section.
+  base::LongColumn<double> onset_errors_s;  ///< Standard error of each onset; NaN where it is not known.
+  std::int64_t captured = 0;                ///< Slips that ended in sticking.
+  bool model_describes = true;              ///< Each section.
   /// What the test says about the tester; nothing if the fit of a section did not converge.
   std::optional<TesterEstimate> tester;
 };
 
 /// \param slips  falls that are slips, in the order of time, not empty. \param sigma  noise of one scan, > 0.
 /// \param scratch  folder for the columns of a long test; empty: memory.
-/// \param most  slips of a section, > 2.
+/// \param most  slips of a section, > 2. \param first_counts  the first slip of the test counts in means.
 [[nodiscard]] TestEstimates estimate_in_sections(const Trace& trace, const base::LongColumn<Fall>& slips,
                                                  double sigma, const SharedPrior& prior, const Tester& tester,
                                                  const std::filesystem::path& scratch = {},
-                                                 std::size_t most = kMostSlipsTogether);
+                                                 std::size_t most = kMostSlipsTogether,
+                                                 bool first_counts = false);
 
 }  // namespace stickslip::friction

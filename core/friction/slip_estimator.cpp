@@ -225,7 +225,7 @@ double SlipEstimates::static_coefficient(const SlipWindow& window) const {
 }
 
 SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, double sigma,
-                             const SharedPrior& prior) {
+                             const SharedPrior& prior, bool first_counts) {
   const SharedParameters guess = first_guess(trace, slips);
   SlipEstimates estimates = rounds(trace, slips, sigma, prior, guess);
   const auto try_too = [&](const SharedParameters& start, std::vector<SlipEnd> ends) {
@@ -263,8 +263,10 @@ SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, do
   }
   estimates.drift = trace.drift;
   estimates.belt = trace.belt;
+  estimates.first_counts = first_counts;
   if (estimates.fit.converged && trace.belt.is_constant()) {
-    estimates.uniform = uniform_if_slips_agree(trace, estimates.windows, estimates.fit.shared, sigma, prior);
+    estimates.uniform =
+        uniform_if_slips_agree(trace, estimates.windows, estimates.fit.shared, sigma, prior, first_counts);
   }
   return estimates;
 }

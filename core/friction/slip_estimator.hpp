@@ -35,7 +35,8 @@ struct SlipEstimates {
   SlipFit fit;
   /// One S and one K for all slips but the first; nothing where the slips differ by more than noise.
   std::optional<UniformFit> uniform;
-  BeltCourse belt;  ///< Of the trace.
+  BeltCourse belt;            ///< Of the trace.
+  bool first_counts = false;  ///< The first slip counts in means like the others.
 
   [[nodiscard]] bool has_window(std::size_t slip) const noexcept { return window_of_slip[slip] != kNoWindow; }
 
@@ -49,7 +50,8 @@ struct SlipEstimates {
 /// \param slips  falls that are slips, in the order of time, not empty.
 /// \param sigma  noise of one scan, > 0.
 /// \param prior  what is known of ω, γ and the stick rate beforehand.
+/// \param first_counts  the first slip counts in means, and must agree with the others for `uniform`.
 [[nodiscard]] SlipEstimates estimate_slips(const Trace& trace, std::span<const Fall> slips, double sigma,
-                                           const SharedPrior& prior = {});
+                                           const SharedPrior& prior = {}, bool first_counts = false);
 
 }  // namespace stickslip::friction

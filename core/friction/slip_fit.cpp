@@ -208,6 +208,8 @@ Eigen::Matrix3d SlipFit::covariance(const SlipWindow& window) const {
   return window.inverse_curvature + window.coupling * shared_covariance * window.coupling.transpose();
 }
 
+double SlipFit::onset_error_s(const SlipWindow& window) const { return std::sqrt(covariance(window)(0, 0)); }
+
 double SlipFit::delta_mu_error(const SlipWindow& window) const {
   const Eigen::Matrix3d own = covariance(window);
   return std::sqrt(own(1, 1) + own(2, 2) - 2.0 * own(1, 2));

@@ -49,6 +49,8 @@ struct SlipFit {
   [[nodiscard]] Eigen::Matrix3d mean_covariance(const std::vector<SlipWindow>& windows) const;
   /// Covariance of one slip's own parameters.
   [[nodiscard]] Eigen::Matrix3d covariance(const SlipWindow& window) const;
+  /// Standard error of its onset, s.
+  [[nodiscard]] double onset_error_s(const SlipWindow& window) const;
   /// Standard error of its S − K.
   [[nodiscard]] double delta_mu_error(const SlipWindow& window) const;
 };

@@ -115,7 +115,8 @@ TestAnalysis::TestAnalysis(const AnalysisSettings& settings)
       saturated_(settings.scratch_folder),
       speeds_m_per_s_(settings.scratch_folder),
       live_({settings.scan_rate_Hz, settings.step_coefficient, settings.estimator, settings.prior,
-             settings.despike}),
+             !settings.kept.spikes}),
+      means_(settings.kept.first_slip),
       live_cycles_(settings.scratch_folder) {
   constexpr std::size_t kRoom = 100;
   new_cycles_.reserve(kRoom);
@@ -189,7 +190,8 @@ TestResults TestAnalysis::finish() {
   results.transition_time = Estimate::none("no transition");
 
   Trace trace = despiked_trace();
-  results.spike_count = Estimate::of(static_cast<double>(spikes_.size()));
+  results.spike_count = settings_.kept.spikes ? Estimate::none("spikes are kept, and not looked for")
+                                              : Estimate::of(static_cast<double>(spikes_.size()));
   if (trace.size() < signal::kFewestScansForNoise) {
     too_short(trace.size(), results);
     return results;
@@ -217,7 +219,7 @@ TestResults TestAnalysis::finish() {
     no_model_results("no slip", results);
   } else {
     // Where the speed changes, the mean of a cycle does so too, without any drift of the paper.
-    if (settings_.remove_drift && trace.belt.is_constant()) trace.drift = significant_drift(trace, slips);
+    if (!settings_.kept.drift && trace.belt.is_constant()) trace.drift = significant_drift(trace, slips);
     trace.belt.take_off_drift(trace.drift.rate_per_s);
     TestEstimates estimates = estimate(trace, slips, sigma);
     const RegimeVerdict verdict =
@@ -231,8 +233,7 @@ TestResults TestAnalysis::finish() {
     if (estimates.model_describes) speed_results(trace, estimates, results);
     if (settings_.estimator != EstimatorTier::kFit) means_.fill(results);
     if (verdict.transition_slip) {
-      const Fall slip = std::as_const(slips)[*verdict.transition_slip];
-      results.transition_time = Estimate::of(time_at(trace, slip.peak_at));
+      results.transition_time = transition_time(trace, estimates, slips, *verdict.transition_slip);
     }
     keep_cycles(estimates, slips);
   }
@@ -264,7 +265,7 @@ Trace TestAnalysis::despiked_trace() {
     trace.usable.push_back(!scan.spike && saturated[k] == 0 ? 1 : 0);
   };
   for (const double coefficient : std::as_const(coefficients_)) {
-    if (!settings_.despike) {
+    if (settings_.kept.spikes) {
       take({coefficient, false});
     } else if (const auto scan = despiker.add(coefficient, sigma)) {
       take(*scan);
@@ -274,9 +275,18 @@ Trace TestAnalysis::despiked_trace() {
   return trace;
 }
 
+Estimate TestAnalysis::transition_time(const Trace& trace, const TestEstimates& estimates,
+                                       const base::LongColumn<Fall>& slips, std::size_t slip) {
+  const double onset_s = estimates.cycles[slip].onset_time_s;
+  // A slip that did not begin from sticking has no onset: its peak has to do.
+  if (!std::isfinite(onset_s)) return Estimate::of(time_at(trace, slips[slip].peak_at));
+  return Estimate::of(onset_s, estimates.onset_errors_s[slip]);
+}
+
 TestEstimates TestAnalysis::estimate(const Trace& trace, const base::LongColumn<Fall>& slips, double sigma) {
   const auto estimates = [&](const SharedPrior& prior) {
-    return estimate_in_sections(trace, slips, sigma, prior, settings_.tester, settings_.scratch_folder);
+    return estimate_in_sections(trace, slips, sigma, prior, settings_.tester, settings_.scratch_folder,
+                                kMostSlipsTogether, settings_.kept.first_slip);
   };
   TestEstimates alone = estimates({});
   if (alone.model_describes) tester_ = alone.tester;

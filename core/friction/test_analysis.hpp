@@ -19,6 +19,7 @@
 #include "core/friction/characterisation.hpp"
 #include "core/friction/cycle.hpp"
 #include "core/friction/fall_finder.hpp"
+#include "core/friction/kept.hpp"
 #include "core/friction/live_detector.hpp"
 #include "core/friction/method.hpp"
 #include "core/friction/pull_speed.hpp"
@@ -39,9 +40,8 @@ struct AnalysisSettings {
   /// Where S, K and S − K come from: those of each cycle, live and at the end, and those of the test. The
   /// regime, ω and γ come from the fit of the whole test in any case.
   EstimatorTier estimator = EstimatorTier::kFit;
-  SharedPrior prior;         ///< What is known of the tester beforehand; empty: the test tells it all.
-  bool despike = true;       ///< Off: to see what the spikes did.
-  bool remove_drift = true;  ///< Off: to see what the drift did.
+  SharedPrior prior;  ///< What is known of the tester beforehand; empty: the test tells it all.
+  Kept kept;          ///< To see what spikes, drift or the first slip did.
   /// Where to put the scans of a long test beside the latest few minutes; empty: they all stay in memory.
   std::filesystem::path scratch_folder;
   /// The pull speed is measured: one A/D step of it, ≥ 0; absent: speed() is not called.
@@ -104,6 +104,9 @@ class TestAnalysis {
   [[nodiscard]] Trace despiked_trace();
   /// Breaks the trace at the gaps that may hide a slip, and forgets the slips that reach into one.
   void break_at_gaps(Trace& trace, base::LongColumn<Fall>& slips) const;
+  /// When the slip began after which the sled behaved otherwise.
+  [[nodiscard]] static Estimate transition_time(const Trace& trace, const TestEstimates& estimates,
+                                                const base::LongColumn<Fall>& slips, std::size_t slip);
   /// Into cycles_, with their flags.
   void keep_cycles(const TestEstimates& estimates, const base::LongColumn<Fall>& slips);
   /// Fills pull_speed_measured and the findings.

@@ -19,7 +19,7 @@ Estimate TierMeans::Mean::estimate() const {
 
 void TierMeans::add(const LiveCycle& cycle) noexcept {
   if (!std::isfinite(cycle.S) || !std::isfinite(cycle.K)) return;
-  if ((cycle.cycle.flags & kCycleIsFirst) == 0 && only_first_) {
+  if (leaves_out_first_ && (cycle.cycle.flags & kCycleIsFirst) == 0 && only_first_) {
     S_ = K_ = delta_mu_ = Mean{};
     only_first_ = false;
   }

@@ -8,9 +8,10 @@
 namespace stickslip::friction {
 
 /// Means over cycles in a fixed memory. The first — often not representative [Penner 1995] — counts only if
-/// there is no other.
+/// there is no other, or if it is kept.
 class TierMeans {
  public:
+  explicit TierMeans(bool first_counts = false) noexcept : leaves_out_first_(!first_counts) {}
   void add(const LiveCycle& cycle) noexcept;
   /// mu_s, mu_k, delta_mu with standard errors from the scatter, and delta_mu_scatter.
   void fill(TestResults& results) const;
@@ -28,6 +29,7 @@ class TierMeans {
   Mean S_;
   Mean K_;
   Mean delta_mu_;
+  bool leaves_out_first_;
   bool only_first_ = true;
 };
 

@@ -89,12 +89,12 @@ double probability_alike(const SlipFit& each, const UniformFit& uniform, std::si
 
 std::optional<UniformFit> uniform_if_slips_agree(const Trace& trace, const std::vector<SlipWindow>& windows,
                                                  const SharedParameters& shared, double sigma,
-                                                 const SharedPrior& prior) {
+                                                 const SharedPrior& prior, bool first_counts) {
   const bool regular =
       windows.size() >= kFewestSlips &&
       std::all_of(windows.begin(), windows.end(), [](const SlipWindow& w) { return w.captured; });
   if (!regular) return std::nullopt;
-  std::vector<SlipWindow> slips{windows.begin() + 1, windows.end()};
+  std::vector<SlipWindow> slips{windows.begin() + (first_counts ? 0 : 1), windows.end()};
   const SlipFit each = fit_slips(trace, slips, shared, sigma, prior);
   if (!each.converged || !(each.freedom > 0.0)) return std::nullopt;
   const std::optional<P> guess = first_guess(slips, each);

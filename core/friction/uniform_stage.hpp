@@ -15,15 +15,16 @@ namespace stickslip::friction {
 /// variance adds 1 % to the rms error.
 inline constexpr double kScatterLevel = 0.01;
 
-/// Fits one course to all slips but the first, which is often not representative [Penner 1995], and compares
-/// it with the fit slip by slip of the same scans by an F test on the robust costs: 3n + 3 parameters against
-/// 6 [Hampel et al., Robust Statistics, 1986, section 7.2].
-/// \param windows,shared  fitted by fit_slips() to the whole test.
-/// \return nothing if a slip did not end in sticking, there are fewer than three, the fit does not converge,
+/// Fits one course to all slips but the first, which is often not representative [Penner 1995] (or, if
+/// `first_counts`, to all), and compares it with the fit slip by slip of the same scans by an F test on the
+/// robust costs: 3n + 3 parameters against 6 [Hampel et al., Robust Statistics, 1986, section 7.2]. \param
+/// windows,shared  fitted by fit_slips() to the whole test. \return nothing if a slip did not end in
+/// sticking, there are fewer than three, the fit does not converge,
 ///         or the slips differ significantly.
 [[nodiscard]] std::optional<UniformFit> uniform_if_slips_agree(const Trace& trace,
                                                                const std::vector<SlipWindow>& windows,
                                                                const SharedParameters& shared, double sigma,
-                                                               const SharedPrior& prior);
+                                                               const SharedPrior& prior,
+                                                               bool first_counts = false);
 
 }  // namespace stickslip::friction

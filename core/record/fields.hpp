@@ -121,6 +121,7 @@ void for_each_field(Facts& facts, Visitor&& visit) {
   visit(FieldName{"configuration", "", ""}, facts.configuration);
   visit(FieldName{"estimator", "", ""}, facts.estimator);
   visit(FieldName{"method", "", ""}, facts.method);
+  visit(FieldName{"kept", "", ""}, facts.kept);
   visit(FieldName{"characterisation", "", ""}, facts.characterisation);
   visit(FieldName{"realtime", "", ""}, facts.realtime);
   visit(FieldName{"simulation", "", ""}, facts.simulation);

@@ -110,6 +110,7 @@ struct ProcessFacts {
   std::string configuration;  ///< The configuration file as it was read, whole.
   std::string estimator;      ///< Tier of the estimators.
   std::string method;         ///< Preset of the traditional rule.
+  std::string kept;           ///< Of spikes, drift and the first slip, friction::text_of(); empty: nothing.
   /// What was known of the tester beforehand: the file of its characterisation, whole; empty: nothing.
   std::string characterisation;
   std::string realtime;    ///< Scheduling and memory locking that were granted.

@@ -23,8 +23,23 @@ void add_analyze(CLI::App& app, Chosen& chosen) {
           "where S and K come from: \"peak\" (largest scan and mean of each cycle), \"interpolated\" "
           "(turning points), \"fit\" (all scans); default: as the record says")
       ->type_name("NAME");
+  analyze
+      ->add_option("--keep", analysis.keep,
+                   "leave in what is taken care of otherwise, to see what it does: \"spikes\", \"drift\", "
+                   "\"first-slip\" (its peak is often not representative), one each time; \"nothing\" takes "
+                   "care of all; default: as the record says")
+      ->type_name("WHAT")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  analyze->add_flag("--effects", analysis.effects,
+                    "S, K and S - K with all three taken care of, and with each kept, side by side");
   analyze->add_flag("--json", analysis.json,
                     "JSON instead of a table; names as in the record, null where absent");
+  analyze->footer(
+      "Examples:\n"
+      "  stickslip analyze pull.h5 --effects                what spikes, drift and the first slip do to S - "
+      "K\n"
+      "  stickslip analyze pull.h5 --keep spikes --keep drift --json");
   choose(*analyze, chosen, [kept] { return run_analyze(*kept); });
 }
 

@@ -37,6 +37,9 @@ struct AnalyzeCommand {
   std::string method;     ///< As chosen_method() takes it; empty: that of each record.
   std::string tester;     ///< File of a characterisation; empty: none.
   std::string estimator;  ///< "peak", "interpolated" or "fit"; empty: that of each record.
+  /// Of friction::kKeptNames, or "nothing" alone; empty: as each record says.
+  std::vector<std::string> keep;
+  bool effects = false;  ///< What each of them does, beside the results.
   bool json = false;
 };
 

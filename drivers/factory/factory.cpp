@@ -30,6 +30,7 @@ base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::C
   const friction::Tester tester = record->header.tester.tester();
   std::string characterisation = record->header.process.characterisation;
   record::CalibrationFacts calibration = record->header.calibration;
+  std::string kept = record->header.process.kept;
   auto recorded = std::make_shared<daq::RecordedFacts>(
       daq::RecordedFacts{std::move(record->anchors),
                          std::move(record->gaps),
@@ -46,8 +47,8 @@ base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::C
                    [](const daq::Note& a, const daq::Note& b) { return a.scan < b.scan; });
   Replay replay = make_replay(std::move(*record), clock);
   return OpenedBoard{
-      std::move(replay.board), std::move(replay.truth), load_cell, tester, std::move(characterisation),
-      std::move(recorded),     std::move(calibration)};
+      std::move(replay.board), std::move(replay.truth), load_cell,      tester, std::move(characterisation),
+      std::move(recorded),     std::move(calibration),  std::move(kept)};
 }
 
 base::Result<OpenedBoard> open_comedi(ComediBoardSettings settings, base::Clock& clock,

@@ -68,8 +68,9 @@ class Collector final : public pipeline::Sink {
 /// Plays the board to its end through the processor, in blocks of random sizes.
 /// \param lost  one scan in so many is dropped; 0: none.
 /// \param characterisation  of the tester, as in the configuration; empty: what the board knows of it.
+/// \param kept  by the configuration, with what a replayed record kept.
 std::vector<record::Record> run(drivers::OpenedBoard opened, unsigned seed, int lost,
-                                const std::string& characterisation = {}) {
+                                const std::string& characterisation = {}, const friction::Kept& kept = {}) {
   const daq::BoardInfo& info = opened.board->info();
   record::RecordHeader header;
   header.board = info;
@@ -77,12 +78,14 @@ std::vector<record::Record> run(drivers::OpenedBoard opened, unsigned seed, int 
   header.tester = record::TesterFacts::of(*opened.tester);
   header.process.method = method_text({});
   header.process.characterisation = characterisation.empty() ? opened.characterisation : characterisation;
+  header.process.kept = friction::text_of(friction::either(kept, *friction::kept_from_text(opened.kept)));
   Collector collector{header};
 
   pipeline::ProcessorSettings settings;
   settings.segmenter.scan_rate_Hz = info.scan_rate_granted_Hz;
   settings.analysis.scan_rate_Hz = info.scan_rate_granted_Hz;
   settings.analysis.tester = *opened.tester;
+  settings.analysis.kept = friction::either(kept, *friction::kept_from_text(opened.kept));
   settings.recorded = opened.recorded;
   settings.second = info.second;
   if (!header.process.characterisation.empty()) {
@@ -229,6 +232,52 @@ TEST(ReplayGoldenOfAKnownTester, RecordCarriesWhatWasKnownAndGivesTheSameBits) {
   record::Record damaged = *stored;
   damaged.header.process.characterisation = "[tester]\nomega = 3";
   EXPECT_FALSE(analyse(damaged));
+  std::filesystem::remove(file);
+}
+
+// Each of the three problems kept, on a scene that has it: the record says so, and without that its numbers
+// would be others.
+TEST(ReplayGoldenOfWhatIsKept, RecordCarriesItAndGivesTheSameBits) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / fmt::format("stickslip-golden-kept-{}.h5", ::getpid());
+  for (const auto& [name, words] :
+       {std::pair{"drift-hum-and-spikes.toml", "spikes"}, std::pair{"drifting-friction.toml", "drift"},
+        std::pair{"abnormal-first-peak.toml", "first-slip"},
+        std::pair{"drift-hum-and-spikes.toml", "spikes,drift,first-slip"}}) {
+    SCOPED_TRACE(words);
+    std::filesystem::remove(file);
+    test::ManualClock clock;
+    auto board = drivers::open_board(scene(name), clock);
+    ASSERT_TRUE(board) << board.error().message;
+    const std::vector<record::Record> live =
+        run(std::move(*board), 1, 0, {}, *friction::kept_from_text(words));
+    ASSERT_EQ(live.size(), 1U);
+
+    ASSERT_TRUE(record::publish_record(live[0], file));
+    auto stored = record::read_record(file);
+    ASSERT_TRUE(stored) << stored.error().message;
+    EXPECT_EQ(stored->header.process.kept, words);
+    const auto batch = analyse(*stored);
+    ASSERT_TRUE(batch) << batch.error().message;
+    EXPECT_EQ(batch->results, live[0].end->results);
+
+    drivers::BoardConfig replay;
+    replay.driver = drivers::Driver::kReplay;
+    replay.replay_file = file;
+    auto replayed_board = drivers::open_board(replay, clock);
+    ASSERT_TRUE(replayed_board);
+    const std::vector<record::Record> replayed = run(std::move(*replayed_board), 2, 0);
+    ASSERT_EQ(replayed.size(), 1U);
+    EXPECT_EQ(replayed[0].header.process.kept, words);
+    expect_same_results(live[0], replayed[0]);
+
+    stored->header.process.kept.clear();
+    const auto handled = analyse(*stored);
+    ASSERT_TRUE(handled);
+    EXPECT_NE(handled->results, live[0].end->results);
+    stored->header.process.kept = "hum";
+    EXPECT_FALSE(analyse(*stored));
+  }
   std::filesystem::remove(file);
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/accuracy/oscillation50.hpp"
+#include "core/friction/capture.hpp"
 #include "core/friction/closed_forms.hpp"
 #include "core/friction/slip_waveform.hpp"
 
@@ -84,6 +85,36 @@ TEST(Threshold, RateAtTheEndOfTheRiseDecidesToTenDigitsOnEachSide) {
     EXPECT_GT(margin(Q_threshold(t) * (1.0 - step)), 0.0) << n;
     EXPECT_LT(margin(Q_threshold(t) * (1.0 + step)), 0.0) << n;
   }
+}
+
+// Whether a slip ends in sticking is told by the largest slip speed alone: ρ ≥ e^(πε). Both sides are closed
+// forms of the same sinusoid, ε e^(πε) ρ and a few roundings apart.
+TEST(Threshold, SlipSpeedRatioDecidesWithoutSMinusKOrSpeed) {
+  constexpr double kRounding = 1e-13;
+  for (const double t : {0.0, 1e-6, 0.01, 0.022, 0.1, 0.3, 1.0}) {
+    const double limit = slip_speed_ratio_threshold(t);
+    EXPECT_DOUBLE_EQ(limit, std::exp(std::numbers::pi * t));
+    const double reference = t > 0.0 ? Q_threshold(t) : 1.0;
+    for (const double part : {0.05, 0.3, 0.62, 0.77, 0.9, 0.99, 0.9999, 1.0001, 1.01, 1.1, 1.5, 3.0, 20.0}) {
+      const double Q = part * reference;
+      const SlipWaveform slip{0.30, 0.05, Q * 125.0 * 0.05, Oscillator::from_omega(125.0, t)};
+      const double ratio = slip_speed_ratio(Q, t);
+      EXPECT_NEAR(ratio / limit, slip.rate(slip.rise_end_time_s()) / slip.r, kRounding * ratio)
+          << t << ' ' << part;
+      const bool sticks = capture_time_s(slip, slip.r).has_value();
+      EXPECT_EQ(ratio >= limit, sticks) << t << ' ' << part;
+      EXPECT_EQ(sticks, t == 0.0 || part < 1.0);
+    }
+    if (t > 0.0) {
+      EXPECT_NEAR(slip_speed_ratio(Q_threshold(t), t) / limit, 1.0, kRounding) << t;
+    }
+  }
+  // What the paper's tester needs to know it by: 1.072 against 1.207 at 12 in/min.
+  EXPECT_NEAR(slip_speed_ratio_threshold(0.022), 1.072, 5e-4);
+  const Oscillator oscillator = Oscillator::from_omega(2.0 * std::numbers::pi * 20.0, 0.022);
+  const double Q = dimensionless_speed(oscillator.stick_rate_per_s(12.0 * 0.0254 / 60.0, 9.80665),
+                                       oscillator.omega_rad_per_s(), 0.05);
+  EXPECT_NEAR(slip_speed_ratio(Q, 0.022), 1.207, 5e-4);
 }
 
 }  // namespace

@@ -91,6 +91,7 @@ inline record::RecordHeader sample_header() {
                     "[tester]\nsled_mass = \"2331 g\"\n",
                     "closed form",
                     "TAPPI T 816",
+                    "spikes,first-slip",
                     "[tester]\nomega = \"125.7 rad/s\"\n",
                     "SCHED_FIFO 20",
                     "exact closed forms"};

@@ -88,6 +88,13 @@ TEST(Config, ShippedFileShowsTheDefaults) {
   EXPECT_EQ(written->log_level, plain.log_level);
   EXPECT_EQ(written->report_table, plain.report_table);
   EXPECT_EQ(written->estimator, plain.estimator);
+  EXPECT_EQ(written->kept, plain.kept);
+}
+
+TEST(Config, KeepsWhatItIsTold) {
+  EXPECT_TRUE(read(kGood)->kept.nothing());
+  const DaemonConfig config = *read(kGood + "[analysis]\nkeep_spikes = true\nkeep_first_slip = true\n");
+  EXPECT_EQ(friction::text_of(config.kept), "spikes,first-slip");
 }
 
 TEST(Config, ResolvesScenesAgainstItsOwnFolder) {
