@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/friction/replicates.hpp"
 #include "core/friction/results.hpp"
 #include "core/friction/truth.hpp"
 #include "core/pipeline/sink.hpp"
@@ -23,6 +24,7 @@ struct TestSummary {
   daq::ScanIndex end = 0;
   pipeline::EndCause cause = pipeline::EndCause::kUnloaded;
   friction::TestResults results;
+  friction::SlipSums slips;                  ///< S − K of its slips, for tests together.
   std::optional<friction::TestTruth> truth;  ///< Without modes and cycles.
   std::string file;                          ///< Empty until the file is published.
   std::string file_error;                    ///< Why there is no file; empty if there is one.

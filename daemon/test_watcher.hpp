@@ -23,7 +23,11 @@ class TestWatcher final : public pipeline::Sink {
       : tests_(tests), facts_(facts), current_(std::move(current)), rests_(std::move(rests)) {}
 
   /// Only between sessions.
-  void use(const friction::TruthSource* truth) { truth_ = truth; }
+  /// \param first_slip_counts  as AnalysisSettings::kept.
+  void use(const friction::TruthSource* truth, bool first_slip_counts) {
+    truth_ = truth;
+    first_slip_counts_ = first_slip_counts;
+  }
 
   void test_began(const pipeline::TestStart& start) override {
     first_ = start.first;
@@ -45,6 +49,7 @@ class TestWatcher final : public pipeline::Sink {
     summary.end = end.end;
     summary.cause = end.cause;
     summary.results = end.results;
+    summary.slips = friction::slip_sums(end.cycles, first_slip_counts_);
     if (truth_ != nullptr) summary.truth = truth_->truth(first_, end.end);
     tests_.add(std::move(summary));
     facts_.test_ended(end);
@@ -57,6 +62,7 @@ class TestWatcher final : public pipeline::Sink {
   std::function<void(std::optional<std::int64_t>)> current_;
   std::function<void()> rests_;
   const friction::TruthSource* truth_ = nullptr;
+  bool first_slip_counts_ = false;
   daq::ScanIndex first_ = 0;  ///< Of the running test, as its number.
   std::int64_t number_ = 0;
 };

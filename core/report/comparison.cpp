@@ -20,23 +20,9 @@ double upper_t(double degrees_of_freedom) {
       boost::math::complement(boost::math::students_t{degrees_of_freedom}, kSignificance / 2.0));
 }
 
-Welch welch(const Replicates& a, const Replicates& b) {
-  const double n_a = static_cast<double>(a.count);
-  const double n_b = static_cast<double>(b.count);
-  const double variance_a = *a.standard_deviation * *a.standard_deviation / n_a;
-  const double variance_b = *b.standard_deviation * *b.standard_deviation / n_b;
-  const double variance = variance_a + variance_b;
-  Welch result;
-  result.difference = a.mean - b.mean;
-  result.degrees_of_freedom =
-      variance * variance / (variance_a * variance_a / (n_a - 1.0) + variance_b * variance_b / (n_b - 1.0));
-  const double error = std::sqrt(variance);
-  result.t = result.difference / error;
-  const double half = upper_t(result.degrees_of_freedom) * error;
-  result.interval = {result.difference - half, result.difference + half};
-  const boost::math::students_t distribution{result.degrees_of_freedom};
-  result.p = 2.0 * boost::math::cdf(boost::math::complement(distribution, std::abs(result.t)));
-  return result;
+MeanWithError mean_of(const Replicates& tests) {
+  const auto n = static_cast<double>(tests.count);
+  return {tests.mean, *tests.standard_deviation / std::sqrt(n), n};
 }
 
 /// The noncentrality at which the noncentral t with these degrees of freedom falls below `t` with
@@ -83,6 +69,24 @@ EffectSize effect_size(const Replicates& a, const Replicates& b) {
 }
 
 }  // namespace
+
+Welch welch(const MeanWithError& a, const MeanWithError& b) {
+  const double variance_a = a.standard_error * a.standard_error;
+  const double variance_b = b.standard_error * b.standard_error;
+  const double variance = variance_a + variance_b;
+  Welch result;
+  result.difference = a.mean - b.mean;
+  result.degrees_of_freedom =
+      variance * variance /
+      (variance_a * variance_a / (a.count - 1.0) + variance_b * variance_b / (b.count - 1.0));
+  const double error = std::sqrt(variance);
+  result.t = result.difference / error;
+  const double half = upper_t(result.degrees_of_freedom) * error;
+  result.interval = {result.difference - half, result.difference + half};
+  const boost::math::students_t distribution{result.degrees_of_freedom};
+  result.p = 2.0 * boost::math::cdf(boost::math::complement(distribution, std::abs(result.t)));
+  return result;
+}
 
 double power_of_t_test(double effect, int count) {
   const double n = count;
@@ -148,7 +152,7 @@ Comparison compare(const Replicates& a, const Replicates& b) {
     result.reason = "the values do not scatter";
     return result;
   }
-  result.welch = welch(a, b);
+  result.welch = welch(mean_of(a), mean_of(b));
   result.effect = effect_size(a, b);
   // Beyond this each test shows it: two tests of each have a power of 0.99999.
   constexpr double kLargestEffect = 25.0;

@@ -22,6 +22,16 @@ struct Welch {
   double p = 0.0;                   ///< Two-sided.
 };
 
+/// A mean of several tests as Welch's test takes it.
+struct MeanWithError {
+  double mean = 0.0;
+  double standard_error = 0.0;
+  double count = 0.0;  ///< Of tests, ≥ 2.
+};
+
+/// \param a,b  not both without error.
+[[nodiscard]] Welch welch(const MeanWithError& a, const MeanWithError& b);
+
 /// The difference in units of the scatter of single tests, without the bias of small samples
 /// [Hedges 1981, J. Educ. Stat. 6, 107].
 struct EffectSize {

@@ -44,7 +44,7 @@ std::vector<SpeedGroup> group_by_speed(std::span<const MeasuredTest> tests) {
       return same_speed(group.pull_speed_m_per_s, speed);
     });
     if (found == groups.end()) {
-      groups.push_back({speed, {i}, {}});
+      groups.push_back({speed, {i}, {}, {}});
     } else {
       found->tests.push_back(i);
     }
@@ -53,6 +53,9 @@ std::vector<SpeedGroup> group_by_speed(std::span<const MeasuredTest> tests) {
     return slower(one.pull_speed_m_per_s, other.pull_speed_m_per_s);
   });
   for (SpeedGroup& group : groups) {
+    std::vector<friction::SlipSums> slips;
+    for (const std::size_t test : group.tests) slips.push_back(tests[test].slips);
+    group.by_cycle = friction::pool_slips(slips);
     for (std::size_t q = 0; q < kQuantityCount; ++q)
       group.quantities[q] = summary(tests, group, quantities()[q]);
   }
@@ -86,13 +89,27 @@ std::vector<SpeedPair> pair_speeds(std::span<const SpeedGroup> a, std::span<cons
   return pairs;
 }
 
+namespace {
+
+/// Why nothing can be compared; empty if both have tests at this speed.
+std::string missing_side(const SpeedPair& pair) {
+  if (!pair.a) return "no test of A at this speed";
+  return pair.b ? "" : "no test of B at this speed";
+}
+
+}  // namespace
+
+PooledComparison compare_pair_by_cycle(std::span<const SpeedGroup> a, std::span<const SpeedGroup> b,
+                                       const SpeedPair& pair) {
+  if (std::string reason = missing_side(pair); !reason.empty()) return {{}, std::move(reason)};
+  return compare_pooled(a[*pair.a].by_cycle, b[*pair.b].by_cycle);
+}
+
 Comparison compare_pair(std::span<const SpeedGroup> a, std::span<const SpeedGroup> b, const SpeedPair& pair,
                         std::size_t quantity) {
   Comparison none;
-  if (!pair.a || !pair.b) {
-    none.reason = pair.a ? "no test of B at this speed" : "no test of A at this speed";
-    return none;
-  }
+  none.reason = missing_side(pair);
+  if (!none.reason.empty()) return none;
   const GroupQuantity& of_a = a[*pair.a].quantities[quantity];
   const GroupQuantity& of_b = b[*pair.b].quantities[quantity];
   for (const auto& [side, group] : {std::pair{"A", &of_a}, std::pair{"B", &of_b}}) {

@@ -9,8 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "core/friction/replicates.hpp"
 #include "core/friction/results.hpp"
 #include "core/report/comparison.hpp"
+#include "core/report/pooled.hpp"
 #include "core/report/quantities.hpp"
 #include "core/report/replicates.hpp"
 
@@ -23,6 +25,7 @@ inline constexpr double kSameSpeed = 0.01;
 struct MeasuredTest {
   std::optional<double> pull_speed_m_per_s;  ///< Nominal; none if not known.
   friction::TestResults results;
+  friction::SlipSums slips{};  ///< Of its table of cycles; empty if there is none.
 };
 
 /// Why one test of a group has no number.
@@ -41,6 +44,7 @@ struct GroupQuantity {
 struct SpeedGroup {
   std::optional<double> pull_speed_m_per_s;  ///< Of the first test.
   std::vector<std::size_t> tests;            ///< Indices among all tests.
+  friction::PooledDeltaMu by_cycle;          ///< S − K of all their slips.
   std::array<GroupQuantity, kQuantityCount> quantities;
 };
 
@@ -60,6 +64,10 @@ struct SpeedPair {
 
 [[nodiscard]] std::vector<SpeedPair> pair_speeds(std::span<const SpeedGroup> a,
                                                  std::span<const SpeedGroup> b);
+
+/// S − K by cycle of both at one speed, or the reason why there is none.
+[[nodiscard]] PooledComparison compare_pair_by_cycle(std::span<const SpeedGroup> a,
+                                                     std::span<const SpeedGroup> b, const SpeedPair& pair);
 
 /// Comparison of one quantity at one speed, or the reason why there is none.
 [[nodiscard]] Comparison compare_pair(std::span<const SpeedGroup> a, std::span<const SpeedGroup> b,

@@ -8,10 +8,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/report/grouping.hpp"
 #include "core/report/quantities.hpp"
 #include "core/report/replicates.hpp"
 #include "daemon/batch/verdict.hpp"
 #include "daemon/or_null.hpp"
+#include "daemon/pooled_json.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -34,7 +36,7 @@ Counted counted(std::span<const TestSummary> tests, const BatchBook& book,
     // A test of the batch stands in the journal once its record is there.
     if (batch != nullptr && std::none_of(batch->tests.begin(), batch->tests.end(), is_it)) continue;
     result.numbers.push_back(test.number);
-    result.tests.push_back({std::nullopt, test.results});
+    result.tests.push_back({std::nullopt, test.results, test.slips});
   }
   return result;
 }
@@ -91,6 +93,8 @@ Json summary_json(std::span<const TestSummary> tests, const BatchBook& book,
   Json quantities = Json::array();
   for (const report::Quantity& quantity : report::quantities())
     quantities.push_back(quantity_json(quantity, those));
+  std::vector<friction::SlipSums> slips;
+  for (const report::MeasuredTest& test : those.tests) slips.push_back(test.slips);
   Json limits = Json::array();
   if (batch != nullptr) {
     for (const auto& [quantity, own] : batch->plan.limits)
@@ -98,6 +102,7 @@ Json summary_json(std::span<const TestSummary> tests, const BatchBook& book,
   }
   return {{"batch", batch == nullptr ? Json(nullptr) : Json(batch->id)},
           {"tests", those.numbers},
+          {"delta_mu_by_cycle", pooled_json(friction::pool_slips(slips))},
           {"quantities", std::move(quantities)},
           {"limits", std::move(limits)}};
 }

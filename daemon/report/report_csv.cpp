@@ -66,13 +66,33 @@ void summary_cells(Line& line, const Material& material, const std::optional<std
       .interval(replicates.mean_interval);
 }
 
+/// The same of S − K by cycle, whose scatter is not one of single tests.
+void by_cycle_cells(Line& line, const Material& material, const std::optional<std::size_t>& group) {
+  const friction::PooledDeltaMu none;
+  const friction::PooledDeltaMu& pooled = group ? material.groups[*group].by_cycle : none;
+  line.number(std::optional{pooled.test_count}).number(pooled.mean.value).text("").text("");
+  line.interval(report::mean_interval(pooled));
+}
+
+void welch_cells(Line& line, const std::optional<report::Welch>& welch) {
+  line.number(welch ? std::optional{welch->difference} : std::nullopt);
+  line.interval(welch ? std::optional{welch->interval} : std::nullopt);
+  line.number(welch ? std::optional{welch->t} : std::nullopt);
+  line.number(welch ? std::optional{welch->degrees_of_freedom} : std::nullopt);
+  line.number(welch ? std::optional{welch->p} : std::nullopt);
+}
+
 }  // namespace
 
 std::string report_csv(const Material& material) {
   Line header;
   header.text("file").text("title").text("method").text("pull_speed").text("regime");
   std::string text;
-  std::size_t cells = 7;  // Beside the results.
+  std::vector<const friction::PooledDeltaMu*> by_cycle(material.tests.size());
+  for (const report::SpeedGroup& group : material.groups) {
+    for (const std::size_t test : group.tests) by_cycle[test] = &group.by_cycle;
+  }
+  std::size_t cells = 11;  // Beside the results.
   for (std::size_t i = 0; i < material.tests.size(); ++i) {
     const report::MeasuredTest& measured = material.measured[i];
     Line line;
@@ -90,7 +110,16 @@ std::string report_csv(const Material& material) {
             reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", name.name, estimate.reason);
           }
         });
-    if (i == 0) text = header.text("absent").text("voided").end();
+    if (i == 0) {
+      for (const char* name : {"at_speed_delta_mu_by_cycle", "at_speed_delta_mu_by_cycle_standard_error",
+                               "at_speed_slips", "at_speed_escaped"}) {
+        header.text(name);
+      }
+      text = header.text("absent").text("voided").end();
+    }
+    const friction::PooledDeltaMu& pooled = *by_cycle[i];
+    line.number(pooled.mean.value).number(pooled.mean.standard_error);
+    line.number(std::optional{pooled.slip_count}).number(std::optional{pooled.escaped_count});
     text += line.text(reasons).text("").end();
   }
   // No numbers, so that nobody averages them.
@@ -119,6 +148,14 @@ std::string comparison_csv(const Material& a, const Material& b, const MaterialC
   }
   std::string text = header.end();
   for (std::size_t i = 0; i < comparison.pairs.size(); ++i) {
+    const report::SpeedPair& pair = comparison.pairs[i];
+    Line by_cycle;
+    by_cycle.number(pair.pull_speed_m_per_s).text("delta_mu_by_cycle").text("1");
+    by_cycle_cells(by_cycle, a, pair.a);
+    by_cycle_cells(by_cycle, b, pair.b);
+    welch_cells(by_cycle, comparison.by_cycle[i].welch);
+    for (int empty = 0; empty < 5; ++empty) by_cycle.text("");  // No g, no number of tests.
+    text += by_cycle.text(comparison.by_cycle[i].reason).end();
     for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
       const report::Quantity& quantity = report::quantities()[q];
       const auto& [welch, effect, needed, reason] = comparison.comparisons[i][q];
@@ -126,11 +163,7 @@ std::string comparison_csv(const Material& a, const Material& b, const MaterialC
       line.number(comparison.pairs[i].pull_speed_m_per_s).text(quantity.name).text(quantity.unit);
       summary_cells(line, a, comparison.pairs[i].a, q);
       summary_cells(line, b, comparison.pairs[i].b, q);
-      line.number(welch ? std::optional{welch->difference} : std::nullopt);
-      line.interval(welch ? std::optional{welch->interval} : std::nullopt);
-      line.number(welch ? std::optional{welch->t} : std::nullopt);
-      line.number(welch ? std::optional{welch->degrees_of_freedom} : std::nullopt);
-      line.number(welch ? std::optional{welch->p} : std::nullopt);
+      welch_cells(line, welch);
       line.number(effect ? std::optional{effect->g} : std::nullopt);
       line.interval(effect ? effect->interval : std::nullopt);
       line.number(needed ? needed->for_80_percent : std::nullopt);

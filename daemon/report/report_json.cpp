@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/or_null.hpp"
+#include "daemon/pooled_json.hpp"
 #include "daemon/report/ramp_text.hpp"
 #include "daemon/results_json.hpp"
 
@@ -59,14 +60,19 @@ Json quantity_json(const Material& material, const GroupQuantity& group, const r
   return json;
 }
 
-Json comparison_json(const Comparison& comparison) {
-  const auto& [welch, effect, needed, reason] = comparison;
+Json welch_json(const std::optional<report::Welch>& welch) {
   Json json;
   json["difference"] = welch ? Json(welch->difference) : Json(nullptr);
   json["confidence_interval"] = welch ? interval_json(welch->interval) : Json(nullptr);
   json["t"] = welch ? Json(welch->t) : Json(nullptr);
   json["degrees_of_freedom"] = welch ? Json(welch->degrees_of_freedom) : Json(nullptr);
   json["p"] = welch ? Json(welch->p) : Json(nullptr);
+  return json;
+}
+
+Json comparison_json(const Comparison& comparison) {
+  const auto& [welch, effect, needed, reason] = comparison;
+  Json json = welch_json(welch);
   json["hedges_g"] = effect ? Json(effect->g) : Json(nullptr);
   json["hedges_g_interval"] = effect ? interval_json(effect->interval) : Json(nullptr);
   json["tests_needed_80"] = needed ? or_null(needed->for_80_percent) : Json(nullptr);
@@ -100,7 +106,9 @@ Json report_json(const Material& material) {
     json["tests"].push_back(test_json(material.tests[i], material.measured[i]));
   }
   for (const report::SpeedGroup& group : material.groups) {
-    Json of_group{{"pull_speed", or_null(group.pull_speed_m_per_s)}, {"tests", group.tests}};
+    Json of_group{{"pull_speed", or_null(group.pull_speed_m_per_s)},
+                  {"tests", group.tests},
+                  {"delta_mu_by_cycle", pooled_json(group.by_cycle)}};
     for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
       const report::Quantity& quantity = report::quantities()[q];
       of_group["quantities"][std::string{quantity.name}] =
@@ -130,7 +138,10 @@ Json comparison_json(const Material& a, const Material& b, const MaterialCompari
                    {"a_sliding", regime.a.sliding},
                    {"b_sticking", regime.b.sticking},
                    {"b_sliding", regime.b.sliding},
-                   {"p", or_null(regime.p)}}}};
+                   {"p", or_null(regime.p)}}},
+                 {"delta_mu_by_cycle", welch_json(comparison.by_cycle[i].welch)}};
+    if (const std::string& reason = comparison.by_cycle[i].reason; !reason.empty())
+      of_pair["delta_mu_by_cycle"]["reason"] = reason;
     for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
       of_pair["quantities"][std::string{report::quantities()[q].name}] =
           comparison_json(comparison.comparisons[i][q]);

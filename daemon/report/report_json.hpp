@@ -13,13 +13,15 @@
 namespace stickslip::daemon {
 
 /// {"tests": [{"file", "title", "method", "departures", "pull_speed", "regime", results …, "details"}],
-///  "groups": [{"pull_speed", "tests": [index …], "quantities": {NAME: {"unit", "count", "mean",
+///  "groups": [{"pull_speed", "tests": [index …], "delta_mu_by_cycle": pooled_json(), "quantities": {NAME:
+///  {"unit", "count", "mean",
 ///    "standard_deviation", "repeatability", "confidence_interval", "outlier", "absent"}}}],
 ///  "pooled_standard_deviation": {NAME: …}}
 [[nodiscard]] nlohmann::ordered_json report_json(const Material& material);
 
 /// {"a": report_json() and "label", "b": …, "comparisons": [{"pull_speed", "regime":
-///    {"a_sticking", "a_sliding", "b_sticking", "b_sliding", "p"}, "quantities": {NAME:
+///    {"a_sticking", "a_sliding", "b_sticking", "b_sliding", "p"}, "delta_mu_by_cycle":
+///    {"difference", "confidence_interval", "t", "degrees_of_freedom", "p", "reason"}, "quantities": {NAME:
 ///    {"difference", "confidence_interval", "t", "degrees_of_freedom", "p", "hedges_g",
 ///     "hedges_g_interval", "tests_needed_80", "tests_needed_90", "reason"}}}],
 ///  "combined": {NAME: {"p", "speeds"}}}

@@ -69,6 +69,25 @@ std::string figure_line(const std::string& speed, const std::string& label, cons
   return text + "\n";
 }
 
+constexpr int kDeltaMuDecimals = 4;
+
+/// Of all slips of the tests of a group, before the means of the tests.
+std::string by_cycle_line(const friction::PooledDeltaMu& pooled) {
+  if (!pooled.mean.value) return fmt::format("S−K by cycle   {}  {}\n", kAbsent, pooled.mean.reason);
+  const auto error = [](const std::optional<double>& value) {
+    return value ? fmt::format(" ± {:.{}f} (standard error)", *value, kDeltaMuDecimals + 1) : std::string{};
+  };
+  std::string text = fmt::format("S−K by cycle   {:.{}f}{}", *pooled.mean.value, kDeltaMuDecimals + 1,
+                                 error(pooled.mean.standard_error));
+  if (const auto of_mean = report::mean_interval(pooled))
+    text += fmt::format(", 95 % {}", interval(of_mean, kDeltaMuDecimals));
+  text += fmt::format(": {} slip{} of {}, {} escaped", pooled.slip_count, pooled.slip_count == 1 ? "" : "s",
+                      count_of_tests(pooled.test_count), pooled.escaped_count);
+  if (pooled.scatter.value)
+    text += fmt::format(", scatter {:.{}f}", *pooled.scatter.value, kDeltaMuDecimals + 1);
+  return text + "\n";
+}
+
 std::string replicates_table(const Material& material, const SpeedGroup& group) {
   std::string text = fmt::format("{:<15}{:>4}  {:>9}  {:>9}  {:>11}  {:>20}\n", "", "n", "mean", "s_r",
                                  "r = 2.8 s_r", "95 % of the mean");
@@ -164,7 +183,8 @@ std::string regime_line(const RegimeComparison& regime) {
                      counts(regime.b), p_text(*regime.p), *regime.p < report::kSignificance ? "  *" : "");
 }
 
-std::string comparison_table(const std::array<report::Comparison, report::kQuantityCount>& comparisons) {
+std::string comparison_table(const report::PooledComparison& by_cycle,
+                             const std::array<report::Comparison, report::kQuantityCount>& comparisons) {
   const std::string& first = comparisons.front().reason;
   const auto same = [&first](const report::Comparison& own) { return own.reason == first; };
   if (!first.empty() && std::all_of(comparisons.begin(), comparisons.end(), same)) {
@@ -173,6 +193,15 @@ std::string comparison_table(const std::array<report::Comparison, report::kQuant
   std::string text = fmt::format("{:<15}{:>10}  {:>22}  {:>9}  {:>8}  {:>18}  {:>14}\n", "", "A − B", "95 %",
                                  "p (Welch)", "g", "95 % of g", "tests 80/90 %");
   std::map<std::string, std::string> reasons;
+  if (by_cycle.welch) {
+    text += fmt::format("{:<15}{:>10}  {:>22}  {:>9}{}\n", "S−K by cycle",
+                        number(by_cycle.welch->difference, kDeltaMuDecimals),
+                        interval(by_cycle.welch->interval, kDeltaMuDecimals), p_text(by_cycle.welch->p),
+                        by_cycle.welch->p < report::kSignificance ? "  *" : "");
+  } else {
+    text += fmt::format("{:<15}{:>10}\n", "S−K by cycle", kAbsent);
+    reasons[by_cycle.reason] = "S−K by cycle";
+  }
   for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
     const Quantity& quantity = report::quantities()[q];
     const report::Comparison& own = comparisons[q];
@@ -208,7 +237,7 @@ std::string report_text(const Material& material) {
   for (const SpeedGroup& group : material.groups) {
     text +=
         fmt::format("\n{}, {}\n", speed_text(group.pull_speed_m_per_s), count_of_tests(group.tests.size()));
-    text += replicates_table(material, group);
+    text += by_cycle_line(group.by_cycle) + replicates_table(material, group);
   }
   return text + limits_lines(material);
 }
@@ -223,9 +252,13 @@ std::string comparison_text(const Material& a, const Material& b, const Material
     if (pair.b) text += figure_line(speed, "B", b.groups[*pair.b]);
   }
   for (std::size_t i = 0; i < comparison.pairs.size(); ++i) {
+    const report::SpeedPair& pair = comparison.pairs[i];
     text +=
         fmt::format("\n{}: A − B (* differs at 5 %)\n", speed_text(comparison.pairs[i].pull_speed_m_per_s));
-    text += comparison_table(comparison.comparisons[i]) + regime_line(comparison.regimes[i]);
+    if (pair.a) text += "A: " + by_cycle_line(a.groups[*pair.a].by_cycle);
+    if (pair.b) text += "B: " + by_cycle_line(b.groups[*pair.b].by_cycle);
+    text += comparison_table(comparison.by_cycle[i], comparison.comparisons[i]) +
+            regime_line(comparison.regimes[i]);
   }
   std::string combined;
   for (std::size_t q = 0; q < report::kQuantityCount; ++q) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/wording.hpp"
+#include "core/friction/kept.hpp"
 #include "core/friction/method.hpp"
 #include "core/record/reader.hpp"
 #include "daemon/batch/journal.hpp"
@@ -77,7 +78,10 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
       test.trace = trace->dump();
     }
     test.truth = std::move(record->end->truth);
-    material.measured.push_back({tester.pull_speed_m_per_s, std::move(record->end->results)});
+    const friction::Kept kept =
+        friction::kept_from_text(record->header.process.kept).value_or(friction::Kept{});
+    material.measured.push_back({tester.pull_speed_m_per_s, std::move(record->end->results),
+                                 friction::slip_sums(record->cycles, kept.first_slip)});
     material.tests.push_back(std::move(test));
   }
   if (material.tests.empty() && !material.voided.empty()) {
@@ -142,6 +146,7 @@ MaterialComparison compare_materials(const Material& a, const Material& b) {
       regime.p = report::exact_p(regime.a.sticking, regime.a.sliding, regime.b.sticking, regime.b.sliding);
     }
     result.regimes.push_back(regime);
+    result.by_cycle.push_back(report::compare_pair_by_cycle(a.groups, b.groups, pair));
     auto& comparisons = result.comparisons.emplace_back();
     for (std::size_t q = 0; q < report::kQuantityCount; ++q) {
       comparisons[q] = report::compare_pair(a.groups, b.groups, pair, q);

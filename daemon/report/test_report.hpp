@@ -74,6 +74,7 @@ struct RegimeComparison {
 struct MaterialComparison {
   std::vector<report::SpeedPair> pairs;
   std::vector<std::array<report::Comparison, report::kQuantityCount>> comparisons;  ///< One for each pair.
+  std::vector<report::PooledComparison> by_cycle;                                   ///< One for each pair.
   std::vector<RegimeComparison> regimes;                                            ///< One for each pair.
   struct Combined {
     double p = 0.0;  ///< Of all speeds together (Fisher).

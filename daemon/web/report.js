@@ -28,6 +28,9 @@
   const half = own => (own.confidence_interval ? own.confidence_interval[1] - own.mean : null);
   const meanText = (own, decimals) =>
     own.mean == null ? "–" : fixed(own.mean, decimals) + (half(own) == null ? "" : ` ± ${fixed(half(own), decimals)}`);
+  const pooledText = own => (own.value == null ? "–" : fixed(own.value, 4) + (own.standard_error == null ? "" : ` (s.e. ${fixed(own.standard_error, 5)})`));
+  const pooledFacts = own => `${plural(own.slips, "slip")} of ${plural(own.tests, "test")}, ${own.escaped} escaped` +
+    (own.confidence_interval == null ? "" : `; 95 % ${range(own.confidence_interval, 4)}`) + (own.scatter == null ? "" : `; scatter from slip to slip ${fixed(own.scatter, 5)}`);
   const nameOf = index => (two ? `${sides[index]}: ${data.materials[index].label}` : "");
   const absentCell = reason => node("td", {}, node("span", {class: "absent", title: reason, tabindex: "0"}, "–"));
 
@@ -70,10 +73,12 @@
     rows.sort((x, y) => (x.group.pull_speed ?? Infinity) - (y.group.pull_speed ?? Infinity) || x.m - y.m);
     section("against-speed", "Coefficient against speed",
       node("p", {class: "note"}, "Means with their 95 % intervals; small dots are single tests. Static and kinetic are the traditional numbers, " +
-        "S and K those of the two-parameter model, from which the effect of speed is taken out (Penner 1995, Fig. 1)."),
+        "S and K those of the two-parameter model, from which the effect of speed is taken out (Penner 1995, Fig. 1). S−K by cycle counts each slip of all tests once, " +
+        "also one that escaped, with its standard error; a mean of tests is too low where slips escape."),
       figureBox,
-      table("speeds", ["speed", ...(two ? ["material"] : []), "tests", ...shown.map(title)], rows.map(({m, group}) => row(
+      table("speeds", ["speed", ...(two ? ["material"] : []), "tests", "S−K by cycle", ...shown.map(title)], rows.map(({m, group}) => row(
         speed(group.pull_speed), ...(two ? [node("td", {class: "text"}, nameOf(m))] : []), String(group.tests.length),
+        group.delta_mu_by_cycle.value == null ? absentCell(group.delta_mu_by_cycle.reason) : pooledText(group.delta_mu_by_cycle),
         ...shown.map(q => {
           const own = group.quantities[q.name];
           return own.mean == null ? absentCell(own.absent.map(a => a.reason)[0] || "") : meanText(own, q.decimals);
@@ -81,6 +86,9 @@
   }
 
   // ---- Comparison --------------------------------------------------------------------------------------
+  const byCycle = own => (own.p == null ? row("S−K by cycle", absentCell(own.reason), ...Array(6).fill("")) :
+    row("S−K by cycle", fixed(own.difference, 4), range(own.confidence_interval, 4), node("td", own.p < 0.05 ? {class: "differs"} : {}, probability(own.p)),
+      ...Array(4).fill("")));
   function writeComparison() {
     const made = section("comparison", "Do they differ?", node("p", {class: "note"},
       "A − B with its 95 % interval; p of Welch's test; g is the difference in units of the scatter of single tests (Hedges). The last two columns: " +
@@ -93,14 +101,14 @@
         return;
       }
       made.append(
-        table(`comparison-${i}`, ["", "A − B", "95 %", "p", "g", "95 % of g", "tests, 80 %", "tests, 90 %"], data.quantities.map(q => {
+        table(`comparison-${i}`, ["", "A − B", "95 %", "p", "g", "95 % of g", "tests, 80 %", "tests, 90 %"], [byCycle(pair.delta_mu_by_cycle), ...data.quantities.map(q => {
           const own = pair.quantities[q.name];
           if (own.p == null) return row(title(q), absentCell(own.reason), ...Array(6).fill(""));
           const needed = n => (n == null ? "> 10000" : String(n));
           return row(title(q), fixed(own.difference, q.decimals), range(own.confidence_interval, q.decimals),
             node("td", own.p < 0.05 ? {class: "differs"} : {}, probability(own.p)), fixed(own.hedges_g, 2),
             range(own.hedges_g_interval, 1), needed(own.tests_needed_80), needed(own.tests_needed_90));
-        })));
+        })]));
       const regime = pair.regime;
       if (regime.p != null) {
         made.append(node("p", {class: "note", id: `regime-${i}`}, `Sticking: ${regime.a_sticking} of ${regime.a_sticking + regime.a_sliding} tests of A, ` +
@@ -123,6 +131,8 @@
     data.materials.forEach((material, m) => material.groups.forEach((group, g) => {
       const notes = [];
       const own = node("div", {}, node("h3", {}, `${two ? nameOf(m) + ", " : ""}${speed(group.pull_speed)}, ${plural(group.tests.length, "test")}`),
+        node("p", {id: `by-cycle-${m}-${g}`}, node("b", {}, `S−K by cycle ${pooledText(group.delta_mu_by_cycle)}`),
+          `: ${group.delta_mu_by_cycle.reason || pooledFacts(group.delta_mu_by_cycle)}`),
         table(`replicates-${m}-${g}`, ["", "n", "mean", "s_r", "r = 2.8 s_r", "95 % of the mean"], data.quantities.map(q => {
           const own = group.quantities[q.name];
           if (own.outlier) {

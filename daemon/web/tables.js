@@ -60,7 +60,10 @@ const Tables = (() => {
     }));
     const foot = (label, pick) => row([cell(label), cell("", "text"), ...columns.map(([name, , digits]) => cell(of.has(name) ? pick(of.get(name), digits, name) : "")), cell("", "text"), cell(""), cell("", "text")]);
     const number = key => (quantity, digits) => fixed(quantity[key], digits);
-    const rows = summary.tests.length < 2 ? [] : [foot("mean", number("mean")), foot("r = 2.8 s", number("repeatability")), foot("95 % from", number("mean_low")),
+    const pooled = summary.delta_mu_by_cycle;
+    const byCycle = (quantity, digits, name) => (name !== "delta_mu" || pooled.value == null ? "" :
+      `${fixed(pooled.value, digits)}${pooled.standard_error == null ? "" : ` ± ${fixed(pooled.standard_error, digits + 1)}`}`);
+    const rows = summary.tests.length < 2 ? [] : [foot("by cycle", byCycle), foot("mean", number("mean")), foot("r = 2.8 s", number("repeatability")), foot("95 % from", number("mean_low")),
       foot("95 % to", number("mean_high")), foot("lowest", number("lowest")), foot("highest", number("highest"))];
     if (summary.limits.length > 0 && summary.tests.length > 0) {
       const verdict = limit => `${limitText(limit, 4)} ${limit.passes ? "✓ kept" : "✗ missed"}`;

@@ -179,8 +179,8 @@ class BatchPage(unittest.TestCase):
         self.assertEqual(records[1].read_bytes(), untouched)
         self.page.until("document.getElementById('batch-next').textContent === 'All are made.'")
         counted = [records[0], *records[2:]]
-        self.page.until("document.querySelectorAll('#tests tfoot tr').length >= 6")
-        mean = self.page.value("[...document.querySelector('#tests tfoot tr').cells].map(c => c.textContent)")
+        self.page.until("document.querySelectorAll('#tests tfoot tr').length >= 7")
+        mean = self.page.value("[...document.querySelector('#tests tfoot tr:nth-child(2)').cells].map(c => c.textContent)")
         for cell, name in zip(mean[2:], ("mu_s", "mu_k", "delta_mu"), strict=False):
             self.assertAlmostEqual(float(cell), self.results(counted, name).mean(), delta=0.5001e-4, msg=name)
         # The tests of the batch, as the daemon lists them.
@@ -250,14 +250,15 @@ class BatchPage(unittest.TestCase):
         fast = [record for record in of_a if self.facts(record)[2] == 0.00508]
         quantities = shown.value("stickslip.data.quantities")
         rows = shown.value("[...document.querySelectorAll('#comparison-1 tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
-        for row, quantity in zip(rows, quantities, strict=True):
+        self.assertEqual(rows[0][0], "S−K by cycle")
+        for row, quantity in zip(rows[1:], quantities, strict=True):
             difference = self.results(fast, quantity["name"]).mean() - self.results(of_b, quantity["name"]).mean()
             self.assertAlmostEqual(float(row[1]), difference, delta=0.5001 * 10.0 ** -quantity["decimals"], msg=quantity["name"])
         # Fig. 1: coefficient against speed, with a picture and its numbers.
         self.assertGreater(shown.value("document.querySelector('#figure canvas').width"), 300)
         means = shown.value("[...document.querySelectorAll('#speeds tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
         self.assertEqual([(row[0], row[2]) for row in means], [("2.54 mm/s", "2"), ("5.08 mm/s", "2"), ("5.08 mm/s", "2")])
-        self.assertAlmostEqual(float(means[2][3].split(" ± ")[0]), self.results(of_b, quantities[0]["name"]).mean(), delta=0.5001 * 10.0 ** -quantities[0]["decimals"])
+        self.assertAlmostEqual(float(means[2][4].split(" ± ")[0]), self.results(of_b, quantities[0]["name"]).mean(), delta=0.5001 * 10.0 ** -quantities[0]["decimals"])
         if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
             shown.resize(1280, 720)
             shown.settle()

@@ -107,8 +107,11 @@ class LivePage(unittest.TestCase):
         self.assertGreaterEqual(compared, 3 * (len(COLUMNS) - 1))
         def half_width(v):
             return student_t(len(v) - 1) * numpy.std(v, ddof=1) / numpy.sqrt(len(v))
-        self.assertEqual([row[0] for row in foot], ["mean", "r = 2.8 s", "95 % from", "95 % to", "lowest", "highest"])
-        for row, of in zip(foot, (numpy.mean, lambda v: 2.8 * numpy.std(v, ddof=1), lambda v: numpy.mean(v) - half_width(v),
+        self.assertEqual([row[0] for row in foot], ["by cycle", "mean", "r = 2.8 s", "95 % from", "95 % to", "lowest", "highest"])
+        pooled = daemon.ask("GET", "/v1/tests")[1]["summary"]["delta_mu_by_cycle"]
+        at = 2 + [name for name, _ in COLUMNS].index("delta_mu")
+        self.assertEqual(foot[0][at], f"{pooled['value']:.4f} ± {pooled['standard_error']:.5f}")
+        for row, of in zip(foot[1:], (numpy.mean, lambda v: 2.8 * numpy.std(v, ddof=1), lambda v: numpy.mean(v) - half_width(v),
                                   lambda v: numpy.mean(v) + half_width(v), numpy.min, numpy.max), strict=True):
             for cell, (name, digits) in zip(row[2:], COLUMNS[:-1]):
                 self.assertAlmostEqual(float(cell), of(values[name]), delta=0.5001 * 10.0 ** -digits, msg=f"{row[0]} of {name}")

@@ -137,6 +137,9 @@ class Pages(unittest.TestCase):
                 self.assertEqual(row[1:], [str(own["count"]), f"{own['mean']:.{digits}f}",
                                            f"{own['standard_deviation']:.{digits + 1}f}", f"{own['repeatability']:.{digits + 1}f}",
                                            f"{low:.{digits}f} … {high:.{digits}f}"])
+            pooled = group["delta_mu_by_cycle"]
+            self.assertIn(f"S−K by cycle {pooled['value']:.4f} (s.e. {pooled['standard_error']:.5f}): {pooled['slips']} slips",
+                          page.value(f"document.getElementById('by-cycle-0-{index}').textContent"))
         rows = self.rows(page, "tests-0")
         self.assertEqual([row[1] for row in rows], self.a)
         for row, test in zip(rows, self.report["tests"]):
@@ -150,7 +153,9 @@ class Pages(unittest.TestCase):
         # B has no test at 6 in/min.
         self.assertEqual(page.value("document.getElementById('comparison-0').textContent"), "no test of B at this speed")
         self.assertEqual(page.value("document.getElementById('regime-1').textContent"), "Sticking: 3 of 3 tests of A, 0 of 3 of B; p 0.1000 (Fisher's exact test).")
-        for row, quantity in zip(self.rows(page, "comparison-1"), quantities):
+        rows = self.rows(page, "comparison-1")
+        self.assertEqual(rows[0][:2], ["S−K by cycle", "–"])  # B never stuck again.
+        for row, quantity in zip(rows[1:], quantities, strict=True):
             own, digits = compared[1]["quantities"][quantity["name"]], quantity["decimals"]
             self.assertEqual(row[1], f"{own['difference']:.{digits}f}")
             self.assertEqual(row[3], "< 0.0001" if own["p"] < 0.0001 else f"{own['p']:.4f}")

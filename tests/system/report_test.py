@@ -140,6 +140,42 @@ class Reports(Folder):
                                for n, g in zip((3, 5), report["groups"])) / 6)
         self.assertAlmostEqual(report["pooled_standard_deviation"]["mu_s"], pooled, delta=1e-12)
 
+    def test_s_minus_k_by_cycle_is_the_mean_of_all_slips_but_the_first_of_each_test(self):
+        report = json.loads(self.good("report", *self.a, "--json"))
+        text = self.good("report", *self.a)
+        for group, t in zip(report["groups"], (T_2, T_4)):
+            sums, counts, slips = [], [], []
+            for test in group["tests"]:
+                with h5py.File(self.folder / self.a[test]) as record:
+                    own = record["entry/cycles/delta_mu"][1:]
+                own = own[numpy.isfinite(own)]
+                sums.append(own.sum())
+                counts.append(len(own))
+                slips.extend(own)
+            n, mean = len(sums), sum(sums) / sum(counts)
+            error = math.sqrt(n / (n - 1) * sum((s - mean * c) ** 2 for s, c in zip(sums, counts))) / sum(counts)
+            pooled = group["delta_mu_by_cycle"]
+            self.assertEqual((pooled["tests"], pooled["slips"], pooled["escaped"]), (n, len(slips), 0))
+            numpy.testing.assert_allclose([pooled["value"], pooled["standard_error"], *pooled["confidence_interval"], pooled["scatter"]],
+                                          [mean, error, mean - t * error, mean + t * error, numpy.std(slips, ddof=1)], rtol=1e-9)
+            self.assertIn(f"S−K by cycle   {mean:.5f} ± {error:.5f} (standard error), 95 %", text)
+        # B never stuck again: only its first slips have an S − K.
+        compared = json.loads(self.good("compare", *self.a, "--against", *self.b, "--json"))
+        self.assertIsNone(compared["comparisons"][1]["delta_mu_by_cycle"]["p"])
+        self.assertIn("in B no slip after the first", compared["comparisons"][1]["delta_mu_by_cycle"]["reason"])
+
+    def test_what_is_kept_is_said_and_shown_side_by_side(self):
+        shown = json.loads(self.good("analyze", self.a[0], "--effects", "--json"))["tests"][0]
+        self.assertEqual([effect["kept"] for effect in shown["effects"]], ["", "spikes", "drift", "first-slip"])
+        self.assertEqual(shown["effects"][0]["delta_mu"], shown["delta_mu"])
+        for effect in shown["effects"][1:]:
+            kept = json.loads(self.good("analyze", self.a[0], "--keep", effect["kept"], "--json"))["tests"][0]
+            self.assertEqual(kept["delta_mu"], effect["delta_mu"])
+        text = self.good("analyze", self.a[0], "--effects")
+        for words in ("all taken care of", "spikes kept", "drift kept", "first-slip kept"):
+            self.assertIn(words, text)
+        self.refused(2, '--keep hum: must be "spikes", "drift" or "first-slip", or "nothing" alone', "analyze", self.a[0], "--keep", "hum")
+
     def test_text_shows_the_same_numbers(self):
         report = json.loads(self.good("report", *self.a, "--json"))
         text = self.good("report", *self.a)
@@ -179,8 +215,10 @@ class Reports(Folder):
         self.assertAlmostEqual(fast["regime"]["p"], 1 / 56, delta=1e-12)
         with (self.folder / "c.csv").open(newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
-        self.assertEqual(len(rows), 2 * len(QUANTITIES))
-        self.assertEqual([row["quantity"] for row in rows], 2 * QUANTITIES)
+        self.assertEqual([row["quantity"] for row in rows], 2 * ["delta_mu_by_cycle", *QUANTITIES])
+        pooled = comparison["a"]["groups"][0]["delta_mu_by_cycle"]
+        self.assertEqual([float(rows[0][key]) for key in ("a_count", "a_mean", "a_mean_low", "a_mean_high")],
+                         [pooled["tests"], pooled["value"], *pooled["confidence_interval"]])
         self.assertEqual(float(rows[-1]["p"]), fast["quantities"][QUANTITIES[-1]]["p"])
 
     def test_options_may_stand_before_or_behind_the_mark(self):

@@ -23,6 +23,7 @@ TEST(Replicates, EachSlipCountsOnceWhateverItsTest) {
       {slip(9.0, kFirst), slip(0.06, kCycleCaptured), slip(0.02, 0), slip(nan, 0), slip(nan, 0)},
       {slip(9.0, kFirst), slip(0.05, kCycleCaptured), slip(0.07, kCycleCaptured), slip(0.05, 0)}};
   const PooledDeltaMu pooled = pool_delta_mu(tests);
+  EXPECT_EQ(pooled.test_count, 2U);
   EXPECT_EQ(pooled.slip_count, 5U);
   EXPECT_EQ(pooled.escaped_count, 1U);  // The last of all was not seen to its end.
   EXPECT_NEAR(*pooled.mean.value, 0.25 / 5.0, 1e-15);

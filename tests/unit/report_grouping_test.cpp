@@ -62,6 +62,53 @@ TEST(Grouping, PoolsTheScatterAboutEachSpeedsOwnMean) {
   EXPECT_FALSE(pooled_over_groups(groups, kDeltaMu));
 }
 
+/// S − K of the slips of a test, none of them its first, and all captured but the last.
+friction::SlipSums slips_of(const std::vector<double>& delta_mu) {
+  std::vector<friction::Cycle> cycles;
+  for (const double value : delta_mu) {
+    cycles.emplace_back();
+    cycles.back().delta_mu = value;
+    cycles.back().flags = friction::kCycleCaptured;
+  }
+  return friction::slip_sums(cycles);
+}
+
+TEST(Grouping, PoolsTheSlipsOfEachSpeedByCycle) {
+  std::vector<MeasuredTest> tests{test_at(1.0, 0.1), test_at(1.0, 0.2), test_at(2.0, 0.3)};
+  tests[0].slips = slips_of({0.04});
+  tests[1].slips = slips_of({0.06, 0.05, 0.07});
+  const std::vector<SpeedGroup> groups = group_by_speed(tests);
+  EXPECT_NEAR(*groups[0].by_cycle.mean.value, 0.22 / 4.0, 1e-15);  // The mean of the tests' is 0.05.
+  EXPECT_EQ(groups[0].by_cycle.test_count, 2U);
+  EXPECT_EQ(groups[0].by_cycle.slip_count, 4U);
+  // Sums less the mean times slips: ∓0.015; n/(n − 1) = 2. Student's t of one degree of freedom: 12.706.
+  const double error = std::sqrt(2.0 * 2.0 * 0.015 * 0.015) / 4.0;
+  EXPECT_NEAR(*groups[0].by_cycle.mean.standard_error, error, 1e-15);
+  EXPECT_NEAR(mean_interval(groups[0].by_cycle).value().high, 0.055 + 12.7062047 * error, 1e-8);
+  EXPECT_FALSE(groups[1].by_cycle.mean.value);
+  EXPECT_FALSE(mean_interval(groups[1].by_cycle));
+}
+
+TEST(Pairing, ComparesTheMeansByCycleWithTheirErrors) {
+  std::vector<MeasuredTest> a{test_at(1.0, 0.1), test_at(1.0, 0.2)};
+  a[0].slips = slips_of({0.04});
+  a[1].slips = slips_of({0.06, 0.05, 0.07});
+  std::vector<MeasuredTest> b = a;
+  b[0].slips = slips_of({0.03});
+  b[1].slips = slips_of({0.05, 0.04, 0.06});
+  const auto groups_a = group_by_speed(a);
+  const auto groups_b = group_by_speed(b);
+  const PooledComparison found = compare_pair_by_cycle(groups_a, groups_b, {1.0, 0, 0});
+  ASSERT_TRUE(found.welch) << found.reason;
+  EXPECT_NEAR(found.welch->difference, 0.01, 1e-15);
+  EXPECT_NEAR(found.welch->t, 0.01 / (std::sqrt(2.0) * 0.0075), 1e-9);
+  EXPECT_NEAR(found.welch->degrees_of_freedom, 2.0, 1e-9);
+  b.pop_back();
+  EXPECT_EQ(compare_pair_by_cycle(groups_a, group_by_speed(b), {1.0, 0, 0}).reason,
+            "one test of B has such slips; two are needed");
+  EXPECT_EQ(compare_pair_by_cycle(groups_a, groups_b, {1.0, 0, {}}).reason, "no test of B at this speed");
+}
+
 TEST(Pairing, FindsEqualSpeedsAndNamesTheSideWithout) {
   const std::vector<SpeedGroup> a = group_by_speed(
       std::vector{test_at(1.0, 0.1), test_at(1.0, 0.12), test_at(2.0, 0.3), test_at(2.0, 0.31)});

@@ -1,0 +1,29 @@
+/// \file
+/// S − K pooled by cycle as JSON: the same in reports and in the summary of the latest tests.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "core/report/pooled.hpp"
+#include "daemon/or_null.hpp"
+
+namespace stickslip::daemon {
+
+/// {"value", "standard_error", "confidence_interval", "tests", "slips", "escaped", "scatter",
+///  "captured_alone", "reason" (of no value)}
+[[nodiscard]] inline nlohmann::ordered_json pooled_json(const friction::PooledDeltaMu& pooled) {
+  const std::optional<report::Interval> interval = report::mean_interval(pooled);
+  nlohmann::ordered_json json{{"value", or_null(pooled.mean.value)},
+                              {"standard_error", or_null(pooled.mean.standard_error)},
+                              {"confidence_interval", nullptr},
+                              {"tests", pooled.test_count},
+                              {"slips", pooled.slip_count},
+                              {"escaped", pooled.escaped_count},
+                              {"scatter", or_null(pooled.scatter.value)},
+                              {"captured_alone", or_null(pooled.captured_mean.value)}};
+  if (interval) json["confidence_interval"] = {interval->low, interval->high};
+  if (!pooled.mean.value) json["reason"] = pooled.mean.reason;
+  return json;
+}
+
+}  // namespace stickslip::daemon
