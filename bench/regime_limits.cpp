@@ -59,6 +59,12 @@ int main(int argc, char** argv) {
     fmt::print("{:<28} {:>7} {:>10} {:>12}\n", "really", "tests", "wrong", "undecided");
     for (const auto& [regime, tally] : table->of_regime) print(tally, friction::name(regime));
     print(table->few_captures, "with one to three captures");
+    const test::TransitionTally& transitions = table->transitions;
+    fmt::print(
+        "transition_time of {} mixed tests: rms error {:.3f} ms, variance of error over standard error "
+        "{:.3f}; "
+        "another slip in {}\n",
+        transitions.tests, 1e3 * transitions.rms_s(), transitions.variance(), transitions.other_slip);
   }
   return 0;
 }

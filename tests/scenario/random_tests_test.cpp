@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "core/sim/scene.hpp"
 #include "tests/support/escape_trials.hpp"
@@ -26,22 +29,81 @@ double highest_count(double of, double share) {
   return of * share + 4.0 * std::sqrt(of * share * (1.0 - share));
 }
 
+/// Least count that so many tests exceed with a probability below 10⁻⁴ if each counts with probability
+/// `share`.
+int highest_likely(int of, double share) {
+  constexpr double kUnlikely = 1e-4;
+  double probability = std::pow(1.0 - share, of);  // Of the count, by its recurrence.
+  double above = 1.0 - probability;
+  int count = 0;
+  while (above > kUnlikely && count < of) {
+    probability *= share / (1.0 - share) * static_cast<double>(of - count) / static_cast<double>(count + 1);
+    above -= probability;
+    ++count;
+  }
+  return count;
+}
+
+/// What so many tests have shown, and one more: of none in a thousand nobody knows that it never happens.
+double one_more(int count, int of) { return static_cast<double>(count + 1) / static_cast<double>(of); }
+
+/// Counts behind the table of docs/detector.md, noise 0.02 (S − K).
+struct ClassRates {
+  const char* name;
+  std::optional<friction::Regime> regime;  ///< Nothing: tests with one to three captures.
+  int tests;
+  int wrong;
+  int undecided;
+};
+constexpr std::array<ClassRates, 4> kDocumented{{
+    {"stick-slip", friction::Regime::kStickSlip, 1500, 0, 1},
+    {"ring-down", friction::Regime::kRingDown, 7383, 2, 30},
+    {"mixed", friction::Regime::kMixed, 1117, 3, 3},
+    {"with one to three captures", std::nullopt, 507, 2, 3},
+}};
+
+/// Of the transition: another slip than the true one as seldom as a mixed test is called wrongly; spikes that
+/// nobody found may add a third to the variance; and a twentieth of a scan is what noise of 0.02 (S − K)
+/// leaves of the onset of a slip with some ten scans.
+constexpr double kOtherSlip = 0.004;
+constexpr double kTransitionVariance = 1.3;
+constexpr double kTransitionRms_s = 0.05 / 350.0;
+
 TEST(RandomTests, AreCalledWhatTheyAre) {
   const auto base = base_scene();
   ASSERT_TRUE(base) << base.error().message;
   const auto table = test::judge_random_tests(*base, {}, kTests, kSeed);
   ASSERT_TRUE(table) << table.error().message;
-  test::RegimeTally all;
-  for (const auto& [regime, tally] : table->of_regime) {
-    EXPECT_NE(regime, friction::Regime::kUndecided) << "the truth knows";
-    all.tests += tally.tests;
-    all.wrong += tally.wrong;
-    all.undecided += tally.undecided;
+  int tests = 0;
+  for (const auto& [regime, tally] : table->of_regime) tests += tally.tests;
+  EXPECT_EQ(tests, kTests);
+  for (const ClassRates& expected : kDocumented) {
+    SCOPED_TRACE(expected.name);
+    const test::RegimeTally& found =
+        expected.regime ? table->of_regime.at(*expected.regime) : table->few_captures;
+    std::printf("%-28s %4d tests, %d wrong, %d undecided\n", expected.name, found.tests, found.wrong,
+                found.undecided);
+    EXPECT_GT(found.tests, kTests / 50) << "else the test shows little";
+    EXPECT_LE(found.wrong, highest_likely(found.tests, one_more(expected.wrong, expected.tests)));
+    EXPECT_LE(found.undecided, highest_likely(found.tests, one_more(expected.undecided, expected.tests)));
   }
-  EXPECT_EQ(all.tests, kTests);
-  // Of 10 000 tests 0.04 % are called wrongly and 0.36 % not at all (docs/detector.md), and a quarter more.
-  EXPECT_LE(all.wrong, highest_count(kTests, 0.0005));
-  EXPECT_LE(all.undecided, highest_count(kTests, 0.0045));
+}
+
+// When the sled escaped: the onset of that slip by its fit, with the standard error that it says.
+TEST(RandomTests, TransitionIsTheOnsetOfTheSlipThatEscaped) {
+  const auto base = base_scene();
+  ASSERT_TRUE(base) << base.error().message;
+  const auto table = test::judge_random_tests(*base, {}, kTests, kSeed);
+  ASSERT_TRUE(table) << table.error().message;
+  const test::TransitionTally& found = table->transitions;
+  std::printf("%d mixed tests, rms %.4f ms, variance %.3f, another slip in %d\n", found.tests,
+              1e3 * found.rms_s(), found.variance(), found.other_slip);
+  ASSERT_GT(found.told(), kTests / 20);
+  EXPECT_LE(found.other_slip, highest_likely(found.tests, kOtherSlip));
+  // The mean of n squares of normal numbers scatters by √(2/n), a root of it by 1/√(2n) of itself: four of
+  // these.
+  EXPECT_LT(found.variance(), kTransitionVariance + 4.0 * std::sqrt(2.0 / found.told()));
+  EXPECT_LT(found.rms_s(), kTransitionRms_s * (1.0 + 4.0 / std::sqrt(2.0 * found.told())));
 }
 
 TEST(RandomTests, EscapesAreDeclaredSoonAndCapturesAreNotTakenForThem) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <random>
 #include <stdexcept>
 
@@ -52,17 +53,33 @@ inline sim::Scene random_test(const sim::Scene& base, const Disturbance& disturb
   return scene;
 }
 
-/// Slips of the pull that began by giving way and ended in sticking.
-inline int captures(const friction::TestTruth& truth, const sim::Pull& pull) {
-  int count = 0;
+/// Calls visit(onset in s, whether it ended in sticking within the pull) for each slip that began by giving
+/// way.
+template <typename Visitor>
+void for_each_slip(const friction::TestTruth& truth, const sim::Pull& pull, const Visitor& visit) {
   auto mode = truth.modes.begin();
   for (const friction::TrueCycle& cycle : truth.cycles) {
     mode = std::find_if(mode, truth.modes.end(), [&](const friction::ModeInterval& interval) {
       return interval.mode == friction::Mode::kSlip && interval.start_s >= cycle.onset_time_s;
     });
-    if (mode != truth.modes.end() && (*mode).end_s < pull.end_s) ++count;
+    if (mode != truth.modes.end()) visit(cycle.onset_time_s, (*mode).end_s < pull.end_s);
   }
+}
+
+/// Slips of the pull that began by giving way and ended in sticking.
+inline int captures(const friction::TestTruth& truth, const sim::Pull& pull) {
+  int count = 0;
+  for_each_slip(truth, pull, [&](double /*onset_s*/, bool captured) { count += captured ? 1 : 0; });
   return count;
+}
+
+/// Onset of the first slip that did not end in sticking, s; nothing if each did.
+inline std::optional<double> escape_onset_s(const friction::TestTruth& truth, const sim::Pull& pull) {
+  std::optional<double> onset;
+  for_each_slip(truth, pull, [&](double onset_s, bool captured) {
+    if (!captured && !onset) onset = onset_s;
+  });
+  return onset;
 }
 
 }  // namespace stickslip::test

@@ -4,14 +4,18 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <thread>
 #include <vector>
 
 #include "core/base/result.hpp"
 #include "core/friction/regime.hpp"
+#include "core/friction/results.hpp"
 #include "core/sim/scene.hpp"
 #include "core/sim/scene_truth.hpp"
 #include "daemon/sweep/runner.hpp"
@@ -34,9 +38,33 @@ struct RegimeTally {
   }
 };
 
+/// transition_time of the mixed tests that were called so, against the onset of the slip that escaped.
+struct TransitionTally {
+  int tests = 0;
+  int other_slip = 0;  ///< Off by more than a quarter of an oscillation, and in no sum below.
+  double square_sum_s2 = 0.0;
+  double normalised_square_sum = 0.0;  ///< Of errors over standard errors.
+
+  void add(double truth_s, const friction::Estimate& found, double oscillation_s) noexcept {
+    ++tests;
+    const double error_s = found.value.value_or(std::numeric_limits<double>::infinity()) - truth_s;
+    if (!(std::abs(error_s) < 0.25 * oscillation_s) || !found.standard_error) {
+      ++other_slip;
+      return;
+    }
+    square_sum_s2 += error_s * error_s;
+    normalised_square_sum += std::pow(error_s / *found.standard_error, 2);
+  }
+  [[nodiscard]] int told() const noexcept { return tests - other_slip; }
+  [[nodiscard]] double rms_s() const noexcept { return std::sqrt(square_sum_s2 / told()); }
+  /// Of errors over standard errors; 1 if these are right.
+  [[nodiscard]] double variance() const noexcept { return normalised_square_sum / told(); }
+};
+
 struct RegimeTable {
   std::map<friction::Regime, RegimeTally> of_regime;  ///< By what the simulation really did.
   RegimeTally few_captures;                           ///< Tests with one to three captures.
+  TransitionTally transitions;
 };
 
 /// Random tests 0 … count − 1 of this seed, on all processors; the same table for any number of them.
@@ -55,9 +83,14 @@ inline base::Result<RegimeTable> judge_random_tests(const sim::Scene& base, cons
   const auto take = [&](const record::SweepRun& run) -> base::Result<void> {
     const sim::Scene& scene = plan.points[static_cast<std::size_t>(run.number)];
     const friction::TestTruth truth = sim::scene_truth(scene, scene.scan_rate_Hz, plan.seed_of(run.number));
-    const int captured = captures(truth, *sim::pull_of(scene));
+    const sim::Pull pull = *sim::pull_of(scene);
+    const int captured = captures(truth, pull);
     table.of_regime[truth.regime].add(truth.regime, run.results.regime);
     if (captured >= 1 && captured <= 3) table.few_captures.add(truth.regime, run.results.regime);
+    if (truth.regime == friction::Regime::kMixed && run.results.regime == friction::Regime::kMixed) {
+      table.transitions.add(escape_onset_s(truth, pull).value(), run.results.transition_time,
+                            2.0 * std::numbers::pi / truth.omega_rad_per_s);
+    }
     return {};
   };
   const auto threads = static_cast<std::int64_t>(std::max(std::thread::hardware_concurrency(), 1U));

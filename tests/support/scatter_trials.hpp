@@ -16,6 +16,7 @@
 #include "core/friction/test_analysis.hpp"
 #include "core/sim/scene.hpp"
 #include "core/sim/scene_run.hpp"
+#include "core/sim/scene_truth.hpp"
 
 namespace stickslip::test {
 
@@ -27,6 +28,8 @@ struct ScatterTrials {
   std::vector<std::vector<friction::Cycle>> cycles;  ///< Of each test.
   std::vector<friction::Estimate> delta_mu;          ///< Of each test.
   std::vector<friction::TestResults> results;        ///< Of each test.
+  /// S − K found less the true one, of each slip after the first that was seen not to stick again.
+  std::vector<double> escape_errors;
 
   static sim::Scene scene_at(double speed_in_per_min) {
     // A newton a volt over m g: a volt is the coefficient.
@@ -61,7 +64,43 @@ struct ScatterTrials {
       results.push_back(analysis.finish());
       cycles.emplace_back(analysis.cycles().begin(), analysis.cycles().end());
       delta_mu.push_back(results.back().delta_mu);
+      keep_escapes(sim::scene_truth(scene, scene.scan_rate_Hz, static_cast<std::uint64_t>(seed)));
     }
+  }
+
+  /// How well the S − K of a slip that escapes is known.
+  struct Escapes {
+    std::size_t count = 0;
+    double rms = 0.0;
+    double bias = 0.0;
+    double bias_error = 0.0;  ///< Standard error.
+  };
+  [[nodiscard]] Escapes escapes() const {
+    Escapes found{.count = escape_errors.size()};
+    const auto n = static_cast<double>(found.count);
+    double squares = 0.0;
+    for (const double error : escape_errors) {
+      found.bias += error / n;
+      squares += error * error / n;
+    }
+    found.rms = std::sqrt(squares);
+    found.bias_error = std::sqrt(std::max(squares - found.bias * found.bias, 0.0) / n);
+    return found;
+  }
+
+  /// Of the tests that have an S − K: what one would get without pooling by cycle.
+  [[nodiscard]] friction::Estimate mean_of_means() const {
+    double n = 0.0;
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const friction::Estimate& found : delta_mu) {
+      if (!found.value) continue;
+      n += 1.0;
+      sum += *found.value;
+      squares += *found.value * *found.value;
+    }
+    const double mean = sum / n;
+    return friction::Estimate::of(mean, std::sqrt((squares / n - mean * mean) / (n - 1.0)));
   }
 
   /// Rms over the tests of (estimate − 0.05) in terms of 0.05 · CV/√M, where M are the slips that count.
@@ -79,9 +118,31 @@ struct ScatterTrials {
     return std::sqrt(squares / count);
   }
 
+  /// An rms of n values scatters by 1/√(2n) of itself.
+  [[nodiscard]] double rms_error_of_it() const {
+    const auto n = static_cast<double>(cycles.size()) - without_delta_mu();
+    return rms_over_sampling() / std::sqrt(2.0 * n);
+  }
+
   [[nodiscard]] int without_delta_mu() const {
     return static_cast<int>(std::count_if(delta_mu.begin(), delta_mu.end(),
                                           [](const friction::Estimate& found) { return !found.value; }));
+  }
+
+ private:
+  /// Of the latest test.
+  void keep_escapes(const friction::TestTruth& truth) {
+    constexpr double kSameSlip_s = 0.01;  // A fifth of an oscillation.
+    const std::vector<friction::Cycle>& found = cycles.back();
+    for (std::size_t i = 0; i + 1 < found.size(); ++i) {
+      const friction::Cycle& slip = found[i];
+      const unsigned kNoEscape = friction::kCycleCaptured | friction::kCycleIsFirst;
+      if ((slip.flags & kNoEscape) != 0 || !std::isfinite(slip.delta_mu)) continue;
+      for (const friction::TrueCycle& real : truth.cycles) {
+        if (std::abs(real.onset_time_s - slip.onset_time_s) < kSameSlip_s)
+          escape_errors.push_back(slip.delta_mu - (real.mu_s - real.mu_k));
+      }
+    }
   }
 };
 
