@@ -248,12 +248,14 @@ fs::path altered(const test::TemporaryFolder& folder, const std::function<void(h
 
 TEST(OldRecord, MadeBeforeSomeColumnsAndResultsIsReadWithoutThem) {
   const test::TemporaryFolder folder;
-  const std::vector<const char*> later{
-      "entry/cycles/pull_speed",         "entry/results/pull_speed_measured",
-      "entry/results/escape_speed",      "entry/results/mu_k_from_mean",
-      "entry/results/delta_mu_combined", "entry/results/slip_speed_ratio_threshold",
-      "entry/truth/coefficient",         "entry/truth/solver",
-      "entry/results/findings"};
+  const std::vector<const char*> later{"entry/cycles/pull_speed",
+                                       "entry/results/pull_speed_measured",
+                                       "entry/results/escape_speed",
+                                       "entry/results/mu_k_from_mean",
+                                       "entry/results/delta_mu_combined",
+                                       "entry/truth/coefficient",
+                                       "entry/truth/solver",
+                                       "entry/results/findings"};
   const fs::path path = altered(folder, [&](hid_t file) {
     for (const char* name : later) EXPECT_GE(H5Ldelete(file, name, H5P_DEFAULT), 0) << name;
   });
