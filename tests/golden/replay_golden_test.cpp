@@ -191,6 +191,30 @@ TEST_P(ReplayGolden, LiveReplayAndBatchAgreeToTheLastBit) {
   }
 }
 
+/// Published, read, analysed and replayed, a test has the results that it had live.
+/// \param stored  what was read.
+void expect_same_bits_from_file(const record::Record& live, const std::filesystem::path& file,
+                                test::ManualClock& clock, std::optional<record::Record>& stored) {
+  ASSERT_TRUE(record::publish_record(live, file));
+  auto read = record::read_record(file);
+  ASSERT_TRUE(read) << read.error().message;
+  stored = std::move(*read);
+  const auto batch = analyse(*stored);
+  ASSERT_TRUE(batch) << batch.error().message;
+  EXPECT_EQ(batch->results, live.end->results);
+
+  drivers::BoardConfig replay;
+  replay.driver = drivers::Driver::kReplay;
+  replay.replay_file = file;
+  auto board = drivers::open_board(replay, clock);
+  ASSERT_TRUE(board) << board.error().message;
+  const std::vector<record::Record> replayed = run(std::move(*board), 2, 0);
+  ASSERT_EQ(replayed.size(), 1U);
+  EXPECT_EQ(replayed[0].header.process.characterisation, live.header.process.characterisation);
+  EXPECT_EQ(replayed[0].header.process.kept, live.header.process.kept);
+  expect_same_results(live, replayed[0]);
+}
+
 TEST(ReplayGoldenOfAKnownTester, RecordCarriesWhatWasKnownAndGivesTheSameBits) {
   friction::Characterisation known;
   known.coupling = {125.6637, 0.022, Eigen::Vector2d{1e-4, 1e-8}.asDiagonal()};
@@ -211,23 +235,9 @@ TEST(ReplayGoldenOfAKnownTester, RecordCarriesWhatWasKnownAndGivesTheSameBits) {
   EXPECT_LT(*live[0].end->results.gamma_over_2omega.standard_error,
             0.5 * *unknown[0].end->results.gamma_over_2omega.standard_error);
 
-  ASSERT_TRUE(record::publish_record(live[0], file));
-  const auto stored = record::read_record(file);
-  ASSERT_TRUE(stored) << stored.error().message;
+  std::optional<record::Record> stored;
+  ASSERT_NO_FATAL_FAILURE(expect_same_bits_from_file(live[0], file, clock, stored));
   EXPECT_EQ(stored->header.process.characterisation, text);
-  const auto batch = analyse(*stored);
-  ASSERT_TRUE(batch) << batch.error().message;
-  EXPECT_EQ(batch->results, live[0].end->results);
-
-  drivers::BoardConfig replay;
-  replay.driver = drivers::Driver::kReplay;
-  replay.replay_file = file;
-  auto replayed_board = drivers::open_board(replay, clock);
-  ASSERT_TRUE(replayed_board);
-  const std::vector<record::Record> replayed = run(std::move(*replayed_board), 2, 0);
-  ASSERT_EQ(replayed.size(), 1U);
-  EXPECT_EQ(replayed[0].header.process.characterisation, text);
-  expect_same_results(live[0], replayed[0]);
 
   record::Record damaged = *stored;
   damaged.header.process.characterisation = "[tester]\nomega = 3";
@@ -253,23 +263,9 @@ TEST(ReplayGoldenOfWhatIsKept, RecordCarriesItAndGivesTheSameBits) {
         run(std::move(*board), 1, 0, {}, *friction::kept_from_text(words));
     ASSERT_EQ(live.size(), 1U);
 
-    ASSERT_TRUE(record::publish_record(live[0], file));
-    auto stored = record::read_record(file);
-    ASSERT_TRUE(stored) << stored.error().message;
+    std::optional<record::Record> stored;
+    ASSERT_NO_FATAL_FAILURE(expect_same_bits_from_file(live[0], file, clock, stored));
     EXPECT_EQ(stored->header.process.kept, words);
-    const auto batch = analyse(*stored);
-    ASSERT_TRUE(batch) << batch.error().message;
-    EXPECT_EQ(batch->results, live[0].end->results);
-
-    drivers::BoardConfig replay;
-    replay.driver = drivers::Driver::kReplay;
-    replay.replay_file = file;
-    auto replayed_board = drivers::open_board(replay, clock);
-    ASSERT_TRUE(replayed_board);
-    const std::vector<record::Record> replayed = run(std::move(*replayed_board), 2, 0);
-    ASSERT_EQ(replayed.size(), 1U);
-    EXPECT_EQ(replayed[0].header.process.kept, words);
-    expect_same_results(live[0], replayed[0]);
 
     stored->header.process.kept.clear();
     const auto handled = analyse(*stored);
