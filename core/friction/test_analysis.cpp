@@ -255,16 +255,21 @@ Trace TestAnalysis::despiked_trace() {
       signal::scan_noise(coefficients_, noise_floor(coefficients_, settings_.step_coefficient));
   signal::Despiker despiker;
   spikes_.clear();
+  spike_coefficients_.clear();
   const base::LongColumn<base::ScanIndex>& indices = indices_;
   const base::LongColumn<std::uint8_t>& saturated = saturated_;
+  const base::LongColumn<double>& measured = coefficients_;
   const auto take = [&](const signal::DespikedScan& scan) {
     const std::size_t k = trace.value.size();
-    if (scan.spike) spikes_.push_back(indices[k]);
+    if (scan.spike) {
+      spikes_.push_back(indices[k]);
+      spike_coefficients_.push_back(measured[k]);
+    }
     trace.time_s.push_back(static_cast<double>(indices[k] - indices.front()) / settings_.scan_rate_Hz);
     trace.value.push_back(scan.value);
     trace.usable.push_back(!scan.spike && saturated[k] == 0 ? 1 : 0);
   };
-  for (const double coefficient : std::as_const(coefficients_)) {
+  for (const double coefficient : measured) {
     if (settings_.kept.spikes) {
       take({coefficient, false});
     } else if (const auto scan = despiker.add(coefficient, sigma)) {

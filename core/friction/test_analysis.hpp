@@ -87,6 +87,8 @@ class TestAnalysis {
   [[nodiscard]] const std::optional<TesterCheck>& tester_check() const noexcept { return tester_check_; }
   /// After finish(): scans that the detector did not believe.
   [[nodiscard]] const std::vector<base::ScanIndex>& spikes() const noexcept { return spikes_; }
+  /// After finish(): what was measured in each of them.
+  [[nodiscard]] const std::vector<double>& spike_coefficients() const noexcept { return spike_coefficients_; }
 
  private:
   struct Gap {
@@ -100,7 +102,7 @@ class TestAnalysis {
   void read_speeds(const Trace& trace);
   /// The speed of the pull, as measured or else as planned, into the trace; forgets falls that are no slips.
   void follow_speed(Trace& trace, base::LongColumn<Fall>& slips) const;
-  /// All scans with the noise of the whole test known; fills spikes_.
+  /// All scans with the noise of the whole test known; fills spikes_ and spike_coefficients_.
   [[nodiscard]] Trace despiked_trace();
   /// Breaks the trace at the gaps that may hide a slip, and forgets the slips that reach into one.
   void break_at_gaps(Trace& trace, base::LongColumn<Fall>& slips) const;
@@ -133,6 +135,7 @@ class TestAnalysis {
   std::optional<TesterEstimate> tester_;
   std::optional<TesterCheck> tester_check_;
   std::vector<base::ScanIndex> spikes_;
+  std::vector<double> spike_coefficients_;
 };
 
 }  // namespace stickslip::friction

@@ -199,6 +199,7 @@ void Processor::end(daq::ScanIndex end, EndCause cause) {
   add_gain_uncertainty(ended.results, settings_.gain_uncertainty);
   ended.cycles = analysis_->cycles();
   ended.spikes = analysis_->spikes();
+  ended.spike_coefficients = analysis_->spike_coefficients();
   ended.read_latency = settings_.recorded ? settings_.recorded->read_latency : read_latency_;
   analysis_.reset();
   for (Sink* sink : sinks_) sink->test_ended(ended);

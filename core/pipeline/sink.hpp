@@ -68,6 +68,7 @@ struct TestEnd {
   friction::TestResults results;
   base::LongColumn<friction::Cycle> cycles;           ///< Final values, after the whole-test estimate.
   std::vector<daq::ScanIndex> spikes;                 ///< Scans replaced for the detector.
+  std::vector<double> spike_coefficients;             ///< What was measured in each of them.
   std::optional<daq::LatencyHistogram> read_latency;  ///< Of its blocks; none where no clock could tell.
 };
 

@@ -28,8 +28,8 @@ constexpr milliseconds kWholeLife{10'000};
 /// After so many of them in a row the likely cause is said: Mosquitto 2.0.11 ends the connection of a client
 /// when another of its name comes, and gives no reason.
 constexpr int kSuspicious = 2;
-/// For the last words.
-constexpr milliseconds kGrace{2'000};
+/// For the last words, of the 10 s that a stop may take.
+constexpr milliseconds kGrace{4'000};
 /// libmosquitto wants to be asked once a second for its keep-alive.
 constexpr milliseconds kIdleWait{1'000};
 /// While it connects: TLS does not say what it waits for.

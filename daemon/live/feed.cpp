@@ -165,16 +165,15 @@ void LiveFeed::note(const daq::Note& note) {
 void LiveFeed::test_ended(const pipeline::TestEnd& end) {
   test_ = 0;
   if (!heard()) return;
-  Json spikes = Json::array();
-  for (const daq::ScanIndex spike : end.spikes) {
-    if (spikes.size() < kMostSpikes) spikes.push_back(spike);
-  }
+  const std::size_t told = std::min(end.spikes.size(), kMostSpikes);  // The last: a scope may still show them.
   publish_(Json{{"type", "test-ended"},
                 {"test", end.number},
+                {"scan_rate", scan_rate_Hz_},
                 {"first_scan", test_first_},
                 {"end_scan", end.end},
                 {"cause", pipeline::name(end.cause)},
-                {"spikes", std::move(spikes)},
+                {"spikes", std::span{end.spikes}.last(told)},
+                {"spike_coefficients", std::span{end.spike_coefficients}.last(told)},
                 {"results", results_json(end.results, false)}}
                .dump());
 }

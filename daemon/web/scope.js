@@ -21,7 +21,6 @@ const Scope = (() => {
   const data = {time: [], lowest: [], highest: [], slope: [], scan: []};
   const slips = [];   // {onset, capture, peak_time, peak, captured}
   const spikes = [];  // {scan, time, value}
-  let toMark = [];    // Scans of spikes: a test's last scans may come after its end is told.
   const cycles = {number: [], delta: [], amplitude: []};
   let falling = null;  // {time, peak} of the latest fall; its ring goes when its cycle closes
   let rate = 0, speed = 1, step = 1, dirty = false, newCycles = true;
@@ -119,32 +118,10 @@ const Scope = (() => {
       data.slope.push(follows ? (middle - (data.lowest[at] + data.highest[at]) / 2) * rate / step : null);
       data.scan.push(scan); data.time.push(scan / rate); data.lowest.push(low); data.highest.push(frame.highest[k]);
     });
-    markSpikes();
     const old = data.time.findIndex(t => t >= latest() - window_s() - 1);
     const cut = Math.max(old, data.time.length - kMostParts);
     if (cut > 500) for (const column of Object.values(data)) column.splice(0, cut);
     dirty = true;
-  }
-  /// The part that holds a scan: its index in the columns; −1: none.
-  function partOf(scan) {
-    let low = 0, high = data.scan.length;  // data.scan[low − 1] ≤ scan < data.scan[high]
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (data.scan[middle] <= scan) low = middle + 1; else high = middle;
-    }
-    return low > 0 && data.lowest[low - 1] != null && scan - data.scan[low - 1] < step ? low - 1 : -1;
-  }
-  function markSpikes() {
-    const end = data.scan.length ? data.scan.at(-1) + step : 0;
-    for (const scan of toMark) {
-      const at = partOf(scan);
-      if (at < 0) continue;
-      // Of a part with many scans, the end that is further from the part before.
-      const before = data.lowest[at - 1] == null ? data.lowest[at] : (data.lowest[at - 1] + data.highest[at - 1]) / 2;
-      spikes.push({scan, time: scan / rate, value: data.highest[at] - before >= before - data.lowest[at] ? data.highest[at] : data.lowest[at]});
-    }
-    toMark = toMark.filter(scan => scan >= end);
-    if (spikes.length > 500) spikes.splice(0, spikes.length - 500);
   }
   const began = () => { for (const column of Object.values(cycles)) column.length = 0; dirty = newCycles = true; };
   function fall(frame) {
@@ -160,13 +137,13 @@ const Scope = (() => {
   }
   function ended(frame) {
     falling = null;
-    toMark.push(...frame.spikes);
-    markSpikes();
+    frame.spikes.forEach((scan, k) => spikes.push({scan, time: scan / frame.scan_rate, value: frame.spike_coefficients[k]}));
+    if (spikes.length > 500) spikes.splice(0, spikes.length - 500);
     dirty = true;
   }
   /// A stream begins: perhaps of a daemon that counts its scans from 0 again.
   function clear() {
-    for (const column of [...Object.values(data), ...Object.values(cycles), slips, spikes, toMark]) column.length = 0;
+    for (const column of [...Object.values(data), ...Object.values(cycles), slips, spikes]) column.length = 0;
     falling = null;
     dirty = newCycles = true;
   }
