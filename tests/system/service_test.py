@@ -122,6 +122,9 @@ socket = "control.sock"
     def test_a_detector_that_hangs_is_not_covered_up(self):
         self.hangs("processing", "detector")
 
+    def test_a_storage_that_hangs_is_not_covered_up(self):
+        self.hangs("storage", "storage")
+
     def test_a_disk_that_hangs_is_not_covered_up(self):
         self.hangs("disk", "disk")
 

@@ -145,7 +145,7 @@ TEST_P(RefusingDisk, TenMinutesOfScansWaitInMemoryAndNothingIsLost) {
   expect_whole(heard.file(2), kTenMinutes + 700, 3500);
 }
 
-INSTANTIATE_TEST_SUITE_P(Errors, RefusingDisk, testing::Values(ENOSPC, EIO),
+INSTANTIATE_TEST_SUITE_P(Errors, RefusingDisk, testing::Values(ENOSPC, EIO, EDQUOT, EFBIG, EROFS),
                          [](const auto& error) { return std::string{::strerrorname_np(error.param)}; });
 
 TEST(Storage, RemarksAreEventsOfEveryRecord) {
