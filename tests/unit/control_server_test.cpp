@@ -133,25 +133,25 @@ TEST_F(ControlServerTest, AnswersOverTheSocketWhichOnlyOwnerAndGroupMayUse) {
 
 constexpr const char* kClose = "\r\nConnection: close\r\n\r\n";
 
-enum class Door { kSocket, kTcp };
+enum class Way { kBySocket, kByTcp };
 
 /// What holds at the socket holds at the TCP port, for whoever has the token.
-class EitherDoor : public ControlServerTest, public testing::WithParamInterface<Door> {
+class EitherDoor : public ControlServerTest, public testing::WithParamInterface<Way> {
  protected:
   void open(HttpLimits limits = {}) {
-    if (GetParam() == Door::kSocket) {
+    if (GetParam() == Way::kBySocket) {
       serve(limits);
     } else {
       serve_tcp(limits);
     }
   }
   [[nodiscard]] int client() const {
-    return GetParam() == Door::kSocket ? connected() : connected_by_tcp();
+    return GetParam() == Way::kBySocket ? connected() : connected_by_tcp();
   }
   /// Request line and headers of somebody who may come in, but for the empty line.
   [[nodiscard]] std::string asks(const std::string& method, const std::string& path) const {
     const std::string line = method + " " + path + " HTTP/1.1";
-    if (GetParam() == Door::kSocket) return line;
+    if (GetParam() == Way::kBySocket) return line;
     return line + "\r\nHost: " + server_->address() + "\r\nAuthorization: Bearer " + kToken;
   }
   [[nodiscard]] std::string answer_to(const std::string& bytes, bool half_close = false) const {
@@ -174,8 +174,8 @@ class EitherDoor : public ControlServerTest, public testing::WithParamInterface<
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(, EitherDoor, testing::Values(Door::kSocket, Door::kTcp),
-                         [](const auto& info) { return info.param == Door::kSocket ? "Socket" : "Tcp"; });
+INSTANTIATE_TEST_SUITE_P(, EitherDoor, testing::Values(Way::kBySocket, Way::kByTcp),
+                         [](const auto& way) { return way.param == Way::kBySocket ? "Socket" : "Tcp"; });
 
 TEST_P(EitherDoor, RefusesWhatIsTooLongOrNoHttp) {
   HttpLimits limits;
