@@ -81,6 +81,7 @@ App::App(DaemonConfig config, AppWorld world)
                 .program = "/proc/self/exe",
                 .plan = [this] { return desk_.plan(); },
                 .set_plan = [this](Plan plan) { desk_.set_plan(std::move(plan)); },
+                .earlier = [this](TestSummary test) { tests_.add_earlier(std::move(test)); },
                 .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
                 .clock = clock_.get()}),
       reports_({.io = io_, .folder = config_.record_folder, .program = program_beside_this()}),
@@ -125,6 +126,7 @@ base::Result<void> App::run() {
   // What cannot be recovered is told and kept; the measurement goes on.
   static_cast<void>(recover_folder(config_.record_folder, finalise_, *world_.facts));
   batches_.open();
+  continues_.next_test_number = batches_.next_test_number();
   if (base::Result<void> opened = open_fleet(); !opened) return opened;
   if (base::Result<void> opened = open_session(); !opened) {
     if (opened.error().kind == base::ErrorKind::kUsage) return opened;

@@ -68,6 +68,7 @@ void show_status(const std::string& line) {
 void print_table(const TestLog& tests) {
   std::vector<TableRow> rows;
   for (TestSummary& test : tests.tests()) {
+    if (test.earlier) continue;
     rows.push_back(
         {test.number, std::move(test.results), std::move(test.truth),
          test.file_error.empty() ? std::move(test.file) : fmt::format("no file: {}", test.file_error)});

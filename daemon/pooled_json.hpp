@@ -1,5 +1,6 @@
 /// \file
-/// S − K pooled by cycle as JSON: the same in reports and in the summary of the latest tests.
+/// S − K pooled by cycle as JSON: the same in reports and in the summary of the latest tests; and what pooling
+/// needs to know of a test.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -24,6 +25,27 @@ namespace stickslip::daemon {
   if (interval) json["confidence_interval"] = {interval->low, interval->high};
   if (!pooled.mean.value) json["reason"] = pooled.mean.reason;
   return json;
+}
+
+/// {"count", "sum", "square_sum", "captured_count", "captured_sum", "escaped_count"}
+[[nodiscard]] inline nlohmann::ordered_json slip_sums_json(const friction::SlipSums& sums) {
+  return {{"count", sums.count},
+          {"sum", sums.sum},
+          {"square_sum", sums.square_sum},
+          {"captured_count", sums.captured_count},
+          {"captured_sum", sums.captured_sum},
+          {"escaped_count", sums.escaped_count}};
+}
+
+/// \throws nlohmann::json::exception unless slip_sums_json() made it.
+[[nodiscard]] inline friction::SlipSums slip_sums_from_json(const nlohmann::ordered_json& json) {
+  const auto number = [&json](const char* key) { return json.at(key).get<double>(); };
+  return {.count = number("count"),
+          .sum = number("sum"),
+          .square_sum = number("square_sum"),
+          .captured_count = number("captured_count"),
+          .captured_sum = number("captured_sum"),
+          .escaped_count = number("escaped_count")};
 }
 
 }  // namespace stickslip::daemon

@@ -1,6 +1,7 @@
 #include "daemon/results_json.hpp"
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -40,6 +41,26 @@ nlohmann::ordered_json results_json(const friction::TestResults& results, bool w
                             });
   if (with_details) json["details"] = std::move(details);
   return json;
+}
+
+friction::TestResults results_from_json(const nlohmann::ordered_json& json) {
+  friction::TestResults results;
+  const nlohmann::ordered_json& details = json.at("details");
+  results.regime = friction::regime_from_name(json.at("regime").get<std::string>())
+                       .value_or(friction::Regime::kUndecided);
+  if (details.contains("regime")) details.at("regime").at("reason").get_to(results.regime_reason);
+  json.at("findings").get_to(results.findings);
+  friction::for_each_result(results, [&](const friction::ResultName& name, friction::Estimate& estimate) {
+    const nlohmann::ordered_json& detail = details.at(std::string{name.name});
+    const auto take = [&detail](const char* key, std::optional<double>& into) {
+      if (detail.contains(key) && !detail.at(key).is_null()) into = detail.at(key).get<double>();
+    };
+    take("value", estimate.value);
+    take("standard_error", estimate.standard_error);
+    take("systematic_uncertainty", estimate.systematic_uncertainty);
+    if (!estimate.value) detail.at("reason").get_to(estimate.reason);
+  });
+  return results;
 }
 
 }  // namespace stickslip::daemon

@@ -15,6 +15,7 @@
 #include "core/record/journal.hpp"
 #include "core/record/words.hpp"
 #include "daemon/finaliser.hpp"
+#include "daemon/record_name.hpp"
 #include "daemon/thread_name.hpp"
 
 namespace stickslip::daemon {
@@ -62,12 +63,12 @@ std::filesystem::path dated(const StorageSettings& settings, std::time_t seconds
   return settings.folder;
 }
 
-/// "20261121T125252Z-0003", in UTC; a number is added while something of that name exists.
+/// A number is added while something of that name exists.
 std::filesystem::path free_journal_path(const StorageSettings& settings, const pipeline::TestStart& start,
                                         const std::filesystem::path& latest) {
   const std::time_t seconds = start.stamp.realtime_ns / 1'000'000'000;
   const std::filesystem::path folder = dated(settings, seconds);
-  const std::string stem = fmt::format("{:%Y%m%dT%H%M%SZ}-{:04}", fmt::gmtime(seconds), start.number);
+  const std::string stem = record_stem(seconds, start.number);
   std::error_code error;
   for (int attempt = 1;; ++attempt) {
     const std::string name = attempt == 1 ? stem : fmt::format("{}-{}", stem, attempt);

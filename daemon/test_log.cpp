@@ -16,6 +16,14 @@ void TestLog::add(TestSummary summary) {
   if (tests_.size() > kMaxTests) tests_.pop_front();
 }
 
+void TestLog::add_earlier(TestSummary summary) {
+  const std::lock_guard lock{mutex_};
+  if (tests_.size() >= kMaxTests) return;
+  const auto own = std::find_if(tests_.begin(), tests_.end(),
+                                [](const TestSummary& test) { return !test.earlier; });
+  tests_.insert(own, std::move(summary));
+}
+
 TestSummary* TestLog::find(std::int64_t number) {
   const auto found = std::find_if(tests_.rbegin(), tests_.rend(),
                                   [number](const TestSummary& test) { return test.number == number; });
@@ -42,7 +50,7 @@ std::vector<TestSummary> TestLog::tests() const {
 
 std::optional<TestSummary> TestLog::latest() const {
   const std::lock_guard lock{mutex_};
-  if (tests_.empty()) return std::nullopt;
+  if (tests_.empty() || tests_.back().earlier) return std::nullopt;
   return tests_.back();
 }
 

@@ -28,6 +28,7 @@ struct TestSummary {
   std::optional<friction::TestTruth> truth;  ///< Without modes and cycles.
   std::string file;                          ///< Empty until the file is published.
   std::string file_error;                    ///< Why there is no file; empty if there is one.
+  bool earlier = false;  ///< Of before the program began: read from its record. Its scans count from another 0.
 };
 
 /// Thread-safe.
@@ -37,12 +38,15 @@ class TestLog {
   static constexpr std::size_t kMaxTests = 1000;
 
   void add(TestSummary summary);
+  /// One of before the program began, in their order; before those that it made itself.
+  void add_earlier(TestSummary summary);
   /// What was in the way before is forgotten.
   void set_file(std::int64_t number, const std::string& file);
   void set_file_error(std::int64_t number, const std::string& error);
 
   /// Oldest first.
   [[nodiscard]] std::vector<TestSummary> tests() const;
+  /// Of this program's own.
   [[nodiscard]] std::optional<TestSummary> latest() const;
   /// Since the start of the program.
   [[nodiscard]] std::int64_t test_count() const;

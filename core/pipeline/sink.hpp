@@ -61,6 +61,14 @@ enum class EndCause {
   return "stopped";
 }
 
+[[nodiscard]] constexpr std::optional<EndCause> end_cause_from_name(std::string_view text) noexcept {
+  for (const EndCause cause : {EndCause::kUnloaded, EndCause::kNoRelativeMotion, EndCause::kEndOfInput,
+                               EndCause::kCommand, EndCause::kStopped, EndCause::kBoardMissing}) {
+    if (name(cause) == text) return cause;
+  }
+  return std::nullopt;
+}
+
 struct TestEnd {
   std::int64_t number = 0;
   daq::ScanIndex end = 0;  ///< One past the last scan of the record.

@@ -13,6 +13,8 @@
 #include "core/record/iso_time.hpp"
 #include "daemon/batch/place.hpp"
 #include "daemon/method_text.hpp"
+#include "daemon/record_name.hpp"
+#include "daemon/record_result.hpp"
 #include "daemon/records_above.hpp"
 
 namespace stickslip::daemon {
@@ -49,6 +51,32 @@ void BatchLeader::open() {
   read_on();
   reconcile();
   lead();
+  const Batch* const batch = book_.current();
+  if (batch == nullptr || !parts_.earlier) return;
+  std::vector<std::string> records;
+  for (const BatchTest& test : batch->tests) records.push_back(test.record);
+  tell_earlier(std::move(records), 0);
+}
+
+std::int64_t BatchLeader::next_test_number() const {
+  std::int64_t latest = 0;
+  if (const Batch* const batch = book_.current(); batch != nullptr) {
+    for (const BatchTest& test : batch->tests)
+      latest = std::max(latest, test_number_in(test.record).value_or(0));
+  }
+  return latest + 1;
+}
+
+void BatchLeader::tell_earlier(std::vector<std::string> records, std::size_t at) {
+  if (at == records.size()) return;
+  boost::asio::post(pool_, [this, records = std::move(records), at] {
+    auto test = earlier_test(parts_.program, parts_.folder / records[at]);
+    parts_.on_main([this, records, at, test = std::move(test)] {
+      // What cannot be read is `stickslip verify`'s to tell; the report of the batch says so too.
+      if (test) parts_.earlier(*test);
+      tell_earlier(records, at + 1);
+    });
+  });
 }
 
 void BatchLeader::read_on() {

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <boost/asio/thread_pool.hpp>
 
@@ -18,6 +19,7 @@
 #include "daemon/batch/journal.hpp"
 #include "daemon/control/batches.hpp"
 #include "daemon/control/bench.hpp"
+#include "daemon/test_log.hpp"
 
 namespace stickslip::daemon {
 
@@ -29,6 +31,7 @@ class BatchLeader final : public Batches {
     std::string program;           ///< Of place_of().
     std::function<Plan()> plan;
     std::function<void(Plan)> set_plan;
+    std::function<void(TestSummary)> earlier;  ///< A test of the batch, of before this began.
     std::function<void(std::function<void()>)> on_main;  ///< From any thread: to the main thread.
     const base::Clock* clock;                            ///< Outlives this object.
   };
@@ -38,8 +41,11 @@ class BatchLeader final : public Batches {
   BatchLeader(const BatchLeader&) = delete;
   BatchLeader& operator=(const BatchLeader&) = delete;
 
-  /// Reads the journal, adds the records that a stop kept it from adding, plans the next test.
+  /// Reads the journal, adds the records that a stop kept it from adding, plans the next test. The tests of the
+  /// batch that goes on are told one after the other, from their records.
   void open();
+  /// Behind those of the batch that goes on; 1 without one.
+  [[nodiscard]] std::int64_t next_test_number() const;
 
   /// Waits for what is being written. Only what came before is told any more.
   void close();
@@ -68,6 +74,8 @@ class BatchLeader final : public Batches {
   void lead();
   /// The records of the current batch that the journal lacks.
   void reconcile();
+  /// Of these records from that index on; one at a time, so that nothing that is to be written waits for all.
+  void tell_earlier(std::vector<std::string> records, std::size_t at);
 
   Parts parts_;
   BatchJournal journal_;

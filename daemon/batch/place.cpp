@@ -2,23 +2,18 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/base/wording.hpp"
-#include "daemon/child_process.hpp"
+#include "daemon/record_result.hpp"
 
 namespace stickslip::daemon {
 
 base::Result<std::optional<TestRecorded>> place_of(const std::string& program,
                                                    const std::filesystem::path& file,
                                                    const std::string& name) {
-  using Json = nlohmann::json;
-  const auto answer = ask_program(program, {"--result", file.string()}, {});
-  if (!answer) return tl::unexpected(answer.error());
-  if (!*answer || (*answer)->status != 0) {
-    return base::failure("{}: its place in a batch cannot be read: {}", file.string(),
-                         *answer ? base::one_line((*answer)->errors, 300) : "no such program");
-  }
-  const Json json = Json::parse((*answer)->output, nullptr, false);
-  const Json batch = json.is_object() ? json.value("batch", Json()) : Json();
+  using Json = nlohmann::ordered_json;
+  const base::Result<Json> told = result_of(program, file);
+  if (!told) return tl::unexpected(told.error());
+  const Json& json = *told;
+  const Json batch = json.value("batch", Json());
   if (!batch.is_string()) return std::optional<TestRecorded>{};
   const Json plan = json.value("plan", Json::object());
   const auto number = [](const Json& from, const char* key) {

@@ -102,8 +102,8 @@ Json to_json(const std::optional<FleetState>& fleet) {
 Json test_json(const TestSummary& test, bool with_details) {
   Json json;
   json["number"] = test.number;
-  json["first_scan"] = test.first;
-  json["end_scan"] = test.end;
+  json["first_scan"] = test.earlier ? Json(nullptr) : Json(test.first);
+  json["end_scan"] = test.earlier ? Json(nullptr) : Json(test.end);
   json["cause"] = pipeline::name(test.cause);
   json["file"] = test.file.empty() ? Json(nullptr) : Json(test.file);
   if (!test.file_error.empty()) json["file_error"] = test.file_error;

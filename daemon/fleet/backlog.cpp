@@ -34,7 +34,7 @@ base::Result<std::string> result_of_record(const std::filesystem::path& file) {
   const base::Result<record::Record> record = record::read_record(file);
   if (!record) return tl::unexpected(record.error());
   if (!record->end) return base::usage_error("{}: holds no end of a test", file.string());
-  return result_json(record->header, *record->end, file)
+  return result_json(record->header, *record->end, record->cycles, file)
              .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
          "\n";
 }

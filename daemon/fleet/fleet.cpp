@@ -52,8 +52,8 @@ FleetPublisher::World Fleet::world(std::vector<std::filesystem::path> untold) {
 
 void Fleet::test_recorded(const record::RecordHeader& header, const record::EndRecord& end,
                           const std::filesystem::path& file) {
-  publisher_.tell_result(
-      {file.stem().string(), header.uuid, result_message(settings_.tester, result_json(header, end, file))});
+  publisher_.tell_result({file.stem().string(), header.uuid,
+                          result_message(settings_.tester, result_json(header, end, end.cycles, file))});
 }
 
 void Fleet::state_changed() {

@@ -4,10 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/friction/kept.hpp"
+#include "core/friction/replicates.hpp"
 #include "core/record/iso_time.hpp"
 #include "daemon/control/bench.hpp"
 #include "daemon/control/plan_json.hpp"
 #include "daemon/or_null.hpp"
+#include "daemon/pooled_json.hpp"
 #include "daemon/results_json.hpp"
 
 namespace stickslip::daemon {
@@ -24,7 +27,7 @@ Json time_of(const std::optional<std::int64_t>& realtime_ns) {
 }  // namespace
 
 Json result_json(const record::RecordHeader& header, const record::EndRecord& end,
-                 const std::filesystem::path& file) {
+                 const base::LongColumn<friction::Cycle>& cycles, const std::filesystem::path& file) {
   Json json;
   json["entry_identifier_uuid"] = header.uuid;
   json["number"] = header.test_number ? Json(*header.test_number) : Json(nullptr);
@@ -41,6 +44,8 @@ Json result_json(const record::RecordHeader& header, const record::EndRecord& en
   json["estimator"] = or_null(header.process.estimator);
   json["version"] = or_null(header.process.version);
   json["results"] = results_json(end.results, true);
+  const friction::Kept kept = friction::kept_from_text(header.process.kept).value_or(friction::Kept{});
+  json["slips"] = slip_sums_json(friction::slip_sums(cycles, kept.first_slip));
   return json;
 }
 

@@ -16,9 +16,10 @@
 namespace stickslip::daemon {
 
 /// One test. The same for a test that has just ended and for its record, but for the status of one that was
-/// repaired on the way.
+/// repaired on the way. \param cycles  all: those of a record that was read do not stand in its end.
 [[nodiscard]] nlohmann::ordered_json result_json(const record::RecordHeader& header,
                                                  const record::EndRecord& end,
+                                                 const base::LongColumn<friction::Cycle>& cycles,
                                                  const std::filesystem::path& file);
 /// That of a tester. \param result  result_json().
 [[nodiscard]] std::string result_message(const std::string& tester, const nlohmann::ordered_json& result);

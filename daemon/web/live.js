@@ -118,8 +118,8 @@
       Calibrate.health(frame.status);
       Batch.health(frame.status);
       Tables.bench(frame.status.bench);
-      // Records appear a moment after their tests.
-      if (frame.status.latest_test && document.querySelector("#tests tbody td:last-child")?.textContent === "…") attempt(refresh);
+      // Records appear a moment after their tests, and those of before the daemon began one after the other.
+      if ((frame.status.latest_test && document.querySelector("#tests tbody td:last-child")?.textContent === "…") || Tables.lacks()) attempt(refresh);
     },
   };
 

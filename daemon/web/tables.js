@@ -36,8 +36,9 @@ const Tables = (() => {
   }
   const limitText = ({lowest, highest}, digits) => (lowest == null ? `≤ ${fixed(highest, digits)}` : highest == null ? `≥ ${fixed(lowest, digits)}` : `${fixed(lowest, digits)} … ${fixed(highest, digits)}`);
 
+  let lacking = false;
   /// Numbers of the foot are the daemon's (GET /v1/tests), as stickslip report computes them.
-  /// \param made  how many tests of the batch count, as far as its journal goes back: the table knows those since the daemon began.
+  /// \param made  how many tests of the batch count, by its journal: of those of before the daemon began the table learns by and by.
   /// \param voidCell  (id, body, what, voided) → a cell with the button of a test.
   function tests(list, summary, made, download, voidCell) {
     const table = document.getElementById("tests");
@@ -72,7 +73,9 @@ const Tables = (() => {
     table.tFoot.replaceChildren(...rows);
     if (/^(void|record)-\d+$/.test(focused ?? "")) document.getElementById(focused)?.focus();
     const far = summary.quantities.some(quantity => quantity.outlier_test != null);
-    const known = summary.tests.length, ofBatch = known < made ? `${known} of the ${made} tests made of batch ${summary.batch}: the others are from before the daemon began, and in its report` :
+    const known = summary.tests.length;
+    lacking = known < made;
+    const ofBatch = lacking ? `${known} of the ${made} tests made of batch ${summary.batch}: the records of the others have not been read` :
       `batch ${summary.batch}`;
     document.getElementById("counted").textContent = [summary.batch == null ? "" : `mean and limits of ${ofBatch}`,
       far ? "! stands out (Grubbs' test, 5 %) and counts all the same" : ""].filter(text => text !== "").join(" · ");
@@ -124,5 +127,5 @@ const Tables = (() => {
     document.getElementById("cycle").textContent = `cycle ${frame.number}: peak ${fixed(frame.peak, 4)}, S − K ${fixed(frame.delta_mu, 4)}`;
   }
 
-  return {cell, row, speed, bench, regime, trouble, tests, health, cycle, columns};
+  return {cell, row, speed, bench, regime, trouble, tests, lacks: () => lacking, health, cycle, columns};
 })();

@@ -39,7 +39,7 @@ void say_result(FuzzedDataProvider& input) {
   friction::for_each_result(end.results, [&](const friction::ResultName&, friction::Estimate& estimate) {
     if (input.ConsumeBool()) estimate = friction::Estimate::of(number(), number());
   });
-  const auto result = daemon::result_json(header, end, text(input));
+  const auto result = daemon::result_json(header, end, end.cycles, text(input));
   const std::string message = daemon::result_message(tester, result);
   STICKSLIP_EXPECTS(message.find('\n') == std::string::npos);
   const auto read = nlohmann::json::parse(message, nullptr, false);

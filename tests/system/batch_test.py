@@ -68,6 +68,19 @@ class Batch(unittest.TestCase):
             process.kill()
             process.communicate()
 
+    def wait_for_known(self, count):
+        """The daemon's tests, once it has so many: those of before it began are read one after the other."""
+        process, frames = self.daemon.watch()
+        try:
+            for _ in frames:
+                known = self.daemon.ask("GET", "/v1/tests")[1]
+                if len(known["tests"]) == count:
+                    return known
+        finally:
+            process.kill()
+            process.communicate()
+        raise AssertionError("the stream ended")
+
     def test_a_batch_leads_over_a_kill_asks_again_for_what_was_voided_and_reports_the_rest(self):
         begun = self.run_cli("batch", "begin", "--name", "liner 42", "--grade", "kraft", "--replicates", "2", "--slides", "2",
                              "--limit", "delta_mu=0.03:0.07", "--limit", "mu_k=:0.2")
@@ -78,18 +91,27 @@ class Batch(unittest.TestCase):
         self.assertIn("is not complete", self.run_cli("batch", "begin", "--name", "other", status=1))
 
         # Killed as soon as a record is there, perhaps before the journal has it.
+        tests = self.daemon.ask("GET", "/v1/tests")[1]["tests"]
         self.daemon.kill()
         self.daemon.start()
+        # What the tests were is read from their records again, and they are numbered on.
+        known = self.wait_for_known(2)
+        for test, earlier in zip(tests, known["tests"], strict=True):
+            self.assertEqual(earlier, {**test, "first_scan": None, "end_scan": None, "file": earlier["file"]})
+            self.assertEqual(earlier["file"].split("/")[-1], records[test["number"] - 1].name)
+        self.assertEqual(known["summary"]["tests"], [1, 2])
+        self.assertGreater(known["summary"]["delta_mu_by_cycle"]["slips"], 100)
+        self.assertEqual(self.daemon.ask("GET", "/v1/status")[1]["test_count"], 0)
         self.assertEqual([test["record"] for test in self.batch()["tests"]], [record.name for record in records])
         self.assertEqual(self.batch()["next"], {"pull_speed": None, "replicate": 2, "slide": 1})
         records.append(self.measure())
         self.assertEqual(self.place(records[2])[1:3], (2, 1))
         self.wait_for_tests(3)
 
-        voided = self.run_cli("void", "1", "--reason", "paper torn")  # The first test since the restart.
+        voided = self.run_cli("void", "3", "--reason", "paper torn")
         self.assertIn("void: paper torn, by ada", voided)
         self.assertIn("next: sheet 2, slide 1", voided)
-        self.assertEqual(self.daemon.ask("GET", "/v1/tests/1")[1]["voided"]["by"], "ada")
+        self.assertEqual(self.daemon.ask("GET", "/v1/tests/3")[1]["voided"]["by"], "ada")
         untouched = records[2].read_bytes()
         records.append(self.measure())
         self.assertEqual(self.place(records[3])[1:3], (2, 1), "the same step again")
