@@ -311,7 +311,8 @@ class BatchPage(unittest.TestCase):
         for row, record in zip(after["tests"], reversed(records), strict=False):
             self.assertEqual(row[-1], record.name)
             for cell, name in zip(row[2:5], ("mu_s", "mu_k", "delta_mu"), strict=True):
-                self.assertEqual(cell, f"{self.results([record], name)[0]:.4f}", name)
+                # Of three tests one may stand out.
+                self.assertEqual(cell.removesuffix(" !"), f"{self.results([record], name)[0]:.4f}", name)
         self.end()
 
     def test_what_is_refused_is_told_where_it_was_asked(self):
