@@ -61,6 +61,7 @@ class Chromium:
         address = str(file) if str(file).startswith("http:") else pathlib.Path(file).resolve().as_uri()
         page = Page(self, self.call("open", address=address, dark=dark, touch=touch))
         page.settle()
+        page.note_remarks()
         return page
 
     def opened(self, ending):
@@ -102,6 +103,15 @@ class Page:
     def until(self, condition):
         """Looks again and again until it holds."""
         self.call("until", condition=condition)
+
+    def note_remarks(self):
+        """Of the live page, from now on; for until_said()."""
+        self.value("""(() => { window.remarks = []; const line = document.getElementById('message');
+          if (line) new MutationObserver(() => window.remarks.push(line.textContent)).observe(line, {childList: true, characterData: true, subtree: true}); })()""")
+
+    def until_said(self, beginning):
+        """Until the live page has said so; other remarks may have come over it since."""
+        self.until(f"window.remarks.some(remark => remark.startsWith({json.dumps(beginning)}))")
 
     def complaints(self):
         """Uncaught exceptions, and everything logged as an error or a warning."""

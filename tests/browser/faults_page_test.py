@@ -77,7 +77,7 @@ class FaultsPage(unittest.TestCase):
         self.can_be_read()
         self.assertEqual(self.page.value("document.querySelector('#health dd').textContent"), "storage short")
         self.press("start")
-        self.page.until("document.getElementById('message').textContent.startsWith('storage short: room for ')")
+        self.page.until_said("storage short: room for ")
         # What the ballast gives back is filled too.
         while not self.page.value(f"{TROUBLE}.startsWith('storage waiting: ')"):
             fill(self.records)
@@ -111,7 +111,7 @@ class FaultsPage(unittest.TestCase):
         self.can_be_read()
         self.assertEqual(self.page.value("document.getElementById('bench-word').textContent"), "degraded")
         self.press("start")
-        self.page.until("document.getElementById('message').textContent.startsWith('no scans come from the board')")
+        self.page.until_said("no scans come from the board")
 
     def test_a_daemon_that_comes_back_is_found_again(self):
         self.open()

@@ -376,7 +376,7 @@ class LivePage(unittest.TestCase):
             page.value(f"document.querySelector('#plan [name={name}]').focus()")
             page.type(typed)
         page.press("Enter")
-        page.until("document.getElementById('message').textContent.startsWith('the plan is set')")
+        page.until_said("the plan is set")
         self.assertEqual(daemon.ask("GET", "/v1/plan")[1]["name"], "liner 42")
         self.assertEqual(page.value("document.querySelector('#plan [name=pull_speed]').value"), "5.08 mm/s")
         page.until("Scope.data.highest.slice(-50).every(force => force < 0.02)")  # A whole pull is to come.
@@ -389,12 +389,12 @@ class LivePage(unittest.TestCase):
         page.value("document.getElementById('mark-text').focus()")
         page.type("sheet moved")
         page.press("Enter")
-        page.until("document.getElementById('message').textContent.startsWith('mark: test 1')")
+        page.until_said("mark: test 1")
         # Somebody else is told who has the bench, and the page is told why it is refused.
         self.assertRegex(daemon.ask("POST", "/v1/stop", who="bob")[1]["error"], "^page .... has the bench")
         page.value("document.querySelector('[data-command=arm]').focus()")
         page.press("Enter")
-        page.until("document.getElementById('message').textContent.startsWith('a test is running')")
+        page.until_said("a test is running")
         page.value("document.querySelector('[data-command=stop]').focus()")
         page.press("Enter")
         page.until("document.querySelectorAll('#tests tbody tr').length === 1")
@@ -434,7 +434,7 @@ class LivePage(unittest.TestCase):
             self.browser.save_downloads(folder)
             name = page.value("(() => { const link = document.querySelector('#tests tbody a'); link.focus(); return link.textContent; })()")
             page.press("Enter")
-            page.until(f"document.getElementById('message').textContent === 'saved {name}'")
+            page.until_said(f"saved {name}")
             self.browser.wait_for_download()
             self.assertEqual((pathlib.Path(folder) / name).read_bytes(), (daemon.folder / "records" / name).read_bytes())
 

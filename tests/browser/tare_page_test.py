@@ -153,7 +153,7 @@ class TarePage(unittest.TestCase):
         self.page.until("!document.getElementById('tare-dialog').open && document.activeElement.id === 'tare-open'")
         # The next record states it, and who did it.
         self.enter("[data-command=start]")
-        self.page.until("document.getElementById('message').textContent.startsWith('start: test 1')")
+        self.page.until_said("start: test 1")
         self.enter("[data-command=stop]")
         self.page.until("document.querySelectorAll('#tests tbody tr').length === 1")
         with h5py.File(self.daemon.record(1)) as record:
@@ -166,7 +166,7 @@ class TarePage(unittest.TestCase):
     def test_a_test_or_a_calibration_under_way_is_told(self):
         self.open()
         self.enter("[data-command=start]")
-        self.page.until("document.getElementById('message').textContent.startsWith('start: test 1')")
+        self.page.until_said("start: test 1")
         self.wizard()
         self.page.until(f"{STEP} === 'A test is under way: let it end, or stop it.'")
         self.assertEqual(self.refused(), "a test is running; stop it first")
