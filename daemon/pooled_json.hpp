@@ -1,6 +1,6 @@
 /// \file
-/// S − K pooled by cycle as JSON: the same in reports and in the summary of the latest tests; and what pooling
-/// needs to know of a test.
+/// S − K pooled by cycle as JSON: the same in reports and in the summary of the latest tests; and what
+/// pooling needs to know of a test.
 #pragma once
 
 #include <nlohmann/json.hpp>

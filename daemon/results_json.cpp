@@ -46,8 +46,8 @@ nlohmann::ordered_json results_json(const friction::TestResults& results, bool w
 friction::TestResults results_from_json(const nlohmann::ordered_json& json) {
   friction::TestResults results;
   const nlohmann::ordered_json& details = json.at("details");
-  results.regime = friction::regime_from_name(json.at("regime").get<std::string>())
-                       .value_or(friction::Regime::kUndecided);
+  results.regime =
+      friction::regime_from_name(json.at("regime").get<std::string>()).value_or(friction::Regime::kUndecided);
   if (details.contains("regime")) details.at("regime").at("reason").get_to(results.regime_reason);
   json.at("findings").get_to(results.findings);
   friction::for_each_result(results, [&](const friction::ResultName& name, friction::Estimate& estimate) {

@@ -18,7 +18,8 @@ namespace stickslip::daemon {
 ///                      systematic_uncertainty and the reason of an absence.
 [[nodiscard]] nlohmann::ordered_json results_json(const friction::TestResults& results, bool with_details);
 
-/// The results that results_json(results, true) made this of. \throws nlohmann::json::exception if it did not.
+/// The results that results_json(results, true) made this of. \throws nlohmann::json::exception if it did
+/// not.
 [[nodiscard]] friction::TestResults results_from_json(const nlohmann::ordered_json& json);
 
 }  // namespace stickslip::daemon

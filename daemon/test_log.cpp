@@ -19,8 +19,8 @@ void TestLog::add(TestSummary summary) {
 void TestLog::add_earlier(TestSummary summary) {
   const std::lock_guard lock{mutex_};
   if (tests_.size() >= kMaxTests) return;
-  const auto own = std::find_if(tests_.begin(), tests_.end(),
-                                [](const TestSummary& test) { return !test.earlier; });
+  const auto own =
+      std::find_if(tests_.begin(), tests_.end(), [](const TestSummary& test) { return !test.earlier; });
   tests_.insert(own, std::move(summary));
 }
 

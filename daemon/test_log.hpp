@@ -28,7 +28,8 @@ struct TestSummary {
   std::optional<friction::TestTruth> truth;  ///< Without modes and cycles.
   std::string file;                          ///< Empty until the file is published.
   std::string file_error;                    ///< Why there is no file; empty if there is one.
-  bool earlier = false;  ///< Of before the program began: read from its record. Its scans count from another 0.
+  bool earlier =
+      false;  ///< Of before the program began: read from its record. Its scans count from another 0.
 };
 
 /// Thread-safe.

@@ -68,7 +68,8 @@ class FallFinder {
 
   /// Keeps the scans about a candidate when the last of them has come.
   void keep_scans(const Extreme& extreme, Scans& scans) const noexcept {
-    if (count_ - 1 - extreme.position == kReach) std::ranges::copy(latest_.values(), scans.begin());
+    // By pointers and a known count: a few moves, no loop.
+    if (count_ - 1 - extreme.position == kReach) std::copy_n(latest_.values().data(), kScans, scans.data());
   }
   void step(std::size_t position, double median, double hysteresis, std::optional<Fall>& fall) noexcept;
   /// step() while the force rises.

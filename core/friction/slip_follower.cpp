@@ -247,7 +247,9 @@ void SlipFollower::judge_by_heights(const Fall& next, double sigma) noexcept {
   // A free oscillation falls next time by what damping leaves; a slip from sticking by what is usual.
   const double drop = next.drop();
   const double free = freely_next_drop();
-  const double noise = std::hypot(std::numbers::sqrt2 * sigma, kPeakError * free);
+  const double scans = std::numbers::sqrt2 * sigma;
+  const double between_scans = kPeakError * free;
+  const double noise = std::sqrt(scans * scans + between_scans * between_scans);
   if (typical_count_ == 0.0) typical_delta_mu_ = fall_.drop();
   const double usual = std::log(drop / typical_delta_mu_);
   const double as_captured = log_normal_density(usual, 0.0, kDeltaMuLogScatter) - std::log(drop);

@@ -36,6 +36,16 @@ double median_of_few(std::array<double, 2 * kReach + 1> values, std::size_t size
   return *middle;
 }
 
+/// Hampel's test of a value among four neighbours by their median. Three scaled median absolute deviations
+/// are less than its own deviation exactly where those of three neighbours are: no second median is needed.
+inline bool stands_out(double value, double median, double a, double b, double c, double d) noexcept {
+  const double deviation = std::abs(value - median);
+  const auto within = [&](double other) {
+    return kDeviations * kMadToSigma * std::abs(other - median) < deviation ? 1 : 0;
+  };
+  return within(a) + within(b) + within(c) + within(d) >= 3;
+}
+
 /// Hampel's test of a value among its neighbours, with it at least three. \param value  replaced if it is a
 /// spike.
 DespikedScan hampel(double& value, std::span<const double> neighbours, double sigma) noexcept {
@@ -57,16 +67,18 @@ DespikedScan hampel(double& value, std::span<const double> neighbours, double si
 DespikedScan Despiker::judge_middle(double sigma) noexcept {
   const std::span<double, kWidth> window = window_.values();
   double& value = window[kDelay];
-  const double noise_limit = kNoiseSigmas * sigma;
-  if (follows_a_cubic(window, sigma)) {
-    // Nearly every scan ends here.
-    if (std::abs(value - median_of_five(window[1], window[2], value, window[4], window[5])) <= noise_limit)
-      return {value, false};
-  } else if (const auto outlier = cubic_outlier(window, sigma)) {
-    value -= *outlier;
-    return {value, true};
+  if (!follows_a_cubic(window, sigma)) {
+    if (const auto outlier = cubic_outlier(window, sigma)) {
+      value -= *outlier;
+      return {value, true};
+    }
   }
-  return hampel(value, window.subspan<kDelay - kReach, 2 * kReach + 1>(), sigma);
+  const double median = median_of_five(window[1], window[2], value, window[4], window[5]);
+  // Nearly every scan ends here.
+  if (!(std::abs(value - median) > kNoiseSigmas * sigma)) return {value, false};
+  if (!stands_out(value, median, window[1], window[2], window[4], window[5])) return {value, false};
+  value = median;
+  return {median, true};
 }
 
 DespikedScan Despiker::judge_end(std::size_t position, double sigma) noexcept {
@@ -78,9 +90,7 @@ DespikedScan Despiker::judge_end(std::size_t position, double sigma) noexcept {
   return hampel(window[position], window.subspan(begin, size), sigma);
 }
 
-std::optional<DespikedScan> Despiker::add(double value, double sigma) noexcept {
-  window_.push(value);
-  if (size_ == kWidth) return judge_middle(sigma);
+std::optional<DespikedScan> Despiker::begin(double sigma) noexcept {
   ++size_;
   if (size_ <= kDelay) return std::nullopt;
   // The first scans have no three neighbours on the left: they are judged as the window fills.

@@ -40,7 +40,11 @@ struct DespikedScan {
 class Despiker {
  public:
   /// \param sigma  standard deviation of the noise of one scan (NoiseEstimator).
-  [[nodiscard]] std::optional<DespikedScan> add(double value, double sigma) noexcept;
+  [[nodiscard]] std::optional<DespikedScan> add(double value, double sigma) noexcept {
+    window_.push(value);
+    if (size_ == kWidth) return judge_middle(sigma);
+    return begin(sigma);
+  }
   /// The scans still inside, one a call; then nothing, and the filter is empty again.
   [[nodiscard]] std::optional<DespikedScan> flush(double sigma) noexcept;
 
@@ -48,6 +52,8 @@ class Despiker {
   static constexpr std::size_t kWidth = 7;
   static constexpr std::size_t kDelay = 3;
 
+  /// As the window fills.
+  [[nodiscard]] std::optional<DespikedScan> begin(double sigma) noexcept;
   /// With three on each side.
   [[nodiscard]] DespikedScan judge_middle(double sigma) noexcept;
   /// At the ends of the trace.

@@ -31,7 +31,7 @@ class BatchLeader final : public Batches {
     std::string program;           ///< Of place_of().
     std::function<Plan()> plan;
     std::function<void(Plan)> set_plan;
-    std::function<void(TestSummary)> earlier;  ///< A test of the batch, of before this began.
+    std::function<void(TestSummary)> earlier;            ///< A test of the batch, of before this began.
     std::function<void(std::function<void()>)> on_main;  ///< From any thread: to the main thread.
     const base::Clock* clock;                            ///< Outlives this object.
   };
@@ -41,8 +41,8 @@ class BatchLeader final : public Batches {
   BatchLeader(const BatchLeader&) = delete;
   BatchLeader& operator=(const BatchLeader&) = delete;
 
-  /// Reads the journal, adds the records that a stop kept it from adding, plans the next test. The tests of the
-  /// batch that goes on are told one after the other, from their records.
+  /// Reads the journal, adds the records that a stop kept it from adding, plans the next test. The tests of
+  /// the batch that goes on are told one after the other, from their records.
   void open();
   /// Behind those of the batch that goes on; 1 without one.
   [[nodiscard]] std::int64_t next_test_number() const;

@@ -165,7 +165,8 @@ void LiveFeed::note(const daq::Note& note) {
 void LiveFeed::test_ended(const pipeline::TestEnd& end) {
   test_ = 0;
   if (!heard()) return;
-  const std::size_t told = std::min(end.spikes.size(), kMostSpikes);  // The last: a scope may still show them.
+  const std::size_t told =
+      std::min(end.spikes.size(), kMostSpikes);  // The last: a scope may still show them.
   publish_(Json{{"type", "test-ended"},
                 {"test", end.number},
                 {"scan_rate", scan_rate_Hz_},

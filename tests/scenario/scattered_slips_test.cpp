@@ -56,11 +56,11 @@ TEST(ScatteredSlips, TheOneThatEscapesCounts) {
   const double escaped = static_cast<double>(pooled.escaped_count) / static_cast<double>(pooled.slip_count);
   EXPECT_NEAR(escaped, 0.116, 3.0 * std::sqrt(0.116 * 0.884 / static_cast<double>(pooled.slip_count)));
   EXPECT_NEAR(*pooled.mean.value, test::ScatterTrials::kDeltaMu, allowed_bias(pooled));
-  // Its own S − K, found like that of the others (docs/detector.md: rms error 1.4 % of the mean): an rms of n
+  // Its own S − K, found like that of the others (docs/detector.md: rms error 2.2 % of the mean): an rms of n
   // values scatters by 1/√(2n) of itself, which a few near the threshold make more.
   const test::ScatterTrials::Escapes escapes = trials.escapes();
   const double own_rms = escapes.rms / test::ScatterTrials::kDeltaMu;
-  EXPECT_LT(own_rms, 0.02 * (1.0 + 4.0 / std::sqrt(2.0 * static_cast<double>(escapes.count))));
+  EXPECT_LT(own_rms, 0.022 * (1.0 + 4.0 / std::sqrt(2.0 * static_cast<double>(escapes.count))));
   EXPECT_LT(std::abs(escapes.bias), 0.002 * test::ScatterTrials::kDeltaMu + 4.0 * escapes.bias_error);
   // Nearly every escape that was seen is one of the truth.
   EXPECT_GE(escapes.count, 98 * pooled.escaped_count / 100);

@@ -145,9 +145,7 @@ class EitherDoor : public ControlServerTest, public testing::WithParamInterface<
       serve_tcp(limits);
     }
   }
-  [[nodiscard]] int client() const {
-    return GetParam() == Way::kBySocket ? connected() : connected_by_tcp();
-  }
+  [[nodiscard]] int client() const { return GetParam() == Way::kBySocket ? connected() : connected_by_tcp(); }
   /// Request line and headers of somebody who may come in, but for the empty line.
   [[nodiscard]] std::string asks(const std::string& method, const std::string& path) const {
     const std::string line = method + " " + path + " HTTP/1.1";
@@ -212,8 +210,7 @@ TEST_P(EitherDoor, AnswersPipelinedRequestsInOrder) {
 
 TEST_P(EitherDoor, AnswersAClientThatHasClosedItsOwnSide) {
   open();
-  EXPECT_THAT(answer_to(asks("GET", "/v1/status") + "\r\n\r\n", true),
-              testing::StartsWith("HTTP/1.1 200 "));
+  EXPECT_THAT(answer_to(asks("GET", "/v1/status") + "\r\n\r\n", true), testing::StartsWith("HTTP/1.1 200 "));
   EXPECT_EQ(answer_to(asks("GET", "/v1/status") + "\r\n", true), "") << "no whole request";
 }
 

@@ -1,12 +1,13 @@
 // What a record says of its test comes back from JSON as it went in.
 
+#include "daemon/record_result.hpp"
+
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "daemon/pooled_json.hpp"
 #include "daemon/record_name.hpp"
-#include "daemon/record_result.hpp"
 #include "daemon/results_json.hpp"
 
 namespace stickslip::daemon {
@@ -44,9 +45,12 @@ TEST(RecordResult, ResultsComeBackAsTheyWere) {
 }
 
 TEST(RecordResult, SumsOverSlipsComeBackAsTheyWere) {
-  const friction::SlipSums sums{
-      .count = 9, .sum = 0.45 / 3.0, .square_sum = 1e-5 / 7.0, .captured_count = 7, .captured_sum = 0.1 / 3.0,
-      .escaped_count = 1};
+  const friction::SlipSums sums{.count = 9,
+                                .sum = 0.45 / 3.0,
+                                .square_sum = 1e-5 / 7.0,
+                                .captured_count = 7,
+                                .captured_sum = 0.1 / 3.0,
+                                .escaped_count = 1};
   const auto text = slip_sums_json(sums).dump();
   const friction::SlipSums again = slip_sums_from_json(nlohmann::ordered_json::parse(text));
   EXPECT_EQ(slip_sums_json(again), slip_sums_json(sums));
@@ -58,7 +62,8 @@ TEST(RecordResult, NumberStandsInTheNameOfTheRecord) {
   EXPECT_EQ(record_stem(1'795'000'000, 3), "20261118T110640Z-0003");
   for (const std::int64_t number : {1, 42, 9999, 123'456})
     EXPECT_EQ(test_number_in("2026/11/" + record_stem(1'795'000'000, number) + "-2.h5"), number);
-  for (const char* name : {"pull.h5", "", "20261118T110640Z", "20261118T110640Z-.h5", "20261118T110640Z-0000.h5"})
+  for (const char* name :
+       {"pull.h5", "", "20261118T110640Z", "20261118T110640Z-.h5", "20261118T110640Z-0000.h5"})
     EXPECT_EQ(test_number_in(name), std::nullopt) << name;
 }
 
