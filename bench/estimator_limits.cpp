@@ -25,6 +25,10 @@ int main(int argc, char** argv) {
       seeds, seeds, test::LimitScene::kCycles);
   fmt::print("tester from one ring-down of {} s: gamma {:.2f} %\n", test::LimitScene::kRingDown_s,
              100.0 * std::sqrt(scene.coupling_covariance()(1, 1)) / 0.022);
+  fmt::print(
+      "bounds: S - K with gamma/2omega alone from the tester and the speed {:.3f} %; pull speed with the "
+      "tester {:.3f} %\n",
+      100.0 * scene.delta_mu_bound_with_gamma_alone() / 0.05, 100.0 * scene.pull_speed_bound());
   fmt::print("{:<48}{:<14}{:>10}{:>11}{:>10}{:>10}{:>10}\n", "known beforehand", "result", "bound, %",
              "rms/bound", "z mean", "z var.", "in 95 %");
   for (const test::LimitCase& which : test::kLimitCases) {

@@ -33,6 +33,17 @@ TEST_P(EstimatorLimits, AreWithinATenthOfTheBound) {
   }
 }
 
+/// What a part of the characterisation is worth [docs/detector.md, "The tester, known beforehand"].
+TEST(EstimatorLimitsOfTheFit, DampingAloneIsHalfOfWhatTheTesterTells) {
+  const test::LimitScene scene;
+  const double gamma_alone = scene.delta_mu_bound_with_gamma_alone() / 0.05;
+  const double speed = scene.pull_speed_bound();
+  std::printf("S - K with gamma alone: %.3f %%, pull speed: %.3f %%\n", 100.0 * gamma_alone, 100.0 * speed);
+  EXPECT_NEAR(gamma_alone, 0.0034, 0.0001);
+  EXPECT_LT(speed, 0.005);
+  EXPECT_GT(speed, 0.0001);
+}
+
 /// Two of 4000 noises for which the fit creeps along the narrow valley of a known speed for a hundred steps.
 TEST(EstimatorLimitsOfTheFit, NoNoiseIsLeftWithoutAResult) {
   const test::LimitScene scene;

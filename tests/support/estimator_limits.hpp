@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "core/friction/information.hpp"
 #include "core/friction/test_analysis.hpp"
@@ -128,6 +129,25 @@ class LimitScene {
 
   [[nodiscard]] friction::UniformBounds bounds(LimitCase which) const {
     return friction::cramer_rao_bounds(parameters_, information_, prior(which));
+  }
+
+  /// Of S − K where the ring-down tells γ/2ω, the pull speed is known and ω is free.
+  [[nodiscard]] double delta_mu_bound_with_gamma_alone() const {
+    friction::SharedPrior prior = this->prior({.coupling_known = true, .speed_known = true});
+    const double unknown = prior.coupling->omega;
+    prior.coupling->covariance = Eigen::Vector2d{unknown * unknown, coupling_covariance_(1, 1)}.asDiagonal();
+    return friction::cramer_rao_bounds(parameters_, information_, prior).delta_mu;
+  }
+
+  /// Of the pull speed, r/ω₀² with ω₀² = ω² + γ²/4, as a part of it; the tester is known.
+  [[nodiscard]] double pull_speed_bound() const {
+    const auto& [omega, gamma, r] = parameters_.shared;
+    friction::UniformParameters::Matrix all = information_;
+    all.bottomRightCorner<3, 3>() += prior({.coupling_known = true}).at(parameters_.shared).information;
+    const double omega0_squared = omega * omega + 0.25 * gamma * gamma;
+    const Eigen::Vector3d by{-2.0 * omega / omega0_squared, -0.5 * gamma / omega0_squared, 1.0 / r};
+    const Eigen::Matrix3d covariance = all.inverse().bottomRightCorner<3, 3>();
+    return std::sqrt(by.dot(covariance * by));
   }
 
   /// The same case with so many different noises; what is known beforehand has its own error each time.
