@@ -5,16 +5,16 @@
 #include <nlohmann/json.hpp>
 
 #include "core/record/reader.hpp"
-#include "daemon/child_process.hpp"
 #include "daemon/fleet/messages.hpp"
+#include "daemon/record_result.hpp"
 
 namespace stickslip::daemon {
 
 std::optional<FleetResult> ask_result(const std::string& program, const std::string& tester,
                                       const std::filesystem::path& record) {
-  const auto answer = ask_program(program, {"--result", record.string()}, {});
-  if (!answer || !*answer || (*answer)->status != 0) return std::nullopt;
-  return parse_result(record.stem().string(), tester, (*answer)->output);
+  const auto result = result_of(program, record);
+  if (!result) return std::nullopt;
+  return parse_result(record.stem().string(), tester, result->dump());
 }
 
 std::optional<FleetResult> parse_result(const std::string& record, const std::string& tester,
