@@ -7,9 +7,12 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
+#include <numeric>
 #include <optional>
 #include <set>
 
@@ -51,7 +54,7 @@ std::optional<int> states_of_each_moment() {
   if (given == nullptr) return std::nullopt;
   return std::atoi(given);
 }
-constexpr double kMomentsByChance = test::kSanitized ? 5.0 : 20.0;
+constexpr std::size_t kMomentsByChance = test::kSanitized ? 5 : 20;
 
 constexpr std::size_t kScansInEntry = 35;
 
@@ -114,19 +117,27 @@ std::size_t recover(const fs::path& folder, const fs::path& journal, const fs::p
   return read ? read->raw.size() : 0;
 }
 
-/// Cuts at every moment of the log. \return states tried.
+/// The moments to cut at, of a log of so many changes: all of them, or exactly so many by chance.
+std::vector<std::size_t> moments_to_cut_at(std::size_t changes, bool all, std::mt19937_64& random) {
+  std::vector<std::size_t> moments(changes + 1);
+  std::iota(moments.begin(), moments.end(), std::size_t{0});
+  if (all) return moments;
+  std::vector<std::size_t> some;
+  std::ranges::sample(moments, std::back_inserter(some), kMomentsByChance, random);
+  return some;
+}
+
+/// Cuts at the moments of the log. \return states tried.
 int cut_everywhere(const CrashDisk& disk, const std::vector<Promise>& promises, std::uint64_t seed) {
   std::mt19937_64 random{seed};
   int tried = 0;
   const std::optional<int> states = states_of_each_moment();
-  std::bernoulli_distribution by_chance{
-      std::min(1.0, kMomentsByChance / static_cast<double>(disk.size() + 1))};
-  for (std::size_t cut = 0; cut <= disk.size(); ++cut) {
+  for (const std::size_t cut : moments_to_cut_at(disk.size(), states.has_value(), random)) {
     Promise due{0, 0, false};
     for (const Promise& promise : promises) {
       if (promise.after <= cut) due = promise;
     }
-    for (int state = states ? *states : by_chance(random) ? 1 : 0; state > 0; --state) {
+    for (int state = states.value_or(1); state > 0; --state) {
       const TemporaryFolder folder;
       disk.restore(cut, random, folder.path());
       if (due.finished) {
