@@ -61,7 +61,8 @@ void Acquisition::hand_over(daq::ScanBlock& block) noexcept {
     if (!ring_.has_room()) return;  // Told to stop: as if it had not been read.
   }
   const std::int64_t lost = block.first - issued_end_.value_or(block.first);
-  delivered_.fetch_add(block.count, std::memory_order_relaxed);
+  // Who has seen this count finds all blocks before this one in the ring.
+  delivered_.fetch_add(block.count, std::memory_order_release);
   issued_.fetch_add(lost + block.count, std::memory_order_relaxed);
   issued_end_ = block.end();
   // A full ring counts what it drops; the jump in the index tells the consumer.

@@ -62,7 +62,7 @@ class Acquisition {
 
   /// Any thread: scans that the board has delivered.
   [[nodiscard]] std::uint64_t delivered_scan_count() const noexcept {
-    return delivered_.load(std::memory_order_relaxed);
+    return delivered_.load(std::memory_order_acquire);
   }
 
   /// Any thread: indices that the board has given, of scans that it delivered or lost.

@@ -71,20 +71,34 @@ void Session::process() {
     acquisition_.wait();
     // Asked before the ring is emptied: then nothing can come after.
     const std::optional<Acquisition::End> ended = acquisition_.ended();
-    while (const std::size_t count = ring_.pop(blocks.data(), blocks.size())) {
-      if (full_ring_ == FullRing::kWait) acquisition_.made_room();
-      for (std::size_t i = 0; i < count; ++i) process_block(blocks[i]);
+    for (bool emptied = false; !emptied;) {
+      // Commands belong behind the scans that were there before them: what comes from here on waits for the
+      // next time.
+      take_jobs();
+      emptied = process_waiting(blocks);
+      run_jobs();
     }
-    // Commands belong behind the scans that were there before them.
-    run_jobs();
     if (ended) {
       finish(*ended);
       close_jobs();
+      take_jobs();
       run_jobs();
       events_.ended(*ended);
       return;
     }
   }
+}
+
+bool Session::process_waiting(std::vector<daq::ScanBlock>& blocks) {
+  const std::size_t most = ring_.use().capacity;
+  for (std::size_t done = 0; done < most;) {
+    const std::size_t count = ring_.pop(blocks.data(), blocks.size());
+    if (count == 0) return true;
+    if (full_ring_ == FullRing::kWait) acquisition_.made_room();
+    for (std::size_t i = 0; i < count; ++i) process_block(blocks[i]);
+    done += count;
+  }
+  return false;
 }
 
 void Session::finish(Acquisition::End ended) {
@@ -125,17 +139,14 @@ bool Session::post(Job job) {
   return true;
 }
 
+void Session::take_jobs() {
+  const std::lock_guard lock{jobs_mutex_};
+  taken_jobs_.swap(jobs_);
+}
+
 void Session::run_jobs() {
-  for (;;) {
-    Job job;
-    {
-      const std::lock_guard lock{jobs_mutex_};
-      if (jobs_.empty()) break;
-      job = std::move(jobs_.front());
-      jobs_.pop_front();
-    }
-    job(processor_);
-  }
+  for (const Job& job : taken_jobs_) job(processor_);
+  taken_jobs_.clear();
   bench_.store(processor_.bench(), std::memory_order_relaxed);
 }
 

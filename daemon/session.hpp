@@ -122,11 +122,16 @@ class Session {
   };
 
   void process();
+  /// Empties the ring, but of no more than it can hold: scans may come faster than they are processed, and
+  /// commands must have their turn. \param blocks  room for some. \return whether it was empty at last.
+  [[nodiscard]] bool process_waiting(std::vector<daq::ScanBlock>& blocks);
   /// After the last block.
   void finish(Acquisition::End ended);
   [[nodiscard]] Progress progress() const noexcept;
   void count_since(const Progress& before) noexcept;
   void process_block(const daq::ScanBlock& block);
+  /// Of the jobs that were posted those that run_jobs() is to call.
+  void take_jobs();
   void run_jobs();
   /// No more jobs after this.
   void close_jobs();
@@ -146,7 +151,8 @@ class Session {
   std::int64_t lost_at_end_ = 0;
   FullRing full_ring_;
   std::mutex jobs_mutex_;
-  std::deque<Job> jobs_;  ///< At most kMostJobs.
+  std::deque<Job> jobs_;        ///< At most kMostJobs.
+  std::deque<Job> taken_jobs_;  ///< Of the processing thread: what it runs next.
   bool jobs_closed_ = false;
   bool any_scan_ = false;
   bool continues_;  ///< After another session: the gap before the first scan is that of a missing board.

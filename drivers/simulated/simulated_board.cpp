@@ -76,7 +76,7 @@ class SimulatedBoard final : public daq::Board {
  private:
   /// As a board that interrupts when its FIFO holds so much; scan by scan the computer would do little but
   /// wake up.
-  static constexpr double kDelivery_s = 0.030;
+  static constexpr double kDelivery_s = 0.040;
 
   /// The last scan that is due within a delivery of the next one, and in time.
   [[nodiscard]] base::ScanIndex last_of_delivery(std::int64_t deadline_ns) const noexcept {

@@ -51,7 +51,7 @@ struct SimulatedTester {
 };
 
 /// \param clock  paces the board: scan i after a start is due (i + 1)/rate later. Outlives it. A read waits
-/// for the scans of 30 ms, as many as come in time.
+/// for the scans of 40 ms, as many as come in time.
 ///
 /// The board waits while it is stopped: after the next start it goes on with the next scan.
 /// Usage error: a scene that cannot be read, no scene, negative repeats or first scan, rate not positive,
