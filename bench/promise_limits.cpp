@@ -1,17 +1,21 @@
 // How much more reproducible S − K from all cycles is than the first peak less the mean (docs/promise.md):
 // one line of a table for each cell.
 //
-//     promise_limits [TESTS [SEED [CYCLES]]]      # 1000 tests a cell, seed 1; CYCLES: only these rows
+//     promise_limits [TESTS [SEED [CYCLES [RATIO]]]]      # 1000 tests a cell, seed 1
+//
+// CYCLES, RATIO: only the rows of so many cycles, of this Q/Q_th.
 
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 #include "core/sim/scene.hpp"
 #include "tests/support/promise.hpp"
@@ -20,12 +24,14 @@ namespace {
 
 using namespace stickslip;
 
-std::uint64_t number(const char* text) {
-  std::uint64_t value = 0;
+template <typename T>
+T number(const char* text) {
+  T value{};
   const std::string_view whole{text};
   const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), value);
-  if (error == std::errc{} && end == whole.data() + whole.size() && value > 0) return value;
-  fmt::print(stderr, "promise_limits: '{}' is no whole number above 0\n", whole);
+  if (error == std::errc{} && end == whole.data() + whole.size() && value > T{}) return value;
+  fmt::print(stderr, "promise_limits: '{}' is no {}number above 0\n", whole,
+             std::is_integral_v<T> ? "whole " : "");
   std::exit(2);
 }
 
@@ -51,9 +57,10 @@ void print(const sim::Scene& base, const test::PromiseCell& cell, const test::Pr
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::uint64_t count = argc > 1 ? number(argv[1]) : 1000;
-  const std::uint64_t seed = argc > 2 ? number(argv[2]) : 1;
-  const std::uint64_t only_cycles = argc > 3 ? number(argv[3]) : 0;
+  const std::uint64_t count = argc > 1 ? number<std::uint64_t>(argv[1]) : 1000;
+  const std::uint64_t seed = argc > 2 ? number<std::uint64_t>(argv[2]) : 1;
+  const int only_cycles = argc > 3 ? number<int>(argv[3]) : 0;
+  const double only_ratio = argc > 4 ? number<double>(argv[4]) : 0.0;
   const auto base = sim::load_scene(std::filesystem::path{STICKSLIP_SOURCE_DIR} /
                                     "config/scenes/stick-slip-at-12-in-per-min.toml");
   if (!base) {
@@ -68,8 +75,9 @@ int main(int argc, char** argv) {
       "found | no "
       "S − K |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const int cycles : {10, 20, 190}) {
-    if (only_cycles != 0 && only_cycles != static_cast<std::uint64_t>(cycles)) continue;
+    if (only_cycles != 0 && only_cycles != cycles) continue;
     for (const double speed_ratio : {0.2, 0.3, 0.6}) {
+      if (only_ratio > 0.0 && std::abs(only_ratio - speed_ratio) > 1e-6) continue;
       for (const double scatter : {0.1, 0.2, 0.3}) {
         for (const double first_peak_sd : {0.0, 0.01, 0.02, 0.04}) {
           const test::PromiseCell cell{.cycles = cycles,
