@@ -132,7 +132,7 @@ def others(bench):
     yield Figure("hand-over of 64 scans", "time", here, row("hand-over", time))
     yield Figure("its peer", "time", peer, row("hand-over", skip, time))
     yield Figure("peer over here", "ratio", peer / here, row("hand-over", skip, skip, ratio))
-    detector = benchmarks(bench / "bench_detector", "^follow/peak/350/|^peer_scipy_chain/350/[0-9][0-9][0-9]")
+    detector = benchmarks(bench / "bench_detector", "^follow/peak/350/1000|^peer_scipy_chain/350/1000")
     [here] = [one["per_scan"] for name, one in detector.items() if name.startswith("follow")]
     [peer] = [one["per_scan"] for name, one in detector.items() if name.startswith("peer")]
     yield Figure("live detector, a scan", "time", here, row("live detector", time))
