@@ -220,6 +220,7 @@ Leaves live_once(const Leaves& before, std::int64_t lasts, std::int64_t& command
     threads.emplace_back(stop);
     session.start_processing();
   }
+  EXPECT_TRUE(over.load());  // And so all that the processing thread did is seen here.
   EXPECT_FALSE(session.post([](pipeline::Processor&) {}));
   EXPECT_THAT(witness.wrongs, testing::IsEmpty());
   EXPECT_FALSE(witness.in_test());
