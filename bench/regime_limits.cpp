@@ -1,7 +1,7 @@
 // How often the detector's word for a test is right: random tests against the modes that the simulation
 // really had, one table for each noise.
 //
-//     regime_limits [TESTS [SEED]]      # 10000 tests, seed 1
+//     regime_limits [TESTS [SEED [ESTIMATOR]]]      # 10000 tests, seed 1, fit
 
 #include <fmt/format.h>
 
@@ -39,19 +39,29 @@ std::uint64_t number(const char* text) {
 int main(int argc, char** argv) {
   const std::uint64_t count = argc > 1 ? number(argv[1]) : 10'000;
   const std::uint64_t seed = argc > 2 ? number(argv[2]) : 1;
+  const auto estimator =
+      argc > 3 ? friction::estimator_tier_from_name(argv[3]) : friction::EstimatorTier::kFit;
+  if (!estimator) {
+    fmt::print(stderr, "regime_limits: '{}' is none of peak, interpolated and fit\n", argv[3]);
+    return 2;
+  }
   const auto base = sim::load_scene(std::filesystem::path{STICKSLIP_SOURCE_DIR} /
                                     "config/scenes/ring-down-at-12-in-per-min.toml");
   if (!base) {
     fmt::print(stderr, "{}\n", base.error().message);
     return 1;
   }
-  fmt::print("{} random tests of {} s, seed {}: S - K 0.02 to 0.1, its scatter 0 to 30 %, Q/Q_th 0.3 to 3\n",
-             count, base->constant_speed->pull_s, seed);
+  fmt::print(
+      "{} random tests of {} s, seed {}, estimator {}: S - K 0.02 to 0.1, its scatter 0 to 30 %, Q/Q_th 0.3 "
+      "to "
+      "3\n",
+      count, base->constant_speed->pull_s, seed, friction::name(*estimator));
   for (const double noise : {0.02, 0.05, 0.1}) {
     const test::Disturbance disturbance{.noise = noise};
     fmt::print("\nnoise {} (S - K), drift {} per s, {} spikes per s of {} (S - K)\n", noise,
                disturbance.drift_per_s, disturbance.spikes_per_s, disturbance.spike_size);
-    const auto table = test::judge_random_tests(*base, disturbance, static_cast<std::int64_t>(count), seed);
+    const auto table =
+        test::judge_random_tests(*base, disturbance, static_cast<std::int64_t>(count), seed, *estimator);
     if (!table) {
       fmt::print(stderr, "{}\n", table.error().message);
       return 1;
@@ -59,6 +69,7 @@ int main(int argc, char** argv) {
     fmt::print("{:<28} {:>7} {:>10} {:>12}\n", "really", "tests", "wrong", "undecided");
     for (const auto& [regime, tally] : table->of_regime) print(tally, friction::name(regime));
     print(table->few_captures, "with one to three captures");
+    if (*estimator != friction::EstimatorTier::kFit) continue;  // The others give it no standard error.
     const test::TransitionTally& transitions = table->transitions;
     fmt::print(
         "transition_time of {} mixed tests: rms error {:.3f} ms, variance of error over standard error "

@@ -39,7 +39,8 @@ struct Cycle {
   /// At the onset, where the speed is known to change; NaN elsewhere.
   double pull_speed_m_per_s = std::numeric_limits<double>::quiet_NaN();
   /// Log of the likelihood ratio of "the slip was captured" over "it went on freely": > 0 for captured. From
-  /// the whole test; NaN where nothing tells, as of the last slip.
+  /// the whole test, or without its fit from what was known when the cycle closed; NaN where nothing tells,
+  /// as of the last slip.
   double capture_evidence = std::numeric_limits<double>::quiet_NaN();
   /// The same when it was decided while the test ran, and that moment.
   double live_capture_evidence = std::numeric_limits<double>::quiet_NaN();

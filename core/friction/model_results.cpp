@@ -25,28 +25,12 @@ namespace {
 /// From this many slips on, the first — often not representative [Penner 1995] — is left out of means.
 constexpr std::size_t kEnoughToLeaveOutTheFirst = 3;
 
-/// Mean, and standard deviation if there are two values or more.
-struct Sample {
-  double mean = 0.0;
-  double variance = 0.0;
-  double count = 0.0;
-
-  void add(double value) noexcept {  // [Welford, Technometrics 4(3):419–420, 1962]
-    count += 1.0;
-    const double delta = value - mean;
-    mean += delta / count;
-    square_sum += delta * (value - mean);
-    variance = count > 1.0 ? square_sum / (count - 1.0) : 0.0;
-  }
-  double square_sum = 0.0;
-};
-
 /// The six numbers from which all else follows, with their covariance: (ω, γ, r, S̄, K̄).
 struct Fitted {
   Eigen::Matrix<double, 5, 1> value;
   Eigen::Matrix<double, 5, 5> covariance;
-  Sample D;
-  Sample amplitude;
+  signal::RunningVariance D;
+  signal::RunningVariance amplitude;
   double drift = 0.0;           ///< Of S and K, where the slips begin in the mean.
   double relative_speed = 1.0;  ///< Mean over the slips, of the speed at which r is given.
 };
@@ -90,8 +74,8 @@ Fitted gather(const SlipEstimates& estimates) {
   const std::vector<SlipWindow> windows = slips_that_count(estimates);
 
   Fitted fitted;
-  Sample S;
-  Sample K;
+  signal::RunningVariance S;
+  signal::RunningVariance K;
   Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d coupling = Eigen::Matrix3d::Zero();
   if (!estimates.belt.is_constant()) fitted.relative_speed = 0.0;
@@ -241,9 +225,9 @@ void model_results(std::span<const Fall> slips, const SlipEstimates& estimates, 
   if (!model_describes(estimates, sigma)) {
     no_model_results(why_not(estimates, sigma), results);
     // The traditional amplitude needs no model.
-    Sample amplitude;
+    signal::RunningVariance amplitude;
     for (const Fall& slip : slips) amplitude.add(0.5 * slip.drop());
-    results.amplitude = Estimate::of(amplitude.mean, std::sqrt(amplitude.variance / amplitude.count));
+    results.amplitude = Estimate::of(amplitude.mean, amplitude.error_of_mean());
     return;
   }
   escape_results(estimates, results);
@@ -262,13 +246,13 @@ void model_results(std::span<const Fall> slips, const SlipEstimates& estimates, 
 
   const double n = fitted.amplitude.count;
   results.amplitude = n > 1.0 && !estimates.uniform
-                          ? Estimate::of(fitted.amplitude.mean, std::sqrt(fitted.amplitude.variance / n))
+                          ? Estimate::of(fitted.amplitude.mean, fitted.amplitude.error_of_mean())
                           : derived(fitted, [](const P& p) {
                               return half_range({p[4], p[3] - p[4], p[2], oscillator_of(p)});
                             });
-  results.delta_mu_scatter =
-      n >= 3.0 ? Estimate::of(std::sqrt(fitted.D.variance), std::sqrt(fitted.D.variance / (2.0 * (n - 1.0))))
-               : Estimate::none("fewer than three slips to compare");
+  results.delta_mu_scatter = n >= 3.0 ? Estimate::of(std::sqrt(fitted.D.variance()),
+                                                     std::sqrt(fitted.D.variance() / (2.0 * (n - 1.0))))
+                                      : Estimate::none("fewer than three slips to compare");
 
   results.slip_speed_ratio_threshold =
       estimates.belt.is_constant()

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/friction/cycle_statistics.hpp"
+#include "core/friction/live_estimates.hpp"
 #include "core/friction/model_results.hpp"
 #include "core/friction/regime_rule.hpp"
 #include "core/friction/sampling.hpp"
@@ -32,22 +33,6 @@ double noise_floor(const base::LongColumn<double>& values, double step_coefficie
   for (const double value : values) largest = std::max(largest, std::abs(value));
   return std::max(
       {signal::kRoundingSigma * step, kSmallestRelativeNoise * largest, std::numeric_limits<double>::min()});
-}
-
-/// What the live side said of the cycle; nothing where it saw none there.
-/// \param next  where to look on, from cycle to cycle. \param with_delta_mu  S − K too.
-void take_live_facts(const base::LongColumn<Cycle>& live, std::size_t& next, bool with_delta_mu,
-                     Cycle& cycle) {
-  const double half_s = 0.5 * (std::isnan(cycle.period_s) ? 1.0 : cycle.period_s);
-  while (next < live.size() && live[next].peak_time_s < cycle.peak_time_s - half_s) ++next;
-  const bool found = next < live.size() && live[next].peak_time_s < cycle.peak_time_s + half_s;
-  if (found) {
-    cycle.live_capture_evidence = live[next].live_capture_evidence;
-    cycle.live_decision_time_s = live[next].live_decision_time_s;
-  }
-  if (!with_delta_mu) return;
-  cycle.delta_mu = found ? live[next].delta_mu : std::numeric_limits<double>::quiet_NaN();
-  cycle.delta_mu_standard_error = std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Turning points must not follow noise before the noise is known.
@@ -154,8 +139,11 @@ void TestAnalysis::keep_live(const LiveCycle& cycle) {
     kept.live_capture_evidence = cycle.evidence;
     kept.live_decision_time_s = cycle.decided_time_s;
   }
-  live_cycles_.push_back(kept);
-  if (settings_.estimator != EstimatorTier::kFit) means_.add(cycle);
+  Cycle own = kept;
+  // Nothing will say more of how it ended, decided or not.
+  if (!fits_whole_test()) own.capture_evidence = cycle.evidence;
+  live_cycles_.push_back(own);
+  if (!fits_whole_test()) means_.add(cycle);
 }
 
 void TestAnalysis::end_live() {
@@ -218,10 +206,8 @@ TestResults TestAnalysis::finish() {
     }
     no_model_results("no slip", results);
   } else {
-    // Where the speed changes, the mean of a cycle does so too, without any drift of the paper.
-    if (!settings_.kept.drift && trace.belt.is_constant()) trace.drift = significant_drift(trace, slips);
-    trace.belt.take_off_drift(trace.drift.rate_per_s);
-    TestEstimates estimates = estimate(trace, slips, sigma);
+    const TestEstimates estimates =
+        fits_whole_test() ? estimate(trace, slips, sigma) : estimate_without_fit(trace, slips);
     const RegimeVerdict verdict =
         judge_regime(slips.size(), estimates.log_likelihood_ratios, estimates.model_describes);
     results.regime = verdict.regime;
@@ -230,12 +216,15 @@ TestResults TestAnalysis::finish() {
                                     ? Estimate::none("undecided: " + verdict.reason)
                                     : Estimate::of(static_cast<double>(estimates.captured));
     take_model_results(estimates.results, results);
-    if (estimates.model_describes) speed_results(trace, estimates, results);
-    if (settings_.estimator != EstimatorTier::kFit) means_.fill(results);
+    if (fits_whole_test()) {
+      if (estimates.model_describes) speed_results(trace, estimates, results);
+    } else {
+      means_.fill(results);
+    }
     if (verdict.transition_slip) {
       results.transition_time = transition_time(trace, estimates, slips, *verdict.transition_slip);
     }
-    keep_cycles(estimates, slips);
+    keep_cycles(trace, estimates, slips);
   }
   period_results(trace, slips, results);
   if (auto finding = sampling_finding(settings_.scan_rate_Hz, results))
@@ -288,7 +277,21 @@ Estimate TestAnalysis::transition_time(const Trace& trace, const TestEstimates& 
   return Estimate::of(onset_s, estimates.onset_errors_s[slip]);
 }
 
-TestEstimates TestAnalysis::estimate(const Trace& trace, const base::LongColumn<Fall>& slips, double sigma) {
+TestEstimates TestAnalysis::estimate_without_fit(const Trace& trace,
+                                                 const base::LongColumn<Fall>& slips) const {
+  // By heights alone a single slip among others is easily misjudged.
+  const bool describes = settings_.estimator == EstimatorTier::kInterpolated;
+  return estimates_from_live(
+      trace, slips, live_cycles_, describes,
+      fmt::format("the estimator \"{}\" does not fit the whole test; \"fit\" does, also afterwards",
+                  name(settings_.estimator)),
+      settings_.scratch_folder);
+}
+
+TestEstimates TestAnalysis::estimate(Trace& trace, const base::LongColumn<Fall>& slips, double sigma) {
+  // Where the speed changes, the mean of a cycle does so too, without any drift of the paper.
+  if (!settings_.kept.drift && trace.belt.is_constant()) trace.drift = significant_drift(trace, slips);
+  trace.belt.take_off_drift(trace.drift.rate_per_s);
   const auto estimates = [&](const SharedPrior& prior) {
     return estimate_in_sections(trace, slips, sigma, prior, settings_.tester, settings_.scratch_folder,
                                 kMostSlipsTogether, settings_.kept.first_slip);
@@ -329,13 +332,14 @@ void TestAnalysis::speed_results(const Trace& trace, const TestEstimates& estima
   }
 }
 
-void TestAnalysis::keep_cycles(const TestEstimates& estimates, const base::LongColumn<Fall>& slips) {
+void TestAnalysis::keep_cycles(const Trace& trace, const TestEstimates& estimates,
+                               const base::LongColumn<Fall>& slips) {
   const base::LongColumn<Cycle>& cycles = estimates.cycles;
   const base::LongColumn<double>& log_likelihood_ratios = estimates.log_likelihood_ratios;
   const base::LongColumn<base::ScanIndex>& indices = indices_;
   const base::LongColumn<std::uint8_t>& saturated = saturated_;
   cycles_ = base::LongColumn<Cycle>{settings_.scratch_folder};
-  std::size_t live = 0;
+  LiveCycles live{trace, live_cycles_};
   for (std::size_t i = 0; i < cycles.size(); ++i) {
     Cycle cycle = cycles[i];
     const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
@@ -360,7 +364,10 @@ void TestAnalysis::keep_cycles(const TestEstimates& estimates, const base::LongC
     }
     if (i < log_likelihood_ratios.size() && log_likelihood_ratios[i] != 0.0)
       cycle.capture_evidence = log_likelihood_ratios[i];
-    take_live_facts(live_cycles_, live, settings_.estimator != EstimatorTier::kFit, cycle);
+    if (const auto seen = live.next_at(slips[i], cycle.period_s)) {
+      cycle.live_capture_evidence = seen->live_capture_evidence;
+      cycle.live_decision_time_s = seen->live_decision_time_s;
+    }
     cycles_.push_back(cycle);
   }
 }

@@ -37,8 +37,9 @@ struct AnalysisSettings {
   double step_coefficient = 0.0;  ///< One A/D step; 0 if unknown: then it is taken from the trace.
   Tester tester;
   Method method;
-  /// Where S, K and S − K come from: those of each cycle, live and at the end, and those of the test. The
-  /// regime, ω and γ come from the fit of the whole test in any case.
+  /// Where S, K and S − K come from: those of each cycle, live and at the end, and those of the test. Only
+  /// kFit fits the whole test when it ends; the others take cycles and regime as they were seen while it ran,
+  /// and tell no ω, no γ and nothing that needs them.
   EstimatorTier estimator = EstimatorTier::kFit;
   SharedPrior prior;  ///< What is known of the tester beforehand; empty: the test tells it all.
   Kept kept;          ///< To see what spikes, drift or the first slip did.
@@ -110,11 +111,16 @@ class TestAnalysis {
   [[nodiscard]] static Estimate transition_time(const Trace& trace, const TestEstimates& estimates,
                                                 const base::LongColumn<Fall>& slips, std::size_t slip);
   /// Into cycles_, with their flags.
-  void keep_cycles(const TestEstimates& estimates, const base::LongColumn<Fall>& slips);
+  void keep_cycles(const Trace& trace, const TestEstimates& estimates, const base::LongColumn<Fall>& slips);
   /// Fills pull_speed_measured and the findings.
   void speed_results(const Trace& trace, const TestEstimates& estimates, TestResults& results) const;
-  /// With the prior, unless the test alone contradicts it; fills tester_ and tester_check_.
-  [[nodiscard]] TestEstimates estimate(const Trace& trace, const base::LongColumn<Fall>& slips, double sigma);
+  /// By the fit, after taking off the drift; with the prior, unless the test alone contradicts it. Fills
+  /// tester_ and tester_check_.
+  [[nodiscard]] TestEstimates estimate(Trace& trace, const base::LongColumn<Fall>& slips, double sigma);
+  /// The same from what was seen while the test ran.
+  [[nodiscard]] TestEstimates estimate_without_fit(const Trace& trace,
+                                                   const base::LongColumn<Fall>& slips) const;
+  [[nodiscard]] bool fits_whole_test() const noexcept { return settings_.estimator == EstimatorTier::kFit; }
 
   AnalysisSettings settings_;
   base::LongColumn<base::ScanIndex> indices_;

@@ -4,23 +4,20 @@
 
 namespace stickslip::friction {
 
-void TierMeans::Mean::add(double value) noexcept {  // [Welford, Technometrics 4(3):419–420, 1962]
-  count += 1.0;
-  const double off = value - mean;
-  mean += off / count;
-  square_sum += off * (value - mean);
+namespace {
+
+Estimate estimate_of(const signal::RunningVariance& values) {
+  if (values.count < 1.0) return Estimate::none("no cycle with an estimate of its own");
+  if (values.count < 2.0) return Estimate::of(values.mean);
+  return Estimate::of(values.mean, values.error_of_mean());
 }
 
-Estimate TierMeans::Mean::estimate() const {
-  if (count < 1.0) return Estimate::none("no cycle with an estimate of its own");
-  if (count < 2.0) return Estimate::of(mean);
-  return Estimate::of(mean, std::sqrt(square_sum / (count - 1.0) / count));
-}
+}  // namespace
 
 void TierMeans::add(const LiveCycle& cycle) noexcept {
   if (!std::isfinite(cycle.S) || !std::isfinite(cycle.K)) return;
   if (leaves_out_first_ && (cycle.cycle.flags & kCycleIsFirst) == 0 && only_first_) {
-    S_ = K_ = delta_mu_ = Mean{};
+    S_ = K_ = delta_mu_ = {};
     only_first_ = false;
   }
   S_.add(cycle.S);
@@ -29,11 +26,11 @@ void TierMeans::add(const LiveCycle& cycle) noexcept {
 }
 
 void TierMeans::fill(TestResults& results) const {
-  results.mu_s = S_.estimate();
-  results.mu_k = K_.estimate();
-  results.delta_mu = delta_mu_.estimate();
+  results.mu_s = estimate_of(S_);
+  results.mu_k = estimate_of(K_);
+  results.delta_mu = estimate_of(delta_mu_);
   if (delta_mu_.count >= 3.0) {
-    const double variance = delta_mu_.square_sum / (delta_mu_.count - 1.0);
+    const double variance = delta_mu_.variance();
     results.delta_mu_scatter =
         Estimate::of(std::sqrt(variance), std::sqrt(variance / (2.0 * (delta_mu_.count - 1.0))));
   } else {

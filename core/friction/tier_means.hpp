@@ -4,6 +4,7 @@
 
 #include "core/friction/live_cycle.hpp"
 #include "core/friction/results.hpp"
+#include "core/signal/statistics.hpp"
 
 namespace stickslip::friction {
 
@@ -17,18 +18,9 @@ class TierMeans {
   void fill(TestResults& results) const;
 
  private:
-  struct Mean {
-    double count = 0.0;
-    double mean = 0.0;
-    double square_sum = 0.0;
-
-    void add(double value) noexcept;
-    [[nodiscard]] Estimate estimate() const;
-  };
-
-  Mean S_;
-  Mean K_;
-  Mean delta_mu_;
+  signal::RunningVariance S_;
+  signal::RunningVariance K_;
+  signal::RunningVariance delta_mu_;
   bool leaves_out_first_;
   bool only_first_ = true;
 };

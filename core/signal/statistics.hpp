@@ -61,4 +61,22 @@ struct RunningMean {
   }
 };
 
+/// Mean and variance likewise.
+struct RunningVariance {
+  double mean = 0.0;
+  double count = 0.0;
+  double square_sum = 0.0;  ///< Of the differences from the mean.
+
+  void add(double value) noexcept {
+    count += 1.0;
+    const double off = value - mean;
+    mean += off / count;
+    square_sum += off * (value - mean);
+  }
+  /// Of one value from another; 0 while there are no two.
+  [[nodiscard]] double variance() const noexcept { return count > 1.0 ? square_sum / (count - 1.0) : 0.0; }
+  /// Standard error of the mean. Only with a value.
+  [[nodiscard]] double error_of_mean() const noexcept { return std::sqrt(variance() / count); }
+};
+
 }  // namespace stickslip::signal

@@ -21,7 +21,9 @@ void add_analyze(CLI::App& app, Chosen& chosen) {
       ->add_option(
           "--estimator", analysis.estimator,
           "where S and K come from: \"peak\" (largest scan and mean of each cycle), \"interpolated\" "
-          "(turning points), \"fit\" (all scans); default: as the record says")
+          "(turning points), \"fit\" (all scans, and with them omega, gamma and what needs them); default: "
+          "as the "
+          "record says")
       ->type_name("NAME");
   analyze
       ->add_option("--keep", analysis.keep,

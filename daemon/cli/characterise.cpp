@@ -11,6 +11,7 @@
 #include "core/record/reader.hpp"
 #include "daemon/analyse.hpp"
 #include "daemon/cli/commands.hpp"
+#include "daemon/method_text.hpp"
 #include "daemon/new_file.hpp"
 #include "daemon/tester_file.hpp"
 
@@ -27,7 +28,10 @@ struct RingDowns {
 };
 
 /// What one record says; refused unless it is a ring-down that the model describes.
-base::Result<TesterEstimate> ring_down_of(const std::string& file, const record::Record& record) {
+base::Result<TesterEstimate> ring_down_of(const std::string& file, record::Record record) {
+  // Whatever the test itself was measured with.
+  record.header.process.method =
+      with_estimator(std::move(record.header.process.method), friction::EstimatorTier::kFit);
   base::Result<TesterAnalysis> test = analyse_with_tester(record, {});
   if (!test)
     return tl::unexpected(base::Error{test.error().kind, fmt::format("{}: {}", file, test.error().message)});
@@ -47,12 +51,12 @@ base::Result<TesterEstimate> ring_down_of(const std::string& file, const record:
 base::Result<RingDowns> read_all(const std::vector<std::string>& files) {
   RingDowns ring_downs;
   for (const std::string& file : files) {
-    const base::Result<record::Record> record = record::read_record(file);
+    base::Result<record::Record> record = record::read_record(file);
     if (!record) return tl::unexpected(record.error());
-    base::Result<TesterEstimate> estimate = ring_down_of(file, *record);
+    ring_downs.latest_ns = std::max(ring_downs.latest_ns, record->header.start_realtime_ns);
+    base::Result<TesterEstimate> estimate = ring_down_of(file, *std::move(record));
     if (!estimate) return tl::unexpected(estimate.error());
     ring_downs.estimates.push_back(*estimate);
-    ring_downs.latest_ns = std::max(ring_downs.latest_ns, record->header.start_realtime_ns);
   }
   return ring_downs;
 }

@@ -8,12 +8,14 @@
 namespace stickslip::daemon {
 namespace {
 
-friction::TestResults results_of(const sim::Scene& scene, std::uint64_t seed) {
+friction::TestResults results_of(const sim::Scene& scene, std::uint64_t seed,
+                                 friction::EstimatorTier estimator) {
   const daq::Calibration calibration = calibration_of(scene);
   friction::AnalysisSettings settings;
   settings.scan_rate_Hz = scene.scan_rate_Hz;
   settings.step_coefficient = calibration.step_coefficient();
   settings.tester = drivers::tester_of({scene});
+  settings.estimator = estimator;
   friction::TestAnalysis analysis{settings};
   const bool any = play(
       scene, seed, calibration,
@@ -40,10 +42,11 @@ base::Result<void> check_runnable(const sim::Scene& scene) {
   return {};
 }
 
-record::SweepRun sweep_run(const sim::Scene& scene, std::uint64_t seed, std::int64_t number) {
+record::SweepRun sweep_run(const sim::Scene& scene, std::uint64_t seed, std::int64_t number,
+                           friction::EstimatorTier estimator) {
   record::SweepRun run;
   run.number = number;
-  run.results = results_of(scene, seed);
+  run.results = results_of(scene, seed, estimator);
   run.truth = sim::scene_truth(scene, scene.scan_rate_Hz, seed);
   run.true_cycle_count = static_cast<std::int64_t>(run.truth.cycles.size());
   run.truth.cycles.clear();

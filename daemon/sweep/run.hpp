@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/base/result.hpp"
+#include "core/friction/live_cycle.hpp"
 #include "core/record/sweep.hpp"
 #include "core/sim/scene.hpp"
 
@@ -18,6 +19,7 @@ namespace stickslip::daemon {
 /// The same numbers for the same arguments, whoever else is running. Thread-safe.
 /// \param scene   check_runnable(). \param number  stands in the run and does nothing else.
 /// \throws std::invalid_argument if the analysis refuses the scene's tester.
-[[nodiscard]] record::SweepRun sweep_run(const sim::Scene& scene, std::uint64_t seed, std::int64_t number);
+[[nodiscard]] record::SweepRun sweep_run(const sim::Scene& scene, std::uint64_t seed, std::int64_t number,
+                                         friction::EstimatorTier estimator = friction::EstimatorTier::kFit);
 
 }  // namespace stickslip::daemon

@@ -58,7 +58,7 @@ class Finished {
 base::Result<record::SweepRun> attempt(const SweepPlan& plan, std::int64_t number) {
   const auto& scene = plan.points[static_cast<std::size_t>(number / plan.repeat)];
   try {
-    return sweep_run(scene, plan.seed_of(number), number);
+    return sweep_run(scene, plan.seed_of(number), number, plan.estimator);
   } catch (const std::exception& error) {
     return base::failure("run {} of scene {} cannot be done: {}", number, scene.name, error.what());
   }

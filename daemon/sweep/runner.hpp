@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/base/result.hpp"
+#include "core/friction/live_cycle.hpp"
 #include "core/record/sweep.hpp"
 #include "core/sim/scene.hpp"
 
@@ -22,6 +23,7 @@ struct SweepPlan {
   std::vector<sim::Scene> points;    ///< Without their texts.
   std::vector<std::uint64_t> seeds;  ///< Of the points.
   std::int64_t repeat = 1;
+  friction::EstimatorTier estimator = friction::EstimatorTier::kFit;
 
   [[nodiscard]] std::int64_t run_count() const noexcept {
     return static_cast<std::int64_t>(points.size()) * repeat;

@@ -68,9 +68,11 @@ struct RegimeTable {
 };
 
 /// Random tests 0 … count − 1 of this seed, on all processors; the same table for any number of them.
-inline base::Result<RegimeTable> judge_random_tests(const sim::Scene& base, const Disturbance& disturbance,
-                                                    std::int64_t count, std::uint64_t seed) {
+inline base::Result<RegimeTable> judge_random_tests(
+    const sim::Scene& base, const Disturbance& disturbance, std::int64_t count, std::uint64_t seed,
+    friction::EstimatorTier estimator = friction::EstimatorTier::kFit) {
   daemon::SweepPlan plan;
+  plan.estimator = estimator;
   for (std::int64_t i = 0; i < count; ++i) {
     const std::uint64_t own = sim::stream_seed(seed, static_cast<std::uint64_t>(i));
     plan.points.push_back(random_test(base, disturbance, own));

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "tests/support/allocation_count.hpp"
 #include "tests/support/live_trials.hpp"
@@ -24,36 +28,116 @@ TEST(TestAnalysis, AddsAScanWithoutAllocatingUntilABlockIsFull) {
   EXPECT_GT(test::allocation_count(), before);  // else the test shows nothing
 }
 
-// ω, γ, regime and periods come from the fit of the whole test whatever the estimator; S and K do not.
-TEST(TestAnalysis, EstimatorChangesWhereSAndKComeFromAndNothingElse) {
-  const test::LiveScene scene;
-  const auto analysed = [&](EstimatorTier tier) {
-    AnalysisSettings settings;
-    settings.estimator = tier;
-    TestAnalysis analysis{settings};
-    test::LiveTrial trial{scene};
-    for (base::ScanIndex scan = 0; scan < trial.scan_count(); ++scan) analysis.add(scan, trial.next(), false);
-    TestResults results = analysis.finish();
-    EXPECT_EQ(analysis.live().phase, Phase::kEnd);
-    EXPECT_EQ(analysis.live().regime, Regime::kStickSlip);
-    return results;
+struct Analysed {
+  TestResults results;
+  std::vector<Cycle> cycles;
+  std::vector<Cycle> live;
+};
+
+Analysed analysed(const test::LiveScene& scene, EstimatorTier tier) {
+  AnalysisSettings settings;
+  settings.estimator = tier;
+  TestAnalysis analysis{settings};
+  test::LiveTrial trial{scene};
+  Analysed found;
+  const auto take = [&] {
+    for (const Cycle& cycle : analysis.take_new_cycles()) found.live.push_back(cycle);
   };
-  const TestResults fit = analysed(EstimatorTier::kFit);
-  for (const EstimatorTier tier : {EstimatorTier::kPeak, EstimatorTier::kInterpolated}) {
-    const TestResults other = analysed(tier);
-    EXPECT_EQ(other.regime, fit.regime);
-    EXPECT_EQ(other.omega, fit.omega);
-    EXPECT_EQ(other.gamma_over_2omega, fit.gamma_over_2omega);
-    EXPECT_EQ(other.period_median, fit.period_median);
-    EXPECT_EQ(other.static_coefficient, fit.static_coefficient);
-    ASSERT_TRUE(other.delta_mu.value) << other.delta_mu.reason;
-    EXPECT_NE(other.delta_mu, fit.delta_mu);
-    EXPECT_NEAR(*other.mu_s.value - *other.mu_k.value, *other.delta_mu.value, 1e-12);
-    // Peaks stand out by the amplitude, up to √(1 + Q²) = 1.65 of S − K; turning points know better.
-    const double over = *other.delta_mu.value / (scene.S - scene.K);
-    EXPECT_GT(over, tier == EstimatorTier::kPeak ? 1.4 : 0.9);
-    EXPECT_LT(over, tier == EstimatorTier::kPeak ? 1.65 : 1.1);
+  for (base::ScanIndex scan = 0; scan < trial.scan_count(); ++scan) {
+    analysis.add(scan, trial.next(), false);
+    take();
   }
+  found.results = analysis.finish();
+  take();
+  const base::LongColumn<Cycle>& cycles = analysis.cycles();
+  found.cycles.assign(cycles.begin(), cycles.end());
+  EXPECT_EQ(analysis.live().phase, Phase::kEnd);
+  return found;
+}
+
+class EstimatorWithoutFit : public testing::TestWithParam<EstimatorTier> {};
+
+INSTANTIATE_TEST_SUITE_P(Tiers, EstimatorWithoutFit,
+                         testing::Values(EstimatorTier::kPeak, EstimatorTier::kInterpolated),
+                         [](const auto& tier) { return std::string{name(tier.param)}; });
+
+// What needs no model is the same whatever the estimator; what the fit alone knows is not told without it.
+TEST_P(EstimatorWithoutFit, TellsNothingThatItDoesNotKnow) {
+  const test::LiveScene scene;
+  const TestResults fit = analysed(scene, EstimatorTier::kFit).results;
+  const TestResults other = analysed(scene, GetParam()).results;
+  EXPECT_EQ(other.regime, Regime::kStickSlip);
+  EXPECT_EQ(other.period_median, fit.period_median);
+  EXPECT_EQ(other.static_coefficient, fit.static_coefficient);
+  EXPECT_EQ(other.drift_rate, fit.drift_rate);
+  EXPECT_EQ(other.cycle_count, fit.cycle_count);
+  for (const Estimate* unknown : {&other.omega, &other.gamma_over_2omega, &other.Q, &other.threshold_speed,
+                                  &other.delta_mu_combined, &other.pull_speed_measured}) {
+    EXPECT_FALSE(unknown->value);
+    EXPECT_NE(unknown->reason.find(name(GetParam())), std::string::npos) << unknown->reason;
+    EXPECT_NE(unknown->reason.find("\"fit\""), std::string::npos) << unknown->reason;
+  }
+  ASSERT_TRUE(other.delta_mu.value) << other.delta_mu.reason;
+  EXPECT_NE(other.delta_mu, fit.delta_mu);
+  EXPECT_NEAR(*other.mu_s.value - *other.mu_k.value, *other.delta_mu.value, 1e-12);
+  // Peaks stand out by the amplitude, up to √(1 + Q²) = 1.65 of S − K; turning points know better.
+  const double over = *other.delta_mu.value / (scene.S - scene.K);
+  EXPECT_GT(over, GetParam() == EstimatorTier::kPeak ? 1.4 : 0.9);
+  EXPECT_LT(over, GetParam() == EstimatorTier::kPeak ? 1.65 : 1.1);
+}
+
+// The rows of the record are those that were seen live, each slip's how it ended with them.
+TEST_P(EstimatorWithoutFit, KeepsTheCyclesAsTheyWereSeen) {
+  const Analysed found = analysed(test::LiveScene{}, GetParam());
+  ASSERT_GT(found.cycles.size(), 5U);
+  ASSERT_EQ(found.cycles.size(), found.live.size());
+  for (std::size_t i = 0; i < found.cycles.size(); ++i) {
+    const Cycle& row = found.cycles[i];
+    const Cycle& live = found.live[i];
+    EXPECT_EQ(row.number, static_cast<std::int64_t>(i));
+    EXPECT_EQ(row.peak_time_s, live.peak_time_s);
+    EXPECT_EQ(row.peak, live.peak);
+    EXPECT_EQ(row.flags & kCycleCaptured, live.flags & kCycleCaptured);
+    EXPECT_EQ((row.flags & kCycleIsFirst) != 0, i == 0);
+    if (std::isfinite(live.live_capture_evidence)) {
+      EXPECT_EQ(row.capture_evidence, live.live_capture_evidence);
+    }
+    if (std::isfinite(live.delta_mu)) {
+      EXPECT_EQ(row.delta_mu, live.delta_mu);
+    }
+    EXPECT_TRUE(std::isnan(row.delta_mu_standard_error));
+  }
+  EXPECT_EQ(*found.results.stick_cycle_count.value,
+            static_cast<double>(std::ranges::count_if(
+                found.live, [](const Cycle& cycle) { return (cycle.flags & kCycleCaptured) != 0; })));
+}
+
+// The last slip has no next one, and so no period by which to find what was seen of it.
+TEST(TestAnalysis, EachRowHasWhatWasSeenOfItsOwnSlip) {
+  const Analysed found = analysed(test::LiveScene{}, EstimatorTier::kFit);
+  ASSERT_EQ(found.cycles.size(), found.live.size());
+  for (std::size_t i = 0; i < found.cycles.size(); ++i) {
+    EXPECT_NEAR(found.cycles[i].peak_time_s, found.live[i].peak_time_s, 0.01);
+    const double row = found.cycles[i].live_capture_evidence;
+    const double live = found.live[i].live_capture_evidence;
+    EXPECT_TRUE(row == live || (std::isnan(row) && std::isnan(live))) << i << ": " << row << ", " << live;
+  }
+}
+
+// A test that escapes: the turning points of the slips say so while it runs, and with them the whole.
+TEST_P(EstimatorWithoutFit, SeesAnEscape) {
+  test::LiveScene scene;
+  scene.escape_Q = 3.0;
+  const Analysed found = analysed(scene, GetParam());
+  if (GetParam() == EstimatorTier::kPeak) {
+    // By heights alone no test is called mixed.
+    EXPECT_EQ(found.results.regime, Regime::kUndecided);
+    EXPECT_NE(found.results.regime_reason.find("does not describe"), std::string::npos);
+    return;
+  }
+  EXPECT_EQ(found.results.regime, Regime::kMixed) << found.results.regime_reason;
+  ASSERT_TRUE(found.results.transition_time.value) << found.results.transition_time.reason;
+  EXPECT_FALSE(found.results.transition_time.standard_error);
 }
 
 }  // namespace
