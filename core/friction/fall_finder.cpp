@@ -6,74 +6,6 @@
 #include <tuple>
 
 namespace stickslip::friction {
-namespace {
-
-double median_of_three(double a, double b, double c) noexcept {
-  return std::max(std::min(a, b), std::min(std::max(a, b), c));
-}
-
-}  // namespace
-
-std::optional<Fall> FallFinder::add(double value, double hysteresis) {
-  latest_.push(value);
-  ++count_;
-  std::optional<Fall> fall;
-  // A median of one.
-  if (count_ == 1) high_ = low_ = turn_ = Extreme{0, value};
-  if (count_ <= 2) return fall;
-  keep_scans(high_, about_high_);
-  keep_scans(low_, about_low_);
-  const auto scans = latest_.values().last<3>();
-  const double median = median_of_three(scans[0], scans[1], scans[2]);
-  step(count_ - 2, median, hysteresis, fall);
-  return fall;
-}
-
-void FallFinder::step(std::size_t position, double median, double hysteresis,
-                      std::optional<Fall>& fall) noexcept {
-  if (direction_ == Direction::kUp) return rise(position, median, hysteresis);
-  if (direction_ == Direction::kUnknown && median > high_.value) {
-    restart_at_high(position, median);
-  } else {
-    below_.add(position, median);
-    if (!(median < low_.value)) {
-      above_after_low_.add(position, median);
-    } else if (above_after_low_.empty()) {  // Most of a fall: as fall_to(), by the direct way.
-      low_ = {position, median};
-      above_.add(position, median);
-    } else {
-      above_after_low_.add(position, median);
-      fall_to(position, median);
-    }
-  }
-
-  if (direction_ == Direction::kUnknown && median < high_.value - hysteresis) {
-    // The high was a maximum, and the trace may have begun at it.
-    turn_ = low_.position < high_.position ? low_ : high_;
-    direction_ = Direction::kDown;
-    fall_to(position, median);
-  } else if (median > low_.value + hysteresis) {
-    if (direction_ == Direction::kDown) fall = describe(high_, low_);
-    direction_ = Direction::kUp;
-    turn_ = low_;
-    restart_at_high(position, median);
-  }
-}
-
-void FallFinder::rise(std::size_t position, double median, double hysteresis) noexcept {
-  if (median > high_.value) {
-    restart_at_high(position, median);
-    return;
-  }
-  if (waiting_count_ == waiting_.size()) take_waiting(position);
-  waiting_[waiting_count_++] = median;
-  if (!(median < high_.value - hysteresis)) return;
-  // The high was a maximum.
-  take_waiting(position + 1);
-  direction_ = Direction::kDown;
-  fall_to(position, median);
-}
-
 void FallFinder::take_waiting(std::size_t end) noexcept {
   std::size_t position = end - waiting_count_;
   for (const double median : std::span{waiting_}.first(waiting_count_)) {
@@ -82,19 +14,6 @@ void FallFinder::take_waiting(std::size_t end) noexcept {
     ++position;
   }
   waiting_count_ = 0;
-}
-
-void FallFinder::restart_at_high(std::size_t position, double median) noexcept {
-  high_ = {position, median};
-  above_.clear();
-  above_after_low_.clear();
-  below_.clear();
-  waiting_count_ = 0;
-}
-
-void FallFinder::fall_to(std::size_t position, double median) noexcept {
-  low_ = {position, median};
-  above_.take(above_after_low_);
 }
 
 Fall FallFinder::describe(const Extreme& peak, const Extreme& trough) const noexcept {

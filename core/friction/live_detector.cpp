@@ -12,8 +12,6 @@ namespace {
 
 /// A force that is up by as much as a slip is down is being loaded.
 constexpr int kLoadedScans = 3;
-/// Scans that the despiker holds back.
-constexpr std::int64_t kHeldBack = 3;
 /// As for the whole test: a trace without noise still has rounding.
 constexpr double kSmallestNoise = 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -29,21 +27,6 @@ LiveDetector::LiveDetector(const LiveSettings& settings)
       loading_at_(kInfinity),
       highest_(-kInfinity) {}
 
-std::optional<LiveCycle> LiveDetector::add(double coefficient, bool saturated) {
-  noise_.add(coefficient);
-  saturated_[static_cast<std::size_t>(come_++) % saturated_.size()] = saturated;
-  fall_begun_.reset();
-  if (!settings_.despike) return follow({coefficient, false}, saturated);
-  const auto scan = despiker_.add(coefficient, noise_.sigma());
-  if (!scan) return std::nullopt;
-  return follow(*scan, saturated_[static_cast<std::size_t>(come_ - 1 - kHeldBack) % saturated_.size()]);
-}
-
-double LiveDetector::time_of(double position) const noexcept {
-  const std::int64_t lost = position < static_cast<double>(gap_at_) ? lost_before_ : lost_;
-  return (position + static_cast<double>(lost)) / settings_.scan_rate_Hz;
-}
-
 std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, bool saturated) {
   const double sigma = noise_.known() ? noise_.sigma() : kInfinity;
   // The despiker still held scans from before the gap when it was told.
@@ -51,7 +34,7 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
     usable_noise_.gap();
     follower_.gap();
   }
-  const double now_s = time_of(static_cast<double>(position_++));
+  const auto position = static_cast<double>(position_++);
   if (scan.spike) flags_after_ |= kCycleHasSpike;
   if (saturated) flags_after_ |= kCycleIsSaturated;
   if (scan.value > highest_) {
@@ -66,7 +49,7 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
   const bool usable = !scan.spike && !saturated;
   if (follower_.keeps_scans()) {
     if (usable) {
-      follower_.add(now_s, scan.value);
+      follower_.add(time_of(position), scan.value);
       usable_noise_.add(scan.value);
     } else {
       usable_noise_.gap();
@@ -84,8 +67,9 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
   // What falls before anything was loaded are spikes that follow each other.
   if (!was_falling && finder_.falling() && static_cast<double>(finder_.high_at()) >= loading_at_)
     fall_begun_ = {static_cast<base::ScanIndex>(finder_.high_at()), finder_.high(), come_ - 1};
-  if (fall && rule_.is_slip(*fall, sigma) && fall->peak_at >= loading_at_) return slip(*fall, now_s);
-  if (follower_.step(now_s, usable_sigma())) take_decision();
+  if (fall && rule_.is_slip(*fall, sigma) && fall->peak_at >= loading_at_)
+    return slip(*fall, time_of(position));
+  if (follower_.has_task() && follower_.step(time_of(position), usable_sigma())) take_decision();
   if (amplitude && amplitude->is_over()) {
     watch_.stop();
     state_.regime = Regime::kSteadySliding;
@@ -113,20 +97,19 @@ void LiveDetector::watch_phase(double value, double sigma) noexcept {
 std::optional<LiveCycle> LiveDetector::slip(const Fall& fall, double now_s) noexcept {
   if (follower_.is_open() && follower_.force(now_s, usable_sigma(), &fall)) take_decision();
   // The cycle before reaches from its peak to this one.
-  std::optional<LiveCycle> closed;
   const double peak_s = time_of(fall.peak_at);
   if (follower_.is_open()) {
     cycle_flags_ |= flags_to_highest_;
-    closed = close();
-    closed->cycle.period_s = peak_s - closed->cycle.peak_time_s;
+    LiveCycle& before = follower_.slip();
+    before.cycle.period_s = peak_s - before.cycle.peak_time_s;
     if (settings_.estimator == EstimatorTier::kPeak) {
-      closed->K = (sum_at_highest_ - sum_at_peak_) / (count_at_highest_ - count_at_peak_);
-      closed->S = cycle_S_;
-      closed->cycle.peak = cycle_S_;
-      closed->cycle.delta_mu = closed->S - closed->K;
+      before.K = (sum_at_highest_ - sum_at_peak_) / (count_at_highest_ - count_at_peak_);
+      before.S = cycle_S_;
+      before.cycle.peak = cycle_S_;
+      before.cycle.delta_mu = before.S - before.K;
     }
-    state_.latest = closed;
   }
+  std::optional<LiveCycle> closed = close();
   const bool begins_from_stick = state_.regime != Regime::kRingDown;
   follower_.open(fall, peak_s, time_of(fall.trough_at), begins_from_stick, usable_sigma());
   if (state_.phase < Phase::kFirstSlip) state_.phase = Phase::kFirstSlip;
@@ -159,16 +142,17 @@ void LiveDetector::take_decision() noexcept {
 
 std::optional<LiveCycle> LiveDetector::close() noexcept {
   if (!follower_.is_open()) return std::nullopt;
-  LiveCycle closed = follower_.slip();
-  closed.cycle.flags |= cycle_flags_;
-  closed.cycle.number = state_.slip_count - 1;
-  if (closed.cycle.number == 0) closed.cycle.flags |= kCycleIsFirst;
+  std::optional<LiveCycle> closed{follower_.slip()};
+  Cycle& cycle = closed->cycle;
+  cycle.flags |= cycle_flags_;
+  cycle.number = state_.slip_count - 1;
+  if (cycle.number == 0) cycle.flags |= kCycleIsFirst;
   // The scan's number in the acquisition is the caller's to add.
-  closed.cycle.first_scan = std::llround(closed.cycle.peak_time_s * settings_.scan_rate_Hz);
+  cycle.first_scan = std::llround(cycle.peak_time_s * settings_.scan_rate_Hz);
   follower_.close();
   // Its onset is known by now.
-  if (state_.ring_down_since_s == closed.cycle.peak_time_s && std::isfinite(closed.cycle.onset_time_s))
-    state_.ring_down_since_s = closed.cycle.onset_time_s;
+  if (state_.ring_down_since_s == cycle.peak_time_s && std::isfinite(cycle.onset_time_s))
+    state_.ring_down_since_s = cycle.onset_time_s;
   state_.latest = closed;
   return closed;
 }

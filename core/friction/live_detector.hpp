@@ -61,6 +61,9 @@ class LiveDetector {
   }
 
  private:
+  /// Scans that the despiker holds back.
+  static constexpr std::int64_t kHeldBack = 3;
+
   std::optional<LiveCycle> follow(const signal::DespikedScan& scan, bool saturated);
   std::optional<LiveCycle> slip(const Fall& fall, double now_s) noexcept;
   void take_decision() noexcept;
@@ -108,5 +111,22 @@ class LiveDetector {
   std::uint8_t cycle_flags_ = 0;
   double cycle_S_ = 0.0;
 };
+
+// Each scan goes through these: in the caller's loop.
+
+inline std::optional<LiveCycle> LiveDetector::add(double coefficient, bool saturated) {
+  noise_.add(coefficient);
+  saturated_[static_cast<std::size_t>(come_++) % saturated_.size()] = saturated;
+  fall_begun_.reset();
+  if (!settings_.despike) return follow({coefficient, false}, saturated);
+  const auto scan = despiker_.add(coefficient, noise_.sigma());
+  if (!scan) return std::nullopt;
+  return follow(*scan, saturated_[static_cast<std::size_t>(come_ - 1 - kHeldBack) % saturated_.size()]);
+}
+
+inline double LiveDetector::time_of(double position) const noexcept {
+  const std::int64_t lost = position < static_cast<double>(gap_at_) ? lost_before_ : lost_;
+  return (position + static_cast<double>(lost)) / settings_.scan_rate_Hz;
+}
 
 }  // namespace stickslip::friction

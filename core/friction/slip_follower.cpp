@@ -104,16 +104,7 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
       if (point.value < fall.rise_from + kRiseFrom * rise) window_from_s_ = point.last_s + 0.5 * scan_s_;
     }
   }
-  const auto before =
-      between(buffer_.points(), std::max(window_from_s_, peak_s - fall.rise_duration * scan_s_), peak_s);
-  const auto level = [&](double part) { return fall.rise_from + part * rise; };
-  const bool few = std::ranges::count_if(before, [&](const CyclePoint& point) {
-                     return point.value >= level(kRiseFrom) && point.value <= level(kRiseTo);
-                   }) < kFewestOfRise;
-  rise_slope_ =
-      slope_between(before, level(few ? kFastRiseFrom : kRiseFrom), level(few ? kFastRiseTo : kRiseTo), sigma)
-          .value_or(0.0);
-  if (!(rise_slope_ > 0.0)) rise_slope_ = rise / (std::max(fall.rise_duration, 1.0) * scan_s_);
+  rise_slope_ = slope_of_rise(fall, peak_s, sigma);
   if (!knowledge_.started()) knowledge_.start(std::numbers::pi / half_s, rise_slope_);
   if (contradicted) knowledge_.forget_stick_rate(rise_slope_);
   shared_ = knowledge_.best();
@@ -144,6 +135,22 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
     task_ = Task::kJudge;
     next_task_s_ = peak_s + kFirstAsked * period_s();
   }
+}
+
+double SlipFollower::slope_of_rise(const Fall& fall, double peak_s, double sigma) const noexcept {
+  const double rise = fall.peak - fall.rise_from;
+  const double whole = rise / (std::max(fall.rise_duration, 1.0) * scan_s_);
+  if (!keeps_scans()) return whole;
+  const auto before =
+      between(buffer_.points(), std::max(window_from_s_, peak_s - fall.rise_duration * scan_s_), peak_s);
+  const auto level = [&](double part) { return fall.rise_from + part * rise; };
+  const bool few = std::ranges::count_if(before, [&](const CyclePoint& point) {
+                     return point.value >= level(kRiseFrom) && point.value <= level(kRiseTo);
+                   }) < kFewestOfRise;
+  const double slope =
+      slope_between(before, level(few ? kFastRiseFrom : kRiseFrom), level(few ? kFastRiseTo : kRiseTo), sigma)
+          .value_or(0.0);
+  return slope > 0.0 ? slope : whole;
 }
 
 bool SlipFollower::do_task(double now_s, double sigma) noexcept {
@@ -250,12 +257,14 @@ void SlipFollower::judge_by_heights(const Fall& next, double sigma) noexcept {
   const double scans = std::numbers::sqrt2 * sigma;
   const double between_scans = kPeakError * free;
   const double noise = std::sqrt(scans * scans + between_scans * between_scans);
-  if (typical_count_ == 0.0) typical_delta_mu_ = fall_.drop();
-  const double usual = std::log(drop / typical_delta_mu_);
-  const double as_captured = log_normal_density(usual, 0.0, kDeltaMuLogScatter) - std::log(drop);
+  if (typical_count_ == 0.0) typical_log_drop_ = std::log(fall_.drop());
+  const double log_drop = std::log(drop);
+  const double off_usual = log_drop - typical_log_drop_;
+  const double as_captured = log_normal_density(off_usual, 0.0, kDeltaMuLogScatter) - log_drop;
   decide(as_captured - log_normal_density(drop, free, noise), slip_.decided_time_s);
-  // In this tier it is the drop that is typical.
-  if (captured()) learn_typical(drop);
+  if (!captured()) return;
+  typical_count_ = std::min(typical_count_ + 1.0, kTypicalMemory);
+  typical_log_drop_ += off_usual / typical_count_;
 }
 
 void SlipFollower::decide(double evidence, double now_s) noexcept {

@@ -37,6 +37,7 @@ class SlipFollower {
   /// \param peak_s,trough_s  times of the fall's turning points. \param begins_from_stick  the slip before
   /// was captured; if it was not, but this one is too large for that, it begins from sticking all the same.
   void open(const Fall& fall, double peak_s, double trough_s, bool begins_from_stick, double sigma) noexcept;
+  [[nodiscard]] bool has_task() const noexcept { return task_ != Task::kNone; }
   /// At most one task. \return true when this decided how the slip ends.
   [[nodiscard]] bool step(double now_s, double sigma) noexcept {
     return task_ != Task::kNone && !(now_s < next_task_s_) && do_task(now_s, sigma);
@@ -50,12 +51,16 @@ class SlipFollower {
   [[nodiscard]] bool decided() const noexcept { return decided_; }
   [[nodiscard]] bool captured() const noexcept { return (slip_.cycle.flags & kCycleCaptured) != 0; }
   [[nodiscard]] const LiveCycle& slip() const noexcept { return slip_; }
+  /// For what is better known outside.
+  [[nodiscard]] LiveCycle& slip() noexcept { return slip_; }
   /// ω, γ and r as far as they are known.
   [[nodiscard]] const SharedParameters& shared() const noexcept { return shared_; }
 
  private:
   enum class Task { kNone, kFirstFit, kJudge, kFit };
 
+  /// Of the stick before a fall: from its scans, or as a whole where they tell nothing.
+  [[nodiscard]] double slope_of_rise(const Fall& fall, double peak_s, double sigma) const noexcept;
   [[nodiscard]] bool do_task(double now_s, double sigma) noexcept;
   void first_fit(double sigma) noexcept;
   [[nodiscard]] bool judge(double now_s, double sigma, bool last) noexcept;
@@ -103,7 +108,8 @@ class SlipFollower {
   double window_from_s_ = 0.0;  ///< Scans before belong to the slip before.
   double last_capture_s_ = std::numeric_limits<double>::quiet_NaN();  ///< NaN if unknown.
   double typical_delta_mu_ = 0.0;
-  double typical_count_ = 0.0;
+  double typical_log_drop_ = 0.0;  ///< In its place where heights are all there is.
+  double typical_count_ = 0.0;     ///< Slips behind either.
 };
 
 }  // namespace stickslip::friction
