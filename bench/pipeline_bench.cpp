@@ -27,9 +27,11 @@ namespace {
 
 using namespace stickslip;
 
-/// One test of some hundred thousand scans.
+/// Of some hundred thousand scans.
+double one_test_s(std::int64_t scan_rate_Hz) { return scan_rate_Hz < 1000 ? 1200.0 : 60.0; }
+
 bench::LongPull one_pull(std::int64_t scan_rate_Hz) {
-  return {static_cast<double>(scan_rate_Hz), scan_rate_Hz < 1000 ? 1200.0 : 60.0, 1};
+  return {static_cast<double>(scan_rate_Hz), one_test_s(scan_rate_Hz), 1};
 }
 
 /// Of all scans: those before the test, 0.25 s, and after it, 2 s, are no part of it.
@@ -88,9 +90,9 @@ class LatestScans final : public pipeline::Sink {
 /// One test from the start of the board until its journal is durable. The time of a row is that of all; the
 /// counters are the best rate while the test runs, the best with what is estimated once at its end, and the
 /// least processor time of the processing thread for a scan while the test runs, which bounds the first.
-void whole(benchmark::State& state, friction::EstimatorTier tier) {
+void whole(benchmark::State& state, friction::EstimatorTier tier, double test_s) {
   using Seconds = std::chrono::duration<double>;
-  bench::LongPull pull = one_pull(state.range(0));
+  bench::LongPull pull{static_cast<double>(state.range(0)), test_s, 1};
   double running = 0.0;
   double all = 0.0;
   double processing_s = std::numeric_limits<double>::infinity();
@@ -312,19 +314,25 @@ void register_all() {
     const auto add = [rate_Hz](const std::string& name, auto function) {
       return benchmark::RegisterBenchmark(name.c_str(), function)
           ->Arg(rate_Hz)
-
           ->Unit(benchmark::kMillisecond);
     };
     for (const auto tier : {friction::EstimatorTier::kPeak, friction::EstimatorTier::kInterpolated,
                             friction::EstimatorTier::kFit}) {
       const std::string name{friction::name(tier)};
-      add("whole/" + name, [tier](benchmark::State& state) { whole(state, tier); })->UseManualTime();
+      add("whole/" + name, [=](benchmark::State& state) {
+        whole(state, tier, one_test_s(rate_Hz));
+      })->UseManualTime();
       add("stage/live_detector/" + name,
           [tier](benchmark::State& state) { stage_analysis(state, tier, false); });
       add("stage/estimate_at_the_end/" + name,
           [tier](benchmark::State& state) { stage_analysis(state, tier, true); });
       add("stage/processing/" + name, [tier](benchmark::State& state) { stage_processing(state, tier); });
     }
+    // A rate that holds for ten million scans is no matter of caches and queues.
+    add("sustained/interpolated",
+        [=](benchmark::State& state) { whole(state, friction::EstimatorTier::kInterpolated, 1e7 / rate_Hz); })
+        ->UseManualTime()
+        ->Iterations(1);
     add("stage/simulator", stage_simulator);
     add("stage/segmenter", stage_segmenter);
     add("stage/journal", stage_journal)->MeasureProcessCPUTime();
