@@ -51,11 +51,9 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "{}\n", base.error().message);
     return 1;
   }
-  fmt::print(
-      "{} random tests of {} s, seed {}, estimator {}: S - K 0.02 to 0.1, its scatter 0 to 30 %, Q/Q_th 0.3 "
-      "to "
-      "3\n",
-      count, base->constant_speed->pull_s, seed, friction::name(*estimator));
+  fmt::print("{} random tests of {} s, seed {}, estimator {}\n", count, base->constant_speed->pull_s, seed,
+             friction::name(*estimator));
+  fmt::print("S - K 0.02 to 0.1, its scatter 0 to 30 %, Q/Q_th 0.3 to 3\n");
   for (const double noise : {0.02, 0.05, 0.1}) {
     const test::Disturbance disturbance{.noise = noise};
     fmt::print("\nnoise {} (S - K), drift {} per s, {} spikes per s of {} (S - K)\n", noise,

@@ -144,7 +144,6 @@ inline void FallFinder::step(std::size_t position, double median, double hystere
     }
   }
 
-  if (direction_ == Direction::kUp) return rise(position, median, hysteresis);
   if (direction_ == Direction::kUnknown && median < high_.value - hysteresis) {
     // The high was a maximum, and the trace may have begun at it.
     turn_ = low_.position < high_.position ? low_ : high_;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/friction/model_results.hpp"
+#include "core/friction/tier_means.hpp"
 #include "core/friction/unknown.hpp"
 #include "core/signal/statistics.hpp"
 
@@ -10,65 +11,98 @@ namespace stickslip::friction {
 namespace {
 
 /// Of a slip that the live side did not see: what the fall itself tells.
-Cycle row_of(const Trace& trace, const Fall& slip, double period_s) {
+Cycle row_of(const Trace& trace, const Fall& slip) {
   Cycle row;
   row.peak_time_s = time_at(trace, slip.peak_at);
-  row.period_s = period_s;
   row.peak = slip.peak;
   row.trough = slip.trough;
-  row.force_drop = slip.drop();
   row.onset_time_s = row.capture_time_s = row.stick_time_s = row.slip_time_s = kNotKnown;
   row.delta_mu = row.delta_mu_standard_error = row.slip_speed_ratio = kNotKnown;
   return row;
 }
 
+/// How it ended is not known.
+void forget_end(Cycle& row) {
+  row.flags &= static_cast<std::uint8_t>(~kCycleCaptured);
+  row.capture_evidence = row.capture_time_s = row.slip_time_s = kNotKnown;
+}
+
 }  // namespace
 
-std::optional<Cycle> LiveCycles::next_at(const Fall& slip, double period_s) {
+std::optional<LiveCycle> LiveCycles::next_at(const Fall& slip, double period_s) {
   if (next_ == cycles_->size()) return std::nullopt;
   const double peak_s = time_at(*trace_, slip.peak_at);
-  const auto off_s = [&](std::size_t i) { return std::abs((*cycles_)[i].peak_time_s - peak_s); };
-  while (next_ + 1 < cycles_->size() && off_s(next_ + 1) <= off_s(next_)) ++next_;
+  const auto off_s = [&](std::size_t i) { return std::abs((*cycles_)[i].cycle.peak_time_s - peak_s); };
+  double nearest_s = off_s(next_);
+  for (; next_ + 1 < cycles_->size(); ++next_) {
+    const double other_s = off_s(next_ + 1);
+    if (other_s > nearest_s) break;
+    nearest_s = other_s;
+  }
   // Without a next slip: a fall is half an oscillation.
   const double reach_s = std::isnan(period_s) ? time_at(*trace_, slip.trough_at) - peak_s : 0.5 * period_s;
-  if (!(off_s(next_) < reach_s)) return std::nullopt;
+  if (!(nearest_s < reach_s)) return std::nullopt;
   return (*cycles_)[next_++];
 }
 
 TestEstimates estimates_from_live(const Trace& trace, const base::LongColumn<Fall>& slips,
-                                  const base::LongColumn<Cycle>& live, bool describes,
-                                  const std::string& reason, const std::filesystem::path& scratch) {
+                                  const base::LongColumn<LiveCycle>& live, const LiveSettlement& settlement,
+                                  const std::filesystem::path& scratch) {
   TestEstimates whole;
   whole.log_likelihood_ratios = base::LongColumn<double>{scratch};
   whole.cycles = base::LongColumn<Cycle>{scratch};
   whole.onset_errors_s = base::LongColumn<double>{scratch};
-  whole.model_describes = describes;
-  no_model_results(reason, whole.results);
+  whole.model_describes = settlement.describes;
+  no_model_results(settlement.reason, whole.results);
 
   LiveCycles seen{trace, live};
+  TierMeans means{settlement.first_counts};
   signal::RunningVariance amplitude;
+  std::optional<Cycle> before;  // Its period reaches to the row that comes next.
+  const auto keep = [&](double period_s) {
+    before->period_s = period_s;
+    before->force_drop = before->peak - before->trough;
+    if ((before->flags & kCycleCaptured) != 0) ++whole.captured;
+    whole.cycles.push_back(*before);
+    whole.onset_errors_s.push_back(kNotKnown);
+  };
+  bool is_next = false;    // Nothing is missing between it and the one before.
+  bool after_gap = false;  // How the one before ended, and when, was not seen.
   for (std::size_t i = 0; i < slips.size(); ++i) {
     const Fall slip = slips[i];
     const bool is_last = i + 1 == slips.size();
     const bool has_next = !is_last && !is_broken(trace, slip.peak_at, slips[i + 1].peak_at);
-    const double period_s =
-        has_next ? time_at(trace, slips[i + 1].peak_at) - time_at(trace, slip.peak_at) : kNotKnown;
-    Cycle row = row_of(trace, slip, period_s);
-    if (const std::optional<Cycle> cycle = seen.next_at(slip, period_s)) row = *cycle;
+    Cycle row = row_of(trace, slip);
+    const double period_s = has_next ? time_at(trace, slips[i + 1].peak_at) - row.peak_time_s : kNotKnown;
+    bool has_gap = !has_next;
+    if (const std::optional<LiveCycle> cycle = seen.next_at(slip, period_s)) {
+      row = cycle->cycle;
+      // Also of one that was not decided: what hardly speaks against sticking leaves the regime undecided.
+      row.capture_evidence = cycle->evidence;
+      has_gap = has_gap || (row.flags & kCycleHasGap) != 0;
+      means.add(*cycle);
+    }
+    if (has_gap || after_gap) forget_end(row);
+    after_gap = has_gap;
     row.number = static_cast<std::int64_t>(i);
-    row.period_s = period_s;
     row.flags &= kCycleCaptured;
     if (i == 0) row.flags |= kCycleIsFirst;
-    if ((row.flags & kCycleCaptured) != 0) ++whole.captured;
+    if (!trace.belt.is_constant()) {
+      const double at_s = std::isfinite(row.onset_time_s) ? row.onset_time_s : row.peak_time_s;
+      row.pull_speed_m_per_s = trace.belt.plan().speed_m_per_s(at_s - trace.belt.start_s());
+    }
     if (!is_last) {
       const bool tells = std::isfinite(row.capture_evidence);
       whole.log_likelihood_ratios.push_back(tells ? row.capture_evidence : 0.0);
     }
-    whole.onset_errors_s.push_back(kNotKnown);
-    whole.cycles.push_back(row);
+    if (before) keep(is_next ? row.peak_time_s - before->peak_time_s : kNotKnown);
+    before = row;
+    is_next = has_next;
     amplitude.add(0.5 * slip.drop());
   }
+  keep(kNotKnown);
   whole.results.amplitude = Estimate::of(amplitude.mean, amplitude.error_of_mean());
+  means.fill(whole.results);
   return whole;
 }
 

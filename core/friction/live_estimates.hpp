@@ -9,8 +9,8 @@
 #include <string>
 
 #include "core/base/long_column.hpp"
-#include "core/friction/cycle.hpp"
 #include "core/friction/fall_finder.hpp"
+#include "core/friction/live_cycle.hpp"
 #include "core/friction/sections.hpp"
 #include "core/friction/trace.hpp"
 
@@ -20,28 +20,35 @@ namespace stickslip::friction {
 class LiveCycles {
  public:
   /// \param trace  must outlive this, as \param cycles, in the order of time.
-  LiveCycles(const Trace& trace, const base::LongColumn<Cycle>& cycles) noexcept
+  LiveCycles(const Trace& trace, const base::LongColumn<LiveCycle>& cycles) noexcept
       : trace_(&trace), cycles_(&cycles) {}
 
   /// The cycle whose peak is nearest, within half a period, and was not given before; nothing where the live
   /// side saw none there. \param slip  later than that of the call before. \param period_s  to the next; NaN
   /// if there is none.
-  [[nodiscard]] std::optional<Cycle> next_at(const Fall& slip, double period_s);
+  [[nodiscard]] std::optional<LiveCycle> next_at(const Fall& slip, double period_s);
 
  private:
   const Trace* trace_;
-  const base::LongColumn<Cycle>* cycles_;
+  const base::LongColumn<LiveCycle>* cycles_;
   std::size_t next_ = 0;
 };
 
-/// In the place of estimate_in_sections(). Of the results only the amplitude has a value, half the mean drop.
+/// What the estimators without a fit need to know beside the scans.
+struct LiveSettlement {
+  /// The evidence rests on the model; else only a unanimous vote on the regime counts.
+  bool describes = true;
+  bool first_counts = false;  ///< The first slip counts in means.
+  std::string reason;         ///< Why all else is none.
+};
+
+/// In the place of estimate_in_sections(). Of the results S, K, S − K and its scatter have values, means over
+/// the slips that the live side saw, and the amplitude, half the mean drop. How a slip ended does not count
+/// beside a gap, nor of the last one, in which the pull ended.
 /// \param slips  of the whole test, not empty: one row for each.
-/// \param live  with what was known in the end of each one's capture as capture_evidence.
-/// \param describes  the evidence rests on the model; else only a unanimous vote on the regime counts.
-/// \param reason  why the other results are none.
 [[nodiscard]] TestEstimates estimates_from_live(const Trace& trace, const base::LongColumn<Fall>& slips,
-                                                const base::LongColumn<Cycle>& live, bool describes,
-                                                const std::string& reason,
+                                                const base::LongColumn<LiveCycle>& live,
+                                                const LiveSettlement& settlement,
                                                 const std::filesystem::path& scratch = {});
 
 }  // namespace stickslip::friction

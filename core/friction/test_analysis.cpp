@@ -54,6 +54,10 @@ constexpr const char* kHiddenOscillation =
     "no fall stands out of the noise, but the noise is not white: hum, or an oscillation of fewer than nine "
     "scans a cycle; scan more often";
 
+/// Why single slips that disagree do not count.
+constexpr const char* kHeightsAlone =
+    "the heights of falls alone do not tell single slips; the estimator \"fit\" does";
+
 /// What the model has found, beside what needs no model.
 void take_model_results(const TestResults& model, TestResults& results) {
   std::vector<const Estimate*> from;
@@ -101,7 +105,6 @@ TestAnalysis::TestAnalysis(const AnalysisSettings& settings)
       speeds_m_per_s_(settings.scratch_folder),
       live_({settings.scan_rate_Hz, settings.step_coefficient, settings.estimator, settings.prior,
              !settings.kept.spikes}),
-      means_(settings.kept.first_slip),
       live_cycles_(settings.scratch_folder) {
   constexpr std::size_t kRoom = 100;
   new_cycles_.reserve(kRoom);
@@ -132,18 +135,14 @@ void TestAnalysis::add(base::ScanIndex index, double coefficient, bool saturated
 }
 
 void TestAnalysis::keep_live(const LiveCycle& cycle) {
-  new_cycles_.push_back(cycle.cycle);
-  Cycle& kept = new_cycles_.back();
-  kept.first_scan += indices_.front();
+  LiveCycle kept = cycle;
+  kept.cycle.first_scan += indices_.front();
   if (std::isfinite(cycle.decided_time_s)) {
-    kept.live_capture_evidence = cycle.evidence;
-    kept.live_decision_time_s = cycle.decided_time_s;
+    kept.cycle.live_capture_evidence = cycle.evidence;
+    kept.cycle.live_decision_time_s = cycle.decided_time_s;
   }
-  Cycle own = kept;
-  // Nothing will say more of how it ended, decided or not.
-  if (!fits_whole_test()) own.capture_evidence = cycle.evidence;
-  live_cycles_.push_back(own);
-  if (!fits_whole_test()) means_.add(cycle);
+  new_cycles_.push_back(kept.cycle);
+  live_cycles_.push_back(kept);
 }
 
 void TestAnalysis::end_live() {
@@ -209,18 +208,15 @@ TestResults TestAnalysis::finish() {
     const TestEstimates estimates =
         fits_whole_test() ? estimate(trace, slips, sigma) : estimate_without_fit(trace, slips);
     const RegimeVerdict verdict =
-        judge_regime(slips.size(), estimates.log_likelihood_ratios, estimates.model_describes);
+        judge_regime(slips.size(), estimates.log_likelihood_ratios, estimates.model_describes,
+                     fits_whole_test() ? kModelFails : kHeightsAlone);
     results.regime = verdict.regime;
     results.regime_reason = verdict.reason;
     results.stick_cycle_count = verdict.regime == Regime::kUndecided
                                     ? Estimate::none("undecided: " + verdict.reason)
                                     : Estimate::of(static_cast<double>(estimates.captured));
     take_model_results(estimates.results, results);
-    if (fits_whole_test()) {
-      if (estimates.model_describes) speed_results(trace, estimates, results);
-    } else {
-      means_.fill(results);
-    }
+    if (fits_whole_test() && estimates.model_describes) speed_results(trace, estimates, results);
     if (verdict.transition_slip) {
       results.transition_time = transition_time(trace, estimates, slips, *verdict.transition_slip);
     }
@@ -279,13 +275,14 @@ Estimate TestAnalysis::transition_time(const Trace& trace, const TestEstimates& 
 
 TestEstimates TestAnalysis::estimate_without_fit(const Trace& trace,
                                                  const base::LongColumn<Fall>& slips) const {
+  LiveSettlement settlement;
   // By heights alone a single slip among others is easily misjudged.
-  const bool describes = settings_.estimator == EstimatorTier::kInterpolated;
-  return estimates_from_live(
-      trace, slips, live_cycles_, describes,
+  settlement.describes = settings_.estimator == EstimatorTier::kInterpolated;
+  settlement.first_counts = settings_.kept.first_slip;
+  settlement.reason =
       fmt::format("the estimator \"{}\" does not fit the whole test; \"fit\" does, also afterwards",
-                  name(settings_.estimator)),
-      settings_.scratch_folder);
+                  name(settings_.estimator));
+  return estimates_from_live(trace, slips, live_cycles_, settlement, settings_.scratch_folder);
 }
 
 TestEstimates TestAnalysis::estimate(Trace& trace, const base::LongColumn<Fall>& slips, double sigma) {
@@ -359,14 +356,19 @@ void TestAnalysis::keep_cycles(const Trace& trace, const TestEstimates& estimate
                     [](std::uint8_t flag) { return flag != 0; })) {
       cycle.flags |= kCycleIsSaturated;
     }
-    if (measured_speed_ && std::isnan(cycle.pull_speed_m_per_s) && std::isfinite(cycle.onset_time_s)) {
-      cycle.pull_speed_m_per_s = measured_speed_->speed_m_per_s(cycle.onset_time_s);
+    if (measured_speed_ && std::isnan(cycle.pull_speed_m_per_s)) {
+      // Without a fit the peak, which is near it, stands for the onset.
+      const double at_s =
+          fits_whole_test() || std::isfinite(cycle.onset_time_s) ? cycle.onset_time_s : cycle.peak_time_s;
+      if (std::isfinite(at_s)) cycle.pull_speed_m_per_s = measured_speed_->speed_m_per_s(at_s);
     }
-    if (i < log_likelihood_ratios.size() && log_likelihood_ratios[i] != 0.0)
-      cycle.capture_evidence = log_likelihood_ratios[i];
-    if (const auto seen = live.next_at(slips[i], cycle.period_s)) {
-      cycle.live_capture_evidence = seen->live_capture_evidence;
-      cycle.live_decision_time_s = seen->live_decision_time_s;
+    if (fits_whole_test()) {
+      if (i < log_likelihood_ratios.size() && log_likelihood_ratios[i] != 0.0)
+        cycle.capture_evidence = log_likelihood_ratios[i];
+      if (const auto seen = live.next_at(slips[i], cycle.period_s)) {
+        cycle.live_capture_evidence = seen->cycle.live_capture_evidence;
+        cycle.live_decision_time_s = seen->cycle.live_decision_time_s;
+      }
     }
     cycles_.push_back(cycle);
   }

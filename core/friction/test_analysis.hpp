@@ -20,6 +20,7 @@
 #include "core/friction/cycle.hpp"
 #include "core/friction/fall_finder.hpp"
 #include "core/friction/kept.hpp"
+#include "core/friction/live_cycle.hpp"
 #include "core/friction/live_detector.hpp"
 #include "core/friction/method.hpp"
 #include "core/friction/pull_speed.hpp"
@@ -27,7 +28,6 @@
 #include "core/friction/sections.hpp"
 #include "core/friction/shared_prior.hpp"
 #include "core/friction/tester.hpp"
-#include "core/friction/tier_means.hpp"
 #include "core/friction/trace.hpp"
 
 namespace stickslip::friction {
@@ -134,8 +134,7 @@ class TestAnalysis {
   LiveDetector live_;
   std::vector<Cycle> new_cycles_;  ///< With room for those of a second at 100 a second.
   std::vector<FallBegun> new_falls_;
-  TierMeans means_;
-  base::LongColumn<Cycle> live_cycles_;  ///< As the live side saw them.
+  base::LongColumn<LiveCycle> live_cycles_;  ///< As the live side saw them.
 
   base::LongColumn<Cycle> cycles_;
   std::optional<TesterEstimate> tester_;

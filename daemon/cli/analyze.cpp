@@ -82,6 +82,12 @@ base::Result<std::string> run_analyze(const AnalyzeCommand& command) {
     std::string& text = record->header.process.method;
     const std::optional<std::int64_t> record_number = record->header.test_number;
     const friction::EstimatorTier tier = estimator.value_or(estimator_from_text(text));
+    if (!command.tester.empty() && tier != friction::EstimatorTier::kFit) {
+      return base::usage_error(
+          "{}: --tester needs the fit of the whole test, and the estimator here is \"{}\"; add --estimator "
+          "fit",
+          file, name(tier));
+    }
     if (!command.method.empty()) text = method_text(*method);
     // An empty text is the default method, which is written only where something stands behind it.
     if (text.empty() && tier != friction::EstimatorTier::kFit) text = method_text({});

@@ -88,7 +88,8 @@ Json modes_json(const base::LongColumn<friction::Cycle>& cycles, double end_s, b
     if (std::isfinite(cycle.capture_time_s)) {
       add(start_s(cycle), cycle.capture_time_s, "slip");
       if (!last) add(cycle.capture_time_s, start_s(cycles[i + 1]), "stick");
-    } else if (!last || last_slides) {
+    } else if ((cycle.flags & friction::kCycleCaptured) == 0 && (!last || last_slides)) {
+      // One that is known to have stuck, but not when, is neither.
       add(start_s(cycle), last ? end_s : start_s(cycles[i + 1]), "slide");
     }
   }

@@ -50,8 +50,11 @@ class Played {
     coefficients_.resize(kPullEnds);
   }
 
-  [[nodiscard]] friction::TestResults analyse(const Loss& loss) const {
-    friction::TestAnalysis analysis{settings_};
+  [[nodiscard]] friction::TestResults analyse(
+      const Loss& loss, friction::EstimatorTier estimator = friction::EstimatorTier::kFit) const {
+    friction::AnalysisSettings settings = settings_;
+    settings.estimator = estimator;
+    friction::TestAnalysis analysis{settings};
     for (std::size_t k = 0; k < coefficients_.size(); ++k) {
       if (k >= loss.at && k < loss.at + loss.count) continue;
       auto index = static_cast<base::ScanIndex>(k);
@@ -107,25 +110,42 @@ TEST(Gap, CostsStickSlipTheCyclesItTouches) {
 /// Loaded for S g/(v ω₀²) = 43 ms, a slip of half a period, 25 ms. Without them nothing tells the stick rate.
 constexpr std::size_t kFirstSlipEnds = static_cast<std::size_t>((0.5 + 0.043 + 0.025) * kRate_Hz) + 6;
 
-TEST(Gap, NeverMakesStickingOfARingDown) {
+class GapInARingDown : public testing::TestWithParam<friction::EstimatorTier> {};
+
+INSTANTIATE_TEST_SUITE_P(OfEachEstimator, GapInARingDown,
+                         testing::Values(friction::EstimatorTier::kPeak,
+                                         friction::EstimatorTier::kInterpolated,
+                                         friction::EstimatorTier::kFit),
+                         [](const auto& tier) { return std::string{friction::name(tier.param)}; });
+
+TEST_P(GapInARingDown, NeverMakesSticking) {
   const Played test{"ring-down-at-12-in-per-min.toml"};
-  const friction::TestResults whole = test.analyse({});
-  ASSERT_EQ(whole.regime, friction::Regime::kRingDown);
+  const friction::TestResults whole = test.analyse({}, GetParam());
+  // By the heights of falls a slow decay cannot be told from slips that differ.
+  ASSERT_EQ(whole.regime, GetParam() == friction::EstimatorTier::kPeak ? friction::Regime::kUndecided
+                                                                       : friction::Regime::kRingDown);
   const std::size_t step = test::kSanitized ? 197 : 17;
   int undecided = 0;
+  int sticking = 0;
   int tried = 0;
   for (const std::size_t count : {9U, 60U}) {
     for (const int misjudged : {0, 2}) {
       for (std::size_t at = kFirstSlipEnds; at < 700; at += step, ++tried) {
         SCOPED_TRACE(fmt::format("{} scans from {} on, off by {}", count, at, misjudged));
-        const friction::TestResults results = test.analyse({at, count, misjudged});
-        EXPECT_NE(results.regime, friction::Regime::kStickSlip) << results.regime_reason;
-        EXPECT_NE(results.regime, friction::Regime::kMixed) << results.regime_reason;
+        const friction::TestResults results = test.analyse({at, count, misjudged}, GetParam());
+        const bool wrong =
+            results.regime == friction::Regime::kStickSlip || results.regime == friction::Regime::kMixed;
+        if (wrong) ++sticking;
+        EXPECT_FALSE(wrong && GetParam() != friction::EstimatorTier::kInterpolated) << results.regime_reason;
         if (results.regime == friction::Regime::kUndecided) ++undecided;
       }
     }
   }
-  std::printf("%d gaps, %d left it undecided\n", tried, undecided);
+  std::printf("%d gaps, %d left it undecided, %d made it sticking\n", tried, undecided, sticking);
+  // While the test runs little is known of ω and γ behind a gap. Of random ring-downs with spikes that
+  // estimator calls 1.8 % something else (docs/detector.md); four standard deviations of such a count more.
+  constexpr double kCalledOtherwise = 0.018;
+  EXPECT_LE(sticking, tried * kCalledOtherwise + 4.0 * std::sqrt(tried * kCalledOtherwise));
 }
 
 }  // namespace

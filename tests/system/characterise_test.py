@@ -13,6 +13,7 @@ import tomllib
 import unittest
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
+SOURCE = pathlib.Path(sys.argv[2]).resolve()
 CLI = BUILD / "daemon" / "stickslip"
 
 # Generous: under sanitizers on a busy machine everything takes its time.
@@ -92,6 +93,30 @@ class Characterise(unittest.TestCase):
         before = self.tester.read_text()
         self.assertEqual(run(CLI, "characterise", self.ring_downs[0], "-o", self.tester).returncode, 2)
         self.assertEqual(self.tester.read_text(), before)
+
+    def test_a_test_that_was_measured_without_a_fit_is_fitted(self):
+        (self.folder / "daemon.toml").write_text(
+            '[board]\ndriver = "simulated"\nclock_speed = 100\n[board.simulated]\n'
+            f'scenes = ["{SOURCE}/config/scenes/ring-down-at-12-in-per-min.toml"]\nrepeats = 1\n'
+            '[analysis]\nestimator = "interpolated"\n[record]\nfolder = "cheap"\n', encoding="utf-8")
+        done = run(BUILD / "daemon" / "stickslipd", "--config", "daemon.toml", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        [file] = (self.folder / "cheap").glob("*.h5")
+        [as_measured] = json.loads(run(CLI, "analyze", file, "--json").stdout)["tests"]
+        self.assertEqual(as_measured["regime"], "ring-down")
+        self.assertIsNone(as_measured["omega"])
+        self.assertIn('"fit" does, also afterwards', run(CLI, "analyze", file, "--json").stdout.replace('\\"', '"'))
+        [fitted] = json.loads(run(CLI, "analyze", file, "--estimator", "fit", "--json").stdout)["tests"]
+        made = run(CLI, "characterise", file, "-o", self.folder / "cheap.toml", "--json")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertAlmostEqual(json.loads(made.stdout)["tester"]["omega"], fitted["omega"], places=6)
+        # What was characterised can check a test by its fit alone.
+        refused = run(CLI, "analyze", file, "--tester", self.tester)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("add --estimator fit", refused.stderr)
+        checked = run(CLI, "analyze", file, "--tester", self.tester, "--estimator", "fit", "--json")
+        self.assertEqual(checked.returncode, 0, checked.stderr)
+        self.assertIsNotNone(json.loads(checked.stdout)["tests"][0]["tester_check"])
 
     def test_help_has_examples(self):
         self.assertIn("stickslip characterise ring-down-1.h5", run(CLI, "characterise", "--help").stdout)

@@ -97,19 +97,22 @@ TEST_P(EstimatorWithoutFit, KeepsTheCyclesAsTheyWereSeen) {
     EXPECT_EQ(row.number, static_cast<std::int64_t>(i));
     EXPECT_EQ(row.peak_time_s, live.peak_time_s);
     EXPECT_EQ(row.peak, live.peak);
-    EXPECT_EQ(row.flags & kCycleCaptured, live.flags & kCycleCaptured);
     EXPECT_EQ((row.flags & kCycleIsFirst) != 0, i == 0);
-    if (std::isfinite(live.live_capture_evidence)) {
+    // In the last slip the pull ended: nobody knows how it would have.
+    const bool last = i + 1 == found.cycles.size();
+    if (!last && std::isfinite(live.live_capture_evidence)) {
       EXPECT_EQ(row.capture_evidence, live.live_capture_evidence);
     }
+    EXPECT_EQ(row.flags & kCycleCaptured, last ? 0 : live.flags & kCycleCaptured);
     if (std::isfinite(live.delta_mu)) {
       EXPECT_EQ(row.delta_mu, live.delta_mu);
     }
     EXPECT_TRUE(std::isnan(row.delta_mu_standard_error));
   }
-  EXPECT_EQ(*found.results.stick_cycle_count.value,
-            static_cast<double>(std::ranges::count_if(
-                found.live, [](const Cycle& cycle) { return (cycle.flags & kCycleCaptured) != 0; })));
+  const std::ptrdiff_t captured = std::ranges::count_if(
+      found.live, [](const Cycle& cycle) { return (cycle.flags & kCycleCaptured) != 0; });
+  const bool last = (found.live.back().flags & kCycleCaptured) != 0;
+  EXPECT_EQ(*found.results.stick_cycle_count.value, static_cast<double>(captured - (last ? 1 : 0)));
 }
 
 // The last slip has no next one, and so no period by which to find what was seen of it.
@@ -132,7 +135,7 @@ TEST_P(EstimatorWithoutFit, SeesAnEscape) {
   if (GetParam() == EstimatorTier::kPeak) {
     // By heights alone no test is called mixed.
     EXPECT_EQ(found.results.regime, Regime::kUndecided);
-    EXPECT_NE(found.results.regime_reason.find("does not describe"), std::string::npos);
+    EXPECT_NE(found.results.regime_reason.find("heights of falls alone"), std::string::npos);
     return;
   }
   EXPECT_EQ(found.results.regime, Regime::kMixed) << found.results.regime_reason;
