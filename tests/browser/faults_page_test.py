@@ -125,9 +125,9 @@ class FaultsPage(unittest.TestCase):
         config.write_text(config.read_text(encoding="utf-8").replace("127.0.0.1:0", f"127.0.0.1:{port}"), encoding="utf-8")
         self.daemon.start()
         self.page.until("document.getElementById('trouble').hidden && document.getElementById('bench-word').textContent !== 'not connected'")
-        self.page.until("Scope.data.scan.length > 0")  # The scope begins anew with each stream.
-        scans = self.page.value("Scope.data.scan.at(-1)")
-        self.page.until(f"Scope.data.scan.at(-1) !== {scans}")
+        # The scope begins anew with each stream, and may be empty again after it was not: one question for both.
+        self.page.until("(window.firstScan ??= Scope.data.scan.at(-1)) !== undefined && Scope.data.scan.length > 0"
+                        " && Scope.data.scan.at(-1) !== window.firstScan")
 
 
 if __name__ == "__main__":
