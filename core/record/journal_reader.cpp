@@ -7,6 +7,7 @@
 #include "core/record/journal.hpp"
 #include "core/record/journal_entries.hpp"
 #include "core/record/json_codec.hpp"
+#include "core/record/possible.hpp"
 
 namespace stickslip::record {
 namespace {
@@ -69,7 +70,7 @@ class Content {
         return;
       case EntryType::kAnchor: {
         const auto times = values_of<std::int64_t>(entry.payload);
-        record.anchors.push_back({entry.head.first_scan, times.at(0), times.at(1)});
+        record.anchors.push_back(possible(ClockAnchor{entry.head.first_scan, times.at(0), times.at(1)}));
         return;
       }
       case EntryType::kEvent:
@@ -93,7 +94,7 @@ class Content {
   void add_scans(const Entry& entry) {
     Record& record = reading_.record;
     std::vector<ScanRun>& runs = reading_.runs;
-    const daq::ScanIndex first = entry.head.first_scan;
+    const daq::ScanIndex first = possible(entry.head.first_scan);
     if (!runs.empty() && first < runs.back().end()) throw std::invalid_argument("scan indices run backwards");
     const std::vector<double> raw = raw_of(entry);
     if (record.header.board.quantity == daq::RawQuantity::kCounts) {
@@ -102,6 +103,7 @@ class Content {
       if (!std::all_of(raw.begin(), raw.end(), possible)) throw std::invalid_argument("count above maxdata");
     }
     if (raw.empty()) return;
+    possible(first + static_cast<daq::ScanIndex>(raw.size()) - 1);
     if (runs.empty() || first != runs.back().end()) runs.push_back({first, 0, reading_.scan_count});
     runs.back().count += raw.size();
     reading_.scan_count += raw.size();

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/record/fields.hpp"
+#include "core/record/possible.hpp"
 #include "core/record/words.hpp"
 
 namespace stickslip::record {
@@ -304,8 +305,9 @@ std::string gap_to_json(const daq::Gap& gap) {
 daq::Gap gap_from_json(std::string_view text) {
   const json object = json::parse(text);
   const auto cause = object.at("cause").get<std::string>();
-  return {object.at("first_scan").get<daq::ScanIndex>(), object.at("scan_count").get<std::int64_t>(),
-          object.at("estimated").get<bool>(), word(cause, gap_cause_from_name(cause))};
+  return possible(daq::Gap{object.at("first_scan").get<daq::ScanIndex>(),
+                           object.at("scan_count").get<std::int64_t>(), object.at("estimated").get<bool>(),
+                           word(cause, gap_cause_from_name(cause))});
 }
 
 std::string cycle_to_json(const friction::Cycle& cycle) { return dump(cycle_to_array(cycle)); }
@@ -318,7 +320,7 @@ std::string event_to_json(const Event& event) {
 
 Event event_from_json(std::string_view text) {
   const json object = json::parse(text);
-  return {object.at("scan").get<daq::ScanIndex>(), object.at("realtime_ns").get<std::int64_t>(),
+  return {possible(object.at("scan").get<daq::ScanIndex>()), object.at("realtime_ns").get<std::int64_t>(),
           object.at("text").get<std::string>()};
 }
 

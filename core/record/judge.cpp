@@ -24,7 +24,7 @@ constexpr double kRateTolerance = 0.01;
 /// Of a normal distribution of the fitted rate: 1 in 3.5 million.
 constexpr double kCertain = 5.0;
 /// A clock that was set by more than this during a test is worth a word; NTP slews by 0.5 ms/s.
-constexpr std::int64_t kClockStep_ns = 1'000'000'000;
+constexpr double kClockStep_ns = 1e9;
 
 bool begins_as_journal(const Descriptor& file) {
   std::array<char, 4> magic{};
@@ -88,11 +88,11 @@ void judge_clocks(const Record& record, daq::ScanIndex first, daq::ScanIndex end
       verdict.damage(place, "the monotonic clock does not rise");
   }
   if (anchors.size() < 2 || worst(verdict.findings) == Judgement::kDamaged) return;
-  const auto step_ns = (anchors.back().realtime_ns - anchors.front().realtime_ns) -
-                       (anchors.back().monotonic_ns - anchors.front().monotonic_ns);
+  const double step_ns = static_cast<double>(anchors.back().realtime_ns - anchors.front().realtime_ns) -
+                         static_cast<double>(anchors.back().monotonic_ns - anchors.front().monotonic_ns);
   if (std::abs(step_ns) > kClockStep_ns) {
-    verdict.note("timing", fmt::format("the clock of the day was set by {:.3f} s during the test",
-                                       static_cast<double>(step_ns) * 1e-9));
+    verdict.note("timing",
+                 fmt::format("the clock of the day was set by {:.3f} s during the test", step_ns * 1e-9));
   }
   const double granted_Hz = record.header.board.scan_rate_granted_Hz;
   const auto rate = daq::fit_rate(anchors, record.gaps, granted_Hz);

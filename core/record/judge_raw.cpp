@@ -11,6 +11,7 @@
 #include "core/record/hdf_read.hpp"
 #include "core/record/judge.hpp"
 #include "core/record/layout.hpp"
+#include "core/record/possible.hpp"
 #include "core/record/sha256.hpp"
 #include "core/record/words.hpp"
 
@@ -88,6 +89,7 @@ void judge_columns(hid_t raw, const std::string& name, const Record& record, Ver
     std::vector<float> force_N(forces ? count : 0);
     read_rows<double>(times, "time", row, time_s);
     read_rows<std::int64_t>(indices, "scan", row, scan);
+    for (const daq::ScanIndex index : scan) possible(index);
     read_rows<Stored>(values, name, row, value);
     read_rows<std::uint8_t>(flags, "flags", row, flag);
     if (forces) read_rows<float>(*forces, "force", row, force_N);

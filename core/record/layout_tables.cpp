@@ -8,6 +8,7 @@
 #include "core/record/hdf_write.hpp"
 #include "core/record/layout.hpp"
 #include "core/record/long_tables.hpp"
+#include "core/record/possible.hpp"
 #include "core/record/words.hpp"
 
 namespace stickslip::record {
@@ -84,7 +85,7 @@ std::vector<daq::Gap> read_gaps(hid_t entry) {
   for (std::size_t i = 0; i < first.size(); ++i) {
     const auto cause = gap_cause_from_name(causes[i]);
     if (!cause) throw HdfError(fmt::format("gaps/cause '{}' is unknown", causes[i]));
-    gaps.push_back({first[i], count[i], estimated[i] != 0, *cause});
+    gaps.push_back(possible(daq::Gap{first[i], count[i], estimated[i] != 0, *cause}));
   }
   return gaps;
 }
@@ -105,7 +106,7 @@ std::vector<Event> read_events(hid_t entry) {
   const auto texts = read_texts(group.get(), "text");
   if (texts.size() != scan.size()) throw HdfError("events/text has another length than events/scan");
   std::vector<Event> events;
-  for (std::size_t i = 0; i < scan.size(); ++i) events.push_back({scan[i], realtime[i], texts[i]});
+  for (std::size_t i = 0; i < scan.size(); ++i) events.push_back({possible(scan[i]), realtime[i], texts[i]});
   return events;
 }
 

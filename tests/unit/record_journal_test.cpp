@@ -3,10 +3,14 @@
 
 #include <cmath>
 #include <csignal>
+#include <functional>
+#include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/record/journal.hpp"
+#include "core/record/possible.hpp"
 #include "tests/support/journal_samples.hpp"
 #include "tests/support/record_equality.hpp"
 #include "tests/support/record_samples.hpp"
@@ -172,6 +176,57 @@ TEST(Journal, ImpossibleCodesOfTheSecondChannelEndTheReading) {
     ASSERT_TRUE(read);
     EXPECT_EQ(read->stopped_by, "code of the second channel out of range");
     EXPECT_EQ(read->record.raw.size(), 1U);
+  }
+}
+
+// A clock that ran backwards through zero made the difference of two readings overflow.
+TEST(Journal, ScansAndClocksThatCannotBeEndTheReading) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
+  using Write = std::function<base::Result<void>(JournalWriter&)>;
+  const std::vector<std::pair<Write, std::string>> cases{
+      {[](JournalWriter& file) { return file.append_scans(kMost, std::vector<double>(3, 5.0), {}); },
+       "scan 9223372036854775807 lies outside of 0 to 9007199254740992"},
+      {[](JournalWriter& file) {
+         return file.append_scans(record::kLastScan - 1, std::vector<double>(3, 5.0), {});
+       },
+       "scan 9007199254740993 lies outside of 0 to 9007199254740992"},
+      {[](JournalWriter& file) {
+         return file.append_anchor({kLeast, 1, 1});
+       },
+       "scan -9223372036854775808 lies outside of 0 to 9007199254740992"},
+      {[](JournalWriter& file) {
+         return file.append_anchor({100, kLeast, 1});
+       },
+       "no clock shows -9223372036854775808 ns and 1 ns: below zero"},
+      {[](JournalWriter& file) {
+         return file.append_anchor({100, 1, -5});
+       },
+       "no clock shows 1 ns and -5 ns: below zero"},
+      {[](JournalWriter& file) {
+         return file.append_gap({100, kMost, false, daq::GapCause::kOverrun});
+       },
+       "a gap of 9223372036854775807 scans from scan 100 ends outside of 0 to 9007199254740992"},
+      {[](JournalWriter& file) {
+         return file.append_gap({100, -1, false, daq::GapCause::kOverrun});
+       },
+       "a gap of -1 scans from scan 100 ends outside of 0 to 9007199254740992"},
+      {[](JournalWriter& file) {
+         return file.append_event({-7, 1, "lost"});
+       },
+       "scan -7 lies outside of 0 to 9007199254740992"}};
+  for (const auto& [write, words] : cases) {
+    const TemporaryFolder folder;
+    {
+      auto journal = JournalWriter::create(folder / "a.journal", test::sample_header());
+      ASSERT_TRUE(journal);
+      ASSERT_TRUE(journal->append_scans(100, std::vector<double>(1, 5.0), {}));
+      ASSERT_TRUE(write(*journal));
+    }
+    const auto read = read_journal(folder / "a.journal");
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->stopped_by, words);
+    EXPECT_EQ(read->record.raw.size(), 1U) << words;
   }
 }
 

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -100,6 +101,14 @@ TEST(Verify, ClocksThatContradictEachOtherAreFound) {
   EXPECT_THAT(findings_of(verdict_on(record)), HasSubstr("timing row 1: scan 1040 is not of this test"));
 }
 
+TEST(Verify, ClocksAnAgeApartAreAWordNotAnOverflow) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  record::Record record = whole_record();
+  record.anchors = {{1000, 0, kMost}, {1030, kMost, 0}};
+  EXPECT_THAT(findings_of(verdict_on(record)),
+              HasSubstr("note timing: the clock of the day was set by -18446744073.710 s during the test"));
+}
+
 /// Six anchors, 10 scans apart, of a board that runs at `rate_Hz`.
 record::Record with_clocks(double rate_Hz) {
   record::Record record = whole_record();
@@ -185,6 +194,35 @@ TEST(Verify, ColumnsThatDoNotFollowFromTheCountsAreFound) {
   });
   EXPECT_THAT(findings_of(verdict),
               HasSubstr("entry/raw/force row 7: the force does not follow from the counts"));
+}
+
+/// Sets the last of the whole numbers of a column.
+Verdict with_last(const char* column, std::int64_t value) {
+  return after([&](hid_t file) {
+    const hid_t dataset = H5Dopen2(file, column, H5P_DEFAULT);
+    const hid_t space = H5Dget_space(dataset);
+    std::vector<std::int64_t> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+    H5Dread(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    values.back() = value;
+    H5Dwrite(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    H5Sclose(space);
+    H5Dclose(dataset);
+  });
+}
+
+TEST(Verify, ScansAndClocksThatCannotBeAreDamage) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
+  const auto expect_damage = [](const char* column, std::int64_t value, const char* words) {
+    const Verdict verdict = with_last(column, value);
+    EXPECT_EQ(verdict.judgement, Judgement::kDamaged) << column;
+    EXPECT_THAT(findings_of(verdict), HasSubstr(words)) << column;
+  };
+  expect_damage("/entry/raw/scan", kMost, "scan 9223372036854775807 lies outside of 0 to 9007199254740992");
+  expect_damage("/entry/timing/scan", kLeast, "scan -9223372036854775808 lies outside of 0 to");
+  expect_damage("/entry/timing/monotonic_raw", -1, "no clock shows -1 ns and 1795265582085714000 ns");
+  expect_damage("/entry/timing/realtime", -1, "no clock shows 5085714000 ns and -1 ns: below zero");
+  expect_damage("/entry/events/scan", -1, "scan -1 lies outside of 0 to");
 }
 
 TEST(Verify, AnOlderRecordWithoutSealIsComplete) {

@@ -1,0 +1,33 @@
+#include "core/record/possible.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace stickslip::record {
+
+daq::ScanIndex possible(daq::ScanIndex scan) {
+  if (scan < 0 || scan > kLastScan)
+    throw std::invalid_argument(fmt::format("scan {} lies outside of 0 to {}", scan, kLastScan));
+  return scan;
+}
+
+daq::Gap possible(const daq::Gap& gap) {
+  possible(gap.first);
+  if (gap.count < 0 || gap.count > kLastScan - gap.first) {
+    throw std::invalid_argument(fmt::format("a gap of {} scans from scan {} ends outside of 0 to {}",
+                                            gap.count, gap.first, kLastScan));
+  }
+  return gap;
+}
+
+daq::ClockAnchor possible(const daq::ClockAnchor& anchor) {
+  possible(anchor.scan);
+  if (anchor.monotonic_ns < 0 || anchor.realtime_ns < 0) {
+    throw std::invalid_argument(
+        fmt::format("no clock shows {} ns and {} ns: below zero", anchor.monotonic_ns, anchor.realtime_ns));
+  }
+  return anchor;
+}
+
+}  // namespace stickslip::record
