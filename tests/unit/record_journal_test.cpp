@@ -1,15 +1,20 @@
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "core/record/fields.hpp"
 #include "core/record/journal.hpp"
+#include "core/record/json_codec.hpp"
 #include "core/record/possible.hpp"
 #include "tests/support/journal_samples.hpp"
 #include "tests/support/record_equality.hpp"
@@ -228,6 +233,30 @@ TEST(Journal, ScansAndClocksThatCannotBeEndTheReading) {
     EXPECT_EQ(read->stopped_by, words);
     EXPECT_EQ(read->record.raw.size(), 1U) << words;
   }
+}
+
+TEST(Journal, NumbersOfTheEndThatFitNoColumnAreRefused) {
+  record::EndRecord end = *test::sample_record().end;
+  end.truth.reset();
+  end.cycles.clear();
+  end.cycles.push_back(test::sample_record().cycles[0]);
+  std::vector<std::byte> bytes;
+  record::append_end_bytes(end, bytes);
+  const auto tables = std::ranges::find(bytes, std::byte{0}) + 1 - bytes.begin();
+  std::ptrdiff_t column = 0;
+  record::for_each_cycle_column([&](const record::FieldName& name, auto member) {
+    using Number = std::decay_t<decltype(friction::Cycle{}.*member)>;
+    std::vector<std::byte> changed = bytes;
+    const double huge = 1e300;
+    std::memcpy(changed.data() + tables + column++ * static_cast<std::ptrdiff_t>(sizeof huge), &huge,
+                sizeof huge);
+    if constexpr (std::is_integral_v<Number>) {
+      EXPECT_THROW(static_cast<void>(record::end_from_bytes(changed)), std::invalid_argument) << name.name;
+    } else {
+      EXPECT_EQ(record::end_from_bytes(changed).cycles[0].*member, huge) << name.name;
+    }
+  });
+  EXPECT_EQ(tables + column * static_cast<std::ptrdiff_t>(sizeof(double)), std::ssize(bytes));
 }
 
 // CRC-32C finds every single-bit error: no flip anywhere may go unnoticed.

@@ -1,0 +1,233 @@
+// The end of a journal, JSON and tables, and the runs of a sweep, which have the same results and truth.
+
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+#include "core/record/json_codec.hpp"
+#include "core/record/json_fields.hpp"
+#include "core/record/words.hpp"
+
+namespace stickslip::record {
+namespace {
+
+Json results_to_json(const friction::TestResults& results) {
+  Json object{{"regime", friction::name(results.regime)},
+              {"regime_reason", results.regime_reason},
+              {"findings", results.findings}};
+  friction::for_each_result(results,
+                            [&](const friction::ResultName& name, const friction::Estimate& estimate) {
+                              Json entry = Json::object();
+                              put(entry, "value", estimate.value);
+                              put(entry, "standard_error", estimate.standard_error);
+                              put(entry, "systematic_uncertainty", estimate.systematic_uncertainty);
+                              put(entry, "reason", estimate.reason);
+                              object[std::string{name.name}] = std::move(entry);
+                            });
+  return object;
+}
+
+Json latency_to_json(const daq::LatencyHistogram& latency) {
+  return {{"counts", latency.counts()}, {"largest", latency.largest_s()}};
+}
+
+daq::LatencyHistogram latency_from_json(const Json& object) {
+  return {object.at("counts").get<daq::LatencyHistogram::Counts>(), object.at("largest").get<double>()};
+}
+
+friction::TestResults results_from_json(const Json& object) {
+  friction::TestResults results;
+  const auto regime = object.at("regime").get<std::string>();
+  results.regime = word(regime, friction::regime_from_name(regime));
+  object.at("regime_reason").get_to(results.regime_reason);
+  results.findings = object.value("findings", std::vector<std::string>{});
+  friction::for_each_result(results, [&](const friction::ResultName& name, friction::Estimate& estimate) {
+    const Json entry = object.value(std::string{name.name}, Json{{"reason", kNoSuchResultThen}});
+    take(entry, "value", estimate.value);
+    take(entry, "standard_error", estimate.standard_error);
+    take(entry, "systematic_uncertainty", estimate.systematic_uncertainty);
+    take(entry, "reason", estimate.reason);
+  });
+  return results;
+}
+
+Json truth_to_json(const friction::TestTruth& truth) {
+  Json object = facts_to_json(truth);
+  object["regime"] = friction::name(truth.regime);
+  object["mode_count"] = truth.modes.size();
+  object["cycle_count"] = truth.cycles.size();
+  if (truth.solver) object["solver"] = facts_to_json(*truth.solver);
+  return object;
+}
+
+friction::TestTruth truth_from_json(const Json& object) {
+  friction::TestTruth truth;
+  for_each_field(truth, taker(object));
+  const auto regime = object.at("regime").get<std::string>();
+  truth.regime = word(regime, friction::regime_from_name(regime));
+  if (object.contains("solver")) for_each_field(truth.solver.emplace(), taker(object.at("solver")));
+  // Older journals have their tables here.
+  for (const Json& entry : object.value("modes", Json::array())) {
+    friction::ModeInterval mode;
+    decode(entry.at(0), mode.start_s);
+    decode(entry.at(1), mode.end_s);
+    const auto text = entry.at(2).get<std::string>();
+    mode.mode = word(text, mode_from_name(text));
+    truth.modes.push_back(mode);
+  }
+  for (const Json& entry : object.value("cycles", Json::array())) {
+    friction::TrueCycle slip;
+    decode(entry.at(0), slip.onset_time_s);
+    decode(entry.at(1), slip.mu_s);
+    decode(entry.at(2), slip.mu_k);
+    truth.cycles.push_back(slip);
+  }
+  return truth;
+}
+
+/// Bad UTF-8 as everywhere; without the tables, which are many numbers.
+std::string end_to_json(const EndRecord& end) {
+  Json object{{"status", name(end.status)},
+              {"reasons", end.reasons},
+              {"cause", end.cause},
+              {"results", results_to_json(end.results)},
+              {"spikes", end.spikes}};
+  put(object, "end_realtime_ns", end.end_realtime_ns);
+  put(object, "compute_time", end.compute_time_s);
+  if (end.read_latency) object["read_latency"] = latency_to_json(*end.read_latency);
+  object["cycle_count"] = end.cycles.size();
+  object["cycle_columns"] = cycle_columns();
+  if (end.truth) object["truth"] = truth_to_json(*end.truth);
+  return dump(object);
+}
+
+/// Numbers one after the other. \throws std::invalid_argument at the end of the bytes.
+class TableReader {
+ public:
+  explicit TableReader(std::string_view bytes) : bytes_(bytes) {}
+
+  [[nodiscard]] std::size_t left() const noexcept { return bytes_.size() / sizeof(double); }
+  [[nodiscard]] double next() {
+    if (left() == 0) throw std::invalid_argument("tables are cut short");
+    double value = 0.0;
+    std::memcpy(&value, bytes_.data(), sizeof value);
+    bytes_.remove_prefix(sizeof value);
+    return value;
+  }
+  /// \throws std::invalid_argument if it is no `Number`.
+  template <typename Number>
+  [[nodiscard]] Number next_as() {
+    const double value = next();
+    if constexpr (std::is_integral_v<Number>) {
+      // 2⁶³ is a double, the largest of 64 bits is none.
+      const bool fits = value >= static_cast<double>(std::numeric_limits<Number>::min()) &&
+                        value < static_cast<double>(std::numeric_limits<Number>::max()) + 1.0;
+      if (!fits)
+        throw std::invalid_argument(fmt::format("tables: {} is no whole number of its column", value));
+    }
+    return static_cast<Number>(value);
+  }
+
+ private:
+  std::string_view bytes_;
+};
+
+/// As many rows as the object says, if they can be there at all.
+std::size_t rows_told(const Json& object, std::string_view key, const TableReader& table) {
+  const auto count = object.at(std::string{key}).get<std::size_t>();
+  if (count > table.left()) throw std::invalid_argument("tables are cut short");
+  return count;
+}
+
+friction::Mode mode_of(double number) {
+  for (const auto mode : {friction::Mode::kStick, friction::Mode::kSlip, friction::Mode::kSlack}) {
+    if (number == static_cast<double>(mode)) return mode;
+  }
+  throw std::invalid_argument(fmt::format("unknown mode {}", number));
+}
+
+/// \param object  of the end.
+void read_tables(const Json& object, TableReader table, EndRecord& end) {
+  const auto columns = object.value("cycle_columns", kFirstCycleColumns);
+  for (std::size_t left = rows_told(object, "cycle_count", table); left > 0; --left) {
+    friction::Cycle cycle;
+    std::size_t column = 0;
+    for_each_cycle_column([&](const FieldName&, auto member) {
+      if (column++ < columns) cycle.*member = table.next_as<std::decay_t<decltype(cycle.*member)>>();
+    });
+    end.cycles.push_back(cycle);
+  }
+  if (!end.truth) return;
+  for (std::size_t left = rows_told(object.at("truth"), "mode_count", table); left > 0; --left) {
+    end.truth->modes.push_back(
+        {table.next(), table.next(), mode_of(table.next())});  // Braces keep the order.
+  }
+  for (std::size_t left = rows_told(object.at("truth"), "cycle_count", table); left > 0; --left) {
+    friction::TrueCycle cycle;
+    for_each_true_cycle_column([&](const FieldName&, auto member) { cycle.*member = table.next(); });
+    end.truth->cycles.push_back(cycle);
+  }
+}
+
+}  // namespace
+
+void append_end_bytes(const EndRecord& end, std::vector<std::byte>& bytes) {
+  const std::string json_text = end_to_json(end);
+  const auto text = std::as_bytes(std::span{json_text});
+  bytes.insert(bytes.end(), text.begin(), text.end());
+  bytes.push_back(std::byte{0});
+  const auto add = [&](double value) {
+    const auto number = std::as_bytes(std::span{&value, 1});
+    bytes.insert(bytes.end(), number.begin(), number.end());
+  };
+  for (const friction::Cycle& cycle : end.cycles) {
+    for_each_cycle_column([&](const FieldName&, auto member) { add(static_cast<double>(cycle.*member)); });
+  }
+  if (!end.truth) return;
+  for (const friction::ModeInterval& mode : end.truth->modes) {
+    add(mode.start_s);
+    add(mode.end_s);
+    add(static_cast<double>(mode.mode));
+  }
+  for (const friction::TrueCycle& cycle : end.truth->cycles) {
+    for_each_true_cycle_column([&](const FieldName&, auto member) { add(cycle.*member); });
+  }
+}
+
+EndRecord end_from_bytes(std::span<const std::byte> bytes) {
+  const std::string_view text{reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  const Json object = Json::parse(text.substr(0, text.find('\0')));
+  EndRecord end;
+  const auto status = object.at("status").get<std::string>();
+  end.status = word(status, status_from_name(status));
+  object.at("reasons").get_to(end.reasons);
+  object.at("cause").get_to(end.cause);
+  take(object, "end_realtime_ns", end.end_realtime_ns);
+  take(object, "compute_time", end.compute_time_s);
+  if (object.contains("read_latency")) end.read_latency = latency_from_json(object.at("read_latency"));
+  end.results = results_from_json(object.at("results"));
+  object.at("spikes").get_to(end.spikes);
+  for (const Json& row : object.value("cycles", Json::array())) end.cycles.push_back(cycle_from_array(row));
+  if (object.contains("truth")) end.truth = truth_from_json(object.at("truth"));
+  if (const auto tables = text.find('\0'); tables != std::string_view::npos) {
+    read_tables(object, TableReader{text.substr(tables + 1)}, end);
+  }
+  return end;
+}
+
+std::string sweep_run_to_json(const SweepRun& run) {
+  return dump({{"run", run.number},
+               {"results", results_to_json(run.results)},
+               {"truth", truth_to_json(run.truth)},
+               {"true_cycle_count", run.true_cycle_count}});
+}
+
+SweepRun sweep_run_from_json(std::string_view text) {
+  const Json object = Json::parse(text);
+  return {object.at("run").get<std::int64_t>(), results_from_json(object.at("results")),
+          truth_from_json(object.at("truth")), object.at("true_cycle_count").get<std::int64_t>()};
+}
+
+}  // namespace stickslip::record

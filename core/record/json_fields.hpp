@@ -1,0 +1,150 @@
+/// \file
+/// Values under their keys in JSON: what the parts of a journal are made of.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "core/record/fields.hpp"
+
+namespace stickslip::record {
+
+using Json = nlohmann::json;
+
+template <typename T>
+struct IsOptional : std::false_type {};
+template <typename T>
+struct IsOptional<std::optional<T>> : std::true_type {};
+/// Empty stands for not known.
+template <typename T>
+concept Many = std::is_same_v<T, std::string> || std::is_same_v<T, std::vector<double>> ||
+    std::is_same_v<T, std::vector<std::string>>;
+
+inline Json encode(double value) {
+  if (std::isfinite(value)) return value;
+  if (std::isnan(value)) return nullptr;
+  return value > 0.0 ? "inf" : "-inf";
+}
+
+template <typename T>
+Json encode(const T& value) {
+  if constexpr (std::is_same_v<T, std::vector<double>>) {
+    Json array = Json::array();
+    for (const double number : value) array.push_back(encode(number));
+    return array;
+  } else {
+    return value;
+  }
+}
+
+inline void decode(const Json& from, double& value) {
+  if (from.is_null()) {
+    value = std::numeric_limits<double>::quiet_NaN();
+  } else if (from.is_string()) {
+    value =
+        from == "inf" ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
+  } else {
+    from.get_to(value);
+  }
+}
+
+template <typename T>
+void decode(const Json& from, T& value) {
+  if constexpr (std::is_same_v<T, std::vector<double>>) {
+    value.assign(from.size(), 0.0);
+    for (std::size_t i = 0; i < value.size(); ++i) decode(from.at(i), value[i]);
+  } else {
+    from.get_to(value);
+  }
+}
+
+/// Writes a value under its key; absent optionals, empty texts and columns get none.
+template <typename T>
+void put(Json& object, std::string_view key, const T& value) {
+  if constexpr (IsOptional<T>::value) {
+    if (value) object[std::string{key}] = encode(*value);
+  } else if constexpr (Many<T>) {
+    if (!value.empty()) object[std::string{key}] = encode(value);
+  } else {
+    object[std::string{key}] = encode(value);
+  }
+}
+
+template <typename T>
+void take(const Json& object, std::string_view key, T& value) {
+  const auto found = object.find(std::string{key});
+  if constexpr (IsOptional<T>::value) {
+    value.reset();
+    if (found != object.end()) decode(*found, value.emplace());
+  } else if constexpr (Many<T>) {
+    value.clear();
+    if (found != object.end()) decode(*found, value);
+  } else {
+    if (found == object.end()) throw std::invalid_argument(fmt::format("{} is missing", key));
+    decode(*found, value);
+  }
+}
+
+inline auto putter(Json& object) {
+  return [&object](const FieldName& name, const auto& value) { put(object, name.name, value); };
+}
+inline auto taker(const Json& object) {
+  return [&object](const FieldName& name, auto& value) { take(object, name.name, value); };
+}
+
+template <typename Facts>
+Json facts_to_json(const Facts& facts) {
+  Json object = Json::object();
+  for_each_field(facts, putter(object));
+  return object;
+}
+
+template <typename Value>
+Value word(const std::string& text, std::optional<Value> value) {
+  if (!value) throw std::invalid_argument(fmt::format("unknown word '{}'", text));
+  return *value;
+}
+
+/// Bad UTF-8 (a configuration file may hold anything) is replaced, never a reason to lose a test.
+inline std::string dump(const Json& value) {
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Columns of a cycle in the first journals; what came later may be missing.
+inline constexpr std::size_t kFirstCycleColumns = 15;
+
+inline std::size_t cycle_columns() {
+  std::size_t count = 0;
+  for_each_cycle_column([&](const FieldName&, auto) { ++count; });
+  return count;
+}
+
+inline Json cycle_to_array(const friction::Cycle& cycle) {
+  Json array = Json::array();
+  for_each_cycle_column([&](const FieldName&, auto member) { array.push_back(encode(cycle.*member)); });
+  return array;
+}
+
+inline friction::Cycle cycle_from_array(const Json& array) {
+  friction::Cycle cycle;
+  std::size_t i = 0;
+  for_each_cycle_column([&](const FieldName&, auto member) {
+    if (i < kFirstCycleColumns || i < array.size()) decode(array.at(i), cycle.*member);
+    ++i;
+  });
+  return cycle;
+}
+
+}  // namespace stickslip::record
