@@ -15,6 +15,8 @@ struct HttpLimits {
   int connections = 32;                    ///< At once; further ones are closed. Live streams count as well.
   /// A client of the live stream that gives no sign of life for so long is let go.
   std::chrono::milliseconds live_idle{60'000};
+  /// When no connection can be taken (no file or no memory is left), until it is tried again.
+  std::chrono::milliseconds accept_again{100};
 };
 
 }  // namespace stickslip::daemon

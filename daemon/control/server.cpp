@@ -11,6 +11,7 @@
 
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
+#include <boost/asio/steady_timer.hpp>
 
 #include "core/base/contract.hpp"
 #include "daemon/control/connection.hpp"
@@ -30,13 +31,15 @@ template <typename Protocol>
 class AcceptorOf : public ControlServer::Listener, public std::enable_shared_from_this<AcceptorOf<Protocol>> {
  public:
   AcceptorOf(asio::io_context& io, std::shared_ptr<Service> service)
-      : acceptor_(io), service_(std::move(service)) {}
+      : acceptor_(io), service_(std::move(service)), again_(io) {}
 
   void accept() {
     acceptor_.async_accept(
         [self = this->shared_from_this()](boost::system::error_code error, typename Protocol::socket socket) {
           if (error == asio::error::operation_aborted) return;
-          if (!error && self->service_->connection_count < self->service_->limits.connections) {
+          // Whoever asks stays in the queue, and the next try would fail at once.
+          if (error) return self->accept_later();
+          if (self->service_->connection_count < self->service_->limits.connections) {
             serve_connection(AnySocket{std::move(socket)}, self->service_);
           }
           self->accept();
@@ -46,11 +49,23 @@ class AcceptorOf : public ControlServer::Listener, public std::enable_shared_fro
   void close() override {
     boost::system::error_code ignored;
     acceptor_.close(ignored);
+    again_.cancel();
+  }
+
+ private:
+  void accept_later() {
+    again_.expires_after(service_->limits.accept_again);
+    again_.async_wait([self = this->shared_from_this()](boost::system::error_code error) {
+      if (!error && self->acceptor_.is_open()) self->accept();
+    });
   }
 
  protected:
   typename Protocol::acceptor acceptor_;
   std::shared_ptr<Service> service_;
+
+ private:
+  asio::steady_timer again_;
 };
 
 class LocalAcceptor final : public AcceptorOf<Local> {

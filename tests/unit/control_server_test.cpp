@@ -1,11 +1,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <filesystem>
@@ -132,6 +134,49 @@ TEST_F(ControlServerTest, AnswersOverTheSocketWhichOnlyOwnerAndGroupMayUse) {
 }
 
 constexpr const char* kClose = "\r\nConnection: close\r\n\r\n";
+
+/// No file can be opened as long as it lives.
+class NoFilesLeft {
+ public:
+  NoFilesLeft() {
+    EXPECT_EQ(::getrlimit(RLIMIT_NOFILE, &before_), 0);
+    const int next = ::dup(0);
+    ::close(next);
+    const rlimit none{static_cast<rlim_t>(next), before_.rlim_max};
+    EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+  }
+  NoFilesLeft(const NoFilesLeft&) = delete;
+  NoFilesLeft& operator=(const NoFilesLeft&) = delete;
+  ~NoFilesLeft() { EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &before_), 0); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(ControlServerTest, WhereNoFileCanBeOpenedItWaitsInsteadOfTryingWithoutEnd) {
+  for (const bool soon : {false, true}) {
+    HttpLimits limits;
+    limits.accept_again = soon ? 0h : 1h;
+    auto server = ControlServer::listen(io_, socket_, make_api(bench_, clock_), limits);
+    ASSERT_TRUE(server) << server.error().message;
+    const int client = connected();
+    send(client, std::string{"GET /v1/status HTTP/1.1\r\nHost: localhost"} + kClose);
+    {
+      const NoFilesLeft none;
+      int handlers = 0;
+      while (handlers < 100 && io_.poll_one() > 0) ++handlers;
+      EXPECT_EQ(handlers < 100, !soon);
+    }
+    std::array<char, 12> answer{};
+    ssize_t got = -1;
+    while (soon && (got = ::recv(client, answer.data(), answer.size(), MSG_DONTWAIT)) < 0) io_.run_one();
+    const std::string begin{answer.data(), got > 0 ? static_cast<std::size_t>(got) : 0};
+    EXPECT_EQ(begin, soon ? "HTTP/1.1 200" : "");
+    ::close(client);
+    server->reset();
+    io_.poll();
+  }
+}
 
 enum class Way { kBySocket, kByTcp };
 
