@@ -35,10 +35,20 @@ record::EntryHead head_of(record::EntryType type) {
   return head;
 }
 
+/// What the entries are judged by. It is the same each time: what else a header has would only take time.
+record::RecordHeader short_header() {
+  const record::RecordHeader whole = test::sample_header();
+  record::RecordHeader header;
+  header.uuid = whole.uuid;
+  header.board = whole.board;
+  header.load_cell = whole.load_cell;
+  return header;
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const std::string header = record::header_to_json(test::sample_header());
+  static const std::string header = record::header_to_json(short_header());
   static const std::string name = [] {
     const int file = ::memfd_create("test.journal", MFD_CLOEXEC);
     STICKSLIP_EXPECTS(file >= 0);
