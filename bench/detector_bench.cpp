@@ -1,7 +1,7 @@
 // The live detector, tier by tier: time for a scan over whole tests, and the slowest single scan, which is
 // one that closes a cycle. Beside it, in the same run and over the same scans, what is done with SciPy: a
 // median of five, a Savitzky–Golay filter and find_peaks (daemon/peer/scipy_chain.py), as a whole array at
-// once, and the raw maximum.
+// once and as it would have to be called live, and the raw maximum.
 
 #include <benchmark/benchmark.h>
 
@@ -50,6 +50,10 @@ test::LiveScene differing_cycles(double scan_rate_Hz) {
 constexpr int kPromisedTest = 190;
 /// Slips of a test so long that what is done once for a test, or once for an array, counts no more.
 constexpr int kLongTest = 1000;
+
+/// Slips that SciPy's chain must see at once to tell of one: it takes the mean from a peak to the next, and
+/// finds a peak by what falls on either side.
+constexpr int kSeenAtOnce = 2;
 
 std::vector<double> scans_of(const test::LiveScene& scene) {
   test::LiveTrial trial{scene};
@@ -120,8 +124,10 @@ void peer_raw_maximum(benchmark::State& state) {
 BENCHMARK(peer_raw_maximum)->Arg(350)->Arg(10'000);
 
 /// Python tells the least time of many itself.
-void peer_scipy_chain(benchmark::State& state, const test::LiveScene& scene) {
-  const std::vector<accuracy::TierScene> scenes{{scene.scan_rate_Hz, scene.frequency_Hz, {scans_of(scene)}}};
+/// \return for one of the scans.
+double scipy_ns_per_scan(benchmark::State& state, const test::LiveScene& scene,
+                         const std::vector<double>& scans) {
+  const std::vector<accuracy::TierScene> scenes{{scene.scan_rate_Hz, scene.frequency_Hz, {scans}}};
   double ns = 0.0;
   for (auto _ : state) {
     const auto outcomes = daemon::run_scipy_chain(scenes);
@@ -131,7 +137,21 @@ void peer_scipy_chain(benchmark::State& state, const test::LiveScene& scene) {
       state.SkipWithError(outcomes.error().message.c_str());
     }
   }
-  state.counters["per_scan"] = ns * 1e-9;
+  return ns;
+}
+
+void peer_scipy_chain(benchmark::State& state, const test::LiveScene& scene) {
+  state.counters["per_scan"] = 1e-9 * scipy_ns_per_scan(state, scene, scans_of(scene));
+}
+
+/// To tell of each slip when it has come, the chain is called anew for each, on the last ones: every scan is
+/// seen so many times.
+void peer_scipy_chain_live(benchmark::State& state, double scan_rate_Hz) {
+  const test::LiveScene scene = fast_cycles(scan_rate_Hz);
+  const std::vector<double> scans = scans_of(scene);
+  const std::size_t before = scans_of(fast_cycles(scan_rate_Hz, scene.slips - kSeenAtOnce)).size();
+  const std::vector<double> last{scans.begin() + static_cast<std::ptrdiff_t>(before), scans.end()};
+  state.counters["per_scan"] = 1e-9 * scipy_ns_per_scan(state, scene, last) * kSeenAtOnce;
 }
 
 }  // namespace
@@ -174,6 +194,10 @@ int main(int argc, char** argv) {
         peer_scipy_chain(state, fast_cycles(rate_Hz, slips));
       })->Iterations(1);
     }
+    benchmark::RegisterBenchmark(
+        ("peer_scipy_chain_live/" + std::to_string(static_cast<int>(rate_Hz))).c_str(),
+        [=](benchmark::State& state) { peer_scipy_chain_live(state, rate_Hz); })
+        ->Iterations(1);
   }
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();

@@ -132,12 +132,13 @@ def others(bench):
     yield Figure("hand-over of 64 scans", "time", here, row("hand-over", time))
     yield Figure("its peer", "time", peer, row("hand-over", skip, time))
     yield Figure("peer over here", "ratio", peer / here, row("hand-over", skip, skip, ratio))
-    detector = benchmarks(bench / "bench_detector", "^follow/peak/350/1000|^peer_scipy_chain/350/1000")
-    [here] = [one["per_scan"] for name, one in detector.items() if name.startswith("follow")]
-    [peer] = [one["per_scan"] for name, one in detector.items() if name.startswith("peer")]
-    yield Figure("live detector, a scan", "time", here, row("live detector", time))
-    yield Figure("its peer, SciPy", "time", peer, row("live detector", skip, time))
-    yield Figure("SciPy over here", "ratio", peer / here, row("live detector", skip, skip, ratio))
+    detector = benchmarks(bench / "bench_detector", "^follow/(peak|fit)/350/1000|^peer_scipy_chain/350/1000|^peer_scipy_chain_live/350")
+    for first, here, peer in (("live detector", "follow/peak/350/1000", "peer_scipy_chain/350/1000"),
+                              ("the same, `fit`", "follow/fit/350/1000", "peer_scipy_chain_live/350")):
+        here, peer = (detector[name]["per_scan"] for name in (here, peer))
+        yield Figure(f"{first}, a scan", "time", here, row(first, time))
+        yield Figure("its peer, SciPy", "time", peer, row(first, skip, time))
+        yield Figure("SciPy over here", "ratio", peer / here, row(first, skip, skip, ratio))
     analysis = benchmarks(bench / "bench_analysis", "whole_test_fit")["analysis_with_whole_test_fit"]
     yield Figure("all results of a test", "time", 1e-9 * analysis["cpu_time"], row("all results", time))
     pipeline = benchmarks(bench / "bench_pipeline", "^sustained/interpolated")
