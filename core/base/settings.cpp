@@ -317,12 +317,13 @@ std::size_t Settings::choice_index(std::string_view key, std::span<const std::st
 }
 
 void Settings::refuse(std::string_view key, std::string_view why) {
+  const std::string told = one_line(why, why.size());  // It may name a file, and a name may hold anything.
   const toml::node* node = node_->table == nullptr ? nullptr : node_->table->get(key);
   const std::string path = joined_path(node_->path, key);
   if (node == nullptr) {
-    document_->missing(node_->place, fmt::format("{}: {}", path, why));
+    document_->missing(node_->place, fmt::format("{}: {}", path, told));
   } else {
-    document_->wrong(*node_, key, *node, fmt::format("{} = {}: {}", path, presentable(*node), why));
+    document_->wrong(*node_, key, *node, fmt::format("{} = {}: {}", path, presentable(*node), told));
   }
 }
 
