@@ -45,6 +45,11 @@ std::string one_line(std::string_view text, std::size_t longest) {
   return shown;
 }
 
+std::string reason_of(const std::exception& error) {
+  const std::string_view what{error.what()};
+  return one_line(what, what.size());
+}
+
 std::string spelling_hint(std::string_view word, const std::set<std::string, std::less<>>& known) {
   constexpr std::size_t kFarthestGuess = 3;
   std::string list;

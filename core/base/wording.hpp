@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <set>
 #include <string>
 #include <string_view>
@@ -12,6 +13,9 @@ namespace stickslip::base {
 /// The text without control characters (shown as \x0a) and cut after about `longest` bytes,
 /// never inside a UTF-8 sequence.
 [[nodiscard]] std::string one_line(std::string_view text, std::size_t longest = 60);
+
+/// Why something failed, whole and in one line: it may cite what stands in a file.
+[[nodiscard]] std::string reason_of(const std::exception& error);
 
 /// "did you mean sled_mass? Known here: …" if a known word is within three edits of `word`,
 /// else "known here: …".

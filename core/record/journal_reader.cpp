@@ -4,6 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/base/wording.hpp"
 #include "core/record/journal.hpp"
 #include "core/record/journal_entries.hpp"
 #include "core/record/json_codec.hpp"
@@ -187,7 +188,7 @@ base::Result<JournalReading> read_journal(const std::filesystem::path& path, Jou
         header_read = true;
       }
     } catch (const std::exception& error) {
-      reading.stopped_by = error.what();
+      reading.stopped_by = base::reason_of(error);
       break;
     }
     reading.whole_size = entries->position();

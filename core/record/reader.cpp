@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cmath>
 
+#include "core/base/wording.hpp"
 #include "core/record/file.hpp"
 #include "core/record/hdf_read.hpp"
 #include "core/record/layout.hpp"
@@ -117,7 +118,7 @@ base::Result<Record> read_record(const std::filesystem::path& path) {
   try {
     return read(path);
   } catch (const std::exception& error) {
-    return base::usage_error("{}: {}", path.string(), error.what());
+    return base::usage_error("{}: {}", path.string(), base::reason_of(error));
   }
 }
 
@@ -127,7 +128,7 @@ base::Result<void> verify_record(const std::filesystem::path& path, const Record
     verify(path, record, scans);
     return {};
   } catch (const std::exception& error) {
-    return base::failure("{}: {}", path.string(), error.what());
+    return base::failure("{}: {}", path.string(), base::reason_of(error));
   }
 }
 

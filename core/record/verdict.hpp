@@ -9,8 +9,10 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "core/base/wording.hpp"
 #include "core/daq/gap.hpp"
 
 namespace stickslip::record {
@@ -46,14 +48,16 @@ struct Verdict {
   std::string sha256_found;   ///< and of those that stand there.
   std::vector<Finding> findings;
 
-  void note(std::string place, std::string text) {
-    findings.push_back({Finding::Weight::kNote, std::move(place), std::move(text)});
+  void note(std::string_view place, std::string_view text) { add(Finding::Weight::kNote, place, text); }
+  void incomplete(std::string_view place, std::string_view text) {
+    add(Finding::Weight::kIncomplete, place, text);
   }
-  void incomplete(std::string place, std::string text) {
-    findings.push_back({Finding::Weight::kIncomplete, std::move(place), std::move(text)});
-  }
-  void damage(std::string place, std::string text) {
-    findings.push_back({Finding::Weight::kDamage, std::move(place), std::move(text)});
+  void damage(std::string_view place, std::string_view text) { add(Finding::Weight::kDamage, place, text); }
+
+ private:
+  /// Both may cite what stands in the file.
+  void add(Finding::Weight weight, std::string_view place, std::string_view text) {
+    findings.push_back({weight, base::one_line(place, place.size()), base::one_line(text, text.size())});
   }
 };
 

@@ -2,6 +2,7 @@
 #include <hdf5.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <functional>
@@ -11,6 +12,7 @@
 #include "core/record/finaliser.hpp"
 #include "core/record/iso_time.hpp"
 #include "core/record/reader.hpp"
+#include "core/record/verdict.hpp"
 #include "tests/support/journal_samples.hpp"
 #include "tests/support/record_equality.hpp"
 #include "tests/support/record_samples.hpp"
@@ -330,6 +332,28 @@ TEST(HostileFile, ThatIsHdf5ButNoRecord) {
   expect_refused(altered(folder, [](hid_t file) { H5Adelete(file, "format"); }), "no record of this program");
   expect_refused(altered(folder, [](hid_t file) { H5Ldelete(file, "entry", H5P_DEFAULT); }),
                  "group entry is missing");
+}
+
+// What is cited of a file would otherwise move the cursor of whoever reads the refusal.
+TEST(HostileFile, ThatIsCitedInOneLine) {
+  const TemporaryFolder folder;
+  const fs::path path = altered(folder, [](hid_t file) {
+    H5Ldelete(file, "entry/results/regime", H5P_DEFAULT);
+    const hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, 5);
+    const hid_t space = H5Screate(H5S_SCALAR);
+    const hid_t set =
+        H5Dcreate2(file, "entry/results/regime", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, "a\n\x1b[m");
+    H5Dclose(set);
+    H5Sclose(space);
+    H5Tclose(type);
+  });
+  expect_refused(path, "'a\\x0a\\x1b[m'");
+  for (const auto& finding : record::judge(path).findings) {
+    EXPECT_TRUE(std::ranges::none_of(finding.text, [](char c) { return c >= 0 && c < 0x20; }))
+        << finding.text;
+  }
 }
 
 TEST(HostileFile, WithOtherTypesOrShapes) {
