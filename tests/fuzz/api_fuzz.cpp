@@ -71,7 +71,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     api(request, [&](const daemon::HttpReply& reply) {
       ++answers;
       STICKSLIP_EXPECTS(described.contains(reply.status));
-      STICKSLIP_EXPECTS(reply.content_type != "application/json" || nlohmann::json::accept(reply.body));
+      // The description is long, always the same, and was read above.
+      STICKSLIP_EXPECTS(reply.content_type != "application/json" || reply.body == daemon::openapi() ||
+                        nlohmann::json::accept(reply.body));
     });
     STICKSLIP_EXPECTS(answers == 1);
   }
