@@ -190,8 +190,8 @@ TEST(Journal, ScansAndClocksThatCannotBeEndTheReading) {
   constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
   using Write = std::function<base::Result<void>(JournalWriter&)>;
   const std::vector<std::pair<Write, std::string>> cases{
-      {[](JournalWriter& file) { return file.append_scans(kMost, std::vector<double>(3, 5.0), {}); },
-       "scan 9223372036854775807 lies outside of 0 to 9007199254740992"},
+      {[](JournalWriter& file) { return file.append_scans(kMost - 3, std::vector<double>(3, 5.0), {}); },
+       "scan 9223372036854775804 lies outside of 0 to 9007199254740992"},
       {[](JournalWriter& file) {
          return file.append_scans(record::kLastScan - 1, std::vector<double>(3, 5.0), {});
        },
