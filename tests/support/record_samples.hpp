@@ -182,6 +182,18 @@ inline record::Record sample_record() {
   return record;
 }
 
+/// Complete, without a gap.
+inline record::Record whole_record() {
+  record::Record record = sample_record();
+  for (std::size_t i = 0; i < record.scan.size(); ++i) record.scan[i] = 1000 + static_cast<std::int64_t>(i);
+  record.gaps.clear();
+  record.anchors = {{1000, 5'000'000'000, 1'795'265'582'000'000'000},
+                    {1030, 5'085'714'000, 1'795'265'582'085'714'000}};
+  record.end->status = record::Status::kComplete;
+  record.end->reasons.clear();
+  return record;
+}
+
 /// 20 coefficients, as from a CSV file: nothing known but rate and speed.
 inline record::Record sample_imported() {
   record::Record record;

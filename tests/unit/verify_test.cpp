@@ -5,15 +5,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <limits>
 
 #include <nlohmann/json.hpp>
 
 #include "core/record/finaliser.hpp"
-#include "core/record/journal_care.hpp"
-#include "daemon/forked.hpp"
-#include "daemon/recovery.hpp"
 #include "tests/support/journal_samples.hpp"
 #include "tests/support/record_samples.hpp"
 
@@ -26,18 +22,6 @@ using record::Verdict;
 using test::TemporaryFolder;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
-
-/// Complete, without a gap.
-record::Record whole_record() {
-  record::Record record = test::sample_record();
-  for (std::size_t i = 0; i < record.scan.size(); ++i) record.scan[i] = 1000 + static_cast<std::int64_t>(i);
-  record.gaps.clear();
-  record.anchors = {{1000, 5'000'000'000, 1'795'265'582'000'000'000},
-                    {1030, 5'085'714'000, 1'795'265'582'085'714'000}};
-  record.end->status = record::Status::kComplete;
-  record.end->reasons.clear();
-  return record;
-}
 
 std::string findings_of(const Verdict& verdict) {
   std::string text;
@@ -54,7 +38,7 @@ Verdict verdict_on(const record::Record& record) {
 }
 
 TEST(Verify, AWholeRecordIsComplete) {
-  const Verdict verdict = verdict_on(whole_record());
+  const Verdict verdict = verdict_on(test::whole_record());
   EXPECT_EQ(verdict.judgement, Judgement::kComplete) << findings_of(verdict);
   EXPECT_EQ(findings_of(verdict), "");
   EXPECT_EQ(verdict.kind, "record");
@@ -79,7 +63,7 @@ TEST(Verify, SaysWhyARecordIsNotComplete) {
 }
 
 TEST(Verify, AJumpThatNoGapExplainsIsDamage) {
-  record::Record record = whole_record();
+  record::Record record = test::whole_record();
   for (std::size_t i = 20; i < record.scan.size(); ++i) record.scan[i] += 7;
   EXPECT_THAT(findings_of(verdict_on(record)),
               HasSubstr("damage entry/raw/scan row 20: the scans jump where gaps/first_scan has no gap"));
@@ -90,20 +74,20 @@ TEST(Verify, AJumpThatNoGapExplainsIsDamage) {
 }
 
 TEST(Verify, ClocksThatContradictEachOtherAreFound) {
-  record::Record record = whole_record();
+  record::Record record = test::whole_record();
   std::swap(record.anchors[0].monotonic_ns, record.anchors[1].monotonic_ns);
   EXPECT_THAT(findings_of(verdict_on(record)), HasSubstr("timing row 1: the monotonic clock does not rise"));
-  record = whole_record();
+  record = test::whole_record();
   std::swap(record.anchors[0], record.anchors[1]);
   EXPECT_THAT(findings_of(verdict_on(record)), HasSubstr("timing row 1: the scans do not rise"));
-  record = whole_record();
+  record = test::whole_record();
   record.anchors[1].scan = 1040;
   EXPECT_THAT(findings_of(verdict_on(record)), HasSubstr("timing row 1: scan 1040 is not of this test"));
 }
 
 TEST(Verify, ClocksAnAgeApartAreAWordNotAnOverflow) {
   constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
-  record::Record record = whole_record();
+  record::Record record = test::whole_record();
   record.anchors = {{1000, 0, kMost}, {1030, kMost, 0}};
   EXPECT_THAT(findings_of(verdict_on(record)),
               HasSubstr("note timing: the clock of the day was set by -18446744073.710 s during the test"));
@@ -111,7 +95,7 @@ TEST(Verify, ClocksAnAgeApartAreAWordNotAnOverflow) {
 
 /// Six anchors, 10 scans apart, of a board that runs at `rate_Hz`.
 record::Record with_clocks(double rate_Hz) {
-  record::Record record = whole_record();
+  record::Record record = test::whole_record();
   record.anchors.clear();
   for (std::int64_t i = 0; i < 4; ++i) {
     for (const std::int64_t half : {0, 5}) {
@@ -130,7 +114,7 @@ TEST(Verify, ARateThatTheClocksDenyIsFound) {
 }
 
 TEST(Verify, AClockOfTheDayThatWasSetIsAWordNotDamage) {
-  record::Record record = whole_record();
+  record::Record record = test::whole_record();
   record.anchors[1].realtime_ns += 3'600'000'000'000;
   const Verdict verdict = verdict_on(record);
   EXPECT_EQ(verdict.judgement, Judgement::kComplete);
@@ -138,7 +122,7 @@ TEST(Verify, AClockOfTheDayThatWasSetIsAWordNotDamage) {
 }
 
 TEST(Verify, MissingConfigurationIsSaid) {
-  record::Record record = whole_record();
+  record::Record record = test::whole_record();
   record.header.process.configuration.clear();
   EXPECT_THAT(findings_of(verdict_on(record)), HasSubstr("incomplete process/configuration: is missing"));
 }
@@ -147,7 +131,7 @@ TEST(Verify, MissingConfigurationIsSaid) {
 template <typename Change>
 Verdict after(const Change& change) {
   const TemporaryFolder folder;
-  EXPECT_TRUE(record::publish_record(whole_record(), folder / "a.h5"));
+  EXPECT_TRUE(record::publish_record(test::whole_record(), folder / "a.h5"));
   const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   change(file);
   H5Fclose(file);
@@ -249,8 +233,8 @@ TEST(Verify, ANewerVersionIsRefusedByName) {
 
 TEST(Verify, AJournalSaysWhetherItsTestEnded) {
   const TemporaryFolder folder;
-  test::write_journal(folder / "a.journal", whole_record());
-  test::write_journal(folder / "b.journal", whole_record(), false);
+  test::write_journal(folder / "a.journal", test::whole_record());
+  test::write_journal(folder / "b.journal", test::whole_record(), false);
   const Verdict ended = judge(folder / "a.journal");
   EXPECT_EQ(ended.judgement, Judgement::kIncomplete);
   EXPECT_EQ(ended.scans_present, 40);
@@ -261,7 +245,7 @@ TEST(Verify, AJournalSaysWhetherItsTestEnded) {
 
 TEST(Verify, AFlippedBitAnywhereInAJournalIsDamageATornEndIsNot) {
   const TemporaryFolder folder;
-  const auto sizes = test::write_journal(folder / "a.journal", whole_record());
+  const auto sizes = test::write_journal(folder / "a.journal", test::whole_record());
   const std::string whole = test::content_of(folder / "a.journal");
   for (std::size_t byte = 0; byte < sizes[sizes.size() - 2]; byte += 7) {
     std::string flipped = whole;
@@ -293,7 +277,7 @@ TEST(Verify, StrangersAreNotJudged) {
 
 TEST(Verify, ARecordCutAnywhereIsDamaged) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(record::publish_record(whole_record(), folder / "a.h5"));
+  ASSERT_TRUE(record::publish_record(test::whole_record(), folder / "a.h5"));
   const std::string whole = test::content_of(folder / "a.h5");
   for (std::size_t size = 0; size < whole.size(); size += whole.size() / 97) {
     test::write_content(folder / "b.h5", whole.substr(0, size));
@@ -304,7 +288,7 @@ TEST(Verify, ARecordCutAnywhereIsDamaged) {
 
 TEST(Verify, TheWorstFileDecidesTheExitStatus) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(record::publish_record(whole_record(), folder / "good.h5"));
+  ASSERT_TRUE(record::publish_record(test::whole_record(), folder / "good.h5"));
   ASSERT_TRUE(record::publish_record(test::sample_record(), folder / "gap.h5"));
   test::write_content(folder / "bad.h5", "nothing");
   const auto status = [&](std::vector<std::string> names) {
@@ -329,82 +313,6 @@ TEST(Verify, TextAndJsonSayTheSame) {
   EXPECT_THAT(text, HasSubstr("incomplete  " + file + ": record version"));
   EXPECT_THAT(text, HasSubstr(", 40 scans, 1 gaps, recovered\n"));
   EXPECT_THAT(text, HasSubstr("  incomplete  gaps: about 20 scans missing from scan 1020: overrun\n"));
-}
-
-TEST(Forked, WhatDoesNotComeBackIsToldBySignal) {
-  const auto crashed = run_forked(
-      []() -> std::string {
-        std::raise(SIGKILL);
-        return "x";
-      },
-      std::chrono::seconds{5});
-  ASSERT_TRUE(crashed);
-  EXPECT_EQ(crashed->signal, SIGKILL);
-  const auto fine = run_forked([] { return std::string(1'000'000, 'a'); }, std::chrono::seconds{5});
-  ASSERT_TRUE(fine);
-  EXPECT_FALSE(fine->signal);
-  EXPECT_EQ(fine->text.size(), 1'000'000U);
-}
-
-// ---- recovery -----------------------------------------------------------------------------
-
-class Heard final : public Facts {
- public:
-  void orphan_finalised(const fs::path& file) override { text += "made " + file.filename().string() + "\n"; }
-  void orphan_empty(const fs::path& journal) override {
-    text += "removed " + journal.filename().string() + "\n";
-  }
-  void orphan_kept(const fs::path& journal, std::string_view why) override {
-    text += fmt::format("kept {}: {}\n", journal.filename().string(), why);
-  }
-  std::string text;
-};
-
-base::Result<fs::path> finalise_plainly(const fs::path& journal) { return record::finalise(journal); }
-
-TEST(Recovery, MakesRecordsRemovesWhatIsEmptyAndKeepsTheRest) {
-  const TemporaryFolder folder;
-  fs::create_directories(folder / "2026/11");
-  test::write_journal(folder / "a.journal", whole_record(), false);
-  test::write_journal(folder / "2026/11/b.journal", whole_record());
-  const std::string header = test::content_of(folder / "a.journal").substr(0, 40);
-  test::write_content(folder / "c.journal", "");
-  test::write_content(folder / "d.journal", header);
-  test::write_content(folder / "e.journal", std::string(300, '\0'));
-  test::write_content(folder / "f.journal", "a stranger's diary");
-  Heard heard;
-  EXPECT_FALSE(recover_folder(folder.path(), finalise_plainly, heard));
-
-  EXPECT_EQ(heard.text.substr(0, heard.text.find("kept f")),
-            "made b.h5\nmade a.h5\nremoved c.journal\nremoved d.journal\nremoved e.journal\n");
-  EXPECT_THAT(heard.text, HasSubstr("kept f.journal"));
-  EXPECT_TRUE(fs::exists(folder / "f.journal"));
-  EXPECT_FALSE(fs::exists(folder / "e.journal"));
-  EXPECT_EQ(judge(folder / "2026/11/b.h5").judgement, Judgement::kComplete);
-  EXPECT_EQ(judge(folder / "a.h5").status, "interrupted");
-}
-
-TEST(Recovery, NobodyTouchesAJournalThatIsBeingWritten) {
-  const TemporaryFolder folder;
-  const auto writing = record::JournalWriter::create(folder / "a.journal", test::sample_header());
-  ASSERT_TRUE(writing);
-  for (const auto& error : {finalise_plainly(folder / "a.journal").error(),
-                            record::remove_if_empty(folder / "a.journal").error()}) {
-    EXPECT_THAT(error.message, HasSubstr("is being written or finished by another process"));
-  }
-  EXPECT_TRUE(fs::exists(folder / "a.journal"));
-}
-
-// A header that was changed by the disk is no empty journal: what follows it is worth more than its removal.
-TEST(Recovery, AJournalWithADamagedHeaderIsKept) {
-  const TemporaryFolder folder;
-  test::write_journal(folder / "a.journal", whole_record());
-  std::string content = test::content_of(folder / "a.journal");
-  content[50] = static_cast<char>(content[50] ^ 4);
-  test::write_content(folder / "a.journal", content);
-  Heard heard;
-  EXPECT_FALSE(recover_folder(folder.path(), finalise_plainly, heard));
-  EXPECT_TRUE(fs::exists(folder / "a.journal"));
 }
 
 }  // namespace
