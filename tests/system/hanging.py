@@ -6,6 +6,11 @@ import tempfile
 
 from running_daemon import patient_scene
 
+# How many of its standard errors a line through seven readings may be off. They come from what the seven leave, with
+# five degrees of freedom: this is Student's t for what four standard deviations are of a normal number, 6.3e-5 on
+# both sides (scipy.stats.t.isf(scipy.stats.norm.sf(4), 5)). Four alone are passed by one line in a hundred.
+SEVEN_READINGS_T = 12.28
+
 
 class Hanging:
     # Of the scene below.
