@@ -21,7 +21,7 @@ from chromium import Chromium
 from contrast import contrast, rgb
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "system"))
-from hanging import SEVEN_READINGS_T, Hanging, weighing_board  # noqa: E402
+from hanging import Hanging, standard_errors_allowed, weighing_board  # noqa: E402
 from running_daemon import RunningDaemon  # noqa: E402
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
@@ -163,8 +163,9 @@ class CalibrationPage(unittest.TestCase):
             # Three decimals of a millivolt.
             self.assertAlmostEqual(float(row[4].split()[0]), 1000 * quantity(weight["residual"]), delta=0.5001e-3)
         # What hung was known.
-        self.assertAlmostEqual(result["gain"], Hanging.GAIN, delta=SEVEN_READINGS_T * result["gain_standard_error"])
-        self.assertAlmostEqual(result["zero"], Hanging.ZERO, delta=SEVEN_READINGS_T * result["zero_standard_error"])
+        allowed = standard_errors_allowed(len(kept["weight"]))
+        self.assertAlmostEqual(result["gain"], Hanging.GAIN, delta=allowed * result["gain_standard_error"])
+        self.assertAlmostEqual(result["zero"], Hanging.ZERO, delta=allowed * result["zero_standard_error"])
         # It is the one in use, on the page as well.
         self.assertEqual(self.daemon.ask("GET", "/v1/calibration")[1]["in_use"]["gain"], result["gain"])
         self.shows(self.text("in-use").split("gain ")[1], result["gain"], 8)

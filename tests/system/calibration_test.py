@@ -18,7 +18,7 @@ import unittest
 import h5py
 import numpy
 
-from hanging import SEVEN_READINGS_T, Hanging, weighing_board
+from hanging import Hanging, standard_errors_allowed, weighing_board
 from running_daemon import RunningDaemon, wait_for
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
@@ -64,9 +64,9 @@ class Calibration(unittest.TestCase):
         status, done = self.post("/v1/calibration/finish", {"certificate": "DKD-7", "valid_days": 180})
         self.assertEqual(status, 200, done)
         used = done["in_use"]
-        self.assertEqual(len(UP_AND_DOWN), 7)
-        self.assertAlmostEqual(used["gain"], self.hanging.GAIN, delta=SEVEN_READINGS_T * used["gain_standard_error"])
-        self.assertAlmostEqual(used["zero"], self.hanging.ZERO, delta=SEVEN_READINGS_T * used["zero_standard_error"])
+        allowed = standard_errors_allowed(len(UP_AND_DOWN))
+        self.assertAlmostEqual(used["gain"], self.hanging.GAIN, delta=allowed * used["gain_standard_error"])
+        self.assertAlmostEqual(used["zero"], self.hanging.ZERO, delta=allowed * used["zero_standard_error"])
         # The noise of those means over the spread of the forces gives 7e-6; with five degrees of freedom three times
         # that comes once in 5000 (chi-squared), and the seed is fixed but not what the scans begin with.
         self.assertLess(used["gain_standard_error"], 2.1e-5)

@@ -4,12 +4,16 @@ import os
 import pathlib
 import tempfile
 
+from scipy.stats import norm, t
+
 from running_daemon import patient_scene
 
-# How many of its standard errors a line through seven readings may be off. They come from what the seven leave, with
-# five degrees of freedom: this is Student's t for what four standard deviations are of a normal number, 6.3e-5 on
-# both sides (scipy.stats.t.isf(scipy.stats.norm.sf(4), 5)). Four alone are passed by one line in a hundred.
-SEVEN_READINGS_T = 12.28
+
+def standard_errors_allowed(readings):
+    """How many of its standard errors a line through them may be off, where those come from what the readings leave of
+    the line: Student's t for what four standard deviations are of a normal number. Of seven readings 12.28; four are
+    passed by one line in a hundred."""
+    return float(t.isf(norm.sf(4), readings - 2))
 
 
 class Hanging:
