@@ -7,6 +7,8 @@
 #include <span>
 #include <system_error>
 
+#include <boost/algorithm/string/replace.hpp>
+
 #include "core/base/wording.hpp"
 
 namespace stickslip::base {
@@ -138,18 +140,12 @@ std::string_view trimmed(std::string_view text) noexcept {
   return text;
 }
 
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
-    text.replace(at, from.size(), to);
-  }
-}
-
 /// "µ" exists twice in Unicode (U+00B5, U+03BC).
 std::string plain_symbol(std::string_view symbol) {
   std::string plain{symbol};
-  replace_all(plain, "\u00B5", "u");
-  replace_all(plain, "\u03BC", "u");
-  replace_all(plain, "\u00B2", "^2");
+  boost::algorithm::replace_all(plain, "\u00B5", "u");
+  boost::algorithm::replace_all(plain, "\u03BC", "u");
+  boost::algorithm::replace_all(plain, "\u00B2", "^2");
   return plain;
 }
 
