@@ -28,9 +28,9 @@ CyclePoint joined(const CyclePoint& a, const CyclePoint& b) noexcept {
 
 }  // namespace
 
-void CycleBuffer::add(double time_s, double value) noexcept {
+void CycleBuffer::add(const CyclePoint& point) noexcept {
   if (size_ == kMostPoints) compact();
-  points_[size_++] = {time_s, value, 0.0, 1.0, time_s, time_s};
+  points_[size_++] = point;
 }
 
 void CycleBuffer::keep_fine(double from_s, double to_s, double longest_s) noexcept {

@@ -35,7 +35,8 @@ class CycleBuffer {
   static constexpr std::size_t kMostPoints = 256;
 
   /// \param time_s  rises from call to call. Scans that are not to be used are not added.
-  void add(double time_s, double value) noexcept;
+  void add(double time_s, double value) noexcept { add({time_s, value, 0.0, 1.0, time_s, time_s}); }
+  void add(const CyclePoint& point) noexcept;
   /// Blocks in [from_s, to_s] grow no longer than longest_s. The latest call counts.
   void keep_fine(double from_s, double to_s, double longest_s) noexcept;
   /// Leaves out the points that end before.

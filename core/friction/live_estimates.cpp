@@ -52,7 +52,6 @@ TestEstimates estimates_from_live(const Trace& trace, const base::LongColumn<Fal
   whole.log_likelihood_ratios = base::LongColumn<double>{scratch};
   whole.cycles = base::LongColumn<Cycle>{scratch};
   whole.onset_errors_s = base::LongColumn<double>{scratch};
-  whole.model_describes = settlement.describes;
   no_model_results(settlement.reason, whole.results);
 
   LiveCycles seen{trace, live};

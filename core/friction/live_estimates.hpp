@@ -36,8 +36,6 @@ class LiveCycles {
 
 /// What the estimators without a fit need to know beside the scans.
 struct LiveSettlement {
-  /// The evidence rests on the model; else only a unanimous vote on the regime counts.
-  bool describes = true;
   bool first_counts = false;  ///< The first slip counts in means.
   std::string reason;         ///< Why all else is none.
 };

@@ -8,10 +8,6 @@
 namespace stickslip::friction {
 namespace {
 
-/// Density, over that of noise at its middle, of scans that no course explains: one in twenty is a spike that
-/// was not found, anywhere within the ±6 σ that the despiker lets pass. A scan tells ln 101 = 4.6 at most:
-/// two strays hardly decide, three seldom meet.
-constexpr double kStrayDensity = 0.01;
 /// Four parameters, and a choice.
 constexpr std::size_t kFewestRows = 8;
 /// By so much the bounds may be wrong: what reweighting leaves of its way to the least cost.

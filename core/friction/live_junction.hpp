@@ -14,6 +14,11 @@ namespace stickslip::friction {
 /// Residuals that many times the noise: neither course describes the scans.
 inline constexpr double kMisfitSigmas = 2.0;
 
+/// Density, over that of noise at its middle, of scans that no course explains: one in twenty is a spike that
+/// was not found, anywhere within the ±6 σ that the despiker lets pass. A scan tells ln 101 = 4.6 at most:
+/// two strays hardly decide, three seldom meet.
+inline constexpr double kStrayDensity = 0.01;
+
 struct JunctionEvidence {
   /// Captured over free; about 0 as long as the scans cannot tell.
   double log_likelihood_ratio = 0.0;

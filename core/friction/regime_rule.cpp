@@ -10,7 +10,7 @@
 namespace stickslip::friction {
 
 RegimeVerdict judge_regime(std::size_t slip_count, const base::LongColumn<double>& log_likelihood_ratios,
-                           bool model_describes, std::string_view why_not) {
+                           bool model_describes) {
   if (slip_count == 0) return {Regime::kSteadySliding, "no fall of the force is a slip", {}};
   if (log_likelihood_ratios.empty()) {
     return {Regime::kUndecided, "one slip: nothing after it tells how it ended", {}};
@@ -33,9 +33,10 @@ RegimeVerdict judge_regime(std::size_t slip_count, const base::LongColumn<double
   if (count == 0) return {Regime::kUndecided, "no slip tells how it ended", {}};
   const bool unanimous = captured == 0 || captured == count;
   if (!unanimous && !model_describes) {
-    return {Regime::kUndecided,
-            fmt::format("{} of {} slips look captured, but {}", captured, count, why_not),
-            {}};
+    return {
+        Regime::kUndecided,
+        fmt::format("{} of {} slips look captured, but the model does not describe them", captured, count),
+        {}};
   }
   const double mixed = unanimous ? best_of_each - weakest : best_of_each;
 

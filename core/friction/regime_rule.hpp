@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "core/base/long_column.hpp"
 #include "core/friction/regime.hpp"
@@ -21,15 +20,12 @@ struct RegimeVerdict {
 /// Likelihood ratio of the best two classes below which the data do not tell.
 inline constexpr double kDecisiveLikelihoodRatio = 20.0;
 
-/// Why slips that disagree do not count.
-inline constexpr std::string_view kModelFails = "the model does not describe them";
-
 /// \param slip_count  slips of the test.
 /// \param log_likelihood_ratios  captured over free, one for each slip but the last.
 /// \param model_describes  the ratios rest on a model that fits the trace; if it does not, only a
-///        unanimous vote counts. \param why_not  what is said then, after "… look captured, but".
+///        unanimous vote counts.
 [[nodiscard]] RegimeVerdict judge_regime(std::size_t slip_count,
                                          const base::LongColumn<double>& log_likelihood_ratios,
-                                         bool model_describes, std::string_view why_not = kModelFails);
+                                         bool model_describes);
 
 }  // namespace stickslip::friction

@@ -19,11 +19,13 @@ namespace {
 /// ln 10⁴: then one wrong end in ten thousand slips at most [Wald, Ann. Math. Stat. 16:117–186, 1945,
 /// (3:42)].
 constexpr double kDecisive = 9.210340371976184;
-/// The question is asked so often in a period; first when c′ of a slip that escapes is nearly done with
-/// rising (t₃ is three quarters of a period after the peak at most), and answered after so many, come what
-/// may.
-constexpr double kAskedPerPeriod = 32.0;
+/// Periods after the peak when the question is first asked: when c′ of a slip that escapes is nearly done
+/// with rising (t₃ is three quarters of a period after the peak at most), or where captures took longer so
+/// far, a little before that, but no later than a free oscillation comes back; and when it is answered, come
+/// what may.
 constexpr double kFirstAsked = 0.6;
+constexpr double kEarlier = 2.0 / 32.0;
+constexpr double kLastFirstAsked = 1.0;
 constexpr double kMostPeriods = 2.5;
 /// Part of the time from the onset to the peak whose scans the question may use: the onset is a guess.
 constexpr double kSurelySlipping = 0.6;
@@ -49,18 +51,22 @@ constexpr double kKnownSlips = 2.0;
 constexpr double kMostlyStick = 3.0;
 /// The typical S − K follows the last so many.
 constexpr double kTypicalMemory = 16.0;
+/// S − K is typically not less than this part of a drop.
+constexpr double kLeastTypical = 0.05;
+/// What a free oscillation loses may be wrong by such a part where nobody measured the damping.
+constexpr double kDampingError = 0.3;
 /// Peaks between scans are off by this part of a drop.
 constexpr double kPeakError = 0.02;
+
+double log_normal_density(double x, double mean, double deviation) noexcept {
+  const double z = (x - mean) / deviation;
+  return -0.5 * z * z - std::log(deviation);
+}
 
 /// By which a drop is wrong at most: noise of both its ends as far as it makes no turning point, and what is
 /// missed between scans.
 double peak_error(double drop, double sigma) noexcept {
   return std::numbers::sqrt2 * SlipRule::kHysteresisSigmas * sigma + kPeakError * drop;
-}
-
-double log_normal_density(double x, double mean, double deviation) noexcept {
-  const double z = (x - mean) / deviation;
-  return -0.5 * z * z - std::log(deviation);
 }
 
 }  // namespace
@@ -75,6 +81,8 @@ void SlipFollower::falls(double peak_s, double lowest_s) noexcept {
 
 void SlipFollower::gap() noexcept {
   buffer_.clear();
+  quick_junction_.gap();
+  heights_follow_ = false;
   if (open_ && !decided_) task_ = Task::kNone;
 }
 
@@ -89,6 +97,7 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
   ++slip_number_;
   decided_ = false;
   begins_from_stick_ = begins_from_stick;
+  heights_follow_ = true;
   fall_ = fall;
   peak_s_ = peak_s;
   trough_s_ = trough_s;
@@ -98,23 +107,24 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
 
   const double half_s = std::max(trough_s - peak_s, scan_s_);
   const double rise = fall.peak - fall.rise_from;
-  if (begins_from_stick && std::isnan(last_capture_s_)) {
+  if (keeps_scans() && begins_from_stick && std::isnan(last_capture_s_)) {
     // Nothing says where the stick began: a first loading has a rounded start, and rest before it.
     for (const CyclePoint& point : between(buffer_.points(), window_from_s_, peak_s)) {
       if (point.value < fall.rise_from + kRiseFrom * rise) window_from_s_ = point.last_s + 0.5 * scan_s_;
     }
   }
-  rise_slope_ = slope_of_rise(fall, peak_s, sigma);
-  if (!knowledge_.started()) knowledge_.start(std::numbers::pi / half_s, rise_slope_);
-  if (contradicted) knowledge_.forget_stick_rate(rise_slope_);
+  rise_slope_ = 0.0;
+  if (!knowledge_.started()) knowledge_.start(std::numbers::pi / half_s, rise_slope(sigma));
+  if (contradicted) knowledge_.forget_stick_rate(rise_slope(sigma));
   shared_ = knowledge_.best();
 
-  if (!(typical_delta_mu_ > 0.0)) {
+  if (keeps_scans() && !(typical_delta_mu_ > 0.0)) {
     const double belt = shared_.r / shared_.omega;
     const double amplitude = 0.5 * fall.drop();
     typical_delta_mu_ =
         std::sqrt(std::max(amplitude * amplitude - belt * belt, 0.01 * amplitude * amplitude));
   }
+  if (keeps_scans()) open_question();
   slip_ = {};
   Cycle& cycle = slip_.cycle;
   cycle.peak_time_s = peak_s;
@@ -127,23 +137,38 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
     *unknown = kNotKnown;
   }
   next_task_s_ = -std::numeric_limits<double>::infinity();
-  if (tier_ == EstimatorTier::kPeak) {
-    task_ = Task::kNone;
-  } else if (tier_ == EstimatorTier::kFit && begins_from_stick && !knowledge_.characterised()) {
+  if (tier_ == EstimatorTier::kFit && begins_from_stick && !knowledge_.characterised()) {
     task_ = Task::kFirstFit;
   } else {
     task_ = Task::kJudge;
-    next_task_s_ = peak_s + kFirstAsked * period_s();
+    first_ask();
   }
 }
 
-double SlipFollower::slope_of_rise(const Fall& fall, double peak_s, double sigma) const noexcept {
-  const double rise = fall.peak - fall.rise_from;
-  const double whole = rise / (std::max(fall.rise_duration, 1.0) * scan_s_);
-  if (!keeps_scans()) return whole;
+void SlipFollower::open_question() noexcept {
+  quick_junction_.open(peak_s_, 0.5 * (fall_.peak + fall_.trough), shared_);
+}
+
+double SlipFollower::rise_slope(double sigma) noexcept {
+  if (rise_slope_ == 0.0) {
+    look_back_to(peak_s_ - fall_.rise_duration * scan_s_);
+    rise_slope_ = slope_of_rise(sigma);
+  }
+  return rise_slope_;
+}
+
+void SlipFollower::look_back_to(double time_s) noexcept {
+  if (keeps_scans()) return;
+  buffer_.clear();
+  quick_junction_.rows().for_each_since(time_s, [&](const CyclePoint& point) { buffer_.add(point); });
+}
+
+double SlipFollower::slope_of_rise(double sigma) const noexcept {
+  const double rise = fall_.peak - fall_.rise_from;
+  const double whole = rise / (std::max(fall_.rise_duration, 1.0) * scan_s_);
   const auto before =
-      between(buffer_.points(), std::max(window_from_s_, peak_s - fall.rise_duration * scan_s_), peak_s);
-  const auto level = [&](double part) { return fall.rise_from + part * rise; };
+      between(buffer_.points(), std::max(window_from_s_, peak_s_ - fall_.rise_duration * scan_s_), peak_s_);
+  const auto level = [&](double part) { return fall_.rise_from + part * rise; };
   const bool few = std::ranges::count_if(before, [&](const CyclePoint& point) {
                      return point.value >= level(kRiseFrom) && point.value <= level(kRiseTo);
                    }) < kFewestOfRise;
@@ -158,7 +183,7 @@ bool SlipFollower::do_task(double now_s, double sigma) noexcept {
     case Task::kFirstFit:
       first_fit(sigma);
       task_ = Task::kJudge;
-      next_task_s_ = peak_s_ + kFirstAsked * period_s();
+      first_ask();
       return false;
     case Task::kJudge:
       return judge(now_s, sigma, now_s > peak_s_ + kMostPeriods * period_s());
@@ -174,19 +199,32 @@ bool SlipFollower::do_task(double now_s, double sigma) noexcept {
 
 bool SlipFollower::force(double now_s, double sigma, const Fall* next) noexcept {
   if (!open_) return false;
-  if (tier_ == EstimatorTier::kPeak) {
-    if (next == nullptr) return false;
-    judge_by_heights(*next, sigma);
-    decided_ = true;
-    slip_.decided_time_s = now_s;
-    return true;
+  const bool was_decided = decided_;
+  if (!keeps_scans()) {
+    force_by_heights(now_s, sigma, next);
+  } else {
+    if (task_ == Task::kFirstFit) task_ = Task::kJudge;
+    if (task_ == Task::kJudge) (void)judge(now_s, sigma, next != nullptr);
+    if (task_ == Task::kFit || (!decided_ && begins_from_stick_)) estimate(now_s, sigma);
   }
-  bool now_decided = false;
-  if (task_ == Task::kFirstFit) task_ = Task::kJudge;
-  if (task_ == Task::kJudge) now_decided = judge(now_s, sigma, next != nullptr);
-  if (task_ == Task::kFit || (!decided_ && begins_from_stick_)) estimate(now_s, sigma);
   task_ = Task::kNone;
-  return now_decided;
+  return decided_ && !was_decided;
+}
+
+void SlipFollower::force_by_heights(double now_s, double sigma, const Fall* next) noexcept {
+  const bool has_next = next != nullptr && heights_follow_;
+  const double heights = has_next ? evidence_of_heights(*next, sigma) : 0.0;
+  if (!decided_) {
+    // Where heights leave a doubt, the scans are asked; and where these are gone, heights have to do.
+    if (heights > kDecisive) {
+      decide(heights, now_s);
+    } else if (task_ == Task::kJudge) {
+      (void)judge(now_s, sigma, next != nullptr);
+    }
+    if (!decided_ && !evidence_.known && std::abs(heights) > std::log(kDecisiveLikelihoodRatio))
+      decide(heights, now_s);
+  }
+  if (has_next && decided_ && captured()) learn_typical_drop();
 }
 
 void SlipFollower::first_fit(double sigma) noexcept {
@@ -202,20 +240,43 @@ double SlipFollower::slipping_before_peak_s() const noexcept {
   return kSurelySlipping * std::clamp(peak_s_ - first_guess().onset_s, 0.0, 0.25 * period_s());
 }
 
+void SlipFollower::first_ask() noexcept {
+  const double period = period_s();
+  if (!keeps_scans()) {
+    // The heights of the next fall tell most ends for less. What sticks for long has none so soon.
+    next_task_s_ = peak_s_ + kMostPeriods * period;
+    return;
+  }
+  const double usual_s = std::min(usual_wait_s_ - kEarlier * period, kLastFirstAsked * period);
+  next_task_s_ = peak_s_ + std::max(kFirstAsked * period, usual_s);
+}
+
+void SlipFollower::open_late_question(double sigma) noexcept {
+  learn_turning_points(std::max(trough_s_ - peak_s_, scan_s_), sigma);
+  shared_ = knowledge_.best();
+  const Oscillator oscillator = shared_.oscillator();
+  const double drop = typical_count_ > 0.0 ? std::exp(typical_log_drop_) : fall_.drop();
+  const double above_K = drop - (K_of_turning_points(drop, 0.0, oscillator));
+  typical_delta_mu_ = std::max(slip_of_peak(above_K, shared_.r, oscillator).delta_mu, kLeastTypical * drop);
+  open_question();
+}
+
 bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
-  if (std::isnan(question_from_s_)) question_from_s_ = peak_s_ - slipping_before_peak_s();
-  const auto points = buffer_.since(question_from_s_);
-  evidence_ = junction_.ask(points, shared_, sigma, typical_delta_mu_, last ? 0.0 : kDecisive);
-  if (evidence_.known && evidence_.residual_sigmas > kMisfitSigmas) {
-    // Neither course fits: perhaps the belt has another speed now, which the rise before this slip tells.
-    SharedParameters other = shared_;
-    other.r = rise_slope_;
-    const JunctionEvidence with_other = junction_.ask(points, other, sigma, typical_delta_mu_);
-    if (belt_changed(with_other.residual_sigmas, evidence_.residual_sigmas)) {
-      evidence_ = with_other;
-      shared_ = other;
-      question_from_s_ = kNotKnown;
-    }
+  if (!keeps_scans()) open_late_question(sigma);
+  switch (quick_junction_.ask(sigma, typical_delta_mu_, kDecisive)) {
+    case QuickJunction::Answer::kCaptured:
+    case QuickJunction::Answer::kFree:
+      evidence_ = quick_junction_.evidence();
+      break;
+    case QuickJunction::Answer::kNotYet:
+      if (!last) {
+        ask_again(now_s);
+        return false;
+      }
+      [[fallthrough]];
+    case QuickJunction::Answer::kDoubt:
+      ask_in_full(sigma, last ? 0.0 : kDecisive);
+      break;
   }
   slip_.evidence = evidence_.known ? evidence_.log_likelihood_ratio : kNotKnown;
   // What neither course describes may be neither: an escape then takes more to be believed.
@@ -223,10 +284,10 @@ bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
   const bool clear = evidence_.known && (evidence_.log_likelihood_ratio > kDecisive ||
                                          evidence_.log_likelihood_ratio < -doubt * doubt * kDecisive);
   if (!clear && !last) {
-    next_task_s_ = now_s + period_s() / kAskedPerPeriod;
+    ask_again(now_s);
     return false;
   }
-  task_ = begins_from_stick_ ? Task::kFit : Task::kNone;
+  task_ = begins_from_stick_ && keeps_scans() ? Task::kFit : Task::kNone;
   // At the next slip the sign decides; a sled that sticks goes on sticking as long as the scans tell nothing.
   if (!evidence_.known) return false;
   const double told = std::log(kDecisiveLikelihoodRatio);
@@ -234,10 +295,30 @@ bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
   decide(evidence_.log_likelihood_ratio, now_s);
   if (std::abs(std::log(shared_.r / knowledge_.best().r)) > kStickRateChange && shared_.r == rise_slope_)
     knowledge_.forget_stick_rate(rise_slope_);
-  if (!begins_from_stick_ && captured()) {
+  if (!captured()) return true;
+  wait_count_ = std::min(wait_count_ + 1.0, kTypicalMemory);
+  usual_wait_s_ += (now_s - peak_s_ - usual_wait_s_) / wait_count_;
+  if (!begins_from_stick_ || !keeps_scans())
     slip_.cycle.capture_time_s = last_capture_s_ = window_from_s_ = evidence_.capture_s;
-  }
   return true;
+}
+
+void SlipFollower::ask_in_full(double sigma, double decisive) noexcept {
+  if (std::isnan(question_from_s_)) question_from_s_ = peak_s_ - slipping_before_peak_s();
+  look_back_to(question_from_s_);
+  const auto points = buffer_.since(question_from_s_);
+  evidence_ = junction_.ask(points, shared_, sigma, typical_delta_mu_, decisive);
+  if (!evidence_.known || !(evidence_.residual_sigmas > kMisfitSigmas)) return;
+  // Neither course fits: perhaps the belt has another speed now, which the rise before this slip tells.
+  SharedParameters other = shared_;
+  other.r = rise_slope(sigma);
+  look_back_to(question_from_s_);
+  const JunctionEvidence with_other =
+      junction_.ask(buffer_.since(question_from_s_), other, sigma, typical_delta_mu_);
+  if (!belt_changed(with_other.residual_sigmas, evidence_.residual_sigmas)) return;
+  evidence_ = with_other;
+  shared_ = other;
+  question_from_s_ = kNotKnown;
 }
 
 bool SlipFollower::belt_changed(double residual_sigmas, double before_sigmas) noexcept {
@@ -250,21 +331,23 @@ double SlipFollower::freely_next_drop() const noexcept {
   return fall_.drop() * std::exp(-2.0 * std::numbers::pi * shared_.oscillator().gamma_over_2omega());
 }
 
-void SlipFollower::judge_by_heights(const Fall& next, double sigma) noexcept {
+double SlipFollower::evidence_of_heights(const Fall& next, double sigma) noexcept {
   // A free oscillation falls next time by what damping leaves; a slip from sticking by what is usual.
   const double drop = next.drop();
   const double free = freely_next_drop();
   const double scans = std::numbers::sqrt2 * sigma;
   const double between_scans = kPeakError * free;
-  const double noise = std::sqrt(scans * scans + between_scans * between_scans);
+  const double damping = knowledge_.characterised() ? 0.0 : kDampingError * free;
+  const double noise = std::sqrt(scans * scans + between_scans * between_scans + damping * damping);
   if (typical_count_ == 0.0) typical_log_drop_ = std::log(fall_.drop());
-  const double log_drop = std::log(drop);
-  const double off_usual = log_drop - typical_log_drop_;
-  const double as_captured = log_normal_density(off_usual, 0.0, kDeltaMuLogScatter) - log_drop;
-  decide(as_captured - log_normal_density(drop, free, noise), slip_.decided_time_s);
-  if (!captured()) return;
+  off_usual_ = std::log(drop) - typical_log_drop_;
+  const double as_captured = log_normal_density(off_usual_, 0.0, kDeltaMuLogScatter) - std::log(drop);
+  return as_captured - log_normal_density(drop, free, noise);
+}
+
+void SlipFollower::learn_typical_drop() noexcept {
   typical_count_ = std::min(typical_count_ + 1.0, kTypicalMemory);
-  typical_log_drop_ += off_usual / typical_count_;
+  typical_log_drop_ += off_usual_ / typical_count_;
 }
 
 void SlipFollower::decide(double evidence, double now_s) noexcept {
@@ -279,7 +362,7 @@ SlipParameters SlipFollower::first_guess() const noexcept {
   SlipParameters guess;
   guess.K = K_of_turning_points(fall_.peak, fall_.trough, oscillator);
   const double above = fall_.peak - guess.K;
-  const double D = std::max(delta_mu_of_peak(above, shared_.r, oscillator), 0.1 * above);
+  const double D = std::max(slip_of_peak(above, shared_.r, oscillator).delta_mu, 0.1 * above);
   guess.S = guess.K + D;
   guess.onset_s = peak_s_ - SlipWaveform{guess.K, D, shared_.r, oscillator}.peak_time_s();
   return guess;
@@ -288,23 +371,22 @@ SlipParameters SlipFollower::first_guess() const noexcept {
 void SlipFollower::learn_typical(double delta_mu) noexcept {
   if (!(delta_mu > 0.0)) return;
   typical_count_ = std::min(typical_count_ + 1.0, kTypicalMemory);
-  typical_delta_mu_ *= std::pow(delta_mu / typical_delta_mu_, 1.0 / typical_count_);
+  typical_delta_mu_ += (delta_mu - typical_delta_mu_) / typical_count_;
 }
 
-void SlipFollower::take_course(const SharedParameters& shared, const SlipParameters& slip) noexcept {
+void SlipFollower::take_course(const SlipParameters& slip, double slip_speed_ratio,
+                               double capture_s) noexcept {
   Cycle& cycle = slip_.cycle;
   slip_.S = slip.S;
   slip_.K = slip.K;
   cycle.onset_time_s = slip.onset_s;
   cycle.stick_time_s = slip.onset_s - last_capture_s_;
   cycle.delta_mu = slip.S - slip.K;
-  const SlipWaveform waveform{slip.K, slip.S - slip.K, shared.r, shared.oscillator()};
-  cycle.slip_speed_ratio = -waveform.rate(waveform.fastest_slip_time_s()) / shared.r;
+  cycle.slip_speed_ratio = slip_speed_ratio;
   last_capture_s_ = kNotKnown;
   if (!captured()) return;
-  cycle.slip_time_s = capture_time_s(waveform, shared.r).value_or(waveform.rise_end_time_s());
-  cycle.capture_time_s = slip.onset_s + cycle.slip_time_s;
-  last_capture_s_ = cycle.capture_time_s;
+  cycle.slip_time_s = capture_s - slip.onset_s;
+  cycle.capture_time_s = last_capture_s_ = capture_s;
 }
 
 void SlipFollower::estimate(double now_s, double sigma) noexcept {
@@ -319,7 +401,7 @@ void SlipFollower::estimate(double now_s, double sigma) noexcept {
   if (tier_ == EstimatorTier::kFit) {
     estimate_by_fit(end_s, sigma);
   } else {
-    estimate_by_turning_points();
+    estimate_by_turning_points(sigma);
   }
   window_from_s_ = end_s;
   buffer_.forget_before(std::min(end_s, peak_s_ + period_s()));
@@ -329,7 +411,7 @@ void SlipFollower::estimate_by_fit(double end_s, double sigma) noexcept {
   const bool is_captured = decided_ && captured();
   const auto points = between(buffer_.points(), window_from_s_, end_s);
   CycleFit fit = fit_cycle(points, is_captured, first_guess(), knowledge_, sigma);
-  if (fit.converged && fit.residual_sigmas > kMisfitSigmas && rise_slope_ > 0.0 &&
+  if (fit.converged && fit.residual_sigmas > kMisfitSigmas && rise_slope(sigma) > 0.0 &&
       std::abs(std::log(rise_slope_ / knowledge_.best().r)) > kStickRateChange) {
     SharedKnowledge anew = knowledge_;
     anew.forget_stick_rate(rise_slope_);
@@ -340,13 +422,35 @@ void SlipFollower::estimate_by_fit(double end_s, double sigma) noexcept {
     }
   }
   if (!fit.converged) return;
-  take_course(fit.shared, fit.slip);
+  const SlipWaveform waveform{fit.slip.K, fit.slip.S - fit.slip.K, fit.shared.r, fit.shared.oscillator()};
+  double capture_s = kNotKnown;
+  if (is_captured) {
+    capture_s =
+        fit.slip.onset_s + capture_time_s(waveform, fit.shared.r).value_or(waveform.rise_end_time_s());
+  }
+  take_course(fit.slip, -waveform.rate(waveform.fastest_slip_time_s()) / fit.shared.r, capture_s);
   slip_.cycle.delta_mu_standard_error = std::sqrt(std::max(fit.delta_mu_variance(), 0.0));
   learn_typical(fit.delta_mu());
   if (fit.residual_sigmas < kMisfitSigmas) knowledge_.learn(fit.evidence);
 }
 
-void SlipFollower::estimate_by_turning_points() noexcept {
+void SlipFollower::learn_turning_points(double fall_s, double sigma) noexcept {
+  const bool mostly_stick = fall_.rise_duration * scan_s_ > kMostlyStick * fall_s;
+  // Beside a characterisation ω of two turning points counts nothing.
+  if (knowledge_.characterised() && !mostly_stick) return;
+  SharedEvidence evidence;
+  const double omega = std::numbers::pi / fall_s;
+  evidence.information(0, 0) = 1.0 / (kTurningPointSpread * omega * kTurningPointSpread * omega);
+  if (mostly_stick) {
+    const double slope = rise_slope(sigma);
+    evidence.information(2, 2) = 1.0 / (kSlopeSpread * slope * kSlopeSpread * slope);
+    evidence.weighted[2] = evidence.information(2, 2) * slope;
+  }
+  evidence.weighted[0] = evidence.information(0, 0) * omega;
+  knowledge_.learn(evidence);
+}
+
+void SlipFollower::estimate_by_turning_points(double sigma) noexcept {
   const double reach_s = std::max(kReachPerPeriod * period_s(), kLeastReachScans * scan_s_);
   const TurningPoint peak =
       parabola_vertex(buffer_.points(), peak_s_, reach_s, 1.0).value_or(TurningPoint{peak_s_, fall_.peak});
@@ -356,22 +460,16 @@ void SlipFollower::estimate_by_turning_points() noexcept {
   slip_.cycle.peak = peak.value;
   slip_.cycle.trough = trough.value;
   slip_.cycle.force_drop = peak.value - trough.value;
-  SharedEvidence evidence;
-  const double omega = std::numbers::pi / std::max(trough.time_s - peak.time_s, scan_s_);
-  evidence.information(0, 0) = 1.0 / (kTurningPointSpread * omega * kTurningPointSpread * omega);
-  if (fall_.rise_duration * scan_s_ > kMostlyStick * (trough.time_s - peak.time_s))
-    evidence.information(2, 2) = 1.0 / (kSlopeSpread * rise_slope_ * kSlopeSpread * rise_slope_);
-  evidence.weighted = {evidence.information(0, 0) * omega, 0.0, evidence.information(2, 2) * rise_slope_};
-  knowledge_.learn(evidence);
+  learn_turning_points(std::max(trough.time_s - peak.time_s, scan_s_), sigma);
   const SharedParameters& shared = knowledge_.best();
   const Oscillator oscillator = shared.oscillator();
   SlipParameters slip;
   slip.K = K_of_turning_points(peak.value, trough.value, oscillator);
-  const double D = delta_mu_of_peak(peak.value - slip.K, shared.r, oscillator);
-  slip.S = slip.K + D;
-  slip.onset_s = peak.time_s - SlipWaveform{slip.K, D, shared.r, oscillator}.peak_time_s();
-  take_course(shared, slip);
-  learn_typical(D);
+  const SlipOfPeak found = slip_of_peak(peak.value - slip.K, shared.r, oscillator);
+  slip.S = slip.K + found.delta_mu;
+  slip.onset_s = peak.time_s - found.peak_time_s;
+  take_course(slip, found.slip_speed_ratio, evidence_.capture_s);
+  learn_typical(found.delta_mu);
 }
 
 }  // namespace stickslip::friction

@@ -11,6 +11,7 @@
 #include "core/friction/fall_finder.hpp"
 #include "core/friction/live_cycle.hpp"
 #include "core/friction/live_junction.hpp"
+#include "core/friction/quick_junction.hpp"
 
 namespace stickslip::friction {
 
@@ -20,16 +21,18 @@ class SlipFollower {
  public:
   /// \param scan_rate_Hz > 0.
   SlipFollower(EstimatorTier tier, double scan_rate_Hz, SharedPrior prior)
-      : tier_(tier), scan_s_(1.0 / scan_rate_Hz), knowledge_(std::move(prior)) {}
+      : tier_(tier), scan_s_(1.0 / scan_rate_Hz), knowledge_(std::move(prior)), quick_junction_(scan_s_) {}
 
-  /// A usable scan.
-  void add(double time_s, double value) noexcept {
-    if (keeps_scans()) buffer_.add(time_s, value);
+  /// \param usable  it is no spike and not saturated.
+  void add(double time_s, double value, bool usable) noexcept {
+    quick_junction_.add(time_s, value, usable);
+    if (usable && keeps_scans()) buffer_.add(time_s, value);
   }
+  /// Every scan of the last cycle or two, for S and K. The tradition needs none: the rows of the quick
+  /// question are all it has.
+  [[nodiscard]] bool keeps_scans() const noexcept { return tier_ != EstimatorTier::kPeak; }
   /// The force falls: its peak and the lowest so far.
   void falls(double peak_s, double lowest_s) noexcept;
-  /// add() and falls() have a use.
-  [[nodiscard]] bool keeps_scans() const noexcept { return tier_ != EstimatorTier::kPeak; }
   /// Scans are missing: what was before does not belong to what comes.
   void gap() noexcept;
 
@@ -57,25 +60,46 @@ class SlipFollower {
   [[nodiscard]] const SharedParameters& shared() const noexcept { return shared_; }
 
  private:
+  /// The question is asked so often in a period.
+  static constexpr double kAskedPerPeriod = 32.0;
+
   enum class Task { kNone, kFirstFit, kJudge, kFit };
 
   /// Of the stick before a fall: from its scans, or as a whole where they tell nothing.
-  [[nodiscard]] double slope_of_rise(const Fall& fall, double peak_s, double sigma) const noexcept;
+  [[nodiscard]] double slope_of_rise(double sigma) const noexcept;
+  /// The same, worked out once for a slip and only if it is asked for.
+  [[nodiscard]] double rise_slope(double sigma) noexcept;
   [[nodiscard]] bool do_task(double now_s, double sigma) noexcept;
   void first_fit(double sigma) noexcept;
+  void first_ask() noexcept;
+  /// With what is known by now.
+  void open_question() noexcept;
+  /// The same for a slip that was not asked about from its begin on.
+  void open_late_question(double sigma) noexcept;
+  /// force() where scans are not kept.
+  void force_by_heights(double now_s, double sigma, const Fall* next) noexcept;
+  /// Captured over free, by the heights of this fall and the next alone.
+  [[nodiscard]] double evidence_of_heights(const Fall& next, double sigma) noexcept;
+  void learn_typical_drop() noexcept;
   [[nodiscard]] bool judge(double now_s, double sigma, bool last) noexcept;
   /// The next drop if it goes on freely.
   [[nodiscard]] double freely_next_drop() const noexcept;
   /// \param residual_sigmas  what this slip's scans leave with the slope of the rise before it as stick rate.
   /// \param before_sigmas  with the one known.
   [[nodiscard]] bool belt_changed(double residual_sigmas, double before_sigmas) noexcept;
-  /// By the heights of this fall and the next alone.
-  void judge_by_heights(const Fall& next, double sigma) noexcept;
+  /// Where scans are not kept, the buffer has what rows there are, from then on.
+  void look_back_to(double time_s) noexcept;
+  /// evidence_ by all means, at far more cost. \param decisive  0: whatever comes of it.
+  void ask_in_full(double sigma, double decisive) noexcept;
   void decide(double evidence, double now_s) noexcept;
+  void ask_again(double now_s) noexcept { next_task_s_ = now_s + period_s() / kAskedPerPeriod; }
   void estimate(double now_s, double sigma) noexcept;
-  void estimate_by_turning_points() noexcept;
+  void estimate_by_turning_points(double sigma) noexcept;
+  /// \param fall_s  from peak to trough.
+  void learn_turning_points(double fall_s, double sigma) noexcept;
   void estimate_by_fit(double window_end_s, double sigma) noexcept;
-  void take_course(const SharedParameters& shared, const SlipParameters& slip) noexcept;
+  /// \param capture_s  if it was captured.
+  void take_course(const SlipParameters& slip, double slip_speed_ratio, double capture_s) noexcept;
   void learn_typical(double delta_mu) noexcept;
   [[nodiscard]] SlipParameters first_guess() const noexcept;
   /// How long before the peak it surely slips: the onset is a guess.
@@ -87,18 +111,20 @@ class SlipFollower {
   SharedKnowledge knowledge_;
   CycleBuffer buffer_;
   LiveJunction junction_;
+  QuickJunction quick_junction_;
 
   // The slip under way.
   bool open_ = false;
   bool decided_ = false;
   bool begins_from_stick_ = false;
+  bool heights_follow_ = false;  ///< No scan is missing since its fall.
   Task task_ = Task::kNone;
   double next_task_s_ = 0.0;
   LiveCycle slip_;
   Fall fall_;
   double peak_s_ = 0.0;
   double trough_s_ = 0.0;
-  double rise_slope_ = 0.0;
+  double rise_slope_ = 0.0;  ///< 0: not worked out.
   BeltChange belt_change_;
   std::int64_t slip_number_ = 0;
   double question_from_s_ = 0.0;  ///< Scans from here on tell how it ends; NaN until asked.
@@ -108,8 +134,11 @@ class SlipFollower {
   double window_from_s_ = 0.0;  ///< Scans before belong to the slip before.
   double last_capture_s_ = std::numeric_limits<double>::quiet_NaN();  ///< NaN if unknown.
   double typical_delta_mu_ = 0.0;
-  double typical_log_drop_ = 0.0;  ///< In its place where heights are all there is.
+  double typical_log_drop_ = 0.0;  ///< In its place where scans are not kept,
+  double off_usual_ = 0.0;         ///< and by how much the next drop is another.
   double typical_count_ = 0.0;     ///< Slips behind either.
+  double usual_wait_s_ = 0.0;      ///< From a peak until captures were decided; 0 if none was.
+  double wait_count_ = 0.0;        ///< Slips behind it.
 };
 
 }  // namespace stickslip::friction

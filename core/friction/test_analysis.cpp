@@ -54,10 +54,6 @@ constexpr const char* kHiddenOscillation =
     "no fall stands out of the noise, but the noise is not white: hum, or an oscillation of fewer than nine "
     "scans a cycle; scan more often";
 
-/// Why single slips that disagree do not count.
-constexpr const char* kHeightsAlone =
-    "the heights of falls alone do not tell single slips; the estimator \"fit\" does";
-
 /// What the model has found, beside what needs no model.
 void take_model_results(const TestResults& model, TestResults& results) {
   std::vector<const Estimate*> from;
@@ -208,8 +204,7 @@ TestResults TestAnalysis::finish() {
     const TestEstimates estimates =
         fits_whole_test() ? estimate(trace, slips, sigma) : estimate_without_fit(trace, slips);
     const RegimeVerdict verdict =
-        judge_regime(slips.size(), estimates.log_likelihood_ratios, estimates.model_describes,
-                     fits_whole_test() ? kModelFails : kHeightsAlone);
+        judge_regime(slips.size(), estimates.log_likelihood_ratios, estimates.model_describes);
     results.regime = verdict.regime;
     results.regime_reason = verdict.reason;
     results.stick_cycle_count = verdict.regime == Regime::kUndecided
@@ -276,8 +271,6 @@ Estimate TestAnalysis::transition_time(const Trace& trace, const TestEstimates& 
 TestEstimates TestAnalysis::estimate_without_fit(const Trace& trace,
                                                  const base::LongColumn<Fall>& slips) const {
   LiveSettlement settlement;
-  // By heights alone a single slip among others is easily misjudged.
-  settlement.describes = settings_.estimator == EstimatorTier::kInterpolated;
   settlement.first_counts = settings_.kept.first_slip;
   settlement.reason =
       fmt::format("the estimator \"{}\" does not fit the whole test; \"fit\" does, also afterwards",

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/LU>
 
 #include "core/friction/huber.hpp"
 #include "core/friction/slip_waveform.hpp"
@@ -63,9 +63,8 @@ std::optional<TurningPoint> parabola_vertex(std::span<const CyclePoint> points, 
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   int count = 0;
   double base = 0.0;
-  for (const CyclePoint& point : points) {
+  for (const CyclePoint& point : between(points, near_s - reach_s, near_s + reach_s)) {
     const double x = (point.time_s - near_s) / reach_s;
-    if (std::abs(x) > 1.0) continue;
     if (count++ == 0) base = point.value;
     // The mean of x² over the scans of a point.
     const Eigen::Vector3d by{1.0, x, x * x + point.spread_s2 / (reach_s * reach_s)};
@@ -73,7 +72,8 @@ std::optional<TurningPoint> parabola_vertex(std::span<const CyclePoint> points, 
     right += point.count * (point.value - base) * by;
   }
   if (count < kFewestPoints) return std::nullopt;
-  const Eigen::Vector3d c = normal.ldlt().solve(right);
+  // Of three powers of what is at most one: cofactors are exact enough.
+  const Eigen::Vector3d c = normal.inverse() * right;
   if (!c.allFinite() || !(sign * c[2] < 0.0)) return std::nullopt;
   const double vertex = -0.5 * c[1] / c[2];
   if (std::abs(vertex) > 1.0) return std::nullopt;
@@ -124,14 +124,15 @@ double K_of_turning_points(double peak, double trough, const Oscillator& oscilla
   return (trough + left * peak) / (1.0 + left);
 }
 
-double delta_mu_of_peak(double peak_above_K, double stick_rate_per_s, const Oscillator& oscillator) noexcept {
+SlipOfPeak slip_of_peak(double peak_above_K, double stick_rate_per_s, const Oscillator& oscillator) noexcept {
   constexpr int kRounds = 8;             // Of Newton, from [2]; the peak rises with D and is convex in it.
-  constexpr double kSettledPart = 1e-8;  // Of itself: the next round would change it by the square.
+  constexpr double kSettledPart = 1e-5;  // Of itself: the next round would change it by the square.
   const double belt = stick_rate_per_s / oscillator.omega_rad_per_s();
   double D = std::sqrt(std::max(peak_above_K * peak_above_K - belt * belt, 0.0));
+  double peak_time_s = 0.0;
   for (int round = 0; round < kRounds; ++round) {
-    const SlipWaveform slip{0.0, D, stick_rate_per_s, oscillator};
-    const DampedBasis at = damped_basis(oscillator, slip.peak_time_s());
+    peak_time_s = SlipWaveform{0.0, D, stick_rate_per_s, oscillator}.peak_time_s();
+    const DampedBasis at = damped_basis(oscillator, peak_time_s);
     // At its maximum the course moves with D alone.
     const double by_D = at.cosine + 0.5 * oscillator.gamma_per_s * at.sine;
     if (!(by_D > 0.0)) break;
@@ -140,7 +141,11 @@ double delta_mu_of_peak(double peak_above_K, double stick_rate_per_s, const Osci
     D = std::max(D + (peak_above_K - peak) / by_D, 0.0);
     if (std::abs(D - before) <= kSettledPart * D) break;
   }
-  return D;
+  // From rest at the peak: c′ = −(ω₀²/ω) (peak − K) e^{−γt/2} sin ωt is least π/2 − φ later [16].
+  const double phi = oscillator.phi_rad();
+  const double fastest_per_s = std::sqrt(oscillator.omega0_squared()) * peak_above_K *
+                               std::exp(-oscillator.gamma_over_2omega() * (0.5 * std::numbers::pi - phi));
+  return {D, peak_time_s, fastest_per_s / stick_rate_per_s};
 }
 
 }  // namespace stickslip::friction

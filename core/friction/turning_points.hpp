@@ -30,9 +30,14 @@ struct TurningPoint {
 /// K from a maximum and the minimum half an oscillation later, which is nearer to it by e^(−πγ/2ω).
 [[nodiscard]] double K_of_turning_points(double peak, double trough, const Oscillator& oscillator) noexcept;
 
-/// S − K of a slip whose force peaks so much above K: [2] with damping, [17], solved for it.
-/// \param peak_above_K > 0. \param stick_rate_per_s r. \return ≥ 0; 0 if even no S − K peaks higher.
-[[nodiscard]] double delta_mu_of_peak(double peak_above_K, double stick_rate_per_s,
+/// A slip by its largest force.
+struct SlipOfPeak {
+  double delta_mu = 0.0;          ///< S − K ≥ 0; 0 if even no S − K peaks higher.
+  double peak_time_s = 0.0;       ///< t₁, from the onset to the peak.
+  double slip_speed_ratio = 0.0;  ///< [18]
+};
+/// [2] with damping, [17], solved for S − K. \param peak_above_K > 0. \param stick_rate_per_s r > 0.
+[[nodiscard]] SlipOfPeak slip_of_peak(double peak_above_K, double stick_rate_per_s,
                                       const Oscillator& oscillator) noexcept;
 
 }  // namespace stickslip::friction
