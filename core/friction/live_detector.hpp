@@ -36,7 +36,7 @@ struct LiveSettings {
   bool despike = true;
 };
 
-/// Thread-bound. 170 kB, taken when it is made.
+/// Thread-bound. 200 kB, taken when it is made.
 class LiveDetector {
  public:
   /// The despiker holds three scans back, and the median of three waits for one; without despiking it is one.

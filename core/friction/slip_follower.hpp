@@ -16,7 +16,7 @@
 namespace stickslip::friction {
 
 /// Follows one slip at a time. What takes long, fits of up to 256 points, is done one for a scan, so that no
-/// scan waits for two. Fixed memory, 60 kB; never allocates.
+/// scan waits for two. Fixed memory, 70 kB; never allocates.
 class SlipFollower {
  public:
   /// \param scan_rate_Hz > 0.

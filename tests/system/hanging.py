@@ -16,6 +16,10 @@ def standard_errors_allowed(readings):
     return float(t.isf(norm.sf(4), readings - 2))
 
 
+# What is said of a reading with nothing on: one in a thousand differs from the tare by chance, and then by too little.
+NOTHING_HANGS = "reads like no load|less than 1 %"
+
+
 class Hanging:
     # Of the scene below.
     GAIN = 2.0
