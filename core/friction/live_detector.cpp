@@ -35,7 +35,6 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
     follower_.gap();
   }
   const auto position = static_cast<double>(position_++);
-  const double now_s = time_of(position);
   if (scan.spike) flags_after_ |= kCycleHasSpike;
   if (saturated) flags_after_ |= kCycleIsSaturated;
   if (scan.value > highest_) {
@@ -48,9 +47,10 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
   sum_ += scan.value;
   count_ += 1.0;
   const bool usable = !scan.spike && !saturated;
-  follower_.add(now_s, scan.value, usable);
+  follower_.add(scan.value, usable);
   if (follower_.keeps_scans()) {
     if (usable) {
+      follower_.keep(time_of(position), scan.value);
       usable_noise_.add(scan.value);
     } else {
       usable_noise_.gap();
@@ -68,8 +68,9 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
   // What falls before anything was loaded are spikes that follow each other.
   if (!was_falling && finder_.falling() && static_cast<double>(finder_.high_at()) >= loading_at_)
     fall_begun_ = {static_cast<base::ScanIndex>(finder_.high_at()), finder_.high(), come_ - 1};
-  if (fall && rule_.is_slip(*fall, sigma) && fall->peak_at >= loading_at_) return slip(*fall, now_s);
-  if (follower_.has_task() && follower_.step(now_s, usable_sigma())) take_decision();
+  if (fall && rule_.is_slip(*fall, sigma) && fall->peak_at >= loading_at_)
+    return slip(*fall, time_of(position));
+  if (follower_.has_task() && follower_.step(time_of(position), usable_sigma())) take_decision();
   if (amplitude && amplitude->is_over()) {
     watch_.stop();
     state_.regime = Regime::kSteadySliding;
@@ -111,7 +112,7 @@ std::optional<LiveCycle> LiveDetector::slip(const Fall& fall, double now_s) noex
   }
   std::optional<LiveCycle> closed = close();
   const bool begins_from_stick = state_.regime != Regime::kRingDown;
-  follower_.open(fall, peak_s, time_of(fall.trough_at), begins_from_stick, usable_sigma());
+  follower_.open(fall, peak_s, time_of(fall.trough_at), now_s, begins_from_stick, usable_sigma());
   if (state_.phase < Phase::kFirstSlip) state_.phase = Phase::kFirstSlip;
   ++state_.slip_count;
   cycle_S_ = highest_;

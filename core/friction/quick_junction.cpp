@@ -8,8 +8,8 @@
 namespace stickslip::friction {
 namespace {
 
-/// Rows of a period, as in core/friction/live_rows; half or twice as many do as well.
-constexpr double kQuickRowsPerPeriod = 40.0;
+/// Rows of a period; half or twice as many do as well.
+constexpr double kQuickRowsPerPeriod = 24.0;
 /// Three parameters and a choice.
 constexpr double kFewestRowsToChoose = 8.0;
 /// By so much a fit with Huber's weights may find another ratio.
@@ -56,7 +56,7 @@ void QuickJunction::gap() noexcept {
   open_ = false;
 }
 
-void QuickJunction::open(double peak_s, double level, const SharedParameters& shared) noexcept {
+void QuickJunction::open(double now_s, double peak_s, double level, const SharedParameters& shared) noexcept {
   const double period_s = 2.0 * std::numbers::pi / shared.omega;
   const double fitting = std::clamp(period_s / (kQuickRowsPerPeriod * rows_.scan_s()), 1.0, 1e6);
   const auto scans = static_cast<std::size_t>(fitting);
@@ -67,7 +67,7 @@ void QuickJunction::open(double peak_s, double level, const SharedParameters& sh
     open_ = false;
     return;
   }
-  open_ = slip_.begin(rows_, peak_s, level, shared);
+  open_ = slip_.begin(rows_, now_s, peak_s, level, shared);
 }
 
 std::optional<QuickJunction::Answer> QuickJunction::fit_capture(const Free& free, double typical_delta_mu,

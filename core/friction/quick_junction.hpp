@@ -31,11 +31,12 @@ class QuickJunction {
   explicit QuickJunction(double scan_s) noexcept : rows_(scan_s) {}
 
   /// The next scan. \param usable  it is no spike and not saturated.
-  void add(double time_s, double value, bool usable) noexcept { rows_.add(time_s, value, usable); }
+  void add(double value, bool usable) noexcept { rows_.add(value, usable); }
   /// Scans are missing.
   void gap() noexcept;
-  /// A slip whose scans from peak_s on belong to one course. \param level  about its middle.
-  void open(double peak_s, double level, const SharedParameters& shared) noexcept;
+  /// A slip whose scans from peak_s on belong to one course. \param now_s  time of the last scan.
+  /// \param level  about its middle.
+  void open(double now_s, double peak_s, double level, const SharedParameters& shared) noexcept;
   /// \param sigma  noise of one scan. \param typical_delta_mu,decisive  as in LiveJunction; decisive > 0.
   [[nodiscard]] Answer ask(double sigma, double typical_delta_mu, double decisive) noexcept;
   /// Of the last answer that decided.

@@ -2,7 +2,7 @@
 /// The newest scans as rows at equal times, each the mean of as many scans.
 ///
 ///     ScanRows rows{scan_s};
-///     rows.add(time_s, coefficient, usable);
+///     rows.add(coefficient, usable);
 ///     rows.restart(4);  // From now on, four scans a row.
 #pragma once
 
@@ -29,13 +29,12 @@ class ScanRows {
   explicit ScanRows(double scan_s) noexcept;
 
   /// The next scan.
-  void add(double time_s, double value, bool usable) noexcept {
+  void add(double value, bool usable) noexcept {
     sum_ += value;
     usable_ = usable_ && usable;
     if (++in_row_ < scans_) return;
     const auto scans = static_cast<double>(scans_);
     rows_[count_++ % kMost] = {scans_ == 1 ? sum_ : sum_ / scans, usable_ ? 1.0 : 0.0};
-    newest_s_ = time_s - 0.5 * (scans - 1.0) * scan_s_;
     in_row_ = 0;
     sum_ = 0.0;
     usable_ = true;
@@ -50,18 +49,21 @@ class ScanRows {
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
   /// \param number  counted from the restart.
   [[nodiscard]] const Row& operator[](std::size_t number) const noexcept { return rows_[number % kMost]; }
-  /// Mean time of the newest.
-  [[nodiscard]] double newest_s() const noexcept { return newest_s_; }
+  /// Mean time of the newest. \param now_s  of the last scan.
+  [[nodiscard]] double newest_s(double now_s) const noexcept {
+    return now_s - (static_cast<double>(in_row_) + 0.5 * (static_cast<double>(scans_) - 1.0)) * scan_s_;
+  }
 
-  /// The usable ones that begin then or later, oldest first. \param use  called with a CyclePoint.
+  /// The usable ones that begin then or later, oldest first. \param now_s  of the last scan.
+  /// \param use  called with a CyclePoint.
   template <typename Use>
-  void for_each_since(double since_s, const Use& use) const {
+  void for_each_since(double since_s, double now_s, const Use& use) const {
     const auto scans = static_cast<double>(scans_);
     const double length_s = (scans - 1.0) * scan_s_;
     const double spread_s2 = (scans * scans - 1.0) / 12.0 * scan_s_ * scan_s_;
     for (std::size_t back = std::min(count_, kMost); back-- > 0;) {
       const Row& row = (*this)[count_ - 1 - back];
-      const double time_s = newest_s_ - static_cast<double>(back) * row_s();
+      const double time_s = newest_s(now_s) - static_cast<double>(back) * row_s();
       const double first_s = time_s - 0.5 * length_s;
       if (row.weight == 0.0 || first_s < since_s) continue;
       use(CyclePoint{time_s, row.value, spread_s2, scans, first_s, first_s + length_s});
@@ -75,7 +77,6 @@ class ScanRows {
   double sum_ = 0.0;
   bool usable_ = true;
   std::size_t count_ = 0;
-  double newest_s_ = 0.0;
   std::array<Row, kMost> rows_;  ///< Those that came: see count_.
 };
 

@@ -9,6 +9,7 @@
 #include "core/friction/closed_forms.hpp"
 #include "core/friction/junction.hpp"
 #include "core/friction/regime_rule.hpp"
+#include "core/friction/sampling.hpp"
 #include "core/friction/slip_rule.hpp"
 #include "core/friction/turning_points.hpp"
 #include "core/friction/unknown.hpp"
@@ -86,8 +87,8 @@ void SlipFollower::gap() noexcept {
   if (open_ && !decided_) task_ = Task::kNone;
 }
 
-void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool begins_from_stick,
-                        double sigma) noexcept {
+void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, double now_s,
+                        bool begins_from_stick, double sigma) noexcept {
   // A free oscillation only shrinks: what falls by more than that was stuck in between, and the belt has
   // another speed than was thought.
   const bool contradicted =
@@ -98,6 +99,8 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
   decided_ = false;
   begins_from_stick_ = begins_from_stick;
   heights_follow_ = true;
+  opened_s_ = now_s;
+  scans_since_open_ = 0;
   fall_ = fall;
   peak_s_ = peak_s;
   trough_s_ = trough_s;
@@ -146,7 +149,7 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
 }
 
 void SlipFollower::open_question() noexcept {
-  quick_junction_.open(peak_s_, 0.5 * (fall_.peak + fall_.trough), shared_);
+  quick_junction_.open(last_scan_s(), peak_s_, 0.5 * (fall_.peak + fall_.trough), shared_);
 }
 
 double SlipFollower::rise_slope(double sigma) noexcept {
@@ -160,7 +163,8 @@ double SlipFollower::rise_slope(double sigma) noexcept {
 void SlipFollower::look_back_to(double time_s) noexcept {
   if (keeps_scans()) return;
   buffer_.clear();
-  quick_junction_.rows().for_each_since(time_s, [&](const CyclePoint& point) { buffer_.add(point); });
+  quick_junction_.rows().for_each_since(time_s, last_scan_s(),
+                                        [&](const CyclePoint& point) { buffer_.add(point); });
 }
 
 double SlipFollower::slope_of_rise(double sigma) const noexcept {
@@ -215,10 +219,11 @@ void SlipFollower::force_by_heights(double now_s, double sigma, const Fall* next
   const bool has_next = next != nullptr && heights_follow_;
   const double heights = has_next ? evidence_of_heights(*next, sigma) : 0.0;
   if (!decided_) {
-    // Where heights leave a doubt, the scans are asked; and where these are gone, heights have to do.
+    // Where heights leave a doubt, the scans are asked; and where these are gone or few, heights have to do.
+    const bool few = period_s() < kFewScansACycle * scan_s_;
     if (heights > kDecisive) {
       decide(heights, now_s);
-    } else if (task_ == Task::kJudge) {
+    } else if (task_ == Task::kJudge && !few) {
       (void)judge(now_s, sigma, next != nullptr);
     }
     if (!decided_ && !evidence_.known && std::abs(heights) > std::log(kDecisiveLikelihoodRatio))
@@ -245,6 +250,7 @@ void SlipFollower::first_ask() noexcept {
   if (!keeps_scans()) {
     // The heights of the next fall tell most ends for less. What sticks for long has none so soon.
     next_task_s_ = peak_s_ + kMostPeriods * period;
+    wait_scans_ = static_cast<std::int64_t>((next_task_s_ - opened_s_) / scan_s_);
     return;
   }
   const double usual_s = std::min(usual_wait_s_ - kEarlier * period, kLastFirstAsked * period);
@@ -312,6 +318,7 @@ void SlipFollower::ask_in_full(double sigma, double decisive) noexcept {
   // Neither course fits: perhaps the belt has another speed now, which the rise before this slip tells.
   SharedParameters other = shared_;
   other.r = rise_slope(sigma);
+  if (!(std::abs(std::log(other.r / shared_.r)) > kStickRateChange)) return;
   look_back_to(question_from_s_);
   const JunctionEvidence with_other =
       junction_.ask(buffer_.since(question_from_s_), other, sigma, typical_delta_mu_);
@@ -340,8 +347,9 @@ double SlipFollower::evidence_of_heights(const Fall& next, double sigma) noexcep
   const double damping = knowledge_.characterised() ? 0.0 : kDampingError * free;
   const double noise = std::sqrt(scans * scans + between_scans * between_scans + damping * damping);
   if (typical_count_ == 0.0) typical_log_drop_ = std::log(fall_.drop());
-  off_usual_ = std::log(drop) - typical_log_drop_;
-  const double as_captured = log_normal_density(off_usual_, 0.0, kDeltaMuLogScatter) - std::log(drop);
+  const double log_drop = std::log(drop);
+  off_usual_ = log_drop - typical_log_drop_;
+  const double as_captured = log_normal_density(off_usual_, 0.0, kDeltaMuLogScatter) - log_drop;
   return as_captured - log_normal_density(drop, free, noise);
 }
 

@@ -23,11 +23,13 @@ class SlipFollower {
   SlipFollower(EstimatorTier tier, double scan_rate_Hz, SharedPrior prior)
       : tier_(tier), scan_s_(1.0 / scan_rate_Hz), knowledge_(std::move(prior)), quick_junction_(scan_s_) {}
 
-  /// \param usable  it is no spike and not saturated.
-  void add(double time_s, double value, bool usable) noexcept {
-    quick_junction_.add(time_s, value, usable);
-    if (usable && keeps_scans()) buffer_.add(time_s, value);
+  /// The next scan. \param usable  it is no spike and not saturated.
+  void add(double value, bool usable) noexcept {
+    quick_junction_.add(value, usable);
+    ++scans_since_open_;
   }
+  /// The same once more, if it is usable and keeps_scans().
+  void keep(double time_s, double value) noexcept { buffer_.add(time_s, value); }
   /// Every scan of the last cycle or two, for S and K. The tradition needs none: the rows of the quick
   /// question are all it has.
   [[nodiscard]] bool keeps_scans() const noexcept { return tier_ != EstimatorTier::kPeak; }
@@ -37,10 +39,15 @@ class SlipFollower {
   void gap() noexcept;
 
   /// A fall was confirmed to be a slip; ends the one before. Call force() and take it first.
-  /// \param peak_s,trough_s  times of the fall's turning points. \param begins_from_stick  the slip before
+  /// \param peak_s,trough_s  times of the fall's turning points. \param now_s  of the last scan.
+  /// \param begins_from_stick  the slip before
   /// was captured; if it was not, but this one is too large for that, it begins from sticking all the same.
-  void open(const Fall& fall, double peak_s, double trough_s, bool begins_from_stick, double sigma) noexcept;
-  [[nodiscard]] bool has_task() const noexcept { return task_ != Task::kNone; }
+  void open(const Fall& fall, double peak_s, double trough_s, double now_s, bool begins_from_stick,
+            double sigma) noexcept;
+  /// There is something to do now.
+  [[nodiscard]] bool has_task() const noexcept {
+    return task_ != Task::kNone && scans_since_open_ >= wait_scans_;
+  }
   /// At most one task. \return true when this decided how the slip ends.
   [[nodiscard]] bool step(double now_s, double sigma) noexcept {
     return task_ != Task::kNone && !(now_s < next_task_s_) && do_task(now_s, sigma);
@@ -72,6 +79,10 @@ class SlipFollower {
   [[nodiscard]] bool do_task(double now_s, double sigma) noexcept;
   void first_fit(double sigma) noexcept;
   void first_ask() noexcept;
+  /// Unless a scan is missing since the slip was opened.
+  [[nodiscard]] double last_scan_s() const noexcept {
+    return opened_s_ + static_cast<double>(scans_since_open_) * scan_s_;
+  }
   /// With what is known by now.
   void open_question() noexcept;
   /// The same for a slip that was not asked about from its begin on.
@@ -120,6 +131,9 @@ class SlipFollower {
   bool heights_follow_ = false;  ///< No scan is missing since its fall.
   Task task_ = Task::kNone;
   double next_task_s_ = 0.0;
+  double opened_s_ = 0.0;              ///< Time of the last scan before it was opened,
+  std::int64_t scans_since_open_ = 0;  ///< and scans since then;
+  std::int64_t wait_scans_ = 0;        ///< so many before the first task.
   LiveCycle slip_;
   Fall fall_;
   double peak_s_ = 0.0;

@@ -5,10 +5,11 @@
 
 namespace stickslip::friction {
 
-bool SlipRows::begin(const ScanRows& rows, double peak_s, double level,
+bool SlipRows::begin(const ScanRows& rows, double now_s, double peak_s, double level,
                      const SharedParameters& shared) noexcept {
+  const double newest_s = rows.newest_s(now_s);
   const auto scans = static_cast<double>(rows.scans_per_row());
-  const double count = std::floor((rows.newest_s() - peak_s) / rows.row_s()) + 1.0;
+  const double count = std::floor((newest_s - peak_s) / rows.row_s()) + 1.0;
   if (!(count >= 1.0) || count > static_cast<double>(std::min(rows.count(), kMost))) return false;
   if (shared.omega != shared_.omega || shared.gamma != shared_.gamma || rows.row_s() != row_s_) {
     row_s_ = rows.row_s();
@@ -26,7 +27,7 @@ bool SlipRows::begin(const ScanRows& rows, double peak_s, double level,
   shared_ = shared;
   level_ = level;
   first_row_ = rows.count() - static_cast<std::size_t>(count);
-  first_s_ = rows.newest_s() - (count - 1.0) * row_s_;
+  first_s_ = newest_s - (count - 1.0) * row_s_;
   size_ = 0;
   return true;
 }

@@ -2,7 +2,7 @@
 /// The rows of one slip at equal times, and the free course through them: least squares without a
 /// transcendental function and without going over the rows again.
 ///
-///     slip.begin(rows, peak_s, level, shared);
+///     slip.begin(rows, now_s, peak_s, level, shared);
 ///     slip.take(rows);                                   // Those that have come since.
 ///     const auto free = slip.fit(slip.size() - 1);       // Through all of them.
 #pragma once
@@ -55,8 +55,9 @@ class SlipRows {
     double square_sum = 0.0;  ///< That it leaves.
   };
 
-  /// \param peak_s  rows from then on are of the slip. \return whether they are all there.
-  [[nodiscard]] bool begin(const ScanRows& rows, double peak_s, double level,
+  /// \param now_s  time of the last scan. \param peak_s  rows from then on are of the slip.
+  /// \return whether they are all there.
+  [[nodiscard]] bool begin(const ScanRows& rows, double now_s, double peak_s, double level,
                            const SharedParameters& shared) noexcept;
   /// \return whether there was room for them.
   [[nodiscard]] bool take(const ScanRows& rows) noexcept;

@@ -50,9 +50,9 @@ class Asked {
     for (std::size_t k = 0; k < trace_.size(); ++k) {
       const double time_s = trace_.time_s[k];
       if (time_s > peak_s_ + most_periods * kPeriod_s) break;
-      quick_->add(time_s, trace_.value[k], trace_.usable[k] != 0);
+      quick_->add(trace_.value[k], trace_.usable[k] != 0);
       if (time_s < peak_s_ + 0.6 * kPeriod_s) continue;
-      if (!open) quick_->open(peak_s_, ModelCourse::kK, shared_);
+      if (!open) quick_->open(time_s, peak_s_, ModelCourse::kK, shared_);
       open = true;
       answer = quick_->ask(sigma_, kDeltaMu, kDecisive);
       last_ = k;
@@ -91,9 +91,9 @@ struct LaidOut {
   LaidOut(const std::vector<double>& values, const std::vector<bool>& usable, std::size_t scans_per_row,
           const SharedParameters& shared, double level) {
     rows.restart(scans_per_row);
-    for (std::size_t k = 0; k < values.size(); ++k)
-      rows.add(static_cast<double>(k) * kScan_s, values[k], usable.empty() || usable[k]);
-    EXPECT_TRUE(slip.begin(rows, -0.5 * kScan_s, level, shared));  // No doubt about which is the first.
+    for (std::size_t k = 0; k < values.size(); ++k) rows.add(values[k], usable.empty() || usable[k]);
+    EXPECT_TRUE(slip.begin(rows, static_cast<double>(values.size() - 1) * kScan_s, -0.5 * kScan_s, level,
+                           shared));  // No doubt about which is the first.
     EXPECT_TRUE(slip.take(rows));
   }
 };
@@ -142,9 +142,9 @@ TEST(SlipRows, RowsOfSeveralScansFollowTheSameCourse) {
     return 0.3 + std::exp(-0.5 * shared.gamma * t) *
                      (0.08 * std::cos(shared.omega * t) - 0.01 * std::sin(shared.omega * t));
   };
-  for (int k = 0; k < 600; ++k) rows.add(k * fine_s, course(k * fine_s), true);
+  for (int k = 0; k < 600; ++k) rows.add(course(k * fine_s), true);
   SlipRows slip;
-  ASSERT_TRUE(slip.begin(rows, -0.5 * fine_s, 0.3, shared));
+  ASSERT_TRUE(slip.begin(rows, 599 * fine_s, -0.5 * fine_s, 0.3, shared));
   ASSERT_TRUE(slip.take(rows));
   const auto fit = slip.fit(slip.size() - 1);
   // The next order of the attenuation: (10 ω scan)⁴/1920 of the amplitude.
@@ -288,11 +288,12 @@ TEST(QuickJunction, DoubtsWithoutTheScansOfASlip) {
   QuickJunction quick{kScan_s};
   EXPECT_EQ(quick.ask(kSigma, kDeltaMu, kDecisive), QuickJunction::Answer::kDoubt);
   const ModelCourse course = ModelCourse::captured(1.3, 3);
-  for (std::size_t k = 0; k < 34; ++k) quick.add(course.trace.time_s[k], course.trace.value[k], true);
+  for (std::size_t k = 0; k < 34; ++k) quick.add(course.trace.value[k], true);
   // A slip that began before what is there; and one whose scans are cut off by a gap.
-  quick.open(-1.0, ModelCourse::kK, course.shared);
+  const double now_s = course.trace.time_s[33];
+  quick.open(now_s, -1.0, ModelCourse::kK, course.shared);
   EXPECT_EQ(quick.ask(kSigma, kDeltaMu, kDecisive), QuickJunction::Answer::kDoubt);
-  quick.open(course.trace.time_s[24], ModelCourse::kK, course.shared);
+  quick.open(now_s, course.trace.time_s[24], ModelCourse::kK, course.shared);
   EXPECT_EQ(quick.ask(kSigma, kDeltaMu, kDecisive), QuickJunction::Answer::kNotYet);
   quick.gap();
   EXPECT_EQ(quick.ask(kSigma, kDeltaMu, kDecisive), QuickJunction::Answer::kDoubt);
@@ -301,19 +302,21 @@ TEST(QuickJunction, DoubtsWithoutTheScansOfASlip) {
 TEST(ScanRows, KeepsTheNewestAndSaysWhenTheyWere) {
   ScanRows rows{0.01};
   rows.restart(4);
-  for (int k = 0; k < 4 * 300; ++k) rows.add(0.01 * k, k, k != 4 * 290 + 1);
+  for (int k = 0; k < 4 * 300; ++k) rows.add(k, k != 4 * 290 + 1);
   EXPECT_EQ(rows.count(), 300U);
   EXPECT_EQ(rows[299].value, 4.0 * 299 + 1.5);
   EXPECT_EQ(rows[290].weight, 0.0);
-  EXPECT_NEAR(rows.newest_s(), 0.01 * (4.0 * 299 + 1.5), 1e-12);
+  const double now_s = 0.01 * (4 * 300 - 1);
+  EXPECT_NEAR(rows.newest_s(now_s), 0.01 * (4.0 * 299 + 1.5), 1e-12);
   std::vector<CyclePoint> points;
-  rows.for_each_since(-1.0, [&](const CyclePoint& point) { points.push_back(point); });
+  rows.for_each_since(-1.0, now_s, [&](const CyclePoint& point) { points.push_back(point); });
   ASSERT_EQ(points.size(), ScanRows::kMost - 1);
   EXPECT_NEAR(points.front().first_s, 0.01 * 4 * 44, 1e-12);
   EXPECT_NEAR(points.front().last_s, 0.01 * (4 * 44 + 3), 1e-12);
   EXPECT_NEAR(points.front().spread_s2, 1.25e-4, 1e-12);
   points.clear();
-  rows.for_each_since(0.01 * 4 * 298 - 1e-9, [&](const CyclePoint& point) { points.push_back(point); });
+  rows.for_each_since(0.01 * 4 * 298 - 1e-9, now_s,
+                      [&](const CyclePoint& point) { points.push_back(point); });
   EXPECT_EQ(points.size(), 2U);
 }
 
