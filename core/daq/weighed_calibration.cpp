@@ -12,7 +12,7 @@
 namespace stickslip::daq {
 namespace {
 
-/// Chance alone makes one in a thousand of this size: Student's t of twice kReadingParts − 1 degrees of
+/// Chance alone makes one in a thousand of this size: Student's t of 2 (kReadingParts − 1) = 18 degrees of
 /// freedom.
 constexpr double kSignificant = 3.92;
 /// Of the largest change: what a load cell of class C3 (OIML R 60) keeps several times over.

@@ -78,7 +78,7 @@ class LiveDetector {
 
   LiveSettings settings_;
   signal::NoiseEstimator noise_;  ///< Of scans as they come: what despiker, finder and slip rule ask for.
-  signal::NoiseEstimator usable_noise_;  ///< Of those that the follower gets.
+  signal::NoiseEstimator usable_noise_;  ///< Of those that the follower keeps.
   signal::Despiker despiker_;
   std::array<bool, 4> saturated_{};  ///< Of the scans that the despiker still holds, and one.
   FallFinder finder_;

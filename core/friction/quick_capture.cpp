@@ -136,6 +136,8 @@ Crossing QuickCapture::work_out(const SlipRows& slip) noexcept {
   const double n2 = sums.s * K + sums.cs * A + sums.ss * B;
   double square_sum = sums.yy - 2.0 * (sums.y * K + sums.yc * A + sums.ys * B) + K * n0 + A * n1 + B * n2;
 
+  square_sum = std::max(square_sum, 0.0);  // Whatever the digits lose.
+
   // On the line, all of which moves as its begin does: c and c′ are continuous there, so its shift drops out.
   const double by_A = stick_.basis.cosine;
   const double by_B = stick_.basis.sine;
@@ -198,7 +200,7 @@ Crossing QuickCapture::work_out(const SlipRows& slip) noexcept {
   const double ratio = next_D_ / typical_delta_mu_;
   unusual_ =
       std::abs(ratio - 1.0) > kTypical ? std::log(std::max(ratio, kLeastRatio)) / kDeltaMuLogScatter : 0.0;
-  const double by_S = 1.0 / (next_D_ * kDeltaMuLogScatter);
+  const double by_S = ratio > kLeastRatio ? 1.0 / (next_D_ * kDeltaMuLogScatter) : 0.0;
   const double information = row_variance_ * by_S * by_S;
   const double pull = row_variance_ * unusual_ * by_S;
   n00 += information;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/friction/sampling.hpp"
+
 namespace stickslip::friction {
 namespace {
 
@@ -16,8 +18,8 @@ constexpr double kFewestRowsToChoose = 8.0;
 constexpr double kSlack = 1.0;
 /// Log-likelihood units that a row costs at most, nearly always: two standard deviations.
 constexpr double kUsualOfRow = 2.0;
-/// ln kStrayDensity: the least that a scan can tell.
-constexpr double kLeastOfRow = -4.605170185988091;
+/// Scans of a row at most, for numbers that are none.
+constexpr double kMostScansARow = 1e6;
 
 /// Lines under −ln(e^{−a} + kStrayDensity), which says how little a free course explains a scan with a =
 /// z²/2: concave, so the chords of its values at these a lie below, and each beyond its ends above.
@@ -29,7 +31,10 @@ class Unexplained {
       lines_[i] = {at(kKnots[i]) - slope * kKnots[i], slope};
     }
     most_ = at(kKnots.back());
+    least_told_ = std::log(kStrayDensity);
   }
+  /// ln kStrayDensity: a scan that a course does not explain.
+  [[nodiscard]] double least_told() const noexcept { return least_told_; }
   /// \param half_squares  an array of a. \return the same of not more than that each.
   template <typename Array>
   [[nodiscard]] auto operator()(const Array& half_squares) const noexcept {
@@ -46,7 +51,8 @@ class Unexplained {
 
   static constexpr std::array<double, 6> kKnots{0.0, 2.0, 3.5, 5.0, 7.0, 10.0};
   std::array<Line, kKnots.size() - 1> lines_{};
-  double most_;
+  double most_ = 0.0;
+  double least_told_ = 0.0;
 };
 
 }  // namespace
@@ -56,29 +62,35 @@ void QuickJunction::gap() noexcept {
   open_ = false;
 }
 
-void QuickJunction::open(double now_s, double peak_s, double level, const SharedParameters& shared) noexcept {
-  const double period_s = 2.0 * std::numbers::pi / shared.omega;
-  const double fitting = std::clamp(period_s / (kQuickRowsPerPeriod * rows_.scan_s()), 1.0, 1e6);
-  const auto scans = static_cast<std::size_t>(fitting);
-  fitted_ = false;
-  if (scans > 2 * rows_.scans_per_row() || rows_.scans_per_row() > 2 * scans) {
-    // The next slip has rows that fit.
-    rows_.restart(scans);
-    open_ = false;
-    return;
-  }
-  open_ = slip_.begin(rows_, now_s, peak_s, level, shared);
+void QuickJunction::fit_rows(double omega) noexcept {
+  const double fitting = 2.0 * std::numbers::pi / (omega * kQuickRowsPerPeriod * rows_.scan_s());
+  const std::size_t scans =
+      fitting >= 1.0 && fitting < kMostScansARow ? static_cast<std::size_t>(fitting) : 1;
+  if (scans <= 2 * rows_.scans_per_row() && rows_.scans_per_row() <= 2 * scans) return;
+  rows_.restart(scans);
+  captured_ = {};  // Its rows are others.
 }
 
-std::optional<QuickJunction::Answer> QuickJunction::fit_capture(const Free& free, double typical_delta_mu,
-                                                                double decisive) noexcept {
+void QuickJunction::open(double now_s, double peak_s, double level, const SharedParameters& shared) noexcept {
+  fitted_ = false;
+  // With few scans a period there are few rows beside those that four parameters need.
+  const double period_s = 2.0 * std::numbers::pi / shared.omega;
+  open_ = period_s >= kFewScansACycle * rows_.scan_s() && slip_.begin(rows_, now_s, peak_s, level, shared);
+}
+
+std::optional<QuickJunction::Answer> QuickJunction::fit_capture(const Free& free, double decisive) noexcept {
+  const auto start = [&](std::size_t row) {
+    return captured_.start(slip_, row, typical_delta_mu_, row_variance_);
+  };
   // Where the last one was, or else by the free course.
-  StickBegin begin = captured_.stick();
-  Crossing crossing = Crossing::kThere;
-  if (!(begin.row > slip_.half() && begin.row + 1 < slip_.size()))
+  Crossing crossing = Crossing::kNever;
+  if (const std::size_t row = captured_.stick().row; row > slip_.half() && row + 1 < slip_.size())
+    crossing = start(row);
+  if (crossing != Crossing::kThere) {
+    StickBegin begin;
     crossing = find_stick(slip_, free.course, begin);
-  if (crossing == Crossing::kThere)
-    crossing = captured_.start(slip_, begin.row, typical_delta_mu, row_variance_);
+    if (crossing == Crossing::kThere) crossing = start(begin.row);
+  }
   if (crossing == Crossing::kToCome) return Answer::kNotYet;
   if (crossing == Crossing::kNever) return ask_escaped(free, decisive);
   fitted_ = true;
@@ -88,8 +100,8 @@ std::optional<QuickJunction::Answer> QuickJunction::fit_capture(const Free& free
 }
 
 QuickJunction::Answer QuickJunction::ask_escaped(const Free& free, double decisive) noexcept {
-  // Any captured course costs what the rows before the end of its rise cost, and that its c′ falls short of r
-  // (20).
+  // What a captured course costs at least, nearly: the rows before the end of the rise of c′, and that c′
+  // falls short of r there (20). One that reaches r costs more of these rows.
   const std::size_t last = std::min(find_rise_end(slip_, free.course).row, slip_.size() - 1);
   if (slip_.sums(last).n < kFewestRowsToChoose) return Answer::kNotYet;
   const auto [course, square_sum] = slip_.fit(last);
@@ -166,7 +178,8 @@ double QuickJunction::told(const RowCourse& free_course, double scale) const noe
   const Rows weights = 0.5 * scale * slip_.weights();
   const Rows free = weights * slip_.off(free_course, size).square();
   const Rows unexplained_by_free = unexplained(free);
-  const double by_rows = (unexplained_by_free + (-weights * captured_off.square()).max(kLeastOfRow)).sum();
+  const double by_rows =
+      (unexplained_by_free + (-weights * captured_off.square()).max(unexplained.least_told())).sum();
   return by_rows - 0.5 * captured_.unusual() * captured_.unusual();
 }
 
@@ -177,14 +190,15 @@ QuickJunction::Answer QuickJunction::ask(double sigma, double typical_delta_mu, 
   const double count = slip_.sums(last).n;
   if (count < kFewestRowsToChoose) return Answer::kNotYet;
   const double row_variance = sigma * sigma / static_cast<double>(rows_.scans_per_row());
-  if (row_variance != row_variance_) {
+  if (row_variance != row_variance_ || typical_delta_mu != typical_delta_mu_) {
     row_variance_ = row_variance;
+    typical_delta_mu_ = typical_delta_mu;
     fitted_ = false;
   }
   const auto [course, square_sum] = slip_.fit(last);
   const Free free{course, 0.5 * square_sum / row_variance};
   if (!fitted_) {
-    if (const auto answer = fit_capture(free, typical_delta_mu, decisive)) return *answer;
+    if (const auto answer = fit_capture(free, decisive)) return *answer;
   } else {
     add_new_rows();
   }

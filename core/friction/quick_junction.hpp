@@ -34,6 +34,9 @@ class QuickJunction {
   void add(double value, bool usable) noexcept { rows_.add(value, usable); }
   /// Scans are missing.
   void gap() noexcept;
+  /// A slip begins. \param omega  of its oscillation, rad/s: where the rows do not fit it, it gets none, and
+  /// the next one has others.
+  void fit_rows(double omega) noexcept;
   /// A slip whose scans from peak_s on belong to one course. \param now_s  time of the last scan.
   /// \param level  about its middle.
   void open(double now_s, double peak_s, double level, const SharedParameters& shared) noexcept;
@@ -51,8 +54,7 @@ class QuickJunction {
   };
 
   /// \return what is to be said where no captured course can be fitted; nothing if one was.
-  [[nodiscard]] std::optional<Answer> fit_capture(const Free& free, double typical_delta_mu,
-                                                  double decisive) noexcept;
+  [[nodiscard]] std::optional<Answer> fit_capture(const Free& free, double decisive) noexcept;
   /// Where the free course does not reach the stick rate.
   [[nodiscard]] Answer ask_escaped(const Free& free, double decisive) noexcept;
   /// To captured_cost_, what the course leaves of rows that have come.
@@ -69,6 +71,7 @@ class QuickJunction {
   bool open_ = false;
   SlipRows slip_;
   double row_variance_ = 0.0;
+  double typical_delta_mu_ = 0.0;
   bool fitted_ = false;
   QuickCapture captured_;
   std::size_t captured_size_ = 0;  ///< Rows in captured_cost_,

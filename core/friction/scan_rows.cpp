@@ -1,5 +1,7 @@
 #include "core/friction/scan_rows.hpp"
 
+#include <cmath>
+
 namespace stickslip::friction {
 namespace {
 
@@ -13,7 +15,7 @@ constexpr double kMostScans = 1e6;
 ScanRows::ScanRows(double scan_s) noexcept
     : scan_s_(scan_s),
       scans_(static_cast<std::size_t>(
-          std::clamp(kFirstReach_s / (static_cast<double>(kMost) * scan_s), 1.0, kMostScans))) {}
+          std::clamp(std::ceil(kFirstReach_s / (static_cast<double>(kMost) * scan_s)), 1.0, kMostScans))) {}
 
 void ScanRows::restart(std::size_t scans) noexcept {
   scans_ = scans;

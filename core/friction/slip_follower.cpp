@@ -64,6 +64,8 @@ double log_normal_density(double x, double mean, double deviation) noexcept {
   return -0.5 * z * z - std::log(deviation);
 }
 
+constexpr double kNoEnd = std::numeric_limits<double>::infinity();
+
 /// By which a drop is wrong at most: noise of both its ends as far as it makes no turning point, and what is
 /// missed between scans.
 double peak_error(double drop, double sigma) noexcept {
@@ -84,6 +86,7 @@ void SlipFollower::gap() noexcept {
   buffer_.clear();
   quick_junction_.gap();
   heights_follow_ = false;
+  if (rise_slope_ == 0.0) rise_slope_ = kNotKnown;
   if (open_ && !decided_) task_ = Task::kNone;
 }
 
@@ -120,6 +123,7 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, double
   if (!knowledge_.started()) knowledge_.start(std::numbers::pi / half_s, rise_slope(sigma));
   if (contradicted) knowledge_.forget_stick_rate(rise_slope(sigma));
   shared_ = knowledge_.best();
+  quick_junction_.fit_rows(shared_.omega);
 
   if (keeps_scans() && !(typical_delta_mu_ > 0.0)) {
     const double belt = shared_.r / shared_.omega;
@@ -190,7 +194,7 @@ bool SlipFollower::do_task(double now_s, double sigma) noexcept {
       first_ask();
       return false;
     case Task::kJudge:
-      return judge(now_s, sigma, now_s > peak_s_ + kMostPeriods * period_s());
+      return judge(now_s, sigma, !(now_s < peak_s_ + kMostPeriods * period_s()));
     case Task::kFit:
       task_ = Task::kNone;
       estimate(now_s, sigma);
@@ -226,8 +230,13 @@ void SlipFollower::force_by_heights(double now_s, double sigma, const Fall* next
     } else if (task_ == Task::kJudge && !few) {
       (void)judge(now_s, sigma, next != nullptr);
     }
-    if (!decided_ && !evidence_.known && std::abs(heights) > std::log(kDecisiveLikelihoodRatio))
+    const double told = std::log(kDecisiveLikelihoodRatio);
+    const bool scans_tell = evidence_.known && std::abs(evidence_.log_likelihood_ratio) > told;
+    if (heights <= kDecisive && !scans_tell && std::abs(heights) > told) {
+      slip_.cycle.flags &= static_cast<std::uint8_t>(~kCycleCaptured);
+      slip_.cycle.capture_time_s = kNotKnown;
       decide(heights, now_s);
+    }
   }
   if (has_next && decided_ && captured()) learn_typical_drop();
 }
@@ -238,6 +247,7 @@ void SlipFollower::first_fit(double sigma) noexcept {
                                  knowledge_, sigma);
   if (fit.converged) shared_ = fit.shared;
   question_from_s_ = kNotKnown;
+  open_question();
 }
 
 double SlipFollower::slipping_before_peak_s() const noexcept {
@@ -258,11 +268,12 @@ void SlipFollower::first_ask() noexcept {
 }
 
 void SlipFollower::open_late_question(double sigma) noexcept {
-  learn_turning_points(std::max(trough_s_ - peak_s_, scan_s_), sigma);
+  if (late_number_ != slip_number_) learn_turning_points(std::max(trough_s_ - peak_s_, scan_s_), sigma);
+  late_number_ = slip_number_;
   shared_ = knowledge_.best();
   const Oscillator oscillator = shared_.oscillator();
   const double drop = typical_count_ > 0.0 ? std::exp(typical_log_drop_) : fall_.drop();
-  const double above_K = drop - (K_of_turning_points(drop, 0.0, oscillator));
+  const double above_K = drop - K_of_turning_points(drop, 0.0, oscillator);
   typical_delta_mu_ = std::max(slip_of_peak(above_K, shared_.r, oscillator).delta_mu, kLeastTypical * drop);
   open_question();
 }
@@ -313,6 +324,12 @@ void SlipFollower::ask_in_full(double sigma, double decisive) noexcept {
   if (std::isnan(question_from_s_)) question_from_s_ = peak_s_ - slipping_before_peak_s();
   look_back_to(question_from_s_);
   const auto points = buffer_.since(question_from_s_);
+  // Both courses begin where the question does.
+  const double missing_s = points.empty() ? kNoEnd : points.front().first_s - question_from_s_;
+  if (!keeps_scans() && missing_s > 2.0 * quick_junction_.rows().row_s()) {
+    evidence_ = {};
+    return;
+  }
   evidence_ = junction_.ask(points, shared_, sigma, typical_delta_mu_, decisive);
   if (!evidence_.known || !(evidence_.residual_sigmas > kMisfitSigmas)) return;
   // Neither course fits: perhaps the belt has another speed now, which the rise before this slip tells.
@@ -326,6 +343,7 @@ void SlipFollower::ask_in_full(double sigma, double decisive) noexcept {
   evidence_ = with_other;
   shared_ = other;
   question_from_s_ = kNotKnown;
+  open_question();
 }
 
 bool SlipFollower::belt_changed(double residual_sigmas, double before_sigmas) noexcept {
@@ -449,8 +467,7 @@ void SlipFollower::learn_turning_points(double fall_s, double sigma) noexcept {
   SharedEvidence evidence;
   const double omega = std::numbers::pi / fall_s;
   evidence.information(0, 0) = 1.0 / (kTurningPointSpread * omega * kTurningPointSpread * omega);
-  if (mostly_stick) {
-    const double slope = rise_slope(sigma);
+  if (const double slope = mostly_stick ? rise_slope(sigma) : 0.0; slope > 0.0) {
     evidence.information(2, 2) = 1.0 / (kSlopeSpread * slope * kSlopeSpread * slope);
     evidence.weighted[2] = evidence.information(2, 2) * slope;
   }

@@ -40,8 +40,8 @@ class SlipFollower {
 
   /// A fall was confirmed to be a slip; ends the one before. Call force() and take it first.
   /// \param peak_s,trough_s  times of the fall's turning points. \param now_s  of the last scan.
-  /// \param begins_from_stick  the slip before
-  /// was captured; if it was not, but this one is too large for that, it begins from sticking all the same.
+  /// \param begins_from_stick  the slip before was captured; if it was not, but this one is too large for
+  /// that, it begins from sticking all the same.
   void open(const Fall& fall, double peak_s, double trough_s, double now_s, bool begins_from_stick,
             double sigma) noexcept;
   /// There is something to do now.
@@ -74,7 +74,7 @@ class SlipFollower {
 
   /// Of the stick before a fall: from its scans, or as a whole where they tell nothing.
   [[nodiscard]] double slope_of_rise(double sigma) const noexcept;
-  /// The same, worked out once for a slip and only if it is asked for.
+  /// The same, worked out once for a slip and only if it is asked for. NaN behind a gap.
   [[nodiscard]] double rise_slope(double sigma) noexcept;
   [[nodiscard]] bool do_task(double now_s, double sigma) noexcept;
   void first_fit(double sigma) noexcept;
@@ -128,7 +128,7 @@ class SlipFollower {
   bool open_ = false;
   bool decided_ = false;
   bool begins_from_stick_ = false;
-  bool heights_follow_ = false;  ///< No scan is missing since its fall.
+  bool heights_follow_ = false;  ///< No scan is missing since it was opened.
   Task task_ = Task::kNone;
   double next_task_s_ = 0.0;
   double opened_s_ = 0.0;              ///< Time of the last scan before it was opened,
@@ -138,7 +138,8 @@ class SlipFollower {
   Fall fall_;
   double peak_s_ = 0.0;
   double trough_s_ = 0.0;
-  double rise_slope_ = 0.0;  ///< 0: not worked out.
+  double rise_slope_ = 0.0;       ///< 0: not worked out; NaN: its scans are gone.
+  std::int64_t late_number_ = 0;  ///< Slip of the last late question.
   BeltChange belt_change_;
   std::int64_t slip_number_ = 0;
   double question_from_s_ = 0.0;  ///< Scans from here on tell how it ends; NaN until asked.

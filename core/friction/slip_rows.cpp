@@ -1,5 +1,6 @@
 #include "core/friction/slip_rows.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,7 +15,6 @@ bool SlipRows::begin(const ScanRows& rows, double now_s, double peak_s, double l
   if (shared.omega != shared_.omega || shared.gamma != shared_.gamma || rows.row_s() != row_s_) {
     row_s_ = rows.row_s();
     omega0_squared_ = shared.omega * shared.omega + 0.25 * shared.gamma * shared.gamma;
-    half_ = static_cast<std::size_t>(std::numbers::pi / shared.omega / row_s_);
     const double decay = std::exp(-0.5 * shared.gamma * row_s_);
     turn_ = {decay * std::cos(shared.omega * row_s_), decay * std::sin(shared.omega * row_s_)};
     // sin(nx)/(n sin x) of half a scan's phase x, to the third order.
@@ -28,6 +28,8 @@ bool SlipRows::begin(const ScanRows& rows, double now_s, double peak_s, double l
   level_ = level;
   first_row_ = rows.count() - static_cast<std::size_t>(count);
   first_s_ = newest_s - (count - 1.0) * row_s_;
+  half_ =
+      static_cast<std::size_t>(std::max(std::numbers::pi / shared.omega - (first_s_ - peak_s), 0.0) / row_s_);
   size_ = 0;
   return true;
 }
@@ -109,7 +111,8 @@ SlipRows::Fit SlipRows::fit(std::size_t k) const noexcept {
   p.B = ys * by.per_ss;
   p.A = yc * by.per_cc - by.m * p.B;
   p.K = sums.y * by.per_n - by.l1 * p.A - by.l2 * p.B;
-  fit.square_sum = sums.yy - by.per_n * sums.y * sums.y - by.per_cc * yc * yc - ys * p.B;
+  // Never less than nothing, whatever the digits lose.
+  fit.square_sum = std::max(sums.yy - by.per_n * sums.y * sums.y - by.per_cc * yc * yc - ys * p.B, 0.0);
   return fit;
 }
 

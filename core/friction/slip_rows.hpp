@@ -78,7 +78,7 @@ class SlipRows {
   [[nodiscard]] TurnedBasis a_row_later(const TurnedBasis& b) const noexcept {
     return {turn_.cosine * b.cosine - turn_.sine * b.sine, turn_.sine * b.cosine + turn_.cosine * b.sine};
   }
-  /// \param time_s  of a row at most: a series, 10⁻⁵ off at 16 rows a period.
+  /// \param time_s  of a row at most: a series, 3·10⁻⁵ off at eight rows a period.
   [[nodiscard]] TurnedBasis later(const TurnedBasis& b, double time_s) const noexcept;
 
   /// c − K and its derivatives where a course has this basis.

@@ -15,7 +15,7 @@ struct TurningPoint {
   double value = 0.0;
 };
 
-/// Vertex of the parabola that fits the points within reach_s of near_s best.
+/// Vertex of the parabola that fits the points in [near_s − reach_s, near_s + reach_s) best.
 /// \param sign  +1 for a maximum, −1 for a minimum.
 /// \return nothing with fewer than three points, without the curvature, or if the vertex lies out of reach.
 [[nodiscard]] std::optional<TurningPoint> parabola_vertex(std::span<const CyclePoint> points, double near_s,

@@ -299,6 +299,69 @@ TEST(QuickJunction, DoubtsWithoutTheScansOfASlip) {
   EXPECT_EQ(quick.ask(kSigma, kDeltaMu, kDecisive), QuickJunction::Answer::kDoubt);
 }
 
+// Without noise the sums lose all that is left.
+TEST(SlipRows, LeaveNoLessThanNothing) {
+  const SharedParameters shared = ModelCourse::tester_at(1.3);
+  for (std::size_t size = 8; size < 60; ++size) {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < size; ++k) {
+      const double t = static_cast<double>(k) * kScan_s;
+      values.push_back(0.3 + 0.08 * std::exp(-0.5 * shared.gamma * t) * std::cos(shared.omega * t + 0.1));
+    }
+    const LaidOut laid_out{values, {}, 1, shared, 0.3};
+    EXPECT_GE(laid_out.slip.fit(size - 1).square_sum, 0.0) << size;
+  }
+}
+
+TEST(QuickJunction, TellsWithoutNoiseToo) {
+  for (const double Q : {0.65, 3.0}) {
+    const ModelCourse course = Q < 1.9 ? ModelCourse::captured(Q, 3) : ModelCourse::free(Q, 3.0);
+    Asked asked{course, course.trace, 1e-9};
+    const auto answer = asked.until_answered(1.3, false);
+    if (answer == QuickJunction::Answer::kCaptured || answer == QuickJunction::Answer::kFree) {
+      EXPECT_EQ(answer == QuickJunction::Answer::kCaptured, Q < 1.9);
+      EXPECT_TRUE(std::isfinite(asked.quick().evidence().residual_sigmas));
+      EXPECT_TRUE(std::isfinite(asked.quick().evidence().log_likelihood_ratio));
+    }
+  }
+}
+
+/// Whether one slip after the other, each of another dimensionless speed, is called captured.
+void expect_captured(QuickJunction& quick, double scan_s, double Q, double part_of_row) {
+  const SharedParameters shared = ModelCourse::tester_at(Q);
+  const SlipModel model{shared, {0.0, ModelCourse::kS, ModelCourse::kK}, true};
+  const double peak_s = model.waveform().peak_time_s();
+  const double first_s = peak_s + part_of_row * scan_s;
+  std::mt19937_64 engine{5};
+  std::normal_distribution<double> noise{0.0, kSigma};
+  auto answer = QuickJunction::Answer::kNotYet;
+  for (int k = 0; answer == QuickJunction::Answer::kNotYet && first_s + k * scan_s < peak_s + 1.5 * kPeriod_s;
+       ++k) {
+    const double time_s = first_s + k * scan_s;
+    quick.add(model.at(time_s).value + noise(engine), true);
+    if (k == 0) quick.open(time_s, peak_s, ModelCourse::kK, shared);
+    answer = quick.ask(kSigma, kDeltaMu, kDecisive);
+    if (time_s < peak_s + 0.6 * kPeriod_s) answer = QuickJunction::Answer::kNotYet;
+  }
+  EXPECT_EQ(answer, QuickJunction::Answer::kCaptured) << Q << ", " << part_of_row;
+}
+
+// A slow belt catches the sled just behind the trough, which lies anywhere between two rows.
+TEST(QuickJunction, SeesACaptureNextToTheTrough) {
+  const double scan_s = kPeriod_s / 24.0;
+  for (const double Q : {0.05, 0.1, 0.2}) {
+    for (const double part : {0.01, 0.3, 0.5, 0.8, 0.99}) {
+      QuickJunction quick{scan_s};
+      expect_captured(quick, scan_s, Q, part);
+    }
+  }
+}
+
+TEST(QuickJunction, ForgetsWhereTheLastSlipWasCaptured) {
+  QuickJunction quick{kScan_s};
+  for (const double Q : {1.5, 0.1, 1.5, 0.3, 1.3}) expect_captured(quick, kScan_s, Q, 0.5);
+}
+
 TEST(ScanRows, KeepsTheNewestAndSaysWhenTheyWere) {
   ScanRows rows{0.01};
   rows.restart(4);
