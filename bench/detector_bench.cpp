@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "daemon/peer/scipy_chain.hpp"
@@ -19,8 +20,15 @@ namespace {
 
 using namespace stickslip;
 
+/// Slips of a short test.
+constexpr int kShortTest = 30;
+/// Slips of a pull of ten seconds, the longest of docs/promise.md.
+constexpr int kPromisedTest = 190;
+/// Slips of a test so long that what is done once for a test, or once for an array, counts no more.
+constexpr int kLongTest = 1000;
+
 /// 0.05 s a cycle.
-test::LiveScene fast_cycles(double scan_rate_Hz, int slips = 30) {
+test::LiveScene fast_cycles(double scan_rate_Hz, int slips = kShortTest) {
   test::LiveScene scene;
   scene.scan_rate_Hz = scan_rate_Hz;
   scene.slips = slips;
@@ -46,11 +54,6 @@ test::LiveScene differing_cycles(double scan_rate_Hz) {
   return scene;
 }
 
-/// Slips of a pull of ten seconds, the longest of docs/promise.md.
-constexpr int kPromisedTest = 190;
-/// Slips of a test so long that what is done once for a test, or once for an array, counts no more.
-constexpr int kLongTest = 1000;
-
 /// Slips that SciPy's chain must see at once to tell of one: it takes the mean from a peak to the next, and
 /// finds a peak by what falls on either side.
 constexpr int kSeenAtOnce = 2;
@@ -62,23 +65,28 @@ std::vector<double> scans_of(const test::LiveScene& scene) {
   return scans;
 }
 
-friction::LiveSettings settings_of(const test::LiveScene& scene, friction::EstimatorTier tier) {
+/// Is anything known of the tester before the test?
+enum class Tester { kCharacterised, kUnknown };
+
+friction::LiveSettings settings_of(const test::LiveScene& scene, friction::EstimatorTier tier,
+                                   Tester tester) {
   friction::LiveSettings settings;
   settings.scan_rate_Hz = scene.scan_rate_Hz;
   settings.estimator = tier;
-  settings.prior = scene.characterised();
+  if (tester == Tester::kCharacterised) settings.prior = scene.characterised();
   return settings;
 }
 
 /// The least time of many, as Python tells it of SciPy's: what else the machine does only ever adds.
-void follow(benchmark::State& state, const test::LiveScene& scene, friction::EstimatorTier tier) {
+void follow(benchmark::State& state, const test::LiveScene& scene, friction::EstimatorTier tier,
+            Tester tester) {
   using Clock = std::chrono::steady_clock;
   const std::vector<double> scans = scans_of(scene);
   std::int64_t cycles = 0;
   double least_s = std::numeric_limits<double>::infinity();
   for (auto _ : state) {
     const auto begin = Clock::now();
-    friction::LiveDetector detector{settings_of(scene, tier)};
+    friction::LiveDetector detector{settings_of(scene, tier, tester)};
     cycles = 0;
     for (const double value : scans) cycles += detector.add(value, false) ? 1 : 0;
     benchmark::DoNotOptimize(detector);
@@ -91,7 +99,7 @@ void follow(benchmark::State& state, const test::LiveScene& scene, friction::Est
 /// The slowest scan: of several runs the least for each scan, so that what else the machine does does not
 /// count.
 void slowest_scan(benchmark::State& state, const test::LiveScene& scene, friction::EstimatorTier tier,
-                  bool characterised = true) {
+                  Tester tester) {
   using Clock = std::chrono::steady_clock;
   constexpr int kRuns = 7;
   const std::vector<double> scans = scans_of(scene);
@@ -99,9 +107,7 @@ void slowest_scan(benchmark::State& state, const test::LiveScene& scene, frictio
   for (auto _ : state) {
     std::vector<double> least_us(scans.size(), std::numeric_limits<double>::infinity());
     for (int run = 0; run < kRuns; ++run) {
-      friction::LiveSettings settings = settings_of(scene, tier);
-      if (!characterised) settings.prior = {};
-      friction::LiveDetector detector{settings};
+      friction::LiveDetector detector{settings_of(scene, tier, tester)};
       for (std::size_t k = 0; k < scans.size(); ++k) {
         const auto begin = Clock::now();
         benchmark::DoNotOptimize(detector.add(scans[k], false));
@@ -162,33 +168,36 @@ int main(int argc, char** argv) {
     const std::string tier_name{name(tier)};
     for (const double rate_Hz : {100.0, 350.0, 1000.0, 10'000.0, 100'000.0}) {
       const std::string at = tier_name + "/" + std::to_string(static_cast<int>(rate_Hz));
-      benchmark::RegisterBenchmark(("follow/" + at).c_str(), [=](benchmark::State& state) {
-        follow(state, fast_cycles(rate_Hz), tier);
-      });
-      if (rate_Hz <= 10'000.0) {
-        for (const int slips : {kPromisedTest, kLongTest}) {
-          benchmark::RegisterBenchmark(
-              ("follow/" + at + "/" + std::to_string(slips)).c_str(),
-              [=](benchmark::State& state) { follow(state, fast_cycles(rate_Hz, slips), tier); });
+      for (const auto& [prefix, tester] : {std::pair{"follow/", Tester::kCharacterised},
+                                           std::pair{"follow_unknown_tester/", Tester::kUnknown}}) {
+        for (const int slips : {kShortTest, kPromisedTest, kLongTest}) {
+          if (rate_Hz > 10'000.0 && slips > kShortTest) continue;
+          const std::string length = slips > kShortTest ? "/" + std::to_string(slips) : "";
+          benchmark::RegisterBenchmark((prefix + at + length).c_str(), [=](benchmark::State& state) {
+            follow(state, fast_cycles(rate_Hz, slips), tier, tester);
+          });
         }
       }
       benchmark::RegisterBenchmark(("slowest_scan/" + at).c_str(), [=](benchmark::State& state) {
-        slowest_scan(state, fast_cycles(rate_Hz), tier);
+        slowest_scan(state, fast_cycles(rate_Hz), tier, Tester::kCharacterised);
       })->Iterations(1);
-      benchmark::RegisterBenchmark(
-          ("slowest_scan/differing_slips_uncharacterised/" + at).c_str(),
-          [=](benchmark::State& state) { slowest_scan(state, differing_cycles(rate_Hz), tier, false); })
+      benchmark::RegisterBenchmark(("slowest_scan/differing_slips_uncharacterised/" + at).c_str(),
+                                   [=](benchmark::State& state) {
+                                     slowest_scan(state, differing_cycles(rate_Hz), tier, Tester::kUnknown);
+                                   })
           ->Iterations(1);
     }
     for (const double rate_Hz : {350.0, 100'000.0}) {
       benchmark::RegisterBenchmark(
           ("slowest_scan/2s_cycle/" + tier_name + "/" + std::to_string(static_cast<int>(rate_Hz))).c_str(),
-          [=](benchmark::State& state) { slowest_scan(state, slow_cycles(rate_Hz), tier); })
+          [=](benchmark::State& state) {
+            slowest_scan(state, slow_cycles(rate_Hz), tier, Tester::kCharacterised);
+          })
           ->Iterations(1);
     }
   }
   for (const double rate_Hz : {100.0, 350.0, 1000.0, 10'000.0}) {
-    for (const int slips : {30, kPromisedTest, kLongTest}) {
+    for (const int slips : {kShortTest, kPromisedTest, kLongTest}) {
       const std::string at = std::to_string(static_cast<int>(rate_Hz)) + "/" + std::to_string(slips);
       benchmark::RegisterBenchmark(("peer_scipy_chain/" + at).c_str(), [=](benchmark::State& state) {
         peer_scipy_chain(state, fast_cycles(rate_Hz, slips));

@@ -160,10 +160,19 @@ bool QuickJunction::improve(const Free& free, double decisive) noexcept {
   return true;
 }
 
-double QuickJunction::told(const RowCourse& free_course, double scale) const noexcept {
+double QuickJunction::told(const RowCourse& free_course, double scale, double decisive) const noexcept {
   static const Unexplained unexplained;
   using Rows = Eigen::Array<double, Eigen::Dynamic, 1, 0, SlipRows::kMost, 1>;
   const std::size_t size = slip_.size();
+  const Rows weights = 0.5 * scale * slip_.weights();
+  const Rows free = weights * slip_.off(free_course, size).square();
+  const Rows unexplained_by_free = unexplained(free);
+  const double unusual = 0.5 * captured_.unusual() * captured_.unusual();
+  // Strays of the captured course cost no more than one scan can; where all they cost leaves it decided, none
+  // is looked for.
+  const double at_least =
+      unexplained_by_free.sum() - (captured_cost_ - unusual) * row_variance_ * scale - unusual;
+  if (at_least > decisive) return at_least;
   Rows captured_off(size);
   std::size_t k = captured_.stick().row + 1;
   captured_off.head(static_cast<Eigen::Index>(k)) = slip_.off(captured_.slip(), k);
@@ -175,16 +184,14 @@ double QuickJunction::told(const RowCourse& free_course, double scale) const noe
     for (; k < size; ++k, b = slip_.a_row_later(b))
       captured_off(static_cast<Eigen::Index>(k)) = slip_.value(k) - captured_.next_slip(slip_, b);
   }
-  const Rows weights = 0.5 * scale * slip_.weights();
-  const Rows free = weights * slip_.off(free_course, size).square();
-  const Rows unexplained_by_free = unexplained(free);
   const double by_rows =
       (unexplained_by_free + (-weights * captured_off.square()).max(unexplained.least_told())).sum();
-  return by_rows - 0.5 * captured_.unusual() * captured_.unusual();
+  return by_rows - unusual;
 }
 
-QuickJunction::Answer QuickJunction::ask(double sigma, double typical_delta_mu, double decisive) noexcept {
-  if (open_) open_ = slip_.take(rows_);
+QuickJunction::Answer QuickJunction::ask(double sigma, double typical_delta_mu, double decisive,
+                                         double until_s) noexcept {
+  if (open_) open_ = slip_.take(rows_, until_s);
   if (!open_ || slip_.size() == 0) return Answer::kDoubt;
   const std::size_t last = slip_.size() - 1;
   const double count = slip_.sums(last).n;
@@ -210,7 +217,7 @@ QuickJunction::Answer QuickJunction::ask(double sigma, double typical_delta_mu, 
   const double residual_square = 2.0 * std::min(free.cost, captured_cost_) / count;
   if (residual_square > kMisfitSigmas * kMisfitSigmas || ratio <= -(decisive - kSlack)) return Answer::kDoubt;
   if (!(ratio > decisive)) return Answer::kNotYet;
-  const double ratio_told = told(course, 1.0 / (row_variance * std::max(residual_square, 1.0)));
+  const double ratio_told = told(course, 1.0 / (row_variance * std::max(residual_square, 1.0)), decisive);
   if (!(ratio_told > decisive)) return Answer::kNotYet;
   evidence_.known = true;
   evidence_.log_likelihood_ratio = ratio_told;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 
 #include "core/friction/live_junction.hpp"
@@ -41,7 +42,9 @@ class QuickJunction {
   /// \param level  about its middle.
   void open(double now_s, double peak_s, double level, const SharedParameters& shared) noexcept;
   /// \param sigma  noise of one scan. \param typical_delta_mu,decisive  as in LiveJunction; decisive > 0.
-  [[nodiscard]] Answer ask(double sigma, double typical_delta_mu, double decisive) noexcept;
+  /// \param until_s  by what came before then; not earlier than the last time for a slip.
+  [[nodiscard]] Answer ask(double sigma, double typical_delta_mu, double decisive,
+                           double until_s = std::numeric_limits<double>::infinity()) noexcept;
   /// Of the last answer that decided.
   [[nodiscard]] const JunctionEvidence& evidence() const noexcept { return evidence_; }
   [[nodiscard]] const ScanRows& rows() const noexcept { return rows_; }
@@ -63,8 +66,9 @@ class QuickJunction {
   [[nodiscard]] bool improve(const Free& free, double decisive) noexcept;
   [[nodiscard]] bool has_stray(const RowCourse& free) const noexcept;
   /// Captured over free, where a stray tells no more than one scan can: not more than the full question says.
-  /// \param scale  1/σ² of a row, or less where neither course fits.
-  [[nodiscard]] double told(const RowCourse& free_course, double scale) const noexcept;
+  /// \param scale  1/σ² of a row, or less where neither course fits. \return if that is decisive, perhaps
+  /// less than the whole.
+  [[nodiscard]] double told(const RowCourse& free_course, double scale, double decisive) const noexcept;
 
   ScanRows rows_;
   // The slip under way.

@@ -22,6 +22,8 @@ constexpr double kKept = 31.0 / 32.0;
 constexpr double kNeverFades = 1e-6;
 /// Rounds of making what is known beforehand linear, where the answer is.
 constexpr int kKnowledgeRounds = 3;
+/// A step of so many standard deviations is the last: the next would be about its square.
+constexpr double kSettledSigmas = 1e-3;
 
 double inverse_square(double x) noexcept { return 1.0 / (x * x); }
 
@@ -97,13 +99,17 @@ void SharedKnowledge::update_best() {
     // Scales of ω, γ and r differ by orders: each by its own.
     const Eigen::Vector3d scale = terms.information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::Matrix3d scaled = scale.asDiagonal() * terms.information * scale.asDiagonal();
-    const Eigen::Vector3d step = scale.cwiseProduct(scaled.inverse() * scale.cwiseProduct(terms.gradient));
+    const Eigen::Vector3d scaled_step = scaled.inverse() * scale.cwiseProduct(terms.gradient);
+    const Eigen::Vector3d step = scale.cwiseProduct(scaled_step);
     const SharedParameters next{best_.omega + step[0], best_.gamma + step[1], best_.r + step[2]};
     if (!step.allFinite() || !(next.omega > 0.0) || !(next.r > 0.0) ||
         !(std::abs(next.gamma) < 2.0 * next.omega)) {
       return;
     }
     best_ = next;
+    // What is learnt is linear, and after a small step what is known beforehand is as well.
+    const bool settled = scaled_step.squaredNorm() < kSettledSigmas * kSettledSigmas;
+    if (settled || !(prior_.coupling || prior_.belt)) return;
   }
 }
 

@@ -46,6 +46,9 @@ constexpr std::ptrdiff_t kFewestOfRise = 8;
 /// Turning points know ω and r by such parts; only their ratio to what was known before matters.
 constexpr double kTurningPointSpread = 0.02;
 constexpr double kSlopeSpread = 0.05;
+/// One slip of so many teaches ω and r where kTypicalMemory of them have: each is known to a part of what one
+/// slip tells, and what they are used with need not be worked out anew.
+constexpr std::int64_t kMatureTaughtBy = 4;
 /// After so many slips the stick rate is known from more than a loading, and one rise does not overturn it.
 constexpr double kKnownSlips = 2.0;
 /// Rises of so many falls are mostly stick, and their middle is.
@@ -268,19 +271,33 @@ void SlipFollower::first_ask() noexcept {
 }
 
 void SlipFollower::open_late_question(double sigma) noexcept {
-  if (late_number_ != slip_number_) learn_turning_points(std::max(trough_s_ - peak_s_, scan_s_), sigma);
+  const bool mature = typical_count_ >= kTypicalMemory && slip_number_ % kMatureTaughtBy != 0;
+  if (late_number_ != slip_number_ && !mature) learn_turning_points(std::max(trough_s_ - peak_s_, scan_s_), sigma);
   late_number_ = slip_number_;
   shared_ = knowledge_.best();
   const Oscillator oscillator = shared_.oscillator();
   const double drop = typical_count_ > 0.0 ? std::exp(typical_log_drop_) : fall_.drop();
+  // Undamped (2): damping changes that by a tenth of what slips differ by.
   const double above_K = drop - K_of_turning_points(drop, 0.0, oscillator);
-  typical_delta_mu_ = std::max(slip_of_peak(above_K, shared_.r, oscillator).delta_mu, kLeastTypical * drop);
+  const double belt = shared_.r / shared_.omega;
+  const double square = above_K * above_K - belt * belt;
+  typical_delta_mu_ = std::max(std::sqrt(std::max(square, 0.0)), kLeastTypical * drop);
   open_question();
 }
 
+QuickJunction::Answer SlipFollower::ask_quickly(double sigma) noexcept {
+  if (!keeps_scans()) {
+    open_late_question(sigma);
+    // What one asks of a slip under way mostly has its answer by then; the other rows cost as much again.
+    const QuickJunction::Answer early = quick_junction_.ask(sigma, typical_delta_mu_, kDecisive,
+                                                            peak_s_ + kLastFirstAsked * period_s());
+    if (early == QuickJunction::Answer::kCaptured || early == QuickJunction::Answer::kFree) return early;
+  }
+  return quick_junction_.ask(sigma, typical_delta_mu_, kDecisive);
+}
+
 bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
-  if (!keeps_scans()) open_late_question(sigma);
-  switch (quick_junction_.ask(sigma, typical_delta_mu_, kDecisive)) {
+  switch (ask_quickly(sigma)) {
     case QuickJunction::Answer::kCaptured:
     case QuickJunction::Answer::kFree:
       evidence_ = quick_junction_.evidence();

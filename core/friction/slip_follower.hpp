@@ -92,6 +92,7 @@ class SlipFollower {
   /// Captured over free, by the heights of this fall and the next alone.
   [[nodiscard]] double evidence_of_heights(const Fall& next, double sigma) noexcept;
   void learn_typical_drop() noexcept;
+  [[nodiscard]] QuickJunction::Answer ask_quickly(double sigma) noexcept;
   [[nodiscard]] bool judge(double now_s, double sigma, bool last) noexcept;
   /// The next drop if it goes on freely.
   [[nodiscard]] double freely_next_drop() const noexcept;

@@ -59,8 +59,8 @@ class SlipRows {
   /// \return whether they are all there.
   [[nodiscard]] bool begin(const ScanRows& rows, double now_s, double peak_s, double level,
                            const SharedParameters& shared) noexcept;
-  /// \return whether there was room for them.
-  [[nodiscard]] bool take(const ScanRows& rows) noexcept;
+  /// \param until_s  only those before. \return whether there was room for them.
+  [[nodiscard]] bool take(const ScanRows& rows, double until_s) noexcept;
 
   [[nodiscard]] const SharedParameters& shared() const noexcept { return shared_; }
   [[nodiscard]] double omega0_squared() const noexcept { return omega0_squared_; }
