@@ -14,7 +14,7 @@ constexpr double kCoarsest = 1.0;
 
 /// Means and variances of both together [Chan, Golub and LeVeque, Am. Stat. 37(3):242–247, 1983].
 CyclePoint joined(const CyclePoint& a, const CyclePoint& b) noexcept {
-  CyclePoint both;
+  CyclePoint both{};
   both.count = a.count + b.count;
   const double part = b.count / both.count;
   const double apart_s = b.time_s - a.time_s;
@@ -72,7 +72,7 @@ bool CycleBuffer::may_merge(const CyclePoint& before, const CyclePoint& after,
 
 std::size_t CycleBuffer::merged_count(double resolution) const noexcept {
   std::size_t count = 0;
-  CyclePoint last;
+  CyclePoint last{};
   for (std::size_t i = 0; i < size_; ++i) {
     if (i > 0 && may_merge(last, points_[i], resolution)) {
       last.last_s = points_[i].last_s;

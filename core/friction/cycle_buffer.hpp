@@ -12,14 +12,14 @@
 
 namespace stickslip::friction {
 
-/// Mean of consecutive scans.
+/// Mean of consecutive scans. Without initial values: an array of them needs none.
 struct CyclePoint {
-  double time_s = 0.0;     ///< Mean of their times.
-  double value = 0.0;      ///< Mean of their coefficients.
-  double spread_s2 = 0.0;  ///< Variance of their times about the mean; 0 for one scan.
-  double count = 0.0;      ///< How many; the mean has σ²/count.
-  double first_s = 0.0;    ///< Time of the first of them.
-  double last_s = 0.0;     ///< Time of the last of them.
+  double time_s;     ///< Mean of their times.
+  double value;      ///< Mean of their coefficients.
+  double spread_s2;  ///< Variance of their times about the mean; 0 for one scan.
+  double count;      ///< How many; the mean has σ²/count.
+  double first_s;    ///< Time of the first of them.
+  double last_s;     ///< Time of the last of them.
 };
 
 /// At most kMostPoints points, whatever the scan rate and the length of the stick. When they are full,

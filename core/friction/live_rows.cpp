@@ -22,7 +22,7 @@ constexpr std::size_t kFreeParameters = 3;
 LiveRow LiveRows::row_of(std::span<const CyclePoint> together, double first_s,
                          const SharedParameters& shared) noexcept {
   const auto& [omega, gamma, r] = shared;
-  LiveRow row;
+  LiveRow row{};
   double count = 0.0;
   double squares = 0.0;  // Of times, for the spread of all scans together.
   for (const CyclePoint& point : together) {

@@ -18,19 +18,19 @@ namespace stickslip::friction {
 /// A free course, linear in its parameters: K, c(0) − K, c′(0); times from the first point.
 using LiveFreeCourse = Eigen::Vector3d;
 
-/// Neighbouring points together.
+/// Neighbouring points together. Without initial values: an array of them needs none.
 struct LiveRow {
-  double tau_s = 0.0;  ///< Mean time after the first point.
-  double value = 0.0;  ///< Mean of the points.
-  double scale = 0.0;  ///< √count/σ; 0 for a stray.
-  double root_count = 0.0;
-  double half_spread_s2 = 0.0;
-  double by_D = 0.0;            ///< What c(0) − K adds, its mean over the points.
-  double by_rate = 0.0;         ///< What c′(0) adds, s.
-  double begin_s = 0.0;         ///< Time of its first point,
-  double end_s = 0.0;           ///< and of its last.
-  std::size_t first_point = 0;  ///< Index of it.
-  bool stray = false;           ///< No course explains it: left out.
+  double tau_s;  ///< Mean time after the first point.
+  double value;  ///< Mean of the points.
+  double scale;  ///< √count/σ; 0 for a stray.
+  double root_count;
+  double half_spread_s2;
+  double by_D;              ///< What c(0) − K adds, its mean over the points.
+  double by_rate;           ///< What c′(0) adds, s.
+  double begin_s;           ///< Time of its first point,
+  double end_s;             ///< and of its last.
+  std::size_t first_point;  ///< Index of it.
+  bool stray;               ///< No course explains it: left out.
 
   /// Off a free course, in standard deviations.
   [[nodiscard]] double free_residual(const LiveFreeCourse& p) const noexcept {

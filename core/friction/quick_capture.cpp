@@ -109,9 +109,10 @@ Crossing QuickCapture::start(const SlipRows& slip, std::size_t guess, double typ
 
 void QuickCapture::improve(const SlipRows& slip, double enough) noexcept {
   for (int step = 0; step < kMostCaptureSteps && cost_ > enough; ++step) {
+    const auto [normal, gradient] = equations(slip);
     // All four are coefficients, of one scale: cofactors are exact enough.
-    const Eigen::Vector4d x = normal_.inverse() * gradient_;
-    if (!(0.5 * x.dot(gradient_) > kSmallGain * row_variance_)) return;
+    const Eigen::Vector4d x = normal.inverse() * gradient;
+    if (!(0.5 * x.dot(gradient) > kSmallGain * row_variance_)) return;
     QuickCapture next = *this;
     next.p_ = {p_.K + x[0], p_.A + x[1], p_.B + x[2]};
     next.S_ = S_ + x[3];
@@ -131,12 +132,33 @@ Crossing QuickCapture::work_out(const SlipRows& slip) noexcept {
 
   // Rows before the capture: a parabola about the least they can cost.
   const SlipRows::Sums& sums = slip.sums(stick_.row);
-  const double n0 = sums.n * K + sums.c * A + sums.s * B;
-  const double n1 = sums.c * K + sums.cc * A + sums.cs * B;
-  const double n2 = sums.s * K + sums.cs * A + sums.ss * B;
-  double square_sum = sums.yy - 2.0 * (sums.y * K + sums.yc * A + sums.ys * B) + K * n0 + A * n1 + B * n2;
-
+  double square_sum = sums.yy + K * (sums.n * K - 2.0 * sums.y) + A * (sums.cc * A - 2.0 * sums.yc) +
+                      B * (sums.ss * B - 2.0 * sums.ys) +
+                      2.0 * (sums.c * K * A + sums.s * K * B + sums.cs * A * B);
   square_sum = std::max(square_sum, 0.0);  // Whatever the digits lose.
+  const auto leave = [&](std::size_t k, double value) {
+    const double off = slip.value(k) - value;
+    square_sum += slip.weight(k) * off * off;
+  };
+  std::size_t k = stick_.row + 1;
+  for (; k < slip.size() && slip.tau_s(k) <= onset_tau_s_; ++k) leave(k, line(slip.tau_s(k), r));
+  if (k < slip.size()) {
+    TurnedBasis b = slip.later({}, slip.tau_s(k) - onset_tau_s_);
+    for (; k < slip.size(); ++k, b = slip.a_row_later(b)) leave(k, next_slip(slip, b));
+  }
+
+  // Its S − K is log-normal about what is typical.
+  const double ratio = next_D_ / typical_delta_mu_;
+  unusual_ =
+      std::abs(ratio - 1.0) > kTypical ? std::log(std::max(ratio, kLeastRatio)) / kDeltaMuLogScatter : 0.0;
+  cost_ = 0.5 * (square_sum / row_variance_ + unusual_ * unusual_);
+  return Crossing::kThere;
+}
+
+QuickCapture::Equations QuickCapture::equations(const SlipRows& slip) const noexcept {
+  const auto& [omega, gamma, r] = slip.shared();
+  const auto& [K, A, B] = p_;
+  const SlipRows::Sums& sums = slip.sums(stick_.row);
 
   // On the line, all of which moves as its begin does: c and c′ are continuous there, so its shift drops out.
   const double by_A = stick_.basis.cosine;
@@ -145,10 +167,8 @@ Crossing QuickCapture::work_out(const SlipRows& slip) noexcept {
   double count = 0.0;
   double off_sum = 0.0;
   for (; k < slip.size() && slip.tau_s(k) <= onset_tau_s_; ++k) {
-    const double off = slip.weight(k) * (slip.value(k) - line(slip.tau_s(k), r));
     count += slip.weight(k);
-    off_sum += off;
-    square_sum += off * off;
+    off_sum += slip.weight(k) * (slip.value(k) - line(slip.tau_s(k), r));
   }
   double n00 = sums.n + count;
   double n10 = sums.c + count * by_A;
@@ -160,9 +180,9 @@ Crossing QuickCapture::work_out(const SlipRows& slip) noexcept {
   double n22 = sums.ss + count * by_B * by_B;
   double n32 = 0.0;
   double n33 = 0.0;
-  double g0 = sums.y - n0 + off_sum;
-  double g1 = sums.yc - n1 + off_sum * by_A;
-  double g2 = sums.ys - n2 + off_sum * by_B;
+  double g0 = sums.y - (sums.n * K + sums.c * A + sums.s * B) + off_sum;
+  double g1 = sums.yc - (sums.c * K + sums.cc * A + sums.cs * B) + off_sum * by_A;
+  double g2 = sums.ys - (sums.s * K + sums.cs * A + sums.ss * B) + off_sum * by_B;
   double g3 = 0.0;
 
   // Of the next slip: its onset comes later by 1/r for each S, and earlier by what the capture is higher.
@@ -192,15 +212,11 @@ Crossing QuickCapture::work_out(const SlipRows& slip) noexcept {
       g1 += off * d1;
       g2 += off * d2;
       g3 += off * d3;
-      square_sum += off * off;
     }
   }
 
-  // Its S − K is log-normal about what is typical.
-  const double ratio = next_D_ / typical_delta_mu_;
-  unusual_ =
-      std::abs(ratio - 1.0) > kTypical ? std::log(std::max(ratio, kLeastRatio)) / kDeltaMuLogScatter : 0.0;
-  const double by_S = ratio > kLeastRatio ? 1.0 / (next_D_ * kDeltaMuLogScatter) : 0.0;
+  // S − K that is unusual.
+  const double by_S = next_D_ > kLeastRatio * typical_delta_mu_ ? 1.0 / (next_D_ * kDeltaMuLogScatter) : 0.0;
   const double information = row_variance_ * by_S * by_S;
   const double pull = row_variance_ * unusual_ * by_S;
   n00 += information;
@@ -208,10 +224,10 @@ Crossing QuickCapture::work_out(const SlipRows& slip) noexcept {
   n33 += information;
   g0 += pull;
   g3 -= pull;
-  cost_ = 0.5 * (square_sum / row_variance_ + unusual_ * unusual_);
-  normal_ << n00, n10, n20, n30, n10, n11, n21, n31, n20, n21, n22, n32, n30, n31, n32, n33;
-  gradient_ << g0, g1, g2, g3;
-  return Crossing::kThere;
+  Equations by;
+  by.normal << n00, n10, n20, n30, n10, n11, n21, n31, n20, n21, n22, n32, n30, n31, n32, n33;
+  by.gradient << g0, g1, g2, g3;
+  return by;
 }
 
 }  // namespace stickslip::friction

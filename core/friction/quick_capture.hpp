@@ -68,8 +68,15 @@ class QuickCapture {
   }
 
  private:
-  /// Events, cost, and the normal equations of a step.
+  /// Of a step, times σ² of a row.
+  struct Equations {
+    Eigen::Matrix4d normal;
+    Eigen::Vector4d gradient;
+  };
+
+  /// Events and cost.
   [[nodiscard]] Crossing work_out(const SlipRows& slip) noexcept;
+  [[nodiscard]] Equations equations(const SlipRows& slip) const noexcept;
 
   RowCourse p_;
   double S_ = 0.0;
@@ -81,8 +88,6 @@ class QuickCapture {
   double next_B_ = 0.0;
   double unusual_ = 0.0;
   double cost_ = 0.0;
-  Eigen::Matrix4d normal_ = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d gradient_ = Eigen::Vector4d::Zero();
 };
 
 }  // namespace stickslip::friction

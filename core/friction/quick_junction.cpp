@@ -35,11 +35,11 @@ class Unexplained {
   }
   /// ln kStrayDensity: a scan that a course does not explain.
   [[nodiscard]] double least_told() const noexcept { return least_told_; }
-  /// \param half_squares  an array of a. \return the same of not more than that each.
+  /// \param half_squares  an array of a. \return the same of not more than that each: an expression.
   template <typename Array>
   [[nodiscard]] auto operator()(const Array& half_squares) const noexcept {
     const auto line = [&](std::size_t i) { return lines_[i].slope * half_squares + lines_[i].at_zero; };
-    return line(0).min(line(1)).min(line(2)).min(line(3)).min(line(4)).min(most_).eval();
+    return line(0).min(line(1)).min(line(2)).min(line(3)).min(line(4)).min(most_);
   }
 
  private:
@@ -164,14 +164,12 @@ double QuickJunction::told(const RowCourse& free_course, double scale, double de
   static const Unexplained unexplained;
   using Rows = Eigen::Array<double, Eigen::Dynamic, 1, 0, SlipRows::kMost, 1>;
   const std::size_t size = slip_.size();
-  const Rows weights = 0.5 * scale * slip_.weights();
-  const Rows free = weights * slip_.off(free_course, size).square();
-  const Rows unexplained_by_free = unexplained(free);
+  const Rows free = 0.5 * scale * slip_.weights() * slip_.off(free_course, size).square();
   const double unusual = 0.5 * captured_.unusual() * captured_.unusual();
   // Strays of the captured course cost no more than one scan can; where all they cost leaves it decided, none
   // is looked for.
   const double at_least =
-      unexplained_by_free.sum() - (captured_cost_ - unusual) * row_variance_ * scale - unusual;
+      unexplained(free).sum() - (captured_cost_ - unusual) * row_variance_ * scale - unusual;
   if (at_least > decisive) return at_least;
   Rows captured_off(size);
   std::size_t k = captured_.stick().row + 1;
@@ -185,7 +183,9 @@ double QuickJunction::told(const RowCourse& free_course, double scale, double de
       captured_off(static_cast<Eigen::Index>(k)) = slip_.value(k) - captured_.next_slip(slip_, b);
   }
   const double by_rows =
-      (unexplained_by_free + (-weights * captured_off.square()).max(unexplained.least_told())).sum();
+      (unexplained(free) +
+       (-0.5 * scale * slip_.weights() * captured_off.square()).max(unexplained.least_told()))
+          .sum();
   return by_rows - unusual;
 }
 

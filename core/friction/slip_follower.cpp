@@ -28,6 +28,9 @@ constexpr double kFirstAsked = 0.6;
 constexpr double kEarlier = 2.0 / 32.0;
 constexpr double kLastFirstAsked = 1.0;
 constexpr double kMostPeriods = 2.5;
+/// Periods after the peak whose scans answer nearly every question that is asked late: a free oscillation is
+/// back by then, a captured one still sticks or slips again. What comes later costs more than it adds.
+constexpr double kLateAsked = 1.1;
 /// Part of the time from the onset to the peak whose scans the question may use: the onset is a guess.
 constexpr double kSurelySlipping = 0.6;
 /// Blocks of a slip under way: so many from its peak to its trough.
@@ -115,12 +118,9 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, double
   if (!begins_from_stick) last_capture_s_ = kNotKnown;
 
   const double half_s = std::max(trough_s - peak_s, scan_s_);
-  const double rise = fall.peak - fall.rise_from;
   if (keeps_scans() && begins_from_stick && std::isnan(last_capture_s_)) {
-    // Nothing says where the stick began: a first loading has a rounded start, and rest before it.
-    for (const CyclePoint& point : between(buffer_.points(), window_from_s_, peak_s)) {
-      if (point.value < fall.rise_from + kRiseFrom * rise) window_from_s_ = point.last_s + 0.5 * scan_s_;
-    }
+    // Nothing says where the stick began.
+    window_from_s_ = steady_rise_from_s(window_from_s_);
   }
   rise_slope_ = 0.0;
   if (!knowledge_.started()) knowledge_.start(std::numbers::pi / half_s, rise_slope(sigma));
@@ -172,6 +172,14 @@ void SlipFollower::look_back_to(double time_s) noexcept {
   buffer_.clear();
   quick_junction_.rows().for_each_since(time_s, last_scan_s(),
                                         [&](const CyclePoint& point) { buffer_.add(point); });
+}
+
+double SlipFollower::steady_rise_from_s(double from_s) const noexcept {
+  const double level = fall_.rise_from + kRiseFrom * (fall_.peak - fall_.rise_from);
+  for (const CyclePoint& point : between(buffer_.points(), from_s, peak_s_)) {
+    if (point.value < level) from_s = point.last_s + 0.5 * scan_s_;
+  }
+  return from_s;
 }
 
 double SlipFollower::slope_of_rise(double sigma) const noexcept {
@@ -272,13 +280,15 @@ void SlipFollower::first_ask() noexcept {
 
 void SlipFollower::open_late_question(double sigma) noexcept {
   const bool mature = typical_count_ >= kTypicalMemory && slip_number_ % kMatureTaughtBy != 0;
-  if (late_number_ != slip_number_ && !mature) learn_turning_points(std::max(trough_s_ - peak_s_, scan_s_), sigma);
+  if (late_number_ != slip_number_ && !mature)
+    learn_turning_points(std::max(trough_s_ - peak_s_, scan_s_), sigma);
   late_number_ = slip_number_;
   shared_ = knowledge_.best();
   const Oscillator oscillator = shared_.oscillator();
   const double drop = typical_count_ > 0.0 ? std::exp(typical_log_drop_) : fall_.drop();
-  // Undamped (2): damping changes that by a tenth of what slips differ by.
-  const double above_K = drop - K_of_turning_points(drop, 0.0, oscillator);
+  // S − K by the undamped (2), from the height of the peak over K to the first order of γ/2ω: what is missed
+  // is a tenth of what slips differ by.
+  const double above_K = 0.5 * drop * (1.0 + 0.5 * std::numbers::pi * oscillator.gamma_over_2omega());
   const double belt = shared_.r / shared_.omega;
   const double square = above_K * above_K - belt * belt;
   typical_delta_mu_ = std::max(std::sqrt(std::max(square, 0.0)), kLeastTypical * drop);
@@ -288,9 +298,8 @@ void SlipFollower::open_late_question(double sigma) noexcept {
 QuickJunction::Answer SlipFollower::ask_quickly(double sigma) noexcept {
   if (!keeps_scans()) {
     open_late_question(sigma);
-    // What one asks of a slip under way mostly has its answer by then; the other rows cost as much again.
-    const QuickJunction::Answer early = quick_junction_.ask(sigma, typical_delta_mu_, kDecisive,
-                                                            peak_s_ + kLastFirstAsked * period_s());
+    const QuickJunction::Answer early =
+        quick_junction_.ask(sigma, typical_delta_mu_, kDecisive, peak_s_ + kLateAsked * period_s());
     if (early == QuickJunction::Answer::kCaptured || early == QuickJunction::Answer::kFree) return early;
   }
   return quick_junction_.ask(sigma, typical_delta_mu_, kDecisive);
@@ -310,6 +319,7 @@ bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
       [[fallthrough]];
     case QuickJunction::Answer::kDoubt:
       ask_in_full(sigma, last ? 0.0 : kDecisive);
+      if (!keeps_scans()) learn_by_fit(sigma);
       break;
   }
   slip_.evidence = evidence_.known ? evidence_.log_likelihood_ratio : kNotKnown;
@@ -475,6 +485,19 @@ void SlipFollower::estimate_by_fit(double end_s, double sigma) noexcept {
   slip_.cycle.delta_mu_standard_error = std::sqrt(std::max(fit.delta_mu_variance(), 0.0));
   learn_typical(fit.delta_mu());
   if (fit.residual_sigmas < kMisfitSigmas) knowledge_.learn(fit.evidence);
+}
+
+void SlipFollower::learn_by_fit(double sigma) noexcept {
+  if (!evidence_.known || !begins_from_stick_) return;
+  const bool is_captured = evidence_.log_likelihood_ratio > kDecisive;
+  double end_s = trough_s_;  // Whatever comes of it, it slips up to there.
+  if (is_captured) end_s = 0.5 * (evidence_.capture_s + evidence_.next_onset_s);
+  if (evidence_.log_likelihood_ratio < -kDecisive) end_s = last_scan_s();
+  look_back_to(peak_s_ - fall_.rise_duration * scan_s_);
+  const CycleFit fit =
+      fit_cycle(between(buffer_.points(), steady_rise_from_s(peak_s_ - fall_.rise_duration * scan_s_), end_s),
+                is_captured, first_guess(), knowledge_, sigma);
+  if (fit.converged && fit.residual_sigmas < kMisfitSigmas) knowledge_.learn(fit.evidence);
 }
 
 void SlipFollower::learn_turning_points(double fall_s, double sigma) noexcept {

@@ -72,6 +72,9 @@ class SlipFollower {
 
   enum class Task { kNone, kFirstFit, kJudge, kFit };
 
+  /// Where the stick before the peak is a line: a first loading has a rounded start, and rest before it.
+  /// \param from_s  not before that.
+  [[nodiscard]] double steady_rise_from_s(double from_s) const noexcept;
   /// Of the stick before a fall: from its scans, or as a whole where they tell nothing.
   [[nodiscard]] double slope_of_rise(double sigma) const noexcept;
   /// The same, worked out once for a slip and only if it is asked for. NaN behind a gap.
@@ -103,6 +106,7 @@ class SlipFollower {
   void look_back_to(double time_s) noexcept;
   /// evidence_ by all means, at far more cost. \param decisive  0: whatever comes of it.
   void ask_in_full(double sigma, double decisive) noexcept;
+  void learn_by_fit(double sigma) noexcept;
   void decide(double evidence, double now_s) noexcept;
   void ask_again(double now_s) noexcept { next_task_s_ = now_s + period_s() / kAskedPerPeriod; }
   void estimate(double now_s, double sigma) noexcept;

@@ -44,28 +44,29 @@ bool SlipRows::take(const ScanRows& rows, double until_s) noexcept {
     cosines_[known_] = next.cosine;
     sines_[known_] = next.sine;
   }
-  Sums sums = size_ == 0 ? Sums{} : sums_[size_ - 1];
+  // Two sums at a time.
+  using Pair = Eigen::Array2d;
+  const Sums before = size_ == 0 ? Sums{} : sums_[size_ - 1];
+  Pair n_y{before.n, before.y};
+  Pair c_s{before.c, before.s};
+  Pair cc_cs{before.cc, before.cs};
+  Pair yc_ys{before.yc, before.ys};
+  Pair ss_yy{before.ss, before.yy};
   for (; size_ < end; ++size_) {
     const auto [value, w] = rows[first_row_ + size_];
     const double y = value - level_;
-    const double c = attenuation_ * cosines_[size_];
-    const double s = attenuation_ * sines_[size_];
-    const double wc = w * c;
-    const double ws = w * s;
+    const Pair basis = attenuation_ * Pair{cosines_[size_], sines_[size_]};
+    const Pair weighted = w * basis;
     const double wy = w * y;
-    sums.n += w;
-    sums.c += wc;
-    sums.s += ws;
-    sums.cc += wc * c;
-    sums.cs += wc * s;
-    sums.ss += ws * s;
-    sums.y += wy;
-    sums.yc += wy * c;
-    sums.ys += wy * s;
-    sums.yy += wy * y;
+    n_y += Pair{w, wy};
+    c_s += weighted;
+    cc_cs += weighted * basis[0];
+    yc_ys += weighted * y;
+    ss_yy += Pair{weighted[1], wy} * Pair{basis[1], y};
     values_[size_] = y;
     weights_[size_] = w;
-    sums_[size_] = sums;
+    sums_[size_] = {n_y[0],   n_y[1],   c_s[0],   c_s[1],   cc_cs[0],
+                    cc_cs[1], yc_ys[0], yc_ys[1], ss_yy[0], ss_yy[1]};
   }
   return true;
 }

@@ -37,18 +37,19 @@ class SlipRows {
  public:
   static constexpr std::size_t kMost = ScanRows::kMost;
 
-  /// Normal equations of 1, cosine and sine, and of the values, over the rows up to one.
+  /// Normal equations of 1, cosine and sine, and of the values, over the rows up to one. Without initial
+  /// values: an array of them needs none.
   struct Sums {
-    double n = 0.0;
-    double c = 0.0;
-    double s = 0.0;
-    double cc = 0.0;
-    double cs = 0.0;
-    double ss = 0.0;
-    double y = 0.0;
-    double yc = 0.0;
-    double ys = 0.0;
-    double yy = 0.0;
+    double n;
+    double y;
+    double c;
+    double s;
+    double cc;
+    double cs;
+    double yc;
+    double ys;
+    double ss;
+    double yy;
   };
   struct Fit {
     RowCourse course;

@@ -22,10 +22,10 @@ namespace stickslip::signal {
 /// Most steps of the stairs that are kept; 32 kB.
 inline constexpr std::size_t kMostSteps = 2048;
 
-/// A value of the course.
+/// A value of the course. Without initial values: stairs have room for many and write those they use.
 struct CourseStep {
-  std::size_t position = 0;
-  double value = 0.0;
+  std::size_t position;
+  double value;
 };
 
 /// Steps with rising positions and falling values, no more than kMostSteps. When they are too many, positions

@@ -106,7 +106,7 @@ TEST(CycleBuffer, MeansOfAnOscillationAreWithinTheStatedBound) {
   const double omega = 2.0 * std::numbers::pi * 20.0;  // 5000 scans a period
   double worst = 0.0;
   for (int phase = 0; phase < 10; ++phase) {
-    CyclePoint mean;
+    CyclePoint mean{};
     for (int k = 0; k < kBlock; ++k) {
       const double t = (phase * kBlock + k) / kRate_Hz;
       mean.time_s += t / kBlock;
