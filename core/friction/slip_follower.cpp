@@ -39,18 +39,11 @@ constexpr double kBlocksPerFall = 16.0;
 /// parabola by (π/8)⁴/24 = 0.1 % of the amplitude; at least the scan on each side.
 constexpr double kReachPerPeriod = 1.0 / 16.0;
 constexpr double kLeastReachScans = 1.6;
-/// Parts of a rise between which its slope is the stick rate; the wider ones where a fast loading leaves so
-/// few scans between the others that a stray one could bend them.
-constexpr double kRiseFrom = 0.3;
-constexpr double kRiseTo = 0.7;
-constexpr double kFastRiseFrom = 0.1;
-constexpr double kFastRiseTo = 0.8;
-constexpr std::ptrdiff_t kFewestOfRise = 8;
 /// Turning points know ω and r by such parts; only their ratio to what was known before matters.
 constexpr double kTurningPointSpread = 0.02;
 constexpr double kSlopeSpread = 0.05;
-/// One slip of so many teaches ω and r where kTypicalMemory of them have: each is known to a part of what one
-/// slip tells, and what they are used with need not be worked out anew.
+/// One slip of so many teaches ω and r where FallHeights::kMemory of them have: each is known to a part of
+/// what one slip tells, and what they are used with need not be worked out anew.
 constexpr std::int64_t kMatureTaughtBy = 4;
 /// After so many slips the stick rate is known from more than a loading, and one rise does not overturn it.
 constexpr double kKnownSlips = 2.0;
@@ -60,23 +53,6 @@ constexpr double kMostlyStick = 3.0;
 constexpr double kTypicalMemory = 16.0;
 /// S − K is typically not less than this part of a drop.
 constexpr double kLeastTypical = 0.05;
-/// What a free oscillation loses may be wrong by such a part where nobody measured the damping.
-constexpr double kDampingError = 0.3;
-/// Peaks between scans are off by this part of a drop.
-constexpr double kPeakError = 0.02;
-
-double log_normal_density(double x, double mean, double deviation) noexcept {
-  const double z = (x - mean) / deviation;
-  return -0.5 * z * z - std::log(deviation);
-}
-
-constexpr double kNoEnd = std::numeric_limits<double>::infinity();
-
-/// By which a drop is wrong at most: noise of both its ends as far as it makes no turning point, and what is
-/// missed between scans.
-double peak_error(double drop, double sigma) noexcept {
-  return std::numbers::sqrt2 * SlipRule::kHysteresisSigmas * sigma + kPeakError * drop;
-}
 
 }  // namespace
 
@@ -101,7 +77,7 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, double
   // A free oscillation only shrinks: what falls by more than that was stuck in between, and the belt has
   // another speed than was thought.
   const bool contradicted =
-      !begins_from_stick && fall.drop() > freely_next_drop() + peak_error(fall.drop(), sigma);
+      !begins_from_stick && FallHeights::is_more_than(fall.drop(), freely_next_drop(), sigma);
   if (contradicted) begins_from_stick = true;
   open_ = true;
   ++slip_number_;
@@ -120,7 +96,7 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, double
   const double half_s = std::max(trough_s - peak_s, scan_s_);
   if (keeps_scans() && begins_from_stick && std::isnan(last_capture_s_)) {
     // Nothing says where the stick began.
-    window_from_s_ = steady_rise_from_s(window_from_s_);
+    window_from_s_ = rise().line_from_s(buffer_.points(), window_from_s_);
   }
   rise_slope_ = 0.0;
   if (!knowledge_.started()) knowledge_.start(std::numbers::pi / half_s, rise_slope(sigma));
@@ -159,10 +135,14 @@ void SlipFollower::open_question() noexcept {
   quick_junction_.open(last_scan_s(), peak_s_, 0.5 * (fall_.peak + fall_.trough), shared_);
 }
 
+Rise SlipFollower::rise() const noexcept {
+  return {fall_.rise_from, fall_.peak, peak_s_ - std::max(fall_.rise_duration, 1.0) * scan_s_, peak_s_};
+}
+
 double SlipFollower::rise_slope(double sigma) noexcept {
   if (rise_slope_ == 0.0) {
-    look_back_to(peak_s_ - fall_.rise_duration * scan_s_);
-    rise_slope_ = slope_of_rise(sigma);
+    look_back_to(rise().begin_s);
+    rise_slope_ = rise().slope(buffer_.points(), window_from_s_, sigma);
   }
   return rise_slope_;
 }
@@ -172,29 +152,6 @@ void SlipFollower::look_back_to(double time_s) noexcept {
   buffer_.clear();
   quick_junction_.rows().for_each_since(time_s, last_scan_s(),
                                         [&](const CyclePoint& point) { buffer_.add(point); });
-}
-
-double SlipFollower::steady_rise_from_s(double from_s) const noexcept {
-  const double level = fall_.rise_from + kRiseFrom * (fall_.peak - fall_.rise_from);
-  for (const CyclePoint& point : between(buffer_.points(), from_s, peak_s_)) {
-    if (point.value < level) from_s = point.last_s + 0.5 * scan_s_;
-  }
-  return from_s;
-}
-
-double SlipFollower::slope_of_rise(double sigma) const noexcept {
-  const double rise = fall_.peak - fall_.rise_from;
-  const double whole = rise / (std::max(fall_.rise_duration, 1.0) * scan_s_);
-  const auto before =
-      between(buffer_.points(), std::max(window_from_s_, peak_s_ - fall_.rise_duration * scan_s_), peak_s_);
-  const auto level = [&](double part) { return fall_.rise_from + part * rise; };
-  const bool few = std::ranges::count_if(before, [&](const CyclePoint& point) {
-                     return point.value >= level(kRiseFrom) && point.value <= level(kRiseTo);
-                   }) < kFewestOfRise;
-  const double slope =
-      slope_between(before, level(few ? kFastRiseFrom : kRiseFrom), level(few ? kFastRiseTo : kRiseTo), sigma)
-          .value_or(0.0);
-  return slope > 0.0 ? slope : whole;
 }
 
 bool SlipFollower::do_task(double now_s, double sigma) noexcept {
@@ -232,7 +189,9 @@ bool SlipFollower::force(double now_s, double sigma, const Fall* next) noexcept 
 
 void SlipFollower::force_by_heights(double now_s, double sigma, const Fall* next) noexcept {
   const bool has_next = next != nullptr && heights_follow_;
-  const double heights = has_next ? evidence_of_heights(*next, sigma) : 0.0;
+  const double heights = has_next ? heights_.evidence(fall_.drop(), next->drop(), freely_next_drop(),
+                                                      knowledge_.characterised(), sigma)
+                                  : 0.0;
   if (!decided_) {
     // Where heights leave a doubt, the scans are asked; and where these are gone or few, heights have to do.
     const bool few = period_s() < kFewScansACycle * scan_s_;
@@ -249,7 +208,7 @@ void SlipFollower::force_by_heights(double now_s, double sigma, const Fall* next
       decide(heights, now_s);
     }
   }
-  if (has_next && decided_ && captured()) learn_typical_drop();
+  if (has_next && decided_ && captured()) heights_.learn();
 }
 
 void SlipFollower::first_fit(double sigma) noexcept {
@@ -279,13 +238,13 @@ void SlipFollower::first_ask() noexcept {
 }
 
 void SlipFollower::open_late_question(double sigma) noexcept {
-  const bool mature = typical_count_ >= kTypicalMemory && slip_number_ % kMatureTaughtBy != 0;
+  const bool mature = heights_.count() >= FallHeights::kMemory && slip_number_ % kMatureTaughtBy != 0;
   if (late_number_ != slip_number_ && !mature)
     learn_turning_points(std::max(trough_s_ - peak_s_, scan_s_), sigma);
   late_number_ = slip_number_;
   shared_ = knowledge_.best();
   const Oscillator oscillator = shared_.oscillator();
-  const double drop = typical_count_ > 0.0 ? std::exp(typical_log_drop_) : fall_.drop();
+  const double drop = heights_.usual_drop(fall_.drop());
   // S − K by the undamped (2), from the height of the peak over K to the first order of γ/2ω: what is missed
   // is a tenth of what slips differ by.
   const double above_K = 0.5 * drop * (1.0 + 0.5 * std::numbers::pi * oscillator.gamma_over_2omega());
@@ -319,7 +278,7 @@ bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
       [[fallthrough]];
     case QuickJunction::Answer::kDoubt:
       ask_in_full(sigma, last ? 0.0 : kDecisive);
-      if (!keeps_scans()) learn_by_fit(sigma);
+      if (!keeps_scans()) learn_and_ask_again(sigma);
       break;
   }
   slip_.evidence = evidence_.known ? evidence_.log_likelihood_ratio : kNotKnown;
@@ -352,8 +311,8 @@ void SlipFollower::ask_in_full(double sigma, double decisive) noexcept {
   look_back_to(question_from_s_);
   const auto points = buffer_.since(question_from_s_);
   // Both courses begin where the question does.
-  const double missing_s = points.empty() ? kNoEnd : points.front().first_s - question_from_s_;
-  if (!keeps_scans() && missing_s > 2.0 * quick_junction_.rows().row_s()) {
+  const double latest_s = question_from_s_ + 2.0 * quick_junction_.rows().row_s();
+  if (!keeps_scans() && (points.empty() || points.front().first_s > latest_s)) {
     evidence_ = {};
     return;
   }
@@ -376,31 +335,7 @@ void SlipFollower::ask_in_full(double sigma, double decisive) noexcept {
 bool SlipFollower::belt_changed(double residual_sigmas, double before_sigmas) noexcept {
   if (!BeltChange::explains(residual_sigmas, before_sigmas)) return false;
   const bool seen_before = belt_change_.seen(slip_number_, rise_slope_);
-  return seen_before || typical_count_ < kKnownSlips;
-}
-
-double SlipFollower::freely_next_drop() const noexcept {
-  return fall_.drop() * std::exp(-2.0 * std::numbers::pi * shared_.oscillator().gamma_over_2omega());
-}
-
-double SlipFollower::evidence_of_heights(const Fall& next, double sigma) noexcept {
-  // A free oscillation falls next time by what damping leaves; a slip from sticking by what is usual.
-  const double drop = next.drop();
-  const double free = freely_next_drop();
-  const double scans = std::numbers::sqrt2 * sigma;
-  const double between_scans = kPeakError * free;
-  const double damping = knowledge_.characterised() ? 0.0 : kDampingError * free;
-  const double noise = std::sqrt(scans * scans + between_scans * between_scans + damping * damping);
-  if (typical_count_ == 0.0) typical_log_drop_ = std::log(fall_.drop());
-  const double log_drop = std::log(drop);
-  off_usual_ = log_drop - typical_log_drop_;
-  const double as_captured = log_normal_density(off_usual_, 0.0, kDeltaMuLogScatter) - log_drop;
-  return as_captured - log_normal_density(drop, free, noise);
-}
-
-void SlipFollower::learn_typical_drop() noexcept {
-  typical_count_ = std::min(typical_count_ + 1.0, kTypicalMemory);
-  typical_log_drop_ += off_usual_ / typical_count_;
+  return seen_before || (keeps_scans() ? typical_count_ : heights_.count()) < kKnownSlips;
 }
 
 void SlipFollower::decide(double evidence, double now_s) noexcept {
@@ -487,17 +422,22 @@ void SlipFollower::estimate_by_fit(double end_s, double sigma) noexcept {
   if (fit.residual_sigmas < kMisfitSigmas) knowledge_.learn(fit.evidence);
 }
 
-void SlipFollower::learn_by_fit(double sigma) noexcept {
+void SlipFollower::learn_and_ask_again(double sigma) noexcept {
   if (!evidence_.known || !begins_from_stick_) return;
   const bool is_captured = evidence_.log_likelihood_ratio > kDecisive;
   double end_s = trough_s_;  // Whatever comes of it, it slips up to there.
   if (is_captured) end_s = 0.5 * (evidence_.capture_s + evidence_.next_onset_s);
   if (evidence_.log_likelihood_ratio < -kDecisive) end_s = last_scan_s();
-  look_back_to(peak_s_ - fall_.rise_duration * scan_s_);
+  look_back_to(rise().begin_s);
+  const double from_s = rise().line_from_s(buffer_.points(), rise().begin_s);
   const CycleFit fit =
-      fit_cycle(between(buffer_.points(), steady_rise_from_s(peak_s_ - fall_.rise_duration * scan_s_), end_s),
-                is_captured, first_guess(), knowledge_, sigma);
-  if (fit.converged && fit.residual_sigmas < kMisfitSigmas) knowledge_.learn(fit.evidence);
+      fit_cycle(between(buffer_.points(), from_s, end_s), is_captured, first_guess(), knowledge_, sigma);
+  if (!fit.converged || !(fit.residual_sigmas < kMisfitSigmas)) return;
+  knowledge_.learn(fit.evidence);
+  if (std::abs(evidence_.log_likelihood_ratio) > kDecisive) return;
+  const QuickJunction::Answer anew = ask_quickly(sigma);
+  if (anew == QuickJunction::Answer::kCaptured || anew == QuickJunction::Answer::kFree)
+    evidence_ = quick_junction_.evidence();
 }
 
 void SlipFollower::learn_turning_points(double fall_s, double sigma) noexcept {

@@ -9,9 +9,11 @@
 #include "core/friction/belt_change.hpp"
 #include "core/friction/cycle_fit.hpp"
 #include "core/friction/fall_finder.hpp"
+#include "core/friction/fall_heights.hpp"
 #include "core/friction/live_cycle.hpp"
 #include "core/friction/live_junction.hpp"
 #include "core/friction/quick_junction.hpp"
+#include "core/friction/rise.hpp"
 
 namespace stickslip::friction {
 
@@ -72,12 +74,9 @@ class SlipFollower {
 
   enum class Task { kNone, kFirstFit, kJudge, kFit };
 
-  /// Where the stick before the peak is a line: a first loading has a rounded start, and rest before it.
-  /// \param from_s  not before that.
-  [[nodiscard]] double steady_rise_from_s(double from_s) const noexcept;
-  /// Of the stick before a fall: from its scans, or as a whole where they tell nothing.
-  [[nodiscard]] double slope_of_rise(double sigma) const noexcept;
-  /// The same, worked out once for a slip and only if it is asked for. NaN behind a gap.
+  /// Before the peak.
+  [[nodiscard]] Rise rise() const noexcept;
+  /// Its slope, worked out once for a slip and only if it is asked for. NaN behind a gap.
   [[nodiscard]] double rise_slope(double sigma) noexcept;
   [[nodiscard]] bool do_task(double now_s, double sigma) noexcept;
   void first_fit(double sigma) noexcept;
@@ -92,13 +91,13 @@ class SlipFollower {
   void open_late_question(double sigma) noexcept;
   /// force() where scans are not kept.
   void force_by_heights(double now_s, double sigma, const Fall* next) noexcept;
-  /// Captured over free, by the heights of this fall and the next alone.
-  [[nodiscard]] double evidence_of_heights(const Fall& next, double sigma) noexcept;
-  void learn_typical_drop() noexcept;
+  /// By a few sums: at once, or of the first rows where they tell.
   [[nodiscard]] QuickJunction::Answer ask_quickly(double sigma) noexcept;
   [[nodiscard]] bool judge(double now_s, double sigma, bool last) noexcept;
   /// The next drop if it goes on freely.
-  [[nodiscard]] double freely_next_drop() const noexcept;
+  [[nodiscard]] double freely_next_drop() const noexcept {
+    return FallHeights::freely_next(fall_.drop(), shared_.oscillator().gamma_over_2omega());
+  }
   /// \param residual_sigmas  what this slip's scans leave with the slope of the rise before it as stick rate.
   /// \param before_sigmas  with the one known.
   [[nodiscard]] bool belt_changed(double residual_sigmas, double before_sigmas) noexcept;
@@ -106,7 +105,10 @@ class SlipFollower {
   void look_back_to(double time_s) noexcept;
   /// evidence_ by all means, at far more cost. \param decisive  0: whatever comes of it.
   void ask_in_full(double sigma, double decisive) noexcept;
-  void learn_by_fit(double sigma) noexcept;
+  /// Where scans are not kept, a slip that had to be asked in full is fitted: it tells of ω, γ and r what
+  /// turning points cannot, and the next ones need not be asked in full. If it left a doubt, that may be gone
+  /// now.
+  void learn_and_ask_again(double sigma) noexcept;
   void decide(double evidence, double now_s) noexcept;
   void ask_again(double now_s) noexcept { next_task_s_ = now_s + period_s() / kAskedPerPeriod; }
   void estimate(double now_s, double sigma) noexcept;
@@ -154,11 +156,10 @@ class SlipFollower {
   double window_from_s_ = 0.0;  ///< Scans before belong to the slip before.
   double last_capture_s_ = std::numeric_limits<double>::quiet_NaN();  ///< NaN if unknown.
   double typical_delta_mu_ = 0.0;
-  double typical_log_drop_ = 0.0;  ///< In its place where scans are not kept,
-  double off_usual_ = 0.0;         ///< and by how much the next drop is another.
-  double typical_count_ = 0.0;     ///< Slips behind either.
-  double usual_wait_s_ = 0.0;      ///< From a peak until captures were decided; 0 if none was.
-  double wait_count_ = 0.0;        ///< Slips behind it.
+  double typical_count_ = 0.0;  ///< Slips behind it.
+  FallHeights heights_;         ///< In its place where scans are not kept.
+  double usual_wait_s_ = 0.0;   ///< From a peak until captures were decided; 0 if none was.
+  double wait_count_ = 0.0;     ///< Slips behind it.
 };
 
 }  // namespace stickslip::friction
