@@ -30,10 +30,7 @@ LiveDetector::LiveDetector(const LiveSettings& settings)
 std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, bool saturated) {
   const double sigma = noise_.known() ? noise_.sigma() : kInfinity;
   // The despiker still held scans from before the gap when it was told.
-  if (position_ == gap_at_ && lost_ > lost_before_) {
-    usable_noise_.gap();
-    follower_.gap();
-  }
+  if (position_ == gap_at_ && lost_ > lost_before_) follow_gap();
   const auto position = static_cast<double>(position_++);
   if (scan.spike) flags_after_ |= kCycleHasSpike;
   if (saturated) flags_after_ |= kCycleIsSaturated;
@@ -158,14 +155,20 @@ std::optional<LiveCycle> LiveDetector::close() noexcept {
   return closed;
 }
 
+void LiveDetector::follow_gap() noexcept {
+  const double last_s = time_of(static_cast<double>(position_ - 1));
+  if (follower_.gap(last_s, usable_sigma())) take_decision();
+  usable_noise_.gap();
+}
+
 void LiveDetector::gap(std::int64_t count) noexcept {
   noise_.gap();
-  usable_noise_.gap();
+  // Of two gaps with so few scans in between that the despiker holds them all, the first is not waited for.
+  if (position_ < gap_at_) follow_gap();
   lost_before_ = lost_;
   lost_ += count;
   gap_at_ = come_;
   flags_after_ |= kCycleHasGap;
-  follower_.gap();
   if (watch_.running())
     watch_.start(follower_.shared().omega, follower_.shared().gamma, settings_.scan_rate_Hz);
 }

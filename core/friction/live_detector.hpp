@@ -66,6 +66,7 @@ class LiveDetector {
 
   std::optional<LiveCycle> follow(const signal::DespikedScan& scan, bool saturated);
   std::optional<LiveCycle> slip(const Fall& fall, double now_s) noexcept;
+  void follow_gap() noexcept;
   void take_decision() noexcept;
   void watch_phase(double value, double sigma) noexcept;
   std::optional<LiveCycle> close() noexcept;

@@ -64,12 +64,15 @@ void SlipFollower::falls(double peak_s, double lowest_s) noexcept {
   buffer_.keep_fine(peak_s - half_s, peak_s + 2.0 * half_s, half_s / kBlocksPerFall);
 }
 
-void SlipFollower::gap() noexcept {
+bool SlipFollower::gap(double now_s, double sigma) noexcept {
+  const bool asks = !keeps_scans() && task_ == Task::kJudge && period_s() >= kFewScansACycle * scan_s_;
+  const bool decides = asks && judge(now_s, sigma, true);
   buffer_.clear();
   quick_junction_.gap();
   heights_follow_ = false;
   if (rise_slope_ == 0.0) rise_slope_ = kNotKnown;
   if (open_ && !decided_) task_ = Task::kNone;
+  return decides;
 }
 
 void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, double now_s,

@@ -37,8 +37,9 @@ class SlipFollower {
   [[nodiscard]] bool keeps_scans() const noexcept { return tier_ != EstimatorTier::kPeak; }
   /// The force falls: its peak and the lowest so far.
   void falls(double peak_s, double lowest_s) noexcept;
-  /// Scans are missing: what was before does not belong to what comes.
-  void gap() noexcept;
+  /// Scans are missing behind the last one: what was before does not belong to what comes. A slip that would
+  /// have been asked about later is asked now. \return true when this decided how it ends.
+  [[nodiscard]] bool gap(double now_s, double sigma) noexcept;
 
   /// A fall was confirmed to be a slip; ends the one before. Call force() and take it first.
   /// \param peak_s,trough_s  times of the fall's turning points. \param now_s  of the last scan.

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include <Eigen/Core>
 
@@ -61,7 +62,8 @@ class SlipRows {
   [[nodiscard]] bool begin(const ScanRows& rows, double now_s, double peak_s, double level,
                            const SharedParameters& shared) noexcept;
   /// \param until_s  only those before. \return whether there was room for them.
-  [[nodiscard]] bool take(const ScanRows& rows, double until_s) noexcept;
+  [[nodiscard]] bool take(const ScanRows& rows,
+                          double until_s = std::numeric_limits<double>::infinity()) noexcept;
 
   [[nodiscard]] const SharedParameters& shared() const noexcept { return shared_; }
   [[nodiscard]] double omega0_squared() const noexcept { return omega0_squared_; }

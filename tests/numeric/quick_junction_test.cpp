@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -300,6 +301,61 @@ TEST(QuickJunction, DoubtsWithoutTheScansOfASlip) {
 }
 
 // Without noise the sums lose all that is left.
+// Rows asked for by and by are the rows asked for at once.
+TEST(SlipRows, TakesThoseBeforeAMomentAndTheOthersLater) {
+  const SharedParameters shared = ModelCourse::tester_at(1.3);
+  ScanRows rows{kScan_s};
+  for (int k = 0; k < 40; ++k) rows.add(0.3 + 0.01 * k * (k % 3), k % 11 != 5);
+  const double now_s = 39.0 * kScan_s;
+  SlipRows at_once;
+  ASSERT_TRUE(at_once.begin(rows, now_s, -0.5 * kScan_s, 0.3, shared));
+  ASSERT_TRUE(at_once.take(rows));
+  ASSERT_EQ(at_once.size(), 40U);
+  SlipRows by_and_by;
+  ASSERT_TRUE(by_and_by.begin(rows, now_s, -0.5 * kScan_s, 0.3, shared));
+  for (const double scans : {-3.0, 17.5, 17.5, 12.0, 30.5}) {
+    const std::size_t before = by_and_by.size();
+    ASSERT_TRUE(by_and_by.take(rows, scans * kScan_s));
+    // Never fewer than there were.
+    EXPECT_EQ(by_and_by.size(), std::max(before, static_cast<std::size_t>(std::max(scans + 1.0, 0.0))))
+        << scans;
+  }
+  ASSERT_TRUE(by_and_by.take(rows));
+  ASSERT_EQ(by_and_by.size(), at_once.size());
+  for (const std::size_t k : {10U, 17U, 31U, 39U}) {
+    EXPECT_EQ(by_and_by.fit(k).square_sum, at_once.fit(k).square_sum) << k;
+    EXPECT_EQ(by_and_by.fit(k).course.B, at_once.fit(k).course.B) << k;
+  }
+}
+
+// Of two junctions with the same scans the one that may look no further than a moment says what it would have
+// said then.
+TEST(QuickJunction, SaysLaterWhatItWouldHaveSaidThen) {
+  const ModelCourse course = ModelCourse::captured(1.0, 3);
+  const SlipModel model{course.shared, course.windows.front().slip, true};
+  const double peak_s = ModelCourse::kFirstOnset_s + model.waveform().peak_time_s();
+  const double until_s = peak_s + 1.1 * kPeriod_s;
+  QuickJunction then{kScan_s};
+  QuickJunction later{kScan_s};
+  auto answer_then = QuickJunction::Answer::kDoubt;
+  double last_s = 0.0;
+  for (std::size_t k = 0; k < course.trace.size(); ++k) {
+    last_s = course.trace.time_s[k];
+    later.add(course.trace.value[k], true);
+    if (last_s < until_s) then.add(course.trace.value[k], true);
+    if (!(last_s < until_s) && answer_then == QuickJunction::Answer::kDoubt) {
+      then.open(last_s - kScan_s, peak_s, ModelCourse::kK, course.shared);
+      answer_then = then.ask(kSigma, kDeltaMu, kDecisive);
+    }
+  }
+  later.open(last_s, peak_s, ModelCourse::kK, course.shared);
+  const auto answer_later = later.ask(kSigma, kDeltaMu, kDecisive, until_s);
+  ASSERT_EQ(answer_then, QuickJunction::Answer::kCaptured);
+  ASSERT_EQ(answer_later, QuickJunction::Answer::kCaptured);
+  EXPECT_EQ(later.evidence().log_likelihood_ratio, then.evidence().log_likelihood_ratio);
+  EXPECT_NEAR(later.evidence().capture_s, then.evidence().capture_s, 1e-9);
+}
+
 TEST(SlipRows, LeaveNoLessThanNothing) {
   const SharedParameters shared = ModelCourse::tester_at(1.3);
   for (std::size_t size = 8; size < 60; ++size) {

@@ -1,0 +1,61 @@
+// The rise before a slip.
+
+#include "core/friction/rise.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace stickslip::friction {
+namespace {
+
+constexpr double kScan_s = 0.01;
+constexpr double kSlope = 0.5;
+constexpr double kScanSigma = 0.001;
+/// Rest, a rounded begin, and a line from kLine_s on to the peak.
+constexpr double kLine_s = 0.6;
+constexpr double kPeak_s = 1.4;
+
+double course(double time_s) {
+  if (time_s >= kLine_s) return kSlope * (time_s - 0.5 * kLine_s);
+  const double part = std::max(time_s, 0.0) / kLine_s;
+  return 0.5 * kSlope * kLine_s * part * part;  // With the line's slope at its end.
+}
+
+std::vector<CyclePoint> scans() {
+  std::vector<CyclePoint> points;
+  for (int k = -20; k <= 140; ++k) {
+    const double time_s = k * kScan_s;
+    points.push_back({time_s, course(time_s), 0.0, 1.0, time_s, time_s});
+  }
+  return points;
+}
+
+const Rise kRise{0.0, course(kPeak_s), -20.0 * kScan_s, kPeak_s};
+
+TEST(Rise, LineBeginsBehindRestAndRoundedBegin) {
+  const std::vector<CyclePoint> points = scans();
+  const double from_s = kRise.line_from_s(points, kRise.begin_s);
+  EXPECT_GT(from_s, kLine_s - kScan_s);
+  EXPECT_LT(from_s, 0.5 * (kLine_s + kPeak_s));
+  // What is given is the earliest.
+  EXPECT_EQ(kRise.line_from_s(points, 1.3), 1.3);
+  EXPECT_EQ(kRise.line_from_s({}, 0.4), 0.4);
+}
+
+TEST(Rise, SlopeIsThatOfTheLine) {
+  EXPECT_NEAR(kRise.slope(scans(), kRise.begin_s, kScanSigma), kSlope, 1e-9);
+  // A stray scan bends nothing.
+  std::vector<CyclePoint> stray = scans();
+  stray[110].value += 0.2;
+  EXPECT_NEAR(kRise.slope(stray, kRise.begin_s, kScanSigma), kSlope, 1e-9);
+}
+
+TEST(Rise, SlopeOfTheWholeWhereScansTellNothing) {
+  EXPECT_NEAR(kRise.slope({}, 0.0, kScanSigma), course(kPeak_s) / 1.6, 1e-12);
+}
+
+}  // namespace
+}  // namespace stickslip::friction
