@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <limits>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "daemon/peer/scipy_chain.hpp"
@@ -168,12 +167,13 @@ int main(int argc, char** argv) {
     const std::string tier_name{name(tier)};
     for (const double rate_Hz : {100.0, 350.0, 1000.0, 10'000.0, 100'000.0}) {
       const std::string at = tier_name + "/" + std::to_string(static_cast<int>(rate_Hz));
-      for (const auto& [prefix, tester] : {std::pair{"follow/", Tester::kCharacterised},
-                                           std::pair{"follow_unknown_tester/", Tester::kUnknown}}) {
+      for (const Tester tester : {Tester::kCharacterised, Tester::kUnknown}) {
         for (const int slips : {kShortTest, kPromisedTest, kLongTest}) {
           if (rate_Hz > 10'000.0 && slips > kShortTest) continue;
-          const std::string length = slips > kShortTest ? "/" + std::to_string(slips) : "";
-          benchmark::RegisterBenchmark((prefix + at + length).c_str(), [=](benchmark::State& state) {
+          std::string row = tester == Tester::kCharacterised ? "follow/" : "follow_unknown_tester/";
+          row += at;
+          if (slips > kShortTest) row.append("/").append(std::to_string(slips));
+          benchmark::RegisterBenchmark(row.c_str(), [=](benchmark::State& state) {
             follow(state, fast_cycles(rate_Hz, slips), tier, tester);
           });
         }

@@ -132,8 +132,9 @@ def others(bench):
     yield Figure("hand-over of 64 scans", "time", here, row("hand-over", time))
     yield Figure("its peer", "time", peer, row("hand-over", skip, time))
     yield Figure("peer over here", "ratio", peer / here, row("hand-over", skip, skip, ratio))
-    detector = benchmarks(bench / "bench_detector", "^follow/(peak|fit)/350/1000|^follow/interpolated/350$|^peer_scipy_chain/350/(30|1000)|^peer_scipy_chain_live/350")
+    detector = benchmarks(bench / "bench_detector", "^follow/(peak|fit)/350/1000|^follow_unknown_tester/peak/350/1000|^follow/interpolated/350$|^peer_scipy_chain/350/(30|1000)|^peer_scipy_chain_live/350")
     for first, here, peer in (("live detector", "follow/peak/350/1000", "peer_scipy_chain/350/1000"),
+                              ("the same, a tester", "follow_unknown_tester/peak/350/1000", "peer_scipy_chain/350/1000"),
                               ("the same, `interpolated`", "follow/interpolated/350", "peer_scipy_chain/350/30"),
                               ("the same, `fit`", "follow/fit/350/1000", "peer_scipy_chain_live/350")):
         here, peer = (detector[name]["per_scan"] for name in (here, peer))

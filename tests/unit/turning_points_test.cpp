@@ -21,6 +21,7 @@ std::vector<CyclePoint> line_of(std::size_t count) {
     const double time_s = 3.0 + static_cast<double>(i) * kLineScan_s;
     points[i] = {.time_s = time_s,
                  .value = kLineSlope * (time_s - 3.0),
+                 .spread_s2 = 0.0,
                  .count = 1.0,
                  .first_s = time_s,
                  .last_s = time_s};
