@@ -30,7 +30,7 @@ LiveDetector::LiveDetector(const LiveSettings& settings)
 std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, bool saturated) {
   const double sigma = noise_.known() ? noise_.sigma() : kInfinity;
   // The despiker still held scans from before the gap when it was told.
-  if (position_ == gap_at_ && lost_ > lost_before_) follow_gap();
+  if (position_ == gap_at_ && is_gap_to_come()) follow_gap();
   const auto position = static_cast<double>(position_++);
   if (scan.spike) flags_after_ |= kCycleHasSpike;
   if (saturated) flags_after_ |= kCycleIsSaturated;
@@ -159,18 +159,24 @@ void LiveDetector::follow_gap() noexcept {
   const double last_s = time_of(static_cast<double>(position_ - 1));
   if (follower_.gap(last_s, usable_sigma())) take_decision();
   usable_noise_.gap();
+  if (watch_.running())
+    watch_.start(follower_.shared().omega, follower_.shared().gamma, settings_.scan_rate_Hz);
 }
 
 void LiveDetector::gap(std::int64_t count) noexcept {
   noise_.gap();
+  flags_after_ |= kCycleHasGap;
+  const bool waits = is_gap_to_come();
+  if (waits && come_ == gap_at_) {
+    // One gap that is told in two parts.
+    lost_ += count;
+    return;
+  }
   // Of two gaps with so few scans in between that the despiker holds them all, the first is not waited for.
-  if (position_ < gap_at_) follow_gap();
+  if (waits) follow_gap();
   lost_before_ = lost_;
   lost_ += count;
   gap_at_ = come_;
-  flags_after_ |= kCycleHasGap;
-  if (watch_.running())
-    watch_.start(follower_.shared().omega, follower_.shared().gamma, settings_.scan_rate_Hz);
 }
 
 std::optional<LiveCycle> LiveDetector::end() noexcept {

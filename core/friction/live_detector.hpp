@@ -6,7 +6,8 @@
 ///     if (const auto last = detector.end()) use(*last);
 ///
 /// What it says depends on the scans alone, not on how they come in blocks. O(1) for a scan; the fits that a
-/// closing cycle needs are of bounded size and spread over scans. Never allocates after it is made.
+/// closing cycle needs are of bounded size and, but for `peak`, spread over scans. Never allocates after it
+/// is made.
 ///
 /// A fall is told kFallDelayScans after the scan at which the force, the median of three scans, has fallen by
 /// the hysteresis below its highest. Where the highest scan stands alone its median is lower, and the scans
@@ -66,6 +67,8 @@ class LiveDetector {
 
   std::optional<LiveCycle> follow(const signal::DespikedScan& scan, bool saturated);
   std::optional<LiveCycle> slip(const Fall& fall, double now_s) noexcept;
+  /// The follower has not been told of the last gap: the despiker still holds scans from before it.
+  [[nodiscard]] bool is_gap_to_come() const noexcept { return position_ <= gap_at_ && lost_ > lost_before_; }
   void follow_gap() noexcept;
   void take_decision() noexcept;
   void watch_phase(double value, double sigma) noexcept;

@@ -136,16 +136,11 @@ Crossing QuickCapture::work_out(const SlipRows& slip) noexcept {
                       B * (sums.ss * B - 2.0 * sums.ys) +
                       2.0 * (sums.c * K * A + sums.s * K * B + sums.cs * A * B);
   square_sum = std::max(square_sum, 0.0);  // Whatever the digits lose.
-  const auto leave = [&](std::size_t k, double value) {
+  const auto leave = [&](std::size_t k, double value, const TurnedBasis& = {}) {
     const double off = slip.value(k) - value;
     square_sum += slip.weight(k) * off * off;
   };
-  std::size_t k = stick_.row + 1;
-  for (; k < slip.size() && slip.tau_s(k) <= onset_tau_s_; ++k) leave(k, line(slip.tau_s(k), r));
-  if (k < slip.size()) {
-    TurnedBasis b = slip.later({}, slip.tau_s(k) - onset_tau_s_);
-    for (; k < slip.size(); ++k, b = slip.a_row_later(b)) leave(k, next_slip(slip, b));
-  }
+  for_each_behind(slip, leave, leave);
 
   // Its S − K is log-normal about what is typical.
   const double ratio = next_D_ / typical_delta_mu_;
@@ -160,60 +155,63 @@ QuickCapture::Equations QuickCapture::equations(const SlipRows& slip) const noex
   const auto& [K, A, B] = p_;
   const SlipRows::Sums& sums = slip.sums(stick_.row);
 
-  // On the line, all of which moves as its begin does: c and c′ are continuous there, so its shift drops out.
-  const double by_A = stick_.basis.cosine;
-  const double by_B = stick_.basis.sine;
-  std::size_t k = stick_.row + 1;
-  double count = 0.0;
-  double off_sum = 0.0;
-  for (; k < slip.size() && slip.tau_s(k) <= onset_tau_s_; ++k) {
-    count += slip.weight(k);
-    off_sum += slip.weight(k) * (slip.value(k) - line(slip.tau_s(k), r));
-  }
-  double n00 = sums.n + count;
-  double n10 = sums.c + count * by_A;
-  double n20 = sums.s + count * by_B;
+  double n00 = sums.n;
+  double n10 = sums.c;
+  double n20 = sums.s;
   double n30 = 0.0;
-  double n11 = sums.cc + count * by_A * by_A;
-  double n21 = sums.cs + count * by_A * by_B;
+  double n11 = sums.cc;
+  double n21 = sums.cs;
   double n31 = 0.0;
-  double n22 = sums.ss + count * by_B * by_B;
+  double n22 = sums.ss;
   double n32 = 0.0;
   double n33 = 0.0;
-  double g0 = sums.y - (sums.n * K + sums.c * A + sums.s * B) + off_sum;
-  double g1 = sums.yc - (sums.c * K + sums.cc * A + sums.cs * B) + off_sum * by_A;
-  double g2 = sums.ys - (sums.s * K + sums.cs * A + sums.ss * B) + off_sum * by_B;
+  double g0 = sums.y - (sums.n * K + sums.c * A + sums.s * B);
+  double g1 = sums.yc - (sums.c * K + sums.cc * A + sums.cs * B);
+  double g2 = sums.ys - (sums.s * K + sums.cs * A + sums.ss * B);
   double g3 = 0.0;
-
-  // Of the next slip: its onset comes later by 1/r for each S, and earlier by what the capture is higher.
-  if (k < slip.size()) {
-    const RowCourse next{0.0, next_D_, next_B_};
-    TurnedBasis b = slip.later({}, slip.tau_s(k) - onset_tau_s_);
-    for (; k < slip.size(); ++k, b = slip.a_row_later(b)) {
-      const double w = slip.weight(k);
-      const double off = w * (slip.value(k) - next_slip(slip, b));
-      const double by_capture = slip.motion(next, b).rate / r;
-      const double by_D = b.cosine + 0.5 * gamma / omega * b.sine;
-      const double d0 = by_capture + 1.0 - by_D;
-      const double d1 = by_capture * by_A;
-      const double d2 = by_capture * by_B;
-      const double d3 = by_D - by_capture;
-      n00 += w * d0 * d0;
-      n10 += w * d1 * d0;
-      n20 += w * d2 * d0;
-      n30 += w * d3 * d0;
-      n11 += w * d1 * d1;
-      n21 += w * d2 * d1;
-      n31 += w * d3 * d1;
-      n22 += w * d2 * d2;
-      n32 += w * d3 * d2;
-      n33 += w * d3 * d3;
-      g0 += off * d0;
-      g1 += off * d1;
-      g2 += off * d2;
-      g3 += off * d3;
-    }
-  }
+  const double by_A = stick_.basis.cosine;
+  const double by_B = stick_.basis.sine;
+  const auto on_line = [&](std::size_t k, double value) {
+    // All of the line moves as its begin does: c and c′ are continuous there, so its shift drops out.
+    const double w = slip.weight(k);
+    const double off = w * (slip.value(k) - value);
+    n00 += w;
+    n10 += w * by_A;
+    n20 += w * by_B;
+    n11 += w * by_A * by_A;
+    n21 += w * by_A * by_B;
+    n22 += w * by_B * by_B;
+    g0 += off;
+    g1 += off * by_A;
+    g2 += off * by_B;
+  };
+  const RowCourse next{0.0, next_D_, next_B_};
+  const auto in_next = [&](std::size_t k, double value, const TurnedBasis& b) {
+    // Its onset comes later by 1/r for each S, and earlier by what the capture is higher.
+    const double w = slip.weight(k);
+    const double off = w * (slip.value(k) - value);
+    const double by_capture = slip.motion(next, b).rate / r;
+    const double by_D = b.cosine + 0.5 * gamma / omega * b.sine;
+    const double d0 = by_capture + 1.0 - by_D;
+    const double d1 = by_capture * by_A;
+    const double d2 = by_capture * by_B;
+    const double d3 = by_D - by_capture;
+    n00 += w * d0 * d0;
+    n10 += w * d1 * d0;
+    n20 += w * d2 * d0;
+    n30 += w * d3 * d0;
+    n11 += w * d1 * d1;
+    n21 += w * d2 * d1;
+    n31 += w * d3 * d1;
+    n22 += w * d2 * d2;
+    n32 += w * d3 * d2;
+    n33 += w * d3 * d3;
+    g0 += off * d0;
+    g1 += off * d1;
+    g2 += off * d2;
+    g3 += off * d3;
+  };
+  for_each_behind(slip, on_line, in_next);
 
   // S − K that is unusual.
   const double by_S = next_D_ > kLeastRatio * typical_delta_mu_ ? 1.0 / (next_D_ * kDeltaMuLogScatter) : 0.0;

@@ -66,6 +66,17 @@ class QuickCapture {
   [[nodiscard]] double next_slip(const SlipRows& slip, const TurnedBasis& b) const noexcept {
     return p_.K + slip.attenuation() * (next_D_ * b.cosine + next_B_ * b.sine);
   }
+  /// Over the rows behind the capture, in their order. \param on_line  called with a row and c there.
+  /// \param in_next  called with a row of the next slip, c there and the basis, turned since the onset.
+  template <typename OnLine, typename InNext>
+  void for_each_behind(const SlipRows& slip, const OnLine& on_line, const InNext& in_next) const {
+    std::size_t k = stick_.row + 1;
+    for (; k < slip.size() && slip.tau_s(k) <= onset_tau_s_; ++k)
+      on_line(k, line(slip.tau_s(k), slip.shared().r));
+    if (k >= slip.size()) return;
+    TurnedBasis b = slip.later({}, slip.tau_s(k) - onset_tau_s_);
+    for (; k < slip.size(); ++k, b = slip.a_row_later(b)) in_next(k, next_slip(slip, b), b);
+  }
 
  private:
   /// Of a step, times σ² of a row.

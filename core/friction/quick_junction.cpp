@@ -172,16 +172,12 @@ double QuickJunction::told(const RowCourse& free_course, double scale, double de
       unexplained(free).sum() - (captured_cost_ - unusual) * row_variance_ * scale - unusual;
   if (at_least > decisive) return at_least;
   Rows captured_off(size);
-  std::size_t k = captured_.stick().row + 1;
-  captured_off.head(static_cast<Eigen::Index>(k)) = slip_.off(captured_.slip(), k);
-  for (; k < size && slip_.tau_s(k) <= captured_.onset_tau_s(); ++k)
-    captured_off(static_cast<Eigen::Index>(k)) =
-        slip_.value(k) - captured_.line(slip_.tau_s(k), slip_.shared().r);
-  if (k < size) {
-    TurnedBasis b = slip_.later({}, slip_.tau_s(k) - captured_.onset_tau_s());
-    for (; k < size; ++k, b = slip_.a_row_later(b))
-      captured_off(static_cast<Eigen::Index>(k)) = slip_.value(k) - captured_.next_slip(slip_, b);
-  }
+  const std::size_t before = captured_.stick().row + 1;
+  captured_off.head(static_cast<Eigen::Index>(before)) = slip_.off(captured_.slip(), before);
+  const auto leave = [&](std::size_t k, double value, const TurnedBasis& = {}) {
+    captured_off(static_cast<Eigen::Index>(k)) = slip_.value(k) - value;
+  };
+  captured_.for_each_behind(slip_, leave, leave);
   const double by_rows =
       (unexplained(free) +
        (-0.5 * scale * slip_.weights() * captured_off.square()).max(unexplained.least_told()))

@@ -34,7 +34,6 @@ Eigen::Vector3d vector_of(const SharedParameters& shared) noexcept {
 }  // namespace
 
 void SharedKnowledge::start(double omega, double stick_rate_per_s) {
-  started_ = true;
   best_ = {omega, 2.0 * kUsualGammaOver2Omega * omega, stick_rate_per_s};
   learnt_ = {};
   if (prior_.coupling) {

@@ -19,7 +19,6 @@ class SharedKnowledge {
  public:
   explicit SharedKnowledge(SharedPrior prior) : prior_(std::move(prior)) {}
 
-  [[nodiscard]] bool started() const noexcept { return started_; }
   /// ω and γ are measured beforehand.
   [[nodiscard]] bool characterised() const noexcept { return prior_.coupling.has_value(); }
 
@@ -41,7 +40,6 @@ class SharedKnowledge {
   SharedEvidence learnt_;   ///< lasting_ is part of it.
   SharedEvidence lasting_;  ///< Of the first knowledge, what does not fade.
   SharedParameters best_;
-  bool started_ = false;
 };
 
 }  // namespace stickslip::friction

@@ -6,11 +6,8 @@
 #include <numbers>
 
 #include "core/friction/capture.hpp"
-#include "core/friction/closed_forms.hpp"
-#include "core/friction/junction.hpp"
 #include "core/friction/regime_rule.hpp"
 #include "core/friction/sampling.hpp"
-#include "core/friction/slip_rule.hpp"
 #include "core/friction/turning_points.hpp"
 #include "core/friction/unknown.hpp"
 
@@ -66,10 +63,11 @@ void SlipFollower::falls(double peak_s, double lowest_s) noexcept {
 
 bool SlipFollower::gap(double now_s, double sigma) noexcept {
   const bool asks = !keeps_scans() && task_ == Task::kJudge && period_s() >= kFewScansACycle * scan_s_;
-  const bool decides = asks && judge(now_s, sigma, true);
+  const bool decides = asks && judge(now_s, sigma, false);
   buffer_.clear();
   quick_junction_.gap();
-  heights_follow_ = false;
+  gap_s_ = now_s + scan_s_;
+  whole_ = false;
   if (rise_slope_ == 0.0) rise_slope_ = kNotKnown;
   if (open_ && !decided_) task_ = Task::kNone;
   return decides;
@@ -86,7 +84,7 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, double
   ++slip_number_;
   decided_ = false;
   begins_from_stick_ = begins_from_stick;
-  heights_follow_ = true;
+  whole_ = !(peak_s <= gap_s_);
   opened_s_ = now_s;
   scans_since_open_ = 0;
   fall_ = fall;
@@ -102,7 +100,8 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, double
     window_from_s_ = rise().line_from_s(buffer_.points(), window_from_s_);
   }
   rise_slope_ = 0.0;
-  if (!knowledge_.started()) knowledge_.start(std::numbers::pi / half_s, rise_slope(sigma));
+  if (!started_whole_) knowledge_.start(std::numbers::pi / half_s, rise_slope(sigma));
+  started_whole_ = started_whole_ || whole_;
   if (contradicted) knowledge_.forget_stick_rate(rise_slope(sigma));
   shared_ = knowledge_.best();
   quick_junction_.fit_rows(shared_.omega);
@@ -191,7 +190,7 @@ bool SlipFollower::force(double now_s, double sigma, const Fall* next) noexcept 
 }
 
 void SlipFollower::force_by_heights(double now_s, double sigma, const Fall* next) noexcept {
-  const bool has_next = next != nullptr && heights_follow_;
+  const bool has_next = next != nullptr && whole_;
   const double heights = has_next ? heights_.evidence(fall_.drop(), next->drop(), freely_next_drop(),
                                                       knowledge_.characterised(), sigma)
                                   : 0.0;
@@ -281,7 +280,7 @@ bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
       [[fallthrough]];
     case QuickJunction::Answer::kDoubt:
       ask_in_full(sigma, last ? 0.0 : kDecisive);
-      if (!keeps_scans()) learn_and_ask_again(sigma);
+      if (!keeps_scans() && !knowledge_.characterised()) learn_and_ask_again(sigma);
       break;
   }
   slip_.evidence = evidence_.known ? evidence_.log_likelihood_ratio : kNotKnown;
@@ -426,13 +425,14 @@ void SlipFollower::estimate_by_fit(double end_s, double sigma) noexcept {
 }
 
 void SlipFollower::learn_and_ask_again(double sigma) noexcept {
-  if (!evidence_.known || !begins_from_stick_) return;
+  // Of a slip with another stick rate than the one known, that is all there is to learn.
+  if (!evidence_.known || !begins_from_stick_ || shared_.r == rise_slope_) return;
   const bool is_captured = evidence_.log_likelihood_ratio > kDecisive;
   double end_s = trough_s_;  // Whatever comes of it, it slips up to there.
   if (is_captured) end_s = 0.5 * (evidence_.capture_s + evidence_.next_onset_s);
   if (evidence_.log_likelihood_ratio < -kDecisive) end_s = last_scan_s();
   look_back_to(rise().begin_s);
-  const double from_s = rise().line_from_s(buffer_.points(), rise().begin_s);
+  const double from_s = rise().line_from_s(buffer_.points(), std::max(rise().begin_s, window_from_s_));
   const CycleFit fit =
       fit_cycle(between(buffer_.points(), from_s, end_s), is_captured, first_guess(), knowledge_, sigma);
   if (!fit.converged || !(fit.residual_sigmas < kMisfitSigmas)) return;
@@ -444,6 +444,7 @@ void SlipFollower::learn_and_ask_again(double sigma) noexcept {
 }
 
 void SlipFollower::learn_turning_points(double fall_s, double sigma) noexcept {
+  if (!whole_) return;
   const bool mostly_stick = fall_.rise_duration * scan_s_ > kMostlyStick * fall_s;
   // Beside a characterisation ω of two turning points counts nothing.
   if (knowledge_.characterised() && !mostly_stick) return;

@@ -18,7 +18,8 @@
 namespace stickslip::friction {
 
 /// Follows one slip at a time. What takes long, fits of up to 256 points, is done one for a scan, so that no
-/// scan waits for two. Fixed memory, 70 kB; never allocates.
+/// scan waits for two; where scans are not kept, and must be asked in full, one scan does it all. Fixed
+/// memory, 70 kB; never allocates.
 class SlipFollower {
  public:
   /// \param scan_rate_Hz > 0.
@@ -37,8 +38,9 @@ class SlipFollower {
   [[nodiscard]] bool keeps_scans() const noexcept { return tier_ != EstimatorTier::kPeak; }
   /// The force falls: its peak and the lowest so far.
   void falls(double peak_s, double lowest_s) noexcept;
-  /// Scans are missing behind the last one: what was before does not belong to what comes. A slip that would
-  /// have been asked about later is asked now. \return true when this decided how it ends.
+  /// Scans are missing behind the last one: what was before does not belong to what comes. Where scans are
+  /// not kept, a slip that would have been asked about later is asked now. \return true when this decided how
+  /// it ends.
   [[nodiscard]] bool gap(double now_s, double sigma) noexcept;
 
   /// A fall was confirmed to be a slip; ends the one before. Call force() and take it first.
@@ -106,9 +108,9 @@ class SlipFollower {
   void look_back_to(double time_s) noexcept;
   /// evidence_ by all means, at far more cost. \param decisive  0: whatever comes of it.
   void ask_in_full(double sigma, double decisive) noexcept;
-  /// Where scans are not kept, a slip that had to be asked in full is fitted: it tells of ω, γ and r what
-  /// turning points cannot, and the next ones need not be asked in full. If it left a doubt, that may be gone
-  /// now.
+  /// Where scans are not kept and nobody characterised the tester, a slip from sticking that had to be asked
+  /// in full is fitted: it tells of ω, γ and r what turning points cannot, so that the next ones fit. If it
+  /// left a doubt, that may be gone now.
   void learn_and_ask_again(double sigma) noexcept;
   void decide(double evidence, double now_s) noexcept;
   void ask_again(double now_s) noexcept { next_task_s_ = now_s + period_s() / kAskedPerPeriod; }
@@ -136,7 +138,7 @@ class SlipFollower {
   bool open_ = false;
   bool decided_ = false;
   bool begins_from_stick_ = false;
-  bool heights_follow_ = false;  ///< No scan is missing since it was opened.
+  bool whole_ = false;  ///< No scan is missing since its peak.
   Task task_ = Task::kNone;
   double next_task_s_ = 0.0;
   double opened_s_ = 0.0;              ///< Time of the last scan before it was opened,
@@ -150,7 +152,10 @@ class SlipFollower {
   std::int64_t late_number_ = 0;  ///< Slip of the last late question.
   BeltChange belt_change_;
   std::int64_t slip_number_ = 0;
-  double question_from_s_ = 0.0;  ///< Scans from here on tell how it ends; NaN until asked.
+  double gap_s_ =
+      -std::numeric_limits<double>::infinity();  ///< Where the last gap begins: a scan is missing.
+  bool started_whole_ = false;                   ///< knowledge_, by a fall without a gap.
+  double question_from_s_ = 0.0;                 ///< Scans from here on tell how it ends; NaN until asked.
   SharedParameters shared_;
   JunctionEvidence evidence_;
 

@@ -36,9 +36,9 @@ bool SlipRows::begin(const ScanRows& rows, double now_s, double peak_s, double l
 
 bool SlipRows::take(const ScanRows& rows, double until_s) noexcept {
   std::size_t end = rows.count() - first_row_;
+  if (end > kMost) return false;
   if (const double before = std::ceil((until_s - first_s_) / row_s_); before < static_cast<double>(end))
     end = static_cast<std::size_t>(std::max(before, 0.0));
-  if (end > kMost) return false;
   for (; known_ < end; ++known_) {
     const TurnedBasis next = a_row_later(basis(known_ - 1));
     cosines_[known_] = next.cosine;

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/friction/cycle_fit.hpp"
@@ -244,6 +246,105 @@ TEST(LiveDetector, NeverAllocates) {
       cycles += detector.end() ? 1 : 0;
       EXPECT_EQ(test::allocation_count(), before) << name(tier);
       EXPECT_GT(cycles, 20) << name(tier);
+    }
+  }
+}
+
+/// Scans of a trial less some, which the detector is told of. \param gaps  first scan and count of each, in
+/// their order. \return every cycle.
+std::vector<LiveCycle> with_gaps(const LiveScene& scene, LiveDetector& detector,
+                                 const std::vector<std::pair<std::int64_t, std::int64_t>>& gaps) {
+  LiveTrial trial{scene};
+  std::vector<LiveCycle> cycles;
+  auto gap = gaps.begin();
+  for (std::int64_t scan = 0; scan < trial.scan_count(); ++scan) {
+    const double value = trial.next();
+    for (; gap != gaps.end() && scan == gap->first + gap->second; ++gap) detector.gap(gap->second);
+    if (gap != gaps.end() && scan >= gap->first) continue;
+    if (const auto cycle = detector.add(value, false)) cycles.push_back(*cycle);
+  }
+  if (const auto last = detector.end()) cycles.push_back(*last);
+  return cycles;
+}
+
+// However few scans lie between two gaps, times behind them are right, the slips there are told, and no
+// estimator takes a torn slip for an escape.
+TEST(LiveDetector, GapsInARowCostTheCyclesTheyLieInAlone) {
+  for (const EstimatorTier tier : {EstimatorTier::kPeak, EstimatorTier::kInterpolated, EstimatorTier::kFit}) {
+    for (const bool characterised : {false, true}) {
+      for (const std::int64_t between : {0, 1, 2, 3, 4, 5, 9}) {
+        for (const double after_onset_s : {0.0, 0.01, 0.02, 0.03, 0.04, 0.05}) {
+          LiveScene scene;
+          scene.slips = 14;
+          const LiveTrial trial{scene};
+          constexpr std::size_t kTorn = 5;
+          const auto first =
+              static_cast<std::int64_t>((trial.slips()[kTorn].onset_s + after_onset_s) * scene.scan_rate_Hz);
+          constexpr std::int64_t kLost = 9;
+          const std::int64_t second = first + kLost + between;
+          LiveDetector detector{settings_of(scene, tier, characterised)};
+          const auto cycles = with_gaps(scene, detector, {{first, kLost}, {second, kLost}});
+          const double begin_s = static_cast<double>(first) / scene.scan_rate_Hz;
+          const double end_s = static_cast<double>(second + kLost) / scene.scan_rate_Hz;
+          const double cycle_s = trial.slips()[2].onset_s - trial.slips()[1].onset_s;
+          int untouched = 0;
+          for (const LiveCycle& cycle : cycles) {
+            const double peak_s = cycle.cycle.peak_time_s;
+            // How a slip ends is told a fifth of a cycle into the next at the latest.
+            if (!(peak_s < begin_s - 1.2 * cycle_s || peak_s > end_s + cycle_s)) continue;
+            // Each peak is that of a slip of the trial, seven thousandths of a second behind its onset.
+            const auto of = std::ranges::min_element(trial.slips(), {}, [&](const LiveTrial::TrueSlip& slip) {
+              return std::abs(slip.onset_s + 0.007 - peak_s);
+            });
+            EXPECT_NEAR(peak_s - of->onset_s, 0.007, 0.003)
+                << name(tier) << ", " << between << ", " << after_onset_s << ": " << peak_s;
+            if (cycle.cycle.number + 2 >= detector.state().slip_count) continue;  // Its end is not seen.
+            EXPECT_NE(cycle.cycle.flags & kCycleCaptured, 0)
+                << name(tier) << ", " << between << ", " << after_onset_s << ": " << peak_s;
+            ++untouched;
+          }
+          EXPECT_GE(untouched, 5) << name(tier) << ", " << between << ", " << after_onset_s;
+          EXPECT_EQ(detector.state().regime, Regime::kStickSlip)
+              << name(tier) << ", " << between << ", " << after_onset_s;
+        }
+      }
+    }
+  }
+}
+
+// Before anything slips, and before the last scan: nothing to tell of, and nothing is told.
+TEST(LiveDetector, GapsWhereNothingIsUnderWay) {
+  for (const EstimatorTier tier : {EstimatorTier::kPeak, EstimatorTier::kInterpolated, EstimatorTier::kFit}) {
+    const LiveScene scene;
+    const std::int64_t count = LiveTrial{scene}.scan_count();
+    LiveDetector whole{settings_of(scene, tier, false)};
+    LiveDetector early{settings_of(scene, tier, false)};
+    LiveDetector late{settings_of(scene, tier, false)};
+    const auto cycles = with_gaps(scene, whole, {});
+    EXPECT_EQ(with_gaps(scene, early, {{1, 3}, {20, 9}}).size(), cycles.size()) << name(tier);
+    EXPECT_EQ(with_gaps(scene, late, {{count - 4, 3}}).size(), cycles.size()) << name(tier);
+    EXPECT_EQ(late.state().regime, whole.state().regime) << name(tier);
+    LiveDetector none{settings_of(scene, tier, false)};
+    none.gap(5);
+    none.gap(5);
+    EXPECT_FALSE(none.end());
+  }
+}
+
+// A free oscillation is followed on behind a gap: it does not end where its phase jumps.
+TEST(LiveDetector, AGapInARingDownDoesNotEndIt) {
+  for (const std::int64_t lost : {5, 9, 14, 26}) {
+    for (std::int64_t first = 0; first < 18; ++first) {
+      LiveScene scene;
+      scene.slips = 3;
+      scene.escape_Q = 3.0;
+      scene.escape_periods = 8.0;  // e^{−8π·0.044} of it, a third, is left: far from its end.
+      const LiveTrial trial{scene};
+      const auto escaped =
+          static_cast<std::int64_t>((trial.slips().back().onset_s + 0.1) * scene.scan_rate_Hz);
+      LiveDetector detector{settings_of(scene, EstimatorTier::kFit, true)};
+      (void)with_gaps(scene, detector, {{escaped + first, lost}});
+      EXPECT_EQ(detector.state().regime, Regime::kRingDown) << lost << ", " << first;
     }
   }
 }

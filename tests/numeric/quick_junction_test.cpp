@@ -300,7 +300,6 @@ TEST(QuickJunction, DoubtsWithoutTheScansOfASlip) {
   EXPECT_EQ(quick.ask(kSigma, kDeltaMu, kDecisive), QuickJunction::Answer::kDoubt);
 }
 
-// Without noise the sums lose all that is left.
 // Rows asked for by and by are the rows asked for at once.
 TEST(SlipRows, TakesThoseBeforeAMomentAndTheOthersLater) {
   const SharedParameters shared = ModelCourse::tester_at(1.3);
@@ -356,6 +355,7 @@ TEST(QuickJunction, SaysLaterWhatItWouldHaveSaidThen) {
   EXPECT_NEAR(later.evidence().capture_s, then.evidence().capture_s, 1e-9);
 }
 
+// Without noise the sums lose all that is left.
 TEST(SlipRows, LeaveNoLessThanNothing) {
   const SharedParameters shared = ModelCourse::tester_at(1.3);
   for (std::size_t size = 8; size < 60; ++size) {

@@ -53,6 +53,29 @@ TEST(Rise, SlopeIsThatOfTheLine) {
   EXPECT_NEAR(kRise.slope(stray, kRise.begin_s, kScanSigma), kSlope, 1e-9);
 }
 
+// All that is there is below the line: nothing of it is used.
+TEST(Rise, NoLineWhereNoScanIsOnIt) {
+  std::vector<CyclePoint> points = scans();
+  std::erase_if(points, [](const CyclePoint& point) { return point.time_s > 0.3; });
+  EXPECT_EQ(kRise.line_from_s(points, kRise.begin_s), kPeak_s);
+}
+
+// A fast loading: so few scans between 0.3 and 0.7 of the rise that those from 0.1 to 0.8 are asked. Outside
+// of these the rise is bent here.
+TEST(Rise, FewScansOfAFastLoadingAreAskedForMore) {
+  const double peak = 1.0;
+  const Rise rise{0.0, peak, 0.0, 0.1};
+  std::vector<CyclePoint> points;
+  for (int k = 0; k <= 10; ++k) {
+    const double time_s = k * kScan_s;
+    double value = 10.0 * time_s;
+    if (value < 0.05 || value > 0.85) value += 0.03;
+    if (k == 5) value += 0.2;  // Of the five scans in the middle one is a stray.
+    points.push_back({time_s, value, 0.0, 1.0, time_s, time_s});
+  }
+  EXPECT_NEAR(rise.slope(points, 0.0, kScanSigma), 10.0, 1e-9);
+}
+
 TEST(Rise, SlopeOfTheWholeWhereScansTellNothing) {
   EXPECT_NEAR(kRise.slope({}, 0.0, kScanSigma), course(kPeak_s) / 1.6, 1e-12);
 }

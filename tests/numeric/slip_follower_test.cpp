@@ -31,43 +31,53 @@ struct Ended {
 class Followed {
  public:
   Followed(const LiveScene& scene, SharedPrior prior, double sigma)
-      : scene_(scene), sigma_(sigma), follower_(EstimatorTier::kPeak, scene.scan_rate_Hz, std::move(prior)) {}
+      : scan_s_(1.0 / scene.scan_rate_Hz),
+        sigma_(sigma),
+        follower_(EstimatorTier::kPeak, scene.scan_rate_Hz, std::move(prior)) {}
 
-  /// \param scan  its number.
-  void add(std::int64_t scan, double value, bool usable = true) {
-    const double now_s = static_cast<double>(scan) / scene_.scan_rate_Hz;
+  void add(double value, bool usable = true) {
+    const double now_s = time_s(position_);
+    position_ += 1.0;
     follower_.add(value, usable);
     const auto fall = finder_.add(value, SlipRule::kHysteresisSigmas * sigma_);
     if (fall && rule_.is_slip(*fall, sigma_)) {
-      end(now_s, &*fall);
-      const double scan_s = 1.0 / scene_.scan_rate_Hz;
-      follower_.open(*fall, fall->peak_at * scan_s, fall->trough_at * scan_s, now_s, sticks_, sigma_);
+      force(&*fall);
+      follower_.open(*fall, time_s(fall->peak_at), time_s(fall->trough_at), now_s, sticks_, sigma_);
       return;
     }
     if (follower_.has_task()) (void)follower_.step(now_s, sigma_);
   }
-  void end(double now_s, const Fall* next) {
-    if (!follower_.is_open()) return;
-    (void)follower_.force(now_s, sigma_, next);
-    if (follower_.decided()) sticks_ = follower_.captured();
-    slips_.push_back({follower_.decided(), follower_.captured(), follower_.slip()});
-    follower_.close();
+  /// So many scans are missing.
+  void gap(double count) {
+    if (follower_.gap(time_s(position_ - 1.0), sigma_)) sticks_ = follower_.captured();
+    gap_at_ = position_;
+    lost_ = count;
   }
-  /// \param scan  number of the last one before.
-  void gap(std::int64_t scan) {
-    if (follower_.gap(static_cast<double>(scan) / scene_.scan_rate_Hz, sigma_))
-      sticks_ = follower_.captured();
-  }
+  void end() { force(nullptr); }
 
   [[nodiscard]] const std::vector<Ended>& slips() const { return slips_; }
   [[nodiscard]] const SharedParameters& shared() const { return follower_.shared(); }
 
  private:
-  LiveScene scene_;
+  [[nodiscard]] double time_s(double position) const {
+    return (position < gap_at_ ? position : position + lost_) * scan_s_;
+  }
+  void force(const Fall* next) {
+    if (!follower_.is_open()) return;
+    (void)follower_.force(time_s(position_ - 1.0), sigma_, next);
+    if (follower_.decided()) sticks_ = follower_.captured();
+    slips_.push_back({follower_.decided(), follower_.captured(), follower_.slip()});
+    follower_.close();
+  }
+
+  double scan_s_;
   double sigma_;
   SlipFollower follower_;
   FallFinder finder_;
   SlipRule rule_;
+  double position_ = 0.0;
+  double gap_at_ = 0.0;
+  double lost_ = 0.0;
   bool sticks_ = true;
   std::vector<Ended> slips_;
 };
@@ -75,8 +85,8 @@ class Followed {
 Followed follow(const LiveScene& scene, SharedPrior prior) {
   LiveTrial trial{scene};
   Followed followed{scene, std::move(prior), scene.sigma};
-  for (std::int64_t scan = 0; scan < trial.scan_count(); ++scan) followed.add(scan, trial.next());
-  followed.end(trial.time_s(trial.scan_count()), nullptr);
+  for (std::int64_t scan = 0; scan < trial.scan_count(); ++scan) followed.add(trial.next());
+  followed.end();
   return followed;
 }
 
@@ -110,8 +120,8 @@ TEST(SlipFollower, LearnsTheTesterWhereScansDoNotFitIt) {
     scene.gamma_over_2omega = gamma_over_2omega;
     scene.Q = 1.0;
     const Followed followed = follow(scene, {});
-    // A window from the onset to the capture tells γ/2ω to 0.003 in one slip; four of these.
-    EXPECT_NEAR(followed.shared().oscillator().gamma_over_2omega(), gamma_over_2omega, 0.012);
+    // The scans from onset to capture tell γ/2ω to 0.003 in one slip; two of these.
+    EXPECT_NEAR(followed.shared().oscillator().gamma_over_2omega(), gamma_over_2omega, 0.006);
     EXPECT_NEAR(followed.shared().omega, scene.omega(), 0.01 * scene.omega());
   }
 }
@@ -128,7 +138,7 @@ TEST(SlipFollower, HeightsDecideWhereNoScanTells) {
   Followed followed{scene, scene.characterised(), 0.0035};
   for (std::int64_t scan = 0; scan < trial.scan_count(); ++scan) {
     const double time_s = trial.time_s(scan);
-    followed.add(scan, trial.next(), time_s < from_s || time_s > to_s);
+    followed.add(trial.next(), time_s < from_s || time_s > to_s);
   }
   ASSERT_GT(followed.slips().size(), kBlind + 1);
   const Ended& blind = followed.slips()[kBlind];
@@ -139,27 +149,48 @@ TEST(SlipFollower, HeightsDecideWhereNoScanTells) {
   EXPECT_TRUE(std::isnan(blind.slip.cycle.capture_time_s));
 }
 
-// Scans are missing: of this slip nothing is said, and nothing that is NaN is learnt from it.
-TEST(SlipFollower, AGapCostsTheSlipItIsInAlone) {
+// Scans are missing, from any moment of a cycle on: that costs the ends of the slips whose scans they were,
+// and nothing is learnt of the fall that they lie in. (With an unknown tester a fall that seems to take as
+// long as the gap would teach a slow oscillation.)
+TEST(SlipFollower, AGapCostsTheSlipsItIsInAlone) {
   for (const double scan_rate_Hz : {350.0, 10'000.0}) {
-    LiveScene scene;
-    scene.scan_rate_Hz = scan_rate_Hz;
-    LiveTrial trial{scene};
-    constexpr std::size_t kTorn = 4;
-    const auto gap_at = static_cast<std::int64_t>((trial.slips()[kTorn].onset_s + 0.03) * scan_rate_Hz);
-    Followed followed{scene, {}, scene.sigma};
-    for (std::int64_t scan = 0; scan < trial.scan_count(); ++scan) {
-      if (scan == gap_at) followed.gap(scan - 1);
-      followed.add(scan, trial.next());
+    for (const double lost_s : {0.02, 0.17}) {
+      for (int eighth = 0; eighth < 8; ++eighth) {
+        LiveScene scene;
+        scene.scan_rate_Hz = scan_rate_Hz;
+        LiveTrial trial{scene};
+        constexpr std::size_t kTorn = 4;
+        const double cycle_s = trial.slips()[kTorn + 1].onset_s - trial.slips()[kTorn].onset_s;
+        const double gap_s = trial.slips()[kTorn].onset_s + eighth / 8.0 * cycle_s;
+        Followed followed{scene, {}, scene.sigma};
+        bool torn = false;
+        for (std::int64_t scan = 0; scan < trial.scan_count(); ++scan) {
+          const double value = trial.next();
+          if (trial.time_s(scan) > gap_s && trial.time_s(scan) < gap_s + lost_s) continue;
+          if (trial.time_s(scan) > gap_s && !torn) {
+            followed.gap(std::floor(lost_s * scan_rate_Hz));
+            torn = true;
+          }
+          followed.add(value);
+        }
+        const double untouched_from_s = gap_s + lost_s + cycle_s;
+        int decided = 0;
+        for (const Ended& slip : followed.slips()) {
+          const double peak_s = slip.slip.cycle.peak_time_s;
+          const bool untouched = peak_s < gap_s - cycle_s || peak_s > untouched_from_s;
+          EXPECT_TRUE(!untouched || slip.decided)
+              << scan_rate_Hz << ", " << lost_s << ", " << eighth << ": " << peak_s;
+          EXPECT_TRUE(!slip.decided || slip.captured)
+              << scan_rate_Hz << ", " << lost_s << ", " << eighth << ": " << peak_s;
+          decided += slip.decided ? 1 : 0;
+        }
+        // Three of ten or so at most: before, in and behind the gap, and those of which nothing came.
+        EXPECT_GE(decided, scene.slips - 2 - 3 - static_cast<int>(lost_s / cycle_s))
+            << scan_rate_Hz << ", " << lost_s << ", " << eighth;
+        EXPECT_NEAR(followed.shared().omega, scene.omega(), 0.05 * scene.omega())
+            << scan_rate_Hz << ", " << lost_s << ", " << eighth;
+      }
     }
-    // The last one is under way, and perhaps its fall is not over.
-    ASSERT_GE(followed.slips().size(), static_cast<std::size_t>(scene.slips - 2));
-    for (std::size_t i = 0; i < followed.slips().size(); ++i) {
-      EXPECT_EQ(followed.slips()[i].decided, i != kTorn) << scan_rate_Hz << ": slip " << i;
-      EXPECT_EQ(followed.slips()[i].captured, i != kTorn) << scan_rate_Hz << ": slip " << i;
-    }
-    EXPECT_TRUE(std::isfinite(followed.shared().omega) && std::isfinite(followed.shared().gamma) &&
-                std::isfinite(followed.shared().r));
   }
 }
 
