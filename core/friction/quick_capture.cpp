@@ -151,7 +151,7 @@ Crossing QuickCapture::work_out(const SlipRows& slip) noexcept {
 }
 
 QuickCapture::Equations QuickCapture::equations(const SlipRows& slip) const noexcept {
-  const auto& [omega, gamma, r] = slip.shared();
+  const SharedParameters& shared = slip.shared();
   const auto& [K, A, B] = p_;
   const SlipRows::Sums& sums = slip.sums(stick_.row);
 
@@ -190,8 +190,8 @@ QuickCapture::Equations QuickCapture::equations(const SlipRows& slip) const noex
     // Its onset comes later by 1/r for each S, and earlier by what the capture is higher.
     const double w = slip.weight(k);
     const double off = w * (slip.value(k) - value);
-    const double by_capture = slip.motion(next, b).rate / r;
-    const double by_D = b.cosine + 0.5 * gamma / omega * b.sine;
+    const double by_capture = slip.motion(next, b).rate / shared.r;
+    const double by_D = b.cosine + 0.5 * shared.gamma / shared.omega * b.sine;
     const double d0 = by_capture + 1.0 - by_D;
     const double d1 = by_capture * by_A;
     const double d2 = by_capture * by_B;
