@@ -48,8 +48,15 @@ constexpr double kKnownSlips = 2.0;
 constexpr double kMostlyStick = 3.0;
 /// The typical S − K follows the last so many.
 constexpr double kTypicalMemory = 16.0;
-/// S − K is typically not less than this part of a drop.
-constexpr double kLeastTypical = 0.05;
+/// S − K is typically not less than this part of the height of the peak over K.
+constexpr double kLeastTypical = 0.1;
+
+/// S − K of a slip whose peak is so high above K, by the undamped (2): roughly what is typical.
+double rough_delta_mu(double peak_above_K, const SharedParameters& shared) noexcept {
+  const double belt = shared.r / shared.omega;
+  const double square = peak_above_K * peak_above_K - belt * belt;
+  return std::max(std::sqrt(std::max(square, 0.0)), kLeastTypical * peak_above_K);
+}
 
 }  // namespace
 
@@ -106,12 +113,8 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, double
   shared_ = knowledge_.best();
   quick_junction_.fit_rows(shared_.omega);
 
-  if (keeps_scans() && !(typical_delta_mu_ > 0.0)) {
-    const double belt = shared_.r / shared_.omega;
-    const double amplitude = 0.5 * fall.drop();
-    typical_delta_mu_ =
-        std::sqrt(std::max(amplitude * amplitude - belt * belt, 0.01 * amplitude * amplitude));
-  }
+  if (keeps_scans() && !(typical_delta_mu_ > 0.0))
+    typical_delta_mu_ = rough_delta_mu(0.5 * fall.drop(), shared_);
   if (keeps_scans()) open_question();
   slip_ = {};
   Cycle& cycle = slip_.cycle;
@@ -247,12 +250,9 @@ void SlipFollower::open_late_question(double sigma) noexcept {
   shared_ = knowledge_.best();
   const Oscillator oscillator = shared_.oscillator();
   const double drop = heights_.usual_drop(fall_.drop());
-  // S − K by the undamped (2), from the height of the peak over K to the first order of γ/2ω: what is missed
-  // is a tenth of what slips differ by.
+  // The height of the peak to the first order of γ/2ω: what is missed is a tenth of what slips differ by.
   const double above_K = 0.5 * drop * (1.0 + 0.5 * std::numbers::pi * oscillator.gamma_over_2omega());
-  const double belt = shared_.r / shared_.omega;
-  const double square = above_K * above_K - belt * belt;
-  typical_delta_mu_ = std::max(std::sqrt(std::max(square, 0.0)), kLeastTypical * drop);
+  typical_delta_mu_ = rough_delta_mu(above_K, shared_);
   open_question();
 }
 
