@@ -39,7 +39,9 @@ class UnixConnection(http.client.HTTPConnection):
 
 
 class RunningDaemon:
-    def __init__(self, test, build, source, config="", speed=20, board=None, repeats=0, patient=False, prepare=lambda folder: None, program=None):
+    def __init__(self, test, build, source, config="", speed=20, board=None, repeats=0, patient=False, prepare=lambda folder: None, program=None, records="records",
+                 environment=None):
+        """records: the folder of records, below that of the daemon. environment: more variables for it."""
         self.cli = build / "daemon" / "stickslip"
         temporary = tempfile.TemporaryDirectory(prefix="stickslip-")
         test.addCleanup(temporary.cleanup)
@@ -59,7 +61,8 @@ scenes = ["{scene}"]
 repeats = {repeats}
 """
         file = self.folder / "d.toml"
-        file.write_text(f'{board}\n[record]\nfolder = "records"\n[control]\nsocket = "c.sock"\n{config}', encoding="utf-8")
+        file.write_text(f'{board}\n[record]\nfolder = "{records}"\n[control]\nsocket = "c.sock"\n{config}', encoding="utf-8")
+        self.environment = environment or {}
         self.command = [str(program or build / "daemon" / "stickslipd"), "--config", str(file)]
         test.addCleanup(self.end)
         self.start()
@@ -71,7 +74,7 @@ repeats = {repeats}
         manager = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         manager.bind(str(notify))
         manager.settimeout(TIMEOUT_S)
-        self.process = subprocess.Popen(self.command, cwd=self.folder, stderr=subprocess.PIPE, text=True, env={"NOTIFY_SOCKET": str(notify)})
+        self.process = subprocess.Popen(self.command, cwd=self.folder, stderr=subprocess.PIPE, text=True, env={"NOTIFY_SOCKET": str(notify), **self.environment})
         self.log, self.unread = [], queue.Queue()
         self.reader = threading.Thread(target=self.read_log)
         self.reader.start()

@@ -4,9 +4,10 @@
 soak.py BUILD_DIR SOURCE_DIR [--days N] [--seed N] [--speed N]
 
 A simulated tester pulls one paper after the other, faster than a bench, and its scan index passes 2^32 on the first day. The
-simulated board loses scans and is pulled out, its date is put right now and then ([board.simulated.faults]); from outside the disk is
-filled, the broker goes and comes, clients connect and never read. In the first fifth of the time the daemon is killed as well;
-after it memory and file handles are watched.
+simulated board loses scans and is pulled out, its date is put right now and then ([board.simulated.faults]), its zero drifts by several
+per cent of the sled's weight; from outside the disk is filled, the daemon is stopped for 10 to 70 s of its time, the file system has no
+locks for a while, the journal of the running test or the whole folder of records is removed, the broker goes and comes, clients connect
+and never read. In the first fifth of the time the daemon is killed as well; after it memory and file handles are watched.
 
 Each record is read with h5py as soon as it is there, then removed. At the end of a life the daemon says what became of each index
 that its boards gave: in records, between tests, in gaps. Here the same is counted from the records, and the gaps once more from the log and
@@ -17,10 +18,13 @@ import argparse
 import collections
 import contextlib
 import math
+import os
 import pathlib
 import queue
 import random
 import re
+import shutil
+import signal
 import socket
 import statistics
 import subprocess
@@ -44,9 +48,22 @@ DISK_MIB = 256
 FLAT = 0.01
 #: A minute with the stop of 1 s and the return of 0.5 s: 21000 scans; 2^32 is scan 5296 of one, in the pull.
 TIMES = {"idle": "13 s", "pull": "8 s", "rest": "37.5 s"}
+PERIOD_S = 60
+#: From one test to the next: a period, or less than that and the idle time again where a new board was found in between.
+LONGEST_WAIT_S = 1.5 * PERIOD_S
 #: kMaxTests of daemon/test_log.hpp.
 REMEMBERED_TESTS = 1000
 
+
+#: A zero that creeps: 1/f noise slower than a test, of this standard deviation, as a coefficient. Three of them are 0.045.
+DRIFT = """
+[effects.drift_noise]
+sd = 0.015
+lowest_frequency = "1e-6 Hz"
+highest_frequency = "1e-3 Hz"
+"""
+#: A stop of the daemon, in seconds of its time.
+STALL_S = (10, 70)
 
 #: A line of the log about a gap. What a full disk lost is no such line: it stands in the record alone.
 GAP = re.compile(r"gap: (?:about )?(\d+) scans missing from scan (\d+): ")
@@ -92,20 +109,21 @@ class Soak:
         # In the records of this life of the daemon: scans; what a full disk lost; all other gaps, as (first, count).
         self.rows = self.refused = 0
         self.gaps = set()
+        self.begins = []
         self.virtual_s = 0.0
         self.began = time.monotonic()
         self.deaf = None
-        self.full_until = None
+        self.full_until = self.unlocked_until = None
         self.watched = []
         self.broker_folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="stickslip-soak-")))
         self.broker = broker.Broker(self, self.broker_folder)
 
         def prepare(folder):
-            (folder / "records").mkdir()
+            (folder / "disk").mkdir()
             if disk_may_be_full:
-                small_disk.mount(folder / "records", DISK_MIB)
-                self.addCleanup(lambda: subprocess.run(["umount", "-l", str(folder / "records")], check=False))
-            (folder / "scene.toml").write_text(patient_scene(source, **TIMES), encoding="utf-8")
+                small_disk.mount(folder / "disk", DISK_MIB)
+                self.addCleanup(lambda: subprocess.run(["umount", "-l", str(folder / "disk")], check=False))
+            (folder / "scene.toml").write_text(patient_scene(source, **TIMES) + DRIFT, encoding="utf-8")
 
         first_scan = WRAP - int(0.1 * DAY_S * SCAN_RATE_HZ)
         board = f"""
@@ -123,8 +141,12 @@ clock_steps_every = "1 h"
 seed = {seed}
 """
         config = f'[fleet]\nbroker = "mqtt://127.0.0.1:{self.broker.port}"\ntester = "soak"\n'
-        self.daemon = RunningDaemon(self, build, source, config=config, board=board, prepare=prepare)
-        self.records = self.daemon.folder / "records"
+        self.no_locks = self.broker_folder / "no-locks"
+        environment = {"LD_PRELOAD": str(build / "tests/system/libno_locks.so"), "STICKSLIP_NO_LOCKS": str(self.no_locks)}
+        self.daemon = RunningDaemon(self, build, source, config=config, board=board, prepare=prepare, records="disk/records",
+                                    environment=environment)
+        self.disk = self.daemon.folder / "disk"
+        self.records = self.disk / "records"
 
     def status(self):
         return self.daemon.ask("GET", "/v1/status")[1]
@@ -152,6 +174,7 @@ seed = {seed}
                 expect(end - begin == len(scans) + lost,
                        f"{path.name}: {len(scans)} scans and {lost} in gaps are not the {end - begin} indices from {begin} on")
                 self.counts["across 2^32"] += int(scans[0] < WRAP <= scans[-1])
+            self.begins.append(begin)
             self.rows += len(scans)
             self.refused += sum(count for _, count, cause in gaps if cause == "storage-full")
             self.gaps |= {(first, count) for first, count, cause in gaps if cause != "storage-full"}
@@ -159,8 +182,28 @@ seed = {seed}
             path.unlink()
 
     def free(self):
-        (self.records / "filler").unlink(missing_ok=True)
+        (self.disk / "filler").unlink(missing_ok=True)
         self.full_until = None
+
+    def stop_for(self, virtual_s, meanwhile=lambda: None):
+        """The daemon stands still for so long of its time: a suspend, a debugger."""
+        self.daemon.process.send_signal(signal.SIGSTOP)
+        meanwhile()
+        time.sleep(virtual_s / self.speed)
+        self.daemon.process.send_signal(signal.SIGCONT)
+
+    def lose_journal(self):
+        """While the daemon stands still: removes the journal of the running test, or the whole folder, if that journal is all that is in it."""
+        files = [path for path in self.records.rglob("2*") if path.is_file()]
+        handles = pathlib.Path(f"/proc/{self.daemon.process.pid}/fd")
+        if len(files) != 1 or files[0].suffix != ".journal" or not any(os.path.realpath(handle) == str(files[0].resolve()) for handle in handles.iterdir()):
+            return
+        if self.random.random() < 0.5:
+            files[0].unlink()
+            self.counts["journals removed"] += 1
+        else:
+            shutil.rmtree(self.records)
+            self.counts["folders removed"] += 1
 
     def trouble(self, test):
         """At the end of a test; of each kind a few a day."""
@@ -168,10 +211,23 @@ seed = {seed}
             if test >= self.full_until:
                 self.free()
         elif self.random.random() < 1 / 300 and self.disk_may_be_full:
-            small_disk.fill(self.records)
+            small_disk.fill(self.disk)
             # 60 tests of 10 s are what the daemon keeps in memory; beyond that, gaps.
             self.full_until = test + self.random.randint(1, 80)
             self.counts["full disks"] += 1
+        if self.random.random() < 1 / 100:
+            self.stop_for(self.random.uniform(*STALL_S))
+            self.counts["stalls"] += 1
+        if self.full_until is None and self.random.random() < 1 / 20:
+            self.stop_for(0, self.lose_journal)
+        if self.unlocked_until is not None:
+            if test >= self.unlocked_until:
+                self.no_locks.unlink()
+                self.unlocked_until = None
+        elif self.random.random() < 1 / 300:
+            self.no_locks.touch()
+            self.unlocked_until = test + self.random.randint(1, 20)
+            self.counts["times without locks"] += 1
         if self.random.random() < 1 / 400:
             self.broker.stop()
             self.broker.start()
@@ -203,6 +259,10 @@ seed = {seed}
     def end_life(self, issued):
         self.rows = self.refused = 0
         self.gaps = set()
+        begins = sorted(self.begins)
+        self.begins = []
+        for one, other in zip(begins, begins[1:]):
+            expect(other - one <= LONGEST_WAIT_S * SCAN_RATE_HZ, f"a pull without a record: tests begin at scans {one} and {other}, {(other - one) / SCAN_RATE_HZ:.0f} s later")
         self.virtual_s += issued / SCAN_RATE_HZ
         self.counts["indices"] += issued
         self.deaf = None
