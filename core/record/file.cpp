@@ -13,6 +13,28 @@ namespace {
 /// Of one read(): the kernel never returns more than 2 GiB.
 constexpr std::size_t kReadChunk = std::size_t{1} << 24U;
 
+/// As rename(), but `to` was free when it was taken.
+int rename_over_own(const char* from, const char* to, const FileCalls& calls) {
+  constexpr mode_t kMode = 0644;
+  if (!Descriptor{calls.open(to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode)}.open()) return -1;
+  if (calls.rename(from, to) == 0) return 0;
+  const int error = errno;
+  calls.unlink(to);
+  errno = error;
+  return -1;
+}
+
+int rename_by_link(const char* from, const char* to, const FileCalls& calls) {
+  if (calls.link(from, to) == 0) {
+    // It has its new name; the old one, if it stays, is that of a file that nobody finished.
+    static_cast<void>(calls.unlink(from));
+    return 0;
+  }
+  // EPERM: as link(2) says it where there are no second names. EMLINK: no more than one.
+  if (is_unsupported(errno) || errno == EPERM || errno == EMLINK) return rename_over_own(from, to, calls);
+  return -1;
+}
+
 }  // namespace
 
 Descriptor::~Descriptor() {
@@ -33,9 +55,24 @@ base::Result<void> sync_path(const std::filesystem::path& path, const FileCalls&
   return {};
 }
 
+bool is_unsupported(int error) noexcept {
+  // EBADF: some network file systems, of a folder. ENOLCK: where the server has no lock manager.
+  return error == EINVAL || error == ENOSYS || error == EOPNOTSUPP || error == ENOTTY || error == EBADF ||
+         error == ENOLCK;
+}
+
+base::Result<void> sync_folder(const std::filesystem::path& folder, const FileCalls& calls) {
+  const Descriptor descriptor{calls.open(folder.c_str(), O_RDONLY | O_CLOEXEC, 0)};
+  if (!descriptor.open() || (calls.fsync(descriptor.get()) != 0 && !is_unsupported(errno))) {
+    return base::failure("{}: cannot be made durable: {}", folder.string(), system_message(errno));
+  }
+  return {};
+}
+
 base::Result<void> rename_to_new(const std::filesystem::path& from, const std::filesystem::path& to,
                                  const FileCalls& calls) {
-  const int status = calls.rename_to_new(from.c_str(), to.c_str());
+  int status = calls.rename_to_new(from.c_str(), to.c_str());
+  if (status != 0 && is_unsupported(errno)) status = rename_by_link(from.c_str(), to.c_str(), calls);
   if (status != 0 && errno == EEXIST) {
     return base::usage_error("{}: exists already and is never overwritten: choose another name", to.string());
   }
@@ -43,7 +80,7 @@ base::Result<void> rename_to_new(const std::filesystem::path& from, const std::f
     return base::failure("{}: cannot be renamed to {}: {}", from.string(), to.string(),
                          system_message(errno));
   }
-  return sync_path(folder_of(to), calls);
+  return sync_folder(folder_of(to), calls);
 }
 
 base::Result<void> make_folders(const std::filesystem::path& folder, const FileCalls& calls) {
@@ -53,7 +90,7 @@ base::Result<void> make_folders(const std::filesystem::path& folder, const FileC
   constexpr mode_t kMode = 0755;
   if (calls.mkdir(folder.c_str(), kMode) != 0 && errno != EEXIST)
     return base::failure("{}: cannot be made: {}", folder.string(), system_message(errno));
-  return sync_path(folder_of(folder), calls);
+  return sync_folder(folder_of(folder), calls);
 }
 
 std::size_t write_all(int descriptor, std::span<const std::byte> bytes, const FileCalls& calls) {

@@ -37,14 +37,24 @@ class Descriptor {
 /// What the system says about an errno value.
 [[nodiscard]] std::string system_message(int error);
 
-/// fsync of a file or a folder by its path.
+/// fsync of a file by its path.
 [[nodiscard]] base::Result<void> sync_path(const std::filesystem::path& path,
                                            const FileCalls& calls = system_calls());
+
+/// fsync of a folder: names in it survive a power cut. A file system that cannot sync folders (EINVAL and the
+/// like) is none that refuses: that this may lose a name is told once, by probe_folder().
+[[nodiscard]] base::Result<void> sync_folder(const std::filesystem::path& folder,
+                                             const FileCalls& calls = system_calls());
+
+/// Whether a call failed because the file system does not know it.
+[[nodiscard]] bool is_unsupported(int error) noexcept;
 
 /// The folder that holds a file, "." for a bare name.
 [[nodiscard]] std::filesystem::path folder_of(const std::filesystem::path& path);
 
-/// Renames without ever replacing; kUsage if `to` exists. The folder is synced.
+/// Renames without ever replacing; kUsage if `to` exists. The folder is synced. Where the file system cannot
+/// rename so, the file gets its new name as a second one and loses the first; where there are no second names
+/// either, the new name is taken by an empty file, which is then replaced: a stop between leaves it.
 [[nodiscard]] base::Result<void> rename_to_new(const std::filesystem::path& from,
                                                const std::filesystem::path& to,
                                                const FileCalls& calls = system_calls());

@@ -1,11 +1,10 @@
 #include "core/record/file_calls.hpp"
 
 #include <fcntl.h>
-#include <sys/stat.h>
+#include <sys/file.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstdio>
 
 namespace stickslip::record {
@@ -20,6 +19,10 @@ class SystemCalls final : public FileCalls {
   ssize_t pwrite(int file, const void* bytes, std::size_t size, off_t position) const override {
     return ::pwrite(file, bytes, size, position);
   }
+  ssize_t pread(int file, void* bytes, std::size_t size, off_t position) const override {
+    return ::pread(file, bytes, size, position);
+  }
+  int flock(int file, int operation) const override { return ::flock(file, operation); }
   int ftruncate(int file, off_t size) const override { return ::ftruncate(file, size); }
   int reserve(int file, off_t position, off_t size) const override {
     return ::fallocate(file, FALLOC_FL_KEEP_SIZE, position, size);
@@ -27,21 +30,16 @@ class SystemCalls final : public FileCalls {
   int fsync(int file) const override { return ::fsync(file); }
   int fdatasync(int file) const override { return ::fdatasync(file); }
   int rename_to_new(const char* from, const char* to) const override {
-    // The flag closes the moment between looking and renaming; some file systems do not know it (EINVAL).
-    if (::renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) return 0;
-    if (errno != EINVAL) return -1;
-    struct stat found {};
-    if (::lstat(to, &found) == 0) {
-      errno = EEXIST;
-      return -1;
-    }
-    return std::rename(from, to);
+    return ::renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE);
   }
+  int rename(const char* from, const char* to) const override { return std::rename(from, to); }
+  int link(const char* from, const char* to) const override { return ::link(from, to); }
   int unlink(const char* path) const override { return ::unlink(path); }
   int mkdir(const char* path, mode_t mode) const override { return ::mkdir(path, mode); }
   std::int64_t room(const char* folder) const override {
     struct statvfs found {};
-    if (::statvfs(folder, &found) != 0) return -1;
+    // A file system without any blocks is one that does not tell.
+    if (::statvfs(folder, &found) != 0 || found.f_blocks == 0) return -1;
     return static_cast<std::int64_t>(found.f_bavail) * static_cast<std::int64_t>(found.f_frsize);
   }
 };

@@ -1,6 +1,6 @@
 /// \file
-/// The system calls that change files of records, as a table that a test can watch, refuse or delay
-/// (tests/support/file_calls.hpp). Nothing is decided here: one call, one function of the system. All that
+/// The system calls that read and change files of records, as a table that a test can watch, refuse or delay
+/// (tests/support/*_disk.hpp). Nothing is decided here: one call, one function of the system. All that
 /// writes journals and records goes through it, HDF5 too (hdf_driver.hpp).
 #pragma once
 
@@ -24,8 +24,15 @@ class FileCalls {
   virtual int reserve(int file, off_t position, off_t size) const = 0;
   virtual int fsync(int file) const = 0;
   virtual int fdatasync(int file) const = 0;
-  /// Renames without replacing: EEXIST if `to` is there.
+  virtual ssize_t pread(int file, void* bytes, std::size_t size, off_t position) const = 0;
+  virtual int flock(int file, int operation) const = 0;
+  /// Renames without replacing (RENAME_NOREPLACE): EEXIST if `to` is there, EINVAL where the file system does
+  /// not know it. See rename_to_new() of file.hpp, which works there too.
   virtual int rename_to_new(const char* from, const char* to) const = 0;
+  /// Renames; what is there is replaced.
+  virtual int rename(const char* from, const char* to) const = 0;
+  /// A second name of the same file: EEXIST if `to` is there.
+  virtual int link(const char* from, const char* to) const = 0;
   virtual int unlink(const char* path) const = 0;
   virtual int mkdir(const char* path, mode_t mode) const = 0;
   /// Bytes that may still be written in a folder, or −1.

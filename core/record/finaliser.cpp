@@ -73,7 +73,10 @@ base::Result<void> build_verified(const Record& record, const ScanSource& scans,
   }
   // Synced before it is read back, so that what is compared is what a disk can keep.
   if (auto sealed = seal_file(part, calls); !sealed) return sealed;
-  return verify_record(part, record, scans);
+  auto verified = verify_record(part, record, scans, calls);
+  // What was just written and reads otherwise is nobody's wrong request.
+  if (!verified) verified.error().kind = base::ErrorKind::kFailure;
+  return verified;
 }
 
 std::filesystem::path with_suffix(std::filesystem::path path, const char* suffix) {
@@ -84,6 +87,12 @@ std::filesystem::path with_suffix(std::filesystem::path path, const char* suffix
 bool is_there(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
+}
+
+/// What a stop leaves where rename_to_new() has to take the name first.
+bool is_empty_file(const std::filesystem::path& path) {
+  struct stat found {};
+  return ::lstat(path.c_str(), &found) == 0 && S_ISREG(found.st_mode) && found.st_size == 0;
 }
 
 base::Result<void> check_new(const std::filesystem::path& path) {
@@ -125,7 +134,7 @@ base::Result<void> remove_journal(const std::filesystem::path& journal, const Fi
   if (calls.unlink(journal.c_str()) != 0) {
     return base::failure("{}: cannot be removed: {}", journal.string(), system_message(errno));
   }
-  return sync_path(folder_of(journal), calls);
+  return sync_folder(folder_of(journal), calls);
 }
 
 }  // namespace
@@ -159,7 +168,7 @@ base::Result<void> publish_journal(const std::filesystem::path& journal, const R
 
 base::Result<std::filesystem::path> finalise(const std::filesystem::path& journal, const Evaluate& evaluate,
                                              const FileCalls& calls, std::chrono::milliseconds longest) {
-  const auto lock = JournalLock::take(journal, longest);
+  const auto lock = JournalLock::take(journal, longest, calls);
   if (!lock) return tl::unexpected(lock.error());
   auto reading = read_journal(journal, JournalScans::kCount);
   if (reading && !reading->record.end && evaluate) reading = read_journal(journal);  // It needs the scans.
@@ -175,12 +184,16 @@ base::Result<std::filesystem::path> finalise(const std::filesystem::path& journa
 
   auto target = journal;
   target.replace_extension(kRecordExtension);
+  if (is_empty_file(target)) calls.unlink(target.c_str());
   if (is_there(target)) {
     // Left by a stop between the rename and the removal of the journal, or a stranger.
-    if (!verify_record(target, record, scans)) {
+    if (const auto same = verify_record(target, record, scans, calls); !same) {
+      // It cannot be looked at now: nothing is said of its content, and the journal waits.
+      if (same.error().kind == base::ErrorKind::kFailure) return tl::unexpected(same.error());
       return base::failure("{}: exists already with other scans than {}: move one of them away",
                            target.string(), journal.string());
     }
+    calls.unlink(with_suffix(target, ".part").c_str());  // Its other name, where it was published by link().
   } else if (auto published = publish(record, scans, target, calls); !published) {
     return tl::unexpected(base::Error{base::ErrorKind::kFailure, published.error().message});
   }

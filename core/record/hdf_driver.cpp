@@ -10,6 +10,7 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "core/record/file.hpp"
 
@@ -22,6 +23,7 @@ namespace {
 /// What the access properties carry.
 struct Info {
   const FileCalls* calls;
+  std::optional<GivenFile> given;  ///< To be read, instead of what the name leads to.
 };
 
 /// HDF5 knows only the first member.
@@ -29,7 +31,8 @@ struct File {
   H5FD_t base;
   const FileCalls* calls;
   int descriptor;
-  haddr_t allocated;  ///< As far as HDF5 has given addresses away.
+  std::optional<GivenFile> given;  ///< Owner of the descriptor, if the file is only read.
+  haddr_t allocated;               ///< As far as HDF5 has given addresses away.
   haddr_t size;
 };
 
@@ -53,6 +56,11 @@ herr_t free_info(void* info) {
 H5FD_t* open_file(const char* name, unsigned flags, hid_t access, haddr_t /*largest*/) {
   const auto* info = static_cast<const Info*>(H5Pget_driver_info(access));
   if (info == nullptr) return nullptr;
+  if (info->given) {
+    if ((flags & H5F_ACC_RDWR) != 0) return nullptr;
+    return reinterpret_cast<H5FD_t*>(new (std::nothrow) File{
+        {}, info->calls, info->given->descriptor(), info->given, 0, info->given->size()});
+  }
   int how = O_CLOEXEC | ((flags & H5F_ACC_RDWR) != 0 ? O_RDWR : O_RDONLY);
   if ((flags & H5F_ACC_TRUNC) != 0) how |= O_TRUNC;
   if ((flags & H5F_ACC_CREAT) != 0) how |= O_CREAT;
@@ -70,13 +78,15 @@ H5FD_t* open_file(const char* name, unsigned flags, hid_t access, haddr_t /*larg
     return nullptr;
   }
   // HDF5 fills in the base itself.
-  auto* file = new (std::nothrow) File{{}, info->calls, descriptor, 0, static_cast<haddr_t>(found.st_size)};
+  auto* file = new (std::nothrow)
+      File{{}, info->calls, descriptor, std::nullopt, 0, static_cast<haddr_t>(found.st_size)};
   if (file == nullptr) ::close(descriptor);
   return reinterpret_cast<H5FD_t*>(file);
 }
 
 herr_t close_file(H5FD_t* base) {
   const std::unique_ptr<File> file{&file_of(base)};
+  if (file->given) return 0;
   const int synced = file->calls->fsync(file->descriptor);
   const int error = errno;
   ::close(file->descriptor);
@@ -115,8 +125,13 @@ herr_t handle_of(H5FD_t* file, hid_t /*access*/, void** handle) {
 herr_t read_at(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t address, std::size_t size,
                void* bytes) {
   auto* to = static_cast<std::byte*>(bytes);
+  const File& file = file_of(base);
+  // A damaged file may ask for any place; that is no refusal of the system's.
+  if (address > file.allocated || size > file.allocated - address) return refuse("read", EINVAL);
   while (size > 0) {
-    const ssize_t got = ::pread(file_of(base).descriptor, to, size, static_cast<off_t>(address));
+    const ssize_t got = file.given
+                            ? file.given->read({to, size}, address)
+                            : file.calls->pread(file.descriptor, to, size, static_cast<off_t>(address));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return refuse("read", errno);
     if (got == 0) {  // Behind the end of the file stand zeros.
@@ -180,13 +195,37 @@ H5FD_class_t make_driver() {
   return driver;
 }
 
+void use_driver(const PropertyHandle& access, const Info& info) {
+  static const H5FD_class_t driver = make_driver();
+  static const hid_t id = H5FDregister(&driver);
+  check(H5Pset_driver(access.get(), id, &info), "driver of files");
+}
+
 }  // namespace
 
 void write_through(const PropertyHandle& access, const FileCalls& calls) {
-  static const H5FD_class_t driver = make_driver();
-  static const hid_t id = H5FDregister(&driver);
-  const Info info{&calls};
-  check(H5Pset_driver(access.get(), id, &info), "driver of files");
+  use_driver(access, {&calls, std::nullopt});
+}
+
+bool is_hdf5(const GivenFile& file) {
+  // ["HDF5 File Format Specification", II.A]
+  constexpr std::array<unsigned char, 8> kSignature{0x89, 'H', 'D', 'F', '\r', '\n', 0x1A, '\n'};
+  constexpr std::uint64_t kSecondPlace = 512;
+  std::array<std::byte, kSignature.size()> found{};
+  for (std::uint64_t at = 0; at + found.size() <= file.size(); at = at == 0 ? kSecondPlace : 2 * at) {
+    if (file.read(found, at) == static_cast<ssize_t>(found.size()) &&
+        std::memcmp(found.data(), kSignature.data(), found.size()) == 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+FileHandle open_hdf5(const GivenFile& file, const std::filesystem::path& path) {
+  prepare_hdf5();
+  const PropertyHandle access{H5Pcreate(H5P_FILE_ACCESS), "file access properties"};
+  use_driver(access, {&system_calls(), file});
+  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), "opening"};
 }
 
 }  // namespace stickslip::record

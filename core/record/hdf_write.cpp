@@ -87,7 +87,9 @@ FileHandle create_file(const std::filesystem::path& path, const FileCalls& calls
   check(H5Pset_link_creation_order(creation.get(), kTracked), "creation order");
   check(H5Pset_attr_creation_order(creation.get(), kTracked), "creation order");
   check(H5Pset_obj_track_times(creation.get(), false), "object times");
-  return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), "creating"};
+  // Made anew, never emptied: what a stop left may be a second name of a file that was published since.
+  calls.unlink(path.c_str());
+  return {H5Fcreate(path.c_str(), H5F_ACC_EXCL, creation.get(), access.get()), "creating"};
 }
 
 GroupHandle make_group(hid_t parent, const std::string& name, const std::string& nx_class) {

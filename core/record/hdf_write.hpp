@@ -16,7 +16,7 @@
 
 namespace stickslip::record {
 
-/// A new file, or an old one emptied, that every HDF5 since 1.8 reads; open for writing.
+/// A new file, in place of an old one, that every HDF5 since 1.8 reads; open for writing.
 [[nodiscard]] FileHandle create_file(const std::filesystem::path& path,
                                      const FileCalls& calls = system_calls());
 

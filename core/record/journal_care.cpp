@@ -64,8 +64,8 @@ bool begins_as_own(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-bool lock_journal(int descriptor) noexcept {
-  return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+bool lock_journal(int descriptor, const FileCalls& calls) noexcept {
+  return calls.flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
 }
 
 bool has_entry_behind(const std::filesystem::path& journal, std::uint64_t position) {
@@ -73,8 +73,11 @@ bool has_entry_behind(const std::filesystem::path& journal, std::uint64_t positi
 }
 
 base::Result<JournalLock> JournalLock::take(const std::filesystem::path& journal,
-                                            std::chrono::milliseconds longest) {
-  Descriptor file{::open(journal.c_str(), O_RDONLY | O_CLOEXEC)};
+                                            std::chrono::milliseconds longest, const FileCalls& calls) {
+  // NFS locks for oneself alone only what may be written.
+  constexpr int kFlags = O_CLOEXEC | O_NONBLOCK;
+  Descriptor file{calls.open(journal.c_str(), O_RDWR | kFlags, 0)};
+  if (!file.open()) file = Descriptor{calls.open(journal.c_str(), O_RDONLY | kFlags, 0)};
   if (!file.open()) {
     if (errno == ENOENT || errno == ENOTDIR)
       return base::usage_error("{}: there is no such file", journal.string());
@@ -82,11 +85,11 @@ base::Result<JournalLock> JournalLock::take(const std::filesystem::path& journal
   }
   // Waiting inside flock() could not be given up.
   constexpr std::chrono::milliseconds kPause{20};
-  while (!lock_journal(file.get()) && longest.count() > 0) {
+  while (!lock_journal(file.get(), calls) && longest.count() > 0) {
     std::this_thread::sleep_for(kPause);
     longest -= kPause;
   }
-  if (!lock_journal(file.get()))
+  if (!lock_journal(file.get(), calls))
     return base::failure("{}: is being written or finished by another process", journal.string());
   struct stat found {};
   if (::fstat(file.get(), &found) != 0 || found.st_nlink == 0)

@@ -18,7 +18,8 @@ class JournalLock {
   /// Errors: kUsage if there is no such file, kFailure if somebody else keeps the right, or has removed the
   /// file. Where the file system has no locks everybody has it.
   [[nodiscard]] static base::Result<JournalLock> take(const std::filesystem::path& journal,
-                                                      std::chrono::milliseconds longest = {});
+                                                      std::chrono::milliseconds longest = {},
+                                                      const FileCalls& calls = system_calls());
 
  private:
   explicit JournalLock(Descriptor file) : file_(std::move(file)) {}
@@ -26,7 +27,7 @@ class JournalLock {
 };
 
 /// Takes the right for a file that has just been made. \return false if somebody else has it.
-[[nodiscard]] bool lock_journal(int descriptor) noexcept;
+[[nodiscard]] bool lock_journal(int descriptor, const FileCalls& calls = system_calls()) noexcept;
 
 /// Whether a whole entry stands anywhere behind the byte at `position`: then not the end of the journal is
 /// torn, but its middle.

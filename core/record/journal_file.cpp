@@ -19,12 +19,12 @@ base::Result<JournalFile> JournalFile::create(const std::filesystem::path& path,
                                               std::span<const std::byte> header, const FileCalls& calls) {
   Descriptor opened{calls.open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, kFileMode)};
   if (!opened.open()) return base::failure("{}: cannot be created: {}", path.string(), system_message(errno));
-  if (!lock_journal(opened.get())) return base::failure("{}: is another process's", path.string());
+  if (!lock_journal(opened.get(), calls)) return base::failure("{}: is another process's", path.string());
   JournalFile file{path, std::move(opened), calls};
   auto written = file.append(header);
   if (written && calls.fsync(file.file_.get()) != 0)
     written = base::failure("{}: cannot be made durable: {}", path.string(), system_message(errno));
-  if (written) written = sync_path(folder_of(path), calls);
+  if (written) written = sync_folder(folder_of(path), calls);
   if (!written) {
     calls.unlink(path.c_str());
     return tl::unexpected(written.error());

@@ -1,18 +1,14 @@
 #include "core/record/judge.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstdlib>
+#include <span>
 
 #include "core/daq/rate_fit.hpp"
-#include "core/record/file.hpp"
 #include "core/record/journal_format.hpp"
 
 namespace stickslip::record {
@@ -26,9 +22,9 @@ constexpr double kCertain = 5.0;
 /// A clock that was set by more than this during a test is worth a word; NTP slews by 0.5 ms/s.
 constexpr double kClockStep_ns = 1e9;
 
-bool begins_as_journal(const Descriptor& file) {
+bool begins_as_journal(const GivenFile& file) {
   std::array<char, 4> magic{};
-  return ::pread(file.get(), magic.data(), magic.size(), 0) == static_cast<ssize_t>(magic.size()) &&
+  return file.read(std::as_writable_bytes(std::span{magic}), 0) == static_cast<ssize_t>(magic.size()) &&
          magic == EntryHead{}.magic;
 }
 
@@ -139,26 +135,29 @@ void judge_status(const EndRecord& end, Verdict& verdict) {
   verdict.incomplete("process/status", verdict.status + why);
 }
 
-Verdict judge(const std::filesystem::path& path) {
+Verdict judge(const std::filesystem::path& path, const FileCalls& calls) {
   Verdict verdict;
-  // Not to wait for the other end of a pipe.
-  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-  struct stat found {};
-  if (!file.open() || ::fstat(file.get(), &found) != 0) {
-    verdict.note("file", errno == ENOENT || errno == ENOTDIR ? "there is no such file"
-                                                             : "cannot be opened: " + system_message(errno));
-    return verdict;
+  const auto cannot_look = [](const std::string& why) {
+    Verdict none;
+    none.note("file", why);
+    return none;
+  };
+  const auto given = GivenFile::open(path, calls);
+  if (!given) return cannot_look(given.error().message);
+  // By its content, or by its name where nothing of the content is left. A journal is locked while it is
+  // written, and may be looked at.
+  const bool is_journal = begins_as_journal(*given) || path.extension() == ".journal";
+  if (!is_journal) {
+    if (const auto shared = given->share(); !shared) return cannot_look(shared.error().message);
   }
-  if (!S_ISREG(found.st_mode)) {
-    verdict.note("file", S_ISDIR(found.st_mode) ? "is a folder" : "is no file");
-    return verdict;
+  if (given->is_readable()) {
+    if (is_journal) {
+      judge_journal(path, verdict);
+    } else {
+      judge_record(*given, path, verdict);
+    }
   }
-  // By its content, or by its name where nothing of the content is left.
-  if (begins_as_journal(file) || path.extension() == ".journal") {
-    judge_journal(path, verdict);
-  } else {
-    judge_record(path, verdict);
-  }
+  if (given->refused() != 0) return cannot_look(why_unreadable(given->refused()));
   if (!verdict.kind.empty()) verdict.judgement = worst(verdict.findings);
   return verdict;
 }

@@ -4,13 +4,14 @@
 
 #include <filesystem>
 
+#include "core/record/given_file.hpp"
 #include "core/record/hdf.hpp"
 #include "core/record/record.hpp"
 #include "core/record/verdict.hpp"
 
 namespace stickslip::record {
 
-void judge_record(const std::filesystem::path& path, Verdict& verdict);
+void judge_record(const GivenFile& given, const std::filesystem::path& path, Verdict& verdict);
 void judge_journal(const std::filesystem::path& path, Verdict& verdict);
 
 // Of a record; all but the first may throw HdfError where something is not there.

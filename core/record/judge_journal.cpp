@@ -10,6 +10,11 @@ namespace stickslip::record {
 void judge_journal(const std::filesystem::path& path, Verdict& verdict) {
   verdict.kind = "journal";
   const auto reading = read_journal(path, JournalScans::kCount);
+  if (!reading && reading.error().kind == base::ErrorKind::kFailure) {
+    verdict.kind.clear();  // It was not the content that kept it from being read.
+    verdict.note("file", reading.error().message);
+    return;
+  }
   if (!reading) {
     if (has_entry_behind(path, 0)) {
       verdict.damage("header", "cannot be read, whole entries follow it");

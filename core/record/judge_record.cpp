@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <optional>
+
+#include "core/record/hdf_driver.hpp"
 #include "core/record/hdf_read.hpp"
 #include "core/record/journal.hpp"
 #include "core/record/judge.hpp"
@@ -47,8 +50,8 @@ bool judge_format(hid_t file, Verdict& verdict) {
   return false;
 }
 
-void judge_seal(hid_t entry, const std::filesystem::path& path, Verdict& verdict) {
-  switch (check_seal(entry, path)) {
+void judge_seal(hid_t entry, const GivenFile& given, Verdict& verdict) {
+  switch (check_seal(entry, given)) {
     case Seal::kSound:
       break;
     case Seal::kBroken:
@@ -103,10 +106,9 @@ void judge_content(hid_t entry, Verdict& verdict) {
 
 }  // namespace
 
-void judge_record(const std::filesystem::path& path, Verdict& verdict) {
+void judge_record(const GivenFile& given, const std::filesystem::path& path, Verdict& verdict) {
   try {
-    prepare_hdf5();
-    if (H5Fis_hdf5(path.c_str()) <= 0) {
+    if (!is_hdf5(given)) {
       verdict.note("file", "is neither an HDF5 file nor a journal: no record");
       // A record that lost its first bytes is damaged, not a stranger.
       if (path.extension() == kRecordExtension) {
@@ -115,20 +117,20 @@ void judge_record(const std::filesystem::path& path, Verdict& verdict) {
       }
       return;
     }
-    const PropertyHandle access{H5Pcreate(H5P_FILE_ACCESS), "file access properties"};
-    check(H5Pset_file_locking(access.get(), true, true), "file locking");
-    const hid_t opened = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get());
-    if (opened < 0) {
+    std::optional<FileHandle> opened;
+    try {
+      opened = open_hdf5(given, path);
+    } catch (const HdfError&) {
       verdict.kind = "record";
       verdict.damage("file", "is an HDF5 file but cut short or damaged");
       return;
     }
-    const FileHandle file{opened, "file"};
+    const FileHandle& file = *opened;
     if (!judge_format(file.get(), verdict)) return;
     judge_chunks(file.get(), verdict);
     attempt("entry", verdict, [&] {
       const GroupHandle entry = open_group(file.get(), "entry");
-      attempt("process/file_sha256", verdict, [&] { judge_seal(entry.get(), path, verdict); });
+      attempt("process/file_sha256", verdict, [&] { judge_seal(entry.get(), given, verdict); });
       judge_content(entry.get(), verdict);
     });
   } catch (const std::exception& error) {

@@ -1,30 +1,26 @@
 #include "core/record/reader.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 
 #include "core/base/wording.hpp"
-#include "core/record/file.hpp"
+#include "core/record/given_file.hpp"
+#include "core/record/hdf_driver.hpp"
 #include "core/record/hdf_read.hpp"
 #include "core/record/layout.hpp"
 
 namespace stickslip::record {
 namespace {
 
-FileHandle open_hdf5(const std::filesystem::path& path) {
-  const PropertyHandle access{H5Pcreate(H5P_FILE_ACCESS), "file access properties"};
-  // Shares the lock with other readers; where the file system has no locks, reads without.
-  check(H5Pset_file_locking(access.get(), true, true), "file locking");
-  const htri_t is_hdf5 = H5Fis_hdf5(path.c_str());
-  if (is_hdf5 <= 0) throw HdfError("is no HDF5 file: a record ends in .h5 and comes from this program");
-  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get());
-  if (file < 0) throw HdfError("is an HDF5 file but cut short or damaged: take it from a backup");
-  return {file, "file"};
+FileHandle open_record(const GivenFile& given, const std::filesystem::path& path) {
+  if (!is_hdf5(given)) throw HdfError("is no HDF5 file: a record ends in .h5 and comes from this program");
+  try {
+    return open_hdf5(given, path);
+  } catch (const HdfError&) {
+    throw HdfError("is an HDF5 file but cut short or damaged: take it from a backup");
+  }
 }
 
 void check_format(const FileHandle& file) {
@@ -57,9 +53,8 @@ void check_facts(const Record& record) {
   }
 }
 
-Record read(const std::filesystem::path& path) {
-  prepare_hdf5();
-  const FileHandle file = open_hdf5(path);
+Record read(const GivenFile& given, const std::filesystem::path& path) {
+  const FileHandle file = open_record(given, path);
   check_format(file);
   const GroupHandle entry = open_group(file.get(), "entry");
   Record record;
@@ -80,9 +75,9 @@ Record read(const std::filesystem::path& path) {
   return record;
 }
 
-void verify(const std::filesystem::path& path, const Record& record, const ScanSource& scans) {
-  prepare_hdf5();
-  const FileHandle file = open_hdf5(path);
+void verify(const GivenFile& given, const std::filesystem::path& path, const Record& record,
+            const ScanSource& scans) {
+  const FileHandle file = open_record(given, path);
   check_format(file);
   const GroupHandle entry = open_group(file.get(), "entry");
   Record back;
@@ -101,34 +96,35 @@ void verify(const std::filesystem::path& path, const Record& record, const ScanS
   verify_scans(entry.get(), record.header.board, scans);
 }
 
+base::Error of_file(const std::filesystem::path& path, const base::Error& error) {
+  return {error.kind, fmt::format("{}: {}", path.string(), error.message)};
+}
+
 }  // namespace
 
-base::Result<Record> read_record(const std::filesystem::path& path) {
-  // What the file system refuses is told in its own words; HDF5 has only one for everything.
-  const Descriptor probe{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-  if (!probe.open()) {
-    if (errno == ENOENT || errno == ENOTDIR)
-      return base::usage_error("{}: there is no such file", path.string());
-    return base::failure("{}: cannot be opened: {}", path.string(), system_message(errno));
-  }
-  struct stat found {};
-  if (::fstat(probe.get(), &found) != 0 || !S_ISREG(found.st_mode)) {
-    return base::usage_error("{}: is no file: a record is needed", path.string());
-  }
+base::Result<Record> read_record(const std::filesystem::path& path, const FileCalls& calls) {
+  const auto given = open_shared(path, calls);
+  if (!given) return tl::unexpected(of_file(path, given.error()));
   try {
-    return read(path);
+    return read(*given, path);
   } catch (const std::exception& error) {
+    if (given->refused() != 0)
+      return base::failure("{}: {}", path.string(), why_unreadable(given->refused()));
     return base::usage_error("{}: {}", path.string(), base::reason_of(error));
   }
 }
 
 base::Result<void> verify_record(const std::filesystem::path& path, const Record& record,
-                                 const ScanSource& scans) {
+                                 const ScanSource& scans, const FileCalls& calls) {
+  const auto given = open_shared(path, calls);
+  if (!given) return tl::unexpected(of_file(path, {base::ErrorKind::kFailure, given.error().message}));
   try {
-    verify(path, record, scans);
+    verify(*given, path, record, scans);
     return {};
   } catch (const std::exception& error) {
-    return base::failure("{}: {}", path.string(), base::reason_of(error));
+    if (given->refused() != 0)
+      return base::failure("{}: {}", path.string(), why_unreadable(given->refused()));
+    return base::usage_error("{}: {}", path.string(), base::reason_of(error));
   }
 }
 

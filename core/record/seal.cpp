@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/record/file.hpp"
+#include "core/record/hdf_driver.hpp"
 #include "core/record/hdf_read.hpp"
 #include "core/record/hdf_write.hpp"
 #include "core/record/sha256.hpp"
@@ -33,13 +34,11 @@ std::uint64_t seal_position(hid_t process) {
 }
 
 /// Of the file, the seal's characters taken as zero bytes.
-std::string digest_of(const std::filesystem::path& path, std::uint64_t position) {
-  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+std::string digest_of(const GivenFile& file, std::uint64_t position) {
   Sha256 sha;
   std::vector<std::byte> block(kBlock);
   for (std::uint64_t at = 0;;) {
-    const ssize_t got = ::pread(file.get(), block.data(), block.size(), static_cast<off_t>(at));
-    if (got < 0 && errno == EINTR) continue;
+    const ssize_t got = file.read(block, at);
     if (got < 0) throw HdfError("cannot be read: " + system_message(errno));
     if (got == 0) return sha.hexadecimal();
     const std::uint64_t end = at + static_cast<std::uint64_t>(got);
@@ -64,13 +63,14 @@ void write_seal(hid_t entry, std::size_t scan_count) {
 base::Result<void> seal_file(const std::filesystem::path& path, const FileCalls& calls) {
   try {
     std::uint64_t position = 0;
+    const auto given = open_shared(path, calls);
+    if (!given) return base::failure("{}: cannot be sealed: {}", path.string(), given.error().message);
     {
-      prepare_hdf5();
-      const FileHandle file{H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "opening"};
+      const FileHandle file = open_hdf5(*given, path);
       const GroupHandle entry = open_group(file.get(), "entry");
       position = seal_position(open_group(entry.get(), "process").get());
     }
-    const std::string digest = digest_of(path, position);
+    const std::string digest = digest_of(*given, position);
     const Descriptor file{calls.open(path.c_str(), O_WRONLY | O_CLOEXEC, 0)};
     if (!file.open() ||
         calls.pwrite(file.get(), digest.data(), digest.size(), static_cast<off_t>(position)) !=
@@ -84,12 +84,12 @@ base::Result<void> seal_file(const std::filesystem::path& path, const FileCalls&
   }
 }
 
-Seal check_seal(hid_t entry, const std::filesystem::path& path) {
+Seal check_seal(hid_t entry, const GivenFile& file) {
   const GroupHandle process = open_group(entry, "process");
   if (!has(process.get(), kSealName)) return Seal::kNone;
   const std::string stored = read_text(process.get(), kSealName);
   if (stored.empty()) return Seal::kOpen;
-  return digest_of(path, seal_position(process.get())) == stored ? Seal::kSound : Seal::kBroken;
+  return digest_of(file, seal_position(process.get())) == stored ? Seal::kSound : Seal::kBroken;
 }
 
 }  // namespace stickslip::record

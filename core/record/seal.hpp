@@ -4,7 +4,7 @@
 ///
 ///     { … write_seal(entry, scan_count); }   // while the file is built
 ///     seal_file(path);                       // after it is closed
-///     check_seal(entry, path);               // any time later
+///     check_seal(entry, file);               // any time later
 ///
 /// HDF5 has checksums for chunks and for most of its own structures, but none for small data sets such as
 /// the results, nor for the index of the chunks. process/file_sha256 is the SHA-256 of the file with these 64
@@ -16,6 +16,7 @@
 
 #include "core/base/result.hpp"
 #include "core/record/file_calls.hpp"
+#include "core/record/given_file.hpp"
 #include "core/record/hdf.hpp"
 
 namespace stickslip::record {
@@ -33,7 +34,7 @@ enum class Seal {
   kNone,    ///< Made before there were seals.
 };
 
-/// \param path  of the file that `entry` is in. Throws HdfError where the file cannot be read.
-[[nodiscard]] Seal check_seal(hid_t entry, const std::filesystem::path& path);
+/// \param file  that `entry` is in. Throws HdfError where the file cannot be read.
+[[nodiscard]] Seal check_seal(hid_t entry, const GivenFile& file);
 
 }  // namespace stickslip::record

@@ -14,6 +14,7 @@
 
 #include "core/base/wording.hpp"
 #include "core/daq/gap.hpp"
+#include "core/record/file_calls.hpp"
 
 namespace stickslip::record {
 
@@ -21,7 +22,7 @@ enum class Judgement {
   kComplete,    ///< A finished record: everything is there and agrees with everything else.
   kIncomplete,  ///< Sound, but something is missing for a reason that it says.
   kDamaged,     ///< It contradicts its checksums or itself, or is cut short.
-  kNotJudged,   ///< No file, or none of a kind and version that this program reads.
+  kNotJudged,   ///< No file, none of a kind and version that this program reads, or it cannot be looked at.
 };
 
 [[nodiscard]] std::string_view name(Judgement judgement) noexcept;
@@ -64,6 +65,6 @@ struct Verdict {
 /// Any file: reads every byte of a record and every entry of a journal. A file made to deceive HDF5 may still
 /// end the process; who judges strangers' files does so in a process of its own (daemon/verify.hpp). Throws
 /// only std::bad_alloc.
-[[nodiscard]] Verdict judge(const std::filesystem::path& path);
+[[nodiscard]] Verdict judge(const std::filesystem::path& path, const FileCalls& calls = system_calls());
 
 }  // namespace stickslip::record

@@ -53,7 +53,7 @@ base::Result<void> BatchJournal::append(const BatchEvent& event) const {
   if (record::write_all(file.get(), bytes, calls_) != bytes.size())
     return refused(record::system_message(errno));
   if (calls_.fdatasync(file.get()) != 0) return refused(record::system_message(errno));
-  if (is_new) return record::sync_path(record::folder_of(path_), calls_);
+  if (is_new) return record::sync_folder(record::folder_of(path_), calls_);
   return {};
 }
 

@@ -151,7 +151,7 @@ Result<void> PartFile::take_over(const record::SweepFacts& facts) {
   if (*whole > 0) return {};
   if (auto written = write(first_line); !written) return written;
   if (auto synced = sync(); !synced) return synced;
-  return record::sync_path(record::folder_of(path_));
+  return record::sync_folder(record::folder_of(path_));
 }
 
 std::vector<std::int64_t> PartFile::missing() const {
@@ -215,7 +215,7 @@ Result<void> PartFile::remove() {
   if (::unlink(path_.c_str()) != 0) {
     return base::failure("{}: cannot be removed: {}", path_.string(), record::system_message(errno));
   }
-  return record::sync_path(record::folder_of(path_));
+  return record::sync_folder(record::folder_of(path_));
 }
 
 }  // namespace stickslip::daemon

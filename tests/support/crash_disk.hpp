@@ -52,6 +52,12 @@ class ForwardingCalls : public record::FileCalls {
   int rename_to_new(const char* from, const char* to) const override {
     return system().rename_to_new(from, to);
   }
+  ssize_t pread(int file, void* bytes, std::size_t size, off_t position) const override {
+    return system().pread(file, bytes, size, position);
+  }
+  int flock(int file, int operation) const override { return system().flock(file, operation); }
+  int rename(const char* from, const char* to) const override { return system().rename(from, to); }
+  int link(const char* from, const char* to) const override { return system().link(from, to); }
   int unlink(const char* path) const override { return system().unlink(path); }
   int mkdir(const char* path, mode_t mode) const override { return system().mkdir(path, mode); }
   std::int64_t room(const char* folder) const override { return system().room(folder); }
