@@ -121,7 +121,10 @@ base::Result<void> App::run() {
   if (world_.stop_asked && world_.stop_asked()) request_stop();
 
   process_facts_ = prepare_process(config_.realtime);
-  if (base::Result<void> prepared = prepare_record_folder(config_.record_folder); !prepared) return prepared;
+  auto lacks = prepare_record_folder(config_.record_folder);
+  if (!lacks) return tl::unexpected(lacks.error());
+  for (const std::string& lack : *lacks) world_.facts->record_folder_lacks(lack);
+  record_folder_lacks_ = *std::move(lacks);
   if (base::Result<void> opened = open_control(); !opened) return opened;
   // What cannot be recovered is told and kept; the measurement goes on.
   static_cast<void>(recover_folder(config_.record_folder, finalise_, *world_.facts));

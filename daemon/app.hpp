@@ -145,6 +145,7 @@ class App {
   std::atomic<bool> reload_at_rest_{false};  ///< The processing thread begins it when no test is under way.
   bool reloads_ = false;
   std::string process_facts_;  ///< Of prepare_process().
+  std::vector<std::string> record_folder_lacks_;
   State state_ = State::kStarting;
   std::string waiting_why_;  ///< While the board is waited for.
   std::chrono::milliseconds retry_after_;

@@ -45,6 +45,8 @@ class Facts {
   virtual void storage_has_room() {}
   /// A test begins, and there is room for so long only.
   virtual void little_room(std::int64_t /*test*/, double /*room_s*/) {}
+  /// At the start, once for each: what the file system of the records lacks, and what follows.
+  virtual void record_folder_lacks(std::string_view /*what*/) {}
   virtual void orphan_finalised(const std::filesystem::path& /*file*/) {}
   virtual void orphan_kept(const std::filesystem::path& /*journal*/, std::string_view /*why*/) {}
   /// Nothing had been recorded; the journal is removed.

@@ -100,6 +100,9 @@ class Log final : public Facts {
           .message = fmt::format("test {} begins with room on the disk for {:.0f} s", test, room_s),
           .test = test});
   }
+  void record_folder_lacks(std::string_view what) override {
+    tell({.level = LogLevel::kWarning, .event = "record-folder-lacks", .message = std::string{what}});
+  }
   void orphan_finalised(const std::filesystem::path& file) override {
     tell({.level = LogLevel::kWarning,
           .event = "record-recovered",

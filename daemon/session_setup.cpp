@@ -1,36 +1,32 @@
 #include "daemon/session_setup.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <system_error>
 #include <utility>
 
 #include "core/friction/sampling.hpp"
 #include "core/pipeline/gain_uncertainty.hpp"
+#include "core/record/folder_probe.hpp"
 #include "daemon/method_text.hpp"
 #include "daemon/tester_file.hpp"
 #include "daemon/version.hpp"
 
 namespace stickslip::daemon {
 
-base::Result<void> prepare_record_folder(const std::filesystem::path& folder) {
+base::Result<std::vector<std::string>> prepare_record_folder(const std::filesystem::path& folder,
+                                                             const record::FileCalls& calls) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
     return base::failure("record folder {}: cannot be made: {}", folder.string(), error.message());
   }
-  // Permissions, read-only mounts and quotas: only an attempt tells.
-  const std::filesystem::path probe = folder / fmt::format(".probe-{}", ::getpid());
-  const int descriptor = ::open(probe.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
-  if (descriptor < 0) {
-    return base::failure("record folder {}: cannot be written: {}", folder.string(),
-                         std::generic_category().message(errno));
-  }
-  ::close(descriptor);
-  ::unlink(probe.c_str());
-  return {};
+  // Permissions, read-only mounts, quotas, and what a file system lacks: only an attempt tells.
+  const auto lacks = record::probe_folder(folder, calls);
+  if (!lacks) return base::failure("record folder {}: {}", folder.string(), lacks.error().message);
+  std::vector<std::string> told;
+  for (const record::FolderLack& lack : *lacks)
+    told.push_back(
+        fmt::format("record folder {}: the file system {}: {}", folder.string(), lack.what, lack.follows));
+  return told;
 }
 
 base::Result<SessionSettings> session_settings(const DaemonConfig& config, const drivers::OpenedBoard& opened,

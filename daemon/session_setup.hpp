@@ -4,17 +4,21 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/base/result.hpp"
 #include "core/friction/sampling.hpp"
+#include "core/record/file_calls.hpp"
 #include "core/record/record.hpp"
 #include "daemon/config.hpp"
 #include "daemon/session.hpp"
 
 namespace stickslip::daemon {
 
-/// Makes the folder if it is absent, and tries to write there. Errors: kFailure.
-[[nodiscard]] base::Result<void> prepare_record_folder(const std::filesystem::path& folder);
+/// Makes the folder if it is absent, and tries there what records need. \return what its file system lacks
+/// and what follows, a sentence each. Errors: kFailure if no record can be made there.
+[[nodiscard]] base::Result<std::vector<std::string>> prepare_record_folder(
+    const std::filesystem::path& folder, const record::FileCalls& calls = record::system_calls());
 
 /// \param continues  where the session before this one ended. Errors: kUsage.
 [[nodiscard]] base::Result<SessionSettings> session_settings(const DaemonConfig& config,

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace stickslip::daemon {
 
@@ -24,6 +25,8 @@ struct StorageState {
   std::size_t waiting_size = 0;  ///< Bytes in memory while the disk refuses.
   std::string why;               ///< For people; empty if all is well.
   std::string to_do;             ///< The same.
+  /// What the file system of the records lacks, and what follows; for people.
+  std::vector<std::string> lacks;
 };
 
 [[nodiscard]] constexpr std::string_view name(StorageState::Kind kind) noexcept {

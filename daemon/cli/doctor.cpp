@@ -24,7 +24,7 @@ constexpr const char* kInstalledFolder = "/var/lib/stickslip";
 
 constexpr const char* kHelp =
     R"(Exit status: 0 all is good, 1 something is bad, 2 wrong usage, 3 there are warnings.
-Nothing is changed. Rights are those of the user who asks; those of the service:
+Nothing stays changed. Rights are those of the user who asks; those of the service:
   sudo -u stickslip stickslip doctor)";
 
 struct DoctorOptions {

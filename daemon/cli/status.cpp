@@ -119,6 +119,9 @@ std::string text_of(const Json& status) {
                     : fmt::format("{}: {}; {}", word(storage, "state"), word(storage, "why"),
                                   word(storage, "to_do")),
              stored ? Ink::kNone : Ink::kRed);
+  if (const auto lacks = storage.find("lacks"); lacks != storage.end()) {
+    for (const Json& lack : *lacks) lines.line("lacks", lack.is_string() ? lack.get<std::string>() : "");
+  }
   if (const Json fleet = part(status, "fleet"); !fleet.empty()) {
     const bool connected = word(fleet, "state") == "connected";
     lines.line(

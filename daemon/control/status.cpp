@@ -77,7 +77,8 @@ Json to_json(const StorageState& storage) {
           {"room_h", storage.room_h ? Json(*storage.room_h) : Json(nullptr)},
           {"waiting_size", storage.waiting_size},
           {"why", or_nothing(storage.why)},
-          {"to_do", or_nothing(storage.to_do)}};
+          {"to_do", or_nothing(storage.to_do)},
+          {"lacks", storage.lacks}};
 }
 
 Json to_json(const std::optional<Status::Page>& page) {

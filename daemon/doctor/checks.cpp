@@ -42,6 +42,7 @@ class Examination {
     look_at_board();
     look_at_calibration();
     look_at_records();
+    look_at_file_system();
     look_at_disk();
     look_at_realtime();
     look_at_clock();
@@ -219,6 +220,29 @@ class Examination {
                   fmt::format("start the daemon, or stickslip recover {}", wanted.string()));
     }
     good("records", wanted.string());
+  }
+
+  void look_at_file_system() {
+    if (!config_ || folder_.empty()) return unknown("filesystem");
+    const std::string better = "ext4, XFS and Btrfs on a disk of this computer lack nothing";
+    // The daemon has tried it with its own rights.
+    if (const Json storage = status_.value("storage", Json::object()); storage.contains("lacks")) {
+      for (const Json& lack : storage["lacks"])
+        warn("filesystem", lack.is_string() ? lack.get<std::string>() : lack.dump(), better);
+      if (storage["lacks"].empty()) good("filesystem", "as the daemon tried at its start, lacks nothing");
+      return;
+    }
+    if (::access(folder_.c_str(), W_OK | X_OK) != 0) return unknown("filesystem");
+    const auto lacks = world_.probe(folder_);
+    if (!lacks) {
+      return bad("filesystem", fmt::format("{}: {}", folder_.string(), lacks.error().message),
+                 "say another [record] folder, or mend its disk: no record can be made there");
+    }
+    for (const record::FolderLack& lack : *lacks) {
+      warn("filesystem", fmt::format("{}: the file system {}: {}", folder_.string(), lack.what, lack.follows),
+           better);
+    }
+    if (lacks->empty()) good("filesystem", fmt::format("{} lacks nothing", folder_.string()));
   }
 
   void look_at_disk() {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/clock.hpp"
+#include "core/record/folder_probe.hpp"
 #include "daemon/config.hpp"
 #include "daemon/control/http.hpp"
 #include "daemon/doctor/finding.hpp"
@@ -28,14 +29,16 @@ struct DoctorWorld {
   std::function<int()> realtime_priority;
   std::function<std::optional<std::uint64_t>()> lockable_size;
   std::function<std::int64_t(const std::filesystem::path& folder)> room;  ///< Bytes; −1: not known.
+  /// As record::probe_folder().
+  std::function<base::Result<std::vector<record::FolderLack>>(const std::filesystem::path& folder)> probe;
   base::Clock* clock = nullptr;
 };
 
 /// That of this machine and this process. \param clock  outlives it.
 [[nodiscard]] DoctorWorld this_world(base::Clock& clock);
 
-/// In the order in which things are to be mended; each check gives one finding or more. Nothing is changed,
-/// nothing acquired, no running daemon disturbed.
+/// In the order in which things are to be mended; each check gives one finding or more. Nothing stays
+/// changed, nothing is acquired, no running daemon disturbed.
 [[nodiscard]] std::vector<Finding> examine(const std::filesystem::path& configuration,
                                            const DoctorWorld& world);
 

@@ -44,6 +44,7 @@ DoctorWorld this_world(base::Clock& clock) {
   world.room = [](const std::filesystem::path& folder) {
     return record::system_calls().room(folder.c_str());
   };
+  world.probe = [](const std::filesystem::path& folder) { return record::probe_folder(folder); };
   world.clock = &clock;
   return world;
 }

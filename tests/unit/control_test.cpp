@@ -174,6 +174,7 @@ TEST_F(ControlApi, TellsTheStatusByTheNamesOfTheRecord) {
   EXPECT_EQ(status["storage"]["waiting_size"], 0);
   EXPECT_EQ(status["storage"]["why"], "room for 6 min of tests, 10 are wanted");
   EXPECT_EQ(status["storage"]["to_do"], nullptr);
+  EXPECT_EQ(status["storage"]["lacks"], json::array());
   EXPECT_EQ(status["latest_test"]["results"]["mu_s"], 0.35);
   EXPECT_EQ(status["latest_test"]["results"]["mu_k"], nullptr);
 }

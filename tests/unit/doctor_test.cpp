@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "daemon/doctor/checks.hpp"
+#include "tests/support/lacking_disk.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -35,6 +36,7 @@ class Doctor : public testing::Test {
     world_.realtime_priority = [] { return 99; };
     world_.lockable_size = [] { return std::nullopt; };
     world_.room = [](const fs::path&) { return std::int64_t{1} << 40; };
+    world_.probe = [this](const fs::path& folder) { return record::probe_folder(folder, disk_); };
   }
   void TearDown() override { fs::remove_all(folder_); }
 
@@ -49,6 +51,7 @@ class Doctor : public testing::Test {
   std::unique_ptr<base::Clock> clock_ = base::make_system_clock();
   DoctorWorld world_;
   std::string status_;
+  test::LackingDisk disk_;
 };
 
 TEST_F(Doctor, ClockThatNobodySets) {
@@ -92,6 +95,31 @@ TEST_F(Doctor, WhatTheRunningDaemonSaysOfItself) {
   EXPECT_EQ(find("rate").verdict, Verdict::kWarning);
   status_ = "no JSON";
   EXPECT_EQ(find("daemon").verdict, Verdict::kBad);
+}
+
+TEST_F(Doctor, AFileSystemThatLacksSomethingIsAWarningWithWhatFollows) {
+  EXPECT_EQ(find("filesystem").verdict, Verdict::kGood);
+  disk_.flock_error = ENOLCK;
+  EXPECT_EQ(find("filesystem").verdict, Verdict::kWarning);
+  EXPECT_THAT(find("filesystem").what, testing::HasSubstr("stickslip recover"));
+  EXPECT_THAT(find("filesystem").to_do, testing::HasSubstr("ext4"));
+  disk_.flock_error = 0;
+  disk_.folder_fsync_error = EINVAL;
+  EXPECT_THAT(find("filesystem").what, testing::HasSubstr("a power cut may take the newest"));
+  disk_.create_error = EROFS;
+  EXPECT_EQ(find("filesystem").verdict, Verdict::kBad);
+  EXPECT_TRUE(fs::is_empty(folder_ / "records"));
+}
+
+// It tried with its own rights, which may be others.
+TEST_F(Doctor, ARunningDaemonIsAskedWhatItsFileSystemLacks) {
+  disk_.create_error = EACCES;
+  status_ =
+      R"({"state": "acquiring", "storage": {"lacks": ["record folder r: the file system has no locks"]}})";
+  EXPECT_EQ(find("filesystem").verdict, Verdict::kWarning);
+  EXPECT_THAT(find("filesystem").what, testing::HasSubstr("has no locks"));
+  status_ = R"({"state": "acquiring", "storage": {"lacks": []}})";
+  EXPECT_EQ(find("filesystem").verdict, Verdict::kGood);
 }
 
 TEST_F(Doctor, ExitStatusIsThatOfTheWorst) {

@@ -70,6 +70,13 @@ TEST_F(LogTest, AMissingBoardIsAStateOfTheDaemon) {
                           "STICKSLIP_STATE=board missing"));
 }
 
+TEST_F(LogTest, AFileSystemThatLacksSomethingIsAWarning) {
+  log()->record_folder_lacks("record folder r: the file system has no locks");
+  EXPECT_THAT(lines_.at(0),
+              ElementsAre("MESSAGE=record folder r: the file system has no locks", "PRIORITY=4",
+                          "SYSLOG_IDENTIFIER=stickslipd", "STICKSLIP_EVENT=record-folder-lacks"));
+}
+
 TEST_F(LogTest, WhatIsBelowTheLevelIsLeftOut) {
   const std::unique_ptr<Facts> facts = log(LogLevel::kWarning);
   facts->stopping("told to");
