@@ -164,6 +164,31 @@ TEST(PowerCut, WhileATestIsWrittenAndFinished) {
   EXPECT_GT(cut_everywhere(disk, promises, seed()), 0);
 }
 
+// Where a name is given in two steps: a cut between them leaves both names, or an empty file of the new one.
+TEST(PowerCut, WhereARenameCannotRefuseToReplace) {
+  for (const bool knows_link : {true, false}) {
+    const TemporaryFolder folder;
+    CrashDisk disk;
+    disk.knows_rename_to_new = false;
+    disk.knows_link = knows_link;
+    auto promises = write_test(disk, folder / "a.journal", true);
+    const std::size_t before = disk.promise();
+    ASSERT_TRUE(record::finalise(folder / "a.journal", {}, disk));
+    promises.push_back({disk.promise(), promises.back().scans, true});
+    EXPECT_GT(cut_everywhere(disk, promises, seed()), 0);
+    // The steps themselves stand at the end: each of them, some states each.
+    std::mt19937_64 random{seed()};
+    for (std::size_t cut = std::max(before, disk.size() - 8); cut <= disk.size(); ++cut) {
+      for (int state = 0; state < 3; ++state) {
+        const TemporaryFolder restored;
+        disk.restore(cut, random, restored.path());
+        EXPECT_EQ(recover(restored.path(), restored / "a.journal", restored / "a.h5", HastyCalls{}, cut),
+                  promises.back().scans);
+      }
+    }
+  }
+}
+
 TEST(PowerCut, WhileAnInterruptedTestIsRecovered) {
   const TemporaryFolder folder;
   const CrashDisk disk;

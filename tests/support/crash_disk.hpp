@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -68,6 +69,10 @@ class ForwardingCalls : public record::FileCalls {
 
 class CrashDisk final : public ForwardingCalls {
  public:
+  // Of the file system: what it does not know is refused.
+  bool knows_rename_to_new = true;
+  bool knows_link = true;
+
   /// Changes so far.
   [[nodiscard]] std::size_t size() const { return log_.size(); }
   /// From now on it has to be so. \return the number of changes before.
@@ -159,13 +164,19 @@ class CrashDisk final : public ForwardingCalls {
   }
   int fdatasync(int file) const override { return fsync(file); }
   int rename_to_new(const char* from, const char* to) const override {
-    const int status = system().rename_to_new(from, to);
+    if (!knows_rename_to_new) return errno = EINVAL, -1;
+    return renamed(system().rename_to_new(from, to), from, to);
+  }
+  int rename(const char* from, const char* to) const override {
+    return renamed(system().rename(from, to), from, to);
+  }
+  int link(const char* from, const char* to) const override {
+    if (!knows_link) return errno = EPERM, -1;
+    const int status = system().link(from, to);
     if (status == 0) {
-      const std::string old = std::filesystem::path{from}.filename().string();
-      const std::string now = std::filesystem::path{to}.filename().string();
-      log_.push_back({Kind::kRename, names_.at(old), 0, {}, old, now});
-      names_[now] = names_.at(old);
-      names_.erase(old);
+      const int file = names_.at(name_of(from));
+      names_[name_of(to)] = file;
+      log_.push_back({Kind::kCreate, file, 0, {}, name_of(to), {}});
     }
     return status;
   }
@@ -189,6 +200,18 @@ class CrashDisk final : public ForwardingCalls {
   };
   static constexpr int kFolder = 0;
   static constexpr std::uint64_t kPage = 4096;
+
+  static std::string name_of(const char* path) { return std::filesystem::path{path}.filename().string(); }
+
+  int renamed(int status, const char* from, const char* to) const {
+    if (status == 0) {
+      const std::string old = name_of(from);
+      log_.push_back({Kind::kRename, names_.at(old), 0, {}, old, name_of(to)});
+      names_[name_of(to)] = names_.at(old);
+      names_.erase(old);
+    }
+    return status;
+  }
 
   ssize_t logged(ssize_t done, int file, const void* bytes, off_t position) const {
     if (done > 0) {

@@ -8,6 +8,8 @@ import subprocess
 HERE = pathlib.Path(__file__).resolve().parent
 BUSYBOX = pathlib.Path("/bin/busybox")
 COMEDI_MODULES = ("comedi", "comedi_test")
+# ext4 is built in.
+FILE_SYSTEM_MODULES = ("loop", "fat", "vfat", "nls_cp437", "nls_ascii", "nls_utf8")
 FOLDERS = ("bin", "sbin", "proc", "sys", "dev", "tmp", "run", "etc", "results", "lib64", "lib/firmware",
            "var/lib/comedi/calibrations")
 
@@ -24,7 +26,7 @@ def install(source, target):
 
 def add_modules(root, kernel, more):
     folder = root / "lib" / "modules" / kernel.release
-    for name in COMEDI_MODULES:
+    for name in COMEDI_MODULES + FILE_SYSTEM_MODULES:
         [module] = kernel.modules.rglob(f"{name}.ko")
         install(module, folder / module.relative_to(kernel.modules))
     for module in more:
