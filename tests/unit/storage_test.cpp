@@ -12,6 +12,7 @@
 #include "core/record/reader.hpp"
 #include "core/record/verdict.hpp"
 #include "tests/support/faulty_disk.hpp"
+#include "tests/support/lacking_disk.hpp"
 #include "tests/support/record_samples.hpp"
 
 namespace stickslip::daemon {
@@ -114,6 +115,34 @@ void expect_whole(const fs::path& file, daq::ScanIndex first, std::int64_t count
   for (std::int64_t i = 0; i < count; i += 97) {
     const auto row = static_cast<std::size_t>(i);
     ASSERT_EQ(read->raw[row], static_cast<double>((first + i - i % 350) % 60000));
+  }
+}
+
+// NFS without a lock manager, FUSE and SMB without fsync of folders, no rename that refuses to replace.
+TEST(LackingFileSystem, IsNoDiskThatRefuses) {
+  for (const int folder_fsync : {EINVAL, EOPNOTSUPP, EBADF, ENOSYS}) {
+    const TemporaryFolder folder;
+    test::LackingDisk disk;
+    disk.flock_error = ENOLCK;
+    disk.folder_fsync_error = folder_fsync;
+    disk.rename_to_new_error = EINVAL;
+    disk.link_error = EPERM;
+    disk.tells_room = false;
+    TestLog tests;
+    Heard heard;
+    {
+      const auto finalise = [&](const fs::path& journal) { return record::finalise(journal, {}, disk); };
+      Storage storage{{folder / "records", DatedFolders::kMonth, &disk}, finalise, tests, heard};
+      storage.use(header(), nullptr);
+      begin(storage, 1, 0);
+      feed(storage, 0, 3500);
+      end(storage, 1, 3500);
+      storage.stop();
+      EXPECT_EQ(storage.scan_counts().recorded, 3500);
+      EXPECT_EQ(storage.scan_counts().unsaved, 0);
+    }
+    EXPECT_THAT(heard.told(), testing::ElementsAre("test 1 published"));
+    expect_whole(heard.file(1), 0, 3500);
   }
 }
 
