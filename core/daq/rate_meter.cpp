@@ -13,10 +13,7 @@ ScanIndex first_scan_after(const Continuation& from, std::int64_t now_ns) noexce
 
 void RateMeter::observe(const ScanBlock& block) noexcept {
   end_ = block.end();
-  if (const auto picked = picker_.observe(block)) {
-    fit_.add(*picked);
-    latest_ = picked;
-  }
+  if (const auto picked = picker_.observe(block); picked && fit_.add(*picked)) latest_ = picked;
 }
 
 void RateMeter::started(ScanIndex first, std::int64_t now_ns) noexcept {

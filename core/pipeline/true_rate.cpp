@@ -21,8 +21,10 @@ void add_true_rate(friction::TestResults& results, std::span<const daq::ClockAnc
   if (anchors.empty()) return;
   const auto fit = daq::fit_rate(anchors, gaps, granted_Hz);
   if (!fit) {
-    results.scan_rate_measured = friction::Estimate::none(fmt::format(
-        "{} clock readings; at least {} are needed", anchors.size(), daq::RateFit::kFewestAnchors));
+    const bool few = anchors.size() < static_cast<std::size_t>(daq::RateFit::kFewestAnchors);
+    results.scan_rate_measured = friction::Estimate::none(
+        fmt::format("{} clock readings; at least {} {}are needed", anchors.size(),
+                    daq::RateFit::kFewestAnchors, few ? "" : "that were not read late "));
     return;
   }
   results.scan_rate_measured = friction::Estimate::of(fit->rate_Hz, fit->standard_error_Hz);

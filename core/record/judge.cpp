@@ -92,7 +92,12 @@ void judge_clocks(const Record& record, daq::ScanIndex first, daq::ScanIndex end
   }
   const double granted_Hz = record.header.board.scan_rate_granted_Hz;
   const auto rate = daq::fit_rate(anchors, record.gaps, granted_Hz);
-  if (!rate) return;
+  if (!rate) {
+    if (anchors.size() >= static_cast<std::size_t>(daq::RateFit::kFewestAnchors)) {
+      verdict.note("timing", "the scans were read late: their clock readings cannot tell the scan rate");
+    }
+    return;
+  }
   const double difference_Hz = std::abs(rate->rate_Hz - granted_Hz);
   if (difference_Hz > kRateTolerance * granted_Hz + kCertain * rate->standard_error_Hz) {
     verdict.incomplete("timing", fmt::format("the clocks say {:.3f} Hz, the board granted {:.3f} Hz: times "

@@ -67,7 +67,9 @@ class SimulatedBoard final : public daq::Board {
       hanging_->look();
       hanging_->read(block.first, std::span{block.raw}.first(block.count));
     }
-    block.stamp = {clock_.monotonic_ns(), clock_.realtime_ns()};
+    const std::int64_t now_ns = clock_.monotonic_ns();
+    const bool prompt = now_ns < due_ns(block.end() - 1) + std::llround(1e9 * kDelivery_s);
+    block.stamp = {now_ns, clock_.realtime_ns(), prompt};
     return ReadStatus::kScans;
   }
 

@@ -69,15 +69,107 @@ TEST(RateFit, EstimatedGapPartsTheAnchors) {
   std::vector<ClockAnchor> anchors;
   for (ScanIndex scan = 0; scan < 3500; scan += 175) anchors.push_back({scan, time_of(scan, 351.0), 0});
   for (ScanIndex scan = 3500; scan < 7000; scan += 175) {
-    anchors.push_back({scan + 350'000, time_of(scan, 351.0) + 1'000'000'000'000, 0});
+    anchors.push_back({scan + 10'500, time_of(scan, 351.0) + 30'000'000'000, 0});
   }
-  const daq::Gap gap{3400, 350'000, true, daq::GapCause::kOverrun};
+  const daq::Gap gap{3400, 10'500, true, daq::GapCause::kOverrun};
   const auto parted = daq::fit_rate(anchors, {&gap, 1}, kGranted_Hz);
   ASSERT_TRUE(parted);
   EXPECT_NEAR(parted->rate_Hz, 351.0, 351.0 * 1e-9);
   daq::Gap counted = gap;
   counted.estimated = false;
-  EXPECT_LT(daq::fit_rate(anchors, {&counted, 1}, kGranted_Hz)->rate_Hz, 350.1);
+  EXPECT_LT(daq::fit_rate(anchors, {&counted, 1}, kGranted_Hz)->rate_Hz, 350.6);
+}
+
+/// What the clock showed when the scan was read: at times that no stall [begin, end) of the reader holds.
+/// What piled up in a stall is read at its end in a burst, half a second of scans in 10 µs.
+std::vector<ClockAnchor> anchors_with_stalls(double rate_Hz, int count,
+                                             const std::vector<std::pair<double, double>>& stalls_s,
+                                             std::mt19937_64& random) {
+  std::exponential_distribution<double> late_s{1.0 / 50e-6};
+  std::vector<ClockAnchor> anchors;
+  double read_s = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const ScanIndex scan = 175 * i;
+    double time_s = static_cast<double>(scan) / rate_Hz + late_s(random);
+    for (const auto& [begin_s, end_s] : stalls_s) {
+      if (time_s >= begin_s && time_s < end_s) time_s = end_s;
+    }
+    read_s = std::max(read_s + 10e-6, time_s);
+    anchors.push_back({scan, 5'000'000'000 + std::llround(1e9 * read_s), 0});
+  }
+  return anchors;
+}
+
+// Stalls of 10 to 70 s anywhere, at the beginning and at the end of a test too, or longer than the test: a
+// rate that is told is right within five of its standard errors.
+TEST(RateFit, StallsGiveNoWrongRate) {
+  std::mt19937_64 random{20'261'126};
+  std::uniform_real_distribution<double> stall_s{10.0, 70.0};
+  std::uniform_int_distribution<int> size{5, 240};
+  std::uniform_real_distribution<double> ppm{-200.0, 200.0};
+  int told = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const double rate_Hz = kGranted_Hz * (1.0 + 1e-6 * ppm(random));
+    const int count = size(random);
+    std::vector<std::pair<double, double>> stalls_s;
+    for (int i = 0; i <= trial % 3; ++i) {
+      const double begin_s = std::uniform_real_distribution<double>{-70.0, 0.5 * count}(random);
+      stalls_s.emplace_back(begin_s, begin_s + stall_s(random));
+    }
+    const auto anchors = anchors_with_stalls(rate_Hz, count, stalls_s, random);
+    const auto rate = daq::fit_rate(anchors, {}, kGranted_Hz);
+    RateFit live{kGranted_Hz};
+    for (const ClockAnchor& anchor : anchors) live.add(anchor);
+    for (const auto& one : {rate, live.estimate()}) {
+      if (!one) continue;
+      ++told;
+      // Sure beyond chance, with as few degrees of freedom as there are: what findings ask for and more.
+      const bool far = std::abs(one->rate_Hz - rate_Hz) > 300e-6 * rate_Hz &&
+                       std::abs(one->rate_Hz - rate_Hz) > 5.0 * one->standard_error_Hz;
+      EXPECT_FALSE(far) << "trial " << trial << ": " << one->rate_Hz << " +- " << one->standard_error_Hz
+                        << " Hz of " << one->anchor_count << " anchors, true " << rate_Hz;
+      EXPECT_NEAR(one->rate_Hz, rate_Hz, 0.03 * rate_Hz) << "trial " << trial;
+    }
+  }
+  EXPECT_GT(told, 1500);
+}
+
+TEST(RateFit, TestReadInOneBurstTellsNoRate) {
+  std::mt19937_64 random{7};
+  const auto anchors = anchors_with_stalls(kGranted_Hz, 20, {{-1.0, 60.0}}, random);
+  EXPECT_FALSE(daq::fit_rate(anchors, {}, kGranted_Hz));
+}
+
+// The machine slept: the monotonic clock stood still while the board went on.
+TEST(RateFit, ClockThatStoodStillPartsTheAnchors) {
+  std::vector<ClockAnchor> anchors;
+  for (ScanIndex scan = 0; scan < 7000; scan += 175) {
+    const std::int64_t slept_ns = scan < 3500 ? 0 : 30'000'000'000;
+    anchors.push_back({scan + (slept_ns == 0 ? 0 : 10'500), time_of(scan, 350.1), 0});
+  }
+  const auto rate = daq::fit_rate(anchors, {}, kGranted_Hz);
+  ASSERT_TRUE(rate);
+  EXPECT_NEAR(rate->rate_Hz, 350.1, 350.1 * 1e-9);
+  EXPECT_EQ(rate->anchor_count, 40);
+}
+
+// A board that is far off is told, although no anchor keeps to the granted rate.
+TEST(RateFit, BoardOfTwiceTheRateIsMeasured) {
+  std::vector<ClockAnchor> anchors;
+  for (ScanIndex scan = 0; scan < 3500; scan += 175) anchors.push_back({scan, time_of(scan, 700.0), 0});
+  const auto rate = daq::fit_rate(anchors, {}, kGranted_Hz);
+  ASSERT_TRUE(rate);
+  EXPECT_NEAR(rate->rate_Hz, 700.0, 700.0 * 1e-9);
+}
+
+TEST(RateFit, LateAnchorDoesNotCountAndLineGoesOn) {
+  RateFit fit{kGranted_Hz};
+  for (ScanIndex scan = 0; scan < 7000; scan += 175) {
+    const bool late = scan == 3500;
+    EXPECT_EQ(fit.add({scan, time_of(scan, 350.0, late ? 300e6 : 0.0), 0}), !late);
+  }
+  EXPECT_EQ(fit.estimate()->anchor_count, 39);
+  EXPECT_NEAR(fit.estimate()->rate_Hz, 350.0, 350.0 * 1e-10);
 }
 
 // A year at 350 Hz in blocks of a day: the sums must not lose the ppm.

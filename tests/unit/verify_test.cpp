@@ -113,6 +113,29 @@ TEST(Verify, ARateThatTheClocksDenyIsFound) {
               HasSubstr("incomplete timing: the clocks say 353.850 Hz, the board granted 350.000 Hz"));
 }
 
+/// Its scans from this one on were read in a burst, at 1 µs each, a minute after the first of them.
+record::Record read_in_a_burst(std::int64_t from) {
+  record::Record record = with_clocks(350.0);
+  std::int64_t read_ns = 0;
+  for (record::ClockAnchor& anchor : record.anchors) {
+    if (anchor.scan < from) continue;
+    if (read_ns == 0) read_ns = anchor.monotonic_ns + 60'000'000'000;
+    anchor.monotonic_ns = read_ns += 1'000;
+    anchor.realtime_ns = 1'795'265'582'000'000'000 + read_ns - 5'000'000'000;
+  }
+  return record;
+}
+
+TEST(Verify, ScansThatWereReadLateDenyNoRate) {
+  for (const std::int64_t from : {1000, 1015}) {
+    const Verdict verdict = verdict_on(read_in_a_burst(from));
+    EXPECT_EQ(verdict.judgement, Judgement::kComplete) << from;
+    EXPECT_EQ(findings_of(verdict),
+              "note timing: the scans were read late: their clock readings cannot tell the scan rate\n");
+  }
+  EXPECT_EQ(findings_of(verdict_on(read_in_a_burst(1025))), "");  // Five before it are enough.
+}
+
 TEST(Verify, AClockOfTheDayThatWasSetIsAWordNotDamage) {
   record::Record record = test::whole_record();
   record.anchors[1].realtime_ns += 3'600'000'000'000;
