@@ -13,9 +13,9 @@
 #include "core/record/iso_time.hpp"
 #include "daemon/batch/place.hpp"
 #include "daemon/method_text.hpp"
+#include "daemon/own_records.hpp"
 #include "daemon/record_name.hpp"
 #include "daemon/record_result.hpp"
-#include "daemon/records_above.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -98,9 +98,18 @@ const BatchBook& BatchLeader::book() {
 void BatchLeader::reconcile() {
   const Batch* const batch = book_.current();
   if (batch == nullptr) return;
-  // Their names begin with the time, as the identifier of a batch does.
-  for (const std::filesystem::path& file : records_above(parts_.folder, batch->id, kMostSteps)) {
-    if (book_.has(batch->id, name_of(file))) continue;
+  // Their names begin with the time, as the identifier of a batch does: where it was not ahead of today's,
+  // only those above it can belong to the batch.
+  const bool was_ahead = batch->id > record_stem(parts_.clock->realtime_ns() / 1'000'000'000, 0);
+  std::vector<std::filesystem::path> files = own_records(parts_.folder);
+  files.erase(std::remove_if(files.begin(), files.end(),
+                             [&](const std::filesystem::path& file) {
+                               return (!was_ahead && file.stem().string() <= batch->id) ||
+                                      book_.has(batch->id, name_of(file));
+                             }),
+              files.end());
+  keep_last(files, kMostSteps);
+  for (const std::filesystem::path& file : files) {
     const auto place = place_of(parts_.program, file, name_of(file));
     // What cannot be read is `stickslip verify`'s to tell.
     if (!place || !*place || (*place)->batch != batch->id) continue;

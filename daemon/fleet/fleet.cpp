@@ -8,28 +8,28 @@
 
 #include "daemon/fleet/backlog.hpp"
 #include "daemon/fleet/messages.hpp"
-#include "daemon/records_above.hpp"
+#include "daemon/own_records.hpp"
+#include "daemon/record_name.hpp"
 
 namespace stickslip::daemon {
 namespace {
 
-/// The outbox as a former program has left it. One that never held anything begins with the tests to come: a
-/// tester that joins does not tell its whole past.
-Outbox open_outbox(const FleetSettings& settings, const std::filesystem::path& record_folder) {
-  Outbox outbox{settings.outbox, settings.outbox_results};
-  if (outbox.newest().empty()) {
-    const auto latest = records_above(record_folder, "", 1);
-    outbox.set_newest(latest.empty() ? "0" : latest.back().stem().string());
-  }
-  return outbox;
+/// No more of the latest by name than the outbox holds.
+std::vector<std::filesystem::path> untold_records(Outbox& outbox, const FleetSettings& settings,
+                                                  const std::filesystem::path& folder,
+                                                  const base::Clock& wall) {
+  const std::time_t now_s = wall.realtime_ns() / 1'000'000'000;
+  auto untold = outbox.untold(own_records(folder), record_stem(now_s, 0));
+  keep_last(untold, settings.outbox_results);
+  return untold;
 }
 
 }  // namespace
 
 Fleet::Fleet(boost::asio::io_context& io, const FleetSettings& settings, Parts parts)
     : io_(io), timer_(io), settings_(settings), parts_(std::move(parts)), publisher_([&] {
-        Outbox outbox = open_outbox(settings, parts_.record_folder);
-        auto untold = records_above(parts_.record_folder, outbox.newest(), settings.outbox_results);
+        Outbox outbox{settings.outbox, settings.outbox_results};
+        auto untold = untold_records(outbox, settings, parts_.record_folder, parts_.wall);
         return FleetPublisher{settings, std::move(outbox), world(std::move(untold))};
       }()) {
   // Once the daemon runs: its status says more then.

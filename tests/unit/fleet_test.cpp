@@ -11,7 +11,7 @@
 #include "daemon/config.hpp"
 #include "daemon/fleet/backlog.hpp"
 #include "daemon/fleet/outbox.hpp"
-#include "daemon/records_above.hpp"
+#include "daemon/own_records.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -177,7 +177,6 @@ std::vector<std::string> ids(const Outbox& outbox) {
 TEST_F(OutboxTest, KeepsWhatTheBrokerHasNotGotOverTheEndOfTheProgram) {
   {
     Outbox outbox{path_ / "out", 10};
-    EXPECT_EQ(outbox.newest(), "");
     for (int i = 1; i <= 3; ++i) EXPECT_TRUE(outbox.add(numbered(i)).is_new);
     EXPECT_FALSE(outbox.add(numbered(2)).is_new) << "the same test twice";
     EXPECT_TRUE(outbox.remove("id-2"));
@@ -186,10 +185,9 @@ TEST_F(OutboxTest, KeepsWhatTheBrokerHasNotGotOverTheEndOfTheProgram) {
   }
   std::ofstream{path_ / "out" / "20261122T100000Z-0009_id-9.json"} << "{\"torn";
   std::ofstream{path_ / "out" / "notes.txt"} << "somebody's";
-  const Outbox again{path_ / "out", 10};
+  Outbox again{path_ / "out", 10};
   EXPECT_THAT(ids(again), testing::ElementsAre("id-1", "id-3"));
   EXPECT_EQ(again.results()[1].payload, numbered(3).payload);
-  EXPECT_EQ(again.newest(), numbered(3).record);
   EXPECT_TRUE(fs::exists(path_ / "out" / "notes.txt"));
 }
 
@@ -198,7 +196,8 @@ TEST_F(OutboxTest, IsBoundedAndDropsTheOldest) {
   for (int i = 1; i <= 3; ++i) EXPECT_FALSE(outbox.add(numbered(i)).dropped);
   EXPECT_TRUE(outbox.add(numbered(4)).dropped);
   EXPECT_THAT(ids(outbox), testing::ElementsAre("id-2", "id-3", "id-4"));
-  EXPECT_FALSE(fs::exists(path_ / (numbered(1).record + "_id-1.json")));
+  EXPECT_FALSE(fs::exists(path_ / ("000000000001_" + numbered(1).record + "_id-1.json")));
+  EXPECT_TRUE(fs::exists(path_ / ("000000000002_" + numbered(2).record + "_id-2.json")));
   EXPECT_THAT(ids(Outbox(path_, 2)), testing::ElementsAre("id-3", "id-4")) << "a bound that was lowered";
 }
 
@@ -219,6 +218,83 @@ TEST_F(OutboxTest, KeepsInMemoryWhatTheDiskRefusesAndSavesItLater) {
   EXPECT_THAT(ids(Outbox(path_ / "out", 9)), testing::ElementsAre("id-3", "id-4"));
 }
 
+/// A record of that name, as the folder would list it.
+fs::path record_called(const std::string& name) { return fs::path{"records"} / (name + ".h5"); }
+
+constexpr const char* kNow = "20261126T000000Z-0000";
+
+// The clock was ten years ahead for a while, and is right again: what is told, what waits and in which order
+// does not follow from the names.
+TEST_F(OutboxTest, AClockThatWasOnceAheadSilencesNobody) {
+  const FleetResult ahead{"20361122T100000Z-0001", "id-1", "{}"};
+  const FleetResult back{"20261123T100000Z-0002", "id-2", "{}"};
+  {
+    Outbox outbox{path_, 10};
+    EXPECT_TRUE(outbox.untold({}, kNow).empty());
+    outbox.add(ahead);
+    outbox.add(back);
+  }
+  Outbox again{path_, 10};
+  EXPECT_THAT(ids(again), testing::ElementsAre("id-1", "id-2")) << "the order of the tests";
+  again.remove("id-1");
+  const fs::path killed = record_called("20261123T110000Z-0003");
+  const std::vector<fs::path> records{record_called(back.record), killed, record_called(ahead.record)};
+  EXPECT_THAT(again.untold(records, kNow), testing::ElementsAre(killed));
+}
+
+TEST_F(OutboxTest, ANewOneBeginsWithTheTestsToCome) {
+  Outbox outbox{path_, 10};
+  const fs::path past = record_called("20261122T100000Z-0001");
+  const fs::path later = record_called("20261121T100000Z-0001");
+  EXPECT_TRUE(outbox.untold({past}, kNow).empty());
+  EXPECT_THAT(outbox.untold({later, past}, kNow), testing::ElementsAre(later));
+}
+
+// As former versions left it: files without a number, and `newest`.
+TEST_F(OutboxTest, FolderOfAFormerVersionIsGoneOnWith) {
+  std::ofstream{path_ / (numbered(2).record + "_id-2.json")} << numbered(2).payload;
+  std::ofstream{path_ / (numbered(1).record + "_id-1.json")} << numbered(1).payload;
+  std::ofstream{path_ / "newest"} << numbered(2).record << '\n';
+  Outbox outbox{path_, 10};
+  const fs::path untold = record_called(numbered(3).record);
+  const std::vector<fs::path> records{record_called(numbered(1).record), record_called(numbered(2).record),
+                                      untold};
+  EXPECT_THAT(outbox.untold(records, kNow), testing::ElementsAre(untold));
+  EXPECT_FALSE(fs::exists(path_ / "newest"));
+  outbox.add({"20201122T100000Z-0003", "id-3", "{}"});
+  EXPECT_THAT(ids(Outbox(path_, 10)), testing::ElementsAre("id-1", "id-2", "id-3"));
+}
+
+// Its `newest` was set by a clock ahead of today's: it says of no record that it was told.
+TEST_F(OutboxTest, NewestOfAClockAheadSaysNothing) {
+  std::ofstream{path_ / "newest"} << "20361122T100000Z-0001\n";
+  const std::vector<fs::path> records{record_called(numbered(1).record)};
+  EXPECT_EQ(Outbox(path_, 10).untold(records, kNow), records);
+}
+
+TEST_F(OutboxTest, NamesOfRecordsThatAreGoneAreForgottenOnceTheyAreMany) {
+  Outbox outbox{path_, 10};
+  std::vector<fs::path> records;
+  for (int i = 0; i < 3000; ++i) records.push_back(record_called(numbered(i).record));
+  EXPECT_TRUE(outbox.untold(records, kNow).empty());
+  const auto size = fs::file_size(path_ / "told");
+  EXPECT_TRUE(outbox.untold({}, kNow).empty());
+  EXPECT_EQ(fs::file_size(path_ / "told"), size) << "the folder was away";
+  records.resize(10);
+  EXPECT_TRUE(outbox.untold(records, kNow).empty());
+  EXPECT_EQ(fs::file_size(path_ / "told"), size / 300);
+  EXPECT_TRUE(outbox.untold(records, kNow).empty());
+}
+
+// A power cut in the middle of a line costs that line.
+TEST_F(OutboxTest, ATornLineTakesNoOtherWithIt) {
+  std::ofstream{path_ / "told"} << "20261122T1000";
+  Outbox outbox{path_, 10};
+  outbox.add(numbered(1));
+  const fs::path other = record_called(numbered(2).record);
+  EXPECT_THAT(outbox.untold({record_called(numbered(1).record), other}, kNow), testing::ElementsAre(other));
+}
+
 using Backlog = Folder;
 
 TEST_F(Backlog, TakesNoIdThatCouldNameAnotherFile) {
@@ -235,7 +311,7 @@ TEST_F(Backlog, TakesNoIdThatCouldNameAnotherFile) {
   EXPECT_EQ(id("Segmentation fault"), "none");
 }
 
-TEST_F(Backlog, HoldsTheRecordsOfTheDaemonAboveTheNewestThatWasTold) {
+TEST_F(Backlog, HoldsTheRecordsOfTheDaemon) {
   const auto touch = [this](const std::string& name) {
     fs::create_directories((path_ / name).parent_path());
     std::ofstream{path_ / name} << "";
@@ -245,17 +321,11 @@ TEST_F(Backlog, HoldsTheRecordsOfTheDaemonAboveTheNewestThatWasTold) {
         "2026-11-23/20261123T100000Z-0001-2.h5", "pull.h5", "20261124T100000Z-0001.journal",
         "20261124T100000Z-0001.h5.part", "a/b/c/20261125T100000Z-0001.h5"})
     touch(name);
-  const auto names = [this](const std::string& newest, std::size_t most) {
-    std::vector<std::string> found;
-    for (const fs::path& path : records_above(path_, newest, most)) found.push_back(path.stem());
-    return found;
-  };
-  EXPECT_THAT(names("", 9), testing::ElementsAre("20261121T100000Z-0001", "20261122T100000Z-0001",
-                                                 "20261123T100000Z-0001-2"));
-  EXPECT_THAT(names("20261121T100000Z-0001", 9),
-              testing::ElementsAre("20261122T100000Z-0001", "20261123T100000Z-0001-2"));
-  EXPECT_THAT(names("", 1), testing::ElementsAre("20261123T100000Z-0001-2"));
-  EXPECT_TRUE(records_above(path_ / "nowhere", "", 9).empty());
+  std::vector<std::string> names;
+  for (const fs::path& path : own_records(path_)) names.push_back(path.stem());
+  EXPECT_THAT(names, testing::ElementsAre("20261121T100000Z-0001", "20261122T100000Z-0001",
+                                          "20261123T100000Z-0001-2"));
+  EXPECT_TRUE(own_records(path_ / "nowhere").empty());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "daemon/records_above.hpp"
+#include "daemon/own_records.hpp"
 
 #include <algorithm>
 #include <regex>
@@ -7,8 +7,8 @@
 #include "daemon/dated_folders.hpp"
 
 namespace stickslip::daemon {
-std::vector<std::filesystem::path> records_above(const std::filesystem::path& folder,
-                                                 const std::string& newest, std::size_t most) {
+
+std::vector<std::filesystem::path> own_records(const std::filesystem::path& folder) {
   // As storage.cpp names them.
   static const std::regex own{R"(\d{8}T\d{6}Z-\d{4,}(-\d+)?\.h5)"};
   std::vector<std::filesystem::path> found;
@@ -17,14 +17,15 @@ std::vector<std::filesystem::path> records_above(const std::filesystem::path& fo
   for (std::filesystem::recursive_directory_iterator at{folder, options, error}, end; !error && at != end;
        at.increment(error)) {
     if (at.depth() >= kDeepestRecordFolder) at.disable_recursion_pending();
-    const std::filesystem::path& path = at->path();
-    if (path.stem().string() > newest && std::regex_match(path.filename().string(), own)) {
-      found.push_back(path);
-    }
+    if (std::regex_match(at->path().filename().string(), own)) found.push_back(at->path());
   }
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.stem() < b.stem(); });
-  if (found.size() > most) found.erase(found.begin(), found.end() - static_cast<std::ptrdiff_t>(most));
   return found;
+}
+
+void keep_last(std::vector<std::filesystem::path>& records, std::size_t most) {
+  if (records.size() <= most) return;
+  records.erase(records.begin(), records.end() - static_cast<std::ptrdiff_t>(most));
 }
 
 }  // namespace stickslip::daemon
