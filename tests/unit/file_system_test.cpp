@@ -218,7 +218,9 @@ TEST_F(FileSystem, ANameThatWasTakenByAStopIsGivenToTheRecord) {
 TEST_F(FileSystem, AnUnfinishedFileIsMadeAnewNotEmptied) {
   const std::string whole = test::content_of(record_);
   fs::create_hard_link(record_, folder_ / "b.h5.part");
-  test::write_journal(folder_ / "b.journal", test::whole_record());
+  Record other = test::whole_record();
+  other.header.title = "another test";
+  test::write_journal(folder_ / "b.journal", other);
   ASSERT_TRUE(finalise(folder_ / "b.journal"));
   EXPECT_EQ(test::content_of(record_), whole);
   EXPECT_EQ(names(), (std::vector<std::string>{"a.h5", "b.h5"}));
