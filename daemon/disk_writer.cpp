@@ -1,9 +1,13 @@
 #include "daemon/disk_writer.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <iterator>
+#include <utility>
 #include <vector>
 
 #include "core/record/file.hpp"
@@ -36,6 +40,9 @@ bool Ballast::give() {
 
 void Ballast::take() {
   constexpr std::int64_t kPlenty = 4 * kBallast;
+  // It may have gone with its folder.
+  struct stat found {};
+  if (kept_ && calls_.lstat(path_.c_str(), &found) != 0 && errno == ENOENT) kept_ = false;
   if (kept_ || calls_.room(path_.parent_path().c_str()) < kPlenty) return;
   constexpr mode_t kMode = 0600;
   const record::Descriptor file{calls_.open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, kMode)};
@@ -48,6 +55,7 @@ DiskWriter::DiskWriter(Settings settings, Ended ended, std::function<void(const 
     : settings_(std::move(settings)),
       ended_(std::move(ended)),
       changed_(std::move(changed)),
+      folder_watch_(settings_.folder, *settings_.calls),
       ballast_(settings_.folder, *settings_.calls),
       thread_([this] { run(); }) {}
 
@@ -127,17 +135,21 @@ void DiskWriter::run() {
     const bool sync = stopping_since || trouble || Clock::now() - last_sync >= settings_.sync_period;
     trouble = write_all(sync);
     // What was begun may use what was kept back for it.
-    if (trouble && ballast_.give()) trouble = write_all(true);
+    if (trouble && !away_ && ballast_.give()) trouble = write_all(true);
     if (sync || trouble) {
       last_sync = Clock::now();
       if (!trouble) ballast_.take();
       tell(trouble);
     }
     if (!stopping_since) continue;
-    if (trouble && Clock::now() - *stopping_since >= settings_.patience) give_up(*trouble);
+    if (trouble && Clock::now() - *stopping_since >= settings_.patience) {
+      give_up(*trouble);
+      return;
+    }
     const std::lock_guard lock{mutex_};
-    if (jobs_.empty() ||
-        (!trouble && std::none_of(jobs_.begin(), jobs_.end(), [](const Job& job) { return job.ended; }))) {
+    if (jobs_.empty() || (!trouble && std::none_of(jobs_.begin(), jobs_.end(), [](const Job& job) {
+          return job.ended && !job.handed_over;
+        }))) {
       return;
     }
   }
@@ -145,7 +157,43 @@ void DiskWriter::run() {
 
 DiskWriter::ScanCounts DiskWriter::scan_counts() const {
   const std::lock_guard lock{mutex_};
-  return scans_;
+  ScanCounts scans = scans_;
+  for (const Job& job : jobs_) {
+    if (!job.handed_over || job.trouble) continue;
+    scans.recorded += job.journal->kept_scan_count();
+    scans.lost += job.journal->lost_scan_count();
+  }
+  return scans;
+}
+
+base::Result<std::filesystem::path> DiskWriter::journal_of(std::int64_t test) const {
+  const std::lock_guard lock{mutex_};
+  const auto job =
+      std::find_if(jobs_.begin(), jobs_.end(), [test](const Job& kept) { return kept.test == test; });
+  if (job == jobs_.end()) return base::failure("test {}: has no journal any more", test);
+  if (job->trouble) return base::failure("{}", *job->trouble);
+  return job->journal->path();
+}
+
+void DiskWriter::finished(std::int64_t test) {
+  const std::lock_guard lock{mutex_};
+  const auto job = std::find_if(jobs_.begin(), jobs_.end(),
+                                [test](const Job& kept) { return kept.test == test && kept.handed_over; });
+  if (job == jobs_.end()) return;
+  scans_.recorded += job->journal->kept_scan_count();
+  scans_.lost += job->journal->lost_scan_count();
+  jobs_.erase(job);
+}
+
+void DiskWriter::close_account() {
+  const bool away = folder_watch_.look().has_value();
+  const std::lock_guard lock{mutex_};
+  for (const Job& job : std::exchange(jobs_, {})) {
+    if (!job.handed_over) continue;
+    std::int64_t& count = away || job.journal->stay() ? scans_.unsaved : scans_.recorded;
+    count += job.journal->kept_scan_count();
+    scans_.lost += job.journal->lost_scan_count();
+  }
 }
 
 daq::LatencyHistogram DiskWriter::commit_time() const {
@@ -159,40 +207,64 @@ std::optional<std::string> DiskWriter::write_all(bool sync) {
     const std::lock_guard lock{mutex_};
     jobs.assign(jobs_.begin(), jobs_.end());
   }
-  for (Job& job : jobs) {
-    if (auto trouble = write(job, sync || job.ended)) return trouble;
-    if (!job.ended) continue;
-    job.journal->give_room_back();
-    const std::filesystem::path path = job.journal->path();
+  away_ = folder_watch_.look();
+  std::optional<std::string> trouble;
+  if (away_) trouble = away_->why;
+  for (const Job& job : jobs) {
+    // One that cannot be written holds up no other.
+    const std::optional<std::string> refused =
+        away_ ? away_->why : write(job, sync || (job.ended && !job.handed_over));
     {
       const std::lock_guard lock{mutex_};
-      jobs_.remove_if([&job](const Job& other) { return other.journal == job.journal; });
-      scans_.recorded += job.journal->kept_scan_count();
-      scans_.lost += job.journal->lost_scan_count();
+      for (Job& kept : jobs_) {
+        if (kept.journal == job.journal) kept.trouble = refused;
+      }
     }
-    job.journal.reset();  // With it goes the lock of the file, which the finaliser needs.
-    ended_(job.test, path, std::nullopt);
+    if (refused && !trouble) trouble = refused;
+    if (!refused && job.ended && !job.handed_over) hand_over(job);
   }
-  return std::nullopt;
+  return trouble;
+}
+
+void DiskWriter::hand_over(const Job& job) {
+  job.journal->hand_over();
+  const std::filesystem::path path = job.journal->path();
+  {
+    const std::lock_guard lock{mutex_};
+    for (Job& kept : jobs_) {
+      if (kept.journal == job.journal) kept.handed_over = true;
+    }
+  }
+  ended_(job.test, path, std::nullopt);
 }
 
 std::optional<std::string> DiskWriter::write(const Job& job, bool sync) {
+  if (job.handed_over && !sync) return job.trouble;
   if (!sync) return job.journal->write();
-  if (job.journal->settled()) return std::nullopt;
-  const Time began = Clock::now();
-  auto trouble = job.journal->settle();
-  const std::chrono::nanoseconds took = Clock::now() - began;
-  if (!trouble) {
-    const std::lock_guard lock{mutex_};
-    commit_time_.add(static_cast<double>(took.count()));
+  const std::filesystem::path before = job.journal->path();
+  const int anew = job.journal->anew_count();
+  std::optional<std::string> trouble;
+  if (job.journal->settled()) {
+    trouble = job.journal->stay();
+  } else {
+    const Time began = Clock::now();
+    trouble = job.journal->settle();
+    const std::chrono::nanoseconds took = Clock::now() - began;
+    if (!trouble) {
+      const std::lock_guard lock{mutex_};
+      commit_time_.add(static_cast<double>(took.count()));
+    }
   }
+  if (job.journal->anew_count() > anew && settings_.written_anew)
+    settings_.written_anew(job.test, before, job.journal->path());
   return trouble;
 }
 
 void DiskWriter::tell(std::optional<std::string> trouble) {
   DiskState state;
   state.trouble = std::move(trouble);
-  const auto room = room_s();
+  if (away_) state.to_do = away_->to_do;
+  const auto room = away_ ? std::nullopt : room_s();
   if (room) {
     const double unit_s = *room < kSecondsPerHour ? kSecondsPerMinute : kSecondsPerHour;
     state.room_h = std::floor(*room / unit_s) * unit_s / kSecondsPerHour;
@@ -211,16 +283,19 @@ void DiskWriter::tell(std::optional<std::string> trouble) {
 }
 
 void DiskWriter::give_up(const std::string& why) {
-  std::list<Job> jobs;
+  std::vector<Job> lost;
   {
     const std::lock_guard lock{mutex_};
-    jobs.swap(jobs_);
-    for (const Job& job : jobs) {
+    // What was handed over may still come back: close_account().
+    const auto is_lost = [](const Job& job) { return !job.handed_over; };
+    std::copy_if(jobs_.begin(), jobs_.end(), std::back_inserter(lost), is_lost);
+    jobs_.remove_if(is_lost);
+    for (const Job& job : lost) {
       scans_.unsaved += job.journal->kept_scan_count();
       scans_.lost += job.journal->lost_scan_count();
     }
   }
-  for (const Job& job : jobs) ended_(job.test, job.journal->path(), why);
+  for (const Job& job : lost) ended_(job.test, job.journal->path(), job.trouble.value_or(why));
 }
 
 }  // namespace stickslip::daemon

@@ -13,8 +13,10 @@
 #include <string>
 #include <thread>
 
+#include "core/base/result.hpp"
 #include "core/daq/latency_histogram.hpp"
 #include "core/record/patient_journal.hpp"
+#include "daemon/folder_watch.hpp"
 
 namespace stickslip::daemon {
 
@@ -30,6 +32,7 @@ inline constexpr double kOtherBytesPerSecond = 9000.0;
 /// How it is with the disk.
 struct DiskState {
   std::optional<std::string> trouble;  ///< Why something waits in memory; nothing if all is written.
+  std::string to_do;                   ///< Where the folder of the records is away: how it comes back.
   std::size_t waiting_size = 0;        ///< Bytes in memory then.
   /// For how long there is room at least, scanning all the time: whole hours, below one whole minutes.
   std::optional<double> room_h;
@@ -67,6 +70,10 @@ class DiskWriter {
     std::chrono::milliseconds retry_period{1000};
     std::chrono::milliseconds patience{30'000};  ///< With a disk that refuses, when all is to end.
     const record::FileCalls* calls = &record::system_calls();
+    /// A journal had gone from `before` and was written anew. Called on the disk thread; may not wait.
+    std::function<void(std::int64_t test, const std::filesystem::path& before,
+                       const std::filesystem::path& now)>
+        written_anew = {};
   };
   using Journal = std::shared_ptr<record::PatientJournal>;
 
@@ -87,8 +94,13 @@ class DiskWriter {
   void begin(std::int64_t test, Journal journal);
   /// Something was added to a journal.
   void wake();
-  /// Nothing will be added to it any more.
+  /// Nothing will be added to it any more. When it is durable it is told as ended, and watched until its
+  /// record is made.
   void end(const Journal& journal);
+  /// Where the journal of a test that has ended stands. Errors: kFailure where its path does not lead to it.
+  [[nodiscard]] base::Result<std::filesystem::path> journal_of(std::int64_t test) const;
+  /// The record of a test that has ended is made.
+  void finished(std::int64_t test);
   /// Bytes that the disk takes in each second of a test: journal and record.
   void set_load(double bytes_per_s) { load_bytes_per_s_ = bytes_per_s; }
   [[nodiscard]] DiskState state() const;
@@ -96,11 +108,12 @@ class DiskWriter {
   [[nodiscard]] std::size_t waiting_size() const;
   /// Times that the thread has come round: each second, unless a call of the disk does not return.
   [[nodiscard]] std::uint64_t rounds() const noexcept { return rounds_.load(std::memory_order_relaxed); }
-  /// Scans of the journals that have ended.
+  /// Scans of the journals that have ended. Those whose journal is not where it belongs are in none of them
+  /// until it is there again, or all has ended.
   struct ScanCounts {
-    std::int64_t recorded = 0;  ///< Durable.
+    std::int64_t recorded = 0;  ///< Durable, in records or in journals that wait to become one.
     std::int64_t lost = 0;      ///< Gaps for want of memory, in the same journals.
-    std::int64_t unsaved = 0;   ///< Of journals that the disk refused to the end.
+    std::int64_t unsaved = 0;   ///< Of journals that the disk refused, or that were gone, to the end.
   };
   [[nodiscard]] ScanCounts scan_counts() const;
   /// How long it took, each time, to write and sync what a journal held; what the disk refused is not in it.
@@ -111,12 +124,17 @@ class DiskWriter {
   /// Writes what can be written, ends the thread. What the disk refuses for too long is told as ended with a
   /// reason.
   void stop();
+  /// After stop(), when no more records are made: journals that are not where they belong are looked for once
+  /// more, and their scans counted as unsaved if they are gone.
+  void close_account();
 
  private:
   struct Job {
     std::int64_t test;
     Journal journal;
     bool ended = false;
+    bool handed_over = false;  ///< Its record is being made.
+    std::optional<std::string> trouble = {};
   };
   using Clock = std::chrono::steady_clock;
   using Time = Clock::time_point;
@@ -125,6 +143,7 @@ class DiskWriter {
   /// Writes all jobs, in order. \return why not.
   [[nodiscard]] std::optional<std::string> write_all(bool sync);
   [[nodiscard]] std::optional<std::string> write(const Job& job, bool sync);
+  void hand_over(const Job& job);
   void tell(std::optional<std::string> trouble);
   void give_up(const std::string& why);
 
@@ -132,6 +151,8 @@ class DiskWriter {
   Ended ended_;
   std::function<void(const DiskState&)> changed_;
   std::atomic<double> load_bytes_per_s_{0.0};
+  FolderWatch folder_watch_;
+  std::optional<FolderWatch::Away> away_;  ///< Disk thread.
   Ballast ballast_;
 
   mutable std::mutex mutex_;

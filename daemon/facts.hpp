@@ -36,7 +36,10 @@ class Facts {
   virtual void test_ended(const pipeline::TestEnd& /*end*/) {}
   virtual void file_published(std::int64_t /*test*/, const std::filesystem::path& /*file*/) {}
   virtual void recording_failed(std::int64_t /*test*/, std::string_view /*why*/) {}
-  /// The disk refuses; what comes waits in memory.
+  /// The journal of a test had gone from its place; it was written anew from what was open.
+  virtual void journal_written_anew(std::int64_t /*test*/, const std::filesystem::path& /*before*/,
+                                    const std::filesystem::path& /*now*/) {}
+  /// The disk refuses, or the folder of the records is away; what comes waits in memory.
   virtual void storage_waits(std::string_view /*why*/) {}
   /// All that waited is written.
   virtual void storage_resumed() {}

@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "core/record/finaliser.hpp"
@@ -54,6 +55,13 @@ class NoDescriptors {
   posix_spawn_file_actions_t actions_{};
 };
 
+/// Of the journal, after a finaliser that failed.
+std::string_view what_is_left(const std::filesystem::path& journal) {
+  std::error_code error;
+  if (std::filesystem::exists(journal, error)) return "the journal is kept";
+  return error ? "the journal cannot be looked at" : "the journal is not there any more";
+}
+
 }  // namespace
 
 std::filesystem::path record_of(const std::filesystem::path& journal) {
@@ -86,12 +94,12 @@ base::Result<std::filesystem::path> run_finaliser(const std::filesystem::path& p
     }
   }
   if (WIFSIGNALED(status)) {
-    return base::failure("{}: the finaliser was ended by signal {}; the journal is kept", journal_text,
-                         WTERMSIG(status));
+    return base::failure("{}: the finaliser was ended by signal {}; {}", journal_text, WTERMSIG(status),
+                         what_is_left(journal));
   }
   if (WEXITSTATUS(status) != 0) {
-    return base::failure("{}: the finaliser ended with status {}; the journal is kept", journal_text,
-                         WEXITSTATUS(status));
+    return base::failure("{}: the finaliser ended with status {}; {}", journal_text, WEXITSTATUS(status),
+                         what_is_left(journal));
   }
   return record_of(journal);
 }

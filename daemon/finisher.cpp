@@ -1,7 +1,7 @@
 #include "daemon/finisher.hpp"
 
 #include <algorithm>
-#include <system_error>
+#include <utility>
 
 #include "daemon/thread_name.hpp"
 
@@ -12,18 +12,19 @@ constexpr std::chrono::minutes kLongestPause{10};
 
 }  // namespace
 
-Finisher::Finisher(Finalise finalise, Done done, std::chrono::milliseconds first_retry)
+Finisher::Finisher(Finalise finalise, Done done, Where where, std::chrono::milliseconds first_retry)
     : finalise_(std::move(finalise)),
       done_(std::move(done)),
+      where_(std::move(where)),
       first_retry_(first_retry),
       thread_([this] { run(); }) {}
 
 Finisher::~Finisher() { stop(); }
 
-void Finisher::finish(std::int64_t test, std::filesystem::path journal) {
+void Finisher::finish(std::int64_t test) {
   {
     const std::lock_guard lock{mutex_};
-    jobs_.push_back({test, std::move(journal), {}, first_retry_, {}});
+    jobs_.push_back({test, {}, first_retry_, {}});
   }
   news_.notify_one();
 }
@@ -61,12 +62,11 @@ std::optional<Finisher::Job> Finisher::next() {
 void Finisher::run() {
   name_this_thread("finisher");
   while (std::optional<Job> job = next()) {
-    const base::Result<std::filesystem::path> file = finalise_(job->journal);
+    const base::Result<std::filesystem::path> file = where_(job->test).and_then(finalise_);
     const std::string refused = file ? std::string{} : file.error().message;
     // The same refusal is told once.
     if (file || refused != job->refused) done_(job->test, file);
-    std::error_code ignored;
-    if (file || job->is_last || !std::filesystem::exists(job->journal, ignored)) continue;
+    if (file || job->is_last) continue;
     job->refused = refused;
     job->due = std::chrono::steady_clock::now() + job->pause;
     job->pause = std::min<std::chrono::milliseconds>(2 * job->pause, kLongestPause);

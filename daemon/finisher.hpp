@@ -21,24 +21,28 @@ class Finisher {
  public:
   using Done = std::function<void(std::int64_t test, const base::Result<std::filesystem::path>& file)>;
 
+  /// Where the journal of a test stands now, or why it does not.
+  using Where = std::function<base::Result<std::filesystem::path>(std::int64_t test)>;
+
+  /// \param where  asked on the thread before each attempt; a journal that is away is waited for.
   /// \param finalise  called on the thread. \param done  too, after each attempt that gave something new.
   /// \param first_retry  after a failure; then twice as long each time.
-  Finisher(Finalise finalise, Done done, std::chrono::milliseconds first_retry = std::chrono::seconds{5});
+  Finisher(Finalise finalise, Done done, Where where,
+           std::chrono::milliseconds first_retry = std::chrono::seconds{5});
   ~Finisher();
   Finisher(const Finisher&) = delete;
   Finisher& operator=(const Finisher&) = delete;
 
   /// Any thread.
-  void finish(std::int64_t test, std::filesystem::path journal);
+  void finish(std::int64_t test);
 
-  /// Tries each of those that are left once more, ends the thread.
+  /// Tries each of those that are left once more, ends the thread. What could not be made is told.
   void stop();
 
  private:
   using Time = std::chrono::steady_clock::time_point;
   struct Job {
     std::int64_t test;
-    std::filesystem::path journal;
     Time due;
     std::chrono::milliseconds pause;
     std::string refused;   ///< What was told last.
@@ -51,6 +55,7 @@ class Finisher {
 
   Finalise finalise_;
   Done done_;
+  Where where_;
   std::chrono::milliseconds first_retry_;
   std::mutex mutex_;
   std::condition_variable news_;

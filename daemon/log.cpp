@@ -76,15 +76,24 @@ class Log final : public Facts {
           .message = fmt::format("test {} is not recorded whole: {}", test, why),
           .test = test});
   }
+  void journal_written_anew(std::int64_t test, const std::filesystem::path& before,
+                            const std::filesystem::path& now) override {
+    tell({.level = LogLevel::kWarning,
+          .event = "journal-written-anew",
+          .message =
+              fmt::format("test {}: the journal was removed, renamed or replaced while it was open: {}; all "
+                          "of it was written anew: {}",
+                          test, before.string(), now.string()),
+          .test = test,
+          .record = now.string()});
+  }
   void storage_waits(std::string_view why) override {
-    tell({.level = LogLevel::kError,
-          .event = "storage-waiting",
-          .message = fmt::format("the disk refuses, scans wait in memory: {}", why)});
+    tell({.level = LogLevel::kError, .event = "storage-waiting", .message = std::string{why}});
   }
   void storage_resumed() override {
     tell({.level = LogLevel::kWarning,
           .event = "storage-resumed",
-          .message = "the disk takes again: all that waited is written"});
+          .message = "storage: the disk takes again: all that waited is written"});
   }
   void storage_short(std::string_view why) override {
     tell({.level = LogLevel::kError, .event = "storage-short", .message = std::string{why}});

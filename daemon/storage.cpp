@@ -13,6 +13,7 @@
 
 #include "core/record/iso_time.hpp"
 #include "core/record/journal.hpp"
+#include "core/record/journal_name.hpp"
 #include "core/record/words.hpp"
 #include "daemon/finaliser.hpp"
 #include "daemon/record_name.hpp"
@@ -63,21 +64,12 @@ std::filesystem::path dated(const StorageSettings& settings, std::time_t seconds
   return settings.folder;
 }
 
-/// A number is added while something of that name exists.
-std::filesystem::path free_journal_path(const StorageSettings& settings, const pipeline::TestStart& start,
-                                        const std::filesystem::path& latest) {
+std::filesystem::path journal_path(const StorageSettings& settings, const pipeline::TestStart& start,
+                                   const std::filesystem::path& latest) {
   const std::time_t seconds = start.stamp.realtime_ns / 1'000'000'000;
   const std::filesystem::path folder = dated(settings, seconds);
-  const std::string stem = record_stem(seconds, start.number);
-  std::error_code error;
-  for (int attempt = 1;; ++attempt) {
-    const std::string name = attempt == 1 ? stem : fmt::format("{}-{}", stem, attempt);
-    std::filesystem::path journal = folder / (name + std::string{record::kJournalExtension});
-    if (!std::filesystem::exists(journal, error) && !std::filesystem::exists(record_of(journal), error) &&
-        journal != latest) {
-      return journal;
-    }
-  }
+  const std::string name = record_stem(seconds, start.number) + std::string{record::kJournalExtension};
+  return record::free_journal_path(folder / name, latest);
 }
 
 }  // namespace
@@ -90,12 +82,20 @@ Storage::Storage(StorageSettings settings, Finalise finalise, TestLog& tests, Fa
       queue_(kQueueCapacity),
       changed_(std::move(changed)),
       made_(std::move(made)),
-      finisher_(std::move(finalise),
-                [this](std::int64_t test, const base::Result<std::filesystem::path>& file) {
-                  record_made(test, file);
-                }),
+      finisher_(
+          std::move(finalise),
+          [this](std::int64_t test, const base::Result<std::filesystem::path>& file) {
+            if (file) disk_.finished(test);
+            record_made(test, file);
+          },
+          [this](std::int64_t test) { return disk_.journal_of(test); }),
       disk_(
-          {.folder = settings_.folder, .sync_period = settings_.sync_period, .calls = settings_.calls},
+          {.folder = settings_.folder,
+           .sync_period = settings_.sync_period,
+           .calls = settings_.calls,
+           .written_anew =
+               [this](std::int64_t test, const std::filesystem::path& before,
+                      const std::filesystem::path& now) { facts_.journal_written_anew(test, before, now); }},
           [this](std::int64_t test, const std::filesystem::path& journal,
                  const std::optional<std::string>& why_not) { journal_ended(test, journal, why_not); },
           [this](const DiskState& state) { disk_changed(state); }),
@@ -124,6 +124,7 @@ void Storage::stop() {
   thread_.join();
   disk_.stop();
   finisher_.stop();
+  disk_.close_account();
 }
 
 // Processing thread.
@@ -249,7 +250,7 @@ void Storage::handle(const Began& message) {
   const auto memory = static_cast<std::size_t>(kLongestWait_s *
                                                (rate_Hz * encoded_size(header.board) + kOtherBytesPerSecond));
   const std::size_t others = disk_.waiting_size();
-  latest_path_ = free_journal_path(settings_, message.start, latest_path_);
+  latest_path_ = journal_path(settings_, message.start, latest_path_);
   journal_ = std::make_shared<record::PatientJournal>(
       latest_path_, std::move(header), memory > others ? memory - others : 0, *settings_.calls);
   disk_.begin(number_, journal_);
@@ -309,7 +310,7 @@ void Storage::handle(const Ended& message) {
   record::EndRecord end = *message.end;
   end.end_realtime_ns = pending_stamp_.realtime_ns;
   if (message.force) append_force(*message.force);
-  if (end_told_) end_told_(begun_, end, record_of(latest_path_));
+  if (end_told_) end_told_(begun_, end, record_of(journal_->path()));
   journal_->add_end(std::move(end));
   disk_.end(std::exchange(journal_, nullptr));
 }
@@ -354,22 +355,23 @@ void Storage::append_force(friction::TrueForce& force) {
 
 // Disk thread.
 
-void Storage::journal_ended(std::int64_t test, const std::filesystem::path& journal,
+void Storage::journal_ended(std::int64_t test, const std::filesystem::path& /*journal*/,
                             const std::optional<std::string>& why_not) {
-  if (!why_not) {
-    finisher_.finish(test, journal);
-    return;
+  if (why_not) {
+    record_made(test, base::failure("{}", *why_not));
+  } else {
+    finisher_.finish(test);
   }
-  record_made(test, base::failure("{}", *why_not));
 }
 
 void Storage::disk_changed(const DiskState& state) {
-  if (state.trouble && !waits_) facts_.storage_waits(*state.trouble);
+  const std::string why = why_no_test(storage_state(state, settings_.folder)).value_or("");
+  // Another remedy is another trouble.
+  if (state.trouble && (!waits_ || state.to_do != waits_for_)) facts_.storage_waits(why);
   if (!state.trouble && waits_) facts_.storage_resumed();
   waits_ = state.trouble.has_value();
-  if (state.is_short && !is_short_) {
-    facts_.storage_short(why_no_test(storage_state(state, settings_.folder)).value_or(""));
-  }
+  waits_for_ = state.to_do;
+  if (state.is_short && !is_short_) facts_.storage_short(why);
   if (!state.is_short && is_short_) facts_.storage_has_room();
   is_short_ = state.is_short;
   if (changed_) changed_();

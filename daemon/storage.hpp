@@ -166,6 +166,7 @@ class Storage final : public pipeline::Sink {
   std::function<void()> changed_;
   Made made_;
   bool waits_ = false;  ///< Disk thread: as it was told last, as the next.
+  std::string waits_for_;
   bool is_short_ = false;
   Finisher finisher_;  ///< Outlives the disk thread, which hands over to it.
   DiskWriter disk_;

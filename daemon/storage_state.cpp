@@ -12,13 +12,14 @@ StorageState storage_state(const DiskState& disk, const std::filesystem::path& f
   if (disk.trouble) {
     state.kind = StorageState::Kind::kWaiting;
     state.waiting_size = disk.waiting_size;
-    state.why =
-        fmt::format("the disk refuses, {} kB wait in memory: {}", disk.waiting_size / 1000, *disk.trouble);
-    state.to_do = fmt::format(
-        "make room in {} or mend its disk; memory holds ten minutes of scans, and they are written as soon "
-        "as the "
-        "disk takes them",
-        folder.string());
+    const bool is_away = !disk.to_do.empty();
+    state.why = fmt::format("{}, {} kB wait in memory: {}",
+                            is_away ? "the folder of the records is away" : "the disk refuses",
+                            disk.waiting_size / 1000, *disk.trouble);
+    state.to_do =
+        fmt::format("{}; memory holds ten minutes of scans, and they are written as soon as {}",
+                    is_away ? disk.to_do : fmt::format("make room in {} or mend its disk", folder.string()),
+                    is_away ? "it is back" : "the disk takes them");
   } else if (disk.is_short) {
     constexpr double kMinutesPerHour = 60.0;
     state.kind = StorageState::Kind::kShort;

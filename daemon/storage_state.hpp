@@ -17,7 +17,7 @@ struct StorageState {
   enum class Kind {
     kOk,
     kShort,    ///< There is room for less than kLeastRoom_s of tests.
-    kWaiting,  ///< The disk refuses; scans wait in memory.
+    kWaiting,  ///< The disk refuses, or the folder of the records is away; scans wait in memory.
   };
   Kind kind = Kind::kOk;
   std::optional<double>

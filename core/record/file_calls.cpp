@@ -23,6 +23,8 @@ class SystemCalls final : public FileCalls {
     return ::pread(file, bytes, size, position);
   }
   int flock(int file, int operation) const override { return ::flock(file, operation); }
+  int fstat(int file, struct ::stat* found) const override { return ::fstat(file, found); }
+  int lstat(const char* path, struct ::stat* found) const override { return ::lstat(path, found); }
   int ftruncate(int file, off_t size) const override { return ::ftruncate(file, size); }
   int reserve(int file, off_t position, off_t size) const override {
     return ::fallocate(file, FALLOC_FL_KEEP_SIZE, position, size);

@@ -4,6 +4,7 @@
 /// writes journals and records goes through it, HDF5 too (hdf_driver.hpp).
 #pragma once
 
+#include <sys/stat.h>
 #include <sys/types.h>
 
 #include <cstddef>
@@ -26,6 +27,9 @@ class FileCalls {
   virtual int fdatasync(int file) const = 0;
   virtual ssize_t pread(int file, void* bytes, std::size_t size, off_t position) const = 0;
   virtual int flock(int file, int operation) const = 0;
+  /// Of what is open, and of what stands at a path: a link itself.
+  virtual int fstat(int file, struct ::stat* found) const = 0;
+  virtual int lstat(const char* path, struct ::stat* found) const = 0;
   /// Renames without replacing (RENAME_NOREPLACE): EEXIST if `to` is there, EINVAL where the file system does
   /// not know it. See rename_to_new() of file.hpp, which works there too.
   virtual int rename_to_new(const char* from, const char* to) const = 0;

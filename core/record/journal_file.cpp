@@ -1,8 +1,12 @@
 #include "core/record/journal_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <vector>
 
 #include "core/record/journal_care.hpp"
 
@@ -12,16 +16,17 @@ namespace {
 constexpr mode_t kFileMode = 0644;
 /// Room asked for ahead: 20 minutes at 350 scans/s. Measured: it can be used in full on a full disk.
 constexpr std::uint64_t kReserve = std::uint64_t{1} << 20U;
+constexpr std::uint64_t kCopyPiece = std::uint64_t{1} << 20U;
 
 }  // namespace
 
-base::Result<JournalFile> JournalFile::create(const std::filesystem::path& path,
-                                              std::span<const std::byte> header, const FileCalls& calls) {
-  Descriptor opened{calls.open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, kFileMode)};
+base::Result<JournalFile> JournalFile::make(const std::filesystem::path& path, const FileCalls& calls,
+                                            const std::function<base::Result<void>(JournalFile&)>& fill) {
+  Descriptor opened{calls.open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, kFileMode)};
   if (!opened.open()) return base::failure("{}: cannot be created: {}", path.string(), system_message(errno));
   if (!lock_journal(opened.get(), calls)) return base::failure("{}: is another process's", path.string());
   JournalFile file{path, std::move(opened), calls};
-  auto written = file.append(header);
+  auto written = fill(file);
   if (written && calls.fsync(file.file_.get()) != 0)
     written = base::failure("{}: cannot be made durable: {}", path.string(), system_message(errno));
   if (written) written = sync_folder(folder_of(path), calls);
@@ -31,6 +36,42 @@ base::Result<JournalFile> JournalFile::create(const std::filesystem::path& path,
   }
   return file;
 }
+
+base::Result<JournalFile> JournalFile::create(const std::filesystem::path& path,
+                                              std::span<const std::byte> header, const FileCalls& calls) {
+  return make(path, calls, [header](JournalFile& file) { return file.append(header); });
+}
+
+base::Result<JournalFile> JournalFile::copy_to(const std::filesystem::path& path) const {
+  return make(path, *calls_, [this](JournalFile& copy) -> base::Result<void> {
+    std::vector<std::byte> piece;
+    while (copy.size_ < size_) {
+      piece.resize(std::min<std::uint64_t>(kCopyPiece, size_ - copy.size_));
+      const ssize_t got =
+          calls_->pread(file_.get(), piece.data(), piece.size(), static_cast<off_t>(copy.size_));
+      if (got < 0 && errno == EINTR) continue;
+      if (got <= 0) {
+        return base::failure("{}: is gone, and cannot be read back at byte {}: {}", path_.string(),
+                             copy.size_, got < 0 ? system_message(errno) : "it ends there");
+      }
+      piece.resize(static_cast<std::size_t>(got));
+      if (auto added = copy.append(piece); !added) return added;
+    }
+    return {};
+  });
+}
+
+JournalFile::Place JournalFile::place() const {
+  struct stat own {};
+  struct stat found {};
+  if (calls_->fstat(file_.get(), &own) != 0) return Place::kUnknown;
+  if (calls_->lstat(path_.c_str(), &found) == 0)
+    return own.st_nlink > 0 && own.st_dev == found.st_dev && own.st_ino == found.st_ino ? Place::kItself
+                                                                                        : Place::kAnother;
+  return errno == ENOENT ? Place::kNothing : Place::kUnknown;
+}
+
+void JournalFile::unlock() { static_cast<void>(calls_->flock(file_.get(), LOCK_UN)); }
 
 base::Result<void> JournalFile::append(std::span<const std::byte> entries) {
   if (auto cut_back = cut(); !cut_back) return cut_back;

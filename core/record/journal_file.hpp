@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 
@@ -22,6 +23,22 @@ class JournalFile {
   [[nodiscard]] static base::Result<JournalFile> create(const std::filesystem::path& path,
                                                         std::span<const std::byte> header,
                                                         const FileCalls& calls);
+
+  /// What stands at the path of the file.
+  enum class Place {
+    kItself,
+    kNothing,  ///< Removed, renamed, or its folder was.
+    kAnother,  ///< Another file.
+    kUnknown,  ///< It cannot be looked at: errno says why.
+  };
+  [[nodiscard]] Place place() const;
+
+  /// Makes another file with the same entries, read from what is open: what stands at the path does not
+  /// matter. As create() otherwise. Errors: kFailure; this file stays what it is.
+  [[nodiscard]] base::Result<JournalFile> copy_to(const std::filesystem::path& path) const;
+
+  /// Gives the lock back: others may finish the journal.
+  void unlock();
 
   /// Adds whole entries, or none: then the file is cut back to what it was, now or before the next attempt,
   /// and the same may be tried again.
@@ -44,6 +61,10 @@ class JournalFile {
  private:
   JournalFile(std::filesystem::path path, Descriptor file, const FileCalls& calls)
       : path_(std::move(path)), file_(std::move(file)), calls_(&calls) {}
+  /// A new file, filled, durable; or none.
+  [[nodiscard]] static base::Result<JournalFile> make(
+      const std::filesystem::path& path, const FileCalls& calls,
+      const std::function<base::Result<void>(JournalFile&)>& fill);
   [[nodiscard]] base::Result<void> cut();
   void reserve(std::uint64_t size);
 

@@ -6,7 +6,9 @@
 #include <cstring>
 #include <utility>
 
+#include "core/record/journal.hpp"
 #include "core/record/journal_care.hpp"
+#include "core/record/journal_name.hpp"
 
 namespace stickslip::record {
 namespace {
@@ -44,7 +46,7 @@ const RecordHeader& with_uuid(RecordHeader& header) {
 
 PatientJournal::PatientJournal(std::filesystem::path path, RecordHeader header, std::size_t memory,
                                const FileCalls& calls)
-    : path_(std::move(path)), calls_(&calls), memory_(memory), builder_(with_uuid(header)) {
+    : calls_(&calls), memory_(memory), builder_(with_uuid(header)), path_(std::move(path)) {
   const EntryBuilder::Bytes entry = builder_.header(header);
   header_.assign(entry.begin(), entry.end());
 }
@@ -141,12 +143,26 @@ std::size_t PatientJournal::waiting_size() const {
   return waiting_.size() + in_hand_;
 }
 
+std::filesystem::path PatientJournal::path() const {
+  const std::lock_guard lock{mutex_};
+  return path_;
+}
+
 // ---- writing ------------------------------------------------------------------------------
+
+void PatientJournal::move_to(const std::filesystem::path& path) {
+  const std::lock_guard lock{mutex_};
+  path_ = path;
+}
 
 std::optional<std::string> PatientJournal::open() {
   if (file_) return std::nullopt;
   if (auto made = make_folders(path_.parent_path(), *calls_); !made) return made.error().message;
-  if (is_own_leftover(path_, header_)) calls_->unlink(path_.c_str());
+  if (is_own_leftover(path_, header_)) {
+    calls_->unlink(path_.c_str());
+  } else {
+    move_to(free_journal_path(path_));
+  }
   auto file = JournalFile::create(path_, header_, *calls_);
   if (!file) return file.error().message;
   file_.emplace(*std::move(file));
@@ -188,6 +204,7 @@ std::optional<std::string> PatientJournal::write() {
 }
 
 std::optional<std::string> PatientJournal::settle() {
+  if (auto astray = stay()) return astray;
   std::optional<std::string> trouble = write();
   if (!file_ || unsynced_.empty()) return trouble;
   if (const auto synced = file_->sync()) {
@@ -205,8 +222,47 @@ std::optional<std::string> PatientJournal::settle() {
   return trouble;
 }
 
+std::optional<std::string> PatientJournal::stay() {
+  if (!file_) return std::nullopt;
+  switch (file_->place()) {
+    case JournalFile::Place::kItself:
+      return std::nullopt;
+    case JournalFile::Place::kUnknown:
+      return fmt::format("{}: cannot be looked at: {}", path_.string(), system_message(errno));
+    case JournalFile::Place::kNothing:
+    case JournalFile::Place::kAnother:
+      break;
+  }
+  // Who finishes a journal removes it when its record has its name.
+  std::error_code ignored;
+  if (handed_over_ &&
+      std::filesystem::exists(std::filesystem::path{path_}.replace_extension(kRecordExtension), ignored))
+    return std::nullopt;
+  return write_anew();
+}
+
+std::optional<std::string> PatientJournal::write_anew() {
+  if (auto made = make_folders(path_.parent_path(), *calls_); !made) return made.error().message;
+  const std::filesystem::path path = free_journal_path(path_);
+  auto copy = file_->copy_to(path);
+  if (!copy) return copy.error().message;
+  file_.emplace(*std::move(copy));
+  synced_size_ = file_->size();
+  unsynced_.clear();
+  move_to(path);
+  ++anew_count_;
+  if (handed_over_) hand_over();
+  return std::nullopt;
+}
+
 void PatientJournal::give_room_back() {
   if (file_) file_->give_room_back();
+}
+
+void PatientJournal::hand_over() {
+  handed_over_ = true;
+  give_room_back();
+  if (file_) file_->unlock();
 }
 
 }  // namespace stickslip::record

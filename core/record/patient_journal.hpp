@@ -7,6 +7,9 @@
 ///     if (const auto trouble = journal.settle()) …        // disk thread: onto the disk and synced, or why
 ///     not
 ///
+/// A journal whose path does not lead to it any more, because somebody removed or renamed it or its folder,
+/// is written anew from the open file.
+///
 /// What does not fit into the memory is lost: scans become a gap with the cause storage-full.
 #pragma once
 
@@ -27,7 +30,8 @@ namespace stickslip::record {
 /// Two threads: one adds, one writes.
 class PatientJournal {
  public:
-  /// \param path  made with its folders when it is first written; must not exist then.
+  /// \param path  made with its folders when it is first written; if something stands there then, under
+  /// another name (journal_name.hpp).
   /// \param memory  bytes of entries that may wait. \param calls  outlive the journal.
   PatientJournal(std::filesystem::path path, RecordHeader header, std::size_t memory,
                  const FileCalls& calls = system_calls());
@@ -54,17 +58,25 @@ class PatientJournal {
   /// Bytes that are not on the disk yet.
   [[nodiscard]] std::size_t waiting_size() const;
 
+  /// Where it stands or will stand; another name once something else stood at its path.
+  [[nodiscard]] std::filesystem::path path() const;
+
   // The thread that writes. \return why not all could be done; what was refused is kept.
 
   [[nodiscard]] std::optional<std::string> write();
   /// The same, and makes it durable. What an fsync refused is written again.
   [[nodiscard]] std::optional<std::string> settle();
+  /// Sees to it that the path leads to the journal: one that is gone is written anew, beside what stands
+  /// there now. Of a journal that was handed over, its record stands for it.
+  [[nodiscard]] std::optional<std::string> stay();
+  /// Times that it was written anew.
+  [[nodiscard]] int anew_count() const noexcept { return anew_count_; }
   /// Whether settle() has nothing to do. A journal that is not on the disk yet has its header to write.
   [[nodiscard]] bool settled() const { return file_ && unsynced_.empty() && waiting_size() == 0; }
   /// After the last entry: the room that was reserved behind the end is free for others, such as the record.
   void give_room_back();
-
-  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  /// After it: others may finish the journal. It stays open, to be written anew if it vanishes before.
+  void hand_over();
 
  private:
   struct LostScans {
@@ -77,8 +89,9 @@ class PatientJournal {
   bool keep_if_room(EntryBuilder::Bytes entry);
   void tell_lost();
   [[nodiscard]] std::optional<std::string> open();
+  [[nodiscard]] std::optional<std::string> write_anew();
+  void move_to(const std::filesystem::path& path);
 
-  std::filesystem::path path_;
   const FileCalls* calls_;
   std::size_t memory_;
 
@@ -88,6 +101,7 @@ class PatientJournal {
 
   mutable std::mutex mutex_;  ///< Of the members up to the next comment.
   mutable std::condition_variable taken_;
+  std::filesystem::path path_;
   std::vector<std::byte> waiting_;
   std::size_t in_hand_ = 0;  ///< Bytes taken out to be written.
   std::int64_t kept_count_ = 0;
@@ -98,6 +112,8 @@ class PatientJournal {
   std::optional<JournalFile> file_;
   std::vector<std::byte> unsynced_;  ///< Written since the last sync that succeeded.
   std::uint64_t synced_size_ = 0;
+  int anew_count_ = 0;
+  bool handed_over_ = false;
 };
 
 }  // namespace stickslip::record

@@ -57,6 +57,8 @@ class ForwardingCalls : public record::FileCalls {
     return system().pread(file, bytes, size, position);
   }
   int flock(int file, int operation) const override { return system().flock(file, operation); }
+  int fstat(int file, struct ::stat* found) const override { return system().fstat(file, found); }
+  int lstat(const char* path, struct ::stat* found) const override { return system().lstat(path, found); }
   int rename(const char* from, const char* to) const override { return system().rename(from, to); }
   int link(const char* from, const char* to) const override { return system().link(from, to); }
   int unlink(const char* path) const override { return system().unlink(path); }
