@@ -1,0 +1,379 @@
+// The folder of the records, or a journal in it, vanishes while tests are recorded.
+
+#include <gmock/gmock.h>
+
+#include <condition_variable>
+#include <fstream>
+#include <mutex>
+#include <thread>
+
+#include "core/record/finaliser.hpp"
+#include "core/record/journal.hpp"
+#include "core/record/reader.hpp"
+#include "daemon/folder_watch.hpp"
+#include "daemon/storage.hpp"
+#include "tests/support/faulty_disk.hpp"
+#include "tests/support/moving_disk.hpp"
+#include "tests/support/record_samples.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+using test::MovingDisk;
+using test::TemporaryFolder;
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+constexpr int kOtherDevice = 1000;
+
+/// Things that happen, in order, and a way to wait for them.
+class Told final : public Facts {
+ public:
+  void storage_waits(std::string_view why) override { add(std::string{why}); }
+  void storage_resumed() override { add("resumed"); }
+  void recording_failed(std::int64_t test, std::string_view why) override {
+    add(fmt::format("test {} failed: {}", test, why));
+  }
+  void journal_written_anew(std::int64_t test, const fs::path& before, const fs::path& now) override {
+    add(fmt::format("test {} anew: {} {}", test, before.filename().string(), now.filename().string()));
+  }
+  void file_published(std::int64_t test, const fs::path& file) override {
+    add(fmt::format("test {}: {}", test, file.string()));
+  }
+
+  void add(std::string text) {
+    const std::lock_guard lock{mutex_};
+    told_.push_back(std::move(text));
+    news_.notify_all();
+  }
+  /// \return the text that begins so.
+  std::string wait_for(const std::string& start) {
+    std::unique_lock lock{mutex_};
+    const auto begins = [&](const std::string& text) { return text.starts_with(start); };
+    news_.wait(lock, [&] { return std::any_of(told_.begin(), told_.end(), begins); });
+    return *std::find_if(told_.begin(), told_.end(), begins);
+  }
+  [[nodiscard]] std::vector<std::string> all() {
+    const std::lock_guard lock{mutex_};
+    return told_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable news_;
+  std::vector<std::string> told_;
+};
+
+// ---- the watch ----------------------------------------------------------------------------
+
+class FolderWatched : public testing::Test {
+ protected:
+  FolderWatched() { fs::create_directories(records_); }
+
+  const TemporaryFolder folder_;
+  const fs::path records_ = folder_ / "disk" / "records";
+  MovingDisk disk_;
+};
+
+TEST_F(FolderWatched, OneThatIsMissingOnItsOwnFileSystemMayBeMadeAgain) {
+  FolderWatch watch{records_, disk_};
+  EXPECT_FALSE(watch.look());
+  fs::remove_all(folder_ / "disk");
+  EXPECT_FALSE(watch.look());
+}
+
+TEST_F(FolderWatched, OneBelowAMountThatWentAwayMayNot) {
+  disk_.mount(folder_ / "disk", kOtherDevice);
+  FolderWatch watch{records_, disk_};
+  EXPECT_FALSE(watch.look());
+  disk_.unmount();
+  const auto away = watch.look();
+  ASSERT_TRUE(away);
+  EXPECT_EQ(away->why, records_.string() + ": its file system is not mounted any more");
+  EXPECT_EQ(away->to_do, fmt::format("mount the file system of {} again", records_.string()));
+  fs::remove_all(folder_ / "disk");
+  EXPECT_TRUE(watch.look());
+  fs::create_directories(folder_ / "disk");
+  EXPECT_TRUE(watch.look());
+  disk_.mount(folder_ / "disk", kOtherDevice);
+  EXPECT_FALSE(watch.look());
+}
+
+// A disk that was plugged out and in again has another number, and the remedy was followed.
+TEST_F(FolderWatched, AnotherFileSystemThatIsMountedInItsPlaceIsAsGood) {
+  disk_.mount(folder_ / "disk", kOtherDevice);
+  FolderWatch watch{records_, disk_};
+  disk_.mount(folder_ / "disk", kOtherDevice + 1);
+  EXPECT_FALSE(watch.look());
+  disk_.unmount();
+  EXPECT_TRUE(watch.look());
+}
+
+TEST_F(FolderWatched, AFileSystemThatIsMountedLateIsAsGood) {
+  FolderWatch watch{records_, disk_};
+  disk_.mount(folder_ / "disk", kOtherDevice);
+  EXPECT_FALSE(watch.look());
+  disk_.unmount();
+  EXPECT_TRUE(watch.look());
+}
+
+TEST_F(FolderWatched, OneThatCannotBeLookedAtIsAway) {
+  FolderWatch watch{records_, disk_};
+  for (const int error : {EACCES, ESTALE, EIO, ENOTDIR}) {
+    disk_.hide(folder_ / "disk", error);
+    const auto away = watch.look();
+    ASSERT_TRUE(away) << error;
+    EXPECT_THAT(away->why, testing::HasSubstr(std::strerror(error)));
+  }
+  disk_.hide({}, 0);
+  EXPECT_FALSE(watch.look());
+  fs::remove_all(records_);
+  std::ofstream{records_} << "a file";
+  EXPECT_TRUE(watch.look());
+}
+
+// ---- the whole storage --------------------------------------------------------------------
+
+class StorageAstray : public testing::Test {
+ protected:
+  StorageAstray() { fs::create_directories(records_); }
+
+  void open(Finalise finalise = [](const fs::path& journal) { return record::finalise(journal); }) {
+    record::RecordHeader header = test::sample_header();
+    header.uuid.clear();
+    header.board.second.reset();
+    storage_.emplace(StorageSettings{.folder = records_, .calls = &disk_, .sync_period = 1ms},
+                     std::move(finalise), tests_, told_);
+    storage_->use(std::move(header), nullptr);
+  }
+  void begin(std::int64_t number) {
+    storage_->test_began({number, next_, next_, {0, 1'795'265'582'000'000'000, true}, nullptr});
+  }
+  void feed(std::int64_t count) {
+    storage_->scans(next_, std::vector<double>(static_cast<std::size_t>(count), 7.0), {}, {});
+    next_ += count;
+  }
+  void end(std::int64_t number) {
+    pipeline::TestEnd ended;
+    ended.number = number;
+    ended.end = next_;
+    ended.results = record::absent_results("not analysed");
+    storage_->test_ended(ended);
+  }
+  /// Once the journal that was begun is in the folder.
+  fs::path journal() {
+    for (;;) {
+      for (const auto& entry : fs::directory_iterator{records_}) {
+        if (entry.path().extension() == record::kJournalExtension) return entry.path();
+      }
+      std::this_thread::yield();
+    }
+  }
+  [[nodiscard]] static std::size_t scans_in(const fs::path& folder) {
+    std::size_t scans = 0;
+    for (const auto& entry : fs::directory_iterator{folder}) {
+      if (entry.path().extension() != record::kRecordExtension) continue;
+      const auto read = record::read_record(entry.path());
+      EXPECT_TRUE(read) << entry.path();
+      if (read) scans += read->scan.size();
+    }
+    return scans;
+  }
+  void expect_all_recorded() {
+    EXPECT_EQ(scans_in(records_), static_cast<std::size_t>(next_));
+    EXPECT_EQ(storage_->scan_counts().recorded, next_);
+    EXPECT_EQ(storage_->scan_counts().unsaved, 0);
+  }
+
+  const TemporaryFolder folder_;
+  const fs::path records_ = folder_ / "disk" / "records";
+  MovingDisk disk_;
+  TestLog tests_;
+  Told told_;
+  std::optional<Storage> storage_;
+  daq::ScanIndex next_ = 0;
+};
+
+TEST_F(StorageAstray, AJournalThatIsRemovedInMidTestIsToldAndWrittenAnew) {
+  open();
+  begin(1);
+  feed(350);
+  const fs::path was = journal();
+  fs::remove(was);
+  told_.wait_for("test 1 anew: ");
+  feed(350);
+  end(1);
+  storage_->stop();
+  expect_all_recorded();
+}
+
+TEST_F(StorageAstray, AFolderThatIsRemovedInMidTestIsMadeAgain) {
+  open();
+  begin(1);
+  feed(350);
+  static_cast<void>(journal());
+  fs::rename(folder_ / "disk", folder_ / "elsewhere");
+  told_.wait_for("test 1 anew: ");
+  feed(350);
+  end(1);
+  storage_->stop();
+  expect_all_recorded();
+}
+
+TEST_F(StorageAstray, NothingIsWrittenBelowAMountThatWentAway) {
+  disk_.mount(folder_ / "disk", kOtherDevice);
+  open();
+  begin(1);
+  feed(350);
+  static_cast<void>(journal());
+  // Its file system goes, with all that is on it; what lay below the mount point is seen.
+  disk_.hide(folder_ / "disk", ESTALE);
+  told_.wait_for("storage waiting: the folder of the records is away, ");
+  fs::rename(folder_ / "disk", folder_ / "unmounted");
+  fs::create_directories(records_);
+  disk_.unmount();
+  disk_.hide({}, 0);
+  while (!storage_->state().why.ends_with("not mounted any more")) std::this_thread::yield();
+  EXPECT_EQ(storage_->state().kind, StorageState::Kind::kWaiting);
+  EXPECT_THAT(storage_->state().to_do, testing::StartsWith("mount the file system of "));
+  feed(350);
+  end(1);
+  // Later tests do not go below the mount point either.
+  begin(2);
+  feed(350);
+  end(2);
+  while (storage_->state().waiting_size < 1400) std::this_thread::yield();
+  EXPECT_TRUE(fs::is_empty(records_));
+  EXPECT_EQ(storage_->scan_counts().recorded, 0);
+  fs::remove_all(folder_ / "disk");
+  fs::rename(folder_ / "unmounted", folder_ / "disk");
+  disk_.mount(folder_ / "disk", kOtherDevice);
+  told_.wait_for("resumed");
+  told_.wait_for("test 2: ");
+  storage_->stop();
+  EXPECT_THAT(told_.all(), testing::Not(testing::Contains(testing::HasSubstr("anew"))));
+  expect_all_recorded();
+}
+
+// While the finaliser waits, the journal is watched as before.
+TEST_F(StorageAstray, AJournalThatVanishesBeforeItsRecordIsMadeComesBack) {
+  std::atomic<bool> refuses{true};
+  open([&](const fs::path& journal) -> base::Result<fs::path> {
+    if (refuses) return base::failure("not yet");
+    return record::finalise(journal);
+  });
+  begin(1);
+  feed(350);
+  end(1);
+  told_.wait_for("test 1 failed: not yet");
+  fs::remove_all(folder_ / "disk");
+  told_.wait_for("test 1 anew: ");
+  refuses = false;
+  storage_->stop();
+  expect_all_recorded();
+}
+
+// ---- disk thread and finisher -------------------------------------------------------------
+
+TEST(DiskWriterAstray, WhatIsGoneAtTheEndIsUnsaved) {
+  const TemporaryFolder folder;
+  MovingDisk moving;
+  Told told;
+  DiskWriter writer{{.folder = folder / "records",
+                     .sync_period = 1ms,
+                     .retry_period = 1ms,
+                     .patience = 0ms,
+                     .calls = &moving},
+                    [&](std::int64_t, const fs::path&, const std::optional<std::string>& why) {
+                      told.add(why.value_or("ended"));
+                    },
+                    [&](const DiskState& state) { told.add(state.trouble.value_or("fine")); }};
+  const auto journal = std::make_shared<record::PatientJournal>(folder / "records" / "a.journal",
+                                                                test::sample_header(), 1 << 20, moving);
+  journal->add_scans(0, std::vector<double>(350, 7.0), {});
+  writer.begin(1, journal);
+  writer.end(journal);
+  told.wait_for("ended");
+  EXPECT_EQ(writer.journal_of(1), folder / "records" / "a.journal");
+  EXPECT_EQ(writer.scan_counts().recorded, 350);
+  moving.refuse_reads(EIO);
+  fs::remove(folder / "records" / "a.journal");
+  told.wait_for((folder / "records" / "a.journal").string() + ": is gone, and cannot be read back");
+  EXPECT_FALSE(writer.journal_of(1));
+  EXPECT_EQ(writer.scan_counts().recorded, 0);
+  EXPECT_EQ(writer.scan_counts().unsaved, 0);
+  writer.stop();
+  writer.close_account();
+  EXPECT_EQ(writer.scan_counts().recorded, 0);
+  EXPECT_EQ(writer.scan_counts().unsaved, 350);
+}
+
+TEST(DiskWriterAstray, OneJournalThatCannotBeWrittenHoldsUpNoOther) {
+  const TemporaryFolder folder;
+  MovingDisk disk;
+  Told told;
+  DiskWriter writer{
+      {.folder = folder.path(), .sync_period = 1ms, .retry_period = 1ms, .patience = 0ms, .calls = &disk},
+      [&](std::int64_t test, const fs::path&, const std::optional<std::string>& why) {
+        told.add(fmt::format("{} {}", test, why ? "refused" : "ended"));
+      },
+      [&](const DiskState& state) { told.add(state.trouble ? "waits" : "fine"); }};
+  const auto journal = [&](const char* name) {
+    return std::make_shared<record::PatientJournal>(folder / name / "x.journal", test::sample_header(),
+                                                    1 << 20, disk);
+  };
+  const auto first = journal("a");
+  const auto second = journal("b");
+  writer.begin(1, first);
+  while (!fs::exists(first->path())) std::this_thread::yield();
+  disk.hide(folder / "a", EACCES);
+  told.wait_for("waits");
+  writer.begin(2, second);
+  writer.end(first);
+  writer.end(second);
+  told.wait_for("2 ended");
+  writer.stop();
+  told.wait_for("1 refused");
+}
+
+TEST(FinisherAstray, WaitsForAJournalThatIsAwayAndFollowsItToItsNewName) {
+  std::atomic<bool> away{true};
+  Told told;
+  Finisher finisher{
+      [](const fs::path& journal) -> base::Result<fs::path> { return journal.string() + " made"; },
+      [&](std::int64_t test, const base::Result<fs::path>& file) {
+        told.add(fmt::format("{}: {}", test, file ? file->string() : file.error().message));
+      },
+      [&](std::int64_t) -> base::Result<fs::path> {
+        if (away) return base::failure("Stale file handle");
+        return "a-2.journal";
+      },
+      1ms};
+  finisher.finish(1);
+  told.wait_for("1: Stale file handle");
+  away = false;
+  told.wait_for("1: a-2.journal made");
+  away = true;
+  finisher.finish(2);
+  told.wait_for("2: Stale file handle");
+  finisher.stop();
+  EXPECT_THAT(told.all(),
+              testing::ElementsAre("1: Stale file handle", "1: a-2.journal made", "2: Stale file handle"));
+}
+
+TEST(BallastAstray, IsTakenAgainWhereItWentWithItsFolder) {
+  const TemporaryFolder folder;
+  const test::FaultyDisk disk;
+  fs::create_directory(folder / "records");
+  Ballast ballast{folder / "records", disk};
+  fs::remove_all(folder / "records");
+  ballast.take();
+  EXPECT_FALSE(fs::exists(folder / "records"));
+  fs::create_directory(folder / "records");
+  ballast.take();
+  EXPECT_TRUE(fs::exists(folder / "records" / ".stickslip-ballast"));
+  EXPECT_TRUE(ballast.give());
+}
+
+}  // namespace
+}  // namespace stickslip::daemon
