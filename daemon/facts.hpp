@@ -10,6 +10,7 @@
 
 #include "core/daq/board.hpp"
 #include "core/daq/gap.hpp"
+#include "core/daq/note.hpp"
 #include "core/friction/sampling.hpp"
 #include "core/pipeline/sink.hpp"
 #include "daemon/fleet/fleet_state.hpp"
@@ -32,6 +33,8 @@ class Facts {
                                  double /*retry_in_s*/) {}
   /// \param test  the one that runs, if one does.
   virtual void gap_seen(const daq::Gap& /*gap*/, std::optional<std::int64_t> /*test*/) {}
+  /// A stall of the computer, or a step of its date. \param test  as above.
+  virtual void clock_noted(const daq::Note& /*note*/, std::optional<std::int64_t> /*test*/) {}
   virtual void test_began(const pipeline::TestStart& /*start*/) {}
   virtual void test_ended(const pipeline::TestEnd& /*end*/) {}
   virtual void file_published(std::int64_t /*test*/, const std::filesystem::path& /*file*/) {}

@@ -50,6 +50,14 @@ class Log final : public Facts {
           .first_scan = gap.first,
           .scan_count = gap.count});
   }
+  void clock_noted(const daq::Note& note, std::optional<std::int64_t> test) override {
+    const bool stall = note.kind == daq::Note::Kind::kStall;
+    tell({.level = LogLevel::kWarning,
+          .event = stall ? "stall" : "clock-step",
+          .message = fmt::format("{} (scan {})", daq::to_text(note), note.scan),
+          .test = test,
+          .first_scan = note.scan});
+  }
   void test_began(const pipeline::TestStart& start) override {
     tell({.event = "test-began",
           .message = fmt::format("test {} began: trigger at scan {}, record from scan {}", start.number,

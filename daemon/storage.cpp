@@ -242,7 +242,7 @@ void Storage::handle(const Began& message) {
   header.uuid = record::make_uuid();
   if (message.start.self_check) header.self_check = *message.start.self_check;
   const std::string expires = header.calibration.expires;
-  if (end_told_) begun_ = header;
+  begun_ = header;
   const std::optional<double> little_s = little_room_s();
   if (little_s) facts_.little_room(number_, *little_s);
   const double rate_Hz = header.board.scan_rate_granted_Hz;
@@ -308,7 +308,8 @@ void Storage::handle(const Ended& message) {
     note_event(recorded_.back().end - 1, pending_stamp_.realtime_ns, "test ended: " + message.end->cause);
   }
   record::EndRecord end = *message.end;
-  end.end_realtime_ns = pending_stamp_.realtime_ns;
+  // By the scans: the date may have been set since.
+  if (!recorded_.empty()) end.end_realtime_ns = record::realtime_at(begun_, recorded_.back().end);
   if (message.force) append_force(*message.force);
   if (end_told_) end_told_(begun_, end, record_of(journal_->path()));
   journal_->add_end(std::move(end));

@@ -154,7 +154,7 @@ class Storage final : public pipeline::Sink {
 
   EndTold end_told_;
   std::int64_t number_ = 0;
-  record::RecordHeader begun_;         ///< Of the test that runs, for end_told_.
+  record::RecordHeader begun_;         ///< Of the test that runs.
   std::filesystem::path latest_path_;  ///< Of a journal that need not be on the disk yet.
   DiskWriter::Journal journal_;
   std::vector<double> pending_;               ///< Consecutive scans not yet appended.

@@ -41,6 +41,11 @@ class TestWatcher final : public pipeline::Sink {
   }
   void gap(const daq::Gap& gap) override { facts_.gap_seen(gap, number_); }
   void gap_between_tests(const daq::Gap& gap) override { facts_.gap_seen(gap, std::nullopt); }
+  void note(const daq::Note& note) override {
+    using Kind = daq::Note::Kind;
+    if (note.kind == Kind::kStall || note.kind == Kind::kStep) facts_.clock_noted(note, number_);
+  }
+  void note_between_tests(const daq::Note& note) override { facts_.clock_noted(note, std::nullopt); }
 
   void test_ended(const pipeline::TestEnd& end) override {
     TestSummary summary;

@@ -1,9 +1,9 @@
 /// \file
-/// What a person did during a test, at a scan of it: kept in the record as an event, and done again at the
-/// same scan when the record is replayed.
+/// What a person did during a test, or the computer suffered, at a scan of it: kept in the record as an
+/// event, and done or told again at the same scan when the record is replayed.
 ///
 ///     "command: start, by ada"   "command: stop, by ada"   "mark: the sheet moved"   "bench: zero set to
-///     0.01 V"
+///     0.01 V"   "stall: this scan was read 41.3 s late"   "clock step: the date went 3600 s back"
 #pragma once
 
 #include <fmt/format.h>
@@ -23,10 +23,12 @@ struct Note {
     kStop,   ///< This was its last scan.
     kMark,   ///< Nothing but the text.
     kBench,  ///< Before the test: armed, tared. Stands at its first scan.
+    kStall,  ///< The computer stood still; the scans of that time were read late.
+    kStep,   ///< The date was set.
   };
   Kind kind = Kind::kMark;
   base::ScanIndex scan = 0;
-  std::string text;  ///< Who; of a mark and of the bench: what.
+  std::string text;  ///< Who; of all others: what.
 
   bool operator==(const Note&) const = default;
 };
@@ -36,6 +38,8 @@ inline constexpr std::string_view kStart = "command: start, by ";
 inline constexpr std::string_view kStop = "command: stop, by ";
 inline constexpr std::string_view kMark = "mark: ";
 inline constexpr std::string_view kBench = "bench: ";
+inline constexpr std::string_view kStall = "stall: ";
+inline constexpr std::string_view kStep = "clock step: ";
 }  // namespace note_words
 
 /// As in the record's events.
@@ -47,6 +51,10 @@ inline constexpr std::string_view kBench = "bench: ";
       return fmt::format("{}{}", note_words::kStop, note.text);
     case Note::Kind::kBench:
       return fmt::format("{}{}", note_words::kBench, note.text);
+    case Note::Kind::kStall:
+      return fmt::format("{}{}", note_words::kStall, note.text);
+    case Note::Kind::kStep:
+      return fmt::format("{}{}", note_words::kStep, note.text);
     case Note::Kind::kMark:
       break;
   }
@@ -62,6 +70,8 @@ inline constexpr std::string_view kBench = "bench: ";
   if (event.starts_with(note_words::kStop)) return as(Note::Kind::kStop, note_words::kStop);
   if (event.starts_with(note_words::kMark)) return as(Note::Kind::kMark, note_words::kMark);
   if (event.starts_with(note_words::kBench)) return as(Note::Kind::kBench, note_words::kBench);
+  if (event.starts_with(note_words::kStall)) return as(Note::Kind::kStall, note_words::kStall);
+  if (event.starts_with(note_words::kStep)) return as(Note::Kind::kStep, note_words::kStep);
   return std::nullopt;
 }
 

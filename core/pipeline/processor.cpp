@@ -1,6 +1,9 @@
 #include "core/pipeline/processor.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/base/contract.hpp"
@@ -13,6 +16,10 @@ namespace {
 SegmenterSettings complete(SegmenterSettings settings, const daq::Calibration& calibration) {
   settings.step_coefficient = calibration.step_coefficient();
   return settings;
+}
+
+daq::Note stall_at(daq::ScanIndex scan, double late_s) {
+  return {daq::Note::Kind::kStall, scan, fmt::format("this scan was read {:.1f} s late", late_s)};
 }
 
 }  // namespace
@@ -43,6 +50,7 @@ void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause, bo
   if (const std::optional<daq::Gap> gap = gaps_.observe(block, gap_cause, halted)) note_gap(*gap);
   scan_count_ += block.count;
   meter_.observe(block);
+  watch_clocks(block);
 
   std::size_t not_handed_over = 0;  // First scan of the running test that the sinks have not seen.
   for (std::size_t i = 0; i < block.count; ++i) {
@@ -143,7 +151,28 @@ void Processor::note_gap(daq::Gap gap) {
   for (Sink* sink : sinks_) sink->gap(gap);
 }
 
-void Processor::begin(daq::ScanIndex trigger, const daq::ClockStamp& stamp) {
+void Processor::watch_clocks(const daq::ScanBlock& block) {
+  if (settings_.recorded || block.count == 0) return;
+  // Where the clock is not the machine's own, being late means nothing: the source waits for its reader.
+  const auto news =
+      watch_.observe(block.stamp, settings_.clock_is_real ? meter_.lateness_ns(block) : std::nullopt);
+  if (news.stall_s) tell_clocks(stall_at(block.first, *news.stall_s));
+  if (news.step_s) {
+    tell_clocks({daq::Note::Kind::kStep, block.first,
+                 fmt::format("the date went {:.1f} s {}: it was set, or the machine slept",
+                             std::abs(*news.step_s), *news.step_s > 0.0 ? "ahead" : "back")});
+  }
+}
+
+void Processor::tell_clocks(const daq::Note& note) {
+  if (test_is_running()) return tell(note);
+  for (Sink* sink : sinks_) sink->note_between_tests(note);
+}
+
+void Processor::begin(daq::ScanIndex trigger, daq::ClockStamp stamp) {
+  // Late reading makes no test later; to the scan as well as the block's last one says.
+  stamp.monotonic_ns -= std::llround(watch_.late_ns());
+  stamp.realtime_ns -= std::llround(watch_.late_ns());
   analysis_.emplace(settings_.analysis);
   trigger_ = trigger;
   static_cast<void>(picker_.flush());
@@ -168,6 +197,7 @@ void Processor::begin(daq::ScanIndex trigger, const daq::ClockStamp& stamp) {
   }
   for (std::string& text : for_later_) tell({daq::Note::Kind::kBench, start.first, std::move(text)});
   for_later_.clear();
+  if (watch_.late_ns() > 0.0) tell(stall_at(trigger, 1e-9 * watch_.late_ns()));
   if (start_) {
     start_->scan = trigger;
     tell(*std::exchange(start_, std::nullopt));

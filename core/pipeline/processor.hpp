@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "core/daq/calibration.hpp"
+#include "core/daq/clock_watch.hpp"
 #include "core/daq/gap.hpp"
 #include "core/daq/rate_meter.hpp"
 #include "core/daq/recorded_facts.hpp"
@@ -135,12 +136,15 @@ class Processor {
   void note_for_later(std::string text);
   /// What the stamp of a block of the running test tells.
   void note_clocks(const daq::ScanBlock& block);
+  /// Of each block: stalls and steps.
+  void watch_clocks(const daq::ScanBlock& block);
+  void tell_clocks(const daq::Note& note);
   [[nodiscard]] std::shared_ptr<const daq::SelfCheck> self_check() const;
   void note_anchor(const daq::ClockAnchor& anchor);
   /// Clock anchors of the test that ends at `end`, and what they say.
   void finish_clocks(daq::ScanIndex end);
   void discard_waiting() noexcept;
-  void begin(daq::ScanIndex trigger, const daq::ClockStamp& stamp);
+  void begin(daq::ScanIndex trigger, daq::ClockStamp stamp);
   void analyse(daq::ScanIndex index, double raw, std::int32_t second);
   void end(daq::ScanIndex end, EndCause cause);
   [[nodiscard]] bool measures_speed() const noexcept {
@@ -165,6 +169,7 @@ class Processor {
   std::int64_t lost_scan_count_ = 0;
   std::int64_t idle_scan_count_ = 0;
   daq::RateMeter meter_;
+  daq::ClockWatch watch_;
   std::array<double, daq::ScanBlock::kMaxScans> coefficients_{};  ///< Of the latest block.
   std::optional<daq::Note> start_;  ///< The command that begins the next test; its scan is not known yet.
   std::vector<std::string> for_later_;

@@ -28,7 +28,7 @@ struct TestStart {
   std::int64_t number = 0;                           ///< Since the start of the program, from 1.
   daq::ScanIndex first = 0;                          ///< First scan that belongs to the test's record.
   daq::ScanIndex trigger = 0;                        ///< Scan that began it: the force or a command did.
-  daq::ClockStamp stamp;                             ///< When the trigger was seen.
+  daq::ClockStamp stamp;                             ///< When the trigger was seen; less a stall before.
   std::shared_ptr<const daq::SelfCheck> self_check;  ///< Null if there was nothing to look at.
   bool by_command = false;
 };
@@ -98,9 +98,11 @@ class Sink {
   virtual void fall(const friction::FallBegun& /*fall*/) {}
   /// As soon as it is known, before the whole-test estimate refines it.
   virtual void cycle(const friction::Cycle& /*cycle*/) {}
-  /// What a person did, at a scan of the running test; in no order with its scans.
+  /// What a person did or the computer suffered, at a scan of the running test; in no order with its scans.
   virtual void note(const daq::Note& /*note*/) {}
   virtual void test_ended(const TestEnd& /*end*/) {}
+  /// What the computer suffered while no test was running.
+  virtual void note_between_tests(const daq::Note& /*note*/) {}
   /// Scans lost while no test was running.
   virtual void gap_between_tests(const daq::Gap& /*gap*/) {}
   /// Each scan, whether a test runs or not, in blocks; after all else that the block brought.

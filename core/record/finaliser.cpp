@@ -113,8 +113,7 @@ void end_interrupted(JournalReading& reading, const Evaluate& evaluate) {
   end.status = Status::kInterrupted;
   end.reasons.emplace_back(kInterruptedWhy);
   end.cause = kProgramDied;
-  if (!end.end_realtime_ns && !record.anchors.empty())
-    end.end_realtime_ns = record.anchors.back().realtime_ns;
+  if (!reading.runs.empty()) end.end_realtime_ns = realtime_at(record.header, reading.runs.back().end());
   set_end(record, std::move(end));
 }
 

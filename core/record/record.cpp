@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
+#include <cstdlib>
 #include <utility>
 
 #include <boost/uuid/uuid_generators.hpp>
@@ -54,6 +56,19 @@ friction::Tester TesterFacts::tester() const {
   tester.stiffness_N_per_m = stiffness_N_per_m;
   tester.speed_course = friction::PullSpeed::parse(speed_course);
   return tester;
+}
+
+std::optional<std::int64_t> realtime_at(const RecordHeader& header, daq::ScanIndex scan) noexcept {
+  if (!header.start_realtime_ns || !header.trigger_scan) return std::nullopt;
+  const double since_ns =
+      1e9 * static_cast<double>(scan - *header.trigger_scan) / header.board.scan_rate_granted_Hz;
+  constexpr double kMost_ns = 9e18;
+  std::int64_t time_ns = 0;
+  if (!(std::abs(since_ns) < kMost_ns) ||
+      __builtin_add_overflow(*header.start_realtime_ns, std::llround(since_ns), &time_ns)) {
+    return std::nullopt;
+  }
+  return time_ns;
 }
 
 friction::TestResults absent_results(const std::string& reason) {

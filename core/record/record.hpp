@@ -157,7 +157,7 @@ struct EndRecord {
   Status status = Status::kComplete;
   std::vector<std::string> reasons;  ///< Why the status is not complete.
   std::string cause;                 ///< Why the test was over: pipeline::name(EndCause), or kProgramDied.
-  std::optional<std::int64_t> end_realtime_ns;
+  std::optional<std::int64_t> end_realtime_ns;  ///< realtime_at() the end of the last scan.
   std::optional<double> compute_time_s;
   std::optional<daq::LatencyHistogram> read_latency;  ///< How late the blocks were read.
   friction::TestResults results;
@@ -165,6 +165,11 @@ struct EndRecord {
   std::vector<daq::ScanIndex> spikes;        ///< Scans replaced for the detector, rising; final as well.
   std::optional<friction::TestTruth> truth;
 };
+
+/// When the scan was taken, since 1970: the start of the test and the scans since at the granted rate,
+/// whatever the clock did in between. None if the start is not known, or no clock could show the time.
+[[nodiscard]] std::optional<std::int64_t> realtime_at(const RecordHeader& header,
+                                                      daq::ScanIndex scan) noexcept;
 
 /// Why a result is absent that the program that made the record did not know.
 inline constexpr std::string_view kNoSuchResultThen = "the record was made before there was this result";

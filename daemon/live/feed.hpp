@@ -37,6 +37,7 @@ class LiveFeed final : public pipeline::Sink {
   void gap(const daq::Gap& gap) override { tell_gap(gap); }
   void gap_between_tests(const daq::Gap& gap) override { tell_gap(gap); }
   void note(const daq::Note& note) override;
+  void note_between_tests(const daq::Note& one) override { note(one); }
   void test_ended(const pipeline::TestEnd& end) override;
   void bench_changed(pipeline::BenchState state) override;
 

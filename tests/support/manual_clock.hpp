@@ -18,7 +18,9 @@ class ManualClock final : public base::Clock {
       : now_ns_(monotonic_ns), realtime_offset_ns_(realtime_ns - monotonic_ns) {}
 
   [[nodiscard]] std::int64_t monotonic_ns() const override { return now_ns_.load(); }
-  [[nodiscard]] std::int64_t realtime_ns() const override { return now_ns_.load() + realtime_offset_ns_; }
+  [[nodiscard]] std::int64_t realtime_ns() const override {
+    return now_ns_.load() + realtime_offset_ns_.load();
+  }
 
   void sleep_until(std::int64_t deadline_ns) override {
     std::int64_t now_ns = now_ns_.load();
@@ -27,10 +29,12 @@ class ManualClock final : public base::Clock {
   }
 
   void advance(std::chrono::nanoseconds time) { now_ns_.fetch_add(time.count()); }
+  /// Sets the date ahead, or back.
+  void step_date(std::chrono::nanoseconds ahead) { realtime_offset_ns_.fetch_add(ahead.count()); }
 
  private:
   std::atomic<std::int64_t> now_ns_;
-  std::int64_t realtime_offset_ns_;
+  std::atomic<std::int64_t> realtime_offset_ns_;
 };
 
 }  // namespace stickslip::test
