@@ -103,7 +103,7 @@ std::string metrics_text(const Status& status) {
   }
   if (status.storage.room_h)
     page.gauge("disk_room_hours", "Room on the disk, as time of recording.", *status.storage.room_h);
-  page.gauge("disk_refuses", "1 while the disk refuses what is to be recorded.",
+  page.gauge("disk_refuses", "1 while the disk refuses what is to be recorded, or its folder is away.",
              status.storage.kind == StorageState::Kind::kWaiting ? 1 : 0);
   page.gauge("disk_waiting_bytes", "Kept in memory for the disk.", status.storage.waiting_size);
   page.gauge("live_clients", "Clients of the live stream.", status.live_client_count);
