@@ -45,7 +45,10 @@ void Ballast::take() {
   if (kept_ && calls_.lstat(path_.c_str(), &found) != 0 && errno == ENOENT) kept_ = false;
   if (kept_ || calls_.room(path_.parent_path().c_str()) < kPlenty) return;
   constexpr mode_t kMode = 0600;
-  const record::Descriptor file{calls_.open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, kMode)};
+  // What a kill left is given back first; a link is removed, not followed.
+  calls_.unlink(path_.c_str());
+  const record::Descriptor file{
+      calls_.open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kMode)};
   kept_ = file.open();
   // Where the file system cannot reserve, there is no ballast.
   if (kept_ && calls_.reserve(file.get(), 0, kBallast) != 0) give();

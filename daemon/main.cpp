@@ -23,6 +23,7 @@
 #include "daemon/fleet/backlog.hpp"
 #include "daemon/log.hpp"
 #include "daemon/report/table.hpp"
+#include "daemon/stray_signals.hpp"
 #include "daemon/version.hpp"
 
 namespace stickslip::daemon {
@@ -100,8 +101,7 @@ class SignalsBetween {
 int run(const std::string& file) {
   base::Result<DaemonConfig> config = load_config(file);
   if (!config) return refused(config.error());
-  // A limit to the size of files is an error of writing (EFBIG), not an end.
-  static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
+  ignore_stray_signals();
   // In a terminal a SIGHUP says that the terminal is gone.
   const bool reloads = ::isatty(STDIN_FILENO) == 0;
   SignalsBetween signals{reloads};

@@ -4,40 +4,39 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstddef>
+#include <span>
 
 #include "core/record/file.hpp"
+#include "core/record/record.hpp"
 
 namespace stickslip::daemon {
 namespace {
 
-base::Result<void> write_whole(const std::filesystem::path& path, std::string_view text) {
-  constexpr mode_t kEverybodyReads = 0644;
+base::Result<void> write_whole(const std::filesystem::path& part, std::string_view text, mode_t mode) {
   const record::Descriptor file{
-      ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kEverybodyReads)};
+      ::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode)};
   if (!file.open()) {
-    return base::failure("{}: cannot be made: {}", path.string(), record::system_message(errno));
+    return base::failure("{}: cannot be made: {}", part.string(), record::system_message(errno));
   }
-  while (!text.empty()) {
-    const ssize_t written = ::write(file.get(), text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) {
-      return base::failure("{}: cannot be written: {}", path.string(), record::system_message(errno));
-    }
-    text.remove_prefix(static_cast<std::size_t>(written));
+  base::Result<void> done;
+  if (record::write_all(file.get(), std::as_bytes(std::span{text}), record::system_calls()) != text.size()) {
+    done = base::failure("{}: cannot be written: {}", part.string(), record::system_message(errno));
+  } else if (::fsync(file.get()) != 0) {
+    done = base::failure("{}: cannot be made durable: {}", part.string(), record::system_message(errno));
   }
-  return record::sync_path(path);
+  if (!done) ::unlink(part.c_str());
+  return done;
 }
 
 }  // namespace
 
-base::Result<void> write_new_file(const std::filesystem::path& path, std::string_view text) {
+base::Result<void> write_new_file(const std::filesystem::path& path, std::string_view text, mode_t mode) {
   std::filesystem::path part = path;
-  part += ".part";
-  base::Result<void> done = write_whole(part, text);
-  if (done) done = record::rename_to_new(part, path);
-  if (!done) ::unlink(part.c_str());
-  return done;
+  part += '.' + record::make_uuid() + ".part";
+  if (auto written = write_whole(part, text, mode); !written) return written;
+  auto named = record::rename_to_new(part, path);
+  if (!named) ::unlink(part.c_str());
+  return named;
 }
 
 }  // namespace stickslip::daemon

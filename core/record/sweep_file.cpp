@@ -10,6 +10,7 @@
 #include "core/base/contract.hpp"
 #include "core/record/file.hpp"
 #include "core/record/hdf_write.hpp"
+#include "core/record/record.hpp"
 
 namespace stickslip::record {
 namespace {
@@ -165,7 +166,7 @@ base::Result<void> publish_sweep(const SweepFacts& facts, const SweepTable& tabl
                                  const std::filesystem::path& path) {
   STICKSLIP_EXPECTS(static_cast<std::int64_t>(table.run_count()) == facts.run_count());
   std::filesystem::path temporary = path;
-  temporary += ".tmp";
+  temporary += '.' + make_uuid() + ".tmp";
   base::Result<void> published;
   try {
     build(facts, table, temporary);

@@ -1,10 +1,8 @@
 #include "daemon/control/token.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/random.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +10,8 @@
 #include <fstream>
 #include <string_view>
 #include <system_error>
+
+#include "daemon/new_file.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -37,16 +37,9 @@ base::Result<std::string> make_token(const std::filesystem::path& file) {
     return base::failure("token file {}: no random numbers: {}", file.string(), because());
   }
   const std::string token = fmt::format("{:02x}", fmt::join(random, ""));
-  const int descriptor = ::open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0640);
-  if (descriptor < 0) return base::failure("token file {}: cannot be made: {}", file.string(), because());
-  const std::string line = fmt::format("{}\n", token);
-  const bool whole = ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
-  const std::string why = because();
-  ::close(descriptor);
-  if (!whole) {
-    ::unlink(file.c_str());
-    return base::failure("token file {}: cannot be written: {}", file.string(), why);
-  }
+  constexpr mode_t kTokenMode = 0640;
+  if (auto written = write_new_file(file, token + '\n', kTokenMode); !written)
+    return base::failure("token file {}", written.error().message);
   return token;
 }
 

@@ -100,7 +100,7 @@ PartFile::PartFile(std::filesystem::path path, record::Descriptor file, const re
 Result<PartFile> PartFile::open(const std::filesystem::path& path, const record::SweepFacts& facts,
                                 const base::Clock& clock) {
   constexpr mode_t kMode = 0666;
-  record::Descriptor file{::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, kMode)};
+  record::Descriptor file{::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_APPEND | O_CLOEXEC, kMode)};
   if (!file.open())
     return base::failure("{}: cannot be opened: {}", path.string(), record::system_message(errno));
   if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {

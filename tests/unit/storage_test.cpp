@@ -433,5 +433,20 @@ TEST(Ballast, IsGivenWhenTheDiskRefusesAndTakenAgain) {
   EXPECT_FALSE(fs::exists(folder / ".stickslip-ballast"));
 }
 
+TEST(Ballast, FollowsNoLinkAndTakesTheNameOfOneThatAKillLeft) {
+  const TemporaryFolder folder;
+  std::ofstream{folder / "precious"} << "mine";
+  fs::create_symlink("precious", folder / ".stickslip-ballast");
+  {
+    const Ballast killed{folder.path(), record::system_calls()};
+    EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(folder / ".stickslip-ballast")));
+    std::ofstream{folder / "left"} << "x";
+    fs::rename(folder / "left", folder / ".stickslip-ballast");
+    const Ballast next{folder.path(), record::system_calls()};
+    EXPECT_EQ(fs::file_size(folder / ".stickslip-ballast"), std::uintmax_t{4} << 20U);
+  }
+  EXPECT_EQ(fs::file_size(folder / "precious"), 4U);
+}
+
 }  // namespace
 }  // namespace stickslip::daemon

@@ -169,7 +169,21 @@ TEST(SweepFile, NeverReplacesAFile) {
   ASSERT_FALSE(published);
   EXPECT_EQ(published.error().kind, base::ErrorKind::kUsage);
   EXPECT_EQ(test::bytes_of(file), "mine");
-  EXPECT_FALSE(std::filesystem::exists(folder.path() / "sweep.h5.tmp"));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator{folder.path()}, {}), 1) << "nothing is left";
+}
+
+// Neither what is being written nor what is built follows a link that somebody laid there.
+TEST(SweepFile, FollowsNoLink) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "sweep.h5";
+  std::ofstream{folder.path() / "precious"} << "";
+  for (const char* link : {"sweep.h5.tmp", "sweep.h5.part"})
+    std::filesystem::create_symlink("precious", folder.path() / link);
+  const auto clock = base::make_system_clock();
+  EXPECT_FALSE(PartFile::open(file.string() + ".part", test::small_facts(), *clock));
+  ASSERT_TRUE(record::publish_sweep(test::small_facts(), record::SweepTable{6}, file));
+  EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::symlink_status(file)));
+  EXPECT_EQ(test::bytes_of(folder.path() / "precious"), "");
 }
 
 }  // namespace
