@@ -96,9 +96,9 @@ class Api {
       return;
     }
     if (!key.empty()) {
-      switch (repeats_.look(request)) {
+      switch (repeats_.look(request, now_ns())) {
         case Repeats::Found::kAnswered:
-          answer(repeats_.answer(key));
+          answer(repeats_.answer(request));
           return;
         case Repeats::Found::kWaiting:
           answer(refusal(409, "the request with this Idempotency-Key is still being answered"));
@@ -106,9 +106,16 @@ class Api {
         case Repeats::Found::kOther:
           answer(refusal(422, "this Idempotency-Key was used for another request"));
           return;
+        case Repeats::Found::kTooManyClients:
+          answer(refusal(
+              503,
+              fmt::format("{} clients have sent an Idempotency-Key in the last {} min, and more are not "
+                          "remembered: use a name that was used before, or send the request without a key",
+                          Repeats::kMostClients, Repeats::kRemembered.count())));
+          return;
         case Repeats::Found::kNew:
-          answer = [this, key, answer = std::move(answer)](const HttpReply& reply) {
-            repeats_.answered(key, reply);
+          answer = [this, request, answer = std::move(answer)](const HttpReply& reply) {
+            repeats_.answered(request, reply);
             answer(reply);
           };
           break;

@@ -1,9 +1,18 @@
 #include "daemon/control/connection.hpp"
 
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <chrono>
+#include <list>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include <boost/asio/dispatch.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
@@ -25,15 +34,39 @@ constexpr const char* kContentPolicy =
     "'none'; "
     "form-action 'none'; frame-ancestors 'none'";
 
+constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+
 std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
-class Connection : public std::enable_shared_from_this<Connection> {
+/// Headers of which two would leave open which one counts.
+std::optional<std::string> repeated_header(const http::fields& header) {
+  for (const char* name :
+       {"Host", "Origin", "Authorization", "Expect", "Stickslip-Controller", "Idempotency-Key"}) {
+    if (header.count(name) > 1) return name;
+  }
+  return std::nullopt;
+}
+
+/// Who is at the other end of a Unix socket; all who come over TCP showed the same token.
+std::string peer_of(int socket) {
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  const bool known = ::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0;
+  return known && peer.uid != static_cast<uid_t>(-1) ? fmt::format("uid {}", peer.uid) : "token";
+}
+
+class Connection : public Newcomer, public std::enable_shared_from_this<Connection> {
  public:
   Connection(AnySocket socket, std::shared_ptr<Service> service)
-      : stream_(std::move(socket)), service_(std::move(service)) {
-    ++service_->connection_count;
+      : stream_(std::move(socket)),
+        service_(std::move(service)),
+        place_(service_->newcomers.insert(service_->newcomers.end(), this)) {
+    if (service_->newcomers.size() > service_->limits.newcomers) service_->newcomers.front()->turn_away();
   }
-  ~Connection() { --service_->connection_count; }
+  ~Connection() override {
+    leave_newcomers();
+    if (let_in_) --service_->connection_count;
+  }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
@@ -41,43 +74,114 @@ class Connection : public std::enable_shared_from_this<Connection> {
     parser_.emplace();
     parser_->header_limit(service_->limits.header_size);
     parser_->body_limit(service_->limits.body_size);
-    stream_.expires_after(service_->limits.time);
+    auto& newcomers = service_->newcomers;
+    if (place_) newcomers.splice(newcomers.end(), newcomers, *place_);
+    stream_.expires_after(time());
+    http::async_read_header(
+        stream_, buffer_, *parser_,
+        [self = shared_from_this()](beast::error_code error, std::size_t) { self->header_was_read(error); });
+  }
+
+  void turn_away() override {
+    leave_newcomers();
+    stream_.close();
+  }
+
+ private:
+  [[nodiscard]] std::chrono::milliseconds time() const {
+    const HttpLimits& limits = service_->limits;
+    return let_in_ ? limits.time : std::min(limits.time, limits.newcomer_time);
+  }
+
+  void leave_newcomers() {
+    if (place_) service_->newcomers.erase(*place_);
+    place_.reset();
+  }
+
+  /// \return false if there is no room.
+  [[nodiscard]] bool let_in() {
+    if (let_in_) return true;
+    if (service_->connection_count >= service_->limits.connections) return false;
+    leave_newcomers();
+    ++service_->connection_count;
+    let_in_ = true;
+    return true;
+  }
+
+  void header_was_read(beast::error_code error) {
+    bodyless_ = !error && parser_->get().method() == http::verb::head;
+    if (error || parser_->is_done()) return was_read(error);
+    const std::string_view expected = view(parser_->get()[http::field::expect]);
+    if (expected.empty() || parser_->get().version() < 11) return read_body();
+    if (!beast::iequals(parser_->get()[http::field::expect], "100-continue")) {
+      return refuse(417, "Expect: only 100-continue is known");
+    }
+    // Who is refused need not send the body.
+    if (const auto refused = refusal_of_header()) return reply(*refused, parser_->get().version(), false);
+    boost::asio::async_write(stream_, boost::asio::buffer(kContinue),
+                             [self = shared_from_this()](beast::error_code failed, std::size_t) {
+                               if (!failed) self->read_body();
+                             });
+  }
+
+  void read_body() {
     http::async_read(
         stream_, buffer_, *parser_,
         [self = shared_from_this()](beast::error_code error, std::size_t) { self->was_read(error); });
   }
 
- private:
   void was_read(beast::error_code error) {
     if (!error) {
       answer_request();
     } else if (error == http::error::header_limit) {
-      reply(refusal(431, fmt::format("the header is longer than {} bytes", service_->limits.header_size)), 11,
-            false);
+      refuse(431, fmt::format("the header is longer than {} bytes", service_->limits.header_size));
     } else if (error == http::error::body_limit) {
-      reply(refusal(413, fmt::format("the body is longer than {} bytes", service_->limits.body_size)), 11,
-            false);
+      refuse(413, fmt::format("the body is longer than {} bytes", service_->limits.body_size));
     } else if (error.category() == http::make_error_code(http::error::bad_method).category() &&
                error != http::error::end_of_stream && error != http::error::partial_message) {
-      reply(refusal(400, fmt::format("this is no HTTP request: {}", error.message())), 11, false);
+      refuse(400, fmt::format("this is no HTTP request: {}", error.message()));
     }
     // Else the client went away or was too slow: the stream closes with the last reference.
+  }
+
+  /// And closes the connection: what follows could not be told from the rest of this request.
+  void refuse(int status, const std::string& why) { reply(refusal(status, why), 11, false); }
+
+  [[nodiscard]] std::string_view header(http::field field) const { return view(parser_->get()[field]); }
+  [[nodiscard]] std::string_view path() const {
+    const std::string_view target = view(parser_->get().target());
+    return target.substr(0, target.find('?'));
+  }
+
+  [[nodiscard]] std::optional<HttpReply> refusal_of_header() const {
+    if (const auto twice = repeated_header(parser_->get()))
+      return refusal(400, fmt::format("{}: stands there twice; send it once", *twice));
+    return refuse_at(service_->door,
+                     {path(), header(http::field::host), header(http::field::origin),
+                      header(http::field::authorization), header(http::field::sec_websocket_protocol)});
   }
 
   void answer_request() {
     const auto& request = parser_->get();
     const unsigned version = request.version();
     const bool keep = request.keep_alive();
-    const std::string_view target = view(request.target());
-    const std::string_view path = target.substr(0, target.find('?'));
-    const auto header = [&request](http::field field) { return view(request[field]); };
-    const Knock knock{path, header(http::field::host), header(http::field::origin),
-                      header(http::field::authorization), header(http::field::sec_websocket_protocol)};
-    if (auto refused = refuse_at(service_->door, knock)) {
+    if (const auto refused = refusal_of_header()) {
       reply(*refused, version, false);
       return;
     }
-    if (path == kLivePath && service_->hub != nullptr) {
+    // The page is for anybody: who reads it alone has shown nothing.
+    if ((service_->door.open || !is_page(path())) && !let_in()) {
+      reply(refusal(503, fmt::format("{} connections are open, and there is room for no more: close one, or "
+                                     "try again later",
+                                     service_->connection_count)),
+            version, false);
+      return;
+    }
+    if (path() == kLivePath && service_->hub != nullptr) {
+      if (!service_->hub->has_room()) {
+        reply(refusal(503, std::string{kLiveIsFull}), version, false);
+        return;
+      }
       if (!beast::websocket::is_upgrade(request)) {
         reply(refusal(426, "the live stream is a WebSocket: ask for an upgrade"), version, keep);
         return;
@@ -86,9 +190,12 @@ class Connection : public std::enable_shared_from_this<Connection> {
       serve_live(stream_.release_socket(), parser_->release(), service_);
       return;
     }
-    const HttpRequest asked{std::string{view(request.method_string())}, std::string{target}, request.body(),
+    const HttpRequest asked{bodyless_ ? "GET" : std::string{view(request.method_string())},
+                            std::string{view(request.target())},
+                            request.body(),
                             std::string{view(request["Stickslip-Controller"])},
-                            std::string{view(request["Idempotency-Key"])}};
+                            std::string{view(request["Idempotency-Key"])},
+                            peer_of(stream_.socket().native_handle())};
     service_->handler(asked, [self = shared_from_this(), version, keep](const HttpReply& answer) {
       self->reply(answer, version, keep);
     });
@@ -110,18 +217,28 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (reply.replayed) response_.set("Idempotency-Replayed", "true");
     response_.body() = reply.body;
     response_.prepare_payload();
-    stream_.expires_after(service_->limits.time);
-    http::async_write(stream_, response_,
-                      [self = shared_from_this(), keep_alive](beast::error_code error, std::size_t) {
-                        if (!error && keep_alive) self->read();
-                      });
+    stream_.expires_after(time());
+    const auto written = [self = shared_from_this(), keep_alive](beast::error_code error, std::size_t) {
+      if (!error && keep_alive) self->read();
+    };
+    // To HEAD as to GET, the length too, but for the body [RFC 9110, 9.3.2].
+    serializer_.emplace(response_);
+    if (std::exchange(bodyless_, false)) {
+      http::async_write_header(stream_, *serializer_, written);
+    } else {
+      http::async_write(stream_, *serializer_, written);
+    }
   }
 
   beast::basic_stream<boost::asio::generic::stream_protocol> stream_;
   std::shared_ptr<Service> service_;
+  std::optional<std::list<Newcomer*>::iterator> place_;  ///< Among the newcomers, until it is let in.
+  bool let_in_ = false;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
   http::response<http::string_body> response_;
+  std::optional<http::response_serializer<http::string_body>> serializer_;
+  bool bodyless_ = false;  ///< HEAD.
 };
 
 }  // namespace

@@ -3,6 +3,8 @@
 /// client keeps it; or the live stream from the request on that asks for it.
 #pragma once
 
+#include <cstddef>
+#include <list>
 #include <memory>
 #include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
 
@@ -15,13 +17,22 @@
 
 namespace stickslip::daemon {
 
+/// A connection without a request that was let in.
+class Newcomer {
+ public:
+  virtual ~Newcomer() = default;
+  /// To make room for another.
+  virtual void turn_away() = 0;
+};
+
 /// What all connections of a listener share.
 struct Service {
   Door door;
   HttpHandler handler;
   LiveHub* hub = nullptr;  ///< Null: no live stream. Outlives the connections.
   HttpLimits limits;
-  int connection_count = 0;
+  std::size_t connection_count = 0;     ///< Of clients that were let in.
+  std::list<Newcomer*> newcomers = {};  ///< The one that has been silent longest comes first.
 };
 
 using AnySocket = boost::asio::generic::stream_protocol::socket;

@@ -13,6 +13,7 @@ struct HttpRequest {
   std::string body;
   std::string controller;       ///< Header Stickslip-Controller: who commands.
   std::string idempotency_key;  ///< Header Idempotency-Key.
+  std::string peer = {};  ///< Who the system says it is, "uid 1000"; the same for all who have the token.
 };
 
 struct HttpReply {

@@ -1,11 +1,16 @@
 #include "daemon/control/live_client.hpp"
 
+#include <chrono>
+#include <string>
 #include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
+#include <nlohmann/json.hpp>
+
+#include "daemon/control/client.hpp"
 
 namespace stickslip::daemon {
 
@@ -23,7 +28,14 @@ base::Result<void> listen_live(const std::filesystem::path& socket,
                          socket.string(), error.message());
   }
   stream.handshake("localhost", "/v1/live", error);
-  if (error) return base::failure("{}: no live stream: {}", socket.string(), error.message());
+  if (error) {
+    std::string why = error.message();
+    // Beast keeps to itself what the daemon said; asked again, it says the same.
+    constexpr std::chrono::seconds kLongest{10};
+    const auto said = request(socket, {"GET", "/v1/live", "", "", ""}, kLongest);
+    if (said && said->status == 503) why = nlohmann::json::parse(said->body).value("error", why);
+    return base::failure("{}: no live stream: {}", socket.string(), why);
+  }
   beast::flat_buffer buffer;
   for (;;) {
     buffer.clear();

@@ -36,7 +36,8 @@ class LiveConnection final : public LiveClient, public std::enable_shared_from_t
     }));
     stream_.read_message_max(kLongestMessage);
     stream_.async_accept(request_, [self = shared_from_this()](beast::error_code error) {
-      if (error || !self->service_->hub->join(self.get())) return;
+      if (error) return;
+      if (!self->service_->hub->join(self.get())) return self->say_that_it_is_full();
       self->joined_ = self;
       self->stream_.text(true);
       self->read();
@@ -55,6 +56,13 @@ class LiveConnection final : public LiveClient, public std::enable_shared_from_t
   }
 
  private:
+  /// Others came while this one shook hands.
+  void say_that_it_is_full() {
+    const websocket::close_reason why{websocket::close_code::try_again_later,
+                                      std::string{kLiveIsFull}.c_str()};
+    stream_.async_close(why, [self = shared_from_this()](beast::error_code) {});
+  }
+
   void read() {
     stream_.async_read(buffer_, [self = shared_from_this()](beast::error_code error, std::size_t) {
       if (error) {

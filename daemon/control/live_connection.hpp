@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 #include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
 
 #include <boost/beast/http/message.hpp>
@@ -11,6 +12,11 @@
 #include "daemon/control/connection.hpp"
 
 namespace stickslip::daemon {
+
+/// To a client for which there is no room, as status 503 or as the reason why the stream is closed.
+inline constexpr std::string_view kLiveIsFull =
+    "24 clients read the live stream, and there is room for no more: close one, or try again later";
+static_assert(LiveHub::kMostClients == 24);
 
 /// \param request  the one that asked for the upgrade.
 void serve_live(AnySocket socket, boost::beast::http::request<boost::beast::http::string_body> request,

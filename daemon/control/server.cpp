@@ -26,6 +26,15 @@ namespace {
 
 constexpr mode_t kOwnerAndGroup = S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP;
 
+using FileIdentity = std::pair<dev_t, ino_t>;
+
+/// Nothing where there is none; a link is not followed.
+std::optional<FileIdentity> file_at(const std::filesystem::path& path) {
+  struct stat facts {};
+  if (::lstat(path.c_str(), &facts) != 0) return std::nullopt;
+  return FileIdentity{facts.st_dev, facts.st_ino};
+}
+
 /// Accepts until it is closed.
 template <typename Protocol>
 class AcceptorOf : public ControlServer::Listener, public std::enable_shared_from_this<AcceptorOf<Protocol>> {
@@ -39,9 +48,7 @@ class AcceptorOf : public ControlServer::Listener, public std::enable_shared_fro
           if (error == asio::error::operation_aborted) return;
           // Whoever asks stays in the queue, and the next try would fail at once.
           if (error) return self->accept_later();
-          if (self->service_->connection_count < self->service_->limits.connections) {
-            serve_connection(AnySocket{std::move(socket)}, self->service_);
-          }
+          serve_connection(AnySocket{std::move(socket)}, self->service_);
           self->accept();
         });
   }
@@ -91,7 +98,7 @@ class LocalAcceptor final : public AcceptorOf<Local> {
     acceptor_.bind(endpoint, error);
     ::umask(before);
     if (error) return error;
-    bound_ = true;
+    bound_ = file_at(path_);
     if (::chmod(path_.c_str(), kOwnerAndGroup) != 0) return {errno, boost::system::system_category()};
     acceptor_.listen(asio::socket_base::max_listen_connections, error);
     return error;
@@ -99,13 +106,14 @@ class LocalAcceptor final : public AcceptorOf<Local> {
 
   void close() override {
     AcceptorOf::close();
-    if (bound_) ::unlink(path_.c_str());
-    bound_ = false;
+    // Another daemon may have come to the same path since: its socket stays.
+    if (bound_ && bound_ == file_at(path_)) ::unlink(path_.c_str());
+    bound_.reset();
   }
 
  private:
   std::filesystem::path path_;
-  bool bound_ = false;
+  std::optional<FileIdentity> bound_;  ///< The socket file that this one made.
 };
 
 class TcpAcceptor final : public AcceptorOf<tcp> {
@@ -137,8 +145,24 @@ base::Result<void> remove_leftover(asio::io_context& io, const std::filesystem::
   }
   Local::socket probe{io};
   boost::system::error_code error;
-  probe.connect(Local::endpoint{path.string()}, error);
-  if (!error) return base::failure("control socket {}: another process is listening there", path.string());
+  probe.open({}, error);
+  // A full queue must not hold up the start.
+  if (!error) probe.non_blocking(true, error);
+  if (!error) probe.connect(Local::endpoint{path.string()}, error);
+  if (!error) {
+    return base::failure(
+        "control socket {}: another process is listening there: stop it, or choose another path in "
+        "[control] socket",
+        path.string());
+  }
+  if (error == boost::system::errc::no_such_file_or_directory) return {};
+  // Only this says that there is nobody: a socket of another user, or one whose queue is full, is in use.
+  if (error != asio::error::connection_refused) {
+    return base::failure(
+        "control socket {}: is there, and whether anybody listens cannot be asked: {}: remove it if it is "
+        "left over, or choose another path in [control] socket",
+        path.string(), error.message());
+  }
   ::unlink(path.c_str());
   return {};
 }
@@ -192,7 +216,7 @@ base::Result<std::unique_ptr<ControlServer>> ControlServer::listen(asio::io_cont
     if (base::Result<void> removed = remove_leftover(io, socket); !removed)
       return tl::unexpected(removed.error());
   }
-  auto service = std::make_shared<Service>(Service{{}, std::move(handler), hub, limits, 0});
+  auto service = std::make_shared<Service>(Service{{}, std::move(handler), hub, limits});
   auto listener = std::make_shared<LocalAcceptor>(io, socket, std::move(service));
   if (const boost::system::error_code error = inherited ? listener->adopt(*inherited) : listener->open()) {
     listener->close();
@@ -210,7 +234,7 @@ base::Result<std::unique_ptr<ControlServer>> ControlServer::listen_tcp(asio::io_
   STICKSLIP_EXPECTS(!token.empty());
   const base::Result<tcp::endpoint> endpoint = loopback(address);
   if (!endpoint) return tl::unexpected(endpoint.error());
-  auto service = std::make_shared<Service>(Service{{false, {}, token}, std::move(handler), hub, limits, 0});
+  auto service = std::make_shared<Service>(Service{{false, {}, token}, std::move(handler), hub, limits});
   auto listener = std::make_shared<TcpAcceptor>(io, service);
   if (const boost::system::error_code error = listener->open(*endpoint)) {
     return base::failure("[control] http = \"{}\": {}", address, error.message());

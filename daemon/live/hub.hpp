@@ -67,9 +67,10 @@ class LiveHub {
   /// \param changed  told how many listen.
   explicit LiveHub(std::function<void(std::size_t)> changed = {}) : changed_(std::move(changed)) {}
 
+  [[nodiscard]] bool has_room() const noexcept { return clients_.size() < kMostClients; }
   /// \return false if there are too many.
   [[nodiscard]] bool join(LiveClient* client) {
-    if (clients_.size() == kMostClients) return false;
+    if (!has_room()) return false;
     clients_.insert(client);
     if (changed_) changed_(clients_.size());
     return true;

@@ -314,10 +314,140 @@ TEST_P(EitherDoor, HasRoomForSoManyConnectionsAndNotForOneMore) {
     char byte = 0;
     ASSERT_EQ(::recv(held, &byte, 1, MSG_PEEK), 1);
   }
-  EXPECT_EQ(answer_to(begun + kClose), "");
+  EXPECT_THAT(answer_to(begun + kClose),
+              testing::AllOf(testing::StartsWith("HTTP/1.1 503 "),
+                             testing::HasSubstr("2 connections are open, and there is room for no more")));
   ::close(first);
   EXPECT_TRUE(is_answered_at_last());
   ::close(second);
+}
+
+// Idle ones, ones that ask for a page, ones that come again and again: none of them has shown a token, and
+// whoever has one is answered each time.
+TEST_P(EitherDoor, WhoHasATokenIsAnsweredWhateverNewcomersDo) {
+  HttpLimits limits;
+  limits.time = 1h;
+  limits.newcomer_time = 1h;  // So that not the time saves it.
+  open(limits);
+  std::vector<int> idle;
+  for (int k = 0; k < 100; ++k) {
+    for (const std::string& begun : {std::string{}, std::string{"GET / HT"}}) {
+      idle.push_back(client());
+      send(idle.back(), begun);
+    }
+    if (k % 10 == 0) {
+      EXPECT_THAT(answer_to(asks("GET", "/v1/status") + kClose), testing::StartsWith("HTTP/1.1 200 ")) << k;
+    }
+  }
+  for (const int one : idle) ::close(one);
+}
+
+TEST_P(EitherDoor, ANewcomerHasLessTimeThanWhoWasLetIn) {
+  HttpLimits limits;
+  limits.time = 1h;
+  limits.newcomer_time = 20ms;
+  open(limits);
+  EXPECT_EQ(answer_to(""), "");
+  EXPECT_EQ(answer_to(asks("GET", "/v1/status") + "\r\nX: "), "");
+  // It stays after its first request, for longer than a newcomer may.
+  const int known = client();
+  std::array<char, 4096> part{};
+  send(known, asks("GET", "/v1/status") + "\r\n\r\n");
+  ASSERT_GT(::recv(known, part.data(), part.size(), 0), 0);
+  EXPECT_EQ(answer_to(""), "");
+  EXPECT_THAT(raw(known, asks("GET", "/v1/status") + kClose), testing::HasSubstr("HTTP/1.1 200 "));
+}
+
+TEST_P(EitherDoor, AnswersHeadAsGetButForTheBody) {
+  open();
+  for (const char* path : {"/v1/status", "/nothing", "/v1/live"}) {
+    const std::string whole = answer_to(asks("GET", path) + kClose);
+    const std::string head = answer_to(asks("HEAD", path) + kClose);
+    const std::size_t end = whole.find("\r\n\r\n") + 4;
+    EXPECT_EQ(head, whole.substr(0, end)) << path;
+    EXPECT_THAT(head, testing::HasSubstr("Content-Length: " + std::to_string(whole.size() - end) + "\r\n"));
+  }
+  // What follows is told from it.
+  const std::string two =
+      answer_to(asks("HEAD", "/v1/status") + "\r\n\r\n" + asks("GET", "/v1/plan") + kClose);
+  EXPECT_EQ(two.find("HTTP/1.1 200 OK", 1), two.find("\r\n\r\n") + 4) << two;
+  EXPECT_THAT(two, testing::HasSubstr("\"pull_speed\":null"));
+}
+
+TEST_P(EitherDoor, RefusesHeadersThatStandThereTwice) {
+  open();
+  for (const char* name :
+       {"Host", "hOST", "Origin", "Authorization", "Expect", "Stickslip-Controller", "Idempotency-Key"}) {
+    const std::string line = std::string{"\r\n"} + name + ": x";
+    EXPECT_THAT(answer_to(asks("GET", "/v1/status") + line + line + kClose),
+                testing::StartsWith("HTTP/1.1 400 "))
+        << name;
+  }
+}
+
+TEST_P(EitherDoor, SaysContinueToWhoWaitsForIt) {
+  HttpLimits limits;
+  limits.body_size = 16;
+  open(limits);
+  const std::string put =
+      asks("PUT", "/v1/plan") + "\r\nStickslip-Controller: ada\r\nConnection: close\r\nExpect: ";
+  const int patient = client();
+  send(patient, put + "100-Continue\r\nContent-Length: 2\r\n\r\n");
+  std::array<char, 25> interim{};
+  ASSERT_EQ(::recv(patient, interim.data(), interim.size(), MSG_WAITALL), 25);
+  EXPECT_EQ(std::string(interim.data(), interim.size()), "HTTP/1.1 100 Continue\r\n\r\n");
+  EXPECT_THAT(raw(patient, "{}"), testing::StartsWith("HTTP/1.1 200 "));
+  // Who cannot be served is told before the body, and so is who waits for something else.
+  EXPECT_THAT(answer_to(put + "100-continue\r\nContent-Length: 17\r\n\r\n"),
+              testing::StartsWith("HTTP/1.1 413 "));
+  EXPECT_THAT(answer_to(put + "200-ok\r\nContent-Length: 2\r\n\r\n"), testing::StartsWith("HTTP/1.1 417 "));
+  EXPECT_THAT(raw(client(),
+                  "PUT /v1/plan HTTP/1.1\r\nOrigin: x\r\nOrigin: y\r\nExpect: 100-continue\r\n"
+                  "Content-Length: 2\r\n\r\n"),
+              testing::StartsWith("HTTP/1.1 400 "));
+  // Nothing is to come: nothing is waited for.
+  EXPECT_THAT(answer_to(asks("GET", "/v1/status") + "\r\nExpect: 100-continue" + kClose),
+              testing::StartsWith("HTTP/1.1 200 "));
+}
+
+constexpr const char* kUpgrade =
+    "\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: "
+    "dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
+
+TEST_P(EitherDoor, RefusesMoreListenersThanItHasRoomForAndSaysSo) {
+  open();
+  const std::string ask =
+      asks("GET", "/v1/live") + (GetParam() == Way::kBySocket ? "\r\nHost: x" : "") + kUpgrade;
+  std::vector<int> listening;
+  for (std::size_t k = 0; k < LiveHub::kMostClients; ++k) {
+    listening.push_back(client());
+    send(listening.back(), ask);
+  }
+  {
+    std::unique_lock lock{mutex_};
+    news_.wait(lock, [&] { return listeners_ == LiveHub::kMostClients; });
+  }
+  EXPECT_THAT(answer_to(ask), testing::AllOf(testing::StartsWith("HTTP/1.1 503 "),
+                                             testing::HasSubstr("24 clients read the live stream")));
+  EXPECT_THAT(answer_to(asks("GET", "/v1/status") + kClose), testing::StartsWith("HTTP/1.1 200 "));
+  for (const int one : listening) ::close(one);
+}
+
+TEST_F(ControlServerTest, AListenerTooManyIsToldWhy) {
+  serve();
+  std::vector<int> listening;
+  for (std::size_t k = 0; k < LiveHub::kMostClients; ++k) {
+    listening.push_back(connected());
+    send(listening.back(), std::string{"GET /v1/live HTTP/1.1\r\nHost: x"} + kUpgrade);
+  }
+  {
+    std::unique_lock lock{mutex_};
+    news_.wait(lock, [&] { return listeners_ == LiveHub::kMostClients; });
+  }
+  const auto refused = listen_live(socket_, [](std::string_view) { return true; });
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, testing::HasSubstr("24 clients read the live stream"));
+  for (const int one : listening) ::close(one);
 }
 
 TEST_F(ControlServerTest, OverTcpNothingComesWithoutHostAndToken) {
@@ -427,6 +557,41 @@ TEST_F(ControlServerTest, ReplacesALeftOverSocketButNothingElse) {
   const auto longest = ControlServer::listen(io_, folder_ / std::string(200, 'x'), make_api(bench_, clock_));
   ASSERT_FALSE(longest);
   EXPECT_EQ(longest.error().exit_status(), 2);
+}
+
+// Somebody removed the socket file, and another daemon listens at the same path.
+TEST_F(ControlServerTest, LeavesTheSocketOfAnotherWhenItStops) {
+  serve();
+  std::filesystem::remove(socket_);
+  auto other = ControlServer::listen(io_, socket_, make_api(bench_, clock_));
+  ASSERT_TRUE(other) << other.error().message;
+  std::promise<void> stopped;
+  boost::asio::post(io_, [&] {
+    server_.reset();
+    stopped.set_value();
+  });
+  stopped.get_future().wait();
+  const auto reply = request(socket_, {"GET", "/v1/status", "", "", ""}, 10s);
+  ASSERT_TRUE(reply) << reply.error().message;
+  EXPECT_EQ(reply->status, 200);
+  boost::asio::post(io_, [&] { server_ = *std::move(other); });
+}
+
+// One that does not come to answering is no left-over.
+TEST_F(ControlServerTest, TakesTheSocketOfNobodyWhoIsBusy) {
+  const int busy = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  socket_.string().copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(::bind(busy, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  ASSERT_EQ(::listen(busy, 0), 0);
+  const int waiting = connected();
+  const auto second = ControlServer::listen(io_, socket_, make_api(bench_, clock_));
+  ASSERT_FALSE(second);
+  EXPECT_THAT(second.error().message, testing::HasSubstr("choose another path in [control] socket"));
+  EXPECT_TRUE(std::filesystem::exists(socket_));
+  ::close(waiting);
+  ::close(busy);
 }
 
 TEST(ControlClient, SaysThatNobodyAnswers) {

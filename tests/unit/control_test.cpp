@@ -7,6 +7,7 @@
 
 #include "daemon/control/api.hpp"
 #include "daemon/control/gate.hpp"
+#include "daemon/control/repeats.hpp"
 #include "daemon/live/hub.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/unit/paper_bench.hpp"
@@ -266,12 +267,69 @@ TEST_F(ControlApi, ARepeatedKeyIsAnsweredAsThenAndNothingIsDoneTwice) {
   EXPECT_EQ(command("/v1/arm", "ada", "", "k3").status, 409);
   bench_.waiting();
   EXPECT_TRUE(command("/v1/arm", "ada", "", "k3").replayed);
-  // A refusal is an answer too.
-  bench_.later = false;
-  bench_.refusal = "no";
-  EXPECT_EQ(command("/v1/start", "ada", "", "k4").status, 409);
+}
+
+TEST_F(ControlApi, ARefusalIsNotKept) {
+  bench_.refusal = "a test is running";
+  EXPECT_EQ(command("/v1/start", "ada", "", "k").status, 409);
+  EXPECT_EQ(command("/v1/start", "ada", R"({"test": "x"})", "k").status, 400);
   bench_.refusal.clear();
-  EXPECT_EQ(command("/v1/start", "ada", "", "k4").status, 409);
+  const HttpReply granted = command("/v1/start", "ada", "", "k");
+  EXPECT_EQ(granted.status, 200);
+  EXPECT_FALSE(granted.replayed);
+  EXPECT_TRUE(command("/v1/start", "ada", "", "k").replayed);
+}
+
+TEST_F(ControlApi, NobodyElsesKeysPushOutMine) {
+  const std::string here = R"({"text": "here"})";
+  const auto mark = [&](const std::string& who, const std::string& key, const std::string& peer) {
+    return ask({"POST", "/v1/mark", here, who, key, peer});
+  };
+  const auto release = [&](const std::string& who) { ask({"DELETE", "/v1/controller", "", who, ""}); };
+  ASSERT_EQ(mark("ada", "k", "uid 1000").status, 200);
+  release("ada");
+  for (std::size_t k = 0; k < 2 * Repeats::kKept; ++k) mark("bob", std::to_string(k), "uid 1000");
+  release("bob");
+  // The same name is somebody else's where the system says so.
+  EXPECT_FALSE(mark("ada", "k", "token").replayed);
+  EXPECT_TRUE(mark("ada", "k", "uid 1000").replayed);
+  EXPECT_FALSE(mark("ada", "0", "uid 1000").replayed) << "it is bob's";
+  // Their own oldest are forgotten.
+  release("ada");
+  EXPECT_FALSE(mark("bob", "0", "uid 1000").replayed);
+  EXPECT_TRUE(mark("bob", std::to_string(2 * Repeats::kKept - 1), "uid 1000").replayed);
+}
+
+TEST_F(ControlApi, NamesWithoutEndMakeNobodyForget) {
+  ASSERT_EQ(command("/v1/arm", "ada", "", "k").status, 200);
+  ask({"DELETE", "/v1/controller", "", "ada", ""});
+  int refused = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const std::string name = std::to_string(k);
+    const HttpReply reply = command("/v1/arm", name, "", "k");
+    ask({"DELETE", "/v1/controller", "", name, ""});
+    if (reply.status != 503) continue;
+    ++refused;
+    EXPECT_THAT(error(reply), testing::HasSubstr("send the request without a key"));
+  }
+  EXPECT_EQ(refused, 1001 - static_cast<int>(Repeats::kMostClients));
+  EXPECT_TRUE(command("/v1/arm", "ada", "", "k").replayed);
+  EXPECT_EQ(command("/v1/arm", "zoe", "", "").status, 200) << "without a key";
+  clock_.advance(Repeats::kRemembered);
+  EXPECT_EQ(command("/v1/arm", "zoe", "", "k").status, 200);
+}
+
+// What is remembered of one client is bounded in bytes too.
+TEST_F(ControlApi, LongRequestsPushOutTheirOwn) {
+  ASSERT_EQ(command("/v1/arm", "ada", "", "first").status, 200);
+  const auto padded = [](int k) {
+    return std::string(60'000, ' ') + R"({"text": ")" + std::to_string(k) + "\"}";
+  };
+  for (int k = 0; k < 20; ++k) {
+    EXPECT_EQ(command("/v1/mark", "ada", padded(k), std::to_string(k)).status, 200);
+    EXPECT_TRUE(command("/v1/mark", "ada", padded(k), std::to_string(k)).replayed);
+  }
+  EXPECT_FALSE(command("/v1/arm", "ada", "", "first").replayed);
 }
 
 TEST_F(ControlApi, RefusalsOfTheBenchSayWhyAndInWhichState) {
