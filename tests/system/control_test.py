@@ -195,8 +195,21 @@ class Description(unittest.TestCase):
         self.daemon = Daemon(self, '[test]\nbegins = "command"\n', board=weighing_board(self, SOURCE, speed=10), program=folder / "stickslipd")
         self.document = self.daemon.ask("GET", "/v1/openapi.json")[1]
         self.seen = set()
+        self.keys = 0
 
     def check(self, method, path, *arguments, template=None, **options):
+        if method == "GET" or options.get("who", "ada") is None:
+            return self.check_once(method, path, *arguments, template=template, **options)
+        # What was done is known by its key, and what was refused is not.
+        self.keys += 1
+        options.setdefault("key", f"own key {self.keys}")
+        answered = self.check_once(method, path, *arguments, template=template, **options)
+        if answered[0] == 200:
+            self.assertEqual(self.check_once(method, path, '{"y": 1}', template=template, **options)[0], 422)
+            self.assertEqual(self.check_once(method, path, *arguments, template=template, **options), answered)
+        return answered
+
+    def check_once(self, method, path, *arguments, template=None, **options):
         status, body = self.daemon.ask(method, path, *arguments, **options)
         described = self.document["paths"][template or path][method.lower()]["responses"]
         self.assertIn(str(status), described, f"{method} {path}: {body}")
@@ -208,7 +221,8 @@ class Description(unittest.TestCase):
     def test_every_path_method_and_answer_is_as_described(self):
         for path in ("/v1/status", "/v1/openapi.json", "/v1/tests", "/v1/plan", "/v1/batch", "/v1/batches", "/v1/controller", "/v1/calibration", "/metrics"):
             self.assertEqual(self.check("GET", path)[0], 200)
-        self.check("GET", "/v1/live")
+        self.assertEqual(self.check("GET", "/v1/live")[0], 426)
+        self.crowd()
         self.check("GET", "/v1/tests/1", template="/v1/tests/{number}")
         changing = [("PUT", "/v1/plan", {"name": "x"}), ("PUT", "/v1/controller", {"seconds": 60}), ("POST", "/v1/arm", None),
                     ("POST", "/v1/stop", None), ("POST", "/v1/start", None), ("POST", "/v1/mark", {"text": "x"}), ("POST", "/v1/tare", None),
@@ -220,7 +234,6 @@ class Description(unittest.TestCase):
             self.assertEqual(self.check(method, path, body, who=None)[0], 400)
             key = f"key {at}"
             self.check(method, path, body, key=key)
-            self.assertEqual(self.check(method, path, '{"x": 1}', key=key)[0], 422)
             # What cannot be done by anybody yet is refused for that.
             if path not in ("/v1/controller", "/v1/void", "/v1/restore") or method == "PUT":
                 self.assertEqual(self.check(method, path, body, who="bob")[0], 409, path)
@@ -273,6 +286,22 @@ class Description(unittest.TestCase):
         promised = {(path, method, status) for path, methods in self.document["paths"].items() for method, one in methods.items()
                     for status in one["responses"]}
         self.assertEqual(promised - self.seen, set())
+
+    def crowd(self):
+        """As many as there is room for listen, and one more asks."""
+        listening = []
+        for _ in range(24):
+            one = UnixConnection(self.daemon.socket)
+            one.request("GET", "/v1/live", headers={"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13",
+                                                    "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ=="})
+            self.assertEqual(one.getresponse().status, 101)
+            listening.append(one)
+        while self.check("GET", "/v1/live")[0] != 503:
+            pass
+        for one in listening:
+            one.close()
+        while self.check("GET", "/v1/live")[0] != 426:
+            pass
 
     def reports(self, record):
         """On the batch that leads, which has no test yet, and on another; both compared."""
