@@ -36,9 +36,9 @@ std::unique_ptr<base::Clock> clock_of(const DaemonConfig& config) {
 Finalise read_only(Finalise finalise) {
   return [finalise = std::move(finalise)](const std::filesystem::path& journal) {
     auto file = finalise(journal);
-    constexpr mode_t kEverybodyReads = 0444;
+    constexpr mode_t kNobodyWrites = 0444;
     // The record is whole; that it can be written to is no reason to refuse it.
-    if (file) static_cast<void>(::chmod(file->c_str(), kEverybodyReads));
+    if (file) static_cast<void>(::chmod(file->c_str(), kNobodyWrites));
     return file;
   };
 }
@@ -134,7 +134,8 @@ base::Result<void> App::run() {
   batches_.open();
   continues_.next_test_number = batches_.next_test_number();
   if (base::Result<void> opened = open_fleet(); !opened) return opened;
-  if (base::Result<void> opened = open_session(); !opened) {
+  if (base::Result<void> opened = open_session();
+      !opened && opened.error().kind != base::ErrorKind::kInterrupted) {
     if (opened.error().kind == base::ErrorKind::kUsage) return opened;
     wait_for_board(opened.error());
   }

@@ -16,6 +16,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 
+#include "core/record/read_apart.hpp"
 #include "daemon/app.hpp"
 #include "daemon/config.hpp"
 #include "daemon/daemon_options.hpp"
@@ -105,6 +106,8 @@ int run(const std::string& file) {
   // In a terminal a SIGHUP says that the terminal is gone.
   const bool reloads = ::isatty(STDIN_FILENO) == 0;
   SignalsBetween signals{reloads};
+  // A replay's record is read before anything else hears of a signal.
+  record::read_records_apart([&signals] { return signals.stop_asked(); });
   for (std::optional<DaemonConfig> next{*std::move(config)}; next;) {
     const bool table = next->report_table;
     const bool terminal = table && ::isatty(STDOUT_FILENO) != 0;
@@ -160,7 +163,9 @@ int main_of(int count, char** arguments) {
 }  // namespace stickslip::daemon
 
 int main(int count, char** arguments) {
+  stickslip::record::serve_if_reader(count, arguments);
   try {
+    stickslip::record::read_records_apart();
     return stickslip::daemon::main_of(count, arguments);
   } catch (const std::exception& error) {
     fmt::print(stderr, "stickslipd: {}\n", error.what());

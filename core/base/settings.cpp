@@ -1,13 +1,11 @@
 #include "core/base/settings.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <fstream>
 #include <set>
 #include <sstream>
-#include <system_error>
 
+#include "core/base/regular_file.hpp"
 #include "core/base/settings_document.hpp"
 #include "core/base/wording.hpp"
 
@@ -72,20 +70,9 @@ Settings::Settings(std::shared_ptr<Document> document, Node* node)
     : document_(std::move(document)), node_(node) {}
 
 Result<Settings> Settings::load(const std::filesystem::path& file) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) {
-    return usage_error("{}: is a folder; give a TOML file", file.string());
-  }
-  errno = 0;
-  std::ifstream in{file, std::ios::binary};
-  if (!in) {
-    const int reason = errno != 0 ? errno : EIO;
-    return usage_error("{}: cannot be read: {}", file.string(), std::generic_category().message(reason));
-  }
-  std::string text(kLargestFile + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (in.bad()) return usage_error("{}: cannot be read", file.string());
-  text.resize(static_cast<std::size_t>(in.gcount()));
+  const Result<std::string> read = read_text(file, kLargestFile + 1);
+  if (!read) return tl::unexpected(Error{ErrorKind::kUsage, read.error().message});
+  const std::string& text = *read;
   if (text.size() > kLargestFile) {
     return usage_error("{}: is longer than {} bytes, too long for settings", file.string(), kLargestFile);
   }

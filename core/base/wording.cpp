@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <system_error>
 #include <vector>
 
 namespace stickslip::base {
@@ -49,6 +50,8 @@ std::string reason_of(const std::exception& error) {
   const std::string_view what{error.what()};
   return one_line(what, what.size());
 }
+
+std::string system_message(int error) { return std::generic_category().message(error); }
 
 std::string spelling_hint(std::string_view word, const std::set<std::string, std::less<>>& known) {
   constexpr std::size_t kFarthestGuess = 3;

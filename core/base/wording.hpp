@@ -17,6 +17,9 @@ namespace stickslip::base {
 /// Why something failed, whole and in one line: it may cite what stands in a file.
 [[nodiscard]] std::string reason_of(const std::exception& error);
 
+/// What the system says about an errno value.
+[[nodiscard]] std::string system_message(int error);
+
 /// "did you mean sled_mass? Known here: …" if a known word is within three edits of `word`,
 /// else "known here: …".
 [[nodiscard]] std::string spelling_hint(std::string_view word,

@@ -5,13 +5,13 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <string>
 #include <system_error>
+
+#include "core/base/regular_file.hpp"
 
 namespace stickslip::record {
 namespace {
-
-/// Of one read(): the kernel never returns more than 2 GiB.
-constexpr std::size_t kReadChunk = std::size_t{1} << 24U;
 
 /// As rename(), but `to` was free when it was taken.
 int rename_over_own(const char* from, const char* to, const FileCalls& calls) {
@@ -36,12 +36,6 @@ int rename_by_link(const char* from, const char* to, const FileCalls& calls) {
 }
 
 }  // namespace
-
-Descriptor::~Descriptor() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-std::string system_message(int error) { return std::generic_category().message(error); }
 
 std::filesystem::path folder_of(const std::filesystem::path& path) {
   return path.has_parent_path() ? path.parent_path() : std::filesystem::path{"."};
@@ -106,32 +100,10 @@ std::size_t write_all(int descriptor, std::span<const std::byte> bytes, const Fi
 }
 
 base::Result<std::vector<std::byte>> read_file(const std::filesystem::path& path) {
-  const Descriptor descriptor{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
-  if (!descriptor.open()) {
-    if (errno == ENOENT || errno == ENOTDIR)
-      return base::usage_error("{}: there is no such file", path.string());
-    return base::failure("{}: cannot be opened: {}", path.string(), system_message(errno));
-  }
-  struct stat found {};
-  if (::fstat(descriptor.get(), &found) == 0 && S_ISDIR(found.st_mode)) {
-    return base::usage_error("{}: is a folder, a file is needed", path.string());
-  }
-  std::vector<std::byte> bytes;
-  std::size_t size = 0;
-  for (;;) {
-    // One byte more than the file says it has, so that the end is seen without another round.
-    const auto expected = static_cast<std::size_t>(found.st_size) + 1;
-    bytes.resize(size + (size < expected ? std::min(expected - size, kReadChunk) : kReadChunk));
-    const ssize_t got = ::read(descriptor.get(), bytes.data() + size, bytes.size() - size);
-    if (got < 0) {
-      if (errno == EINTR) continue;
-      return base::failure("{}: cannot be read: {}", path.string(), system_message(errno));
-    }
-    if (got == 0) break;
-    size += static_cast<std::size_t>(got);
-  }
-  bytes.resize(size);
-  return bytes;
+  const base::Result<std::string> text = base::read_text(path);
+  if (!text) return tl::unexpected(text.error());
+  const auto bytes = std::as_bytes(std::span{*text});
+  return std::vector<std::byte>{bytes.begin(), bytes.end()};
 }
 
 }  // namespace stickslip::record

@@ -6,36 +6,17 @@
 #include <filesystem>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "core/base/descriptor.hpp"
 #include "core/base/result.hpp"
+#include "core/base/wording.hpp"
 #include "core/record/file_calls.hpp"
 
 namespace stickslip::record {
 
-/// Owns a file descriptor.
-class Descriptor {
- public:
-  explicit Descriptor(int descriptor = -1) noexcept : descriptor_(descriptor) {}
-  Descriptor(Descriptor&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(descriptor_, other.descriptor_);
-    return *this;
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor();
-
-  [[nodiscard]] int get() const noexcept { return descriptor_; }
-  [[nodiscard]] bool open() const noexcept { return descriptor_ >= 0; }
-
- private:
-  int descriptor_;
-};
-
-/// What the system says about an errno value.
-[[nodiscard]] std::string system_message(int error);
+using base::Descriptor;
+using base::system_message;
 
 /// fsync of a file by its path.
 [[nodiscard]] base::Result<void> sync_path(const std::filesystem::path& path,
@@ -66,7 +47,7 @@ class Descriptor {
 /// write() until all is written or an error. \return bytes written; errno says why if fewer.
 [[nodiscard]] std::size_t write_all(int descriptor, std::span<const std::byte> bytes, const FileCalls& calls);
 
-/// The whole file. Errors: kUsage if it is no readable file at all (missing, a folder), else kFailure.
+/// The whole file. Errors as base::read_text().
 [[nodiscard]] base::Result<std::vector<std::byte>> read_file(const std::filesystem::path& path);
 
 }  // namespace stickslip::record

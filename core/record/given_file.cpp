@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/regular_file.hpp"
+
 namespace stickslip::record {
 namespace {
 
@@ -82,8 +84,8 @@ base::Result<GivenFile> GivenFile::open(const std::filesystem::path& path, const
   Descriptor file{calls.open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK, 0)};
   struct stat found {};
   if (!file.open() || ::fstat(file.get(), &found) != 0) return cannot_look(errno);
-  if (S_ISDIR(found.st_mode)) return base::usage_error("is no file but a folder: name a file");
-  if (!S_ISREG(found.st_mode)) return base::usage_error("is no file");
+  if (const std::string why = base::why_not_regular(found.st_mode); !why.empty())
+    return base::usage_error("{}", why);
   auto state = std::make_shared<State>();
   state->file = std::move(file);
   state->size = static_cast<std::uint64_t>(found.st_size);

@@ -1,6 +1,5 @@
 #include "core/record/journal_care.hpp"
 
-#include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -13,8 +12,10 @@
 #include <span>
 #include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "core/base/regular_file.hpp"
 #include "core/record/journal_format.hpp"
 
 namespace stickslip::record {
@@ -25,10 +26,10 @@ constexpr std::size_t kLongestTail = std::size_t{1} << 26U;
 
 /// At most so much of the file from `position` on.
 std::vector<std::byte> tail_of(const std::filesystem::path& path, std::uint64_t position) {
-  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
-  struct stat found {};
-  if (!file.open() || ::fstat(file.get(), &found) != 0) return {};
-  const auto end = static_cast<std::uint64_t>(found.st_size);
+  const auto opened = base::open_regular(path);
+  if (!opened) return {};
+  const Descriptor& file = opened->file;
+  const std::uint64_t end = opened->size;
   std::vector<std::byte> bytes(std::min<std::uint64_t>(end - std::min(end, position), kLongestTail));
   std::size_t size = 0;
   while (size < bytes.size()) {
@@ -83,6 +84,9 @@ base::Result<JournalLock> JournalLock::take(const std::filesystem::path& journal
       return base::usage_error("{}: there is no such file", journal.string());
     return base::failure("{}: cannot be opened: {}", journal.string(), system_message(errno));
   }
+  struct stat found {};
+  if (::fstat(file.get(), &found) == 0 && !S_ISREG(found.st_mode))
+    return base::usage_error("{}: {}", journal.string(), base::why_not_regular(found.st_mode));
   // Waiting inside flock() could not be given up.
   constexpr std::chrono::milliseconds kPause{20};
   while (!lock_journal(file.get(), calls) && longest.count() > 0) {
@@ -91,7 +95,6 @@ base::Result<JournalLock> JournalLock::take(const std::filesystem::path& journal
   }
   if (!lock_journal(file.get(), calls))
     return base::failure("{}: is being written or finished by another process", journal.string());
-  struct stat found {};
   if (::fstat(file.get(), &found) != 0 || found.st_nlink == 0)
     return base::failure("{}: has just been finished by another process", journal.string());
   return JournalLock{std::move(file)};

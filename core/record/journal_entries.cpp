@@ -1,7 +1,5 @@
 #include "core/record/journal_entries.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,23 +7,14 @@
 #include <cstring>
 #include <utility>
 
+#include "core/base/regular_file.hpp"
+
 namespace stickslip::record {
 
 base::Result<JournalEntries> JournalEntries::open(const std::filesystem::path& path) {
-  Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
-  if (!file.open()) {
-    if (errno == ENOENT || errno == ENOTDIR)
-      return base::usage_error("{}: there is no such file", path.string());
-    return base::failure("{}: cannot be opened: {}", path.string(), system_message(errno));
-  }
-  struct stat found {};
-  if (::fstat(file.get(), &found) != 0) {
-    return base::failure("{}: cannot be read: {}", path.string(), system_message(errno));
-  }
-  if (S_ISDIR(found.st_mode)) {
-    return base::usage_error("{}: is a folder, a file is needed", path.string());
-  }
-  return JournalEntries{std::move(file), static_cast<std::uint64_t>(found.st_size)};
+  base::Result<base::RegularFile> opened = base::open_regular(path);
+  if (!opened) return tl::unexpected(opened.error());
+  return JournalEntries{std::move(opened->file), opened->size};
 }
 
 void JournalEntries::fill(std::size_t size) {

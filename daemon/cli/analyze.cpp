@@ -7,7 +7,7 @@
 
 #include "core/base/wording.hpp"
 #include "core/friction/kept.hpp"
-#include "core/record/reader.hpp"
+#include "core/record/read_apart.hpp"
 #include "daemon/analyse.hpp"
 #include "daemon/cli/commands.hpp"
 #include "daemon/cli/effects.hpp"
@@ -77,7 +77,7 @@ base::Result<std::string> run_analyze(const AnalyzeCommand& command) {
   std::vector<TableRow> rows;
   std::string effects_below;
   for (const std::string& file : command.files) {
-    base::Result<record::Record> record = record::read_record(file);
+    base::Result<record::Record> record = record::read_record_apart(file);
     if (!record) return tl::unexpected(record.error());
     std::string& text = record->header.process.method;
     const std::optional<std::int64_t> record_number = record->header.test_number;

@@ -11,7 +11,7 @@
 
 #include "core/base/clock.hpp"
 #include "core/record/iso_time.hpp"
-#include "core/record/reader.hpp"
+#include "core/record/read_apart.hpp"
 #include "daemon/batch/journal.hpp"
 #include "daemon/cli/ask.hpp"
 #include "daemon/cli/commands.hpp"
@@ -83,7 +83,7 @@ base::Result<void> add_limit(Json& limits, const std::string& text) {
 /// In the journal beside the record, whatever runs.
 base::Result<std::string> void_file(const BenchOptions& options, const VoidCommand& command) {
   const std::filesystem::path file{command.test};
-  if (const auto read = record::read_record(file); !read) return tl::unexpected(read.error());
+  if (const auto read = record::read_record_apart(file); !read) return tl::unexpected(read.error());
   const std::filesystem::path folder =
       journal_folder_of(file).value_or(std::filesystem::absolute(file).parent_path());
   const std::string name = name_in_journal(folder, file);

@@ -8,7 +8,7 @@
 
 #include "core/record/finaliser.hpp"
 #include "core/record/iso_time.hpp"
-#include "core/record/reader.hpp"
+#include "core/record/read_apart.hpp"
 #include "daemon/analyse.hpp"
 #include "daemon/cli/commands.hpp"
 #include "daemon/method_text.hpp"
@@ -51,7 +51,7 @@ base::Result<TesterEstimate> ring_down_of(const std::string& file, record::Recor
 base::Result<RingDowns> read_all(const std::vector<std::string>& files) {
   RingDowns ring_downs;
   for (const std::string& file : files) {
-    base::Result<record::Record> record = record::read_record(file);
+    base::Result<record::Record> record = record::read_record_apart(file);
     if (!record) return tl::unexpected(record.error());
     ring_downs.latest_ns = std::max(ring_downs.latest_ns, record->header.start_realtime_ns);
     base::Result<TesterEstimate> estimate = ring_down_of(file, *std::move(record));

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/record/finaliser.hpp"
-#include "core/record/reader.hpp"
+#include "core/record/read_apart.hpp"
 #include "daemon/cli/subcommands.hpp"
 #include "daemon/export_csv.hpp"
 #include "daemon/new_file.hpp"
@@ -23,7 +23,7 @@ base::Result<std::string> run_export(const ExportCommand& command) {
   if (!command.output.empty()) {
     if (auto free = record::check_publishable(command.output); !free) return tl::unexpected(free.error());
   }
-  const base::Result<record::Record> record = record::read_record(command.file);
+  const base::Result<record::Record> record = record::read_record_apart(command.file);
   if (!record) return tl::unexpected(record.error());
   std::string text = command.cycles ? cycles_csv(*record) : scans_csv(*record);
   if (command.output.empty()) return text;

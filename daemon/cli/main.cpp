@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "core/record/read_apart.hpp"
 #include "daemon/cli/options.hpp"
 #include "daemon/cli/subcommands.hpp"
 #include "daemon/version.hpp"
@@ -95,7 +96,9 @@ int main_of(int count, char** arguments) {
 }  // namespace stickslip::daemon
 
 int main(int count, char** arguments) {
+  stickslip::record::serve_if_reader(count, arguments);
   try {
+    stickslip::record::read_records_apart();
     return stickslip::daemon::main_of(count, arguments);
   } catch (const std::exception& error) {
     fmt::print(stderr, "stickslip: {}\n", error.what());

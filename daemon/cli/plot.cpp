@@ -8,7 +8,7 @@
 #include "core/base/wording.hpp"
 #include "core/record/finaliser.hpp"
 #include "core/record/journal.hpp"
-#include "core/record/reader.hpp"
+#include "core/record/read_apart.hpp"
 #include "core/sim/scene.hpp"
 #include "daemon/cli/commands.hpp"
 #include "daemon/cli/options.hpp"
@@ -48,7 +48,7 @@ bool is_record(const std::string& input) {
 
 /// \param title  becomes the scene's, in words.
 Result<record::Record> record_of(const PlotCommand& command, std::string& title) {
-  if (is_record(command.input)) return record::read_record(command.input);
+  if (is_record(command.input)) return record::read_record_apart(command.input);
   const Result<std::filesystem::path> file = find_scene(command.input, command.folder);
   if (!file) return tl::unexpected(file.error());
   const Result<sim::Scene> scene = sim::load_scene(*file);

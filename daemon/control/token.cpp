@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <fstream>
 #include <string_view>
 #include <system_error>
 
+#include "core/base/regular_file.hpp"
 #include "daemon/new_file.hpp"
 
 namespace stickslip::daemon {
@@ -20,6 +20,7 @@ namespace {
 constexpr std::size_t kBytes = 32;
 constexpr std::size_t kShortest = 32;  ///< Of a token that somebody wrote by hand, in letters and digits.
 constexpr std::size_t kLongest = 256;
+constexpr std::size_t kMostOfFile = 2 * kLongest;
 
 /// Not inlined: GCC 12 takes a size that it knows for one that the string's own buffer would have to hold.
 [[gnu::noinline]] bool could_be_token(std::string_view text) {
@@ -54,9 +55,9 @@ base::Result<std::string> load_token(const std::filesystem::path& file) {
   if ((facts.st_mode & (S_IROTH | S_IWOTH)) != 0) {
     return base::usage_error("token file {}: everybody may read or write it; chmod o-rw it", file.string());
   }
-  std::ifstream input{file};
-  std::string token;
-  if (!std::getline(input, token)) return base::failure("token file {}: cannot be read", file.string());
+  const base::Result<std::string> text = base::read_text(file, kMostOfFile);
+  if (!text) return tl::unexpected(base::Error{text.error().kind, "token file " + text.error().message});
+  const std::string token = text->substr(0, text->find('\n'));
   if (!could_be_token(token)) {
     return base::usage_error(
         "token file {}: must hold one line of {} to {} letters and digits; remove it, and a new one is made",

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/record/reader.hpp"
+#include "core/record/read_apart.hpp"
 #include "daemon/fleet/messages.hpp"
 #include "daemon/record_result.hpp"
 
@@ -31,7 +31,7 @@ std::optional<FleetResult> parse_result(const std::string& record, const std::st
 }
 
 base::Result<std::string> result_of_record(const std::filesystem::path& file) {
-  const base::Result<record::Record> record = record::read_record(file);
+  const base::Result<record::Record> record = record::read_record_apart(file);
   if (!record) return tl::unexpected(record.error());
   if (!record->end) return base::usage_error("{}: holds no end of a test", file.string());
   return result_json(record->header, *record->end, record->cycles, file)

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
-#include <fstream>
 #include <system_error>
 #include <utility>
+
+#include "core/base/regular_file.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -18,6 +19,7 @@ constexpr std::uint16_t kTlsPort = 8883;
 
 constexpr std::size_t kLongestTester = 64;
 constexpr std::size_t kLongestTopic = 200;
+constexpr std::size_t kMostOfPasswordFile = 4096;
 constexpr std::int64_t kMostResults = 100'000;
 constexpr double kShortestHealth_s = 1.0;
 constexpr double kLongestHealth_s = 3600.0;
@@ -46,8 +48,10 @@ bool is_loopback(std::string_view host) {
 std::string because() { return std::generic_category().message(errno); }
 
 base::Result<void> check_readable(const char* key, const std::filesystem::path& file) {
-  if (file.empty() || std::ifstream{file}.good()) return {};
-  return base::usage_error("fleet.{} = \"{}\": cannot be read: {}", key, file.string(), because());
+  if (file.empty()) return {};
+  if (const auto opened = base::open_regular(file); !opened)
+    return base::usage_error("fleet.{}: {}", key, opened.error().message);
+  return {};
 }
 
 }  // namespace
@@ -167,10 +171,10 @@ base::Result<std::optional<std::string>> read_password(const std::filesystem::pa
     return base::usage_error("password file {}: everybody may read or write it; chmod o-rw it",
                              file.string());
   }
-  std::ifstream input{file};
-  std::string password;
-  if (!input) return base::failure("password file {}: cannot be read: {}", file.string(), because());
-  if (!std::getline(input, password) || password.empty()) {
+  const base::Result<std::string> text = base::read_text(file, kMostOfPasswordFile);
+  if (!text) return tl::unexpected(base::Error{text.error().kind, "password file " + text.error().message});
+  const std::string password = text->substr(0, text->find('\n'));
+  if (password.empty()) {
     return base::usage_error("password file {}: must hold the password in its first line", file.string());
   }
   return password;

@@ -9,7 +9,6 @@
 #include <fstream>
 #include <optional>
 #include <span>
-#include <sstream>
 #include <system_error>
 #include <tuple>
 #include <unordered_set>
@@ -17,6 +16,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/regular_file.hpp"
 #include "core/record/file.hpp"
 #include "daemon/new_file.hpp"
 
@@ -31,9 +31,7 @@ constexpr const char* kNewest = "newest";  ///< Of former versions.
 constexpr std::size_t kFewLines = 1000;
 
 std::string whole_text(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream{file}.rdbuf();
-  return text.str();
+  return base::read_text(file).value_or(std::string{});
 }
 
 /// The result in a file; nothing if this is none of ours. Files of former versions have no sequence number:
@@ -90,7 +88,6 @@ void Outbox::load() {
 }
 
 void Outbox::note_told(std::string_view lines) {
-  constexpr mode_t kEverybodyReads = 0644;
   const record::Descriptor file{::open(
       (folder_ / kTold).c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_CLOEXEC, kEverybodyReads)};
   if (!file.open()) return;

@@ -8,7 +8,7 @@
 #include "core/base/wording.hpp"
 #include "core/friction/kept.hpp"
 #include "core/friction/method.hpp"
-#include "core/record/reader.hpp"
+#include "core/record/read_apart.hpp"
 #include "daemon/batch/journal.hpp"
 #include "daemon/method_text.hpp"
 #include "daemon/report/trace_json.hpp"
@@ -58,7 +58,7 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
       material.voided.push_back({file, **std::move(voided)});
       continue;
     }
-    base::Result<record::Record> record = record::read_record(file);
+    base::Result<record::Record> record = record::read_record_apart(file);
     if (!record) return tl::unexpected(record.error());
     const record::TesterFacts& tester = record->header.tester;
     ReportedTest test;

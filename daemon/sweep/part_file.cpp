@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -16,6 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/contract.hpp"
+#include "core/base/regular_file.hpp"
 #include "core/base/wording.hpp"
 #include "core/record/json_codec.hpp"
 
@@ -103,6 +105,9 @@ Result<PartFile> PartFile::open(const std::filesystem::path& path, const record:
   record::Descriptor file{::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_APPEND | O_CLOEXEC, kMode)};
   if (!file.open())
     return base::failure("{}: cannot be opened: {}", path.string(), record::system_message(errno));
+  struct stat found {};
+  if (::fstat(file.get(), &found) == 0 && !S_ISREG(found.st_mode))
+    return base::usage_error("{}: {}", path.string(), base::why_not_regular(found.st_mode));
   if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     return base::usage_error("{}: another sweep is writing it right now: wait for it, or choose another -o",
                              path.string());

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/record/reader.hpp"
+#include "core/record/read_apart.hpp"
 #include "drivers/replay/replay_board.hpp"
 
 namespace stickslip::drivers {
@@ -24,7 +24,7 @@ base::Result<OpenedBoard> open_simulated(SimulatedBoardSettings settings, base::
 }
 
 base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::Clock& clock) {
-  base::Result<record::Record> record = record::read_record(file);
+  base::Result<record::Record> record = record::read_record_apart(file);
   if (!record) return tl::unexpected(record.error());
   const std::optional<daq::LoadCell> load_cell = record->header.load_cell;
   const friction::Tester tester = record->header.tester.tester();

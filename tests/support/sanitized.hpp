@@ -1,23 +1,12 @@
 /// \file
-/// Is this build watched by a sanitizer? It runs ten times as slowly, and looks for faults of the code: tests
-/// that repeat for the sake of statistics may then repeat less.
+/// Tests that repeat for the sake of statistics may repeat less where a sanitizer, which looks for faults of
+/// the code, watches them.
 #pragma once
 
-// GCC has macros for it, clang has features.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define STICKSLIP_SANITIZED
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define STICKSLIP_SANITIZED
-#endif
-#endif
+#include "core/base/sanitized.hpp"
 
 namespace stickslip::test {
 
-#ifdef STICKSLIP_SANITIZED
-inline constexpr bool kSanitized = true;
-#else
-inline constexpr bool kSanitized = false;
-#endif
+inline constexpr bool kSanitized = base::kSanitized;
 
 }  // namespace stickslip::test

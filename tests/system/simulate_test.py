@@ -312,7 +312,7 @@ class Refusals(Folder):
 
     def test_wrong_scenes_and_files_are_named(self):
         self.refused(2, "stick-slip-at-12-in-per-mi: is neither a file nor a scene in", scene=SCENE[:-1])
-        self.refused(2, "absent.toml: cannot be read", scene="absent.toml")
+        self.refused(2, "absent.toml: there is no such file", scene="absent.toml")
         self.refused(2, f"{self.folder}: is a folder", scene=self.folder)
         self.refused(2, "--folder ", "--folder", self.folder / "absent", scene="mine")
         self.refused(2, f"scene {SCENE}: ", "--duration", "20000 h")

@@ -354,7 +354,7 @@ class Refusals(Folder):
             ('[board]\ndriver = "simulated"\n', "board.simulated.scenes: needs at least one scene"),
             ('[board]\ndriver = "simulated"\nscan_rate = "0 Hz"\n', 'test.toml:3: board.scan_rate = "0 Hz"'),
             ('[board\n', "test.toml:1: "),
-            ('[board]\ndriver = "simulated"\nsimulated = { scenes = ["no.toml"] }\n', "no.toml: cannot be read"),
+            ('[board]\ndriver = "simulated"\nsimulated = { scenes = ["no.toml"] }\n', "no.toml: there is no such file"),
             ('[board]\ndriver = "replay"\nreplay = { file = "no.h5" }\n', "no.h5"),
         ]:
             with self.subTest(text):

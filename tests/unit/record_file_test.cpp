@@ -282,7 +282,7 @@ void expect_refused(const fs::path& path, const std::string& reason) {
 TEST(HostileFile, ThatIsNoHdf5) {
   const TemporaryFolder folder;
   expect_refused(folder / "missing.h5", "no such file");
-  expect_refused(folder.path(), "is no file");
+  expect_refused(folder.path(), "is a folder");
   test::write_content(folder / "empty.h5", "");
   expect_refused(folder / "empty.h5", "is no HDF5 file");
   test::write_content(folder / "text.h5", "t_s,F_over_mg\n1,2\n");

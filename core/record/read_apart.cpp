@@ -1,0 +1,171 @@
+#include "core/record/read_apart.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include "core/base/regular_file.hpp"
+#include "core/record/entry_builder.hpp"
+#include "core/record/file.hpp"
+#include "core/record/journal.hpp"
+#include "core/record/reader.hpp"
+
+namespace stickslip::record {
+namespace {
+
+/// Of one entry of the journal in memory.
+constexpr std::size_t kMostScans = std::size_t{1} << 16U;
+
+// The first letter of an answer.
+constexpr char kRead = '+';   ///< The checksum follows.
+constexpr char kUsage = 'u';  ///< Kinds of errors; the message follows.
+constexpr char kFailure = 'f';
+constexpr char kBusy = 'b';
+constexpr char kNoPermission = 'p';
+
+char letter_of(base::ErrorKind kind) {
+  switch (kind) {
+    case base::ErrorKind::kUsage:
+      return kUsage;
+    case base::ErrorKind::kBusy:
+      return kBusy;
+    case base::ErrorKind::kNoPermission:
+      return kNoPermission;
+    case base::ErrorKind::kFailure:
+    case base::ErrorKind::kInterrupted:
+      return kFailure;
+  }
+  return kFailure;
+}
+
+base::ErrorKind kind_of(char letter) {
+  switch (letter) {
+    case kUsage:
+      return base::ErrorKind::kUsage;
+    case kBusy:
+      return base::ErrorKind::kBusy;
+    case kNoPermission:
+      return base::ErrorKind::kNoPermission;
+    default:
+      return base::ErrorKind::kFailure;
+  }
+}
+
+/// A finished record as the journal it could have come from.
+class MemoryJournal {
+ public:
+  MemoryJournal(int file, const RecordHeader& header) : file_(file), builder_(named(header)) {}
+
+  /// \throws std::runtime_error if there is no room.
+  void write(Record record) {
+    put(builder_.header(record.header));
+    for_each_run(record, [&](std::size_t row, std::size_t count) {
+      const daq::ScanIndex first = record.scan[row];
+      put(builder_.scans(first, std::span{record.raw}.subspan(row, count), {}));
+      if (!record.second.empty()) put(builder_.second(first, std::span{record.second}.subspan(row, count)));
+      if (!record.true_coefficient.empty()) {
+        put(builder_.true_coefficients(first, std::span{record.true_coefficient}.subspan(row, count)));
+      }
+    });
+    for (const daq::Gap& gap : record.gaps) put(builder_.gap(gap));
+    for (const ClockAnchor& anchor : record.anchors) put(builder_.anchor(anchor));
+    for (const Event& event : record.events) put(builder_.event(event));
+    EndRecord end = std::move(record.end).value();
+    end.cycles = std::move(record.cycles);
+    end.spikes = std::move(record.spikes);
+    put(builder_.end(end));
+  }
+
+ private:
+  /// A record that was thinned out may have lost its name, without which no journal begins.
+  static RecordHeader named(RecordHeader header) {
+    if (header.uuid.empty()) header.uuid = "none";
+    return header;
+  }
+
+  /// Consecutive scans.
+  template <typename Use>
+  static void for_each_run(const Record& record, const Use& use) {
+    for (std::size_t row = 0; row < record.scan.size();) {
+      std::size_t count = 1;
+      while (count < kMostScans && row + count < record.scan.size() &&
+             record.scan[row + count] == record.scan[row] + static_cast<daq::ScanIndex>(count)) {
+        ++count;
+      }
+      use(row, count);
+      row += count;
+    }
+  }
+
+  void put(EntryBuilder::Bytes entry) const {
+    if (write_all(file_, entry, system_calls()) != entry.size())
+      throw std::runtime_error("no memory for a record");
+  }
+
+  int file_;
+  EntryBuilder builder_;
+};
+
+/// Set once, before there are threads.
+struct Apart {
+  bool wanted = false;
+  std::function<bool()> given_up;
+};
+
+Apart& apart() {
+  static Apart apart;
+  return apart;
+}
+
+}  // namespace
+
+base::Result<Record> ApartReader::read(const std::filesystem::path& path, const base::WorkLimits& limits,
+                                       const std::function<bool()>& given_up) {
+  const base::Result<std::string> answer = child_.ask(path.native(), limits, given_up);
+  if (!answer) {
+    std::string message = fmt::format("{}: {}", path.string(), answer.error().message);
+    if (answer.error().kind == base::ErrorKind::kUsage) {
+      message +=
+          fmt::format("; `stickslip verify {}` says what is damaged; take it from a backup", path.string());
+    }
+    return tl::unexpected(base::Error{answer.error().kind, std::move(message)});
+  }
+  const char letter = answer->empty() ? kFailure : answer->front();
+  if (letter != kRead) return tl::unexpected(base::Error{kind_of(letter), answer->substr(1)});
+  base::Result<JournalReading> reading = read_journal(child_.memory_file());
+  if (!reading || !reading->record.end)
+    return base::failure("{}: what its reader says cannot be read", path.string());
+  reading->record.sha256 = answer->substr(1);
+  return std::move(reading->record);
+}
+
+std::string read_for_parent(std::string_view path, int memory_file) {
+  base::Result<Record> record = read_record(path);
+  if (!record) return letter_of(record.error().kind) + record.error().message;
+  std::string answer = kRead + record->sha256;
+  MemoryJournal journal{memory_file, record->header};
+  journal.write(*std::move(record));
+  return answer;
+}
+
+void serve_if_reader(int count, char** arguments) {
+  if (count == 2 && arguments[1] == kReaderOption) base::answer_questions(read_for_parent);
+}
+
+void read_records_apart(std::function<bool()> given_up) { apart() = {true, std::move(given_up)}; }
+
+base::Result<Record> read_record_apart(const std::filesystem::path& path) {
+  if (!apart().wanted) return read_record(path);
+  // Told here, in the words of all files, and before a child is asked.
+  const base::Result<base::RegularFile> file = base::open_regular(path);
+  if (!file) return tl::unexpected(file.error());
+  thread_local ApartReader reader{
+      base::LimitedChild{base::ChildProgram{"/proc/self/exe", {std::string{kReaderOption}}}}};
+  return reader.read(path, base::limits_for_file(file->size), apart().given_up);
+}
+
+}  // namespace stickslip::record

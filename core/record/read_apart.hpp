@@ -1,0 +1,54 @@
+/// \file
+/// Records that somebody gives are read in a child process within limits: HDF5 may not come back from a file
+/// that is damaged or made to deceive. Programs say so once; until then, and in tests, they are read here.
+///
+///     int main(int count, char** arguments) {
+///       serve_if_reader(count, arguments);
+///       read_records_apart();
+///       … read_record_apart(path) …
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "core/base/limited_child.hpp"
+#include "core/base/result.hpp"
+#include "core/record/record.hpp"
+
+namespace stickslip::record {
+
+/// Of this program as such a child.
+inline constexpr std::string_view kReaderOption = "--read-files";
+
+/// A child that reads one record after the other. Thread-bound.
+class ApartReader {
+ public:
+  /// \param child  works with read_for_parent().
+  explicit ApartReader(base::LimitedChild child) : child_(std::move(child)) {}
+
+  /// The same record as that of read_record(), to the last bit; strings that are no UTF-8 are made it.
+  /// Errors as read_record(); kUsage if reading breaks a limit or kills the child; kInterrupted if it is
+  /// given up.
+  [[nodiscard]] base::Result<Record> read(const std::filesystem::path& path, const base::WorkLimits& limits,
+                                          const std::function<bool()>& given_up = {});
+
+ private:
+  base::LimitedChild child_;
+};
+
+/// A ChildWork: reads the record of that path into the memory file, as a journal.
+[[nodiscard]] std::string read_for_parent(std::string_view path, int memory_file);
+
+/// Never returns in a process that was started as a reader.
+void serve_if_reader(int count, char** arguments);
+
+/// From now on read_record_apart() uses a child, one for each thread: this program, started once more. To be
+/// called before there are threads. \param given_up  as LimitedChild::ask().
+void read_records_apart(std::function<bool()> given_up = {});
+
+/// Of a file that somebody gives. Errors as ApartReader::read().
+[[nodiscard]] base::Result<Record> read_record_apart(const std::filesystem::path& path);
+
+}  // namespace stickslip::record
