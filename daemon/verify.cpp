@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
+#include <string_view>
 #include <system_error>
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/forked.hpp"
+#include "core/base/limited_child.hpp"
 #include "daemon/or_null.hpp"
 
 namespace stickslip::daemon {
@@ -19,17 +19,6 @@ using nlohmann::ordered_json;
 using record::Judgement;
 using record::Verdict;
 
-/// Measured: 0.2 s for an hour at 350 scans/s (3 MB). A file that takes more is made to.
-constexpr std::chrono::seconds kLeastTime{60};
-constexpr std::uintmax_t kBytesPerSecond = 1'000'000;
-
-std::chrono::seconds time_for(const std::string& file) {
-  std::error_code ignored;
-  const std::uintmax_t size = std::filesystem::file_size(file, ignored);
-  if (ignored) return kLeastTime;
-  return kLeastTime + std::chrono::seconds{static_cast<std::int64_t>(size / kBytesPerSecond)};
-}
-
 /// Of a file whose reader did not come back.
 Verdict unreadable(const std::string& why) {
   Verdict verdict;
@@ -38,26 +27,27 @@ Verdict unreadable(const std::string& why) {
   return verdict;
 }
 
-ordered_json judged(const std::string& file) {
-  const auto dumped = [&] {
-    // Names and texts of a file may be anything; JSON is UTF-8.
-    return verdict_json(file, record::judge(file))
-        .dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-  };
-  const base::Result<ForkedAnswer> answer = run_forked(dumped, time_for(file));
+/// In the child.
+std::string judge_for_parent(std::string_view file, int /*memory_file*/) {
+  // Names and texts of a file may be anything; JSON is UTF-8.
+  return verdict_json(std::string{file}, record::judge(file))
+      .dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+ordered_json judged(base::LimitedChild& judge, const std::string& file) {
+  std::error_code ignored;
+  const std::uintmax_t size = std::filesystem::file_size(file, ignored);
+  const base::Result<std::string> answer = judge.ask(file, base::limits_for_file(ignored ? 0 : size));
   if (!answer) {
     Verdict verdict;
-    verdict.note("file", answer.error().message);
+    if (answer.error().kind == base::ErrorKind::kUsage) {
+      verdict = unreadable(answer.error().message);
+    } else {
+      verdict.note("file", answer.error().message);
+    }
     return verdict_json(file, verdict);
   }
-  if (answer->signal) {
-    return verdict_json(
-        file,
-        unreadable(*answer->signal == 0 ? std::string{"cannot be read: it asks for more memory than there is"}
-                                        : fmt::format("reading it ended by signal {} ({})", *answer->signal,
-                                                      ::strsignal(*answer->signal))));
-  }
-  return ordered_json::parse(answer->text);
+  return ordered_json::parse(*answer);
 }
 
 std::string summary(const ordered_json& verdict) {
@@ -132,8 +122,9 @@ ordered_json verdict_json(const std::string& file, const Verdict& verdict) {
 VerifyOutput verify_files(const std::vector<std::string>& files, bool json) {
   VerifyOutput output;
   ordered_json all = ordered_json::array();
+  base::LimitedChild judge{judge_for_parent};
   for (const std::string& file : files) {
-    const ordered_json verdict = judged(file);
+    const ordered_json verdict = judged(judge, file);
     output.exit_status = worse(output.exit_status, exit_status_of(verdict));
     if (json) {
       all.push_back(verdict);

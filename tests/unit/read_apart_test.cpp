@@ -1,0 +1,172 @@
+// Files read in a child: what it may take, what becomes of it, and that nothing is lost on the way.
+
+#include "core/record/read_apart.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+
+#include "core/base/regular_file.hpp"
+#include "core/base/sanitized.hpp"
+#include "core/record/finaliser.hpp"
+#include "core/record/reader.hpp"
+#include "tests/support/record_equality.hpp"
+#include "tests/support/record_samples.hpp"
+
+namespace stickslip::record {
+namespace {
+
+using base::ErrorKind;
+using base::LimitedChild;
+using base::WorkLimits;
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+
+constexpr WorkLimits kEnough{milliseconds{10'000}, 512'000'000};
+constexpr WorkLimits kLittle{milliseconds{20}, 20'000'000};
+
+std::string do_as_told(std::string_view question, int /*memory_file*/) {
+  if (question == "spin") {
+    for (std::atomic<int> turns{0};;) ++turns;
+  }
+  if (question == "die") static_cast<void>(std::raise(SIGKILL));
+  if (question == "throw") throw std::runtime_error("x");
+  if (question == "grow") {
+    std::vector<char> much(200'000'000, 'x');
+    return std::string{much.back()};
+  }
+  return std::to_string(::getpid());
+}
+
+TEST(LimitedChildTest, OneChildAnswersManyQuestions) {
+  LimitedChild child{do_as_told};
+  const auto first = child.ask("who", kLittle);
+  ASSERT_TRUE(first) << first.error().message;
+  EXPECT_NE(*first, std::to_string(::getpid()));
+  // Each has an allowance of its own, or the last of so many would go over it.
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(child.ask("who", kLittle).value(), *first);
+}
+
+TEST(LimitedChildTest, IsReplacedWhenItDies) {
+  LimitedChild child{do_as_told};
+  const std::string first = child.ask("who", kEnough).value();
+  const auto died = child.ask("die", kEnough);
+  ASSERT_FALSE(died);
+  EXPECT_EQ(died.error().kind, ErrorKind::kUsage);
+  EXPECT_THAT(died.error().message, HasSubstr("ended by signal 9"));
+  EXPECT_FALSE(child.ask("throw", kEnough));
+  EXPECT_NE(child.ask("who", kEnough).value(), first);
+}
+
+TEST(LimitedChildTest, KilledBetweenTwoQuestionsIsReplacedUnnoticed) {
+  LimitedChild child{do_as_told};
+  const std::string first = child.ask("who", kEnough).value();
+  ::kill(std::atoi(first.c_str()), SIGKILL);
+  // The second question at the latest finds that it has gone.
+  const auto next = child.ask("who", kEnough);
+  EXPECT_NE(child.ask("who", kEnough).value(), first);
+  static_cast<void>(next);
+}
+
+TEST(LimitedChildTest, ThatTakesTooLongIsEndedAndSaysTheLimit) {
+  LimitedChild child{do_as_told};
+  const auto spun = child.ask("spin", kLittle);
+  ASSERT_FALSE(spun);
+  EXPECT_EQ(spun.error().message,
+            "cannot be read in 0.02 s of processor time, which is the limit for its size");
+  EXPECT_TRUE(child.ask("who", kLittle));
+}
+
+TEST(LimitedChildTest, ThatTakesTooMuchMemoryIsEndedAndSaysTheLimit) {
+  if (base::kSanitized) GTEST_SKIP() << "a sanitizer maps terabytes: no limit";
+  LimitedChild child{do_as_told};
+  const auto grown = child.ask("grow", {milliseconds{10'000}, 20'000'000});
+  ASSERT_FALSE(grown);
+  EXPECT_EQ(grown.error().message, "cannot be read in 20 MB of memory, which is the limit for its size");
+  EXPECT_EQ(child.ask("grow", kEnough).value(), "x");
+}
+
+TEST(LimitedChildTest, IsGivenUpWhenAskedTo) {
+  LimitedChild child{do_as_told};
+  const auto stopped = child.ask("spin", kEnough, [] { return true; });
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().kind, ErrorKind::kInterrupted);
+  EXPECT_TRUE(child.ask("who", kEnough));
+}
+
+TEST(LimitedChildTest, LimitsGrowWithTheFile) {
+  EXPECT_EQ(base::limits_for_file(0).processor_time, milliseconds{10'000});
+  EXPECT_EQ(base::limits_for_file(3'000'000).processor_time, milliseconds{13'000});
+  EXPECT_EQ(base::limits_for_file(0).memory, 512'000'000U);
+  EXPECT_EQ(base::limits_for_file(3'000'000).memory, 572'000'000U);
+}
+
+TEST(ReadApart, GivesEveryFieldToTheLastBit) {
+  const test::TemporaryFolder folder;
+  ApartReader reader{LimitedChild{read_for_parent}};
+  int number = 0;
+  for (const Record& sample : {test::sample_record(), test::whole_record()}) {
+    const auto path = folder / (std::to_string(++number) + ".h5");
+    ASSERT_TRUE(publish_record(sample, path));
+    const auto here = read_record(path);
+    ASSERT_TRUE(here) << here.error().message;
+    const auto apart = reader.read(path, kEnough);
+    ASSERT_TRUE(apart) << apart.error().message;
+    test::expect_same_record(*here, *apart);
+    EXPECT_EQ(here->sha256, apart->sha256);
+  }
+}
+
+TEST(ReadApart, SaysWhatTheReaderSays) {
+  const test::TemporaryFolder folder;
+  test::write_content(folder / "text.h5", "t_s,F_over_mg\n1,2\n");
+  ApartReader reader{LimitedChild{read_for_parent}};
+  for (const auto& path : {folder / "text.h5", folder / "absent.h5"}) {
+    const auto apart = reader.read(path, kEnough);
+    ASSERT_FALSE(apart);
+    EXPECT_EQ(apart.error().message, read_record(path).error().message);
+    EXPECT_EQ(apart.error().kind, read_record(path).error().kind);
+  }
+}
+
+TEST(ReadApart, OfWhatDoesNotComeBackNamesFileLimitAndRemedy) {
+  ApartReader reader{LimitedChild{do_as_told}};
+  const auto spun = reader.read("spin", kLittle);
+  ASSERT_FALSE(spun);
+  EXPECT_EQ(
+      spun.error().message,
+      "spin: cannot be read in 0.02 s of processor time, which is the limit for its size; `stickslip verify "
+      "spin` says what is damaged; take it from a backup");
+}
+
+TEST(RegularFile, AnythingElseIsNamedAndNotWaitedFor) {
+  const test::TemporaryFolder folder;
+  const auto fifo = folder / "fifo";
+  ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
+  EXPECT_EQ(base::open_regular(fifo).error().message, fifo.string() + ": is a FIFO, not a regular file");
+  EXPECT_EQ(base::read_text(fifo).error().message, fifo.string() + ": is a FIFO, not a regular file");
+  EXPECT_EQ(base::read_text("/dev/zero").error().message, "/dev/zero: is a device, not a regular file");
+  EXPECT_THAT(base::read_text(folder.path()).error().message, HasSubstr("is a folder"));
+  EXPECT_THAT(read_record(fifo).error().message, HasSubstr("is a FIFO"));
+}
+
+TEST(RegularFile, WhatThisProcessWasGivenOpenIsReadAsAText) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  ASSERT_EQ(::write(ends[1], "a\nb\n", 4), 4);
+  ::close(ends[1]);
+  const std::string name = "/dev/fd/" + std::to_string(ends[0]);
+  EXPECT_FALSE(base::open_regular(name));
+  EXPECT_EQ(base::read_text(name).value(), "a\nb\n");
+  ::close(ends[0]);
+}
+
+}  // namespace
+}  // namespace stickslip::record
