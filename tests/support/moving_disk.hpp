@@ -2,6 +2,7 @@
 /// A disk on which a folder is a file system of its own, and of which some calls cannot look or read.
 #pragma once
 
+#include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <atomic>

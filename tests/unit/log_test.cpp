@@ -85,6 +85,16 @@ TEST_F(LogTest, WhatIsBelowTheLevelIsLeftOut) {
   EXPECT_EQ(lines_.size(), 1U);
 }
 
+TEST_F(LogTest, AJournalThatWasWrittenAnewSaysWhereItStands) {
+  log()->journal_written_anew(7, "records/a.journal", "records/a-2.journal");
+  EXPECT_EQ(
+      lines_.at(0).at(0),
+      "MESSAGE=test 7: the journal was removed, renamed or replaced while it was open: records/a.journal; "
+      "all of it was written anew: records/a-2.journal");
+  EXPECT_EQ(lines_.at(0).at(1), "PRIORITY=4");
+  EXPECT_EQ(lines_.at(0).at(3), "STICKSLIP_EVENT=journal-written-anew");
+}
+
 // What is lost to nobody's knowledge is an error of its own kind, so that an alarm can be set on it.
 TEST_F(LogTest, ScansUnaccountedForAreAnEventOfTheirOwn) {
   const std::unique_ptr<Facts> facts = log();

@@ -372,6 +372,14 @@ TEST(StorageState, SaysWhyAndWhatToDo) {
   EXPECT_EQ(waiting.waiting_size, 123'456U);
   EXPECT_EQ(why_no_test(waiting).value().substr(0, 82),
             "storage waiting: the disk refuses, 123 kB wait in memory: No space left on device;");
+  disk.trouble = "records: its file system is not mounted any more";
+  disk.to_do = "mount the file system of records again";
+  EXPECT_EQ(
+      why_no_test(storage_state(disk, "records")),
+      "storage waiting: the folder of the records is away, 123 kB wait in memory: records: its file system "
+      "is "
+      "not mounted any more; mount the file system of records again; memory holds ten minutes of scans, and "
+      "they are written as soon as it is back");
 }
 
 TEST(Storage, ARecordThatCouldNotBeMadeIsTriedAgain) {
