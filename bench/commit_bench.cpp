@@ -128,7 +128,7 @@ void journal(benchmark::State& state) {
       state.SkipWithError(file.error().message.c_str());
       continue;
     }
-    state.counters["record_MB_per_h"] = 1e-6 * per_hour(std::filesystem::file_size(*file));
+    state.counters["record_MB_per_h"] = 1e-6 * per_hour(std::filesystem::file_size(file->file));
   }
 }
 BENCHMARK(journal)->Iterations(1)->Unit(benchmark::kMillisecond)->UseRealTime();

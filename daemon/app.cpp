@@ -34,12 +34,13 @@ std::unique_ptr<base::Clock> clock_of(const DaemonConfig& config) {
 
 /// As far as permissions go.
 Finalise read_only(Finalise finalise) {
-  return [finalise = std::move(finalise)](const std::filesystem::path& journal) {
-    auto file = finalise(journal);
+  return [finalise = std::move(finalise)](const std::filesystem::path& journal,
+                                          std::optional<std::int64_t> expected) {
+    auto made = finalise(journal, expected);
     constexpr mode_t kNobodyWrites = 0444;
     // The record is whole; that it can be written to is no reason to refuse it.
-    if (file) static_cast<void>(::chmod(file->c_str(), kNobodyWrites));
-    return file;
+    if (made) static_cast<void>(::chmod(made->file.c_str(), kNobodyWrites));
+    return made;
   };
 }
 

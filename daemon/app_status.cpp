@@ -95,6 +95,7 @@ ScanAccount App::scan_account() const {
   const DiskWriter::ScanCounts stored = storage_.scan_counts();
   account.in_gaps = counts_.lost_scans.load(std::memory_order_relaxed) + stored.lost;
   account.recorded = stored.recorded;
+  account.damaged = stored.damaged;
   account.unsaved = stored.unsaved;
   return account;
 }

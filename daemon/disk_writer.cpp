@@ -238,7 +238,7 @@ void DiskWriter::hand_over(const Job& job) {
       if (kept.journal == job.journal) kept.handed_over = true;
     }
   }
-  ended_(job.test, path, std::nullopt);
+  ended_(job.test, path, job.journal->kept_scan_count(), std::nullopt);
 }
 
 std::optional<std::string> DiskWriter::write(const Job& job, bool sync) {
@@ -298,7 +298,8 @@ void DiskWriter::give_up(const std::string& why) {
       scans_.lost += job.journal->lost_scan_count();
     }
   }
-  for (const Job& job : lost) ended_(job.test, job.journal->path(), job.trouble.value_or(why));
+  for (const Job& job : lost)
+    ended_(job.test, job.journal->path(), job.journal->kept_scan_count(), job.trouble.value_or(why));
 }
 
 }  // namespace stickslip::daemon

@@ -77,9 +77,9 @@ class DiskWriter {
   };
   using Journal = std::shared_ptr<record::PatientJournal>;
 
-  /// Of a test whose journal was ended: it is durable, or why it could not be made so.
+  /// Of a test whose journal was ended, with its scans: it is durable, or why it could not be made so.
   using Ended = std::function<void(std::int64_t test, const std::filesystem::path& journal,
-                                   const std::optional<std::string>& why_not)>;
+                                   std::int64_t scans, const std::optional<std::string>& why_not)>;
 
   /// \param ended  called on the disk thread. \param changed  called on the disk thread when state() has
   /// changed. Either may not wait.
@@ -113,6 +113,7 @@ class DiskWriter {
   struct ScanCounts {
     std::int64_t recorded = 0;  ///< Durable, in records or in journals that wait to become one.
     std::int64_t lost = 0;      ///< Gaps for want of memory, in the same journals.
+    std::int64_t damaged = 0;   ///< Durable once, and not to be read when the record was made.
     std::int64_t unsaved = 0;   ///< Of journals that the disk refused, or that were gone, to the end.
   };
   [[nodiscard]] ScanCounts scan_counts() const;

@@ -53,6 +53,8 @@ class Facts {
   virtual void little_room(std::int64_t /*test*/, double /*room_s*/) {}
   /// At the start, once for each: what the file system of the records lacks, and what follows.
   virtual void record_folder_lacks(std::string_view /*what*/) {}
+  /// A record was made, but not all that had been written could be read.
+  virtual void record_damaged(const std::filesystem::path& /*file*/, std::string_view /*loss*/) {}
   virtual void orphan_finalised(const std::filesystem::path& /*file*/) {}
   virtual void orphan_kept(const std::filesystem::path& /*journal*/, std::string_view /*why*/) {}
   /// Nothing had been recorded; the journal is removed.

@@ -1,5 +1,7 @@
 #include "daemon/finaliser.hpp"
 
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -7,14 +9,16 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <string>
 #include <string_view>
 #include <system_error>
 
-#include "core/record/finaliser.hpp"
+#include "core/record/file.hpp"
 #include "core/record/journal.hpp"
 #include "daemon/analyse.hpp"
 #include "daemon/dated_folders.hpp"
+#include "daemon/forked.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -37,17 +41,19 @@ class OwnProcessGroup {
   posix_spawnattr_t attributes_{};
 };
 
-/// Nothing of the daemon's stays open in the child: Asio's sockets are not closed on exec, and a finaliser
-/// that outlives a killed daemon would keep the next one from listening.
-class NoDescriptors {
+/// Nothing of the daemon's stays open in the child but its stderr: Asio's sockets are not closed on exec, and
+/// a finaliser that outlives a killed daemon would keep the next one from listening.
+class OnlyOutput {
  public:
-  NoDescriptors() {
+  /// \param output  becomes the child's stdout.
+  explicit OnlyOutput(int output) {
     posix_spawn_file_actions_init(&actions_);
+    posix_spawn_file_actions_adddup2(&actions_, output, STDOUT_FILENO);
     posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1);
   }
-  ~NoDescriptors() { posix_spawn_file_actions_destroy(&actions_); }
-  NoDescriptors(const NoDescriptors&) = delete;
-  NoDescriptors& operator=(const NoDescriptors&) = delete;
+  ~OnlyOutput() { posix_spawn_file_actions_destroy(&actions_); }
+  OnlyOutput(const OnlyOutput&) = delete;
+  OnlyOutput& operator=(const OnlyOutput&) = delete;
 
   [[nodiscard]] const posix_spawn_file_actions_t* get() const noexcept { return &actions_; }
 
@@ -64,21 +70,24 @@ std::string_view what_is_left(const std::filesystem::path& journal) {
 
 }  // namespace
 
-std::filesystem::path record_of(const std::filesystem::path& journal) {
-  std::filesystem::path file = journal;
-  file.replace_extension(record::kRecordExtension);
-  return file;
-}
+base::Result<record::Finalised> run_finaliser(const std::filesystem::path& program,
+                                              const std::filesystem::path& journal, ExpectedScans expected) {
+  std::vector<std::string> words{program.string(), "--finalise", journal.string()};
+  if (expected) words.insert(words.end(), {"--scans", std::to_string(*expected)});
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  const std::string& program_text = words[0];
+  const std::string& journal_text = words[2];
 
-base::Result<std::filesystem::path> run_finaliser(const std::filesystem::path& program,
-                                                  const std::filesystem::path& journal) {
-  std::string program_text = program.string();
-  std::string option = "--finalise";
-  std::string journal_text = journal.string();
-  const std::array<char*, 4> arguments{program_text.data(), option.data(), journal_text.data(), nullptr};
-
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
+    return base::failure("{}: no pipe to the finaliser: {}", journal_text, record::system_message(errno));
+  }
+  const record::Descriptor from_child{ends[0]};
+  record::Descriptor to_parent{ends[1]};
   const OwnProcessGroup attributes;
-  const NoDescriptors descriptors;
+  const OnlyOutput descriptors{to_parent.get()};
   pid_t child = 0;
   if (const int error = posix_spawn(&child, program_text.c_str(), descriptors.get(), attributes.get(),
                                     arguments.data(), environ);
@@ -86,6 +95,8 @@ base::Result<std::filesystem::path> run_finaliser(const std::filesystem::path& p
     return base::failure("{}: the finaliser {} cannot be started: {}", journal_text, program_text,
                          std::generic_category().message(error));
   }
+  to_parent = record::Descriptor{};
+  const std::string said = read_to_end(from_child.get());
   int status = 0;
   while (waitpid(child, &status, 0) == -1) {
     if (errno != EINTR) {
@@ -101,7 +112,42 @@ base::Result<std::filesystem::path> run_finaliser(const std::filesystem::path& p
     return base::failure("{}: the finaliser ended with status {}; {}", journal_text, WEXITSTATUS(status),
                          what_is_left(journal));
   }
-  return record_of(journal);
+  return finalised_from_text(journal, said);
+}
+
+std::string to_text(const record::Finalised& made) {
+  return fmt::format("{} {} {}", made.scan_count.value_or(-1), made.damaged_size, made.kept.string());
+}
+
+base::Result<record::Finalised> finalised_from_text(const std::filesystem::path& journal,
+                                                    const std::string& text) {
+  record::Finalised made;
+  made.file = record_of(journal);
+  std::int64_t scan_count = 0;
+  const char* const end = text.data() + text.size();
+  const auto scans = std::from_chars(text.data(), end, scan_count);
+  if (scans.ec != std::errc{} || scans.ptr == end)
+    return base::failure("{}: the finaliser does not say what it made", journal.string());
+  const auto damaged = std::from_chars(scans.ptr + 1, end, made.damaged_size);
+  if (damaged.ec != std::errc{} || damaged.ptr == end)
+    return base::failure("{}: the finaliser does not say what it made", journal.string());
+  if (scan_count >= 0) made.scan_count = scan_count;
+  made.kept = std::string{damaged.ptr + 1, end};
+  return made;
+}
+
+std::string loss_of(const record::Finalised& made, ExpectedScans expected) {
+  std::string loss;
+  if (expected && made.scan_count && *made.scan_count < *expected) {
+    loss = fmt::format("{} of {} scans were written and cannot be read", *expected - *made.scan_count,
+                       *expected);
+  }
+  if (made.damaged_size > 0) {
+    loss += fmt::format("{}{} bytes of its journal could not be read", loss.empty() ? "" : ", ",
+                        made.damaged_size);
+  }
+  if (!made.kept.empty()) loss += fmt::format("; the journal is kept: {}", made.kept.string());
+  return loss;
 }
 
 std::vector<std::filesystem::path> journals_in(const std::filesystem::path& folder) {
@@ -116,7 +162,7 @@ std::vector<std::filesystem::path> journals_in(const std::filesystem::path& fold
   return journals;
 }
 
-base::Result<std::filesystem::path> finalise_here(const std::filesystem::path& journal) {
+base::Result<record::Finalised> finalise_here(const std::filesystem::path& journal, ExpectedScans expected) {
   const auto evaluate = [](const record::Record& record) {
     base::Result<record::EndRecord> end = analyse(record);
     if (end) return *end;
@@ -124,9 +170,9 @@ base::Result<std::filesystem::path> finalise_here(const std::filesystem::path& j
     absent.results = record::absent_results(end.error().message);
     return absent;
   };
-  auto file = record::finalise(journal, evaluate, record::system_calls(), kOthersTime);
-  if (!file && is_finished(journal)) return record_of(journal);
-  return file;
+  auto made = record::finalise(journal, evaluate, record::system_calls(), kOthersTime, expected);
+  if (!made && is_finished(journal)) return record::Finalised{record_of(journal), {}, 0, {}};
+  return made;
 }
 
 bool is_finished(const std::filesystem::path& journal) {

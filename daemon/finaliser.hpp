@@ -4,22 +4,34 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "core/base/result.hpp"
+#include "core/record/finaliser.hpp"
 
 namespace stickslip::daemon {
 
-/// The finished file of a journal: beside it, with the extension .h5.
-[[nodiscard]] std::filesystem::path record_of(const std::filesystem::path& journal);
+using record::record_of;
+using ExpectedScans = std::optional<std::int64_t>;  ///< Nothing if nobody knows.
 
-/// Runs `program --finalise journal` to its end, outside the terminal's process group so that
-/// Ctrl-C does not reach it.
-/// \return the finished file. Errors: kFailure naming the journal and how the process ended; the
-///         process itself has written the reason to stderr.
-[[nodiscard]] base::Result<std::filesystem::path> run_finaliser(const std::filesystem::path& program,
-                                                                const std::filesystem::path& journal);
+/// Runs `program --finalise journal --scans expected` to its end, outside the terminal's process group so
+/// that Ctrl-C does not reach it. Errors: kFailure naming the journal and how the process ended; the process
+/// itself has written the reason to stderr.
+[[nodiscard]] base::Result<record::Finalised> run_finaliser(const std::filesystem::path& program,
+                                                            const std::filesystem::path& journal,
+                                                            ExpectedScans expected);
+
+/// What a process that finalises says of what it made, and the same read again. Errors: kFailure.
+[[nodiscard]] std::string to_text(const record::Finalised& made);
+[[nodiscard]] base::Result<record::Finalised> finalised_from_text(const std::filesystem::path& journal,
+                                                                  const std::string& text);
+
+/// What is missing of a record that was made, in words; empty if nothing is.
+[[nodiscard]] std::string loss_of(const record::Finalised& made, ExpectedScans expected = {});
 
 /// A finaliser whose daemon was killed goes on by itself; an hour of scans takes it 0.2 s. Others wait so
 /// long.
@@ -28,9 +40,10 @@ inline constexpr std::chrono::seconds kOthersTime{10};
 /// Somebody else has made the record in the meantime.
 [[nodiscard]] bool is_finished(const std::filesystem::path& journal);
 
-/// What that process does: record::finalise(), with results for a test that was interrupted. It is done as
-/// well if somebody else did it.
-[[nodiscard]] base::Result<std::filesystem::path> finalise_here(const std::filesystem::path& journal);
+/// What that process does: record::finalise(), with results for a test that was interrupted or damaged. It is
+/// done as well if somebody else did it.
+[[nodiscard]] base::Result<record::Finalised> finalise_here(const std::filesystem::path& journal,
+                                                            ExpectedScans expected = {});
 
 /// Journals in the folder and in those of years and months below it, sorted; none if it cannot be read.
 [[nodiscard]] std::vector<std::filesystem::path> journals_in(const std::filesystem::path& folder);

@@ -21,10 +21,10 @@ Finisher::Finisher(Finalise finalise, Done done, Where where, std::chrono::milli
 
 Finisher::~Finisher() { stop(); }
 
-void Finisher::finish(std::int64_t test) {
+void Finisher::finish(std::int64_t test, std::int64_t scans) {
   {
     const std::lock_guard lock{mutex_};
-    jobs_.push_back({test, {}, first_retry_, {}});
+    jobs_.push_back({test, scans, {}, first_retry_, {}});
   }
   news_.notify_one();
 }
@@ -62,10 +62,11 @@ std::optional<Finisher::Job> Finisher::next() {
 void Finisher::run() {
   name_this_thread("finisher");
   while (std::optional<Job> job = next()) {
-    const base::Result<std::filesystem::path> file = where_(job->test).and_then(finalise_);
+    const auto file = where_(job->test).and_then(
+        [&](const std::filesystem::path& journal) { return finalise_(journal, job->scans); });
     const std::string refused = file ? std::string{} : file.error().message;
     // The same refusal is told once.
-    if (file || refused != job->refused) done_(job->test, file);
+    if (file || refused != job->refused) done_(job->test, job->scans, file);
     if (file || job->is_last) continue;
     job->refused = refused;
     job->due = std::chrono::steady_clock::now() + job->pause;

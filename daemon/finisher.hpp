@@ -19,7 +19,9 @@ namespace stickslip::daemon {
 
 class Finisher {
  public:
-  using Done = std::function<void(std::int64_t test, const base::Result<std::filesystem::path>& file)>;
+  /// \param scans  that were written to the journal.
+  using Done =
+      std::function<void(std::int64_t test, std::int64_t scans, const base::Result<record::Finalised>&)>;
 
   /// Where the journal of a test stands now, or why it does not.
   using Where = std::function<base::Result<std::filesystem::path>(std::int64_t test)>;
@@ -33,8 +35,8 @@ class Finisher {
   Finisher(const Finisher&) = delete;
   Finisher& operator=(const Finisher&) = delete;
 
-  /// Any thread.
-  void finish(std::int64_t test);
+  /// \param scans  that were written to the journal. Any thread.
+  void finish(std::int64_t test, std::int64_t scans);
 
   /// Tries each of those that are left once more, ends the thread. What could not be made is told.
   void stop();
@@ -43,6 +45,7 @@ class Finisher {
   using Time = std::chrono::steady_clock::time_point;
   struct Job {
     std::int64_t test;
+    std::int64_t scans;
     Time due;
     std::chrono::milliseconds pause;
     std::string refused;   ///< What was told last.

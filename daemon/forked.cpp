@@ -25,17 +25,6 @@ void write_all(int file, std::string_view text) {
   }
 }
 
-std::string read_all(int file) {
-  std::string text;
-  std::array<char, 65536> part{};
-  for (;;) {
-    const ssize_t got = ::read(file, part.data(), part.size());
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return text;
-    text.append(part.data(), static_cast<std::size_t>(got));
-  }
-}
-
 [[noreturn]] void child(const std::function<std::string()>& work, std::chrono::seconds longest, int output) {
   const auto seconds = static_cast<rlim_t>(longest.count());
   const rlimit time{seconds, seconds + 1};
@@ -55,6 +44,17 @@ std::string read_all(int file) {
 
 }  // namespace
 
+std::string read_to_end(int file) {
+  std::string text;
+  std::array<char, 65536> part{};
+  for (;;) {
+    const ssize_t got = ::read(file, part.data(), part.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return text;
+    text.append(part.data(), static_cast<std::size_t>(got));
+  }
+}
+
 base::Result<ForkedAnswer> run_forked(const std::function<std::string()>& work,
                                       std::chrono::seconds longest) {
   std::array<int, 2> ends{};
@@ -67,7 +67,7 @@ base::Result<ForkedAnswer> run_forked(const std::function<std::string()>& work,
   if (pid < 0) return base::failure("no child process: {}", record::system_message(errno));
   if (pid == 0) child(work, longest, to_parent.get());
   to_parent = record::Descriptor{};
-  ForkedAnswer answer{read_all(from_child.get()), {}};
+  ForkedAnswer answer{read_to_end(from_child.get()), {}};
   int status = 0;
   while (::waitpid(pid, &status, 0) == -1) {
     if (errno != EINTR)

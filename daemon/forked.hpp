@@ -17,6 +17,9 @@ struct ForkedAnswer {
   std::optional<int> signal;  ///< That ended it before.
 };
 
+/// All that comes from a descriptor until its other end is closed.
+[[nodiscard]] std::string read_to_end(int file);
+
 /// Runs `work` in a child and waits for it. Only while this process has one thread.
 /// \param longest  processor time, whole seconds; a child that takes more is ended by SIGXCPU.
 /// Errors: kFailure if there can be no child.

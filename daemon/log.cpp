@@ -120,6 +120,12 @@ class Log final : public Facts {
   void record_folder_lacks(std::string_view what) override {
     tell({.level = LogLevel::kWarning, .event = "record-folder-lacks", .message = std::string{what}});
   }
+  void record_damaged(const std::filesystem::path& file, std::string_view loss) override {
+    tell({.level = LogLevel::kWarning,
+          .event = "record-damaged",
+          .message = fmt::format("the record lacks what could not be read: {}: {}", file.string(), loss),
+          .record = file.string()});
+  }
   void orphan_finalised(const std::filesystem::path& file) override {
     tell({.level = LogLevel::kWarning,
           .event = "record-recovered",
@@ -187,11 +193,19 @@ class Log final : public Facts {
                 fmt::format("scans: {} of tests that the disk did not take are in no record", scans.unsaved),
             .scan_count = scans.unsaved});
     }
+    if (scans.damaged > 0) {
+      tell({.level = LogLevel::kError,
+            .event = "scans-damaged",
+            .message =
+                fmt::format("scans: {} of journals that the disk damaged are in no record", scans.damaged),
+            .scan_count = scans.damaged});
+    }
     if (scans.under_way() == 0) {
       tell({.event = "scans-accounted",
-            .message = fmt::format(
-                "{}{}", account,
-                scans.unsaved > 0 ? fmt::format(" + {} in no record", scans.unsaved) : std::string{})});
+            .message = fmt::format("{}{}", account,
+                                   scans.unsaved + scans.damaged > 0
+                                       ? fmt::format(" + {} in no record", scans.unsaved + scans.damaged)
+                                       : std::string{})});
     } else {
       tell({.level = LogLevel::kError,
             .event = "scans-unaccounted",

@@ -49,9 +49,11 @@ int check_config(const std::string& file) {
   return 0;
 }
 
-int finalise_journal(const std::string& journal) {
-  const base::Result<std::filesystem::path> file = finalise_here(journal);
-  return file ? 0 : refused(file.error());
+int finalise_journal(const std::string& journal, std::optional<std::int64_t> expected_scans) {
+  const base::Result<record::Finalised> made = finalise_here(journal, expected_scans);
+  if (!made) return refused(made.error());
+  fmt::print("{}", to_text(*made));
+  return 0;
 }
 
 int print_result(const std::string& file) {
@@ -115,8 +117,8 @@ int run(const std::string& file) {
 
     AppWorld world;
     world.open_board = drivers::open_board;
-    world.finalise = [](const std::filesystem::path& journal) {
-      return run_finaliser("/proc/self/exe", journal);
+    world.finalise = [](const std::filesystem::path& journal, std::optional<std::int64_t> expected) {
+      return run_finaliser("/proc/self/exe", journal, expected);
     };
     world.facts = log.get();
     world.stop_asked = [&signals] { return signals.stop_asked(); };
@@ -154,7 +156,7 @@ int main_of(int count, char** arguments) {
     return 2;
   }
   if (!options.config_to_check.empty()) return check_config(options.config_to_check);
-  if (!options.journal.empty()) return finalise_journal(options.journal);
+  if (!options.journal.empty()) return finalise_journal(options.journal, options.scans);
   if (!options.record.empty()) return print_result(options.record);
   return run(options.config);
 }

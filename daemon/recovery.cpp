@@ -1,37 +1,44 @@
 #include "daemon/recovery.hpp"
 
+#include <algorithm>
+#include <string>
+
 #include "core/record/journal_care.hpp"
 #include "daemon/finaliser.hpp"
 
 namespace stickslip::daemon {
-bool recover_journal(const std::filesystem::path& journal, const Finalise& finalise, Facts& facts) {
+
+Recovery recover_journal(const std::filesystem::path& journal, const Finalise& finalise, Facts& facts) {
   const base::Result<bool> removed = record::remove_if_empty(journal, kOthersTime);
   if (!removed && is_finished(journal)) {
     facts.orphan_finalised(record_of(journal));
-    return true;
+    return Recovery::kDone;
   }
   if (!removed) {
     facts.orphan_kept(journal, removed.error().message);
-    return false;
+    return Recovery::kRefused;
   }
   if (*removed) {
     facts.orphan_empty(journal);
-    return true;
+    return Recovery::kDone;
   }
-  const base::Result<std::filesystem::path> file = finalise(journal);
-  if (file) {
-    facts.orphan_finalised(*file);
-  } else {
-    facts.orphan_kept(journal, file.error().message);
+  const base::Result<record::Finalised> made = finalise(journal, {});
+  if (!made) {
+    facts.orphan_kept(journal, made.error().message);
+    return Recovery::kRefused;
   }
-  return file.has_value();
+  facts.orphan_finalised(made->file);
+  const std::string loss = loss_of(*made);
+  if (loss.empty()) return Recovery::kDone;
+  facts.record_damaged(made->file, loss);
+  return Recovery::kDamaged;
 }
 
-bool recover_folder(const std::filesystem::path& folder, const Finalise& finalise, Facts& facts) {
-  bool all = true;
+Recovery recover_folder(const std::filesystem::path& folder, const Finalise& finalise, Facts& facts) {
+  Recovery worst = Recovery::kDone;
   for (const std::filesystem::path& journal : journals_in(folder))
-    all = recover_journal(journal, finalise, facts) && all;
-  return all;
+    worst = std::max(worst, recover_journal(journal, finalise, facts));
+  return worst;
 }
 
 }  // namespace stickslip::daemon

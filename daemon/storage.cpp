@@ -84,9 +84,9 @@ Storage::Storage(StorageSettings settings, Finalise finalise, TestLog& tests, Fa
       made_(std::move(made)),
       finisher_(
           std::move(finalise),
-          [this](std::int64_t test, const base::Result<std::filesystem::path>& file) {
-            if (file) disk_.finished(test);
-            record_made(test, file);
+          [this](std::int64_t test, std::int64_t scans, const base::Result<record::Finalised>& finalised) {
+            if (finalised) disk_.finished(test);
+            journal_finalised(test, scans, finalised);
           },
           [this](std::int64_t test) { return disk_.journal_of(test); }),
       disk_(
@@ -96,8 +96,8 @@ Storage::Storage(StorageSettings settings, Finalise finalise, TestLog& tests, Fa
            .written_anew =
                [this](std::int64_t test, const std::filesystem::path& before,
                       const std::filesystem::path& now) { facts_.journal_written_anew(test, before, now); }},
-          [this](std::int64_t test, const std::filesystem::path& journal,
-                 const std::optional<std::string>& why_not) { journal_ended(test, journal, why_not); },
+          [this](std::int64_t test, const std::filesystem::path& /*journal*/, std::int64_t scans,
+                 const std::optional<std::string>& why_not) { journal_ended(test, scans, why_not); },
           [this](const DiskState& state) { disk_changed(state); }),
       thread_([this] { run(); }) {}
 
@@ -356,13 +356,12 @@ void Storage::append_force(friction::TrueForce& force) {
 
 // Disk thread.
 
-void Storage::journal_ended(std::int64_t test, const std::filesystem::path& /*journal*/,
-                            const std::optional<std::string>& why_not) {
-  if (why_not) {
-    record_made(test, base::failure("{}", *why_not));
-  } else {
-    finisher_.finish(test);
+void Storage::journal_ended(std::int64_t test, std::int64_t scans, const std::optional<std::string>& why_not) {
+  if (!why_not) {
+    finisher_.finish(test, scans);
+    return;
   }
+  record_made(test, base::failure("{}", *why_not));
 }
 
 void Storage::disk_changed(const DiskState& state) {
@@ -379,6 +378,21 @@ void Storage::disk_changed(const DiskState& state) {
 }
 
 // The finisher's thread, or the disk's where there is nothing to finish.
+
+void Storage::journal_finalised(std::int64_t test, std::int64_t scans,
+                                const base::Result<record::Finalised>& made) {
+  if (!made) return record_made(test, tl::unexpected(made.error()));
+  record_made(test, made->file);
+  if (made->scan_count) damaged_scans_ += std::max<std::int64_t>(scans - *made->scan_count, 0);
+  if (const std::string loss = loss_of(*made, scans); !loss.empty()) facts_.record_damaged(made->file, loss);
+}
+
+DiskWriter::ScanCounts Storage::scan_counts() const {
+  DiskWriter::ScanCounts counts = disk_.scan_counts();
+  counts.damaged = damaged_scans_;
+  counts.recorded -= counts.damaged;
+  return counts;
+}
 
 void Storage::record_made(std::int64_t test, const base::Result<std::filesystem::path>& file) {
   if (file) {

@@ -80,7 +80,7 @@ class Storage final : public pipeline::Sink {
   /// As that of DiskWriter. Any thread.
   [[nodiscard]] daq::LatencyHistogram commit_time() const { return disk_.commit_time(); }
   /// What became of the scans of tests that have ended. Any thread.
-  [[nodiscard]] DiskWriter::ScanCounts scan_counts() const { return disk_.scan_counts(); }
+  [[nodiscard]] DiskWriter::ScanCounts scan_counts() const;
   /// Times that the storage thread, and the disk thread, have come round; at rest or not they do so each
   /// second. Any thread.
   [[nodiscard]] std::uint64_t storage_rounds() const noexcept {
@@ -135,9 +135,10 @@ class Storage final : public pipeline::Sink {
   void append_force(friction::TrueForce& force);
   /// For how long there is room, if that is too short for a test.
   [[nodiscard]] std::optional<double> little_room_s() const;
-  void journal_ended(std::int64_t test, const std::filesystem::path& journal,
-                     const std::optional<std::string>& why_not);
+  void journal_ended(std::int64_t test, std::int64_t scans, const std::optional<std::string>& why_not);
   void record_made(std::int64_t test, const base::Result<std::filesystem::path>& file);
+  /// \param scans  that were written to the journal.
+  void journal_finalised(std::int64_t test, std::int64_t scans, const base::Result<record::Finalised>& made);
   void disk_changed(const DiskState& state);
 
   StorageSettings settings_;
@@ -168,7 +169,8 @@ class Storage final : public pipeline::Sink {
   bool waits_ = false;  ///< Disk thread: as it was told last, as the next.
   std::string waits_for_;
   bool is_short_ = false;
-  Finisher finisher_;  ///< Outlives the disk thread, which hands over to it.
+  std::atomic<std::int64_t> damaged_scans_{0};  ///< Written by the finisher's thread.
+  Finisher finisher_;                           ///< Outlives the disk thread, which hands over to it.
   DiskWriter disk_;
   std::atomic<std::uint64_t> rounds_{0};
   std::thread thread_;

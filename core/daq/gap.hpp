@@ -17,6 +17,7 @@ enum class GapCause {
   kBoardMissing,  ///< The board was unplugged.
   kMissingScans,  ///< The source itself says that they are missing (a replayed gap).
   kStorageFull,   ///< They arrived; the disk refused them for longer than memory lasted.
+  kDamaged,       ///< They were stored; the journal cannot be read where they stood.
 };
 
 [[nodiscard]] constexpr std::string_view name(GapCause cause) noexcept {
@@ -33,6 +34,8 @@ enum class GapCause {
       return "missing-scans";
     case GapCause::kStorageFull:
       return "storage-full";
+    case GapCause::kDamaged:
+      return "damaged";
   }
   return "unknown";
 }

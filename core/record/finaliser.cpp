@@ -79,7 +79,7 @@ base::Result<void> build_verified(const Record& record, const ScanSource& scans,
   return verified;
 }
 
-std::filesystem::path with_suffix(std::filesystem::path path, const char* suffix) {
+std::filesystem::path with_suffix(std::filesystem::path path, const std::string& suffix) {
   path += suffix;
   return path;
 }
@@ -115,6 +115,47 @@ void end_interrupted(JournalReading& reading, const Evaluate& evaluate) {
   end.cause = kProgramDied;
   if (!reading.runs.empty()) end.end_realtime_ns = realtime_at(record.header, reading.runs.back().end());
   set_end(record, std::move(end));
+}
+
+/// The results in the journal were those of more scans than are left.
+void end_damaged(Record& record, const Evaluate& evaluate) {
+  EndRecord end = *record.end;
+  if (evaluate) {
+    EndRecord again = evaluate(record);
+    end.results = std::move(again.results);
+    end.cycles = std::move(again.cycles);
+    end.spikes = std::move(again.spikes);
+  } else {
+    end.results = absent_results("damaged");
+    end.cycles = record.cycles;
+    end.spikes = record.spikes;
+  }
+  if (end.status != Status::kInterrupted) end.status = Status::kIncomplete;
+  set_end(record, std::move(end));
+}
+
+void tell_unread(const JournalReading& reading, EndRecord& end) {
+  if (!reading.damaged.empty()) {
+    end.reasons.push_back(fmt::format(
+        "{} of {} bytes of the journal could not be read, the first at byte {}: {}; the journal is kept",
+        reading.damaged_size(), reading.file_size, reading.damaged.front().first, reading.why_unread()));
+  }
+  if (reading.torn_end) {
+    if (end.status == Status::kComplete) end.status = Status::kRecovered;
+    end.reasons.push_back(fmt::format("{} bytes at the end of the journal were not readable: {}",
+                                      reading.torn_end->size, reading.torn_end->why));
+  }
+}
+
+/// Renames a damaged journal to a name that nobody has. \return the name.
+base::Result<std::filesystem::path> set_aside(const std::filesystem::path& journal, const FileCalls& calls) {
+  if (journal.extension() == kDamagedExtension) return journal;
+  auto damaged = with_suffix(journal, std::string{kDamagedExtension});
+  for (int number = 2; is_there(damaged); ++number)
+    damaged = with_suffix(journal, fmt::format(".{}{}", number, kDamagedExtension));
+  if (auto renamed = rename_to_new(journal, damaged, calls); !renamed)
+    return tl::unexpected(base::Error{base::ErrorKind::kFailure, renamed.error().message});
+  return damaged;
 }
 
 base::Result<void> publish(const Record& record, const ScanSource& scans, const std::filesystem::path& path,
@@ -159,45 +200,67 @@ base::Result<void> publish_journal(const std::filesystem::path& journal, const R
                                    const std::filesystem::path& path) {
   const auto reading = read_journal(journal, JournalScans::kCount);
   if (!reading) return tl::unexpected(reading.error());
-  if (!reading->stopped_by.empty()) {
-    return base::failure("{}: cannot be read back: {}", journal.string(), reading->stopped_by);
-  }
+  if (const std::string why = reading->why_unread(); !why.empty())
+    return base::failure("{}: cannot be read back: {}", journal.string(), why);
   return publish(record, JournalScanSource{journal, *reading}, path, system_calls());
 }
 
-base::Result<std::filesystem::path> finalise(const std::filesystem::path& journal, const Evaluate& evaluate,
-                                             const FileCalls& calls, std::chrono::milliseconds longest) {
+std::filesystem::path record_of(const std::filesystem::path& journal) {
+  std::filesystem::path file = journal;
+  if (file.extension() == kDamagedExtension) {
+    file.replace_extension();
+    if (file.extension() != kJournalExtension) file.replace_extension();  // The number of a second one.
+  }
+  return file.replace_extension(kRecordExtension);
+}
+
+base::Result<Finalised> finalise(const std::filesystem::path& journal, const Evaluate& evaluate,
+                                 const FileCalls& calls, std::chrono::milliseconds longest,
+                                 std::optional<std::int64_t> expected_scans) {
   const auto lock = JournalLock::take(journal, longest, calls);
   if (!lock) return tl::unexpected(lock.error());
   auto reading = read_journal(journal, JournalScans::kCount);
-  if (reading && !reading->record.end && evaluate) reading = read_journal(journal);  // It needs the scans.
+  if (!reading) return tl::unexpected(reading.error());
+  Finalised made{
+      record_of(journal), static_cast<std::int64_t>(reading->scan_count), reading->damaged_size(), {}};
+  const bool has_fewer = expected_scans && *made.scan_count < *expected_scans;
+  const bool has_loss = has_fewer || !reading->damaged.empty();
+  if (evaluate && (has_loss || !reading->record.end)) reading = read_journal(journal);  // It needs the scans.
   if (!reading) return tl::unexpected(reading.error());
   Record& record = reading->record;
-  if (!record.end) end_interrupted(*reading, evaluate);
-  const JournalScanSource scans{journal, *reading};
-  if (!reading->stopped_by.empty()) {
-    if (record.end->status == Status::kComplete) record.end->status = Status::kRecovered;
-    record.end->reasons.push_back(fmt::format("{} bytes at the end of the journal were not readable: {}",
-                                              reading->file_size - reading->whole_size, reading->stopped_by));
+  if (!record.end) {
+    end_interrupted(*reading, evaluate);
+  } else if (has_loss) {
+    end_damaged(record, evaluate);
   }
+  if (has_fewer) {
+    record.end->reasons.push_back(fmt::format("{} scans were written to the journal, {} could be read",
+                                              *expected_scans, *made.scan_count));
+  }
+  tell_unread(*reading, *record.end);
 
-  auto target = journal;
-  target.replace_extension(kRecordExtension);
-  if (is_empty_file(target)) calls.unlink(target.c_str());
-  if (is_there(target)) {
+  const JournalScanSource scans{journal, *reading};
+  if (is_empty_file(made.file)) calls.unlink(made.file.c_str());
+  if (is_there(made.file)) {
     // Left by a stop between the rename and the removal of the journal, or a stranger.
-    if (const auto same = verify_record(target, record, scans, calls); !same) {
+    if (const auto same = verify_record(made.file, record, scans, calls); !same) {
       // It cannot be looked at now: nothing is said of its content, and the journal waits.
       if (same.error().kind == base::ErrorKind::kFailure) return tl::unexpected(same.error());
       return base::failure("{}: exists already with other scans than {}: move one of them away",
-                           target.string(), journal.string());
+                           made.file.string(), journal.string());
     }
-    calls.unlink(with_suffix(target, ".part").c_str());  // Its other name, where it was published by link().
-  } else if (auto published = publish(record, scans, target, calls); !published) {
+    calls.unlink(with_suffix(made.file, ".part").c_str());  // Its other name, where it was published by link().
+  } else if (auto published = publish(record, scans, made.file, calls); !published) {
     return tl::unexpected(base::Error{base::ErrorKind::kFailure, published.error().message});
   }
-  if (auto removed = remove_journal(journal, calls); !removed) return tl::unexpected(removed.error());
-  return target;
+  if (!reading->damaged.empty() || (has_fewer && reading->torn_end)) {
+    auto kept = set_aside(journal, calls);
+    if (!kept) return tl::unexpected(kept.error());
+    made.kept = *std::move(kept);
+  } else if (auto removed = remove_journal(journal, calls); !removed) {
+    return tl::unexpected(removed.error());
+  }
+  return made;
 }
 
 }  // namespace stickslip::record

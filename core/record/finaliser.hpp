@@ -3,8 +3,11 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
+#include <string_view>
 
 #include "core/base/result.hpp"
 #include "core/record/file_calls.hpp"
@@ -15,21 +18,45 @@ namespace stickslip::record {
 /// Evaluates a test whose journal has no end: the analysis lives above this folder.
 using Evaluate = std::function<EndRecord(const Record&)>;
 
+/// Of a journal that stays beside its record because some of it could not be read: NAME.journal.damaged.
+/// Nobody takes it for a journal that waits for its record.
+inline constexpr std::string_view kDamagedExtension = ".damaged";
+
+/// The finished file of a journal, damaged or not: beside it, with the extension .h5.
+[[nodiscard]] std::filesystem::path record_of(const std::filesystem::path& journal);
+
+struct Finalised {
+  std::filesystem::path file;
+  /// In the file; nothing if somebody else made it.
+  std::optional<std::int64_t> scan_count;
+  std::uint64_t damaged_size =
+      0;                       ///< Bytes of the journal that could not be read; a torn end is none of them.
+  std::filesystem::path kept;  ///< Where the journal stays; empty: it was removed.
+};
+
 /// Builds TEST.h5 from TEST.journal and then removes the journal, in the memory of the tables however many
-/// scans there are (a journal without an end that is to be evaluated excepted). On any error nothing but the
-/// journal is left. A file that stands there already is never written again: if it holds the same
-/// scans the journal is removed, if not it is an error.
+/// scans there are (a test that is to be evaluated excepted). On any error nothing but the journal is left. A
+/// file that stands there already is never written again: if it holds the same scans the journal is removed,
+/// if not it is an error.
+///
+/// A journal that is damaged, or torn with fewer scans than expected, is not removed but renamed to
+/// TEST.journal.damaged; one of that name stays where it is. Its record holds all that can be read, is
+/// incomplete or interrupted, and says what is missing.
 ///
 /// Meant for a process of its own: HDF5 has one global lock and its errors can be fatal. Starts no
 /// threads.
-/// \param evaluate  asked if the journal has no end; without it such a test gets no results, with
-///                  the reason "interrupted". Its status is "interrupted" either way.
+/// \param evaluate  asked if the journal has no end, or its end knew more scans than are left; without it
+/// such a test
+///                  gets no results, with the reason "interrupted" or "damaged". The status of a test without
+///                  end is "interrupted" either way.
 /// \param longest  to wait for somebody else who finishes the journal.
-/// \return the finished file. Errors: kUsage if the file is no journal, else kFailure.
-[[nodiscard]] base::Result<std::filesystem::path> finalise(const std::filesystem::path& journal,
-                                                           const Evaluate& evaluate = {},
-                                                           const FileCalls& calls = system_calls(),
-                                                           std::chrono::milliseconds longest = {});
+/// \param expected_scans  as many as were written; nothing if nobody knows. A record with fewer says so.
+/// Errors: kUsage if the file is no journal, else kFailure.
+[[nodiscard]] base::Result<Finalised> finalise(const std::filesystem::path& journal,
+                                               const Evaluate& evaluate = {},
+                                               const FileCalls& calls = system_calls(),
+                                               std::chrono::milliseconds longest = {},
+                                               std::optional<std::int64_t> expected_scans = {});
 
 /// Whether a record can be made at `path`: nothing stands there (kUsage), its folder does (kUsage).
 [[nodiscard]] base::Result<void> check_publishable(const std::filesystem::path& path);

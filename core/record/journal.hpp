@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,6 +23,7 @@
 
 #include "core/base/result.hpp"
 #include "core/record/entry_builder.hpp"
+#include "core/record/journal_entries.hpp"
 #include "core/record/journal_file.hpp"
 #include "core/record/journal_format.hpp"
 #include "core/record/record.hpp"
@@ -88,26 +90,42 @@ struct ScanRun {
   [[nodiscard]] daq::ScanIndex end() const noexcept { return first + static_cast<daq::ScanIndex>(count); }
 };
 
-/// Row of scan `first`. \param runs  rising.
-/// \throws std::invalid_argument unless it and the `count` scans from it on belong to one run.
-[[nodiscard]] std::size_t row_of(const std::vector<ScanRun>& runs, daq::ScanIndex first, std::size_t count);
+/// An entry with values of consecutive scans.
+struct EntryPlace {
+  std::uint64_t position = 0;  ///< Byte of the file.
+  std::uint64_t size = 0;      ///< Bytes.
+  daq::ScanIndex first = 0;
+  std::size_t count = 0;
 
-/// What a journal held, up to the first entry that is not whole.
+  [[nodiscard]] daq::ScanIndex end() const noexcept { return first + static_cast<daq::ScanIndex>(count); }
+};
+
+/// What a journal held: all its whole entries that make sense, in the order of the scans wherever they stand.
 struct JournalReading {
-  Record record;  ///< Without scan, raw, second and true_coefficient if they were not to be kept.
+  /// Without scan, raw, second and true_coefficient if they were not to be kept. Scans that are missing
+  /// between others and of which no entry says why are gaps: damaged, or unknown if every byte could be read.
+  Record record;
   std::size_t scan_count = 0;
-  std::vector<ScanRun> runs;     ///< All scans.
-  bool has_force = false;        ///< Of at least one scan.
-  bool has_second = false;       ///< Of at least one scan.
-  std::uint64_t whole_size = 0;  ///< Bytes in whole entries.
+  std::vector<ScanRun> runs;  ///< All scans, rising.
+  // Rising, none overlaps another.
+  std::vector<EntryPlace> scans;
+  std::vector<EntryPlace> true_coefficients;
+  std::vector<EntryPlace> second_codes;
   std::uint64_t file_size = 0;
-  std::string stopped_by;  ///< Why reading stopped before the end of the file; empty if it did not.
+  std::vector<UnreadBytes> damaged;     ///< By place.
+  std::optional<UnreadBytes> torn_end;  ///< As a stop leaves it.
+
+  /// Bytes that are damaged.
+  [[nodiscard]] std::uint64_t damaged_size() const noexcept;
+  /// Why the first of the bytes that gave nothing did not; empty if all gave something.
+  [[nodiscard]] std::string why_unread() const;
 };
 
 enum class JournalScans { kKeep, kCount };
 
 /// Reads every whole entry; its memory, unless the scans are kept, is that of the tables. Errors: kFailure if
-/// the file cannot be read, kUsage if it is no journal or has no whole header.
+/// the file cannot be read, or its header is damaged and whole entries stand behind it; kUsage if it is no
+/// journal.
 [[nodiscard]] base::Result<JournalReading> read_journal(const std::filesystem::path& path,
                                                         JournalScans scans = JournalScans::kKeep);
 
@@ -124,16 +142,17 @@ class JournalScanSource final : public ScanSource {
     return reading_.runs.empty() ? 0 : reading_.runs.back().end() - reading_.runs.front().first;
   }
   void for_each_piece(const std::function<void(const ScanPiece&)>& use) const override;
-  [[nodiscard]] bool has_force() const override { return reading_.has_force; }
+  [[nodiscard]] bool has_force() const override { return !reading_.true_coefficients.empty(); }
   void for_each_force_piece(const std::function<void(std::span<const double>)>& use) const override;
-  [[nodiscard]] bool has_second() const override { return reading_.has_second; }
+  [[nodiscard]] bool has_second() const override { return !reading_.second_codes.empty(); }
   void for_each_second_piece(const std::function<void(std::span<const std::int32_t>)>& use) const override;
 
  private:
-  void for_each_entry(EntryType type, const std::function<void(const Entry&)>& use) const;
-  /// Values of all scans from entries of that type, in pieces as those of the scans.
-  template <typename Stored, typename Value>
-  void for_each_column_piece(EntryType type, Value absent,
+  void for_each_entry(const std::vector<EntryPlace>& places,
+                      const std::function<void(const Entry&)>& use) const;
+  /// Values of all scans from those entries, in pieces as those of the scans.
+  template <typename Value>
+  void for_each_column_piece(const std::vector<EntryPlace>& places, Value absent,
                              const std::function<void(std::span<const Value>)>& use) const;
 
   std::filesystem::path path_;

@@ -29,14 +29,10 @@ class JournalLock {
 /// Takes the right for a file that has just been made. \return false if somebody else has it.
 [[nodiscard]] bool lock_journal(int descriptor, const FileCalls& calls = system_calls()) noexcept;
 
-/// Whether a whole entry stands anywhere behind the byte at `position`: then not the end of the journal is
-/// torn, but its middle.
-[[nodiscard]] bool has_entry_behind(const std::filesystem::path& journal, std::uint64_t position);
-
-/// A journal without any whole entry is what a stop leaves before the header, which comes first, is written
-/// and synced: nothing was recorded. Files that begin in another way are not this program's and stay.
-/// \return whether it was one and is gone. Errors: kFailure if it cannot be read or removed, or somebody
-/// writes it for longer than `longest`.
+/// A journal that is nothing but a torn end (journal_entries.hpp) is what a stop leaves before the header,
+/// which comes first, is written and synced: nothing was recorded. All others stay. \return whether it was
+/// one and is gone. Errors: kFailure if it cannot be read or removed, or somebody writes it for longer than
+/// `longest`.
 [[nodiscard]] base::Result<bool> remove_if_empty(const std::filesystem::path& journal,
                                                  std::chrono::milliseconds longest = {});
 

@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <functional>
 #include <limits>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/wording.hpp"
 #include "core/record/journal.hpp"
@@ -43,21 +46,42 @@ std::vector<double> raw_of(const Entry& entry) {
   }
 }
 
-/// What the entries come to, whether the scans are kept or only counted.
+/// Values of an entry whose scans are there. \param runs  rising.
+/// \param use  called with the row of the first, which value of the entry it is, and how many follow it.
+template <typename Use>
+void for_each_common(const std::vector<ScanRun>& runs, const EntryPlace& place, const Use& use) {
+  auto run = std::ranges::upper_bound(runs, place.first, {}, &ScanRun::end);
+  for (; run != runs.end() && run->first < place.end(); ++run) {
+    const daq::ScanIndex first = std::max(run->first, place.first);
+    const daq::ScanIndex end = std::min(run->end(), place.end());
+    use(run->row + static_cast<std::size_t>(first - run->first),
+        static_cast<std::size_t>(first - place.first), static_cast<std::size_t>(end - first));
+  }
+}
+
+/// What the entries come to.
 class Content {
  public:
-  Content(JournalReading& reading, bool keep_scans) : reading_(reading), keep_(keep_scans) {}
+  explicit Content(JournalReading& reading) : reading_(reading) {}
 
-  /// \throws std::exception if the entry's content makes no sense.
-  void add(const Entry& entry) {
+  /// \param position  where the entry stands. \throws std::exception if its content makes no sense.
+  void add(const Entry& entry, std::uint64_t position) {
     Record& record = reading_.record;
+    const auto place = [&](std::size_t count) {
+      const daq::ScanIndex first = possible(entry.head.first_scan);
+      if (count > 0) possible(first + static_cast<daq::ScanIndex>(count) - 1);
+      return EntryPlace{position, kEntryHeadSize + entry.payload.size(), first, count};
+    };
     switch (static_cast<EntryType>(entry.head.type)) {
       case EntryType::kScans:
-        return add_scans(entry);
+        reading_.scans.push_back(place(checked_scan_count(entry)));
+        return;
       case EntryType::kTrueForce:
-        return add_force(entry);
+        reading_.true_coefficients.push_back(place(values_of<double>(entry.payload).size()));
+        return;
       case EntryType::kSecond:
-        return add_second(entry);
+        reading_.second_codes.push_back(place(checked_code_count(entry)));
+        return;
       case EntryType::kSpikes: {
         const auto spikes = values_of<daq::ScanIndex>(entry.payload);
         record.spikes.insert(record.spikes.end(), spikes.begin(), spikes.end());
@@ -78,138 +102,239 @@ class Content {
         record.events.push_back(event_from_json(text_of(entry)));
         return;
       case EntryType::kEnd:
-        set_end(record, end_from_bytes(entry.payload));
+        if (end_) throw std::invalid_argument("a second end");
+        end_ = end_from_bytes(entry.payload);
         return;
       case EntryType::kHeader:
+        throw std::invalid_argument("a second header");
       default:
         throw std::invalid_argument("unknown type of entry");
     }
   }
 
-  void finish() {
-    if (keep_ && reading_.has_force) reading_.record.true_coefficient.resize(reading_.scan_count, kNotKnown);
-    if (keep_ && reading_.has_second) reading_.record.second.resize(reading_.scan_count, kNoCode);
+  /// Brings all into the order of the scans. \param is_damaged  something was no whole entry.
+  void finish(bool is_damaged) {
+    keep_rising(reading_.scans);
+    for (const EntryPlace& place : reading_.scans) {
+      std::vector<ScanRun>& runs = reading_.runs;
+      if (runs.empty() || place.first != runs.back().end())
+        runs.push_back({place.first, 0, reading_.scan_count});
+      runs.back().count += place.count;
+      reading_.scan_count += place.count;
+    }
+    for (auto* places : {&reading_.true_coefficients, &reading_.second_codes}) {
+      keep_rising(*places);
+      const auto is_idle = [&](const EntryPlace& place) {
+        std::size_t common = 0;
+        for_each_common(reading_.runs, place,
+                        [&](std::size_t, std::size_t, std::size_t count) { common += count; });
+        return common == 0;
+      };
+      // Where scans are damaged, what belongs to them is whole all the same.
+      if (is_damaged || !reading_.damaged.empty()) {
+        std::erase_if(*places, is_idle);
+      } else {
+        refuse_if(*places, "values of scans that are not there", is_idle);
+      }
+    }
+    Record& record = reading_.record;
+    std::ranges::stable_sort(record.anchors, {}, &ClockAnchor::scan);
+    std::ranges::stable_sort(record.gaps, {}, &daq::Gap::first);
+    std::ranges::sort(record.spikes);
+    if (end_) set_end(record, *std::move(end_));
   }
 
  private:
-  void add_scans(const Entry& entry) {
-    Record& record = reading_.record;
-    std::vector<ScanRun>& runs = reading_.runs;
-    const daq::ScanIndex first = possible(entry.head.first_scan);
-    if (!runs.empty() && first < runs.back().end()) throw std::invalid_argument("scan indices run backwards");
+  [[nodiscard]] std::size_t checked_scan_count(const Entry& entry) const {
     const std::vector<double> raw = raw_of(entry);
-    if (record.header.board.quantity == daq::RawQuantity::kCounts) {
-      const auto maxdata = static_cast<double>(record.header.board.maxdata);
-      const auto possible = [&](double count) { return count <= maxdata; };
-      if (!std::all_of(raw.begin(), raw.end(), possible)) throw std::invalid_argument("count above maxdata");
+    const daq::BoardInfo& board = reading_.record.header.board;
+    const auto maxdata = static_cast<double>(board.maxdata);
+    if (board.quantity == daq::RawQuantity::kCounts &&
+        !std::ranges::all_of(raw, [&](double count) { return count <= maxdata; })) {
+      throw std::invalid_argument("count above maxdata");
     }
-    if (raw.empty()) return;
-    possible(first + static_cast<daq::ScanIndex>(raw.size()) - 1);
-    if (runs.empty() || first != runs.back().end()) runs.push_back({first, 0, reading_.scan_count});
-    runs.back().count += raw.size();
-    reading_.scan_count += raw.size();
-    if (!keep_) return;
-    record.raw.insert(record.raw.end(), raw.begin(), raw.end());
-    for (daq::ScanIndex scan = first; record.scan.size() < record.raw.size(); ++scan) {
-      record.scan.push_back(scan);
-    }
+    return raw.size();
   }
 
-  void add_force(const Entry& entry) {
-    const std::vector<double> values = values_of<double>(entry.payload);
-    const std::size_t row = row_of(reading_.runs, entry.head.first_scan, values.size());
-    if (row < next_force_row_) throw std::invalid_argument("true force runs backwards");
-    next_force_row_ = row + values.size();
-    reading_.has_force = true;
-    if (!keep_) return;
-    std::vector<double>& force = reading_.record.true_coefficient;
-    force.resize(row, kNotKnown);
-    force.insert(force.end(), values.begin(), values.end());
-  }
-
-  void add_second(const Entry& entry) {
+  [[nodiscard]] std::size_t checked_code_count(const Entry& entry) const {
     const auto& channel = reading_.record.header.board.second;
     if (!channel) throw std::invalid_argument("codes of a second channel that is not there");
     const auto codes = values_of<std::int32_t>(entry.payload);
-    const std::size_t row = row_of(reading_.runs, entry.head.first_scan, codes.size());
-    if (row < next_second_row_) throw std::invalid_argument("second channel runs backwards");
     const auto possible = [&](std::int32_t code) {
       return code >= kNoCode && code <= static_cast<std::int64_t>(channel->maxdata);
     };
-    if (!std::all_of(codes.begin(), codes.end(), possible)) {
+    if (!std::ranges::all_of(codes, possible)) {
       throw std::invalid_argument("code of the second channel out of range");
     }
-    next_second_row_ = row + codes.size();
-    reading_.has_second = true;
-    if (!keep_) return;
-    std::vector<std::int32_t>& second = reading_.record.second;
-    second.resize(row, kNoCode);
-    second.insert(second.end(), codes.begin(), codes.end());
+    return codes.size();
+  }
+
+  /// Scans that stand there twice are read once.
+  void keep_rising(std::vector<EntryPlace>& places) {
+    std::ranges::stable_sort(places, {}, &EntryPlace::first);
+    std::erase_if(places, [](const EntryPlace& place) { return place.count == 0; });
+    std::optional<daq::ScanIndex> end;
+    refuse_if(places, "scans that stand there already", [&end](const EntryPlace& place) {
+      if (end && place.first < *end) return true;
+      end = place.end();
+      return false;
+    });
+  }
+
+  void refuse_if(std::vector<EntryPlace>& places, const char* why,
+                 const std::function<bool(const EntryPlace&)>& refused) {
+    std::vector<EntryPlace> kept;
+    kept.reserve(places.size());
+    for (const EntryPlace& place : places) {
+      if (refused(place)) {
+        reading_.damaged.push_back({place.position, place.size, why});
+      } else {
+        kept.push_back(place);
+      }
+    }
+    places = std::move(kept);
   }
 
   JournalReading& reading_;
-  bool keep_;
-  std::size_t next_force_row_ = 0;
-  std::size_t next_second_row_ = 0;
+  std::optional<EndRecord> end_;
 };
+
+/// What is missing between the runs, as far as no gap of the journal says why. \param gaps  rising.
+std::vector<daq::Gap> holes(const std::vector<ScanRun>& runs, const std::vector<daq::Gap>& gaps,
+                            daq::GapCause cause) {
+  std::vector<daq::Gap> found;
+  const auto missing = [&](daq::ScanIndex first, daq::ScanIndex end) {
+    if (first < end) found.push_back({first, end - first, false, cause});
+  };
+  auto gap = gaps.begin();
+  for (std::size_t i = 1; i < runs.size(); ++i) {
+    daq::ScanIndex first = runs[i - 1].end();
+    for (; gap != gaps.end() && gap->first < runs[i].first; ++gap) {
+      missing(first, gap->first);
+      first = std::max(first, gap->first + gap->count);
+    }
+    missing(first, runs[i].first);
+  }
+  return found;
+}
+
+void keep_scans(const std::filesystem::path& path, JournalReading& reading) {
+  Record& record = reading.record;
+  const JournalScanSource source{path, reading};
+  const auto append = [](auto& column, const auto& piece) {
+    column.insert(column.end(), piece.begin(), piece.end());
+  };
+  source.for_each_piece([&](const ScanPiece& piece) {
+    append(record.scan, piece.scan);
+    append(record.raw, piece.raw);
+  });
+  if (source.has_force())
+    source.for_each_force_piece(
+        [&](std::span<const double> piece) { append(record.true_coefficient, piece); });
+  if (source.has_second())
+    source.for_each_second_piece([&](std::span<const std::int32_t> piece) { append(record.second, piece); });
+}
+
+/// The header, wherever it stands: first, unless a disk has swapped pages.
+base::Result<RecordHeader> find_header(const std::filesystem::path& path) {
+  auto entries = JournalEntries::open(path);
+  if (!entries) return tl::unexpected(entries.error());
+  std::uint64_t others = 0;
+  while (const auto entry = entries->next()) {
+    if (entry->head.type != static_cast<std::uint16_t>(EntryType::kHeader)) {
+      ++others;
+      continue;
+    }
+    try {
+      return header_from_json(text_of(*entry));
+    } catch (const std::exception& error) {
+      return base::usage_error("{}: is no journal of this program: {}", path.string(),
+                               base::reason_of(error));
+    }
+  }
+  if (!entries->error().empty()) return base::failure("{}: {}", path.string(), entries->error());
+  const auto& skipped = entries->skipped();
+  const std::string why = !skipped.empty()            ? skipped.front().why
+                          : entries->torn_end()       ? entries->torn_end()->why
+                          : entries->file_size() == 0 ? "it is empty"
+                                                      : "no entry is a header";
+  if (others == 0) return base::usage_error("{}: is no journal of this program: {}", path.string(), why);
+  return base::failure(
+      "{}: its header, at byte 0, is damaged ({}): what board and load cell the {} whole entries behind it "
+      "belong "
+      "to is not known, so no record can be made; the journal stays as it is: put a copy from a backup in "
+      "its "
+      "place, or move it away",
+      path.string(), why, others);
+}
 
 }  // namespace
 
-std::size_t row_of(const std::vector<ScanRun>& runs, daq::ScanIndex first, std::size_t count) {
-  const auto after =
-      std::upper_bound(runs.begin(), runs.end(), first,
-                       [](daq::ScanIndex scan, const ScanRun& run) { return scan < run.first; });
-  if (after != runs.begin()) {
-    const ScanRun& run = *(after - 1);
-    const auto offset = static_cast<std::size_t>(first - run.first);
-    if (offset <= run.count && count <= run.count - offset) return run.row + offset;
-  }
-  throw std::invalid_argument("values of scans that are not there");
+std::uint64_t JournalReading::damaged_size() const noexcept {
+  std::uint64_t size = 0;
+  for (const UnreadBytes& bytes : damaged) size += bytes.size;
+  return size;
+}
+
+std::string JournalReading::why_unread() const {
+  if (!damaged.empty()) return damaged.front().why;
+  return torn_end ? torn_end->why : std::string{};
 }
 
 base::Result<JournalReading> read_journal(const std::filesystem::path& path, JournalScans scans) {
+  auto header = find_header(path);
+  if (!header) return tl::unexpected(header.error());
   auto entries = JournalEntries::open(path);
   if (!entries) return tl::unexpected(entries.error());
 
   JournalReading reading;
+  reading.record.header = *std::move(header);
   reading.file_size = entries->file_size();
-  Content content{reading, scans == JournalScans::kKeep};
-  bool header_read = false;
+  Content content{reading};
+  bool header_seen = false;
   while (const auto entry = entries->next()) {
-    try {
-      if (reading.record.end) throw std::invalid_argument("entry after the end");
-      if (header_read) {
-        content.add(*entry);
-      } else {
-        if (entry->head.type != static_cast<std::uint16_t>(EntryType::kHeader)) {
-          throw std::invalid_argument("first entry is no header");
-        }
-        reading.record.header = header_from_json(text_of(*entry));
-        header_read = true;
-      }
-    } catch (const std::exception& error) {
-      reading.stopped_by = base::reason_of(error);
-      break;
+    if (!header_seen && entry->head.type == static_cast<std::uint16_t>(EntryType::kHeader)) {
+      header_seen = true;
+      continue;
     }
-    reading.whole_size = entries->position();
+    try {
+      content.add(*entry, entries->position());
+    } catch (const std::exception& error) {
+      reading.damaged.push_back(
+          {entries->position(), kEntryHeadSize + entry->payload.size(), base::reason_of(error)});
+    }
   }
-  if (reading.stopped_by.empty()) reading.stopped_by = entries->stopped_by();
-  if (!header_read) {
-    return base::usage_error("{}: is no journal of this program: {}", path.string(),
-                             reading.file_size == 0 ? "it is empty" : reading.stopped_by);
+  if (!entries->error().empty()) return base::failure("{}: {}", path.string(), entries->error());
+  content.finish(!entries->skipped().empty());
+  reading.torn_end = entries->torn_end();
+  reading.damaged.insert(reading.damaged.end(), entries->skipped().begin(), entries->skipped().end());
+  std::ranges::stable_sort(reading.damaged, {}, &UnreadBytes::first);
+  std::vector<daq::Gap>& gaps = reading.record.gaps;
+  const std::vector<daq::Gap> missing = holes(
+      reading.runs, gaps, reading.why_unread().empty() ? daq::GapCause::kUnknown : daq::GapCause::kDamaged);
+  gaps.insert(gaps.end(), missing.begin(), missing.end());
+  std::ranges::stable_sort(gaps, {}, &daq::Gap::first);
+  if (scans == JournalScans::kKeep) {
+    try {
+      keep_scans(path, reading);
+    } catch (const std::runtime_error& error) {
+      return base::failure("{}", error.what());
+    }
   }
-  content.finish();
   return reading;
 }
 
-void JournalScanSource::for_each_entry(EntryType type, const std::function<void(const Entry&)>& use) const {
+void JournalScanSource::for_each_entry(const std::vector<EntryPlace>& places,
+                                       const std::function<void(const Entry&)>& use) const {
   auto entries = JournalEntries::open(path_);
   if (!entries) throw std::runtime_error(entries.error().message);
-  // What read_journal() did not believe is not there.
-  while (entries->position() < reading_.whole_size) {
-    const auto entry = entries->next();
-    if (!entry) throw std::runtime_error(path_.string() + ": changed while it was read");
-    if (entry->head.type == static_cast<std::uint16_t>(type)) use(*entry);
+  for (const EntryPlace& place : places) {
+    const auto entry = entries->at(place.position);
+    if (!entry || entry->head.first_scan != place.first ||
+        kEntryHeadSize + entry->payload.size() != place.size) {
+      throw std::runtime_error(path_.string() + ": changed while it was read");
+    }
+    use(*entry);
   }
 }
 
@@ -223,7 +348,7 @@ void JournalScanSource::for_each_piece(const std::function<void(const ScanPiece&
     scan.clear();
     raw.clear();
   };
-  for_each_entry(EntryType::kScans, [&](const Entry& entry) {
+  for_each_entry(reading_.scans, [&](const Entry& entry) {
     daq::ScanIndex index = entry.head.first_scan;
     for (const double value : raw_of(entry)) {
       scan.push_back(index++);
@@ -234,8 +359,8 @@ void JournalScanSource::for_each_piece(const std::function<void(const ScanPiece&
   pass_on();
 }
 
-template <typename Stored, typename Value>
-void JournalScanSource::for_each_column_piece(EntryType type, Value absent,
+template <typename Value>
+void JournalScanSource::for_each_column_piece(const std::vector<EntryPlace>& places, Value absent,
                                               const std::function<void(std::span<const Value>)>& use) const {
   std::vector<Value> piece;
   piece.reserve(kPiece);
@@ -250,22 +375,25 @@ void JournalScanSource::for_each_column_piece(EntryType type, Value absent,
   const auto leave_out_up_to = [&](std::size_t end) {
     for (std::size_t left = std::max(end, row) - row; left > 0; --left) push(absent);
   };
-  for_each_entry(type, [&](const Entry& entry) {
-    const std::vector<Stored> values = values_of<Stored>(entry.payload);
-    leave_out_up_to(row_of(reading_.runs, entry.head.first_scan, values.size()));
-    for (const Stored value : values) push(value);
+  auto place = places.begin();
+  for_each_entry(places, [&](const Entry& entry) {
+    const std::vector<Value> values = values_of<Value>(entry.payload);
+    for_each_common(reading_.runs, *place++, [&](std::size_t at, std::size_t offset, std::size_t count) {
+      leave_out_up_to(at);
+      for (std::size_t i = 0; i < count; ++i) push(values[offset + i]);
+    });
   });
   leave_out_up_to(size());
   if (!piece.empty()) use(piece);
 }
 
 void JournalScanSource::for_each_force_piece(const std::function<void(std::span<const double>)>& use) const {
-  for_each_column_piece<double>(EntryType::kTrueForce, kNotKnown, use);
+  for_each_column_piece<double>(reading_.true_coefficients, kNotKnown, use);
 }
 
 void JournalScanSource::for_each_second_piece(
     const std::function<void(std::span<const std::int32_t>)>& use) const {
-  for_each_column_piece<std::int32_t>(EntryType::kSecond, kNoCode, use);
+  for_each_column_piece<std::int32_t>(reading_.second_codes, kNoCode, use);
 }
 
 }  // namespace stickslip::record

@@ -71,8 +71,8 @@ void judge_clocks(const Record& record, daq::ScanIndex first, daq::ScanIndex end
     const std::string place = fmt::format("timing row {}", i);
     if (anchors[i].scan < first || anchors[i].scan >= end) {
       const std::string text = fmt::format("scan {} is not of this test", anchors[i].scan);
-      // A stop can take the last scans and leave the clock that was read at them.
-      if (anchors[i].scan >= end && verdict.status != name(Status::kComplete)) {
+      // A stop can take the last scans and leave the clock that was read at them, damage the first ones too.
+      if (verdict.status != name(Status::kComplete)) {
         verdict.note(place, text);
       } else {
         verdict.damage(place, text);

@@ -35,7 +35,9 @@ enum class Status {
   kComplete,     ///< The test ended and everything was written.
   kInterrupted,  ///< The program stopped before the end of the test: told to, or killed.
   kRecovered,    ///< Something was lost or repaired on the way; see the reasons.
-  kIncomplete,  ///< Scans could not be stored (disk full), or the board went away before the end of the test.
+  /// Scans could not be stored (disk full), the board went away before the end of the test, or the journal
+  /// was damaged.
+  kIncomplete,
 };
 
 /// The word in files and messages.

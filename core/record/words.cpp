@@ -34,8 +34,9 @@ bool counts_fit_u16(const daq::BoardInfo& board) noexcept {
 
 std::optional<daq::GapCause> gap_cause_from_name(std::string_view text) noexcept {
   using daq::GapCause;
-  for (const auto cause : {GapCause::kUnknown, GapCause::kOverrun, GapCause::kRingFull,
-                           GapCause::kBoardMissing, GapCause::kMissingScans, GapCause::kStorageFull}) {
+  for (const auto cause :
+       {GapCause::kUnknown, GapCause::kOverrun, GapCause::kRingFull, GapCause::kBoardMissing,
+        GapCause::kMissingScans, GapCause::kStorageFull, GapCause::kDamaged}) {
     if (daq::name(cause) == text) return cause;
   }
   return std::nullopt;

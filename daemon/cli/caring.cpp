@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <vector>
@@ -34,7 +35,15 @@ Examples:
 constexpr const char* kRecoverHelp =
     R"(Makes records from the journals that a stop left behind, as the daemon does when it starts: marked interrupted,
 with the results that their scans allow. A journal that is being written is left alone. One in which nothing was
-recorded is removed. Exit status 0 if all was done, 1 if something was not, 2 for wrong usage.
+recorded is removed.
+What is damaged in a journal is skipped, and the record holds all the rest. Such a journal is not removed but renamed
+to NAME.journal.damaged; no later run takes it for one that waits for its record.
+
+Exit status:
+  0  all was done
+  1  some journals became no record; each says why and stays as it is
+  2  wrong usage
+  3  all became records, but some were damaged and stay beside theirs
 
 Examples:
   stickslip recover /var/lib/stickslip/records
@@ -66,6 +75,9 @@ class Teller final : public Facts {
   void orphan_finalised(const std::filesystem::path& file) override {
     fmt::print("made     {}\n", file.string());
   }
+  void record_damaged(const std::filesystem::path& file, std::string_view loss) override {
+    fmt::print("damaged  {}: {}\n", file.string(), loss);
+  }
   void orphan_empty(const std::filesystem::path& journal) override {
     fmt::print("removed  {}: nothing was recorded in it\n", journal.string());
   }
@@ -75,34 +87,44 @@ class Teller final : public Facts {
 };
 
 /// In a copy of this process: HDF5's errors can end it.
-base::Result<std::filesystem::path> finalise_apart(const std::filesystem::path& journal) {
+base::Result<record::Finalised> finalise_apart(const std::filesystem::path& journal, ExpectedScans expected) {
   constexpr std::chrono::hours kLongest{24};  // Only the evaluation of an interrupted test takes time.
-  const auto work = [&journal]() -> std::string {
-    const auto file = finalise_here(journal);
-    return file ? std::string{} : file.error().message;
+  const auto work = [&]() -> std::string {
+    const auto made = finalise_here(journal, expected);
+    return made ? "+" + to_text(*made) : "-" + made.error().message;
   };
   const base::Result<ForkedAnswer> answer = run_forked(work, kLongest);
   if (!answer) return tl::unexpected(answer.error());
-  if (answer->signal) return base::failure("finishing it ended by signal {}", *answer->signal);
-  if (!answer->text.empty()) return base::failure("{}", answer->text);
-  return record_of(journal);
+  if (answer->signal || answer->text.empty())
+    return base::failure("finishing it ended by signal {}", answer->signal.value_or(0));
+  if (!answer->text.starts_with('+')) return base::failure("{}", answer->text.substr(1));
+  return finalised_from_text(journal, answer->text.substr(1));
 }
 
-base::Result<std::string> recover(const std::vector<std::string>& places) {
+/// \return the exit status.
+base::Result<int> recover(const std::vector<std::string>& places) {
+  constexpr int kDamagedStatus = 3;
   Teller teller;
-  bool all = true;
+  Recovery worst = Recovery::kDone;
   for (const std::string& place : places) {
     std::error_code ignored;
     if (std::filesystem::is_directory(place, ignored)) {
-      all = recover_folder(place, finalise_apart, teller) && all;
+      worst = std::max(worst, recover_folder(place, finalise_apart, teller));
     } else if (std::filesystem::exists(place, ignored)) {
-      all = recover_journal(place, finalise_apart, teller) && all;
+      worst = std::max(worst, recover_journal(place, finalise_apart, teller));
     } else {
       return base::usage_error("{}: there is no such folder or journal", place);
     }
   }
-  if (!all) return base::failure("not every journal became a record");
-  return std::string{};
+  switch (worst) {
+    case Recovery::kDone:
+      return 0;
+    case Recovery::kDamaged:
+      return kDamagedStatus;
+    case Recovery::kRefused:
+      break;
+  }
+  return base::failure("not every journal became a record");
 }
 
 void add_recover(CLI::App& app, Chosen& chosen) {
@@ -112,7 +134,12 @@ void add_recover(CLI::App& app, Chosen& chosen) {
   command->add_option("places", *places, "folders of records, or journals")
       ->required()
       ->type_name("DIR|JOURNAL");
-  choose(*command, chosen, [places] { return recover(*places); });
+  command->callback([&chosen, places] {
+    chosen.run = [places] {
+      const base::Result<int> status = recover(*places);
+      return status ? *status : print(tl::unexpected(status.error()));
+    };
+  });
 }
 
 }  // namespace

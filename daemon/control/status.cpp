@@ -164,9 +164,13 @@ Json status_json(const Status& status) {
   json["overrun_count"] = status.overrun_count;
   json["gap_count"] = status.gap_count;
   json["lost_scan_count"] = status.lost_scan_count;
-  json["scans"] = {{"issued", status.scans.issued},   {"recorded", status.scans.recorded},
-                   {"idle", status.scans.idle},       {"in_gaps", status.scans.in_gaps},
-                   {"unsaved", status.scans.unsaved}, {"under_way", status.scans.under_way()}};
+  json["scans"] = {{"issued", status.scans.issued},
+                   {"recorded", status.scans.recorded},
+                   {"idle", status.scans.idle},
+                   {"in_gaps", status.scans.in_gaps},
+                   {"damaged", status.scans.damaged},
+                   {"unsaved", status.scans.unsaved},
+                   {"under_way", status.scans.under_way()}};
   json["board_loss_count"] = status.board_loss_count;
   json["scan_rate_measured"] = to_json(status.scan_rate_measured);
   json["read_latency"] = to_json(status.latency, "read_count");

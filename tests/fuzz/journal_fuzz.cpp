@@ -1,11 +1,14 @@
-// Whatever stands in a journal, with checksums that are right: it is read up to the first entry that makes no
-// sense, and judged. The first byte says whether a header comes before it.
+// Whatever stands in a journal, with checksums that are right or, where the input says so, not: the entries
+// that make sense are read, the scans rise, and it is judged. The first byte says whether a header comes
+// before it.
 
 #include <fuzzer/FuzzedDataProvider.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -64,16 +67,23 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     head.first_scan = input.ConsumeBool() ? input.ConsumeIntegralInRange<std::int64_t>(0, 300)
                                           : input.ConsumeIntegral<std::int64_t>();
     head.time_ns = input.ConsumeIntegral<std::int64_t>();
+    const std::size_t place = bytes.size();
     append(bytes, head, input.ConsumeRandomLengthString());
+    if (input.ConsumeIntegralInRange<int>(0, 7) == 0) {
+      const std::size_t size = bytes.size() - place;
+      bytes[place + input.ConsumeIntegralInRange<std::size_t>(0, size - 1)] ^= 1;
+    }
   }
   test::write_content(name, bytes);
   const auto reading = record::read_journal(name);
   STICKSLIP_EXPECTS(reading || reading.error().message.find('\n') == std::string::npos);
   static_cast<void>(record::judge(name));
   if (!reading) return 0;
-  STICKSLIP_EXPECTS(reading->whole_size <= reading->file_size && reading->file_size == bytes.size());
+  STICKSLIP_EXPECTS(reading->damaged_size() <= reading->file_size && reading->file_size == bytes.size());
   STICKSLIP_EXPECTS(reading->record.scan.size() == reading->scan_count &&
                     reading->record.raw.size() == reading->scan_count);
+  STICKSLIP_EXPECTS(std::ranges::adjacent_find(reading->record.scan, std::greater_equal<>{}) ==
+                    reading->record.scan.end());
   std::size_t count = 0;
   const record::JournalScanSource source{name, *reading};
   source.for_each_piece([&](const record::ScanPiece& piece) { count += piece.raw.size(); });

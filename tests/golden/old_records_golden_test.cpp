@@ -226,7 +226,7 @@ TEST(OldJournal, BecomesTheRecordThatItWouldHaveBecomeThen) {
     fs::permissions(folder / "a.journal", fs::perms::owner_write, fs::perm_options::add);
     const auto file = record::finalise(folder / "a.journal");
     ASSERT_TRUE(file) << file.error().message;
-    const auto now = record::read_record(*file);
+    const auto now = record::read_record(file->file);
     const auto then = record::read_record(kRecords / version / "every-field.h5");
     ASSERT_TRUE(now) << now.error().message;
     ASSERT_TRUE(then);

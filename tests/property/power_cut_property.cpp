@@ -106,15 +106,19 @@ std::size_t recover(const fs::path& folder, const fs::path& journal, const fs::p
   const record::Verdict verdict = record::judge(file);
   EXPECT_NE(verdict.judgement, Judgement::kDamaged)
       << moment << ": " << (verdict.findings.empty() ? "" : verdict.findings.back().text);
-  // Each value is the first scan of its entry and thousand.
+  // Each value is the first scan of its entry and thousand. Scans behind a page that did not get to the disk
+  // are worth having, but nobody promised them.
   const auto read = record::read_record(file);
   EXPECT_TRUE(read) << moment;
+  std::size_t in_a_row = 0;
   for (std::size_t i = 0; read && i < read->raw.size(); ++i) {
-    EXPECT_EQ(read->scan[i], static_cast<daq::ScanIndex>(i));
-    EXPECT_EQ(read->raw[i], 1000.0 + static_cast<double>(i - i % kScansInEntry)) << moment;
+    const auto scan = static_cast<std::size_t>(read->scan[i]);
+    EXPECT_GE(scan, i);
+    EXPECT_EQ(read->raw[i], 1000.0 + static_cast<double>(scan - scan % kScansInEntry)) << moment;
+    in_a_row += scan == i ? 1 : 0;
   }
   static_cast<void>(folder);
-  return read ? read->raw.size() : 0;
+  return in_a_row;
 }
 
 /// The moments to cut at, of a log of so many changes: all of them, or exactly so many by chance.

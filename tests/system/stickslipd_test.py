@@ -39,6 +39,17 @@ def holds_more_than_a_header(journal):
     return journal.stat().st_size > len(head) + payload_size
 
 
+def entries(content):
+    """Where each entry of a journal begins and ends, and its type."""
+    begin = 0
+    while begin + 32 <= len(content):
+        end = begin + 32 + int.from_bytes(content[begin + 8:begin + 12], "little")
+        if end > len(content):
+            return
+        yield begin, end, int.from_bytes(content[begin + 4:begin + 6], "little")
+        begin = end
+
+
 def ending(record):
     """Status, reasons and cause of the end."""
     import h5py
@@ -220,6 +231,59 @@ class Signals(Folder):
         process.communicate(timeout=TIMEOUT_S)
         self.assertEqual(process.returncode, 0)
 
+    def test_a_damaged_journal_becomes_a_record_of_the_rest_and_stays(self):
+        import h5py
+        manager = Manager(self, self.folder)
+        process = manager.start(DAEMON, self.simulated(repeats=0, speed=5), self.folder)
+        self.addCleanup(process.kill)
+        scans = []
+        while len(scans) < 9 and process.poll() is None:
+            for journal in (self.folder / "records").glob("*.journal"):
+                scans = [entry for entry in entries(journal.read_bytes()) if entry[2] == 2]
+        process.kill()
+        process.communicate(timeout=TIMEOUT_S)
+        [journal] = (self.folder / "records").glob("*.journal")
+        whole = journal.read_bytes()
+        scans = [entry for entry in entries(whole) if entry[2] == 2]
+        begin, end, _ = scans[4]
+        content = bytearray(whole)
+        content[end - 1] ^= 4
+        journal.write_bytes(content)
+
+        done = run(CLI, "recover", "records", cwd=self.folder)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        record = journal.with_suffix(".h5")
+        kept = journal.with_name(journal.name + ".damaged")
+        self.assertIn(f"{end - begin} bytes of its journal could not be read", done.stdout)
+        self.assertIn(kept.name, done.stdout)
+        self.assertFalse(journal.exists())
+        self.assertEqual(kept.read_bytes(), content)
+        count = {place: (stop - place - 32) // 2 for place, stop, _ in scans}
+        with h5py.File(record) as file:
+            self.assertEqual(file["entry/raw/scan"].shape[0], sum(count.values()) - count[begin])
+            self.assertEqual(file["entry/gaps/scan_count"][()].tolist(), [count[begin]])
+            self.assertEqual(file["entry/gaps/cause"].asstr()[()].tolist(), ["damaged"])
+        self.assertEqual(run(CLI, "verify", record).returncode, 1)
+        self.assertEqual(run(CLI, "verify", kept).returncode, 3)
+        again = run(CLI, "recover", "records", cwd=self.folder)
+        self.assertEqual((again.returncode, again.stdout), (0, ""), again.stderr)
+
+        # Without the header nobody knows what the counts mean.
+        lost = bytearray(whole)
+        lost[40] ^= 4
+        (self.folder / "lost.journal").write_bytes(lost)
+        done = run(CLI, "recover", "lost.journal", cwd=self.folder)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("its header, at byte 0, is damaged", done.stdout)
+        self.assertEqual((self.folder / "lost.journal").read_bytes(), lost)
+
+        # The daemon does the same at its start, and warns.
+        other = self.folder / "records" / "20260101T000000Z-0001.journal"
+        other.write_bytes(content)
+        done = run(DAEMON, "--config", self.simulated(), cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("the record lacks what could not be read", done.stderr)
+        self.assertEqual(other.with_name(other.name + ".damaged").read_bytes(), content)
 
     def test_records_stand_in_dated_folders_read_only_and_are_recovered_there(self):
         manager = Manager(self, self.folder)

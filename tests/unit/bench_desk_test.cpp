@@ -53,11 +53,12 @@ class BenchDeskTest : public testing::Test {
   HeardOfRoom heard_;
   TestLog tests_;
   DaemonConfig config_;
-  Storage storage_{
-      {.folder = folder_.path(), .calls = &disk_},
-      [](const std::filesystem::path& journal) { return base::Result<std::filesystem::path>{journal}; },
-      tests_,
-      heard_};
+  Storage storage_{{.folder = folder_.path(), .calls = &disk_},
+                   [](const std::filesystem::path& journal, std::optional<std::int64_t>) {
+                     return base::Result<record::Finalised>{{journal, {}, 0, {}}};
+                   },
+                   tests_,
+                   heard_};
   CalibrationDesk calibrations_{{.config = config_,
                                  .storage = storage_,
                                  .session = [] { return nullptr; },

@@ -100,11 +100,12 @@ class BoardFaults : public testing::Test {
     world.first_retry = 0ms;
     world.facts = &diary_;
     world.status_changed = [this](const std::string& line) { lines_.push_back(line); };
-    world.finalise = [this](const std::filesystem::path& journal) -> base::Result<std::filesystem::path> {
+    world.finalise = [this](const std::filesystem::path& journal,
+                            std::optional<std::int64_t>) -> base::Result<record::Finalised> {
       const auto reading = record::read_journal(journal);
       if (!reading) return tl::unexpected(reading.error());
       records_.push_back(reading->record);
-      return journal;
+      return record::Finalised{journal, static_cast<std::int64_t>(reading->scan_count), 0, {}};
     };
     App* app = nullptr;
     world.open_board =

@@ -95,6 +95,21 @@ TEST_F(LogTest, AJournalThatWasWrittenAnewSaysWhereItStands) {
   EXPECT_EQ(lines_.at(0).at(3), "STICKSLIP_EVENT=journal-written-anew");
 }
 
+TEST_F(LogTest, ADamagedRecordIsAWarning) {
+  log(LogLevel::kWarning)->record_damaged("records/a.h5", "122 bytes of its journal could not be read");
+  ASSERT_EQ(lines_.size(), 1U);
+  EXPECT_EQ(lines_[0].at(1), "PRIORITY=4");
+  EXPECT_EQ(lines_[0].at(3), "STICKSLIP_EVENT=record-damaged");
+}
+
+TEST_F(LogTest, ScansThatTheDiskDamagedAreNotInRecords) {
+  log()->scans_accounted({.issued = 10, .idle = 4, .in_gaps = 1, .recorded = 3, .damaged = 2});
+  ASSERT_EQ(lines_.size(), 2U);
+  EXPECT_EQ(lines_[0].at(1), "PRIORITY=3");
+  EXPECT_EQ(lines_[0].at(3), "STICKSLIP_EVENT=scans-damaged");
+  EXPECT_EQ(lines_[1].at(3), "STICKSLIP_EVENT=scans-accounted");
+}
+
 // What is lost to nobody's knowledge is an error of its own kind, so that an alarm can be set on it.
 TEST_F(LogTest, ScansUnaccountedForAreAnEventOfTheirOwn) {
   const std::unique_ptr<Facts> facts = log();

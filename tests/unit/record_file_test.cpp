@@ -42,9 +42,9 @@ TEST(RecordFile, GivesBackEveryFieldOfATest) {
   const auto file = finalise(folder / "a.journal");
 
   ASSERT_TRUE(file) << file.error().message;
-  EXPECT_EQ(*file, folder / "a.h5");
+  EXPECT_EQ(file->file, folder / "a.h5");
   EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"a.h5"});  // Neither journal nor .part.
-  const auto read = read_record(*file);
+  const auto read = read_record(file->file);
   ASSERT_TRUE(read) << read.error().message;
   test::expect_same_record(*read, written);
 }
@@ -198,7 +198,7 @@ TEST(Finalise, JournalWithoutEndBecomesAnInterruptedRecord) {
   const auto file = finalise(folder / "a.journal");
 
   ASSERT_TRUE(file) << file.error().message;
-  const auto read = read_record(*file);
+  const auto read = read_record(file->file);
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->end->status, record::Status::kInterrupted);
   EXPECT_EQ(read->end->cause, "program-died");
@@ -217,7 +217,7 @@ TEST(Finalise, InterruptedTestGetsTheResultsOfItsEvaluation) {
     return test::sample_end();
   });
   ASSERT_TRUE(file) << file.error().message;
-  const auto read = read_record(*file);
+  const auto read = read_record(file->file);
   ASSERT_TRUE(read);
   EXPECT_EQ(read->end->status, record::Status::kInterrupted);
   EXPECT_EQ(read->end->results, test::sample_results());
@@ -227,13 +227,80 @@ TEST(Finalise, TornJournalKeepsWhatIsWholeAndSaysSo) {
   const TemporaryFolder folder;
   test::write_journal(folder / "a.journal", test::sample_record(), false);
   const std::string whole = test::content_of(folder / "a.journal");
-  test::write_content(folder / "a.journal", whole + std::string(9, 'x'));
+  test::write_content(folder / "a.journal", whole + "SSJ1torn!");
   const auto file = finalise(folder / "a.journal");
   ASSERT_TRUE(file) << file.error().message;
-  const auto read = read_record(*file);
+  EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"a.h5"});
+  const auto read = read_record(file->file);
   ASSERT_TRUE(read);
   EXPECT_THAT(read->end->reasons.back(), HasSubstr("9 bytes at the end of the journal"));
   EXPECT_EQ(read->raw, test::sample_record().raw);
+}
+
+std::string with_a_flip(std::string content, std::size_t at) {
+  content[at] = static_cast<char>(content[at] ^ 1);
+  return content;
+}
+
+TEST(Finalise, AnEndThatKnewMoreScansIsEvaluatedAgain) {
+  const TemporaryFolder folder;
+  const auto sizes = test::write_journal(folder / "a.journal", test::whole_record());
+  const std::string damaged = with_a_flip(test::content_of(folder / "a.journal"), sizes[3] - 1);
+  test::write_content(folder / "a.journal", damaged);
+  std::size_t evaluated = 0;
+  const auto evaluate = [&evaluated](const record::Record& record) {
+    evaluated = record.raw.size();
+    record::EndRecord end;
+    end.results = record::absent_results("again");
+    return end;
+  };
+
+  const auto made = finalise(folder / "a.journal", evaluate);
+
+  ASSERT_TRUE(made) << made.error().message;
+  const auto read = read_record(made->file);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(evaluated, read->raw.size());
+  EXPECT_LT(read->raw.size(), 40U);
+  EXPECT_EQ(made->scan_count, static_cast<std::int64_t>(read->raw.size()));
+  EXPECT_EQ(read->end->results, record::absent_results("again"));
+  EXPECT_EQ(read->end->status, record::Status::kIncomplete);
+  EXPECT_EQ(read->end->cause, test::whole_record().end->cause);
+  EXPECT_TRUE(read->end->truth);
+  EXPECT_THAT(read->end->reasons.back(),
+              HasSubstr(fmt::format("{} of {} bytes of the journal could not be read", made->damaged_size,
+                                    damaged.size())));
+  EXPECT_EQ(made->kept, folder / "a.journal.damaged");
+  EXPECT_EQ(test::content_of(made->kept), damaged);
+  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"a.h5", "a.journal.damaged"}));
+}
+
+TEST(Finalise, ADamagedJournalReplacesNoOtherAndStaysWhereItIs) {
+  const TemporaryFolder folder;
+  const auto sizes = test::write_journal(folder / "a.journal", test::whole_record());
+  test::write_content(folder / "a.journal",
+                      with_a_flip(test::content_of(folder / "a.journal"), sizes[3] - 1));
+  test::write_content(folder / "a.journal.damaged", "precious");
+  const auto made = finalise(folder / "a.journal");
+  ASSERT_TRUE(made) << made.error().message;
+  const std::vector<std::string> names{"a.h5", "a.journal.2.damaged", "a.journal.damaged"};
+  EXPECT_EQ(names_in(folder.path()), names);
+  EXPECT_EQ(test::content_of(folder / "a.journal.damaged"), "precious");
+  const auto again = finalise(made->kept);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(again->file, made->file);
+  EXPECT_EQ(names_in(folder.path()), names);
+}
+
+TEST(Finalise, ATornJournalStaysIfScansAreKnownToBeMissing) {
+  const TemporaryFolder folder;
+  test::write_journal(folder / "a.journal", test::whole_record(), false);
+  test::write_content(folder / "a.journal", test::content_of(folder / "a.journal") + "SSJ1torn!");
+  const auto made = finalise(folder / "a.journal", {}, record::system_calls(), {}, 47);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(made->kept, folder / "a.journal.damaged");
+  EXPECT_THAT(read_record(made->file)->end->reasons,
+              testing::Contains("47 scans were written to the journal, 40 could be read"));
 }
 
 // A stop between the rename and the removal of the journal leaves both.

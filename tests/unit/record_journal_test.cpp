@@ -37,8 +37,7 @@ TEST(Journal, GivesBackEveryFieldOfEveryEntry) {
 
   ASSERT_TRUE(read) << read.error().message;
   test::expect_same_record(read->record, written);
-  EXPECT_EQ(read->stopped_by, "");
-  EXPECT_EQ(read->whole_size, read->file_size);
+  EXPECT_EQ(read->why_unread(), "");
 }
 
 TEST(Journal, GivesBackImportedValuesToTheLastBit) {
@@ -80,8 +79,9 @@ TEST(Journal, CutAnywhereKeepsEveryWholeEntry) {
       continue;
     }
     ASSERT_TRUE(read) << size << ": " << read.error().message;
-    ASSERT_EQ(read->whole_size, sizes[entries - 1]) << size;
-    ASSERT_EQ(read->stopped_by.empty(), sizes[entries - 1] == size) << size;
+    ASSERT_TRUE(read->damaged.empty()) << size;
+    ASSERT_EQ(read->torn_end.has_value(), sizes[entries - 1] != size) << size;
+    ASSERT_EQ(read->torn_end ? read->torn_end->first : size, sizes[entries - 1]) << size;
     ASSERT_FALSE(read->record.end.has_value());
   }
 }
@@ -102,7 +102,7 @@ TEST(Journal, TrueForceKeepsItsRowsWhereverItStandsAndWhateverIsMissing) {
   }
   const auto read = read_journal(folder / "a.journal");
   ASSERT_TRUE(read) << read.error().message;
-  EXPECT_EQ(read->stopped_by, "");
+  EXPECT_EQ(read->why_unread(), "");
   ASSERT_EQ(read->record.true_coefficient.size(), 30U);
   for (std::size_t row = 0; row < 30; ++row) {
     const double value = read->record.true_coefficient[row];
@@ -131,19 +131,21 @@ TEST(Journal, TrueForceKeepsItsRowsWhereverItStandsAndWhateverIsMissing) {
   EXPECT_EQ(rows, 30U);
 }
 
-TEST(Journal, TrueForceOfScansThatAreNotThereEndsTheReading) {
+TEST(Journal, TrueForceOfScansThatAreNotThereIsLeftOut) {
   const TemporaryFolder folder;
   {
     auto journal = JournalWriter::create(folder / "a.journal", test::sample_header());
     ASSERT_TRUE(journal);
     ASSERT_TRUE(journal->append_scans(100, std::vector<double>(10, 5.0), {}));
     ASSERT_TRUE(journal->append_true_coefficients(105, std::vector<double>(6, 0.3)));
+    ASSERT_TRUE(journal->append_true_coefficients(200, std::vector<double>(6, 0.3)));
   }
   const auto read = read_journal(folder / "a.journal");
   ASSERT_TRUE(read);
-  EXPECT_EQ(read->stopped_by, "values of scans that are not there");
-  EXPECT_EQ(read->record.raw.size(), 10U);
-  EXPECT_TRUE(read->record.true_coefficient.empty());
+  EXPECT_EQ(read->why_unread(), "values of scans that are not there");
+  ASSERT_EQ(read->record.true_coefficient.size(), 10U);
+  for (std::size_t row = 0; row < 10; ++row)
+    EXPECT_EQ(std::isnan(read->record.true_coefficient[row]), row < 5) << row;
 }
 
 // What a program killed between the two entries of the same scans leaves behind.
@@ -158,7 +160,7 @@ TEST(Journal, ScansWhoseSecondChannelDidNotArriveAreKeptWithoutIt) {
   }
   const auto read = read_journal(folder / "a.journal");
   ASSERT_TRUE(read) << read.error().message;
-  EXPECT_EQ(read->stopped_by, "");
+  EXPECT_EQ(read->why_unread(), "");
   EXPECT_EQ(read->record.second, (std::vector<std::int32_t>{7, 8, 9, -1, -1}));
   const record::JournalScanSource source{folder / "a.journal", *read};
   std::vector<std::int32_t> straight;
@@ -168,7 +170,7 @@ TEST(Journal, ScansWhoseSecondChannelDidNotArriveAreKeptWithoutIt) {
   EXPECT_EQ(straight, read->record.second);
 }
 
-TEST(Journal, ImpossibleCodesOfTheSecondChannelEndTheReading) {
+TEST(Journal, ImpossibleCodesOfTheSecondChannelAreSkipped) {
   for (const std::int32_t code : {4096, -2}) {
     const TemporaryFolder folder;
     {
@@ -179,13 +181,13 @@ TEST(Journal, ImpossibleCodesOfTheSecondChannelEndTheReading) {
     }
     const auto read = read_journal(folder / "a.journal");
     ASSERT_TRUE(read);
-    EXPECT_EQ(read->stopped_by, "code of the second channel out of range");
+    EXPECT_EQ(read->why_unread(), "code of the second channel out of range");
     EXPECT_EQ(read->record.raw.size(), 1U);
   }
 }
 
 // A clock that ran backwards through zero made the difference of two readings overflow.
-TEST(Journal, ScansAndClocksThatCannotBeEndTheReading) {
+TEST(Journal, ScansAndClocksThatCannotBeAreSkipped) {
   constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
   constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
   using Write = std::function<base::Result<void>(JournalWriter&)>;
@@ -230,7 +232,7 @@ TEST(Journal, ScansAndClocksThatCannotBeEndTheReading) {
     }
     const auto read = read_journal(folder / "a.journal");
     ASSERT_TRUE(read);
-    EXPECT_EQ(read->stopped_by, words);
+    EXPECT_EQ(read->why_unread(), words);
     EXPECT_EQ(read->record.raw.size(), 1U) << words;
   }
 }
@@ -260,7 +262,7 @@ TEST(Journal, NumbersOfTheEndThatFitNoColumnAreRefused) {
 }
 
 // CRC-32C finds every single-bit error: no flip anywhere may go unnoticed.
-TEST(Journal, AnyFlippedBitEndsTheReadingBeforeItsEntry) {
+TEST(Journal, AnyFlippedBitCostsItsEntryAndNoOther) {
   const TemporaryFolder folder;
   const auto sizes = test::write_journal(folder / "a.journal", test::sample_imported());
   const std::string whole = test::content_of(folder / "a.journal");
@@ -275,13 +277,120 @@ TEST(Journal, AnyFlippedBitEndsTheReadingBeforeItsEntry) {
     put(at, whole[at]);
     if (at < sizes.front()) {
       ASSERT_FALSE(read) << at;
+      ASSERT_EQ(read.error().exit_status(), 1) << at;
       continue;
     }
     const auto entry_end = std::upper_bound(sizes.begin(), sizes.end(), at);
     ASSERT_TRUE(read) << at;
-    ASSERT_EQ(read->whole_size, *(entry_end - 1)) << at;
-    ASSERT_NE(read->stopped_by, "") << at;
+    // A size that has become larger makes the last entry look torn.
+    ASSERT_EQ(read->damaged.size() + (read->torn_end ? 1 : 0), 1U) << at;
+    const record::UnreadBytes& lost = read->torn_end ? *read->torn_end : read->damaged.front();
+    ASSERT_EQ(lost.first, *(entry_end - 1)) << at;
+    ASSERT_EQ(lost.first + lost.size, *entry_end) << at;
+    ASSERT_TRUE(!read->torn_end || *entry_end == whole.size()) << at;
   }
+}
+
+/// The entries of a journal, the header first.
+std::vector<std::string> entries_of(const std::string& content, const std::vector<std::uint64_t>& ends) {
+  std::vector<std::string> entries;
+  std::uint64_t begin = 0;
+  for (const std::uint64_t end : ends) {
+    entries.push_back(content.substr(begin, end - begin));
+    begin = end;
+  }
+  return entries;
+}
+
+/// Scans 100 … 109, 110 … 119 and 120 … 129, then an event.
+std::vector<std::string> some_entries(const TemporaryFolder& folder) {
+  std::vector<std::uint64_t> ends;
+  {
+    auto journal = JournalWriter::create(folder / "some.journal", test::sample_header());
+    EXPECT_TRUE(journal);
+    ends.push_back(journal->size());
+    for (const daq::ScanIndex first : {100, 110, 120}) {
+      EXPECT_TRUE(journal->append_scans(first, std::vector<double>(10, static_cast<double>(first)), {}));
+      ends.push_back(journal->size());
+    }
+    EXPECT_TRUE(journal->append_event({125, 1, "a word"}));
+    ends.push_back(journal->size());
+  }
+  return entries_of(test::content_of(folder / "some.journal"), ends);
+}
+
+std::string flipped(std::string entry) {
+  entry.back() = static_cast<char>(entry.back() ^ 1);
+  return entry;
+}
+
+TEST(Journal, ADamagedEntryIsAGapOnlyIfItHeldScans) {
+  const TemporaryFolder folder;
+  const auto entries = some_entries(folder);
+  test::write_content(folder / "a.journal",
+                      entries[0] + entries[1] + flipped(entries[2]) + flipped(entries[4]) + entries[3]);
+  const auto read = read_journal(folder / "a.journal");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->scan_count, 20U);
+  EXPECT_EQ(read->record.scan.back(), 129);
+  ASSERT_EQ(read->record.gaps.size(), 1U);
+  EXPECT_EQ(read->record.gaps[0].first, 110);
+  EXPECT_EQ(read->record.gaps[0].count, 10);
+  EXPECT_EQ(read->record.gaps[0].cause, daq::GapCause::kDamaged);
+  ASSERT_EQ(read->damaged.size(), 1U);
+  EXPECT_EQ(read->damaged[0].first, entries[0].size() + entries[1].size());
+  EXPECT_EQ(read->damaged_size(), entries[2].size() + entries[4].size());
+  EXPECT_EQ(read->why_unread(), "entry with a wrong checksum");
+
+  test::write_content(folder / "b.journal", entries[0] + entries[1] + flipped(entries[4]) + entries[2]);
+  const auto without_gap = read_journal(folder / "b.journal");
+  ASSERT_TRUE(without_gap);
+  EXPECT_TRUE(without_gap->record.gaps.empty());
+  EXPECT_EQ(without_gap->damaged_size(), entries[4].size());
+}
+
+// As a disk that swaps pages leaves them.
+TEST(Journal, ScansRiseWhereverTheirEntriesStand) {
+  const TemporaryFolder folder;
+  const auto entries = some_entries(folder);
+  test::write_content(folder / "a.journal",
+                      entries[3] + entries[4] + entries[0] + entries[2] + entries[1] + entries[2]);
+  const auto read = read_journal(folder / "a.journal");
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_EQ(read->record.scan.size(), 30U);
+  for (std::size_t i = 0; i < 30; ++i) {
+    EXPECT_EQ(read->record.scan[i], static_cast<daq::ScanIndex>(100 + i));
+    EXPECT_EQ(read->record.raw[i], static_cast<double>(100 + i / 10 * 10));
+  }
+  EXPECT_TRUE(read->record.gaps.empty());
+  EXPECT_EQ(read->damaged_size(), entries[2].size());
+  EXPECT_EQ(read->why_unread(), "scans that stand there already");
+}
+
+TEST(Journal, OnlyAnEndThatAStopCanLeaveIsTorn) {
+  const TemporaryFolder folder;
+  const auto entries = some_entries(folder);
+  std::string whole = entries[0];
+  // The last entry begins in one sector and ends in another.
+  constexpr std::size_t kSector = 512;
+  while (whole.size() % kSector < kSector - entries[1].size() + 1) whole += entries[4];
+  const std::string last = entries[1];
+  const std::size_t border = kSector - whole.size() % kSector;
+  ASSERT_LT(border, last.size());
+  const auto torn = [&](const std::string& end) {
+    test::write_content(folder / "a.journal", whole + end);
+    const auto read = read_journal(folder / "a.journal");
+    EXPECT_TRUE(read);
+    EXPECT_EQ(read->damaged.size() + (read->torn_end ? 1 : 0), 1U);
+    return read->torn_end.has_value();
+  };
+  EXPECT_TRUE(torn(last.substr(0, 3)));
+  EXPECT_TRUE(torn(last.substr(0, last.size() - 1)));
+  EXPECT_TRUE(torn(std::string(1000, '\0')));
+  EXPECT_TRUE(torn(last.substr(0, border) + std::string(700, '\0')));
+  EXPECT_FALSE(torn(last.substr(0, border + 1) + std::string(last.size() - border - 1, '\0')));
+  EXPECT_FALSE(torn(flipped(last)));
+  EXPECT_FALSE(torn("xyz"));
 }
 
 TEST(Journal, IsNeverStartedOverAnother) {
@@ -346,7 +455,7 @@ TEST(Journal, ShortWriteIsTakenBackAndMayBeTriedAgain) {
   const auto read = read_journal(folder / "a.journal");
   ASSERT_TRUE(read);
   EXPECT_EQ(read->record.raw.size(), 200U);
-  EXPECT_EQ(read->stopped_by, "");
+  EXPECT_EQ(read->why_unread(), "");
 }
 
 TEST(JournalDeathTest, CountsTheBoardCannotGiveStopTheProgram) {

@@ -5,6 +5,7 @@
 #include "core/record/finaliser.hpp"
 #include "core/record/journal_care.hpp"
 #include "core/record/verdict.hpp"
+#include "daemon/finaliser.hpp"
 #include "tests/support/journal_samples.hpp"
 #include "tests/support/record_samples.hpp"
 
@@ -20,6 +21,9 @@ namespace fs = std::filesystem;
 class Heard final : public Facts {
  public:
   void orphan_finalised(const fs::path& file) override { text += "made " + file.filename().string() + "\n"; }
+  void record_damaged(const fs::path& file, std::string_view loss) override {
+    text += fmt::format("damaged {}: {}\n", file.filename().string(), loss);
+  }
   void orphan_empty(const fs::path& journal) override {
     text += "removed " + journal.filename().string() + "\n";
   }
@@ -29,7 +33,9 @@ class Heard final : public Facts {
   std::string text;
 };
 
-base::Result<fs::path> finalise_plainly(const fs::path& journal) { return record::finalise(journal); }
+base::Result<record::Finalised> finalise_plainly(const fs::path& journal, ExpectedScans) {
+  return record::finalise(journal);
+}
 
 TEST(Recovery, MakesRecordsRemovesWhatIsEmptyAndKeepsTheRest) {
   const TemporaryFolder folder;
@@ -42,7 +48,7 @@ TEST(Recovery, MakesRecordsRemovesWhatIsEmptyAndKeepsTheRest) {
   test::write_content(folder / "e.journal", std::string(300, '\0'));
   test::write_content(folder / "f.journal", "a stranger's diary");
   Heard heard;
-  EXPECT_FALSE(recover_folder(folder.path(), finalise_plainly, heard));
+  EXPECT_EQ(recover_folder(folder.path(), finalise_plainly, heard), Recovery::kRefused);
 
   EXPECT_EQ(heard.text.substr(0, heard.text.find("kept f")),
             "made b.h5\nmade a.h5\nremoved c.journal\nremoved d.journal\nremoved e.journal\n");
@@ -57,7 +63,7 @@ TEST(Recovery, NobodyTouchesAJournalThatIsBeingWritten) {
   const TemporaryFolder folder;
   const auto writing = record::JournalWriter::create(folder / "a.journal", test::sample_header());
   ASSERT_TRUE(writing);
-  for (const auto& error : {finalise_plainly(folder / "a.journal").error(),
+  for (const auto& error : {finalise_plainly(folder / "a.journal", {}).error(),
                             record::remove_if_empty(folder / "a.journal").error()}) {
     EXPECT_THAT(error.message, HasSubstr("is being written or finished by another process"));
   }
@@ -72,8 +78,46 @@ TEST(Recovery, AJournalWithADamagedHeaderIsKept) {
   content[50] = static_cast<char>(content[50] ^ 4);
   test::write_content(folder / "a.journal", content);
   Heard heard;
-  EXPECT_FALSE(recover_folder(folder.path(), finalise_plainly, heard));
+  EXPECT_EQ(recover_folder(folder.path(), finalise_plainly, heard), Recovery::kRefused);
   EXPECT_TRUE(fs::exists(folder / "a.journal"));
+  EXPECT_THAT(heard.text, HasSubstr("its header, at byte 0, is damaged"));
+}
+
+TEST(Recovery, ADamagedJournalIsToldOnceAndStays) {
+  const TemporaryFolder folder;
+  const auto sizes = test::write_journal(folder / "a.journal", test::whole_record());
+  std::string content = test::content_of(folder / "a.journal");
+  content[sizes[3] - 1] = static_cast<char>(content[sizes[3] - 1] ^ 4);
+  test::write_content(folder / "a.journal", content);
+  Heard heard;
+  EXPECT_EQ(recover_folder(folder.path(), finalise_plainly, heard), Recovery::kDamaged);
+  EXPECT_EQ(heard.text,
+            fmt::format("made a.h5\ndamaged a.h5: {} bytes of its journal could not be read; the journal "
+                        "is kept: {}\n",
+                        sizes[3] - sizes[2], (folder / "a.journal.damaged").string()));
+  EXPECT_EQ(test::content_of(folder / "a.journal.damaged"), content);
+  heard.text.clear();
+  EXPECT_EQ(recover_folder(folder.path(), finalise_plainly, heard), Recovery::kDone);
+  EXPECT_EQ(heard.text, "");
+  EXPECT_EQ(judge(folder / "a.journal.damaged").judgement, Judgement::kDamaged);
+}
+
+TEST(Finaliser, WhatItSaysOfWhatItMadeIsReadAgain) {
+  for (const record::Finalised& made :
+       {record::Finalised{"r/a.h5", 295, 0, {}}, record::Finalised{"r/a.h5", std::nullopt, 0, {}},
+        record::Finalised{"r/a.h5", 250, 122, "r/a b.journal.damaged"}}) {
+    const auto again = finalised_from_text("r/a.journal", to_text(made));
+    ASSERT_TRUE(again) << again.error().message;
+    EXPECT_EQ(again->file, made.file);
+    EXPECT_EQ(again->scan_count, made.scan_count);
+    EXPECT_EQ(again->damaged_size, made.damaged_size);
+    EXPECT_EQ(again->kept, made.kept);
+  }
+  for (const char* text : {"", "295", "295 ", "made", "295 many x"}) {
+    EXPECT_FALSE(finalised_from_text("r/a.journal", text)) << text;
+  }
+  EXPECT_EQ(loss_of({"r/a.h5", 295, 0, {}}, 295), "");
+  EXPECT_EQ(loss_of({"r/a.h5", 250, 0, {}}, 295), "45 of 295 scans were written and cannot be read");
 }
 
 }  // namespace

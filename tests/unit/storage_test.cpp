@@ -11,6 +11,7 @@
 #include "core/record/finaliser.hpp"
 #include "core/record/reader.hpp"
 #include "core/record/verdict.hpp"
+#include "daemon/finaliser.hpp"
 #include "tests/support/faulty_disk.hpp"
 #include "tests/support/lacking_disk.hpp"
 #include "tests/support/record_samples.hpp"
@@ -37,6 +38,9 @@ class Heard final : public Facts {
   }
   void recording_failed(std::int64_t test, std::string_view why) override {
     add(fmt::format("test {} failed: {}", test, why));
+  }
+  void record_damaged(const fs::path& /*file*/, std::string_view loss) override {
+    add("damaged: " + std::string{loss});
   }
   void file_published(std::int64_t test, const fs::path& file) override {
     {
@@ -74,7 +78,9 @@ class Heard final : public Facts {
   std::map<std::int64_t, fs::path> files_;
 };
 
-base::Result<fs::path> finalise_plainly(const fs::path& journal) { return record::finalise(journal); }
+base::Result<record::Finalised> finalise_plainly(const fs::path& journal, ExpectedScans expected) {
+  return record::finalise(journal, {}, record::system_calls(), {}, expected);
+}
 
 record::RecordHeader header() {
   record::RecordHeader header = test::sample_header();
@@ -337,7 +343,7 @@ TEST(DiskWriter, IsShortUntilThereIsRoomToSpare) {
   std::condition_variable told;
   std::optional<DiskState> latest;
   DiskWriter writer{{.folder = folder.path(), .sync_period = std::chrono::milliseconds{1}, .calls = &disk},
-                    [](std::int64_t, const fs::path&, const std::optional<std::string>&) {},
+                    [](std::int64_t, const fs::path&, std::int64_t, const std::optional<std::string>&) {},
                     [&](const DiskState& state) {
                       const std::lock_guard lock{mutex};
                       latest = state;
@@ -387,7 +393,7 @@ TEST(Storage, ARecordThatCouldNotBeMadeIsTriedAgain) {
   TestLog tests;
   Heard heard;
   std::atomic<int> tries{0};
-  const auto finalise = [&tries](const fs::path& journal) -> base::Result<fs::path> {
+  const auto finalise = [&tries](const fs::path& journal, ExpectedScans) -> base::Result<record::Finalised> {
     if (tries++ == 0) return base::failure("no room for the record");
     return record::finalise(journal);
   };
@@ -401,16 +407,43 @@ TEST(Storage, ARecordThatCouldNotBeMadeIsTriedAgain) {
   expect_whole(heard.file(1), 0, 3500);
 }
 
+// The journal was durable; what the disk gives back is less.
+TEST(Storage, ScansThatAreInNoRecordAreNotCountedAsRecorded) {
+  const TemporaryFolder folder;
+  TestLog tests;
+  Heard heard;
+  const auto finalise = [](const fs::path& journal, ExpectedScans expected) {
+    std::string content = test::content_of(journal);
+    std::fill_n(content.end() - static_cast<std::ptrdiff_t>(content.size() / 2), 512, '\0');
+    test::write_content(journal, content);
+    return finalise_plainly(journal, expected);
+  };
+  Storage storage{{folder.path()}, finalise, tests, heard};
+  storage.use(header(), nullptr);
+  begin(storage, 1, 0);
+  feed(storage, 0, 3500);
+  end(storage, 1, 3500);
+  heard.wait_for("damaged: ");
+  storage.stop();
+  const auto read = record::read_record(heard.file(1));
+  ASSERT_TRUE(read) << read.error().message;
+  const DiskWriter::ScanCounts counts = storage.scan_counts();
+  EXPECT_EQ(counts.recorded, static_cast<std::int64_t>(read->scan.size()));
+  EXPECT_EQ(counts.damaged, 3500 - counts.recorded);
+  EXPECT_GT(counts.damaged, 0);
+}
+
 TEST(Storage, ADiskThatStaysFullLetsTheDaemonEnd) {
   const TemporaryFolder folder;
   FaultyDisk disk;
   disk.refuse(ENOSPC);
   std::vector<std::string> ended;
-  DiskWriter writer{{.folder = folder.path(), .patience = std::chrono::milliseconds{0}, .calls = &disk},
-                    [&](std::int64_t test, const fs::path&, const std::optional<std::string>& why) {
-                      ended.push_back(fmt::format("{}: {}", test, why.value_or("written")));
-                    },
-                    [](const DiskState&) {}};
+  DiskWriter writer{
+      {.folder = folder.path(), .patience = std::chrono::milliseconds{0}, .calls = &disk},
+      [&](std::int64_t test, const fs::path&, std::int64_t, const std::optional<std::string>& why) {
+        ended.push_back(fmt::format("{}: {}", test, why.value_or("written")));
+      },
+      [](const DiskState&) {}};
   const auto journal =
       std::make_shared<record::PatientJournal>(folder / "a.journal", test::sample_header(), 1000, disk);
   writer.begin(1, journal);
