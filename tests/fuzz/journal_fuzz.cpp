@@ -70,8 +70,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::size_t place = bytes.size();
     append(bytes, head, input.ConsumeRandomLengthString());
     if (input.ConsumeIntegralInRange<int>(0, 7) == 0) {
-      const std::size_t size = bytes.size() - place;
-      bytes[place + input.ConsumeIntegralInRange<std::size_t>(0, size - 1)] ^= 1;
+      const std::size_t entry_size = bytes.size() - place;
+      bytes[place + input.ConsumeIntegralInRange<std::size_t>(0, entry_size - 1)] ^= 1;
     }
   }
   test::write_content(name, bytes);
