@@ -274,7 +274,9 @@ void stage_record(benchmark::State& state) {
     {
       daemon::Storage storage{
           {folder.path()},
-          [&journal](const std::filesystem::path& ended) { return keep_journal(journal = ended); },
+          [&journal](const std::filesystem::path& ended, std::optional<std::int64_t> scans) {
+            return keep_journal(journal = ended, scans);
+          },
           tests,
           losses};
       storage.use(header, nullptr);
