@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/text.hpp"
 #include "core/friction/method_file.hpp"
 #include "daemon/calibration_file.hpp"
 #include "daemon/tester_file.hpp"
@@ -212,14 +213,19 @@ void read_calibration(Settings& table, const std::filesystem::path& path, BenchC
 }
 
 void read_sample(Settings table, record::SampleFacts& sample) {
-  sample.name = table.text("name", "");
-  sample.grade = table.text("grade", "");
-  sample.direction = table.text("direction", "");
-  sample.side = table.text("side", "");
+  const auto name = [&table](const char* key) {
+    std::string text = table.text(key, "");
+    if (const std::string why = base::name_refusal(text); !why.empty()) table.refuse(key, why);
+    return text;
+  };
+  sample.name = name("name");
+  sample.grade = name("grade");
+  sample.direction = name("direction");
+  sample.side = name("side");
   constexpr std::int64_t kMostReplicates = 1'000'000;
   const std::int64_t replicate = table.integer("replicate", 1, kMostReplicates, 1);
   if (table.has("replicate")) sample.replicate = replicate;
-  sample.operator_name = table.text("operator", "");
+  sample.operator_name = name("operator");
 }
 
 void read_tester(Settings table, const std::filesystem::path& folder, DaemonConfig& config) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core/base/text.hpp"
 #include "core/daq/calibration.hpp"
 #include "core/daq/second_channel.hpp"
 #include "core/friction/results.hpp"
@@ -27,8 +28,7 @@ constexpr std::string_view unit(daq::SecondQuantity quantity) noexcept {
 /// One fact, on one line whatever is in it.
 void add_fact(std::string& text, std::string_view name, std::string_view value, std::string_view unit = "") {
   if (value.empty()) return;
-  text += fmt::format("# {}: ", name);
-  for (const char c : value) text += c == '\n' || c == '\r' ? ' ' : c;
+  text += fmt::format("# {}: {}", name, base::csv_comment(value));
   text += unit.empty() || unit == "1" ? "\n" : fmt::format(" {}\n", unit);
 }
 

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "core/base/text.hpp"
+
 namespace stickslip::daemon {
 namespace {
 
@@ -217,8 +219,10 @@ class Log final : public Facts {
   }
 
  private:
-  void tell(const LogEntry& entry) {
-    if (entry.level >= level_) output_->write(entry);
+  void tell(LogEntry entry) {
+    if (entry.level < level_) return;
+    entry.message = base::printable(entry.message);
+    output_->write(entry);
   }
 
   LogLevel level_;

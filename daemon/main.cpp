@@ -23,6 +23,7 @@
 #include "daemon/finaliser.hpp"
 #include "daemon/fleet/backlog.hpp"
 #include "daemon/log.hpp"
+#include "daemon/print_text.hpp"
 #include "daemon/report/table.hpp"
 #include "daemon/stray_signals.hpp"
 #include "daemon/version.hpp"
@@ -31,7 +32,7 @@ namespace stickslip::daemon {
 namespace {
 
 int refused(const base::Error& error) {
-  fmt::print(stderr, "stickslipd: {}\n", error.message);
+  print_error("stickslipd", error.message);
   return error.exit_status();
 }
 
@@ -45,7 +46,7 @@ base::Result<DaemonConfig> good_config(const std::string& file) {
 
 int check_config(const std::string& file) {
   if (const auto config = good_config(file); !config) return refused(config.error());
-  fmt::print("{}: good\n", file);
+  fmt::print("{}: good\n", base::printable(file));
   return 0;
 }
 
@@ -59,13 +60,13 @@ int finalise_journal(const std::string& journal, std::optional<std::int64_t> exp
 int print_result(const std::string& file) {
   const base::Result<std::string> result = result_of_record(file);
   if (!result) return refused(result.error());
-  fmt::print("{}", *result);
+  print_text(stdout, *result);
   return 0;
 }
 
 /// Follows the daemon's state in one line of a terminal.
 void show_status(const std::string& line) {
-  fmt::print("\r\033[K{}", line);
+  fmt::print("\r\033[K{}", base::printable(line));
   std::fflush(stdout);
 }
 
@@ -77,7 +78,7 @@ void print_table(const TestLog& tests) {
         {test.number, std::move(test.results), std::move(test.truth),
          test.file_error.empty() ? std::move(test.file) : fmt::format("no file: {}", test.file_error)});
   }
-  if (!rows.empty()) fmt::print("{}", format_table(rows));
+  if (!rows.empty()) print_text(stdout, format_table(rows));
 }
 
 /// Keeps what the signals do while one App has gone and the next has not come, each of which handles them
@@ -152,7 +153,7 @@ int main_of(int count, char** arguments) {
     parser.parse(count, arguments);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return parser.exit(error);
-    fmt::print(stderr, "stickslipd: {}; see stickslipd --help\n", error.what());
+    print_error("stickslipd", fmt::format("{}; see stickslipd --help", error.what()));
     return 2;
   }
   if (!options.config_to_check.empty()) return check_config(options.config_to_check);
@@ -170,7 +171,7 @@ int main(int count, char** arguments) {
     stickslip::record::read_records_apart();
     return stickslip::daemon::main_of(count, arguments);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "stickslipd: {}\n", error.what());
+    stickslip::daemon::print_error("stickslipd", error.what());
     return 1;
   }
 }

@@ -356,7 +356,8 @@ void Storage::append_force(friction::TrueForce& force) {
 
 // Disk thread.
 
-void Storage::journal_ended(std::int64_t test, std::int64_t scans, const std::optional<std::string>& why_not) {
+void Storage::journal_ended(std::int64_t test, std::int64_t scans,
+                            const std::optional<std::string>& why_not) {
   if (!why_not) {
     finisher_.finish(test, scans);
     return;

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/limited_child.hpp"
+#include "core/base/text.hpp"
 #include "daemon/or_null.hpp"
 
 namespace stickslip::daemon {
@@ -53,7 +54,7 @@ ordered_json judged(base::LimitedChild& judge, const std::string& file) {
 std::string summary(const ordered_json& verdict) {
   std::string text;
   if (verdict["kind"].is_string()) {
-    text += verdict["kind"].get<std::string>();
+    text += base::printable(verdict["kind"].get<std::string>());
     if (verdict["format_version"].is_number())
       text += fmt::format(" version {}", verdict["format_version"].get<std::int64_t>());
   }
@@ -61,18 +62,19 @@ std::string summary(const ordered_json& verdict) {
     text += fmt::format(", {} scans", verdict["scans_present"].get<std::int64_t>());
   if (!verdict["gaps"].empty()) text += fmt::format(", {} gaps", verdict["gaps"].size());
   if (verdict["status"].is_string() && verdict["status"] != "complete")
-    text += ", " + verdict["status"].get<std::string>();
+    text += ", " + base::printable(verdict["status"].get<std::string>());
   return text;
 }
 
 std::string lines(const ordered_json& verdict) {
-  std::string text =
-      fmt::format("{:<10}  {}", verdict["judgement"].get<std::string>(), verdict["file"].get<std::string>());
+  std::string text = fmt::format("{:<10}  {}", verdict["judgement"].get<std::string>(),
+                                 base::printable(verdict["file"].get<std::string>()));
   if (const std::string more = summary(verdict); !more.empty()) text += ": " + more;
   text += "\n";
   for (const ordered_json& finding : verdict["findings"]) {
     text += fmt::format("  {:<10}  {}: {}\n", finding["weight"].get<std::string>(),
-                        finding["place"].get<std::string>(), finding["text"].get<std::string>());
+                        base::printable(finding["place"].get<std::string>()),
+                        base::printable(finding["text"].get<std::string>()));
   }
   return text;
 }

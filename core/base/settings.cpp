@@ -7,6 +7,7 @@
 
 #include "core/base/regular_file.hpp"
 #include "core/base/settings_document.hpp"
+#include "core/base/text.hpp"
 #include "core/base/wording.hpp"
 
 namespace stickslip::base {
@@ -82,6 +83,14 @@ Result<Settings> Settings::load(const std::filesystem::path& file) {
 Result<Settings> Settings::parse(std::string_view text, std::string_view name) {
   auto document = std::make_shared<Document>();
   document->name = name;
+  if (!is_utf8(text)) {
+    std::size_t line = 1;
+    while (is_utf8(text.substr(0, text.find('\n'))) && text.find('\n') != text.npos) {
+      text.remove_prefix(text.find('\n') + 1);
+      ++line;
+    }
+    return usage_error("{}:{}: {}", name, line, name_refusal(text.substr(0, text.find('\n'))));
+  }
   document->text = text;
   try {
     document->root = toml::parse(text, name);

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/base/settings_document.hpp"
+#include "core/base/text.hpp"
 #include "core/base/wording.hpp"
 
 namespace stickslip::base {
@@ -39,16 +40,6 @@ std::vector<std::string> names_of(std::string_view path) {
     begin = end + 1;
   }
   return names;
-}
-
-/// The parser checks it, in comments too.
-bool is_utf8(std::string_view text) {
-  try {
-    (void)toml::parse(fmt::format("# {}", one_line(text, text.size())));
-    return true;
-  } catch (const toml::parse_error&) {
-    return false;
-  }
 }
 
 /// One TOML value, with quotes or without where it cannot be anything else: 0.3, "60 s", 60 s.
@@ -86,7 +77,9 @@ Result<void> Settings::Document::changed(std::string_view origin) {
 
 Result<void> Settings::set(std::string_view path, std::string_view value, std::string_view origin) {
   const std::string place = one_line(origin, kLongestParserMessage);
-  if (!is_utf8(path) || !is_utf8(value)) return usage_error("{}: is no text in UTF-8", place);
+  for (const std::string_view said : {path, value}) {
+    if (!is_utf8(said)) return usage_error("{}: {}", place, name_refusal(said));
+  }
   const std::vector<std::string> names = names_of(path);
   if (names.empty()) return usage_error("{}: needs a key, such as paper.mu_s", place);
   toml::table* table = &document_->root;

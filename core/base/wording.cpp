@@ -6,6 +6,8 @@
 #include <system_error>
 #include <vector>
 
+#include "core/base/text.hpp"
+
 namespace stickslip::base {
 namespace {
 
@@ -34,14 +36,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string one_line(std::string_view text, std::size_t longest) {
   std::size_t end = std::min(text.size(), longest);
   while (end > 0 && end < text.size() && continues_a_sequence(text[end])) --end;
-  std::string shown;
-  for (const char c : text.substr(0, end)) {
-    if (static_cast<unsigned char>(c) < 0x20U || c == 0x7F) {
-      shown += fmt::format("\\x{:02x}", static_cast<unsigned>(static_cast<unsigned char>(c)));
-    } else {
-      shown += c;
-    }
-  }
+  std::string shown = printable(text.substr(0, end));
   if (end < text.size()) shown += "…";
   return shown;
 }

@@ -10,8 +10,7 @@
 
 namespace stickslip::base {
 
-/// The text without control characters (shown as \x0a) and cut after about `longest` bytes,
-/// never inside a UTF-8 sequence.
+/// The text as printable() shows it, cut after about `longest` bytes, never inside a UTF-8 sequence.
 [[nodiscard]] std::string one_line(std::string_view text, std::size_t longest = 60);
 
 /// Why something failed, whole and in one line: it may cite what stands in a file.

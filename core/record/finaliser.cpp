@@ -249,7 +249,8 @@ base::Result<Finalised> finalise(const std::filesystem::path& journal, const Eva
       return base::failure("{}: exists already with other scans than {}: move one of them away",
                            made.file.string(), journal.string());
     }
-    calls.unlink(with_suffix(made.file, ".part").c_str());  // Its other name, where it was published by link().
+    calls.unlink(
+        with_suffix(made.file, ".part").c_str());  // Its other name, where it was published by link().
   } else if (auto published = publish(record, scans, made.file, calls); !published) {
     return tl::unexpected(base::Error{base::ErrorKind::kFailure, published.error().message});
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/record/finaliser.hpp"
 #include "core/record/journal.hpp"
 
 namespace stickslip::record {
@@ -23,9 +24,7 @@ std::filesystem::path free_journal_path(const std::filesystem::path& wanted,
       journal.replace_filename(
           fmt::format("{}-{}{}", wanted.stem().string(), attempt, wanted.extension().string()));
     }
-    std::filesystem::path record = journal;
-    record.replace_extension(kRecordExtension);
-    if (!stands(journal) && !stands(record) && journal != taken) return journal;
+    if (!stands(journal) && !stands(record_of(journal)) && journal != taken) return journal;
   }
 }
 

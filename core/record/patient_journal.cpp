@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+#include "core/record/finaliser.hpp"
 #include "core/record/journal.hpp"
 #include "core/record/journal_care.hpp"
 #include "core/record/journal_name.hpp"
@@ -235,9 +236,7 @@ std::optional<std::string> PatientJournal::stay() {
   }
   // Who finishes a journal removes it when its record has its name.
   std::error_code ignored;
-  if (handed_over_ &&
-      std::filesystem::exists(std::filesystem::path{path_}.replace_extension(kRecordExtension), ignored))
-    return std::nullopt;
+  if (handed_over_ && std::filesystem::exists(record_of(path_), ignored)) return std::nullopt;
   return write_anew();
 }
 

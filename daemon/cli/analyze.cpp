@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/text.hpp"
 #include "core/base/wording.hpp"
 #include "core/friction/kept.hpp"
 #include "core/record/read_apart.hpp"
@@ -117,7 +118,8 @@ base::Result<std::string> run_analyze(const AnalyzeCommand& command) {
       const std::int64_t number = record_number.value_or(static_cast<std::int64_t>(rows.size()) + 1);
       rows.push_back({number, std::move(end->results), std::move(end->truth), file});
       if (command.effects)
-        effects_below += fmt::format("\ntest {}, {}\n{}", number, file, effects_text(effects));
+        effects_below +=
+            fmt::format("\ntest {}, {}\n{}", number, base::printable(file), effects_text(effects));
     }
   }
   if (!command.json) return format_table(rows) + effects_below;

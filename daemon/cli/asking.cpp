@@ -7,6 +7,7 @@
 
 #include "daemon/cli/commands.hpp"
 #include "daemon/cli/subcommands.hpp"
+#include "daemon/print_text.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -48,7 +49,7 @@ void add_boards(CLI::App& app, Chosen& chosen) {
   boards->callback([&chosen, kept] {
     chosen.run = [kept] {
       const BoardsOutput output = run_boards(kept->devices, kept->json);
-      fmt::print("{}", output.text);
+      print_text(stdout, output.text);
       return output.any_usable && std::fflush(stdout) == 0 ? 0 : 1;
     };
   });

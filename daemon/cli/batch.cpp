@@ -10,11 +10,13 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/clock.hpp"
+#include "core/base/text.hpp"
 #include "core/record/iso_time.hpp"
 #include "core/record/read_apart.hpp"
 #include "daemon/batch/journal.hpp"
 #include "daemon/cli/ask.hpp"
 #include "daemon/cli/commands.hpp"
+#include "daemon/cli/json_words.hpp"
 #include "daemon/control/plan_json.hpp"
 
 namespace stickslip::daemon {
@@ -33,9 +35,8 @@ std::string step_text(const Json& step) {
 std::string batch_text(const Json& answer) {
   const Json& batch = answer["batch"];
   if (batch.is_null()) return "there is no batch; stickslip batch begin --name NAME plans one\n";
-  std::string text =
-      fmt::format("batch {}: {}, {} of {} tests made\n", batch["id"].get<std::string>(),
-                  batch["name"].get<std::string>(), batch["done"].dump(), batch["planned"].dump());
+  std::string text = fmt::format("batch {}: {}, {} of {} tests made\n", batch["id"].get<std::string>(),
+                                 word(batch, "name"), batch["done"].dump(), batch["planned"].dump());
   for (const Json& test : batch["tests"]) {
     text += fmt::format("  {:<36}  {}\n", step_text(test), test["record"].get<std::string>());
     if (const Json& voided = test["voided"]; !voided.is_null())
@@ -102,8 +103,9 @@ base::Result<std::string> void_file(const BenchOptions& options, const VoidComma
   if (!command.restore) event.what = TestVoided{name, command.reason};
   if (const auto written = journal.append(event); !written) return tl::unexpected(written.error());
   if (options.json) return Json{{"record", name}, {"voided", !command.restore}}.dump(2) + "\n";
-  return fmt::format("{}: {}; the file is untouched, {} says so\n", command.test,
-                     command.restore ? "counts again" : "does not count", journal.path().string());
+  return fmt::format("{}: {}; the file is untouched, {} says so\n", base::printable(command.test),
+                     command.restore ? "counts again" : "does not count",
+                     base::printable(journal.path().string()));
 }
 
 }  // namespace
@@ -123,7 +125,9 @@ base::Result<std::string> run_batch_begin(const BenchOptions& options, const Bat
     if (const auto added = add_limit(limits, limit); !added) return tl::unexpected(added.error());
   }
   if (!limits.empty()) plan["limits"] = std::move(limits);
-  return told(options, ask(options, {"POST", "/v1/batch", plan.dump(), {}, {}}));
+  const base::Result<std::string> said = body_of(plan);
+  if (!said) return tl::unexpected(said.error());
+  return told(options, ask(options, {"POST", "/v1/batch", *said, {}, {}}));
 }
 
 base::Result<std::string> run_batch_end(const BenchOptions& options) {
@@ -134,7 +138,7 @@ base::Result<std::string> run_void(const BenchOptions& options, const VoidComman
   if (!command.restore) {
     if (command.reason.empty())
       return base::usage_error("--reason: is missing: why does {} not count?", command.test);
-    if (const std::string why = text_refusal(command.reason); !why.empty())
+    if (const std::string why = base::name_refusal(command.reason); !why.empty())
       return base::usage_error("--reason: {}", why);
   }
   const bool is_number = !command.test.empty() && std::all_of(command.test.begin(), command.test.end(),

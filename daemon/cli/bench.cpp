@@ -8,10 +8,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/text.hpp"
 #include "daemon/cli/ask.hpp"
 #include "daemon/cli/commands.hpp"
 #include "daemon/cli/json_words.hpp"
 #include "daemon/control/live_client.hpp"
+#include "daemon/print_text.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -58,8 +60,10 @@ base::Result<std::string> run_bench_command(const BenchOptions& options, const B
   Json body = Json::object();
   if (!command.text.empty()) body["text"] = command.text;
   if (command.test) body["test"] = *command.test;
+  const base::Result<std::string> said = body_of(body);
+  if (!said) return tl::unexpected(said.error());
   const base::Result<Json> done =
-      ask(options, {"POST", "/v1/" + command.verb, body.empty() ? "" : body.dump(), {}, command.key});
+      ask(options, {"POST", "/v1/" + command.verb, body.empty() ? "" : *said, {}, command.key});
   if (!done) return tl::unexpected(done.error());
   if (options.json) return done->dump(2) + "\n";
   std::string line =
@@ -86,7 +90,9 @@ base::Result<std::string> run_plan(const BenchOptions& options, const PlanComman
     }
   }
   if (command.clear || !command.changes.empty()) {
-    plan = ask(options, {"PUT", "/v1/plan", plan->dump(), {}, {}});
+    const base::Result<std::string> said = body_of(*plan);
+    if (!said) return tl::unexpected(said.error());
+    plan = ask(options, {"PUT", "/v1/plan", *said, {}, {}});
     if (!plan) return tl::unexpected(plan.error());
   }
   if (options.json) return plan->dump(2) + "\n";
@@ -95,7 +101,7 @@ base::Result<std::string> run_plan(const BenchOptions& options, const PlanComman
     std::string shown = value.is_string() ? value.get<std::string>() : value.dump();
     if (value.is_null()) shown = "–";
     if (key == "pull_speed" && value.is_number()) shown = fmt::format("{:.6g} m/s", value.get<double>());
-    text += fmt::format("{:<10}  {}\n", key, shown);
+    text += fmt::format("{:<10}  {}\n", key, base::printable(shown));
   }
   return text;
 }
@@ -136,11 +142,11 @@ base::Result<std::string> run_watch(const BenchOptions& options, std::int64_t te
   std::int64_t left = tests;
   const base::Result<void> ended = listen_live(options.socket, [&](std::string_view text) {
     if (options.json) {
-      fmt::print("{}\n", text);
+      print_text(stdout, fmt::format("{}\n", text));
     }
     const Json frame = Json::parse(text, nullptr, false);
     if (!frame.is_object()) return true;
-    if (!options.json) fmt::print("{}", line_of_frame(frame));
+    if (!options.json) print_text(stdout, line_of_frame(frame));
     if (word(frame, "type") == "test-ended" && --left == 0) return false;
     return std::fflush(stdout) == 0;
   });

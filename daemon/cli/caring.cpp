@@ -10,6 +10,7 @@
 #include "daemon/cli/subcommands.hpp"
 #include "daemon/finaliser.hpp"
 #include "daemon/forked.hpp"
+#include "daemon/print_text.hpp"
 #include "daemon/recovery.hpp"
 #include "daemon/verify.hpp"
 
@@ -63,7 +64,7 @@ void add_verify(CLI::App& app, Chosen& chosen) {
   verify->callback([&chosen, kept] {
     chosen.run = [kept] {
       const VerifyOutput output = verify_files(kept->files, kept->json);
-      fmt::print("{}", output.text);
+      print_text(stdout, output.text);
       return std::fflush(stdout) == 0 ? output.exit_status : 1;
     };
   });
@@ -73,16 +74,16 @@ void add_verify(CLI::App& app, Chosen& chosen) {
 class Teller final : public Facts {
  public:
   void orphan_finalised(const std::filesystem::path& file) override {
-    fmt::print("made     {}\n", file.string());
+    fmt::print("made     {}\n", base::printable(file.string()));
   }
   void record_damaged(const std::filesystem::path& file, std::string_view loss) override {
     fmt::print("damaged  {}: {}\n", file.string(), loss);
   }
   void orphan_empty(const std::filesystem::path& journal) override {
-    fmt::print("removed  {}: nothing was recorded in it\n", journal.string());
+    fmt::print("removed  {}: nothing was recorded in it\n", base::printable(journal.string()));
   }
   void orphan_kept(const std::filesystem::path& journal, std::string_view why) override {
-    fmt::print("kept     {}: {}\n", journal.string(), why);
+    fmt::print("kept     {}: {}\n", base::printable(journal.string()), base::printable(why));
   }
 };
 

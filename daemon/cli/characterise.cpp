@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/text.hpp"
 #include "core/record/finaliser.hpp"
 #include "core/record/iso_time.hpp"
 #include "core/record/read_apart.hpp"
@@ -76,7 +77,7 @@ std::string table_of(const std::vector<std::string>& files, const RingDowns& rin
   for (std::size_t i = 0; i < files.size(); ++i) {
     const TesterEstimate& one = ring_downs.estimates[i];
     line(one.omega, standard_error(one.covariance, 0), one.gamma_over_2omega,
-         standard_error(one.covariance, 1), files[i]);
+         standard_error(one.covariance, 1), base::printable(files[i]));
   }
   const friction::SharedPrior::Coupling& mean = result.coupling;
   line(mean.omega, std::sqrt(mean.covariance(0, 0)), mean.gamma_over_2omega, std::sqrt(mean.covariance(1, 1)),

@@ -13,6 +13,7 @@
 #include "daemon/cli/paint.hpp"
 #include "daemon/cli/subcommands.hpp"
 #include "daemon/doctor/checks.hpp"
+#include "daemon/print_text.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -65,7 +66,7 @@ std::string text_of(const std::vector<Finding>& findings, const Paint& paint) {
   for (const Finding& finding : findings) {
     text += fmt::format("{}  {:<11}  {}\n",
                         paint(colour_of(finding.verdict), fmt::format("{:<7}", name(finding.verdict))),
-                        finding.check, finding.what);
+                        finding.check, base::printable(finding.what));
     if (!finding.to_do.empty()) text += fmt::format("{:<22}→ {}\n", "", finding.to_do);
   }
   return text;
@@ -78,13 +79,14 @@ int run_doctor(const DoctorOptions& options) {
   if (folder.empty() && options.config == kInstalledConfig) folder = kInstalledFolder;
   // As the service does: relative names in the configuration are of its working directory.
   if (!folder.empty() && ::chdir(folder.c_str()) != 0 && !options.folder.empty()) {
-    fmt::print(stderr, "stickslip: --folder {}: {}\n", folder, std::generic_category().message(errno));
+    print_error("stickslip", fmt::format("--folder {}: {}", folder, std::generic_category().message(errno)));
     return 2;
   }
   const auto clock = base::make_system_clock();
   const std::vector<Finding> findings =
       examine(options.folder.empty() ? options.config : config.string(), this_world(*clock));
-  fmt::print("{}", options.json ? json_of(findings) : text_of(findings, Paint{wants_colours()}));
+  print_text(stdout, options.json ? json_of(findings) : text_of(findings, Paint{wants_colours()}),
+             wants_colours());
   return std::fflush(stdout) == 0 ? exit_status(findings) : 1;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/text.hpp"
 #include "core/record/finaliser.hpp"
 #include "core/record/read_apart.hpp"
 #include "daemon/cli/subcommands.hpp"
@@ -28,7 +29,7 @@ base::Result<std::string> run_export(const ExportCommand& command) {
   std::string text = command.cycles ? cycles_csv(*record) : scans_csv(*record);
   if (command.output.empty()) return text;
   if (auto written = write_new_file(command.output, text); !written) return tl::unexpected(written.error());
-  return fmt::format("{}: {} rows\n", command.output,
+  return fmt::format("{}: {} rows\n", base::printable(command.output),
                      command.cycles ? record->cycles.size() : record->scan.size());
 }
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/base/text.hpp"
 #include "core/record/csv_import.hpp"
 #include "core/record/finaliser.hpp"
 #include "daemon/analyse.hpp"
@@ -87,7 +88,7 @@ Result<std::string> run_import(const ImportCommand& command) {
   if (const Result<void> published = record::publish_record(*record, command.output); !published) {
     return tl::unexpected(published.error());
   }
-  return fmt::format("{}: {} scans\n", command.output, scans);
+  return fmt::format("{}: {} scans\n", base::printable(command.output), scans);
 }
 
 }  // namespace stickslip::daemon

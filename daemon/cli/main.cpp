@@ -14,6 +14,7 @@
 #include "core/record/read_apart.hpp"
 #include "daemon/cli/options.hpp"
 #include "daemon/cli/subcommands.hpp"
+#include "daemon/print_text.hpp"
 #include "daemon/version.hpp"
 
 namespace stickslip::daemon {
@@ -86,7 +87,7 @@ int main_of(int count, char** arguments) {
     app.parse(words(count, arguments));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    fmt::print(stderr, "stickslip: {}; see stickslip --help\n", error.what());
+    print_error("stickslip", fmt::format("{}; see stickslip --help", error.what()));
     return 2;
   }
   return chosen.run();
@@ -101,7 +102,7 @@ int main(int count, char** arguments) {
     stickslip::record::read_records_apart();
     return stickslip::daemon::main_of(count, arguments);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "stickslip: {}\n", error.what());
+    stickslip::daemon::print_error("stickslip", error.what());
     return 1;
   }
 }

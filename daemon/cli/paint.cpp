@@ -5,6 +5,8 @@
 
 #include <cstdlib>
 
+#include "core/base/text.hpp"
+
 namespace stickslip::daemon {
 namespace {
 
@@ -40,8 +42,9 @@ bool wants_colours() {
 
 std::string Paint::operator()(Ink colour, std::string_view text) const {
   const std::string_view code = code_of(colour);
-  if (!on_ || code.empty()) return std::string{text};
-  return fmt::format("\033[{}m{}\033[0m", code, text);
+  const std::string shown = base::printable(text);
+  if (!on_ || code.empty()) return shown;
+  return fmt::format("\033[{}m{}\033[0m", code, shown);
 }
 
 }  // namespace stickslip::daemon

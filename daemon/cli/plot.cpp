@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/base/text.hpp"
 #include "core/base/wording.hpp"
 #include "core/record/finaliser.hpp"
 #include "core/record/journal.hpp"
@@ -83,7 +84,7 @@ Result<std::string> run_plot(const PlotCommand& command) {
   const Result<std::string> svg = draw_svg(*figure);
   if (!svg) return tl::unexpected(svg.error());
   if (auto written = write_new_file(output, *svg); !written) return tl::unexpected(written.error());
-  return fmt::format("{}: {} scans\n", output.string(), record->scan.size());
+  return fmt::format("{}: {} scans\n", base::printable(output.string()), record->scan.size());
 }
 
 }  // namespace stickslip::daemon

@@ -1,17 +1,18 @@
 #include "daemon/cli/subcommands.hpp"
 
-#include <fmt/format.h>
-
 #include <cstdio>
+
+#include "daemon/cli/paint.hpp"
+#include "daemon/print_text.hpp"
 
 namespace stickslip::daemon {
 
 int print(const base::Result<std::string>& output) {
   if (!output) {
-    fmt::print(stderr, "stickslip: {}\n", output.error().message);
+    print_error("stickslip", output.error().message);
     return output.error().exit_status();
   }
-  fmt::print("{}", *output);
+  print_text(stdout, *output, wants_colours());
   return std::fflush(stdout) == 0 ? 0 : 1;
 }
 

@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/text.hpp"
 #include "daemon/batch/batch_json.hpp"
 #include "daemon/control/batch_api.hpp"
 #include "daemon/control/calibration_api.hpp"
@@ -30,7 +31,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kLongestName = 64;
+constexpr std::size_t kLongestController = 64;
 
 class Api {
  public:
@@ -84,9 +85,7 @@ class Api {
       answer(refusal(400, "who commands? Give a name in the header Stickslip-Controller"));
       return;
     }
-    std::string why = text_refusal(request.controller);
-    if (request.controller.size() > kLongestName) why = fmt::format("is longer than {} bytes", kLongestName);
-    if (!why.empty()) {
+    if (const std::string why = base::name_refusal(request.controller, kLongestController); !why.empty()) {
       answer(refusal(400, "Stickslip-Controller: " + why));
       return;
     }
@@ -257,7 +256,7 @@ class Api {
     const Json reason = body->value("reason", Json());
     if (!reason.is_string() || reason.get<std::string>().empty())
       return answer(refusal(400, "reason: is missing: why does the test not count?"));
-    if (const std::string why = text_refusal(reason.get<std::string>()); !why.empty())
+    if (const std::string why = base::name_refusal(reason.get<std::string>()); !why.empty())
       return answer(refusal(400, "reason: " + why));
     const base::Result<std::string> record = record_named(*body, bench_, batches_);
     if (!record) return answer(refusal(400, record.error().message));
@@ -318,7 +317,7 @@ class Api {
       if (!text.is_string() || text.get<std::string>().empty())
         return answer(refusal(400, "text: is missing: what is to be noted?"));
       command.text = text.get<std::string>();
-      if (const std::string why = text_refusal(command.text); !why.empty())
+      if (const std::string why = base::name_refusal(command.text); !why.empty())
         return answer(refusal(400, "text: " + why));
     }
     if (!take(request, Lease::kCommand_s, answer)) return;

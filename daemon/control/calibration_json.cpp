@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/quantity.hpp"
+#include "core/base/text.hpp"
 #include "daemon/control/plan_json.hpp"
 
 namespace stickslip::daemon {
@@ -110,7 +111,7 @@ base::Result<CalibrationPaper> paper_of(const Json& json) {
     const Json& text = json.at("certificate");
     if (!text.is_string()) return base::usage_error("certificate: must be text");
     paper.certificate = text.get<std::string>();
-    if (const std::string why = text_refusal(paper.certificate); !why.empty())
+    if (const std::string why = base::name_refusal(paper.certificate); !why.empty())
       return base::usage_error("certificate: {}", why);
   }
   if (json.contains("valid_days")) {

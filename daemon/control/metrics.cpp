@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "core/base/text.hpp"
+
 namespace stickslip::daemon {
 namespace {
 
@@ -52,16 +54,12 @@ void histogram(Page& page, std::string_view name, std::string_view help,
   page.value(fmt::format("{}_count", name), count);
 }
 
-/// What a label may hold: backslash, quote and line feed are escaped.
+/// What a label may hold: printable, with backslash and quote escaped.
 std::string escaped(std::string_view text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : base::printable(text)) {
     if (c == '\\' || c == '"') out += '\\';
-    if (c == '\n') {
-      out += "\\n";
-    } else {
-      out += c;
-    }
+    out += c;
   }
   return out;
 }

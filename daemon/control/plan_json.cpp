@@ -10,13 +10,14 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/quantity.hpp"
+#include "core/base/text.hpp"
+#include "core/base/wording.hpp"
 
 namespace stickslip::daemon {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kLongestText = 200;
 /// As in the configuration.
 constexpr double kFastestPull_m_per_s = 10.0;
 constexpr std::int64_t kMostReplicates = 1'000'000;
@@ -50,28 +51,6 @@ base::Result<double> pull_speed_of(std::string_view key, const Json& value) {
   return speed;
 }
 
-std::string text_refusal(std::string_view text) {
-  if (text.size() > kLongestText) {
-    return fmt::format("is {} bytes long, at most {} are allowed", text.size(), kLongestText);
-  }
-  if (std::any_of(text.begin(), text.end(),
-                  [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; })) {
-    return "holds a control character";
-  }
-  // The parser of a body has looked at it; a header has not been looked at.
-  if (!Json::accept('"' + [&] {
-        std::string quoted;
-        for (const char c : text) {
-          if (c == '"' || c == '\\') quoted += '\\';
-          quoted += c;
-        }
-        return quoted;
-      }() + '"')) {
-    return "is no UTF-8";
-  }
-  return {};
-}
-
 Json plan_json(const Plan& plan) {
   Json json;
   for (const auto& [key, member] : kTexts) {
@@ -92,7 +71,7 @@ base::Result<Plan> plan_of(const Json& json) {
     if (text != kTexts.end()) {
       if (!value.is_string()) return base::usage_error("{}: must be text", key);
       const std::string said = value.get<std::string>();
-      if (const std::string refusal = text_refusal(said); !refusal.empty())
+      if (const std::string refusal = base::name_refusal(said); !refusal.empty())
         return base::usage_error("{}: {}", key, refusal);
       plan.sample.*(text->second) = said;
     } else if (key == kReplicate) {
@@ -109,7 +88,7 @@ base::Result<Plan> plan_of(const Json& json) {
       return base::usage_error(
           "\"{}\": there is no such key; there are name, grade, direction, side, operator, replicate, "
           "pull_speed",
-          key.substr(0, kLongestText));
+          base::one_line(key));
     }
   }
   return plan;

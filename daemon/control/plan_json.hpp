@@ -19,8 +19,4 @@ namespace stickslip::daemon {
 /// A speed above 0: a number in m/s, or text with a unit. \param key  for the error.
 [[nodiscard]] base::Result<double> pull_speed_of(std::string_view key, const nlohmann::ordered_json& value);
 
-/// Why this is no line of text for a record, for people; empty if it is one: UTF-8 without control
-/// characters, at most 200 bytes.
-[[nodiscard]] std::string text_refusal(std::string_view text);
-
 }  // namespace stickslip::daemon

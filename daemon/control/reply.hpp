@@ -7,13 +7,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/text.hpp"
 #include "daemon/control/http.hpp"
 
 namespace stickslip::daemon {
 
-/// Names of files and boards come from outside: bytes that are no UTF-8 are replaced.
+/// Names of files and boards come from outside: bytes that are no UTF-8 are replaced, and what deceives the
+/// eye is written by its number, which JSON reads as the same text.
 [[nodiscard]] inline std::string text_of(const nlohmann::ordered_json& json) {
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return base::printable_lines(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 [[nodiscard]] inline HttpReply reply_of(const nlohmann::ordered_json& json) {

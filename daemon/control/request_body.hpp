@@ -13,22 +13,20 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/result.hpp"
+#include "core/base/text.hpp"
+#include "core/base/wording.hpp"
 
 namespace stickslip::daemon {
 
 /// A request line may hold any bytes; an answer may not.
-[[nodiscard]] inline std::string printable(const std::string& text) {
-  constexpr std::size_t kLongest = 100;
-  std::string shown;
-  for (const char c : text.substr(0, kLongest)) shown += c >= 0x20 && c < 0x7F ? c : '?';
-  return shown;
-}
+[[nodiscard]] inline std::string printable(const std::string& text) { return base::one_line(text, 100); }
 
 /// The JSON object of a body, with no keys but these, any if none are named; an empty body is an empty
 /// object.
 [[nodiscard]] inline base::Result<nlohmann::ordered_json> object_of(
     const std::string& body, std::initializer_list<std::string_view> keys) {
   if (body.empty()) return nlohmann::ordered_json::object();
+  if (!base::is_utf8(body)) return base::usage_error("the body: {}", base::name_refusal(body));
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(body, nullptr, false);
   if (!json.is_object()) return base::usage_error("the body must be a JSON object");
   for (const auto& [key, value] : json.items()) {

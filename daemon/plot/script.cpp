@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/base/text.hpp"
 #include "daemon/plot/looks.hpp"
 #include "daemon/plot/ranges.hpp"
 #include "daemon/plot/thinning.hpp"
@@ -33,13 +34,11 @@ constexpr int kLeastPanel = 40;
 constexpr double kCharacter = 7.2;  ///< Mean width at this size of letters, rather too much than too little.
 constexpr double kTickDistance = 27.0;
 
-/// Between single quotes gnuplot replaces nothing; a quote is written twice. Control characters become
-/// blanks.
+/// Between single quotes gnuplot replaces nothing; a quote is written twice.
 std::string gnuplot_text(std::string_view text) {
   std::string out = "'";
-  for (const char c : text) {
-    const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-    out += control ? ' ' : c;
+  for (const char c : base::printable(text)) {
+    out += c;
     if (c == '\'') out += '\'';
   }
   return out + "'";

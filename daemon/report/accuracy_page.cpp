@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/base/text.hpp"
 #include "daemon/report/accuracy_table.hpp"
 
 namespace stickslip::daemon {
@@ -22,13 +23,16 @@ svg { width: 100%; height: auto; }
 
 std::string escaped(std::string_view text) {
   std::string html;
-  for (const char c : text) {
+  for (const char c : base::printable_lines(text)) {
     switch (c) {
       case '&':
         html += "&amp;";
         break;
       case '<':
         html += "&lt;";
+        break;
+      case '"':
+        html += "&quot;";
         break;
       case '>':
         html += "&gt;";

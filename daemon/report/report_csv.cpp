@@ -6,24 +6,19 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/text.hpp"
 #include "core/friction/results.hpp"
 #include "daemon/report/report_json.hpp"
 
 namespace stickslip::daemon {
 namespace {
 
-/// One line of cells, quoted where RFC 4180 asks for it.
+/// One line of cells.
 class Line {
  public:
   Line& text(std::string_view cell) {
     separate();
-    if (cell.find_first_of(",\"\r\n") == std::string_view::npos) {
-      line_ += cell;
-      return *this;
-    }
-    line_ += '"';
-    for (const char c : cell) line_ += c == '"' ? std::string{"\"\""} : std::string{c};
-    line_ += '"';
+    line_ += base::csv_cell(cell);
     return *this;
   }
 

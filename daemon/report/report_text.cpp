@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/text.hpp"
 #include "daemon/report/millimetres.hpp"
 #include "daemon/report/table.hpp"
 
@@ -62,7 +63,7 @@ std::string figure_header(bool two) {
 }
 
 std::string figure_line(const std::string& speed, const std::string& label, const SpeedGroup& group) {
-  std::string text = fmt::format("{:<16}{:<14}{:>5}", speed, label, group.tests.size());
+  std::string text = fmt::format("{:<16}{:<14}{:>5}", speed, base::printable(label), group.tests.size());
   for (std::size_t q = 0; q < kFigureQuantities; ++q) {
     text += fmt::format("  {:>17}", mean_text(group.quantities[q], report::quantities()[q]));
   }
@@ -107,8 +108,8 @@ std::string replicates_table(const Material& material, const SpeedGroup& group) 
     if (values.outlier) {
       const std::size_t test = own.tests[values.outlier->index];
       notes += fmt::format("!  {} of {} stands out (Grubbs {:.2f} above {:.2f}, 5 %); it is not left out\n",
-                           quantity.title, material.tests[test].file, values.outlier->statistic,
-                           values.outlier->critical);
+                           quantity.title, base::printable(material.tests[test].file),
+                           values.outlier->statistic, values.outlier->critical);
     }
   }
   return text + notes;
@@ -137,8 +138,9 @@ std::string limits_lines(const Material& material) {
 std::string voided_lines(const Material& material) {
   std::string text;
   for (const VoidedTest& test : material.voided) {
-    text += fmt::format("x  {}: void, left out: {} ({}, {})\n", test.file, test.voiding.reason,
-                        test.voiding.who, test.voiding.at);
+    text += fmt::format("x  {}: void, left out: {} ({}, {})\n", base::printable(test.file),
+                        base::printable(test.voiding.reason), base::printable(test.voiding.who),
+                        base::printable(test.voiding.at));
   }
   return text;
 }
@@ -152,7 +154,7 @@ std::string tests_table(const Material& material) {
   std::string text = format_table(rows);
   for (std::size_t i = 0; i < material.tests.size(); ++i) {
     for (const std::string& line : material.tests[i].departures)
-      text += fmt::format("!  test {}: {}\n", i + 1, line);
+      text += fmt::format("!  test {}: {}\n", i + 1, base::printable(line));
   }
   return text + voided_lines(material);
 }
@@ -243,8 +245,9 @@ std::string report_text(const Material& material) {
 }
 
 std::string comparison_text(const Material& a, const Material& b, const MaterialComparison& comparison) {
-  std::string text = fmt::format("A: {}\n{}method: {}\n\nB: {}\n{}method: {}\n", a.label, tests_table(a),
-                                 methods_line(a), b.label, tests_table(b), methods_line(b));
+  std::string text =
+      fmt::format("A: {}\n{}method: {}\n\nB: {}\n{}method: {}\n", base::printable(a.label), tests_table(a),
+                  methods_line(a), base::printable(b.label), tests_table(b), methods_line(b));
   text += "\nCoefficient against speed (Fig. 1): mean ± half of its 95 % interval\n" + figure_header(true);
   for (const report::SpeedPair& pair : comparison.pairs) {
     std::string speed = speed_text(pair.pull_speed_m_per_s);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/base/text.hpp"
 #include "daemon/report/ramp_text.hpp"
 
 namespace stickslip::daemon {
@@ -53,7 +54,7 @@ std::string line(std::string_view number, std::string_view kind, std::string_vie
   std::string text = fmt::format("{:>4}  {:<8}  {:<{}}", number, kind, regime, kRegimeWidth);
   for (std::size_t i = 0; i < kColumns.size(); ++i)
     text += fmt::format("  {:>{}}", cells[i], kColumns[i].width);
-  return fmt::format("{}  {}\n", text, where);
+  return fmt::format("{}  {}\n", text, base::printable(where));
 }
 
 /// Why numbers are absent, each reason once with the tests it concerns.
@@ -69,7 +70,8 @@ std::string footnotes(std::span<const TableRow> rows) {
   }
   std::string text;
   for (const auto& [key, tests] : tests_of) {
-    text += fmt::format("{}  no {} in test {}: {}\n", kAbsent, kColumns[key.first].title, tests, key.second);
+    text += fmt::format("{}  no {} in test {}: {}\n", kAbsent, kColumns[key.first].title, tests,
+                        base::printable(key.second));
   }
   return text;
 }
@@ -95,7 +97,7 @@ std::string format_table(std::span<const TableRow> rows) {
   }
   for (const TableRow& row : rows) {
     for (const std::string& finding : row.results.findings) {
-      findings += fmt::format("!  test {}: {}\n", row.number, finding);
+      findings += fmt::format("!  test {}: {}\n", row.number, base::printable(finding));
     }
     if (const std::string ramp = ramp_text(row.results); !ramp.empty())
       text += fmt::format("ramp, test {}: {}\n", row.number, ramp);

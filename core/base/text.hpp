@@ -1,0 +1,42 @@
+/// \file
+/// Text that somebody else wrote (names, remarks, paths, requests), made safe for what this program writes,
+/// and refused where it comes in.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace stickslip::base {
+
+/// Longest name or remark that is taken, in bytes.
+inline constexpr std::size_t kLongestName = 200;
+
+[[nodiscard]] bool is_utf8(std::string_view text);
+
+/// The text as one line of valid UTF-8. Shown by their numbers: control characters below 0x20 and bytes that
+/// are no UTF-8 (\x1b), other control characters (\u007f, \u009b), what changes the direction of text or
+/// breaks a line
+/// (\u202e, \u2028), and characters without width that are no part of words (\u200b, \ufeff). All other text,
+/// in any language, stays as it is; a backslash too, so that the numbers are for eyes, not for reading back.
+[[nodiscard]] std::string printable(std::string_view text);
+
+/// As printable(), of a whole output: line feed, the CR before it, and tab stay, for the output's own format
+/// put them there. JSON stays the same JSON. \param colours_stay  also the codes with which Paint changes
+/// colours.
+[[nodiscard]] std::string printable_lines(std::string_view text, bool colours_stay = false);
+
+/// A text as one cell of a table in CSV: printable, quoted as RFC 4180 says, and with an apostrophe in front
+/// where a spreadsheet would take it for a formula (it begins with = + - @, after blanks too). Not for
+/// numbers.
+[[nodiscard]] std::string csv_cell(std::string_view text);
+
+/// A text for a comment line of a table in CSV, which spreadsheets cut at its separators: each piece is
+/// guarded as in csv_cell().
+[[nodiscard]] std::string csv_comment(std::string_view text);
+
+/// Why this text is not taken as a name or remark, with what to do; empty if it is taken: UTF-8, at most
+/// `longest` bytes, nothing in it that printable() would change. A caller puts the place in front.
+[[nodiscard]] std::string name_refusal(std::string_view text, std::size_t longest = kLongestName);
+
+}  // namespace stickslip::base
