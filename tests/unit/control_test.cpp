@@ -183,7 +183,7 @@ TEST_F(ControlApi, TellsTheStatusByTheNamesOfTheRecord) {
 TEST_F(ControlApi, RefusesWithTheReason) {
   const HttpReply absent = ask({"GET", "/v1/nothing\x01", "", "", ""});
   EXPECT_EQ(absent.status, 404);
-  EXPECT_EQ(error(absent), "there is nothing at /v1/nothing?; /v1/openapi.json says what there is");
+  EXPECT_EQ(error(absent), R"(there is nothing at /v1/nothing\x01; /v1/openapi.json says what there is)");
   const HttpReply method = ask({"POST", "/v1/status", "", "", ""});
   EXPECT_EQ(method.status, 405);
   EXPECT_EQ(method.allow, "GET");

@@ -150,7 +150,7 @@ TEST_F(FileSystem, WithoutLocksRecordsAreMadeAndRead) {
     test::write_journal(journal, test::whole_record());
     const auto made = finalise(journal, nullptr, disk_);
     ASSERT_TRUE(made) << made.error().message;
-    EXPECT_EQ(judge(*made).judgement, Judgement::kComplete);
+    EXPECT_EQ(judge(made->file).judgement, Judgement::kComplete);
     EXPECT_FALSE(fs::exists(journal));
   }
 }

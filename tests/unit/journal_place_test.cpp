@@ -39,7 +39,7 @@ class JournalPlace : public testing::Test {
   void expect_all() const {
     const auto read = record::read_journal(journal_->path());
     ASSERT_TRUE(read) << read.error().message;
-    EXPECT_EQ(read->stopped_by, "");
+    EXPECT_TRUE(read->damaged.empty());
     ASSERT_EQ(read->record.scan.size(), static_cast<std::size_t>(next_));
     for (std::size_t i = 0; i < read->record.scan.size(); ++i) {
       ASSERT_EQ(read->record.scan[i], static_cast<daq::ScanIndex>(i));

@@ -137,7 +137,9 @@ TEST(LackingFileSystem, IsNoDiskThatRefuses) {
     TestLog tests;
     Heard heard;
     {
-      const auto finalise = [&](const fs::path& journal) { return record::finalise(journal, {}, disk); };
+      const auto finalise = [&](const fs::path& journal, ExpectedScans expected) {
+        return record::finalise(journal, {}, disk, {}, expected);
+      };
       Storage storage{{folder / "records", DatedFolders::kMonth, &disk}, finalise, tests, heard};
       storage.use(header(), nullptr);
       begin(storage, 1, 0);

@@ -132,13 +132,19 @@ TEST_F(FolderWatched, OneThatCannotBeLookedAtIsAway) {
   EXPECT_TRUE(watch.look());
 }
 
+using ExpectedScans = std::optional<std::int64_t>;
+
+base::Result<record::Finalised> finalise_plainly(const fs::path& journal, ExpectedScans expected) {
+  return record::finalise(journal, {}, record::system_calls(), {}, expected);
+}
+
 // ---- the whole storage --------------------------------------------------------------------
 
 class StorageAstray : public testing::Test {
  protected:
   StorageAstray() { fs::create_directories(records_); }
 
-  void open(Finalise finalise = [](const fs::path& journal) { return record::finalise(journal); }) {
+  void open(Finalise finalise = finalise_plainly) {
     record::RecordHeader header = test::sample_header();
     header.uuid.clear();
     header.board.second.reset();
@@ -258,9 +264,9 @@ TEST_F(StorageAstray, NothingIsWrittenBelowAMountThatWentAway) {
 // While the finaliser waits, the journal is watched as before.
 TEST_F(StorageAstray, AJournalThatVanishesBeforeItsRecordIsMadeComesBack) {
   std::atomic<bool> refuses{true};
-  open([&](const fs::path& journal) -> base::Result<fs::path> {
+  open([&](const fs::path& journal, ExpectedScans expected) -> base::Result<record::Finalised> {
     if (refuses) return base::failure("not yet");
-    return record::finalise(journal);
+    return finalise_plainly(journal, expected);
   });
   begin(1);
   feed(350);
@@ -284,7 +290,7 @@ TEST(DiskWriterAstray, WhatIsGoneAtTheEndIsUnsaved) {
                      .retry_period = 1ms,
                      .patience = 0ms,
                      .calls = &moving},
-                    [&](std::int64_t, const fs::path&, const std::optional<std::string>& why) {
+                    [&](std::int64_t, const fs::path&, std::int64_t, const std::optional<std::string>& why) {
                       told.add(why.value_or("ended"));
                     },
                     [&](const DiskState& state) { told.add(state.trouble.value_or("fine")); }};
@@ -314,7 +320,7 @@ TEST(DiskWriterAstray, OneJournalThatCannotBeWrittenHoldsUpNoOther) {
   Told told;
   DiskWriter writer{
       {.folder = folder.path(), .sync_period = 1ms, .retry_period = 1ms, .patience = 0ms, .calls = &disk},
-      [&](std::int64_t test, const fs::path&, const std::optional<std::string>& why) {
+      [&](std::int64_t test, const fs::path&, std::int64_t, const std::optional<std::string>& why) {
         told.add(fmt::format("{} {}", test, why ? "refused" : "ended"));
       },
       [&](const DiskState& state) { told.add(state.trouble ? "waits" : "fine"); }};
@@ -339,26 +345,28 @@ TEST(DiskWriterAstray, OneJournalThatCannotBeWrittenHoldsUpNoOther) {
 TEST(FinisherAstray, WaitsForAJournalThatIsAwayAndFollowsItToItsNewName) {
   std::atomic<bool> away{true};
   Told told;
-  Finisher finisher{
-      [](const fs::path& journal) -> base::Result<fs::path> { return journal.string() + " made"; },
-      [&](std::int64_t test, const base::Result<fs::path>& file) {
-        told.add(fmt::format("{}: {}", test, file ? file->string() : file.error().message));
-      },
-      [&](std::int64_t) -> base::Result<fs::path> {
-        if (away) return base::failure("Stale file handle");
-        return "a-2.journal";
-      },
-      1ms};
-  finisher.finish(1);
+  Finisher finisher{[](const fs::path& journal, ExpectedScans expected) -> base::Result<record::Finalised> {
+                      return record::Finalised{journal.string() + " made", expected, 0, {}};
+                    },
+                    [&](std::int64_t test, std::int64_t scans, const base::Result<record::Finalised>& made) {
+                      told.add(made ? fmt::format("{}: {} of {} scans", test, made->file.string(), scans)
+                                    : fmt::format("{}: {}", test, made.error().message));
+                    },
+                    [&](std::int64_t) -> base::Result<fs::path> {
+                      if (away) return base::failure("Stale file handle");
+                      return "a-2.journal";
+                    },
+                    1ms};
+  finisher.finish(1, 350);
   told.wait_for("1: Stale file handle");
   away = false;
-  told.wait_for("1: a-2.journal made");
+  told.wait_for("1: a-2.journal made of 350 scans");
   away = true;
-  finisher.finish(2);
+  finisher.finish(2, 700);
   told.wait_for("2: Stale file handle");
   finisher.stop();
-  EXPECT_THAT(told.all(),
-              testing::ElementsAre("1: Stale file handle", "1: a-2.journal made", "2: Stale file handle"));
+  EXPECT_THAT(told.all(), testing::ElementsAre("1: Stale file handle", "1: a-2.journal made of 350 scans",
+                                               "2: Stale file handle"));
 }
 
 TEST(BallastAstray, IsTakenAgainWhereItWentWithItsFolder) {

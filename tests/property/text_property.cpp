@@ -1,0 +1,164 @@
+// What somebody else wrote can do nothing to a terminal, a table or a page.
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/base/text.hpp"
+#include "core/base/wording.hpp"
+#include "daemon/control/reply.hpp"
+#include "daemon/log.hpp"
+#include "daemon/report/report_page.hpp"
+#include "daemon/report/table.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+constexpr std::array<std::string_view, 26> kPieces{"\n",
+                                                   "\r\n",
+                                                   "\r",
+                                                   "\t",
+                                                   "\x1b[2K",
+                                                   "\x7f",
+                                                   "\xc2\x9b",
+                                                   "\xe2\x80\xae",
+                                                   "\xe2\x80\xa8",
+                                                   "\xe2\x81\xa6",
+                                                   "\xef\xbb\xbf",
+                                                   "\xff",
+                                                   "\xc0\xaf",
+                                                   "\xed\xa0\x80",
+                                                   "\xf4\x90\x80\x80",
+                                                   "\xe2\x80",
+                                                   "=1+1",
+                                                   "+",
+                                                   "-",
+                                                   "@x",
+                                                   "\"",
+                                                   ",",
+                                                   ";",
+                                                   "</script>",
+                                                   "\xce\xb3",
+                                                   " "};
+
+rc::Gen<std::string> hostile() {
+  return rc::gen::map(rc::gen::container<std::vector<std::string>>(rc::gen::oneOf(
+                          rc::gen::map(rc::gen::inRange<std::size_t>(0, kPieces.size()),
+                                       [](std::size_t i) { return std::string{kPieces.at(i)}; }),
+                          rc::gen::arbitrary<std::string>())),
+                      [](const std::vector<std::string>& pieces) {
+                        std::string text;
+                        for (const std::string& piece : pieces) text += piece;
+                        return text;
+                      });
+}
+
+std::ptrdiff_t lines_of(std::string_view text) { return std::count(text.begin(), text.end(), '\n'); }
+
+/// UTF-8 with no control character but the line feeds.
+void expect_safe(std::string_view text) {
+  RC_ASSERT(base::is_utf8(text));
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    RC_ASSERT(base::printable(line) == line);
+    for (const char c : line) RC_ASSERT((static_cast<unsigned char>(c) >= 0x20 && c != '\x7f'));
+    for (const char* bad : {"\xc2\x9b", "\xe2\x80\xae", "\xe2\x80\xa8", "\xe2\x81\xa6", "\xef\xbb\xbf"})
+      RC_ASSERT(line.find(bad) == line.npos);
+    begin = end + 1;
+  }
+}
+
+class Kept final : public LogOutput {
+ public:
+  explicit Kept(std::vector<std::string>& lines) : lines_(lines) {}
+  void write(const LogEntry& entry) override { lines_.push_back(entry.message); }
+
+ private:
+  std::vector<std::string>& lines_;
+};
+
+RC_GTEST_PROP(TextProperty, ATextIsOneSafeLine, ()) {
+  const std::string text = *hostile();
+  const std::string shown = base::printable(text);
+  expect_safe(shown);
+  RC_ASSERT(lines_of(shown) == 0);
+  RC_ASSERT(base::printable(shown) == shown);
+  expect_safe(base::one_line(text));
+}
+
+RC_GTEST_PROP(TextProperty, WhatIsTakenAsANameIsShownAsItIs, ()) {
+  const std::string text = *hostile();
+  const std::string why = base::name_refusal(text);
+  expect_safe(why);
+  RC_ASSERT(why.empty() ==
+            (text.size() <= base::kLongestName && base::is_utf8(text) && base::printable(text) == text));
+}
+
+RC_GTEST_PROP(TextProperty, ACellIsNoFormulaAndReadsBack, ()) {
+  const std::string text = *hostile();
+  const std::string cell = base::csv_cell(text);
+  expect_safe(cell);
+  std::string read = cell;
+  if (cell.starts_with('"')) {
+    RC_ASSERT(cell.size() >= 2 && cell.ends_with('"'));
+    read.clear();
+    for (std::size_t i = 1; i + 1 < cell.size(); ++i) {
+      if (cell[i] == '"') RC_ASSERT(cell[++i] == '"');
+      read += cell[i];
+    }
+  } else {
+    RC_ASSERT(cell.find_first_of(",;\"") == cell.npos);
+  }
+  RC_ASSERT((read.empty() || std::string_view{"=+-@"}.find(read.front()) == std::string_view::npos));
+  const std::string shown = base::printable(text);
+  RC_ASSERT((read == shown || read == "'" + shown));
+}
+
+RC_GTEST_PROP(TextProperty, TheTableHasItsLinesWhateverTheFileIsCalled, ()) {
+  TableRow plain{1, {}, std::nullopt, "a.h5"};
+  TableRow named = plain;
+  named.where = *hostile();
+  named.results.findings = {*hostile()};
+  plain.results.findings = {"x"};
+  const std::string text = format_table(std::array{named});
+  expect_safe(text);
+  RC_ASSERT(lines_of(text) == lines_of(format_table(std::array{plain})));
+}
+
+RC_GTEST_PROP(TextProperty, ALogEntryIsOneSafeLine, ()) {
+  std::vector<std::string> lines;
+  make_log(LogLevel::kInfo, std::make_unique<Kept>(lines))->orphan_kept(*hostile(), *hostile());
+  RC_ASSERT(lines.size() == 1U);
+  expect_safe(lines.front());
+  RC_ASSERT(lines_of(lines.front()) == 0);
+}
+
+RC_GTEST_PROP(TextProperty, JsonStaysTheSameAndEndsNoScript, ()) {
+  const std::string text = *hostile();
+  const nlohmann::ordered_json json{{"name", text}};
+  const std::string answer = text_of(json);
+  expect_safe(answer);
+  const auto replaced = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  RC_ASSERT(nlohmann::ordered_json::parse(answer) == nlohmann::ordered_json::parse(replaced));
+  expect_safe(json_for_script(json));
+  RC_ASSERT(json_for_script(json).find('<') == std::string::npos);
+}
+
+TEST(Text, OrdinaryTextOfAnyLanguageStays) {
+  for (const char* text :
+       {"Thorold 42 g/m²", "γ/2ω – S−K", "紙 の 摩擦", "نامه‌ای", "👩‍🔬", "C:\\records"}) {
+    EXPECT_EQ(base::printable(text), text);
+    EXPECT_EQ(base::name_refusal(text), "");
+  }
+}
+
+}  // namespace
+}  // namespace stickslip::daemon
