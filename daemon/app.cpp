@@ -14,7 +14,6 @@
 #include "core/record/iso_time.hpp"
 #include "daemon/calibration_file.hpp"
 #include "daemon/control/token.hpp"
-#include "daemon/folder_lock.hpp"
 #include "daemon/recovery.hpp"
 #include "daemon/session_setup.hpp"
 #include "daemon/web/site.hpp"
@@ -123,12 +122,7 @@ base::Result<void> App::run() {
   if (world_.stop_asked && world_.stop_asked()) request_stop();
 
   process_facts_ = prepare_process(config_.realtime);
-  auto lacks = prepare_record_folder(config_.record_folder);
-  if (!lacks) return tl::unexpected(lacks.error());
-  for (const std::string& lack : *lacks) world_.facts->record_folder_lacks(lack);
-  record_folder_lacks_ = *std::move(lacks);
-  base::Result<FolderLock> lock = FolderLock::take(config_.record_folder);
-  if (!lock) return tl::unexpected(lock.error());
+  for (const std::string& lack : world_.record_folder.lacks) world_.facts->record_folder_lacks(lack);
   if (base::Result<void> opened = open_control(); !opened) return opened;
   // What cannot be recovered is told and kept; the measurement goes on.
   static_cast<void>(recover_folder(config_.record_folder, finalise_, *world_.facts));

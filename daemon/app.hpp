@@ -28,6 +28,7 @@
 #include "daemon/notify.hpp"
 #include "daemon/report_desk.hpp"
 #include "daemon/session.hpp"
+#include "daemon/session_setup.hpp"
 #include "daemon/storage.hpp"
 #include "daemon/test_log.hpp"
 #include "daemon/test_watcher.hpp"
@@ -37,6 +38,7 @@ namespace stickslip::daemon {
 
 /// What the daemon takes from the world; tests give their own.
 struct AppWorld {
+  RecordFolder record_folder;  ///< That of the configuration, prepared.
   std::function<base::Result<drivers::OpenedBoard>(const drivers::BoardConfig&, base::Clock&,
                                                    const std::optional<daq::Continuation>&)>
       open_board;
@@ -145,7 +147,6 @@ class App {
   std::atomic<bool> reload_at_rest_{false};  ///< The processing thread begins it when no test is under way.
   bool reloads_ = false;
   std::string process_facts_;  ///< Of prepare_process().
-  std::vector<std::string> record_folder_lacks_;
   State state_ = State::kStarting;
   std::string waiting_why_;  ///< While the board is waited for.
   std::chrono::milliseconds retry_after_;

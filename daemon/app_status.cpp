@@ -125,7 +125,7 @@ Status App::status() const {
   status.commit_time = storage_.commit_time();
   status.storage_stall_count = storage_.stall_count();
   status.storage = storage_.state();
-  status.storage.lacks = record_folder_lacks_;
+  status.storage.lacks = world_.record_folder.lacks;
   status.batch = batches_.progress();
   if (state_ == State::kAcquiring && status.storage.kind != StorageState::Kind::kOk)
     status.state = fmt::format("storage {}", daemon::name(status.storage.kind));

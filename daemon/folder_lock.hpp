@@ -15,6 +15,8 @@ namespace stickslip::daemon {
 /// (record::probe_folder() tells).
 class FolderLock {
  public:
+  /// Locks nothing.
+  FolderLock() = default;
   /// Errors: kFailure if another process has it; its number is told where the system knows it.
   [[nodiscard]] static base::Result<FolderLock> take(const std::filesystem::path& folder);
 

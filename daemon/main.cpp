@@ -116,7 +116,10 @@ int run(const std::string& file) {
     const bool terminal = table && ::isatty(STDOUT_FILENO) != 0;
     const std::unique_ptr<Facts> log = make_log(next->log_level);
 
+    base::Result<RecordFolder> folder = prepare_record_folder(next->record_folder);
+    if (!folder) return refused(folder.error());
     AppWorld world;
+    world.record_folder = *std::move(folder);
     world.open_board = drivers::open_board;
     world.finalise = [](const std::filesystem::path& journal, std::optional<std::int64_t> expected) {
       return run_finaliser("/proc/self/exe", journal, expected);

@@ -12,8 +12,8 @@
 
 namespace stickslip::daemon {
 
-base::Result<std::vector<std::string>> prepare_record_folder(const std::filesystem::path& folder,
-                                                             const record::FileCalls& calls) {
+base::Result<RecordFolder> prepare_record_folder(const std::filesystem::path& folder,
+                                                 const record::FileCalls& calls) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
@@ -26,7 +26,9 @@ base::Result<std::vector<std::string>> prepare_record_folder(const std::filesyst
   for (const record::FolderLack& lack : *lacks)
     told.push_back(
         fmt::format("record folder {}: the file system {}: {}", folder.string(), lack.what, lack.follows));
-  return told;
+  base::Result<FolderLock> lock = FolderLock::take(folder);
+  if (!lock) return tl::unexpected(lock.error());
+  return RecordFolder{std::move(told), *std::move(lock)};
 }
 
 base::Result<SessionSettings> session_settings(const DaemonConfig& config, const drivers::OpenedBoard& opened,

@@ -11,13 +11,20 @@
 #include "core/record/file_calls.hpp"
 #include "core/record/record.hpp"
 #include "daemon/config.hpp"
+#include "daemon/folder_lock.hpp"
 #include "daemon/session.hpp"
 
 namespace stickslip::daemon {
 
-/// Makes the folder if it is absent, and tries there what records need. \return what its file system lacks
-/// and what follows, a sentence each. Errors: kFailure if no record can be made there.
-[[nodiscard]] base::Result<std::vector<std::string>> prepare_record_folder(
+/// A folder that records can be made in, by this process alone.
+struct RecordFolder {
+  std::vector<std::string> lacks;  ///< What its file system lacks and what follows, a sentence each.
+  FolderLock lock;
+};
+
+/// Makes the folder if it is absent, tries there what records need, and locks it. Errors: kFailure if no record
+/// can be made there, or another daemon records into it.
+[[nodiscard]] base::Result<RecordFolder> prepare_record_folder(
     const std::filesystem::path& folder, const record::FileCalls& calls = record::system_calls());
 
 /// \param continues  where the session before this one ended. Errors: kUsage.

@@ -19,7 +19,7 @@ TEST(RecordFolder, IsMadeAndTriedAndNothingIsLeft) {
   const test::TemporaryFolder folder;
   const auto lacks = prepare_record_folder(folder / "a" / "records");
   ASSERT_TRUE(lacks) << lacks.error().message;
-  EXPECT_THAT(*lacks, IsEmpty());
+  EXPECT_THAT(lacks->lacks, IsEmpty());
   EXPECT_TRUE(std::filesystem::is_empty(folder / "a" / "records"));
 }
 
@@ -30,7 +30,7 @@ TEST(RecordFolder, OfALackingFileSystemIsUsedAndSaysWhatFollows) {
   disk.folder_fsync_error = EINVAL;
   const auto lacks = prepare_record_folder(folder / "records", disk);
   ASSERT_TRUE(lacks) << lacks.error().message;
-  EXPECT_THAT(*lacks, ElementsAre(HasSubstr("records: the file system has no locks"),
+  EXPECT_THAT(lacks->lacks, ElementsAre(HasSubstr("records: the file system has no locks"),
                                   HasSubstr("records: the file system cannot sync folders")));
 }
 
