@@ -53,12 +53,13 @@ class Log final : public Facts {
           .scan_count = gap.count});
   }
   void clock_noted(const daq::Note& note, std::optional<std::int64_t> test) override {
-    const bool stall = note.kind == daq::Note::Kind::kStall;
-    tell({.level = LogLevel::kWarning,
-          .event = stall ? "stall" : "clock-step",
-          .message = fmt::format("{} (scan {})", daq::to_text(note), note.scan),
-          .test = test,
-          .first_scan = note.scan});
+    LogEntry entry{.level = LogLevel::kWarning,
+                   .event = "clock-step",
+                   .message = fmt::format("{} (scan {})", daq::to_text(note), note.scan),
+                   .test = test,
+                   .first_scan = note.scan};
+    if (note.kind == daq::Note::Kind::kStall) entry.event = "stall";
+    tell(std::move(entry));
   }
   void test_began(const pipeline::TestStart& start) override {
     tell({.event = "test-began",
