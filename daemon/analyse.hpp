@@ -53,6 +53,7 @@ class RecordAnalysis {
   std::optional<daq::SecondChannel> speed_;  ///< If the second channel measures it.
   double scan_rate_granted_Hz_;
   std::optional<double> gain_uncertainty_;  ///< Relative.
+  std::optional<double> unloaded_level_;    ///< As a coefficient.
   friction::TestAnalysis analysis_;
   std::vector<daq::Gap> gaps_;
   std::optional<daq::ScanIndex> next_;

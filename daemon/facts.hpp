@@ -35,6 +35,8 @@ class Facts {
   virtual void gap_seen(const daq::Gap& /*gap*/, std::optional<std::int64_t> /*test*/) {}
   /// A stall of the computer, or a step of its date. \param test  as above.
   virtual void clock_noted(const daq::Note& /*note*/, std::optional<std::int64_t> /*test*/) {}
+  /// The bench has been in a state that should pass by itself for so long.
+  virtual void bench_stays(std::string_view /*state*/, double /*duration_s*/, std::string_view /*why*/) {}
   virtual void test_began(const pipeline::TestStart& /*start*/) {}
   virtual void test_ended(const pipeline::TestEnd& /*end*/) {}
   virtual void file_published(std::int64_t /*test*/, const std::filesystem::path& /*file*/) {}

@@ -61,6 +61,11 @@ class Log final : public Facts {
     if (note.kind == daq::Note::Kind::kStall) entry.event = "stall";
     tell(std::move(entry));
   }
+  void bench_stays(std::string_view state, double duration_s, std::string_view why) override {
+    tell({.level = LogLevel::kWarning,
+          .event = "bench-stays",
+          .message = fmt::format("the bench has been {} for {:.0f} s: {}", state, duration_s, why)});
+  }
   void test_began(const pipeline::TestStart& start) override {
     tell({.event = "test-began",
           .message = fmt::format("test {} began: trigger at scan {}, record from scan {}", start.number,

@@ -145,7 +145,9 @@ void Session::take_jobs() {
 }
 
 void Session::run_jobs() {
+  const Progress before = progress();
   for (const Job& job : taken_jobs_) job(processor_);
+  count_since(before);
   taken_jobs_.clear();
   bench_.store(processor_.bench(), std::memory_order_relaxed);
 }

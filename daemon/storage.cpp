@@ -241,6 +241,7 @@ void Storage::handle(const Began& message) {
   header.title = fmt::format("test {}", message.start.number);
   header.uuid = record::make_uuid();
   if (message.start.self_check) header.self_check = *message.start.self_check;
+  header.plan.unloaded_level = message.start.unloaded_level;
   const std::string expires = header.calibration.expires;
   begun_ = header;
   const std::optional<double> little_s = little_room_s();

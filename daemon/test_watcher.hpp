@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "core/friction/truth.hpp"
@@ -38,6 +39,9 @@ class TestWatcher final : public pipeline::Sink {
 
   void bench_changed(pipeline::BenchState state) override {
     if (pipeline::rests(state)) rests_();
+  }
+  void bench_stays(pipeline::BenchState state, double duration_s, std::string_view why) override {
+    facts_.bench_stays(pipeline::name(state), duration_s, why);
   }
   void gap(const daq::Gap& gap) override { facts_.gap_seen(gap, number_); }
   void gap_between_tests(const daq::Gap& gap) override { facts_.gap_seen(gap, std::nullopt); }

@@ -21,6 +21,8 @@ struct RecordedFacts {
   std::shared_ptr<const SelfCheck> self_check;  ///< Null if there is none.
   std::optional<LatencyHistogram> read_latency;
   std::vector<Note> notes{};  ///< Scans not falling.
+  /// Of the unloaded cell before the test, as a coefficient; absent where it was not known.
+  std::optional<double> unloaded_level = {};
 };
 
 }  // namespace stickslip::daq

@@ -5,7 +5,7 @@ namespace {
 
 constexpr std::string_view kTestRuns = "a test is running; stop it first";
 constexpr std::string_view kStillLoaded =
-    "the force of the last test is still there; let the carriage go back first";
+    "the force of the last test is still there; let the carriage go back, or tare where nothing pulls";
 constexpr std::string_view kNothingToStop = "no test is running, and none is waited for";
 constexpr std::string_view kAlreadyOver = "the test is over already";
 constexpr std::string_view kNoBoard = "no scans come from the board; stickslip status says why";

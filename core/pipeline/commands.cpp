@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "core/pipeline/processor.hpp"
 
@@ -14,6 +15,10 @@ namespace {
 
 /// What was done before a test is told in its record, the latest of it.
 constexpr std::size_t kMostForLater = 16;
+/// A carriage is back by then.
+constexpr double kLongFinishing_s = 10.0;
+/// A sled has slipped, or slides for so long that somebody should look.
+constexpr double kLongLoading_s = 60.0;
 
 }  // namespace
 
@@ -72,20 +77,24 @@ TareReport Processor::tare(const std::string& who) {
     return report;
   };
   if (test_runs(bench_.state())) return refuse("a test is running; stop it first");
-  if (bench_.state() == BenchState::kFinishing || bench_.state() == BenchState::kDegraded) {
+  if (bench_.state() == BenchState::kDegraded) {
     return refuse(std::string{step(bench_.state(), BenchEvent::kStart, settings_.automatic).refusal});
   }
   if (!calibration_.measures_voltage())
     return refuse("the readings are no voltages: there is no zero to set");
   const std::optional<daq::SelfCheck> check = idle_.check(calibration_, {});
+  if ((!check || !check->zero_N) && bench_.state() == BenchState::kFinishing) {
+    return refuse("the force is not quiet; leave the unloaded sled at rest for a second, then tare again");
+  }
   if (!check || !check->zero_N) {
     return refuse(fmt::format("there are only {} scans of the unloaded bench so far, {} are needed",
                               check ? check->raw.size() : 0, kFewestIdleScans));
   }
-  const double largest_N = settings_.segmenter.start_coefficient * calibration_.normal_load_N();
+  const double largest_N = std::max(settings_.segmenter.start_coefficient, UnloadedLevel::kFarthest) *
+                           calibration_.normal_load_N();
   if (std::abs(*check->zero_N) >= largest_N) {
     return refuse(
-        fmt::format("the cell shows {:.3g} N; from {:.3g} N on, the trigger, that is a load: unload it, "
+        fmt::format("the cell shows {:.3g} N; from {:.3g} N on that is a load: unload it, "
                     "or calibrate",
                     *check->zero_N, largest_N));
   }
@@ -96,6 +105,11 @@ TareReport Processor::tare(const std::string& who) {
   report.zero_standard_error_V = check->zero_standard_error_N.value_or(0.0) / std::abs(before.gain_N_per_V);
   report.scan_count = check->raw.size();
   calibration_ = calibration_.with_zero(report.zero_V);
+  std::vector<double> kept;
+  for (const Waiting& scan : waiting_) kept.push_back(calibration_.coefficient(scan.raw));
+  if (segmenter_.tared(kept)) discard_waiting();
+  follow_bench();
+  report.state = bench_.state();
   note_for_later(fmt::format("zero of the load cell set from {:.6g} V to {:.6g} V at scan {}, by {}",
                              before.zero_V, report.zero_V, next_scan_, who));
   return report;
@@ -140,6 +154,7 @@ std::string_view Processor::happens(BenchEvent event) {
   const BenchState state = bench_.state();
   segmenter_.trigger_by_force(state == BenchState::kArmed && !recorded_start_);
   if (state != before) {
+    bench_scans_ = 0;
     for (Sink* sink : sinks_) sink->bench_changed(state);
   }
   return refusal;
@@ -154,6 +169,20 @@ void Processor::follow_bench() {
   if (bench_.state() == BenchState::kFinishing && segmenter_.ready()) {
     static_cast<void>(happens(BenchEvent::kUnloaded));
   }
+}
+
+void Processor::watch_bench() {
+  const BenchState state = bench_.state();
+  const bool finishing = state == BenchState::kFinishing;
+  if (!finishing && state != BenchState::kLoading) return;
+  const double limit_s = finishing ? kLongFinishing_s : kLongLoading_s;
+  if (++bench_scans_ != std::llround(limit_s * settings_.analysis.scan_rate_Hz)) return;
+  const std::string_view why =
+      finishing
+          ? "the force of the last test is still there, and no test can begin: let the carriage go back, or, "
+            "if nothing pulls, stickslip tare"
+          : "a test runs and no slip has been seen: if nothing pulls, stickslip stop, then stickslip tare";
+  for (Sink* sink : sinks_) sink->bench_stays(state, limit_s, why);
 }
 
 void Processor::repeat_start(daq::ScanIndex index) {

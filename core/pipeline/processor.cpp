@@ -9,12 +9,15 @@
 #include "core/base/contract.hpp"
 #include "core/pipeline/gain_uncertainty.hpp"
 #include "core/pipeline/true_rate.hpp"
+#include "core/pipeline/zero_offset.hpp"
 
 namespace stickslip::pipeline {
 namespace {
 
-SegmenterSettings complete(SegmenterSettings settings, const daq::Calibration& calibration) {
+SegmenterSettings complete(SegmenterSettings settings, const daq::Calibration& calibration,
+                           const daq::RecordedFacts* recorded) {
   settings.step_coefficient = calibration.step_coefficient();
+  if (recorded) settings.unloaded_level = recorded->unloaded_level;
   return settings;
 }
 
@@ -30,7 +33,7 @@ Processor::Processor(const ProcessorSettings& settings, daq::Calibration calibra
       calibration_(std::move(calibration)),
       sinks_(std::move(sinks)),
       gaps_(settings.continues_at),
-      segmenter_(complete(settings.segmenter, calibration_)),
+      segmenter_(complete(settings.segmenter, calibration_, settings.recorded.get())),
       bench_(settings.automatic),
       idle_(settings.analysis.scan_rate_Hz),
       number_(settings.first_test_number),
@@ -65,6 +68,7 @@ void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause, bo
       end(next_scan_, *over);
     }
     follow_bench();
+    watch_bench();
   }
   if (test_is_running()) {
     hand_over(block, not_handed_over, block.count);
@@ -89,6 +93,12 @@ std::optional<EndCause> Processor::observe(daq::ScanIndex index, double raw, std
   }
   // As the segmenter: what is left of the last test's force is no beginning of the next one.
   if (!ready) {
+    // For a tare: a quiet force may be a zero that moved.
+    if (segmenter_.quiet() && !segmenter_.ready()) {
+      idle_.add(index, raw);
+    } else {
+      idle_.clear();
+    }
     ++idle_scan_count_;
     return std::nullopt;
   }
@@ -100,8 +110,7 @@ std::optional<EndCause> Processor::observe(daq::ScanIndex index, double raw, std
   } else if (waiting_.size() > settings_.segmenter.pre_trigger_scans()) {
     const Waiting& oldest = waiting_.front();
     // A bench that is not armed may be loaded by hand, which says nothing of its zero.
-    if (bench_.state() == BenchState::kIdle &&
-        calibration_.coefficient(oldest.raw) >= settings_.segmenter.start_coefficient) {
+    if (bench_.state() == BenchState::kIdle && calibration_.coefficient(oldest.raw) >= segmenter_.trigger()) {
       idle_.clear();
     } else {
       idle_.add(oldest.index, oldest.raw);
@@ -180,7 +189,9 @@ void Processor::begin(daq::ScanIndex trigger, daq::ClockStamp stamp) {
   test_gaps_.clear();
   read_latency_.reset();
   const bool by_command = start_.has_value() || recorded_start_;
-  const TestStart start{number_, waiting_.front().index, trigger, stamp, self_check(), by_command};
+  const TestStart start{number_,    waiting_.front().index,     trigger, stamp, self_check(),
+                        by_command, segmenter_.unloaded_level()};
+  unloaded_level_ = start.unloaded_level;
   idle_.clear();
   std::vector<double> raw;
   raw.reserve(waiting_.size());
@@ -227,6 +238,7 @@ void Processor::end(daq::ScanIndex end, EndCause cause) {
   ended.results = analysis_->finish();
   add_true_rate(ended.results, anchors_, test_gaps_, settings_.analysis.scan_rate_Hz);
   add_gain_uncertainty(ended.results, settings_.gain_uncertainty);
+  add_zero_offset(ended.results, unloaded_level_);
   ended.cycles = analysis_->cycles();
   ended.spikes = analysis_->spikes();
   ended.spike_coefficients = analysis_->spike_coefficients();

@@ -126,6 +126,8 @@ class Processor {
   [[nodiscard]] std::string_view happens(BenchEvent event);
   /// What follows for the machine from the analysis and from the segmenter.
   void follow_bench();
+  /// Counts the scans of a state, and tells if they become many.
+  void watch_bench();
   /// What the replayed record says was done before, and after, this scan was taken.
   void repeat_start(daq::ScanIndex index);
   /// \return true if that was to stop.
@@ -172,12 +174,14 @@ class Processor {
   daq::ClockWatch watch_;
   std::array<double, daq::ScanBlock::kMaxScans> coefficients_{};  ///< Of the latest block.
   std::optional<daq::Note> start_;  ///< The command that begins the next test; its scan is not known yet.
+  std::int64_t bench_scans_ = 0;    ///< Since the bench changed its state.
   std::vector<std::string> for_later_;
   std::size_t next_recorded_note_ = 0;
   bool recorded_start_ = false;  ///< The replayed record was begun by a command.
   // Of the running test.
   daq::AnchorPicker picker_;
   daq::ScanIndex trigger_ = 0;
+  std::optional<double> unloaded_level_;
   std::vector<daq::ClockAnchor> anchors_;
   std::vector<daq::Gap> test_gaps_;
   std::optional<daq::LatencyHistogram> read_latency_;

@@ -43,7 +43,15 @@ std::size_t SegmenterSettings::pre_trigger_scans() const noexcept {
   return static_cast<std::size_t>(std::llround(pre_trigger_s * scan_rate_Hz));
 }
 
-Segmenter::Segmenter(const SegmenterSettings& settings) : settings_(settings), noise_(noise_floor(settings)) {
+Segmenter::Segmenter(const SegmenterSettings& settings)
+    : settings_(settings),
+      quiet_scans_(settings.scan_rate_Hz, std::max(settings.pre_trigger_s, 2.0 * settings.unload_dwell_s),
+                   settings.step_coefficient),
+      level_(settings.unloaded_level && UnloadedLevel::fits(*settings.unloaded_level)
+                 ? settings.unloaded_level
+                 : std::nullopt),
+      level_is_given_(level_.has_value()),
+      noise_(noise_floor(settings)) {
   require(settings.scan_rate_Hz > 0.0, "scan rate in Hz must be positive", settings.scan_rate_Hz);
   require(settings.start_dwell_s > 0.0, "start dwell in s must be positive", settings.start_dwell_s);
   require(settings.unload_dwell_s > 0.0, "unload dwell in s must be positive", settings.unload_dwell_s);
@@ -61,9 +69,7 @@ std::int64_t Segmenter::scans(double seconds) const noexcept {
 
 bool Segmenter::arm() {
   by_force_ = true;
-  const bool was_there = std::any_of(waiting_.begin(), waiting_.end(), [this](double coefficient) {
-    return coefficient >= settings_.start_coefficient;
-  });
+  const bool was_there = was_above();
   if (was_there) {
     waiting_.clear();
     above_ = 0;
@@ -85,14 +91,17 @@ Segmenter::Event Segmenter::observe(base::ScanIndex index, double coefficient) {
     waiting_.clear();
     above_ = 0;
   }
+  if (next_ && index != *next_) quiet_scans_.clear();
   next_ = index + 1;
-  above_ = coefficient >= settings_.start_coefficient ? above_ + 1 : 0;
-  below_ = coefficient < settings_.end_coefficient ? below_ + 1 : 0;
+  quiet_scans_.add(coefficient);
+  if (state_ == State::kReady) track();
+  above_ = coefficient >= trigger() ? above_ + 1 : 0;
+  below_ = coefficient < base() + settings_.end_coefficient ? below_ + 1 : 0;
   const bool unloaded = below_ >= scans(settings_.unload_dwell_s);
 
   switch (state_) {
     case State::kWaitingForUnload:
-      if (unloaded) state_ = State::kReady;
+      if (unloaded || lies_unloaded()) state_ = State::kReady;
       return Event::kNone;
     case State::kReady:
       waiting_.push_back(coefficient);
@@ -105,7 +114,7 @@ Segmenter::Event Segmenter::observe(base::ScanIndex index, double coefficient) {
     case State::kRunning:
       follow(coefficient);
       was_loaded_ = was_loaded_ || loaded();
-      if (unloaded && was_loaded_) {
+      if (was_loaded_ && (unloaded || lies_unloaded())) {
         state_ = State::kReady;
         return Event::kUnloaded;
       }
@@ -118,19 +127,69 @@ Segmenter::Event Segmenter::observe(base::ScanIndex index, double coefficient) {
   return Event::kNone;
 }
 
+double Segmenter::trigger() const noexcept {
+  const double start = settings_.start_coefficient;
+  if (level_ || state_ == State::kRunning) return base() + start;
+  // Only what the record will begin with may count: a replay sees no more.
+  const bool was_below =
+      std::any_of(waiting_.begin(), waiting_.end(), [start](double kept) { return kept < start; });
+  return was_below ? start : std::max(start, UnloadedLevel::kFarthest);
+}
+
+void Segmenter::track() {
+  const auto quiet = quiet_scans_.news();
+  if (level_is_given_ || !quiet || !UnloadedLevel::fits(*quiet)) return;
+  // A replay knows one level for all that was kept, and must not begin the test sooner by it.
+  const double trigger = UnloadedLevel::of_decisions(*quiet) + settings_.start_coefficient;
+  if (std::any_of(waiting_.begin(), waiting_.end(), [trigger](double kept) { return kept >= trigger; }))
+    return;
+  level_ = *quiet;
+  above_ = 0;
+}
+
+bool Segmenter::lies_unloaded() {
+  const auto quiet = quiet_scans_.news();
+  if (!quiet || !UnloadedLevel::fits_after(*quiet, largest_, level_.value_or(0.0))) return false;
+  level_ = *quiet;
+  return true;
+}
+
+bool Segmenter::tared(std::span<const double> kept) {
+  state_ = State::kReady;
+  level_ = 0.0;
+  level_is_given_ = false;
+  quiet_scans_.clear();
+  above_ = below_ = 0;
+  waiting_.assign(kept.begin(), kept.end());
+  const bool was_there = was_above();
+  if (was_there) waiting_.clear();
+  return was_there;
+}
+
+bool Segmenter::was_above() const {
+  return std::any_of(waiting_.begin(), waiting_.end(),
+                     [limit = trigger()](double coefficient) { return coefficient >= limit; });
+}
+
 void Segmenter::begin() {
   state_ = State::kRunning;
   was_loaded_ = !start_now_;
   // What the force did before the record began may not count: a replay cannot see it.
   if (std::exchange(start_now_, false)) above_ = below_ = 0;
+  level_is_given_ = false;
+  // As a replay: from the first scan of the record.
+  quiet_scans_.clear();
   noise_ = signal::NoiseEstimator{noise_floor(settings_)};
   despiker_ = {};
   falls_ = {};
   largest_drop_ = last_drop_ = last_period_ = last_peak_at_ = 0.0;
   fall_count_ = 0;
-  smooth_ = flat_level_ = waiting_.front();
+  smooth_ = flat_level_ = largest_ = waiting_.front();
   flat_scans_ = 0;
-  for (const double coefficient : waiting_) follow(coefficient);
+  for (const double coefficient : waiting_) {
+    quiet_scans_.add(coefficient);
+    follow(coefficient);
+  }
   waiting_.clear();
 }
 
@@ -149,6 +208,7 @@ void Segmenter::follow(double coefficient) {
     last_peak_at_ = fall->peak_at;
   }
   smooth_ += (scan->value - smooth_) / kSmoothing;
+  largest_ = std::max(largest_, smooth_);
   ++flat_scans_;
   if (std::abs(smooth_ - flat_level_) > SlipRule::kHysteresisSigmas * sigma) {
     flat_level_ = smooth_;

@@ -7,6 +7,12 @@
 /// The force tells, or somebody who commands. By the force a test begins when it stays above a trigger. It
 /// ends when it stays near zero again (the carriage has returned), or when a full oscillation stops from one
 /// period to the next and the force lies flat: then the belt has stopped with the coupling stretched.
+/// Trigger and end are above the level of the unloaded cell, which is followed on quiet scans
+/// (unloaded_level.hpp): before a test each quiet force up to UnloadedLevel::kFarthest is that level; during
+/// and after a test only one that lies below a third of the largest force. Until a level is known it is taken
+/// for the calibrated zero; but a force that has not been below the trigger begins a test only from kFarthest
+/// on.
+///
 /// An oscillation that dies away into a flat force is no end: the sled slides steadily, and
 /// whether the belt still moves cannot be seen in the force.
 #pragma once
@@ -15,9 +21,11 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <span>
 
 #include "core/base/scan_index.hpp"
 #include "core/friction/fall_finder.hpp"
+#include "core/pipeline/unloaded_level.hpp"
 #include "core/signal/despike.hpp"
 #include "core/signal/noise.hpp"
 
@@ -27,12 +35,15 @@ namespace stickslip::pipeline {
 struct SegmenterSettings {
   double scan_rate_Hz = 350.0;
   double step_coefficient = 0.0;    ///< One A/D step; 0 if unknown.
-  double start_coefficient = 0.05;  ///< Trigger.
+  double start_coefficient = 0.05;  ///< Trigger, above the unloaded level.
   double start_dwell_s = 0.010;     ///< So long above the trigger.
   double end_coefficient = 0.02;    ///< Unloaded below it; < start_coefficient (hysteresis).
   double unload_dwell_s = 0.25;     ///< So long below it; longer than the slack part of a cycle.
   double no_motion_dwell_s = 0.5;   ///< So long flat, and at least four periods.
   double pre_trigger_s = 0.25;      ///< Kept from before the trigger.
+
+  /// Of the first scan, where it is known from a record: it stands until the first test has begun.
+  std::optional<double> unloaded_level = {};
 
   /// Scans from before the trigger that belong to the record.
   [[nodiscard]] std::size_t pre_trigger_scans() const noexcept;
@@ -70,6 +81,16 @@ class Segmenter {
   /// A test has started and not ended.
   [[nodiscard]] bool running() const noexcept { return state_ == State::kRunning; }
 
+  /// What the unloaded cell reads, as quiet scans told; nothing before they did.
+  [[nodiscard]] std::optional<double> unloaded_level() const noexcept { return level_; }
+  /// A force from here on begins a test, while one can begin.
+  [[nodiscard]] double trigger() const noexcept;
+  /// The latest scans are quiet, at whatever force.
+  [[nodiscard]] bool quiet() const noexcept { return quiet_scans_.quiet(); }
+  /// What the cell shows now is zero from here on, and no force is left of the last test. Not while a test
+  /// runs. \param kept  what was observed since ready(), by the new zero. \return true as arm() does.
+  [[nodiscard]] bool tared(std::span<const double> kept);
+
  private:
   enum class State {
     kWaitingForUnload,  ///< A test is over but the force is not.
@@ -78,6 +99,13 @@ class Segmenter {
   };
 
   [[nodiscard]] std::int64_t scans(double seconds) const noexcept;
+  /// Follows the unloaded level; not while a test runs.
+  void track();
+  [[nodiscard]] double base() const noexcept { return UnloadedLevel::of_decisions(level_.value_or(0.0)); }
+  /// The force was at the trigger within what is kept.
+  [[nodiscard]] bool was_above() const;
+  /// A quiet force has just been found, and it is no load of the test.
+  [[nodiscard]] bool lies_unloaded();
   /// The force has stayed above the trigger up to now.
   [[nodiscard]] bool loaded() const noexcept { return above_ >= scans(settings_.start_dwell_s); }
   void begin();
@@ -90,6 +118,9 @@ class Segmenter {
   bool by_force_ = true;
   bool start_now_ = false;
   std::optional<base::ScanIndex> next_;
+  UnloadedLevel quiet_scans_;
+  std::optional<double> level_;
+  bool level_is_given_;         ///< By a record, for the test to come.
   std::deque<double> waiting_;  ///< As the record will begin with.
   std::int64_t above_ = 0;      ///< Consecutive scans at or above the trigger.
   std::int64_t below_ = 0;      ///< Consecutive scans below the end.
@@ -99,6 +130,7 @@ class Segmenter {
   signal::NoiseEstimator noise_;
   signal::Despiker despiker_;
   friction::FallFinder falls_;
+  double largest_ = 0.0;  ///< Force, averaged over the last few scans.
   double largest_drop_ = 0.0;
   double last_drop_ = 0.0;
   double last_period_ = 0.0;  ///< Scans.

@@ -31,6 +31,8 @@ struct TestStart {
   daq::ClockStamp stamp;                             ///< When the trigger was seen; less a stall before.
   std::shared_ptr<const daq::SelfCheck> self_check;  ///< Null if there was nothing to look at.
   bool by_command = false;
+  /// What the unloaded cell read, as a coefficient; absent where no quiet scans told.
+  std::optional<double> unloaded_level = {};
 };
 
 /// Why a test is over.
@@ -111,6 +113,8 @@ class Sink {
                         const friction::LiveState& /*live*/) {}
   /// The bench is in another state.
   virtual void bench_changed(BenchState /*state*/) {}
+  /// It has been in a state, that should pass by itself, for so long; once. \param why  and what helps.
+  virtual void bench_stays(BenchState /*state*/, double /*duration_s*/, std::string_view /*why*/) {}
 };
 
 }  // namespace stickslip::pipeline

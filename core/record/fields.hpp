@@ -71,6 +71,8 @@ void for_each_field(Facts& facts, Visitor&& visit) {
   visit(FieldName{"end_coefficient", "1", "a test ends below this coefficient [1]"}, facts.end_coefficient);
   visit(FieldName{"end_dwell", "s", "for so long [s]"}, facts.end_dwell_s);
   visit(FieldName{"no_motion_dwell", "s", "or when it lies flat for so long [s]"}, facts.no_motion_dwell_s);
+  visit(FieldName{"unloaded_level", "1", "above this coefficient, which the unloaded cell read [1]"},
+        facts.unloaded_level);
 }
 
 /// All but the scans, which are stored like those of the record.

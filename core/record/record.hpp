@@ -86,6 +86,8 @@ struct PlanFacts {
   std::optional<double> end_coefficient;
   std::optional<double> end_dwell_s;
   std::optional<double> no_motion_dwell_s;
+  /// What the unloaded cell read before the test; trigger and end are above it. Absent where it is not known.
+  std::optional<double> unloaded_level{};
 
   bool operator==(const PlanFacts&) const = default;
 };

@@ -37,6 +37,7 @@ base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::C
                          nullptr,
                          record->end ? record->end->read_latency : std::nullopt,
                          {}});
+  recorded->unloaded_level = record->header.plan.unloaded_level;
   if (auto& check = record->header.self_check) {
     recorded->self_check = std::make_shared<const daq::SelfCheck>(*std::move(check));
   }

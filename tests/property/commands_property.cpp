@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -41,6 +42,7 @@ class Recorder final : public Sink {
     tests.back().end = end;
   }
   void bench_changed(BenchState state) override { told = state; }
+  void bench_stays(BenchState state, double, std::string_view) override { stays.push_back(state); }
   void observed(daq::ScanIndex, std::span<const double> coefficient, const friction::LiveState&) override {
     observed_count += coefficient.size();
   }
@@ -50,6 +52,7 @@ class Recorder final : public Sink {
   bool contiguous = true;
   std::size_t observed_count = 0;
   BenchState told = BenchState::kDegraded;
+  std::vector<BenchState> stays;
 };
 
 ProcessorSettings settings_of(bool automatic) {
@@ -116,6 +119,7 @@ void replay_gives(const Kept& test, bool automatic) {
   auto recorded = std::make_shared<daq::RecordedFacts>();
   recorded->notes = test.notes;
   recorded->self_check = test.start.self_check;
+  recorded->unloaded_level = test.start.unloaded_level;
   settings.recorded = recorded;
   Recorder again;
   Processor processor{settings, coefficients(), {&again}};
@@ -182,6 +186,10 @@ RC_GTEST_PROP(Commands, KeepMachineSegmenterAndRecordTogether, (bool automatic))
   RC_ASSERT(processor.bench() == BenchState::kDegraded);
   RC_ASSERT(record.running == 0);
   RC_ASSERT(record.contiguous);
+  // The account closes: each scan is in a record or was idle.
+  std::size_t recorded = 0;
+  for (const Kept& test : record.tests) recorded += test.raw.size();
+  RC_ASSERT(recorded + static_cast<std::size_t>(processor.idle_scan_count()) == force.size());
   for (const Kept& test : record.tests) {
     RC_ASSERT(test.end.end == test.start.first + static_cast<daq::ScanIndex>(test.raw.size()));
     for (const daq::Note& note : test.notes) {
@@ -237,6 +245,38 @@ TEST(Commands, AnArmedBenchTakesOneTestByForceAndIsIdleThen) {
   EXPECT_EQ(record.tests[0].start.trigger, 101);
   EXPECT_EQ(daq::to_text(record.tests[0].notes.at(0)), "bench: armed at scan 100, by ada");
   EXPECT_EQ(processor.bench(), BenchState::kIdle);
+}
+
+// The zero may be anywhere the documents allow, and move by half the trigger while nobody looks.
+RC_GTEST_PROP(Commands, EachPullHasItsRecordWhateverTheZero, ()) {
+  double zero = 1e-3 * *rc::gen::inRange(-70, 71);
+  std::vector<double> force(*rc::gen::inRange<std::size_t>(100, 200), zero);
+  const int pulls = *rc::gen::inRange(1, 4);
+  for (int pull = 0; pull < pulls; ++pull) {
+    const int scans = *rc::gen::inRange(50, 150);
+    for (int k = 0; k < scans; ++k) force.push_back(zero + 0.3 + 0.1 * std::fmod(k, 20.0) / 20.0);
+    zero = std::clamp(zero + 1e-3 * *rc::gen::inRange(-30, 31), -0.07, 0.07);
+    force.insert(force.end(), *rc::gen::inRange<std::size_t>(100, 200), zero);
+  }
+  Recorder record;
+  Processor processor{settings_of(true), coefficients(), {&record}};
+  feed(processor, force, 0, static_cast<std::size_t>(*rc::gen::inRange(1, 65)));
+  RC_ASSERT(processor.bench() == BenchState::kArmed);
+  processor.finish(EndCause::kEndOfInput);
+  RC_ASSERT(record.tests.size() == static_cast<std::size_t>(pulls));
+  for (const Kept& test : record.tests) replay_gives(test, true);
+}
+
+TEST(Commands, AForceThatStaysIsToldOnce) {
+  Recorder record;
+  Processor processor{settings_of(true), coefficients(), {&record}};
+  feed(processor, std::vector<double>(100, 0.0), 0, 10);
+  feed(processor, std::vector<double>(50, 0.3), 100, 10);
+  EXPECT_EQ(processor.stop("ada").refusal, "");
+  feed(processor, std::vector<double>(990, 0.3), 150, 10);
+  EXPECT_TRUE(record.stays.empty());
+  feed(processor, std::vector<double>(2000, 0.3), 1140, 10);
+  EXPECT_EQ(record.stays, std::vector{BenchState::kFinishing});
 }
 
 TEST(Commands, StoppingLeavesTheForceToGoAway) {

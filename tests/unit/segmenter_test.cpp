@@ -81,7 +81,11 @@ TEST(Segmenter, TestStartsWhenTheForceHasStayedAboveTheTrigger) {
 }
 
 TEST(Segmenter, ForceAtTheTriggerCountsAndBelowItDoesNot) {
-  EXPECT_EQ(events_in(std::vector<double>(50, 0.05)).size(), 1U);
+  // A force that has never been below the trigger may be a zero that is off.
+  std::vector<double> values(51, 0.05);
+  EXPECT_TRUE(events_in(values).empty());
+  values.front() = 0.0;
+  EXPECT_EQ(events_in(values).size(), 1U);
   EXPECT_TRUE(events_in(std::vector<double>(50, std::nextafter(0.05, 0.0))).empty());
 }
 

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <future>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -20,8 +21,8 @@ namespace {
 class Hasty final : public daq::Board {
  public:
   /// \param lost_every  so many blocks; 3 scans are lost before each of these.
-  Hasty(std::int64_t block_count, std::int64_t lost_every)
-      : block_count_(block_count), lost_every_(lost_every) {
+  Hasty(std::int64_t block_count, std::int64_t lost_every, double force = 0.0)
+      : block_count_(block_count), lost_every_(lost_every), force_(force) {
     info_.quantity = daq::RawQuantity::kCoefficient;
     info_.scan_rate_granted_Hz = 1.0;  // The ring is as small as it gets.
   }
@@ -37,6 +38,7 @@ class Hasty final : public daq::Board {
     if (given_ > 0 && given_ % lost_every_ == 0) next_ += 3;
     block.first = next_++;
     block.count = 1;
+    block.raw[0] = force_;
     ++given_;
     return daq::ReadStatus::kScans;
   }
@@ -48,6 +50,7 @@ class Hasty final : public daq::Board {
   daq::BoardInfo info_;
   std::int64_t block_count_;
   std::int64_t lost_every_;
+  double force_;
   std::int64_t given_ = 0;
   daq::ScanIndex next_ = 0;
   bool told_ = false;
@@ -102,6 +105,35 @@ TEST(Session, WhatAFullRingDropsAtTheEndIsAGapLikeAnyOther) {
   EXPECT_EQ(last.first + last.count, session.issued_index_count());
   ASSERT_TRUE(session.end().continuation);
   EXPECT_EQ(session.end().continuation->end, session.issued_index_count());
+}
+
+// A command that forgets scans kept for the trigger takes them from no account.
+TEST(Session, WhatArmingForgetsIsCounted) {
+  constexpr std::int64_t kBlocks = 100;
+  auto board = std::make_unique<Hasty>(kBlocks, kBlocks, 0.3);
+  std::future<void> over = board->over.get_future();
+  SessionSettings settings;
+  settings.processor.automatic = false;
+  settings.processor.segmenter.scan_rate_Hz = 1.0;
+  settings.processor.segmenter.pre_trigger_s = 20.0;
+  settings.processor.analysis.scan_rate_Hz = 1.0;
+  settings.processor.clock_is_real = false;
+  SessionCounts counts;
+  std::promise<void> ended;
+  SessionEvents events;
+  events.first_scan = [] {};
+  events.ended = [&ended](Acquisition::End) { ended.set_value(); };
+  Session session{
+      {std::move(board), nullptr, {}, {}, {}, nullptr, {}}, settings, {}, std::move(events), counts};
+  ASSERT_TRUE(session.start());
+  over.wait();
+  std::string refusal = "not run";
+  ASSERT_TRUE(
+      session.post([&refusal](pipeline::Processor& processor) { refusal = processor.arm("ada").refusal; }));
+  session.start_processing();
+  ended.get_future().wait();
+  // Either the scans were there when the job ran, or the board had ended already.
+  EXPECT_EQ(counts.idle_scans + counts.lost_scans, session.issued_index_count()) << refusal;
 }
 
 }  // namespace

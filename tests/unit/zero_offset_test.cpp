@@ -1,0 +1,43 @@
+// A zero that is off shifts levels, not differences.
+
+#include "core/pipeline/zero_offset.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace stickslip::pipeline {
+namespace {
+
+friction::TestResults some_results() {
+  friction::TestResults results;
+  results.static_coefficient = friction::Estimate::of(0.38, 0.001);
+  results.mu_k = friction::Estimate::of(0.3, 0.001);
+  results.mu_k.systematic_uncertainty = 0.03;
+  results.delta_mu = friction::Estimate::of(0.05, 0.001);
+  return results;
+}
+
+TEST(ZeroOffset, IsAFindingAndASystematicPartOfLevelsAlone) {
+  friction::TestResults results = some_results();
+  add_zero_offset(results, -0.04);
+  ASSERT_EQ(results.findings.size(), 1U);
+  EXPECT_NE(results.findings[0].find("-0.0400"), std::string::npos) << results.findings[0];
+  EXPECT_DOUBLE_EQ(results.static_coefficient.systematic_uncertainty.value_or(0.0), 0.04);
+  EXPECT_DOUBLE_EQ(results.mu_k.systematic_uncertainty.value_or(0.0), 0.05);
+  EXPECT_FALSE(results.delta_mu.systematic_uncertainty);
+  EXPECT_FALSE(results.kinetic_coefficient.systematic_uncertainty) << "there is no value";
+}
+
+TEST(ZeroOffset, WithinTheLimitOrUnknownChangesNothing) {
+  for (const std::optional<double> level :
+       {std::optional<double>{}, std::optional{0.0025}, std::optional{-0.001}}) {
+    friction::TestResults results = some_results();
+    add_zero_offset(results, level);
+    EXPECT_TRUE(results.findings.empty());
+    EXPECT_FALSE(results.static_coefficient.systematic_uncertainty);
+  }
+}
+
+}  // namespace
+}  // namespace stickslip::pipeline
