@@ -40,9 +40,11 @@ base::Result<FolderLock> FolderLock::take(const std::filesystem::path& folder) {
   if (!opened.open())
     return base::failure("record folder {}: cannot be opened: {}", folder.string(),
                          record::system_message(errno));
-  if (::flock(opened.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return FolderLock{std::move(opened)};
+  if (::flock(opened.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
+    return FolderLock{std::move(opened)};
   return base::failure(
-      "record folder {}: another stickslipd{} records into it: stop that one, or give this one a folder of its "
+      "record folder {}: another stickslipd{} records into it: stop that one, or give this one a folder of "
+      "its "
       "own in [record] folder",
       folder.string(), owner_of(opened.get()));
 }

@@ -22,8 +22,8 @@ struct RecordFolder {
   FolderLock lock;
 };
 
-/// Makes the folder if it is absent, tries there what records need, and locks it. Errors: kFailure if no record
-/// can be made there, or another daemon records into it.
+/// Makes the folder if it is absent, tries there what records need, and locks it. Errors: kFailure if no
+/// record can be made there, or another daemon records into it.
 [[nodiscard]] base::Result<RecordFolder> prepare_record_folder(
     const std::filesystem::path& folder, const record::FileCalls& calls = record::system_calls());
 

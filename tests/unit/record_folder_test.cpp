@@ -31,7 +31,7 @@ TEST(RecordFolder, OfALackingFileSystemIsUsedAndSaysWhatFollows) {
   const auto lacks = prepare_record_folder(folder / "records", disk);
   ASSERT_TRUE(lacks) << lacks.error().message;
   EXPECT_THAT(lacks->lacks, ElementsAre(HasSubstr("records: the file system has no locks"),
-                                  HasSubstr("records: the file system cannot sync folders")));
+                                        HasSubstr("records: the file system cannot sync folders")));
 }
 
 TEST(RecordFolder, InWhichNothingCanBeMadeIsRefusedByName) {
