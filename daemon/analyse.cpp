@@ -105,7 +105,7 @@ void RecordAnalysis::finish(record::EndRecord& end, std::span<const daq::ClockAn
   end.results = analysis_.finish();
   pipeline::add_true_rate(end.results, anchors, gaps, scan_rate_granted_Hz_);
   pipeline::add_gain_uncertainty(end.results, gain_uncertainty_);
-  pipeline::add_zero_offset(end.results, unloaded_level_);
+  pipeline::add_zero_offset(end.results, unloaded_level_, end.unloaded_level);
   end.cycles = analysis_.take_cycles();
   end.spikes = analysis_.spikes();
 }

@@ -57,6 +57,10 @@ App::State App::waiting_state(base::ErrorKind kind) noexcept {
 std::string App::status_line() const {
   const StorageState storage = storage_.state();
   std::string line = state_line();
+  if (session_) {
+    if (const std::string_view trouble = pipeline::words(session_->bench_trouble()); !trouble.empty())
+      line += fmt::format("; bench {}: {}", pipeline::name(session_->bench()), trouble);
+  }
   if (!watchdog_.hanging().empty())
     line += fmt::format("; does not move: {}", fmt::join(watchdog_.hanging(), ", "));
   if (storage.kind == StorageState::Kind::kWaiting) {
@@ -108,6 +112,7 @@ Status App::status() const {
   if (session_) {
     status.board = session_->board_info();
     status.bench = session_->bench();
+    status.bench_trouble = pipeline::words(session_->bench_trouble());
     if (current_test_) status.live = session_->live();
     status.scheduling = realtime_facts();
   }

@@ -24,7 +24,8 @@ std::string refusal_of(const pipeline::Processor& processor) {
     case pipeline::BenchState::kRunning:
       return "a test is running; stop it first";
     case pipeline::BenchState::kFinishing:
-      return "the force of the last test is still there; let the carriage go back first";
+      return std::string{
+          pipeline::step(pipeline::BenchState::kFinishing, pipeline::BenchEvent::kStart, false).refusal};
     case pipeline::BenchState::kDegraded:
       return kNoScans;
   }

@@ -35,7 +35,7 @@ class Facts {
   virtual void gap_seen(const daq::Gap& /*gap*/, std::optional<std::int64_t> /*test*/) {}
   /// A stall of the computer, or a step of its date. \param test  as above.
   virtual void clock_noted(const daq::Note& /*note*/, std::optional<std::int64_t> /*test*/) {}
-  /// The bench has been in a state that should pass by itself for so long.
+  /// The bench has been in a state that should pass by itself for so long. \param why  and what helps.
   virtual void bench_stays(std::string_view /*state*/, double /*duration_s*/, std::string_view /*why*/) {}
   virtual void test_began(const pipeline::TestStart& /*start*/) {}
   virtual void test_ended(const pipeline::TestEnd& /*end*/) {}

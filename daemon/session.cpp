@@ -150,6 +150,7 @@ void Session::run_jobs() {
   count_since(before);
   taken_jobs_.clear();
   bench_.store(processor_.bench(), std::memory_order_relaxed);
+  bench_trouble_.store(processor_.bench_trouble(), std::memory_order_relaxed);
 }
 
 void Session::close_jobs() {
@@ -181,6 +182,7 @@ void Session::process_block(const daq::ScanBlock& block) {
     if (const auto late_ns = meter.lateness_ns(block)) clocks_.latency.add(*late_ns);
   }
   bench_.store(processor_.bench(), std::memory_order_relaxed);
+  bench_trouble_.store(processor_.bench_trouble(), std::memory_order_relaxed);
   counts_.dropped_scans.fetch_add(dropped, std::memory_order_relaxed);
   counts_.overruns.fetch_add(overruns, std::memory_order_relaxed);
   counts_.scans.fetch_add(block.count, std::memory_order_relaxed);

@@ -96,6 +96,9 @@ class Session {
     return live_;
   }
   /// From any thread.
+  [[nodiscard]] pipeline::BenchTrouble bench_trouble() const noexcept {
+    return bench_trouble_.load(std::memory_order_relaxed);
+  }
   [[nodiscard]] pipeline::BenchState bench() const noexcept { return bench_.load(std::memory_order_relaxed); }
   /// From any thread.
   [[nodiscard]] SessionClocks clocks() const {
@@ -145,6 +148,7 @@ class Session {
   mutable std::mutex live_mutex_;  ///< Held for a copy; the acquisition thread has no part in it.
   friction::LiveState live_;
   std::atomic<pipeline::BenchState> bench_;
+  std::atomic<pipeline::BenchTrouble> bench_trouble_ = pipeline::BenchTrouble::kNone;
   SessionClocks clocks_;
   std::uint64_t dropped_before_ = 0;
   std::uint64_t overruns_before_ = 0;

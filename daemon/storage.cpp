@@ -191,6 +191,7 @@ void Storage::test_ended(const pipeline::TestEnd& end) {
   record->cycles = end.cycles;
   record->spikes = end.spikes;
   record->read_latency = end.read_latency;
+  record->unloaded_level = end.unloaded_level;
   std::shared_ptr<friction::TrueForce> force;
   if (end.cause == pipeline::EndCause::kBoardMissing) {
     record->status = record::Status::kIncomplete;

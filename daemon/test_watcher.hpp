@@ -40,8 +40,8 @@ class TestWatcher final : public pipeline::Sink {
   void bench_changed(pipeline::BenchState state) override {
     if (pipeline::rests(state)) rests_();
   }
-  void bench_stays(pipeline::BenchState state, double duration_s, std::string_view why) override {
-    facts_.bench_stays(pipeline::name(state), duration_s, why);
+  void bench_stays(pipeline::BenchState state, double duration_s, pipeline::BenchTrouble trouble) override {
+    facts_.bench_stays(pipeline::name(state), duration_s, pipeline::words(trouble));
   }
   void gap(const daq::Gap& gap) override { facts_.gap_seen(gap, number_); }
   void gap_between_tests(const daq::Gap& gap) override { facts_.gap_seen(gap, std::nullopt); }

@@ -91,4 +91,22 @@ BenchStep step(BenchState state, BenchEvent event, bool automatic) noexcept {
   return degraded(event, at_rest);
 }
 
+std::string_view words(BenchTrouble trouble) noexcept {
+  switch (trouble) {
+    case BenchTrouble::kNone:
+      break;
+    case BenchTrouble::kLongFinishing:
+      return "the force of the last test is still there, and no test can begin: let the carriage go back, "
+             "or, "
+             "if nothing pulls, stickslip tare";
+    case BenchTrouble::kLongLoading:
+      return "a test runs and no slip has been seen: if nothing pulls, stickslip stop, then stickslip tare";
+    case BenchTrouble::kPulledAgain:
+      return "the sled was pulled before the force of the last test was gone, and while that lasts no pull "
+             "is "
+             "recorded: leave the unloaded sled at rest for a second before each pull";
+  }
+  return {};
+}
+
 }  // namespace stickslip::pipeline

@@ -29,6 +29,17 @@ inline constexpr std::size_t kBenchStates = 6;
   return state == BenchState::kIdle || state == BenchState::kArmed;
 }
 
+/// What keeps a bench from the tests to come; told when it is seen, and until the state changes.
+enum class BenchTrouble {
+  kNone,
+  kLongFinishing,  ///< For longer than a carriage takes to go back.
+  kLongLoading,    ///< For longer than a pull needs to slip.
+  kPulledAgain,    ///< While finishing: such pulls are in no record.
+};
+
+/// What it is, and what helps. Empty for kNone.
+[[nodiscard]] std::string_view words(BenchTrouble trouble) noexcept;
+
 /// What can happen to it.
 enum class BenchEvent {
   // Commands: each may be refused.

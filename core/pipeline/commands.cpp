@@ -155,6 +155,7 @@ std::string_view Processor::happens(BenchEvent event) {
   segmenter_.trigger_by_force(state == BenchState::kArmed && !recorded_start_);
   if (state != before) {
     bench_scans_ = 0;
+    trouble_ = BenchTrouble::kNone;
     for (Sink* sink : sinks_) sink->bench_changed(state);
   }
   return refusal;
@@ -177,12 +178,13 @@ void Processor::watch_bench() {
   if (!finishing && state != BenchState::kLoading) return;
   const double limit_s = finishing ? kLongFinishing_s : kLongLoading_s;
   if (++bench_scans_ != std::llround(limit_s * settings_.analysis.scan_rate_Hz)) return;
-  const std::string_view why =
-      finishing
-          ? "the force of the last test is still there, and no test can begin: let the carriage go back, or, "
-            "if nothing pulls, stickslip tare"
-          : "a test runs and no slip has been seen: if nothing pulls, stickslip stop, then stickslip tare";
-  for (Sink* sink : sinks_) sink->bench_stays(state, limit_s, why);
+  trouble(finishing ? BenchTrouble::kLongFinishing : BenchTrouble::kLongLoading);
+}
+
+void Processor::trouble(BenchTrouble trouble) {
+  trouble_ = trouble;
+  const double duration_s = static_cast<double>(bench_scans_) / settings_.analysis.scan_rate_Hz;
+  for (Sink* sink : sinks_) sink->bench_stays(bench_.state(), duration_s, trouble);
 }
 
 void Processor::repeat_start(daq::ScanIndex index) {

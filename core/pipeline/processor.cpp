@@ -100,6 +100,7 @@ std::optional<EndCause> Processor::observe(daq::ScanIndex index, double raw, std
       idle_.clear();
     }
     ++idle_scan_count_;
+    if (event == Segmenter::Event::kPulledAgain) trouble(BenchTrouble::kPulledAgain);
     return std::nullopt;
   }
   waiting_.push_back({index, raw, second});
@@ -238,7 +239,8 @@ void Processor::end(daq::ScanIndex end, EndCause cause) {
   ended.results = analysis_->finish();
   add_true_rate(ended.results, anchors_, test_gaps_, settings_.analysis.scan_rate_Hz);
   add_gain_uncertainty(ended.results, settings_.gain_uncertainty);
-  add_zero_offset(ended.results, unloaded_level_);
+  if (cause == EndCause::kUnloaded) ended.unloaded_level = segmenter_.level_after();
+  add_zero_offset(ended.results, unloaded_level_, ended.unloaded_level);
   ended.cycles = analysis_->cycles();
   ended.spikes = analysis_->spikes();
   ended.spike_coefficients = analysis_->spike_coefficients();

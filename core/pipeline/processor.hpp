@@ -94,6 +94,7 @@ class Processor {
   void plan_method(const friction::Method& method) { settings_.analysis.method = method; }
 
   [[nodiscard]] BenchState bench() const noexcept { return bench_.state(); }
+  [[nodiscard]] BenchTrouble bench_trouble() const noexcept { return trouble_; }
   [[nodiscard]] const daq::Calibration& calibration() const noexcept { return calibration_; }
   [[nodiscard]] bool test_is_running() const noexcept { return analysis_.has_value(); }
   /// Number of the running test, else of the next one.
@@ -128,6 +129,7 @@ class Processor {
   void follow_bench();
   /// Counts the scans of a state, and tells if they become many.
   void watch_bench();
+  void trouble(BenchTrouble trouble);
   /// What the replayed record says was done before, and after, this scan was taken.
   void repeat_start(daq::ScanIndex index);
   /// \return true if that was to stop.
@@ -174,7 +176,8 @@ class Processor {
   daq::ClockWatch watch_;
   std::array<double, daq::ScanBlock::kMaxScans> coefficients_{};  ///< Of the latest block.
   std::optional<daq::Note> start_;  ///< The command that begins the next test; its scan is not known yet.
-  std::int64_t bench_scans_ = 0;    ///< Since the bench changed its state.
+  BenchTrouble trouble_ = BenchTrouble::kNone;
+  std::int64_t bench_scans_ = 0;  ///< Since the bench changed its state.
   std::vector<std::string> for_later_;
   std::size_t next_recorded_note_ = 0;
   bool recorded_start_ = false;  ///< The replayed record was begun by a command.

@@ -45,8 +45,11 @@ std::size_t SegmenterSettings::pre_trigger_scans() const noexcept {
 
 Segmenter::Segmenter(const SegmenterSettings& settings)
     : settings_(settings),
-      quiet_scans_(settings.scan_rate_Hz, std::max(settings.pre_trigger_s, 2.0 * settings.unload_dwell_s),
-                   settings.step_coefficient),
+      quiet_scans_(
+          settings.scan_rate_Hz,
+          std::max({UnloadedLevel::kQuiet_s, 1.25 * settings.pre_trigger_s, 2.0 * settings.unload_dwell_s}),
+          settings.step_coefficient),
+      end_scans_(settings.scan_rate_Hz, settings.unload_dwell_s, settings.step_coefficient),
       level_(settings.unloaded_level && UnloadedLevel::fits(*settings.unloaded_level)
                  ? settings.unloaded_level
                  : std::nullopt),
@@ -83,7 +86,36 @@ void Segmenter::stop() noexcept {
   start_now_ = false;
   if (state_ != State::kRunning) return;
   // As for a stop by force: what is left of the force is no beginning of the next test.
-  state_ = below_ >= scans(settings_.unload_dwell_s) ? State::kReady : State::kWaitingForUnload;
+  if (below_ >= scans(settings_.unload_dwell_s)) {
+    state_ = State::kReady;
+  } else {
+    wait_for_unload(std::max(largest_, end_tail_.empty() ? 0.0 : end_tail_.back()));
+  }
+}
+
+void Segmenter::wait_for_unload(double force) noexcept {
+  state_ = State::kWaitingForUnload;
+  pulled_again_ = false;
+  smooth_ = lowest_ = force;
+}
+
+bool Segmenter::pulls_again(double coefficient) noexcept {
+  smooth_ += (coefficient - smooth_) / kSmoothing;
+  lowest_ = std::min(lowest_, smooth_);
+  if (pulled_again_) return false;
+  pulled_again_ = UnloadedLevel::fits_after(lowest_, largest_, level_.value_or(0.0)) &&
+                  smooth_ >= lowest_ + settings_.start_coefficient;
+  return pulled_again_;
+}
+
+std::optional<double> Segmenter::level_at_end() {
+  end_scans_.clear();
+  std::optional<double> level;
+  for (const double coefficient : end_tail_) {
+    end_scans_.add(coefficient);
+    level = end_scans_.news();
+  }
+  return level;
 }
 
 Segmenter::Event Segmenter::observe(base::ScanIndex index, double coefficient) {
@@ -101,8 +133,11 @@ Segmenter::Event Segmenter::observe(base::ScanIndex index, double coefficient) {
 
   switch (state_) {
     case State::kWaitingForUnload:
-      if (unloaded || lies_unloaded()) state_ = State::kReady;
-      return Event::kNone;
+      if (unloaded || lies_unloaded()) {
+        state_ = State::kReady;
+        return Event::kNone;
+      }
+      return pulls_again(coefficient) ? Event::kPulledAgain : Event::kNone;
     case State::kReady:
       waiting_.push_back(coefficient);
       if (start_now_ || (by_force_ && loaded())) {
@@ -114,12 +149,15 @@ Segmenter::Event Segmenter::observe(base::ScanIndex index, double coefficient) {
     case State::kRunning:
       follow(coefficient);
       was_loaded_ = was_loaded_ || loaded();
+      end_tail_.push_back(coefficient);
+      if (end_tail_.size() > end_scans_.stretch_scans()) end_tail_.pop_front();
       if (was_loaded_ && (unloaded || lies_unloaded())) {
+        level_after_ = quiet_scans_.news() ? quiet_scans_.news() : level_at_end();
         state_ = State::kReady;
         return Event::kUnloaded;
       }
       if (belt_has_stopped()) {
-        state_ = State::kWaitingForUnload;
+        wait_for_unload(std::min(smooth_, flat_level_));
         return Event::kNoRelativeMotion;
       }
       return Event::kNone;
@@ -151,6 +189,8 @@ bool Segmenter::lies_unloaded() {
   const auto quiet = quiet_scans_.news();
   if (!quiet || !UnloadedLevel::fits_after(*quiet, largest_, level_.value_or(0.0))) return false;
   level_ = *quiet;
+  // What was counted before it is in no record to come.
+  above_ = below_ = 0;
   return true;
 }
 
@@ -179,6 +219,8 @@ void Segmenter::begin() {
   level_is_given_ = false;
   // As a replay: from the first scan of the record.
   quiet_scans_.clear();
+  end_tail_.clear();
+  level_after_.reset();
   noise_ = signal::NoiseEstimator{noise_floor(settings_)};
   despiker_ = {};
   falls_ = {};

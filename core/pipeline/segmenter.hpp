@@ -53,7 +53,13 @@ struct SegmenterSettings {
 /// a replayed record ends where it ended. Thread-bound.
 class Segmenter {
  public:
-  enum class Event { kNone, kTestStarts, kUnloaded, kNoRelativeMotion };
+  enum class Event {
+    kNone,
+    kTestStarts,
+    kUnloaded,
+    kNoRelativeMotion,
+    kPulledAgain,  ///< Before the force of a test was seen to be gone; no test begins by it. Once a test.
+  };
 
   /// \throws std::invalid_argument unless rate and dwells are positive and
   ///         0 ≤ end_coefficient < start_coefficient.
@@ -83,6 +89,8 @@ class Segmenter {
 
   /// What the unloaded cell reads, as quiet scans told; nothing before they did.
   [[nodiscard]] std::optional<double> unloaded_level() const noexcept { return level_; }
+  /// What the cell read at the end of the latest test; only after kUnloaded, and if the force was quiet.
+  [[nodiscard]] std::optional<double> level_after() const noexcept { return level_after_; }
   /// A force from here on begins a test, while one can begin.
   [[nodiscard]] double trigger() const noexcept;
   /// The latest scans are quiet, at whatever force.
@@ -109,6 +117,11 @@ class Segmenter {
   /// The force has stayed above the trigger up to now.
   [[nodiscard]] bool loaded() const noexcept { return above_ >= scans(settings_.start_dwell_s); }
   void begin();
+  /// \param force  the lowest that was seen since it was a load.
+  void wait_for_unload(double force) noexcept;
+  /// The force has fallen far enough to be unloaded, and has risen again: for the first time.
+  [[nodiscard]] bool pulls_again(double coefficient) noexcept;
+  [[nodiscard]] std::optional<double> level_at_end();
   /// Follows turning points and flatness of the running test.
   void follow(double coefficient);
   [[nodiscard]] bool belt_has_stopped() const;
@@ -119,6 +132,7 @@ class Segmenter {
   bool start_now_ = false;
   std::optional<base::ScanIndex> next_;
   UnloadedLevel quiet_scans_;
+  UnloadedLevel end_scans_;  ///< Of the dwell that ended the latest test.
   std::optional<double> level_;
   bool level_is_given_;         ///< By a record, for the test to come.
   std::deque<double> waiting_;  ///< As the record will begin with.
@@ -130,6 +144,10 @@ class Segmenter {
   signal::NoiseEstimator noise_;
   signal::Despiker despiker_;
   friction::FallFinder falls_;
+  std::deque<double> end_tail_;  ///< The latest scans, for end_scans_.
+  std::optional<double> level_after_;
+  bool pulled_again_ = false;
+  double lowest_ = 0.0;   ///< Force after a test, averaged over the last few scans.
   double largest_ = 0.0;  ///< Force, averaged over the last few scans.
   double largest_drop_ = 0.0;
   double last_drop_ = 0.0;

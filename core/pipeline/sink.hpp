@@ -75,6 +75,8 @@ struct TestEnd {
   std::int64_t number = 0;
   daq::ScanIndex end = 0;  ///< One past the last scan of the record.
   EndCause cause = EndCause::kUnloaded;
+  /// What the unloaded cell read at the end; absent unless the test ended by unloading, and quietly.
+  std::optional<double> unloaded_level = {};
   friction::TestResults results;
   base::LongColumn<friction::Cycle> cycles;           ///< Final values, after the whole-test estimate.
   std::vector<daq::ScanIndex> spikes;                 ///< Scans replaced for the detector.
@@ -113,8 +115,8 @@ class Sink {
                         const friction::LiveState& /*live*/) {}
   /// The bench is in another state.
   virtual void bench_changed(BenchState /*state*/) {}
-  /// It has been in a state, that should pass by itself, for so long; once. \param why  and what helps.
-  virtual void bench_stays(BenchState /*state*/, double /*duration_s*/, std::string_view /*why*/) {}
+  /// Something keeps it in its state. \param duration_s  so far.
+  virtual void bench_stays(BenchState /*state*/, double /*duration_s*/, BenchTrouble /*trouble*/) {}
 };
 
 }  // namespace stickslip::pipeline

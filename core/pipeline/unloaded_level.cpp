@@ -28,11 +28,11 @@ constexpr double kRoundedSteps = 1.5;
 
 }  // namespace
 
-UnloadedLevel::UnloadedLevel(double scan_rate_Hz, double shortest_s, double step_coefficient)
+UnloadedLevel::UnloadedLevel(double scan_rate_Hz, double stretch_s, double step_coefficient)
     : smallest_spread_(std::max(kSmallestSpread, kRoundedSteps * step_coefficient)),
-      quarter_(static_cast<std::size_t>(
-          std::max(2.0, std::min(kMostScans, std::ceil(std::max(kQuiet_s, shortest_s) * scan_rate_Hz /
-                                                       static_cast<double>(kQuarters)))))) {}
+      quarter_(static_cast<std::size_t>(std::max(
+          2.0,
+          std::min(kMostScans, std::floor(stretch_s * scan_rate_Hz / static_cast<double>(kQuarters)))))) {}
 
 void UnloadedLevel::clear() noexcept {
   filled_ = closed_ = 0;

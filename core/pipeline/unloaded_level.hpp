@@ -2,11 +2,11 @@
 /// What does the cell read with no load on it? The level of quiet scans, for deciding where tests begin and
 /// end.
 ///
-///     UnloadedLevel level{rate_Hz, shortest_s, step};
+///     UnloadedLevel level{rate_Hz, UnloadedLevel::kQuiet_s, step};
 ///     level.add(coefficient);
 ///     if (const auto quiet = level.news(); quiet && UnloadedLevel::fits(*quiet)) …
 ///
-/// A force is quiet when its medians over four consecutive eighths of a second (or more) differ by no more
+/// A force is quiet when its medians over the four quarters of a stretch differ by no more
 /// than their noise explains, that noise is small, and nearly all scans lie within it. Pulling, ringing,
 /// loading and unloading are not quiet. A quiet force may still be a load (a sled that slides steadily, a
 /// belt that stopped): whether it is the unloaded cell is decided by who asks, with fits().
@@ -33,12 +33,12 @@ class UnloadedLevel {
   static constexpr double kUnloadedPart = 1.0 / 3.0;
   /// Twice what the self-check complains of: what scatters more may hide a motion.
   static constexpr double kLargestNoise = 0.01;
-  /// Shortest quiet stretch.
+  /// Shortest stretch that tells a level before a test, or ends one.
   static constexpr double kQuiet_s = 0.5;
 
-  /// \param scan_rate_Hz  > 0. \param shortest_s  a quiet stretch is at least so long.
+  /// \param scan_rate_Hz  > 0. \param stretch_s  that is to be quiet; at least eight scans.
   /// \param step_coefficient  one A/D step; 0 if unknown.
-  UnloadedLevel(double scan_rate_Hz, double shortest_s, double step_coefficient);
+  UnloadedLevel(double scan_rate_Hz, double stretch_s, double step_coefficient);
 
   /// Consecutive scans.
   void add(double coefficient);
@@ -48,6 +48,7 @@ class UnloadedLevel {
   /// The level of the stretch that has just become complete or longer, if it was quiet; else nothing. Only in
   /// the scan that completes a quarter of a stretch.
   [[nodiscard]] std::optional<double> news() const noexcept { return news_; }
+  [[nodiscard]] std::size_t stretch_scans() const noexcept { return kQuarters * quarter_.size(); }
   /// The latest complete stretch was quiet.
   [[nodiscard]] bool quiet() const noexcept { return quiet_; }
 

@@ -8,13 +8,19 @@
 
 namespace stickslip::pipeline {
 
-void add_zero_offset(friction::TestResults& results, std::optional<double> unloaded_level) {
-  const double offset = UnloadedLevel::of_decisions(unloaded_level.value_or(0.0));
+void add_zero_offset(friction::TestResults& results, std::optional<double> before,
+                     std::optional<double> after) {
+  // A file may hold anything.
+  const auto off = [](std::optional<double> level) {
+    return level && std::isfinite(*level) ? UnloadedLevel::of_decisions(*level) : 0.0;
+  };
+  const bool worse_after = std::abs(off(after)) > std::abs(off(before));
+  const double offset = worse_after ? off(after) : off(before);
   if (offset == 0.0) return;
   results.findings.push_back(fmt::format(
-      "zero: the unloaded cell read {:+.4f} before the test, more than {:g}; static, kinetic, S and K "
+      "zero: the unloaded cell read {:+.4f} {} the test, more than {:g}; static, kinetic, S and K "
       "are off by it, S - K is not; tare before the next test",
-      offset, UnloadedLevel::kNearest));
+      offset, worse_after ? "after" : "before", UnloadedLevel::kNearest));
   for (friction::Estimate* estimate :
        {&results.static_coefficient, &results.kinetic_coefficient, &results.mu_s, &results.mu_k,
         &results.mu_k_from_mean, &results.mu_s_from_amplitude}) {

@@ -96,6 +96,7 @@ std::string end_to_json(const EndRecord& end) {
               {"spikes", end.spikes}};
   put(object, "end_realtime_ns", end.end_realtime_ns);
   put(object, "compute_time", end.compute_time_s);
+  put(object, "unloaded_level", end.unloaded_level);
   if (end.read_latency) object["read_latency"] = latency_to_json(*end.read_latency);
   object["cycle_count"] = end.cycles.size();
   object["cycle_columns"] = cycle_columns();
@@ -206,6 +207,7 @@ EndRecord end_from_bytes(std::span<const std::byte> bytes) {
   object.at("cause").get_to(end.cause);
   take(object, "end_realtime_ns", end.end_realtime_ns);
   take(object, "compute_time", end.compute_time_s);
+  take(object, "unloaded_level", end.unloaded_level);
   if (object.contains("read_latency")) end.read_latency = latency_from_json(object.at("read_latency"));
   end.results = results_from_json(object.at("results"));
   object.at("spikes").get_to(end.spikes);

@@ -8,6 +8,7 @@
 namespace stickslip::record {
 namespace {
 
+constexpr FieldName kLevelAtEnd{"unloaded_level", "1", "coefficient of the unloaded cell after the test [1]"};
 constexpr FieldName kComputeTime{"compute_time", "s", "time the evaluation took [s]"};
 
 }  // namespace
@@ -19,6 +20,7 @@ void write_process(hid_t entry, const Record& record, const std::string& sha256)
   write_text(group.get(), "status", name(record.end->status));
   write_texts(group.get(), "reasons", record.end->reasons);
   write(FieldName{"end_cause", "", ""}, record.end->cause);
+  write(kLevelAtEnd, record.end->unloaded_level);
   write(kComputeTime, record.end->compute_time_s);
   write_text(group.get(), "sha256", sha256);
 }
@@ -33,6 +35,7 @@ void read_process(hid_t entry, Record& record) {
   record.end->status = *known;
   record.end->reasons = read_texts(group.get(), "reasons");
   read(FieldName{"end_cause", "", ""}, record.end->cause);
+  read(kLevelAtEnd, record.end->unloaded_level);
   read(kComputeTime, record.end->compute_time_s);
   record.sha256 = read_text(group.get(), "sha256");
 }

@@ -164,6 +164,8 @@ struct EndRecord {
   std::optional<std::int64_t> end_realtime_ns;  ///< realtime_at() the end of the last scan.
   std::optional<double> compute_time_s;
   std::optional<daq::LatencyHistogram> read_latency;  ///< How late the blocks were read.
+  /// What the unloaded cell read at the end; absent unless the test ended by unloading, and quietly.
+  std::optional<double> unloaded_level{};
   friction::TestResults results;
   base::LongColumn<friction::Cycle> cycles;  ///< Final; replaces those noted during the test.
   std::vector<daq::ScanIndex> spikes;        ///< Scans replaced for the detector, rising; final as well.

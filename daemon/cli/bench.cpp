@@ -31,7 +31,10 @@ std::string line_of_test(const Json& test) {
 /// One line for people; empty for frames that are for pictures.
 std::string line_of_frame(const Json& frame) {
   const std::string type = word(frame, "type");
-  if (type == "bench") return fmt::format("bench: {}\n", word(frame, "bench"));
+  if (type == "bench") {
+    return fmt::format("bench: {}{}\n", word(frame, "bench"),
+                       frame.contains("trouble") ? "; " + word(frame, "trouble") : "");
+  }
   if (type == "test-began")
     return fmt::format("test {} began at scan {}\n", frame["test"].dump(), frame["trigger_scan"].dump());
   if (type == "cycle") {

@@ -155,6 +155,7 @@ Json status_json(const Status& status) {
   Json json;
   json["state"] = status.state;
   json["bench"] = pipeline::name(status.bench);
+  json["bench_trouble"] = status.bench_trouble.empty() ? Json(nullptr) : Json(status.bench_trouble);
   json["detail"] = status.detail;
   json["version"] = status.version;
   json["board"] = status.board ? to_json(*status.board) : Json(nullptr);

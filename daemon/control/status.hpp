@@ -47,6 +47,7 @@ struct Status {
   std::optional<std::int64_t> current_test;  ///< Running now.
   std::optional<friction::LiveState> live;   ///< Of the current test.
   pipeline::BenchState bench = pipeline::BenchState::kDegraded;
+  std::string_view bench_trouble;  ///< What keeps it in its state; empty: nothing.
   std::optional<TestSummary> latest_test;
   StorageState storage;
   /// Of the load cell; texts are empty where there is nothing to say.

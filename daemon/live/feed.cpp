@@ -183,4 +183,11 @@ void LiveFeed::bench_changed(pipeline::BenchState state) {
   if (heard()) publish_(Json{{"type", "bench"}, {"bench", pipeline::name(state)}}.dump());
 }
 
+void LiveFeed::bench_stays(pipeline::BenchState state, double /*duration_s*/,
+                           pipeline::BenchTrouble trouble) {
+  if (!heard()) return;
+  publish_(Json{{"type", "bench"}, {"bench", pipeline::name(state)}, {"trouble", pipeline::words(trouble)}}
+               .dump());
+}
+
 }  // namespace stickslip::daemon

@@ -40,6 +40,7 @@ class LiveFeed final : public pipeline::Sink {
   void note_between_tests(const daq::Note& one) override { note(one); }
   void test_ended(const pipeline::TestEnd& end) override;
   void bench_changed(pipeline::BenchState state) override;
+  void bench_stays(pipeline::BenchState state, double duration_s, pipeline::BenchTrouble trouble) override;
 
  private:
   [[nodiscard]] bool heard() const noexcept { return listeners_.load(std::memory_order_relaxed) > 0; }

@@ -94,6 +94,7 @@ const Tables = (() => {
   function troubles(status) {
     const found = [];
     if (["board missing", "board busy", "no permission"].includes(status.state)) found.push(status.detail);
+    if (status.bench_trouble != null) found.push(`bench ${status.bench}: ${status.bench_trouble}`);
     if (status.storage.why != null) found.push(`storage ${status.storage.state}: ${status.storage.why}; ${status.storage.to_do}`);
     if (status.calibration.expired) found.push(`the calibration of the load cell expired on ${day(status.calibration.expires)}: calibrate`);
     return found.join(" · ");

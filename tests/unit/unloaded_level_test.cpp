@@ -46,7 +46,7 @@ class Force {
 };
 
 std::optional<double> latest_quiet(const Force& force) {
-  UnloadedLevel level{kLevelRate_Hz, 0.0, 0.0};
+  UnloadedLevel level{kLevelRate_Hz, UnloadedLevel::kQuiet_s, 0.0};
   std::optional<double> found;
   for (const double scan : force.scans) {
     level.add(scan);
@@ -146,6 +146,26 @@ TEST(UnloadedLevel, SlidingSteadilyIsNoEndAndNoLevel) {
 TEST(UnloadedLevel, ALoadThatIsThereFromTheFirstScanBeginsATest) {
   EXPECT_EQ(decisions_on(Force{}.stay(0.15, 2.0)).begun, 1);
   EXPECT_EQ(decisions_on(Force{}.stay(0.07, 2.0)).begun, 0) << "a zero that is off";
+}
+
+TEST(UnloadedLevel, TheLevelAfterATestIsThatOfItsLastQuietScans) {
+  for (const double after : {0.0, 0.01, -0.05, 0.07}) {
+    Force force;
+    force.stay(0.0, 3.0).pull(0.0, after).stay(after, 3.0);
+    Segmenter segmenter{SegmenterSettings{}};
+    base::ScanIndex index = 0;
+    for (const double scan : force.scans) {
+      if (segmenter.observe(index++, scan) == Segmenter::Event::kUnloaded) break;
+    }
+    ASSERT_TRUE(segmenter.level_after()) << after;
+    EXPECT_NEAR(*segmenter.level_after(), after, 0.001);
+  }
+}
+
+TEST(UnloadedLevel, ExcursionsThatFillLessThanHalfAreNotQuiet) {
+  Force force;
+  for (int k = 0; k < 30; ++k) force.stay(0.0, 60 / kLevelRate_Hz).slide(0.0, 0.05, 30 / kLevelRate_Hz);
+  EXPECT_FALSE(latest_quiet(force));
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ friction::TestResults some_results() {
 
 TEST(ZeroOffset, IsAFindingAndASystematicPartOfLevelsAlone) {
   friction::TestResults results = some_results();
-  add_zero_offset(results, -0.04);
+  add_zero_offset(results, -0.04, 0.01);
   ASSERT_EQ(results.findings.size(), 1U);
   EXPECT_NE(results.findings[0].find("-0.0400"), std::string::npos) << results.findings[0];
   EXPECT_DOUBLE_EQ(results.static_coefficient.systematic_uncertainty.value_or(0.0), 0.04);
@@ -29,11 +29,19 @@ TEST(ZeroOffset, IsAFindingAndASystematicPartOfLevelsAlone) {
   EXPECT_FALSE(results.kinetic_coefficient.systematic_uncertainty) << "there is no value";
 }
 
+TEST(ZeroOffset, TheWorseOfTheTwoCounts) {
+  friction::TestResults results = some_results();
+  add_zero_offset(results, 0.004, -0.02);
+  ASSERT_EQ(results.findings.size(), 1U);
+  EXPECT_NE(results.findings[0].find("-0.0200 after"), std::string::npos) << results.findings[0];
+  EXPECT_DOUBLE_EQ(results.static_coefficient.systematic_uncertainty.value_or(0.0), 0.02);
+}
+
 TEST(ZeroOffset, WithinTheLimitOrUnknownChangesNothing) {
   for (const std::optional<double> level :
-       {std::optional<double>{}, std::optional{0.0025}, std::optional{-0.001}}) {
+       {std::optional<double>{}, std::optional{0.0025}, std::optional{-0.001}, std::optional{std::nan("")}}) {
     friction::TestResults results = some_results();
-    add_zero_offset(results, level);
+    add_zero_offset(results, level, level);
     EXPECT_TRUE(results.findings.empty());
     EXPECT_FALSE(results.static_coefficient.systematic_uncertainty);
   }
