@@ -53,7 +53,7 @@ void add_shown(std::string& out, std::string_view text, const Character& charact
 std::size_t colour_size(std::string_view text) {
   if (!text.starts_with("\033[")) return 0;
   const std::size_t end = text.find_first_not_of("0123456789", 2);
-  return end != text.npos && end <= 4 && text[end] == 'm' ? end + 1 : 0;
+  return end <= 4 && text[end] == 'm' ? end + 1 : 0;  // npos is larger.
 }
 
 bool begins_a_formula(std::string_view text) {
