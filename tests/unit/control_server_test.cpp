@@ -574,7 +574,12 @@ TEST_F(ControlServerTest, LeavesTheSocketOfAnotherWhenItStops) {
   const auto reply = request(socket_, {"GET", "/v1/status", "", "", ""}, 10s);
   ASSERT_TRUE(reply) << reply.error().message;
   EXPECT_EQ(reply->status, 200);
-  boost::asio::post(io_, [&] { server_ = *std::move(other); });
+  std::promise<void> taken;
+  boost::asio::post(io_, [&] {
+    server_ = *std::move(other);
+    taken.set_value();
+  });
+  taken.get_future().wait();
 }
 
 // One that does not come to answering is no left-over.
