@@ -93,10 +93,11 @@ TareReport Processor::tare(const std::string& who) {
   const double largest_N = std::max(settings_.segmenter.start_coefficient, UnloadedLevel::kFarthest) *
                            calibration_.normal_load_N();
   if (std::abs(*check->zero_N) >= largest_N) {
-    return refuse(
-        fmt::format("the cell shows {:.3g} N; from {:.3g} N on that is a load: unload it, "
-                    "or calibrate",
-                    *check->zero_N, largest_N));
+    // A calibration needs an idle bench, which this one is not before its force is gone.
+    const bool finishing = bench_.state() == BenchState::kFinishing;
+    return refuse(fmt::format(
+        "the cell shows {:.3g} N; from {:.3g} N on that is a load: unload it, or {}", *check->zero_N,
+        largest_N, finishing ? "correct [tester] load_cell_zero and restart the daemon" : "calibrate"));
   }
   if (check->saturated_count.value_or(0) > 0) return refuse("the converter is at a rail");
   const daq::LoadCell before = calibration_.load_cell();

@@ -370,6 +370,35 @@ TEST(Commands, APullBeforeTheForceOfTheLastTestIsGoneIsTold) {
   EXPECT_EQ(record.tests.size(), 2U);
 }
 
+TEST(Commands, ATareLeavesFinishingWhereTheForceIsQuiet) {
+  daq::BoardInfo volts;
+  volts.quantity = daq::RawQuantity::kVolts;
+  Recorder record;
+  Processor processor{settings_of(true), {volts, {1.0, 0.0}, 1.0}, {&record}};
+  auto stay = [&processor, at = daq::ScanIndex{0}](double force, std::size_t scans) mutable {
+    feed(processor, std::vector<double>(scans, force), at, 10);
+    at += static_cast<daq::ScanIndex>(scans);
+  };
+  stay(0.0, 100);
+  stay(0.2, 100);
+  EXPECT_EQ(processor.stop("ada").refusal, "");
+  stay(0.2, 200);
+  EXPECT_NE(processor.tare("ada").refusal.find("that is a load"), std::string::npos);
+  EXPECT_EQ(processor.bench(), BenchState::kFinishing);
+  // More than a third of that test's force: not unloaded by itself.
+  stay(0.09, 20);
+  EXPECT_NE(processor.tare("ada").refusal.find("not quiet"), std::string::npos);
+  stay(0.09, 200);
+  EXPECT_EQ(processor.bench(), BenchState::kFinishing);
+  EXPECT_EQ(processor.tare("ada").refusal, "");
+  EXPECT_EQ(processor.bench(), BenchState::kArmed);
+  stay(0.09, 50);
+  stay(0.29, 100);
+  stay(0.09, 50);
+  EXPECT_EQ(record.tests.size(), 2U);
+  EXPECT_EQ(processor.bench(), BenchState::kArmed);
+}
+
 TEST(Commands, StoppingLeavesTheForceToGoAway) {
   Recorder record;
   Processor processor{settings_of(true), coefficients(), {&record}};
