@@ -75,6 +75,7 @@ base::Result<record::Finalised> run_finaliser(const std::filesystem::path& progr
   std::vector<std::string> words{program.string(), "--finalise", journal.string()};
   if (expected) words.insert(words.end(), {"--scans", std::to_string(*expected)});
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   const std::string& program_text = words[0];

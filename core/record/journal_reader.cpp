@@ -171,7 +171,9 @@ class Content {
 
   /// Scans that stand there twice are read once.
   void keep_rising(std::vector<EntryPlace>& places) {
-    std::ranges::stable_sort(places, {}, &EntryPlace::first);
+    // Sorting takes as much memory again.
+    if (!std::ranges::is_sorted(places, {}, &EntryPlace::first))
+      std::ranges::stable_sort(places, {}, &EntryPlace::first);
     std::erase_if(places, [](const EntryPlace& place) { return place.count == 0; });
     std::optional<daq::ScanIndex> end;
     refuse_if(places, "scans that stand there already", [&end](const EntryPlace& place) {
@@ -183,16 +185,11 @@ class Content {
 
   void refuse_if(std::vector<EntryPlace>& places, const char* why,
                  const std::function<bool(const EntryPlace&)>& refused) {
-    std::vector<EntryPlace> kept;
-    kept.reserve(places.size());
-    for (const EntryPlace& place : places) {
-      if (refused(place)) {
-        reading_.damaged.push_back({place.position, place.size, why});
-      } else {
-        kept.push_back(place);
-      }
-    }
-    places = std::move(kept);
+    std::erase_if(places, [&](const EntryPlace& place) {
+      if (!refused(place)) return false;
+      reading_.damaged.push_back({place.position, place.size, why});
+      return true;
+    });
   }
 
   JournalReading& reading_;

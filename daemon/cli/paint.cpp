@@ -42,7 +42,7 @@ bool wants_colours() {
 
 std::string Paint::operator()(Ink colour, std::string_view text) const {
   const std::string_view code = code_of(colour);
-  const std::string shown = base::printable(text);
+  std::string shown = base::printable(text);
   if (!on_ || code.empty()) return shown;
   return fmt::format("\033[{}m{}\033[0m", code, shown);
 }
