@@ -219,13 +219,14 @@ base::Result<Finalised> finalise(const std::filesystem::path& journal, const Eva
                                  std::optional<std::int64_t> expected_scans) {
   const auto lock = JournalLock::take(journal, longest, calls);
   if (!lock) return tl::unexpected(lock.error());
-  auto reading = read_journal(journal, JournalScans::kCount);
+  auto reading = read_journal(journal, JournalScans::kCount, calls);
   if (!reading) return tl::unexpected(reading.error());
   Finalised made{
       record_of(journal), static_cast<std::int64_t>(reading->scan_count), reading->damaged_size(), {}};
   const bool has_fewer = expected_scans && *made.scan_count < *expected_scans;
   const bool has_loss = has_fewer || !reading->damaged.empty();
-  if (evaluate && (has_loss || !reading->record.end)) reading = read_journal(journal);  // It needs the scans.
+  if (evaluate && (has_loss || !reading->record.end))
+    reading = read_journal(journal, JournalScans::kKeep, calls);  // It needs the scans.
   if (!reading) return tl::unexpected(reading.error());
   Record& record = reading->record;
   if (!record.end) {
@@ -239,7 +240,7 @@ base::Result<Finalised> finalise(const std::filesystem::path& journal, const Eva
   }
   tell_unread(*reading, *record.end);
 
-  const JournalScanSource scans{journal, *reading};
+  const JournalScanSource scans{journal, *reading, calls};
   if (is_empty_file(made.file)) calls.unlink(made.file.c_str());
   if (is_there(made.file)) {
     // Left by a stop between the rename and the removal of the journal, or a stranger.

@@ -127,15 +127,17 @@ enum class JournalScans { kKeep, kCount };
 /// the file cannot be read, or its header is damaged and whole entries stand behind it; kUsage if it is no
 /// journal.
 [[nodiscard]] base::Result<JournalReading> read_journal(const std::filesystem::path& path,
-                                                        JournalScans scans = JournalScans::kKeep);
+                                                        JournalScans scans = JournalScans::kKeep,
+                                                        const FileCalls& calls = system_calls());
 
 /// The scans of a journal straight from the disk. Throws std::runtime_error if the file is no longer what
 /// was read.
 class JournalScanSource final : public ScanSource {
  public:
-  /// \param reading  of this journal; outlives it.
-  JournalScanSource(std::filesystem::path path, const JournalReading& reading)
-      : path_(std::move(path)), reading_(reading) {}
+  /// \param reading  of this journal; outlives it. \param calls  too.
+  JournalScanSource(std::filesystem::path path, const JournalReading& reading,
+                    const FileCalls& calls = system_calls())
+      : path_(std::move(path)), reading_(reading), calls_(calls) {}
 
   [[nodiscard]] std::size_t size() const override { return reading_.scan_count; }
   [[nodiscard]] std::int64_t extent() const override {
@@ -157,6 +159,7 @@ class JournalScanSource final : public ScanSource {
 
   std::filesystem::path path_;
   const JournalReading& reading_;
+  const FileCalls& calls_;
 };
 
 }  // namespace stickslip::record

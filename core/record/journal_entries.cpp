@@ -1,5 +1,6 @@
 #include "core/record/journal_entries.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,33 +19,36 @@ constexpr std::array<char, 4> kMagic = EntryHead{}.magic;
 constexpr std::uint64_t kSector = 512;
 constexpr std::size_t kWindow = std::size_t{1} << 16U;
 
+/// What the disk does not give now is not damaged: it may give it later, and a copy can do without.
+std::string why_not_read(int error, std::uint64_t position) {
+  std::string why = fmt::format("cannot be read at byte {}: {}", position, system_message(error));
+  if (error == EIO) {
+    why +=
+        "; try again, and if the disk stays bad copy the file to another one (ddrescue puts zeros where it "
+        "cannot "
+        "read), and let stickslip recover take the copy";
+  }
+  return why;
+}
+
 }  // namespace
 
-base::Result<JournalEntries> JournalEntries::open(const std::filesystem::path& path) {
+base::Result<JournalEntries> JournalEntries::open(const std::filesystem::path& path, const FileCalls& calls) {
   base::Result<base::RegularFile> opened = base::open_regular(path);
   if (!opened) return tl::unexpected(opened.error());
-  return JournalEntries{std::move(opened->file), opened->size};
+  return JournalEntries{std::move(opened->file), opened->size, calls};
 }
 
 void JournalEntries::read(std::uint64_t first, std::size_t size) {
   bytes_.resize(
       static_cast<std::size_t>(std::min<std::uint64_t>(size, file_size_ - std::min(first, file_size_))));
-  bad_sector_.clear();
   std::size_t filled = 0;
   while (filled < bytes_.size()) {
     const std::uint64_t from = first + filled;
     const ssize_t got =
-        ::pread(file_.get(), bytes_.data() + filled, bytes_.size() - filled, static_cast<off_t>(from));
+        calls_->pread(file_.get(), bytes_.data() + filled, bytes_.size() - filled, static_cast<off_t>(from));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0 && errno == EIO) {
-      const auto left = static_cast<std::size_t>(kSector - from % kSector);
-      const std::size_t zeros = std::min(left, bytes_.size() - filled);
-      std::fill_n(bytes_.begin() + static_cast<std::ptrdiff_t>(filled), zeros, std::byte{0});
-      bad_sector_ = "cannot be read: " + system_message(EIO);
-      filled += zeros;
-      continue;
-    }
-    if (got < 0) error_ = "cannot be read: " + system_message(errno);
+    if (got < 0) error_ = why_not_read(errno, from);
     if (got <= 0) break;
     filled += static_cast<std::size_t>(got);
   }
@@ -62,7 +66,6 @@ std::optional<Entry> JournalEntries::entry_at(std::uint64_t position, std::strin
   }
   if (!error_.empty()) return std::nullopt;
   std::optional<Entry> entry = first_entry(bytes_, why);
-  if (!entry && !bad_sector_.empty()) why = bad_sector_;
   return entry;
 }
 

@@ -16,6 +16,7 @@
 
 #include "core/base/result.hpp"
 #include "core/record/file.hpp"
+#include "core/record/file_calls.hpp"
 #include "core/record/journal_format.hpp"
 
 namespace stickslip::record {
@@ -31,7 +32,9 @@ struct UnreadBytes {
 class JournalEntries {
  public:
   /// Errors: kUsage if there is no such file, kFailure if it cannot be opened.
-  [[nodiscard]] static base::Result<JournalEntries> open(const std::filesystem::path& path);
+  /// \param calls  outlive it.
+  [[nodiscard]] static base::Result<JournalEntries> open(const std::filesystem::path& path,
+                                                         const FileCalls& calls = system_calls());
 
   /// The next whole entry, valid until the next call of any kind. Nothing when none follows, and after an
   /// error().
@@ -42,18 +45,19 @@ class JournalEntries {
 
   /// Byte at which the last entry of next() begins.
   [[nodiscard]] std::uint64_t position() const noexcept { return position_; }
-  /// What was skipped so far because it is damaged, rising. A sector that the disk cannot read is as one of
-  /// zeros.
+  /// What was skipped so far because it is damaged, rising.
   [[nodiscard]] const std::vector<UnreadBytes>& skipped() const noexcept { return skipped_; }
   /// Once next() gave nothing: the end of the file, if it is as a stop leaves it. Either the file ends within
   /// an entry, or it has zeros from the border of a sector within an entry on. Damage can look the same.
   [[nodiscard]] const std::optional<UnreadBytes>& torn_end() const noexcept { return torn_end_; }
-  /// Why the file cannot be read on; empty if it can.
+  /// Why the file cannot be read on, and what to do; empty if it can. What the disk does not give is not
+  /// damaged.
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
   [[nodiscard]] std::uint64_t file_size() const noexcept { return file_size_; }
 
  private:
-  JournalEntries(Descriptor file, std::uint64_t size) : file_(std::move(file)), file_size_(size) {}
+  JournalEntries(Descriptor file, std::uint64_t size, const FileCalls& calls)
+      : file_(std::move(file)), calls_(&calls), file_size_(size) {}
   /// Lets bytes_ hold those from `first` on, `size` of them or fewer at the end of the file.
   void read(std::uint64_t first, std::size_t size);
   [[nodiscard]] std::optional<Entry> entry_at(std::uint64_t position, std::string& why);
@@ -63,13 +67,13 @@ class JournalEntries {
   [[nodiscard]] bool is_torn(std::uint64_t first);
 
   Descriptor file_;
+  const FileCalls* calls_;
   std::uint64_t file_size_;
   std::uint64_t position_ = 0;
   std::uint64_t next_ = 0;  ///< Where the next entry should begin.
   std::vector<UnreadBytes> skipped_;
   std::optional<UnreadBytes> torn_end_;
   std::string error_;
-  std::string bad_sector_;  ///< What the disk said of the last one in bytes_; empty if it has none.
   std::vector<std::byte> bytes_;
 };
 

@@ -215,9 +215,9 @@ std::vector<daq::Gap> holes(const std::vector<ScanRun>& runs, const std::vector<
   return found;
 }
 
-void keep_scans(const std::filesystem::path& path, JournalReading& reading) {
+void keep_scans(const std::filesystem::path& path, JournalReading& reading, const FileCalls& calls) {
   Record& record = reading.record;
-  const JournalScanSource source{path, reading};
+  const JournalScanSource source{path, reading, calls};
   const auto append = [](auto& column, const auto& piece) {
     column.insert(column.end(), piece.begin(), piece.end());
   };
@@ -233,8 +233,8 @@ void keep_scans(const std::filesystem::path& path, JournalReading& reading) {
 }
 
 /// The header, wherever it stands: first, unless a disk has swapped pages.
-base::Result<RecordHeader> find_header(const std::filesystem::path& path) {
-  auto entries = JournalEntries::open(path);
+base::Result<RecordHeader> find_header(const std::filesystem::path& path, const FileCalls& calls) {
+  auto entries = JournalEntries::open(path, calls);
   if (!entries) return tl::unexpected(entries.error());
   std::uint64_t others = 0;
   while (const auto entry = entries->next()) {
@@ -278,10 +278,11 @@ std::string JournalReading::why_unread() const {
   return torn_end ? torn_end->why : std::string{};
 }
 
-base::Result<JournalReading> read_journal(const std::filesystem::path& path, JournalScans scans) {
-  auto header = find_header(path);
+base::Result<JournalReading> read_journal(const std::filesystem::path& path, JournalScans scans,
+                                          const FileCalls& calls) {
+  auto header = find_header(path, calls);
   if (!header) return tl::unexpected(header.error());
-  auto entries = JournalEntries::open(path);
+  auto entries = JournalEntries::open(path, calls);
   if (!entries) return tl::unexpected(entries.error());
 
   JournalReading reading;
@@ -313,7 +314,7 @@ base::Result<JournalReading> read_journal(const std::filesystem::path& path, Jou
   std::ranges::stable_sort(gaps, {}, &daq::Gap::first);
   if (scans == JournalScans::kKeep) {
     try {
-      keep_scans(path, reading);
+      keep_scans(path, reading, calls);
     } catch (const std::runtime_error& error) {
       return base::failure("{}", error.what());
     }
@@ -323,10 +324,11 @@ base::Result<JournalReading> read_journal(const std::filesystem::path& path, Jou
 
 void JournalScanSource::for_each_entry(const std::vector<EntryPlace>& places,
                                        const std::function<void(const Entry&)>& use) const {
-  auto entries = JournalEntries::open(path_);
+  auto entries = JournalEntries::open(path_, calls_);
   if (!entries) throw std::runtime_error(entries.error().message);
   for (const EntryPlace& place : places) {
     const auto entry = entries->at(place.position);
+    if (!entries->error().empty()) throw std::runtime_error(path_.string() + ": " + entries->error());
     if (!entry || entry->head.first_scan != place.first ||
         kEntryHeadSize + entry->payload.size() != place.size) {
       throw std::runtime_error(path_.string() + ": changed while it was read");

@@ -14,6 +14,7 @@
 #include "core/record/reader.hpp"
 #include "core/record/verdict.hpp"
 #include "tests/support/journal_samples.hpp"
+#include "tests/support/lacking_disk.hpp"
 #include "tests/support/record_equality.hpp"
 #include "tests/support/record_samples.hpp"
 
@@ -290,6 +291,27 @@ TEST(Finalise, ADamagedJournalReplacesNoOtherAndStaysWhereItIs) {
   ASSERT_TRUE(again) << again.error().message;
   EXPECT_EQ(again->file, made->file);
   EXPECT_EQ(names_in(folder.path()), names);
+}
+
+// Tried again later it may give all; a copy without the sector can be recovered.
+TEST(Finalise, WhatTheDiskDoesNotGiveIsNotDamaged) {
+  const TemporaryFolder folder;
+  const auto sizes = test::write_journal(folder / "a.journal", test::whole_record());
+  test::LackingDisk disk;
+  for (const int error : {EIO, ESTALE}) {
+    disk.pread_error = error;
+    for (const std::size_t from : {std::size_t{0}, sizes[2], sizes[3] - 1}) {
+      disk.pread_from = static_cast<off_t>(from);
+      const auto made = finalise(folder / "a.journal", {}, disk);
+      ASSERT_FALSE(made);
+      EXPECT_EQ(made.error().kind, base::ErrorKind::kFailure);
+      EXPECT_THAT(made.error().message, testing::HasSubstr("a.journal: cannot be read at byte"));
+      EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"a.journal"});
+    }
+  }
+  disk.pread_error = 0;
+  ASSERT_TRUE(finalise(folder / "a.journal", {}, disk));
+  EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"a.h5"});
 }
 
 TEST(Finalise, ATornJournalStaysIfScansAreKnownToBeMissing) {
