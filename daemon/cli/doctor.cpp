@@ -67,7 +67,7 @@ std::string text_of(const std::vector<Finding>& findings, const Paint& paint) {
     text += fmt::format("{}  {:<11}  {}\n",
                         paint(colour_of(finding.verdict), fmt::format("{:<7}", name(finding.verdict))),
                         finding.check, base::printable(finding.what));
-    if (!finding.to_do.empty()) text += fmt::format("{:<22}→ {}\n", "", finding.to_do);
+    if (!finding.to_do.empty()) text += fmt::format("{:<22}→ {}\n", "", base::printable(finding.to_do));
   }
   return text;
 }
