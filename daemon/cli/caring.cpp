@@ -77,7 +77,7 @@ class Teller final : public Facts {
     fmt::print("made     {}\n", base::printable(file.string()));
   }
   void record_damaged(const std::filesystem::path& file, std::string_view loss) override {
-    fmt::print("damaged  {}: {}\n", file.string(), loss);
+    fmt::print("damaged  {}: {}\n", base::printable(file.string()), base::printable(loss));
   }
   void orphan_empty(const std::filesystem::path& journal) override {
     fmt::print("removed  {}: nothing was recorded in it\n", base::printable(journal.string()));
