@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/settings.hpp"
+#include "core/base/text.hpp"
 #include "daemon/calibration_file.hpp"
 #include "daemon/cli/options.hpp"
 #include "daemon/control/calibration_json.hpp"
@@ -99,8 +100,9 @@ Result<Weighed> ask(Weighing& weighing, double gravity_m_per_s2, const WeighingT
   weighed.gravity_m_per_s2 = gravity_m_per_s2;
   weighed.span_V = weighing.span_V();
   const daq::BoardInfo& board = weighing.board();
-  fmt::print(prompts, "Load cell on {} {} {}, channel {}, {} to {} V.\n", board.driver, board.board_name,
-             board.device, board.channel, board.range_min_V, board.range_max_V);
+  fmt::print(prompts, "Load cell on {} {} {}, channel {}, {} to {} V.\n", board.driver,
+             base::printable(board.board_name), base::printable(board.device), board.channel,
+             board.range_min_V, board.range_max_V);
   for (;;) {
     const bool tare = weighed.readings.empty();
     prompts << (tare ? "Take everything off the load cell, hook and pan stay; then press Enter, or q.\n> "

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/text.hpp"
 #include "daemon/or_null.hpp"
 #include "daemon/results_json.hpp"
 
@@ -158,8 +159,7 @@ void LiveFeed::tell_gap(const daq::Gap& gap) {
 
 void LiveFeed::note(const daq::Note& note) {
   if (!heard()) return;
-  publish_(Json{{"type", "note"}, {"scan", note.scan}, {"text", daq::to_text(note)}}.dump(
-      -1, ' ', false, Json::error_handler_t::replace));
+  publish_(Json{{"type", "note"}, {"scan", note.scan}, {"text", base::printable(daq::to_text(note))}}.dump());
 }
 
 void LiveFeed::test_ended(const pipeline::TestEnd& end) {
