@@ -90,7 +90,7 @@ inline record::RecordHeader sample_header() {
                     "closed form",       "TAPPI T 816",
                     "spikes,first-slip", "[tester]\nomega = \"125.7 rad/s\"\n",
                     "SCHED_FIFO 20",     "exact closed forms"};
-  header.plan = {0.05, 0.01, 0.25, 0.02, 0.25, 0.5};
+  header.plan = {0.05, 0.01, 0.25, 0.02, 0.25, 0.5, 0.0031};
   daq::SelfCheck& check = header.self_check.emplace();
   check = {990, {2000.0, 2001.0, 1999.0}, 0.02, 1e-3, -2e-4, 3e-4, 0.005, 1e-4, 2e-4, 5e-5, 1, 2, 350.1, 0.02,
            {}};
@@ -151,6 +151,7 @@ inline friction::TestTruth sample_truth() {
 
 inline record::EndRecord sample_end() {
   record::EndRecord end;
+  end.unloaded_level = -0.0042;
   end.status = record::Status::kRecovered;
   end.reasons = {"disk full for 2 s", "grün"};
   end.cause = "unloaded";
