@@ -431,6 +431,9 @@ TEST_P(EitherDoor, RefusesMoreListenersThanItHasRoomForAndSaysSo) {
                                              testing::HasSubstr("24 clients read the live stream")));
   EXPECT_THAT(answer_to(asks("GET", "/v1/status") + kClose), testing::StartsWith("HTTP/1.1 200 "));
   for (const int one : listening) ::close(one);
+  // Who listens keeps itself until the server has seen it go.
+  std::unique_lock lock{mutex_};
+  news_.wait(lock, [&] { return listeners_ == 0; });
 }
 
 TEST_F(ControlServerTest, AListenerTooManyIsToldWhy) {
@@ -448,6 +451,9 @@ TEST_F(ControlServerTest, AListenerTooManyIsToldWhy) {
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, testing::HasSubstr("24 clients read the live stream"));
   for (const int one : listening) ::close(one);
+  // Who listens keeps itself until the server has seen it go.
+  std::unique_lock lock{mutex_};
+  news_.wait(lock, [&] { return listeners_ == 0; });
 }
 
 TEST_F(ControlServerTest, OverTcpNothingComesWithoutHostAndToken) {
