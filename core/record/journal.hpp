@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -108,9 +109,9 @@ struct JournalReading {
   std::size_t scan_count = 0;
   std::vector<ScanRun> runs;  ///< All scans, rising.
   // Rising, none overlaps another.
-  std::vector<EntryPlace> scans;
-  std::vector<EntryPlace> true_coefficients;
-  std::vector<EntryPlace> second_codes;
+  std::deque<EntryPlace> scans;
+  std::deque<EntryPlace> true_coefficients;
+  std::deque<EntryPlace> second_codes;
   std::uint64_t file_size = 0;
   std::vector<UnreadBytes> damaged;     ///< By place.
   std::optional<UnreadBytes> torn_end;  ///< As a stop leaves it.
@@ -150,11 +151,11 @@ class JournalScanSource final : public ScanSource {
   void for_each_second_piece(const std::function<void(std::span<const std::int32_t>)>& use) const override;
 
  private:
-  void for_each_entry(const std::vector<EntryPlace>& places,
+  void for_each_entry(const std::deque<EntryPlace>& places,
                       const std::function<void(const Entry&)>& use) const;
   /// Values of all scans from those entries, in pieces as those of the scans.
   template <typename Value>
-  void for_each_column_piece(const std::vector<EntryPlace>& places, Value absent,
+  void for_each_column_piece(const std::deque<EntryPlace>& places, Value absent,
                              const std::function<void(std::span<const Value>)>& use) const;
 
   std::filesystem::path path_;

@@ -170,7 +170,7 @@ class Content {
   }
 
   /// Scans that stand there twice are read once.
-  void keep_rising(std::vector<EntryPlace>& places) {
+  void keep_rising(std::deque<EntryPlace>& places) {
     // Sorting takes as much memory again.
     if (!std::ranges::is_sorted(places, {}, &EntryPlace::first))
       std::ranges::stable_sort(places, {}, &EntryPlace::first);
@@ -183,7 +183,7 @@ class Content {
     });
   }
 
-  void refuse_if(std::vector<EntryPlace>& places, const char* why,
+  void refuse_if(std::deque<EntryPlace>& places, const char* why,
                  const std::function<bool(const EntryPlace&)>& refused) {
     std::erase_if(places, [&](const EntryPlace& place) {
       if (!refused(place)) return false;
@@ -322,7 +322,7 @@ base::Result<JournalReading> read_journal(const std::filesystem::path& path, Jou
   return reading;
 }
 
-void JournalScanSource::for_each_entry(const std::vector<EntryPlace>& places,
+void JournalScanSource::for_each_entry(const std::deque<EntryPlace>& places,
                                        const std::function<void(const Entry&)>& use) const {
   auto entries = JournalEntries::open(path_, calls_);
   if (!entries) throw std::runtime_error(entries.error().message);
@@ -359,7 +359,7 @@ void JournalScanSource::for_each_piece(const std::function<void(const ScanPiece&
 }
 
 template <typename Value>
-void JournalScanSource::for_each_column_piece(const std::vector<EntryPlace>& places, Value absent,
+void JournalScanSource::for_each_column_piece(const std::deque<EntryPlace>& places, Value absent,
                                               const std::function<void(std::span<const Value>)>& use) const {
   std::vector<Value> piece;
   piece.reserve(kPiece);

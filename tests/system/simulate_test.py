@@ -177,10 +177,11 @@ folder = "records"
 
     def test_memory_does_not_grow_with_the_scans(self):
         # A ring-down has a handful of slips, however long it is pulled. One number of each scan would be 8 bytes, one
-        # flag 1; what is seen is half of one, in HDF5's own caches.
+        # flag 1; what is seen is half of one, in HDF5's own caches, and another half: the 32 bytes that say where each entry of 64
+        # scans stands in the journal. One flag more would be 2.
         growth, slips = self.memory_growth("ring-down-at-12-in-per-min", "13 min", "2 h")
         self.assertLess(slips, 10)
-        self.assertLess(growth / (107 * 60 * 350), 1)
+        self.assertLess(growth / (107 * 60 * 350), 1.5)
 
     def test_memory_does_not_grow_with_the_slips(self):
         # What a section needs is there from the start. A column of one number a slip still fills its 4 blocks of half
