@@ -18,7 +18,6 @@
 #include "core/record/journal.hpp"
 #include "daemon/analyse.hpp"
 #include "daemon/dated_folders.hpp"
-#include "daemon/forked.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -60,6 +59,19 @@ class OnlyOutput {
  private:
   posix_spawn_file_actions_t actions_{};
 };
+
+/// Until its other end is closed.
+std::string read_to_end(int file) {
+  constexpr std::size_t kReadAtOnce = 4096;
+  std::string text;
+  std::array<char, kReadAtOnce> part{};
+  for (;;) {
+    const ssize_t got = ::read(file, part.data(), part.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return text;
+    text.append(part.data(), static_cast<std::size_t>(got));
+  }
+}
 
 /// Of the journal, after a finaliser that failed.
 std::string_view what_is_left(const std::filesystem::path& journal) {

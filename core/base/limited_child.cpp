@@ -22,6 +22,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/contract.hpp"
 #include "core/base/sanitized.hpp"
 #include "core/base/wording.hpp"
 
@@ -220,22 +221,35 @@ Result<void> LimitedChild::start() {
 
 Result<std::string> LimitedChild::ask(std::string_view question, const WorkLimits& limits,
                                       const std::function<bool()>& given_up) {
+  if (auto begun = begin(question, limits); !begun) return tl::unexpected(begun.error());
+  return answer(given_up);
+}
+
+Result<void> LimitedChild::begin(std::string_view question, const WorkLimits& limits) {
   const QuestionHead head{question.size(), limits.processor_time.count(), limits.memory};
+  if (asked_) end();
   // One that died between two questions, by whatever hand, is no answer to this one.
   pollfd idle{socket_.get(), POLLIN, 0};
   if (child_ != 0 && ::poll(&idle, 1, 0) != 0) end();
   if (child_ == 0) {
     if (auto started = start(); !started) return tl::unexpected(started.error());
   }
-  if (send_all(socket_.get(), &head, sizeof head) &&
-      send_all(socket_.get(), question.data(), question.size())) {
-    const Result<bool> come = wait_for_answer(given_up);
-    if (!come) {
-      end();
-      return tl::unexpected(come.error());
-    }
-    if (auto answer = receive_text(socket_.get())) return *std::move(answer);
+  asked_ = limits;
+  // If it died meanwhile, answer() finds that no answer comes.
+  static_cast<void>(send_all(socket_.get(), &head, sizeof head) &&
+                    send_all(socket_.get(), question.data(), question.size()));
+  return {};
+}
+
+Result<std::string> LimitedChild::answer(const std::function<bool()>& given_up) {
+  STICKSLIP_EXPECTS(asked_);
+  const Result<bool> come = wait_for_answer(given_up);
+  if (!come) {
+    end();
+    return tl::unexpected(come.error());
   }
+  const WorkLimits limits = *std::exchange(asked_, std::nullopt);
+  if (auto text = receive_text(socket_.get())) return *std::move(text);
   return why_it_died(limits);
 }
 
@@ -273,6 +287,7 @@ tl::unexpected<Error> LimitedChild::why_it_died(const WorkLimits& limits) {
 }
 
 void LimitedChild::end() noexcept {
+  asked_.reset();
   if (child_ == 0) return;
   ::kill(child_, SIGKILL);
   while (::waitpid(child_, nullptr, 0) == -1 && errno == EINTR) {

@@ -12,8 +12,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -60,7 +62,8 @@ class LimitedChild {
       : start_(std::move(other.start_)),
         child_(std::exchange(other.child_, 0)),
         socket_(std::move(other.socket_)),
-        memory_file_(std::move(other.memory_file_)) {}
+        memory_file_(std::move(other.memory_file_)),
+        asked_(std::exchange(other.asked_, std::nullopt)) {}
   LimitedChild& operator=(LimitedChild&&) = delete;
 
   /// \param given_up  asked ten times a second and at each signal; empty: never given up.
@@ -68,6 +71,11 @@ class LimitedChild {
   /// it was given up; kFailure if there can be no child.
   [[nodiscard]] Result<std::string> ask(std::string_view question, const WorkLimits& limits,
                                         const std::function<bool()>& given_up = {});
+
+  /// The two halves of ask(): other work can be done between them. An answer that nobody took is lost at the
+  /// next question, and its child with it. Errors of begin(): kFailure if there can be no child.
+  [[nodiscard]] Result<void> begin(std::string_view question, const WorkLimits& limits);
+  [[nodiscard]] Result<std::string> answer(const std::function<bool()>& given_up = {});
 
   /// What the latest answer left there. \return a path that this process can open until the next question.
   [[nodiscard]] std::string memory_file() const;
@@ -83,6 +91,7 @@ class LimitedChild {
   pid_t child_ = 0;  ///< 0: there is none.
   Descriptor socket_;
   Descriptor memory_file_;
+  std::optional<WorkLimits> asked_;  ///< Limits of the question that waits for its answer.
 };
 
 }  // namespace stickslip::base

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <utility>
 #include <vector>
@@ -113,7 +114,8 @@ ssize_t GivenFile::read(std::span<std::byte> bytes, std::uint64_t position) cons
 }
 
 bool GivenFile::is_readable() const {
-  std::vector<std::byte> block(kReadAtOnce);
+  // Of small files there are many: no more is cleared than they fill.
+  std::vector<std::byte> block(std::clamp<std::uint64_t>(size(), 1, kReadAtOnce));
   ssize_t got = 0;
   for (std::uint64_t at = 0; (got = read(block, at)) > 0;) at += static_cast<std::uint64_t>(got);
   return got == 0;

@@ -1,23 +1,34 @@
 #include "core/record/hdf.hpp"
 
 #include <algorithm>
+#include <new>
 
 namespace stickslip::record {
 namespace {
 
+struct Reason {
+  std::string text;
+  bool no_memory = false;
+};
+
 /// Called from the outermost error inwards: the last one is the cause.
-herr_t keep_reason(unsigned /*depth*/, const H5E_error2_t* error, void* reason) noexcept {
-  if (error->desc != nullptr) *static_cast<std::string*>(reason) = error->desc;
+herr_t keep_reason(unsigned /*depth*/, const H5E_error2_t* error, void* kept) noexcept {
+  Reason& reason = *static_cast<Reason*>(kept);
+  if (error->desc != nullptr) reason.text = error->desc;
+  reason.no_memory =
+      error->maj_num == H5E_RESOURCE && (error->min_num == H5E_NOSPACE || error->min_num == H5E_CANTALLOC);
   return 0;
 }
 
 }  // namespace
 
 void throw_refused(const std::string& what) {
-  std::string reason;
+  Reason reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, keep_reason, &reason);
-  std::replace(reason.begin(), reason.end(), '\n', ' ');
-  throw HdfError(what + ": " + (reason.empty() ? "refused by HDF5" : reason));
+  // As operator new does: who limits the memory of a process hears of it from there.
+  if (const std::new_handler told = std::get_new_handler(); reason.no_memory && told != nullptr) told();
+  std::replace(reason.text.begin(), reason.text.end(), '\n', ' ');
+  throw HdfError(what + ": " + (reason.text.empty() ? "refused by HDF5" : reason.text));
 }
 
 void prepare_hdf5() {

@@ -17,7 +17,8 @@ class HdfError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// \throws HdfError naming `what` and the library's innermost reason.
+/// \throws HdfError naming `what` and the library's innermost reason. Where that is memory, the process's
+/// std::new_handler is called before.
 [[noreturn]] void throw_refused(const std::string& what);
 
 /// Owns an HDF5 id. \tparam Close  the library's function for its kind.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -121,16 +122,64 @@ Apart& apart() {
   return apart;
 }
 
+/// Of one thread: one reads the next record while the other's is worked on.
+class PairOfReaders {
+ public:
+  base::Result<Record> read(const std::filesystem::path& path, const std::filesystem::path& next) {
+    if (begun_ != path) {
+      if (auto begun = begin(path); !begun) return tl::unexpected(begun.error());
+    }
+    begun_.clear();
+    ApartReader& reader = readers_[current_];
+    if (!next.empty()) {
+      current_ = 1 - current_;
+      static_cast<void>(begin(next));  // What refuses it is told when it is asked for.
+    }
+    return reader.finish(apart().given_up);
+  }
+
+ private:
+  [[nodiscard]] base::Result<void> begin(const std::filesystem::path& path) {
+    // Told here, in the words of all files, and before a child is asked.
+    const base::Result<base::RegularFile> file = base::open_regular(path);
+    if (!file) return tl::unexpected(file.error());
+    auto begun = readers_[current_].begin(path, base::limits_for_file(file->size));
+    if (begun) begun_ = path;
+    return begun;
+  }
+
+  static ApartReader reader() {
+    return ApartReader{
+        base::LimitedChild{base::ChildProgram{"/proc/self/exe", {std::string{kReaderOption}}}}};
+  }
+
+  std::array<ApartReader, 2> readers_{reader(), reader()};
+  std::size_t current_ = 0;
+  std::filesystem::path begun_;  ///< What the current one reads; empty: nothing.
+};
+
 }  // namespace
 
 base::Result<Record> ApartReader::read(const std::filesystem::path& path, const base::WorkLimits& limits,
                                        const std::function<bool()>& given_up) {
-  const base::Result<std::string> answer = child_.ask(path.native(), limits, given_up);
+  if (auto begun = begin(path, limits); !begun) return tl::unexpected(begun.error());
+  return finish(given_up);
+}
+
+base::Result<void> ApartReader::begin(const std::filesystem::path& path, const base::WorkLimits& limits) {
+  path_ = path;
+  auto begun = child_.begin(path.native(), limits);
+  if (!begun) return base::failure("{}: {}", path.string(), begun.error().message);
+  return begun;
+}
+
+base::Result<Record> ApartReader::finish(const std::function<bool()>& given_up) {
+  const base::Result<std::string> answer = child_.answer(given_up);
   if (!answer) {
-    std::string message = fmt::format("{}: {}", path.string(), answer.error().message);
+    std::string message = fmt::format("{}: {}", path_.string(), answer.error().message);
     if (answer.error().kind == base::ErrorKind::kUsage) {
       message +=
-          fmt::format("; `stickslip verify {}` says what is damaged; take it from a backup", path.string());
+          fmt::format("; `stickslip verify {}` says what is damaged; take it from a backup", path_.string());
     }
     return tl::unexpected(base::Error{answer.error().kind, std::move(message)});
   }
@@ -138,7 +187,7 @@ base::Result<Record> ApartReader::read(const std::filesystem::path& path, const 
   if (letter != kRead) return tl::unexpected(base::Error{kind_of(letter), answer->substr(1)});
   base::Result<JournalReading> reading = read_journal(child_.memory_file());
   if (!reading || !reading->record.end)
-    return base::failure("{}: what its reader says cannot be read", path.string());
+    return base::failure("{}: what its reader says cannot be read", path_.string());
   reading->record.sha256 = answer->substr(1);
   return std::move(reading->record);
 }
@@ -158,14 +207,10 @@ void serve_if_reader(int count, char** arguments) {
 
 void read_records_apart(std::function<bool()> given_up) { apart() = {true, std::move(given_up)}; }
 
-base::Result<Record> read_record_apart(const std::filesystem::path& path) {
+base::Result<Record> read_record_apart(const std::filesystem::path& path, const std::filesystem::path& next) {
   if (!apart().wanted) return read_record(path);
-  // Told here, in the words of all files, and before a child is asked.
-  const base::Result<base::RegularFile> file = base::open_regular(path);
-  if (!file) return tl::unexpected(file.error());
-  thread_local ApartReader reader{
-      base::LimitedChild{base::ChildProgram{"/proc/self/exe", {std::string{kReaderOption}}}}};
-  return reader.read(path, base::limits_for_file(file->size), apart().given_up);
+  thread_local PairOfReaders readers;
+  return readers.read(path, next);
 }
 
 }  // namespace stickslip::record

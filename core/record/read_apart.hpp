@@ -34,8 +34,13 @@ class ApartReader {
   [[nodiscard]] base::Result<Record> read(const std::filesystem::path& path, const base::WorkLimits& limits,
                                           const std::function<bool()>& given_up = {});
 
+  /// The two halves of read(): this process can do other work between them.
+  [[nodiscard]] base::Result<void> begin(const std::filesystem::path& path, const base::WorkLimits& limits);
+  [[nodiscard]] base::Result<Record> finish(const std::function<bool()>& given_up = {});
+
  private:
   base::LimitedChild child_;
+  std::filesystem::path path_;  ///< Of the record that was begun.
 };
 
 /// A ChildWork: reads the record of that path into the memory file, as a journal.
@@ -44,11 +49,14 @@ class ApartReader {
 /// Never returns in a process that was started as a reader.
 void serve_if_reader(int count, char** arguments);
 
-/// From now on read_record_apart() uses a child, one for each thread: this program, started once more. To be
-/// called before there are threads. \param given_up  as LimitedChild::ask().
+/// From now on read_record_apart() uses children, two at most for each thread: this program, started again.
+/// To be called before there are threads. \param given_up  as LimitedChild::ask().
 void read_records_apart(std::function<bool()> given_up = {});
 
 /// Of a file that somebody gives. Errors as ApartReader::read().
-[[nodiscard]] base::Result<Record> read_record_apart(const std::filesystem::path& path);
+/// \param next  will be asked for next: a second child reads it while this process works on `path`; empty:
+/// nobody knows.
+[[nodiscard]] base::Result<Record> read_record_apart(const std::filesystem::path& path,
+                                                     const std::filesystem::path& next = {});
 
 }  // namespace stickslip::record

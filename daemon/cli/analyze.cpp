@@ -77,8 +77,10 @@ base::Result<std::string> run_analyze(const AnalyzeCommand& command) {
   nlohmann::ordered_json tests = nlohmann::ordered_json::array();
   std::vector<TableRow> rows;
   std::string effects_below;
-  for (const std::string& file : command.files) {
-    base::Result<record::Record> record = record::read_record_apart(file);
+  for (std::size_t i = 0; i < command.files.size(); ++i) {
+    const std::string& file = command.files[i];
+    base::Result<record::Record> record =
+        record::read_record_apart(file, i + 1 < command.files.size() ? command.files[i + 1] : std::string{});
     if (!record) return tl::unexpected(record.error());
     std::string& text = record->header.process.method;
     const std::optional<std::int64_t> record_number = record->header.test_number;

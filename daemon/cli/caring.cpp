@@ -3,13 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <string>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
+#include "core/base/limited_child.hpp"
 #include "daemon/cli/subcommands.hpp"
 #include "daemon/finaliser.hpp"
-#include "daemon/forked.hpp"
 #include "daemon/print_text.hpp"
 #include "daemon/recovery.hpp"
 #include "daemon/verify.hpp"
@@ -87,32 +93,55 @@ class Teller final : public Facts {
   }
 };
 
-/// In a copy of this process: HDF5's errors can end it.
-base::Result<record::Finalised> finalise_apart(const std::filesystem::path& journal, ExpectedScans expected) {
-  constexpr std::chrono::hours kLongest{24};  // Only the evaluation of an interrupted test takes time.
-  const auto work = [&]() -> std::string {
-    const auto made = finalise_here(journal, expected);
+/// Finalises in a copy of this process: HDF5's errors can end it.
+class ApartFinaliser {
+ public:
+  ApartFinaliser() : child_(base::ChildWork{answer}) {}
+
+  base::Result<record::Finalised> finalise(const std::filesystem::path& journal, ExpectedScans expected) {
+    constexpr std::chrono::hours kLongest{24};  // Only the evaluation of an interrupted test takes time.
+    std::error_code ignored;
+    const std::uintmax_t size = std::filesystem::file_size(journal, ignored);
+    base::WorkLimits limits = base::limits_for_file(ignored ? 0 : size);
+    limits.processor_time = kLongest;
+    const base::Result<std::string> made =
+        child_.ask(fmt::format("{} {}", expected.value_or(kUnknown), journal.native()), limits);
+    if (!made) return base::failure("{}", made.error().message);
+    if (!made->starts_with('+')) return base::failure("{}", made->substr(1));
+    return finalised_from_text(journal, made->substr(1));
+  }
+
+ private:
+  static constexpr std::int64_t kUnknown = -1;
+
+  /// In the child. \param question  the expected scans and the journal.
+  static std::string answer(std::string_view question, int /*memory_file*/) {
+    std::int64_t expected = kUnknown;
+    const char* const end = question.data() + question.size();
+    const char* const journal = std::from_chars(question.data(), end, expected).ptr + 1;
+    const auto made = finalise_here(std::filesystem::path{journal, end},
+                                    expected == kUnknown ? ExpectedScans{} : ExpectedScans{expected});
     return made ? "+" + to_text(*made) : "-" + made.error().message;
-  };
-  const base::Result<ForkedAnswer> answer = run_forked(work, kLongest);
-  if (!answer) return tl::unexpected(answer.error());
-  if (answer->signal || answer->text.empty())
-    return base::failure("finishing it ended by signal {}", answer->signal.value_or(0));
-  if (!answer->text.starts_with('+')) return base::failure("{}", answer->text.substr(1));
-  return finalised_from_text(journal, answer->text.substr(1));
-}
+  }
+
+  base::LimitedChild child_;
+};
 
 /// \return the exit status.
 base::Result<int> recover(const std::vector<std::string>& places) {
   constexpr int kDamagedStatus = 3;
   Teller teller;
+  ApartFinaliser apart;
+  const Finalise finalise = [&apart](const std::filesystem::path& journal, ExpectedScans expected) {
+    return apart.finalise(journal, expected);
+  };
   Recovery worst = Recovery::kDone;
   for (const std::string& place : places) {
     std::error_code ignored;
     if (std::filesystem::is_directory(place, ignored)) {
-      worst = std::max(worst, recover_folder(place, finalise_apart, teller));
+      worst = std::max(worst, recover_folder(place, finalise, teller));
     } else if (std::filesystem::exists(place, ignored)) {
-      worst = std::max(worst, recover_journal(place, finalise_apart, teller));
+      worst = std::max(worst, recover_journal(place, finalise, teller));
     } else {
       return base::usage_error("{}: there is no such folder or journal", place);
     }

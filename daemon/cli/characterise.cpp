@@ -51,8 +51,10 @@ base::Result<TesterEstimate> ring_down_of(const std::string& file, record::Recor
 
 base::Result<RingDowns> read_all(const std::vector<std::string>& files) {
   RingDowns ring_downs;
-  for (const std::string& file : files) {
-    base::Result<record::Record> record = record::read_record_apart(file);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const std::string& file = files[i];
+    base::Result<record::Record> record =
+        record::read_record_apart(file, i + 1 < files.size() ? files[i + 1] : std::string{});
     if (!record) return tl::unexpected(record.error());
     ring_downs.latest_ns = std::max(ring_downs.latest_ns, record->header.start_realtime_ns);
     base::Result<TesterEstimate> estimate = ring_down_of(file, *std::move(record));

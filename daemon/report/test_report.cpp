@@ -51,14 +51,16 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
   Material material;
   material.label = std::move(label);
   Voidings voidings;
-  for (const std::string& file : files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const std::string& file = files[i];
     auto voided = voidings.of(file);
     if (!voided) return tl::unexpected(voided.error());
     if (*voided) {
       material.voided.push_back({file, **std::move(voided)});
       continue;
     }
-    base::Result<record::Record> record = record::read_record_apart(file);
+    base::Result<record::Record> record =
+        record::read_record_apart(file, i + 1 < files.size() ? files[i + 1] : std::string{});
     if (!record) return tl::unexpected(record.error());
     const record::TesterFacts& tester = record->header.tester;
     ReportedTest test;

@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <random>
 
+#include "core/base/limited_child.hpp"
 #include "core/record/finaliser.hpp"
 #include "core/record/verdict.hpp"
-#include "daemon/forked.hpp"
 #include "tests/support/bit_flips.hpp"
 #include "tests/support/record_samples.hpp"
 #include "tests/support/sanitized.hpp"
@@ -114,18 +114,16 @@ TEST(RecordFlips, InTheRawDataAreFoundAndPlaced) {
   }
 }
 
-/// 'y' found, 'n' not found; nothing if the reader did not come back, which is found as well.
+/// In a child: a reader that does not come back has found it as well.
 bool found(std::uint64_t bit) {
+  constexpr base::WorkLimits kLimits{std::chrono::seconds{60}, 512'000'000};
+  static base::LimitedChild reader{base::ChildWork{[](std::string_view file, int /*memory_file*/) {
+    const Judgement judgement = record::judge(file).judgement;
+    return std::string{judgement == Judgement::kDamaged || judgement == Judgement::kNotJudged ? "y" : "n"};
+  }}};
   test::write_flipped(sound().flipped(), sound().content, bit);
-  constexpr std::chrono::seconds kLongest{60};
-  const auto answer = daemon::run_forked(
-      [] {
-        const Judgement judgement = record::judge(sound().flipped()).judgement;
-        return std::string{judgement == Judgement::kDamaged || judgement == Judgement::kNotJudged ? "y"
-                                                                                                  : "n"};
-      },
-      kLongest);
-  return answer && (answer->signal || answer->text == "y");
+  const auto answer = reader.ask(sound().flipped().native(), kLimits);
+  return answer ? *answer == "y" : answer.error().kind == base::ErrorKind::kUsage;
 }
 
 // Also where HDF5 has no checksum: results, indices of chunks, bytes that nobody uses.

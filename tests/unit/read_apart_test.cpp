@@ -36,6 +36,7 @@ std::string do_as_told(std::string_view question, int /*memory_file*/) {
   if (question == "spin") {
     for (std::atomic<int> turns{0};;) ++turns;
   }
+  if (question == "long") return std::string(1'000'000, 'a');
   if (question == "die") static_cast<void>(std::raise(SIGKILL));
   if (question == "throw") throw std::runtime_error("x");
   if (question == "grow") {
@@ -52,6 +53,7 @@ TEST(LimitedChildTest, OneChildAnswersManyQuestions) {
   EXPECT_NE(*first, std::to_string(::getpid()));
   // Each has an allowance of its own, or the last of so many would go over it.
   for (int i = 0; i < 1000; ++i) ASSERT_EQ(child.ask("who", kLittle).value(), *first);
+  EXPECT_EQ(child.ask("long", kLittle).value().size(), 1'000'000U);
 }
 
 TEST(LimitedChildTest, IsReplacedWhenItDies) {
@@ -99,6 +101,17 @@ TEST(LimitedChildTest, IsGivenUpWhenAskedTo) {
   ASSERT_FALSE(stopped);
   EXPECT_EQ(stopped.error().kind, ErrorKind::kInterrupted);
   EXPECT_TRUE(child.ask("who", kEnough));
+}
+
+TEST(LimitedChildTest, ThisProcessWorksMeanwhile) {
+  LimitedChild child{do_as_told};
+  ASSERT_TRUE(child.begin("long", kEnough));
+  EXPECT_EQ(child.answer().value().size(), 1'000'000U);
+  // An answer that nobody took is not that to the next question.
+  ASSERT_TRUE(child.begin("long", kEnough));
+  EXPECT_NE(child.ask("who", kEnough).value(), std::to_string(::getpid()));
+  ASSERT_TRUE(child.begin("spin", kLittle));
+  EXPECT_THAT(child.answer().error().message, HasSubstr("0.02 s of processor time"));
 }
 
 TEST(LimitedChildTest, LimitsGrowWithTheFile) {
