@@ -109,7 +109,7 @@ TEST(LimitedChildTest, ThisProcessWorksMeanwhile) {
   EXPECT_EQ(child.answer().value().size(), 1'000'000U);
   // An answer that nobody took is not that to the next question.
   ASSERT_TRUE(child.begin("long", kEnough));
-  EXPECT_NE(child.ask("who", kEnough).value(), std::to_string(::getpid()));
+  EXPECT_LT(child.ask("who", kEnough).value().size(), 20U);
   ASSERT_TRUE(child.begin("spin", kLittle));
   EXPECT_THAT(child.answer().error().message, HasSubstr("0.02 s of processor time"));
 }
