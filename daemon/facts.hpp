@@ -59,6 +59,8 @@ class Facts {
   virtual void record_damaged(const std::filesystem::path& /*file*/, std::string_view /*loss*/) {}
   virtual void orphan_finalised(const std::filesystem::path& /*file*/) {}
   virtual void orphan_kept(const std::filesystem::path& /*journal*/, std::string_view /*why*/) {}
+  /// A folder of records cannot be looked into: journals in it became no records.
+  virtual void folder_unread(const std::filesystem::path& /*folder*/, std::string_view /*why*/) {}
   /// Nothing had been recorded; the journal is removed.
   virtual void orphan_empty(const std::filesystem::path& /*journal*/) {}
   /// The broker is there, or away, or away for another reason.

@@ -6,7 +6,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -16,8 +15,8 @@
 
 #include "core/record/file.hpp"
 #include "core/record/journal.hpp"
+#include "core/record/reader.hpp"
 #include "daemon/analyse.hpp"
-#include "daemon/dated_folders.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -129,31 +128,29 @@ base::Result<record::Finalised> run_finaliser(const std::filesystem::path& progr
 }
 
 std::string to_text(const record::Finalised& made) {
-  return fmt::format("{} {} {}", made.scan_count.value_or(-1), made.damaged_size, made.kept.string());
+  return fmt::format("{} {} {}", made.scan_count, made.damaged_size, made.kept.string());
 }
 
 base::Result<record::Finalised> finalised_from_text(const std::filesystem::path& journal,
                                                     const std::string& text) {
   record::Finalised made;
   made.file = record_of(journal);
-  std::int64_t scan_count = 0;
   const char* const end = text.data() + text.size();
-  const auto scans = std::from_chars(text.data(), end, scan_count);
+  const auto scans = std::from_chars(text.data(), end, made.scan_count);
   if (scans.ec != std::errc{} || scans.ptr == end)
     return base::failure("{}: the finaliser does not say what it made", journal.string());
   const auto damaged = std::from_chars(scans.ptr + 1, end, made.damaged_size);
   if (damaged.ec != std::errc{} || damaged.ptr == end)
     return base::failure("{}: the finaliser does not say what it made", journal.string());
-  if (scan_count >= 0) made.scan_count = scan_count;
   made.kept = std::string{damaged.ptr + 1, end};
   return made;
 }
 
 std::string loss_of(const record::Finalised& made, ExpectedScans expected) {
   std::string loss;
-  if (expected && made.scan_count && *made.scan_count < *expected) {
-    loss = fmt::format("{} of {} scans were written and cannot be read", *expected - *made.scan_count,
-                       *expected);
+  if (expected && made.scan_count < *expected) {
+    loss =
+        fmt::format("{} of {} scans were written and cannot be read", *expected - made.scan_count, *expected);
   }
   if (made.damaged_size > 0) {
     loss += fmt::format("{}{} bytes of its journal could not be read", loss.empty() ? "" : ", ",
@@ -163,16 +160,10 @@ std::string loss_of(const record::Finalised& made, ExpectedScans expected) {
   return loss;
 }
 
-std::vector<std::filesystem::path> journals_in(const std::filesystem::path& folder) {
-  using Walk = std::filesystem::recursive_directory_iterator;
-  std::vector<std::filesystem::path> journals;
-  std::error_code error;
-  for (Walk entry{folder, error}; !error && entry != Walk{}; entry.increment(error)) {
-    if (entry.depth() >= kDeepestRecordFolder) entry.disable_recursion_pending();
-    if (entry->path().extension() == record::kJournalExtension) journals.push_back(entry->path());
-  }
-  std::sort(journals.begin(), journals.end());
-  return journals;
+FilesFound journals_in(const std::filesystem::path& folder) {
+  return find_files(folder, [](const std::filesystem::path& file) {
+    return file.extension() == record::kJournalExtension;
+  });
 }
 
 base::Result<record::Finalised> finalise_here(const std::filesystem::path& journal, ExpectedScans expected) {
@@ -184,13 +175,19 @@ base::Result<record::Finalised> finalise_here(const std::filesystem::path& journ
     return absent;
   };
   auto made = record::finalise(journal, evaluate, record::system_calls(), kOthersTime, expected);
-  if (!made && is_finished(journal)) return record::Finalised{record_of(journal), {}, 0, {}};
-  return made;
+  if (made || !is_finished(journal)) return made;
+  const auto others = record::read_record(record_of(journal));
+  if (!others) return made;
+  return record::Finalised{record_of(journal), static_cast<std::int64_t>(others->scan.size()), 0, {}};
 }
 
 bool is_finished(const std::filesystem::path& journal) {
   std::error_code ignored;
-  return !std::filesystem::exists(journal, ignored) && std::filesystem::exists(record_of(journal), ignored);
+  const auto type_of = [&ignored](const std::filesystem::path& file) {
+    return std::filesystem::symlink_status(file, ignored).type();
+  };
+  return type_of(journal) == std::filesystem::file_type::not_found &&
+         type_of(record_of(journal)) == std::filesystem::file_type::regular;
 }
 
 }  // namespace stickslip::daemon

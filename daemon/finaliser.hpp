@@ -12,6 +12,7 @@
 
 #include "core/base/result.hpp"
 #include "core/record/finaliser.hpp"
+#include "daemon/dated_folders.hpp"
 
 namespace stickslip::daemon {
 
@@ -37,7 +38,8 @@ using ExpectedScans = std::optional<std::int64_t>;  ///< Nothing if nobody knows
 /// long.
 inline constexpr std::chrono::seconds kOthersTime{10};
 
-/// Somebody else has made the record in the meantime.
+/// Somebody else has made the record in the meantime. A path that cannot be looked at is not known to be
+/// finished.
 [[nodiscard]] bool is_finished(const std::filesystem::path& journal);
 
 /// What that process does: record::finalise(), with results for a test that was interrupted or damaged. It is
@@ -45,7 +47,7 @@ inline constexpr std::chrono::seconds kOthersTime{10};
 [[nodiscard]] base::Result<record::Finalised> finalise_here(const std::filesystem::path& journal,
                                                             ExpectedScans expected = {});
 
-/// Journals in the folder and in those of years and months below it, sorted; none if it cannot be read.
-[[nodiscard]] std::vector<std::filesystem::path> journals_in(const std::filesystem::path& folder);
+/// Journals that wait for their records: in the folder and in those of years, months and days below it.
+[[nodiscard]] FilesFound journals_in(const std::filesystem::path& folder);
 
 }  // namespace stickslip::daemon

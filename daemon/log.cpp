@@ -146,6 +146,14 @@ class Log final : public Facts {
           .message = fmt::format("journal of an interrupted test kept: {}: {}", journal.string(), why),
           .record = journal.string()});
   }
+  void folder_unread(const std::filesystem::path& folder, std::string_view why) override {
+    tell(
+        {.level = LogLevel::kError,
+         .event = "folder-unread",
+         .message = fmt::format("{}: cannot be looked into: {}; journals of interrupted tests in it are no "
+                                "records yet: let the service's user have the folder, then stickslip recover",
+                                folder.string(), why)});
+  }
   void orphan_empty(const std::filesystem::path& journal) override {
     tell({.level = LogLevel::kWarning,
           .event = "journal-removed",

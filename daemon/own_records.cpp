@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <regex>
-#include <system_error>
 
 #include "daemon/dated_folders.hpp"
 
@@ -11,14 +10,10 @@ namespace stickslip::daemon {
 std::vector<std::filesystem::path> own_records(const std::filesystem::path& folder) {
   // As storage.cpp names them.
   static const std::regex own{R"(\d{8}T\d{6}Z-\d{4,}(-\d+)?\.h5)"};
-  std::vector<std::filesystem::path> found;
-  std::error_code error;
-  const auto options = std::filesystem::directory_options::skip_permission_denied;
-  for (std::filesystem::recursive_directory_iterator at{folder, options, error}, end; !error && at != end;
-       at.increment(error)) {
-    if (at.depth() >= kDeepestRecordFolder) at.disable_recursion_pending();
-    if (std::regex_match(at->path().filename().string(), own)) found.push_back(at->path());
-  }
+  // Of a folder that cannot be read recover_folder() tells.
+  std::vector<std::filesystem::path> found = find_files(folder, [](const std::filesystem::path& file) {
+                                               return std::regex_match(file.filename().string(), own);
+                                             }).files;
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.stem() < b.stem(); });
   return found;
 }

@@ -9,7 +9,7 @@
 namespace stickslip::daemon {
 
 /// Records of the daemon in the folder and in those of years and months below it, in the order of their
-/// names: that of the clock of then.
+/// names: that of the clock of then. Folders that cannot be read are left out.
 [[nodiscard]] std::vector<std::filesystem::path> own_records(const std::filesystem::path& folder);
 
 /// Leaves the last `most` of them.

@@ -36,8 +36,13 @@ Recovery recover_journal(const std::filesystem::path& journal, const Finalise& f
 
 Recovery recover_folder(const std::filesystem::path& folder, const Finalise& finalise, Facts& facts) {
   Recovery worst = Recovery::kDone;
-  for (const std::filesystem::path& journal : journals_in(folder))
+  const FilesFound journals = journals_in(folder);
+  for (const std::filesystem::path& journal : journals.files)
     worst = std::max(worst, recover_journal(journal, finalise, facts));
+  for (const auto& [unread, why] : journals.unread) {
+    facts.folder_unread(unread, why);
+    worst = Recovery::kRefused;
+  }
   return worst;
 }
 

@@ -23,7 +23,7 @@ using Finalise = std::function<base::Result<record::Finalised>(const std::filesy
 enum class Recovery {
   kDone,     ///< Each is a whole record, or held nothing.
   kDamaged,  ///< Each is a record, but some could not be read whole and stay beside theirs.
-  kRefused,  ///< Some are no record.
+  kRefused,  ///< Some are no record, or may stand in a folder that cannot be looked into.
 };
 
 /// Every journal in the folder and in those of the years and months below it, by name. One that somebody

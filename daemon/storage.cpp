@@ -386,7 +386,7 @@ void Storage::journal_finalised(std::int64_t test, std::int64_t scans,
                                 const base::Result<record::Finalised>& made) {
   if (!made) return record_made(test, tl::unexpected(made.error()));
   record_made(test, made->file);
-  if (made->scan_count) damaged_scans_ += std::max<std::int64_t>(scans - *made->scan_count, 0);
+  damaged_scans_ += std::max<std::int64_t>(scans - made->scan_count, 0);
   if (const std::string loss = loss_of(*made, scans); !loss.empty()) facts_.record_damaged(made->file, loss);
 }
 

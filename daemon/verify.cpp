@@ -11,6 +11,7 @@
 
 #include "core/base/limited_child.hpp"
 #include "core/base/text.hpp"
+#include "daemon/json_text.hpp"
 #include "daemon/or_null.hpp"
 
 namespace stickslip::daemon {
@@ -31,8 +32,7 @@ Verdict unreadable(const std::string& why) {
 /// In the child.
 std::string judge_for_parent(std::string_view file, int /*memory_file*/) {
   // Names and texts of a file may be anything; JSON is UTF-8.
-  return verdict_json(std::string{file}, record::judge(file))
-      .dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return json_text(verdict_json(std::string{file}, record::judge(file)));
 }
 
 ordered_json judged(base::LimitedChild& judge, const std::string& file) {
@@ -134,7 +134,7 @@ VerifyOutput verify_files(const std::vector<std::string>& files, bool json) {
       output.text += lines(verdict);
     }
   }
-  if (json) output.text = ordered_json{{"files", all}}.dump(2) + "\n";
+  if (json) output.text = json_document(ordered_json{{"files", all}});
   return output;
 }
 

@@ -223,7 +223,7 @@ base::Result<Finalised> finalise(const std::filesystem::path& journal, const Eva
   if (!reading) return tl::unexpected(reading.error());
   Finalised made{
       record_of(journal), static_cast<std::int64_t>(reading->scan_count), reading->damaged_size(), {}};
-  const bool has_fewer = expected_scans && *made.scan_count < *expected_scans;
+  const bool has_fewer = expected_scans && made.scan_count < *expected_scans;
   const bool has_loss = has_fewer || !reading->damaged.empty();
   if (evaluate && (has_loss || !reading->record.end))
     reading = read_journal(journal, JournalScans::kKeep, calls);  // It needs the scans.
@@ -236,7 +236,7 @@ base::Result<Finalised> finalise(const std::filesystem::path& journal, const Eva
   }
   if (has_fewer) {
     record.end->reasons.push_back(fmt::format("{} scans were written to the journal, {} could be read",
-                                              *expected_scans, *made.scan_count));
+                                              *expected_scans, made.scan_count));
   }
   tell_unread(*reading, *record.end);
 

@@ -27,8 +27,7 @@ inline constexpr std::string_view kDamagedExtension = ".damaged";
 
 struct Finalised {
   std::filesystem::path file;
-  /// In the file; nothing if somebody else made it.
-  std::optional<std::int64_t> scan_count;
+  std::int64_t scan_count = 0;  ///< In the file.
   std::uint64_t damaged_size =
       0;                       ///< Bytes of the journal that could not be read; a torn end is none of them.
   std::filesystem::path kept;  ///< Where the journal stays; empty: it was removed.

@@ -11,6 +11,7 @@
 #include "core/friction/method_file.hpp"
 #include "core/friction/results.hpp"
 #include "daemon/control/plan_json.hpp"
+#include "daemon/json_text.hpp"
 #include "daemon/library.hpp"
 #include "daemon/method_text.hpp"
 
@@ -196,7 +197,7 @@ std::string line_of(const BatchEvent& event) {
   } else {
     json.update({{"event", "restored"}, {"record", std::get<TestRestored>(event.what).record}});
   }
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(json);
 }
 
 base::Result<BatchEvent> event_of(std::string_view line) {

@@ -13,6 +13,7 @@
 #include "daemon/cli/commands.hpp"
 #include "daemon/cli/effects.hpp"
 #include "daemon/cli/method_option.hpp"
+#include "daemon/json_text.hpp"
 #include "daemon/method_text.hpp"
 #include "daemon/report/table.hpp"
 #include "daemon/results_json.hpp"
@@ -126,7 +127,7 @@ base::Result<std::string> run_analyze(const AnalyzeCommand& command) {
   }
   if (!command.json) return format_table(rows) + effects_below;
   using Json = nlohmann::ordered_json;
-  return Json{{"tests", std::move(tests)}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_document(Json{{"tests", std::move(tests)}});
 }
 
 }  // namespace stickslip::daemon

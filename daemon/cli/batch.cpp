@@ -18,6 +18,7 @@
 #include "daemon/cli/commands.hpp"
 #include "daemon/cli/json_words.hpp"
 #include "daemon/control/plan_json.hpp"
+#include "daemon/json_text.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -102,7 +103,7 @@ base::Result<std::string> void_file(const BenchOptions& options, const VoidComma
                    options.who.empty() ? user_name() : options.who, TestRestored{name}};
   if (!command.restore) event.what = TestVoided{name, command.reason};
   if (const auto written = journal.append(event); !written) return tl::unexpected(written.error());
-  if (options.json) return Json{{"record", name}, {"voided", !command.restore}}.dump(2) + "\n";
+  if (options.json) return json_document(Json{{"record", name}, {"voided", !command.restore}});
   return fmt::format("{}: {}; the file is untouched, {} says so\n", base::printable(command.test),
                      command.restore ? "counts again" : "does not count",
                      base::printable(journal.path().string()));

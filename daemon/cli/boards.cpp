@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/commands.hpp"
+#include "daemon/json_text.hpp"
 #include "drivers/comedi/board_survey.hpp"
 
 namespace stickslip::daemon {
@@ -87,7 +88,7 @@ BoardsOutput run_boards(std::vector<std::string> devices, bool json) {
     }
   }
   if (json) {
-    output.text = Json{{"boards", list}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    output.text = json_document(Json{{"boards", list}});
   } else if (devices.empty()) {
     output.text =
         "no board: there is no /dev/comedi*; plug one in, load its driver, or try the kernel's virtual one: "

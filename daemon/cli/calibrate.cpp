@@ -17,6 +17,7 @@
 #include "daemon/calibration_file.hpp"
 #include "daemon/cli/options.hpp"
 #include "daemon/control/calibration_json.hpp"
+#include "daemon/json_text.hpp"
 #include "daemon/weighing.hpp"
 
 namespace stickslip::daemon {
@@ -174,7 +175,7 @@ std::string json_of(const daq::WeighedCalibration& result, const StoredCalibrati
                  {"hysteresis", known_json(stored.facts.hysteresis_V)},
                  {"findings", result.findings},
                  {"points", points_json(result)}};
-  return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_document(all);
 }
 
 Result<Weighed> weigh_by(const CalibrateCommand& command, const std::optional<WeighingPlace>& place,

@@ -48,7 +48,7 @@ to NAME.journal.damaged; no later run takes it for one that waits for its record
 
 Exit status:
   0  all was done
-  1  some journals became no record; each says why and stays as it is
+  1  some journals became no record, or a folder cannot be looked into; each says why and stays as it is
   2  wrong usage
   3  all became records, but some were damaged and stay beside theirs
 
@@ -90,6 +90,10 @@ class Teller final : public Facts {
   }
   void orphan_kept(const std::filesystem::path& journal, std::string_view why) override {
     fmt::print("kept     {}: {}\n", base::printable(journal.string()), base::printable(why));
+  }
+  void folder_unread(const std::filesystem::path& folder, std::string_view why) override {
+    fmt::print("unread   {}: cannot be looked into: {}\n", base::printable(folder.string()),
+               base::printable(why));
   }
 };
 
@@ -137,13 +141,17 @@ base::Result<int> recover(const std::vector<std::string>& places) {
   };
   Recovery worst = Recovery::kDone;
   for (const std::string& place : places) {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(place, ignored)) {
-      worst = std::max(worst, recover_folder(place, finalise, teller));
-    } else if (std::filesystem::exists(place, ignored)) {
-      worst = std::max(worst, recover_journal(place, finalise, teller));
-    } else {
+    std::error_code error;
+    const std::filesystem::file_type type = std::filesystem::status(place, error).type();
+    if (type == std::filesystem::file_type::not_found)
       return base::usage_error("{}: there is no such folder or journal", place);
+    if (type == std::filesystem::file_type::none) {
+      teller.orphan_kept(place, "cannot be looked at: " + error.message());
+      worst = Recovery::kRefused;
+    } else if (type == std::filesystem::file_type::directory) {
+      worst = std::max(worst, recover_folder(place, finalise, teller));
+    } else {
+      worst = std::max(worst, recover_journal(place, finalise, teller));
     }
   }
   switch (worst) {
@@ -154,7 +162,7 @@ base::Result<int> recover(const std::vector<std::string>& places) {
     case Recovery::kRefused:
       break;
   }
-  return base::failure("not every journal became a record");
+  return base::failure("not every journal became a record; each line above says why");
 }
 
 void add_recover(CLI::App& app, Chosen& chosen) {

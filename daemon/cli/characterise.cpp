@@ -12,6 +12,7 @@
 #include "core/record/read_apart.hpp"
 #include "daemon/analyse.hpp"
 #include "daemon/cli/commands.hpp"
+#include "daemon/json_text.hpp"
 #include "daemon/method_text.hpp"
 #include "daemon/new_file.hpp"
 #include "daemon/tester_file.hpp"
@@ -117,7 +118,7 @@ std::string json_of(const std::vector<std::string>& files, const RingDowns& ring
                     {"freedom", result.freedom},
                     {"probability", result.probability()}};
   const Json all{{"tester", tester}, {"ring_downs", std::move(tests)}};
-  return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_document(all);
 }
 
 }  // namespace

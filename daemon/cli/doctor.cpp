@@ -13,6 +13,7 @@
 #include "daemon/cli/paint.hpp"
 #include "daemon/cli/subcommands.hpp"
 #include "daemon/doctor/checks.hpp"
+#include "daemon/json_text.hpp"
 #include "daemon/print_text.hpp"
 
 namespace stickslip::daemon {
@@ -56,9 +57,7 @@ std::string json_of(const std::vector<Finding>& findings) {
                     {"what", finding.what},
                     {"to_do", finding.to_do.empty() ? Json(nullptr) : Json(finding.to_do)}});
   }
-  return Json{{"exit_status", exit_status(findings)}, {"findings", std::move(list)}}.dump(
-             2, ' ', false, Json::error_handler_t::replace) +
-         "\n";
+  return json_document(Json{{"exit_status", exit_status(findings)}, {"findings", std::move(list)}});
 }
 
 std::string text_of(const std::vector<Finding>& findings, const Paint& paint) {

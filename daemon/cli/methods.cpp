@@ -8,6 +8,7 @@
 
 #include "core/friction/method_file.hpp"
 #include "daemon/cli/commands.hpp"
+#include "daemon/json_text.hpp"
 #include "daemon/library.hpp"
 
 namespace stickslip::daemon {
@@ -64,9 +65,7 @@ base::Result<std::string> run_methods(const std::string& folder, bool json) {
   if (json) {
     Json list = Json::array();
     for (const friction::MethodFile& file : methods) list.push_back(json_of(file));
-    return Json{{"folder", found->string()}, {"methods", std::move(list)}}.dump(
-               2, ' ', false, Json::error_handler_t::replace) +
-           "\n";
+    return json_document(Json{{"folder", found->string()}, {"methods", std::move(list)}});
   }
   std::string text;
   for (const friction::MethodFile& file : methods) {

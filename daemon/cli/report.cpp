@@ -9,6 +9,7 @@
 
 #include "core/record/finaliser.hpp"
 #include "daemon/cli/commands.hpp"
+#include "daemon/json_text.hpp"
 #include "daemon/new_file.hpp"
 #include "daemon/report/report_json.hpp"
 #include "daemon/report/report_page.hpp"
@@ -39,9 +40,7 @@ Result<void> check_outputs(const ReportOptions& options) {
   return {};
 }
 
-std::string dumped(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
+std::string dumped(const Json& json) { return json_document(json); }
 
 /// Files first, so that nothing is printed before all has succeeded.
 Result<std::string> deliver(const ReportOptions& options, const std::string& csv, const std::string& page,

@@ -8,6 +8,7 @@
 #include "core/sim/scene.hpp"
 #include "daemon/cli/commands.hpp"
 #include "daemon/cli/scene_library.hpp"
+#include "daemon/json_text.hpp"
 
 namespace stickslip::daemon {
 
@@ -28,9 +29,7 @@ base::Result<std::string> run_scenes(const std::string& folder, bool json) {
     for (const sim::Scene& scene : scenes) {
       list.push_back({{"name", scene.name}, {"description", scene.description}});
     }
-    return Json{{"folder", found->string()}, {"scenes", std::move(list)}}.dump(
-               2, ' ', false, Json::error_handler_t::replace) +
-           "\n";
+    return json_document(Json{{"folder", found->string()}, {"scenes", std::move(list)}});
   }
   std::string text;
   for (const sim::Scene& scene : scenes)

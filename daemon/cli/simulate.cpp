@@ -12,6 +12,7 @@
 #include "daemon/cli/commands.hpp"
 #include "daemon/cli/method_option.hpp"
 #include "daemon/cli/progress.hpp"
+#include "daemon/json_text.hpp"
 #include "daemon/report/table.hpp"
 #include "daemon/results_json.hpp"
 
@@ -48,7 +49,7 @@ std::string json_of(const Simulation& simulation, const std::string& output) {
               {"ns_per_scan", simulation.ns_per_scan()},
               {"method", simulation.method}}}};
   json.update(results_json(record.end->results, true));
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_document(json);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "daemon/cli/json_words.hpp"
 #include "daemon/cli/paint.hpp"
 #include "daemon/control/client.hpp"
+#include "daemon/json_text.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -149,7 +150,7 @@ base::Result<std::string> run_status(const std::string& socket, bool json) {
     return base::failure("{}: refused with {}: {}", socket, reply->status, reply->body);
   const Json status = Json::parse(reply->body, nullptr, false);
   if (!status.is_object()) return base::failure("{}: the answer is no JSON", socket);
-  return json ? status.dump(2) + "\n" : text_of(status);
+  return json ? json_document(status) : text_of(status);
 }
 
 }  // namespace stickslip::daemon

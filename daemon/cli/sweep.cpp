@@ -20,6 +20,7 @@
 #include "daemon/cli/options.hpp"
 #include "daemon/cli/progress.hpp"
 #include "daemon/cli/scene_library.hpp"
+#include "daemon/json_text.hpp"
 #include "daemon/method_text.hpp"
 #include "daemon/sweep/grid.hpp"
 #include "daemon/sweep/part_file.hpp"
@@ -200,7 +201,7 @@ std::string json_of(const Sweep& sweep, const record::SweepTable& table, const S
                     {"runs_per_second", pace.runs_per_second()}}},
                   {"axes", std::move(axes)},
                   {"points", sweep_points_json(sweep.facts, table)}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_document(json);
 }
 
 std::string text_of(const Sweep& sweep, const record::SweepTable& table, const SweepCommand& command,

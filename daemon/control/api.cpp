@@ -25,6 +25,7 @@
 #include "daemon/control/report_api.hpp"
 #include "daemon/control/request_body.hpp"
 #include "daemon/control/summary.hpp"
+#include "daemon/json_text.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -324,7 +325,7 @@ class Api {
     bench_.command(std::move(command), [kind, answer](const Outcome& outcome) {
       const pipeline::TareReport& report = outcome.report;
       if (!report.refusal.empty()) {
-        answer({409, text_of({{"error", report.refusal}, {"bench", pipeline::name(report.state)}}), {}});
+        answer({409, json_text({{"error", report.refusal}, {"bench", pipeline::name(report.state)}}), {}});
         return;
       }
       Json json{{"bench", pipeline::name(report.state)},

@@ -8,6 +8,7 @@
 #include "core/base/wording.hpp"
 #include "daemon/batch/batch_json.hpp"
 #include "daemon/control/reply.hpp"
+#include "daemon/json_text.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -50,7 +51,7 @@ base::Result<std::string> record_named(const Json& body, const Bench& bench, Bat
       return batches.name_of(test.file);
     }
     return base::usage_error("test: there is no {} among the latest tests",
-                             base::one_line(number.dump(-1, ' ', false, Json::error_handler_t::replace)));
+                             base::one_line(json_text(number)));
   }
   const Json& record = body["record"];
   if (!record.is_string()) return base::usage_error("record: must be text");

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/batch/batch_json.hpp"
+#include "daemon/json_text.hpp"
 #include "daemon/or_null.hpp"
 #include "daemon/results_json.hpp"
 
@@ -137,8 +138,7 @@ Json live_json(const friction::LiveState& live) {
 }
 
 std::string health_frame(const Status& status) {
-  return Json{{"type", "health"}, {"status", status_json(status)}}.dump(-1, ' ', false,
-                                                                        Json::error_handler_t::replace);
+  return json_text(Json{{"type", "health"}, {"status", status_json(status)}});
 }
 
 Json progress_json(const std::optional<BatchProgress>& progress) {

@@ -213,10 +213,16 @@ class Examination {
       return others ? good("records", fmt::format("{} (the daemon's)", wanted.string()))
                     : bad("records", what, to_do);
     }
-    const std::size_t orphans = status_.empty() ? journals_in(wanted).size() : 0;
-    if (orphans > 0) {
+    const FilesFound orphans = status_.empty() ? journals_in(wanted) : FilesFound{};
+    if (!orphans.unread.empty()) {
+      const auto& [folder, why] = orphans.unread.front();
+      return bad("records", fmt::format("{}: cannot be looked into: {}", folder.string(), why),
+                 fmt::format("let the service's user have it: chown -R stickslip: {}", folder.string()));
+    }
+    if (!orphans.files.empty()) {
       return warn("records",
-                  fmt::format("{}: {} journals of tests that a stop interrupted", wanted.string(), orphans),
+                  fmt::format("{}: {} journals of tests that a stop interrupted", wanted.string(),
+                              orphans.files.size()),
                   fmt::format("start the daemon, or stickslip recover {}", wanted.string()));
     }
     good("records", wanted.string());

@@ -6,6 +6,7 @@
 
 #include "core/record/read_apart.hpp"
 #include "daemon/fleet/messages.hpp"
+#include "daemon/json_text.hpp"
 #include "daemon/record_result.hpp"
 
 namespace stickslip::daemon {
@@ -34,9 +35,7 @@ base::Result<std::string> result_of_record(const std::filesystem::path& file) {
   const base::Result<record::Record> record = record::read_record_apart(file);
   if (!record) return tl::unexpected(record.error());
   if (!record->end) return base::usage_error("{}: holds no end of a test", file.string());
-  return result_json(record->header, *record->end, record->cycles, file)
-             .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-         "\n";
+  return json_text(result_json(record->header, *record->end, record->cycles, file)) + "\n";
 }
 
 }  // namespace stickslip::daemon

@@ -9,7 +9,7 @@
 #include "core/record/iso_time.hpp"
 #include "daemon/control/bench.hpp"
 #include "daemon/control/plan_json.hpp"
-#include "daemon/control/reply.hpp"
+#include "daemon/json_text.hpp"
 #include "daemon/or_null.hpp"
 #include "daemon/pooled_json.hpp"
 #include "daemon/results_json.hpp"
@@ -51,7 +51,7 @@ Json result_json(const record::RecordHeader& header, const record::EndRecord& en
 std::string result_message(const std::string& tester, const Json& result) {
   Json json{{"tester", tester}};
   json.update(result);
-  return text_of(json);
+  return json_text(json);
 }
 
 std::string state_message(const std::string& tester, const Status& status, std::int64_t realtime_ns,
@@ -65,15 +65,16 @@ std::string state_message(const std::string& tester, const Status& status, std::
   json["version"] = status.version;
   json["test_count"] = status.test_count;
   json["current_test"] = status.current_test ? Json(*status.current_test) : Json(nullptr);
-  return text_of(json);
+  return json_text(json);
 }
 
 std::string last_will(const std::string& tester, std::int64_t realtime_ns) {
-  return text_of({{"tester", tester}, {"connected_since", record::iso_time(realtime_ns)}, {"state", "lost"}});
+  return json_text(
+      {{"tester", tester}, {"connected_since", record::iso_time(realtime_ns)}, {"state", "lost"}});
 }
 
 std::string health_message(const std::string& tester, const Status& status, std::int64_t realtime_ns) {
-  return text_of(
+  return json_text(
       {{"tester", tester}, {"time", record::iso_time(realtime_ns)}, {"status", status_json(status)}});
 }
 

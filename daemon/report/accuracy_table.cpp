@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/json_text.hpp"
 #include "daemon/or_null.hpp"
 
 namespace stickslip::daemon {
@@ -179,7 +180,7 @@ std::string accuracy_json(const AccuracyReport& report) {
                   {"grazing_gamma_over_2omega", report.grazing_gamma_over_2omega},
                   {"estimators", std::move(estimators)},
                   {"live_estimators", std::move(tiers)}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_document(json);
 }
 
 Figure accuracy_figure(const AccuracyReport& report) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/text.hpp"
 #include "daemon/report/millimetres.hpp"
 
 namespace stickslip::daemon {
@@ -22,10 +23,10 @@ std::string ramp_text(const friction::TestResults& results) {
     text += fmt::format(", scatter {:.4f}", *results.delta_mu_scatter.value);
   text += ", slip by slip; ";
   const friction::Estimate& escape = results.escape_speed;
-  if (!escape.value) return text + "no escape speed: " + escape.reason;
+  if (!escape.value) return text + "no escape speed: " + base::printable(escape.reason);
   text += fmt::format("escaped at {} mm/s, the first of many: ", with_error(escape, kMillimetresPerMetre, 2));
   const friction::Estimate& corrected = results.escape_speed_corrected;
-  if (!corrected.value) return text + "not corrected, " + corrected.reason;
+  if (!corrected.value) return text + "not corrected, " + base::printable(corrected.reason);
   return text + with_error(corrected, kMillimetresPerMetre, 2) + " mm/s for the mean of S−K";
 }
 

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/control/reply.hpp"
+#include "daemon/json_text.hpp"
 #include "daemon/report/report_json.hpp"
 #include "daemon/version.hpp"
 #include "daemon/web/assets.hpp"
@@ -71,7 +71,7 @@ Json page_json(Json materials, Json comparison) {
 
 std::string json_for_script(const Json& json) {
   std::string text;
-  for (const char c : text_of(json)) {
+  for (const char c : json_text(json)) {
     if (c == '<') {
       text += "\\u003c";  // Only inside strings, where this means the same.
     } else {

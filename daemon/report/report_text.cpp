@@ -74,7 +74,8 @@ constexpr int kDeltaMuDecimals = 4;
 
 /// Of all slips of the tests of a group, before the means of the tests.
 std::string by_cycle_line(const friction::PooledDeltaMu& pooled) {
-  if (!pooled.mean.value) return fmt::format("S−K by cycle   {}  {}\n", kAbsent, pooled.mean.reason);
+  if (!pooled.mean.value)
+    return fmt::format("S−K by cycle   {}  {}\n", kAbsent, base::printable(pooled.mean.reason));
   const auto error = [](const std::optional<double>& value) {
     return value ? fmt::format(" ± {:.{}f} (standard error)", *value, kDeltaMuDecimals + 1) : std::string{};
   };
@@ -164,7 +165,8 @@ std::string methods_line(const Material& material) {
   for (const ReportedTest& test : material.tests) ++counts[test.method];
   std::string text;
   for (const auto& [method, count] : counts) {
-    text += fmt::format("{}{}{}", text.empty() ? "" : "; ", method.empty() ? "method not known" : method,
+    text += fmt::format("{}{}{}", text.empty() ? "" : "; ",
+                        method.empty() ? "method not known" : base::printable(method),
                         counts.size() > 1 ? fmt::format(" ({})", count_of_tests(count)) : "");
   }
   return text;
@@ -190,7 +192,7 @@ std::string comparison_table(const report::PooledComparison& by_cycle,
   const std::string& first = comparisons.front().reason;
   const auto same = [&first](const report::Comparison& own) { return own.reason == first; };
   if (!first.empty() && std::all_of(comparisons.begin(), comparisons.end(), same)) {
-    return fmt::format("{}  {}\n", kAbsent, first);
+    return fmt::format("{}  {}\n", kAbsent, base::printable(first));
   }
   std::string text = fmt::format("{:<15}{:>10}  {:>22}  {:>9}  {:>8}  {:>18}  {:>14}\n", "", "A − B", "95 %",
                                  "p (Welch)", "g", "95 % of g", "tests 80/90 %");
@@ -224,7 +226,7 @@ std::string comparison_table(const report::PooledComparison& by_cycle,
                         own.welch->p < report::kSignificance ? "  *" : "");
   }
   for (const auto& [reason, titles] : reasons)
-    text += fmt::format("{}  no {}: {}\n", kAbsent, titles, reason);
+    text += fmt::format("{}  no {}: {}\n", kAbsent, titles, base::printable(reason));
   return text;
 }
 

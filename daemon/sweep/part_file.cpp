@@ -20,6 +20,7 @@
 #include "core/base/regular_file.hpp"
 #include "core/base/wording.hpp"
 #include "core/record/json_codec.hpp"
+#include "daemon/json_text.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -44,9 +45,7 @@ Json identity_of(const record::SweepFacts& facts) {
           {"seed", facts.seed},       {"scene_text", facts.scene_text}};
 }
 
-std::string line_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
+std::string line_of(const Json& json) { return json_text(json) + "\n"; }
 
 /// What differs, for a person; empty if nothing does.
 std::string difference(const Json& there, const Json& here) {

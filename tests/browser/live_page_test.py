@@ -553,7 +553,7 @@ class LivePage(unittest.TestCase):
             page.until(f"!document.querySelector('dialog:modal') && document.activeElement.id === '{opener}'")
 
     def test_fingers_meet_its_controls_on_a_tablet(self):
-        daemon = self.daemon('[test]\nbegins = "command"\n', speed=2)
+        daemon = self.daemon('[test]\nbegins = "command"\n', speed=2, patient=True)
         page = self.page(touch=True)
         self.assertTrue(page.value("matchMedia('(pointer: coarse)').matches"))
         page.resize(820, 1180)

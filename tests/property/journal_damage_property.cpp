@@ -188,9 +188,9 @@ RC_GTEST_PROP(JournalDamage, LosesWhatItHitsAndNothingElse, ()) {
   if (!all_stand && stands.back() && !scans.empty()) {
     RC_ASSERT(read->end->results == evaluate(*read).results);
   }
-  const bool has_fewer = expected && *made->scan_count < *expected;
+  const bool has_fewer = expected && made->scan_count < *expected;
   const std::string told =
-      fmt::format("{} scans were written to the journal, {} could be read", Sound::kScans, *made->scan_count);
+      fmt::format("{} scans were written to the journal, {} could be read", Sound::kScans, made->scan_count);
   RC_ASSERT(has_fewer == (std::ranges::find(read->end->reasons, told) != read->end->reasons.end()));
   RC_ASSERT(!has_fewer || read->end->status != record::Status::kRecovered);
   // Nothing but an end that a stop can leave so is ever removed, and that only if no scan is known to be

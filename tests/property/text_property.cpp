@@ -14,67 +14,18 @@
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
 #include "daemon/control/reply.hpp"
+#include "daemon/json_text.hpp"
 #include "daemon/log.hpp"
 #include "daemon/report/report_page.hpp"
 #include "daemon/report/table.hpp"
+#include "tests/support/hostile_text.hpp"
 
 namespace stickslip::daemon {
 namespace {
 
-constexpr std::array<std::string_view, 26> kPieces{"\n",
-                                                   "\r\n",
-                                                   "\r",
-                                                   "\t",
-                                                   "\x1b[2K",
-                                                   "\x7f",
-                                                   "\xc2\x9b",
-                                                   "\xe2\x80\xae",
-                                                   "\xe2\x80\xa8",
-                                                   "\xe2\x81\xa6",
-                                                   "\xef\xbb\xbf",
-                                                   "\xff",
-                                                   "\xc0\xaf",
-                                                   "\xed\xa0\x80",
-                                                   "\xf4\x90\x80\x80",
-                                                   "\xe2\x80",
-                                                   "=1+1",
-                                                   "+",
-                                                   "-",
-                                                   "@x",
-                                                   "\"",
-                                                   ",",
-                                                   ";",
-                                                   "</script>",
-                                                   "\xce\xb3",
-                                                   " "};
-
-rc::Gen<std::string> hostile() {
-  return rc::gen::map(rc::gen::container<std::vector<std::string>>(rc::gen::oneOf(
-                          rc::gen::map(rc::gen::inRange<std::size_t>(0, kPieces.size()),
-                                       [](std::size_t i) { return std::string{kPieces.at(i)}; }),
-                          rc::gen::arbitrary<std::string>())),
-                      [](const std::vector<std::string>& pieces) {
-                        std::string text;
-                        for (const std::string& piece : pieces) text += piece;
-                        return text;
-                      });
-}
-
-std::ptrdiff_t lines_of(std::string_view text) { return std::count(text.begin(), text.end(), '\n'); }
-
-/// UTF-8 with no control character but the line feeds.
-void expect_safe(std::string_view text) {
-  RC_ASSERT(base::is_utf8(text));
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = text.substr(begin, end - begin);
-    RC_ASSERT(base::printable(line) == line);
-    for (const char c : line) RC_ASSERT((static_cast<unsigned char>(c) >= 0x20 && c != '\x7f'));
-    for (const char* bad : {"\xc2\x9b", "\xe2\x80\xae", "\xe2\x80\xa8", "\xe2\x81\xa6", "\xef\xbb\xbf"})
-      RC_ASSERT(line.find(bad) == line.npos);
-    begin = end + 1;
-  }
-}
+using test::expect_safe;
+using test::hostile;
+using test::lines_of;
 
 class Kept final : public LogOutput {
  public:
@@ -144,9 +95,9 @@ RC_GTEST_PROP(TextProperty, ALogEntryIsOneSafeLine, ()) {
 RC_GTEST_PROP(TextProperty, JsonStaysTheSameAndEndsNoScript, ()) {
   const std::string text = *hostile();
   const nlohmann::ordered_json json{{"name", text}};
-  const std::string answer = text_of(json);
+  const std::string answer = json_text(json);
   expect_safe(answer);
-  const auto replaced = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  const auto replaced = json_text(json);
   RC_ASSERT(nlohmann::ordered_json::parse(answer) == nlohmann::ordered_json::parse(replaced));
   expect_safe(json_for_script(json));
   RC_ASSERT(json_for_script(json).find('<') == std::string::npos);

@@ -1,6 +1,7 @@
 #include "daemon/recovery.hpp"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include "core/record/finaliser.hpp"
 #include "core/record/journal_care.hpp"
@@ -15,6 +16,7 @@ namespace {
 using record::judge;
 using record::Judgement;
 using test::TemporaryFolder;
+using testing::ElementsAre;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
@@ -30,7 +32,30 @@ class Heard final : public Facts {
   void orphan_kept(const fs::path& journal, std::string_view why) override {
     text += fmt::format("kept {}: {}\n", journal.filename().string(), why);
   }
+  void folder_unread(const fs::path& folder, std::string_view why) override {
+    text += fmt::format("unread {}: {}\n", folder.filename().string(), why);
+  }
   std::string text;
+};
+
+/// Nobody may look into the folder; root becomes somebody who asks for permission.
+class ClosedFolder {
+ public:
+  explicit ClosedFolder(fs::path folder) : folder_{std::move(folder)}, was_root_{::geteuid() == 0} {
+    fs::permissions(folder_, fs::perms::none);
+    constexpr uid_t kNobody = 65534;
+    if (was_root_ && ::seteuid(kNobody) != 0) ADD_FAILURE() << "root cannot become nobody";
+  }
+  ~ClosedFolder() {
+    if (was_root_ && ::seteuid(0) != 0) ADD_FAILURE() << "root's rights are gone";
+    fs::permissions(folder_, fs::perms::owner_all);
+  }
+  ClosedFolder(const ClosedFolder&) = delete;
+  ClosedFolder& operator=(const ClosedFolder&) = delete;
+
+ private:
+  fs::path folder_;
+  bool was_root_;
 };
 
 base::Result<record::Finalised> finalise_plainly(const fs::path& journal, ExpectedScans) {
@@ -57,6 +82,66 @@ TEST(Recovery, MakesRecordsRemovesWhatIsEmptyAndKeepsTheRest) {
   EXPECT_FALSE(fs::exists(folder / "e.journal"));
   EXPECT_EQ(judge(folder / "2026/11/b.h5").judgement, Judgement::kComplete);
   EXPECT_EQ(judge(folder / "a.h5").status, "interrupted");
+}
+
+// The folder of one month is closed: the others' journals become records, and it is told.
+TEST(Recovery, AClosedFolderIsToldAndHidesNoOther) {
+  const TemporaryFolder folder;
+  fs::permissions(folder.path(), fs::perms::all);  // Whoever the test becomes.
+  for (const char* month : {"2026/09", "2026/10", "2026/11"}) {
+    fs::create_directories(folder / month);
+    fs::permissions(folder / month, fs::perms::all);
+    test::write_journal(folder / month / "a.journal", test::whole_record());
+    fs::permissions(folder / month / "a.journal", fs::perms::all);
+  }
+  Heard heard;
+  {
+    const ClosedFolder closed{folder / "2026/10"};
+    EXPECT_EQ(recover_folder(folder.path(), finalise_plainly, heard), Recovery::kRefused);
+  }
+  EXPECT_EQ(heard.text, "made a.h5\nmade a.h5\nunread 10: Permission denied\n");
+  EXPECT_TRUE(fs::exists(folder / "2026/09/a.h5"));
+  EXPECT_TRUE(fs::exists(folder / "2026/11/a.h5"));
+  EXPECT_TRUE(fs::exists(folder / "2026/10/a.journal"));
+}
+
+TEST(Recovery, LooksWhereRecordsAreMade) {
+  const TemporaryFolder folder;
+  const TemporaryFolder elsewhere;
+  for (const char* below : {"2026/11", "2026-11-21", "2026/11/deeper", "lost+found"}) {
+    fs::create_directories(folder / below);
+    test::write_content(folder / below / "a.journal", "");
+  }
+  test::write_content(elsewhere / "a.journal", "");
+  fs::create_directory_symlink(elsewhere.path(), folder / "link");
+  const FilesFound found = journals_in(folder.path());
+  EXPECT_THAT(found.files, ElementsAre(folder / "2026/11/a.journal", folder / "2026-11-21/a.journal"));
+  EXPECT_TRUE(found.unread.empty());
+  EXPECT_TRUE(journals_in(folder / "nowhere").unread.empty());
+}
+
+// Two finalisers of one journal: the second says what the first one's record holds, not what it hoped for.
+TEST(Finaliser, CountsTheScansOfARecordThatSomebodyElseMade) {
+  const TemporaryFolder folder;
+  test::write_journal(folder / "a.journal", test::whole_record());
+  ASSERT_TRUE(record::finalise(folder / "a.journal"));
+  const auto again = finalise_here(folder / "a.journal");
+  ASSERT_TRUE(again) << again.error().message;
+  const std::int64_t held = static_cast<std::int64_t>(test::whole_record().scan.size());
+  EXPECT_EQ(again->scan_count, held);
+  EXPECT_EQ(loss_of(*again, held + 45),
+            fmt::format("45 of {} scans were written and cannot be read", held + 45));
+  test::write_content(folder / "a.h5", "no record");
+  EXPECT_FALSE(finalise_here(folder / "a.journal")) << "something stands there, but no record";
+}
+
+TEST(Finaliser, APathThatCannotBeLookedAtIsNotFinished) {
+  const TemporaryFolder folder;
+  fs::permissions(folder.path(), fs::perms::all);
+  fs::create_directory(folder / "2026");
+  test::write_journal(folder / "2026/a.journal", test::whole_record());
+  const ClosedFolder closed{folder / "2026"};
+  EXPECT_FALSE(is_finished(folder / "2026/a.journal"));
 }
 
 TEST(Recovery, NobodyTouchesAJournalThatIsBeingWritten) {
@@ -103,9 +188,8 @@ TEST(Recovery, ADamagedJournalIsToldOnceAndStays) {
 }
 
 TEST(Finaliser, WhatItSaysOfWhatItMadeIsReadAgain) {
-  for (const record::Finalised& made :
-       {record::Finalised{"r/a.h5", 295, 0, {}}, record::Finalised{"r/a.h5", std::nullopt, 0, {}},
-        record::Finalised{"r/a.h5", 250, 122, "r/a b.journal.damaged"}}) {
+  for (const record::Finalised& made : {record::Finalised{"r/a.h5", 295, 0, {}},
+                                        record::Finalised{"r/a.h5", 250, 122, "r/a b.journal.damaged"}}) {
     const auto again = finalised_from_text("r/a.journal", to_text(made));
     ASSERT_TRUE(again) << again.error().message;
     EXPECT_EQ(again->file, made.file);

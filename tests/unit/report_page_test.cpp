@@ -13,6 +13,7 @@
 #include "daemon/report/report_text.hpp"
 #include "daemon/report/trace_json.hpp"
 #include "tests/support/record_samples.hpp"
+#include "tests/support/report_samples.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -94,31 +95,8 @@ TEST(JsonForScript, CannotEndItsElement) {
   EXPECT_EQ(Json::parse(text)["title"], "</script><!--<script>\uFFFD");
 }
 
-/// Three tests at one speed, the third without a static coefficient and not as its method asks.
-Material sample_material() {
-  Material material;
-  for (int i = 0; i < 3; ++i) {
-    report::MeasuredTest test;
-    test.pull_speed_m_per_s = 0.00508;
-    friction::for_each_result(test.results,
-                              [](const friction::ResultName& /*name*/, friction::Estimate& estimate) {
-                                estimate = friction::Estimate::none("not asked");
-                              });
-    if (i < 2) test.results.static_coefficient = friction::Estimate::of(0.38 + 0.01 * i);
-    material.measured.push_back(test);
-    ReportedTest reported;
-    reported.file = fmt::format("f{}.h5", i);
-    reported.method = "own kinetic_cycles=3";
-    reported.trace = "{}";
-    material.tests.push_back(reported);
-  }
-  material.tests[2].departures = {"pull speed is other"};
-  material.groups = report::group_by_speed(material.measured);
-  return material;
-}
-
 TEST(ReportText, ShowsMeansReasonsAndDepartures) {
-  const std::string text = report_text(sample_material());
+  const std::string text = report_text(test::sample_material());
   EXPECT_THAT(text, HasSubstr("5.08 mm/s, 3 tests\n"));
   EXPECT_THAT(text, HasSubstr("0.3850 ± 0.0635"));  // t(0.975, 1) · 0.00707/√2 = 12.706 · 0.005
   EXPECT_THAT(text, HasSubstr("–  no static in test 3: not asked\n"));
@@ -127,7 +105,7 @@ TEST(ReportText, ShowsMeansReasonsAndDepartures) {
 }
 
 TEST(ReportPage, HoldsEachPartOnceAndNoMark) {
-  const std::string page = report_page(sample_material());
+  const std::string page = report_page(test::sample_material());
   for (const char* mark :
        {"@LICENSE@", "@UPLOT_CSS@", "@REPORT_CSS@", "@DATA@", "@UPLOT_JS@", "@CHARTS_JS@", "@REPORT_JS@"}) {
     EXPECT_EQ(page.find(mark), std::string::npos) << mark;

@@ -346,7 +346,7 @@ TEST(FinisherAstray, WaitsForAJournalThatIsAwayAndFollowsItToItsNewName) {
   std::atomic<bool> away{true};
   Told told;
   Finisher finisher{[](const fs::path& journal, ExpectedScans expected) -> base::Result<record::Finalised> {
-                      return record::Finalised{journal.string() + " made", expected, 0, {}};
+                      return record::Finalised{journal.string() + " made", expected.value_or(0), 0, {}};
                     },
                     [&](std::int64_t test, std::int64_t scans, const base::Result<record::Finalised>& made) {
                       told.add(made ? fmt::format("{}: {} of {} scans", test, made->file.string(), scans)
