@@ -91,20 +91,40 @@ BenchStep step(BenchState state, BenchEvent event, bool automatic) noexcept {
   return degraded(event, at_rest);
 }
 
+Patience patience(BenchState state, bool automatic) noexcept {
+  switch (state) {
+    case BenchState::kFinishing:
+      return {BenchTrouble::kLongFinishing, 10.0};  // A carriage is back by then.
+    case BenchState::kLoading:
+      return {BenchTrouble::kLongLoading, 60.0};  // A sled has slipped, or slides steadily.
+    case BenchState::kRunning:
+      return {BenchTrouble::kLongRunning, 600.0};  // 0.5 m at 1 mm/s take 500 s.
+    case BenchState::kArmed:
+      if (!automatic) return {BenchTrouble::kLongArmed, 600.0};
+      break;
+    case BenchState::kIdle:
+    case BenchState::kDegraded:  // That of the daemon, which tells it.
+      break;
+  }
+  return {};
+}
+
 std::string_view words(BenchTrouble trouble) noexcept {
   switch (trouble) {
     case BenchTrouble::kNone:
       break;
     case BenchTrouble::kLongFinishing:
       return "the force of the last test is still there, and no test can begin: let the carriage go back, "
-             "or, "
-             "if nothing pulls, stickslip tare";
+             "or, if nothing pulls, stickslip tare";
     case BenchTrouble::kLongLoading:
       return "a test runs and no slip has been seen: if nothing pulls, stickslip stop, then stickslip tare";
+    case BenchTrouble::kLongRunning:
+      return "a test is still running: where the belt stands or the sled is off, stickslip stop ends it";
+    case BenchTrouble::kLongArmed:
+      return "no pull has come since the bench was armed: pull, or stickslip stop to let it be";
     case BenchTrouble::kPulledAgain:
       return "the sled was pulled before the force of the last test was gone, and while that lasts no pull "
-             "is "
-             "recorded: leave the unloaded sled at rest for a second before each pull";
+             "is recorded: leave the unloaded sled at rest for a second before each pull";
   }
   return {};
 }

@@ -34,8 +34,19 @@ enum class BenchTrouble {
   kNone,
   kLongFinishing,  ///< For longer than a carriage takes to go back.
   kLongLoading,    ///< For longer than a pull needs to slip.
+  kLongRunning,    ///< For longer than a pull takes.
+  kLongArmed,      ///< Somebody armed it, and no pull came.
   kPulledAgain,    ///< While finishing: such pulls are in no record.
 };
+
+/// What it is to be in the state for so long, in seconds, that somebody should look; kNone: no trouble.
+struct Patience {
+  BenchTrouble trouble = BenchTrouble::kNone;
+  double longest_s = 0.0;
+};
+
+/// \param automatic  the bench arms itself, and waits for the next pull as long as it takes.
+[[nodiscard]] Patience patience(BenchState state, bool automatic) noexcept;
 
 /// What it is, and what helps. Empty for kNone.
 [[nodiscard]] std::string_view words(BenchTrouble trouble) noexcept;

@@ -15,10 +15,6 @@ namespace {
 
 /// What was done before a test is told in its record, the latest of it.
 constexpr std::size_t kMostForLater = 16;
-/// A carriage is back by then.
-constexpr double kLongFinishing_s = 10.0;
-/// A sled has slipped, or slides for so long that somebody should look.
-constexpr double kLongLoading_s = 60.0;
 
 }  // namespace
 
@@ -174,12 +170,10 @@ void Processor::follow_bench() {
 }
 
 void Processor::watch_bench() {
-  const BenchState state = bench_.state();
-  const bool finishing = state == BenchState::kFinishing;
-  if (!finishing && state != BenchState::kLoading) return;
-  const double limit_s = finishing ? kLongFinishing_s : kLongLoading_s;
-  if (++bench_scans_ != std::llround(limit_s * settings_.analysis.scan_rate_Hz)) return;
-  trouble(finishing ? BenchTrouble::kLongFinishing : BenchTrouble::kLongLoading);
+  const Patience given = patience(bench_.state(), settings_.automatic);
+  if (given.trouble == BenchTrouble::kNone) return;
+  if (++bench_scans_ == std::llround(given.longest_s * settings_.analysis.scan_rate_Hz))
+    trouble(given.trouble);
 }
 
 void Processor::trouble(BenchTrouble trouble) {

@@ -39,6 +39,7 @@ class Examination {
   std::vector<Finding> all() && {
     look_at_config();
     look_at_daemon();
+    look_at_bench();
     look_at_board();
     look_at_calibration();
     look_at_records();
@@ -124,6 +125,17 @@ class Examination {
       warn("scans", fmt::format("{} scans were lost since the daemon began", lost),
            "look at gaps in the records; see realtime, below");
     }
+  }
+
+  /// Says nothing where a bench does what it should.
+  void look_at_bench() {
+    const Json trouble = status_.value("bench_trouble", Json());
+    if (!trouble.is_string()) return;
+    // "What it is: what helps".
+    const auto text = trouble.get<std::string>();
+    const std::size_t colon = text.find(": ");
+    warn("bench", fmt::format("{}: {}", status_.value("bench", ""), text.substr(0, colon)),
+         colon == text.npos ? "docs/states.md" : text.substr(colon + 2));
   }
 
   void look_at_board() {

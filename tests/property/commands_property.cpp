@@ -350,6 +350,51 @@ TEST(Commands, AForceThatStaysIsToldOnce) {
   EXPECT_EQ(record.stays, std::vector{BenchState::kFinishing});
 }
 
+// Told once, when its time is over and no scan before; a bench that arms itself waits for ever.
+TEST(Commands, EachStateHasItsPatience) {
+  struct Case {
+    bool automatic;
+    double slip;  ///< Of a force that rises and falls all the time.
+    void (*into)(Processor&);
+    BenchState state;
+    BenchTrouble trouble;
+    int longest_s;
+  };
+  const auto armed = [](Processor& processor) { EXPECT_EQ(processor.arm("ada").refusal, ""); };
+  const auto started = [](Processor& processor) { EXPECT_EQ(processor.start("ada").refusal, ""); };
+  const auto untouched = [](Processor& /*processor*/) {};
+  for (const Case& one : {Case{false, 0.0, armed, BenchState::kArmed, BenchTrouble::kLongArmed, 600},
+                          Case{false, 0.0, started, BenchState::kLoading, BenchTrouble::kLongLoading, 60},
+                          Case{false, 0.1, started, BenchState::kRunning, BenchTrouble::kLongRunning, 600},
+                          Case{true, 0.0, untouched, BenchState::kArmed, BenchTrouble::kNone, 700},
+                          Case{false, 0.0, untouched, BenchState::kIdle, BenchTrouble::kNone, 700}}) {
+    Recorder record;
+    Processor processor{settings_of(one.automatic), coefficients(), {&record}};
+    feed(processor, std::vector<double>(100, 0.0), 0, 10);
+    one.into(processor);
+    daq::ScanIndex next = 100;
+    const auto feed_scans = [&](int count) {
+      std::vector<double> force;
+      for (int k = 0; k < count; ++k, ++next) {
+        const double phase = std::fmod(static_cast<double>(next), 20.0) / 20.0;
+        force.push_back(one.slip * (3.0 + (phase < 0.8 ? phase : 4.0 * (1.0 - phase))));
+      }
+      feed(processor, force, next - count, 10);
+    };
+    while (processor.bench() != one.state && next < 1000) feed_scans(1);
+    ASSERT_EQ(processor.bench(), one.state);
+    // Where a scan changed the state, it is the first one in it.
+    const int counted = next > 100 ? 1 : 0;
+    feed_scans(one.longest_s * static_cast<int>(kRate_Hz) - 1 - counted);
+    EXPECT_TRUE(record.troubles.empty()) << name(one.state);
+    feed_scans(100);
+    const std::vector<BenchTrouble> told =
+        one.trouble == BenchTrouble::kNone ? std::vector<BenchTrouble>{} : std::vector{one.trouble};
+    EXPECT_EQ(record.troubles, told) << name(one.state);
+    EXPECT_EQ(words(one.trouble).empty(), told.empty());
+  }
+}
+
 TEST(Commands, APullBeforeTheForceOfTheLastTestIsGoneIsTold) {
   Recorder record;
   Processor processor{settings_of(true), coefficients(), {&record}};

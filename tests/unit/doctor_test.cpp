@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "core/pipeline/bench_state.hpp"
 #include "daemon/doctor/checks.hpp"
+#include "tests/support/closed_folder.hpp"
 #include "tests/support/lacking_disk.hpp"
 
 namespace stickslip::daemon {
@@ -95,6 +98,36 @@ TEST_F(Doctor, WhatTheRunningDaemonSaysOfItself) {
   EXPECT_EQ(find("rate").verdict, Verdict::kWarning);
   status_ = "no JSON";
   EXPECT_EQ(find("daemon").verdict, Verdict::kBad);
+}
+
+TEST_F(Doctor, ABenchThatStaysInItsState) {
+  status_ = R"({"state": "acquiring", "bench": "armed", "bench_trouble": null})";
+  EXPECT_EQ(find("bench").what, "absent");
+  for (const auto& [state, trouble] :
+       {std::pair{pipeline::BenchState::kFinishing, pipeline::BenchTrouble::kLongFinishing},
+        std::pair{pipeline::BenchState::kLoading, pipeline::BenchTrouble::kLongLoading},
+        std::pair{pipeline::BenchState::kRunning, pipeline::BenchTrouble::kLongRunning},
+        std::pair{pipeline::BenchState::kArmed, pipeline::BenchTrouble::kLongArmed},
+        std::pair{pipeline::BenchState::kFinishing, pipeline::BenchTrouble::kPulledAgain}}) {
+    status_ = fmt::format(R"({{"state": "acquiring", "bench": "{}", "bench_trouble": "{}"}})",
+                          pipeline::name(state), pipeline::words(trouble));
+    const Finding found = find("bench");
+    EXPECT_EQ(found.verdict, Verdict::kWarning);
+    EXPECT_THAT(found.what, testing::StartsWith(fmt::format("{}: ", pipeline::name(state))));
+    EXPECT_EQ(fmt::format("{}: {}", found.what, found.to_do),
+              fmt::format("{}: {}", pipeline::name(state), pipeline::words(trouble)));
+  }
+}
+
+TEST_F(Doctor, JournalsThatWaitAndFoldersThatHideThem) {
+  fs::create_directories(folder_ / "records/2026/10");
+  EXPECT_EQ(find("records").verdict, Verdict::kGood);
+  std::ofstream{folder_ / "records/2026/10/a.journal"} << "x";
+  EXPECT_THAT(find("records").what, testing::HasSubstr("1 journals"));
+  for (const char* open : {"", "records", "records/2026"}) fs::permissions(folder_ / open, fs::perms::all);
+  const test::ClosedFolder closed{folder_ / "records/2026/10"};
+  EXPECT_EQ(find("records").verdict, Verdict::kBad);
+  EXPECT_THAT(find("records").what, testing::HasSubstr("2026/10: cannot be looked into: Permission denied"));
 }
 
 TEST_F(Doctor, AFileSystemThatLacksSomethingIsAWarningWithWhatFollows) {

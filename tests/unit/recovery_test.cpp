@@ -1,12 +1,12 @@
 #include "daemon/recovery.hpp"
 
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include "core/record/finaliser.hpp"
 #include "core/record/journal_care.hpp"
 #include "core/record/verdict.hpp"
 #include "daemon/finaliser.hpp"
+#include "tests/support/closed_folder.hpp"
 #include "tests/support/journal_samples.hpp"
 #include "tests/support/record_samples.hpp"
 
@@ -15,6 +15,7 @@ namespace {
 
 using record::judge;
 using record::Judgement;
+using test::ClosedFolder;
 using test::TemporaryFolder;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -36,26 +37,6 @@ class Heard final : public Facts {
     text += fmt::format("unread {}: {}\n", folder.filename().string(), why);
   }
   std::string text;
-};
-
-/// Nobody may look into the folder; root becomes somebody who asks for permission.
-class ClosedFolder {
- public:
-  explicit ClosedFolder(fs::path folder) : folder_{std::move(folder)}, was_root_{::geteuid() == 0} {
-    fs::permissions(folder_, fs::perms::none);
-    constexpr uid_t kNobody = 65534;
-    if (was_root_ && ::seteuid(kNobody) != 0) ADD_FAILURE() << "root cannot become nobody";
-  }
-  ~ClosedFolder() {
-    if (was_root_ && ::seteuid(0) != 0) ADD_FAILURE() << "root's rights are gone";
-    fs::permissions(folder_, fs::perms::owner_all);
-  }
-  ClosedFolder(const ClosedFolder&) = delete;
-  ClosedFolder& operator=(const ClosedFolder&) = delete;
-
- private:
-  fs::path folder_;
-  bool was_root_;
 };
 
 base::Result<record::Finalised> finalise_plainly(const fs::path& journal, ExpectedScans) {
