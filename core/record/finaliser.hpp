@@ -33,10 +33,10 @@ struct Finalised {
   std::filesystem::path kept;  ///< Where the journal stays; empty: it was removed.
 };
 
-/// Builds TEST.h5 from TEST.journal and then removes the journal, in the memory of the tables however many
-/// scans there are (a test that is to be evaluated excepted). On any error nothing but the journal is left. A
-/// file that stands there already is never written again: if it holds the same scans the journal is removed,
-/// if not it is an error.
+/// Builds TEST.h5 from TEST.journal and then removes the journal. Takes the memory of the tables and 32 bytes
+/// for each entry of the journal (half a byte a scan in blocks of 64), not that of the scans; a test that is
+/// to be evaluated excepted. On any error nothing but the journal is left. A file that stands there already
+/// is never written again: if it holds the same scans the journal is removed, if not it is an error.
 ///
 /// A journal that is damaged, or torn with fewer scans than expected, is not removed but renamed to
 /// TEST.journal.damaged; one of that name stays where it is. Its record holds all that can be read, is
