@@ -63,7 +63,7 @@ folder = "records"
 [log]
 level = "warning"
 """, encoding="utf-8")
-        daemon = pathlib.Path(build).resolve() / "daemon/stickslipd"
+        daemon = pathlib.Path(build).resolve() / "bin/stickslipd"
         with subprocess.Popen([daemon, "--config", config], cwd=folder) as process:
             try:
                 time.sleep(2)

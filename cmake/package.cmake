@@ -11,6 +11,7 @@ endforeach()
 install(FILES config/bench.toml DESTINATION etc/stickslip RENAME stickslipd.toml)
 install(DIRECTORY config/scenes config/methods DESTINATION usr/share/stickslip FILES_MATCHING PATTERN "*.toml")
 install(FILES config/demo.toml DESTINATION usr/share/stickslip)
+install(DIRECTORY ${CMAKE_BINARY_DIR}/share/stickslip/pages DESTINATION usr/share/stickslip)
 
 install(FILES systemd/stickslipd.service systemd/stickslipd.socket DESTINATION lib/systemd/system)
 install(FILES systemd/sysusers.conf DESTINATION usr/lib/sysusers.d RENAME stickslip.conf)
@@ -45,7 +46,7 @@ add_custom_target(package_changelog
 stickslip_install_compressed(${debian_changelog} usr/share/doc/stickslip changelog.Debian)
 get_property(compressed GLOBAL PROPERTY STICKSLIP_COMPRESSED)
 add_custom_target(package_files DEPENDS ${compressed})
-add_dependencies(package_files manual package_changelog)
+add_dependencies(package_files manual pages package_changelog)
 
 install(FILES package/copyright README.md SECURITY.md DESTINATION usr/share/doc/stickslip)
 install(DIRECTORY docs DESTINATION usr/share/doc/stickslip FILES_MATCHING PATTERN "*.md")

@@ -1,7 +1,11 @@
 # Run at every build: writes version.cpp, and the changelog of the package, anew only if the commit has changed.
 # cmake -DSOURCE_DIR=… -DTEMPLATE=… -DOUTPUT=… -DPROJECT_VERSION=… -P version.cmake
 set(STICKSLIP_COMMIT "unknown")
-set(STICKSLIP_DATE "Thu, 01 Jan 1970 00:00:00 +0000")
+# Without git, or where git refuses the owner of the folder: a source archive has the date of its change log.
+file(STRINGS ${SOURCE_DIR}/CHANGELOG.md heading REGEX "^## .*[0-9][0-9][0-9][0-9]-[0-9][0-9]-[0-9][0-9]" LIMIT_COUNT 1)
+string(REGEX MATCH "[0-9]+-[0-9]+-[0-9]+" dated "${heading}")
+execute_process(COMMAND date --utc --rfc-email --date=${dated} OUTPUT_VARIABLE STICKSLIP_DATE OUTPUT_STRIP_TRAILING_WHITESPACE
+  COMMAND_ERROR_IS_FATAL ANY)
 find_package(Git QUIET)
 if(Git_FOUND)
   execute_process(COMMAND ${GIT_EXECUTABLE} describe --always --dirty --abbrev=12 --exclude=*

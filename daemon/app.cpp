@@ -163,7 +163,7 @@ void App::request_stop() {
 
 base::Result<void> App::open_control() {
   if (!config_.control_socket && config_.http.empty()) return {};
-  const HttpHandler api = make_site(make_api(desk_, *wall_));
+  const HttpHandler api = make_site(make_api(desk_, *wall_), read_chart_library());
   const auto keep = [this](base::Result<std::unique_ptr<ControlServer>> server) -> base::Result<void> {
     if (!server) return tl::unexpected(server.error());
     world_.facts->control_listening((*server)->address());

@@ -51,7 +51,7 @@ def printed(*command, **options):
 def demo(release, readme):
     """The rows of its table that README shows, for README to hold as they are."""
     with tempfile.TemporaryDirectory(prefix="stickslip-table-") as folder:
-        rows = [line.split() for line in printed(release / "daemon/stickslip", "demo", "--folder", folder).splitlines()]
+        rows = [line.split() for line in printed(release / "bin/stickslip", "demo", "--folder", folder).splitlines()]
     shown = [line.split() for line in readme.splitlines() if re.match(r"^ +\d+  measured|^ +truth ", line)]
     found = sum(any(row[:len(line)] == line for row in rows) for line in shown)
     yield Figure("rows of the demo's table that README shows", "count", found, r"()()", value_said=len(shown))
@@ -67,7 +67,7 @@ def held(release):
     for cycles, said in ((131, r"(\d+)() cycles where 131 are"), (39, r"(\d+)() slips where 39 are")):
         assert re.search(rf"\b{cycles}\b", traces), f"no test of {cycles}"
         yield Figure(f"the trace of {cycles}", "count", cycles, said)
-    yield Figure("shipped scenes", "count", len(printed(release / "daemon/stickslip", "scenes", "--json").split('"name"')) - 1, r"each of the (\d+)() shipped")
+    yield Figure("shipped scenes", "count", len(printed(release / "bin/stickslip", "scenes", "--json").split('"name"')) - 1, r"each of the (\d+)() shipped")
 
 
 def limits(release):

@@ -83,7 +83,8 @@ package() {
 }
 
 step "the demo" demo
-export PATH="$PWD/build/release/daemon:$PATH"
+export PATH="$PWD/build/release/bin:$PATH"
+step "the charts of the pages" ./dev build release pages
 step "the page" page
 step "a scene of one's own" own_scene
 step "a trace of one's own" own_trace

@@ -66,11 +66,13 @@ Result<std::string> run_report(const ReportCommand& command) {
                              command.files.size());
   }
   const bool with_traces = !command.page.empty();
+  const Result<ChartLibrary> charts = with_traces ? read_chart_library() : ChartLibrary{};
+  if (!charts) return tl::unexpected(charts.error());
   const Result<Material> material = command.batch.empty()
                                         ? read_material("", command.files, with_traces)
                                         : read_batch("", command.batch, command.files.front(), with_traces);
   if (!material) return tl::unexpected(material.error());
-  return deliver(command, report_csv(*material), command.page.empty() ? "" : report_page(*material),
+  return deliver(command, report_csv(*material), with_traces ? report_page(*material, *charts) : "",
                  report_json(*material), report_text(*material));
 }
 
@@ -86,6 +88,8 @@ Result<std::string> run_compare(const CompareCommand& command) {
   }
   if (auto free = check_outputs(command); !free) return tl::unexpected(free.error());
   const bool with_traces = !command.page.empty();
+  const Result<ChartLibrary> charts = with_traces ? read_chart_library() : ChartLibrary{};
+  if (!charts) return tl::unexpected(charts.error());
   const auto side = [&](const std::string& label, const std::string& batch,
                         const std::vector<std::string>& files) {
     return batches ? read_batch(label, batch, command.a.front(), with_traces)
@@ -97,7 +101,7 @@ Result<std::string> run_compare(const CompareCommand& command) {
   if (!b) return tl::unexpected(b.error());
   const MaterialComparison comparison = compare_materials(*a, *b);
   return deliver(command, comparison_csv(*a, *b, comparison),
-                 with_traces ? comparison_page(*a, *b, comparison) : "", comparison_json(*a, *b, comparison),
+                 with_traces ? comparison_page(*a, *b, comparison, *charts) : "", comparison_json(*a, *b, comparison),
                  comparison_text(*a, *b, comparison));
 }
 

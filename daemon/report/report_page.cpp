@@ -38,14 +38,14 @@ Json material_json(const Material& material, Json report) {
 }
 
 /// The template with each mark replaced, once, from the first to the last.
-std::string page_of(const Json& data) {
+std::string page_of(const Json& data, const ChartLibrary& charts) {
   const std::string text = json_for_script(data);
   const std::array<std::pair<std::string_view, std::string_view>, 7> parts{{
-      {"@LICENSE@", web::uplot_license()},
-      {"@UPLOT_CSS@", web::uplot_css()},
+      {"@LICENSE@", charts.license},
+      {"@UPLOT_CSS@", charts.style},
       {"@REPORT_CSS@", web::report_css()},
       {"@DATA@", text},
-      {"@UPLOT_JS@", web::uplot_js()},
+      {"@UPLOT_JS@", charts.script},
       {"@CHARTS_JS@", web::charts_js()},
       {"@REPORT_JS@", web::report_js()},
   }};
@@ -81,17 +81,18 @@ std::string json_for_script(const Json& json) {
   return text;
 }
 
-std::string report_page(const Material& material) {
-  return page_of(page_json(Json::array({material_json(material, report_json(material))}), nullptr));
+std::string report_page(const Material& material, const ChartLibrary& charts) {
+  return page_of(page_json(Json::array({material_json(material, report_json(material))}), nullptr), charts);
 }
 
-std::string comparison_page(const Material& a, const Material& b, const MaterialComparison& comparison) {
+std::string comparison_page(const Material& a, const Material& b, const MaterialComparison& comparison,
+                            const ChartLibrary& charts) {
   Json whole = comparison_json(a, b, comparison);
   Json materials =
       Json::array({material_json(a, std::move(whole["a"])), material_json(b, std::move(whole["b"]))});
   whole.erase("a");
   whole.erase("b");
-  return page_of(page_json(std::move(materials), std::move(whole)));
+  return page_of(page_json(std::move(materials), std::move(whole)), charts);
 }
 
 }  // namespace stickslip::daemon

@@ -7,13 +7,14 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "daemon/report/test_report.hpp"
+#include "daemon/web/chart_library.hpp"
 
 namespace stickslip::daemon {
 
-/// Materials read with traces. The tables show the numbers of report_json().
-[[nodiscard]] std::string report_page(const Material& material);
+/// Materials read with traces. The tables show the numbers of report_json(). \param charts  stand in the page.
+[[nodiscard]] std::string report_page(const Material& material, const ChartLibrary& charts);
 [[nodiscard]] std::string comparison_page(const Material& a, const Material& b,
-                                          const MaterialComparison& comparison);
+                                          const MaterialComparison& comparison, const ChartLibrary& charts);
 
 /// JSON that may stand inside a script element: no text in it can end the element.
 [[nodiscard]] std::string json_for_script(const nlohmann::ordered_json& json);

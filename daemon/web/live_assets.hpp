@@ -1,6 +1,5 @@
 /// \file
-/// The parts of the live page, as they lie in daemon/web and in uPlot's package; built in by
-/// cmake/embed.cmake.
+/// The parts of the live page, as they lie in daemon/web; built in by cmake/embed.cmake.
 #pragma once
 
 #include <string_view>
@@ -17,7 +16,5 @@ namespace stickslip::daemon::live_page {
 [[nodiscard]] std::string_view batch_js() noexcept;
 [[nodiscard]] std::string_view batches_js() noexcept;
 [[nodiscard]] std::string_view shown_html() noexcept;
-[[nodiscard]] std::string_view uplot_js() noexcept;
-[[nodiscard]] std::string_view uplot_css() noexcept;
 
 }  // namespace stickslip::daemon::live_page

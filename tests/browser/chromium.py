@@ -24,11 +24,11 @@ def may_have_user_namespaces():
 
 class Chromium:
     def __init__(self, program, build):
-        """build: the build directory, into which playwright-core is installed."""
+        """build: the build directory; playwright-core lies in it."""
         # As root Chromium refuses to have a sandbox; the page is our own.
         sandbox = os.geteuid() != 0 and may_have_user_namespaces()
         self.process = subprocess.Popen(
-            [shutil.which("node"), pathlib.Path(__file__).with_name("driver.mjs"), pathlib.Path(build).resolve() / "browser" / "node_modules",
+            [shutil.which("node"), pathlib.Path(__file__).with_name("driver.mjs"), pathlib.Path(build).resolve() / "playwright-core" / "package",
              program, json.dumps(sandbox), str(1000 * PATIENCE_S)],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE)
 

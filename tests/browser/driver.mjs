@@ -1,14 +1,14 @@
 // Chromium by playwright-core, for the tests in Python: a command a line on standard input, {"do", "page", …}, and an
 // answer a line on standard output, {"value"} or {"error"}. A page is known by the number that "open" gave.
 //
-// driver.mjs NODE_MODULES CHROMIUM SANDBOX PATIENCE_MS
+// driver.mjs PLAYWRIGHT_CORE CHROMIUM SANDBOX PATIENCE_MS
 
 import { createRequire } from 'node:module';
 import path from 'node:path';
 import readline from 'node:readline';
 
-const [modules, program, sandbox, patience] = process.argv.slice(2);
-const { chromium } = createRequire(path.join(modules, 'x.js'))('playwright-core');
+const [library, program, sandbox, patience] = process.argv.slice(2);
+const { chromium } = createRequire(import.meta.url)(path.resolve(library));
 const PATIENCE_MS = Number(patience);
 
 const browser = await chromium.launch({

@@ -23,7 +23,7 @@ from contrast import CONTROLS, MARK, TARGETS, TARGET_PX, TEXT, TEXTS, colours, c
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 CHROMIUM = shutil.which(sys.argv[2])
-CLI = BUILD / "daemon" / "stickslip"
+CLI = BUILD / "bin" / "stickslip"
 SPEED = "effects.constant_speed.pull_speed"
 HOSTILE = "</script><img src=x onerror='window.hacked=1'><b>&amp;"
 
@@ -177,7 +177,7 @@ folder = "speed"
 [log]
 level = "warning"
 """, encoding="utf-8")
-        subprocess.run([BUILD / "daemon" / "stickslipd", "--config", "speed.toml"], cwd=self.folder, check=True, timeout=TIMEOUT_S)
+        subprocess.run([BUILD / "bin" / "stickslipd", "--config", "speed.toml"], cwd=self.folder, check=True, timeout=TIMEOUT_S)
         [record] = (self.folder / "speed").glob("*.h5")
         run("report", record, "-o", "speed.html", cwd=self.folder)
         page = self.page("speed.html")

@@ -215,8 +215,8 @@ RC_GTEST_PROP(OutputTextProperty, ReportAsTextTableAndPage, ()) {
   expect_same_lines(csv, without_returns(report_csv(plain)));
   expect_no_formula(csv);
   expect_no_formula(without_returns(comparison_csv(named, plain, compared)));
-  const std::string page = report_page(named);
-  const std::string plain_page = report_page(plain);
+  const std::string page = report_page(named, {});
+  const std::string plain_page = report_page(plain, {});
   RC_ASSERT(base::is_utf8(page));
   RC_ASSERT(lines_of(page) == lines_of(plain_page));
   RC_ASSERT(std::count(page.begin(), page.end(), '<') ==

@@ -23,8 +23,8 @@ except ImportError:
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-STICKSLIP = BUILD / "daemon" / "stickslip"
-STICKSLIPD = BUILD / "daemon" / "stickslipd"
+STICKSLIP = BUILD / "bin" / "stickslip"
+STICKSLIPD = BUILD / "bin" / "stickslipd"
 TIMEOUT_S = 300
 
 RATE_HZ = 350

@@ -23,7 +23,7 @@ from running_daemon import RunningDaemon, wait_for
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-CLI = BUILD / "daemon" / "stickslip"
+CLI = BUILD / "bin" / "stickslip"
 
 TIMES = {"settle": "0.5 s", "reading": 0.5}
 UP_AND_DOWN = [0, 0.5, 1, 1.5, 1, 0.5, 0]

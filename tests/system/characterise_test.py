@@ -14,7 +14,7 @@ import unittest
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-CLI = BUILD / "daemon" / "stickslip"
+CLI = BUILD / "bin" / "stickslip"
 
 # Generous: under sanitizers on a busy machine everything takes its time.
 TIMEOUT_S = 600
@@ -99,7 +99,7 @@ class Characterise(unittest.TestCase):
             '[board]\ndriver = "simulated"\nclock_speed = 100\n[board.simulated]\n'
             f'scenes = ["{SOURCE}/config/scenes/ring-down-at-12-in-per-min.toml"]\nrepeats = 1\n'
             '[analysis]\nestimator = "interpolated"\n[record]\nfolder = "cheap"\n', encoding="utf-8")
-        done = run(BUILD / "daemon" / "stickslipd", "--config", "daemon.toml", cwd=self.folder)
+        done = run(BUILD / "bin" / "stickslipd", "--config", "daemon.toml", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         [file] = (self.folder / "cheap").glob("*.h5")
         [as_measured] = json.loads(run(CLI, "analyze", file, "--json").stdout)["tests"]

@@ -29,7 +29,7 @@ from schema import complaints
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-CLI = BUILD / "daemon" / "stickslip"
+CLI = BUILD / "bin" / "stickslip"
 
 
 class Daemon(RunningDaemon):
@@ -189,7 +189,7 @@ class Description(unittest.TestCase):
         # The reports of this daemon come from a program that can be held: it reads a pipe first, where there is one.
         folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="stickslip-")))
         self.pipe = folder / "pipe"
-        shutil.copy(BUILD / "daemon" / "stickslipd", folder)
+        shutil.copy(BUILD / "bin" / "stickslipd", folder)
         (folder / "stickslip").write_text(f'#!/bin/sh\n[ -p {self.pipe} ] && /bin/cat {self.pipe}\nexec {CLI} "$@"\n', encoding="utf-8")
         (folder / "stickslip").chmod(0o700)
         self.daemon = Daemon(self, '[test]\nbegins = "command"\n', board=weighing_board(self, SOURCE, speed=10), program=folder / "stickslipd")

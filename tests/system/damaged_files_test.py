@@ -18,8 +18,8 @@ import h5py
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-CLI = BUILD / "daemon" / "stickslip"
-DAEMON = BUILD / "daemon" / "stickslipd"
+CLI = BUILD / "bin" / "stickslip"
+DAEMON = BUILD / "bin" / "stickslipd"
 SANITIZED = any(flag in str(BUILD) for flag in ("asan", "tsan"))
 SCENE = "stick-slip-at-12-in-per-min"
 # The limit is 10 s of processor time; under sanitizers on a busy machine everything takes its time.

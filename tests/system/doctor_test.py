@@ -18,7 +18,7 @@ from running_daemon import RunningDaemon
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-CLI = BUILD / "daemon" / "stickslip"
+CLI = BUILD / "bin" / "stickslip"
 SCENE = SOURCE / "config" / "scenes" / "stick-slip-at-12-in-per-min.toml"
 TIMEOUT_S = 120
 # Nothing but a right to write is missing then; only root can become somebody else.

@@ -114,11 +114,11 @@ class Documents(unittest.TestCase):
         # The documents speak of an installed daemon, at the usual place.
         tools = daemon.folder / "tools"
         tools.mkdir()
-        cli = BUILD / "daemon" / "stickslip"
+        cli = BUILD / "bin" / "stickslip"
         (tools / "stickslip").write_text(f'#!/bin/sh\nif {cli} "$1" --help | grep -q -e "--socket"; then set -- "$@" --socket {daemon.socket}; fi\n'
                                          f'exec {cli} "$@"\n', encoding="utf-8")
         (tools / "stickslip").chmod(0o700)
-        (tools / "stickslipd").symlink_to(BUILD / "daemon" / "stickslipd")
+        (tools / "stickslipd").symlink_to(BUILD / "bin" / "stickslipd")
         for line in lines:
             command = line.replace(USUAL_SOCKET, str(daemon.socket)).replace("-h broker.plant", f"-h 127.0.0.1 -p {port} -C 1")
             if re.search(r"\d{8}T\d{6}Z-\d{4}\.h5", command):
@@ -148,7 +148,7 @@ class Documents(unittest.TestCase):
                     continue
                 for line in lines:
                     with self.subTest(document=document.name, command=line):
-                        done = run(line, folder, BUILD / "daemon")
+                        done = run(line, folder, BUILD / "bin")
                         self.assertEqual(done.returncode, 0, done.stderr)
         return ran
 
@@ -166,7 +166,7 @@ class Documents(unittest.TestCase):
                     folder = pathlib.Path(name)
                     shutil.copytree(SOURCE / "config", folder / "config")
                     (folder / "d.toml").write_text(text if "[board]" in text else LEAST_CONFIGURATION + text, encoding="utf-8")
-                    done = run("stickslipd --check-config d.toml", folder, BUILD / "daemon")
+                    done = run("stickslipd --check-config d.toml", folder, BUILD / "bin")
                     self.assertEqual(done.returncode, 0, done.stderr)
                 checked += 1
         self.assertGreater(checked, 1)

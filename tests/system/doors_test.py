@@ -27,7 +27,7 @@ class Doors(unittest.TestCase):
         """What a second daemon with the same record folder says and ends with."""
         config = (daemon.folder / "d.toml").read_text(encoding="utf-8").replace('"c.sock"', f'"{socket_name}"')
         (daemon.folder / "e.toml").write_text(config, encoding="utf-8")
-        return subprocess.run([str(BUILD / "daemon" / "stickslipd"), "--config", "e.toml"], cwd=daemon.folder, capture_output=True, text=True,
+        return subprocess.run([str(BUILD / "bin" / "stickslipd"), "--config", "e.toml"], cwd=daemon.folder, capture_output=True, text=True,
                               timeout=TIMEOUT_S, check=False)
 
     def test_who_has_the_token_is_answered_while_others_keep_connections(self):

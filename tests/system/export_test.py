@@ -22,7 +22,7 @@ except ImportError:
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-STICKSLIP = BUILD / "daemon" / "stickslip"
+STICKSLIP = BUILD / "bin" / "stickslip"
 TIMEOUT_S = 300
 
 

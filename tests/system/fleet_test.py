@@ -46,7 +46,7 @@ class Case(unittest.TestCase):
 
     def restart(self, daemon):
         """The same configuration and folders, once more."""
-        process = subprocess.Popen([str(BUILD / "daemon" / "stickslipd"), "--config", "d.toml"], cwd=daemon.folder, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen([str(BUILD / "bin" / "stickslipd"), "--config", "d.toml"], cwd=daemon.folder, stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         return process
@@ -107,7 +107,7 @@ class Messages(Case):
                     else:
                         self.assertEqual(told, stored, name)
             # Read from the record it is the same message, but for whom it is from.
-            read = subprocess.run([str(BUILD / "daemon" / "stickslipd"), "--result", result["file"]], cwd=daemon.folder, capture_output=True, text=True,
+            read = subprocess.run([str(BUILD / "bin" / "stickslipd"), "--result", result["file"]], cwd=daemon.folder, capture_output=True, text=True,
                                   timeout=TIMEOUT_S, check=True)
             self.assertEqual({"tester": "bench-7", **json.loads(read.stdout)}, result)
         # The last state is retained: who comes later sees it at once.
@@ -250,7 +250,7 @@ class Doors(Case):
         folder = self.folder()
         (folder / "d.toml").write_text(f'[board]\ndriver = "simulated"\n[board.simulated]\nscenes = ["{SCENE}"]\n'
                                        + fleet(1, more='user = "u"\npassword_file = "nowhere"\n'), encoding="utf-8")
-        done = subprocess.run([str(BUILD / "daemon" / "stickslipd"), "--config", "d.toml"], cwd=folder, capture_output=True, text=True, timeout=TIMEOUT_S,
+        done = subprocess.run([str(BUILD / "bin" / "stickslipd"), "--config", "d.toml"], cwd=folder, capture_output=True, text=True, timeout=TIMEOUT_S,
                               check=False)
         self.assertEqual(done.returncode, 1)
         self.assertEqual(done.stderr, "stickslipd: password file nowhere: cannot be read: No such file or directory\n")
@@ -274,7 +274,7 @@ class Many(Case):
             (folder / "d.toml").write_text(f'[board]\ndriver = "simulated"\nclock_speed = 10\n[board.simulated]\nscenes = ["{SCENE}"]\n'
                                            f'[record]\nfolder = "records"\n[log]\nlevel = "error"\n' + fleet(broker.port, tester=f"bench-{number}"),
                                            encoding="utf-8")
-            process = subprocess.Popen([str(BUILD / "daemon" / "stickslipd"), "--config", "d.toml"], cwd=folder, stderr=subprocess.PIPE, text=True)
+            process = subprocess.Popen([str(BUILD / "bin" / "stickslipd"), "--config", "d.toml"], cwd=folder, stderr=subprocess.PIPE, text=True)
             self.addCleanup(process.communicate)
             self.addCleanup(process.kill)
             processes.append((folder, process))
@@ -292,7 +292,7 @@ class Many(Case):
         # Those whose broker was away at their end hold theirs; they tell it when they start again.
         for folder, process in processes:
             if list((folder / "outbox").glob("*.json")):
-                again = subprocess.Popen([str(BUILD / "daemon" / "stickslipd"), "--config", "d.toml"], cwd=folder, stderr=subprocess.PIPE, text=True)
+                again = subprocess.Popen([str(BUILD / "bin" / "stickslipd"), "--config", "d.toml"], cwd=folder, stderr=subprocess.PIPE, text=True)
                 self.addCleanup(again.communicate)
                 self.addCleanup(again.kill)
         results = listener.results(20)

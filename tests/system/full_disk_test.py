@@ -43,7 +43,7 @@ level = "warning"
 """, encoding="utf-8")
         self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         self.socket.bind(str(folder / "notify"))
-        self.process = subprocess.Popen([str(build / "daemon" / "stickslipd"), "--config", str(config)], cwd=folder,
+        self.process = subprocess.Popen([str(build / "bin" / "stickslipd"), "--config", str(config)], cwd=folder,
                                         env=dict(os.environ, NOTIFY_SOCKET=str(folder / "notify")),
                                         stderr=subprocess.PIPE, text=True)
 
@@ -81,7 +81,7 @@ def main():
             # Eight MiB are room for 7 min of tests, and short; tests go on.
             leave(records, 8 << 20)
             text = daemon.wait_for(lambda text: "storage short" in text)
-            asked = subprocess.run([str(build / "daemon" / "stickslip"), "status", "--json", "--socket", str(folder / "c.sock")],
+            asked = subprocess.run([str(build / "bin" / "stickslip"), "status", "--json", "--socket", str(folder / "c.sock")],
                                    capture_output=True, text=True, check=True, timeout=TIMEOUT_S)
             status = json.loads(asked.stdout)
             assert status["state"] == "storage short" and status["storage"]["state"] == "short", status
@@ -108,7 +108,7 @@ def main():
         numbers = sorted(int(file.stem.split("-")[1]) for file in files)
         assert numbers == list(range(1, len(files) + 1)) and len(files) >= number_in(last), numbers
         assert sorted(file.name for file in records.iterdir()) == [file.name for file in files], list(records.iterdir())
-        judged = subprocess.run([str(build / "daemon" / "stickslip"), "verify", "--json", *map(str, files)],
+        judged = subprocess.run([str(build / "bin" / "stickslip"), "verify", "--json", *map(str, files)],
                                 capture_output=True, text=True, check=False, timeout=TIMEOUT_S)
         verdicts = json.loads(judged.stdout)["files"]
         for verdict in verdicts:

@@ -18,7 +18,7 @@ import xml.etree.ElementTree
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-CLI = BUILD / "daemon" / "stickslip"
+CLI = BUILD / "bin" / "stickslip"
 SCENES = SOURCE / "config" / "scenes"
 GALLERY = SOURCE / "docs" / "gallery.md"
 PICTURES = SOURCE / "docs" / "gallery"

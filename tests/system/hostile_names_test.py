@@ -31,7 +31,7 @@ class HostileNames(unittest.TestCase):
 
     @classmethod
     def run_plainly(cls, *arguments):
-        return subprocess.run([str(BUILD / "daemon" / "stickslip"), *arguments], cwd=cls.folder, capture_output=True, check=False,
+        return subprocess.run([str(BUILD / "bin" / "stickslip"), *arguments], cwd=cls.folder, capture_output=True, check=False,
                               env=dict(os.environ, STICKSLIP_SCENES=str(SOURCE / "config" / "scenes")))
 
     def judge(self, output, command):
@@ -76,7 +76,7 @@ class HostileNames(unittest.TestCase):
         config.write_text('[board]\ndriver = "replay"\nclock_speed = 400\n[board.replay]\nfile = "a.h5"\n[record]\nfolder = "n"\n', encoding="utf-8")
         (self.folder / "n").mkdir()
         (self.folder / "n" / f"{NAME}.journal").write_bytes(b"JUNK")
-        done = subprocess.run([str(BUILD / "daemon" / "stickslipd"), "--config", str(config)], cwd=self.folder, capture_output=True, check=False)
+        done = subprocess.run([str(BUILD / "bin" / "stickslipd"), "--config", str(config)], cwd=self.folder, capture_output=True, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.judge(done.stdout, "stickslipd")
         self.judge(done.stderr, "stickslipd")

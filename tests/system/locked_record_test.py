@@ -16,8 +16,8 @@ import h5py
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-CLI = BUILD / "daemon" / "stickslip"
-DAEMON = BUILD / "daemon" / "stickslipd"
+CLI = BUILD / "bin" / "stickslip"
+DAEMON = BUILD / "bin" / "stickslipd"
 TIMEOUT_S = 120
 OPEN_ELSEWHERE = "is open for writing in another program: close it there (h5py has it open in mode r+), then try again"
 NOT_JUDGED = 4

@@ -19,7 +19,7 @@ from terminal import run_at_a_terminal
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-PROGRAMS = {"stickslip": BUILD / "daemon" / "stickslip", "stickslipd": BUILD / "daemon" / "stickslipd"}
+PROGRAMS = {"stickslip": BUILD / "bin" / "stickslip", "stickslipd": BUILD / "bin" / "stickslipd"}
 PAGES = {"stickslip": 1, "stickslipd": 8, "stickslipd.toml": 5}
 TIMEOUT_S = 120
 

@@ -54,7 +54,7 @@ class Readers(unittest.TestCase):
         cls.before = os.getcwd()
         os.chdir(cls.place.name)
         cls.addClassCleanup(os.chdir, cls.before)
-        subprocess.run([BUILD / "daemon" / "stickslip", "simulate", "stick-slip-at-12-in-per-min", "-o", "TEST.h5",
+        subprocess.run([BUILD / "bin" / "stickslip", "simulate", "stick-slip-at-12-in-per-min", "-o", "TEST.h5",
                         "--folder", SOURCE / "config" / "scenes"], check=True, capture_output=True, timeout=TIMEOUT_S)
 
     def run_python(self, block, checks):

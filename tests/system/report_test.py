@@ -18,7 +18,7 @@ import numpy
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-CLI = BUILD / "daemon" / "stickslip"
+CLI = BUILD / "bin" / "stickslip"
 SPEED = "effects.constant_speed.pull_speed"
 STICKS, RINGS = "stick-slip-at-12-in-per-min", "ring-down-at-12-in-per-min"
 QUANTITIES = ["static_coefficient", "kinetic_coefficient", "mu_s", "mu_k", "delta_mu", "amplitude", "oscillation_frequency",

@@ -42,7 +42,7 @@ class RunningDaemon:
     def __init__(self, test, build, source, config="", speed=20, board=None, repeats=0, patient=False, prepare=lambda folder: None, program=None, records="records",
                  environment=None):
         """records: the folder of records, below that of the daemon. environment: more variables for it."""
-        self.cli = build / "daemon" / "stickslip"
+        self.cli = build / "bin" / "stickslip"
         temporary = tempfile.TemporaryDirectory(prefix="stickslip-")
         test.addCleanup(temporary.cleanup)
         self.folder = pathlib.Path(temporary.name)
@@ -63,7 +63,7 @@ repeats = {repeats}
         file = self.folder / "d.toml"
         file.write_text(f'{board}\n[record]\nfolder = "{records}"\n[control]\nsocket = "c.sock"\n{config}', encoding="utf-8")
         self.environment = environment or {}
-        self.command = [str(program or build / "daemon" / "stickslipd"), "--config", str(file)]
+        self.command = [str(program or build / "bin" / "stickslipd"), "--config", str(file)]
         test.addCleanup(self.end)
         self.start()
 

@@ -21,8 +21,8 @@ from service_manager import TIMEOUT_S, Manager
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-DAEMON = BUILD / "daemon" / "stickslipd"
-CLI = BUILD / "daemon" / "stickslip"
+DAEMON = BUILD / "bin" / "stickslipd"
+CLI = BUILD / "bin" / "stickslip"
 FREEZE = BUILD / "tests" / "system" / "freeze_thread"
 # Short, so that what hangs is soon seen: a part is looked at four times in it.
 WATCHDOG_S = 2

@@ -18,8 +18,8 @@ from terminal import run_at_a_terminal
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-DAEMON = BUILD / "daemon" / "stickslipd"
-CLI = BUILD / "daemon" / "stickslip"
+DAEMON = BUILD / "bin" / "stickslipd"
+CLI = BUILD / "bin" / "stickslip"
 SCENES = SOURCE / "config" / "scenes"
 SCENE = "stick-slip-at-12-in-per-min"
 

@@ -51,6 +51,8 @@ TIMES = {"idle": "13 s", "pull": "8 s", "rest": "37.5 s"}
 PERIOD_S = 60
 PERIOD = PERIOD_S * SCAN_RATE_HZ
 PULL = 8 * SCAN_RATE_HZ
+#: A removed journal is missed within a second and written anew; who kills the daemon before that has destroyed the test himself.
+MISSED_S = 3
 #: kMaxTests of daemon/test_log.hpp.
 REMEMBERED_TESTS = 1000
 
@@ -114,6 +116,7 @@ class Soak:
         self.began = time.monotonic()
         self.deaf = None
         self.full_until = self.unlocked_until = None
+        self.lost_at = -math.inf
         self.watched = []
         self.broker_folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="stickslip-soak-")))
         self.broker = broker.Broker(self, self.broker_folder)
@@ -198,6 +201,7 @@ seed = {seed}
         handles = pathlib.Path(f"/proc/{self.daemon.process.pid}/fd")
         if len(files) != 1 or files[0].suffix != ".journal" or not any(os.path.realpath(handle) == str(files[0].resolve()) for handle in handles.iterdir()):
             return
+        self.lost_at = time.monotonic()
         if self.random.random() < 0.5:
             files[0].unlink()
             self.counts["journals removed"] += 1
@@ -301,7 +305,8 @@ seed = {seed}
                 break
             self.trouble(tests)
             first_kill_is_due = self.counts["kills"] == 0 and now_s >= total_s / 10
-            if now_s < total_s / 5 and (first_kill_is_due or self.random.random() < 1 / 300):
+            whole = time.monotonic() - self.lost_at > MISSED_S
+            if whole and now_s < total_s / 5 and (first_kill_is_due or self.random.random() < 1 / 300):
                 self.kill()
                 of_this_life = 0
             # The daemon remembers so many tests; then its memory is as large as it gets.

@@ -19,8 +19,8 @@ from service_manager import TIMEOUT_S, Manager
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-DAEMON = BUILD / "daemon" / "stickslipd"
-CLI = BUILD / "daemon" / "stickslip"
+DAEMON = BUILD / "bin" / "stickslipd"
+CLI = BUILD / "bin" / "stickslip"
 SCENES = SOURCE / "config" / "scenes"
 STICK_SLIP = SCENES / "stick-slip-at-12-in-per-min.toml"
 

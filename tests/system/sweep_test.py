@@ -20,7 +20,7 @@ from terminal import run_at_a_terminal
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-CLI = BUILD / "daemon" / "stickslip"
+CLI = BUILD / "bin" / "stickslip"
 SCENE = "stick-slip-at-12-in-per-min"
 SPEED = "effects.constant_speed.pull_speed"
 

@@ -125,8 +125,8 @@ def wait_until_gone(pid):
 
 class Torture:
     def __init__(self, build, source, folder, seed):
-        self.daemon = build / "daemon" / "stickslipd"
-        self.cli = build / "daemon" / "stickslip"
+        self.daemon = build / "bin" / "stickslipd"
+        self.cli = build / "bin" / "stickslip"
         self.scene = source / "config" / "scenes" / "stick-slip-at-12-in-per-min.toml"
         self.folder = folder
         self.records = folder / "records"

@@ -69,7 +69,7 @@ def main():
     with (concurrent.futures.ThreadPoolExecutor(max_workers=1) as aside,
           concurrent.futures.ThreadPoolExecutor(max_workers=max(1, os.cpu_count() or 1)) as pool):
         # Mostly the network's and the disk's work, so that it takes no guest's place.
-        programs = [build / "daemon" / name for name in ("stickslipd", "stickslip")]
+        programs = [build / "bin" / name for name in ("stickslipd", "stickslip")]
         disk = aside.submit(debian.disk_image, found, programs) if "service" in names else None
         kernel.build_module(found, folder / "module" / found.release)
         for done in concurrent.futures.as_completed([pool.submit(run_one, name, build, folder, disk)

@@ -15,8 +15,8 @@ SOURCE = HERE.parents[1]
 # Set by run.py.
 BUILD = pathlib.Path(os.environ.get("STICKSLIP_VM_BUILD", SOURCE / "build" / "release")).resolve()
 FOLDER = pathlib.Path(os.environ.get("STICKSLIP_VM_FOLDER", SOURCE / "build" / "vm")).resolve()
-DAEMON = BUILD / "daemon" / "stickslipd"
-CLI = BUILD / "daemon" / "stickslip"
+DAEMON = BUILD / "bin" / "stickslipd"
+CLI = BUILD / "bin" / "stickslip"
 PACKAGE = FOLDER / "package"  # Of the same build, made by ./dev.
 FREEZE_THREAD = BUILD / "tests" / "system" / "freeze_thread"
 CONFORMANCE = BUILD / "tests" / "conformance" / "conformance_board"

@@ -1,0 +1,15 @@
+# Run at build time: cmake -DURL=https://… -DSHA512=… -DFOLDER=… -P fetch.cmake. Leaves in FOLDER what the archive holds.
+get_filename_component(archive ${URL} NAME)
+file(DOWNLOAD ${URL} ${FOLDER}/${archive} TLS_VERIFY ON TIMEOUT 300 STATUS status)
+list(GET status 0 code)
+list(GET status 1 why)
+if(NOT code EQUAL 0)
+  message(FATAL_ERROR "${URL} cannot be fetched: ${why}. CONTRIBUTING.md says what to do behind a proxy, with a certificate "
+    "authority of its own, and without a network")
+endif()
+file(SHA512 ${FOLDER}/${archive} found)
+if(NOT found STREQUAL SHA512)
+  file(REMOVE ${FOLDER}/${archive})
+  message(FATAL_ERROR "${URL} is not the archive that this version was made with: SHA-512 ${found}, wanted ${SHA512}. A proxy may have answered in its place")
+endif()
+file(ARCHIVE_EXTRACT INPUT ${FOLDER}/${archive} DESTINATION ${FOLDER} TOUCH)
