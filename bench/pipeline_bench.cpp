@@ -47,7 +47,7 @@ void per_scan(benchmark::State& state, std::size_t scans) {
 /// A journal stays where it is: the record is made by another process, after the test.
 base::Result<record::Finalised> keep_journal(const std::filesystem::path& journal,
                                              std::optional<std::int64_t> scans) {
-  return record::Finalised{journal, scans, 0, {}};
+  return record::Finalised{journal, scans.value_or(0), 0, {}};
 }
 
 /// Counts what the walk lost, which would make it fast.
