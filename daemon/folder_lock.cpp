@@ -35,12 +35,13 @@ std::string owner_of(int folder) {
 
 }  // namespace
 
-base::Result<FolderLock> FolderLock::take(const std::filesystem::path& folder) {
+base::Result<FolderLock> FolderLock::take(const std::filesystem::path& folder,
+                                          const record::FileCalls& calls) {
   record::Descriptor opened{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
   if (!opened.open())
     return base::failure("record folder {}: cannot be opened: {}", folder.string(),
                          record::system_message(errno));
-  if (::flock(opened.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
+  if (calls.flock(opened.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
     return FolderLock{std::move(opened)};
   return base::failure(
       "record folder {}: another stickslipd{} records into it: stop that one, or give this one a folder of "

@@ -7,6 +7,7 @@
 
 #include "core/base/result.hpp"
 #include "core/record/file.hpp"
+#include "core/record/file_calls.hpp"
 
 namespace stickslip::daemon {
 
@@ -18,7 +19,8 @@ class FolderLock {
   /// Locks nothing.
   FolderLock() = default;
   /// Errors: kFailure if another process has it; its number is told where the system knows it.
-  [[nodiscard]] static base::Result<FolderLock> take(const std::filesystem::path& folder);
+  [[nodiscard]] static base::Result<FolderLock> take(const std::filesystem::path& folder,
+                                                     const record::FileCalls& calls = record::system_calls());
 
  private:
   explicit FolderLock(record::Descriptor folder) : folder_(std::move(folder)) {}

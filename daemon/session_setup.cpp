@@ -26,7 +26,7 @@ base::Result<RecordFolder> prepare_record_folder(const std::filesystem::path& fo
   for (const record::FolderLack& lack : *lacks)
     told.push_back(
         fmt::format("record folder {}: the file system {}: {}", folder.string(), lack.what, lack.follows));
-  base::Result<FolderLock> lock = FolderLock::take(folder);
+  base::Result<FolderLock> lock = FolderLock::take(folder, calls);
   if (!lock) return tl::unexpected(lock.error());
   return RecordFolder{std::move(told), *std::move(lock)};
 }

@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <string>
 
+#include "tests/support/lacking_disk.hpp"
 #include "tests/support/record_samples.hpp"
 
 namespace stickslip::daemon {
@@ -28,6 +30,19 @@ TEST(FolderLock, IsOneProcessesUntilItEndsAndTellsWhose) {
   }
   EXPECT_TRUE(FolderLock::take(folder.path()));
   EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "no file is left";
+}
+
+// NFS without a lock manager, some FUSE: everybody has it, and nobody is refused.
+TEST(FolderLock, WhereThereAreNoLocksEverybodyHasIt) {
+  const test::TemporaryFolder folder;
+  test::LackingDisk disk;
+  for (const int error : {ENOLCK, ENOSYS, EOPNOTSUPP}) {
+    disk.flock_error = error;
+    const auto first = FolderLock::take(folder.path(), disk);
+    EXPECT_TRUE(first) << first.error().message;
+    const auto second = FolderLock::take(folder.path(), disk);
+    EXPECT_TRUE(second) << second.error().message;
+  }
 }
 
 TEST(FolderLock, WhereThereIsNoFolderItSaysSo) {
