@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -340,6 +341,30 @@ TEST_P(EitherDoor, WhoHasATokenIsAnsweredWhateverNewcomersDo) {
     }
   }
   for (const int one : idle) ::close(one);
+}
+
+// However many come and say nothing, no more than so many are kept: the one that has been silent longest
+// goes, and one that reads the page has just said something.
+TEST_P(EitherDoor, TheNewcomerThatWasSilentLongestMakesRoom) {
+  HttpLimits limits;
+  limits.time = 1h;
+  limits.newcomer_time = 1h;
+  limits.newcomers = 2;
+  open(limits);
+  const auto waits_for_answer = [](int descriptor) {
+    pollfd one{descriptor, POLLIN, 0};
+    return ::poll(&one, 1, 10'000) == 1;
+  };
+  const int first = client();
+  const int second = client();
+  const int third = client();
+  ASSERT_TRUE(waits_for_answer(first)) << "it is still there";
+  char byte = 0;
+  EXPECT_EQ(::recv(first, &byte, 1, 0), 0);
+  const std::string begun = asks("GET", "/v1/status");
+  for (const int kept : {second, third})
+    EXPECT_THAT(raw(kept, begun + kClose), testing::HasSubstr("HTTP/1.1 200 "));
+  ::close(first);
 }
 
 TEST_P(EitherDoor, ANewcomerHasLessTimeThanWhoWasLetIn) {
