@@ -238,6 +238,19 @@ TEST(Finalise, TornJournalKeepsWhatIsWholeAndSaysSo) {
   EXPECT_EQ(read->raw, test::sample_record().raw);
 }
 
+// The program died: when the test ended is known from its scans, whenever its record is made.
+TEST(Finalise, ATestThatWasInterruptedEndedWithItsLastScan) {
+  const TemporaryFolder folder;
+  test::write_journal(folder / "a.journal", test::sample_record(), false);
+  const auto file = finalise(folder / "a.journal");
+  ASSERT_TRUE(file) << file.error().message;
+  const auto read = read_record(file->file);
+  ASSERT_TRUE(read) << read.error().message;
+  const auto end = record::realtime_at(read->header, read->scan.back() + 1);
+  ASSERT_TRUE(end);
+  EXPECT_EQ(read->end->end_realtime_ns, end);
+}
+
 std::string with_a_flip(std::string content, std::size_t at) {
   content[at] = static_cast<char>(content[at] ^ 1);
   return content;

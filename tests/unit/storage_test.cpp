@@ -206,6 +206,28 @@ TEST(Storage, RemarksAreEventsOfEveryRecord) {
   }
 }
 
+// The date is set back by an hour in mid-test: the test has lasted as long as its scans say.
+TEST(Storage, ATestEndsByItsScansWhateverTheDateIs) {
+  const TemporaryFolder folder;
+  FaultyDisk disk;
+  TestLog tests;
+  Heard heard;
+  Storage storage{{folder.path(), DatedFolders::kNone, &disk}, finalise_plainly, tests, heard};
+  storage.use(header(), nullptr);
+  begin(storage, 1, 700);
+  constexpr std::int64_t kStart_ns = 1'795'265'582'000'000'000;
+  constexpr std::int64_t kHour_ns = 3'600'000'000'000;
+  const std::vector<double> raw(350);
+  storage.scans(700, raw, {}, {1'000'000'000, kStart_ns + 1'000'000'000, true});
+  storage.scans(1050, raw, {}, {2'000'000'000, kStart_ns + 2'000'000'000 - kHour_ns, true});
+  end(storage, 1, 1400);
+  storage.stop();
+  const auto read = record::read_record(heard.file(1));
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->header.start_realtime_ns, kStart_ns);
+  EXPECT_EQ(read->end->end_realtime_ns, kStart_ns + 2'000'000'000);
+}
+
 TEST(Storage, ADiskThatTakesItsTimeHoldsNobodyUp) {
   const TemporaryFolder folder;
   std::mutex gate;
