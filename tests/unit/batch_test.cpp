@@ -9,7 +9,9 @@
 
 #include "daemon/batch/batch_json.hpp"
 #include "daemon/batch/journal.hpp"
+#include "daemon/batch/leader.hpp"
 #include "tests/support/faulty_disk.hpp"
+#include "tests/support/manual_clock.hpp"
 #include "tests/support/record_samples.hpp"
 
 namespace stickslip::daemon {
@@ -200,6 +202,43 @@ TEST_F(BatchJournalTest, IsFoundFromDatedFolders) {
   ASSERT_TRUE(BatchJournal{folder_}.append(at_noon(TestVoided{"2026/11/a.h5", "torn"})));
   ASSERT_TRUE(journal_folder_of(record));
   EXPECT_EQ(name_in_journal(*journal_folder_of(record), record), "2026/11/a.h5");
+}
+
+/// A leader after a restart, and a program that says of every record that it is of one batch.
+class BatchLeaderTest : public BatchJournalTest {
+ protected:
+  static constexpr const char* kBefore = "20231114T221200Z-0001.h5";  // The clock stands at 22:13:20.
+  static constexpr const char* kAfter = "20231114T221300Z-0002.h5";
+
+  /// The records that a batch of that name has after open().
+  [[nodiscard]] std::vector<std::string> found(const std::string& batch) {
+    const auto program = temporary_ / "program";
+    test::write_content(program, "#!/bin/sh\necho '{\"batch\": \"" + batch + "\"}'\n");
+    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+    EXPECT_TRUE(
+        BatchJournal{folder_}.append(at_noon(BatchBegun{batch, plan_of_text(R"({"name": "liner"})")})));
+    for (const char* record : {kBefore, kAfter}) test::write_content(folder_ / record, "");
+    BatchLeader leader{
+        {folder_, program.string(), [] { return Plan{}; }, [](const Plan&) {}, {}, {}, &clock_}};
+    leader.open();
+    std::vector<std::string> records;
+    const Batch* const current = leader.book().current();
+    for (const BatchTest& one : current != nullptr ? current->tests : std::vector<BatchTest>{})
+      records.push_back(one.record);
+    return records;
+  }
+
+  test::ManualClock clock_;
+};
+
+// Records that the journal lacks are looked for behind the batch: those before it are not even read.
+TEST_F(BatchLeaderTest, FindsTheRecordsThatAStopKeptFromTheJournal) {
+  EXPECT_THAT(found("20231114T221230Z"), ElementsAre(kAfter));
+}
+
+// Its name says no more than that the clock was wrong then: the records themselves say whose they are.
+TEST_F(BatchLeaderTest, FindsThoseOfABatchThatBeganWhileTheClockWasAhead) {
+  EXPECT_THAT(found("20361122T100000Z"), ElementsAre(kBefore, kAfter));
 }
 
 }  // namespace
