@@ -132,8 +132,9 @@ TEST(UnloadedLevel, DriftIsFollowed) {
   EXPECT_EQ(course.ended, 1);
 }
 
+// Also on paper so slippery that its friction would do for a zero that is off.
 TEST(UnloadedLevel, SlidingSteadilyIsNoEndAndNoLevel) {
-  for (const double kinetic : {0.12, 0.2, 0.3}) {
+  for (const double kinetic : {0.06, 0.09, 0.12, 0.2, 0.3}) {
     Force force;
     force.stay(0.0, 2.0).slide(0.0, kinetic + 0.02, 0.2).stay(kinetic, 60.0);
     const Decisions course = decisions_on(force);
@@ -141,6 +142,15 @@ TEST(UnloadedLevel, SlidingSteadilyIsNoEndAndNoLevel) {
     EXPECT_EQ(course.ended, 0) << kinetic;
     EXPECT_NEAR(course.level.value_or(1.0), 0.0, 0.0005);
   }
+}
+
+TEST(UnloadedLevel, AfterALoadAThirdOfItIsUnloadedAndNoMore) {
+  EXPECT_TRUE(UnloadedLevel::fits_after(0.049, 0.15, 0.0));
+  EXPECT_FALSE(UnloadedLevel::fits_after(0.051, 0.15, 0.0));
+  // Above the level before.
+  EXPECT_TRUE(UnloadedLevel::fits_after(0.07, 0.15, 0.04));
+  EXPECT_FALSE(UnloadedLevel::fits_after(0.08, 0.15, 0.04));
+  EXPECT_FALSE(UnloadedLevel::fits_after(0.11, 1.0, 0.0)) << "friction is higher than that";
 }
 
 TEST(UnloadedLevel, ALoadThatIsThereFromTheFirstScanBeginsATest) {
