@@ -168,6 +168,21 @@ TEST(Recovery, ADamagedJournalIsToldOnceAndStays) {
   EXPECT_EQ(judge(folder / "a.journal.damaged").judgement, Judgement::kDamaged);
 }
 
+// How many scans were written is known to the daemon alone: a journal that lost its last ones looks whole.
+TEST(Finaliser, IsToldTheJournalAndHowManyScansWereWritten) {
+  const TemporaryFolder folder;
+  const fs::path program = folder / "program";
+  test::write_content(program, "#!/bin/sh\necho \"$@\" > \"$2\"\necho '250 0 '\n");
+  fs::permissions(program, fs::perms::owner_all);
+  const fs::path journal = folder / "a.journal";
+  const auto made = run_finaliser(program, journal, 295);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(made->scan_count, 250);
+  EXPECT_EQ(test::content_of(journal), fmt::format("--finalise {} --scans 295\n", journal.string()));
+  ASSERT_TRUE(run_finaliser(program, journal, {}));
+  EXPECT_EQ(test::content_of(journal), fmt::format("--finalise {}\n", journal.string())) << "nobody knows";
+}
+
 TEST(Finaliser, WhatItSaysOfWhatItMadeIsReadAgain) {
   for (const record::Finalised& made : {record::Finalised{"r/a.h5", 295, 0, {}},
                                         record::Finalised{"r/a.h5", 250, 122, "r/a b.journal.damaged"}}) {
