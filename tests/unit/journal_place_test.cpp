@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <fstream>
 
 #include "core/record/journal.hpp"
@@ -106,6 +107,48 @@ TEST_F(JournalPlace, ALinkInItsPlaceIsAnotherFile) {
   EXPECT_EQ(journal_->settle(), std::nullopt);
   EXPECT_EQ(journal_->path(), folder_ / "records" / "a-2.journal");
   expect_all();
+}
+
+// Numbers of files are those of their file system: another one is mounted there, and has one of that number.
+TEST_F(JournalPlace, AFileOfTheSameNumberOnAnotherDeviceIsAnotherFile) {
+  begin(disk_);
+  fs::rename(folder_ / "records", folder_ / "elsewhere");
+  fs::create_directory(folder_ / "records");
+  fs::create_hard_link(folder_ / "elsewhere" / "a.journal", journal_->path());
+  disk_.mount(folder_ / "records", 1);
+  add();
+  EXPECT_EQ(journal_->settle(), std::nullopt);
+  EXPECT_EQ(journal_->path(), folder_ / "records" / "a-2.journal");
+  expect_all();
+}
+
+/// A file system that goes on finding a file by its name when it is gone already, as a cache of names does.
+class OldNames final : public test::ForwardingCalls {
+ public:
+  void remove(const fs::path& file) {
+    struct stat found {};
+    ASSERT_EQ(::lstat(file.c_str(), &found), 0);
+    gone_ = found.st_ino;
+  }
+  int fstat(int file, struct ::stat* found) const override {
+    const int status = ForwardingCalls::fstat(file, found);
+    if (status == 0 && found->st_ino == gone_) found->st_nlink = 0;
+    return status;
+  }
+
+ private:
+  std::atomic<ino_t> gone_{0};
+};
+
+TEST_F(JournalPlace, AFileWithoutANameIsGoneAlthoughItIsStillFound) {
+  OldNames names;
+  begin(names);
+  names.remove(journal_->path());
+  add();
+  EXPECT_EQ(journal_->settle(), std::nullopt);
+  EXPECT_EQ(journal_->path(), folder_ / "records" / "a-2.journal");
+  expect_all();
+  journal_.reset();
 }
 
 TEST_F(JournalPlace, AFileThatWasThereFirstIsNotOverwritten) {

@@ -117,6 +117,32 @@ TEST_F(FolderWatched, AFileSystemThatIsMountedLateIsAsGood) {
   EXPECT_TRUE(watch.look());
 }
 
+/// The roots of file systems of a kind have the same number.
+class RootsOfOneNumber final : public test::ForwardingCalls {
+ public:
+  RootsOfOneNumber(const MovingDisk& disk, fs::path root) : disk_(disk), root_(std::move(root)) {}
+  int lstat(const char* path, struct ::stat* found) const override {
+    const int status = disk_.lstat(path, found);
+    const fs::path looked_at = (fs::path{path} / "").lexically_normal();
+    if (status == 0 && (looked_at == root_ / "" || looked_at == root_.parent_path() / "")) found->st_ino = 2;
+    return status;
+  }
+
+ private:
+  const MovingDisk& disk_;
+  fs::path root_;
+};
+
+// The records stand in the root of a file system, which is mounted in the root of another one.
+TEST_F(FolderWatched, ARootOnARootIsNotItsOwnParent) {
+  const RootsOfOneNumber roots{disk_, folder_ / "disk"};
+  disk_.mount(folder_ / "disk", kOtherDevice);
+  FolderWatch watch{folder_ / "disk", roots};
+  EXPECT_FALSE(watch.look());
+  disk_.unmount();
+  EXPECT_TRUE(watch.look());
+}
+
 TEST_F(FolderWatched, OneThatCannotBeLookedAtIsAway) {
   FolderWatch watch{records_, disk_};
   for (const int error : {EACCES, ESTALE, EIO, ENOTDIR}) {
