@@ -91,6 +91,17 @@ class ControlServerTest : public testing::Test {
               static_cast<ssize_t>(bytes.size()));
   }
 
+  /// The server closes the connection, after what it may have said before.
+  [[nodiscard]] static bool is_let_go(int descriptor) {
+    constexpr int kLongest_ms = 10'000;
+    pollfd one{descriptor, POLLIN, 0};
+    std::array<char, 4096> part{};
+    while (::poll(&one, 1, kLongest_ms) == 1) {
+      if (::recv(descriptor, part.data(), part.size(), 0) <= 0) return true;
+    }
+    return false;
+  }
+
   /// Sends bytes as they are; returns all that comes back until the server closes.
   [[nodiscard]] static std::string raw(int descriptor, const std::string& bytes, bool half_close = false) {
     // Whoever is refused may find the door closed already.
@@ -343,28 +354,41 @@ TEST_P(EitherDoor, WhoHasATokenIsAnsweredWhateverNewcomersDo) {
   for (const int one : idle) ::close(one);
 }
 
-// However many come and say nothing, no more than so many are kept: the one that has been silent longest
-// goes, and one that reads the page has just said something.
+// However many come and say nothing, no more than so many are kept: the one silent longest goes.
 TEST_P(EitherDoor, TheNewcomerThatWasSilentLongestMakesRoom) {
   HttpLimits limits;
   limits.time = 1h;
   limits.newcomer_time = 1h;
   limits.newcomers = 2;
   open(limits);
-  const auto waits_for_answer = [](int descriptor) {
-    pollfd one{descriptor, POLLIN, 0};
-    return ::poll(&one, 1, 10'000) == 1;
-  };
   const int first = client();
   const int second = client();
   const int third = client();
-  ASSERT_TRUE(waits_for_answer(first)) << "it is still there";
-  char byte = 0;
-  EXPECT_EQ(::recv(first, &byte, 1, 0), 0);
+  EXPECT_TRUE(is_let_go(first));
   const std::string begun = asks("GET", "/v1/status");
   for (const int kept : {second, third})
     EXPECT_THAT(raw(kept, begun + kClose), testing::HasSubstr("HTTP/1.1 200 "));
   ::close(first);
+}
+
+// Over TCP the page is for anybody, and who reads it stays a newcomer.
+TEST_F(ControlServerTest, WhoReadsThePageHasNotBeenSilent) {
+  HttpLimits limits;
+  limits.time = 1h;
+  limits.newcomer_time = 1h;
+  limits.newcomers = 2;
+  serve_tcp(limits);
+  const std::string page = "GET / HTTP/1.1\r\nHost: " + server_->address() + "\r\n\r\n";
+  const int first = connected_by_tcp();
+  const int second = connected_by_tcp();
+  for (const int reader : {second, first}) {
+    send(reader, page);
+    std::array<char, 4096> part{};
+    ASSERT_GT(::recv(reader, part.data(), part.size(), 0), 0);
+  }
+  const int third = connected_by_tcp();
+  EXPECT_TRUE(is_let_go(second));
+  for (const int one : {first, second, third}) ::close(one);
 }
 
 TEST_P(EitherDoor, ANewcomerHasLessTimeThanWhoWasLetIn) {
