@@ -213,7 +213,14 @@ std::optional<std::string> DiskWriter::write_all(bool sync) {
   away_ = folder_watch_.look();
   std::optional<std::string> trouble;
   if (away_) trouble = away_->why;
+  const auto is_finished = [this](const Job& job) {
+    const std::lock_guard lock{mutex_};
+    return std::none_of(jobs_.begin(), jobs_.end(),
+                        [&job](const Job& kept) { return kept.journal == job.journal; });
+  };
   for (const Job& job : jobs) {
+    // Its record was made meanwhile, and who made it has removed the journal.
+    if (job.handed_over && is_finished(job)) continue;
     // One that cannot be written holds up no other.
     const std::optional<std::string> refused =
         away_ ? away_->why : write(job, sync || (job.ended && !job.handed_over));

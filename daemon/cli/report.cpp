@@ -101,8 +101,8 @@ Result<std::string> run_compare(const CompareCommand& command) {
   if (!b) return tl::unexpected(b.error());
   const MaterialComparison comparison = compare_materials(*a, *b);
   return deliver(command, comparison_csv(*a, *b, comparison),
-                 with_traces ? comparison_page(*a, *b, comparison, *charts) : "", comparison_json(*a, *b, comparison),
-                 comparison_text(*a, *b, comparison));
+                 with_traces ? comparison_page(*a, *b, comparison, *charts) : "",
+                 comparison_json(*a, *b, comparison), comparison_text(*a, *b, comparison));
 }
 
 }  // namespace stickslip::daemon

@@ -11,7 +11,8 @@
 
 namespace stickslip::daemon {
 
-/// Materials read with traces. The tables show the numbers of report_json(). \param charts  stand in the page.
+/// Materials read with traces. The tables show the numbers of report_json(). \param charts  stand in the
+/// page.
 [[nodiscard]] std::string report_page(const Material& material, const ChartLibrary& charts);
 [[nodiscard]] std::string comparison_page(const Material& a, const Material& b,
                                           const MaterialComparison& comparison, const ChartLibrary& charts);

@@ -30,7 +30,10 @@ class RawClient {
  public:
   explicit RawClient(daemon::Door door) {
     service_ = std::make_shared<daemon::Service>(
-        daemon::Service{std::move(door), daemon::make_site(daemon::make_api(bench_, clock_), daemon::ChartLibrary{}), &hub_, {}});
+        daemon::Service{std::move(door),
+                        daemon::make_site(daemon::make_api(bench_, clock_), daemon::ChartLibrary{}),
+                        &hub_,
+                        {}});
     std::array<int, 2> ends{};
     STICKSLIP_EXPECTS(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends.data()) == 0);
     client_ = ends[0];

@@ -105,7 +105,8 @@ TEST(ReportText, ShowsMeansReasonsAndDepartures) {
 }
 
 TEST(ReportPage, HoldsEachPartOnceAndNoMark) {
-  const std::string page = report_page(test::sample_material(), {"const uPlot", ".uplot {}", "The MIT License"});
+  const std::string page =
+      report_page(test::sample_material(), {"const uPlot", ".uplot {}", "The MIT License"});
   for (const char* mark :
        {"@LICENSE@", "@UPLOT_CSS@", "@REPORT_CSS@", "@DATA@", "@UPLOT_JS@", "@CHARTS_JS@", "@REPORT_JS@"}) {
     EXPECT_EQ(page.find(mark), std::string::npos) << mark;

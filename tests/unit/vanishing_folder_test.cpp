@@ -307,6 +307,59 @@ TEST_F(StorageAstray, AJournalThatVanishesBeforeItsRecordIsMadeComesBack) {
 
 // ---- disk thread and finisher -------------------------------------------------------------
 
+/// Does something when somebody looks at a file.
+class WatchedDisk final : public test::ForwardingCalls {
+ public:
+  int lstat(const char* path, struct ::stat* found) const override {
+    if (on_look) on_look(path);
+    return ForwardingCalls::lstat(path, found);
+  }
+  int fsync(int) const override { return 0; }
+  int fdatasync(int) const override { return 0; }
+
+  std::function<void(const fs::path&)> on_look;
+};
+
+// A record is made, and taken away by its reader, while the disk thread is busy with another journal.
+TEST(DiskWriterAstray, AJournalWhoseRecordIsMadeMeanwhileIsNotMissed) {
+  const TemporaryFolder folder;
+  const fs::path running = folder / "a.journal";
+  const fs::path over = folder / "b.journal";
+  WatchedDisk disk;
+  Told told;
+  std::atomic<bool> made{false};
+  std::atomic<int> looks{0};
+  DiskWriter* disk_writer = nullptr;
+  disk.on_look = [&](const fs::path& path) {
+    if (path != running || !made) return;
+    if (++looks != 1) return;
+    fs::remove(over);
+    disk_writer->finished(2);
+  };
+  DiskWriter writer{
+      {.folder = folder.path(), .sync_period = 1ms, .retry_period = 1ms, .patience = 0ms, .calls = &disk},
+      [&](std::int64_t, const fs::path&, std::int64_t, const std::optional<std::string>& why) {
+        told.add(why.value_or("ended"));
+      },
+      [](const DiskState&) {}};
+  disk_writer = &writer;
+  const auto journal_at = [&](const fs::path& path) {
+    auto journal = std::make_shared<record::PatientJournal>(path, test::sample_header(), 1 << 20, disk);
+    journal->add_scans(0, std::vector<double>(350, 7.0), {});
+    return journal;
+  };
+  writer.begin(1, journal_at(running));
+  const auto ended = journal_at(over);
+  writer.begin(2, ended);
+  writer.end(ended);
+  told.wait_for("ended");
+  made = true;
+  while (looks < 3) std::this_thread::yield();
+  EXPECT_FALSE(fs::exists(over));
+  EXPECT_EQ(ended->anew_count(), 0);
+  writer.stop();
+}
+
 TEST(DiskWriterAstray, WhatIsGoneAtTheEndIsUnsaved) {
   const TemporaryFolder folder;
   MovingDisk moving;
