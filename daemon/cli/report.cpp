@@ -40,12 +40,10 @@ Result<void> check_outputs(const ReportOptions& options) {
   return {};
 }
 
-std::string dumped(const Json& json) { return json_document(json); }
-
 /// Files first, so that nothing is printed before all has succeeded.
 Result<std::string> deliver(const ReportOptions& options, const std::string& csv, const std::string& page,
                             const Json& json, const std::string& text) {
-  std::string printed = options.json ? dumped(json) : text;
+  std::string printed = options.json ? json_document(json) : text;
   for (const auto& [file, made] : {std::pair{&options.csv, &csv}, {&options.page, &page}}) {
     if (file->empty()) continue;
     if (*file == kStandardOutput) {
