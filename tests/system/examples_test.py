@@ -40,7 +40,7 @@ class Examples(unittest.TestCase):
         cls.addClassCleanup(cls.place.cleanup)
         cls.records = pathlib.Path(cls.place.name) / "records"
         cls.figures = pathlib.Path(cls.place.name) / "figures"
-        environment = dict(os.environ, PATH=f"{BUILD / 'daemon'}:{os.environ['PATH']}",
+        environment = dict(os.environ, PATH=f"{BUILD / 'bin'}:{os.environ['PATH']}",
                            STICKSLIP_SCENES=str(SOURCE / "config" / "scenes"))
         subprocess.run([EXAMPLES / "make_records.sh", cls.records, str(REPLICATES)], check=True, env=environment,
                        timeout=TIMEOUT_S)
