@@ -192,11 +192,13 @@ class StorageAstray : public testing::Test {
     ended.results = record::absent_results("not analysed");
     storage_->test_ended(ended);
   }
-  /// Once the journal that was begun is in the folder.
+  /// Once the journal that was begun holds scans: before that the disk thread may still be making it.
   fs::path journal() {
     for (;;) {
       for (const auto& entry : fs::directory_iterator{records_}) {
-        if (entry.path().extension() == record::kJournalExtension) return entry.path();
+        if (entry.path().extension() != record::kJournalExtension) continue;
+        const auto read = record::read_journal(entry.path());
+        if (read && !read->record.scan.empty()) return entry.path();
       }
       std::this_thread::yield();
     }
