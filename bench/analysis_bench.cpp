@@ -9,7 +9,7 @@
 #include <iterator>
 #include <vector>
 
-#include "core/friction/test_analysis.hpp"
+#include "core/analysis/test_analysis.hpp"
 #include "core/sim/scene.hpp"
 #include "core/sim/scene_run.hpp"
 
@@ -35,7 +35,7 @@ std::vector<double> one_test() {
 void analysis_streaming(benchmark::State& state) {
   const std::vector<double> scans = one_test();
   for (auto _ : state) {
-    friction::TestAnalysis analysis{friction::AnalysisSettings{}};
+    analysis::TestAnalysis analysis{analysis::AnalysisSettings{}};
     base::ScanIndex index = 0;
     for (const double value : scans) analysis.add(index++, value, false);
     benchmark::DoNotOptimize(analysis);
@@ -48,7 +48,7 @@ void analysis_with_whole_test_fit(benchmark::State& state) {
   const std::vector<double> scans = one_test();
   double cycles = 0.0;
   for (auto _ : state) {
-    friction::TestAnalysis analysis{friction::AnalysisSettings{}};
+    analysis::TestAnalysis analysis{analysis::AnalysisSettings{}};
     base::ScanIndex index = 0;
     for (const double value : scans) analysis.add(index++, value, false);
     cycles = analysis.finish().cycle_count.value.value_or(0.0);

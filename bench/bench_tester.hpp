@@ -15,7 +15,7 @@
 #include "core/base/clock.hpp"
 #include "core/pipeline/processor.hpp"
 #include "core/record/record.hpp"
-#include "daemon/session.hpp"
+#include "daemon/runtime/session.hpp"
 #include "drivers/factory/factory.hpp"
 #include "tests/support/record_samples.hpp"
 
@@ -50,11 +50,11 @@ class LongPull {
 };
 
 /// As the daemon's, where nothing but the scene is known.
-inline daemon::SessionSettings session_settings(const drivers::OpenedBoard& board,
-                                                friction::EstimatorTier tier) {
-  daemon::SessionSettings settings;
+inline runtime::SessionSettings session_settings(const drivers::OpenedBoard& board,
+                                                 detect::EstimatorTier tier) {
+  runtime::SessionSettings settings;
   settings.load_cell = *board.load_cell;
-  settings.full_ring = daemon::FullRing::kWait;
+  settings.full_ring = runtime::FullRing::kWait;
   settings.processor.clock_is_real = false;
   settings.processor.segmenter.scan_rate_Hz = board.board->info().scan_rate_granted_Hz;
   settings.processor.analysis.scan_rate_Hz = board.board->info().scan_rate_granted_Hz;
@@ -81,14 +81,14 @@ class Walk final : public pipeline::Sink {
     steps_.push_back({first, {raw.begin(), raw.end()}, stamp, {}});
     scan_count_ += raw.size();
   }
-  void cycle(const friction::Cycle& cycle) override { steps_.back().cycles.push_back(cycle); }
+  void cycle(const detect::Cycle& cycle) override { steps_.back().cycles.push_back(cycle); }
   void test_ended(const pipeline::TestEnd& end) override { end_ = end; }
 
   void hand_over(pipeline::Sink& sink) const {
     sink.test_began(start_);
     for (const Step& step : steps_) {
       sink.scans(step.first, step.raw, {}, step.stamp);
-      for (const friction::Cycle& cycle : step.cycles) sink.cycle(cycle);
+      for (const detect::Cycle& cycle : step.cycles) sink.cycle(cycle);
     }
     sink.test_ended(end_);
   }
@@ -106,7 +106,7 @@ class Walk final : public pipeline::Sink {
     daq::ScanIndex first;
     std::vector<double> raw;
     daq::ClockStamp stamp;
-    std::vector<friction::Cycle> cycles;
+    std::vector<detect::Cycle> cycles;
   };
   pipeline::TestStart start_;
   std::vector<Step> steps_;

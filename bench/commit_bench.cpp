@@ -48,7 +48,7 @@ const Pull& pull() {
     const drivers::OpenedBoard board = scene.open();
     Pull result{bench::record_header(board), {}};
     pipeline::Processor processor{
-        bench::session_settings(board, friction::EstimatorTier::kPeak).processor,
+        bench::session_settings(board, detect::EstimatorTier::kPeak).processor,
         daq::Calibration{board.board->info(), *board.load_cell, board.tester->normal_load_N()},
         {&result.walk}};
     for (const daq::ScanBlock& block : bench::all_blocks(*board.board))
@@ -82,7 +82,7 @@ class Committing final : public pipeline::Sink {
     if (journal_.settle()) failed_ = true;
     commits_s_.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   }
-  void cycle(const friction::Cycle& cycle) override { journal_.add_cycle(cycle); }
+  void cycle(const detect::Cycle& cycle) override { journal_.add_cycle(cycle); }
   void test_ended(const pipeline::TestEnd& end) override {
     record::EndRecord record;
     record.cause = pipeline::name(end.cause);

@@ -1,7 +1,7 @@
 // The live detector, tier by tier: time for a scan over whole tests, and the slowest single scan, which is
 // one that closes a cycle. Beside it, in the same run and over the same scans, what is done with SciPy: a
-// median of five, a Savitzky–Golay filter and find_peaks (daemon/peer/scipy_chain.py), as a whole array at
-// once and as it would have to be called live, and the raw maximum.
+// median of five, a Savitzky–Golay filter and find_peaks (cli/accuracy_report/scipy_chain.py), as a whole
+// array at once and as it would have to be called live, and the raw maximum.
 
 #include <benchmark/benchmark.h>
 
@@ -12,7 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "daemon/peer/scipy_chain.hpp"
+#include "cli/accuracy_report/scipy_chain.hpp"
+
 #include "tests/support/live_trials.hpp"
 
 namespace {
@@ -67,9 +68,8 @@ std::vector<double> scans_of(const test::LiveScene& scene) {
 /// Is anything known of the tester before the test?
 enum class Tester { kCharacterised, kUnknown };
 
-friction::LiveSettings settings_of(const test::LiveScene& scene, friction::EstimatorTier tier,
-                                   Tester tester) {
-  friction::LiveSettings settings;
+detect::LiveSettings settings_of(const test::LiveScene& scene, detect::EstimatorTier tier, Tester tester) {
+  detect::LiveSettings settings;
   settings.scan_rate_Hz = scene.scan_rate_Hz;
   settings.estimator = tier;
   if (tester == Tester::kCharacterised) settings.prior = scene.characterised();
@@ -77,7 +77,7 @@ friction::LiveSettings settings_of(const test::LiveScene& scene, friction::Estim
 }
 
 /// The least time of many, as Python tells it of SciPy's: what else the machine does only ever adds.
-void follow(benchmark::State& state, const test::LiveScene& scene, friction::EstimatorTier tier,
+void follow(benchmark::State& state, const test::LiveScene& scene, detect::EstimatorTier tier,
             Tester tester) {
   using Clock = std::chrono::steady_clock;
   const std::vector<double> scans = scans_of(scene);
@@ -85,7 +85,7 @@ void follow(benchmark::State& state, const test::LiveScene& scene, friction::Est
   double least_s = std::numeric_limits<double>::infinity();
   for (auto _ : state) {
     const auto begin = Clock::now();
-    friction::LiveDetector detector{settings_of(scene, tier, tester)};
+    detect::LiveDetector detector{settings_of(scene, tier, tester)};
     cycles = 0;
     for (const double value : scans) cycles += detector.add(value, false) ? 1 : 0;
     benchmark::DoNotOptimize(detector);
@@ -97,7 +97,7 @@ void follow(benchmark::State& state, const test::LiveScene& scene, friction::Est
 
 /// The slowest scan: of several runs the least for each scan, so that what else the machine does does not
 /// count.
-void slowest_scan(benchmark::State& state, const test::LiveScene& scene, friction::EstimatorTier tier,
+void slowest_scan(benchmark::State& state, const test::LiveScene& scene, detect::EstimatorTier tier,
                   Tester tester) {
   using Clock = std::chrono::steady_clock;
   constexpr int kRuns = 7;
@@ -106,7 +106,7 @@ void slowest_scan(benchmark::State& state, const test::LiveScene& scene, frictio
   for (auto _ : state) {
     std::vector<double> least_us(scans.size(), std::numeric_limits<double>::infinity());
     for (int run = 0; run < kRuns; ++run) {
-      friction::LiveDetector detector{settings_of(scene, tier, tester)};
+      detect::LiveDetector detector{settings_of(scene, tier, tester)};
       for (std::size_t k = 0; k < scans.size(); ++k) {
         const auto begin = Clock::now();
         benchmark::DoNotOptimize(detector.add(scans[k], false));
@@ -135,7 +135,7 @@ double scipy_ns_per_scan(benchmark::State& state, const test::LiveScene& scene,
   const std::vector<accuracy::TierScene> scenes{{scene.scan_rate_Hz, scene.frequency_Hz, {scans}}};
   double ns = 0.0;
   for (auto _ : state) {
-    const auto outcomes = daemon::run_scipy_chain(scenes);
+    const auto outcomes = accuracy_report::run_scipy_chain(scenes);
     if (outcomes) {
       ns = outcomes->front().ns_per_scan;
     } else {
@@ -162,14 +162,14 @@ void peer_scipy_chain_live(benchmark::State& state, double scan_rate_Hz) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  for (const auto tier : {friction::EstimatorTier::kPeak, friction::EstimatorTier::kInterpolated,
-                          friction::EstimatorTier::kFit}) {
+  for (const auto tier :
+       {detect::EstimatorTier::kPeak, detect::EstimatorTier::kInterpolated, detect::EstimatorTier::kFit}) {
     const std::string tier_name{name(tier)};
     for (const double rate_Hz : {100.0, 350.0, 1000.0, 10'000.0, 100'000.0}) {
       const std::string at = tier_name + "/" + std::to_string(static_cast<int>(rate_Hz));
       for (const Tester tester : {Tester::kCharacterised, Tester::kUnknown}) {
         // The others ask the scans of each slip with either.
-        if (tester == Tester::kUnknown && tier != friction::EstimatorTier::kPeak) continue;
+        if (tester == Tester::kUnknown && tier != detect::EstimatorTier::kPeak) continue;
         for (const int slips : {kShortTest, kPromisedTest, kLongTest}) {
           if (rate_Hz > 10'000.0 && slips > kShortTest) continue;
           std::string row = tester == Tester::kCharacterised ? "follow/" : "follow_unknown_tester/";

@@ -19,7 +19,7 @@
 namespace {
 
 using namespace stickslip::sim;
-using stickslip::friction::Oscillator;
+using stickslip::model::Oscillator;
 
 using Change = std::function<void(Scene&)>;
 

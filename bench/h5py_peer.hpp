@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "io/child_process.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/base/result.hpp"
-#include "daemon/child_process.hpp"
 #include "tests/support/record_samples.hpp"
 
 namespace stickslip::bench {
@@ -37,7 +37,7 @@ inline base::Result<H5pyOutcome> write_with_h5py(const std::vector<double>& raw,
   }
   const std::string script = std::string{STICKSLIP_SOURCE_DIR} + "/bench/h5py_peer.py";
   // Range, largest code, gain and weight of the scene: what they are makes no difference to the time.
-  const auto answer = daemon::ask_program(
+  const auto answer = io::ask_program(
       "/usr/bin/python3",
       {script, (folder / "codes.u16").string(), std::to_string(scan_rate_Hz), "20", "65535", "2", "22.86",
        flush == Flush::kEachSecond ? "second" : "end", (folder / "peer.h5").string()},

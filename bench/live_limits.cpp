@@ -10,15 +10,15 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "core/friction/threshold.hpp"
+#include "core/model/threshold.hpp"
 #include "tests/support/live_trials.hpp"
 
 namespace {
 
 using namespace stickslip;
 
-friction::LiveSettings settings_of(const test::LiveScene& scene) {
-  friction::LiveSettings settings;
+detect::LiveSettings settings_of(const test::LiveScene& scene) {
+  detect::LiveSettings settings;
   settings.scan_rate_Hz = scene.scan_rate_Hz;
   settings.prior = scene.characterised();
   return settings;
@@ -39,7 +39,7 @@ void false_escapes(const char* what, test::LiveScene scene, int slips) {
 void escapes(double over_threshold, int count) {
   test::LiveScene scene;
   scene.slips = 1;
-  scene.escape_Q = over_threshold * friction::Q_threshold(scene.gamma_over_2omega);
+  scene.escape_Q = over_threshold * model::Q_threshold(scene.gamma_over_2omega);
   int soon = 0;
   int later = 0;
   double worst = 0.0;

@@ -16,12 +16,13 @@
 #include <future>
 #include <limits>
 
+#include "cli/accuracy_report/scipy_chain.hpp"
+
 #include "bench/bench_tester.hpp"
 #include "bench/h5py_peer.hpp"
 #include "core/record/finaliser.hpp"
 #include "core/record/journal.hpp"
-#include "daemon/peer/scipy_chain.hpp"
-#include "daemon/storage.hpp"
+#include "daemon/storage/storage.hpp"
 
 namespace {
 
@@ -93,7 +94,7 @@ class LatestScans final : public pipeline::Sink {
 /// One test from the start of the board until its journal is durable. The time of a row is that of all; the
 /// counters are the best rate while the test runs, the best with what is estimated once at its end, and the
 /// least processor time of the processing thread for a scan while the test runs, which bounds the first.
-void whole(benchmark::State& state, friction::EstimatorTier tier, double test_s) {
+void whole(benchmark::State& state, detect::EstimatorTier tier, double test_s) {
   using Seconds = std::chrono::duration<double>;
   bench::LongPull pull{static_cast<double>(state.range(0)), test_s, 1};
   double running = 0.0;
@@ -104,19 +105,19 @@ void whole(benchmark::State& state, friction::EstimatorTier tier, double test_s)
     daemon::TestLog tests;
     Losses losses;
     LatestScans latest;
-    daemon::SessionCounts counts;
+    runtime::SessionCounts counts;
     std::promise<void> ended;
     drivers::OpenedBoard board = pull.open();
-    const daemon::SessionSettings settings = bench::session_settings(board, tier);
+    const runtime::SessionSettings settings = bench::session_settings(board, tier);
     const record::RecordHeader header = bench::record_header(board);
     board.truth = nullptr;  // A bench has none.
-    daemon::Storage storage{{folder.path()}, keep_journal, tests, losses};
+    storage::Storage storage{{folder.path()}, keep_journal, tests, losses};
     storage.use(header, nullptr);
-    daemon::Session session{std::move(board),
-                            settings,
-                            {&storage, &latest},
-                            {[] {}, [&ended](daemon::Acquisition::End) { ended.set_value(); }, {}},
-                            counts};
+    runtime::Session session{std::move(board),
+                             settings,
+                             {&storage, &latest},
+                             {[] {}, [&ended](runtime::Acquisition::End) { ended.set_value(); }, {}},
+                             counts};
     const auto begin = std::chrono::steady_clock::now();
     if (!session.start()) state.SkipWithError("the board does not start");
     session.start_processing();
@@ -168,7 +169,7 @@ void stage_segmenter(benchmark::State& state) {
   bench::LongPull pull = one_pull(state.range(0));
   const drivers::OpenedBoard board = pull.open();
   const pipeline::SegmenterSettings settings =
-      bench::session_settings(board, friction::EstimatorTier::kFit).processor.segmenter;
+      bench::session_settings(board, detect::EstimatorTier::kFit).processor.segmenter;
   const daq::Calibration calibration{board.board->info(), *board.load_cell, board.tester->normal_load_N()};
   const std::vector<daq::ScanBlock> blocks = bench::all_blocks(*board.board);
   std::size_t scans = 0;
@@ -186,17 +187,17 @@ void stage_segmenter(benchmark::State& state) {
 }
 
 /// The scans of the test one by one, and what is estimated at its end.
-void stage_analysis(benchmark::State& state, friction::EstimatorTier tier, bool at_the_end) {
+void stage_analysis(benchmark::State& state, detect::EstimatorTier tier, bool at_the_end) {
   bench::LongPull pull = one_pull(state.range(0));
   const drivers::OpenedBoard board = pull.open();
-  friction::AnalysisSettings settings = bench::session_settings(board, tier).processor.analysis;
+  analysis::AnalysisSettings settings = bench::session_settings(board, tier).processor.analysis;
   const daq::Calibration calibration{board.board->info(), *board.load_cell, board.tester->normal_load_N()};
   settings.step_coefficient = calibration.step_coefficient();
   const std::vector<daq::ScanBlock> blocks = bench::all_blocks(*board.board);
   std::size_t scans = 0;
   for (auto _ : state) {
     if (at_the_end) state.PauseTiming();
-    friction::TestAnalysis analysis{settings};
+    analysis::TestAnalysis analysis{settings};
     scans = 0;
     for (const daq::ScanBlock& block : blocks) {
       for (const double raw : block.scans())
@@ -211,7 +212,7 @@ void stage_analysis(benchmark::State& state, friction::EstimatorTier tier, bool 
 }
 
 /// All that the processing thread does, for a sink that does nothing.
-void stage_processing(benchmark::State& state, friction::EstimatorTier tier) {
+void stage_processing(benchmark::State& state, detect::EstimatorTier tier) {
   bench::LongPull pull = one_pull(state.range(0));
   const drivers::OpenedBoard board = pull.open();
   const pipeline::ProcessorSettings settings = bench::session_settings(board, tier).processor;
@@ -233,7 +234,7 @@ bench::Walk walk_of(std::int64_t scan_rate_Hz) {
   const drivers::OpenedBoard board = pull.open();
   bench::Walk walk;
   pipeline::Processor processor{
-      bench::session_settings(board, friction::EstimatorTier::kPeak).processor,
+      bench::session_settings(board, detect::EstimatorTier::kPeak).processor,
       daq::Calibration{board.board->info(), *board.load_cell, board.tester->normal_load_N()},
       {&walk}};
   for (const daq::ScanBlock& block : bench::all_blocks(*board.board))
@@ -251,7 +252,7 @@ void stage_journal(benchmark::State& state) {
     const test::TemporaryFolder folder;
     daemon::TestLog tests;
     Losses losses;
-    daemon::Storage storage{{folder.path()}, keep_journal, tests, losses};
+    storage::Storage storage{{folder.path()}, keep_journal, tests, losses};
     storage.use(header, nullptr);
     walk.hand_over(storage);
     storage.stop();
@@ -272,7 +273,7 @@ void stage_record(benchmark::State& state) {
     Losses losses;
     std::filesystem::path journal;
     {
-      daemon::Storage storage{
+      storage::Storage storage{
           {folder.path()},
           [&journal](const std::filesystem::path& ended, std::optional<std::int64_t> scans) {
             return keep_journal(journal = ended, scans);
@@ -302,8 +303,8 @@ void peer(benchmark::State& state) {
   for (const double code : raw) coefficient.push_back(calibration.coefficient(code));
   constexpr double kFrequency_Hz = 20.0;  // As the scene has it.
   for (auto _ : state) {
-    const auto chain =
-        daemon::run_scipy_chain(std::vector<accuracy::TierScene>{{rate_Hz, kFrequency_Hz, {coefficient}}});
+    const auto chain = accuracy_report::run_scipy_chain(
+        std::vector<accuracy::TierScene>{{rate_Hz, kFrequency_Hz, {coefficient}}});
     const auto written = bench::write_with_h5py(raw, rate_Hz, bench::Flush::kAtTheEnd);
     if (!chain || !written) {
       state.SkipWithError((chain ? written.error() : chain.error()).message.c_str());
@@ -321,9 +322,9 @@ void register_all() {
           ->Arg(rate_Hz)
           ->Unit(benchmark::kMillisecond);
     };
-    for (const auto tier : {friction::EstimatorTier::kPeak, friction::EstimatorTier::kInterpolated,
-                            friction::EstimatorTier::kFit}) {
-      const std::string name{friction::name(tier)};
+    for (const auto tier :
+         {detect::EstimatorTier::kPeak, detect::EstimatorTier::kInterpolated, detect::EstimatorTier::kFit}) {
+      const std::string name{model::name(tier)};
       add("whole/" + name, [=](benchmark::State& state) {
         whole(state, tier, one_test_s(rate_Hz));
       })->UseManualTime();
@@ -335,7 +336,7 @@ void register_all() {
     }
     // A rate that holds for ten million scans is no matter of caches and queues.
     add("sustained/interpolated",
-        [=](benchmark::State& state) { whole(state, friction::EstimatorTier::kInterpolated, 1e7 / rate_Hz); })
+        [=](benchmark::State& state) { whole(state, detect::EstimatorTier::kInterpolated, 1e7 / rate_Hz); })
         ->UseManualTime()
         ->Iterations(1);
     add("stage/simulator", stage_simulator);

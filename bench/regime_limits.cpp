@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "core/friction/regime.hpp"
+#include "core/model/regime.hpp"
 #include "core/sim/scene.hpp"
 #include "tests/support/regime_tally.hpp"
 
@@ -39,8 +39,7 @@ std::uint64_t number(const char* text) {
 int main(int argc, char** argv) {
   const std::uint64_t count = argc > 1 ? number(argv[1]) : 10'000;
   const std::uint64_t seed = argc > 2 ? number(argv[2]) : 1;
-  const auto estimator =
-      argc > 3 ? friction::estimator_tier_from_name(argv[3]) : friction::EstimatorTier::kFit;
+  const auto estimator = argc > 3 ? detect::estimator_tier_from_name(argv[3]) : detect::EstimatorTier::kFit;
   if (!estimator) {
     fmt::print(stderr, "regime_limits: '{}' is none of peak, interpolated and fit\n", argv[3]);
     return 2;
@@ -52,7 +51,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   fmt::print("{} random tests of {} s, seed {}, estimator {}\n", count, base->constant_speed->pull_s, seed,
-             friction::name(*estimator));
+             model::name(*estimator));
   fmt::print("S - K 0.02 to 0.1, its scatter 0 to 30 %, Q/Q_th 0.3 to 3\n");
   for (const double noise : {0.02, 0.05, 0.1}) {
     const test::Disturbance disturbance{.noise = noise};
@@ -65,9 +64,9 @@ int main(int argc, char** argv) {
       return 1;
     }
     fmt::print("{:<28} {:>7} {:>10} {:>12}\n", "really", "tests", "wrong", "undecided");
-    for (const auto& [regime, tally] : table->of_regime) print(tally, friction::name(regime));
+    for (const auto& [regime, tally] : table->of_regime) print(tally, model::name(regime));
     print(table->few_captures, "with one to three captures");
-    if (*estimator != friction::EstimatorTier::kFit) continue;  // The others give it no standard error.
+    if (*estimator != detect::EstimatorTier::kFit) continue;  // The others give it no standard error.
     const test::TransitionTally& transitions = table->transitions;
     fmt::print(
         "transition_time of {} mixed tests: rms error {:.3f} ms, variance of error over standard error "

@@ -32,8 +32,8 @@ int number(const char* text) {
 double percent(double value) { return 100.0 * value / ScatterTrials::kDeltaMu; }
 
 void print(double speed_in_per_min, const ScatterTrials& trials) {
-  const friction::PooledDeltaMu pooled = friction::pool_delta_mu(trials.cycles);
-  const auto bias = [](const friction::Estimate& mean) {
+  const analysis::PooledDeltaMu pooled = analysis::pool_delta_mu(trials.cycles);
+  const auto bias = [](const analysis::Estimate& mean) {
     return mean.value ? fmt::format("{:+.2f} ± {:.2f}", percent(*mean.value - ScatterTrials::kDeltaMu),
                                     percent(mean.standard_error.value_or(std::nan(""))))
                       : std::string{"–"};

@@ -30,7 +30,7 @@ constexpr double kAskedError = 1e-9;
 
 sim::Motion sticking_motion() {
   sim::Motion motion;
-  motion.oscillator = friction::Oscillator::from_omega(2.0 * std::numbers::pi * 20.0, 0.022);
+  motion.oscillator = model::Oscillator::from_omega(2.0 * std::numbers::pi * 20.0, 0.022);
   motion.mu_s = 0.35;
   motion.mu_k = 0.30;
   motion.gravity_m_per_s2 = 9.80665;

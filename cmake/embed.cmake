@@ -1,10 +1,6 @@
 # Run at build time: text files become functions of a C++ source.
-# cmake -DOUTPUT=… -DHEADER=… -DNAMES=a,b -DFILES=/…/a.js,/…/b.css -P embed.cmake
-# The header declares, in namespace stickslip::daemon::web or the one of -DNAMESPACE=…, std::string_view NAME()
-# noexcept for each name.
-if(NOT DEFINED NAMESPACE)
-  set(NAMESPACE stickslip::daemon::web)
-endif()
+# cmake -DOUTPUT=… -DHEADER=… -DNAMESPACE=… -DNAMES=a,b -DFILES=/…/a.js,/…/b.css -P embed.cmake
+# The header declares, in that namespace, std::string_view NAME() noexcept for each name.
 string(REPLACE "," ";" names "${NAMES}")
 string(REPLACE "," ";" files "${FILES}")
 set(source "#include \"${HEADER}\"\n\nnamespace ${NAMESPACE} {\n")

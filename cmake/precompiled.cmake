@@ -11,7 +11,7 @@ if(NOT STICKSLIP_PRECOMPILED)
 endif()
 
 set(CMAKE_UNITY_BUILD ON)
-set(CMAKE_UNITY_BUILD_BATCH_SIZE 0)
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
 # Tests are compiled more often than run, debugged with the preset dev, and compute little by themselves. So do the
 # programs, which sanitizers build to be watched: Clang takes less than half of the time over them without
 # optimisation. What computes is core. Without tests, as the preset fuzz-fast is, all of it is to run fast.
@@ -51,7 +51,7 @@ endif()
 # stickslip_precompiled(NAME HEADERS): HEADERS is stickslip_library_headers, stickslip_test_headers or, with a sanitizer,
 # stickslip_program_headers.
 function(stickslip_precompiled name headers)
-  if(STICKSLIP_SANITIZE AND CMAKE_CURRENT_SOURCE_DIR MATCHES "^${CMAKE_SOURCE_DIR}/daemon")
+  if(STICKSLIP_SANITIZE AND CMAKE_CURRENT_SOURCE_DIR MATCHES "^${CMAKE_SOURCE_DIR}/(daemon|io|report|cli)")
     set(headers stickslip_program_headers)
   endif()
   target_precompile_headers(${name} REUSE_FROM ${headers})

@@ -47,3 +47,21 @@ function(stickslip_test name)
     add_dependencies(threads_tests ${name})
   endif()
 endfunction()
+
+# stickslip_embed(OUTPUT HEADER NAMESPACE NAME=FILE ...): text files become functions of a source, which HEADER declares.
+function(stickslip_embed output header namespace)
+  set(names)
+  set(files)
+  foreach(pair ${ARGN})
+    string(REGEX MATCH "^([^=]+)=(.+)$" matched "${pair}")
+    get_filename_component(file "${CMAKE_MATCH_2}" ABSOLUTE)
+    list(APPEND names ${CMAKE_MATCH_1})
+    list(APPEND files ${file})
+  endforeach()
+  list(JOIN names , names_joined)
+  list(JOIN files , files_joined)
+  add_custom_command(OUTPUT ${output}
+    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${output} -DHEADER=${header} -DNAMESPACE=${namespace} -DNAMES=${names_joined}
+      -DFILES=${files_joined} -P ${CMAKE_SOURCE_DIR}/cmake/embed.cmake
+    DEPENDS ${files} ${CMAKE_SOURCE_DIR}/cmake/embed.cmake VERBATIM)
+endfunction()

@@ -6,10 +6,10 @@
 namespace stickslip::accuracy {
 namespace {
 
-using friction::Estimate;
+using analysis::Estimate;
 
-friction::TestResults analysed(const ObservedTest& test) {
-  friction::TestAnalysis analysis{test.settings};
+analysis::TestResults analysed(const ObservedTest& test) {
+  analysis::TestAnalysis analysis{test.settings};
   for (std::size_t i = 0; i < test.scan.size(); ++i) {
     if (i > 0 && test.scan[i] != test.scan[i - 1] + 1)
       analysis.gap(test.scan[i - 1] + 1, test.scan[i] - test.scan[i - 1] - 1);
@@ -30,7 +30,7 @@ class TraditionalDifference final : public Estimator {
   [[nodiscard]] std::string_view name() const noexcept override { return "traditional static less kinetic"; }
   [[nodiscard]] std::string setting() const override { return {}; }
   [[nodiscard]] Estimate delta_mu(const ObservedTest& test) const override {
-    const friction::TestResults results = analysed(test);
+    const analysis::TestResults results = analysed(test);
     if (!results.static_coefficient.value) return results.static_coefficient;
     if (!results.kinetic_coefficient.value) return results.kinetic_coefficient;
     return Estimate::of(*results.static_coefficient.value - *results.kinetic_coefficient.value);
@@ -42,7 +42,7 @@ class TraditionalDifference final : public Estimator {
 std::optional<double> ObservedTest::true_delta_mu() const {
   if (truth.cycles.empty()) return std::nullopt;
   double sum = 0.0;
-  for (const friction::TrueCycle& cycle : truth.cycles) sum += cycle.mu_s - cycle.mu_k;
+  for (const model::TrueCycle& cycle : truth.cycles) sum += cycle.mu_s - cycle.mu_k;
   return sum / static_cast<double>(truth.cycles.size());
 }
 

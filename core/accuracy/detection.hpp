@@ -14,20 +14,20 @@
 #include <vector>
 
 #include "core/accuracy/comparison.hpp"
+#include "core/analysis/test_analysis.hpp"
 #include "core/base/clock.hpp"
 #include "core/base/scan_index.hpp"
-#include "core/friction/test_analysis.hpp"
-#include "core/friction/truth.hpp"
+#include "core/model/truth.hpp"
 
 namespace stickslip::accuracy {
 
 /// One test as an estimator sees it, and what it should find.
 struct ObservedTest {
-  friction::AnalysisSettings settings;  ///< Rate, A/D step, tester, method.
+  analysis::AnalysisSettings settings;  ///< Rate, A/D step, tester, method.
   std::vector<base::ScanIndex> scan;    ///< Rises; a jump is a gap.
   std::vector<double> coefficient;      ///< One for each scan.
   std::vector<bool> saturated;          ///< One for each scan.
-  friction::TestTruth truth;
+  model::TestTruth truth;
 
   /// Mean S − K of the slips that began by giving way; nothing if there were none.
   [[nodiscard]] std::optional<double> true_delta_mu() const;
@@ -41,10 +41,10 @@ class Estimator {
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
   [[nodiscard]] virtual std::string setting() const = 0;
   /// S − K of the whole test; without the truth, of course.
-  [[nodiscard]] virtual friction::Estimate delta_mu(const ObservedTest& test) const = 0;
+  [[nodiscard]] virtual analysis::Estimate delta_mu(const ObservedTest& test) const = 0;
 };
 
-/// What the instrument does: friction::TestAnalysis, scan by scan, with the fit of the whole test at its end.
+/// What the instrument does: analysis::TestAnalysis, scan by scan, with the fit of the whole test at its end.
 [[nodiscard]] std::unique_ptr<Estimator> make_whole_test_fit();
 /// What the tradition has: first peak less the mean of the cycles that follow.
 [[nodiscard]] std::unique_ptr<Estimator> make_traditional_difference();

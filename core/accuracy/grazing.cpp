@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "core/base/contract.hpp"
-#include "core/friction/slip_waveform.hpp"
-#include "core/friction/threshold.hpp"
+#include "core/model/slip_waveform.hpp"
+#include "core/model/threshold.hpp"
 
 namespace stickslip::accuracy {
 namespace {
@@ -48,7 +48,7 @@ std::string_view name(Grazing grazing) noexcept {
 
 sim::Motion grazing_motion(double gamma_over_2omega, double Q) {
   sim::Motion motion;
-  motion.oscillator = friction::Oscillator::from_omega(kOmega, gamma_over_2omega);
+  motion.oscillator = model::Oscillator::from_omega(kOmega, gamma_over_2omega);
   // A belt that starts at once takes the sled along if friction accelerates it to c′ = r before the spring
   // stops it; K three times the overshoot r/ω is plenty.
   motion.mu_k = std::fmax(kMuK, 3.0 * Q * kDeltaMu);
@@ -77,7 +77,7 @@ GoesOn goes_on(const Method& method, double gamma_over_2omega, double Q) {
   if (method.run(motion, kScanRate_Hz, 1, coefficient).undecided_count > 0) return GoesOn::kUndecided;
   const std::span<const double> all = coefficient;
   // The first slip is the same with capture and without up to its least force: [17].
-  const friction::SlipWaveform slip{motion.mu_k, motion.mu_s - motion.mu_k, rate, motion.oscillator};
+  const model::SlipWaveform slip{motion.mu_k, motion.mu_s - motion.mu_k, rate, motion.oscillator};
   const double first_range = slip.value(slip.peak_time_s()) - slip.value(slip.trough_time_s());
   return range_of(all.last(last)) > 0.5 * first_range ? GoesOn::kYes : GoesOn::kNo;
 }
@@ -85,7 +85,7 @@ GoesOn goes_on(const Method& method, double gamma_over_2omega, double Q) {
 std::vector<GrazingRow> grazing_table(double gamma_over_2omega,
                                       std::span<const std::unique_ptr<Method>> methods,
                                       const Progress& progress) {
-  const double Q_th = friction::Q_threshold(gamma_over_2omega);
+  const double Q_th = model::Q_threshold(gamma_over_2omega);
   std::vector<GrazingRow> table;
   for (const std::unique_ptr<Method>& method : methods) {
     if (progress) progress(static_cast<double>(table.size()) / static_cast<double>(methods.size()));

@@ -12,11 +12,11 @@
 #include <Eigen/LU>
 
 #include "core/accuracy/least_time.hpp"
-#include "core/friction/cycle_fit.hpp"
-#include "core/friction/live_detector.hpp"
-#include "core/friction/sampling.hpp"
-#include "core/friction/tester.hpp"
-#include "core/friction/uniform_course.hpp"
+#include "core/detect/live_detector.hpp"
+#include "core/estimate/cycle_fit.hpp"
+#include "core/estimate/sampling.hpp"
+#include "core/model/tester.hpp"
+#include "core/model/uniform_course.hpp"
 
 namespace stickslip::accuracy {
 namespace {
@@ -35,17 +35,17 @@ constexpr int kTests = 20;
 constexpr double kOmegaError = 1.3e-4;
 constexpr double kGammaError = 5.1e-3;
 
-friction::SharedParameters shared() {
+model::SharedParameters shared() {
   const double omega = 2.0 * std::numbers::pi * kFrequency_Hz;
-  const auto oscillator = friction::Oscillator::from_omega(omega, kGammaOver2Omega);
+  const auto oscillator = model::Oscillator::from_omega(omega, kGammaOver2Omega);
   return {omega, oscillator.gamma_per_s,
-          oscillator.stick_rate_per_s(kSpeed_m_per_s, friction::kStandardGravity_m_per_s2)};
+          oscillator.stick_rate_per_s(kSpeed_m_per_s, model::kStandardGravity_m_per_s2)};
 }
 
-friction::SharedPrior characterised() {
-  friction::SharedPrior prior;
+estimate::SharedPrior characterised() {
+  estimate::SharedPrior prior;
   const double omega = shared().omega;
-  prior.coupling = friction::SharedPrior::Coupling{};
+  prior.coupling = estimate::SharedPrior::Coupling{};
   prior.coupling->omega = omega;
   prior.coupling->gamma_over_2omega = kGammaOver2Omega;
   prior.coupling->covariance =
@@ -59,8 +59,8 @@ std::vector<double> one_test(double scan_rate_Hz, std::uint64_t seed) {
   std::mt19937_64 engine{seed};
   std::normal_distribution<double> noise{0.0, kSigma};
   const double rest_s = (80.0 + std::uniform_real_distribution<double>{}(engine)) / scan_rate_Hz;
-  friction::UniformParameters parameters{shared(), {rest_s + kS / shared().r, kS, kK}};
-  const auto course = friction::UniformCourse::make(parameters);
+  model::UniformParameters parameters{shared(), {rest_s + kS / shared().r, kS, kK}};
+  const auto course = model::UniformCourse::make(parameters);
   const auto count =
       static_cast<std::size_t>((parameters.slip.onset_s + kCycles * course->period_s()) * scan_rate_Hz);
   std::vector<double> scans(count);
@@ -72,9 +72,9 @@ std::vector<double> one_test(double scan_rate_Hz, std::uint64_t seed) {
 
 /// Of S − K of one cycle, from the middle of a stick to the middle of the next.
 double bound_of_a_cycle(double scan_rate_Hz) {
-  const friction::UniformParameters parameters{shared(), {0.0, kS, kK}};
-  const double period_s = friction::UniformCourse::make(parameters)->period_s();
-  const friction::CycleCourse course{parameters.shared, parameters.slip, true};
+  const model::UniformParameters parameters{shared(), {0.0, kS, kK}};
+  const double period_s = model::UniformCourse::make(parameters)->period_s();
+  const estimate::CycleCourse course{parameters.shared, parameters.slip, true};
   const double begin_s = -0.5 * (period_s - course.capture_s());
   double variance = 0.0;
   // Over where the onset may lie between two scans.
@@ -95,10 +95,10 @@ double bound_of_a_cycle(double scan_rate_Hz) {
 /// S − K of each cycle but the first.
 using Estimates = std::vector<double>;
 
-Estimates live(const std::vector<double>& scans, double scan_rate_Hz, friction::EstimatorTier tier) {
-  friction::LiveDetector detector{{scan_rate_Hz, 0.0, tier, characterised(), true}};
+Estimates live(const std::vector<double>& scans, double scan_rate_Hz, detect::EstimatorTier tier) {
+  detect::LiveDetector detector{{scan_rate_Hz, 0.0, tier, characterised(), true}};
   Estimates found;
-  const auto keep = [&](const std::optional<friction::LiveCycle>& cycle) {
+  const auto keep = [&](const std::optional<detect::LiveCycle>& cycle) {
     if (cycle && cycle->cycle.number > 0 && std::isfinite(cycle->cycle.delta_mu))
       found.push_back(cycle->cycle.delta_mu);
   };
@@ -183,8 +183,8 @@ std::vector<TierRow> compare_tiers(const base::Clock& clock, const Peer& peer) {
   std::vector<TierRow> rows;
   std::vector<TierScene> scenes;
   for (const double rate_Hz : kScanRates_Hz) {
-    const friction::SamplingVerdict verdict = friction::check_sampling(rate_Hz, kFrequency_Hz);
-    if (verdict.kind != friction::SamplingVerdict::Kind::kRefused) {
+    const estimate::SamplingVerdict verdict = estimate::check_sampling(rate_Hz, kFrequency_Hz);
+    if (verdict.kind != estimate::SamplingVerdict::Kind::kRefused) {
       scenes.push_back(scene_at(rate_Hz));
       continue;
     }
@@ -201,7 +201,7 @@ std::vector<TierRow> compare_tiers(const base::Clock& clock, const Peer& peer) {
       rows.push_back(empty_row(scene.scan_rate_Hz, peer.name));
       rows.back().reason = outcomes.error().message;
     }
-    for (const auto& [tier, name] : friction::kEstimatorTierNames) {
+    for (const auto& [tier, name] : detect::kEstimatorTierNames) {
       rows.push_back(row_of(scene, name, clock, [&scene, tier = tier](const std::vector<double>& scans) {
         return live(scans, scene.scan_rate_Hz, tier);
       }));

@@ -52,7 +52,7 @@ struct Peer {
   std::function<base::Result<std::vector<PeerOutcome>>(std::span<const TierScene>)> run;
 };
 
-/// The tiers of friction::LiveDetector, the raw maximum less the mean, and a peer, at 50 … 10 000 scans/s.
+/// The tiers of detect::LiveDetector, the raw maximum less the mean, and a peer, at 50 … 10 000 scans/s.
 /// Seeded: the same numbers each time but for the times.
 [[nodiscard]] std::vector<TierRow> compare_tiers(const base::Clock& clock, const Peer& peer);
 

@@ -161,7 +161,7 @@ std::string_view Processor::happens(BenchEvent event) {
 void Processor::follow_bench() {
   // What is no command is never refused.
   if (bench_.state() == BenchState::kLoading && analysis_ &&
-      analysis_->live().phase >= friction::Phase::kFirstSlip) {
+      analysis_->live().phase >= detect::Phase::kFirstSlip) {
     static_cast<void>(happens(BenchEvent::kSlipped));
   }
   if (bench_.state() == BenchState::kFinishing && segmenter_.ready()) {

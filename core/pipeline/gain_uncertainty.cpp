@@ -10,10 +10,10 @@ std::optional<double> relative_gain_uncertainty(const std::optional<daq::LoadCel
   return std::abs(*standard_error_N_per_V / load_cell->gain_N_per_V);
 }
 
-void add_gain_uncertainty(friction::TestResults& results, std::optional<double> relative) {
+void add_gain_uncertainty(analysis::TestResults& results, std::optional<double> relative) {
   if (!relative) return;
   // Proportional to the gain, or (Q) to its inverse.
-  for (friction::Estimate* estimate :
+  for (analysis::Estimate* estimate :
        {&results.static_coefficient, &results.kinetic_coefficient, &results.mu_s, &results.mu_k,
         &results.delta_mu, &results.amplitude, &results.delta_mu_scatter, &results.drift_rate,
         &results.delta_mu_from_amplitude, &results.delta_mu_from_timing, &results.delta_mu_from_slip_speed,

@@ -4,8 +4,8 @@
 
 #include <optional>
 
+#include "core/analysis/results.hpp"
 #include "core/daq/calibration.hpp"
-#include "core/friction/results.hpp"
 
 namespace stickslip::pipeline {
 
@@ -15,6 +15,6 @@ namespace stickslip::pipeline {
 
 /// Adds it in quadrature to the systematic uncertainty of each result that is a force over the sled's weight.
 /// Times, counts, frequencies, damping and speeds do not depend on the gain.
-void add_gain_uncertainty(friction::TestResults& results, std::optional<double> relative);
+void add_gain_uncertainty(analysis::TestResults& results, std::optional<double> relative);
 
 }  // namespace stickslip::pipeline

@@ -75,7 +75,7 @@ void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause, bo
     note_clocks(block);
     report_news();
   }
-  const friction::LiveState now = live();
+  const detect::LiveState now = live();
   for (Sink* sink : sinks_) sink->observed(block.first, std::span{coefficients_}.first(block.count), now);
 }
 
@@ -283,10 +283,10 @@ void Processor::hand_over(const daq::ScanBlock& block, std::size_t from, std::si
 }
 
 void Processor::report_news() {
-  for (const friction::FallBegun& fall : analysis_->take_new_falls()) {
+  for (const detect::FallBegun& fall : analysis_->take_new_falls()) {
     for (Sink* sink : sinks_) sink->fall(fall);
   }
-  for (const friction::Cycle& cycle : analysis_->take_new_cycles()) {
+  for (const detect::Cycle& cycle : analysis_->take_new_cycles()) {
     for (Sink* sink : sinks_) sink->cycle(cycle);
   }
 }

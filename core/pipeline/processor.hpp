@@ -21,6 +21,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/analysis/test_analysis.hpp"
 #include "core/daq/calibration.hpp"
 #include "core/daq/clock_watch.hpp"
 #include "core/daq/gap.hpp"
@@ -28,7 +29,6 @@
 #include "core/daq/recorded_facts.hpp"
 #include "core/daq/scan_block.hpp"
 #include "core/daq/second_channel.hpp"
-#include "core/friction/test_analysis.hpp"
 #include "core/pipeline/bench_state.hpp"
 #include "core/pipeline/command_report.hpp"
 #include "core/pipeline/segmenter.hpp"
@@ -40,7 +40,7 @@ namespace stickslip::pipeline {
 struct ProcessorSettings {
   // The A/D step of both is taken from the calibration.
   SegmenterSettings segmenter;
-  friction::AnalysisSettings analysis;
+  analysis::AnalysisSettings analysis;
   std::int64_t first_test_number = 1;
   bool automatic = true;  ///< The bench arms itself: the force begins each test.
   /// Where the acquisition before this one ended; absent for the first.
@@ -91,7 +91,7 @@ class Processor {
     settings_.analysis.tester.pull_speed_m_per_s = speed_m_per_s;
   }
   /// Of the tests that begin from here on.
-  void plan_method(const friction::Method& method) { settings_.analysis.method = method; }
+  void plan_method(const model::Method& method) { settings_.analysis.method = method; }
 
   [[nodiscard]] BenchState bench() const noexcept { return bench_.state(); }
   [[nodiscard]] BenchTrouble bench_trouble() const noexcept { return trouble_; }
@@ -100,9 +100,7 @@ class Processor {
   /// Number of the running test, else of the next one.
   [[nodiscard]] std::int64_t test_number() const noexcept { return number_; }
   /// Phase and regime of the moment; idle between tests.
-  [[nodiscard]] friction::LiveState live() const {
-    return analysis_ ? analysis_->live() : friction::LiveState{};
-  }
+  [[nodiscard]] detect::LiveState live() const { return analysis_ ? analysis_->live() : detect::LiveState{}; }
   [[nodiscard]] std::uint64_t scan_count() const noexcept { return scan_count_; }
   [[nodiscard]] std::uint64_t gap_count() const noexcept { return gap_count_; }
   [[nodiscard]] std::int64_t lost_scan_count() const noexcept { return lost_scan_count_; }
@@ -165,7 +163,7 @@ class Processor {
   BenchMachine bench_;
   std::deque<Waiting> waiting_;  ///< Consecutive, the latest last.
   IdleScans idle_;               ///< Those before them.
-  std::optional<friction::TestAnalysis> analysis_;
+  std::optional<analysis::TestAnalysis> analysis_;
   std::int64_t number_;
   daq::ScanIndex next_scan_ = 0;
   std::uint64_t scan_count_ = 0;

@@ -7,13 +7,13 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/friction/slip_rule.hpp"
+#include "core/detect/slip_rule.hpp"
 #include "core/signal/statistics.hpp"
 
 namespace stickslip::pipeline {
 namespace {
 
-using friction::SlipRule;
+using detect::SlipRule;
 
 /// Smallest noise assumed, in terms of the trigger: a scene without noise has no scale of its own.
 constexpr double kSmallestRelativeNoise = 1e-4;

@@ -24,7 +24,7 @@
 #include <span>
 
 #include "core/base/scan_index.hpp"
-#include "core/friction/fall_finder.hpp"
+#include "core/detect/fall_finder.hpp"
 #include "core/pipeline/unloaded_level.hpp"
 #include "core/signal/despike.hpp"
 #include "core/signal/noise.hpp"
@@ -143,7 +143,7 @@ class Segmenter {
   bool was_loaded_ = false;  ///< The force has stayed above the trigger.
   signal::NoiseEstimator noise_;
   signal::Despiker despiker_;
-  friction::FallFinder falls_;
+  detect::FallFinder falls_;
   std::deque<double> end_tail_;  ///< The latest scans, for end_scans_.
   std::optional<double> level_after_;
   bool pulled_again_ = false;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/analysis/results.hpp"
 #include "core/base/long_column.hpp"
 #include "core/daq/clock_anchor.hpp"
 #include "core/daq/gap.hpp"
@@ -16,9 +17,8 @@
 #include "core/daq/note.hpp"
 #include "core/daq/scan_block.hpp"
 #include "core/daq/self_check.hpp"
-#include "core/friction/cycle.hpp"
-#include "core/friction/live_cycle.hpp"
-#include "core/friction/results.hpp"
+#include "core/detect/cycle.hpp"
+#include "core/detect/live_cycle.hpp"
 #include "core/pipeline/bench_state.hpp"
 
 namespace stickslip::pipeline {
@@ -77,8 +77,8 @@ struct TestEnd {
   EndCause cause = EndCause::kUnloaded;
   /// What the unloaded cell read at the end; absent unless the test ended by unloading, and quietly.
   std::optional<double> unloaded_level = {};
-  friction::TestResults results;
-  base::LongColumn<friction::Cycle> cycles;           ///< Final values, after the whole-test estimate.
+  analysis::TestResults results;
+  base::LongColumn<detect::Cycle> cycles;             ///< Final values, after the whole-test estimate.
   std::vector<daq::ScanIndex> spikes;                 ///< Scans replaced for the detector.
   std::vector<double> spike_coefficients;             ///< What was measured in each of them.
   std::optional<daq::LatencyHistogram> read_latency;  ///< Of its blocks; none where no clock could tell.
@@ -99,9 +99,9 @@ class Sink {
   /// The clocks at a scan of the running test; rising, and after the scan itself.
   virtual void anchor(const daq::ClockAnchor& /*anchor*/) {}
   /// As soon as it is seen: perhaps a slip, of which the cycle follows.
-  virtual void fall(const friction::FallBegun& /*fall*/) {}
+  virtual void fall(const detect::FallBegun& /*fall*/) {}
   /// As soon as it is known, before the whole-test estimate refines it.
-  virtual void cycle(const friction::Cycle& /*cycle*/) {}
+  virtual void cycle(const detect::Cycle& /*cycle*/) {}
   /// What a person did or the computer suffered, at a scan of the running test; in no order with its scans.
   virtual void note(const daq::Note& /*note*/) {}
   virtual void test_ended(const TestEnd& /*end*/) {}
@@ -112,7 +112,7 @@ class Sink {
   /// Each scan, whether a test runs or not, in blocks; after all else that the block brought.
   /// \param live  after the last of them; idle between tests.
   virtual void observed(daq::ScanIndex /*first*/, std::span<const double> /*coefficient*/,
-                        const friction::LiveState& /*live*/) {}
+                        const detect::LiveState& /*live*/) {}
   /// The bench is in another state.
   virtual void bench_changed(BenchState /*state*/) {}
   /// Something keeps it in its state. \param duration_s  so far.

@@ -16,18 +16,18 @@ constexpr double kSureErrors = 5.0;
 
 }  // namespace
 
-void add_true_rate(friction::TestResults& results, std::span<const daq::ClockAnchor> anchors,
+void add_true_rate(analysis::TestResults& results, std::span<const daq::ClockAnchor> anchors,
                    std::span<const daq::Gap> gaps, double granted_Hz) {
   if (anchors.empty()) return;
   const auto fit = daq::fit_rate(anchors, gaps, granted_Hz);
   if (!fit) {
     const bool few = anchors.size() < static_cast<std::size_t>(daq::RateFit::kFewestAnchors);
-    results.scan_rate_measured = friction::Estimate::none(
+    results.scan_rate_measured = analysis::Estimate::none(
         fmt::format("{} clock readings; at least {} {}are needed", anchors.size(),
                     daq::RateFit::kFewestAnchors, few ? "" : "that were not read late "));
     return;
   }
-  results.scan_rate_measured = friction::Estimate::of(fit->rate_Hz, fit->standard_error_Hz);
+  results.scan_rate_measured = analysis::Estimate::of(fit->rate_Hz, fit->standard_error_Hz);
   results.scan_rate_measured.systematic_uncertainty = kClockTolerance * fit->rate_Hz;
   const double factor = fit->rate_Hz / granted_Hz;
   const bool far = std::abs(factor - 1.0) > kClockTolerance &&

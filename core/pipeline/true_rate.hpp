@@ -4,9 +4,9 @@
 
 #include <span>
 
+#include "core/analysis/results.hpp"
 #include "core/daq/clock_anchor.hpp"
 #include "core/daq/gap.hpp"
-#include "core/friction/results.hpp"
 
 namespace stickslip::pipeline {
 
@@ -14,7 +14,7 @@ namespace stickslip::pipeline {
 /// that has a time in it is wrong, for results use the granted rate, so that the same scans give the same
 /// results wherever they are analysed.
 /// \param anchors,gaps  of the test, both rising; without anchors nothing changes.
-void add_true_rate(friction::TestResults& results, std::span<const daq::ClockAnchor> anchors,
+void add_true_rate(analysis::TestResults& results, std::span<const daq::ClockAnchor> anchors,
                    std::span<const daq::Gap> gaps, double granted_Hz);
 
 }  // namespace stickslip::pipeline

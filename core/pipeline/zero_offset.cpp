@@ -8,7 +8,7 @@
 
 namespace stickslip::pipeline {
 
-void add_zero_offset(friction::TestResults& results, std::optional<double> before,
+void add_zero_offset(analysis::TestResults& results, std::optional<double> before,
                      std::optional<double> after) {
   // A file may hold anything.
   const auto off = [](std::optional<double> level) {
@@ -21,7 +21,7 @@ void add_zero_offset(friction::TestResults& results, std::optional<double> befor
       "zero: the unloaded cell read {:+.4f} {} the test, more than {:g}; static, kinetic, S and K "
       "are off by it, S - K is not; tare before the next test",
       offset, worse_after ? "after" : "before", UnloadedLevel::kNearest));
-  for (friction::Estimate* estimate :
+  for (analysis::Estimate* estimate :
        {&results.static_coefficient, &results.kinetic_coefficient, &results.mu_s, &results.mu_k,
         &results.mu_k_from_mean, &results.mu_s_from_amplitude}) {
     if (!estimate->value) continue;

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "core/friction/results.hpp"
+#include "core/analysis/results.hpp"
 
 namespace stickslip::pipeline {
 
@@ -13,7 +13,7 @@ namespace stickslip::pipeline {
 /// that it shifts. Differences such as S − K, amplitudes, times and frequencies keep theirs: a zero shifts
 /// both of their ends. No value changes. \param before,after  as coefficients; absent where they are not
 /// known: then nothing is added.
-void add_zero_offset(friction::TestResults& results, std::optional<double> before,
+void add_zero_offset(analysis::TestResults& results, std::optional<double> before,
                      std::optional<double> after);
 
 }  // namespace stickslip::pipeline

@@ -102,7 +102,7 @@ EntryBuilder::Bytes EntryBuilder::gap(const daq::Gap& gap) {
   return text(EntryType::kGap, gap.first, gap_to_json(gap));
 }
 
-EntryBuilder::Bytes EntryBuilder::cycle(const friction::Cycle& cycle) {
+EntryBuilder::Bytes EntryBuilder::cycle(const detect::Cycle& cycle) {
   return text(EntryType::kCycle, cycle.first_scan, cycle_to_json(cycle));
 }
 

@@ -30,7 +30,7 @@ class EntryBuilder {
   [[nodiscard]] Bytes second(daq::ScanIndex first, std::span<const std::int32_t> codes);
   [[nodiscard]] Bytes spikes(std::span<const daq::ScanIndex> spikes);
   [[nodiscard]] Bytes gap(const daq::Gap& gap);
-  [[nodiscard]] Bytes cycle(const friction::Cycle& cycle);
+  [[nodiscard]] Bytes cycle(const detect::Cycle& cycle);
   [[nodiscard]] Bytes anchor(const ClockAnchor& anchor);
   [[nodiscard]] Bytes event(const Event& event);
   [[nodiscard]] Bytes end(const EndRecord& end);

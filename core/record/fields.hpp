@@ -176,7 +176,7 @@ void for_each_rate_field(Info& board, Visitor&& visit) {
   visit(FieldName{"scan_rate_granted", "Hz", "scan rate granted [Hz]"}, board.scan_rate_granted_Hz);
 }
 
-template <FieldsOf<friction::TestTruth> Truth, typename Visitor>
+template <FieldsOf<model::TestTruth> Truth, typename Visitor>
 void for_each_field(Truth& truth, Visitor&& visit) {
   visit(FieldName{"scene_name", "", ""}, truth.scene_name);
   visit(FieldName{"scene_text", "", ""}, truth.scene_text);
@@ -196,7 +196,7 @@ void for_each_field(Truth& truth, Visitor&& visit) {
   visit(FieldName{"amplitude", "1", "true half range of the first full cycle [1]"}, truth.amplitude);
 }
 
-template <FieldsOf<friction::SolverFacts> Facts, typename Visitor>
+template <FieldsOf<model::SolverFacts> Facts, typename Visitor>
 void for_each_field(Facts& facts, Visitor&& visit) {
   visit(FieldName{"method", "", ""}, facts.method);
   visit(FieldName{"accuracy", "1", "largest error of the coefficient to be expected [1]"}, facts.accuracy);
@@ -208,7 +208,7 @@ void for_each_field(Facts& facts, Visitor&& visit) {
 /// Columns of the table of cycles. \param visit  called as visit(FieldName, member pointer).
 template <typename Visitor>
 void for_each_cycle_column(Visitor&& visit) {
-  using friction::Cycle;
+  using detect::Cycle;
   visit(FieldName{"cycle", "1", "number of the cycle, from 0 [1]"}, &Cycle::number);
   visit(FieldName{"first_scan", "1", "scan nearest to the peak [1]"}, &Cycle::first_scan);
   visit(FieldName{"onset_time", "s", "slip onset, after the first scan [s]"}, &Cycle::onset_time_s);
@@ -241,7 +241,7 @@ void for_each_cycle_column(Visitor&& visit) {
 /// Columns of the table of true slips.
 template <typename Visitor>
 void for_each_true_cycle_column(Visitor&& visit) {
-  using friction::TrueCycle;
+  using model::TrueCycle;
   visit(FieldName{"onset_time", "s", "true slip onset, after the first scan [s]"}, &TrueCycle::onset_time_s);
   visit(FieldName{"mu_s", "1", "S in force during the slip [1]"}, &TrueCycle::mu_s);
   visit(FieldName{"mu_k", "1", "K in force during the slip [1]"}, &TrueCycle::mu_k);

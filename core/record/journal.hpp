@@ -53,7 +53,7 @@ class JournalWriter {
   /// \param raw    consecutive, not empty; counts are whole numbers in 0 … maxdata (contract).
   [[nodiscard]] base::Result<void> append_scans(daq::ScanIndex first, std::span<const double> raw,
                                                 const daq::ClockStamp& stamp);
-  /// The noise-free force of scans that are in the journal already (friction::TrueForce).
+  /// The noise-free force of scans that are in the journal already (model::TrueForce).
   /// \param first  rises strictly over all that are given. \param coefficient  consecutive.
   [[nodiscard]] base::Result<void> append_true_coefficients(daq::ScanIndex first,
                                                             std::span<const double> coefficient);
@@ -61,7 +61,7 @@ class JournalWriter {
   [[nodiscard]] base::Result<void> append_second(daq::ScanIndex first, std::span<const std::int32_t> codes);
   [[nodiscard]] base::Result<void> append_spikes(std::span<const daq::ScanIndex> spikes);
   [[nodiscard]] base::Result<void> append_gap(const daq::Gap& gap);
-  [[nodiscard]] base::Result<void> append_cycle(const friction::Cycle& cycle);
+  [[nodiscard]] base::Result<void> append_cycle(const detect::Cycle& cycle);
   [[nodiscard]] base::Result<void> append_anchor(const ClockAnchor& anchor);
   [[nodiscard]] base::Result<void> append_event(const Event& event);
   /// The last entry; the journal is then ready for finalise().

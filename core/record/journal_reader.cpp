@@ -16,7 +16,7 @@
 namespace stickslip::record {
 namespace {
 
-constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int32_t kNoCode = daq::SecondChannel::kNoCode;
 
 std::string_view text_of(const Entry& entry) {
@@ -387,7 +387,7 @@ void JournalScanSource::for_each_column_piece(const std::deque<EntryPlace>& plac
 }
 
 void JournalScanSource::for_each_force_piece(const std::function<void(std::span<const double>)>& use) const {
-  for_each_column_piece<double>(reading_.true_coefficients, kNotKnown, use);
+  for_each_column_piece<double>(reading_.true_coefficients, kNaN, use);
 }
 
 void JournalScanSource::for_each_second_piece(

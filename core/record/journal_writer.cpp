@@ -35,7 +35,7 @@ base::Result<void> JournalWriter::append_spikes(std::span<const daq::ScanIndex> 
 
 base::Result<void> JournalWriter::append_gap(const daq::Gap& gap) { return file_.append(builder_.gap(gap)); }
 
-base::Result<void> JournalWriter::append_cycle(const friction::Cycle& cycle) {
+base::Result<void> JournalWriter::append_cycle(const detect::Cycle& cycle) {
   return file_.append(builder_.cycle(cycle));
 }
 

@@ -102,9 +102,9 @@ daq::Gap gap_from_json(std::string_view text) {
                            word(cause, gap_cause_from_name(cause))});
 }
 
-std::string cycle_to_json(const friction::Cycle& cycle) { return dump(cycle_to_array(cycle)); }
+std::string cycle_to_json(const detect::Cycle& cycle) { return dump(cycle_to_array(cycle)); }
 
-friction::Cycle cycle_from_json(std::string_view text) { return cycle_from_array(Json::parse(text)); }
+detect::Cycle cycle_from_json(std::string_view text) { return cycle_from_array(Json::parse(text)); }
 
 std::string event_to_json(const Event& event) {
   return dump({{"scan", event.scan}, {"realtime_ns", event.realtime_ns}, {"text", event.text}});

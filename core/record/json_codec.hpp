@@ -17,7 +17,7 @@ namespace stickslip::record {
 
 [[nodiscard]] std::string header_to_json(const RecordHeader& header);
 [[nodiscard]] std::string gap_to_json(const daq::Gap& gap);
-[[nodiscard]] std::string cycle_to_json(const friction::Cycle& cycle);
+[[nodiscard]] std::string cycle_to_json(const detect::Cycle& cycle);
 [[nodiscard]] std::string event_to_json(const Event& event);
 /// Adds the payload of the end: JSON, a zero byte, the tables.
 void append_end_bytes(const EndRecord& end, std::vector<std::byte>& bytes);
@@ -28,7 +28,7 @@ void append_end_bytes(const EndRecord& end, std::vector<std::byte>& bytes);
 
 [[nodiscard]] RecordHeader header_from_json(std::string_view text);
 [[nodiscard]] daq::Gap gap_from_json(std::string_view text);
-[[nodiscard]] friction::Cycle cycle_from_json(std::string_view text);
+[[nodiscard]] detect::Cycle cycle_from_json(std::string_view text);
 [[nodiscard]] Event event_from_json(std::string_view text);
 /// \param bytes  may lack the tables: older journals have them in the JSON.
 [[nodiscard]] EndRecord end_from_bytes(std::span<const std::byte> bytes);

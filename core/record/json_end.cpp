@@ -13,12 +13,12 @@
 namespace stickslip::record {
 namespace {
 
-Json results_to_json(const friction::TestResults& results) {
-  Json object{{"regime", friction::name(results.regime)},
+Json results_to_json(const analysis::TestResults& results) {
+  Json object{{"regime", model::name(results.regime)},
               {"regime_reason", results.regime_reason},
               {"findings", results.findings}};
-  friction::for_each_result(results,
-                            [&](const friction::ResultName& name, const friction::Estimate& estimate) {
+  analysis::for_each_result(results,
+                            [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
                               Json entry = Json::object();
                               put(entry, "value", estimate.value);
                               put(entry, "standard_error", estimate.standard_error);
@@ -37,13 +37,13 @@ daq::LatencyHistogram latency_from_json(const Json& object) {
   return {object.at("counts").get<daq::LatencyHistogram::Counts>(), object.at("largest").get<double>()};
 }
 
-friction::TestResults results_from_json(const Json& object) {
-  friction::TestResults results;
+analysis::TestResults results_from_json(const Json& object) {
+  analysis::TestResults results;
   const auto regime = object.at("regime").get<std::string>();
-  results.regime = word(regime, friction::regime_from_name(regime));
+  results.regime = word(regime, model::regime_from_name(regime));
   object.at("regime_reason").get_to(results.regime_reason);
   results.findings = object.value("findings", std::vector<std::string>{});
-  friction::for_each_result(results, [&](const friction::ResultName& name, friction::Estimate& estimate) {
+  analysis::for_each_result(results, [&](const analysis::ResultName& name, analysis::Estimate& estimate) {
     const Json entry = object.value(std::string{name.name}, Json{{"reason", kNoSuchResultThen}});
     take(entry, "value", estimate.value);
     take(entry, "standard_error", estimate.standard_error);
@@ -53,24 +53,24 @@ friction::TestResults results_from_json(const Json& object) {
   return results;
 }
 
-Json truth_to_json(const friction::TestTruth& truth) {
+Json truth_to_json(const model::TestTruth& truth) {
   Json object = facts_to_json(truth);
-  object["regime"] = friction::name(truth.regime);
+  object["regime"] = model::name(truth.regime);
   object["mode_count"] = truth.modes.size();
   object["cycle_count"] = truth.cycles.size();
   if (truth.solver) object["solver"] = facts_to_json(*truth.solver);
   return object;
 }
 
-friction::TestTruth truth_from_json(const Json& object) {
-  friction::TestTruth truth;
+model::TestTruth truth_from_json(const Json& object) {
+  model::TestTruth truth;
   for_each_field(truth, taker(object));
   const auto regime = object.at("regime").get<std::string>();
-  truth.regime = word(regime, friction::regime_from_name(regime));
+  truth.regime = word(regime, model::regime_from_name(regime));
   if (object.contains("solver")) for_each_field(truth.solver.emplace(), taker(object.at("solver")));
   // Older journals have their tables here.
   for (const Json& entry : object.value("modes", Json::array())) {
-    friction::ModeInterval mode;
+    model::ModeInterval mode;
     decode(entry.at(0), mode.start_s);
     decode(entry.at(1), mode.end_s);
     const auto text = entry.at(2).get<std::string>();
@@ -78,7 +78,7 @@ friction::TestTruth truth_from_json(const Json& object) {
     truth.modes.push_back(mode);
   }
   for (const Json& entry : object.value("cycles", Json::array())) {
-    friction::TrueCycle slip;
+    model::TrueCycle slip;
     decode(entry.at(0), slip.onset_time_s);
     decode(entry.at(1), slip.mu_s);
     decode(entry.at(2), slip.mu_k);
@@ -142,8 +142,8 @@ std::size_t rows_told(const Json& object, std::string_view key, const TableReade
   return count;
 }
 
-friction::Mode mode_of(double number) {
-  for (const auto mode : {friction::Mode::kStick, friction::Mode::kSlip, friction::Mode::kSlack}) {
+model::Mode mode_of(double number) {
+  for (const auto mode : {model::Mode::kStick, model::Mode::kSlip, model::Mode::kSlack}) {
     if (number == static_cast<double>(mode)) return mode;
   }
   throw std::invalid_argument(fmt::format("unknown mode {}", number));
@@ -153,7 +153,7 @@ friction::Mode mode_of(double number) {
 void read_tables(const Json& object, TableReader table, EndRecord& end) {
   const auto columns = object.value("cycle_columns", kFirstCycleColumns);
   for (std::size_t left = rows_told(object, "cycle_count", table); left > 0; --left) {
-    friction::Cycle cycle;
+    detect::Cycle cycle;
     std::size_t column = 0;
     for_each_cycle_column([&](const FieldName&, auto member) {
       if (column++ < columns) cycle.*member = table.next_as<std::decay_t<decltype(cycle.*member)>>();
@@ -166,7 +166,7 @@ void read_tables(const Json& object, TableReader table, EndRecord& end) {
         {table.next(), table.next(), mode_of(table.next())});  // Braces keep the order.
   }
   for (std::size_t left = rows_told(object.at("truth"), "cycle_count", table); left > 0; --left) {
-    friction::TrueCycle cycle;
+    model::TrueCycle cycle;
     for_each_true_cycle_column([&](const FieldName&, auto member) { cycle.*member = table.next(); });
     end.truth->cycles.push_back(cycle);
   }
@@ -183,16 +183,16 @@ void append_end_bytes(const EndRecord& end, std::vector<std::byte>& bytes) {
     const auto number = std::as_bytes(std::span{&value, 1});
     bytes.insert(bytes.end(), number.begin(), number.end());
   };
-  for (const friction::Cycle& cycle : end.cycles) {
+  for (const detect::Cycle& cycle : end.cycles) {
     for_each_cycle_column([&](const FieldName&, auto member) { add(static_cast<double>(cycle.*member)); });
   }
   if (!end.truth) return;
-  for (const friction::ModeInterval& mode : end.truth->modes) {
+  for (const model::ModeInterval& mode : end.truth->modes) {
     add(mode.start_s);
     add(mode.end_s);
     add(static_cast<double>(mode.mode));
   }
-  for (const friction::TrueCycle& cycle : end.truth->cycles) {
+  for (const model::TrueCycle& cycle : end.truth->cycles) {
     for_each_true_cycle_column([&](const FieldName&, auto member) { add(cycle.*member); });
   }
 }

@@ -131,14 +131,14 @@ inline std::size_t cycle_columns() {
   return count;
 }
 
-inline Json cycle_to_array(const friction::Cycle& cycle) {
+inline Json cycle_to_array(const detect::Cycle& cycle) {
   Json array = Json::array();
   for_each_cycle_column([&](const FieldName&, auto member) { array.push_back(encode(cycle.*member)); });
   return array;
 }
 
-inline friction::Cycle cycle_from_array(const Json& array) {
-  friction::Cycle cycle;
+inline detect::Cycle cycle_from_array(const Json& array) {
+  detect::Cycle cycle;
   std::size_t i = 0;
   for_each_cycle_column([&](const FieldName&, auto member) {
     if (i < kFirstCycleColumns || i < array.size()) decode(array.at(i), cycle.*member);

@@ -42,8 +42,8 @@ void read_tables(hid_t entry, Record& record);
 /// Throws unless they could be read.
 void check_tables(hid_t entry);
 
-void write_results(hid_t entry, const friction::TestResults& results);
-[[nodiscard]] friction::TestResults read_results(hid_t entry);
+void write_results(hid_t entry, const analysis::TestResults& results);
+[[nodiscard]] analysis::TestResults read_results(hid_t entry);
 
 void write_instrument(hid_t entry, const Record& record);  ///< Also timing, sample, user, plan, self-check.
 void read_instrument(hid_t entry, Record& record);
@@ -53,8 +53,8 @@ void write_process(hid_t entry, const Record& record, const std::string& sha256)
 void read_process(hid_t entry, Record& record);
 
 /// Expects the raw data to be written.
-void write_truth(hid_t entry, const friction::TestTruth& truth, const ScanSource& scans);
-[[nodiscard]] friction::TestTruth read_truth(hid_t entry);
+void write_truth(hid_t entry, const model::TestTruth& truth, const ScanSource& scans);
+[[nodiscard]] model::TestTruth read_truth(hid_t entry);
 /// Throws unless it could be read.
 void check_truth(hid_t entry);
 /// The noise-free force; empty if the record has none.

@@ -18,12 +18,12 @@ constexpr std::string_view kLastOfTheFirst = "scan_rate_measured";
 
 }  // namespace
 
-void write_results(hid_t entry, const friction::TestResults& results) {
+void write_results(hid_t entry, const analysis::TestResults& results) {
   const GroupHandle group = make_group(entry, "results", "NXcollection");
-  const DatasetHandle regime = write_text(group.get(), "regime", friction::name(results.regime));
+  const DatasetHandle regime = write_text(group.get(), "regime", model::name(results.regime));
   write_attribute(regime.get(), kReason, results.regime_reason);
-  friction::for_each_result(
-      results, [&](const friction::ResultName& name, const friction::Estimate& estimate) {
+  analysis::for_each_result(
+      results, [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
         const std::string long_name = fmt::format("{} [{}]", name.long_name, name.unit);
         const DatasetHandle value =
             write_scalar(group.get(), FieldName{name.name, name.unit, long_name},
@@ -38,26 +38,26 @@ void write_results(hid_t entry, const friction::TestResults& results) {
   write_texts(group.get(), kFindings, results.findings);
 }
 
-friction::TestResults read_results(hid_t entry) {
+analysis::TestResults read_results(hid_t entry) {
   if (!has(entry, "results")) return absent_results("the record holds no results");
   const GroupHandle group = open_group(entry, "results");
-  friction::TestResults results;
+  analysis::TestResults results;
   const std::string regime = read_text(group.get(), "regime");
-  const auto known = friction::regime_from_name(regime);
+  const auto known = model::regime_from_name(regime);
   if (!known) throw HdfError(fmt::format("results/regime '{}' is unknown", regime));
   results.regime = *known;
   results.regime_reason = read_attribute(open_dataset(group.get(), "regime").get(), kReason);
   bool may_be_missing = false;
-  friction::for_each_result(results, [&](const friction::ResultName& name, friction::Estimate& estimate) {
+  analysis::for_each_result(results, [&](const analysis::ResultName& name, analysis::Estimate& estimate) {
     const std::string key{name.name};
     const bool came_later = std::exchange(may_be_missing, may_be_missing || name.name == kLastOfTheFirst);
     if (came_later && !has(group.get(), key)) {
-      estimate = friction::Estimate::none(std::string{kNoSuchResultThen});
+      estimate = analysis::Estimate::none(std::string{kNoSuchResultThen});
       return;
     }
     const DatasetHandle dataset = open_dataset(group.get(), key);
     if (auto reason = find_attribute(dataset.get(), kReason)) {
-      estimate = friction::Estimate::none(*std::move(reason));
+      estimate = analysis::Estimate::none(*std::move(reason));
     } else {
       estimate.value = read_scalar<double>(group.get(), key);
     }

@@ -25,7 +25,7 @@ std::vector<Value> column_of(const std::vector<Row>& rows, Value Row::*member) {
   return column;
 }
 
-void write_cycles(hid_t entry, const base::LongColumn<friction::Cycle>& cycles) {
+void write_cycles(hid_t entry, const base::LongColumn<detect::Cycle>& cycles) {
   TableWriter table{make_group(entry, "cycles", "NXdata")};
   write_attribute(table.group(), "signal", "delta_mu");
   write_attribute(table.group(), "axes", std::vector<std::string>{"cycle"});
@@ -47,9 +47,9 @@ template <typename Use>
 void for_each_cycle(hid_t entry, const Use& use) {
   if (!has(entry, "cycles")) return;
   const GroupHandle group = open_group(entry, "cycles");
-  for_each_row<friction::Cycle>(
+  for_each_row<detect::Cycle>(
       group.get(), "cycle",
-      [&](std::size_t first, std::vector<friction::Cycle>& rows, std::size_t count) {
+      [&](std::size_t first, std::vector<detect::Cycle>& rows, std::size_t count) {
         for_each_cycle_column([&](const FieldName& name, auto member) {
           if (came_later(name.name) && !has(group.get(), std::string{name.name})) return;
           read_member(group.get(), name, member, count, first, rows);
@@ -120,13 +120,13 @@ void write_tables(hid_t entry, const Record& record) {
 
 void read_tables(hid_t entry, Record& record) {
   record.cycles.clear();
-  for_each_cycle(entry, [&](const friction::Cycle& cycle) { record.cycles.push_back(cycle); });
+  for_each_cycle(entry, [&](const detect::Cycle& cycle) { record.cycles.push_back(cycle); });
   record.gaps = read_gaps(entry);
   record.events = read_events(entry);
 }
 
 void check_tables(hid_t entry) {
-  for_each_cycle(entry, [](const friction::Cycle&) {});
+  for_each_cycle(entry, [](const detect::Cycle&) {});
   static_cast<void>(read_gaps(entry));
   static_cast<void>(read_events(entry));
 }

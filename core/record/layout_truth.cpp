@@ -30,28 +30,28 @@ const FieldName kModeStart{"start_time", "s", "begin of the mode, after the firs
 const FieldName kModeEnd{"end_time", "s", "end of the mode, after the first scan [s]"};
 constexpr const char* kModeName = "mode";
 
-void write_modes(hid_t truth, const base::LongColumn<friction::ModeInterval>& modes) {
+void write_modes(hid_t truth, const base::LongColumn<model::ModeInterval>& modes) {
   TableWriter table{make_group(truth, "modes", "NXcollection")};
-  static_cast<void>(write_member(table, kModeStart, modes, &friction::ModeInterval::start_s));
-  static_cast<void>(write_member(table, kModeEnd, modes, &friction::ModeInterval::end_s));
+  static_cast<void>(write_member(table, kModeStart, modes, &model::ModeInterval::start_s));
+  static_cast<void>(write_member(table, kModeEnd, modes, &model::ModeInterval::end_s));
   std::size_t width = 1;
-  for (const friction::ModeInterval& mode : modes) {
-    width = std::max(width, std::string_view{friction::name(mode.mode)}.size());
+  for (const model::ModeInterval& mode : modes) {
+    width = std::max(width, std::string_view{model::name(mode.mode)}.size());
   }
   TextColumnWriter names = table.add_empty_texts(kModeName, width, modes.size());
   write_rows(names, modes,
-             [](const friction::ModeInterval& mode) { return std::string_view{friction::name(mode.mode)}; });
+             [](const model::ModeInterval& mode) { return std::string_view{model::name(mode.mode)}; });
 }
 
 template <typename Use>
 void for_each_mode(hid_t truth, const Use& use) {
   const GroupHandle group = open_group(truth, "modes");
   const DatasetHandle names = open_dataset(group.get(), kModeName);
-  for_each_row<friction::ModeInterval>(
+  for_each_row<model::ModeInterval>(
       group.get(), std::string{kModeStart.name},
-      [&](std::size_t first, std::vector<friction::ModeInterval>& rows, std::size_t count) {
-        read_member(group.get(), kModeStart, &friction::ModeInterval::start_s, count, first, rows);
-        read_member(group.get(), kModeEnd, &friction::ModeInterval::end_s, count, first, rows);
+      [&](std::size_t first, std::vector<model::ModeInterval>& rows, std::size_t count) {
+        read_member(group.get(), kModeStart, &model::ModeInterval::start_s, count, first, rows);
+        read_member(group.get(), kModeEnd, &model::ModeInterval::end_s, count, first, rows);
         if (row_count(group.get(), kModeName) != count) {
           throw HdfError("truth/modes/mode has another length than start_time");
         }
@@ -69,9 +69,9 @@ void for_each_mode(hid_t truth, const Use& use) {
 template <typename Use>
 void for_each_true_cycle(hid_t truth, const Use& use) {
   const GroupHandle group = open_group(truth, "cycles");
-  for_each_row<friction::TrueCycle>(
+  for_each_row<model::TrueCycle>(
       group.get(), "onset_time",
-      [&](std::size_t first, std::vector<friction::TrueCycle>& rows, std::size_t count) {
+      [&](std::size_t first, std::vector<model::TrueCycle>& rows, std::size_t count) {
         for_each_true_cycle_column([&](const FieldName& name, auto member) {
           read_member(group.get(), name, member, count, first, rows);
         });
@@ -80,11 +80,11 @@ void for_each_true_cycle(hid_t truth, const Use& use) {
 }
 
 /// All but the tables.
-friction::TestTruth read_facts(hid_t group) {
-  friction::TestTruth truth;
+model::TestTruth read_facts(hid_t group) {
+  model::TestTruth truth;
   for_each_field(truth, FieldReader{group});
   const std::string regime = read_text(group, "regime");
-  const auto known = friction::regime_from_name(regime);
+  const auto known = model::regime_from_name(regime);
   if (!known) throw HdfError(fmt::format("truth/regime '{}' is unknown", regime));
   truth.regime = *known;
 
@@ -103,10 +103,10 @@ std::vector<double> read_true_coefficient(hid_t entry, std::size_t scan_count) {
   return read_column<double>(group.get(), kForce, scan_count);
 }
 
-void write_truth(hid_t entry, const friction::TestTruth& truth, const ScanSource& scans) {
+void write_truth(hid_t entry, const model::TestTruth& truth, const ScanSource& scans) {
   const GroupHandle group = make_group(entry, "truth", "NXcollection");
   for_each_field(truth, FieldWriter{group.get()});
-  write_text(group.get(), "regime", friction::name(truth.regime));
+  write_text(group.get(), "regime", model::name(truth.regime));
 
   if (truth.solver) {
     const GroupHandle solver = make_group(group.get(), "solver", "NXcollection");
@@ -121,19 +121,19 @@ void write_truth(hid_t entry, const friction::TestTruth& truth, const ScanSource
   });
 }
 
-friction::TestTruth read_truth(hid_t entry) {
+model::TestTruth read_truth(hid_t entry) {
   const GroupHandle group = open_group(entry, "truth");
-  friction::TestTruth truth = read_facts(group.get());
-  for_each_mode(group.get(), [&](const friction::ModeInterval& mode) { truth.modes.push_back(mode); });
-  for_each_true_cycle(group.get(), [&](const friction::TrueCycle& cycle) { truth.cycles.push_back(cycle); });
+  model::TestTruth truth = read_facts(group.get());
+  for_each_mode(group.get(), [&](const model::ModeInterval& mode) { truth.modes.push_back(mode); });
+  for_each_true_cycle(group.get(), [&](const model::TrueCycle& cycle) { truth.cycles.push_back(cycle); });
   return truth;
 }
 
 void check_truth(hid_t entry) {
   const GroupHandle group = open_group(entry, "truth");
   static_cast<void>(read_facts(group.get()));
-  for_each_mode(group.get(), [](const friction::ModeInterval&) {});
-  for_each_true_cycle(group.get(), [](const friction::TrueCycle&) {});
+  for_each_mode(group.get(), [](const model::ModeInterval&) {});
+  for_each_true_cycle(group.get(), [](const model::TrueCycle&) {});
 }
 
 }  // namespace stickslip::record

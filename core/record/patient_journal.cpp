@@ -107,7 +107,7 @@ bool PatientJournal::add_true_coefficients(daq::ScanIndex first, std::span<const
   return keep_if_room(builder_.true_coefficients(first, coefficient));
 }
 
-bool PatientJournal::add_cycle(const friction::Cycle& cycle) { return keep_if_room(builder_.cycle(cycle)); }
+bool PatientJournal::add_cycle(const detect::Cycle& cycle) { return keep_if_room(builder_.cycle(cycle)); }
 
 bool PatientJournal::add_anchor(const ClockAnchor& anchor) { return keep_if_room(builder_.anchor(anchor)); }
 

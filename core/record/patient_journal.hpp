@@ -42,7 +42,7 @@ class PatientJournal {
   bool add_scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp& stamp,
                  std::span<const std::int32_t> second = {});
   bool add_true_coefficients(daq::ScanIndex first, std::span<const double> coefficient);
-  bool add_cycle(const friction::Cycle& cycle);
+  bool add_cycle(const detect::Cycle& cycle);
   bool add_anchor(const ClockAnchor& anchor);
   bool add_event(const Event& event);
   /// Kept whatever the memory.

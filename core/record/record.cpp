@@ -43,18 +43,18 @@ std::optional<Status> status_from_name(std::string_view text) noexcept {
   return std::nullopt;
 }
 
-TesterFacts TesterFacts::of(const friction::Tester& tester) {
+TesterFacts TesterFacts::of(const model::Tester& tester) {
   return {tester.sled_mass_kg, tester.gravity_m_per_s2, tester.pull_speed_m_per_s, tester.stiffness_N_per_m,
           tester.speed_course ? tester.speed_course->text() : std::string{}};
 }
 
-friction::Tester TesterFacts::tester() const {
-  friction::Tester tester;
+model::Tester TesterFacts::tester() const {
+  model::Tester tester;
   tester.sled_mass_kg = sled_mass_kg.value_or(tester.sled_mass_kg);
   tester.gravity_m_per_s2 = gravity_m_per_s2.value_or(tester.gravity_m_per_s2);
   tester.pull_speed_m_per_s = pull_speed_m_per_s;
   tester.stiffness_N_per_m = stiffness_N_per_m;
-  tester.speed_course = friction::PullSpeed::parse(speed_course);
+  tester.speed_course = model::PullSpeed::parse(speed_course);
   return tester;
 }
 
@@ -71,11 +71,11 @@ std::optional<std::int64_t> realtime_at(const RecordHeader& header, daq::ScanInd
   return time_ns;
 }
 
-friction::TestResults absent_results(const std::string& reason) {
-  friction::TestResults results;
+analysis::TestResults absent_results(const std::string& reason) {
+  analysis::TestResults results;
   results.regime_reason = reason;
-  friction::for_each_result(results, [&](const friction::ResultName&, friction::Estimate& estimate) {
-    estimate = friction::Estimate::none(reason);
+  analysis::for_each_result(results, [&](const analysis::ResultName&, analysis::Estimate& estimate) {
+    estimate = analysis::Estimate::none(reason);
   });
   return results;
 }

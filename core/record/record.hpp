@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/analysis/results.hpp"
 #include "core/base/long_column.hpp"
 #include "core/daq/board.hpp"
 #include "core/daq/calibration.hpp"
@@ -16,10 +17,9 @@
 #include "core/daq/gap.hpp"
 #include "core/daq/latency_histogram.hpp"
 #include "core/daq/self_check.hpp"
-#include "core/friction/cycle.hpp"
-#include "core/friction/results.hpp"
-#include "core/friction/tester.hpp"
-#include "core/friction/truth.hpp"
+#include "core/detect/cycle.hpp"
+#include "core/model/tester.hpp"
+#include "core/model/truth.hpp"
 
 namespace stickslip::record {
 
@@ -50,11 +50,11 @@ struct TesterFacts {
   std::optional<double> gravity_m_per_s2;
   std::optional<double> pull_speed_m_per_s;
   std::optional<double> stiffness_N_per_m;
-  std::string speed_course;  ///< friction::PullSpeed::text(); empty where the speed is not meant to change.
+  std::string speed_course;  ///< model::PullSpeed::text(); empty where the speed is not meant to change.
 
-  [[nodiscard]] static TesterFacts of(const friction::Tester& tester);
-  /// With friction::Tester's defaults for what is absent.
-  [[nodiscard]] friction::Tester tester() const;
+  [[nodiscard]] static TesterFacts of(const model::Tester& tester);
+  /// With model::Tester's defaults for what is absent.
+  [[nodiscard]] model::Tester tester() const;
   bool operator==(const TesterFacts&) const = default;
 };
 
@@ -114,7 +114,7 @@ struct ProcessFacts {
   std::string configuration;  ///< The configuration file as it was read, whole.
   std::string estimator;      ///< Tier of the estimators.
   std::string method;         ///< Preset of the traditional rule.
-  std::string kept;           ///< Of spikes, drift and the first slip, friction::text_of(); empty: nothing.
+  std::string kept;           ///< Of spikes, drift and the first slip, analysis::text_of(); empty: nothing.
   /// What was known of the tester beforehand: the file of its characterisation, whole; empty: nothing.
   std::string characterisation;
   std::string realtime;    ///< Scheduling and memory locking that were granted.
@@ -166,10 +166,10 @@ struct EndRecord {
   std::optional<daq::LatencyHistogram> read_latency;  ///< How late the blocks were read.
   /// What the unloaded cell read at the end; absent unless the test ended by unloading, and quietly.
   std::optional<double> unloaded_level{};
-  friction::TestResults results;
-  base::LongColumn<friction::Cycle> cycles;  ///< Final; replaces those noted during the test.
-  std::vector<daq::ScanIndex> spikes;        ///< Scans replaced for the detector, rising; final as well.
-  std::optional<friction::TestTruth> truth;
+  analysis::TestResults results;
+  base::LongColumn<detect::Cycle> cycles;  ///< Final; replaces those noted during the test.
+  std::vector<daq::ScanIndex> spikes;      ///< Scans replaced for the detector, rising; final as well.
+  std::optional<model::TestTruth> truth;
 };
 
 /// When the scan was taken, since 1970: the start of the test and the scans since at the granted rate,
@@ -181,21 +181,21 @@ struct EndRecord {
 inline constexpr std::string_view kNoSuchResultThen = "the record was made before there was this result";
 
 /// Results of a test that could not be evaluated: every one absent for `reason`.
-[[nodiscard]] friction::TestResults absent_results(const std::string& reason);
+[[nodiscard]] analysis::TestResults absent_results(const std::string& reason);
 
 /// One test. scan and raw have equal lengths; scan rises strictly, a jump is a gap.
 struct Record {
   RecordHeader header;
   std::vector<daq::ScanIndex> scan;  ///< Index of the acquisition.
   std::vector<double> raw;           ///< In board.quantity.
-  /// Noise-free force of each scan (friction::TrueForce), NaN where not known; empty if of none.
+  /// Noise-free force of each scan (model::TrueForce), NaN where not known; empty if of none.
   std::vector<double> true_coefficient;
   /// Code of the second channel of each scan, daq::SecondChannel::kNoCode where it did not arrive; empty
   /// unless header.board.second.
   std::vector<std::int32_t> second;
   std::vector<daq::ScanIndex> spikes;
   std::vector<daq::Gap> gaps;
-  base::LongColumn<friction::Cycle> cycles;
+  base::LongColumn<detect::Cycle> cycles;
   std::vector<ClockAnchor> anchors;
   std::vector<Event> events;
   std::optional<EndRecord> end;  ///< Absent only in the journal of an interrupted test; see set_end().

@@ -12,10 +12,10 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-std::uint8_t index_of(friction::Regime regime) {
-  const auto* const found = std::find_if(friction::kRegimeNames.begin(), friction::kRegimeNames.end(),
+std::uint8_t index_of(model::Regime regime) {
+  const auto* const found = std::find_if(model::kRegimeNames.begin(), model::kRegimeNames.end(),
                                          [&](const auto& known) { return known.first == regime; });
-  return static_cast<std::uint8_t>(found - friction::kRegimeNames.begin());
+  return static_cast<std::uint8_t>(found - model::kRegimeNames.begin());
 }
 
 /// Called with each number of a truth; NaN if there is none.
@@ -70,7 +70,7 @@ SweepTable::SweepTable(std::int64_t run_count) {
   STICKSLIP_EXPECTS(run_count > 0);
   const auto count = static_cast<std::size_t>(run_count);
   const SweepRun none;
-  friction::for_each_result(none.results, [&](const friction::ResultName& name, const friction::Estimate&) {
+  analysis::for_each_result(none.results, [&](const analysis::ResultName& name, const analysis::Estimate&) {
     const std::vector<double> empty(count, kNone);
     results_.push_back({name, empty, empty, empty, std::vector<std::uint32_t>(count, 0)});
   });
@@ -86,8 +86,8 @@ void SweepTable::set(const SweepRun& run) {
   STICKSLIP_EXPECTS(run.number >= 0 && run.number < static_cast<std::int64_t>(run_count()));
   const auto at = static_cast<std::size_t>(run.number);
   auto result = results_.begin();
-  friction::for_each_result(
-      run.results, [&](const friction::ResultName&, const friction::Estimate& estimate) {
+  analysis::for_each_result(
+      run.results, [&](const analysis::ResultName&, const analysis::Estimate& estimate) {
         result->value[at] = estimate.value.value_or(kNone);
         result->standard_error[at] = estimate.standard_error.value_or(kNone);
         result->systematic_uncertainty[at] = estimate.systematic_uncertainty.value_or(kNone);

@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/friction/results.hpp"
-#include "core/friction/truth.hpp"
+#include "core/analysis/results.hpp"
+#include "core/model/truth.hpp"
 #include "core/record/fields.hpp"
 
 namespace stickslip::record {
@@ -48,8 +48,8 @@ struct SweepFacts {
 /// One run, with its truth but for lists and texts.
 struct SweepRun {
   std::int64_t number = 0;
-  friction::TestResults results;
-  friction::TestTruth truth;
+  analysis::TestResults results;
+  model::TestTruth truth;
   std::int64_t true_cycle_count = 0;  ///< Slips, those after the pull too.
 };
 
@@ -57,7 +57,7 @@ struct SweepRun {
 class SweepTable {
  public:
   struct Result {
-    friction::ResultName name;
+    analysis::ResultName name;
     std::vector<double> value;                   ///< NaN where there is none.
     std::vector<double> standard_error;          ///< NaN where there is none.
     std::vector<double> systematic_uncertainty;  ///< NaN where there is none.
@@ -81,7 +81,7 @@ class SweepTable {
   [[nodiscard]] const Truth& truth(std::string_view name) const;
   /// The first is empty: there is a value.
   [[nodiscard]] const std::deque<std::string>& reasons() const noexcept { return reasons_; }
-  /// Indices of friction::kRegimeNames.
+  /// Indices of model::kRegimeNames.
   [[nodiscard]] const std::vector<std::uint8_t>& regime() const noexcept { return regime_; }
   [[nodiscard]] const std::vector<std::uint8_t>& true_regime() const noexcept { return true_regime_; }
   [[nodiscard]] const std::vector<std::uint64_t>& seed() const noexcept { return seed_; }

@@ -28,8 +28,8 @@ void link(hid_t from, const std::string& name, hid_t to, const std::string& new_
 
 std::vector<std::string> regime_words() {
   std::vector<std::string> words;
-  words.reserve(std::size(friction::kRegimeNames));
-  for (const auto& [regime, word] : friction::kRegimeNames) words.emplace_back(word);
+  words.reserve(std::size(model::kRegimeNames));
+  for (const auto& [regime, word] : model::kRegimeNames) words.emplace_back(word);
   return words;
 }
 

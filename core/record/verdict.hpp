@@ -63,7 +63,7 @@ struct Verdict {
 };
 
 /// Any file: reads every byte of a record and every entry of a journal. A file made to deceive HDF5 may still
-/// end the process; who judges strangers' files does so in a process of its own (daemon/verify.hpp). Throws
+/// end the process; who judges strangers' files does so in a process of its own (io/verify.hpp). Throws
 /// only std::bad_alloc.
 [[nodiscard]] Verdict judge(const std::filesystem::path& path, const FileCalls& calls = system_calls());
 

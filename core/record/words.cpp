@@ -42,10 +42,10 @@ std::optional<daq::GapCause> gap_cause_from_name(std::string_view text) noexcept
   return std::nullopt;
 }
 
-std::optional<friction::Mode> mode_from_name(std::string_view text) noexcept {
-  using friction::Mode;
+std::optional<model::Mode> mode_from_name(std::string_view text) noexcept {
+  using model::Mode;
   for (const auto mode : {Mode::kStick, Mode::kSlip, Mode::kSlack}) {
-    if (friction::name(mode) == text) return mode;
+    if (model::name(mode) == text) return mode;
   }
   return std::nullopt;
 }

@@ -7,7 +7,7 @@
 
 #include "core/daq/board.hpp"
 #include "core/daq/gap.hpp"
-#include "core/friction/truth.hpp"
+#include "core/model/truth.hpp"
 
 namespace stickslip::record {
 
@@ -22,6 +22,6 @@ struct QuantityName {
 /// Whether the board's counts are stored as u16, not u32.
 [[nodiscard]] bool counts_fit_u16(const daq::BoardInfo& board) noexcept;
 [[nodiscard]] std::optional<daq::GapCause> gap_cause_from_name(std::string_view text) noexcept;
-[[nodiscard]] std::optional<friction::Mode> mode_from_name(std::string_view text) noexcept;
+[[nodiscard]] std::optional<model::Mode> mode_from_name(std::string_view text) noexcept;
 
 }  // namespace stickslip::record

@@ -52,7 +52,7 @@ std::array<double, Course::kOrders> decay_integrals(double rate, double t, int c
   return phi;
 }
 
-double distance_from_resonance(double rate, const friction::Oscillator& oscillator) {
+double distance_from_resonance(double rate, const model::Oscillator& oscillator) {
   return 1.0 + rate * (rate - oscillator.gamma_per_s) / oscillator.omega0_squared();
 }
 
@@ -184,7 +184,7 @@ Course Course::without_decay(int index) const {
   return result;
 }
 
-Course Course::response(const friction::Oscillator& oscillator) const {
+Course Course::response(const model::Oscillator& oscillator) const {
   const double gamma = oscillator.gamma_per_s;
   const double omega0_squared = oscillator.omega0_squared();
   Course result;

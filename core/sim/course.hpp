@@ -10,7 +10,7 @@
 
 #include <array>
 
-#include "core/friction/oscillator.hpp"
+#include "core/model/oscillator.hpp"
 
 namespace stickslip::sim {
 
@@ -52,7 +52,7 @@ class Course {
   [[nodiscard]] Course without_decay(int index) const;
   /// What follows it: the particular solution p of p″ + γp′ + ω₀² p = ω₀² (this). Keep away from resonance:
   /// resonance().
-  [[nodiscard]] Course response(const friction::Oscillator& oscillator) const;
+  [[nodiscard]] Course response(const model::Oscillator& oscillator) const;
 
   [[nodiscard]] int powers() const noexcept { return powers_; }  ///< Highest k + 1; 0: no polynomial.
   [[nodiscard]] int decays() const noexcept { return decays_; }
@@ -72,6 +72,6 @@ class Course {
 
 /// (λ² − γλ + ω₀²)/ω₀²: how far a decay is from being a motion of the oscillator itself; zero is resonance,
 /// which only overdamped oscillators can meet.
-[[nodiscard]] double distance_from_resonance(double rate_per_s, const friction::Oscillator& oscillator);
+[[nodiscard]] double distance_from_resonance(double rate_per_s, const model::Oscillator& oscillator);
 
 }  // namespace stickslip::sim

@@ -10,7 +10,7 @@
 namespace stickslip::sim {
 namespace {
 
-using friction::SlipWaveform;
+using model::SlipWaveform;
 
 bool reaches(double maximum, double level, Touch touch) {
   return touch == Touch::kCounts ? maximum >= level : maximum > level;

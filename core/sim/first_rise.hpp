@@ -6,7 +6,7 @@
 
 #include <optional>
 
-#include "core/friction/slip_waveform.hpp"
+#include "core/model/slip_waveform.hpp"
 #include "core/sim/course.hpp"
 
 namespace stickslip::sim {
@@ -22,11 +22,11 @@ enum class Touch { kCounts, kDoesNot };
 ///
 /// \param y      homogeneous: y.K = 0.
 /// \param touch  whether a maximum exactly at the level is an event.
-[[nodiscard]] std::optional<double> first_rise_s(const friction::SlipWaveform& y, double level, Touch touch);
+[[nodiscard]] std::optional<double> first_rise_s(const model::SlipWaveform& y, double level, Touch touch);
 
 /// An oscillation on a course.
 struct Curve {
-  friction::SlipWaveform wave;  ///< Homogeneous: wave.K = 0; wave.D = wave.r = 0 where nothing oscillates.
+  model::SlipWaveform wave;  ///< Homogeneous: wave.K = 0; wave.D = wave.r = 0 where nothing oscillates.
   Course course;
 
   [[nodiscard]] bool oscillates() const noexcept { return wave.D != 0.0 || wave.r != 0.0; }

@@ -13,7 +13,7 @@
 namespace stickslip::sim {
 namespace {
 
-using friction::SlipWaveform;
+using model::SlipWaveform;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -133,7 +133,7 @@ std::optional<double> rise_within(const Curve& y, double from, double to, double
 
 /// The most that y can be: its course and the amplitude to which the oscillation has decayed.
 Curve envelope(const Curve& y) {
-  const friction::Oscillator& oscillator = y.wave.oscillator;
+  const model::Oscillator& oscillator = y.wave.oscillator;
   const double sine = (y.wave.r + oscillator.gamma_per_s * y.wave.D / 2.0) / oscillator.omega_rad_per_s();
   Curve most{{0.0, 0.0, 0.0, oscillator}, y.course};
   most.course.add_decay(oscillator.gamma_per_s / 2.0, 0, std::hypot(y.wave.D, sine));

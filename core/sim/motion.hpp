@@ -2,7 +2,7 @@
 /// What the motion stage of a scene comes to, whichever way it is solved, and what it tells others.
 ///
 ///     Motion motion;
-///     motion.oscillator = friction::Oscillator::from_omega(omega, 0.022);
+///     motion.oscillator = model::Oscillator::from_omega(omega, 0.022);
 ///     motion.mu_s = 0.35;
 ///     motion.mu_k = 0.30;
 ///     motion.gravity_m_per_s2 = 9.80665;
@@ -13,8 +13,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/friction/oscillator.hpp"
-#include "core/friction/truth.hpp"
+#include "core/model/oscillator.hpp"
+#include "core/model/truth.hpp"
 #include "core/sim/course.hpp"
 #include "core/sim/paper.hpp"
 #include "core/sim/scan_time.hpp"
@@ -75,7 +75,7 @@ struct RateAndState {
 
 /// What the motion stage of a scene comes to.
 struct Motion {
-  friction::Oscillator oscillator;
+  model::Oscillator oscillator;
   double mu_s = 0.0;  ///< S ≥ mu_k
   double mu_k = 0.0;  ///< K ≥ 0
   double gravity_m_per_s2 = 0.0;
@@ -93,7 +93,7 @@ struct Motion {
 /// The sled changes its mode.
 struct ModeStart {
   ScanTime time;
-  friction::Mode mode = friction::Mode::kStick;
+  model::Mode mode = model::Mode::kStick;
   bool onset = false;        ///< A slip that starts because sticking gave way.
   bool capture = false;      ///< The slip before ended because the sled had reached the belt's speed.
   Coefficients paper;        ///< S and K in force.

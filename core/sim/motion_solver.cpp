@@ -15,7 +15,7 @@ namespace {
 /// sixteen are given.
 constexpr double kNearestResonance = 1e-3;
 
-bool responds_regularly(double rate_per_s, const friction::Oscillator& oscillator) {
+bool responds_regularly(double rate_per_s, const model::Oscillator& oscillator) {
   return std::abs(distance_from_resonance(rate_per_s, oscillator)) >= kNearestResonance;
 }
 

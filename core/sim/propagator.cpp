@@ -8,8 +8,8 @@
 
 namespace stickslip::sim {
 
-using friction::DampedBasis;
-using friction::Mode;
+using model::DampedBasis;
+using model::Mode;
 
 namespace {
 
@@ -36,7 +36,7 @@ Propagator::Propagator(const Motion& motion, double scan_rate_Hz, MotionObserver
   expect_sound(motion);
   STICKSLIP_EXPECTS(has_closed_form(motion));
   const double half_gamma = motion.oscillator.gamma_per_s / 2.0;
-  const DampedBasis at = damped_basis(motion.oscillator, 1.0 / scan_rate_Hz);
+  const DampedBasis at = model::damped_basis(motion.oscillator, 1.0 / scan_rate_Hz);
   turn_ = {at.cosine + half_gamma * at.sine, at.sine, -omega0_squared_ * at.sine,
            at.cosine - half_gamma * at.sine};
   restart(seed);
@@ -166,7 +166,7 @@ void Propagator::pass_until(const ScanTime& instant) {
 }
 
 Propagator::Wave Propagator::wave_at(double t_s) const {
-  const DampedBasis at = damped_basis(slip_.oscillator, t_s);
+  const DampedBasis at = model::damped_basis(slip_.oscillator, t_s);
   const double half_gamma = slip_.oscillator.gamma_per_s / 2.0;
   return {slip_.D * at.cosine + (slip_.r + half_gamma * slip_.D) * at.sine,
           slip_.r * at.cosine - (half_gamma * slip_.r + omega0_squared_ * slip_.D) * at.sine};

@@ -18,7 +18,7 @@
 #include <optional>
 #include <span>
 
-#include "core/friction/slip_waveform.hpp"
+#include "core/model/slip_waveform.hpp"
 #include "core/sim/course.hpp"
 #include "core/sim/first_rise.hpp"
 #include "core/sim/motion.hpp"
@@ -187,7 +187,7 @@ class Propagator final : public MotionSolver {
   State begun_{0.0, 0.0};  ///< State at start_.
   double push_ = 0.0;      ///< Sign of the friction: +1 while the sled is slower than the belt.
   /// Oscillation of a slip; about ±K if plain, else K = 0.
-  friction::SlipWaveform slip_;
+  model::SlipWaveform slip_;
   Course course_;  ///< Unless plain: c − h from start_ on.
   Course course_rate_;
   Stride stride_;

@@ -8,7 +8,7 @@
 
 namespace stickslip::sim {
 
-using friction::SlipWaveform;
+using model::SlipWaveform;
 
 namespace {
 

@@ -54,7 +54,7 @@ class RateAndStateMotion final : public NumericMotion {
   [[nodiscard]] bool becomes_taut(OdeState& y);
   void begin(OdeState y);
   void look_for_events();
-  void name_mode(friction::Mode mode, bool onset, bool capture, const ScanTime& time, const OdeState& y);
+  void name_mode(model::Mode mode, bool onset, bool capture, const ScanTime& time, const OdeState& y);
   void pass_end();
 
   Motion motion_;
@@ -74,7 +74,7 @@ class RateAndStateMotion final : public NumericMotion {
   OdeState begun_{};
   BeltRate belt_;
   bool taut_ = true;
-  std::optional<friction::Mode> mode_;
+  std::optional<model::Mode> mode_;
   Ending ending_ = Ending::kOngoing;
   double solved_s_ = 0.0;  ///< From start_ to known_to_.
 };

@@ -12,7 +12,7 @@ constexpr double kStiffest_m_per_s = 1e-100;
 
 }  // namespace
 
-RateAndStateSystem::RateAndStateSystem(const RateAndState& law, const friction::Oscillator& oscillator,
+RateAndStateSystem::RateAndStateSystem(const RateAndState& law, const model::Oscillator& oscillator,
                                        double gravity_m_per_s2)
     : law_(law),
       gamma_per_s_(oscillator.gamma_per_s),

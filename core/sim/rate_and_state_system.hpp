@@ -35,8 +35,7 @@ class RateAndStateSystem final : public OdeSystem {
     BeltRate belt;
   };
 
-  RateAndStateSystem(const RateAndState& law, const friction::Oscillator& oscillator,
-                     double gravity_m_per_s2);
+  RateAndStateSystem(const RateAndState& law, const model::Oscillator& oscillator, double gravity_m_per_s2);
 
   void begin(const Piece& piece) { piece_ = piece; }
 

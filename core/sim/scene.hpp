@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "core/base/result.hpp"
-#include "core/friction/oscillator.hpp"
-#include "core/friction/pull_speed.hpp"
-#include "core/friction/tester.hpp"
+#include "core/model/oscillator.hpp"
+#include "core/model/pull_speed.hpp"
+#include "core/model/tester.hpp"
 #include "core/sim/motion.hpp"
 #include "core/sim/sampling_settings.hpp"
 #include "core/sim/signal_settings.hpp"
@@ -93,8 +93,8 @@ struct Scene {
   double accuracy = 1e-9;       ///< Of the coefficient: chooses how the motion is solved.
 
   double sled_mass_kg = 0.0;
-  double gravity_m_per_s2 = friction::kStandardGravity_m_per_s2;
-  friction::Oscillator oscillator;  ///< With the damping, if listed.
+  double gravity_m_per_s2 = model::kStandardGravity_m_per_s2;
+  model::Oscillator oscillator;  ///< With the damping, if listed.
   SceneLoadCell load_cell;
 
   double mu_s = 0.0;
@@ -173,7 +173,7 @@ struct Pull {
 /// between so many points that they are off by less than a thousandth of the speed's change; none for a
 /// steady pull. Up to the stop: what a carriage does then with the force, stopping when it is zero, no plan
 /// tells.
-[[nodiscard]] std::optional<friction::PullSpeed> pull_speed_of(const Scene& scene);
+[[nodiscard]] std::optional<model::PullSpeed> pull_speed_of(const Scene& scene);
 
 /// What the converter's clock really does when it is set to this rate.
 [[nodiscard]] double true_scan_rate_Hz(const Scene& scene, double scan_rate_Hz) noexcept;

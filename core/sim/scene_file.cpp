@@ -9,6 +9,7 @@
 
 #include "core/base/settings.hpp"
 #include "core/base/wording.hpp"
+#include "core/model/limits.hpp"
 #include "core/sim/scene.hpp"
 #include "core/sim/scene_file_parts.hpp"
 
@@ -21,7 +22,6 @@ using base::Settings;
 
 // Limits of sense, not of the method: a value outside is taken for a slip of the pen.
 constexpr double kStrongestGravity_m_per_s2 = 100.0;
-constexpr double kHeaviestSled_kg = 1000.0;
 constexpr double kFastestOscillator_Hz = 1e5;
 constexpr double kFastestScan_Hz = 1e6;
 constexpr double kFinestAccuracy = 1e-12;  // Beyond, a numeric solver works at the roundings of a double.
@@ -31,10 +31,10 @@ constexpr std::array<std::string_view, 2> kEffects{"damping", "one_way_coupling"
 
 void read_tester(Settings tester, double gamma_over_2omega, Scene& scene) {
   scene.sled_mass_kg =
-      tester.quantity("sled_mass", Dimension::kMass, Limits::above_up_to(0.0, kHeaviestSled_kg));
-  scene.gravity_m_per_s2 = tester.quantity("gravity", Dimension::kAcceleration,
-                                           Limits::above_up_to(0.0, kStrongestGravity_m_per_s2),
-                                           friction::kStandardGravity_m_per_s2);
+      tester.quantity("sled_mass", Dimension::kMass, Limits::above_up_to(0.0, model::kHeaviestSled_kg));
+  scene.gravity_m_per_s2 =
+      tester.quantity("gravity", Dimension::kAcceleration,
+                      Limits::above_up_to(0.0, kStrongestGravity_m_per_s2), model::kStandardGravity_m_per_s2);
   const auto frequency_Hz = tester.quantity_if_given("frequency", Dimension::kFrequency,
                                                      Limits::above_up_to(0.0, kFastestOscillator_Hz));
   const auto stiffness = tester.quantity_if_given("stiffness", Dimension::kStiffness, Limits::above(0.0));
@@ -42,12 +42,12 @@ void read_tester(Settings tester, double gamma_over_2omega, Scene& scene) {
     tester.refuse("stiffness", "must not stand beside frequency: one follows from the other");
   } else if (frequency_Hz) {
     scene.oscillator =
-        friction::Oscillator::from_omega(2.0 * std::numbers::pi * *frequency_Hz, gamma_over_2omega);
+        model::Oscillator::from_omega(2.0 * std::numbers::pi * *frequency_Hz, gamma_over_2omega);
   } else if (stiffness && scene.sled_mass_kg > 0.0) {
     // ω = ω₀ cos φ [7], [10].
     const double omega0 = std::sqrt(*stiffness / scene.sled_mass_kg);
     scene.oscillator =
-        friction::Oscillator::from_omega(omega0 / std::hypot(1.0, gamma_over_2omega), gamma_over_2omega);
+        model::Oscillator::from_omega(omega0 / std::hypot(1.0, gamma_over_2omega), gamma_over_2omega);
   } else if (!tester.has("frequency") && !tester.has("stiffness")) {
     tester.refuse("frequency", "must be given, or else stiffness");
   }

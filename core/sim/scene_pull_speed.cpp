@@ -19,7 +19,7 @@ bool is_line(const BeltSegment& segment) {
   return segment.jerk_m_per_s3 == 0.0 && segment.decaying_speed_m_per_s == 0.0;
 }
 
-void append(const BeltSegment& segment, double start_s, std::vector<friction::SpeedPoint>& points) {
+void append(const BeltSegment& segment, double start_s, std::vector<model::SpeedPoint>& points) {
   const Course speed = belt_speed(segment);
   const auto add = [&](double t_s) { points.push_back({start_s + t_s, speed.value(t_s)}); };
   add(0.0);
@@ -37,12 +37,12 @@ void append(const BeltSegment& segment, double start_s, std::vector<friction::Sp
 
 }  // namespace
 
-std::optional<friction::PullSpeed> pull_speed_of(const Scene& scene) {
+std::optional<model::PullSpeed> pull_speed_of(const Scene& scene) {
   // A steady pull needs no course: the stop after it is not a change of its speed.
   const bool steady =
       scene.constant_speed && !scene.speed_ramp && !scene.exponential_start && !scene.jerk_limited_start;
   if (steady) return std::nullopt;
-  std::vector<friction::SpeedPoint> points;
+  std::vector<model::SpeedPoint> points;
   double now_s = 0.0;
   for (const BeltSegment& segment : motion_of(scene).belt) {
     if (segment.halt_when_unloaded) break;
@@ -52,7 +52,7 @@ std::optional<friction::PullSpeed> pull_speed_of(const Scene& scene) {
     if (segment.duration_s > 0.0) append(segment, now_s, points);
     now_s += segment.duration_s;
   }
-  auto speed = friction::PullSpeed::make(std::move(points));
+  auto speed = model::PullSpeed::make(std::move(points));
   return speed && !speed->is_constant() ? speed : std::nullopt;
 }
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/base/long_column.hpp"
-#include "core/friction/slip_waveform.hpp"
+#include "core/model/slip_waveform.hpp"
 #include "core/sim/belt.hpp"
 #include "core/sim/first_slip.hpp"
 #include "core/sim/motion_solver.hpp"
@@ -16,8 +16,8 @@
 namespace stickslip::sim {
 namespace {
 
-using friction::Mode;
-using friction::Regime;
+using model::Mode;
+using model::Regime;
 
 /// Writes down what happens, in seconds.
 class Chronicle final : public MotionObserver {
@@ -54,7 +54,7 @@ class Chronicle final : public MotionObserver {
     }
     if (mode_ && mode_->mode == start.mode && !start.onset) return;
     end_mode(now_s);
-    mode_ = friction::ModeInterval{now_s, now_s, start.mode};
+    mode_ = model::ModeInterval{now_s, now_s, start.mode};
   }
 
   /// Nothing comes any more.
@@ -65,7 +65,7 @@ class Chronicle final : public MotionObserver {
     slip_.reset();
   }
 
-  [[nodiscard]] base::LongColumn<friction::ModeInterval> take_modes() { return std::exchange(modes_, {}); }
+  [[nodiscard]] base::LongColumn<model::ModeInterval> take_modes() { return std::exchange(modes_, {}); }
   [[nodiscard]] const base::LongColumn<Slip>& slips() const noexcept { return slips_; }
   [[nodiscard]] const base::LongColumn<Slide>& slides() const noexcept { return slides_; }
 
@@ -82,10 +82,10 @@ class Chronicle final : public MotionObserver {
   }
 
   double scan_rate_Hz_;
-  std::optional<friction::ModeInterval> mode_;  ///< The present one.
-  std::optional<Slip> slip_;                    ///< The latest, which may still stick again.
+  std::optional<model::ModeInterval> mode_;  ///< The present one.
+  std::optional<Slip> slip_;                 ///< The latest, which may still stick again.
   std::optional<double> slide_start_s_;
-  base::LongColumn<friction::ModeInterval> modes_;
+  base::LongColumn<model::ModeInterval> modes_;
   base::LongColumn<Slip> slips_;
   base::LongColumn<Slide> slides_;
 };
@@ -127,7 +127,7 @@ Regime regime_of(const Tally& slips, bool oscillates) {
   return Regime::kUndecided;
 }
 
-void describe_oscillation(const Scene& scene, const Tally& slips, friction::TestTruth& truth) {
+void describe_oscillation(const Scene& scene, const Tally& slips, model::TestTruth& truth) {
   if (slips.count == 0 || !scene.oscillator.oscillates()) return;
   if (slips.count > 1) {
     truth.oscillation_frequency_Hz =
@@ -136,25 +136,25 @@ void describe_oscillation(const Scene& scene, const Tally& slips, friction::Test
     truth.oscillation_frequency_Hz = scene.oscillator.omega_rad_per_s() / (2.0 * std::numbers::pi);
   }
   const double r = scene.oscillator.stick_rate_per_s(truth.pull_speed_m_per_s, scene.gravity_m_per_s2);
-  const friction::SlipWaveform slip{slips.first.paper.mu_k, slips.first.coefficient - slips.first.paper.mu_k,
-                                    r, scene.oscillator};
+  const model::SlipWaveform slip{slips.first.paper.mu_k, slips.first.coefficient - slips.first.paper.mu_k, r,
+                                 scene.oscillator};
   double least = slip.value(slip.trough_time_s());
   if (scene.one_way_coupling) least = std::max(least, 0.0);
   truth.amplitude = (slip.value(slip.peak_time_s()) - least) / 2.0;
 }
 
 /// A clock that is fast makes a record seem long.
-void as_recorded(friction::TestTruth& truth, double recorded_per_true,
+void as_recorded(model::TestTruth& truth, double recorded_per_true,
                  const std::filesystem::path& scratch_folder) {
-  base::LongColumn<friction::ModeInterval> modes{scratch_folder};
-  for (friction::ModeInterval mode : std::as_const(truth.modes)) {
+  base::LongColumn<model::ModeInterval> modes{scratch_folder};
+  for (model::ModeInterval mode : std::as_const(truth.modes)) {
     mode.start_s *= recorded_per_true;
     mode.end_s *= recorded_per_true;
     modes.push_back(mode);
   }
   truth.modes = std::move(modes);
-  base::LongColumn<friction::TrueCycle> cycles{scratch_folder};
-  for (friction::TrueCycle cycle : std::as_const(truth.cycles)) {
+  base::LongColumn<model::TrueCycle> cycles{scratch_folder};
+  for (model::TrueCycle cycle : std::as_const(truth.cycles)) {
     cycle.onset_time_s *= recorded_per_true;
     cycles.push_back(cycle);
   }
@@ -163,10 +163,10 @@ void as_recorded(friction::TestTruth& truth, double recorded_per_true,
 
 }  // namespace
 
-friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std::uint64_t seed,
-                                const friction::Method& method, const std::filesystem::path& scratch_folder) {
+model::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std::uint64_t seed,
+                             const model::Method& method, const std::filesystem::path& scratch_folder) {
   const double scan_rate_Hz = true_scan_rate_Hz(scene, nominal_rate_Hz);
-  friction::TestTruth truth;
+  model::TestTruth truth;
   truth.scene_name = scene.name;
   truth.scene_text = scene.text;
   truth.seed = seed;
@@ -180,10 +180,10 @@ friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std:
   const auto motion = make_motion_solver(scene_motion, scan_rate_Hz, scene.accuracy, &chronicle, seed);
   motion->skip(scan_count(scene, nominal_rate_Hz));
   const SolverMethod solver = motion->method();
-  truth.solver = friction::SolverFacts{std::string{solver.name}, solver.accuracy, scene.accuracy, {}};
+  truth.solver = model::SolverFacts{std::string{solver.name}, solver.accuracy, scene.accuracy, {}};
   chronicle.close(scene.duration_s);
   truth.modes = chronicle.take_modes();
-  truth.cycles = base::LongColumn<friction::TrueCycle>{scratch_folder};
+  truth.cycles = base::LongColumn<model::TrueCycle>{scratch_folder};
   for (const Chronicle::Slip& slip : chronicle.slips()) {
     truth.cycles.push_back({slip.onset_s, slip.paper.mu_s, slip.paper.mu_k});
   }

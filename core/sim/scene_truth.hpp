@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "core/friction/method.hpp"
-#include "core/friction/truth.hpp"
+#include "core/model/method.hpp"
+#include "core/model/truth.hpp"
 #include "core/sim/scene.hpp"
 
 namespace stickslip::sim {
@@ -25,8 +25,8 @@ namespace stickslip::sim {
 /// \param method  by which the traditional coefficients are read from the force.
 /// \param scratch_folder  of the tables of a long test (base::LongColumn), which throw std::system_error
 ///        then; empty: they are in memory.
-[[nodiscard]] friction::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std::uint64_t seed,
-                                              const friction::Method& method = {},
-                                              const std::filesystem::path& scratch_folder = {});
+[[nodiscard]] model::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std::uint64_t seed,
+                                           const model::Method& method = {},
+                                           const std::filesystem::path& scratch_folder = {});
 
 }  // namespace stickslip::sim

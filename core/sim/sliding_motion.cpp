@@ -7,7 +7,7 @@
 
 namespace stickslip::sim {
 
-using friction::Mode;
+using model::Mode;
 
 namespace {
 

@@ -26,7 +26,7 @@ Weakening weakening(double x, double exponent) {
 
 }  // namespace
 
-SlidingSystem::SlidingSystem(const friction::Oscillator& oscillator, double gravity_m_per_s2,
+SlidingSystem::SlidingSystem(const model::Oscillator& oscillator, double gravity_m_per_s2,
                              const std::optional<VelocityDependence>& law)
     : gamma_per_s_(oscillator.gamma_per_s),
       omega0_rad_per_s_(std::sqrt(oscillator.omega0_squared())),

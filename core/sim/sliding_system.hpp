@@ -33,7 +33,7 @@ class SlidingSystem final : public OdeSystem {
     DriftCourse drift;
   };
 
-  SlidingSystem(const friction::Oscillator& oscillator, double gravity_m_per_s2,
+  SlidingSystem(const model::Oscillator& oscillator, double gravity_m_per_s2,
                 const std::optional<VelocityDependence>& law);
 
   void begin(const Piece& piece) { piece_ = piece; }

@@ -18,7 +18,7 @@ constexpr double kPointsPerPeriod = 2000.0;
 class Reader {
  public:
   /// \param points_per_m  of travel.
-  Reader(const friction::Method& method, double points_per_m) : method_(method) {
+  Reader(const model::Method& method, double points_per_m) : method_(method) {
     if (!method.kinetic_travel) return;
     first_ = method.kinetic_travel->from_m * points_per_m;
     end_ = method.kinetic_travel->to_m * points_per_m;
@@ -49,7 +49,7 @@ class Reader {
     if (points_since_peak_++ >= first_) mean_ += (last_ - mean_) / ++count_;
   }
 
-  friction::Method method_;
+  model::Method method_;
   double first_ = 0.0;  ///< Points after the first peak at which the mean begins,
   double end_ = 0.0;    ///< and ends; only for a travel.
   TraditionalTruth truth_;
@@ -66,7 +66,7 @@ class Reader {
 }  // namespace
 
 TraditionalTruth traditional_truth(const Scene& scene, std::uint64_t seed, double onset_s,
-                                   const friction::Method& method, double pull_speed_m_per_s) {
+                                   const model::Method& method, double pull_speed_m_per_s) {
   const double rate_Hz = kPointsPerPeriod * scene.oscillator.omega_rad_per_s() / (2.0 * std::numbers::pi);
   const auto from = static_cast<std::int64_t>(std::floor(onset_s * rate_Hz));
   const auto end = static_cast<std::int64_t>(std::ceil(pull_of(scene)->end_s * rate_Hz));

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/friction/method.hpp"
+#include "core/model/method.hpp"
 #include "core/sim/scene.hpp"
 
 namespace stickslip::sim {
@@ -22,6 +22,6 @@ struct TraditionalTruth {
 /// \param pull_speed_m_per_s  turns the method's travel into time.
 /// \return without the number that the pull is too short for.
 [[nodiscard]] TraditionalTruth traditional_truth(const Scene& scene, std::uint64_t seed, double onset_s,
-                                                 const friction::Method& method, double pull_speed_m_per_s);
+                                                 const model::Method& method, double pull_speed_m_per_s);
 
 }  // namespace stickslip::sim

@@ -19,7 +19,7 @@
 
 #include <Eigen/Core>
 
-#include "core/friction/oscillator.hpp"
+#include "core/model/oscillator.hpp"
 #include "core/sim/motion.hpp"
 #include "core/sim/transducer_settings.hpp"
 
@@ -33,7 +33,7 @@ class Transducer final : public ForceFollower {
   /// \param scan_rate_Hz  at which the force is mostly asked for: the responses over one whole period
   ///                      are computed only once.
   Transducer(const std::optional<LoadCellDynamics>& load_cell, const std::optional<AntiAlias>& anti_alias,
-             const friction::Oscillator& oscillator, double scan_rate_Hz);
+             const model::Oscillator& oscillator, double scan_rate_Hz);
 
   /// At rest and unloaded.
   void restart();
@@ -75,7 +75,7 @@ class Transducer final : public ForceFollower {
   [[nodiscard]] Vector start(const ForceStretch& stretch, const Shape& shape) const;
   [[nodiscard]] static Matrix exponential(const Matrix& generator);
 
-  friction::Oscillator oscillator_;
+  model::Oscillator oscillator_;
   double omega0_rad_per_s_;  ///< Unit of 1/time of the force's derivatives, so that all are of one size.
   double period_s_;
   Matrix filter_;       ///< A

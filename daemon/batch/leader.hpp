@@ -15,23 +15,23 @@
 
 #include "core/base/clock.hpp"
 #include "core/base/result.hpp"
-#include "daemon/batch/batch.hpp"
-#include "daemon/batch/journal.hpp"
-#include "daemon/control/batches.hpp"
-#include "daemon/control/bench.hpp"
-#include "daemon/test_log.hpp"
+#include "daemon/types/batch.hpp"
+#include "daemon/types/batch_journal.hpp"
+#include "daemon/types/batches.hpp"
+#include "daemon/types/bench.hpp"
+#include "daemon/types/test_log.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::batch {
 
 /// Main thread, but for the pool inside, which alone writes the journal and reads records.
-class BatchLeader final : public Batches {
+class BatchLeader final : public daemon::Batches {
  public:
   struct Parts {
     std::filesystem::path folder;  ///< Of the records.
     std::string program;           ///< Of place_of().
-    std::function<Plan()> plan;
-    std::function<void(Plan)> set_plan;
-    std::function<void(TestSummary)> earlier;            ///< A test of the batch, of before this began.
+    std::function<daemon::Plan()> plan;
+    std::function<void(daemon::Plan)> set_plan;
+    std::function<void(daemon::TestSummary)> earlier;    ///< A test of the batch, of before this began.
     std::function<void(std::function<void()>)> on_main;  ///< From any thread: to the main thread.
     const base::Clock* clock;                            ///< Outlives this object.
   };
@@ -55,19 +55,19 @@ class BatchLeader final : public Batches {
   void record_published(std::int64_t number, const std::filesystem::path& file);
   void record_failed(std::int64_t number);
 
-  [[nodiscard]] const BatchBook& book() override;
-  [[nodiscard]] std::optional<BatchProgress> progress() const override;
+  [[nodiscard]] const daemon::BatchBook& book() override;
+  [[nodiscard]] std::optional<daemon::BatchProgress> progress() const override;
   [[nodiscard]] std::string name_of(const std::filesystem::path& record) const override;
-  void begin(BatchPlan plan, std::string who, Answer answer) override;
+  void begin(daemon::BatchPlan plan, std::string who, Answer answer) override;
   void end(std::string who, Answer answer) override;
   void void_test(const std::string& record, std::string reason, std::string who, Answer answer) override;
   void restore(const std::string& record, std::string who, Answer answer) override;
 
  private:
   [[nodiscard]] std::string now() const;
-  [[nodiscard]] std::optional<BatchStep> next() const;
+  [[nodiscard]] std::optional<daemon::BatchStep> next() const;
   /// On the pool; then the book is read on, the next test planned, and `answer` told.
-  void append(BatchEvent event, Answer answer);
+  void append(daemon::BatchEvent event, Answer answer);
   /// What the journal has got; trouble with it is kept for people.
   void read_on();
   /// Plans the next test, if that is another than was planned.
@@ -78,13 +78,13 @@ class BatchLeader final : public Batches {
   void tell_earlier(std::vector<std::string> records, std::size_t at);
 
   Parts parts_;
-  BatchJournal journal_;
-  BatchBook book_;
-  std::map<std::int64_t, BatchStep> under_way_;  ///< By the number of the test.
-  std::optional<BatchStep> planned_;             ///< What the next test will be.
-  std::string led_batch_;                        ///< Whose facts are in the plan; empty: of none.
+  daemon::BatchJournal journal_;
+  daemon::BatchBook book_;
+  std::map<std::int64_t, daemon::BatchStep> under_way_;  ///< By the number of the test.
+  std::optional<daemon::BatchStep> planned_;             ///< What the next test will be.
+  std::string led_batch_;                                ///< Whose facts are in the plan; empty: of none.
   std::string trouble_;
   boost::asio::thread_pool pool_{1};
 };
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::batch

@@ -8,26 +8,26 @@
 #include <memory>
 #include <utility>
 
+#include "io/json_text.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/base/text.hpp"
-#include "daemon/batch/batch_json.hpp"
 #include "daemon/control/batch_api.hpp"
 #include "daemon/control/calibration_api.hpp"
-#include "daemon/control/calibration_json.hpp"
 #include "daemon/control/lease.hpp"
 #include "daemon/control/metrics.hpp"
 #include "daemon/control/openapi.hpp"
-#include "daemon/control/plan_json.hpp"
 #include "daemon/control/record_request.hpp"
 #include "daemon/control/repeats.hpp"
-#include "daemon/control/reply.hpp"
 #include "daemon/control/report_api.hpp"
 #include "daemon/control/request_body.hpp"
 #include "daemon/control/summary.hpp"
-#include "daemon/json_text.hpp"
+#include "daemon/types/batch_json.hpp"
+#include "daemon/types/calibration_json.hpp"
+#include "daemon/types/plan_json.hpp"
+#include "daemon/types/reply.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -36,9 +36,10 @@ constexpr std::size_t kLongestController = 64;
 
 class Api {
  public:
-  Api(Bench& bench, const base::Clock& clock) : bench_(bench), batches_(bench.batches()), clock_(clock) {}
+  Api(daemon::Bench& bench, const base::Clock& clock)
+      : bench_(bench), batches_(bench.batches()), clock_(clock) {}
 
-  void handle(const HttpRequest& request, HttpAnswer answer) {
+  void handle(const daemon::HttpRequest& request, daemon::HttpAnswer answer) {
     const std::string path = request.target.substr(0, request.target.find('?'));
     std::string allowed;
     for (const Route& route : kRoutes) {
@@ -51,17 +52,18 @@ class Api {
       allowed += fmt::format("{}{}", allowed.empty() ? "" : ", ", route.method);
     }
     if (allowed.empty()) {
-      answer(refusal(
+      answer(daemon::refusal(
           404, fmt::format("there is nothing at {}; /v1/openapi.json says what there is", printable(path))));
     } else {
-      answer(refusal(405,
-                     fmt::format("{} is not allowed at {}; {} is", printable(request.method), path, allowed),
-                     allowed));
+      answer(daemon::refusal(
+          405, fmt::format("{} is not allowed at {}; {} is", printable(request.method), path, allowed),
+          allowed));
     }
   }
 
  private:
-  using Function = void (Api::*)(const HttpRequest&, const std::string& rest, const HttpAnswer&);
+  using Function = void (Api::*)(const daemon::HttpRequest&, const std::string& rest,
+                                 const daemon::HttpAnswer&);
   struct Route {
     std::string_view method;
     std::string_view path;  ///< A slash at its end: and one part more, the rest.
@@ -77,22 +79,24 @@ class Api {
   }
 
   /// Names and repetitions first, for what changes something.
-  void dispatch(const Route& route, const HttpRequest& request, const std::string& rest, HttpAnswer answer) {
+  void dispatch(const Route& route, const daemon::HttpRequest& request, const std::string& rest,
+                daemon::HttpAnswer answer) {
     if (!route.changes) {
       (this->*route.function)(request, rest, answer);
       return;
     }
     if (request.controller.empty()) {
-      answer(refusal(400, "who commands? Give a name in the header Stickslip-Controller"));
+      answer(daemon::refusal(400, "who commands? Give a name in the header Stickslip-Controller"));
       return;
     }
     if (const std::string why = base::name_refusal(request.controller, kLongestController); !why.empty()) {
-      answer(refusal(400, "Stickslip-Controller: " + why));
+      answer(daemon::refusal(400, "Stickslip-Controller: " + why));
       return;
     }
     const std::string& key = request.idempotency_key;
     if (key.size() > Repeats::kLongestKey) {
-      answer(refusal(400, fmt::format("Idempotency-Key: is longer than {} bytes", Repeats::kLongestKey)));
+      answer(daemon::refusal(400,
+                             fmt::format("Idempotency-Key: is longer than {} bytes", Repeats::kLongestKey)));
       return;
     }
     if (!key.empty()) {
@@ -101,20 +105,20 @@ class Api {
           answer(repeats_.answer(request));
           return;
         case Repeats::Found::kWaiting:
-          answer(refusal(409, "the request with this Idempotency-Key is still being answered"));
+          answer(daemon::refusal(409, "the request with this Idempotency-Key is still being answered"));
           return;
         case Repeats::Found::kOther:
-          answer(refusal(422, "this Idempotency-Key was used for another request"));
+          answer(daemon::refusal(422, "this Idempotency-Key was used for another request"));
           return;
         case Repeats::Found::kTooManyClients:
-          answer(refusal(
+          answer(daemon::refusal(
               503,
               fmt::format("{} clients have sent an Idempotency-Key in the last {} min, and more are not "
                           "remembered: use a name that was used before, or send the request without a key",
                           Repeats::kMostClients, Repeats::kRemembered.count())));
           return;
         case Repeats::Found::kNew:
-          answer = [this, request, answer = std::move(answer)](const HttpReply& reply) {
+          answer = [this, request, answer = std::move(answer)](const daemon::HttpReply& reply) {
             repeats_.answered(request, reply);
             answer(reply);
           };
@@ -127,72 +131,75 @@ class Api {
   [[nodiscard]] std::int64_t now_ns() const { return clock_.monotonic_ns(); }
 
   /// The bench for this client. \return false after a refusal.
-  bool take(const HttpRequest& request, double for_s, const HttpAnswer& answer) {
+  bool take(const daemon::HttpRequest& request, double for_s, const daemon::HttpAnswer& answer) {
     const auto holder = lease_.take(request.controller, for_s, now_ns());
     if (!holder) return true;
-    answer(refusal(409,
-                   fmt::format("{} has the bench for another {:.0f} s; one at a time commands, all may read",
-                               *holder, std::max(1.0, lease_.left_s(now_ns())))));
+    answer(daemon::refusal(
+        409, fmt::format("{} has the bench for another {:.0f} s; one at a time commands, all may read",
+                         *holder, std::max(1.0, lease_.left_s(now_ns())))));
     return false;
   }
 
   // Readers.
 
-  void status(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
-    answer(reply_of(status_json(bench_.status())));
+  void status(const daemon::HttpRequest&, const std::string&, const daemon::HttpAnswer& answer) {
+    answer(daemon::reply_of(daemon::status_json(bench_.status())));
   }
 
-  void metrics(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
-    HttpReply reply{200, metrics_text(bench_.status()), {}};
+  void metrics(const daemon::HttpRequest&, const std::string&, const daemon::HttpAnswer& answer) {
+    daemon::HttpReply reply{200, metrics_text(bench_.status()), {}};
     reply.content_type = kMetricsType;
     answer(std::move(reply));
   }
 
-  void description(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
+  void description(const daemon::HttpRequest&, const std::string&, const daemon::HttpAnswer& answer) {
     answer({200, std::string{openapi()}, {}});
   }
 
-  [[nodiscard]] Json described(const TestSummary& test, const BatchBook& book, bool with_details) const {
-    Json json = test_json(test, with_details);
-    json["voided"] = voiding_json(test.file.empty() ? nullptr : book.voided(batches_.name_of(test.file)));
+  [[nodiscard]] Json described(const daemon::TestSummary& test, const daemon::BatchBook& book,
+                               bool with_details) const {
+    Json json = daemon::test_json(test, with_details);
+    json["voided"] =
+        daemon::voiding_json(test.file.empty() ? nullptr : book.voided(batches_.name_of(test.file)));
     return json;
   }
 
-  void tests(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
+  void tests(const daemon::HttpRequest&, const std::string&, const daemon::HttpAnswer& answer) {
     Json list = Json::array();
-    const BatchBook& book = batches_.book();
-    const std::vector<TestSummary> tests = bench_.tests();
-    for (const TestSummary& test : tests) list.push_back(described(test, book, false));
+    const daemon::BatchBook& book = batches_.book();
+    const std::vector<daemon::TestSummary> tests = bench_.tests();
+    for (const daemon::TestSummary& test : tests) list.push_back(described(test, book, false));
     Json summary =
         summary_json(tests, book, [this](const std::string& file) { return batches_.name_of(file); });
-    answer(reply_of({{"tests", std::move(list)}, {"summary", std::move(summary)}}));
+    answer(daemon::reply_of({{"tests", std::move(list)}, {"summary", std::move(summary)}}));
   }
 
-  void test(const HttpRequest&, const std::string& rest, const HttpAnswer& answer) {
+  void test(const daemon::HttpRequest&, const std::string& rest, const daemon::HttpAnswer& answer) {
     std::int64_t number = 0;
     const char* const end = rest.data() + rest.size();
     const auto [stopped, error] = std::from_chars(rest.data(), end, number);
     if (error == std::errc{} && stopped == end) {
-      for (const TestSummary& test : bench_.tests()) {
+      for (const daemon::TestSummary& test : bench_.tests()) {
         if (test.number != number) continue;
-        answer(reply_of(described(test, batches_.book(), true)));
+        answer(daemon::reply_of(described(test, batches_.book(), true)));
         return;
       }
     }
-    answer(refusal(404, fmt::format("there is no test {} among the latest {}; GET /v1/tests lists them",
-                                    printable(rest), TestLog::kMaxTests)));
+    answer(
+        daemon::refusal(404, fmt::format("there is no test {} among the latest {}; GET /v1/tests lists them",
+                                         printable(rest), daemon::TestLog::kMaxTests)));
   }
 
-  void record(const HttpRequest&, const std::string& rest, const HttpAnswer& answer) {
+  void record(const daemon::HttpRequest&, const std::string& rest, const daemon::HttpAnswer& answer) {
     answer(record_reply(rest, bench_.tests()));
   }
 
-  void plan(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
-    answer(reply_of(plan_json(bench_.plan())));
+  void plan(const daemon::HttpRequest&, const std::string&, const daemon::HttpAnswer& answer) {
+    answer(daemon::reply_of(daemon::plan_json(bench_.plan())));
   }
 
-  void controller(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
-    answer(reply_of(lease_json()));
+  void controller(const daemon::HttpRequest&, const std::string&, const daemon::HttpAnswer& answer) {
+    answer(daemon::reply_of(lease_json()));
   }
 
   [[nodiscard]] Json lease_json() const {
@@ -203,162 +210,168 @@ class Api {
 
   // Who commands.
 
-  void take_control(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+  void take_control(const daemon::HttpRequest& request, const std::string&,
+                    const daemon::HttpAnswer& answer) {
     const auto body = object_of(request.body, {"seconds"});
-    if (!body) return answer(refusal(400, body.error().message));
+    if (!body) return answer(daemon::refusal(400, body.error().message));
     const Json seconds = body->value("seconds", Json(Lease::kCommand_s));
     if (!seconds.is_number() || !(seconds > 0.0) || !(seconds <= Lease::kLongest_s)) {
-      return answer(
-          refusal(400, fmt::format("seconds: must be a number above 0 and at most {}", Lease::kLongest_s)));
+      return answer(daemon::refusal(
+          400, fmt::format("seconds: must be a number above 0 and at most {}", Lease::kLongest_s)));
     }
-    if (take(request, seconds.get<double>(), answer)) answer(reply_of(lease_json()));
+    if (take(request, seconds.get<double>(), answer)) answer(daemon::reply_of(lease_json()));
   }
 
-  void release_control(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
-    if (lease_.release(request.controller, now_ns())) return answer(reply_of(lease_json()));
-    answer(refusal(409, fmt::format("{} has the bench", *lease_.holder(now_ns()))));
+  void release_control(const daemon::HttpRequest& request, const std::string&,
+                       const daemon::HttpAnswer& answer) {
+    if (lease_.release(request.controller, now_ns())) return answer(daemon::reply_of(lease_json()));
+    answer(daemon::refusal(409, fmt::format("{} has the bench", *lease_.holder(now_ns()))));
   }
 
-  void set_plan(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+  void set_plan(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
     const auto body = object_of(request.body, {});
-    if (!body) return answer(refusal(400, body.error().message));
-    base::Result<Plan> plan = plan_of(*body);
-    if (!plan) return answer(refusal(400, plan.error().message));
+    if (!body) return answer(daemon::refusal(400, body.error().message));
+    base::Result<daemon::Plan> plan = daemon::plan_of(*body);
+    if (!plan) return answer(daemon::refusal(400, plan.error().message));
     if (const auto progress = batches_.progress(); progress && progress->next) {
-      return answer(refusal(409, fmt::format("batch {} ({}) plans the tests; DELETE /v1/batch ends it",
-                                             progress->id, progress->name)));
+      return answer(
+          daemon::refusal(409, fmt::format("batch {} ({}) plans the tests; DELETE /v1/batch ends it",
+                                           progress->id, progress->name)));
     }
     if (!take(request, Lease::kCommand_s, answer)) return;
     bench_.set_plan(*std::move(plan));
-    answer(reply_of(plan_json(bench_.plan())));
+    answer(daemon::reply_of(daemon::plan_json(bench_.plan())));
   }
 
-  void batch(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
-    answer(reply_of(batch_json(batches_)));
+  void batch(const daemon::HttpRequest&, const std::string&, const daemon::HttpAnswer& answer) {
+    answer(daemon::reply_of(batch_json(batches_)));
   }
 
-  void begin_batch(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+  void begin_batch(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
     const auto body = object_of(request.body, {});
-    if (!body) return answer(refusal(400, body.error().message));
-    base::Result<BatchPlan> plan = batch_plan_of(*body);
-    if (!plan) return answer(refusal(400, plan.error().message));
+    if (!body) return answer(daemon::refusal(400, body.error().message));
+    base::Result<daemon::BatchPlan> plan = daemon::batch_plan_of(*body);
+    if (!plan) return answer(daemon::refusal(400, plan.error().message));
     if (!take(request, Lease::kCommand_s, answer)) return;
     batches_.begin(*std::move(plan), request.controller, reply_with_batch(batches_, answer));
   }
 
-  void end_batch(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+  void end_batch(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
     if (!take(request, Lease::kCommand_s, answer)) return;
     batches_.end(request.controller, reply_with_batch(batches_, answer));
   }
 
-  void void_test(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+  void void_test(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
     const auto body = object_of(request.body, {"test", "record", "reason"});
-    if (!body) return answer(refusal(400, body.error().message));
+    if (!body) return answer(daemon::refusal(400, body.error().message));
     const Json reason = body->value("reason", Json());
     if (!reason.is_string() || reason.get<std::string>().empty())
-      return answer(refusal(400, "reason: is missing: why does the test not count?"));
+      return answer(daemon::refusal(400, "reason: is missing: why does the test not count?"));
     if (const std::string why = base::name_refusal(reason.get<std::string>()); !why.empty())
-      return answer(refusal(400, "reason: " + why));
+      return answer(daemon::refusal(400, "reason: " + why));
     const base::Result<std::string> record = record_named(*body, bench_, batches_);
-    if (!record) return answer(refusal(400, record.error().message));
+    if (!record) return answer(daemon::refusal(400, record.error().message));
     if (!take(request, Lease::kCommand_s, answer)) return;
     batches_.void_test(*record, reason.get<std::string>(), request.controller,
                        reply_with_batch(batches_, answer));
   }
 
-  void restore_test(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+  void restore_test(const daemon::HttpRequest& request, const std::string&,
+                    const daemon::HttpAnswer& answer) {
     const auto body = object_of(request.body, {"test", "record"});
-    if (!body) return answer(refusal(400, body.error().message));
+    if (!body) return answer(daemon::refusal(400, body.error().message));
     const base::Result<std::string> record = record_named(*body, bench_, batches_);
-    if (!record) return answer(refusal(400, record.error().message));
+    if (!record) return answer(daemon::refusal(400, record.error().message));
     if (!take(request, Lease::kCommand_s, answer)) return;
     batches_.restore(*record, request.controller, reply_with_batch(batches_, answer));
   }
 
-  void batches(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
-    answer(reply_of(batches_json(batches_.book())));
+  void batches(const daemon::HttpRequest&, const std::string&, const daemon::HttpAnswer& answer) {
+    answer(daemon::reply_of(batches_json(batches_.book())));
   }
-  void report(const HttpRequest& request, const std::string& rest, const HttpAnswer& answer) {
+  void report(const daemon::HttpRequest& request, const std::string& rest, const daemon::HttpAnswer& answer) {
     answer_report(request, rest, batches_.book(), bench_.reports(), answer);
   }
-  void compare(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+  void compare(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
     answer_comparison(request, batches_.book(), bench_.reports(), answer);
   }
 
-  void arm(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
-    command(Command::Kind::kArm, request, {}, answer);
+  void arm(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
+    command(daemon::Command::Kind::kArm, request, {}, answer);
   }
-  void start(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
-    command(Command::Kind::kStart, request, "test", answer);
+  void start(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
+    command(daemon::Command::Kind::kStart, request, "test", answer);
   }
-  void stop(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
-    command(Command::Kind::kStop, request, "test", answer);
+  void stop(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
+    command(daemon::Command::Kind::kStop, request, "test", answer);
   }
-  void mark(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
-    command(Command::Kind::kMark, request, "text", answer);
+  void mark(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
+    command(daemon::Command::Kind::kMark, request, "text", answer);
   }
-  void tare(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
-    command(Command::Kind::kTare, request, {}, answer);
+  void tare(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
+    command(daemon::Command::Kind::kTare, request, {}, answer);
   }
 
   /// \param key  that its body may have; empty: none.
-  void command(Command::Kind kind, const HttpRequest& request, std::string_view key,
-               const HttpAnswer& answer) {
+  void command(daemon::Command::Kind kind, const daemon::HttpRequest& request, std::string_view key,
+               const daemon::HttpAnswer& answer) {
     const auto body = object_of(request.body, {key});
-    if (!body) return answer(refusal(400, body.error().message));
-    Command command{kind, request.controller, {}, {}};
+    if (!body) return answer(daemon::refusal(400, body.error().message));
+    daemon::Command command{kind, request.controller, {}, {}};
     if (body->contains("test")) {
       const Json& test = body->at("test");
       if (!test.is_number_integer() || test < 1)
-        return answer(refusal(400, "test: must be a whole number from 1 on"));
+        return answer(daemon::refusal(400, "test: must be a whole number from 1 on"));
       command.test = test.get<std::int64_t>();
     }
-    if (kind == Command::Kind::kMark) {
+    if (kind == daemon::Command::Kind::kMark) {
       const Json text = body->value("text", Json());
       if (!text.is_string() || text.get<std::string>().empty())
-        return answer(refusal(400, "text: is missing: what is to be noted?"));
+        return answer(daemon::refusal(400, "text: is missing: what is to be noted?"));
       command.text = text.get<std::string>();
       if (const std::string why = base::name_refusal(command.text); !why.empty())
-        return answer(refusal(400, "text: " + why));
+        return answer(daemon::refusal(400, "text: " + why));
     }
     if (!take(request, Lease::kCommand_s, answer)) return;
-    bench_.command(std::move(command), [kind, answer](const Outcome& outcome) {
+    bench_.command(std::move(command), [kind, answer](const daemon::Outcome& outcome) {
       const pipeline::TareReport& report = outcome.report;
       if (!report.refusal.empty()) {
-        answer({409, json_text({{"error", report.refusal}, {"bench", pipeline::name(report.state)}}), {}});
+        answer(
+            {409, io::json_text({{"error", report.refusal}, {"bench", pipeline::name(report.state)}}), {}});
         return;
       }
       Json json{{"bench", pipeline::name(report.state)},
                 {"test", report.test},
                 {"scan", report.scan},
                 {"already", outcome.already}};
-      if (kind == Command::Kind::kTare) {
+      if (kind == daemon::Command::Kind::kTare) {
         json["zero"] = report.zero_V;
         json["zero_standard_error"] = report.zero_standard_error_V;
         json["moved_force"] = report.moved_N;
         json["scan_count"] = report.scan_count;
       }
-      answer(reply_of(json));
+      answer(daemon::reply_of(json));
     });
   }
 
   // The load cell's calibration.
 
-  void calibration(const HttpRequest&, const std::string&, const HttpAnswer& answer) {
-    answer(reply_of(calibration_json(bench_.calibrator().view())));
+  void calibration(const daemon::HttpRequest&, const std::string&, const daemon::HttpAnswer& answer) {
+    answer(daemon::reply_of(daemon::calibration_json(bench_.calibrator().view())));
   }
-  void calibrate(const HttpRequest& request, const std::string&, const HttpAnswer& answer) {
+  void calibrate(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
     const base::Result<CalibrationStep> step = calibration_step(request);
-    if (!step) return answer(refusal(400, step.error().message));
+    if (!step) return answer(daemon::refusal(400, step.error().message));
     if (!take(request, Lease::kCalibration_s, answer)) return;
-    Calibrator& calibrator = bench_.calibrator();
+    daemon::Calibrator& calibrator = bench_.calibrator();
     (*step)(calibrator, [&calibrator, answer](const std::string& why_not) {
-      answer(why_not.empty() ? reply_of(calibration_json(calibrator.view())) : refusal(409, why_not));
+      answer(why_not.empty() ? daemon::reply_of(daemon::calibration_json(calibrator.view()))
+                             : daemon::refusal(409, why_not));
     });
   }
 
-  Bench& bench_;
-  Batches& batches_;
+  daemon::Bench& bench_;
+  daemon::Batches& batches_;
   const base::Clock& clock_;
   Lease lease_;
   Repeats repeats_;
@@ -399,9 +412,11 @@ const std::array<Api::Route, 30> Api::kRoutes{{
 
 }  // namespace
 
-HttpHandler make_api(Bench& bench, const base::Clock& clock) {
+daemon::HttpHandler make_api(daemon::Bench& bench, const base::Clock& clock) {
   auto api = std::make_shared<Api>(bench, clock);
-  return [api](const HttpRequest& request, HttpAnswer answer) { api->handle(request, std::move(answer)); };
+  return [api](const daemon::HttpRequest& request, daemon::HttpAnswer answer) {
+    api->handle(request, std::move(answer));
+  };
 }
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

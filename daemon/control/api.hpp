@@ -10,12 +10,12 @@
 #pragma once
 
 #include "core/base/clock.hpp"
-#include "daemon/control/bench.hpp"
-#include "daemon/control/http.hpp"
+#include "daemon/types/bench.hpp"
+#include "daemon/types/http.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 
 /// \param bench,clock  outlive the handler. \param clock  of the leases: wall time.
-[[nodiscard]] HttpHandler make_api(Bench& bench, const base::Clock& clock);
+[[nodiscard]] daemon::HttpHandler make_api(daemon::Bench& bench, const base::Clock& clock);
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

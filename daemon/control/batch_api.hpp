@@ -7,20 +7,20 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "core/base/result.hpp"
-#include "daemon/control/batches.hpp"
-#include "daemon/control/bench.hpp"
-#include "daemon/control/http.hpp"
+#include "daemon/types/batches.hpp"
+#include "daemon/types/bench.hpp"
+#include "daemon/types/http.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 
 /// {"batch": null}, or the current batch with its plan, tests and what comes next.
-[[nodiscard]] nlohmann::ordered_json batch_json(Batches& batches);
+[[nodiscard]] nlohmann::ordered_json batch_json(daemon::Batches& batches);
 /// The record that {"test": 7} or {"record": "…"} names: one of the latest tests, or one of a batch. Errors:
 /// kUsage.
-[[nodiscard]] base::Result<std::string> record_named(const nlohmann::ordered_json& body, const Bench& bench,
-                                                     Batches& batches);
+[[nodiscard]] base::Result<std::string> record_named(const nlohmann::ordered_json& body,
+                                                     const daemon::Bench& bench, daemon::Batches& batches);
 
 /// The answer of a request that changed something: the batch as it is now, or the refusal.
-[[nodiscard]] Batches::Answer reply_with_batch(Batches& batches, HttpAnswer answer);
+[[nodiscard]] daemon::Batches::Answer reply_with_batch(daemon::Batches& batches, daemon::HttpAnswer answer);
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

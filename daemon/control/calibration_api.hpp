@@ -6,16 +6,16 @@
 #include <functional>
 
 #include "core/base/result.hpp"
-#include "daemon/control/calibrator.hpp"
-#include "daemon/control/http.hpp"
+#include "daemon/types/calibrator.hpp"
+#include "daemon/types/http.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 
 /// One of its steps, read and checked.
-using CalibrationStep = std::function<void(Calibrator&, Calibrator::Answer)>;
+using CalibrationStep = std::function<void(daemon::Calibrator&, daemon::Calibrator::Answer)>;
 
 /// \param request  POST or DELETE /v1/calibration, or POST /v1/calibration/weight, undo or finish. Errors
 /// (kUsage) say what is wrong with its body.
-[[nodiscard]] base::Result<CalibrationStep> calibration_step(const HttpRequest& request);
+[[nodiscard]] base::Result<CalibrationStep> calibration_step(const daemon::HttpRequest& request);
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

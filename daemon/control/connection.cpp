@@ -18,9 +18,9 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 
 #include "daemon/control/live_connection.hpp"
-#include "daemon/control/reply.hpp"
+#include "daemon/types/reply.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 namespace {
 
 namespace beast = boost::beast;
@@ -145,7 +145,7 @@ class Connection : public Newcomer, public std::enable_shared_from_this<Connecti
   }
 
   /// And closes the connection: what follows could not be told from the rest of this request.
-  void refuse(int status, const std::string& why) { reply(refusal(status, why), 11, false); }
+  void refuse(int status, const std::string& why) { reply(daemon::refusal(status, why), 11, false); }
 
   [[nodiscard]] std::string_view header(http::field field) const { return view(parser_->get()[field]); }
   [[nodiscard]] std::string_view path() const {
@@ -153,9 +153,9 @@ class Connection : public Newcomer, public std::enable_shared_from_this<Connecti
     return target.substr(0, target.find('?'));
   }
 
-  [[nodiscard]] std::optional<HttpReply> refusal_of_header() const {
+  [[nodiscard]] std::optional<daemon::HttpReply> refusal_of_header() const {
     if (const auto twice = repeated_header(parser_->get()))
-      return refusal(400, fmt::format("{}: stands there twice; send it once", *twice));
+      return daemon::refusal(400, fmt::format("{}: stands there twice; send it once", *twice));
     return refuse_at(service_->door,
                      {path(), header(http::field::host), header(http::field::origin),
                       header(http::field::authorization), header(http::field::sec_websocket_protocol)});
@@ -171,37 +171,38 @@ class Connection : public Newcomer, public std::enable_shared_from_this<Connecti
     }
     // The page is for anybody: who reads it alone has shown nothing.
     if ((service_->door.open || !is_page(path())) && !let_in()) {
-      reply(refusal(503, fmt::format("{} connections are open, and there is room for no more: close one, or "
-                                     "try again later",
-                                     service_->connection_count)),
+      reply(daemon::refusal(
+                503, fmt::format("{} connections are open, and there is room for no more: close one, or "
+                                 "try again later",
+                                 service_->connection_count)),
             version, false);
       return;
     }
     if (path() == kLivePath && service_->hub != nullptr) {
       if (!service_->hub->has_room()) {
-        reply(refusal(503, std::string{kLiveIsFull}), version, false);
+        reply(daemon::refusal(503, std::string{kLiveIsFull}), version, false);
         return;
       }
       if (!beast::websocket::is_upgrade(request)) {
-        reply(refusal(426, "the live stream is a WebSocket: ask for an upgrade"), version, keep);
+        reply(daemon::refusal(426, "the live stream is a WebSocket: ask for an upgrade"), version, keep);
         return;
       }
       stream_.expires_never();
       serve_live(stream_.release_socket(), parser_->release(), service_);
       return;
     }
-    const HttpRequest asked{bodyless_ ? "GET" : std::string{view(request.method_string())},
-                            std::string{view(request.target())},
-                            request.body(),
-                            std::string{view(request["Stickslip-Controller"])},
-                            std::string{view(request["Idempotency-Key"])},
-                            peer_of(stream_.socket().native_handle())};
-    service_->handler(asked, [self = shared_from_this(), version, keep](const HttpReply& answer) {
+    const daemon::HttpRequest asked{bodyless_ ? "GET" : std::string{view(request.method_string())},
+                                    std::string{view(request.target())},
+                                    request.body(),
+                                    std::string{view(request["Stickslip-Controller"])},
+                                    std::string{view(request["Idempotency-Key"])},
+                                    peer_of(stream_.socket().native_handle())};
+    service_->handler(asked, [self = shared_from_this(), version, keep](const daemon::HttpReply& answer) {
       self->reply(answer, version, keep);
     });
   }
 
-  void reply(const HttpReply& reply, unsigned version, bool keep_alive) {
+  void reply(const daemon::HttpReply& reply, unsigned version, bool keep_alive) {
     response_ = {};
     response_.result(static_cast<unsigned>(reply.status));
     response_.version(version);
@@ -252,4 +253,4 @@ void serve_connection(AnySocket socket, std::shared_ptr<Service> service) {
   std::shared_ptr<Connection> { new Connection{std::move(socket), std::move(service)}, end_there } -> read();
 }
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

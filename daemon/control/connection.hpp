@@ -11,11 +11,11 @@
 #include <boost/asio/generic/stream_protocol.hpp>
 
 #include "daemon/control/gate.hpp"
-#include "daemon/control/http.hpp"
 #include "daemon/control/limits.hpp"
-#include "daemon/live/hub.hpp"
+#include "daemon/types/http.hpp"
+#include "daemon/types/hub.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 
 /// A connection without a request that was let in.
 class Newcomer {
@@ -28,8 +28,8 @@ class Newcomer {
 /// What all connections of a listener share.
 struct Service {
   Door door;
-  HttpHandler handler;
-  LiveHub* hub = nullptr;  ///< Null: no live stream. Outlives the connections.
+  daemon::HttpHandler handler;
+  daemon::LiveHub* hub = nullptr;  ///< Null: no live stream. Outlives the connections.
   HttpLimits limits;
   std::size_t connection_count = 0;     ///< Of clients that were let in.
   std::list<Newcomer*> newcomers = {};  ///< The one that has been silent longest comes first.
@@ -40,4 +40,4 @@ using AnySocket = boost::asio::generic::stream_protocol::socket;
 /// Lives until the client goes, is too slow, or the io_context ends.
 void serve_connection(AnySocket socket, std::shared_ptr<Service> service);
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

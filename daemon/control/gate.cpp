@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "daemon/control/reply.hpp"
+#include "daemon/types/reply.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 namespace {
 
 /// Takes as long for every text of the same length.
@@ -36,23 +36,23 @@ bool has_token(const Knock& knock, const std::string& token) {
 
 bool is_page(std::string_view path) noexcept { return path == "/" || path.starts_with("/page/"); }
 
-std::optional<HttpReply> refuse_at(const Door& door, const Knock& knock) {
+std::optional<daemon::HttpReply> refuse_at(const Door& door, const Knock& knock) {
   if (door.open) return std::nullopt;
   const auto ours = [&door](std::string_view host) {
     return std::find(door.hosts.begin(), door.hosts.end(), host) != door.hosts.end();
   };
-  if (!ours(knock.host)) return refusal(403, "the Host of this request is not this daemon's");
+  if (!ours(knock.host)) return daemon::refusal(403, "the Host of this request is not this daemon's");
   constexpr std::string_view kScheme = "http://";
   if (!knock.origin.empty() &&
       !(knock.origin.starts_with(kScheme) && ours(knock.origin.substr(kScheme.size())))) {
-    return refusal(403, "the Origin of this request is another site");
+    return daemon::refusal(403, "the Origin of this request is another site");
   }
   if (is_page(knock.path)) return std::nullopt;
   if (door.token.empty() || !has_token(knock, door.token)) {
-    return refusal(
+    return daemon::refusal(
         401, "the token is missing or wrong: Authorization: Bearer TOKEN, from the daemon's token file");
   }
   return std::nullopt;
 }
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/control/http.hpp"
+#include "daemon/types/http.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 
 /// What a listener asks of its clients.
 struct Door {
@@ -38,6 +38,6 @@ inline constexpr std::string_view kLiveProtocol = "stickslip.v1";
 [[nodiscard]] bool is_page(std::string_view path) noexcept;
 
 /// Why not, if not: 403 for a foreign Host or Origin, 401 without the token.
-[[nodiscard]] std::optional<HttpReply> refuse_at(const Door& door, const Knock& knock);
+[[nodiscard]] std::optional<daemon::HttpReply> refuse_at(const Door& door, const Knock& knock);
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

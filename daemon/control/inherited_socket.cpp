@@ -4,7 +4,7 @@
 #include <sys/socket.h>
 #include <systemd/sd-daemon.h>
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 
 std::optional<int> inherited_socket(const std::filesystem::path& path) {
   const std::filesystem::path absolute = std::filesystem::absolute(path);
@@ -18,4 +18,4 @@ std::optional<int> inherited_socket(const std::filesystem::path& path) {
   return std::nullopt;
 }
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <optional>
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 
 /// A descriptor of the Unix socket that listens at that path, if there is one among them; the caller's to
 /// close, and there again at the next call.
 [[nodiscard]] std::optional<int> inherited_socket(const std::filesystem::path& path);
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 
 /// Times are nanoseconds of any clock that never steps. Who holds it is a name, no secret: the socket's
 /// permissions and the token keep strangers out.
@@ -46,4 +46,4 @@ class Lease {
   std::int64_t until_ns_ = 0;
 };
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 
 /// Limits of one connection, and of a listener.
 struct HttpLimits {
@@ -26,4 +26,4 @@ struct HttpLimits {
   std::chrono::milliseconds accept_again{100};
 };
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

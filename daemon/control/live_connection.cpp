@@ -3,7 +3,7 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 namespace {
 
 namespace beast = boost::beast;
@@ -13,7 +13,7 @@ namespace websocket = boost::beast::websocket;
 /// Nothing that a client may send is longer.
 constexpr std::size_t kLongestMessage = 1024;
 
-class LiveConnection final : public LiveClient, public std::enable_shared_from_this<LiveConnection> {
+class LiveConnection final : public daemon::LiveClient, public std::enable_shared_from_this<LiveConnection> {
  public:
   LiveConnection(AnySocket socket, http::request<http::string_body> request, std::shared_ptr<Service> service)
       : stream_(std::move(socket)), request_(std::move(request)), service_(std::move(service)) {
@@ -44,7 +44,7 @@ class LiveConnection final : public LiveClient, public std::enable_shared_from_t
     });
   }
 
-  std::size_t offer(const LiveFrame& frame) override {
+  std::size_t offer(const daemon::LiveFrame& frame) override {
     const std::size_t dropped = queue_.push(frame);
     if (!writing_) write();
     return dropped;
@@ -98,8 +98,8 @@ class LiveConnection final : public LiveClient, public std::enable_shared_from_t
   std::shared_ptr<Service> service_;
   std::shared_ptr<LiveConnection> joined_;  ///< Itself, while the hub knows it.
   beast::flat_buffer buffer_;
-  LiveQueue queue_;
-  LiveFrame writing_;
+  daemon::LiveQueue queue_;
+  daemon::LiveFrame writing_;
 };
 
 }  // namespace
@@ -109,4 +109,4 @@ void serve_live(AnySocket socket, http::request<http::string_body> request,
   std::make_shared<LiveConnection>(std::move(socket), std::move(request), std::move(service))->open();
 }
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

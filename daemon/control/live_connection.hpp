@@ -11,15 +11,15 @@
 
 #include "daemon/control/connection.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 
 /// To a client for which there is no room, as status 503 or as the reason why the stream is closed.
 inline constexpr std::string_view kLiveIsFull =
     "24 clients read the live stream, and there is room for no more: close one, or try again later";
-static_assert(LiveHub::kMostClients == 24);
+static_assert(daemon::LiveHub::kMostClients == 24);
 
 /// \param request  the one that asked for the upgrade.
 void serve_live(AnySocket socket, boost::beast::http::request<boost::beast::http::string_body> request,
                 std::shared_ptr<Service> service);
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

@@ -8,7 +8,7 @@
 
 #include "core/base/text.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 namespace {
 
 class Page {
@@ -66,7 +66,7 @@ std::string escaped(std::string_view text) {
 
 }  // namespace
 
-std::string metrics_text(const Status& status) {
+std::string metrics_text(const daemon::Status& status) {
   Page page;
   page.head("build_info", "gauge", "Always 1; the label says which program this is.");
   page.value("build_info", 1, fmt::format("{{version=\"{}\"}}", escaped(status.version)));
@@ -102,14 +102,14 @@ std::string metrics_text(const Status& status) {
   if (status.storage.room_h)
     page.gauge("disk_room_hours", "Room on the disk, as time of recording.", *status.storage.room_h);
   page.gauge("disk_refuses", "1 while the disk refuses what is to be recorded, or its folder is away.",
-             status.storage.kind == StorageState::Kind::kWaiting ? 1 : 0);
+             status.storage.kind == daemon::StorageState::Kind::kWaiting ? 1 : 0);
   page.gauge("disk_waiting_bytes", "Kept in memory for the disk.", status.storage.waiting_size);
   page.gauge("live_clients", "Clients of the live stream.", status.live_client_count);
   page.counter("live_dropped_frames_total", "Frames that slow clients of the live stream did not get.",
                status.live_dropped_count);
   if (status.fleet) {
     page.gauge("fleet_connected", "1 while the broker of the fleet is there.",
-               status.fleet->link == FleetState::Link::kConnected ? 1 : 0);
+               status.fleet->link == daemon::FleetState::Link::kConnected ? 1 : 0);
     page.gauge("fleet_outbox_results", "Results that the broker has not got.", status.fleet->outbox_count);
     page.gauge("fleet_unsaved_results", "Those of them that wait in memory alone.",
                status.fleet->unsaved_result_count);
@@ -125,4 +125,4 @@ std::string metrics_text(const Status& status) {
   return std::move(page).text();
 }
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

@@ -5,12 +5,12 @@
 
 #include <string>
 
-#include "daemon/control/status.hpp"
+#include "daemon/types/status.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 
 inline constexpr const char* kMetricsType = "text/plain; version=0.0.4; charset=utf-8";
 
-[[nodiscard]] std::string metrics_text(const Status& status);
+[[nodiscard]] std::string metrics_text(const daemon::Status& status);
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

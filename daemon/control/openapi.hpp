@@ -4,8 +4,8 @@
 
 #include <string_view>
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 
 [[nodiscard]] std::string_view openapi() noexcept;
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

@@ -15,9 +15,9 @@
 #include <optional>
 #include <string>
 
-#include "daemon/control/http.hpp"
+#include "daemon/types/http.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 
 /// Main thread.
 class Repeats {
@@ -35,7 +35,7 @@ class Repeats {
 
   /// A new key is noted as waiting for its answer. kOther: the key was used for another request.
   /// kTooManyClients: nothing is noted.
-  [[nodiscard]] Found look(const HttpRequest& request, std::int64_t now_ns) {
+  [[nodiscard]] Found look(const daemon::HttpRequest& request, std::int64_t now_ns) {
     Client* const client = client_of(request, now_ns);
     if (client == nullptr) return Found::kTooManyClients;
     client->used_ns = now_ns;
@@ -50,7 +50,7 @@ class Repeats {
     return entry->reply ? Found::kAnswered : Found::kWaiting;
   }
 
-  void answered(const HttpRequest& request, const HttpReply& reply) {
+  void answered(const daemon::HttpRequest& request, const daemon::HttpReply& reply) {
     const auto client = known(request);
     if (client == clients_.end()) return;
     const auto entry = find(client->entries, request.idempotency_key);
@@ -64,8 +64,8 @@ class Repeats {
   }
 
   /// Only after kAnswered.
-  [[nodiscard]] HttpReply answer(const HttpRequest& request) {
-    HttpReply reply = find(known(request)->entries, request.idempotency_key)->reply.value();
+  [[nodiscard]] daemon::HttpReply answer(const daemon::HttpRequest& request) {
+    daemon::HttpReply reply = find(known(request)->entries, request.idempotency_key)->reply.value();
     reply.replayed = true;
     return reply;
   }
@@ -74,7 +74,7 @@ class Repeats {
   struct Entry {
     std::string key;
     std::string asked;
-    std::optional<HttpReply> reply;  ///< None: it waits.
+    std::optional<daemon::HttpReply> reply;  ///< None: it waits.
     [[nodiscard]] std::size_t size() const {
       return key.size() + asked.size() + (reply ? reply->body.size() : 0);
     }
@@ -90,17 +90,17 @@ class Repeats {
     return std::find_if(entries.begin(), entries.end(), [&key](const Entry& one) { return one.key == key; });
   }
 
-  [[nodiscard]] static std::string name_of(const HttpRequest& request) {
+  [[nodiscard]] static std::string name_of(const daemon::HttpRequest& request) {
     return request.peer + '\n' + request.controller;
   }
 
-  [[nodiscard]] std::list<Client>::iterator known(const HttpRequest& request) {
+  [[nodiscard]] std::list<Client>::iterator known(const daemon::HttpRequest& request) {
     return std::find_if(clients_.begin(), clients_.end(),
                         [name = name_of(request)](const Client& one) { return one.name == name; });
   }
 
   /// \return null if there is no room for it.
-  [[nodiscard]] Client* client_of(const HttpRequest& request, std::int64_t now_ns) {
+  [[nodiscard]] Client* client_of(const daemon::HttpRequest& request, std::int64_t now_ns) {
     if (const auto found = known(request); found != clients_.end()) return &*found;
     if (clients_.size() == kMostClients) {
       const auto idle =
@@ -128,4 +128,4 @@ class Repeats {
   std::list<Client> clients_;
 };
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

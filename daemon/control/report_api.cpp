@@ -13,10 +13,10 @@
 #include <boost/algorithm/string/split.hpp>
 #include <nlohmann/json.hpp>
 
-#include "daemon/control/reply.hpp"
 #include "daemon/control/request_body.hpp"
+#include "daemon/types/reply.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -24,13 +24,13 @@ using Query = std::map<std::string, std::string>;
 
 struct Form {
   const char* name;
-  ReportForm form;
+  daemon::ReportForm form;
   const char* content_type;
 };
 
-constexpr std::array<Form, 3> kForms{{{"html", ReportForm::kPage, "text/html; charset=utf-8"},
-                                      {"csv", ReportForm::kCsv, "text/csv; charset=utf-8"},
-                                      {"json", ReportForm::kJson, "application/json"}}};
+constexpr std::array<Form, 3> kForms{{{"html", daemon::ReportForm::kPage, "text/html; charset=utf-8"},
+                                      {"csv", daemon::ReportForm::kCsv, "text/csv; charset=utf-8"},
+                                      {"json", daemon::ReportForm::kJson, "application/json"}}};
 
 /// What stands behind the "?". No value that is allowed has anything to be decoded.
 base::Result<Query> query_of(const std::string& target, std::initializer_list<std::string_view> keys) {
@@ -60,28 +60,29 @@ base::Result<Form> form_of(const Query& query) {
   return base::usage_error("format: is html, csv or json, not {}", printable(asked->second));
 }
 
-const Batch* known(const BatchBook& book, const std::string& id) {
+const daemon::Batch* known(const daemon::BatchBook& book, const std::string& id) {
   const auto& all = book.batches();
-  const auto found = std::find_if(all.begin(), all.end(), [&id](const Batch& one) { return one.id == id; });
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&id](const daemon::Batch& one) { return one.id == id; });
   return found == all.end() ? nullptr : &*found;
 }
 
-HttpReply unknown(const std::string& id) {
-  return refusal(404, fmt::format("there is no batch {}; GET /v1/batches lists them", printable(id)));
+daemon::HttpReply unknown(const std::string& id) {
+  return daemon::refusal(404, fmt::format("there is no batch {}; GET /v1/batches lists them", printable(id)));
 }
 
-ReportedBatch reported(const Batch& batch) {
+daemon::ReportedBatch reported(const daemon::Batch& batch) {
   return {batch.id, fmt::format("{} ({})", batch.plan.sample.name, batch.id)};
 }
 
-Reports::Answer reply_with_report(const Form& form, HttpAnswer answer) {
+daemon::Reports::Answer reply_with_report(const Form& form, daemon::HttpAnswer answer) {
   return [form, answer = std::move(answer)](base::Result<std::string> text) {
     constexpr int kConflict = 409;
     constexpr int kLater = 503;
     if (!text)
-      return answer(
-          refusal(text.error().kind == base::ErrorKind::kBusy ? kLater : kConflict, text.error().message));
-    HttpReply reply{200, *std::move(text), {}};
+      return answer(daemon::refusal(text.error().kind == base::ErrorKind::kBusy ? kLater : kConflict,
+                                    text.error().message));
+    daemon::HttpReply reply{200, *std::move(text), {}};
     reply.content_type = form.content_type;
     answer(std::move(reply));
   };
@@ -89,13 +90,13 @@ Reports::Answer reply_with_report(const Form& form, HttpAnswer answer) {
 
 }  // namespace
 
-Json batches_json(const BatchBook& book) {
+Json batches_json(const daemon::BatchBook& book) {
   Json list = Json::array();
   const auto& all = book.batches();
   for (auto batch = all.rbegin(); batch != all.rend() && list.size() < kMostListed; ++batch) {
     const auto voided =
         std::count_if(batch->tests.begin(), batch->tests.end(),
-                      [&book](const BatchTest& test) { return book.voided(test.record) != nullptr; });
+                      [&book](const daemon::BatchTest& test) { return book.voided(test.record) != nullptr; });
     list.push_back(
         {{"id", batch->id},
          {"name", batch->plan.sample.name},
@@ -108,39 +109,40 @@ Json batches_json(const BatchBook& book) {
   return {{"batches", std::move(list)}};
 }
 
-void answer_report(const HttpRequest& request, const std::string& rest, const BatchBook& book,
-                   Reports& reports, const HttpAnswer& answer) {
+void answer_report(const daemon::HttpRequest& request, const std::string& rest, const daemon::BatchBook& book,
+                   daemon::Reports& reports, const daemon::HttpAnswer& answer) {
   constexpr std::string_view kReport = "/report";
   if (!rest.ends_with(kReport))
-    return answer(refusal(404, "there is nothing; /v1/batches/ID/report is the report on a batch"));
+    return answer(daemon::refusal(404, "there is nothing; /v1/batches/ID/report is the report on a batch"));
   const std::string id = rest.substr(0, rest.size() - kReport.size());
-  const Batch* const batch = known(book, id);
+  const daemon::Batch* const batch = known(book, id);
   if (batch == nullptr) return answer(unknown(id));
   const auto query = query_of(request.target, {"format"});
-  if (!query) return answer(refusal(400, query.error().message));
+  if (!query) return answer(daemon::refusal(400, query.error().message));
   const auto form = form_of(*query);
-  if (!form) return answer(refusal(400, form.error().message));
+  if (!form) return answer(daemon::refusal(400, form.error().message));
   reports.make(std::array{reported(*batch)}, form->form, reply_with_report(*form, answer));
 }
 
-void answer_comparison(const HttpRequest& request, const BatchBook& book, Reports& reports,
-                       const HttpAnswer& answer) {
+void answer_comparison(const daemon::HttpRequest& request, const daemon::BatchBook& book,
+                       daemon::Reports& reports, const daemon::HttpAnswer& answer) {
   const auto query = query_of(request.target, {"a", "b", "format"});
-  if (!query) return answer(refusal(400, query.error().message));
+  if (!query) return answer(daemon::refusal(400, query.error().message));
   const auto form = form_of(*query);
-  if (!form) return answer(refusal(400, form.error().message));
-  std::vector<ReportedBatch> two;
+  if (!form) return answer(daemon::refusal(400, form.error().message));
+  std::vector<daemon::ReportedBatch> two;
   for (const char* side : {"a", "b"}) {
     const auto id = query->find(side);
     if (id == query->end())
-      return answer(refusal(400, "which two batches? /v1/compare?a=ID&b=ID; GET /v1/batches lists them"));
-    const Batch* const batch = known(book, id->second);
+      return answer(
+          daemon::refusal(400, "which two batches? /v1/compare?a=ID&b=ID; GET /v1/batches lists them"));
+    const daemon::Batch* const batch = known(book, id->second);
     if (batch == nullptr) return answer(unknown(id->second));
     two.push_back(reported(*batch));
   }
   if (two[0].id == two[1].id)
-    return answer(refusal(400, fmt::format("a and b are the same batch, {}", two[0].id)));
+    return answer(daemon::refusal(400, fmt::format("a and b are the same batch, {}", two[0].id)));
   reports.make(two, form->form, reply_with_report(*form, answer));
 }
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

@@ -6,25 +6,25 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "daemon/batch/batch.hpp"
-#include "daemon/control/http.hpp"
-#include "daemon/control/reports.hpp"
+#include "daemon/types/batch.hpp"
+#include "daemon/types/http.hpp"
+#include "daemon/types/reports.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 
 /// More are not listed; a report may still be asked for by the identifier.
 inline constexpr std::size_t kMostListed = 1000;
 
 /// {"batches": [{"id", "name", "grade", "begun", "ended", "counted", "voided"}, …]}, the latest first.
-[[nodiscard]] nlohmann::ordered_json batches_json(const BatchBook& book);
+[[nodiscard]] nlohmann::ordered_json batches_json(const daemon::BatchBook& book);
 
 /// GET /v1/batches/ID/report?format=html|csv|json. \param rest  ID/report: compared with the journal, and
 /// used for nothing else.
-void answer_report(const HttpRequest& request, const std::string& rest, const BatchBook& book,
-                   Reports& reports, const HttpAnswer& answer);
+void answer_report(const daemon::HttpRequest& request, const std::string& rest, const daemon::BatchBook& book,
+                   daemon::Reports& reports, const daemon::HttpAnswer& answer);
 
 /// GET /v1/compare?a=ID&b=ID&format=html|csv|json.
-void answer_comparison(const HttpRequest& request, const BatchBook& book, Reports& reports,
-                       const HttpAnswer& answer);
+void answer_comparison(const daemon::HttpRequest& request, const daemon::BatchBook& book,
+                       daemon::Reports& reports, const daemon::HttpAnswer& answer);
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

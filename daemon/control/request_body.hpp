@@ -16,7 +16,7 @@
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 
 /// A request line may hold any bytes; an answer may not.
 [[nodiscard]] inline std::string printable(const std::string& text) { return base::one_line(text, 100); }
@@ -38,4 +38,4 @@ namespace stickslip::daemon {
   return json;
 }
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

@@ -17,7 +17,7 @@
 #include "daemon/control/connection.hpp"
 #include "daemon/control/inherited_socket.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 namespace asio = boost::asio;
 using Local = asio::local::stream_protocol;
 using asio::ip::tcp;
@@ -204,8 +204,8 @@ ControlServer::~ControlServer() { listener_->close(); }
 
 base::Result<std::unique_ptr<ControlServer>> ControlServer::listen(asio::io_context& io,
                                                                    const std::filesystem::path& socket,
-                                                                   HttpHandler handler, HttpLimits limits,
-                                                                   LiveHub* hub) {
+                                                                   daemon::HttpHandler handler,
+                                                                   HttpLimits limits, daemon::LiveHub* hub) {
   constexpr std::size_t kLongestPath = sizeof(sockaddr_un::sun_path) - 1;
   if (socket.native().size() > kLongestPath) {
     return base::usage_error("control socket {}: the path is longer than {} bytes, the limit of the system",
@@ -226,11 +226,9 @@ base::Result<std::unique_ptr<ControlServer>> ControlServer::listen(asio::io_cont
   return std::unique_ptr<ControlServer>(new ControlServer(std::move(listener), socket.string()));
 }
 
-base::Result<std::unique_ptr<ControlServer>> ControlServer::listen_tcp(asio::io_context& io,
-                                                                       const std::string& address,
-                                                                       const std::string& token,
-                                                                       HttpHandler handler, HttpLimits limits,
-                                                                       LiveHub* hub) {
+base::Result<std::unique_ptr<ControlServer>> ControlServer::listen_tcp(
+    asio::io_context& io, const std::string& address, const std::string& token, daemon::HttpHandler handler,
+    HttpLimits limits, daemon::LiveHub* hub) {
   STICKSLIP_EXPECTS(!token.empty());
   const base::Result<tcp::endpoint> endpoint = loopback(address);
   if (!endpoint) return tl::unexpected(endpoint.error());
@@ -248,4 +246,4 @@ base::Result<std::unique_ptr<ControlServer>> ControlServer::listen_tcp(asio::io_
       new ControlServer(std::move(listener), fmt::format("{}:{}", host, port)));
 }
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

@@ -12,11 +12,11 @@
 #include <boost/asio/io_context.hpp>
 
 #include "core/base/result.hpp"
-#include "daemon/control/http.hpp"
 #include "daemon/control/limits.hpp"
-#include "daemon/live/hub.hpp"
+#include "daemon/types/http.hpp"
+#include "daemon/types/hub.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 
 /// Thread-bound: the thread that runs the io_context.
 class ControlServer {
@@ -26,16 +26,16 @@ class ControlServer {
   /// Errors: kUsage if the path is too long for a socket or is another kind of file; kFailure if
   /// another process listens there or the system refuses.
   [[nodiscard]] static base::Result<std::unique_ptr<ControlServer>> listen(
-      boost::asio::io_context& io, const std::filesystem::path& socket, HttpHandler handler,
-      HttpLimits limits = {}, LiveHub* hub = nullptr);
+      boost::asio::io_context& io, const std::filesystem::path& socket, daemon::HttpHandler handler,
+      HttpLimits limits = {}, daemon::LiveHub* hub = nullptr);
 
   /// Listens at a TCP port of this machine.
   /// \param address  "127.0.0.1:8037", "[::1]:8037" or "localhost:8037"; port 0: any, see address().
   /// \param token    what every client but the reader of the page has to show; not empty (contract).
   /// Errors: kUsage for an address that is none or is no loopback; kFailure if the system refuses.
   [[nodiscard]] static base::Result<std::unique_ptr<ControlServer>> listen_tcp(
-      boost::asio::io_context& io, const std::string& address, const std::string& token, HttpHandler handler,
-      HttpLimits limits = {}, LiveHub* hub = nullptr);
+      boost::asio::io_context& io, const std::string& address, const std::string& token,
+      daemon::HttpHandler handler, HttpLimits limits = {}, daemon::LiveHub* hub = nullptr);
 
   /// Closes the listener and removes the socket file; connections end with the io_context.
   ~ControlServer();
@@ -58,4 +58,4 @@ class ControlServer {
   std::string address_;
 };
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

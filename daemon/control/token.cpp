@@ -10,10 +10,11 @@
 #include <string_view>
 #include <system_error>
 
-#include "core/base/regular_file.hpp"
-#include "daemon/new_file.hpp"
+#include "io/new_file.hpp"
 
-namespace stickslip::daemon {
+#include "core/base/regular_file.hpp"
+
+namespace stickslip::control {
 namespace {
 
 /// 256 bits: no guess reaches it.
@@ -39,7 +40,7 @@ base::Result<std::string> make_token(const std::filesystem::path& file) {
   }
   const std::string token = fmt::format("{:02x}", fmt::join(random, ""));
   constexpr mode_t kTokenMode = 0640;
-  if (auto written = write_new_file(file, token + '\n', kTokenMode); !written)
+  if (auto written = io::write_new_file(file, token + '\n', kTokenMode); !written)
     return base::failure("token file {}", written.error().message);
   return token;
 }
@@ -66,4 +67,4 @@ base::Result<std::string> load_token(const std::filesystem::path& file) {
   return token;
 }
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

@@ -2,18 +2,18 @@
 
 #include <utility>
 
+#include "io/json_text.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/record/read_apart.hpp"
 #include "daemon/fleet/messages.hpp"
-#include "daemon/json_text.hpp"
-#include "daemon/record_result.hpp"
+#include "daemon/types/record_result.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::fleet {
 
 std::optional<FleetResult> ask_result(const std::string& program, const std::string& tester,
                                       const std::filesystem::path& record) {
-  const auto result = result_of(program, record);
+  const auto result = daemon::result_of(program, record);
   if (!result) return std::nullopt;
   return parse_result(record.stem().string(), tester, result->dump());
 }
@@ -35,7 +35,7 @@ base::Result<std::string> result_of_record(const std::filesystem::path& file) {
   const base::Result<record::Record> record = record::read_record_apart(file);
   if (!record) return tl::unexpected(record.error());
   if (!record->end) return base::usage_error("{}: holds no end of a test", file.string());
-  return json_text(result_json(record->header, *record->end, record->cycles, file)) + "\n";
+  return io::json_text(result_json(record->header, *record->end, record->cycles, file)) + "\n";
 }
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::fleet

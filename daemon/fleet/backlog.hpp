@@ -12,7 +12,7 @@
 #include "core/base/result.hpp"
 #include "daemon/fleet/outbox.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::fleet {
 
 /// The result of a record, read by a process of its own (`stickslipd --result FILE`): HDF5's errors can end a
 /// process. Nothing if it cannot be read.
@@ -26,4 +26,4 @@ namespace stickslip::daemon {
 /// What that process prints: result_json(). Errors as record::read_record().
 [[nodiscard]] base::Result<std::string> result_of_record(const std::filesystem::path& file);
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::fleet

@@ -3,30 +3,30 @@
 #include <algorithm>
 #include <chrono>
 
+#include "io/own_records.hpp"
+#include "io/record_name.hpp"
 #include <boost/asio/post.hpp>
 #include <nlohmann/json.hpp>
 
 #include "daemon/fleet/backlog.hpp"
 #include "daemon/fleet/messages.hpp"
-#include "daemon/own_records.hpp"
-#include "daemon/record_name.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::fleet {
 namespace {
 
 /// No more of the latest by name than the outbox holds.
-std::vector<std::filesystem::path> untold_records(Outbox& outbox, const FleetSettings& settings,
+std::vector<std::filesystem::path> untold_records(Outbox& outbox, const io::FleetSettings& settings,
                                                   const std::filesystem::path& folder,
                                                   const base::Clock& wall) {
   const std::time_t now_s = wall.realtime_ns() / 1'000'000'000;
-  auto untold = outbox.untold(own_records(folder), record_stem(now_s, 0));
-  keep_last(untold, settings.outbox_results);
+  auto untold = outbox.untold(io::own_records(folder), io::record_stem(now_s, 0));
+  io::keep_last(untold, settings.outbox_results);
   return untold;
 }
 
 }  // namespace
 
-Fleet::Fleet(boost::asio::io_context& io, const FleetSettings& settings, Parts parts)
+Fleet::Fleet(boost::asio::io_context& io, const io::FleetSettings& settings, Parts parts)
     : io_(io), timer_(io), settings_(settings), parts_(std::move(parts)), publisher_([&] {
         Outbox outbox{settings.outbox, settings.outbox_results};
         auto untold = untold_records(outbox, settings, parts_.record_folder, parts_.wall);
@@ -47,7 +47,7 @@ FleetPublisher::World Fleet::world(std::vector<std::filesystem::path> untold) {
             }
             return std::nullopt;
           },
-          .changed = [this](const FleetState& state) { link_changed(state); }};
+          .changed = [this](const daemon::FleetState& state) { link_changed(state); }};
 }
 
 void Fleet::test_recorded(const record::RecordHeader& header, const record::EndRecord& end,
@@ -57,7 +57,7 @@ void Fleet::test_recorded(const record::RecordHeader& header, const record::EndR
 }
 
 void Fleet::state_changed() {
-  const Status status = parts_.status();
+  const daemon::Status status = parts_.status();
   std::string now = state_message(settings_.tester, status, 0);
   if (now == told_) return;
   told_ = std::move(now);
@@ -72,8 +72,8 @@ void Fleet::bench_changed(pipeline::BenchState /*state*/) {
   });
 }
 
-void Fleet::link_changed(const FleetState& state) {
-  using Link = FleetState::Link;
+void Fleet::link_changed(const daemon::FleetState& state) {
+  using Link = daemon::FleetState::Link;
   if (state.link == Link::kConnecting) return;
   const bool connected = state.link == Link::kConnected;
   // A broker that is away is told once, not at each try.
@@ -97,4 +97,4 @@ void Fleet::stop() {
   publisher_.stop(state_message(settings_.tester, parts_.status(), parts_.wall.realtime_ns(), "stopped"));
 }
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::fleet

@@ -16,25 +16,25 @@
 #include "core/base/clock.hpp"
 #include "core/pipeline/sink.hpp"
 #include "core/record/record.hpp"
-#include "daemon/control/status.hpp"
-#include "daemon/facts.hpp"
 #include "daemon/fleet/publisher.hpp"
+#include "daemon/types/facts.hpp"
+#include "daemon/types/status.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::fleet {
 
 /// Bound to the main thread, but for what says otherwise. As a sink it is of the processing thread and only
 /// posts.
 class Fleet final : public pipeline::Sink {
  public:
   struct Parts {
-    std::function<Status()> status;
+    std::function<daemon::Status()> status;
     const base::Clock& wall;
-    Facts& facts;
+    daemon::Facts& facts;
     std::filesystem::path record_folder;
     std::string program;  ///< Of backlog.hpp.
   };
   /// After the records of a former program have been recovered, before a test can end.
-  Fleet(boost::asio::io_context& io, const FleetSettings& settings, Parts parts);
+  Fleet(boost::asio::io_context& io, const io::FleetSettings& settings, Parts parts);
 
   /// The storage thread: a test is over.
   void test_recorded(const record::RecordHeader& header, const record::EndRecord& end,
@@ -43,18 +43,18 @@ class Fleet final : public pipeline::Sink {
   void state_changed();
   void bench_changed(pipeline::BenchState state) override;
 
-  [[nodiscard]] FleetState state() const { return publisher_.state(); }
+  [[nodiscard]] daemon::FleetState state() const { return publisher_.state(); }
   /// The last words; at most two seconds.
   void stop();
 
  private:
   [[nodiscard]] FleetPublisher::World world(std::vector<std::filesystem::path> untold);
-  void link_changed(const FleetState& state);
+  void link_changed(const daemon::FleetState& state);
   void tick();
 
   boost::asio::io_context& io_;
   boost::asio::steady_timer timer_;
-  FleetSettings settings_;
+  io::FleetSettings settings_;
   Parts parts_;
   std::string told_;                     ///< The latest state, without its time.
   std::atomic<bool> on_the_way_{false};  ///< A word of the bench to the main thread.
@@ -63,4 +63,4 @@ class Fleet final : public pipeline::Sink {
   FleetPublisher publisher_;
 };
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::fleet

@@ -2,19 +2,19 @@
 
 #include <optional>
 
+#include "io/json_text.hpp"
+#include "io/or_null.hpp"
+#include "io/pooled_json.hpp"
+#include "io/results_json.hpp"
 #include <nlohmann/json.hpp>
 
-#include "core/friction/kept.hpp"
-#include "core/friction/replicates.hpp"
+#include "core/analysis/kept.hpp"
+#include "core/analysis/pooled_slips.hpp"
 #include "core/record/iso_time.hpp"
-#include "daemon/control/bench.hpp"
-#include "daemon/control/plan_json.hpp"
-#include "daemon/json_text.hpp"
-#include "daemon/or_null.hpp"
-#include "daemon/pooled_json.hpp"
-#include "daemon/results_json.hpp"
+#include "daemon/types/bench.hpp"
+#include "daemon/types/plan_json.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::fleet {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -26,7 +26,7 @@ Json time_of(const std::optional<std::int64_t>& realtime_ns) {
 }  // namespace
 
 Json result_json(const record::RecordHeader& header, const record::EndRecord& end,
-                 const base::LongColumn<friction::Cycle>& cycles, const std::filesystem::path& file) {
+                 const base::LongColumn<detect::Cycle>& cycles, const std::filesystem::path& file) {
   Json json;
   json["entry_identifier_uuid"] = header.uuid;
   json["number"] = header.test_number ? Json(*header.test_number) : Json(nullptr);
@@ -36,25 +36,25 @@ Json result_json(const record::RecordHeader& header, const record::EndRecord& en
   json["reasons"] = end.reasons;
   json["cause"] = end.cause;
   json["file"] = file.string();
-  json["plan"] = plan_json({header.sample, header.tester.pull_speed_m_per_s, {}});
-  json["batch"] = or_null(header.sample.batch);
+  json["plan"] = daemon::plan_json({header.sample, header.tester.pull_speed_m_per_s, {}});
+  json["batch"] = io::or_null(header.sample.batch);
   json["slide"] = header.sample.slide ? Json(*header.sample.slide) : Json(nullptr);
-  json["method"] = or_null(header.process.method);
-  json["estimator"] = or_null(header.process.estimator);
-  json["version"] = or_null(header.process.version);
-  json["results"] = results_json(end.results, true);
-  const friction::Kept kept = friction::kept_from_text(header.process.kept).value_or(friction::Kept{});
-  json["slips"] = slip_sums_json(friction::slip_sums(cycles, kept.first_slip));
+  json["method"] = io::or_null(header.process.method);
+  json["estimator"] = io::or_null(header.process.estimator);
+  json["version"] = io::or_null(header.process.version);
+  json["results"] = io::results_json(end.results, true);
+  const analysis::Kept kept = analysis::kept_from_text(header.process.kept).value_or(analysis::Kept{});
+  json["slips"] = io::slip_sums_json(analysis::slip_sums(cycles, kept.first_slip));
   return json;
 }
 
 std::string result_message(const std::string& tester, const Json& result) {
   Json json{{"tester", tester}};
   json.update(result);
-  return json_text(json);
+  return io::json_text(json);
 }
 
-std::string state_message(const std::string& tester, const Status& status, std::int64_t realtime_ns,
+std::string state_message(const std::string& tester, const daemon::Status& status, std::int64_t realtime_ns,
                           std::string_view state) {
   Json json;
   json["tester"] = tester;
@@ -65,17 +65,18 @@ std::string state_message(const std::string& tester, const Status& status, std::
   json["version"] = status.version;
   json["test_count"] = status.test_count;
   json["current_test"] = status.current_test ? Json(*status.current_test) : Json(nullptr);
-  return json_text(json);
+  return io::json_text(json);
 }
 
 std::string last_will(const std::string& tester, std::int64_t realtime_ns) {
-  return json_text(
+  return io::json_text(
       {{"tester", tester}, {"connected_since", record::iso_time(realtime_ns)}, {"state", "lost"}});
 }
 
-std::string health_message(const std::string& tester, const Status& status, std::int64_t realtime_ns) {
-  return json_text(
-      {{"tester", tester}, {"time", record::iso_time(realtime_ns)}, {"status", status_json(status)}});
+std::string health_message(const std::string& tester, const daemon::Status& status,
+                           std::int64_t realtime_ns) {
+  return io::json_text(
+      {{"tester", tester}, {"time", record::iso_time(realtime_ns)}, {"status", daemon::status_json(status)}});
 }
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::fleet

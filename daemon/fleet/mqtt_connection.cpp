@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-namespace stickslip::daemon {
+namespace stickslip::fleet {
 namespace {
 
 /// The broker misses a tester that says nothing for half as long again.
@@ -169,4 +169,4 @@ void MqttConnection::goodbye() {
   mosquitto_disconnect_v5(client_.get(), MQTT_RC_NORMAL_DISCONNECTION, nullptr);
 }
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::fleet

@@ -14,7 +14,7 @@
 
 struct mosquitto;
 
-namespace stickslip::daemon {
+namespace stickslip::fleet {
 
 struct MqttMessage {
   std::string topic;
@@ -79,4 +79,4 @@ class MqttConnection {
   bool any_write_ = false;  ///< The socket is connected once it can be written to.
 };
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::fleet

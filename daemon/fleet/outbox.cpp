@@ -14,13 +14,13 @@
 #include <unordered_set>
 #include <utility>
 
+#include "io/new_file.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/base/regular_file.hpp"
 #include "core/record/file.hpp"
-#include "daemon/new_file.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::fleet {
 namespace {
 
 constexpr const char* kExtension = ".json";
@@ -88,8 +88,9 @@ void Outbox::load() {
 }
 
 void Outbox::note_told(std::string_view lines) {
-  const record::Descriptor file{::open(
-      (folder_ / kTold).c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_CLOEXEC, kEverybodyReads)};
+  const record::Descriptor file{::open((folder_ / kTold).c_str(),
+                                       O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_CLOEXEC,
+                                       io::kEverybodyReads)};
   if (!file.open()) return;
   // A line that a power cut has torn must not take the next one with it.
   const std::string text = (::lseek(file.get(), 0, SEEK_END) > 0 ? "\n" : "") + std::string{lines};
@@ -126,7 +127,7 @@ std::vector<std::filesystem::path> Outbox::untold(std::vector<std::filesystem::p
     for (auto record = first_told; record != records.end(); ++record) lines += stem(*record) + '\n';
     const std::filesystem::path fresh = folder_ / "told.new";
     std::filesystem::remove(fresh, error);
-    if (write_new_file(fresh, lines)) std::filesystem::rename(fresh, folder_ / kTold, error);
+    if (io::write_new_file(fresh, lines)) std::filesystem::rename(fresh, folder_ / kTold, error);
   }
   records.erase(first_told, records.end());
   return records;
@@ -153,7 +154,7 @@ Outbox::Added Outbox::add(FleetResult result) {
 void Outbox::save() {
   while (unsaved_ > 0) {
     const FleetResult& first = results_[results_.size() - unsaved_];
-    if (!write_new_file(path_of(first), first.payload)) return;
+    if (!io::write_new_file(path_of(first), first.payload)) return;
     note_told(first.record + '\n');
     --unsaved_;
   }
@@ -180,4 +181,4 @@ bool Outbox::remove(const std::string& id) {
   return true;
 }
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::fleet

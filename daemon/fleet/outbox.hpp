@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace stickslip::daemon {
+namespace stickslip::fleet {
 
 /// What the broker is told of one test.
 struct FleetResult {
@@ -66,4 +66,4 @@ class Outbox {
   std::uint64_t next_sequence_ = 1;
 };
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::fleet

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <utility>
 
-namespace stickslip::daemon {
+namespace stickslip::fleet {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -37,7 +37,7 @@ constexpr milliseconds kImpatient{50};
 
 }  // namespace
 
-FleetPublisher::FleetPublisher(FleetSettings settings, Outbox outbox, World world)
+FleetPublisher::FleetPublisher(io::FleetSettings settings, Outbox outbox, World world)
     : settings_(std::move(settings)),
       world_(std::move(world)),
       outbox_(std::move(outbox)),
@@ -83,7 +83,7 @@ void FleetPublisher::tell_result(FleetResult result) {
   wake();
 }
 
-FleetState FleetPublisher::state() const {
+daemon::FleetState FleetPublisher::state() const {
   const std::lock_guard lock{mutex_};
   return shown_;
 }
@@ -138,7 +138,7 @@ void FleetPublisher::take_backlog() {
 }
 
 bool FleetPublisher::connect_once() {
-  set_link(FleetState::Link::kConnecting, state().why);
+  set_link(daemon::FleetState::Link::kConnecting, state().why);
   connected_ = false;
   refusal_.clear();
   const auto ended = [this, begun = Clock::now()](const base::Error& why) {
@@ -150,13 +150,13 @@ bool FleetPublisher::connect_once() {
     in_flight_.clear();
     if (state_message_) state_due_ = true;
     state_message_.reset();
-    set_link(FleetState::Link::kWaiting,
+    set_link(daemon::FleetState::Link::kWaiting,
              short_lives_ < kSuspicious
                  ? why.message
                  : fmt::format("{} is another tester called {} as well?", why.message, settings_.tester));
     return was_connected;
   };
-  const auto password = read_password(settings_.password_file);
+  const auto password = io::read_password(settings_.password_file);
   if (!password) return ended(password.error());
   const MqttTarget target{.host = settings_.broker.host,
                           .port = settings_.broker.port,
@@ -173,7 +173,7 @@ bool FleetPublisher::connect_once() {
            [this] {
              connected_ = true;
              state_due_ = !state_.empty();  // The will may have been told in the meantime.
-             set_link(FleetState::Link::kConnected, "");
+             set_link(daemon::FleetState::Link::kConnected, "");
            },
        .acknowledged = [this](int message, const std::string& refusal) { acknowledged(message, refusal); }});
   if (!opened) return ended(opened.error());
@@ -287,8 +287,8 @@ std::pair<bool, bool> FleetPublisher::wait(int socket, bool wants_write, millise
   return {(watched[1].revents & POLLIN) != 0 || broken, (watched[1].revents & POLLOUT) != 0 || broken};
 }
 
-void FleetPublisher::set_link(FleetState::Link link, const std::string& why) {
-  FleetState now;
+void FleetPublisher::set_link(daemon::FleetState::Link link, const std::string& why) {
+  daemon::FleetState now;
   {
     const std::lock_guard lock{mutex_};
     if (shown_.link == link && shown_.why == why) return;
@@ -304,4 +304,4 @@ bool FleetPublisher::stopping() const {
   return stopping_;
 }
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::fleet

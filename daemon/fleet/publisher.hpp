@@ -14,13 +14,14 @@
 #include <thread>
 #include <vector>
 
+#include "io/fleet_settings.hpp"
+
 #include "core/record/file.hpp"
-#include "daemon/fleet/fleet_settings.hpp"
-#include "daemon/fleet/fleet_state.hpp"
 #include "daemon/fleet/mqtt_connection.hpp"
 #include "daemon/fleet/outbox.hpp"
+#include "daemon/types/fleet_state.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::fleet {
 
 class FleetPublisher {
  public:
@@ -31,12 +32,12 @@ class FleetPublisher {
     /// the next one, until there is none.
     std::function<std::optional<FleetResult>()> backlog;
     /// The link is another; called on the thread of this class, may not wait.
-    std::function<void(const FleetState&)> changed;
+    std::function<void(const daemon::FleetState&)> changed;
     std::chrono::milliseconds first_retry{1000};  ///< Then twice as long each time, to half a minute.
   };
 
   /// \param outbox  as settings say.
-  FleetPublisher(FleetSettings settings, Outbox outbox, World world);
+  FleetPublisher(io::FleetSettings settings, Outbox outbox, World world);
   /// As stop().
   ~FleetPublisher();
   FleetPublisher(const FleetPublisher&) = delete;
@@ -46,7 +47,7 @@ class FleetPublisher {
   void tell_state(std::string payload);   ///< Retained; what was not sent yet is replaced.
   void tell_health(std::string payload);  ///< At most once; what was not sent yet is replaced.
   void tell_result(FleetResult result);   ///< At least once.
-  [[nodiscard]] FleetState state() const;
+  [[nodiscard]] daemon::FleetState state() const;
 
   /// Tells the last state and what is left as far as two seconds allow, says goodbye, ends the thread.
   void stop(std::string last_state);
@@ -68,17 +69,17 @@ class FleetPublisher {
   /// Until the socket or a teller wakes it. \return whether the socket is readable, writable.
   std::pair<bool, bool> wait(int socket, bool wants_write, std::chrono::milliseconds longest);
   void wake();
-  void set_link(FleetState::Link link, const std::string& why);
+  void set_link(daemon::FleetState::Link link, const std::string& why);
   [[nodiscard]] bool stopping() const;
   [[nodiscard]] bool all_said() const;
 
-  FleetSettings settings_;
+  io::FleetSettings settings_;
   World world_;
   Outbox outbox_;
   record::Descriptor wake_;  ///< An eventfd.
 
   mutable std::mutex mutex_;  ///< Held for moves of texts.
-  FleetState shown_;
+  daemon::FleetState shown_;
   std::optional<std::string> news_state_;
   std::optional<std::string> news_health_;
   std::vector<FleetResult> news_results_;
@@ -98,4 +99,4 @@ class FleetPublisher {
   std::thread thread_;
 };
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::fleet

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/or_null.hpp"
+#include "io/results_json.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/base/text.hpp"
-#include "daemon/or_null.hpp"
-#include "daemon/results_json.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::live {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -47,7 +47,7 @@ void LiveFeed::use(double scan_rate_Hz, double clock_speed) {
 }
 
 void LiveFeed::observed(daq::ScanIndex first, std::span<const double> coefficient,
-                        const friction::LiveState& live) {
+                        const detect::LiveState& live) {
   if (!heard()) {
     lowest_.clear();
     highest_.clear();
@@ -73,14 +73,14 @@ void LiveFeed::observed(daq::ScanIndex first, std::span<const double> coefficien
   }
 }
 
-void LiveFeed::flush(const friction::LiveState& live) {
+void LiveFeed::flush(const detect::LiveState& live) {
   if (lowest_.empty()) return;
   std::string frame = fmt::format(
       R"({{"type":"scans","first_scan":{},"scans_in_part":{},"scan_rate":{},"clock_speed":{},"test":{},"read_time":{},"sink_time":{},"phase":"{}","regime":"{}","slip_count":{},"lowest":[)",
       first_, bucket_, scan_rate_Hz_, clock_speed_, test_ == 0 ? "null" : std::to_string(test_),
       test_ == 0 ? "null" : fmt::format("{:.6f}", read_time_s()),
-      test_ == 0 ? "null" : fmt::format("{:.6f}", sink_time_s()), friction::name(live.phase),
-      friction::name(live.regime), live.slip_count);
+      test_ == 0 ? "null" : fmt::format("{:.6f}", sink_time_s()), detect::name(live.phase),
+      model::name(live.regime), live.slip_count);
   append(frame, lowest_);
   frame += R"(],"highest":[)";
   append(frame, highest_);
@@ -113,7 +113,7 @@ double LiveFeed::read_time_s() const noexcept {
 
 double LiveFeed::sink_time_s() const { return static_cast<double>(clock_.realtime_ns()) * kNanosecond_s; }
 
-void LiveFeed::fall(const friction::FallBegun& fall) {
+void LiveFeed::fall(const detect::FallBegun& fall) {
   if (!heard()) return;
   publish_(Json{{"type", "fall"},
                 {"test", test_},
@@ -126,7 +126,7 @@ void LiveFeed::fall(const friction::FallBegun& fall) {
                .dump());
 }
 
-void LiveFeed::cycle(const friction::Cycle& cycle) {
+void LiveFeed::cycle(const detect::Cycle& cycle) {
   if (!heard()) return;
   publish_(Json{{"type", "cycle"},
                 {"test", test_},
@@ -136,17 +136,17 @@ void LiveFeed::cycle(const friction::Cycle& cycle) {
                 {"sink_time", sink_time_s()},
                 {"number", cycle.number},
                 {"first_scan", cycle.first_scan},
-                {"captured", (cycle.flags & friction::kCycleCaptured) != 0},
-                {"onset_time", or_null(cycle.onset_time_s)},
-                {"capture_time", or_null(cycle.capture_time_s)},
-                {"peak_time", or_null(cycle.peak_time_s)},
-                {"period", or_null(cycle.period_s)},
-                {"peak", or_null(cycle.peak)},
-                {"trough", or_null(cycle.trough)},
-                {"force_drop", or_null(cycle.force_drop)},
-                {"delta_mu", or_null(cycle.delta_mu)},
-                {"delta_mu_standard_error", or_null(cycle.delta_mu_standard_error)},
-                {"slip_speed_ratio", or_null(cycle.slip_speed_ratio)}}
+                {"captured", (cycle.flags & detect::kCycleCaptured) != 0},
+                {"onset_time", io::or_null(cycle.onset_time_s)},
+                {"capture_time", io::or_null(cycle.capture_time_s)},
+                {"peak_time", io::or_null(cycle.peak_time_s)},
+                {"period", io::or_null(cycle.period_s)},
+                {"peak", io::or_null(cycle.peak)},
+                {"trough", io::or_null(cycle.trough)},
+                {"force_drop", io::or_null(cycle.force_drop)},
+                {"delta_mu", io::or_null(cycle.delta_mu)},
+                {"delta_mu_standard_error", io::or_null(cycle.delta_mu_standard_error)},
+                {"slip_speed_ratio", io::or_null(cycle.slip_speed_ratio)}}
                .dump());
 }
 
@@ -175,7 +175,7 @@ void LiveFeed::test_ended(const pipeline::TestEnd& end) {
                 {"cause", pipeline::name(end.cause)},
                 {"spikes", std::span{end.spikes}.last(told)},
                 {"spike_coefficients", std::span{end.spike_coefficients}.last(told)},
-                {"results", results_json(end.results, false)}}
+                {"results", io::results_json(end.results, false)}}
                .dump());
 }
 
@@ -190,4 +190,4 @@ void LiveFeed::bench_stays(pipeline::BenchState state, double /*duration_s*/,
                .dump());
 }
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::live

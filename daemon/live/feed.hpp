@@ -12,7 +12,7 @@
 #include "core/base/clock.hpp"
 #include "core/pipeline/sink.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::live {
 
 /// Sink of the processing thread. Without listeners it does nothing.
 class LiveFeed final : public pipeline::Sink {
@@ -28,12 +28,12 @@ class LiveFeed final : public pipeline::Sink {
   void use(double scan_rate_Hz, double clock_speed);
 
   void observed(daq::ScanIndex first, std::span<const double> coefficient,
-                const friction::LiveState& live) override;
+                const detect::LiveState& live) override;
   void test_began(const pipeline::TestStart& start) override;
   void scans(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second,
              const daq::ClockStamp& stamp) override;
-  void fall(const friction::FallBegun& fall) override;
-  void cycle(const friction::Cycle& cycle) override;
+  void fall(const detect::FallBegun& fall) override;
+  void cycle(const detect::Cycle& cycle) override;
   void gap(const daq::Gap& gap) override { tell_gap(gap); }
   void gap_between_tests(const daq::Gap& gap) override { tell_gap(gap); }
   void note(const daq::Note& note) override;
@@ -45,7 +45,7 @@ class LiveFeed final : public pipeline::Sink {
  private:
   [[nodiscard]] bool heard() const noexcept { return listeners_.load(std::memory_order_relaxed) > 0; }
   void tell_gap(const daq::Gap& gap);
-  void flush(const friction::LiveState& live);
+  void flush(const detect::LiveState& live);
   /// Since 1970: when the read of the latest block of the running test came back.
   [[nodiscard]] double read_time_s() const noexcept;
   /// Since 1970: now, when an event has come to its sink.
@@ -70,4 +70,4 @@ class LiveFeed final : public pipeline::Sink {
   std::vector<double> highest_;
 };
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::live

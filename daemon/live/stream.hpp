@@ -14,9 +14,9 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "daemon/live/feed.hpp"
-#include "daemon/live/hub.hpp"
+#include "daemon/types/hub.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::live {
 
 class LiveStream {
  public:
@@ -33,8 +33,8 @@ class LiveStream {
         feed_(clock, [this](std::string frame) { send(std::move(frame)); }) {}
 
   [[nodiscard]] LiveFeed& feed() noexcept { return feed_; }
-  [[nodiscard]] LiveHub& hub() noexcept { return hub_; }
-  [[nodiscard]] const LiveHub& hub() const noexcept { return hub_; }
+  [[nodiscard]] daemon::LiveHub& hub() noexcept { return hub_; }
+  [[nodiscard]] const daemon::LiveHub& hub() const noexcept { return hub_; }
   /// Frames that no client got, because the main thread was too slow. Any thread.
   [[nodiscard]] std::uint64_t lost_count() const noexcept { return lost_.load(std::memory_order_relaxed); }
   /// Main thread: ends it for all.
@@ -71,11 +71,11 @@ class LiveStream {
   boost::asio::io_context& io_;
   boost::asio::steady_timer timer_;
   std::function<std::string()> health_;
-  LiveHub hub_;
+  daemon::LiveHub hub_;
   LiveFeed feed_;
   bool ticks_ = false;
   std::atomic<int> on_the_way_{0};
   std::atomic<std::uint64_t> lost_{0};
 };
 
-}  // namespace stickslip::daemon
+}  // namespace stickslip::live

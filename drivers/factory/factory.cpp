@@ -27,7 +27,7 @@ base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::C
   base::Result<record::Record> record = record::read_record_apart(file);
   if (!record) return tl::unexpected(record.error());
   const std::optional<daq::LoadCell> load_cell = record->header.load_cell;
-  const friction::Tester tester = record->header.tester.tester();
+  const model::Tester tester = record->header.tester.tester();
   std::string characterisation = record->header.process.characterisation;
   record::CalibrationFacts calibration = record->header.calibration;
   std::string kept = record->header.process.kept;

@@ -11,8 +11,8 @@
 #include "core/daq/calibration.hpp"
 #include "core/daq/rate_meter.hpp"
 #include "core/daq/recorded_facts.hpp"
-#include "core/friction/tester.hpp"
-#include "core/friction/truth.hpp"
+#include "core/model/tester.hpp"
+#include "core/model/truth.hpp"
 #include "core/record/record.hpp"
 #include "drivers/factory/board_config.hpp"
 
@@ -20,10 +20,10 @@ namespace stickslip::drivers {
 
 struct OpenedBoard {
   std::unique_ptr<daq::Board> board;
-  std::shared_ptr<const friction::TruthSource> truth;  ///< Null if nobody knows the truth.
+  std::shared_ptr<const model::TruthSource> truth;  ///< Null if nobody knows the truth.
   // What the source of the scans knows about the bench behind them; absent for hardware.
   std::optional<daq::LoadCell> load_cell;
-  std::optional<friction::Tester> tester;
+  std::optional<model::Tester> tester;
   std::string characterisation;  ///< Of a replayed record: what was known of its tester beforehand.
   std::shared_ptr<const daq::RecordedFacts> recorded;  ///< Null unless a record is replayed.
   record::CalibrationFacts calibration{};              ///< Of load_cell, as a replayed record knows it.

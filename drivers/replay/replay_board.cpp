@@ -81,7 +81,7 @@ struct ForceTable {
   std::vector<double> coefficient;
 };
 
-class RecordedForce final : public friction::TrueForce {
+class RecordedForce final : public model::TrueForce {
  public:
   explicit RecordedForce(std::shared_ptr<const ForceTable> table) : table_(std::move(table)) {}
 
@@ -100,17 +100,17 @@ class RecordedForce final : public friction::TrueForce {
 };
 
 /// The record's truth, with times relative to the first scan that is asked for.
-class RecordedTruth final : public friction::TruthSource {
+class RecordedTruth final : public model::TruthSource {
  public:
   /// \param force  null if the record has none.
-  RecordedTruth(std::optional<friction::TestTruth> truth, daq::ScanIndex first, daq::ScanIndex end,
+  RecordedTruth(std::optional<model::TestTruth> truth, daq::ScanIndex first, daq::ScanIndex end,
                 double rate_Hz, std::shared_ptr<const ForceTable> force)
       : truth_(std::move(truth)), first_(first), end_(end), rate_Hz_(rate_Hz), force_(std::move(force)) {}
 
-  [[nodiscard]] std::optional<friction::TestTruth> truth(base::ScanIndex first,
-                                                         base::ScanIndex end) const override {
+  [[nodiscard]] std::optional<model::TestTruth> truth(base::ScanIndex first,
+                                                      base::ScanIndex end) const override {
     if (!truth_ || first >= end_ || end <= first_) return std::nullopt;
-    friction::TestTruth moved = *truth_;
+    model::TestTruth moved = *truth_;
     const double shift_s = static_cast<double>(first_ - first) / rate_Hz_;
     for (auto& mode : moved.modes) {
       mode.start_s += shift_s;
@@ -120,13 +120,13 @@ class RecordedTruth final : public friction::TruthSource {
     return moved;
   }
 
-  [[nodiscard]] std::unique_ptr<friction::TrueForce> force(base::ScanIndex first) const override {
+  [[nodiscard]] std::unique_ptr<model::TrueForce> force(base::ScanIndex first) const override {
     if (!force_ || first >= end_) return nullptr;
     return std::make_unique<RecordedForce>(force_);
   }
 
  private:
-  std::optional<friction::TestTruth> truth_;
+  std::optional<model::TestTruth> truth_;
   daq::ScanIndex first_;
   daq::ScanIndex end_;
   double rate_Hz_;
@@ -141,7 +141,7 @@ Replay make_replay(record::Record record, base::Clock& clock) {
   STICKSLIP_EXPECTS(rate_Hz > 0.0 && std::isfinite(rate_Hz));
   const daq::ScanIndex first = record.scan.empty() ? 0 : record.scan.front();
   const daq::ScanIndex end = record.scan.empty() ? 0 : record.scan.back() + 1;
-  std::optional<friction::TestTruth> truth;
+  std::optional<model::TestTruth> truth;
   if (record.end) truth = std::move(record.end->truth);
   std::shared_ptr<const ForceTable> force;
   if (!record.true_coefficient.empty()) {

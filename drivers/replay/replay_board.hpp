@@ -6,7 +6,7 @@
 
 #include "core/base/clock.hpp"
 #include "core/daq/board.hpp"
-#include "core/friction/truth.hpp"
+#include "core/model/truth.hpp"
 #include "core/record/record.hpp"
 
 namespace stickslip::drivers {
@@ -14,7 +14,7 @@ namespace stickslip::drivers {
 /// A board that plays a record, and what the record knows of the truth.
 struct Replay {
   std::unique_ptr<daq::Board> board;
-  std::unique_ptr<friction::TruthSource> truth;  ///< Never null; answers nothing if the record has none.
+  std::unique_ptr<model::TruthSource> truth;  ///< Never null; answers nothing if the record has none.
 };
 
 /// Scan i after the first is due (i + 1)/granted rate after start(), by `clock`; a gap in the record

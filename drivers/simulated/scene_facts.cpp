@@ -39,8 +39,8 @@ daq::LoadCell load_cell_of(const sim::Scene& scene) {
   return {scene.load_cell.gain_N_per_V, scene.load_cell.zero_V};
 }
 
-friction::Tester tester_of(const std::vector<sim::Scene>& scenes) {
-  friction::Tester tester;
+model::Tester tester_of(const std::vector<sim::Scene>& scenes) {
+  model::Tester tester;
   tester.sled_mass_kg = scenes.front().sled_mass_kg;
   tester.gravity_m_per_s2 = scenes.front().gravity_m_per_s2;
   const auto speed = [](const sim::Scene& scene) { return sim::steady_pull_speed_m_per_s(scene); };

@@ -8,7 +8,7 @@
 
 #include "core/daq/board.hpp"
 #include "core/daq/calibration.hpp"
-#include "core/friction/tester.hpp"
+#include "core/model/tester.hpp"
 #include "core/sim/scene.hpp"
 
 namespace stickslip::drivers {
@@ -23,6 +23,6 @@ namespace stickslip::drivers {
 
 /// Mass and gravity; the pull speed, or its course, if it is the same in all scenes. \param scenes  at least
 /// one.
-[[nodiscard]] friction::Tester tester_of(const std::vector<sim::Scene>& scenes);
+[[nodiscard]] model::Tester tester_of(const std::vector<sim::Scene>& scenes);
 
 }  // namespace stickslip::drivers

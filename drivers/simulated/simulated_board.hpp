@@ -16,9 +16,9 @@
 #include "core/daq/board.hpp"
 #include "core/daq/calibration.hpp"
 #include "core/daq/rate_meter.hpp"
-#include "core/friction/method.hpp"
-#include "core/friction/tester.hpp"
-#include "core/friction/truth.hpp"
+#include "core/model/method.hpp"
+#include "core/model/tester.hpp"
+#include "core/model/truth.hpp"
 #include "drivers/simulated/simulated_faults.hpp"
 
 namespace stickslip::drivers {
@@ -27,7 +27,7 @@ struct SimulatedBoardSettings {
   std::vector<std::filesystem::path> scenes;  ///< Played in this order.
   int repeats = 1;  ///< Each scene so many times in a row; 0: the list round and round for ever.
   std::optional<double> scan_rate_Hz;  ///< Else that of the scenes. Granted as asked.
-  friction::Method method{};           ///< By which the truth reads the traditional coefficients.
+  model::Method method{};              ///< By which the truth reads the traditional coefficients.
   /// A second input reads the belt's speed through a converter like the force's, this much for each volt, not
   /// 0; absent: there is none.
   std::optional<double> speed_gain_m_per_s_per_V{};
@@ -44,10 +44,10 @@ struct SimulatedBoardSettings {
 /// tester that a bench would know from its own papers.
 struct SimulatedTester {
   std::unique_ptr<daq::Board> board;
-  std::shared_ptr<const friction::TruthSource> truth;
+  std::shared_ptr<const model::TruthSource> truth;
   daq::LoadCell load_cell;
   /// Mass and gravity; the pull speed if it is the same in all scenes.
-  friction::Tester tester;
+  model::Tester tester;
 };
 
 /// \param clock  paces the board: scan i after a start is due (i + 1)/rate later. Outlives it. A read waits

@@ -13,17 +13,17 @@
 
 namespace stickslip::drivers {
 
-void move_into_window(friction::TestTruth& truth, double window_start_s, double window_length_s,
+void move_into_window(model::TestTruth& truth, double window_start_s, double window_length_s,
                       const std::filesystem::path& scratch_folder) {
-  base::LongColumn<friction::ModeInterval> modes{scratch_folder};
-  for (friction::ModeInterval mode : std::as_const(truth.modes)) {
+  base::LongColumn<model::ModeInterval> modes{scratch_folder};
+  for (model::ModeInterval mode : std::as_const(truth.modes)) {
     mode.start_s = std::max(mode.start_s - window_start_s, 0.0);
     mode.end_s = std::min(mode.end_s - window_start_s, window_length_s);
     if (mode.start_s < mode.end_s) modes.push_back(mode);
   }
   truth.modes = std::move(modes);
-  base::LongColumn<friction::TrueCycle> cycles{scratch_folder};
-  for (friction::TrueCycle cycle : std::as_const(truth.cycles)) {
+  base::LongColumn<model::TrueCycle> cycles{scratch_folder};
+  for (model::TrueCycle cycle : std::as_const(truth.cycles)) {
     cycle.onset_time_s -= window_start_s;
     if (cycle.onset_time_s >= 0.0 && cycle.onset_time_s < window_length_s) cycles.push_back(cycle);
   }
@@ -45,7 +45,7 @@ sim::Scene force_only(sim::Scene scene) {
 }
 
 /// Plays the list again, as fast as it can.
-class SimulatedForce final : public friction::TrueForce {
+class SimulatedForce final : public model::TrueForce {
  public:
   explicit SimulatedForce(std::shared_ptr<const Playlist> playlist) : playlist_(std::move(playlist)) {}
 
@@ -90,13 +90,13 @@ class SimulatedForce final : public friction::TrueForce {
   std::array<double, 1024> force_{};
 };
 
-class SimulatedTruth final : public friction::TruthSource {
+class SimulatedTruth final : public model::TruthSource {
  public:
-  SimulatedTruth(std::shared_ptr<const Playlist> playlist, friction::Method method)
+  SimulatedTruth(std::shared_ptr<const Playlist> playlist, model::Method method)
       : playlist_(std::move(playlist)), method_(std::move(method)) {}
 
-  [[nodiscard]] std::optional<friction::TestTruth> truth(base::ScanIndex first,
-                                                         base::ScanIndex end) const override {
+  [[nodiscard]] std::optional<model::TestTruth> truth(base::ScanIndex first,
+                                                      base::ScanIndex end) const override {
     first = std::max<base::ScanIndex>(first, 0);
     std::optional<Repetition> best;
     std::int64_t most = 0;
@@ -111,26 +111,25 @@ class SimulatedTruth final : public friction::TruthSource {
     }
     if (!best) return std::nullopt;
     const double rate_Hz = playlist_->scan_rate_Hz();
-    friction::TestTruth truth =
-        sim::scene_truth(playlist_->scenes()[best->scene], rate_Hz, best->seed, method_);
+    model::TestTruth truth = sim::scene_truth(playlist_->scenes()[best->scene], rate_Hz, best->seed, method_);
     move_into_window(truth, static_cast<double>(first - best->first) / rate_Hz,
                      static_cast<double>(end - first) / rate_Hz);
     return truth;
   }
 
-  [[nodiscard]] std::unique_ptr<friction::TrueForce> force(base::ScanIndex /*first*/) const override {
+  [[nodiscard]] std::unique_ptr<model::TrueForce> force(base::ScanIndex /*first*/) const override {
     return std::make_unique<SimulatedForce>(playlist_);
   }
 
  private:
   std::shared_ptr<const Playlist> playlist_;
-  friction::Method method_;
+  model::Method method_;
 };
 
 }  // namespace
 
-std::shared_ptr<const friction::TruthSource> make_simulated_truth(std::shared_ptr<const Playlist> playlist,
-                                                                  friction::Method method) {
+std::shared_ptr<const model::TruthSource> make_simulated_truth(std::shared_ptr<const Playlist> playlist,
+                                                               model::Method method) {
   return std::make_shared<SimulatedTruth>(std::move(playlist), std::move(method));
 }
 

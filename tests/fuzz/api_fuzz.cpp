@@ -24,7 +24,7 @@ using namespace stickslip;
 /// All paths that are described, with what a paper bench has in the place of names; and some with queries.
 std::vector<std::string> known_targets() {
   std::vector<std::string> targets;
-  const nlohmann::json description = nlohmann::json::parse(daemon::openapi());
+  const nlohmann::json description = nlohmann::json::parse(control::openapi());
   for (const auto& [path, methods] : description.at("paths").items()) {
     std::string target = path;
     constexpr std::array<std::pair<const char*, const char*>, 3> kNames{
@@ -56,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   FuzzedDataProvider input{data, size};
   daemon::PaperBench bench;
   test::ManualClock clock;
-  const daemon::HttpHandler api = daemon::make_api(bench, clock);
+  const daemon::HttpHandler api = control::make_api(bench, clock);
   while (input.remaining_bytes() > 0) {
     static constexpr std::array kMethods{"GET", "PUT", "POST", "DELETE", "PATCH"};
     daemon::HttpRequest request;
@@ -72,7 +72,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       ++answers;
       STICKSLIP_EXPECTS(described.contains(reply.status));
       // The description is long, always the same, and was read above.
-      STICKSLIP_EXPECTS(reply.content_type != "application/json" || reply.body == daemon::openapi() ||
+      STICKSLIP_EXPECTS(reply.content_type != "application/json" || reply.body == control::openapi() ||
                         nlohmann::json::accept(reply.body));
     });
     STICKSLIP_EXPECTS(answers == 1);

@@ -5,9 +5,10 @@
 #include <cstdint>
 #include <string_view>
 
+#include "io/calibration_file.hpp"
+
 #include "core/base/contract.hpp"
-#include "daemon/calibration_file.hpp"
-#include "daemon/tester_file.hpp"
+#include "core/record/tester_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace stickslip;
@@ -16,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   STICKSLIP_EXPECTS(calibration || calibration.error().exit_status() == 2);
   STICKSLIP_EXPECTS(calibration || calibration.error().message.find('\n') == std::string::npos);
   if (calibration) {
-    const auto again = daemon::parse_calibration(daemon::calibration_text(*calibration), "y.toml");
+    const auto again = daemon::parse_calibration(io::calibration_text(*calibration), "y.toml");
     STICKSLIP_EXPECTS(again);
     const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
     STICKSLIP_EXPECTS(bits(again->load_cell.gain_N_per_V) == bits(calibration->load_cell.gain_N_per_V));
@@ -24,7 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     STICKSLIP_EXPECTS(again->facts.date == calibration->facts.date);
     STICKSLIP_EXPECTS(again->facts.mass_kg.size() == calibration->facts.mass_kg.size());
   }
-  const auto tester = daemon::parse_tester(text, "x.toml");
+  const auto tester = record::parse_tester(text, "x.toml");
   STICKSLIP_EXPECTS(tester || tester.error().exit_status() == 2);
   STICKSLIP_EXPECTS(tester || tester.error().message.find('\n') == std::string::npos);
   return 0;

@@ -20,7 +20,7 @@
 #include "core/base/contract.hpp"
 #include "daemon/control/api.hpp"
 #include "daemon/control/connection.hpp"
-#include "daemon/web/site.hpp"
+#include "daemon/page/site.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/unit/paper_bench.hpp"
 
@@ -28,18 +28,18 @@ namespace stickslip::fuzz {
 
 class RawClient {
  public:
-  explicit RawClient(daemon::Door door) {
-    service_ = std::make_shared<daemon::Service>(
-        daemon::Service{std::move(door),
-                        daemon::make_site(daemon::make_api(bench_, clock_), daemon::ChartLibrary{}),
-                        &hub_,
-                        {}});
+  explicit RawClient(control::Door door) {
+    service_ = std::make_shared<control::Service>(
+        control::Service{std::move(door),
+                         page::make_site(control::make_api(bench_, clock_), report::ChartLibrary{}),
+                         &hub_,
+                         {}});
     std::array<int, 2> ends{};
     STICKSLIP_EXPECTS(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends.data()) == 0);
     client_ = ends[0];
-    daemon::AnySocket socket{io_};
+    control::AnySocket socket{io_};
     socket.assign({AF_UNIX, 0}, ends[1]);
-    daemon::serve_connection(std::move(socket), service_);
+    control::serve_connection(std::move(socket), service_);
   }
   RawClient(const RawClient&) = delete;
   RawClient& operator=(const RawClient&) = delete;
@@ -76,11 +76,11 @@ class RawClient {
   test::ManualClock clock_;
   daemon::LiveHub hub_;
   boost::asio::io_context io_{1};
-  std::shared_ptr<daemon::Service> service_;
+  std::shared_ptr<control::Service> service_;
   int client_ = -1;
 };
 
 /// What a TCP port asks for.
-inline daemon::Door tcp_door() { return {false, {"localhost:80"}, "0123456789abcdef0123456789abcdef"}; }
+inline control::Door tcp_door() { return {false, {"localhost:80"}, "0123456789abcdef0123456789abcdef"}; }
 
 }  // namespace stickslip::fuzz

@@ -6,7 +6,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace stickslip;
   if (size == 0) return 0;
-  fuzz::RawClient client{(data[0] & 1) != 0 ? fuzz::tcp_door() : daemon::Door{}};
+  fuzz::RawClient client{(data[0] & 1) != 0 ? fuzz::tcp_door() : control::Door{}};
   const std::string answer = client.send({data + 1, size - 1});
   client.say_no_more();
   const std::string rest = client.send({});

@@ -36,11 +36,11 @@ void say_result(FuzzedDataProvider& input) {
   end.reasons = {text(input), text(input)};
   end.end_realtime_ns = input.ConsumeIntegral<std::int64_t>();
   end.results = record::absent_results(text(input));
-  friction::for_each_result(end.results, [&](const friction::ResultName&, friction::Estimate& estimate) {
-    if (input.ConsumeBool()) estimate = friction::Estimate::of(number(), number());
+  analysis::for_each_result(end.results, [&](const analysis::ResultName&, analysis::Estimate& estimate) {
+    if (input.ConsumeBool()) estimate = analysis::Estimate::of(number(), number());
   });
-  const auto result = daemon::result_json(header, end, end.cycles, text(input));
-  const std::string message = daemon::result_message(tester, result);
+  const auto result = fleet::result_json(header, end, end.cycles, text(input));
+  const std::string message = fleet::result_message(tester, result);
   STICKSLIP_EXPECTS(message.find('\n') == std::string::npos);
   const auto read = nlohmann::json::parse(message, nullptr, false);
   STICKSLIP_EXPECTS(read.is_object() && read.contains("tester") && read.contains("results"));
@@ -55,15 +55,15 @@ void say_state(FuzzedDataProvider& input) {
   status.storage.why = text(input);
   const auto now_ns = input.ConsumeIntegral<std::int64_t>();
   for (const std::string& said :
-       {daemon::state_message(tester, status, now_ns), daemon::last_will(tester, now_ns),
-        daemon::health_message(tester, status, now_ns)}) {
+       {fleet::state_message(tester, status, now_ns), fleet::last_will(tester, now_ns),
+        fleet::health_message(tester, status, now_ns)}) {
     STICKSLIP_EXPECTS(nlohmann::json::accept(said));
   }
 }
 
 void hear_result(FuzzedDataProvider& input) {
   const std::string tester = text(input);
-  const auto result = daemon::parse_result("20261122T101500Z", tester, input.ConsumeRemainingBytesAsString());
+  const auto result = fleet::parse_result("20261122T101500Z", tester, input.ConsumeRemainingBytesAsString());
   STICKSLIP_EXPECTS(!result || nlohmann::json::accept(result->payload));
   STICKSLIP_EXPECTS(!result || result->id.find('/') == std::string::npos);
 }

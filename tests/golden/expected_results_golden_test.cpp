@@ -11,9 +11,9 @@
 #include <fstream>
 #include <string>
 
+#include "io/results_json.hpp"
 #include <nlohmann/json.hpp>
 
-#include "daemon/results_json.hpp"
 #include "tests/support/scene_tests.hpp"
 
 namespace stickslip {
@@ -29,8 +29,8 @@ ordered_json measured(const std::filesystem::path& scene) {
   object["first"] = test.first;
   object["trigger"] = test.trigger;
   object["end"] = test.end;
-  object["results"] = daemon::results_json(test.results, true);
-  for (const friction::Cycle& cycle : test.cycles) {
+  object["results"] = io::results_json(test.results, true);
+  for (const detect::Cycle& cycle : test.cycles) {
     object["cycles"].push_back(
         {{"first_scan", cycle.first_scan}, {"flags", cycle.flags}, {"peak", cycle.peak}});
   }

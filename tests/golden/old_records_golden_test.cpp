@@ -85,12 +85,12 @@ void compare_raw(RecordListing& listing, const record::Record& record) {
 void compare_tables(RecordListing& listing, const record::Record& record) {
   record::for_each_cycle_column([&](const FieldName& name, auto member) {
     if (!listing.has("entry/cycles/" + std::string{name.name})) {  // Came later.
-      for (const friction::Cycle& cycle : record.cycles)
+      for (const detect::Cycle& cycle : record.cycles)
         EXPECT_TRUE(std::isnan(static_cast<double>(cycle.*member)));
       return;
     }
     listing.expect_column("entry/cycles/" + std::string{name.name}, name.unit,
-                          column_of<friction::Cycle>(record.cycles, member));
+                          column_of<detect::Cycle>(record.cycles, member));
   });
   listing.expect_column("entry/gaps/first_scan", "1", column_of<daq::Gap>(record.gaps, &daq::Gap::first));
   listing.expect_column("entry/gaps/scan_count", "1", column_of<daq::Gap>(record.gaps, &daq::Gap::count));
@@ -148,16 +148,16 @@ void compare_process(RecordListing& listing, const record::Record& record) {
   listing.look_at("entry/process/file_sha256");
 }
 
-void compare_results(RecordListing& listing, const friction::TestResults& results) {
+void compare_results(RecordListing& listing, const analysis::TestResults& results) {
   const std::string group = "entry/results/";
-  listing.expect_text(group + "regime", std::string{friction::name(results.regime)});
+  listing.expect_text(group + "regime", std::string{model::name(results.regime)});
   listing.expect_attribute(group + "regime", "reason", results.regime_reason);
   listing.expect_texts(group + "findings", results.findings);
   const auto known = [](std::optional<double> number) {
     return number ? nlohmann::json{*number}[0] : nlohmann::json{};
   };
-  friction::for_each_result(
-      results, [&](const friction::ResultName& name, const friction::Estimate& estimate) {
+  analysis::for_each_result(
+      results, [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
         const std::string path = group + std::string{name.name};
         if (estimate.reason == record::kNoSuchResultThen) return listing.expect_absent(path);
         listing.expect_number(path, name.unit, estimate.value.value_or(std::nan("")));
@@ -170,25 +170,25 @@ void compare_results(RecordListing& listing, const friction::TestResults& result
 
 void compare_truth(RecordListing& listing, const record::Record& record) {
   if (!record.end->truth) return;
-  const friction::TestTruth& truth = *record.end->truth;
+  const model::TestTruth& truth = *record.end->truth;
   const std::string group = "entry/truth";
   record::for_each_field(truth, ListedFields{listing, group});
-  listing.expect_text(group + "/regime", std::string{friction::name(truth.regime)});
+  listing.expect_text(group + "/regime", std::string{model::name(truth.regime)});
   if (truth.solver) record::for_each_field(*truth.solver, ListedFields{listing, group + "/solver"});
   if (!record.true_coefficient.empty()) {
     listing.expect_column(group + "/coefficient", "1", record.true_coefficient);
   }
-  using friction::ModeInterval;
+  using model::ModeInterval;
   listing.expect_column(group + "/modes/start_time", "s",
                         column_of<ModeInterval>(truth.modes, &ModeInterval::start_s));
   listing.expect_column(group + "/modes/end_time", "s",
                         column_of<ModeInterval>(truth.modes, &ModeInterval::end_s));
   std::vector<std::string> modes;
-  for (const ModeInterval& mode : truth.modes) modes.emplace_back(friction::name(mode.mode));
+  for (const ModeInterval& mode : truth.modes) modes.emplace_back(model::name(mode.mode));
   listing.expect_texts(group + "/modes/mode", modes);
   record::for_each_true_cycle_column([&](const FieldName& name, auto member) {
     listing.expect_column(group + "/cycles/" + std::string{name.name}, name.unit,
-                          column_of<friction::TrueCycle>(truth.cycles, member));
+                          column_of<model::TrueCycle>(truth.cycles, member));
   });
 }
 
@@ -262,7 +262,7 @@ TEST(OldRecord, MadeBeforeSomeColumnsAndResultsIsReadWithoutThem) {
   const auto read = record::read_record(path);
   ASSERT_TRUE(read) << read.error().message;
   ASSERT_EQ(read->cycles.size(), 2U);
-  for (const friction::Cycle& cycle : read->cycles) EXPECT_TRUE(std::isnan(cycle.pull_speed_m_per_s));
+  for (const detect::Cycle& cycle : read->cycles) EXPECT_TRUE(std::isnan(cycle.pull_speed_m_per_s));
   EXPECT_FALSE(read->end->results.escape_speed.value);
   EXPECT_EQ(read->end->results.escape_speed.reason, record::kNoSuchResultThen);
   EXPECT_EQ(read->end->results.delta_mu_combined.reason, record::kNoSuchResultThen);

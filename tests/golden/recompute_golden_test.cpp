@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <vector>
 
+#include "core/evaluation/analyse.hpp"
 #include "core/pipeline/self_check.hpp"
 #include "core/record/reader.hpp"
-#include "daemon/analyse.hpp"
 #include "tests/support/record_equality.hpp"
 #include "tests/support/record_samples.hpp"
 
@@ -50,16 +50,16 @@ constexpr double kOfStandardError = 1e-3;
 /// What has no standard error: a number worked out in another order.
 constexpr double kRelative = 1e-9;
 
-void expect_close(const friction::TestResults& now, const friction::TestResults& then) {
+void expect_close(const analysis::TestResults& now, const analysis::TestResults& then) {
   EXPECT_EQ(now.regime, then.regime);
   EXPECT_EQ(now.findings, then.findings);
-  std::vector<friction::Estimate> stored;
-  friction::for_each_result(then, [&](const friction::ResultName&, const friction::Estimate& estimate) {
+  std::vector<analysis::Estimate> stored;
+  analysis::for_each_result(then, [&](const analysis::ResultName&, const analysis::Estimate& estimate) {
     stored.push_back(estimate);
   });
   auto next = stored.begin();
-  friction::for_each_result(now, [&](const friction::ResultName& name, const friction::Estimate& estimate) {
-    const friction::Estimate& old = *next++;
+  analysis::for_each_result(now, [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
+    const analysis::Estimate& old = *next++;
     if (old.reason == record::kNoSuchResultThen) return;
     EXPECT_EQ(estimate.reason, old.reason) << name.name;
     ASSERT_EQ(estimate.value.has_value(), old.value.has_value()) << name.name;
@@ -73,8 +73,7 @@ void expect_close(const friction::TestResults& now, const friction::TestResults&
 }
 
 /// But for the evidence of the cycles, which were stored without.
-void expect_close(const base::LongColumn<friction::Cycle>& now,
-                  const base::LongColumn<friction::Cycle>& then) {
+void expect_close(const base::LongColumn<detect::Cycle>& now, const base::LongColumn<detect::Cycle>& then) {
   ASSERT_EQ(now.size(), then.size());
   record::for_each_cycle_column([&](const record::FieldName& name, auto member) {
     for (std::size_t i = 0; i < now.size(); ++i) {
@@ -100,8 +99,8 @@ TEST(Recompute, EveryResultCycleAndSpikeFromRawCountsAndFacts) {
   ASSERT_TRUE(thin->cycles.empty());
   ASSERT_TRUE(thin->spikes.empty());
 
-  const auto again = daemon::analyse(*thin);
-  const auto from_whole = daemon::analyse(*whole);
+  const auto again = evaluation::analyse(*thin);
+  const auto from_whole = evaluation::analyse(*whole);
 
   ASSERT_TRUE(again) << again.error().message;
   ASSERT_TRUE(from_whole) << from_whole.error().message;
@@ -109,7 +108,7 @@ TEST(Recompute, EveryResultCycleAndSpikeFromRawCountsAndFacts) {
   test::expect_same_cycles(again->cycles, from_whole->cycles);
   EXPECT_EQ(again->spikes, from_whole->spikes);
 
-  const friction::TestResults& stored = whole->end->results;
+  const analysis::TestResults& stored = whole->end->results;
   // The record has what there is to compute: nothing is compared with nothing.
   EXPECT_TRUE(stored.mu_s.standard_error);
   EXPECT_TRUE(stored.mu_s.systematic_uncertainty);

@@ -11,17 +11,17 @@
 #include <random>
 #include <vector>
 
+#include "core/evaluation/analyse.hpp"
 #include "core/pipeline/processor.hpp"
 #include "core/record/finaliser.hpp"
+#include "core/record/method_text.hpp"
 #include "core/record/reader.hpp"
-#include "daemon/analyse.hpp"
-#include "daemon/method_text.hpp"
-#include "daemon/tester_file.hpp"
+#include "core/record/tester_file.hpp"
 #include "drivers/factory/factory.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/record_equality.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::evaluation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -70,26 +70,26 @@ class Collector final : public pipeline::Sink {
 /// \param characterisation  of the tester, as in the configuration; empty: what the board knows of it.
 /// \param kept  by the configuration, with what a replayed record kept.
 std::vector<record::Record> run(drivers::OpenedBoard opened, unsigned seed, int lost,
-                                const std::string& characterisation = {}, const friction::Kept& kept = {}) {
+                                const std::string& characterisation = {}, const analysis::Kept& kept = {}) {
   const daq::BoardInfo& info = opened.board->info();
   record::RecordHeader header;
   header.board = info;
   header.load_cell = opened.load_cell;
   header.tester = record::TesterFacts::of(*opened.tester);
-  header.process.method = method_text({});
+  header.process.method = record::method_text({});
   header.process.characterisation = characterisation.empty() ? opened.characterisation : characterisation;
-  header.process.kept = friction::text_of(friction::either(kept, *friction::kept_from_text(opened.kept)));
+  header.process.kept = analysis::text_of(analysis::either(kept, *analysis::kept_from_text(opened.kept)));
   Collector collector{header};
 
   pipeline::ProcessorSettings settings;
   settings.segmenter.scan_rate_Hz = info.scan_rate_granted_Hz;
   settings.analysis.scan_rate_Hz = info.scan_rate_granted_Hz;
   settings.analysis.tester = *opened.tester;
-  settings.analysis.kept = friction::either(kept, *friction::kept_from_text(opened.kept));
+  settings.analysis.kept = analysis::either(kept, *analysis::kept_from_text(opened.kept));
   settings.recorded = opened.recorded;
   settings.second = info.second;
   if (!header.process.characterisation.empty()) {
-    const auto known = parse_tester(header.process.characterisation, "characterisation");
+    const auto known = record::parse_tester(header.process.characterisation, "characterisation");
     EXPECT_TRUE(known) << known.error().message;
     if (known) settings.analysis.prior.coupling = *known;
   }
@@ -216,10 +216,10 @@ void expect_same_bits_from_file(const record::Record& live, const std::filesyste
 }
 
 TEST(ReplayGoldenOfAKnownTester, RecordCarriesWhatWasKnownAndGivesTheSameBits) {
-  friction::Characterisation known;
+  analysis::Characterisation known;
   known.coupling = {125.6637, 0.022, Eigen::Vector2d{1e-4, 1e-8}.asDiagonal()};
   known.ring_downs = 1;
-  const std::string text = tester_text(known, "");
+  const std::string text = record::tester_text(known, "");
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / fmt::format("stickslip-golden-known-{}.h5", ::getpid());
   std::filesystem::remove(file);
@@ -260,7 +260,7 @@ TEST(ReplayGoldenOfWhatIsKept, RecordCarriesItAndGivesTheSameBits) {
     auto board = drivers::open_board(scene(name), clock);
     ASSERT_TRUE(board) << board.error().message;
     const std::vector<record::Record> live =
-        run(std::move(*board), 1, 0, {}, *friction::kept_from_text(words));
+        run(std::move(*board), 1, 0, {}, *analysis::kept_from_text(words));
     ASSERT_EQ(live.size(), 1U);
 
     std::optional<record::Record> stored;
@@ -280,4 +280,4 @@ TEST(ReplayGoldenOfWhatIsKept, RecordCarriesItAndGivesTheSameBits) {
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutGaps, ReplayGolden, testing::Values(0, 97));
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::evaluation

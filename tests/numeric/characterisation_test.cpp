@@ -1,4 +1,4 @@
-#include "core/friction/characterisation.hpp"
+#include "core/analysis/characterisation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 
 #include <Eigen/Cholesky>
 
-#include "core/friction/test_analysis.hpp"
+#include "core/analysis/test_analysis.hpp"
 #include "tests/support/estimator_limits.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::analysis {
 namespace {
 
 constexpr double kInchPerMinute_m_per_s = 0.0254 / 60.0;
@@ -68,7 +68,8 @@ TEST(Characterisation, NormalisedErrorsOfItsMeanAreChiSquared) {
 class TesterChecked : public testing::Test {
  protected:
   /// A test at 12 in/min of the tester known, with its noise, against what it is told.
-  TestAnalysis analysed(const SharedPrior::Coupling& told, double plan_in_per_min, std::uint64_t seed) const {
+  TestAnalysis analysed(const estimate::SharedPrior::Coupling& told, double plan_in_per_min,
+                        std::uint64_t seed) const {
     AnalysisSettings settings;
     settings.prior.coupling = told;
     settings.tester.pull_speed_m_per_s = plan_in_per_min * kInchPerMinute_m_per_s;
@@ -82,7 +83,7 @@ class TesterChecked : public testing::Test {
   }
 
   test::LimitScene scene_;
-  SharedPrior::Coupling known_ = *scene_.prior({true, false}).coupling;
+  estimate::SharedPrior::Coupling known_ = *scene_.prior({true, false}).coupling;
   mutable TestResults results_;
 };
 
@@ -107,7 +108,7 @@ TEST_F(TesterChecked, PullSpeedIsKnownToHalfAPerCentAndAWrongPlanIsCaught) {
 }
 
 TEST_F(TesterChecked, AnotherSpringIsAFindingAndIsNotUsed) {
-  SharedPrior::Coupling other = known_;
+  estimate::SharedPrior::Coupling other = known_;
   other.omega *= 1.01;  // 9 standard errors of one test of ten cycles, whose ω is known to 0.11 %.
   const TestAnalysis analysis = analysed(other, 12.0, 1);
   ASSERT_TRUE(analysis.tester_check());
@@ -125,4 +126,4 @@ TEST_F(TesterChecked, KnowingTheTesterCutsTheErrorOfSMinusK) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::analysis

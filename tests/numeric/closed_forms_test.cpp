@@ -1,4 +1,4 @@
-#include "core/friction/closed_forms.hpp"
+#include "core/model/closed_forms.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-namespace stickslip::friction {
+namespace stickslip::model {
 namespace {
 
 using std::numbers::pi;
@@ -65,4 +65,4 @@ TEST(ClosedForms, HalfLifeWithoutDampingIsForEver) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::model

@@ -90,7 +90,7 @@ TEST(Course, OperatorRemovesADecay) {
 TEST(Course, ResponseSolvesTheOscillatorsEquation) {
   const double omega0 = 125.0;
   for (const double damping : {0.0, 0.044, 1.9, 2.0, 2.1, 4.0}) {
-    const auto oscillator = friction::Oscillator::from_omega0(omega0 * omega0, damping * omega0);
+    const auto oscillator = model::Oscillator::from_omega0(omega0 * omega0, damping * omega0);
     for (const double rate : {1e-9, 0.3, -0.2}) {
       const Course drive = some_course(rate);
       const Course p = drive.response(oscillator);
@@ -109,7 +109,7 @@ TEST(Course, ResponseSolvesTheOscillatorsEquation) {
 
 TEST(Course, ResonanceIsWhereAnOverdampedOscillatorDecaysByItself) {
   // λ² − γλ + ω₀² = 0 at λ = γ/2 ± κ: 1 and 4 for γ = 5, ω₀² = 4.
-  const auto oscillator = friction::Oscillator::from_omega0(4.0, 5.0);
+  const auto oscillator = model::Oscillator::from_omega0(4.0, 5.0);
   EXPECT_EQ(sim::distance_from_resonance(1.0, oscillator), 0.0);
   EXPECT_EQ(sim::distance_from_resonance(4.0, oscillator), 0.0);
   EXPECT_EQ(sim::distance_from_resonance(0.0, oscillator), 1.0);

@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <random>
 
-#include "core/friction/test_analysis.hpp"
+#include "core/analysis/test_analysis.hpp"
 #include "tests/support/estimator_limits.hpp"
 #include "tests/support/sanitized.hpp"
 #include "tests/support/scatter_trials.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::analysis {
 namespace {
 
 /// Errors of one result over many tests.
@@ -131,4 +131,4 @@ TEST(CycleFeatures, SayWhyThereAreNone) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::analysis

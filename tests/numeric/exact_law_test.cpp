@@ -14,7 +14,7 @@
 
 #include "core/accuracy/comparison.hpp"
 #include "core/accuracy/reference.hpp"
-#include "core/friction/threshold.hpp"
+#include "core/model/threshold.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
 namespace stickslip::numeric {
@@ -66,7 +66,7 @@ TEST(ExactLaw, SticksAndSlipsForTenThousandCycles) {
 TEST(ExactLaw, HoldsForAnyDampingAndSpeedAwayFromGrazing) {
   for (const double damping : {0.0005, 0.005, 0.1, 0.5}) {
     for (const double part : {0.01, 0.1, 0.5, 0.8}) {
-      expect_the_law(motion_at(part * friction::Q_threshold(damping), damping), 0.0, 1e2);
+      expect_the_law(motion_at(part * model::Q_threshold(damping), damping), 0.0, 1e2);
     }
   }
 }
@@ -74,14 +74,14 @@ TEST(ExactLaw, HoldsForAnyDampingAndSpeedAwayFromGrazing) {
 TEST(ExactLaw, HoldsWhereTheSledNeverSticksAgain) {
   for (const double damping : {0.0005, 0.022, 0.3}) {
     for (const double times : {1.2, 3.0}) {
-      expect_the_law(motion_at(times * friction::Q_threshold(damping), damping), 0.0, 1e3);
+      expect_the_law(motion_at(times * model::Q_threshold(damping), damping), 0.0, 1e3);
     }
   }
   sim::Motion motion = motion_at(0.5, 0.022);
   const double omega0_squared = motion.oscillator.omega0_squared();
   for (const double ratio : {0.999999, 1.0, 1.000001, 3.0}) {  // Of critical damping.
     motion.oscillator =
-        friction::Oscillator::from_omega0(omega0_squared, 2.0 * std::sqrt(omega0_squared) * ratio);
+        model::Oscillator::from_omega0(omega0_squared, 2.0 * std::sqrt(omega0_squared) * ratio);
     expect_the_law(motion, 0.0, 1e2);
   }
 }

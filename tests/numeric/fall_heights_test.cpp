@@ -1,13 +1,13 @@
 // The ends of slips by the heights of falls alone.
 
-#include "core/friction/fall_heights.hpp"
+#include "core/detect/fall_heights.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-namespace stickslip::friction {
+namespace stickslip::detect {
 namespace {
 
 /// Of the paper's tester [Penner 1995, (19)].
@@ -61,4 +61,4 @@ TEST(FallHeights, LearnWhatIsUsual) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::detect

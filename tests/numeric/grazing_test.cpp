@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "core/accuracy/reference.hpp"
-#include "core/friction/threshold.hpp"
+#include "core/model/threshold.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
 namespace stickslip::numeric {
@@ -30,7 +30,7 @@ std::int64_t exact_captures(const sim::Motion& motion, std::int64_t scans) {
 // c′(t₃) − r is about r (1 − Q/Q_th) and is computed to some ε r: sixteen digits less three leave n = 13.
 TEST(Grazing, EachSideOfTheThresholdHasItsRegimeToThirteenDigits) {
   for (const double damping : {0.001, 0.022, 0.3}) {
-    const double Q_th = friction::Q_threshold(damping);
+    const double Q_th = model::Q_threshold(damping);
     for (int n = 2; n <= 13; ++n) {
       const double step = std::pow(10.0, -n);
       const sim::Motion below = accuracy::grazing_motion(damping, Q_th * (1.0 - step));
@@ -54,7 +54,7 @@ TEST(Grazing, EachSideOfTheThresholdHasItsRegimeToThirteenDigits) {
 TEST(Grazing, CaptureTimesKeepToTheSquareRootLimit) {
   constexpr double kFewRoundings = 64.0;
   for (const double damping : {0.005, 0.022, 0.1}) {
-    const double Q_th = friction::Q_threshold(damping);
+    const double Q_th = model::Q_threshold(damping);
     for (int n = 1; n <= 13; ++n) {
       const double below = std::pow(10.0, -n);
       const sim::Motion motion = accuracy::grazing_motion(damping, Q_th * (1.0 - below));
@@ -108,7 +108,7 @@ TEST(Grazing, CvodeIsRightOrSaysThatItCannotTell) {
 // at scans only cannot see it where that is far below their distance, whatever its tolerance: at n = 6 it is
 // 0.4 % of a scan period, and the scene has fifteen such chances at the most.
 TEST(Grazing, IntegratorThatLooksAtScansMissesItAtAnyTolerance) {
-  const double Q_th = friction::Q_threshold(0.022);
+  const double Q_th = model::Q_threshold(0.022);
   for (const double tolerance : {1e-6, 1e-9, 1e-12}) {
     const auto odeint = accuracy::make_odeint(tolerance);
     EXPECT_EQ(accuracy::goes_on(*odeint, 0.022, Q_th * (1.0 - 1e-6)), accuracy::GoesOn::kNo) << tolerance;
@@ -120,7 +120,7 @@ TEST(Grazing, IntegratorThatLooksAtScansMissesItAtAnyTolerance) {
 // A method of order 1 has c′ wrong by some h ω r, so its threshold is off by some h ω: at 64 steps a scan,
 // 0.6 %. It cannot tell the sides at n = 5, but does well at a factor of 1.5.
 TEST(Grazing, EulerCannotTellTheSides) {
-  const double Q_th = friction::Q_threshold(0.022);
+  const double Q_th = model::Q_threshold(0.022);
   const auto euler = accuracy::make_euler(64);
   EXPECT_EQ(accuracy::goes_on(*euler, 0.022, Q_th / 1.5), accuracy::GoesOn::kYes);
   EXPECT_EQ(accuracy::goes_on(*euler, 0.022, Q_th * 1.5), accuracy::GoesOn::kNo);
@@ -141,8 +141,8 @@ TEST(Grazing, SmoothFrictionConvergesToAnotherThreshold) {
     most = std::fmax(
         most, (motion.mu_k + (motion.mu_s - motion.mu_k) * std::exp(-stribeck * stribeck)) * std::tanh(z));
   }
-  const double Q_th = friction::Q_threshold(kDamping);
-  const friction::Oscillator& tester = motion.oscillator;
+  const double Q_th = model::Q_threshold(kDamping);
+  const model::Oscillator& tester = motion.oscillator;
   const double predicted =
       Q_th * (most - motion.mu_k) / (motion.mu_s - motion.mu_k) /
       (1.0 + Q_th * tester.gamma_per_s * tester.omega_rad_per_s() / tester.omega0_squared());

@@ -1,4 +1,4 @@
-#include "core/friction/inversion.hpp"
+#include "core/model/inversion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,11 +6,11 @@
 #include <limits>
 #include <numbers>
 
-#include "core/friction/closed_forms.hpp"
-#include "core/friction/threshold.hpp"
-#include "core/friction/uniform_course.hpp"
+#include "core/model/closed_forms.hpp"
+#include "core/model/threshold.hpp"
+#include "core/model/uniform_course.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::model {
 namespace {
 
 constexpr double kDamping = 0.022;  // [19]
@@ -112,4 +112,4 @@ TEST(Inversion, MeanExceedsKByTheDamping) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::model

@@ -1,14 +1,14 @@
-#include "core/friction/junction.hpp"
+#include "core/detect/junction.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "core/friction/threshold.hpp"
+#include "core/model/threshold.hpp"
 #include "tests/support/model_course.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::estimate {
 namespace {
 
 using test::ModelCourse;
@@ -18,7 +18,7 @@ constexpr double kDeltaMu = ModelCourse::kS - ModelCourse::kK;
 
 /// Ratio for the first junction of the course: from the first maximum to the minimum after the second.
 double first_junction(const ModelCourse& course, const Trace& trace, double sigma) {
-  const SlipModel model{course.shared, course.windows.front().slip, course.windows.front().captured};
+  const model::SlipModel model{course.shared, course.windows.front().slip, course.windows.front().captured};
   const double half_period_s = std::numbers::pi / course.shared.omega;
   const double peak_s = ModelCourse::kFirstOnset_s + model.waveform().peak_time_s();
   const double trough_s = course.windows.size() > 1
@@ -26,8 +26,8 @@ double first_junction(const ModelCourse& course, const Trace& trace, double sigm
                               : peak_s + 3.0 * half_period_s;
   const auto first = static_cast<std::size_t>(std::lround(peak_s * ModelCourse::kScanRate_Hz));
   const auto end = static_cast<std::size_t>(std::lround(trough_s * ModelCourse::kScanRate_Hz)) + 1;
-  return capture_log_likelihood_ratio(trace, first, std::min(end, trace.size()), course.shared, sigma,
-                                      kDeltaMu);
+  return detect::capture_log_likelihood_ratio(trace, first, std::min(end, trace.size()), course.shared, sigma,
+                                              kDeltaMu);
 }
 
 /// How many of n noisy repetitions are called captured.
@@ -51,7 +51,7 @@ TEST(Junction, OscillationThatGoesOnIsCalledFree) {
 }
 
 TEST(Junction, TellsTheSidesOfTheThresholdApart) {
-  const double Q_th = Q_threshold(ModelCourse::kGammaOver2Omega);
+  const double Q_th = model::Q_threshold(ModelCourse::kGammaOver2Omega);
   const int below = called_captured(ModelCourse::captured(0.9 * Q_th, 2), 200);
   const int above = called_captured(ModelCourse::free(1.1 * Q_th, 3.0), 200);
   RecordProperty("captured_below", below);
@@ -61,7 +61,7 @@ TEST(Junction, TellsTheSidesOfTheThresholdApart) {
 }
 
 TEST(Junction, ExactTracesAreToldApartOnePercentFromTheThreshold) {
-  const double Q_th = Q_threshold(ModelCourse::kGammaOver2Omega);
+  const double Q_th = model::Q_threshold(ModelCourse::kGammaOver2Omega);
   const ModelCourse below = ModelCourse::captured(0.99 * Q_th, 2);
   EXPECT_GT(first_junction(below, below.trace, 1e-5), 3.0);
   const ModelCourse above = ModelCourse::free(1.01 * Q_th, 3.0);
@@ -92,27 +92,29 @@ TEST(Junction, SpikesThatWereNotFoundDoNotTurnTheVerdict) {
 
 TEST(Junction, CaptureNeedsACredibleNextSlip) {
   // Just above the threshold a capture that slips at once, with S hardly above K, would look the same.
-  const double Q_th = Q_threshold(ModelCourse::kGammaOver2Omega);
+  const double Q_th = model::Q_threshold(ModelCourse::kGammaOver2Omega);
   const ModelCourse above = ModelCourse::free(1.003 * Q_th, 3.0);
   EXPECT_LT(first_junction(above, above.trace, kJunctionSigma), -std::log(20.0));
 }
 
 TEST(Junction, FewerThanEightScansDecideNothing) {
   const ModelCourse course = ModelCourse::captured(1.3, 2);
-  EXPECT_EQ(capture_log_likelihood_ratio(course.trace, 20, 27, course.shared, kJunctionSigma, kDeltaMu), 0.0);
+  EXPECT_EQ(
+      detect::capture_log_likelihood_ratio(course.trace, 20, 27, course.shared, kJunctionSigma, kDeltaMu),
+      0.0);
   Trace unusable = course.trace;
   unusable.usable.assign(unusable.size(), 0);
-  EXPECT_EQ(
-      capture_log_likelihood_ratio(unusable, 20, unusable.size(), course.shared, kJunctionSigma, kDeltaMu),
-      0.0);
+  EXPECT_EQ(detect::capture_log_likelihood_ratio(unusable, 20, unusable.size(), course.shared, kJunctionSigma,
+                                                 kDeltaMu),
+            0.0);
 }
 
 TEST(Junction, ConstantTraceGivesANumber) {
   Trace trace = ModelCourse::free(2.6, 3.0).trace;
   trace.value.assign(trace.size(), 0.3);
-  EXPECT_TRUE(std::isfinite(
-      capture_log_likelihood_ratio(trace, 20, 50, ModelCourse::tester_at(1.3), kJunctionSigma, kDeltaMu)));
+  EXPECT_TRUE(std::isfinite(detect::capture_log_likelihood_ratio(trace, 20, 50, ModelCourse::tester_at(1.3),
+                                                                 kJunctionSigma, kDeltaMu)));
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::estimate

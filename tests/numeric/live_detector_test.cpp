@@ -1,7 +1,7 @@
 // The live detector and its three estimators against simulated truth. The streams are seeded; a failure
 // prints the scene.
 
-#include "core/friction/live_detector.hpp"
+#include "core/detect/live_detector.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,13 +11,13 @@
 #include <utility>
 #include <vector>
 
-#include "core/friction/cycle_fit.hpp"
-#include "core/friction/ring_down_watch.hpp"
+#include "core/detect/ring_down_watch.hpp"
+#include "core/estimate/cycle_fit.hpp"
 #include "tests/support/allocation_count.hpp"
 #include "tests/support/live_trials.hpp"
 #include "tests/support/sanitized.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::detect {
 namespace {
 
 using test::LiveOutcome;
@@ -73,14 +73,14 @@ Errors errors_of(LiveScene scene, EstimatorTier tier, bool characterised, int tr
 
 TEST(CycleCourse, IsTheSlipModelWithItsCurvature) {
   const LiveScene scene;
-  const SharedParameters shared = scene.shared();
-  const SlipParameters slip{0.1, 0.35, 0.30};
+  const model::SharedParameters shared = scene.shared();
+  const model::SlipParameters slip{0.1, 0.35, 0.30};
   for (const bool captured : {true, false}) {
-    const SlipModel model{shared, slip, captured};
-    const CycleCourse course{shared, slip, captured};
+    const model::SlipModel model{shared, slip, captured};
+    const estimate::CycleCourse course{shared, slip, captured};
     for (double t = 0.08; t < 0.2; t += 0.0007) {
-      const SlipModelPoint expected = model.at(t);
-      const CycleCourse::Point point = course.at(t);
+      const model::SlipModelPoint expected = model.at(t);
+      const estimate::CycleCourse::Point point = course.at(t);
       // A few roundings of numbers up to 1, and of derivatives up to r.
       EXPECT_NEAR(point.value, expected.value, 1e-14);
       EXPECT_NEAR((point.by.head<3>() - expected.by_slip).norm(), 0.0, 1e-12);
@@ -304,7 +304,7 @@ TEST(LiveDetector, GapsInARowCostTheCyclesTheyLieInAlone) {
             ++untouched;
           }
           EXPECT_GE(untouched, 5) << name(tier) << ", " << between << ", " << after_onset_s;
-          EXPECT_EQ(detector.state().regime, Regime::kStickSlip)
+          EXPECT_EQ(detector.state().regime, model::Regime::kStickSlip)
               << name(tier) << ", " << between << ", " << after_onset_s;
         }
       }
@@ -344,7 +344,7 @@ TEST(LiveDetector, AGapInARingDownDoesNotEndIt) {
           static_cast<std::int64_t>((trial.slips().back().onset_s + 0.1) * scene.scan_rate_Hz);
       LiveDetector detector{settings_of(scene, EstimatorTier::kFit, true)};
       (void)with_gaps(scene, detector, {{escaped + first, lost}});
-      EXPECT_EQ(detector.state().regime, Regime::kRingDown) << lost << ", " << first;
+      EXPECT_EQ(detector.state().regime, model::Regime::kRingDown) << lost << ", " << first;
     }
   }
 }
@@ -375,4 +375,4 @@ TEST(LiveDetector, FlagsSpikesGapsAndSaturationOfTheirOwnCycleAlone) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::detect

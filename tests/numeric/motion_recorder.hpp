@@ -18,7 +18,7 @@ inline constexpr double kGravity = 9.80665;
 /// S 0.35, K 0.30, belt at the speed that gives this Q.
 inline sim::Motion motion_at(double Q, double gamma_over_2omega, double mu_s = 0.35, double mu_k = 0.30) {
   sim::Motion motion;
-  motion.oscillator = friction::Oscillator::from_omega(kOmega, gamma_over_2omega);
+  motion.oscillator = model::Oscillator::from_omega(kOmega, gamma_over_2omega);
   motion.mu_s = mu_s;
   motion.mu_k = mu_k;
   motion.gravity_m_per_s2 = kGravity;

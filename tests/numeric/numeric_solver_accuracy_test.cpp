@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/friction/threshold.hpp"
+#include "core/model/threshold.hpp"
 #include "core/sim/numeric_solver.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
@@ -30,7 +30,7 @@ sim::Motion with_slack(double gamma_over_2omega) {
 
 sim::Motion overdamped() {
   sim::Motion motion = motion_at(1.0, kDamping);
-  motion.oscillator = friction::Oscillator::from_omega0(kOmega * kOmega, 3.0 * kOmega);
+  motion.oscillator = model::Oscillator::from_omega0(kOmega * kOmega, 3.0 * kOmega);
   return lasting(motion);
 }
 
@@ -112,8 +112,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Case{"sticking", lasting(motion_at(1.0, kDamping))}, Case{"undamped", lasting(motion_at(1.3, 0.0))},
         Case{"ring_down", lasting(motion_at(2.5, kDamping))},
-        Case{"below_threshold", lasting(motion_at(0.9 * friction::Q_threshold(kDamping), kDamping))},
-        Case{"above_threshold", lasting(motion_at(1.1 * friction::Q_threshold(kDamping), kDamping))},
+        Case{"below_threshold", lasting(motion_at(0.9 * model::Q_threshold(kDamping), kDamping))},
+        Case{"above_threshold", lasting(motion_at(1.1 * model::Q_threshold(kDamping), kDamping))},
         Case{"slack", with_slack(kDamping)}, Case{"undamped_slack", with_slack(0.0)},
         Case{"overdamped", overdamped()}, Case{"ramp_up", on_a_ramp(1.5)}, Case{"ramp_down", on_a_ramp(0.3)},
         Case{"slow_motor", with_slow_motor()}, Case{"startup_slack", taut_later()},
@@ -158,7 +158,7 @@ int captures_after_onset(double Q, double accuracy) {
 // of its ends. The solver's c is right to the accuracy A, c′/r to A ω/r = A/(Q (S − K)) ≈ 10 A: it can tell
 // the sides apart as long as δ ≥ 100 A.
 TEST(NumericSolver, TakesTheRightSideOfTheThreshold) {
-  const double Q_th = friction::Q_threshold(kDamping);
+  const double Q_th = model::Q_threshold(kDamping);
   for (int n = 2; n <= 8; ++n) {
     const double delta = std::pow(10.0, -n);
     const double accuracy = 0.01 * delta;
@@ -212,7 +212,7 @@ TEST(NumericSolver, ScalesWithTheStiffness) {
   const sim::Motion motion = lasting(motion_at(1.0, kDamping));
   sim::NumericSolver soft{motion, kRate_Hz, 1e-9};
   sim::Motion stiff = motion;
-  stiff.oscillator = friction::Oscillator::from_omega(2.0 * kOmega, kDamping);
+  stiff.oscillator = model::Oscillator::from_omega(2.0 * kOmega, kDamping);
   stiff.belt = {{motion.belt[0].duration_s / 2.0, motion.belt[0].speed_m_per_s / 2.0}};
   sim::NumericSolver fast{stiff, 2.0 * kRate_Hz, 1e-9};
   EXPECT_LE(largest_difference(scans_of(fast, kDuration_s), scans_of(soft, kDuration_s)), 2e-9);

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/friction/slip_waveform.hpp"
+#include "core/model/slip_waveform.hpp"
 #include "core/sim/bounded_rise.hpp"
 #include "core/sim/numeric_solver.hpp"
 #include "tests/numeric/motion_recorder.hpp"
@@ -35,7 +35,7 @@ sim::Motion equivalent(const sim::Motion& motion, double per_speed) {
   const double omega0_squared = motion.oscillator.omega0_squared();
   same.velocity_dependence.reset();
   same.oscillator =
-      friction::Oscillator::from_omega0(omega0_squared, motion.oscillator.gamma_per_s + per_speed * kGravity);
+      model::Oscillator::from_omega0(omega0_squared, motion.oscillator.gamma_per_s + per_speed * kGravity);
   same.mu_k += per_speed * motion.belt[0].speed_m_per_s;
   return same;
 }

@@ -55,7 +55,7 @@ TEST(RateAndStateFriction, AStepOfVelocityIsAnsweredByTheDirectEffect) {
 
 /// Does a small disturbance of steady sliding grow? Largest |c − μ| late over early.
 bool grows(const RateAndState& settings, double speed, double omega0_squared) {
-  const auto oscillator = friction::Oscillator::from_omega0(omega0_squared, 0.0);
+  const auto oscillator = model::Oscillator::from_omega0(omega0_squared, 0.0);
   sim::RateAndStateSystem system{settings, oscillator, kGravity};
   sim::RateAndStateSystem::Piece piece;
   piece.belt.rate = oscillator.stick_rate_per_s(speed, kGravity);

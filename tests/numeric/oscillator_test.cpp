@@ -1,4 +1,4 @@
-#include "core/friction/oscillator.hpp"
+#include "core/model/oscillator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/accuracy/oscillation50.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::model {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -62,4 +62,4 @@ TEST(Oscillator, DampedAndUndampedFrequencyBelongTogether) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::model

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/accuracy/oscillation50.hpp"
-#include "core/friction/threshold.hpp"
+#include "core/model/threshold.hpp"
 #include "core/sim/propagator.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
@@ -68,7 +68,7 @@ TEST(PropagatorAccuracy, ErrorAfterNCyclesIsNTimesFourEpsilonsOfAPeriod) {
   for (const double Q : {0.3, 1.0, 1.3, 1.7}) {
     for (const double damping : {0.001, 0.022, 0.1}) {
       const sim::Motion motion = motion_at(Q, damping);
-      if (Q > 0.9 * friction::Q_threshold(damping)) continue;  // Away from grazing.
+      if (Q > 0.9 * model::Q_threshold(damping)) continue;  // Away from grazing.
       constexpr double kRate_Hz = 350.0;
       MotionRecorder recorder{kRate_Hz};
       sim::Propagator sled{motion, kRate_Hz, &recorder};

@@ -7,13 +7,13 @@
 #include <limits>
 #include <vector>
 
-#include "core/friction/threshold.hpp"
+#include "core/model/threshold.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
 namespace stickslip::numeric {
 namespace {
 
-using friction::Mode;
+using model::Mode;
 using sim::BeltSegment;
 using sim::KineticDrift;
 
@@ -22,7 +22,7 @@ constexpr double kSpeed = 0.00508;
 
 TEST(KineticDrift, HasNoClosedFormInResonance) {
   sim::Motion motion = on_belt({{.duration_s = 2.0, .speed_m_per_s = kSpeed}});
-  motion.oscillator = friction::Oscillator::from_omega0(4.0, 5.0);  // Decays with 1/s and 4/s.
+  motion.oscillator = model::Oscillator::from_omega0(4.0, 5.0);  // Decays with 1/s and 4/s.
   motion.kinetic_drift =
       KineticDrift{KineticDrift::Course::kExponential, KineticDrift::Over::kTime, 0.5, 1.0};
   EXPECT_FALSE(has_closed_form(motion));
@@ -41,7 +41,7 @@ double after_ringing_down(const KineticDrift& drift, double at_s) {
 // c = K(t) − γK′/ω₀² solves c″ + γc′ + ω₀²c = ω₀²K exactly while K is a line. The oscillation is down to
 // e^(−0.022 ω · 20) = 1e-24.
 TEST(KineticDrift, SteadySlidingLagsBehindALineByTheDampersShare) {
-  const friction::Oscillator oscillator = motion_at(1.0, 0.022).oscillator;
+  const model::Oscillator oscillator = motion_at(1.0, 0.022).oscillator;
   for (const double change : {-0.3, 0.5}) {
     const double slope_per_s = 0.30 * change / 40.0;
     const double expected =
@@ -54,7 +54,7 @@ TEST(KineticDrift, SteadySlidingLagsBehindALineByTheDampersShare) {
 
 // c = K∞ + B e^(−λt) with B = −K change ω₀²/(λ² − γλ + ω₀²).
 TEST(KineticDrift, SteadySlidingFollowsAnExponential) {
-  const friction::Oscillator oscillator = motion_at(1.0, 0.022).oscillator;
+  const model::Oscillator oscillator = motion_at(1.0, 0.022).oscillator;
   const double lambda = 1.0 / 10.0;
   const double part = oscillator.omega0_squared() /
                       (lambda * lambda - oscillator.gamma_per_s * lambda + oscillator.omega0_squared());
@@ -174,7 +174,7 @@ TEST(SpeedRamp, TheFaintestIsAConstantBelt) {
 // that the slope of the speed stops the sled.
 TEST(SpeedRamp, ThroughTheThresholdUpAndDownShowsHysteresis) {
   const double damping = 0.022;
-  const double Q_th = friction::Q_threshold(damping);
+  const double Q_th = model::Q_threshold(damping);
   sim::Motion motion = motion_at(Q_th, damping);
   const double v_th = motion.belt[0].speed_m_per_s;
   const double acceleration = v_th / 100.0;  // Per second: 5e-4 of v_th in a cycle.
@@ -199,7 +199,7 @@ TEST(SpeedRamp, DampingThroughCriticalJoinsWithoutAJump) {
     sim::Motion motion =
         on_belt({{.duration_s = 0.3, .acceleration_m_per_s2 = 0.02},
                  {.duration_s = 3.0, .speed_m_per_s = 0.006, .acceleration_m_per_s2 = -0.001}});
-    motion.oscillator = friction::Oscillator::from_omega0(kOmega * kOmega, 2.0 * kOmega * ratio);
+    motion.oscillator = model::Oscillator::from_omega0(kOmega * kOmega, 2.0 * kOmega * ratio);
     motion.kinetic_drift =
         KineticDrift{KineticDrift::Course::kExponential, KineticDrift::Over::kTime, 0.5, 2.0};
     return trace(motion, 350.0, 1200);

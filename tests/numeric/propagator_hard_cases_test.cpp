@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/friction/closed_forms.hpp"
-#include "core/friction/threshold.hpp"
+#include "core/model/closed_forms.hpp"
+#include "core/model/threshold.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
 namespace stickslip::numeric {
 namespace {
 
-using friction::Mode;
+using model::Mode;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
@@ -28,7 +28,7 @@ int slips_captured(const sim::Motion& motion, double duration_s) {
 
 TEST(PropagatorHardCases, EachSideOfTheThresholdHasItsRegimeToTenDigits) {
   for (const double damping : {0.001, 0.022, 0.3}) {
-    const double Q_th = friction::Q_threshold(damping);
+    const double Q_th = model::Q_threshold(damping);
     for (int n = 2; n <= 10; ++n) {
       const double step = std::pow(10.0, -n);
       // K = 2: a belt that starts at once takes the sled along only if its r < ω K or so.
@@ -42,12 +42,12 @@ TEST(PropagatorHardCases, EachSideOfTheThresholdHasItsRegimeToTenDigits) {
 TEST(PropagatorHardCases, CaptureJustBelowTheThresholdIsOnTime) {
   const double damping = 0.022;
   const double below = 1e-6;
-  const double Q = friction::Q_threshold(damping) * (1.0 - below);
+  const double Q = model::Q_threshold(damping) * (1.0 - below);
   const sim::Motion motion = motion_at(Q, damping);
   MotionRecorder recorder{350.0};
   sim::Propagator sled{motion, 350.0, &recorder};
   sled.skip(350);
-  const friction::SlipWaveform slip{0.30, 0.05, Q * kOmega * 0.05, motion.oscillator};
+  const model::SlipWaveform slip{0.30, 0.05, Q * kOmega * 0.05, motion.oscillator};
   const double expected_s = slip.rise_end_time_s() - 0.67 * std::sqrt(below) / kOmega;
   const double slip_s = recorder.captures_s.at(1) - recorder.onsets_s.at(0);
   EXPECT_NEAR(slip_s, expected_s, 0.01 * std::sqrt(below) / kOmega);  // 0.67 has two digits.
@@ -97,8 +97,7 @@ TEST(PropagatorHardCases, MillionUndampedCycles) {
     sim::ScanTime first, last;
   } ends;
   sim::Propagator sled{motion, kRate_Hz, &ends};
-  const double period_s =
-      (friction::undamped_slip_phase_rad(Q) + friction::undamped_stick_phase_rad(Q)) / kOmega;
+  const double period_s = (model::undamped_slip_phase_rad(Q) + model::undamped_stick_phase_rad(Q)) / kOmega;
   sled.skip(static_cast<std::int64_t>(1e6 * period_s * kRate_Hz));
   ASSERT_GT(ends.count, 999'000);
   const double elapsed_s = ends.last.periods_since(ends.first) / kRate_Hz;
@@ -109,7 +108,7 @@ TEST(PropagatorHardCases, MillionUndampedCycles) {
   std::vector<double> late(2000);
   sled.next(late);
   const double peak = *std::max_element(late.begin(), late.end());
-  const double true_peak = friction::undamped_maximum(0.30, 0.05, Q);
+  const double true_peak = model::undamped_maximum(0.30, 0.05, Q);
   EXPECT_LE(peak, true_peak + 1e-12);
   // The nearest of 2000 scans in 110 cycles is within 1/220 of a scan or so of a peak.
   EXPECT_GT(peak, true_peak - 1e-4);
@@ -152,7 +151,7 @@ TEST(PropagatorHardCases, OverdampedNeverSticksAgain) {
   const double omega0_squared = motion.oscillator.omega0_squared();
   for (const double ratio : {0.9, 0.999999, 1.0, 1.000001, 3.0}) {
     motion.oscillator =
-        friction::Oscillator::from_omega0(omega0_squared, 2.0 * std::sqrt(omega0_squared) * ratio);
+        model::Oscillator::from_omega0(omega0_squared, 2.0 * std::sqrt(omega0_squared) * ratio);
     EXPECT_EQ(slips_captured(motion, 100.0), 0) << ratio;
     EXPECT_NEAR(trace(motion, 350.0, 35'000).back(), 0.30, 1e-12) << ratio;  // Steady sliding.
   }

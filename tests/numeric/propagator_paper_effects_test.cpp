@@ -9,7 +9,7 @@
 namespace stickslip::numeric {
 namespace {
 
-using friction::Mode;
+using model::Mode;
 using sim::Coefficients;
 
 sim::Motion scattered(double Q, double delta_mu_cv, double mu_k_sd, double length_m) {
@@ -82,7 +82,7 @@ TEST(Scatter, EachContactGivesWayAtItsOwnS) {
 // Overdamped sliding settles at the belt's speed v: a new place every L/v.
 TEST(Scatter, IsRenewedEveryCorrelationLengthOfSteadySliding) {
   sim::Motion motion = scattered(1.0, 0.3, 0.0, 1e-4);
-  motion.oscillator = friction::Oscillator::from_omega0(kOmega * kOmega, 3.0 * kOmega);
+  motion.oscillator = model::Oscillator::from_omega0(kOmega * kOmega, 3.0 * kOmega);
   motion.belt[0].speed_m_per_s = 0.005;
   MotionRecorder recorder{350.0};
   sim::Propagator sled{motion, 350.0, &recorder, 4};

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/friction/closed_forms.hpp"
-#include "core/friction/threshold.hpp"
+#include "core/model/closed_forms.hpp"
+#include "core/model/threshold.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
 namespace stickslip::numeric {
@@ -58,8 +58,8 @@ TEST(PropagatorPaper, UndampedTimesAndMean) {
   ASSERT_GE(recorder.onsets_s.size(), 3U);
   const double slip_s = recorder.captures_s[1] - recorder.onsets_s[0];
   const double stick_s = recorder.onsets_s[1] - recorder.captures_s[1];
-  EXPECT_NEAR(kOmega * slip_s, friction::undamped_slip_phase_rad(Q), 1e-13);    // [4]
-  EXPECT_NEAR(kOmega * stick_s, friction::undamped_stick_phase_rad(Q), 1e-13);  // [3]
+  EXPECT_NEAR(kOmega * slip_s, model::undamped_slip_phase_rad(Q), 1e-13);    // [4]
+  EXPECT_NEAR(kOmega * stick_s, model::undamped_stick_phase_rad(Q), 1e-13);  // [3]
 
   // [1] over whole cycles. The ends are off by at most one scan: 0.1/(Δonset · rate) ≈ 1e-6.
   const auto first = static_cast<std::ptrdiff_t>(recorder.onsets_s.front() * kFineRate_Hz);
@@ -70,8 +70,8 @@ TEST(PropagatorPaper, UndampedTimesAndMean) {
 
 // Fig. 5: the levels of an oscillation at the threshold, here from just below.
 TEST(PropagatorPaper, LevelsOfTheThresholdOscillation) {
-  const double damping = friction::gamma_over_2omega_of_half_life(5.0);
-  const sim::Motion motion = motion_at(friction::Q_threshold(damping) * (1.0 - 1e-12), damping);
+  const double damping = model::gamma_over_2omega_of_half_life(5.0);
+  const sim::Motion motion = motion_at(model::Q_threshold(damping) * (1.0 - 1e-12), damping);
   MotionRecorder recorder{kFineRate_Hz};
   sim::Propagator sled{motion, kFineRate_Hz, &recorder};
   std::vector<double> coefficient(300'000);
@@ -100,18 +100,18 @@ TEST(PropagatorPaper, AmplitudeAndSlipSpeedOfEachCycleAreThoseOfTheClosedForms) 
   const sim::Motion motion = motion_at(Q, damping);
   const std::vector<double> coefficient = trace(motion, kFineRate_Hz, 400'000);
   const auto [least, most] = std::minmax_element(coefficient.begin() + 100'000, coefficient.end());
-  EXPECT_NEAR((*most - *least) / 2.0 / 0.05, friction::amplitude_ratio(Q, damping), 1e-8);  // [17]
+  EXPECT_NEAR((*most - *least) / 2.0 / 0.05, model::amplitude_ratio(Q, damping), 1e-8);  // [17]
   double fastest = 0.0;
   for (std::size_t i = 100'000; i < coefficient.size(); ++i) {
     fastest = std::min(fastest, (coefficient[i] - coefficient[i - 1]) * kFineRate_Hz);
   }
   const double r = Q * kOmega * 0.05;
   // Differences of 1e6 Hz scans carry 2·ε·0.3·1e6 ≈ 1e-10 and the curvature of c′.
-  EXPECT_NEAR(-fastest / r, friction::slip_speed_ratio(Q, damping), 1e-8);  // [18]
+  EXPECT_NEAR(-fastest / r, model::slip_speed_ratio(Q, damping), 1e-8);  // [18]
 }
 
 TEST(PropagatorPaper, RingDownHalvesInFiveCycles) {
-  const double damping = friction::gamma_over_2omega_of_half_life(5.0);
+  const double damping = model::gamma_over_2omega_of_half_life(5.0);
   const sim::Motion motion = motion_at(2.6, damping);
   const std::vector<double> coefficient = trace(motion, 1e5, 200'000);
   const auto range = [&](std::size_t first) {

@@ -1,7 +1,7 @@
 // The quick question beside what it stands for: least squares row by row, the exact capture, the fit of
-// core/friction/live_captured_course, and the answers of core/friction/live_junction.
+// core/detect/live_captured_course, and the answers of core/detect/live_junction.
 
-#include "core/friction/quick_junction.hpp"
+#include "core/detect/quick_junction.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,13 +17,13 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
-#include "core/friction/capture.hpp"
-#include "core/friction/cycle_buffer.hpp"
-#include "core/friction/live_rows.hpp"
-#include "core/friction/threshold.hpp"
+#include "core/detect/live_rows.hpp"
+#include "core/estimate/cycle_buffer.hpp"
+#include "core/model/capture.hpp"
+#include "core/model/threshold.hpp"
 #include "tests/support/model_course.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::detect {
 namespace {
 
 using test::ModelCourse;
@@ -37,9 +37,9 @@ const double kPeriod_s = 2.0 * std::numbers::pi / ModelCourse::kOmega;
 /// The first slip of a course, scan by scan, to both questions.
 class Asked {
  public:
-  Asked(const ModelCourse& course, Trace trace, double sigma)
+  Asked(const ModelCourse& course, estimate::Trace trace, double sigma)
       : shared_(course.shared), trace_(std::move(trace)), sigma_(sigma) {
-    const SlipModel model{course.shared, course.windows.front().slip, course.windows.front().captured};
+    const model::SlipModel model{course.shared, course.windows.front().slip, course.windows.front().captured};
     peak_s_ = ModelCourse::kFirstOnset_s + model.waveform().peak_time_s();
   }
 
@@ -67,7 +67,7 @@ class Asked {
   [[nodiscard]] double peak_s() const { return peak_s_; }
   /// What the full question says of the scans from the peak to the last that was asked about.
   [[nodiscard]] JunctionEvidence in_full() const {
-    CycleBuffer buffer;
+    estimate::CycleBuffer buffer;
     for (std::size_t k = 0; k <= last_; ++k) {
       if (trace_.usable[k] != 0) buffer.add(trace_.time_s[k], trace_.value[k]);
     }
@@ -76,8 +76,8 @@ class Asked {
   }
 
  private:
-  SharedParameters shared_;
-  Trace trace_;
+  model::SharedParameters shared_;
+  estimate::Trace trace_;
   double sigma_;
   double peak_s_;
   std::optional<QuickJunction> quick_;
@@ -90,7 +90,7 @@ struct LaidOut {
   SlipRows slip;
 
   LaidOut(const std::vector<double>& values, const std::vector<bool>& usable, std::size_t scans_per_row,
-          const SharedParameters& shared, double level) {
+          const model::SharedParameters& shared, double level) {
     rows.restart(scans_per_row);
     for (std::size_t k = 0; k < values.size(); ++k) rows.add(values[k], usable.empty() || usable[k]);
     EXPECT_TRUE(slip.begin(rows, static_cast<double>(values.size() - 1) * kScan_s, -0.5 * kScan_s, level,
@@ -100,7 +100,7 @@ struct LaidOut {
 };
 
 TEST(SlipRows, FitIsThatOfLeastSquaresRowByRow) {
-  const SharedParameters shared = ModelCourse::tester_at(1.3);
+  const model::SharedParameters shared = ModelCourse::tester_at(1.3);
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     std::mt19937_64 engine{seed};
     std::normal_distribution<double> normal;
@@ -135,7 +135,7 @@ TEST(SlipRows, FitIsThatOfLeastSquaresRowByRow) {
 }
 
 TEST(SlipRows, RowsOfSeveralScansFollowTheSameCourse) {
-  const SharedParameters shared = ModelCourse::tester_at(1.3);
+  const model::SharedParameters shared = ModelCourse::tester_at(1.3);
   const double fine_s = kPeriod_s / 400.0;
   ScanRows rows{fine_s};
   rows.restart(10);
@@ -159,11 +159,11 @@ TEST(SlipRows, RowsOfSeveralScansFollowTheSameCourse) {
 }
 
 TEST(QuickCapture, FindsTheExactCapture) {
-  const double Q_th = Q_threshold(ModelCourse::kGammaOver2Omega);
+  const double Q_th = model::Q_threshold(ModelCourse::kGammaOver2Omega);
   // Beyond, c′ may be back below r before the next row.
   for (double part = 0.1; part < 0.97; part += 0.02) {
     const ModelCourse course = ModelCourse::captured(part * Q_th, 3);
-    const SlipModel model{course.shared, course.windows.front().slip, true};
+    const model::SlipModel model{course.shared, course.windows.front().slip, true};
     const auto first = static_cast<std::size_t>(
         std::ceil((ModelCourse::kFirstOnset_s + model.waveform().peak_time_s()) / kScan_s));
     const auto capture_s = ModelCourse::kFirstOnset_s + model.capture_s();
@@ -188,14 +188,14 @@ TEST(QuickCapture, CostsWhatTheCapturedCourseCosts) {
   int compared = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const ModelCourse course = ModelCourse::captured(0.3 + 0.02 * static_cast<double>(seed), 3);
-    const Trace trace = course.noisy(kSigma, seed);
-    const SlipModel model{course.shared, course.windows.front().slip, true};
+    const estimate::Trace trace = course.noisy(kSigma, seed);
+    const model::SlipModel model{course.shared, course.windows.front().slip, true};
     const double peak_s = ModelCourse::kFirstOnset_s + model.waveform().peak_time_s();
     const auto first = static_cast<std::size_t>(std::ceil(peak_s / kScan_s));
     const double next_onset_s = course.windows[1].slip.onset_s;
     const auto end = std::min(static_cast<std::size_t>(next_onset_s / kScan_s) + 4, trace.size());
     std::vector<double> values;
-    CycleBuffer buffer;
+    estimate::CycleBuffer buffer;
     for (std::size_t k = first; k < end; ++k) {
       values.push_back(trace.value[k]);
       buffer.add(static_cast<double>(k - first) * kScan_s, trace.value[k]);
@@ -229,7 +229,7 @@ TEST(QuickCapture, CostsWhatTheCapturedCourseCosts) {
 }
 
 TEST(QuickJunction, AnswersAsTheFullQuestionDoes) {
-  const double Q_th = Q_threshold(ModelCourse::kGammaOver2Omega);
+  const double Q_th = model::Q_threshold(ModelCourse::kGammaOver2Omega);
   int clear = 0;
   int answered = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
@@ -261,12 +261,12 @@ TEST(QuickJunction, AnswersAsTheFullQuestionDoes) {
 }
 
 TEST(QuickJunction, OneStrayScanDecidesNothing) {
-  const double Q_th = Q_threshold(ModelCourse::kGammaOver2Omega);
+  const double Q_th = model::Q_threshold(ModelCourse::kGammaOver2Omega);
   std::mt19937_64 engine{7};
   std::uniform_int_distribution<std::size_t> behind{11, 18};
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     const ModelCourse course = ModelCourse::free(1.1 * Q_th, 2.0);
-    Trace trace = course.noisy(kSigma, seed);
+    estimate::Trace trace = course.noisy(kSigma, seed);
     const auto peak = static_cast<std::size_t>(std::ceil(ModelCourse::kFirstOnset_s / kScan_s)) + 3;
     trace.value[peak + behind(engine)] += (seed % 2 == 0 ? 6.0 : -6.0) * kSigma;
     Asked asked{course, trace, kSigma};
@@ -276,7 +276,7 @@ TEST(QuickJunction, OneStrayScanDecidesNothing) {
 
 TEST(QuickJunction, ScansThatAreNotUsableDoNotCount) {
   const ModelCourse course = ModelCourse::captured(1.3, 3);
-  Trace trace = course.noisy(kSigma, 3);
+  estimate::Trace trace = course.noisy(kSigma, 3);
   for (std::size_t k = 30; k < trace.size(); k += 6) {
     trace.value[k] = 5.0;
     trace.usable[k] = 0;
@@ -302,7 +302,7 @@ TEST(QuickJunction, DoubtsWithoutTheScansOfASlip) {
 
 // Rows asked for by and by are the rows asked for at once.
 TEST(SlipRows, TakesThoseBeforeAMomentAndTheOthersLater) {
-  const SharedParameters shared = ModelCourse::tester_at(1.3);
+  const model::SharedParameters shared = ModelCourse::tester_at(1.3);
   ScanRows rows{kScan_s};
   for (int k = 0; k < 40; ++k) rows.add(0.3 + 0.01 * k * (k % 3), k % 11 != 5);
   const double now_s = 39.0 * kScan_s;
@@ -331,7 +331,7 @@ TEST(SlipRows, TakesThoseBeforeAMomentAndTheOthersLater) {
 // said then.
 TEST(QuickJunction, SaysLaterWhatItWouldHaveSaidThen) {
   const ModelCourse course = ModelCourse::captured(1.0, 3);
-  const SlipModel model{course.shared, course.windows.front().slip, true};
+  const model::SlipModel model{course.shared, course.windows.front().slip, true};
   const double peak_s = ModelCourse::kFirstOnset_s + model.waveform().peak_time_s();
   const double until_s = peak_s + 1.1 * kPeriod_s;
   QuickJunction then{kScan_s};
@@ -357,7 +357,7 @@ TEST(QuickJunction, SaysLaterWhatItWouldHaveSaidThen) {
 
 // Without noise the sums lose all that is left.
 TEST(SlipRows, LeaveNoLessThanNothing) {
-  const SharedParameters shared = ModelCourse::tester_at(1.3);
+  const model::SharedParameters shared = ModelCourse::tester_at(1.3);
   for (std::size_t size = 8; size < 60; ++size) {
     std::vector<double> values;
     for (std::size_t k = 0; k < size; ++k) {
@@ -384,8 +384,8 @@ TEST(QuickJunction, TellsWithoutNoiseToo) {
 
 /// Whether one slip after the other, each of another dimensionless speed, is called captured.
 void expect_captured(QuickJunction& quick, double scan_s, double Q, double part_of_row) {
-  const SharedParameters shared = ModelCourse::tester_at(Q);
-  const SlipModel model{shared, {0.0, ModelCourse::kS, ModelCourse::kK}, true};
+  const model::SharedParameters shared = ModelCourse::tester_at(Q);
+  const model::SlipModel model{shared, {0.0, ModelCourse::kS, ModelCourse::kK}, true};
   const double peak_s = model.waveform().peak_time_s();
   const double first_s = peak_s + part_of_row * scan_s;
   std::mt19937_64 engine{5};
@@ -427,17 +427,17 @@ TEST(ScanRows, KeepsTheNewestAndSaysWhenTheyWere) {
   EXPECT_EQ(rows[290].weight, 0.0);
   const double now_s = 0.01 * (4 * 300 - 1);
   EXPECT_NEAR(rows.newest_s(now_s), 0.01 * (4.0 * 299 + 1.5), 1e-12);
-  std::vector<CyclePoint> points;
-  rows.for_each_since(-1.0, now_s, [&](const CyclePoint& point) { points.push_back(point); });
+  std::vector<estimate::CyclePoint> points;
+  rows.for_each_since(-1.0, now_s, [&](const estimate::CyclePoint& point) { points.push_back(point); });
   ASSERT_EQ(points.size(), ScanRows::kMost - 1);
   EXPECT_NEAR(points.front().first_s, 0.01 * 4 * 44, 1e-12);
   EXPECT_NEAR(points.front().last_s, 0.01 * (4 * 44 + 3), 1e-12);
   EXPECT_NEAR(points.front().spread_s2, 1.25e-4, 1e-12);
   points.clear();
   rows.for_each_since(0.01 * 4 * 298 - 1e-9, now_s,
-                      [&](const CyclePoint& point) { points.push_back(point); });
+                      [&](const estimate::CyclePoint& point) { points.push_back(point); });
   EXPECT_EQ(points.size(), 2U);
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::detect

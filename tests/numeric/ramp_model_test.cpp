@@ -7,14 +7,14 @@
 #include <cmath>
 #include <vector>
 
-#include "core/friction/slip_model.hpp"
-#include "core/friction/test_analysis.hpp"
+#include "core/analysis/test_analysis.hpp"
+#include "core/model/slip_model.hpp"
 #include "core/sim/scene.hpp"
 #include "core/sim/scene_run.hpp"
 #include "tests/support/model_course.hpp"
 #include "tests/support/ramp_trials.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::model {
 namespace {
 
 using test::ModelCourse;
@@ -135,15 +135,15 @@ TEST(RampFit, GivesBackTheTruthOfSimulatedRamps) {
     scene.white_noise->sd_V = 1e-4;  // A volt is the coefficient.
     sim::SceneRun run{scene, scene.scan_rate_Hz};
     run.restart(1);
-    AnalysisSettings settings;
+    analysis::AnalysisSettings settings;
     settings.tester.speed_course = sim::pull_speed_of(scene);
-    TestAnalysis analysis{settings};
+    analysis::TestAnalysis analysis{settings};
     base::ScanIndex index = 0;
     std::array<double, 64> raw{};
     while (const std::size_t count = run.next(raw)) {
       for (std::size_t k = 0; k < count; ++k, ++index) analysis.add(index, raw[k], false);
     }
-    const TestResults results = analysis.finish();
+    const analysis::TestResults results = analysis.finish();
     ASSERT_TRUE(results.delta_mu.value) << results.delta_mu.reason;
     // A tenth of the noise of docs/ramp.md leaves a tenth of the scatter of its S − K, 0.03 %: three of
     // these. The belt's start adds less: off by 0.05 ms (the sled catches up with a belt that starts with a
@@ -157,4 +157,4 @@ TEST(RampFit, GivesBackTheTruthOfSimulatedRamps) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::model

@@ -1,6 +1,6 @@
 // The rise before a slip.
 
-#include "core/friction/rise.hpp"
+#include "core/detect/rise.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace stickslip::friction {
+namespace stickslip::estimate {
 namespace {
 
 constexpr double kScan_s = 0.01;
@@ -33,7 +33,7 @@ std::vector<CyclePoint> scans() {
   return points;
 }
 
-const Rise kRise{0.0, course(kPeak_s), -20.0 * kScan_s, kPeak_s};
+const detect::Rise kRise{0.0, course(kPeak_s), -20.0 * kScan_s, kPeak_s};
 
 TEST(Rise, LineBeginsBehindRestAndRoundedBegin) {
   const std::vector<CyclePoint> points = scans();
@@ -64,7 +64,7 @@ TEST(Rise, NoLineWhereNoScanIsOnIt) {
 // of these the rise is bent here.
 TEST(Rise, FewScansOfAFastLoadingAreAskedForMore) {
   const double peak = 1.0;
-  const Rise rise{0.0, peak, 0.0, 0.1};
+  const detect::Rise rise{0.0, peak, 0.0, 0.1};
   std::vector<CyclePoint> points;
   for (int k = 0; k <= 10; ++k) {
     const double time_s = k * kScan_s;
@@ -81,4 +81,4 @@ TEST(Rise, SlopeOfTheWholeWhereScansTellNothing) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::estimate

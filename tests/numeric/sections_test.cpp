@@ -1,14 +1,14 @@
-#include "core/friction/sections.hpp"
+#include "core/analysis/sections.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "core/friction/slip_rule.hpp"
+#include "core/detect/slip_rule.hpp"
 #include "tests/support/model_course.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::analysis {
 namespace {
 
 using test::ModelCourse;
@@ -16,12 +16,12 @@ using test::ModelCourse;
 constexpr double kSectionSigma = 0.001;
 constexpr std::size_t kMost = 24;  // A hundred slips are five sections then.
 
-std::vector<Fall> slips_of(const Trace& trace) {
-  FallFinder finder;
-  SlipRule rule;
-  std::vector<Fall> slips;
+std::vector<detect::Fall> slips_of(const estimate::Trace& trace) {
+  detect::FallFinder finder;
+  detect::SlipRule rule;
+  std::vector<detect::Fall> slips;
   for (const double value : trace.value) {
-    const auto fall = finder.add(value, SlipRule::kHysteresisSigmas * kSectionSigma);
+    const auto fall = finder.add(value, detect::SlipRule::kHysteresisSigmas * kSectionSigma);
     if (fall && rule.is_slip(*fall, kSectionSigma)) slips.push_back(*fall);
   }
   return slips;
@@ -31,8 +31,8 @@ class Sections : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(Sections, SayWhatTheWholeSays) {
   const ModelCourse course = ModelCourse::captured(1.3, 100);
-  const Trace trace = course.noisy(kSectionSigma, GetParam());
-  const std::vector<Fall> slips = slips_of(trace);
+  const estimate::Trace trace = course.noisy(kSectionSigma, GetParam());
+  const std::vector<detect::Fall> slips = slips_of(trace);
   ASSERT_GE(slips.size(), 95U);
   const TestEstimates whole = estimate_in_sections(trace, slips, kSectionSigma, {}, {});
   const TestEstimates parts = estimate_in_sections(trace, slips, kSectionSigma, {}, {}, {}, kMost);
@@ -63,8 +63,8 @@ TEST_P(Sections, SayWhatTheWholeSays) {
   const double onset_error_s =
       parts.results.delta_mu.standard_error.value_or(0.0) * std::sqrt(sections) / course.shared.r;
   for (std::size_t i = 0; i < slips.size(); ++i) {
-    const Cycle a = whole.cycles[i];
-    const Cycle b = parts.cycles[i];
+    const detect::Cycle a = whole.cycles[i];
+    const detect::Cycle b = parts.cycles[i];
     EXPECT_EQ(b.number, a.number);
     EXPECT_EQ(b.peak_time_s, a.peak_time_s);
     EXPECT_EQ(b.flags, a.flags) << i;
@@ -80,12 +80,12 @@ INSTANTIATE_TEST_SUITE_P(Seeds, Sections, testing::Values(1, 2, 3, 4, 5));
 
 TEST(Sections, OneSectionIsTheFitOfAll) {
   const ModelCourse course = ModelCourse::captured(1.3, 20);
-  const Trace trace = course.noisy(kSectionSigma, 1);
-  const std::vector<Fall> slips = slips_of(trace);
+  const estimate::Trace trace = course.noisy(kSectionSigma, 1);
+  const std::vector<detect::Fall> slips = slips_of(trace);
   const TestEstimates exactly = estimate_in_sections(trace, slips, kSectionSigma, {}, {}, {}, slips.size());
   const TestEstimates easily = estimate_in_sections(trace, slips, kSectionSigma, {}, {});
   EXPECT_EQ(exactly.results, easily.results);
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::analysis

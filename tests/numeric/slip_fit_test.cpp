@@ -1,4 +1,4 @@
-#include "core/friction/slip_fit.hpp"
+#include "core/estimate/slip_fit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "tests/support/model_course.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::estimate {
 namespace {
 
 using test::ModelCourse;
@@ -18,7 +18,7 @@ using test::ModelCourse;
 constexpr double kSigma = 0.001;
 
 /// A first guess as wrong as turning points make it: 2 % of the shared, a third of a scan, a fifth of D.
-SharedParameters guess(const SharedParameters& truth) {
+model::SharedParameters guess(const model::SharedParameters& truth) {
   return {1.02 * truth.omega, 0.8 * truth.gamma, 0.98 * truth.r};
 }
 
@@ -79,8 +79,8 @@ TEST(SlipFit, StandardErrorsAreThoseOfTheScatter) {
       const SlipFit fit = fit_slips(trace, windows, guess(course.shared), kSigma);
       ASSERT_TRUE(fit.converged) << seed;
       const std::size_t middle = windows.size() / 2;
-      const SlipParameters& found = windows[middle].slip;
-      const SlipParameters& truth = course.windows[middle].slip;
+      const model::SlipParameters& found = windows[middle].slip;
+      const model::SlipParameters& truth = course.windows[middle].slip;
       const Eigen::Matrix3d own = fit.covariance(windows[middle]);
       sums[0].add(found.onset_s - truth.onset_s, own(0, 0));
       sums[1].add(found.S - truth.S, own(1, 1));
@@ -137,7 +137,8 @@ TEST(SlipFit, FivePercentOutliersShiftItByAFractionOfTheNoise) {
   EXPECT_LT(std::abs(shift_K), (0.172 + 0.21) * kSigma);
 }
 
-void expect_no_answer(const Trace& trace, std::vector<SlipWindow> windows, const SharedParameters& shared) {
+void expect_no_answer(const Trace& trace, std::vector<SlipWindow> windows,
+                      const model::SharedParameters& shared) {
   const SlipFit fit = fit_slips(trace, windows, shared, kSigma);
   EXPECT_FALSE(fit.converged);
   for (const double value : {fit.shared.omega, fit.shared.gamma, fit.shared.r, fit.residual_sigma}) {
@@ -173,9 +174,10 @@ TEST(SlipFit, SaysSoIfTheScansCannotTell) {
 TEST(SlipFit, RefusesAnImpossibleGuess) {
   const ModelCourse course = ModelCourse::captured(1.3, 2);
   const double nan = std::nan("");
-  for (const SharedParameters& bad :
-       {SharedParameters{0.0, 1.0, 8.0}, SharedParameters{-1.0, 0.0, 8.0}, SharedParameters{125.0, 5.0, -1.0},
-        SharedParameters{10.0, 50.0, 8.0}, SharedParameters{nan, 5.0, 8.0}}) {
+  for (const model::SharedParameters& bad :
+       {model::SharedParameters{0.0, 1.0, 8.0}, model::SharedParameters{-1.0, 0.0, 8.0},
+        model::SharedParameters{125.0, 5.0, -1.0}, model::SharedParameters{10.0, 50.0, 8.0},
+        model::SharedParameters{nan, 5.0, 8.0}}) {
     std::vector<SlipWindow> windows = course.windows;
     EXPECT_FALSE(fit_slips(course.trace, windows, bad, kSigma).converged);
   }
@@ -197,4 +199,4 @@ TEST(SlipFit, ScansThatAreNotUsableDoNotCount) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::estimate

@@ -1,7 +1,7 @@
 // How slips end with the tradition, which keeps no scans: by heights, by rows that are asked late, and by
 // what a slip that had to be asked in full teaches of the tester.
 
-#include "core/friction/slip_follower.hpp"
+#include "core/detect/slip_follower.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/friction/fall_finder.hpp"
-#include "core/friction/slip_rule.hpp"
+#include "core/detect/fall_finder.hpp"
+#include "core/detect/slip_rule.hpp"
 #include "tests/support/live_trials.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::detect {
 namespace {
 
 using test::LiveScene;
@@ -27,10 +27,10 @@ struct Ended {
   LiveCycle slip;
 };
 
-/// Falls found and followed as core/friction/live_detector does it with the tradition.
+/// Falls found and followed as core/detect/live_detector does it with the tradition.
 class Followed {
  public:
-  Followed(const LiveScene& scene, SharedPrior prior, double sigma)
+  Followed(const LiveScene& scene, estimate::SharedPrior prior, double sigma)
       : scan_s_(1.0 / scene.scan_rate_Hz),
         sigma_(sigma),
         follower_(EstimatorTier::kPeak, scene.scan_rate_Hz, std::move(prior)) {}
@@ -56,7 +56,7 @@ class Followed {
   void end() { force(nullptr); }
 
   [[nodiscard]] const std::vector<Ended>& slips() const { return slips_; }
-  [[nodiscard]] const SharedParameters& shared() const { return follower_.shared(); }
+  [[nodiscard]] const model::SharedParameters& shared() const { return follower_.shared(); }
 
  private:
   [[nodiscard]] double time_s(double position) const {
@@ -82,7 +82,7 @@ class Followed {
   std::vector<Ended> slips_;
 };
 
-Followed follow(const LiveScene& scene, SharedPrior prior) {
+Followed follow(const LiveScene& scene, estimate::SharedPrior prior) {
   LiveTrial trial{scene};
   Followed followed{scene, std::move(prior), scene.sigma};
   for (std::int64_t scan = 0; scan < trial.scan_count(); ++scan) followed.add(trial.next());
@@ -195,4 +195,4 @@ TEST(SlipFollower, AGapCostsTheSlipsItIsInAlone) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::detect

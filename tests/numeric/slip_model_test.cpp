@@ -1,4 +1,4 @@
-#include "core/friction/slip_model.hpp"
+#include "core/model/slip_model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "tests/support/model_course.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::model {
 namespace {
 
 using test::ModelCourse;
@@ -115,4 +115,4 @@ TEST(SlipModel, SaidToBeCapturedAboveTheThresholdItSticksAtTheEndOfTheRise) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::model

@@ -1,4 +1,4 @@
-#include "core/friction/slip_waveform.hpp"
+#include "core/model/slip_waveform.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "core/accuracy/oscillation50.hpp"
-#include "core/friction/closed_forms.hpp"
+#include "core/model/closed_forms.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::model {
 namespace {
 
 using std::numbers::pi;
@@ -90,4 +90,4 @@ TEST(SlipWaveform, AmplitudeAndSpeedRatioAreThoseOfTheClosedForms) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::model

@@ -1,4 +1,4 @@
-#include "core/friction/threshold.hpp"
+#include "core/model/threshold.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,11 +6,11 @@
 #include <numbers>
 
 #include "core/accuracy/oscillation50.hpp"
-#include "core/friction/capture.hpp"
-#include "core/friction/closed_forms.hpp"
-#include "core/friction/slip_waveform.hpp"
+#include "core/model/capture.hpp"
+#include "core/model/closed_forms.hpp"
+#include "core/model/slip_waveform.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::model {
 namespace {
 
 using accuracy::Real;
@@ -118,4 +118,4 @@ TEST(Threshold, SlipSpeedRatioDecidesWithoutSMinusKOrSpeed) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::model

@@ -20,7 +20,7 @@
 namespace stickslip::sim {
 namespace {
 
-using friction::Oscillator;
+using model::Oscillator;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;

@@ -1,4 +1,4 @@
-#include "core/friction/uniform_course.hpp"
+#include "core/model/uniform_course.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,16 +7,16 @@
 #include <cmath>
 #include <vector>
 
-#include "core/friction/information.hpp"
+#include "core/estimate/information.hpp"
 #include "tests/support/model_course.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::estimate {
 namespace {
 
-using P = UniformParameters;
+using P = model::UniformParameters;
 using test::ModelCourse;
 
-UniformParameters paper_at(double Q) {
+model::UniformParameters paper_at(double Q) {
   return {ModelCourse::tester_at(Q), {ModelCourse::kFirstOnset_s, ModelCourse::kS, ModelCourse::kK}};
 }
 
@@ -24,7 +24,7 @@ TEST(UniformCourse, IsTheChainOfStickAndSlip) {
   // The chain adds up one cycle after the other: 1e-16 s of rounding each, times a rate below 12/s.
   for (const double Q : {0.3, 1.3, 1.9}) {
     const ModelCourse chain = ModelCourse::captured(Q, 50);
-    const auto course = UniformCourse::make(paper_at(Q));
+    const auto course = model::UniformCourse::make(paper_at(Q));
     ASSERT_TRUE(course);
     for (std::size_t k = 0; k < chain.trace.size(); ++k) {
       ASSERT_NEAR(course->at(chain.trace.time_s[k]).value, chain.trace.value[k], 1e-13) << Q << ' ' << k;
@@ -44,8 +44,8 @@ P::Vector differences(const P& parameters, double time_s) {
       P::Vector down = parameters.vector();
       up[i] += step;
       down[i] -= step;
-      return (UniformCourse::make(P::from(up))->at(time_s).value -
-              UniformCourse::make(P::from(down))->at(time_s).value) /
+      return (model::UniformCourse::make(P::from(up))->at(time_s).value -
+              model::UniformCourse::make(P::from(down))->at(time_s).value) /
              (2.0 * step);
     };
     const double step = kSteps[static_cast<std::size_t>(i)];
@@ -58,7 +58,7 @@ TEST(UniformCourse, SlopesAreThoseOfTheCourse) {
   // A difference over 2e-7 of values rounded to 6e-17 is right to 1e-9; what is left after the
   // extrapolation is of fourth order. Slopes in later cycles grow to the hundreds, hence relative.
   const P parameters = paper_at(1.3);
-  const auto course = UniformCourse::make(parameters);
+  const auto course = model::UniformCourse::make(parameters);
   const double T = course->period_s();
   P::Vector largest = P::Vector::Zero();
   std::vector<P::Vector> errors;
@@ -66,7 +66,7 @@ TEST(UniformCourse, SlopesAreThoseOfTheCourse) {
     const double time_s = 0.0013 * k;
     // c″ jumps at onset and capture: a difference across either is of first order only.
     const double since = std::remainder(time_s - parameters.slip.onset_s, T);
-    const SlipModel slip{parameters.shared, parameters.slip, true};
+    const model::SlipModel slip{parameters.shared, parameters.slip, true};
     if (std::abs(since) < 1e-4 || std::abs(std::remainder(since - slip.capture_s(), T)) < 1e-4) continue;
     const P::Vector by = course->at(time_s).by;
     largest = largest.cwiseMax(by.cwiseAbs());
@@ -78,24 +78,24 @@ TEST(UniformCourse, SlopesAreThoseOfTheCourse) {
 }
 
 TEST(UniformCourse, ExistsOnlyWhereTheSledSticksAgain) {
-  EXPECT_TRUE(UniformCourse::make(paper_at(1.93)));
-  EXPECT_FALSE(UniformCourse::make(paper_at(1.95)));  // Q_threshold = 1.93871744784
+  EXPECT_TRUE(model::UniformCourse::make(paper_at(1.93)));
+  EXPECT_FALSE(model::UniformCourse::make(paper_at(1.95)));  // Q_threshold = 1.93871744784
   P turned = paper_at(1.3);
   std::swap(turned.slip.S, turned.slip.K);
-  EXPECT_FALSE(UniformCourse::make(turned));
+  EXPECT_FALSE(model::UniformCourse::make(turned));
   P unknown = paper_at(1.3);
   unknown.shared.omega = std::nan("");
-  EXPECT_FALSE(UniformCourse::make(unknown));
+  EXPECT_FALSE(model::UniformCourse::make(unknown));
 }
 
 class Information : public testing::Test {
  protected:
-  Information() : course_(*UniformCourse::make(parameters_)) {
+  Information() : course_(*model::UniformCourse::make(parameters_)) {
     for (int k = 0; k < 200; ++k) times_s_.push_back(k / 350.0);
   }
 
   P parameters_ = paper_at(1.3);
-  UniformCourse course_;
+  model::UniformCourse course_;
   std::vector<double> times_s_;
 };
 
@@ -138,7 +138,7 @@ TEST_F(Information, WhatIsKnownBeforehandCountsLikeAMeasurement) {
 
 TEST_F(Information, PriorPullsTowardsWhatItSays) {
   SharedPrior prior;
-  const SharedParameters& shared = parameters_.shared;
+  const model::SharedParameters& shared = parameters_.shared;
   prior.coupling = {1.01 * shared.omega, 0.023, Eigen::Vector2d{1e-2, 1e-8}.asDiagonal()};
   prior.belt = {1.1 * shared.r / shared.oscillator().omega0_squared(), 1e-6};
   const PriorTerms terms = prior.at(shared);
@@ -155,4 +155,4 @@ TEST_F(Information, PriorPullsTowardsWhatItSays) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::estimate

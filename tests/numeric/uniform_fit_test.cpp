@@ -4,10 +4,10 @@
 #include <random>
 #include <vector>
 
-#include "core/friction/uniform_stage.hpp"
+#include "core/estimate/uniform_stage.hpp"
 #include "tests/support/model_course.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::estimate {
 namespace {
 
 using test::ModelCourse;
@@ -17,7 +17,7 @@ constexpr double kUniformSigma = 0.001;
 TEST(UniformFit, GivesBackTheParametersOfAnExactTrace) {
   // As SlipFit: it stops where a step lowers the cost by less than 1e-10 of it, and converges quadratically.
   const ModelCourse course = ModelCourse::captured(1.3, 10);
-  UniformParameters guess{course.shared, course.windows.front().slip};
+  model::UniformParameters guess{course.shared, course.windows.front().slip};
   guess.slip.S += 0.002;
   guess.slip.K -= 0.001;
   guess.shared.omega *= 1.001;
@@ -33,19 +33,19 @@ TEST(UniformFit, GivesBackTheParametersOfAnExactTrace) {
 
 TEST(UniformFit, SaysSoWhereScansAreFewOrTellNothing) {
   const ModelCourse course = ModelCourse::captured(1.3, 10);
-  const UniformParameters truth{course.shared, course.windows.front().slip};
+  const model::UniformParameters truth{course.shared, course.windows.front().slip};
   // Six numbers from none to six scans, and from a stick alone, where K, omega and gamma leave no trace.
   for (const std::size_t end : {0U, 1U, 3U, 5U, 6U, 15U}) {
     const UniformFit fit = fit_uniform(course.noisy(kUniformSigma, 1), 0, end, truth, kUniformSigma, {});
     if (!fit.converged) continue;
     EXPECT_TRUE(fit.covariance.allFinite()) << end;
     // What the scans do not tell must not be claimed: K to better than S - K.
-    EXPECT_GT(std::sqrt(fit.covariance(UniformParameters::kK, UniformParameters::kK)),
+    EXPECT_GT(std::sqrt(fit.covariance(model::UniformParameters::kK, model::UniformParameters::kK)),
               ModelCourse::kS - ModelCourse::kK)
         << end;
   }
   // From a bad guess: an end, with or without convergence, and finite numbers.
-  UniformParameters bad = truth;
+  model::UniformParameters bad = truth;
   bad.shared.omega *= 3.0;
   bad.slip.S += 1.0;
   const UniformFit far = fit_uniform(course.trace, 0, course.trace.size(), bad, kUniformSigma, {});
@@ -76,8 +76,9 @@ TEST(UniformStage, HundredsOfSlipsKeepTheirPhase) {
     const auto uniform = stage(course.noisy(kUniformSigma, seed), course.windows, course);
     if (!uniform) continue;
     ++found;
-    EXPECT_NEAR(uniform->parameters.slip.S, ModelCourse::kS,
-                5.0 * std::sqrt(uniform->covariance(UniformParameters::kS, UniformParameters::kS)));
+    EXPECT_NEAR(
+        uniform->parameters.slip.S, ModelCourse::kS,
+        5.0 * std::sqrt(uniform->covariance(model::UniformParameters::kS, model::UniformParameters::kS)));
   }
   EXPECT_GE(found, 9);
 }
@@ -99,4 +100,4 @@ TEST(UniformStage, NeedsThreeSlipsThatStickAgain) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::estimate

@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "core/friction/test_analysis.hpp"
+#include "core/analysis/test_analysis.hpp"
 #include "tests/support/model_course.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::analysis {
 namespace {
 
 struct Analysed {
   TestResults results;
-  base::LongColumn<Cycle> cycles;
+  base::LongColumn<detect::Cycle> cycles;
   std::vector<base::ScanIndex> spikes;
 };
 
@@ -62,7 +62,7 @@ Input any_test() {
 }
 
 /// All results and cycles, as bits: NaN equals NaN.
-std::vector<std::uint64_t> bits_of(const Cycle& cycle) {
+std::vector<std::uint64_t> bits_of(const detect::Cycle& cycle) {
   std::vector<std::uint64_t> bits{static_cast<std::uint64_t>(cycle.number), cycle.flags};
   for (const double value :
        {cycle.onset_time_s, cycle.capture_time_s, cycle.peak_time_s, cycle.period_s, cycle.stick_time_s,
@@ -272,7 +272,7 @@ RC_GTEST_PROP(AnalysisProperty, TestWithGapsGetsAnAnswerThatCountsThem, ()) {
 
 TEST(Analysis, ConstantSignalSlidesSteadily) {
   const Analysed analysed = analyse({std::vector<double>(1000, 0.3), {}, {}});
-  EXPECT_EQ(analysed.results.regime, Regime::kSteadySliding);
+  EXPECT_EQ(analysed.results.regime, model::Regime::kSteadySliding);
   EXPECT_EQ(analysed.results.cycle_count.value, 0.0);
   EXPECT_NEAR(analysed.results.kinetic_coefficient.value.value(), 0.3, 1e-15);
 }
@@ -284,13 +284,13 @@ TEST(Analysis, FewerScansThanTheNoiseNeedsAreUndecided) {
   Input input;
   while (input.values.size() < signal::kFewestScansForNoise) {
     const TestResults results = analyse(input).results;
-    EXPECT_EQ(results.regime, Regime::kUndecided);
+    EXPECT_EQ(results.regime, model::Regime::kUndecided);
     EXPECT_EQ(results.regime_reason,
               std::to_string(input.values.size()) + " scans, 68 are needed to know their noise");
     EXPECT_FALSE(results.cycle_count.value);
     input.values.push_back(normal(engine));
   }
-  EXPECT_EQ(analyse(input).results.regime, Regime::kSteadySliding);
+  EXPECT_EQ(analyse(input).results.regime, model::Regime::kSteadySliding);
 }
 
 TEST(Analysis, NoiseOfOneStepHasNoSlips) {
@@ -302,4 +302,4 @@ TEST(Analysis, NoiseOfOneStepHasNoSlips) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::analysis

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "daemon/batch/batch.hpp"
-#include "daemon/batch/batch_json.hpp"
+#include "daemon/types/batch.hpp"
+#include "daemon/types/batch_json.hpp"
 
 namespace stickslip::daemon {
 namespace {

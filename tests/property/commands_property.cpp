@@ -48,7 +48,7 @@ class Recorder final : public Sink {
     stays.push_back(state);
     troubles.push_back(trouble);
   }
-  void observed(daq::ScanIndex, std::span<const double> coefficient, const friction::LiveState&) override {
+  void observed(daq::ScanIndex, std::span<const double> coefficient, const detect::LiveState&) override {
     observed_count += coefficient.size();
   }
 
@@ -95,16 +95,16 @@ std::vector<double> any_course() {
   return force;
 }
 
-bool same(const friction::TestResults& a, const friction::TestResults& b) {
+bool same(const analysis::TestResults& a, const analysis::TestResults& b) {
   bool equal = a.regime == b.regime;
-  friction::TestResults other = b;
-  friction::TestResults own = a;
+  analysis::TestResults other = b;
+  analysis::TestResults own = a;
   std::vector<std::optional<double>> values;
-  friction::for_each_result(own, [&](const friction::ResultName&, const friction::Estimate& estimate) {
+  analysis::for_each_result(own, [&](const analysis::ResultName&, const analysis::Estimate& estimate) {
     values.push_back(estimate.value);
   });
   std::size_t at = 0;
-  friction::for_each_result(other, [&](const friction::ResultName&, const friction::Estimate& estimate) {
+  analysis::for_each_result(other, [&](const analysis::ResultName&, const analysis::Estimate& estimate) {
     equal = equal && values[at++] == estimate.value;
   });
   return equal;

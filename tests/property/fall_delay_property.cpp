@@ -8,11 +8,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/friction/live_detector.hpp"
+#include "core/detect/live_detector.hpp"
 #include "core/signal/statistics.hpp"
 #include "tests/support/live_trials.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::detect {
 namespace {
 
 double median_at(const std::vector<double>& scans, std::size_t k) {
@@ -103,4 +103,4 @@ RC_GTEST_PROP(FallDelay, IsFourScans, ()) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::detect

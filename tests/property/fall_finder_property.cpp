@@ -15,10 +15,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/friction/fall_finder.hpp"
+#include "core/detect/fall_finder.hpp"
 #include "core/signal/level_positions.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::detect {
 namespace {
 
 /// The definition of turning points and falls in fall_finder.hpp with everything kept and searched anew.
@@ -243,4 +243,4 @@ RC_GTEST_PROP(FallFinderProperty, DurationOfALongFallIsKnownToAPartOfIt, ()) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::detect

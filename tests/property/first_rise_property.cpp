@@ -15,8 +15,8 @@ double some(double low, double high) { return low + (high - low) * *rc::gen::inR
 
 Curve some_curve() {
   Curve y;
-  y.wave.oscillator = friction::Oscillator::from_omega0(some(10.0, 400.0),
-                                                        *rc::gen::element(0.0, 0.02, 0.5, 3.0, 15.0, 60.0));
+  y.wave.oscillator =
+      model::Oscillator::from_omega0(some(10.0, 400.0), *rc::gen::element(0.0, 0.02, 0.5, 3.0, 15.0, 60.0));
   if (*rc::gen::inRange(0, 4) != 0) {
     y.wave.D = some(-2.0, 2.0);
     y.wave.r = some(-20.0, 20.0);
@@ -72,7 +72,7 @@ RC_GTEST_PROP(FirstRise, AgreesWithTheClosedFormOfAWaveAndALevel, ()) {
 // The oscillation dies out in a second; the line crosses zero after a day, or after ten years.
 TEST(FirstRise, DoesNotStepThroughWhatHasDiedOut) {
   for (const double wait_s : {86'400.0, 3e8}) {
-    Curve y{{0.0, 0.3, 0.0, friction::Oscillator::from_omega(125.0, 0.05)}, Course{-1.0}};
+    Curve y{{0.0, 0.3, 0.0, model::Oscillator::from_omega(125.0, 0.05)}, Course{-1.0}};
     y.course.add_power(1, 1.0 / wait_s);
     const auto found = first_rise_s(y, 0.0, 1e12, Touch::kDoesNot);
     ASSERT_TRUE(found);
@@ -83,7 +83,7 @@ TEST(FirstRise, DoesNotStepThroughWhatHasDiedOut) {
 // sin − 1 touches zero from below; ten years of it are not searched period by period.
 TEST(FirstRise, TouchingCountsWhereItIsAskedTo) {
   const double omega = 125.0;
-  Curve y{{0.0, -0.5, 0.0, friction::Oscillator::from_omega(omega, 0.0)}, Course{-0.5}};
+  Curve y{{0.0, -0.5, 0.0, model::Oscillator::from_omega(omega, 0.0)}, Course{-0.5}};
   const auto touch = first_rise_s(y, 0.0, 3e8, Touch::kCounts);
   ASSERT_TRUE(touch);
   // The square root of the rounding.

@@ -14,12 +14,12 @@ namespace {
 /// What the live side said, as bits: NaN equals NaN.
 class Listener final : public Sink {
  public:
-  void fall(const friction::FallBegun& fall) override {
+  void fall(const detect::FallBegun& fall) override {
     falls.push_back(static_cast<std::uint64_t>(fall.peak_scan));
     falls.push_back(static_cast<std::uint64_t>(fall.seen_scan));
     falls.push_back(std::bit_cast<std::uint64_t>(fall.peak));
   }
-  void cycle(const friction::Cycle& cycle) override {
+  void cycle(const detect::Cycle& cycle) override {
     bits.push_back(static_cast<std::uint64_t>(cycle.number));
     bits.push_back(static_cast<std::uint64_t>(cycle.first_scan));
     bits.push_back(cycle.flags);
@@ -81,7 +81,7 @@ RC_GTEST_PROP(LiveProperty, BlocksDoNotMatter, ()) {
   ProcessorSettings settings;
   settings.segmenter.scan_rate_Hz = settings.analysis.scan_rate_Hz = scene.scan_rate_Hz;
   settings.analysis.estimator = *rc::gen::element(
-      friction::EstimatorTier::kPeak, friction::EstimatorTier::kInterpolated, friction::EstimatorTier::kFit);
+      detect::EstimatorTier::kPeak, detect::EstimatorTier::kInterpolated, detect::EstimatorTier::kFit);
   const auto sizes = *rc::gen::nonEmpty(rc::gen::container<std::vector<std::size_t>>(
       rc::gen::inRange<std::size_t>(1, daq::ScanBlock{}.raw.size() + 1)));
   const daq::ScanIndex lost = *rc::gen::element<daq::ScanIndex>(0, 1, 40);
@@ -92,20 +92,20 @@ RC_GTEST_PROP(LiveProperty, BlocksDoNotMatter, ()) {
 
 // Whatever comes in, phases follow one another, and numbers are numbers or NaN with their sizes positive.
 RC_GTEST_PROP(LiveProperty, AnySignalIsFollowed, ()) {
-  friction::LiveSettings settings;
-  settings.estimator = *rc::gen::element(
-      friction::EstimatorTier::kPeak, friction::EstimatorTier::kInterpolated, friction::EstimatorTier::kFit);
-  friction::LiveDetector detector{settings};
+  detect::LiveSettings settings;
+  settings.estimator = *rc::gen::element(detect::EstimatorTier::kPeak, detect::EstimatorTier::kInterpolated,
+                                         detect::EstimatorTier::kFit);
+  detect::LiveDetector detector{settings};
   const int period = *rc::gen::inRange(2, 60);
   const double scale = std::pow(10.0, *rc::gen::inRange(-6, 7));
   const int shape = *rc::gen::inRange(0, 5);
   std::mt19937_64 engine{*rc::gen::arbitrary<std::uint32_t>()};
   std::normal_distribution<double> normal;
   double walk = 0.0;
-  friction::Phase phase = detector.state().phase;
-  const auto check = [&](const std::optional<friction::LiveCycle>& closed) {
+  detect::Phase phase = detector.state().phase;
+  const auto check = [&](const std::optional<detect::LiveCycle>& closed) {
     if (!closed) return;
-    const friction::Cycle& cycle = closed->cycle;
+    const detect::Cycle& cycle = closed->cycle;
     for (const double size : {cycle.delta_mu_standard_error, cycle.slip_time_s, cycle.period_s}) {
       RC_ASSERT(std::isnan(size) || (std::isfinite(size) && size >= 0.0));
     }
@@ -119,9 +119,9 @@ RC_GTEST_PROP(LiveProperty, AnySignalIsFollowed, ()) {
                                        normal(engine)};
     if (engine() % 1000 == 0) detector.gap(1 + static_cast<std::int64_t>(engine() % 50));
     check(detector.add(scale * values[static_cast<std::size_t>(shape)], engine() % 500 == 0));
-    const friction::Phase now = detector.state().phase;
+    const detect::Phase now = detector.state().phase;
     // A first fall that was no slip is loading still.
-    RC_ASSERT(now >= phase || (phase == friction::Phase::kFirstSlip && now == friction::Phase::kLoading));
+    RC_ASSERT(now >= phase || (phase == detect::Phase::kFirstSlip && now == detect::Phase::kLoading));
     phase = now;
   }
   check(detector.end());

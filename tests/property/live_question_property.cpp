@@ -10,11 +10,11 @@
 #include <random>
 #include <vector>
 
-#include "core/friction/capture.hpp"
-#include "core/friction/live_rows.hpp"
-#include "core/friction/threshold.hpp"
+#include "core/detect/live_rows.hpp"
+#include "core/model/capture.hpp"
+#include "core/model/threshold.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::model {
 namespace {
 
 double some(double low, double high) { return low + (high - low) * *rc::gen::inRange(0, 1001) / 1000.0; }
@@ -63,8 +63,8 @@ RC_GTEST_PROP(LiveRows, LaidOutScanByScanAreThoseOfAllScansAtOnce, (std::uint64_
   std::mt19937_64 random{seed};
   std::normal_distribution<double> noise{0.3, 0.01};
   std::bernoulli_distribution is_spike{0.05};
-  CycleBuffer buffer;
-  LiveRows step_by_step;
+  estimate::CycleBuffer buffer;
+  detect::LiveRows step_by_step;
   const auto scans = static_cast<int>(0.4 / scan_s);
   std::uniform_int_distribution<int> question{0, 2 + scans / 100};
   for (int i = 0; i < scans; ++i) {
@@ -74,15 +74,15 @@ RC_GTEST_PROP(LiveRows, LaidOutScanByScanAreThoseOfAllScansAtOnce, (std::uint64_
     // Questions do not come with each scan, and noise is measured anew now and then.
     if (points.empty() || question(random) > 2) continue;
     const double sigma = i < scans / 2 ? 0.01 : 0.011;
-    const auto before = std::vector<LiveRow>(step_by_step.all().begin(), step_by_step.all().end());
+    const auto before = std::vector<detect::LiveRow>(step_by_step.all().begin(), step_by_step.all().end());
     const std::size_t kept = step_by_step.lay_out(points, shared, sigma);
-    LiveRows at_once;
+    detect::LiveRows at_once;
     RC_ASSERT(at_once.lay_out(points, shared, sigma) == 0U);
     RC_ASSERT(step_by_step.size() == at_once.size());
     RC_ASSERT(kept <= std::min(before.size(), at_once.size()));
     for (std::size_t row = 0; row < at_once.size(); ++row) {
-      const LiveRow& one = step_by_step.all()[row];
-      const LiveRow& other = at_once.all()[row];
+      const detect::LiveRow& one = step_by_step.all()[row];
+      const detect::LiveRow& other = at_once.all()[row];
       RC_ASSERT(one.tau_s == other.tau_s && one.value == other.value && one.scale == other.scale);
       RC_ASSERT(one.by_D == other.by_D && one.by_rate == other.by_rate);
       RC_ASSERT(one.half_spread_s2 == other.half_spread_s2 && one.stray == other.stray);
@@ -92,4 +92,4 @@ RC_GTEST_PROP(LiveRows, LaidOutScanByScanAreThoseOfAllScansAtOnce, (std::uint64_
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::model

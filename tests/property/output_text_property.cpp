@@ -9,22 +9,22 @@
 #include <string_view>
 #include <vector>
 
+#include "io/export_csv.hpp"
+#include "io/verify.hpp"
+#include "report/report_json.hpp"
+#include "report/report_page.hpp"
+#include "report/report_text.hpp"
 #include <nlohmann/json.hpp>
 
 #include "daemon/control/metrics.hpp"
-#include "daemon/control/status.hpp"
-#include "daemon/export_csv.hpp"
 #include "daemon/fleet/messages.hpp"
-#include "daemon/report/report_json.hpp"
-#include "daemon/report/report_page.hpp"
-#include "daemon/report/report_text.hpp"
-#include "daemon/verify.hpp"
+#include "daemon/types/status.hpp"
 #include "tests/support/hostile_text.hpp"
 #include "tests/support/journal_samples.hpp"
 #include "tests/support/record_samples.hpp"
 #include "tests/support/report_samples.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::report {
 namespace {
 
 using test::expect_safe;
@@ -83,9 +83,9 @@ record::Record named_record(bool is_hostile) {
   record.end->reasons = {next(is_hostile)};
   record.end->results.findings = {next(is_hostile)};
   record.end->results.regime_reason = next(is_hostile);
-  friction::for_each_result(record.end->results,
-                            [&](const friction::ResultName& /*name*/, friction::Estimate& estimate) {
-                              if (!estimate.value) estimate = friction::Estimate::none(next(is_hostile));
+  analysis::for_each_result(record.end->results,
+                            [&](const analysis::ResultName& /*name*/, analysis::Estimate& estimate) {
+                              if (!estimate.value) estimate = analysis::Estimate::none(next(is_hostile));
                             });
   return record;
 }
@@ -93,14 +93,14 @@ record::Record named_record(bool is_hostile) {
 Material named_material(bool is_hostile) {
   Material material = test::sample_material();
   material.label = next(is_hostile);
-  for (report::MeasuredTest& measured : material.measured) {
+  for (analysis::MeasuredTest& measured : material.measured) {
     measured.results.findings = {next(is_hostile)};
-    friction::for_each_result(measured.results,
-                              [&](const friction::ResultName& /*name*/, friction::Estimate& estimate) {
-                                if (!estimate.value) estimate = friction::Estimate::none(next(is_hostile));
+    analysis::for_each_result(measured.results,
+                              [&](const analysis::ResultName& /*name*/, analysis::Estimate& estimate) {
+                                if (!estimate.value) estimate = analysis::Estimate::none(next(is_hostile));
                               });
   }
-  material.groups = report::group_by_speed(material.measured);
+  material.groups = analysis::group_by_speed(material.measured);
   for (ReportedTest& reported : material.tests) {
     reported.file = next(is_hostile);
     reported.title = next(is_hostile);
@@ -111,8 +111,8 @@ Material named_material(bool is_hostile) {
   return material;
 }
 
-Status named_status(bool is_hostile) {
-  Status status;
+daemon::Status named_status(bool is_hostile) {
+  daemon::Status status;
   status.state = "acquiring";
   status.detail = next(is_hostile);
   status.version = next(is_hostile);
@@ -121,7 +121,7 @@ Status named_status(bool is_hostile) {
   board.device = next(is_hostile);
   board.notes = next(is_hostile);
   status.scheduling = next(is_hostile);
-  TestSummary& test = status.latest_test.emplace();
+  daemon::TestSummary& test = status.latest_test.emplace();
   test.file = next(is_hostile);
   test.file_error = next(is_hostile);
   test.results.findings = {next(is_hostile)};
@@ -130,15 +130,15 @@ Status named_status(bool is_hostile) {
   status.storage.lacks = {next(is_hostile)};
   status.calibration.date = next(is_hostile);
   status.calibration.under_way_by = next(is_hostile);
-  BatchProgress& batch = status.batch.emplace();
+  daemon::BatchProgress& batch = status.batch.emplace();
   batch.id = next(is_hostile);
   batch.name = next(is_hostile);
   batch.trouble = next(is_hostile);
-  FleetState& fleet = status.fleet.emplace();
+  daemon::FleetState& fleet = status.fleet.emplace();
   fleet.why = next(is_hostile);
   fleet.broker = next(is_hostile);
   fleet.tester = next(is_hostile);
-  status.page = Status::Page{next(is_hostile), next(is_hostile)};
+  status.page = daemon::Status::Page{next(is_hostile), next(is_hostile)};
   return status;
 }
 
@@ -201,7 +201,7 @@ std::string without_returns(std::string text) {
 RC_GTEST_PROP(OutputTextProperty, TablesOfScansAndCycles, ()) {
   const record::Record named = named_record(true);
   const record::Record plain = named_record(false);
-  for (const auto& table : {scans_csv, cycles_csv}) {
+  for (const auto& table : {io::scans_csv, io::cycles_csv}) {
     const std::string csv = without_returns(table(named));
     expect_same_lines(csv, without_returns(table(plain)));
     expect_no_formula(csv);
@@ -227,15 +227,15 @@ RC_GTEST_PROP(OutputTextProperty, ReportAsTextTableAndPage, ()) {
 }
 
 RC_GTEST_PROP(OutputTextProperty, MetricsFramesAndMessages, ()) {
-  const Status named = named_status(true);
-  const Status plain = named_status(false);
-  expect_same_lines(metrics_text(named), metrics_text(plain));
+  const daemon::Status named = named_status(true);
+  const daemon::Status plain = named_status(false);
+  expect_same_lines(control::metrics_text(named), control::metrics_text(plain));
   const std::string tester = *hostile();
   const record::Record record = named_record(true);
-  const auto result = result_json(record.header, *record.end, record.cycles, *hostile());
-  for (const std::string& message :
-       {health_frame(named), state_message(tester, named, 0), health_message(tester, named, 0),
-        last_will(tester, 0), result_message(tester, result)}) {
+  const auto result = fleet::result_json(record.header, *record.end, record.cycles, *hostile());
+  for (const std::string& message : {daemon::health_frame(named), fleet::state_message(tester, named, 0),
+                                     fleet::health_message(tester, named, 0), fleet::last_will(tester, 0),
+                                     fleet::result_message(tester, result)}) {
     expect_safe(message);
     RC_ASSERT(lines_of(message) == 0);
     RC_ASSERT(nlohmann::json::accept(message));
@@ -251,12 +251,12 @@ RC_GTEST_PROP(OutputTextProperty, VerdictsOfFilesAndOfWhatTheyHold, ()) {
   test::write_journal((folder / "b.journal"), named_record(false));
   const std::string nowhere = folder.path() / ("no" + name);
   const std::string plain =
-      verify_files({(folder / "b.journal").string(), folder.path() / "none"}, false).text;
-  expect_same_lines(verify_files({journal, nowhere}, false).text, plain);
-  const std::string json = verify_files({journal, nowhere}, true).text;
+      io::verify_files({(folder / "b.journal").string(), folder.path() / "none"}, false).text;
+  expect_same_lines(io::verify_files({journal, nowhere}, false).text, plain);
+  const std::string json = io::verify_files({journal, nowhere}, true).text;
   expect_safe(json);
   RC_ASSERT(nlohmann::json::accept(json));
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::report

@@ -39,7 +39,7 @@ Motion some_motion() {
   Motion motion;
   const double omega0_squared = std::pow(some_number(5.0, 500.0), 2);
   // Up to twice the critical damping.
-  motion.oscillator = friction::Oscillator::from_omega0(
+  motion.oscillator = model::Oscillator::from_omega0(
       omega0_squared,
       *rc::gen::element(0.0, 0.01, 0.044, 0.5, 1.9, 2.0, 2.1, 4.0) * std::sqrt(omega0_squared));
   motion.mu_k = some_number(0.0, 1.0);

@@ -11,26 +11,27 @@
 #include <utility>
 #include <vector>
 
+#include "io/json_text.hpp"
+#include "report/report_page.hpp"
+#include "report/table.hpp"
+
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
-#include "daemon/control/reply.hpp"
-#include "daemon/json_text.hpp"
-#include "daemon/log.hpp"
-#include "daemon/report/report_page.hpp"
-#include "daemon/report/table.hpp"
+#include "daemon/app/log.hpp"
+#include "daemon/types/reply.hpp"
 #include "tests/support/hostile_text.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::report {
 namespace {
 
 using test::expect_safe;
 using test::hostile;
 using test::lines_of;
 
-class Kept final : public LogOutput {
+class Kept final : public app::LogOutput {
  public:
   explicit Kept(std::vector<std::string>& lines) : lines_(lines) {}
-  void write(const LogEntry& entry) override { lines_.push_back(entry.message); }
+  void write(const app::LogEntry& entry) override { lines_.push_back(entry.message); }
 
  private:
   std::vector<std::string>& lines_;
@@ -86,7 +87,7 @@ RC_GTEST_PROP(TextProperty, TheTableHasItsLinesWhateverTheFileIsCalled, ()) {
 
 RC_GTEST_PROP(TextProperty, ALogEntryIsOneSafeLine, ()) {
   std::vector<std::string> lines;
-  make_log(LogLevel::kInfo, std::make_unique<Kept>(lines))->orphan_kept(*hostile(), *hostile());
+  app::make_log(io::LogLevel::kInfo, std::make_unique<Kept>(lines))->orphan_kept(*hostile(), *hostile());
   RC_ASSERT(lines.size() == 1U);
   expect_safe(lines.front());
   RC_ASSERT(lines_of(lines.front()) == 0);
@@ -95,9 +96,9 @@ RC_GTEST_PROP(TextProperty, ALogEntryIsOneSafeLine, ()) {
 RC_GTEST_PROP(TextProperty, JsonStaysTheSameAndEndsNoScript, ()) {
   const std::string text = *hostile();
   const nlohmann::ordered_json json{{"name", text}};
-  const std::string answer = json_text(json);
+  const std::string answer = io::json_text(json);
   expect_safe(answer);
-  const auto replaced = json_text(json);
+  const auto replaced = io::json_text(json);
   RC_ASSERT(nlohmann::ordered_json::parse(answer) == nlohmann::ordered_json::parse(replaced));
   expect_safe(json_for_script(json));
   RC_ASSERT(json_for_script(json).find('<') == std::string::npos);
@@ -112,4 +113,4 @@ TEST(Text, OrdinaryTextOfAnyLanguageStays) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::report

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/friction/trace.hpp"
+#include "core/estimate/trace.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::estimate {
 namespace {
 
 RC_GTEST_PROP(TraceProperty, AScanIsFoundByItsTimeWhereverTheSearchBegins, ()) {
@@ -31,4 +31,4 @@ RC_GTEST_PROP(TraceProperty, AScanIsFoundByItsTimeWhereverTheSearchBegins, ()) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::estimate

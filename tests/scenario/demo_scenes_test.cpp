@@ -14,8 +14,8 @@
 namespace stickslip {
 namespace {
 
-using friction::Estimate;
-using friction::Regime;
+using analysis::Estimate;
+using model::Regime;
 using Event = pipeline::Segmenter::Event;
 
 constexpr int kRepeats = 300;
@@ -78,18 +78,17 @@ TEST_P(DemoScenes, StandardErrorsTellTheDistanceFromTheTruth) {
   // themselves scatter from test to test. (Of 1000 repetitions all ten variances were 0.95 to 1.06.)
   struct Compared {
     const char* what;
-    Estimate friction::TestResults::*estimate;
-    double (*truth)(const friction::TestTruth&);
+    Estimate analysis::TestResults::*estimate;
+    double (*truth)(const model::TestTruth&);
   };
   const std::vector<Compared> compared{
-      {"mu_s", &friction::TestResults::mu_s, [](const friction::TestTruth& t) { return t.mu_s; }},
-      {"mu_k", &friction::TestResults::mu_k, [](const friction::TestTruth& t) { return t.mu_k; }},
-      {"delta_mu", &friction::TestResults::delta_mu,
-       [](const friction::TestTruth& t) { return t.mu_s - t.mu_k; }},
-      {"omega", &friction::TestResults::omega,
-       [](const friction::TestTruth& t) { return t.omega_rad_per_s; }},
-      {"gamma_over_2omega", &friction::TestResults::gamma_over_2omega,
-       [](const friction::TestTruth& t) { return t.gamma_over_2omega; }},
+      {"mu_s", &analysis::TestResults::mu_s, [](const model::TestTruth& t) { return t.mu_s; }},
+      {"mu_k", &analysis::TestResults::mu_k, [](const model::TestTruth& t) { return t.mu_k; }},
+      {"delta_mu", &analysis::TestResults::delta_mu,
+       [](const model::TestTruth& t) { return t.mu_s - t.mu_k; }},
+      {"omega", &analysis::TestResults::omega, [](const model::TestTruth& t) { return t.omega_rad_per_s; }},
+      {"gamma_over_2omega", &analysis::TestResults::gamma_over_2omega,
+       [](const model::TestTruth& t) { return t.gamma_over_2omega; }},
   };
   for (const auto& [what, estimate, truth] : compared) {
     double sum = 0.0;
@@ -116,7 +115,7 @@ TEST_P(DemoScenes, StandardErrorsTellTheDistanceFromTheTruth) {
 
 TEST_P(DemoScenes, EstimatesThatAreThereAreFinite) {
   for (const test::AnalysedTest& test : tests()) {
-    friction::for_each_result(test.results, [](const friction::ResultName& name, const Estimate& estimate) {
+    analysis::for_each_result(test.results, [](const analysis::ResultName& name, const Estimate& estimate) {
       EXPECT_EQ(estimate.value.has_value(), estimate.reason.empty()) << name.name;
       EXPECT_TRUE(!estimate.value || std::isfinite(*estimate.value)) << name.name;
     });

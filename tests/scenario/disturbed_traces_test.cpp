@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/friction/test_analysis.hpp"
+#include "core/analysis/test_analysis.hpp"
 #include "tests/support/measured_traces.hpp"
 #include "tests/support/sanitized.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::analysis {
 namespace {
 
 /// Rate of the original instrument [Penner 1995].
@@ -34,7 +34,8 @@ std::vector<std::size_t> peaks_of(const Course& course) {
   for (const double value : course.values) analysis.add(index++, value, false);
   static_cast<void>(analysis.finish());
   std::vector<std::size_t> peaks;
-  for (const Cycle& cycle : analysis.cycles()) peaks.push_back(static_cast<std::size_t>(cycle.first_scan));
+  for (const detect::Cycle& cycle : analysis.cycles())
+    peaks.push_back(static_cast<std::size_t>(cycle.first_scan));
   return peaks;
 }
 
@@ -152,4 +153,4 @@ INSTANTIATE_TEST_SUITE_P(Measured, DisturbedTraces,
                          [](const auto& trace) { return trace.param.name; });
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::analysis

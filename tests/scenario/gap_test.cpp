@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "core/analysis/test_analysis.hpp"
 #include "core/daq/calibration.hpp"
-#include "core/friction/test_analysis.hpp"
 #include "drivers/simulated/simulated_board.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/sanitized.hpp"
@@ -50,11 +50,11 @@ class Played {
     coefficients_.resize(kPullEnds);
   }
 
-  [[nodiscard]] friction::TestResults analyse(
-      const Loss& loss, friction::EstimatorTier estimator = friction::EstimatorTier::kFit) const {
-    friction::AnalysisSettings settings = settings_;
+  [[nodiscard]] analysis::TestResults analyse(
+      const Loss& loss, detect::EstimatorTier estimator = detect::EstimatorTier::kFit) const {
+    analysis::AnalysisSettings settings = settings_;
     settings.estimator = estimator;
-    friction::TestAnalysis analysis{settings};
+    analysis::TestAnalysis analysis{settings};
     for (std::size_t k = 0; k < coefficients_.size(); ++k) {
       if (k >= loss.at && k < loss.at + loss.count) continue;
       auto index = static_cast<base::ScanIndex>(k);
@@ -69,12 +69,12 @@ class Played {
   }
 
  private:
-  friction::AnalysisSettings settings_;
+  analysis::AnalysisSettings settings_;
   std::vector<double> coefficients_;
 };
 
 /// The same scans less some: further apart than four standard errors of the poorer ones, they differ.
-void expect_same(const friction::Estimate& with, const friction::Estimate& without, const char* what) {
+void expect_same(const analysis::Estimate& with, const analysis::Estimate& without, const char* what) {
   ASSERT_TRUE(with.value) << what << ": " << with.reason;
   ASSERT_TRUE(with.standard_error) << what;
   EXPECT_NEAR(*with.value, *without.value, 4.0 * *with.standard_error) << what;
@@ -82,8 +82,8 @@ void expect_same(const friction::Estimate& with, const friction::Estimate& witho
 
 TEST(Gap, CostsStickSlipTheCyclesItTouches) {
   const Played test{"stick-slip-at-12-in-per-min.toml"};
-  const friction::TestResults whole = test.analyse({});
-  ASSERT_EQ(whole.regime, friction::Regime::kStickSlip);
+  const analysis::TestResults whole = test.analyse({});
+  ASSERT_EQ(whole.regime, model::Regime::kStickSlip);
   const std::size_t step = test::kSanitized ? 790 : 223;  // 12.4 cycles: all phases
   int tried = 0;
   for (const std::size_t count : {2U, 9U, 18U, 60U, 400U}) {
@@ -91,7 +91,7 @@ TEST(Gap, CostsStickSlipTheCyclesItTouches) {
     for (const int misjudged : {-1, 0, 2}) {
       for (std::size_t at = 240; at + count + 350 < kPullEnds; at += step, ++tried) {
         SCOPED_TRACE(fmt::format("{} scans from {} on, off by {}", count, at, misjudged));
-        const friction::TestResults results = test.analyse({at, count, misjudged});
+        const analysis::TestResults results = test.analyse({at, count, misjudged});
         ASSERT_EQ(results.regime, whole.regime) << results.regime_reason;
         // The slips on both sides, the one whose beginning was not seen, and those in between, 18 scans each.
         const double most = 4.0 + std::ceil(static_cast<double>(count) / 17.0);
@@ -110,18 +110,17 @@ TEST(Gap, CostsStickSlipTheCyclesItTouches) {
 /// Loaded for S g/(v ω₀²) = 43 ms, a slip of half a period, 25 ms. Without them nothing tells the stick rate.
 constexpr std::size_t kFirstSlipEnds = static_cast<std::size_t>((0.5 + 0.043 + 0.025) * kRate_Hz) + 6;
 
-class GapInARingDown : public testing::TestWithParam<friction::EstimatorTier> {};
+class GapInARingDown : public testing::TestWithParam<detect::EstimatorTier> {};
 
 INSTANTIATE_TEST_SUITE_P(OfEachEstimator, GapInARingDown,
-                         testing::Values(friction::EstimatorTier::kPeak,
-                                         friction::EstimatorTier::kInterpolated,
-                                         friction::EstimatorTier::kFit),
-                         [](const auto& tier) { return std::string{friction::name(tier.param)}; });
+                         testing::Values(detect::EstimatorTier::kPeak, detect::EstimatorTier::kInterpolated,
+                                         detect::EstimatorTier::kFit),
+                         [](const auto& tier) { return std::string{name(tier.param)}; });
 
 TEST_P(GapInARingDown, NeverMakesSticking) {
   const Played test{"ring-down-at-12-in-per-min.toml"};
-  const friction::TestResults whole = test.analyse({}, GetParam());
-  ASSERT_EQ(whole.regime, friction::Regime::kRingDown);
+  const analysis::TestResults whole = test.analyse({}, GetParam());
+  ASSERT_EQ(whole.regime, model::Regime::kRingDown);
   const std::size_t step = test::kSanitized ? 197 : 17;
   int undecided = 0;
   int sticking = 0;
@@ -130,12 +129,12 @@ TEST_P(GapInARingDown, NeverMakesSticking) {
     for (const int misjudged : {0, 2}) {
       for (std::size_t at = kFirstSlipEnds; at < 700; at += step, ++tried) {
         SCOPED_TRACE(fmt::format("{} scans from {} on, off by {}", count, at, misjudged));
-        const friction::TestResults results = test.analyse({at, count, misjudged}, GetParam());
+        const analysis::TestResults results = test.analyse({at, count, misjudged}, GetParam());
         const bool wrong =
-            results.regime == friction::Regime::kStickSlip || results.regime == friction::Regime::kMixed;
+            results.regime == model::Regime::kStickSlip || results.regime == model::Regime::kMixed;
         if (wrong) ++sticking;
-        EXPECT_FALSE(wrong && GetParam() == friction::EstimatorTier::kFit) << results.regime_reason;
-        if (results.regime == friction::Regime::kUndecided) ++undecided;
+        EXPECT_FALSE(wrong && GetParam() == detect::EstimatorTier::kFit) << results.regime_reason;
+        if (results.regime == model::Regime::kUndecided) ++undecided;
       }
     }
   }

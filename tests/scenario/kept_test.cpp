@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/friction/test_analysis.hpp"
+#include "core/analysis/test_analysis.hpp"
 #include "core/sim/scene.hpp"
 #include "core/sim/scene_run.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::detect {
 namespace {
 
 constexpr double kRate_Hz = 350.0;
@@ -52,7 +52,7 @@ std::vector<double> pulled(double delta_mu, const std::string& effects) {
 }
 
 struct Found {
-  TestResults results;
+  analysis::TestResults results;
   std::vector<Cycle> cycles;
   std::vector<Cycle>
       live;  ///< As they were seen one by one, from which the estimators of single cycles have theirs.
@@ -70,13 +70,13 @@ std::pair<double, double> mean_delta_mu(const std::vector<Cycle>& cycles, std::s
   return {sum / n, n};
 }
 
-Found analysed(const std::vector<double>& values, const Kept& kept,
+Found analysed(const std::vector<double>& values, const analysis::Kept& kept,
                EstimatorTier tier = EstimatorTier::kFit) {
-  AnalysisSettings settings;
+  analysis::AnalysisSettings settings;
   settings.scan_rate_Hz = kRate_Hz;
   settings.kept = kept;
   settings.estimator = tier;
-  TestAnalysis analysis{settings};
+  analysis::TestAnalysis analysis{settings};
   for (std::size_t k = 0; k < values.size(); ++k) {
     analysis.add(static_cast<base::ScanIndex>(k), values[k], false);
   }
@@ -94,13 +94,13 @@ std::size_t highest_scan(const std::vector<double>& values, const Cycle& cycle) 
 }
 
 TEST(Kept, NamesReadBack) {
-  EXPECT_TRUE(kept_from_text("")->nothing());
+  EXPECT_TRUE(analysis::kept_from_text("")->nothing());
   for (const char* text : {"spikes", "drift", "first-slip", "spikes,drift", "spikes,drift,first-slip"})
-    EXPECT_EQ(text_of(*kept_from_text(text)), text);
-  EXPECT_EQ(text_of(*kept_from_text("drift,spikes")), "spikes,drift");
-  EXPECT_FALSE(kept_from_text("hum"));
-  EXPECT_FALSE(kept_from_text("spikes drift"));
-  EXPECT_EQ(text_of(either({.drift = true}, {.spikes = true})), "spikes,drift");
+    EXPECT_EQ(analysis::text_of(*analysis::kept_from_text(text)), text);
+  EXPECT_EQ(analysis::text_of(*analysis::kept_from_text("drift,spikes")), "spikes,drift");
+  EXPECT_FALSE(analysis::kept_from_text("hum"));
+  EXPECT_FALSE(analysis::kept_from_text("spikes drift"));
+  EXPECT_EQ(analysis::text_of(analysis::either({.drift = true}, {.spikes = true})), "spikes,drift");
 }
 
 // A spike on the first peak is the static coefficient of the tradition, to its full height.
@@ -143,8 +143,8 @@ TEST(Kept, DriftMovesKOfARingDownToTheMiddleOfThePull) {
       fmt::format("[effects.kinetic_drift]\nchange = {}\nover = \"{} s\"\n", kDrift_per_s * 5.0 / kK, 5.0));
   const Found handled = analysed(values, {});
   const Found kept = analysed(values, {.drift = true});
-  ASSERT_EQ(handled.results.regime, Regime::kRingDown);
-  ASSERT_EQ(kept.results.regime, Regime::kRingDown);
+  ASSERT_EQ(handled.results.regime, model::Regime::kRingDown);
+  ASSERT_EQ(kept.results.regime, model::Regime::kRingDown);
   ASSERT_TRUE(kept.results.mu_k.value) << kept.results.mu_k.reason;
   // The fit goes from the onset to one and a half oscillations after the last trough that stands out.
   const double onset_s = handled.cycles.front().onset_time_s;
@@ -168,7 +168,7 @@ TEST(Kept, DriftLooksLikeScatterOfK) {
       fmt::format("[effects.kinetic_drift]\nchange = {}\nover = \"{} s\"\n", kDrift_per_s * 5.0 / kK, 5.0));
   const Found handled = analysed(values, {});
   const Found kept = analysed(values, {.drift = true});
-  ASSERT_EQ(kept.results.regime, Regime::kStickSlip);
+  ASSERT_EQ(kept.results.regime, model::Regime::kStickSlip);
   const double n = static_cast<double>(kept.cycles.size()) - 1.0;
   const double expected =
       std::abs(kDrift_per_s) * *kept.results.period_median.value * std::sqrt((n + 1.0) / 12.0);
@@ -225,4 +225,4 @@ TEST(Kept, FirstSlipLikeTheOthersChangesNothingButTheNumber) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::detect

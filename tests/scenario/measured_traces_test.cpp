@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "core/friction/test_analysis.hpp"
+#include "core/analysis/test_analysis.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::analysis {
 namespace {
 
 class MeasuredTraces : public testing::Test {
@@ -38,7 +38,7 @@ TEST_F(MeasuredTraces, NearlySinusoidalStickSlip) {
   if (!results) GTEST_SKIP() << "there are no measured traces in " << test::measured_traces_folder();
   RecordProperty("cycles", std::to_string(*results->cycle_count.value));
   RecordProperty("period_s", std::to_string(*results->period_median.value));
-  RecordProperty("regime", std::string(name(results->regime)) + ": " + results->regime_reason);
+  RecordProperty("regime", std::string(model::name(results->regime)) + ": " + results->regime_reason);
   EXPECT_NEAR(results->cycle_count.value.value(), 131.0, 0.03 * 131.0);
   EXPECT_NEAR(results->period_median.value.value(), 0.0285, 0.02 * 0.0285);
 }
@@ -48,7 +48,7 @@ TEST_F(MeasuredTraces, SawTooth) {
   const auto results = analyse(test::kSawTooth);
   if (!results) GTEST_SKIP() << "there are no measured traces in " << test::measured_traces_folder();
   RecordProperty("cycles", std::to_string(*results->cycle_count.value));
-  RecordProperty("regime", std::string(name(results->regime)) + ": " + results->regime_reason);
+  RecordProperty("regime", std::string(model::name(results->regime)) + ": " + results->regime_reason);
   EXPECT_NEAR(results->cycle_count.value.value(), 39.0, 2.0);
 }
 
@@ -56,9 +56,9 @@ TEST_F(MeasuredTraces, IrregularSlidingHasNoCycles) {
   const auto results = analyse(test::kIrregularSliding);
   if (!results) GTEST_SKIP() << "there are no measured traces in " << test::measured_traces_folder();
   EXPECT_EQ(results->cycle_count.value, 0.0);
-  EXPECT_EQ(results->regime, Regime::kSteadySliding);
+  EXPECT_EQ(results->regime, model::Regime::kSteadySliding);
   EXPECT_FALSE(results->period_median.value);
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::analysis

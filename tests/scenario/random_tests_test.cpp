@@ -50,15 +50,15 @@ double one_more(int count, int of) { return static_cast<double>(count + 1) / sta
 /// Counts behind the table of docs/detector.md, noise 0.02 (S − K).
 struct ClassRates {
   const char* name;
-  std::optional<friction::Regime> regime;  ///< Nothing: tests with one to three captures.
+  std::optional<model::Regime> regime;  ///< Nothing: tests with one to three captures.
   int tests;
   int wrong;
   int undecided;
 };
 constexpr std::array<ClassRates, 4> kDocumented{{
-    {"stick-slip", friction::Regime::kStickSlip, 1500, 0, 1},
-    {"ring-down", friction::Regime::kRingDown, 7383, 2, 30},
-    {"mixed", friction::Regime::kMixed, 1117, 3, 3},
+    {"stick-slip", model::Regime::kStickSlip, 1500, 0, 1},
+    {"ring-down", model::Regime::kRingDown, 7383, 2, 30},
+    {"mixed", model::Regime::kMixed, 1117, 3, 3},
     {"with one to three captures", std::nullopt, 507, 2, 3},
 }};
 
@@ -71,13 +71,13 @@ constexpr double kTransitionRms_s = 0.161e-3;
 
 /// The same by the estimator `interpolated`, which has each slip as it was decided while the test ran.
 constexpr std::array<ClassRates, 4> kDocumentedWithoutFit{{
-    {"stick-slip", friction::Regime::kStickSlip, 1500, 40, 25},
-    {"ring-down", friction::Regime::kRingDown, 7383, 136, 368},
-    {"mixed", friction::Regime::kMixed, 1117, 16, 23},
+    {"stick-slip", model::Regime::kStickSlip, 1500, 40, 25},
+    {"ring-down", model::Regime::kRingDown, 7383, 136, 368},
+    {"mixed", model::Regime::kMixed, 1117, 16, 23},
     {"with one to three captures", std::nullopt, 507, 16, 22},
 }};
 
-void expect_as_documented(friction::EstimatorTier estimator, const std::array<ClassRates, 4>& documented) {
+void expect_as_documented(detect::EstimatorTier estimator, const std::array<ClassRates, 4>& documented) {
   const auto base = base_scene();
   ASSERT_TRUE(base) << base.error().message;
   const auto table = test::judge_random_tests(*base, {}, kTests, kSeed, estimator);
@@ -97,10 +97,10 @@ void expect_as_documented(friction::EstimatorTier estimator, const std::array<Cl
   }
 }
 
-TEST(RandomTests, AreCalledWhatTheyAre) { expect_as_documented(friction::EstimatorTier::kFit, kDocumented); }
+TEST(RandomTests, AreCalledWhatTheyAre) { expect_as_documented(detect::EstimatorTier::kFit, kDocumented); }
 
 TEST(RandomTests, AreCalledSoLessOftenWithoutAFit) {
-  expect_as_documented(friction::EstimatorTier::kInterpolated, kDocumentedWithoutFit);
+  expect_as_documented(detect::EstimatorTier::kInterpolated, kDocumentedWithoutFit);
 }
 
 // When the sled escaped: the onset of that slip by its fit, with the standard error that it says.

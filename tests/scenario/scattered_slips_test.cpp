@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "core/report/grouping.hpp"
+#include "core/analysis/grouping.hpp"
 #include "tests/support/scatter_trials.hpp"
 
 namespace stickslip {
@@ -15,9 +15,9 @@ namespace {
 
 constexpr int kTests = 200;
 
-friction::PooledDeltaMu pool_and_print(double speed_in_per_min, const test::ScatterTrials& trials) {
-  friction::PooledDeltaMu pooled = friction::pool_delta_mu(trials.cycles);
-  const auto bias = [](const friction::Estimate& mean) {
+analysis::PooledDeltaMu pool_and_print(double speed_in_per_min, const test::ScatterTrials& trials) {
+  analysis::PooledDeltaMu pooled = analysis::pool_delta_mu(trials.cycles);
+  const auto bias = [](const analysis::Estimate& mean) {
     return 100.0 * (*mean.value / test::ScatterTrials::kDeltaMu - 1.0);
   };
   std::printf(
@@ -31,7 +31,7 @@ friction::PooledDeltaMu pool_and_print(double speed_in_per_min, const test::Scat
 }
 
 /// What three standard errors of the simulation allow beyond 1 %.
-double allowed_bias(const friction::PooledDeltaMu& pooled) {
+double allowed_bias(const analysis::PooledDeltaMu& pooled) {
   return 0.01 * test::ScatterTrials::kDeltaMu + 3.0 * *pooled.mean.standard_error;
 }
 
@@ -39,7 +39,7 @@ TEST(ScatteredSlips, TheirMeanIsAsGoodAsTheirNumberAllows) {
   // An rms of n tests scatters by 1/√(2n) of itself.
   for (const double speed_in_per_min : {3.0, 6.0}) {
     const test::ScatterTrials trials{speed_in_per_min, kTests};
-    const friction::PooledDeltaMu pooled = pool_and_print(speed_in_per_min, trials);
+    const analysis::PooledDeltaMu pooled = pool_and_print(speed_in_per_min, trials);
     EXPECT_EQ(trials.without_delta_mu(), 0);
     EXPECT_LT(trials.rms_over_sampling(), 1.2 * (1.0 + 3.0 / std::sqrt(2.0 * kTests)));
     EXPECT_NEAR(*pooled.mean.value, test::ScatterTrials::kDeltaMu, allowed_bias(pooled));
@@ -50,7 +50,7 @@ TEST(ScatteredSlips, TheirMeanIsAsGoodAsTheirNumberAllows) {
 
 TEST(ScatteredSlips, TheOneThatEscapesCounts) {
   const test::ScatterTrials trials{12.0, kTests};
-  const friction::PooledDeltaMu pooled = pool_and_print(12.0, trials);
+  const analysis::PooledDeltaMu pooled = pool_and_print(12.0, trials);
   EXPECT_LE(trials.without_delta_mu(), kTests / 100);
   // S − K below 0.67 of its mean does not stick again at Q = 1.30: 11.6 % of a log-normal one.
   const double escaped = static_cast<double>(pooled.escaped_count) / static_cast<double>(pooled.slip_count);
@@ -74,15 +74,15 @@ TEST(ScatteredSlips, TheOneThatEscapesCounts) {
 // What a report of these tests leads with is the true S − K; the mean of the tests, second, is not.
 TEST(ScatteredSlips, ReportLeadsWithTheMeanByCycle) {
   const test::ScatterTrials trials{12.0, kTests};
-  std::vector<report::MeasuredTest> tests;
+  std::vector<analysis::MeasuredTest> tests;
   for (std::size_t i = 0; i < trials.results.size(); ++i)
-    tests.push_back({0.00508, trials.results[i], friction::slip_sums(trials.cycles[i])});
-  const std::vector<report::SpeedGroup> groups = report::group_by_speed(tests);
+    tests.push_back({0.00508, trials.results[i], analysis::slip_sums(trials.cycles[i])});
+  const std::vector<analysis::SpeedGroup> groups = analysis::group_by_speed(tests);
   ASSERT_EQ(groups.size(), 1U);
-  const friction::PooledDeltaMu& by_cycle = groups[0].by_cycle;
-  EXPECT_EQ(*by_cycle.mean.value, *friction::pool_delta_mu(trials.cycles).mean.value);
+  const analysis::PooledDeltaMu& by_cycle = groups[0].by_cycle;
+  EXPECT_EQ(*by_cycle.mean.value, *analysis::pool_delta_mu(trials.cycles).mean.value);
   EXPECT_NEAR(*by_cycle.mean.value, test::ScatterTrials::kDeltaMu, allowed_bias(by_cycle));
-  const auto interval = report::mean_interval(by_cycle);
+  const auto interval = analysis::mean_interval(by_cycle);
   ASSERT_TRUE(interval);
   // Of so many tests Student's t is the normal distribution: 1.96 to 1.98 standard errors.
   EXPECT_NEAR((interval->high - interval->low) / *by_cycle.mean.standard_error, 2.0 * 1.97, 0.03);

@@ -78,7 +78,7 @@ TEST(SpeedChannel, EachPullOfThreeKnowsItsOwnSpeed) {
   double inches_per_min = 3.0;
   for (const test::AnalysedTest& pull : tests) {
     int known = 0;
-    for (const friction::Cycle& cycle : pull.cycles) {
+    for (const detect::Cycle& cycle : pull.cycles) {
       if (std::isnan(cycle.pull_speed_m_per_s)) continue;
       EXPECT_NEAR(cycle.pull_speed_m_per_s, inches_per_min * 0.0254 / 60.0, kStep_m_per_s);
       ++known;

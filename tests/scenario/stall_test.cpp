@@ -12,7 +12,7 @@
 #include "core/record/finaliser.hpp"
 #include "core/record/reader.hpp"
 #include "core/record/verdict.hpp"
-#include "daemon/storage.hpp"
+#include "daemon/storage/storage.hpp"
 #include "drivers/simulated/simulated_board.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/record_samples.hpp"
@@ -101,12 +101,12 @@ Outcome measure(std::vector<Trouble> troubles) {
   Published published;
   TestLog tests;
   Idle idle;
-  Storage storage{{folder / "records"},
-                  [](const fs::path& journal, std::optional<std::int64_t> expected) {
-                    return record::finalise(journal, {}, record::system_calls(), {}, expected);
-                  },
-                  tests,
-                  published};
+  storage::Storage storage{{folder / "records"},
+                           [](const fs::path& journal, std::optional<std::int64_t> expected) {
+                             return record::finalise(journal, {}, record::system_calls(), {}, expected);
+                           },
+                           tests,
+                           published};
   storage.use(header, nullptr);
 
   pipeline::ProcessorSettings settings;
@@ -152,7 +152,7 @@ void expect_times_of_the_scans(const record::Record& record) {
 void expect_same(const record::Record& record, const record::Record& quiet) {
   EXPECT_EQ(record.scan, quiet.scan);
   EXPECT_EQ(record.raw, quiet.raw);
-  friction::TestResults results = record.end->results;
+  analysis::TestResults results = record.end->results;
   results.scan_rate_measured = quiet.end->results.scan_rate_measured;
   EXPECT_EQ(results, quiet.end->results);
 }

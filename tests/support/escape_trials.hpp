@@ -13,11 +13,12 @@
 #include <thread>
 #include <vector>
 
-#include "core/friction/live_detector.hpp"
-#include "core/friction/threshold.hpp"
+#include "cli/sweep/scene_scans.hpp"
+
+#include "core/detect/live_detector.hpp"
+#include "core/model/threshold.hpp"
 #include "core/sim/scene.hpp"
 #include "core/sim/scene_truth.hpp"
-#include "daemon/sweep/scene_scans.hpp"
 #include "tests/support/characterised.hpp"
 #include "tests/support/random_tests.hpp"
 
@@ -37,7 +38,7 @@ struct EscapeTrial {
 
 inline EscapeTrial escape_trial(const sim::Scene& scene, const Disturbance& disturbance) {
   EscapeTrial trial;
-  const friction::TestTruth truth = sim::scene_truth(scene, scene.scan_rate_Hz, scene.seed);
+  const model::TestTruth truth = sim::scene_truth(scene, scene.scan_rate_Hz, scene.seed);
   const double pull_end_s = sim::pull_of(scene)->end_s;
   const double period_s = 2.0 * std::numbers::pi / truth.omega_rad_per_s;
   trial.captured = captures(truth, *sim::pull_of(scene));
@@ -47,40 +48,40 @@ inline EscapeTrial escape_trial(const sim::Scene& scene, const Disturbance& dist
     // The start of the belt left it sliding: there is no capture that could be mistaken.
     escape_s = 0.0;
   } else if (static_cast<std::size_t>(trial.captured) < truth.cycles.size()) {
-    const friction::TrueCycle slip = truth.cycles[static_cast<std::size_t>(trial.captured)];
+    const model::TrueCycle slip = truth.cycles[static_cast<std::size_t>(trial.captured)];
     escape_s = slip.onset_time_s;
     trial.escapes = escape_s + 3.0 * period_s <= pull_end_s;
     trial.first = trial.captured == 0;
     const double own = slip.mu_s - slip.mu_k;
     trial.over_threshold = scene.constant_speed->pull_speed_m_per_s /
-                           friction::threshold_speed_m_per_s(scene.oscillator, own, scene.gravity_m_per_s2);
+                           model::threshold_speed_m_per_s(scene.oscillator, own, scene.gravity_m_per_s2);
     trial.noise = disturbance.noise * (scene.mu_s - scene.mu_k) / own;
   }
 
-  const daq::Calibration calibration = daemon::calibration_of(scene);
-  friction::LiveSettings settings;
+  const daq::Calibration calibration = sweep::calibration_of(scene);
+  detect::LiveSettings settings;
   settings.scan_rate_Hz = scene.scan_rate_Hz;
   settings.step_coefficient = calibration.step_coefficient();
   settings.prior =
       characterised(scene.oscillator.omega_rad_per_s(), scene.oscillator.gamma_over_2omega(), scene.seed);
-  friction::LiveDetector detector{settings};
-  friction::Regime before = friction::Regime::kUndecided;
+  detect::LiveDetector detector{settings};
+  model::Regime before = model::Regime::kUndecided;
   std::optional<double> declared_s;
   const auto add = [&](base::ScanIndex scan, double coefficient, bool saturated) {
     detector.add(coefficient, saturated);
-    const friction::Regime now = detector.state().regime;
+    const model::Regime now = detector.state().regime;
     if (now == before) return;
     before = now;
     const double now_s = static_cast<double>(scan) / scene.scan_rate_Hz;
-    if (now != friction::Regime::kRingDown || now_s > pull_end_s) return;
+    if (now != model::Regime::kRingDown || now_s > pull_end_s) return;
     if (now_s < escape_s) {
       ++trial.false_escapes;
     } else if (!declared_s) {
       declared_s = now_s;
     }
   };
-  daemon::play(scene, scene.seed, calibration, add,
-               [&](base::ScanIndex /*first*/, std::int64_t count) { detector.gap(count); });
+  sweep::play(scene, scene.seed, calibration, add,
+              [&](base::ScanIndex /*first*/, std::int64_t count) { detector.gap(count); });
   trial.periods = declared_s ? (*declared_s - escape_s) / period_s : HUGE_VAL;
   return trial;
 }

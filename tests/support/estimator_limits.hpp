@@ -16,8 +16,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "core/friction/information.hpp"
-#include "core/friction/test_analysis.hpp"
+#include "core/analysis/test_analysis.hpp"
+#include "core/estimate/information.hpp"
 
 namespace stickslip::test {
 
@@ -84,14 +84,14 @@ class LimitScene {
   explicit LimitScene(double speed_in_per_min = 12.0) {
     const double omega = 2.0 * std::numbers::pi * 20.0;
     const double speed = speed_in_per_min * kInchPerMinute_m_per_s;
-    const auto oscillator = friction::Oscillator::from_omega(omega, 0.022);
+    const auto oscillator = model::Oscillator::from_omega(omega, 0.022);
     parameters_.shared = {omega, oscillator.gamma_per_s,
-                          oscillator.stick_rate_per_s(speed, friction::kStandardGravity_m_per_s2)};
-    speed_over_gravity_s_ = speed / friction::kStandardGravity_m_per_s2;
+                          oscillator.stick_rate_per_s(speed, model::kStandardGravity_m_per_s2)};
+    speed_over_gravity_s_ = speed / model::kStandardGravity_m_per_s2;
     // The first slip neither on a scan nor half way between two; half a second of rest before the pull.
     parameters_.slip = {(175.3 / kScanRate_Hz) + 0.35 / parameters_.shared.r, 0.35, 0.30};
-    const auto course = friction::UniformCourse::make(parameters_);
-    const friction::SlipModel slip{parameters_.shared, {0.0, 0.35, 0.30}, true};
+    const auto course = model::UniformCourse::make(parameters_);
+    const model::SlipModel slip{parameters_.shared, {0.0, 0.35, 0.30}, true};
     const double peak_s = slip.waveform().peak_time_s();
     const double trough_s = slip.waveform().trough_time_s();
     const double T = course->period_s();
@@ -107,19 +107,19 @@ class LimitScene {
       exact_.push_back(std::max(course->at(time_s).value, 0.0));
       if (time_s >= fit_begin_s && time_s <= fit_end_s) fitted_times_s_.push_back(time_s);
     }
-    information_ = friction::fisher_information(*course, fitted_times_s_, kSigma);
+    information_ = estimate::fisher_information(*course, fitted_times_s_, kSigma);
     // The ring-down of the shipped scene: S 0.325 at the same speed.
     std::vector<double> ring_down_times_s;
     for (double t = 0.0; t < kRingDown_s; t += 1.0 / kScanRate_Hz) ring_down_times_s.push_back(t);
     coupling_covariance_ =
-        friction::ring_down_bound(parameters_.shared, {0.02, 0.325, 0.30}, ring_down_times_s, kSigma);
+        estimate::ring_down_bound(parameters_.shared, {0.02, 0.325, 0.30}, ring_down_times_s, kSigma);
   }
 
   [[nodiscard]] const Eigen::Matrix2d& coupling_covariance() const { return coupling_covariance_; }
   [[nodiscard]] const std::vector<double>& exact() const { return exact_; }
 
-  [[nodiscard]] friction::SharedPrior prior(LimitCase which) const {
-    friction::SharedPrior prior;
+  [[nodiscard]] estimate::SharedPrior prior(LimitCase which) const {
+    estimate::SharedPrior prior;
     const auto& [omega, gamma, r] = parameters_.shared;
     if (which.coupling_known) prior.coupling = {omega, gamma / (2.0 * omega), coupling_covariance_};
     // A millionth of the speed is as good as exact here.
@@ -127,22 +127,22 @@ class LimitScene {
     return prior;
   }
 
-  [[nodiscard]] friction::UniformBounds bounds(LimitCase which) const {
-    return friction::cramer_rao_bounds(parameters_, information_, prior(which));
+  [[nodiscard]] estimate::UniformBounds bounds(LimitCase which) const {
+    return estimate::cramer_rao_bounds(parameters_, information_, prior(which));
   }
 
   /// Of S − K where the ring-down tells γ/2ω, the pull speed is known and ω is free.
   [[nodiscard]] double delta_mu_bound_with_gamma_alone() const {
-    friction::SharedPrior prior = this->prior({.coupling_known = true, .speed_known = true});
+    estimate::SharedPrior prior = this->prior({.coupling_known = true, .speed_known = true});
     const double unknown = prior.coupling->omega;
     prior.coupling->covariance = Eigen::Vector2d{unknown * unknown, coupling_covariance_(1, 1)}.asDiagonal();
-    return friction::cramer_rao_bounds(parameters_, information_, prior).delta_mu;
+    return estimate::cramer_rao_bounds(parameters_, information_, prior).delta_mu;
   }
 
   /// Of the pull speed, r/ω₀² with ω₀² = ω² + γ²/4, as a part of it; the tester is known.
   [[nodiscard]] double pull_speed_bound() const {
     const auto& [omega, gamma, r] = parameters_.shared;
-    friction::UniformParameters::Matrix all = information_;
+    model::UniformParameters::Matrix all = information_;
     all.bottomRightCorner<3, 3>() += prior({.coupling_known = true}).at(parameters_.shared).information;
     const double omega0_squared = omega * omega + 0.25 * gamma * gamma;
     const Eigen::Vector3d by{-2.0 * omega / omega0_squared, -0.5 * gamma / omega0_squared, 1.0 / r};
@@ -152,7 +152,7 @@ class LimitScene {
 
   /// The same case with so many different noises; what is known beforehand has its own error each time.
   [[nodiscard]] LimitReport run(LimitCase which, int seeds, int first_seed = 1) const {
-    const friction::UniformBounds bounds = this->bounds(which);
+    const estimate::UniformBounds bounds = this->bounds(which);
     LimitReport report;
     report.which = which;
     report.tallies = {{{"S - K", parameters_.slip.S - parameters_.slip.K, bounds.delta_mu},
@@ -164,7 +164,7 @@ class LimitScene {
     for (int seed = first_seed; seed < first_seed + seeds; ++seed) {
       std::mt19937_64 engine{static_cast<std::uint64_t>(seed)};
       std::normal_distribution<double> normal;
-      friction::AnalysisSettings settings;
+      analysis::AnalysisSettings settings;
       settings.scan_rate_Hz = kScanRate_Hz;
       settings.prior = prior(which);
       if (settings.prior.coupling) {
@@ -174,13 +174,13 @@ class LimitScene {
         settings.prior.coupling->omega += off[0];
         settings.prior.coupling->gamma_over_2omega += off[1];
       }
-      friction::TestAnalysis analysis{settings};
+      analysis::TestAnalysis analysis{settings};
       base::ScanIndex index = 0;
       for (const double value : exact_) analysis.add(index++, value + kSigma * normal(engine), false);
-      const friction::TestResults results = analysis.finish();
-      const std::array<const friction::Estimate*, 4> found{&results.delta_mu, &results.mu_k, &results.omega,
+      const analysis::TestResults results = analysis.finish();
+      const std::array<const analysis::Estimate*, 4> found{&results.delta_mu, &results.mu_k, &results.omega,
                                                            &results.gamma_over_2omega};
-      const bool complete = std::all_of(found.begin(), found.end(), [](const friction::Estimate* estimate) {
+      const bool complete = std::all_of(found.begin(), found.end(), [](const analysis::Estimate* estimate) {
         return estimate->value && estimate->standard_error;
       });
       if (!complete) {
@@ -195,11 +195,11 @@ class LimitScene {
   }
 
  private:
-  friction::UniformParameters parameters_;
+  model::UniformParameters parameters_;
   double speed_over_gravity_s_ = 0.0;
   std::vector<double> exact_;
   std::vector<double> fitted_times_s_;
-  friction::UniformParameters::Matrix information_;
+  model::UniformParameters::Matrix information_;
   Eigen::Matrix2d coupling_covariance_;
 };
 

@@ -11,8 +11,8 @@
 #include <random>
 #include <vector>
 
-#include "core/friction/live_detector.hpp"
-#include "core/friction/slip_model.hpp"
+#include "core/detect/live_detector.hpp"
+#include "core/model/slip_model.hpp"
 #include "tests/support/characterised.hpp"
 
 namespace stickslip::test {
@@ -33,11 +33,11 @@ struct LiveScene {
   std::uint64_t seed = 1;
 
   [[nodiscard]] double omega() const { return 2.0 * std::numbers::pi * frequency_Hz; }
-  [[nodiscard]] friction::SharedParameters shared() const {
+  [[nodiscard]] model::SharedParameters shared() const {
     return {omega(), 2.0 * gamma_over_2omega * omega(), Q * omega() * (S - K)};
   }
   /// ω and γ from a ring-down, with its error.
-  [[nodiscard]] friction::SharedPrior characterised() const {
+  [[nodiscard]] estimate::SharedPrior characterised() const {
     return test::characterised(omega(), gamma_over_2omega, seed);
   }
 };
@@ -52,7 +52,7 @@ class LiveTrial {
   };
 
   explicit LiveTrial(const LiveScene& scene) : scene_(scene), engine_(scene.seed) {
-    const friction::SharedParameters shared = scene.shared();
+    const model::SharedParameters shared = scene.shared();
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> part;
     // The noise must be known before the first slip; and the first onset lies anywhere between two scans.
@@ -63,7 +63,7 @@ class LiveTrial {
       double D = (scene.S - scene.K) * std::exp(scene.scatter * normal(engine_));
       if (escapes) D = (scene.S - scene.K) * scene.Q / scene.escape_Q;
       TrueSlip slip{from_s + (scene.K + D) / shared.r, scene.K + D, scene.K, !escapes};
-      models_.emplace_back(shared, friction::SlipParameters{slip.onset_s, slip.S, slip.K}, !escapes);
+      models_.emplace_back(shared, model::SlipParameters{slip.onset_s, slip.S, slip.K}, !escapes);
       slips_.push_back(slip);
       if (escapes) {
         end_s_ = slip.onset_s + scene.escape_periods / scene.frequency_Hz;
@@ -100,7 +100,7 @@ class LiveTrial {
   std::mt19937_64 engine_;
   std::normal_distribution<double> noise_;
   std::vector<TrueSlip> slips_;
-  std::vector<friction::SlipModel> models_;
+  std::vector<model::SlipModel> models_;
   double begin_s_ = 0.0;
   double end_s_ = 0.0;
   std::int64_t scan_ = 0;
@@ -109,26 +109,26 @@ class LiveTrial {
 
 /// What came of a trial.
 struct LiveOutcome {
-  std::vector<friction::LiveCycle> cycles;
+  std::vector<detect::LiveCycle> cycles;
   double escape_declared_s = std::nan("");  ///< First time that the regime was ring-down.
   double sliding_declared_s = std::nan("");
   int false_escapes = 0;  ///< Captured slips that were taken for escapes.
 };
 
-inline LiveOutcome run_live(const LiveScene& scene, const friction::LiveSettings& settings) {
+inline LiveOutcome run_live(const LiveScene& scene, const detect::LiveSettings& settings) {
   LiveTrial trial{scene};
-  friction::LiveDetector detector{settings};
+  detect::LiveDetector detector{settings};
   LiveOutcome outcome;
-  friction::Regime before = friction::Regime::kUndecided;
+  model::Regime before = model::Regime::kUndecided;
   const double escape_s = scene.escape_Q > 0.0 ? trial.slips().back().onset_s : 1e300;
   for (std::int64_t scan = 0; scan < trial.scan_count(); ++scan) {
     if (const auto cycle = detector.add(trial.next(), false)) outcome.cycles.push_back(*cycle);
-    const friction::Regime regime = detector.state().regime;
+    const model::Regime regime = detector.state().regime;
     if (regime == before) continue;
     before = regime;
     const double now_s = trial.time_s(scan);
-    if (regime == friction::Regime::kSteadySliding) outcome.sliding_declared_s = now_s;
-    if (regime != friction::Regime::kRingDown) continue;
+    if (regime == model::Regime::kSteadySliding) outcome.sliding_declared_s = now_s;
+    if (regime != model::Regime::kRingDown) continue;
     if (now_s < escape_s) {
       ++outcome.false_escapes;
     } else if (std::isnan(outcome.escape_declared_s)) {

@@ -9,18 +9,18 @@
 #include <random>
 #include <vector>
 
-#include "core/friction/capture.hpp"
-#include "core/friction/slip_fit.hpp"
-#include "core/friction/slip_model.hpp"
-#include "core/friction/trace.hpp"
+#include "core/estimate/slip_fit.hpp"
+#include "core/estimate/trace.hpp"
+#include "core/model/capture.hpp"
+#include "core/model/slip_model.hpp"
 
 namespace stickslip::test {
 
 /// The paper's tester at a dimensionless speed Q, with S = 0.35 and K = 0.30.
 struct ModelCourse {
-  friction::SharedParameters shared;
-  std::vector<friction::SlipWindow> windows;  ///< With the true parameters.
-  friction::Trace trace;                      ///< Without noise.
+  model::SharedParameters shared;
+  std::vector<estimate::SlipWindow> windows;  ///< With the true parameters.
+  estimate::Trace trace;                      ///< Without noise.
 
   static constexpr double kOmega = 2.0 * std::numbers::pi * 20.0;
   static constexpr double kGammaOver2Omega = 0.022;
@@ -30,7 +30,7 @@ struct ModelCourse {
   /// Where the first slip begins: neither on a scan nor half way between two.
   static constexpr double kFirstOnset_s = 20.3 / kScanRate_Hz;
 
-  [[nodiscard]] static friction::SharedParameters tester_at(double Q) {
+  [[nodiscard]] static model::SharedParameters tester_at(double Q) {
     return {kOmega, 2.0 * kGammaOver2Omega * kOmega, Q * kOmega * (kS - kK)};
   }
 
@@ -41,10 +41,10 @@ struct ModelCourse {
     double onset_s = kFirstOnset_s;
     double window_begin_s = 0.0;
     for (int i = 0; i < slips; ++i) {
-      friction::SlipWindow window;
+      estimate::SlipWindow window;
       window.captured = true;
       window.slip = {onset_s, kS, kK};
-      const friction::SlipModel model{course.shared, window.slip, true};
+      const model::SlipModel model{course.shared, window.slip, true};
       const double capture_s = onset_s + model.capture_s();
       const double at_capture = model.at(capture_s).value;
       onset_s = capture_s + (kS - at_capture) / course.shared.r;
@@ -62,7 +62,7 @@ struct ModelCourse {
   [[nodiscard]] static ModelCourse free(double Q, double periods) {
     ModelCourse course;
     course.shared = tester_at(Q);
-    friction::SlipWindow window;
+    estimate::SlipWindow window;
     window.slip = {kFirstOnset_s, kS, kK};
     window.end = scan_after(kFirstOnset_s + periods * 2.0 * std::numbers::pi / kOmega);
     course.windows.push_back(window);
@@ -71,10 +71,10 @@ struct ModelCourse {
   }
 
   /// The same with white noise.
-  [[nodiscard]] friction::Trace noisy(double sigma, std::uint64_t seed) const {
+  [[nodiscard]] estimate::Trace noisy(double sigma, std::uint64_t seed) const {
     std::mt19937_64 engine{seed};
     std::normal_distribution<double> normal{0.0, sigma};
-    friction::Trace result = trace;
+    estimate::Trace result = trace;
     for (double& value : result.value) value += normal(engine);
     return result;
   }
@@ -85,8 +85,8 @@ struct ModelCourse {
   }
 
   void fill() {
-    for (const friction::SlipWindow& window : windows) {
-      const friction::SlipModel model{shared, window.slip, window.captured};
+    for (const estimate::SlipWindow& window : windows) {
+      const model::SlipModel model{shared, window.slip, window.captured};
       for (std::size_t k = window.first; k < window.end; ++k) {
         trace.time_s.push_back(static_cast<double>(k) / kScanRate_Hz);
         trace.value.push_back(model.at(trace.time_s.back()).value);

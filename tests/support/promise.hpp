@@ -12,12 +12,13 @@
 #include <thread>
 #include <vector>
 
+#include "cli/sweep/runner.hpp"
+
 #include "core/base/result.hpp"
-#include "core/friction/closed_forms.hpp"
-#include "core/friction/threshold.hpp"
+#include "core/model/closed_forms.hpp"
+#include "core/model/threshold.hpp"
 #include "core/sim/random_stream.hpp"
 #include "core/sim/scene.hpp"
-#include "daemon/sweep/runner.hpp"
 #include "tests/support/random_tests.hpp"
 
 namespace stickslip::test {
@@ -38,13 +39,12 @@ inline sim::Scene promise_scene(const sim::Scene& base, const PromiseCell& cell)
   constexpr double kDeltaMu = PromiseCell::kDeltaMu;
   sim::Scene scene = base;
   sim::ConstantSpeed& belt = *scene.constant_speed;
-  belt.pull_speed_m_per_s = cell.speed_ratio * friction::threshold_speed_m_per_s(scene.oscillator, kDeltaMu,
-                                                                                 scene.gravity_m_per_s2);
+  belt.pull_speed_m_per_s =
+      cell.speed_ratio * model::threshold_speed_m_per_s(scene.oscillator, kDeltaMu, scene.gravity_m_per_s2);
   const double omega = scene.oscillator.omega_rad_per_s();
   const double r = scene.oscillator.stick_rate_per_s(belt.pull_speed_m_per_s, scene.gravity_m_per_s2);
-  const double Q = friction::dimensionless_speed(r, omega, kDeltaMu);
-  const double cycle_s =
-      (friction::undamped_stick_phase_rad(Q) + friction::undamped_slip_phase_rad(Q)) / omega;
+  const double Q = model::dimensionless_speed(r, omega, kDeltaMu);
+  const double cycle_s = (model::undamped_stick_phase_rad(Q) + model::undamped_slip_phase_rad(Q)) / omega;
   // K ends at the base's, so that no drift brings it near zero.
   const double cycles_s = (cell.cycles + 0.5) * cycle_s;
   const double idle_s = belt.idle_s;
@@ -142,7 +142,7 @@ inline double expected_traditional_error(const PromiseCell& cell, double Q) {
 
 /// Q of the mean S − K.
 inline double promise_Q(const sim::Scene& base, const PromiseCell& cell) {
-  return cell.speed_ratio * friction::Q_threshold(base.oscillator.gamma_over_2omega());
+  return cell.speed_ratio * model::Q_threshold(base.oscillator.gamma_over_2omega());
 }
 
 /// That of S − K from all slips but the first, if only the paper scattered: CV/√(N − 1).
@@ -153,24 +153,24 @@ inline double expected_delta_mu_error(const PromiseCell& cell) {
 /// \param count  ≥ 3 tests, on all processors; the same result for any number of them.
 inline base::Result<PromiseResult> measure_promise(const sim::Scene& base, const PromiseCell& cell,
                                                    std::int64_t count, std::uint64_t seed) {
-  daemon::SweepPlan plan;
+  sweep::SweepPlan plan;
   plan.points.push_back(promise_scene(base, cell));
   plan.seeds.push_back(seed);
   plan.repeat = count;
   std::vector<std::int64_t> numbers(static_cast<std::size_t>(count));
   std::iota(numbers.begin(), numbers.end(), 0);
-  std::vector<friction::TestResults> found(numbers.size());
+  std::vector<analysis::TestResults> found(numbers.size());
   const std::atomic<bool> stop{false};
   const auto take = [&](const record::SweepRun& run) -> base::Result<void> {
     found[static_cast<std::size_t>(run.number)] = run.results;
     return {};
   };
   const auto threads = static_cast<std::int64_t>(std::max(std::thread::hardware_concurrency(), 1U));
-  if (auto done = daemon::do_runs(plan, numbers, threads, stop, take); !done) {
+  if (auto done = sweep::do_runs(plan, numbers, threads, stop, take); !done) {
     return tl::unexpected(done.error());
   }
   PromiseResult result;
-  for (const friction::TestResults& test : found) {
+  for (const analysis::TestResults& test : found) {
     std::optional<double> traditional;
     if (test.static_coefficient.value && test.kinetic_coefficient.value) {
       traditional = *test.static_coefficient.value - *test.kinetic_coefficient.value;

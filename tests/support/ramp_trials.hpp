@@ -12,8 +12,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/friction/test_analysis.hpp"
-#include "core/friction/threshold.hpp"
+#include "core/analysis/test_analysis.hpp"
+#include "core/model/threshold.hpp"
 #include "core/sim/scene.hpp"
 #include "core/sim/scene_run.hpp"
 
@@ -60,9 +60,9 @@ struct RampTrials {
   Spread corrected_z;          ///< Error over standard error.
 
   [[nodiscard]] static double threshold_m_per_s() {
-    return friction::threshold_speed_m_per_s(
-        friction::Oscillator::from_omega(2.0 * std::numbers::pi * 20.0, kGammaOver2Omega), kDeltaMu,
-        friction::kStandardGravity_m_per_s2);
+    return model::threshold_speed_m_per_s(
+        model::Oscillator::from_omega(2.0 * std::numbers::pi * 20.0, kGammaOver2Omega), kDeltaMu,
+        model::kStandardGravity_m_per_s2);
   }
 
   [[nodiscard]] sim::Scene scene() const {
@@ -90,15 +90,15 @@ struct RampTrials {
     sim::SceneRun run{ramp, ramp.scan_rate_Hz};
     for (int i = 0; i < seeds; ++i) {
       run.restart(first_seed + static_cast<std::uint64_t>(i));
-      friction::AnalysisSettings settings;
+      analysis::AnalysisSettings settings;
       settings.tester.speed_course = sim::pull_speed_of(ramp);
-      friction::TestAnalysis analysis{settings};
+      analysis::TestAnalysis analysis{settings};
       base::ScanIndex index = 0;
       std::array<double, 64> raw{};
       while (const std::size_t count = run.next(raw)) {
         for (std::size_t k = 0; k < count; ++k, ++index) analysis.add(index, raw[k], false);
       }
-      const friction::TestResults results = analysis.finish();
+      const analysis::TestResults results = analysis.finish();
       take(results, analysis.cycles());
     }
   }
@@ -111,7 +111,7 @@ struct RampTrials {
   }
 
  private:
-  void take(const friction::TestResults& results, const base::LongColumn<friction::Cycle>& cycles) {
+  void take(const analysis::TestResults& results, const base::LongColumn<detect::Cycle>& cycles) {
     ++tests;
     if (!results.delta_mu.value) {
       ++without_delta_mu;
@@ -119,7 +119,7 @@ struct RampTrials {
     }
     double count = 0.0;
     bool first = true;
-    for (const friction::Cycle& cycle : cycles) {
+    for (const detect::Cycle& cycle : cycles) {
       if (std::isfinite(cycle.delta_mu) && !first) {
         pooled += cycle.delta_mu / kDeltaMu;
         count += 1.0;

@@ -9,9 +9,9 @@
 #include <random>
 #include <stdexcept>
 
-#include "core/friction/regime.hpp"
-#include "core/friction/threshold.hpp"
-#include "core/friction/truth.hpp"
+#include "core/model/regime.hpp"
+#include "core/model/threshold.hpp"
+#include "core/model/truth.hpp"
 #include "core/sim/random_stream.hpp"
 #include "core/sim/scene.hpp"
 
@@ -37,8 +37,7 @@ inline sim::Scene random_test(const sim::Scene& base, const Disturbance& disturb
   const double delta_mu = uniform(0.02, 0.1);
   scene.mu_s = scene.mu_k + delta_mu;
   scene.constant_speed->pull_speed_m_per_s =
-      uniform(0.3, 3.0) *
-      friction::threshold_speed_m_per_s(scene.oscillator, delta_mu, scene.gravity_m_per_s2);
+      uniform(0.3, 3.0) * model::threshold_speed_m_per_s(scene.oscillator, delta_mu, scene.gravity_m_per_s2);
   scene.paper.scatter = sim::Scatter{.delta_mu_cv = uniform(0.0, 0.3)};
   const double V_per_coefficient = scene.normal_load_N() / scene.load_cell.gain_N_per_V;
   scene.white_noise = sim::WhiteNoise{disturbance.noise * delta_mu * V_per_coefficient};
@@ -56,25 +55,25 @@ inline sim::Scene random_test(const sim::Scene& base, const Disturbance& disturb
 /// Calls visit(onset in s, whether it ended in sticking within the pull) for each slip that began by giving
 /// way.
 template <typename Visitor>
-void for_each_slip(const friction::TestTruth& truth, const sim::Pull& pull, const Visitor& visit) {
+void for_each_slip(const model::TestTruth& truth, const sim::Pull& pull, const Visitor& visit) {
   auto mode = truth.modes.begin();
-  for (const friction::TrueCycle& cycle : truth.cycles) {
-    mode = std::find_if(mode, truth.modes.end(), [&](const friction::ModeInterval& interval) {
-      return interval.mode == friction::Mode::kSlip && interval.start_s >= cycle.onset_time_s;
+  for (const model::TrueCycle& cycle : truth.cycles) {
+    mode = std::find_if(mode, truth.modes.end(), [&](const model::ModeInterval& interval) {
+      return interval.mode == model::Mode::kSlip && interval.start_s >= cycle.onset_time_s;
     });
     if (mode != truth.modes.end()) visit(cycle.onset_time_s, (*mode).end_s < pull.end_s);
   }
 }
 
 /// Slips of the pull that began by giving way and ended in sticking.
-inline int captures(const friction::TestTruth& truth, const sim::Pull& pull) {
+inline int captures(const model::TestTruth& truth, const sim::Pull& pull) {
   int count = 0;
   for_each_slip(truth, pull, [&](double /*onset_s*/, bool captured) { count += captured ? 1 : 0; });
   return count;
 }
 
 /// Onset of the first slip that did not end in sticking, s; nothing if each did.
-inline std::optional<double> escape_onset_s(const friction::TestTruth& truth, const sim::Pull& pull) {
+inline std::optional<double> escape_onset_s(const model::TestTruth& truth, const sim::Pull& pull) {
   std::optional<double> onset;
   for_each_slip(truth, pull, [&](double onset_s, bool captured) {
     if (!captured && !onset) onset = onset_s;

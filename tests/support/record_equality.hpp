@@ -51,8 +51,8 @@ inline void expect_same_header(const record::RecordHeader& a, const record::Reco
   EXPECT_EQ(a.self_check, b.self_check);
 }
 
-inline void expect_same_cycles(const base::LongColumn<friction::Cycle>& a,
-                               const base::LongColumn<friction::Cycle>& b) {
+inline void expect_same_cycles(const base::LongColumn<detect::Cycle>& a,
+                               const base::LongColumn<detect::Cycle>& b) {
   ASSERT_EQ(a.size(), b.size());
   record::for_each_cycle_column([&](const record::FieldName& name, auto member) {
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -62,7 +62,7 @@ inline void expect_same_cycles(const base::LongColumn<friction::Cycle>& a,
   });
 }
 
-inline void expect_same_truth(const friction::TestTruth& a, const friction::TestTruth& b) {
+inline void expect_same_truth(const model::TestTruth& a, const model::TestTruth& b) {
   EXPECT_EQ(a.scene_name, b.scene_name);
   EXPECT_EQ(a.scene_text, b.scene_text);
   EXPECT_EQ(a.seed, b.seed);

@@ -98,38 +98,38 @@ inline record::RecordHeader sample_header() {
   return header;
 }
 
-inline friction::TestResults sample_results() {
-  friction::TestResults results;
-  results.regime = friction::Regime::kMixed;
+inline analysis::TestResults sample_results() {
+  analysis::TestResults results;
+  results.regime = model::Regime::kMixed;
   results.regime_reason = "3 of 5 slips captured";
   results.findings = {"the pull speed was 6.00 +- 0.02 in/min, the plan says 12.00", "another"};
   double number = 0.1;
-  friction::for_each_result(results, [&](const friction::ResultName& name, friction::Estimate& estimate) {
+  analysis::for_each_result(results, [&](const analysis::ResultName& name, analysis::Estimate& estimate) {
     if (name.name == "Q_threshold") {
-      estimate = friction::Estimate::none("damping not known");
+      estimate = analysis::Estimate::none("damping not known");
       return;
     }
     number += 0.1;
-    estimate = friction::Estimate::of(number, number / 3.0);
+    estimate = analysis::Estimate::of(number, number / 3.0);
     if (name.name == "mu_s") estimate.systematic_uncertainty = 0.002;
     if (name.name == "cycle_count") estimate.standard_error.reset();
   });
   return results;
 }
 
-inline std::vector<friction::Cycle> sample_cycles() {
+inline std::vector<detect::Cycle> sample_cycles() {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  friction::Cycle first{0,    1010,  0.1 / 3.0, 0.05, 0.032,
-                        0.05, kNone, 0.015,     0.5,  0.3,
-                        0.2,  0.11,  0.01,      2.1,  friction::kCycleCaptured | friction::kCycleIsFirst};
-  friction::Cycle last{1,     1030,  0.085, kNone, 0.082,
-                       kNone, 0.03,  kNone, 0.49,  0.31,
-                       0.18,  kNone, kNone, 1.9,   friction::kCycleHasSpike};
+  detect::Cycle first{0,    1010,  0.1 / 3.0, 0.05, 0.032,
+                      0.05, kNone, 0.015,     0.5,  0.3,
+                      0.2,  0.11,  0.01,      2.1,  detect::kCycleCaptured | detect::kCycleIsFirst};
+  detect::Cycle last{1,     1030,  0.085, kNone, 0.082,
+                     kNone, 0.03,  kNone, 0.49,  0.31,
+                     0.18,  kNone, kNone, 1.9,   detect::kCycleHasSpike};
   return {first, last};
 }
 
-inline friction::TestTruth sample_truth() {
-  friction::TestTruth truth;
+inline model::TestTruth sample_truth() {
+  model::TestTruth truth;
   truth.scene_name = "sticks for ever";
   truth.scene_text = "name = \"sticks for ever\"\n";
   truth.seed = 0xFFFF'FFFF'FFFF'FFFEULL;
@@ -138,14 +138,14 @@ inline friction::TestTruth sample_truth() {
   truth.omega_rad_per_s = 125.6;
   truth.gamma_over_2omega = 0.022;
   truth.pull_speed_m_per_s = 0.00508;
-  truth.regime = friction::Regime::kStickSlip;
+  truth.regime = model::Regime::kStickSlip;
   truth.oscillation_frequency_Hz = 19.7;
   truth.static_coefficient = 0.3813;
   truth.kinetic_coefficient = 0.3019;
   truth.amplitude = 0.0786;
-  truth.modes = {{0.0, 0.03, friction::Mode::kStick}, {0.03, 0.05, friction::Mode::kSlip}};
+  truth.modes = {{0.0, 0.03, model::Mode::kStick}, {0.03, 0.05, model::Mode::kSlip}};
   truth.cycles = {{0.03, 0.351, 0.299}};
-  truth.solver = friction::SolverFacts{"exact closed forms", 1.8e-15, 1e-9, 84e-9};
+  truth.solver = model::SolverFacts{"exact closed forms", 1.8e-15, 1e-9, 84e-9};
   return truth;
 }
 

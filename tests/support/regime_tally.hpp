@@ -13,12 +13,13 @@
 #include <thread>
 #include <vector>
 
+#include "cli/sweep/runner.hpp"
+
+#include "core/analysis/results.hpp"
 #include "core/base/result.hpp"
-#include "core/friction/regime.hpp"
-#include "core/friction/results.hpp"
+#include "core/model/regime.hpp"
 #include "core/sim/scene.hpp"
 #include "core/sim/scene_truth.hpp"
-#include "daemon/sweep/runner.hpp"
 #include "tests/support/random_tests.hpp"
 
 namespace stickslip::test {
@@ -28,9 +29,9 @@ struct RegimeTally {
   int wrong = 0;
   int undecided = 0;
 
-  void add(friction::Regime truth, friction::Regime measured) noexcept {
+  void add(model::Regime truth, model::Regime measured) noexcept {
     ++tests;
-    if (measured == friction::Regime::kUndecided) {
+    if (measured == model::Regime::kUndecided) {
       ++undecided;
     } else if (measured != truth) {
       ++wrong;
@@ -45,7 +46,7 @@ struct TransitionTally {
   double square_sum_s2 = 0.0;
   double normalised_square_sum = 0.0;  ///< Of errors over standard errors.
 
-  void add(double truth_s, const friction::Estimate& found, double oscillation_s) noexcept {
+  void add(double truth_s, const analysis::Estimate& found, double oscillation_s) noexcept {
     ++tests;
     const double error_s = found.value.value_or(std::numeric_limits<double>::infinity()) - truth_s;
     if (!(std::abs(error_s) < 0.25 * oscillation_s) || !found.standard_error) {
@@ -62,16 +63,16 @@ struct TransitionTally {
 };
 
 struct RegimeTable {
-  std::map<friction::Regime, RegimeTally> of_regime;  ///< By what the simulation really did.
-  RegimeTally few_captures;                           ///< Tests with one to three captures.
+  std::map<model::Regime, RegimeTally> of_regime;  ///< By what the simulation really did.
+  RegimeTally few_captures;                        ///< Tests with one to three captures.
   TransitionTally transitions;
 };
 
 /// Random tests 0 … count − 1 of this seed, on all processors; the same table for any number of them.
 inline base::Result<RegimeTable> judge_random_tests(
     const sim::Scene& base, const Disturbance& disturbance, std::int64_t count, std::uint64_t seed,
-    friction::EstimatorTier estimator = friction::EstimatorTier::kFit) {
-  daemon::SweepPlan plan;
+    detect::EstimatorTier estimator = detect::EstimatorTier::kFit) {
+  sweep::SweepPlan plan;
   plan.estimator = estimator;
   for (std::int64_t i = 0; i < count; ++i) {
     const std::uint64_t own = sim::stream_seed(seed, static_cast<std::uint64_t>(i));
@@ -84,19 +85,19 @@ inline base::Result<RegimeTable> judge_random_tests(
   const std::atomic<bool> stop{false};
   const auto take = [&](const record::SweepRun& run) -> base::Result<void> {
     const sim::Scene& scene = plan.points[static_cast<std::size_t>(run.number)];
-    const friction::TestTruth truth = sim::scene_truth(scene, scene.scan_rate_Hz, plan.seed_of(run.number));
+    const model::TestTruth truth = sim::scene_truth(scene, scene.scan_rate_Hz, plan.seed_of(run.number));
     const sim::Pull pull = *sim::pull_of(scene);
     const int captured = captures(truth, pull);
     table.of_regime[truth.regime].add(truth.regime, run.results.regime);
     if (captured >= 1 && captured <= 3) table.few_captures.add(truth.regime, run.results.regime);
-    if (truth.regime == friction::Regime::kMixed && run.results.regime == friction::Regime::kMixed) {
+    if (truth.regime == model::Regime::kMixed && run.results.regime == model::Regime::kMixed) {
       table.transitions.add(escape_onset_s(truth, pull).value(), run.results.transition_time,
                             2.0 * std::numbers::pi / truth.omega_rad_per_s);
     }
     return {};
   };
   const auto threads = static_cast<std::int64_t>(std::max(std::thread::hardware_concurrency(), 1U));
-  if (auto done = daemon::do_runs(plan, numbers, threads, stop, take); !done) {
+  if (auto done = sweep::do_runs(plan, numbers, threads, stop, take); !done) {
     return tl::unexpected(done.error());
   }
   return table;

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "core/friction/replicates.hpp"
-#include "core/friction/test_analysis.hpp"
+#include "core/analysis/pooled_slips.hpp"
+#include "core/analysis/test_analysis.hpp"
 #include "core/sim/scene.hpp"
 #include "core/sim/scene_run.hpp"
 #include "core/sim/scene_truth.hpp"
@@ -25,9 +25,9 @@ struct ScatterTrials {
   static constexpr double kCv = 0.30;  ///< Standard deviation over mean of S − K, log-normal.
   static constexpr double kPull_s = 2.0;
 
-  std::vector<std::vector<friction::Cycle>> cycles;  ///< Of each test.
-  std::vector<friction::Estimate> delta_mu;          ///< Of each test.
-  std::vector<friction::TestResults> results;        ///< Of each test.
+  std::vector<std::vector<detect::Cycle>> cycles;  ///< Of each test.
+  std::vector<analysis::Estimate> delta_mu;        ///< Of each test.
+  std::vector<analysis::TestResults> results;      ///< Of each test.
   /// S − K found less the true one, of each slip after the first that was seen not to stick again.
   std::vector<double> escape_errors;
 
@@ -53,7 +53,7 @@ struct ScatterTrials {
     const auto pull_end = static_cast<base::ScanIndex>((0.5 + kPull_s) * scene.scan_rate_Hz);
     for (int seed = 1; seed <= seeds; ++seed) {
       run.restart(static_cast<std::uint64_t>(seed));
-      friction::TestAnalysis analysis{friction::AnalysisSettings{}};
+      analysis::TestAnalysis analysis{analysis::AnalysisSettings{}};
       base::ScanIndex index = 0;
       std::array<double, 64> raw{};
       while (const std::size_t count = run.next(raw)) {
@@ -89,18 +89,18 @@ struct ScatterTrials {
   }
 
   /// Of the tests that have an S − K: what one would get without pooling by cycle.
-  [[nodiscard]] friction::Estimate mean_of_means() const {
+  [[nodiscard]] analysis::Estimate mean_of_means() const {
     double n = 0.0;
     double sum = 0.0;
     double squares = 0.0;
-    for (const friction::Estimate& found : delta_mu) {
+    for (const analysis::Estimate& found : delta_mu) {
       if (!found.value) continue;
       n += 1.0;
       sum += *found.value;
       squares += *found.value * *found.value;
     }
     const double mean = sum / n;
-    return friction::Estimate::of(mean, std::sqrt((squares / n - mean * mean) / (n - 1.0)));
+    return analysis::Estimate::of(mean, std::sqrt((squares / n - mean * mean) / (n - 1.0)));
   }
 
   /// Rms over the tests of (estimate − 0.05) in terms of 0.05 · CV/√M, where M are the slips that count.
@@ -110,7 +110,7 @@ struct ScatterTrials {
     for (std::size_t i = 0; i < cycles.size(); ++i) {
       if (!delta_mu[i].value) continue;
       double slips = -1.0;  // The first does not count, if there are three.
-      for (const friction::Cycle& cycle : cycles[i]) slips += std::isfinite(cycle.delta_mu) ? 1.0 : 0.0;
+      for (const detect::Cycle& cycle : cycles[i]) slips += std::isfinite(cycle.delta_mu) ? 1.0 : 0.0;
       if (slips < 2.0) continue;
       squares += std::pow((*delta_mu[i].value - kDeltaMu) / (kDeltaMu * kCv), 2) * slips;
       count += 1.0;
@@ -126,19 +126,19 @@ struct ScatterTrials {
 
   [[nodiscard]] int without_delta_mu() const {
     return static_cast<int>(std::count_if(delta_mu.begin(), delta_mu.end(),
-                                          [](const friction::Estimate& found) { return !found.value; }));
+                                          [](const analysis::Estimate& found) { return !found.value; }));
   }
 
  private:
   /// Of the latest test.
-  void keep_escapes(const friction::TestTruth& truth) {
+  void keep_escapes(const model::TestTruth& truth) {
     constexpr double kSameSlip_s = 0.01;  // A fifth of an oscillation.
-    const std::vector<friction::Cycle>& found = cycles.back();
+    const std::vector<detect::Cycle>& found = cycles.back();
     for (std::size_t i = 0; i + 1 < found.size(); ++i) {
-      const friction::Cycle& slip = found[i];
-      const unsigned kNoEscape = friction::kCycleCaptured | friction::kCycleIsFirst;
+      const detect::Cycle& slip = found[i];
+      const unsigned kNoEscape = detect::kCycleCaptured | detect::kCycleIsFirst;
       if ((slip.flags & kNoEscape) != 0 || !std::isfinite(slip.delta_mu)) continue;
-      for (const friction::TrueCycle& real : truth.cycles) {
+      for (const model::TrueCycle& real : truth.cycles) {
         if (std::abs(real.onset_time_s - slip.onset_time_s) < kSameSlip_s)
           escape_errors.push_back(slip.delta_mu - (real.mu_s - real.mu_k));
       }

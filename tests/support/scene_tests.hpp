@@ -11,9 +11,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/analysis/test_analysis.hpp"
 #include "core/daq/calibration.hpp"
-#include "core/friction/test_analysis.hpp"
-#include "core/friction/truth.hpp"
+#include "core/model/truth.hpp"
 #include "core/pipeline/segmenter.hpp"
 #include "drivers/simulated/simulated_board.hpp"
 #include "tests/support/manual_clock.hpp"
@@ -25,9 +25,9 @@ struct AnalysedTest {
   base::ScanIndex trigger = 0;  ///< Scan at which the segmenter said that it starts.
   base::ScanIndex end = 0;
   pipeline::Segmenter::Event ended_by = pipeline::Segmenter::Event::kNone;  ///< kNone: the input ended.
-  friction::TestResults results;
-  base::LongColumn<friction::Cycle> cycles;
-  std::optional<friction::TestTruth> truth;
+  analysis::TestResults results;
+  base::LongColumn<detect::Cycle> cycles;
+  std::optional<model::TestTruth> truth;
 };
 
 /// Plays the scene so many times and analyses every test that the segmenter finds.
@@ -47,7 +47,7 @@ inline std::vector<AnalysedTest> analyse_scene(const std::filesystem::path& scen
   if (!tester) throw std::runtime_error(tester.error().message);
   daq::Board& board = *tester->board;
   const daq::Calibration calibration{board.info(), tester->load_cell, tester->tester.normal_load_N()};
-  friction::AnalysisSettings analysis_settings;
+  analysis::AnalysisSettings analysis_settings;
   analysis_settings.scan_rate_Hz = board.info().scan_rate_granted_Hz;
   analysis_settings.step_coefficient = calibration.step_coefficient();
   analysis_settings.tester = tester->tester;
@@ -62,7 +62,7 @@ inline std::vector<AnalysedTest> analyse_scene(const std::filesystem::path& scen
   pipeline::Segmenter segmenter{segmenter_settings};
 
   std::vector<AnalysedTest> tests;
-  std::unique_ptr<friction::TestAnalysis> analysis;
+  std::unique_ptr<analysis::TestAnalysis> analysis;
   AnalysedTest test;
   struct Scan {
     double raw;
@@ -91,7 +91,7 @@ inline std::vector<AnalysedTest> analyse_scene(const std::filesystem::path& scen
     }
     before.push_back({raw, speed});
     if (event == Event::kTestStarts) {
-      analysis = std::make_unique<friction::TestAnalysis>(analysis_settings);
+      analysis = std::make_unique<analysis::TestAnalysis>(analysis_settings);
       test = {};
       test.trigger = index;
       test.first = index + 1 - static_cast<base::ScanIndex>(before.size());

@@ -10,10 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "cli/sweep/grid.hpp"
+#include "cli/sweep/runner.hpp"
+
 #include "core/record/sweep.hpp"
 #include "core/sim/scene.hpp"
-#include "daemon/sweep/grid.hpp"
-#include "daemon/sweep/runner.hpp"
 
 namespace stickslip::test {
 
@@ -41,8 +42,8 @@ inline std::string bytes_of(const std::filesystem::path& file) {
 }
 
 /// Below and above the threshold, three runs each, of a second's pull with scatter and lost scans.
-inline daemon::SweepPlan small_plan() {
-  daemon::SweepPlan plan;
+inline sweep::SweepPlan small_plan() {
+  sweep::SweepPlan plan;
   plan.repeat = 3;
   for (const char* mu_s : {"0.32", "0.36"}) {
     const auto scene = sim::load_scene(

@@ -172,7 +172,7 @@ class Documents(unittest.TestCase):
         self.assertGreater(checked, 1)
 
     def test_the_table_of_events_is_that_of_the_log(self):
-        logged = set(re.findall(r'\.event = "([a-z-]+)"', (SOURCE / "daemon" / "log.cpp").read_text(encoding="utf-8")))
+        logged = set(re.findall(r'\.event = "([a-z-]+)"', (SOURCE / "daemon" / "app" / "log.cpp").read_text(encoding="utf-8")))
         [table] = re.findall(r"^\| `STICKSLIP_EVENT` \| priority .*\n\|---.*\n((?:\|.*\n)*)", (SOURCE / "docs" / "reliability.md").read_text(encoding="utf-8"), re.MULTILINE)
         self.assertEqual({name for row in table.splitlines() for name in re.findall("`([a-z-]+)`", row.split("|")[1])}, logged)
 

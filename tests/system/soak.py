@@ -53,7 +53,7 @@ PERIOD = PERIOD_S * SCAN_RATE_HZ
 PULL = 8 * SCAN_RATE_HZ
 #: A removed journal is missed within a second and written anew; who kills the daemon before that has destroyed the test himself.
 MISSED_S = 3
-#: kMaxTests of daemon/test_log.hpp.
+#: kMaxTests of daemon/types/test_log.hpp.
 REMEMBERED_TESTS = 1000
 
 

@@ -1,6 +1,6 @@
 // The acquisition thread: what it never does, and what it asks of the kernel.
 
-#include "daemon/acquisition.hpp"
+#include "daemon/runtime/acquisition.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@
 #include "tests/support/allocation_count.hpp"
 #include "tests/support/fake_comedi.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::runtime {
 namespace {
 
 using ::testing::HasSubstr;
@@ -71,7 +71,7 @@ TEST(Acquisition, LoopNeverAllocates) {
   ASSERT_TRUE(made) << made.error().message;
   Watched board{std::move(*made)};
   daq::ScanRing ring{daq::ScanRing::capacity_for(350.0)};
-  Acquisition acquisition{board, ring, RealtimeSettings{0, {}, false}};
+  Acquisition acquisition{board, ring, io::RealtimeSettings{0, {}, false}};
   ASSERT_TRUE(acquisition.start());
   while (!acquisition.ended()) acquisition.wait();
   EXPECT_EQ(*acquisition.ended(), Acquisition::End::kBoardMissing);
@@ -89,7 +89,7 @@ TEST(Acquisition, BlocksCarryTheHaltsBeforeThem) {
   auto made = drivers::make_comedi_board({}, clock, std::make_unique<test::FakeComedi>(world, clock));
   ASSERT_TRUE(made) << made.error().message;
   daq::ScanRing ring{1000};
-  Acquisition acquisition{**made, ring, RealtimeSettings{0, {}, false}};
+  Acquisition acquisition{**made, ring, io::RealtimeSettings{0, {}, false}};
   ASSERT_TRUE(acquisition.start());
   while (!acquisition.ended()) acquisition.wait();
   std::vector<daq::ScanBlock> blocks(1000);
@@ -105,7 +105,7 @@ TEST(Acquisition, WaitsForAFullRingWhereTheSourceCanWait) {
   auto tester = drivers::make_simulated_tester({{kStickSlip}, 1, {}}, clock);
   ASSERT_TRUE(tester) << tester.error().message;
   daq::ScanRing ring{4};
-  Acquisition acquisition{*tester->board, ring, RealtimeSettings{0, {}, false}, FullRing::kWait};
+  Acquisition acquisition{*tester->board, ring, io::RealtimeSettings{0, {}, false}, FullRing::kWait};
   ASSERT_TRUE(acquisition.start());
   std::vector<daq::ScanBlock> blocks(4);
   daq::ScanIndex next = 0;
@@ -133,7 +133,7 @@ TEST(Acquisition, StopsWhileItWaitsForTheRing) {
   auto tester = drivers::make_simulated_tester({{kStickSlip}, 0, {}}, clock);
   ASSERT_TRUE(tester) << tester.error().message;
   daq::ScanRing ring{4};
-  Acquisition acquisition{*tester->board, ring, RealtimeSettings{0, {}, false}, FullRing::kWait};
+  Acquisition acquisition{*tester->board, ring, io::RealtimeSettings{0, {}, false}, FullRing::kWait};
   ASSERT_TRUE(acquisition.start());
   while (ring.has_room()) std::this_thread::yield();
   acquisition.request_stop();
@@ -199,4 +199,4 @@ TEST(LatencyHistogram, BinsAreOctavesAndNothingIsLost) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::runtime

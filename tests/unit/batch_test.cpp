@@ -7,9 +7,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/batch/batch_json.hpp"
-#include "daemon/batch/journal.hpp"
 #include "daemon/batch/leader.hpp"
+#include "daemon/types/batch_journal.hpp"
+#include "daemon/types/batch_json.hpp"
 #include "tests/support/faulty_disk.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/record_samples.hpp"
@@ -218,7 +218,7 @@ class BatchLeaderTest : public BatchJournalTest {
     EXPECT_TRUE(
         BatchJournal{folder_}.append(at_noon(BatchBegun{batch, plan_of_text(R"({"name": "liner"})")})));
     for (const char* record : {kBefore, kAfter}) test::write_content(folder_ / record, "");
-    BatchLeader leader{
+    batch::BatchLeader leader{
         {folder_, program.string(), [] { return Plan{}; }, [](const Plan&) {}, {}, {}, &clock_}};
     leader.open();
     std::vector<std::string> records;

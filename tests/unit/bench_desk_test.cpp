@@ -1,7 +1,7 @@
 // Commands between the control interface and the bench: what is refused before the bench is asked, and what
 // had been done already.
 
-#include "daemon/bench_desk.hpp"
+#include "daemon/runtime/bench_desk.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -52,30 +52,30 @@ class BenchDeskTest : public testing::Test {
   test::FaultyDisk disk_;
   HeardOfRoom heard_;
   TestLog tests_;
-  DaemonConfig config_;
-  Storage storage_{{.folder = folder_.path(), .calls = &disk_},
-                   [](const std::filesystem::path& journal, std::optional<std::int64_t>) {
-                     return base::Result<record::Finalised>{{journal, {}, 0, {}}};
-                   },
-                   tests_,
-                   heard_};
-  CalibrationDesk calibrations_{{.config = config_,
-                                 .storage = storage_,
-                                 .session = [] { return nullptr; },
-                                 .on_main = [](const std::function<void()>&) {},
-                                 .date_ns = [] { return 0; },
-                                 .now_ns = [] { return 0; }}};
+  io::DaemonConfig config_;
+  storage::Storage storage_{{.folder = folder_.path(), .calls = &disk_},
+                            [](const std::filesystem::path& journal, std::optional<std::int64_t>) {
+                              return base::Result<record::Finalised>{{journal, {}, 0, {}}};
+                            },
+                            tests_,
+                            heard_};
+  runtime::CalibrationDesk calibrations_{{.config = config_,
+                                          .storage = storage_,
+                                          .session = [] { return nullptr; },
+                                          .on_main = [](const std::function<void()>&) {},
+                                          .date_ns = [] { return 0; },
+                                          .now_ns = [] { return 0; }}};
   PaperBatches batches_;
   PaperReports reports_;
-  BenchDesk desk_{{.config = config_,
-                   .tests = tests_,
-                   .storage = storage_,
-                   .calibrations = calibrations_,
-                   .status = [] { return Status{}; },
-                   .session = [] { return nullptr; },
-                   .on_main = [](const std::function<void()>&) {},
-                   .batches = &batches_,
-                   .reports = &reports_}};
+  runtime::BenchDesk desk_{{.config = config_,
+                            .tests = tests_,
+                            .storage = storage_,
+                            .calibrations = calibrations_,
+                            .status = [] { return Status{}; },
+                            .session = [] { return nullptr; },
+                            .on_main = [](const std::function<void()>&) {},
+                            .batches = &batches_,
+                            .reports = &reports_}};
 };
 
 TEST_F(BenchDeskTest, WithoutABoardCommandsAreRefused) {
@@ -140,7 +140,7 @@ class CarryOutTest : public testing::Test {
     processor_.process(block, daq::GapCause::kUnknown);
   }
   Outcome ask(Kind kind, std::optional<std::int64_t> test) {
-    return carry_out({kind, "ada", "x", test}, processor_);
+    return runtime::carry_out({kind, "ada", "x", test}, processor_);
   }
 
   daq::ScanIndex next_ = 0;

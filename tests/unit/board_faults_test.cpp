@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/record/journal.hpp"
-#include "daemon/app.hpp"
+#include "daemon/app/app.hpp"
 #include "tests/support/fake_comedi.hpp"
 #include "tests/support/sanitized.hpp"
 
@@ -87,13 +87,13 @@ class BoardFaults : public testing::Test {
   }
 
   void run() {
-    DaemonConfig config;
+    io::DaemonConfig config;
     config.board.driver = drivers::Driver::kComedi;
     config.bench.sled_mass_kg = 1.0;
     config.bench.load_cell_gain_N_per_V = 1.0;
     config.record_folder = folder_;
     config.realtime = {0, {}, false};  // With a clock moved by hand the thread never waits.
-    AppWorld world;
+    app::AppWorld world;
     auto clock = std::make_unique<ManualClock>();
     ManualClock& time = *clock;
     world.clock = std::move(clock);
@@ -107,7 +107,7 @@ class BoardFaults : public testing::Test {
       records_.push_back(reading->record);
       return record::Finalised{journal, static_cast<std::int64_t>(reading->scan_count), 0, {}};
     };
-    App* app = nullptr;
+    app::App* app = nullptr;
     world.open_board =
         [&](const drivers::BoardConfig&, base::Clock&,
             const std::optional<daq::Continuation>& continues) -> base::Result<drivers::OpenedBoard> {
@@ -128,7 +128,7 @@ class BoardFaults : public testing::Test {
       if (!board) return tl::unexpected(board.error());
       return drivers::OpenedBoard{std::move(*board), nullptr, {}, {}, {}, nullptr, {}};
     };
-    App running{std::move(config), std::move(world)};
+    app::App running{std::move(config), std::move(world)};
     app = &running;
     const auto ended = running.run();
     ASSERT_TRUE(ended) << ended.error().message;
@@ -247,7 +247,7 @@ TEST_F(BoardFaults, RateOfASlowQuartzIsMeasuredRecordedAndFlagged) {
   lives_.back().world.removed_at_scan = 10'500;
   run();
   ASSERT_EQ(records_.size(), 1U);
-  const friction::TestResults& results = records_[0].end->results;
+  const analysis::TestResults& results = records_[0].end->results;
   ASSERT_TRUE(results.scan_rate_measured.value) << results.scan_rate_measured.reason;
   const double true_Hz = kRate_Hz / 1.001;
   EXPECT_NEAR(*results.scan_rate_measured.value, true_Hz, 5.0 * *results.scan_rate_measured.standard_error);

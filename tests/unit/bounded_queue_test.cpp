@@ -1,10 +1,10 @@
-#include "daemon/bounded_queue.hpp"
+#include "core/base/bounded_queue.hpp"
 
 #include <gtest/gtest.h>
 
 #include <thread>
 
-namespace stickslip::daemon {
+namespace stickslip::base {
 namespace {
 
 constexpr std::chrono::milliseconds kPatient{60'000};
@@ -39,4 +39,4 @@ TEST(BoundedQueue, MoreThanHasRoomIsAnnouncedInsteadOfWaitedForEver) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::base

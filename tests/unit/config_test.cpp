@@ -1,4 +1,4 @@
-#include "daemon/config.hpp"
+#include "io/config.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-namespace stickslip::daemon {
+namespace stickslip::io {
 namespace {
 
 using base::Result;
@@ -94,7 +94,7 @@ TEST(Config, ShippedFileShowsTheDefaults) {
 TEST(Config, KeepsWhatItIsTold) {
   EXPECT_TRUE(read(kGood)->kept.nothing());
   const DaemonConfig config = *read(kGood + "[analysis]\nkeep_spikes = true\nkeep_first_slip = true\n");
-  EXPECT_EQ(friction::text_of(config.kept), "spikes,first-slip");
+  EXPECT_EQ(analysis::text_of(config.kept), "spikes,first-slip");
 }
 
 TEST(Config, ResolvesScenesAgainstItsOwnFolder) {
@@ -106,12 +106,12 @@ TEST(Config, ResolvesScenesAgainstItsOwnFolder) {
 // What the file says stands above what a scene or record knows, and that above the defaults.
 TEST(Config, TakesTheBenchFromTheFileThenFromTheSource) {
   const DaemonConfig config = *read(kGood + "[tester]\nsled_mass = \"1 kg\"\n");
-  friction::Tester scene;
+  model::Tester scene;
   scene.sled_mass_kg = 3.0;
   scene.pull_speed_m_per_s = 0.005;
   EXPECT_EQ(config.bench.tester(scene).sled_mass_kg, 1.0);
   EXPECT_EQ(config.bench.tester(scene).pull_speed_m_per_s, 0.005);
-  EXPECT_EQ(config.bench.tester(std::nullopt).gravity_m_per_s2, friction::kStandardGravity_m_per_s2);
+  EXPECT_EQ(config.bench.tester(std::nullopt).gravity_m_per_s2, model::kStandardGravity_m_per_s2);
   EXPECT_EQ(config.bench.load_cell(daq::LoadCell{2.0, 0.1}).gain_N_per_V, 2.0);
 }
 
@@ -160,4 +160,4 @@ INSTANTIATE_TEST_SUITE_P(
             "time"}));
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::io

@@ -25,14 +25,14 @@
 #include <boost/asio/post.hpp>
 #include <nlohmann/json.hpp>
 
+#include "daemon/client/client.hpp"
+#include "daemon/client/live_client.hpp"
 #include "daemon/control/api.hpp"
-#include "daemon/control/client.hpp"
-#include "daemon/control/live_client.hpp"
 #include "daemon/control/server.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/unit/paper_bench.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::control {
 namespace {
 
 using nlohmann::json;
@@ -117,12 +117,12 @@ class ControlServerTest : public testing::Test {
   }
 
   test::ManualClock clock_;
-  PaperBench bench_;
+  daemon::PaperBench bench_;
   std::filesystem::path folder_;
   std::filesystem::path socket_;
   boost::asio::io_context io_{1};
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> guard_{io_.get_executor()};
-  LiveHub hub_{[this](std::size_t count) {
+  daemon::LiveHub hub_{[this](std::size_t count) {
     const std::lock_guard lock{mutex_};
     listeners_ = count;
     news_.notify_all();
@@ -139,7 +139,8 @@ TEST_F(ControlServerTest, AnswersOverTheSocketWhichOnlyOwnerAndGroupMayUse) {
   struct stat facts {};
   ASSERT_EQ(::stat(socket_.c_str(), &facts), 0);
   EXPECT_EQ(facts.st_mode & 0777U, 0660U);
-  const base::Result<HttpReply> reply = request(socket_, {"GET", "/v1/status", "", "", ""}, 10s);
+  const base::Result<daemon::HttpReply> reply =
+      client::request(socket_, {"GET", "/v1/status", "", "", ""}, 10s);
   ASSERT_TRUE(reply) << reply.error().message;
   EXPECT_EQ(reply->status, 200);
   EXPECT_EQ(json::parse(reply->body)["scan_count"], 42);
@@ -468,13 +469,13 @@ TEST_P(EitherDoor, RefusesMoreListenersThanItHasRoomForAndSaysSo) {
   const std::string ask =
       asks("GET", "/v1/live") + (GetParam() == Way::kBySocket ? "\r\nHost: x" : "") + kUpgrade;
   std::vector<int> listening;
-  for (std::size_t k = 0; k < LiveHub::kMostClients; ++k) {
+  for (std::size_t k = 0; k < daemon::LiveHub::kMostClients; ++k) {
     listening.push_back(client());
     send(listening.back(), ask);
   }
   {
     std::unique_lock lock{mutex_};
-    news_.wait(lock, [&] { return listeners_ == LiveHub::kMostClients; });
+    news_.wait(lock, [&] { return listeners_ == daemon::LiveHub::kMostClients; });
   }
   EXPECT_THAT(answer_to(ask), testing::AllOf(testing::StartsWith("HTTP/1.1 503 "),
                                              testing::HasSubstr("24 clients read the live stream")));
@@ -488,15 +489,15 @@ TEST_P(EitherDoor, RefusesMoreListenersThanItHasRoomForAndSaysSo) {
 TEST_F(ControlServerTest, AListenerTooManyIsToldWhy) {
   serve();
   std::vector<int> listening;
-  for (std::size_t k = 0; k < LiveHub::kMostClients; ++k) {
+  for (std::size_t k = 0; k < daemon::LiveHub::kMostClients; ++k) {
     listening.push_back(connected());
     send(listening.back(), std::string{"GET /v1/live HTTP/1.1\r\nHost: x"} + kUpgrade);
   }
   {
     std::unique_lock lock{mutex_};
-    news_.wait(lock, [&] { return listeners_ == LiveHub::kMostClients; });
+    news_.wait(lock, [&] { return listeners_ == daemon::LiveHub::kMostClients; });
   }
-  const auto refused = listen_live(socket_, [](std::string_view) { return true; });
+  const auto refused = client::listen_live(socket_, [](std::string_view) { return true; });
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, testing::HasSubstr("24 clients read the live stream"));
   for (const int one : listening) ::close(one);
@@ -556,7 +557,7 @@ TEST_F(ControlServerTest, AStalledClientCostsTheOthersNothing) {
   for (int k = 0; k < kReaders; ++k) {
     readers.emplace_back([&] {
       int next = 0;
-      const auto ended = listen_live(socket_, [&](std::string_view frame) {
+      const auto ended = client::listen_live(socket_, [&](std::string_view frame) {
         if (frame.substr(0, frame.find(' ')) != std::to_string(next)) ++wrong;
         arrived.release();
         return ++next < kBatches * kFrames;
@@ -626,7 +627,7 @@ TEST_F(ControlServerTest, LeavesTheSocketOfAnotherWhenItStops) {
     stopped.set_value();
   });
   stopped.get_future().wait();
-  const auto reply = request(socket_, {"GET", "/v1/status", "", "", ""}, 10s);
+  const auto reply = client::request(socket_, {"GET", "/v1/status", "", "", ""}, 10s);
   ASSERT_TRUE(reply) << reply.error().message;
   EXPECT_EQ(reply->status, 200);
   std::promise<void> taken;
@@ -655,10 +656,11 @@ TEST_F(ControlServerTest, TakesTheSocketOfNobodyWhoIsBusy) {
 }
 
 TEST(ControlClient, SaysThatNobodyAnswers) {
-  const base::Result<HttpReply> reply = request("/nonexistent/s", {"GET", "/", "", "", ""}, 1s);
+  const base::Result<daemon::HttpReply> reply =
+      client::request("/nonexistent/s", {"GET", "/", "", "", ""}, 1s);
   ASSERT_FALSE(reply);
   EXPECT_THAT(reply.error().message, testing::HasSubstr("is stickslipd running"));
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::control

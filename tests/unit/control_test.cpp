@@ -8,7 +8,7 @@
 #include "daemon/control/api.hpp"
 #include "daemon/control/gate.hpp"
 #include "daemon/control/repeats.hpp"
-#include "daemon/live/hub.hpp"
+#include "daemon/types/hub.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/unit/paper_bench.hpp"
 
@@ -35,7 +35,7 @@ class ControlApi : public testing::Test {
 
   test::ManualClock clock_;
   PaperBench bench_;
-  HttpHandler api_ = make_api(bench_, clock_);
+  HttpHandler api_ = control::make_api(bench_, clock_);
 };
 
 TEST_F(ControlApi, ACalibrationIsAskedForInNumbersOrWithUnits) {
@@ -288,7 +288,7 @@ TEST_F(ControlApi, NobodyElsesKeysPushOutMine) {
   const auto release = [&](const std::string& who) { ask({"DELETE", "/v1/controller", "", who, ""}); };
   ASSERT_EQ(mark("ada", "k", "uid 1000").status, 200);
   release("ada");
-  for (std::size_t k = 0; k < 2 * Repeats::kKept; ++k) mark("bob", std::to_string(k), "uid 1000");
+  for (std::size_t k = 0; k < 2 * control::Repeats::kKept; ++k) mark("bob", std::to_string(k), "uid 1000");
   release("bob");
   // The same name is somebody else's where the system says so.
   EXPECT_FALSE(mark("ada", "k", "token").replayed);
@@ -297,7 +297,7 @@ TEST_F(ControlApi, NobodyElsesKeysPushOutMine) {
   // Their own oldest are forgotten.
   release("ada");
   EXPECT_FALSE(mark("bob", "0", "uid 1000").replayed);
-  EXPECT_TRUE(mark("bob", std::to_string(2 * Repeats::kKept - 1), "uid 1000").replayed);
+  EXPECT_TRUE(mark("bob", std::to_string(2 * control::Repeats::kKept - 1), "uid 1000").replayed);
 }
 
 TEST_F(ControlApi, NamesWithoutEndMakeNobodyForget) {
@@ -312,10 +312,10 @@ TEST_F(ControlApi, NamesWithoutEndMakeNobodyForget) {
     ++refused;
     EXPECT_THAT(error(reply), testing::HasSubstr("send the request without a key"));
   }
-  EXPECT_EQ(refused, 1001 - static_cast<int>(Repeats::kMostClients));
+  EXPECT_EQ(refused, 1001 - static_cast<int>(control::Repeats::kMostClients));
   EXPECT_TRUE(command("/v1/arm", "ada", "", "k").replayed);
   EXPECT_EQ(command("/v1/arm", "zoe", "", "").status, 200) << "without a key";
-  clock_.advance(Repeats::kRemembered);
+  clock_.advance(control::Repeats::kRemembered);
   EXPECT_EQ(command("/v1/arm", "zoe", "", "k").status, 200);
 }
 
@@ -387,10 +387,10 @@ TEST_F(ControlApi, MetricsAreThoseOfTheStatus) {
   EXPECT_THAT(reply.body, testing::HasSubstr("\nstickslip_scan_rate_hertz 350\n"));
 }
 
-const Door kTcp{false, {"127.0.0.1:80", "localhost:80"}, "secret"};
+const control::Door kTcp{false, {"127.0.0.1:80", "localhost:80"}, "secret"};
 
-int status_at(const Door& door, const Knock& knock) {
-  const auto refused = refuse_at(door, knock);
+int status_at(const control::Door& door, const control::Knock& knock) {
+  const auto refused = control::refuse_at(door, knock);
   return refused ? refused->status : 200;
 }
 

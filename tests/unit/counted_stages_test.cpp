@@ -165,14 +165,14 @@ using LoadCellOption = std::optional<LoadCellDynamics>;
 using FilterOption = std::optional<AntiAlias>;
 #define STICKSLIP_TRANSDUCER                                                                          \
   "_ZN9stickslip3sim10TransducerC1ERKSt8optionalINS0_16LoadCellDynamicsEERKS2_INS0_9AntiAliasEERKNS_" \
-  "8friction"                                                                                         \
+  "5model"                                                                                            \
   "10OscillatorEd"
-void real_transducer(Transducer*, const LoadCellOption&, const FilterOption&, const friction::Oscillator&,
+void real_transducer(Transducer*, const LoadCellOption&, const FilterOption&, const model::Oscillator&,
                      double) STICKSLIP_REAL(STICKSLIP_TRANSDUCER);
-void wrapped_transducer(Transducer*, const LoadCellOption&, const FilterOption&, const friction::Oscillator&,
+void wrapped_transducer(Transducer*, const LoadCellOption&, const FilterOption&, const model::Oscillator&,
                         double) STICKSLIP_WRAP(STICKSLIP_TRANSDUCER);
 void wrapped_transducer(Transducer* self, const LoadCellOption& load_cell, const FilterOption& anti_alias,
-                        const friction::Oscillator& oscillator, double rate_Hz) {
+                        const model::Oscillator& oscillator, double rate_Hz) {
   ++counts()["transducer"].built;
   if (load_cell) ++counts()["load_cell"].built;
   if (anti_alias) ++counts()["anti_alias"].built;

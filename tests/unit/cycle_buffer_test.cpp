@@ -1,4 +1,4 @@
-#include "core/friction/cycle_buffer.hpp"
+#include "core/estimate/cycle_buffer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "tests/support/allocation_count.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::estimate {
 namespace {
 
 constexpr double kRate_Hz = 100'000.0;
@@ -131,4 +131,4 @@ TEST(CycleBuffer, ForgetsWhatEndedBefore) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::estimate

@@ -7,12 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "cli/doctor/checks.hpp"
+
 #include "core/pipeline/bench_state.hpp"
-#include "daemon/doctor/checks.hpp"
 #include "tests/support/closed_folder.hpp"
 #include "tests/support/lacking_disk.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::doctor {
 namespace {
 
 namespace fs = std::filesystem;
@@ -31,9 +32,9 @@ class Doctor : public testing::Test {
         << (folder_ / "records").string() << "\"\n[control]\nsocket = \"" << (folder_ / "c.sock").string()
         << "\"\n";
     world_ = this_world(*clock_);
-    world_.ask_status = [this](const fs::path&) -> base::Result<HttpReply> {
+    world_.ask_status = [this](const fs::path&) -> base::Result<daemon::HttpReply> {
       if (status_.empty()) return base::failure("nobody answers");
-      return HttpReply{200, status_, {}};
+      return daemon::HttpReply{200, status_, {}};
     };
     world_.clock_is_synchronised = [] { return true; };
     world_.realtime_priority = [] { return 99; };
@@ -169,4 +170,4 @@ TEST_F(Doctor, ExitStatusIsThatOfTheWorst) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::doctor

@@ -1,4 +1,4 @@
-#include "core/friction/escape.hpp"
+#include "core/analysis/escape.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace stickslip::friction {
+namespace stickslip::analysis {
 namespace {
 
 EscapeTrial trial(double speed_m_per_s, bool captured) { return {speed_m_per_s, speed_m_per_s, captured}; }
@@ -70,4 +70,4 @@ TEST(Escape, IsUnbiasedOverManyRampsAndItsErrorsTell) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::analysis

@@ -1,7 +1,7 @@
 // The table for spreadsheets: what stands in it beside the force. That its numbers come back to the last
 // digit is seen from outside (system_export).
 
-#include "daemon/export_csv.hpp"
+#include "io/export_csv.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@
 
 #include "tests/support/record_samples.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::io {
 namespace {
 
 using ::testing::ElementsAre;
@@ -67,4 +67,4 @@ TEST(ExportCsv, HasNoSuchColumnsWithoutASecondChannel) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::io

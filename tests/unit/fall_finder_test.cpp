@@ -1,4 +1,4 @@
-#include "core/friction/fall_finder.hpp"
+#include "core/detect/fall_finder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 #include "tests/support/allocation_count.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::detect {
 namespace {
 
 using std::numbers::pi;
@@ -196,4 +196,4 @@ TEST(FallFinder, KnowsHowLongNothingHasTurned) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::detect

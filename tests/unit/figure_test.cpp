@@ -1,4 +1,4 @@
-#include "daemon/plot/figure.hpp"
+#include "report/plot/figure.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/plot/gnuplot.hpp"
-#include "daemon/plot/ranges.hpp"
-#include "daemon/plot/script.hpp"
-#include "daemon/plot/thinning.hpp"
+#include "report/plot/gnuplot.hpp"
+#include "report/plot/ranges.hpp"
+#include "report/plot/script.hpp"
+#include "report/plot/thinning.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::plot {
 namespace {
 
 using ::testing::AllOf;
@@ -203,4 +203,4 @@ TEST(Gnuplot, MoreThanAPipeHoldsGoesInAndOut) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::plot

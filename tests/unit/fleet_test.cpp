@@ -8,12 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "daemon/config.hpp"
+#include "io/config.hpp"
+#include "io/own_records.hpp"
+
 #include "daemon/fleet/backlog.hpp"
 #include "daemon/fleet/outbox.hpp"
-#include "daemon/own_records.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -163,20 +164,20 @@ TEST_F(Password, ComesFromAFileThatNotEverybodyReadsAndIsInNoMessage) {
 
 using OutboxTest = Folder;
 
-FleetResult numbered(int number) {
+fleet::FleetResult numbered(int number) {
   return {fmt::format("20261122T100000Z-{:04}", number), fmt::format("id-{}", number),
           fmt::format("{{\"number\": {}}}", number)};
 }
 
-std::vector<std::string> ids(const Outbox& outbox) {
+std::vector<std::string> ids(const fleet::Outbox& outbox) {
   std::vector<std::string> ids;
-  for (const FleetResult& result : outbox.results()) ids.push_back(result.id);
+  for (const fleet::FleetResult& result : outbox.results()) ids.push_back(result.id);
   return ids;
 }
 
 TEST_F(OutboxTest, KeepsWhatTheBrokerHasNotGotOverTheEndOfTheProgram) {
   {
-    Outbox outbox{path_ / "out", 10};
+    fleet::Outbox outbox{path_ / "out", 10};
     for (int i = 1; i <= 3; ++i) EXPECT_TRUE(outbox.add(numbered(i)).is_new);
     EXPECT_FALSE(outbox.add(numbered(2)).is_new) << "the same test twice";
     EXPECT_TRUE(outbox.remove("id-2"));
@@ -185,26 +186,27 @@ TEST_F(OutboxTest, KeepsWhatTheBrokerHasNotGotOverTheEndOfTheProgram) {
   }
   std::ofstream{path_ / "out" / "20261122T100000Z-0009_id-9.json"} << "{\"torn";
   std::ofstream{path_ / "out" / "notes.txt"} << "somebody's";
-  Outbox again{path_ / "out", 10};
+  fleet::Outbox again{path_ / "out", 10};
   EXPECT_THAT(ids(again), testing::ElementsAre("id-1", "id-3"));
   EXPECT_EQ(again.results()[1].payload, numbered(3).payload);
   EXPECT_TRUE(fs::exists(path_ / "out" / "notes.txt"));
 }
 
 TEST_F(OutboxTest, IsBoundedAndDropsTheOldest) {
-  Outbox outbox{path_, 3};
+  fleet::Outbox outbox{path_, 3};
   for (int i = 1; i <= 3; ++i) EXPECT_FALSE(outbox.add(numbered(i)).dropped);
   EXPECT_TRUE(outbox.add(numbered(4)).dropped);
   EXPECT_THAT(ids(outbox), testing::ElementsAre("id-2", "id-3", "id-4"));
   EXPECT_FALSE(fs::exists(path_ / ("000000000001_" + numbered(1).record + "_id-1.json")));
   EXPECT_TRUE(fs::exists(path_ / ("000000000002_" + numbered(2).record + "_id-2.json")));
-  EXPECT_THAT(ids(Outbox(path_, 2)), testing::ElementsAre("id-3", "id-4")) << "a bound that was lowered";
+  EXPECT_THAT(ids(fleet::Outbox(path_, 2)), testing::ElementsAre("id-3", "id-4"))
+      << "a bound that was lowered";
 }
 
 // A disk that refuses: what is where the folder should be is a file.
 TEST_F(OutboxTest, KeepsInMemoryWhatTheDiskRefusesAndSavesItLater) {
   std::ofstream{path_ / "out"} << "";
-  Outbox outbox{path_ / "out", 2};
+  fleet::Outbox outbox{path_ / "out", 2};
   EXPECT_TRUE(outbox.add(numbered(1)).is_new);
   EXPECT_TRUE(outbox.add(numbered(2)).is_new);
   EXPECT_EQ(outbox.unsaved_count(), 2U);
@@ -215,7 +217,7 @@ TEST_F(OutboxTest, KeepsInMemoryWhatTheDiskRefusesAndSavesItLater) {
   EXPECT_TRUE(outbox.remove("id-2"));
   outbox.add(numbered(4));
   EXPECT_EQ(outbox.unsaved_count(), 0U);
-  EXPECT_THAT(ids(Outbox(path_ / "out", 9)), testing::ElementsAre("id-3", "id-4"));
+  EXPECT_THAT(ids(fleet::Outbox(path_ / "out", 9)), testing::ElementsAre("id-3", "id-4"));
 }
 
 /// A record of that name, as the folder would list it.
@@ -226,15 +228,15 @@ constexpr const char* kNow = "20261126T000000Z-0000";
 // The clock was ten years ahead for a while, and is right again: what is told, what waits and in which order
 // does not follow from the names.
 TEST_F(OutboxTest, AClockThatWasOnceAheadSilencesNobody) {
-  const FleetResult ahead{"20361122T100000Z-0001", "id-1", "{}"};
-  const FleetResult back{"20261123T100000Z-0002", "id-2", "{}"};
+  const fleet::FleetResult ahead{"20361122T100000Z-0001", "id-1", "{}"};
+  const fleet::FleetResult back{"20261123T100000Z-0002", "id-2", "{}"};
   {
-    Outbox outbox{path_, 10};
+    fleet::Outbox outbox{path_, 10};
     EXPECT_TRUE(outbox.untold({}, kNow).empty());
     outbox.add(ahead);
     outbox.add(back);
   }
-  Outbox again{path_, 10};
+  fleet::Outbox again{path_, 10};
   EXPECT_THAT(ids(again), testing::ElementsAre("id-1", "id-2")) << "the order of the tests";
   again.remove("id-1");
   const fs::path killed = record_called("20261123T110000Z-0003");
@@ -243,7 +245,7 @@ TEST_F(OutboxTest, AClockThatWasOnceAheadSilencesNobody) {
 }
 
 TEST_F(OutboxTest, ANewOneBeginsWithTheTestsToCome) {
-  Outbox outbox{path_, 10};
+  fleet::Outbox outbox{path_, 10};
   const fs::path past = record_called("20261122T100000Z-0001");
   const fs::path later = record_called("20261121T100000Z-0001");
   EXPECT_TRUE(outbox.untold({past}, kNow).empty());
@@ -255,25 +257,25 @@ TEST_F(OutboxTest, FolderOfAFormerVersionIsGoneOnWith) {
   std::ofstream{path_ / (numbered(2).record + "_id-2.json")} << numbered(2).payload;
   std::ofstream{path_ / (numbered(1).record + "_id-1.json")} << numbered(1).payload;
   std::ofstream{path_ / "newest"} << numbered(2).record << '\n';
-  Outbox outbox{path_, 10};
+  fleet::Outbox outbox{path_, 10};
   const fs::path untold = record_called(numbered(3).record);
   const std::vector<fs::path> records{record_called(numbered(1).record), record_called(numbered(2).record),
                                       untold};
   EXPECT_THAT(outbox.untold(records, kNow), testing::ElementsAre(untold));
   EXPECT_FALSE(fs::exists(path_ / "newest"));
   outbox.add({"20201122T100000Z-0003", "id-3", "{}"});
-  EXPECT_THAT(ids(Outbox(path_, 10)), testing::ElementsAre("id-1", "id-2", "id-3"));
+  EXPECT_THAT(ids(fleet::Outbox(path_, 10)), testing::ElementsAre("id-1", "id-2", "id-3"));
 }
 
 // Its `newest` was set by a clock ahead of today's: it says of no record that it was told.
 TEST_F(OutboxTest, NewestOfAClockAheadSaysNothing) {
   std::ofstream{path_ / "newest"} << "20361122T100000Z-0001\n";
   const std::vector<fs::path> records{record_called(numbered(1).record)};
-  EXPECT_EQ(Outbox(path_, 10).untold(records, kNow), records);
+  EXPECT_EQ(fleet::Outbox(path_, 10).untold(records, kNow), records);
 }
 
 TEST_F(OutboxTest, NamesOfRecordsThatAreGoneAreForgottenOnceTheyAreMany) {
-  Outbox outbox{path_, 10};
+  fleet::Outbox outbox{path_, 10};
   std::vector<fs::path> records;
   for (int i = 0; i < 3000; ++i) records.push_back(record_called(numbered(i).record));
   EXPECT_TRUE(outbox.untold(records, kNow).empty());
@@ -289,7 +291,7 @@ TEST_F(OutboxTest, NamesOfRecordsThatAreGoneAreForgottenOnceTheyAreMany) {
 // A power cut in the middle of a line costs that line.
 TEST_F(OutboxTest, ATornLineTakesNoOtherWithIt) {
   std::ofstream{path_ / "told"} << "20261122T1000";
-  Outbox outbox{path_, 10};
+  fleet::Outbox outbox{path_, 10};
   outbox.add(numbered(1));
   const fs::path other = record_called(numbered(2).record);
   EXPECT_THAT(outbox.untold({record_called(numbered(1).record), other}, kNow), testing::ElementsAre(other));
@@ -299,7 +301,7 @@ using Backlog = Folder;
 
 TEST_F(Backlog, TakesNoIdThatCouldNameAnotherFile) {
   const auto id = [](const std::string& printed) -> std::string {
-    const auto result = parse_result("20261121T100000Z-0001", "t", printed);
+    const auto result = fleet::parse_result("20261121T100000Z-0001", "t", printed);
     return result ? result->id : "none";
   };
   EXPECT_EQ(id(R"({"entry_identifier_uuid": "0f8fad5b-d9cb-469f-a165-70867728950e"})"),
@@ -329,4 +331,4 @@ TEST_F(Backlog, HoldsTheRecordsOfTheDaemon) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::io

@@ -1,4 +1,4 @@
-#include "daemon/folder_lock.hpp"
+#include "daemon/storage/folder_lock.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include "tests/support/lacking_disk.hpp"
 #include "tests/support/record_samples.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::storage {
 namespace {
 
 TEST(FolderLock, IsOneProcessesUntilItEndsAndTellsWhose) {
@@ -52,4 +52,4 @@ TEST(FolderLock, WhereThereIsNoFolderItSaysSo) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::storage

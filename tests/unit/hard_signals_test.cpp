@@ -10,12 +10,12 @@
 #include <random>
 #include <vector>
 
-#include "core/friction/test_analysis.hpp"
+#include "core/analysis/test_analysis.hpp"
 #include "core/signal/statistics.hpp"
 #include "tests/support/model_course.hpp"
 #include "tests/support/sanitized.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::model {
 namespace {
 
 constexpr double kRate_Hz = 350.0;
@@ -89,15 +89,15 @@ constexpr int kSlips = 30;
 Pull regular() { return Pull{std::vector<double>(kSlips, kD)}; }
 
 struct Analysed {
-  TestResults results;
-  std::vector<Cycle> cycles;
+  analysis::TestResults results;
+  std::vector<detect::Cycle> cycles;
 };
 
 Analysed analysed(const std::vector<Scan>& scans, double rate_Hz = kRate_Hz, double step = 0.0) {
-  AnalysisSettings settings;
+  analysis::AnalysisSettings settings;
   settings.scan_rate_Hz = rate_Hz;
   settings.step_coefficient = step;
-  TestAnalysis analysis{settings};
+  analysis::TestAnalysis analysis{settings};
   base::ScanIndex next = scans.front().index;
   for (const Scan& scan : scans) {
     if (scan.index != next) analysis.gap(next, scan.index - next);
@@ -106,21 +106,22 @@ Analysed analysed(const std::vector<Scan>& scans, double rate_Hz = kRate_Hz, dou
   }
   Analysed result{analysis.finish(), {}};
   result.cycles.assign(analysis.cycles().begin(), analysis.cycles().end());
-  for_each_result(result.results, [](const ResultName& name, const Estimate& estimate) {
-    EXPECT_NE(estimate.value.has_value(), !estimate.reason.empty()) << name.name;
-    EXPECT_TRUE(std::isfinite(estimate.value.value_or(0.0))) << name.name;
-    EXPECT_TRUE(std::isfinite(estimate.standard_error.value_or(0.0))) << name.name;
-  });
+  analysis::for_each_result(result.results,
+                            [](const analysis::ResultName& name, const analysis::Estimate& estimate) {
+                              EXPECT_NE(estimate.value.has_value(), !estimate.reason.empty()) << name.name;
+                              EXPECT_TRUE(std::isfinite(estimate.value.value_or(0.0))) << name.name;
+                              EXPECT_TRUE(std::isfinite(estimate.standard_error.value_or(0.0))) << name.name;
+                            });
   return result;
 }
 
 /// Five standard errors: once in two million.
-void expect_true(const Estimate& estimate, double truth) {
+void expect_true(const analysis::Estimate& estimate, double truth) {
   ASSERT_TRUE(estimate.value) << estimate.reason;
   EXPECT_NEAR(*estimate.value, truth, 5.0 * *estimate.standard_error);
 }
 
-void expect_true_or_absent(const Estimate& estimate, double truth) {
+void expect_true_or_absent(const analysis::Estimate& estimate, double truth) {
   if (estimate.value) expect_true(estimate, truth);
 }
 
@@ -139,7 +140,8 @@ TEST(HardSignals, RailsAreFlaggedAndLeftOut) {
   }
   const Analysed clipped = analysed(scans);
   EXPECT_NEAR(static_cast<double>(clipped.cycles.size()), kSlips, 1.0);
-  for (const Cycle& cycle : clipped.cycles) EXPECT_NE(cycle.flags & kCycleIsSaturated, 0) << cycle.number;
+  for (const detect::Cycle& cycle : clipped.cycles)
+    EXPECT_NE(cycle.flags & detect::kCycleIsSaturated, 0) << cycle.number;
   expect_true_or_absent(clipped.results.delta_mu, kD);
   expect_true_or_absent(clipped.results.mu_k, test::ModelCourse::kK);
 
@@ -322,7 +324,9 @@ TEST(HardSignals, RateOffByAThousandPpmMovesTheTimesAndNothingElse) {
     const Analysed wrong = analysed(scans, kRate_Hz * (1.0 + off));
     ASSERT_TRUE(wrong.results.omega.value && right.results.omega.value);
     // The fits stop where the cost is flat: a part √(1e-10) of the standard errors, for some hundred scans.
-    const auto near = [](const Estimate& a, double b) { EXPECT_NEAR(*a.value, b, 1e-3 * *a.standard_error); };
+    const auto near = [](const analysis::Estimate& a, double b) {
+      EXPECT_NEAR(*a.value, b, 1e-3 * *a.standard_error);
+    };
     near(wrong.results.omega, *right.results.omega.value * (1.0 + off));
     near(wrong.results.delta_mu, *right.results.delta_mu.value);
     near(wrong.results.gamma_over_2omega, *right.results.gamma_over_2omega.value);
@@ -386,4 +390,4 @@ TEST(HardSignals, MeanOfADayOfScansKeepsTwelveDigits) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::model

@@ -1,4 +1,4 @@
-#include "core/friction/live_estimates.hpp"
+#include "core/analysis/live_estimates.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-namespace stickslip::friction {
+namespace stickslip::detect {
 namespace {
 
 /// Five slips, 0.2 s apart, of which the live side saw all but one.
@@ -47,17 +47,17 @@ class LiveEstimates : public testing::Test {
     }
   }
 
-  [[nodiscard]] TestEstimates estimates() const {
-    return estimates_from_live(trace_, slips_, live_, {.reason = "no fit"});
+  [[nodiscard]] analysis::TestEstimates estimates() const {
+    return analysis::estimates_from_live(trace_, slips_, live_, {.reason = "no fit"});
   }
 
-  Trace trace_;
+  estimate::Trace trace_;
   base::LongColumn<Fall> slips_;
   base::LongColumn<LiveCycle> live_;
 };
 
 TEST_F(LiveEstimates, GiveEachSlipWhatWasSeenOfIt) {
-  const TestEstimates found = estimates();
+  const analysis::TestEstimates found = estimates();
   const base::LongColumn<Cycle>& rows = found.cycles;
   ASSERT_EQ(rows.size(), kSlips);
   for (std::size_t i = 0; i < kSlips; ++i) {
@@ -75,7 +75,7 @@ TEST_F(LiveEstimates, GiveEachSlipWhatWasSeenOfIt) {
 }
 
 TEST_F(LiveEstimates, TellOfAnUnseenSlipWhatItsFallTells) {
-  const TestEstimates found = estimates();
+  const analysis::TestEstimates found = estimates();
   const Cycle row = found.cycles[kUnseen];
   EXPECT_DOUBLE_EQ(row.peak_time_s, 0.6);
   EXPECT_DOUBLE_EQ(row.force_drop, 0.36 - 0.28);
@@ -86,7 +86,7 @@ TEST_F(LiveEstimates, TellOfAnUnseenSlipWhatItsFallTells) {
 
 TEST_F(LiveEstimates, HavePeriodsFromPeakToPeakAndNoneOverABreak) {
   trace_.breaks.push_back(50);  // Between the second slip and the third.
-  const TestEstimates found = estimates();
+  const analysis::TestEstimates found = estimates();
   const base::LongColumn<Cycle>& rows = found.cycles;
   EXPECT_DOUBLE_EQ(rows[0].period_s, rows[1].peak_time_s - rows[0].peak_time_s);
   EXPECT_TRUE(std::isnan(rows[1].period_s));
@@ -100,7 +100,7 @@ TEST_F(LiveEstimates, HavePeriodsFromPeakToPeakAndNoneOverABreak) {
 // began.
 TEST_F(LiveEstimates, DoNotSayHowASlipBesideAGapEnded) {
   live_[0].cycle.flags |= kCycleHasGap;
-  const TestEstimates found = estimates();
+  const analysis::TestEstimates found = estimates();
   for (const std::size_t i : {0U, 1U}) {
     EXPECT_EQ(found.log_likelihood_ratios[i], 0.0) << i;
     const Cycle row = found.cycles[i];
@@ -128,7 +128,7 @@ TEST_F(LiveEstimates, TakeMeansOverTheSlipsOfTheWholeTest) {
 
 TEST_F(LiveEstimates, AreThereWithoutAnythingSeen) {
   live_.clear();
-  const TestEstimates found = estimates();
+  const analysis::TestEstimates found = estimates();
   EXPECT_EQ(found.cycles.size(), kSlips);
   EXPECT_EQ(found.captured, 0);
   EXPECT_FALSE(found.results.delta_mu.value);
@@ -136,7 +136,7 @@ TEST_F(LiveEstimates, AreThereWithoutAnythingSeen) {
 }
 
 TEST_F(LiveEstimates, HaveAnAmplitudeAndForTheRestAReason) {
-  const TestEstimates found = estimates();
+  const analysis::TestEstimates found = estimates();
   // Half the mean drop, 0.10 … 0.06.
   EXPECT_DOUBLE_EQ(*found.results.amplitude.value, 0.04);
   EXPECT_EQ(found.results.omega.reason, "no fit");
@@ -146,7 +146,7 @@ TEST_F(LiveEstimates, HaveAnAmplitudeAndForTheRestAReason) {
 }
 
 TEST_F(LiveEstimates, NoCycleStandsForTwoSlips) {
-  LiveCycles seen{trace_, live_};
+  analysis::LiveCycles seen{trace_, live_};
   EXPECT_TRUE(seen.next_at(slips_[0], 0.2));
   EXPECT_TRUE(seen.next_at(slips_[1], 0.2));
   EXPECT_FALSE(seen.next_at(slips_[kUnseen], 0.2));
@@ -156,4 +156,4 @@ TEST_F(LiveEstimates, NoCycleStandsForTwoSlips) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::detect

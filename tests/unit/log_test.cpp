@@ -1,4 +1,4 @@
-#include "daemon/log.hpp"
+#include "daemon/app/log.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace stickslip::daemon {
+namespace stickslip::app {
 namespace {
 
 using ::testing::ElementsAre;
@@ -30,7 +30,7 @@ class Fields final : public LogOutput {
 
 class LogTest : public testing::Test {
  protected:
-  std::unique_ptr<Facts> log(LogLevel level = LogLevel::kInfo) {
+  std::unique_ptr<daemon::Facts> log(io::LogLevel level = io::LogLevel::kInfo) {
     return make_log(level, std::make_unique<Fields>(lines_));
   }
 
@@ -78,7 +78,7 @@ TEST_F(LogTest, AFileSystemThatLacksSomethingIsAWarning) {
 }
 
 TEST_F(LogTest, WhatIsBelowTheLevelIsLeftOut) {
-  const std::unique_ptr<Facts> facts = log(LogLevel::kWarning);
+  const std::unique_ptr<daemon::Facts> facts = log(io::LogLevel::kWarning);
   facts->stopping("told to");
   EXPECT_TRUE(lines_.empty());
   facts->storage_waits("no space");
@@ -96,7 +96,7 @@ TEST_F(LogTest, AJournalThatWasWrittenAnewSaysWhereItStands) {
 }
 
 TEST_F(LogTest, ADamagedRecordIsAWarning) {
-  log(LogLevel::kWarning)->record_damaged("records/a.h5", "122 bytes of its journal could not be read");
+  log(io::LogLevel::kWarning)->record_damaged("records/a.h5", "122 bytes of its journal could not be read");
   ASSERT_EQ(lines_.size(), 1U);
   EXPECT_EQ(lines_[0].at(1), "PRIORITY=4");
   EXPECT_EQ(lines_[0].at(3), "STICKSLIP_EVENT=record-damaged");
@@ -112,7 +112,7 @@ TEST_F(LogTest, ScansThatTheDiskDamagedAreNotInRecords) {
 
 // What is lost to nobody's knowledge is an error of its own kind, so that an alarm can be set on it.
 TEST_F(LogTest, ScansUnaccountedForAreAnEventOfTheirOwn) {
-  const std::unique_ptr<Facts> facts = log();
+  const std::unique_ptr<daemon::Facts> facts = log();
   facts->scans_accounted({.issued = 10, .idle = 4, .in_gaps = 1, .recorded = 5});
   facts->scans_accounted({.issued = 10, .idle = 4, .in_gaps = 1, .recorded = 3});
   ASSERT_EQ(lines_.size(), 2U);
@@ -138,4 +138,4 @@ TEST(Journal, IsWhereTheVariableSaysThatTheDescriptorLeads) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::app

@@ -1,4 +1,4 @@
-#include "core/friction/measured_speed.hpp"
+#include "core/analysis/measured_speed.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <functional>
 #include <random>
 
-namespace stickslip::friction {
+namespace stickslip::analysis {
 namespace {
 
 constexpr double kSpeedRate_Hz = 350.0;
@@ -84,4 +84,4 @@ TEST(MeasuredSpeed, BeltThatNeverPulledHasNoCourse) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::analysis

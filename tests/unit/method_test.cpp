@@ -1,4 +1,4 @@
-#include "core/friction/method.hpp"
+#include "core/model/method.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,15 +8,16 @@
 #include <iterator>
 #include <string>
 
-#include "core/friction/method_file.hpp"
-#include "daemon/config.hpp"
-#include "daemon/method_text.hpp"
+#include "io/config.hpp"
+#include "io/method_file.hpp"
+
+#include "core/record/method_text.hpp"
 
 namespace stickslip {
 namespace {
 
-using friction::Method;
-using friction::MethodFile;
+using io::MethodFile;
+using model::Method;
 
 const std::filesystem::path kFolder = std::filesystem::path{STICKSLIP_SOURCE_DIR} / "config" / "methods";
 
@@ -25,7 +26,7 @@ const std::string kHead = "name = \"own\"\ndescription = \"of this laboratory\"\
 TEST(MethodFile, EveryShippedOneIsGoodAndNamedLikeItsFile) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(kFolder)) {
-    const base::Result<MethodFile> file = friction::load_method(entry.path());
+    const base::Result<MethodFile> file = io::load_method(entry.path());
     ASSERT_TRUE(file) << file.error().message;
     EXPECT_EQ(file->method.name, entry.path().stem());
     EXPECT_LE(file->description.size(), 110U) << file->method.name;
@@ -38,7 +39,7 @@ TEST(MethodFile, EveryShippedOneIsGoodAndNamedLikeItsFile) {
 }
 
 TEST(MethodFile, DefaultMethodIsTheRuleOfTheShippedPaper) {
-  const Method shipped = friction::load_method(kFolder / "penner-1995.toml")->method;
+  const Method shipped = io::load_method(kFolder / "penner-1995.toml")->method;
   const Method plain;
   EXPECT_EQ(shipped.name, plain.name);
   EXPECT_EQ(shipped.static_slip, plain.static_slip);
@@ -48,31 +49,31 @@ TEST(MethodFile, DefaultMethodIsTheRuleOfTheShippedPaper) {
 
 TEST(MethodFile, GivesEachSettingInSiUnits) {
   const base::Result<MethodFile> file =
-      friction::parse_method(kHead +
-                                 "check = [\"a\", \"b\"]\n[static]\nslip = 3\n[kinetic]\ntravel_from = \"10 "
-                                 "mm\"\ntravel_to = \"6 cm\"\n"
-                                 "[sled]\nmass = \"200 g\"\nmass_tolerance = \"2 g\"\narea = \"40 cm^2\"\n"
-                                 "[test]\nspeed = \"120 mm/min\"\nreplicates = 4\n",
-                             "m.toml");
+      io::parse_method(kHead +
+                           "check = [\"a\", \"b\"]\n[static]\nslip = 3\n[kinetic]\ntravel_from = \"10 "
+                           "mm\"\ntravel_to = \"6 cm\"\n"
+                           "[sled]\nmass = \"200 g\"\nmass_tolerance = \"2 g\"\narea = \"40 cm^2\"\n"
+                           "[test]\nspeed = \"120 mm/min\"\nreplicates = 4\n",
+                       "m.toml");
   ASSERT_TRUE(file) << file.error().message;
   EXPECT_EQ(file->check.size(), 2U);
   Method expected;
   expected.name = "own";
   expected.static_slip = 3;
-  expected.kinetic_travel = friction::TravelWindow{0.01, 0.06};
-  expected.sled_mass_kg = friction::Nominal{0.2, 0.002};
+  expected.kinetic_travel = model::TravelWindow{0.01, 0.06};
+  expected.sled_mass_kg = model::Nominal{0.2, 0.002};
   expected.sled_area_m2 = 0.004;
-  expected.pull_speed_m_per_s = friction::Nominal{0.002, {}};
+  expected.pull_speed_m_per_s = model::Nominal{0.002, {}};
   expected.replicates = 4;
   EXPECT_EQ(file->method, expected);
 }
 
 TEST(MethodFile, ARampIsACourseOfTheSpeed) {
-  const base::Result<MethodFile> file = friction::load_method(kFolder / "speed-ramp.toml");
+  const base::Result<MethodFile> file = io::load_method(kFolder / "speed-ramp.toml");
   ASSERT_TRUE(file) << file.error().message;
   EXPECT_FALSE(file->method.pull_speed_m_per_s);
   ASSERT_TRUE(file->method.speed_course);
-  const std::vector<friction::SpeedPoint>& points = file->method.speed_course->points();
+  const std::vector<model::SpeedPoint>& points = file->method.speed_course->points();
   ASSERT_EQ(points.size(), 2U);
   constexpr double kInchPerMinute_m_per_s = 0.0254 / 60.0;
   EXPECT_DOUBLE_EQ(points[0].speed_m_per_s, 4.0 * kInchPerMinute_m_per_s);
@@ -82,8 +83,8 @@ TEST(MethodFile, ARampIsACourseOfTheSpeed) {
 
 TEST(MethodText, ARampComesBackToTheLastBit) {
   Method ramp;
-  ramp.speed_course = friction::PullSpeed::make({{0.0, 0.1 / 3.0}, {8.0, 0.0101600001}});
-  const base::Result<Method> back = daemon::method_from_text(daemon::method_text(ramp));
+  ramp.speed_course = model::PullSpeed::make({{0.0, 0.1 / 3.0}, {8.0, 0.0101600001}});
+  const base::Result<Method> back = record::method_from_text(record::method_text(ramp));
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(*back, ramp);
 }
@@ -96,7 +97,7 @@ struct Mistake {
 class MethodFileRefuses : public testing::TestWithParam<Mistake> {};
 
 TEST_P(MethodFileRefuses, WithOneLine) {
-  const base::Result<MethodFile> file = friction::parse_method(GetParam().text, "m.toml");
+  const base::Result<MethodFile> file = io::parse_method(GetParam().text, "m.toml");
   ASSERT_FALSE(file);
   EXPECT_EQ(file.error().exit_status(), 2);
   EXPECT_EQ(file.error().message, GetParam().error);
@@ -132,77 +133,76 @@ INSTANTIATE_TEST_SUITE_P(
                 "m.toml:4: test.speed_to = \"24 in/min\": needs speed, with which the ramp begins"}));
 
 TEST(MethodText, ReadsBackToTheSameMethodForEveryShippedOne) {
-  EXPECT_EQ(daemon::method_text({}), "penner-1995 kinetic_cycles=10");
+  EXPECT_EQ(record::method_text({}), "penner-1995 kinetic_cycles=10");
   for (const auto& entry : std::filesystem::directory_iterator(kFolder)) {
-    const Method method = friction::load_method(entry.path())->method;
-    const std::string text = daemon::method_text(method);
-    const base::Result<Method> read = daemon::method_from_text(text);
+    const Method method = io::load_method(entry.path())->method;
+    const std::string text = record::method_text(method);
+    const base::Result<Method> read = record::method_from_text(text);
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(*read, method) << text;
   }
   Method third;
   third.static_slip = 3;
-  EXPECT_EQ(daemon::method_from_text(daemon::method_text(third)).value(), third);
+  EXPECT_EQ(record::method_from_text(record::method_text(third)).value(), third);
 }
 
 TEST(MethodText, CarriesTheEstimatorUnlessItIsTheFit) {
-  using friction::EstimatorTier;
-  const std::string plain = daemon::method_text({});
-  EXPECT_EQ(daemon::with_estimator(plain, EstimatorTier::kFit), plain);
-  EXPECT_EQ(daemon::estimator_from_text(plain), EstimatorTier::kFit);
-  const std::string peak = daemon::with_estimator(plain, EstimatorTier::kPeak);
+  using detect::EstimatorTier;
+  const std::string plain = record::method_text({});
+  EXPECT_EQ(record::with_estimator(plain, EstimatorTier::kFit), plain);
+  EXPECT_EQ(record::estimator_from_text(plain), EstimatorTier::kFit);
+  const std::string peak = record::with_estimator(plain, EstimatorTier::kPeak);
   EXPECT_EQ(peak, plain + " estimator=peak");
-  EXPECT_EQ(daemon::estimator_from_text(peak), EstimatorTier::kPeak);
-  EXPECT_EQ(daemon::method_from_text(peak).value(), friction::Method{});
-  EXPECT_EQ(daemon::with_estimator(peak, EstimatorTier::kInterpolated), plain + " estimator=interpolated");
-  EXPECT_EQ(daemon::with_estimator(peak, EstimatorTier::kFit), plain);
-  EXPECT_FALSE(daemon::method_from_text(plain + " estimator=best"));
+  EXPECT_EQ(record::estimator_from_text(peak), EstimatorTier::kPeak);
+  EXPECT_EQ(record::method_from_text(peak).value(), model::Method{});
+  EXPECT_EQ(record::with_estimator(peak, EstimatorTier::kInterpolated), plain + " estimator=interpolated");
+  EXPECT_EQ(record::with_estimator(peak, EstimatorTier::kFit), plain);
+  EXPECT_FALSE(record::method_from_text(plain + " estimator=best"));
 }
 
 TEST(MethodText, RefusesWhatIsNoMethod) {
   for (const char* text : {"penner-1995", "x kinetic_cycles=0", "x kinetic_cycles=3x", " kinetic_cycles=3",
                            "x kinetic_travel=0.06", "x kinetic_travel=0.06:0.01", "x kinetic_cycles=3 speed=",
                            "x kinetic_cycles=3 colour=4", "x kinetic_cycles=3 sled_mass=0.2~"}) {
-    const base::Result<Method> read = daemon::method_from_text(text);
+    const base::Result<Method> read = record::method_from_text(text);
     ASSERT_FALSE(read) << text;
     EXPECT_EQ(read.error().exit_status(), 2);
   }
 }
 
 TEST(Method, NamesWhatATestDidOtherwise) {
-  const Method method = friction::load_method(kFolder / "iso-8295.toml")->method;
-  EXPECT_TRUE(friction::departures(method, 0.2, 0.1 / 60.0).empty());
-  EXPECT_TRUE(friction::departures(method, 0.202, 0.09 / 60.0).empty());  // at the edges
-  EXPECT_TRUE(friction::departures(method, {}, {}).empty());
-  const std::vector<std::string> lines = friction::departures(method, 2.331, 0.00508);
+  const Method method = io::load_method(kFolder / "iso-8295.toml")->method;
+  EXPECT_TRUE(model::departures(method, 0.2, 0.1 / 60.0).empty());
+  EXPECT_TRUE(model::departures(method, 0.202, 0.09 / 60.0).empty());  // at the edges
+  EXPECT_TRUE(model::departures(method, {}, {}).empty());
+  const std::vector<std::string> lines = model::departures(method, 2.331, 0.00508);
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_EQ(lines[0], "sled mass 2.331 kg, iso-8295 asks 0.2 ± 0.002 kg");
   EXPECT_EQ(lines[1], "pull speed 0.00508 m/s, iso-8295 asks 0.00166667 ± 0.000166667 m/s");
   // The paper names a sled but no tolerance.
-  EXPECT_TRUE(
-      friction::departures(friction::load_method(kFolder / "penner-1995.toml")->method, 1.0, 1.0).empty());
+  EXPECT_TRUE(model::departures(io::load_method(kFolder / "penner-1995.toml")->method, 1.0, 1.0).empty());
 }
 
-base::Result<daemon::DaemonConfig> config_with(const std::string& method) {
+base::Result<io::DaemonConfig> config_with(const std::string& method) {
   const base::Result<base::Settings> settings = base::Settings::parse(
       "[board]\ndriver = \"simulated\"\nsimulated.scenes = [\"a\"]\n[method]\n" + method, "x.toml");
-  return daemon::read_config(*settings, kFolder.parent_path());
+  return io::read_config(*settings, kFolder.parent_path());
 }
 
 TEST(MethodOfTheDaemon, IsTheOneOfTheFile) {
-  const base::Result<daemon::DaemonConfig> config = config_with("file = \"methods/iso-8295.toml\"\n");
+  const base::Result<io::DaemonConfig> config = config_with("file = \"methods/iso-8295.toml\"\n");
   ASSERT_TRUE(config) << config.error().message;
-  const Method method = friction::load_method(kFolder / "iso-8295.toml")->method;
+  const Method method = io::load_method(kFolder / "iso-8295.toml")->method;
   EXPECT_EQ(config->method, method);
   EXPECT_EQ(config->board.simulated.method, method);  // The truth is read by the same rule.
 }
 
 TEST(MethodOfTheDaemon, RefusesAFileThatIsNotThereAndAKeyBesideIt) {
-  const base::Result<daemon::DaemonConfig> absent = config_with("file = \"methods/none.toml\"\n");
+  const base::Result<io::DaemonConfig> absent = config_with("file = \"methods/none.toml\"\n");
   ASSERT_FALSE(absent);
   EXPECT_EQ(absent.error().exit_status(), 2);
   EXPECT_NE(absent.error().message.find("methods/none.toml"), std::string::npos) << absent.error().message;
-  const base::Result<daemon::DaemonConfig> both =
+  const base::Result<io::DaemonConfig> both =
       config_with("file = \"methods/iso-8295.toml\"\nkinetic_cycles = 3\n");
   ASSERT_FALSE(both);
   EXPECT_EQ(both.error().message, "x.toml:6: method.kinetic_cycles = 3: stands in the method's file");

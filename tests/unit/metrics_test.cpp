@@ -73,7 +73,7 @@ Status busy() {
 }
 
 TEST(Metrics, PageKeepsTheRulesOfTheFormat) {
-  const std::string text = metrics_text(busy());
+  const std::string text = control::metrics_text(busy());
   const Exposition page{text};
   EXPECT_EQ(page.breaches, std::vector<std::string>{}) << text;
   EXPECT_GT(page.families.size(), 15U);
@@ -90,7 +90,7 @@ TEST(Metrics, EachIsDocumented) {
   status.scan_rate_measured.emplace();
   status.storage.room_h = 3.0;
   std::set<std::string> served;
-  for (const auto& [family, type] : Exposition{metrics_text(status)}.types) served.insert(family);
+  for (const auto& [family, type] : Exposition{control::metrics_text(status)}.types) served.insert(family);
   std::set<std::string> documented;
   std::ifstream in{STICKSLIP_SOURCE_DIR "/docs/control.md"};
   const std::regex name{"`(stickslip_[a-z_]+)"};
@@ -105,7 +105,7 @@ TEST(Metrics, EachIsDocumented) {
 
 // Buckets are cumulative, the last is +Inf and equals the count; the sum is that of what was added.
 TEST(Metrics, HistogramsAreWhole) {
-  const Exposition page{metrics_text(busy())};
+  const Exposition page{control::metrics_text(busy())};
   std::set<std::string> found;
   for (const auto& [family, type] : page.types) {
     if (type != "histogram") continue;
@@ -152,7 +152,7 @@ TEST(Metrics, CountersBeyond32BitsAreWholeToTheLastDigit) {
   status.lost_scan_count = static_cast<std::int64_t>(kBeyond + 2);
   status.dropped_scan_count = kBeyond + 3;
   status.latency = {daq::LatencyHistogram::Counts{kBeyond, 1}, 1e-3};
-  const std::string text = metrics_text(status);
+  const std::string text = control::metrics_text(status);
   for (const char* line :
        {"stickslip_scans_total 4294967297", "stickslip_gaps_total 4294967298",
         "stickslip_lost_scans_total 4294967299", "stickslip_dropped_scans_total 4294967300",

@@ -1,4 +1,4 @@
-#include "daemon/new_file.hpp"
+#include "io/new_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include "daemon/control/token.hpp"
 #include "tests/support/record_samples.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::io {
 namespace {
 
 std::string text_in(const std::filesystem::path& file) {
@@ -67,16 +67,16 @@ TEST(NewFile, ATokenIsForOwnerAndGroupAndFollowsNoLink) {
   std::ofstream{folder / "precious"} << "mine";
   std::filesystem::create_symlink("precious", folder / "token.part");
   std::filesystem::create_symlink("nowhere", folder / "dangling");
-  const auto token = load_token(folder / "token");
+  const auto token = control::load_token(folder / "token");
   ASSERT_TRUE(token) << token.error().message;
   EXPECT_EQ(text_in(folder / "token"), *token + "\n");
   struct stat facts {};
   ASSERT_EQ(::stat((folder / "token").c_str(), &facts), 0);
   EXPECT_EQ(facts.st_mode & 0777U & ~0640U, 0U);
-  EXPECT_FALSE(load_token(folder / "dangling"));
+  EXPECT_FALSE(control::load_token(folder / "dangling"));
   EXPECT_FALSE(std::filesystem::exists(folder / "nowhere"));
   EXPECT_EQ(text_in(folder / "precious"), "mine");
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::io

@@ -1,4 +1,4 @@
-#include "daemon/notify.hpp"
+#include "daemon/runtime/notify.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -13,7 +13,7 @@
 
 #include "tests/support/record_samples.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::runtime {
 namespace {
 
 /// A service manager that reads when it is told to.
@@ -113,4 +113,4 @@ TEST(Notify, WithoutAManagerNothingHappens) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::runtime

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/control/bench.hpp"
+#include "daemon/types/bench.hpp"
 
 namespace stickslip::daemon {
 
@@ -22,12 +22,12 @@ inline Status some_status() {
   status.latest_test.emplace();
   status.latest_test->number = 7;
   status.latest_test->file = "/records/20261121T125252Z-0007.h5";
-  status.latest_test->results.mu_s = friction::Estimate::of(0.35);
-  status.latest_test->results.mu_k = friction::Estimate::none("no slip");
+  status.latest_test->results.mu_s = analysis::Estimate::of(0.35);
+  status.latest_test->results.mu_k = analysis::Estimate::none("no slip");
   status.bench = pipeline::BenchState::kRunning;
   status.live.emplace();
-  status.live->phase = friction::Phase::kCycles;
-  status.live->regime = friction::Regime::kStickSlip;
+  status.live->phase = detect::Phase::kCycles;
+  status.live->regime = model::Regime::kStickSlip;
   status.live->latest.emplace();
   status.live->latest->S = 0.36;
   status.storage.kind = StorageState::Kind::kShort;
@@ -44,7 +44,7 @@ class PaperCalibrator final : public Calibrator {
     view.load_cell = {2.0, 0.0123};
     return view;
   }
-  void begin(const std::string& who, const WeighingTimes& times, Answer answer) override {
+  void begin(const std::string& who, const daq::WeighingTimes& times, Answer answer) override {
     asked.push_back(fmt::format("{} begins {} {}", who, times.settle_s, times.reading_s));
     answer({});
   }
@@ -53,7 +53,7 @@ class PaperCalibrator final : public Calibrator {
     answer({});
   }
   [[nodiscard]] std::string undo() override { return "nothing has been read yet"; }
-  void finish(const std::string& who, const CalibrationPaper& paper, Answer answer) override {
+  void finish(const std::string& who, const io::CalibrationPaper& paper, Answer answer) override {
     asked.push_back(fmt::format("{} finishes {} {}", who, paper.certificate, paper.valid_days));
     answer({});
   }

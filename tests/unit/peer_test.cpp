@@ -6,8 +6,8 @@
 #include <numbers>
 #include <string>
 
-#include "daemon/child_process.hpp"
-#include "daemon/peer/scipy_chain.hpp"
+#include "cli/accuracy_report/scipy_chain.hpp"
+#include "io/child_process.hpp"
 
 namespace {
 
@@ -16,7 +16,7 @@ using namespace stickslip;
 TEST(ChildProcess, AnswersWhatItIsAsked) {
   // More than a pipe holds.
   const std::string text(1'000'000, 'x');
-  const auto answer = daemon::ask_program("/bin/cat", {"-"}, text);
+  const auto answer = io::ask_program("/bin/cat", {"-"}, text);
   ASSERT_TRUE(answer && *answer);
   EXPECT_EQ((*answer)->status, 0);
   EXPECT_EQ((*answer)->output, text);
@@ -24,23 +24,23 @@ TEST(ChildProcess, AnswersWhatItIsAsked) {
 }
 
 TEST(ChildProcess, TellsHowItEnded) {
-  const auto refused = daemon::ask_program("/bin/sh", {"-c", "echo no >&2; exit 3"}, "");
+  const auto refused = io::ask_program("/bin/sh", {"-c", "echo no >&2; exit 3"}, "");
   ASSERT_TRUE(refused && *refused);
   EXPECT_EQ((*refused)->status, 3);
   EXPECT_EQ((*refused)->errors, "no\n");
-  const auto killed = daemon::ask_program("/bin/sh", {"-c", "kill -9 $$"}, "");
+  const auto killed = io::ask_program("/bin/sh", {"-c", "kill -9 $$"}, "");
   ASSERT_TRUE(killed && *killed);
   EXPECT_EQ((*killed)->status, 128 + 9);
 }
 
 TEST(ChildProcess, MayNotBeThere) {
-  const auto answer = daemon::ask_program("/no/such/program", {}, "");
+  const auto answer = io::ask_program("/no/such/program", {}, "");
   ASSERT_TRUE(answer);
   EXPECT_FALSE(*answer);
 }
 
 TEST(ChildProcess, HasNothingOfTheUser) {
-  const auto answer = daemon::ask_program("/usr/bin/env", {}, "");
+  const auto answer = io::ask_program("/usr/bin/env", {}, "");
   ASSERT_TRUE(answer && *answer);
   EXPECT_EQ((*answer)->output, "LC_ALL=C.UTF-8\n");
 }
@@ -51,7 +51,7 @@ TEST(ScipyChain, FindsTheAmplitudeOfACosine) {
   accuracy::TierScene scene{350.0, 17.5, {{}}};
   for (int k = 0; k < 400; ++k)
     scene.tests.front().push_back(std::cos(2.0 * std::numbers::pi * (k / 20.0 + 0.3)));
-  const auto outcomes = daemon::run_scipy_chain({&scene, 1});
+  const auto outcomes = accuracy_report::run_scipy_chain({&scene, 1});
   if (!outcomes) {
     ASSERT_NE(outcomes.error().message.find("not installed"), std::string::npos) << outcomes.error().message;
     GTEST_SKIP() << outcomes.error().message;

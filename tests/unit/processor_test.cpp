@@ -32,7 +32,7 @@ class Diary final : public Sink {
     next = gap.first + gap.count;
   }
   void note(const daq::Note& note) override { notes.push_back(note.text); }
-  void observed(daq::ScanIndex, std::span<const double> coefficient, const friction::LiveState&) override {
+  void observed(daq::ScanIndex, std::span<const double> coefficient, const detect::LiveState&) override {
     coefficients.insert(coefficients.end(), coefficient.begin(), coefficient.end());
   }
   void test_ended(const TestEnd& end) override {
@@ -89,13 +89,13 @@ class ProcessorTest : public testing::Test {
   }
 
   static void expect_same_results(const TestEnd& a, const TestEnd& b) {
-    std::vector<friction::Estimate> results;
-    friction::for_each_result(a.results, [&](const friction::ResultName&, const friction::Estimate& result) {
+    std::vector<analysis::Estimate> results;
+    analysis::for_each_result(a.results, [&](const analysis::ResultName&, const analysis::Estimate& result) {
       results.push_back(result);
     });
     std::size_t at = 0;
-    friction::for_each_result(b.results,
-                              [&](const friction::ResultName& name, const friction::Estimate& result) {
+    analysis::for_each_result(b.results,
+                              [&](const analysis::ResultName& name, const analysis::Estimate& result) {
                                 EXPECT_EQ(results[at].value, result.value) << name.name;
                                 EXPECT_EQ(results[at].systematic_uncertainty, result.systematic_uncertainty);
                                 ++at;

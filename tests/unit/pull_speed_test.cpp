@@ -1,11 +1,11 @@
-#include "core/friction/pull_speed.hpp"
+#include "core/model/pull_speed.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-namespace stickslip::friction {
+namespace stickslip::model {
 namespace {
 
 TEST(PullSpeed, IsLinesBetweenPoints) {
@@ -57,4 +57,4 @@ TEST(PullSpeed, IsNoneOfWhatDoesNotPull) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::model

@@ -5,10 +5,10 @@
 #include <cerrno>
 #include <filesystem>
 
-#include "daemon/session_setup.hpp"
+#include "daemon/runtime/session_setup.hpp"
 #include "tests/support/lacking_disk.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::runtime {
 namespace {
 
 using testing::ElementsAre;
@@ -44,4 +44,4 @@ TEST(RecordFolder, InWhichNothingCanBeMadeIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::runtime

@@ -247,7 +247,7 @@ TEST(Journal, NumbersOfTheEndThatFitNoColumnAreRefused) {
   const auto tables = std::ranges::find(bytes, std::byte{0}) + 1 - bytes.begin();
   std::ptrdiff_t column = 0;
   record::for_each_cycle_column([&](const record::FieldName& name, auto member) {
-    using Number = std::decay_t<decltype(friction::Cycle{}.*member)>;
+    using Number = std::decay_t<decltype(detect::Cycle{}.*member)>;
     std::vector<std::byte> changed = bytes;
     const double huge = 1e300;
     std::memcpy(changed.data() + tables + column++ * static_cast<std::ptrdiff_t>(sizeof huge), &huge,

@@ -1,40 +1,39 @@
 // What a record says of its test comes back from JSON as it went in.
 
-#include "daemon/record_result.hpp"
+#include "daemon/types/record_result.hpp"
 
 #include <gtest/gtest.h>
 
+#include "io/pooled_json.hpp"
+#include "io/record_name.hpp"
+#include "io/results_json.hpp"
 #include <nlohmann/json.hpp>
 
-#include "daemon/pooled_json.hpp"
-#include "daemon/record_name.hpp"
-#include "daemon/results_json.hpp"
-
-namespace stickslip::daemon {
+namespace stickslip::io {
 namespace {
 
 TEST(RecordResult, ResultsComeBackAsTheyWere) {
-  friction::TestResults results;
-  results.regime = friction::Regime::kMixed;
+  analysis::TestResults results;
+  results.regime = model::Regime::kMixed;
   results.regime_reason = "7 of 9 slips ended in sticking";
   results.findings = {"the pull was slower than planned"};
   int n = 0;
-  friction::for_each_result(results, [&n](const friction::ResultName& name, friction::Estimate& estimate) {
+  analysis::for_each_result(results, [&n](const analysis::ResultName& name, analysis::Estimate& estimate) {
     // Counts are whole.
     const double value = name.name.ends_with("_count") ? 3.0 * n : 0.1 + n / 3.0;
     switch (n++ % 4) {
       case 0:
-        estimate = friction::Estimate::of(value);
+        estimate = analysis::Estimate::of(value);
         break;
       case 1:
-        estimate = friction::Estimate::of(value, 1e-3 / n);
+        estimate = analysis::Estimate::of(value, 1e-3 / n);
         break;
       case 2:
-        estimate = friction::Estimate::of(value, 1e-3 / n);
+        estimate = analysis::Estimate::of(value, 1e-3 / n);
         estimate.systematic_uncertainty = 2e-4 / n;
         break;
       default:
-        estimate = friction::Estimate::none("too few cycles");
+        estimate = analysis::Estimate::none("too few cycles");
     }
   });
   const auto text = results_json(results, true).dump();
@@ -45,14 +44,14 @@ TEST(RecordResult, ResultsComeBackAsTheyWere) {
 }
 
 TEST(RecordResult, SumsOverSlipsComeBackAsTheyWere) {
-  const friction::SlipSums sums{.count = 9,
+  const analysis::SlipSums sums{.count = 9,
                                 .sum = 0.45 / 3.0,
                                 .square_sum = 1e-5 / 7.0,
                                 .captured_count = 7,
                                 .captured_sum = 0.1 / 3.0,
                                 .escaped_count = 1};
   const auto text = slip_sums_json(sums).dump();
-  const friction::SlipSums again = slip_sums_from_json(nlohmann::ordered_json::parse(text));
+  const analysis::SlipSums again = slip_sums_from_json(nlohmann::ordered_json::parse(text));
   EXPECT_EQ(slip_sums_json(again), slip_sums_json(sums));
   EXPECT_EQ(again.sum, sums.sum);
   EXPECT_EQ(again.square_sum, sums.square_sum);
@@ -68,13 +67,13 @@ TEST(RecordResult, NumberStandsInTheNameOfTheRecord) {
 }
 
 TEST(RecordResult, SaysWhichFileCannotBeRead) {
-  const auto test = earlier_test("/bin/false", "records/pull.h5");
+  const auto test = daemon::earlier_test("/bin/false", "records/pull.h5");
   ASSERT_FALSE(test);
   EXPECT_TRUE(test.error().message.starts_with("records/pull.h5: cannot be read")) << test.error().message;
-  const auto other = earlier_test("/bin/echo", "records/pull.h5");
+  const auto other = daemon::earlier_test("/bin/echo", "records/pull.h5");
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().message, "records/pull.h5: its result is no JSON");
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::io

@@ -1,16 +1,16 @@
-#include "daemon/recovery.hpp"
+#include "daemon/storage/recovery.hpp"
 
 #include <gmock/gmock.h>
 
 #include "core/record/finaliser.hpp"
 #include "core/record/journal_care.hpp"
 #include "core/record/verdict.hpp"
-#include "daemon/finaliser.hpp"
+#include "daemon/storage/finaliser.hpp"
 #include "tests/support/closed_folder.hpp"
 #include "tests/support/journal_samples.hpp"
 #include "tests/support/record_samples.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::storage {
 namespace {
 
 using record::judge;
@@ -21,7 +21,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-class Heard final : public Facts {
+class Heard final : public daemon::Facts {
  public:
   void orphan_finalised(const fs::path& file) override { text += "made " + file.filename().string() + "\n"; }
   void record_damaged(const fs::path& file, std::string_view loss) override {
@@ -95,7 +95,7 @@ TEST(Recovery, LooksWhereRecordsAreMade) {
   }
   test::write_content(elsewhere / "a.journal", "");
   fs::create_directory_symlink(elsewhere.path(), folder / "link");
-  const FilesFound found = journals_in(folder.path());
+  const io::FilesFound found = journals_in(folder.path());
   EXPECT_THAT(found.files, ElementsAre(folder / "2026/11/a.journal", folder / "2026-11-21/a.journal"));
   EXPECT_TRUE(found.unread.empty());
   EXPECT_TRUE(journals_in(folder / "nowhere").unread.empty());
@@ -201,4 +201,4 @@ TEST(Finaliser, WhatItSaysOfWhatItMadeIsReadAgain) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::storage

@@ -1,24 +1,24 @@
-#include "core/friction/regime_rule.hpp"
+#include "core/detect/regime_rule.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-namespace stickslip::friction {
+namespace stickslip::model {
 namespace {
 
 Regime regime_of(const std::vector<double>& ratios, bool model_describes = true) {
-  return judge_regime(ratios.size() + 1, ratios, model_describes).regime;
+  return detect::judge_regime(ratios.size() + 1, ratios, model_describes).regime;
 }
 
 TEST(RegimeRule, NoSlipIsSteadySliding) {
-  EXPECT_EQ(judge_regime(0, {}, true).regime, Regime::kSteadySliding);
-  EXPECT_EQ(judge_regime(0, {}, false).regime, Regime::kSteadySliding);
+  EXPECT_EQ(detect::judge_regime(0, {}, true).regime, Regime::kSteadySliding);
+  EXPECT_EQ(detect::judge_regime(0, {}, false).regime, Regime::kSteadySliding);
 }
 
 TEST(RegimeRule, OneSlipDoesNotTell) {
-  const RegimeVerdict verdict = judge_regime(1, {}, true);
+  const detect::RegimeVerdict verdict = detect::judge_regime(1, {}, true);
   EXPECT_EQ(verdict.regime, Regime::kUndecided);
   EXPECT_FALSE(verdict.reason.empty());
 }
@@ -29,24 +29,24 @@ TEST(RegimeRule, AllCapturedIsStickSlipAndNoneIsRingDown) {
 }
 
 TEST(RegimeRule, OneOfEachKindIsMixedFromTheFirstChangeOn) {
-  const RegimeVerdict dies = judge_regime(5, std::vector{50.0, 40.0, -30.0, -20.0}, true);
+  const detect::RegimeVerdict dies = detect::judge_regime(5, std::vector{50.0, 40.0, -30.0, -20.0}, true);
   EXPECT_EQ(dies.regime, Regime::kMixed);
   EXPECT_EQ(dies.transition_slip, std::optional<std::size_t>{2});
-  const RegimeVerdict begins = judge_regime(5, std::vector{-50.0, 40.0, 30.0, 20.0}, true);
+  const detect::RegimeVerdict begins = detect::judge_regime(5, std::vector{-50.0, 40.0, 30.0, 20.0}, true);
   EXPECT_EQ(begins.regime, Regime::kMixed);
   EXPECT_EQ(begins.transition_slip, std::optional<std::size_t>{1});
 }
 
 TEST(RegimeRule, TransitionBelongsToMixedOnly) {
-  EXPECT_FALSE(judge_regime(3, std::vector{50.0, 50.0}, true).transition_slip);
-  EXPECT_FALSE(judge_regime(3, std::vector{-50.0, -50.0}, true).transition_slip);
-  EXPECT_FALSE(judge_regime(3, std::vector{-50.0, 0.1}, true).transition_slip);
+  EXPECT_FALSE(detect::judge_regime(3, std::vector{50.0, 50.0}, true).transition_slip);
+  EXPECT_FALSE(detect::judge_regime(3, std::vector{-50.0, -50.0}, true).transition_slip);
+  EXPECT_FALSE(detect::judge_regime(3, std::vector{-50.0, 0.1}, true).transition_slip);
 }
 
 TEST(RegimeRule, TwentyTimesAsLikelyDecides) {
   // One junction: captured against free differ by the ratio itself (mixed needs two junctions and
   // gives it up, so it stands where the loser stands).
-  const double decisive = std::log(kDecisiveLikelihoodRatio);
+  const double decisive = std::log(detect::kDecisiveLikelihoodRatio);
   EXPECT_EQ(regime_of({decisive + 1e-9}), Regime::kStickSlip);
   EXPECT_EQ(regime_of({decisive - 1e-9}), Regime::kUndecided);
   EXPECT_EQ(regime_of({-decisive - 1e-9}), Regime::kRingDown);
@@ -70,14 +70,14 @@ TEST(RegimeRule, WithoutAModelOnlyAUnanimousVoteCounts) {
 TEST(RegimeRule, SlipsThatTellNothingDoNotVote) {
   EXPECT_EQ(regime_of({50.0, 0.0, 50.0}), Regime::kStickSlip);
   EXPECT_EQ(regime_of({-50.0, 0.0, -50.0}), Regime::kRingDown);
-  EXPECT_EQ(judge_regime(5, std::vector{0.0, 50.0, 0.0, -50.0}, true).transition_slip, 3U);
+  EXPECT_EQ(detect::judge_regime(5, std::vector{0.0, 50.0, 0.0, -50.0}, true).transition_slip, 3U);
 }
 
 TEST(RegimeRule, NothingKnownIsUndecidedWithAReason) {
-  const RegimeVerdict verdict = judge_regime(4, std::vector{0.0, 0.0, 0.0}, true);
+  const detect::RegimeVerdict verdict = detect::judge_regime(4, std::vector{0.0, 0.0, 0.0}, true);
   EXPECT_EQ(verdict.regime, Regime::kUndecided);
   EXPECT_FALSE(verdict.reason.empty());
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::model

@@ -1,6 +1,6 @@
 // Reports by a program of its own: here a shell's script stands for it.
 
-#include "daemon/report_desk.hpp"
+#include "daemon/page/report_desk.hpp"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -39,19 +39,20 @@ class ReportDeskTest : public testing::Test {
     ::chmod(file.c_str(), S_IRWXU);
     return file.string();
   }
-  ReportDesk::Parts parts(const std::string& program) {
+  page::ReportDesk::Parts parts(const std::string& program) {
     return {.io = io_, .folder = "/records", .program = program};
   }
   /// Runs until all is answered.
-  base::Result<std::string> made(ReportDesk& desk, std::span<const ReportedBatch> batches, ReportForm form) {
+  base::Result<std::string> made(page::ReportDesk& desk, std::span<const ReportedBatch> batches,
+                                 ReportForm form) {
     std::optional<base::Result<std::string>> got;
     desk.make(batches, form, [&got](base::Result<std::string> text) { got = std::move(text); });
     io_.restart();
     io_.run();
     return got.value_or(base::failure("no answer"));
   }
-  std::string refused(ReportDesk::Parts parts) {
-    ReportDesk desk{std::move(parts)};
+  std::string refused(page::ReportDesk::Parts parts) {
+    page::ReportDesk desk{std::move(parts)};
     const auto text = made(desk, {&kLiner, 1}, ReportForm::kPage);
     return text ? "made" : text.error().message;
   }
@@ -61,7 +62,7 @@ class ReportDeskTest : public testing::Test {
 };
 
 TEST_F(ReportDeskTest, AsksForIdentifiersInTheFolderOfTheRecordsAndForNothingElse) {
-  ReportDesk desk{parts(script(R"(for word; do echo "$word"; done)"))};
+  page::ReportDesk desk{parts(script(R"(for word; do echo "$word"; done)"))};
   const std::array both{kLiner, kFluting};
   EXPECT_EQ(made(desk, {&kLiner, 1}, ReportForm::kPage).value_or(""),
             "report\n--batch=20261122T180301Z\n--output=-\n/records\n");
@@ -75,7 +76,7 @@ TEST_F(ReportDeskTest, AsksForIdentifiersInTheFolderOfTheRecordsAndForNothingEls
 TEST_F(ReportDeskTest, OneIsMadeAtATimeAndItsEndLetsTheNextBegin) {
   const std::filesystem::path pipe = folder_.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), S_IRWXU), 0);
-  ReportDesk desk{parts(script("exec /bin/cat " + pipe.string()))};
+  page::ReportDesk desk{parts(script("exec /bin/cat " + pipe.string()))};
   std::string first;
   desk.make({&kLiner, 1}, ReportForm::kPage,
             [&first](base::Result<std::string> text) { first = text.value_or("none"); });
@@ -95,13 +96,13 @@ TEST_F(ReportDeskTest, OneIsMadeAtATimeAndItsEndLetsTheNextBegin) {
 }
 
 TEST_F(ReportDeskTest, WhatTakesTooLongIsEnded) {
-  ReportDesk::Parts hasty = parts(script("exec /bin/sleep 100000"));
+  page::ReportDesk::Parts hasty = parts(script("exec /bin/sleep 100000"));
   hasty.longest = 50ms;
   EXPECT_THAT(refused(std::move(hasty)), HasSubstr("took longer than 0.05 s"));
 }
 
 TEST_F(ReportDeskTest, WhatIsTooLargeIsEnded) {
-  ReportDesk::Parts narrow = parts(script("exec /usr/bin/head -c 2000000 /dev/zero"));
+  page::ReportDesk::Parts narrow = parts(script("exec /usr/bin/head -c 2000000 /dev/zero"));
   narrow.largest = 1U << 20U;
   EXPECT_THAT(refused(std::move(narrow)), HasSubstr("larger than 1 MiB"));
 }
@@ -117,7 +118,7 @@ TEST_F(ReportDeskTest, TellsWhyThereIsNone) {
 TEST_F(ReportDeskTest, ItsEndEndsWhatIsBeingMade) {
   const std::filesystem::path pipe = folder_.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), S_IRWXU), 0);
-  auto desk = std::make_optional<ReportDesk>(parts(script("exec /bin/cat " + pipe.string())));
+  auto desk = std::make_optional<page::ReportDesk>(parts(script("exec /bin/cat " + pipe.string())));
   desk->make({&kLiner, 1}, ReportForm::kPage, [](const base::Result<std::string>&) { FAIL(); });
   // Returns when the child reads; while this is open it goes on.
   const record::Descriptor writer{::open(pipe.c_str(), O_WRONLY | O_CLOEXEC)};

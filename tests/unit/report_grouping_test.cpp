@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/report/grouping.hpp"
+#include "core/analysis/grouping.hpp"
 
-namespace stickslip::report {
+namespace stickslip::analysis {
 namespace {
 
 constexpr double kInPerMin = 0.0254 / 60.0;
@@ -16,10 +16,10 @@ constexpr std::size_t kDeltaMu = 4;
 MeasuredTest test_at(std::optional<double> speed_m_per_s, double static_coefficient) {
   MeasuredTest test;
   test.pull_speed_m_per_s = speed_m_per_s;
-  test.results.static_coefficient = friction::Estimate::of(static_coefficient);
+  test.results.static_coefficient = Estimate::of(static_coefficient);
   for (const Quantity& quantity : quantities()) {
-    friction::Estimate& estimate = test.results.*quantity.estimate;
-    if (!estimate.value) estimate = friction::Estimate::none("not in this test");
+    Estimate& estimate = test.results.*quantity.estimate;
+    if (!estimate.value) estimate = Estimate::none("not in this test");
   }
   return test;
 }
@@ -44,7 +44,7 @@ TEST(Grouping, SpeedsTwoPerCentApartAreTwo) {
 
 TEST(Grouping, KeepsTheReasonOfEachAbsentNumber) {
   std::vector<MeasuredTest> tests{test_at(1.0, 0.1), test_at(1.0, 0.2)};
-  tests[1].results.static_coefficient = friction::Estimate::none("no peak");
+  tests[1].results.static_coefficient = Estimate::none("no peak");
   const SpeedGroup group = group_by_speed(tests).front();
   EXPECT_EQ(group.quantities[kStatic].tests, (std::vector<std::size_t>{0}));
   ASSERT_EQ(group.quantities[kStatic].absences.size(), 1U);
@@ -63,14 +63,14 @@ TEST(Grouping, PoolsTheScatterAboutEachSpeedsOwnMean) {
 }
 
 /// S − K of the slips of a test, none of them its first, and all captured but the last.
-friction::SlipSums slips_of(const std::vector<double>& delta_mu) {
-  std::vector<friction::Cycle> cycles;
+SlipSums slips_of(const std::vector<double>& delta_mu) {
+  std::vector<detect::Cycle> cycles;
   for (const double value : delta_mu) {
     cycles.emplace_back();
     cycles.back().delta_mu = value;
-    cycles.back().flags = friction::kCycleCaptured;
+    cycles.back().flags = detect::kCycleCaptured;
   }
-  return friction::slip_sums(cycles);
+  return slip_sums(cycles);
 }
 
 TEST(Grouping, PoolsTheSlipsOfEachSpeedByCycle) {
@@ -130,4 +130,4 @@ TEST(Pairing, UnknownSpeedsAreOneGroup) {
 }
 
 }  // namespace
-}  // namespace stickslip::report
+}  // namespace stickslip::analysis

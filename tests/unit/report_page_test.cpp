@@ -1,4 +1,4 @@
-#include "daemon/report/report_page.hpp"
+#include "report/report_page.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,26 +7,26 @@
 #include <limits>
 #include <string>
 
+#include "report/report_json.hpp"
+#include "report/report_text.hpp"
+#include "report/trace_json.hpp"
 #include <nlohmann/json.hpp>
 
-#include "daemon/report/report_json.hpp"
-#include "daemon/report/report_text.hpp"
-#include "daemon/report/trace_json.hpp"
 #include "tests/support/record_samples.hpp"
 #include "tests/support/report_samples.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::report {
 namespace {
 
 using ::testing::HasSubstr;
 using Json = nlohmann::ordered_json;
 
-friction::Cycle cycle_at(double onset_s, double capture_s) {
-  friction::Cycle cycle{};
+detect::Cycle cycle_at(double onset_s, double capture_s) {
+  detect::Cycle cycle{};
   cycle.onset_time_s = onset_s;
   cycle.capture_time_s = capture_s;
   cycle.peak_time_s = onset_s;
-  if (std::isfinite(capture_s)) cycle.flags = friction::kCycleCaptured;
+  if (std::isfinite(capture_s)) cycle.flags = detect::kCycleCaptured;
   return cycle;
 }
 
@@ -69,13 +69,13 @@ TEST(TraceJson, SlopeWithoutStiffnessIsARateWithoutALimit) {
 TEST(TraceJson, ModesGoFromSlipToStickToSlip) {
   record::Record record = test::sample_imported();
   record.cycles = {cycle_at(0.001, 0.002), cycle_at(0.004, kNone), cycle_at(0.006, kNone)};
-  record.end->results.regime = friction::Regime::kStickSlip;
+  record.end->results.regime = model::Regime::kStickSlip;
   const Json sticking = trace_json(record).value()["modes"];
   // Of the last slip of a test that sticks nobody knows how it would have ended.
   EXPECT_EQ(sticking,
             Json::array({{0.001, 0.002, "slip"}, {0.002, 0.004, "stick"}, {0.004, 0.006, "slide"}}));
   // That of a ring-down goes on while the force is at least half of its largest: to the last of 20 scans.
-  record.end->results.regime = friction::Regime::kMixed;
+  record.end->results.regime = model::Regime::kMixed;
   const Json mixed = trace_json(record).value()["modes"];
   ASSERT_EQ(mixed.size(), 4U);
   EXPECT_EQ(mixed[3], Json::array({0.006, 0.0095, "slide"}));
@@ -119,4 +119,4 @@ TEST(ReportPage, HoldsEachPartOnceAndNoMark) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::report

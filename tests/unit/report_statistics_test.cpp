@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "core/report/comparison.hpp"
-#include "core/report/replicates.hpp"
+#include "core/analysis/comparison.hpp"
+#include "core/analysis/replicates.hpp"
 
-namespace stickslip::report {
+namespace stickslip::analysis {
 namespace {
 
 constexpr double kRelative = 1e-9;
@@ -200,4 +200,4 @@ TEST(Comparison, SaysWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace stickslip::report
+}  // namespace stickslip::analysis

@@ -3,18 +3,18 @@
 #include <string>
 #include <vector>
 
-#include "daemon/report/table.hpp"
+#include "report/table.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::report {
 namespace {
 
 TableRow row() {
   TableRow row;
   row.number = 3;
-  row.results.regime = friction::Regime::kStickSlip;
-  row.results.static_coefficient = friction::Estimate::of(0.38236);
-  row.results.kinetic_coefficient = friction::Estimate::none("too few cycles");
-  row.results.mu_s = friction::Estimate::of(0.35, 0.001);
+  row.results.regime = model::Regime::kStickSlip;
+  row.results.static_coefficient = analysis::Estimate::of(0.38236);
+  row.results.kinetic_coefficient = analysis::Estimate::none("too few cycles");
+  row.results.mu_s = analysis::Estimate::of(0.35, 0.001);
   row.where = "records/3.h5";
   return row;
 }
@@ -22,7 +22,7 @@ TableRow row() {
 TEST(ReportTable, PutsTheTruthBelowTheMeasuredNumberAndSaysWhyOneIsAbsent) {
   TableRow with_truth = row();
   with_truth.truth.emplace();
-  with_truth.truth->regime = friction::Regime::kStickSlip;
+  with_truth.truth->regime = model::Regime::kStickSlip;
   with_truth.truth->mu_s = 0.35;
   with_truth.truth->mu_k = 0.3;
   with_truth.truth->gamma_over_2omega = 0.022;
@@ -50,4 +50,4 @@ TEST(ReportTable, TellsEachReasonOnceWithItsTests) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::report

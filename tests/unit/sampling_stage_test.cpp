@@ -126,9 +126,9 @@ TEST(ClockRateError, IsATestAtAnotherRateThatNobodyKnowsOf) {
 
 TEST(ClockRateError, TruthIsInTheTimeOfTheRecord) {
   Scene scene = *load_scene(kScenes / "stick-slip-at-12-in-per-min.toml");
-  const friction::TestTruth right = scene_truth(scene, kRate_Hz, 1);
+  const model::TestTruth right = scene_truth(scene, kRate_Hz, 1);
   scene.clock_rate_error = ClockRateError{0.001};
-  const friction::TestTruth off = scene_truth(scene, kRate_Hz, 1);
+  const model::TestTruth off = scene_truth(scene, kRate_Hz, 1);
   ASSERT_EQ(off.cycles.size(), right.cycles.size());
   for (std::size_t i = 0; i < off.cycles.size(); ++i) {
     EXPECT_NEAR(off.cycles[i].onset_time_s, 1.001 * right.cycles[i].onset_time_s, 1e-12);

@@ -1,10 +1,10 @@
-#include "core/friction/sampling.hpp"
+#include "core/estimate/sampling.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-namespace stickslip::friction {
+namespace stickslip::estimate {
 namespace {
 
 TEST(Sampling, RefusesBelowThreeScansACycleAndWarnsBelowEight) {
@@ -21,13 +21,13 @@ TEST(Sampling, RefusesBelowThreeScansACycleAndWarnsBelowEight) {
 }
 
 TEST(Sampling, WithoutAPlanTheFrequencyIsNotVerifiable) {
-  const SamplingVerdict verdict = check_sampling(350.0, expected_frequency_Hz(Tester{}, {}));
+  const SamplingVerdict verdict = check_sampling(350.0, expected_frequency_Hz(model::Tester{}, {}));
   EXPECT_EQ(verdict.kind, SamplingVerdict::Kind::kNotVerifiable);
   EXPECT_TRUE(verdict.reason.starts_with("frequency not verifiable")) << verdict.reason;
 }
 
 TEST(Sampling, ExpectsWhatWasMeasuredElseWhatTheStiffnessSays) {
-  Tester tester;
+  model::Tester tester;
   tester.sled_mass_kg = 2.0;
   tester.stiffness_N_per_m = 8.0 * std::numbers::pi * std::numbers::pi * 100.0;
   EXPECT_NEAR(*expected_frequency_Hz(tester, {}), 10.0, 1e-12);
@@ -38,4 +38,4 @@ TEST(Sampling, ExpectsWhatWasMeasuredElseWhatTheStiffnessSays) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::estimate

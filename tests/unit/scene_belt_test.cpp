@@ -77,14 +77,14 @@ TEST(SceneJerkLimitedStart, TakesTwiceTheRootOfSpeedOverJerk) {
 TEST(SceneStarts, GentleStartsBeginWithSticking) {
   for (const char* start : {"[effects.exponential_start]\ntime_constant = \"0.2 s\"\n",
                             "[effects.jerk_limited_start]\njerk = \"50 mm/s^3\"\n"}) {
-    const friction::TestTruth truth = scene_truth(scene_of(kPull + start), 350.0, 1);
+    const model::TestTruth truth = scene_truth(scene_of(kPull + start), 350.0, 1);
     ASSERT_GE(truth.modes.size(), 2U);
-    EXPECT_EQ(truth.modes[0].mode, friction::Mode::kStick);
+    EXPECT_EQ(truth.modes[0].mode, model::Mode::kStick);
     EXPECT_GT(truth.modes[0].end_s, 0.55);
     ASSERT_FALSE(truth.cycles.empty());
     EXPECT_EQ(truth.modes[0].end_s, truth.cycles[0].onset_time_s);
   }
-  const friction::TestTruth abrupt = scene_truth(scene_of(kPull), 350.0, 1);
+  const model::TestTruth abrupt = scene_truth(scene_of(kPull), 350.0, 1);
   EXPECT_EQ(abrupt.modes[0].end_s, 0.5);
 }
 
@@ -109,7 +109,7 @@ TEST(ScenePiecewiseSpeed, GoesInLinesBetweenPoints) {
   EXPECT_EQ(pull->end_s, 5.0);
   EXPECT_EQ(steady_pull_speed_m_per_s(scene_of(scene)), std::nullopt);
   EXPECT_THAT(effects_of(scene), ElementsAre("piecewise_speed"));
-  const friction::TestTruth truth = scene_truth(scene_of(scene), 350.0, 1);
+  const model::TestTruth truth = scene_truth(scene_of(scene), 350.0, 1);
   ASSERT_FALSE(truth.cycles.empty());
   EXPECT_EQ(truth.pull_speed_m_per_s, speed_at(scene, truth.cycles[0].onset_time_s));
 }
@@ -152,9 +152,9 @@ TEST(SceneStartupSlack, DelaysTheForce) {
   const std::string scene = kPull + kOneWay + slack;
   EXPECT_THAT(effects_of(scene),
               ElementsAre("damping", "constant_speed", "one_way_coupling", "startup_slack"));
-  const friction::TestTruth truth = scene_truth(scene_of(scene), 350.0, 1);
+  const model::TestTruth truth = scene_truth(scene_of(scene), 350.0, 1);
   ASSERT_GE(truth.modes.size(), 2U);
-  EXPECT_EQ(truth.modes[0].mode, friction::Mode::kSlack);
+  EXPECT_EQ(truth.modes[0].mode, model::Mode::kSlack);
   // 1 mm at 5 mm/s after half a second; the sled loses v²/2Kg = 4.2 µm while it catches up with the belt.
   const double lost_m = 0.005 * 0.005 / (2.0 * 0.30 * 9.80665);
   EXPECT_NEAR(truth.modes[0].end_s, 0.5 + (0.001 + lost_m) / 0.005, 1e-13);
@@ -179,9 +179,9 @@ TEST(SceneKineticDrift, ReadsTimeOrTravel) {
 // The truth has S and K of each cycle: K (1 − 0.2 t/8 s), and 0.05 more.
 TEST(SceneKineticDrift, TruthHasTheDriftedCoefficients) {
   const Scene scene = scene_of(kPull + "[effects.kinetic_drift]\nchange = -0.2\nover = \"8 s\"\n");
-  const friction::TestTruth truth = scene_truth(scene, 350.0, 1);
+  const model::TestTruth truth = scene_truth(scene, 350.0, 1);
   ASSERT_GT(truth.cycles.size(), 30U);
-  for (const friction::TrueCycle& cycle : truth.cycles) {
+  for (const model::TrueCycle& cycle : truth.cycles) {
     const double K = 0.30 * (1.0 - 0.2 * cycle.onset_time_s / 8.0);
     EXPECT_NEAR(cycle.mu_k, K, 1e-15);
     EXPECT_NEAR(cycle.mu_s, K + 0.05, 1e-15);

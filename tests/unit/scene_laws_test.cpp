@@ -73,10 +73,10 @@ TEST(SceneLaws, RateAndStateIsReadWithItsUnits) {
 }
 
 TEST(SceneLaws, RateAndStateHasATruth) {
-  const friction::TestTruth truth = scene_truth(scene_of(kPull + kAgeing), 350.0, 1);
-  EXPECT_EQ(truth.regime, friction::Regime::kStickSlip);
+  const model::TestTruth truth = scene_truth(scene_of(kPull + kAgeing), 350.0, 1);
+  EXPECT_EQ(truth.regime, model::Regime::kStickSlip);
   ASSERT_GT(truth.cycles.size(), 5U);
-  for (const friction::TrueCycle& cycle : truth.cycles) {
+  for (const model::TrueCycle& cycle : truth.cycles) {
     EXPECT_GT(cycle.mu_s, cycle.mu_k);
     EXPECT_LT(cycle.mu_s, 0.6);
   }
@@ -94,8 +94,8 @@ TEST(SceneLaws, StrengtheningRateAndStateSlidesOnceAndForAll) {
   const std::string law =
       "[effects.rate_and_state]\nlaw = \"slip\"\na = 0.02\nb = 0.01\ncritical_slip = \"1 um\"\n"
       "reference_speed = \"1 um/s\"\n";
-  const friction::TestTruth truth = scene_truth(scene_of(kPull + law), 350.0, 1);
-  EXPECT_EQ(truth.regime, friction::Regime::kRingDown);
+  const model::TestTruth truth = scene_truth(scene_of(kPull + law), 350.0, 1);
+  EXPECT_EQ(truth.regime, model::Regime::kRingDown);
 }
 
 // The transducers see the same force as the scans: a load cell far above the motion changes little.

@@ -45,7 +45,7 @@ Scene scene_with(const std::string& effects) {
   return parse_scene(kWholePull + effects, "test.toml").value();
 }
 
-base::LongColumn<friction::TrueCycle> cycles(const Scene& scene, std::uint64_t seed = 11) {
+base::LongColumn<model::TrueCycle> cycles(const Scene& scene, std::uint64_t seed = 11) {
   return scene_truth(scene, 350.0, seed).cycles;
 }
 
@@ -149,26 +149,26 @@ TEST(SceneOnsetConvention, IsSpringUnlessAskedForTheDamperToo) {
 }
 
 TEST(ShippedScenes, AgeingContactsAreStrongestAfterTheLongestRest) {
-  const friction::TestTruth truth = scene_truth(shipped("contact-ageing"), 350.0, 1);
-  EXPECT_EQ(truth.regime, friction::Regime::kStickSlip);
+  const model::TestTruth truth = scene_truth(shipped("contact-ageing"), 350.0, 1);
+  EXPECT_EQ(truth.regime, model::Regime::kStickSlip);
   ASSERT_GT(truth.cycles.size(), 20U);
   EXPECT_GT(truth.cycles[0].mu_s, truth.cycles[5].mu_s + 0.005);
 }
 
 TEST(ShippedScenes, OnsetBySpringAndDamperSticksAndSlips) {
-  const friction::TestTruth truth = scene_truth(shipped("onset-by-spring-and-damper"), 350.0, 1);
-  EXPECT_EQ(truth.regime, friction::Regime::kStickSlip);
+  const model::TestTruth truth = scene_truth(shipped("onset-by-spring-and-damper"), 350.0, 1);
+  EXPECT_EQ(truth.regime, model::Regime::kStickSlip);
   EXPECT_GT(truth.cycles.size(), 20U);
 }
 
 TEST(ShippedScenes, ScatteredPaperIsMixedOrSticksAndSlips) {
-  const friction::TestTruth truth = scene_truth(shipped("scattered-paper"), 350.0, 1);
+  const model::TestTruth truth = scene_truth(shipped("scattered-paper"), 350.0, 1);
   EXPECT_GT(truth.cycles.size(), 20U);
-  EXPECT_TRUE(truth.regime == friction::Regime::kStickSlip || truth.regime == friction::Regime::kMixed);
+  EXPECT_TRUE(truth.regime == model::Regime::kStickSlip || truth.regime == model::Regime::kMixed);
 }
 
 TEST(ShippedScenes, AbnormalFirstPeakStandsOut) {
-  const friction::TestTruth truth = scene_truth(shipped("abnormal-first-peak"), 350.0, 1);
+  const model::TestTruth truth = scene_truth(shipped("abnormal-first-peak"), 350.0, 1);
   ASSERT_GT(truth.cycles.size(), 20U);
   EXPECT_GT(truth.cycles[0].mu_s, truth.cycles[1].mu_s + 0.02);
 }

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/friction/closed_forms.hpp"
-#include "core/friction/threshold.hpp"
+#include "core/model/closed_forms.hpp"
+#include "core/model/threshold.hpp"
 #include "core/sim/scene_run.hpp"
 #include "core/sim/scene_truth.hpp"
 #include "tests/unit/scene_text.hpp"
@@ -151,42 +151,42 @@ TEST(Scene, MistakesAreNamedWithPlaceValueAndLimit) {
 TEST(SceneTruth, ShippedRingDownRingsDown) {
   const base::Result<Scene> scene = load_scene(kScenes / "ring-down-at-12-in-per-min.toml");
   ASSERT_TRUE(scene) << scene.error().message;
-  const friction::TestTruth truth = scene_truth(*scene, scene->scan_rate_Hz, 1);
-  EXPECT_EQ(truth.regime, friction::Regime::kRingDown);
+  const model::TestTruth truth = scene_truth(*scene, scene->scan_rate_Hz, 1);
+  EXPECT_EQ(truth.regime, model::Regime::kRingDown);
   EXPECT_NEAR(*truth.oscillation_frequency_Hz, 20.0, 1e-12);
   EXPECT_EQ(truth.cycles.size(), 1U);
   EXPECT_NEAR(truth.pull_speed_m_per_s, 0.00508, 1e-17);
   EXPECT_GT(
       scene->oscillator.stick_rate_per_s(0.00508, 9.80665) / (scene->oscillator.omega_rad_per_s() * 0.025),
-      friction::Q_threshold(0.022));
+      model::Q_threshold(0.022));
 }
 
 TEST(SceneTruth, ShippedStickSlipSticksAndSlips) {
   const base::Result<Scene> scene = load_scene(kScenes / "stick-slip-at-12-in-per-min.toml");
   ASSERT_TRUE(scene) << scene.error().message;
-  const friction::TestTruth truth = scene_truth(*scene, scene->scan_rate_Hz, 1);
-  EXPECT_EQ(truth.regime, friction::Regime::kStickSlip);
+  const model::TestTruth truth = scene_truth(*scene, scene->scan_rate_Hz, 1);
+  EXPECT_EQ(truth.regime, model::Regime::kStickSlip);
   EXPECT_GT(truth.cycles.size(), 90U);
   EXPECT_NEAR(*truth.oscillation_frequency_Hz, 19.3, 0.2);  // Table 1 less the damping.
   const double r = scene->oscillator.stick_rate_per_s(0.00508, 9.80665);
-  const double Q = friction::dimensionless_speed(r, truth.omega_rad_per_s, 0.05);
-  EXPECT_NEAR(*truth.amplitude, 0.05 * friction::amplitude_ratio(Q, 0.022), 1e-14);  // [17]
+  const double Q = model::dimensionless_speed(r, truth.omega_rad_per_s, 0.05);
+  EXPECT_NEAR(*truth.amplitude, 0.05 * model::amplitude_ratio(Q, 0.022), 1e-14);  // [17]
 }
 
 TEST(SceneTruth, ShippedThresholdOscillationIsOnItsEdge) {
   Scene scene = *load_scene(kScenes / "threshold-oscillation.toml");
-  EXPECT_EQ(scene_truth(scene, 350.0, 1).regime, friction::Regime::kStickSlip);
+  EXPECT_EQ(scene_truth(scene, 350.0, 1).regime, model::Regime::kStickSlip);
   scene.constant_speed->pull_speed_m_per_s *= 1.0 + 1e-9;
-  EXPECT_EQ(scene_truth(scene, 350.0, 1).regime, friction::Regime::kRingDown);
+  EXPECT_EQ(scene_truth(scene, 350.0, 1).regime, model::Regime::kRingDown);
 }
 
 TEST(SceneTruth, ModesFollowEachOtherWithoutHoles) {
   const Scene scene = *load_scene(kScenes / "stick-slip-at-12-in-per-min.toml");
-  const friction::TestTruth truth = scene_truth(scene, scene.scan_rate_Hz, 1);
+  const model::TestTruth truth = scene_truth(scene, scene.scan_rate_Hz, 1);
   ASSERT_GT(truth.modes.size(), 180U);
   EXPECT_EQ(truth.modes.front().start_s, 0.0);
   EXPECT_EQ(truth.modes.back().end_s, scene.duration_s);
-  EXPECT_EQ(truth.modes.back().mode, friction::Mode::kSlack);  // Returned further than the force.
+  EXPECT_EQ(truth.modes.back().mode, model::Mode::kSlack);  // Returned further than the force.
   for (std::size_t i = 1; i < truth.modes.size(); ++i) {
     EXPECT_EQ(truth.modes[i].start_s, truth.modes[i - 1].end_s);
     EXPECT_LT(truth.modes[i].start_s, truth.modes[i].end_s);
@@ -198,8 +198,8 @@ TEST(SceneTruth, TablesAreTheSameInAScratchFolder) {
   scene.constant_speed->pull_s = 600.0;
   scene.duration_s = scene.constant_speed->duration_s();
   scene.clock_rate_error = ClockRateError{1e-4};
-  const friction::TestTruth expected = scene_truth(scene, scene.scan_rate_Hz, 1);
-  const friction::TestTruth truth =
+  const model::TestTruth expected = scene_truth(scene, scene.scan_rate_Hz, 1);
+  const model::TestTruth truth =
       scene_truth(scene, scene.scan_rate_Hz, 1, {}, std::filesystem::temp_directory_path());
   // More than stay in memory.
   ASSERT_GT(truth.cycles.size(), truth.cycles.kResident * truth.cycles.kBlock);
@@ -221,8 +221,8 @@ TEST(SceneTruth, TablesAreTheSameInAScratchFolder) {
 }
 
 TEST(SceneTruth, WithoutPullThereIsNoRegime) {
-  const friction::TestTruth truth = scene_truth(*parse_scene(kBare, "t.toml"), 350.0, 1);
-  EXPECT_EQ(truth.regime, friction::Regime::kUndecided);
+  const model::TestTruth truth = scene_truth(*parse_scene(kBare, "t.toml"), 350.0, 1);
+  EXPECT_EQ(truth.regime, model::Regime::kUndecided);
   EXPECT_FALSE(truth.oscillation_frequency_Hz);
   EXPECT_FALSE(truth.amplitude);
 }

@@ -16,10 +16,10 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/session.hpp"
+#include "daemon/runtime/session.hpp"
 #include "tests/support/sanitized.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::runtime {
 namespace {
 
 constexpr double kRate_Hz = 350.0;
@@ -92,7 +92,7 @@ class Witness final : public pipeline::Sink {
     ++next_test_;
   }
   void observed(daq::ScanIndex first, std::span<const double> coefficient,
-                const friction::LiveState& /*live*/) override {
+                const detect::LiveState& /*live*/) override {
     if (over) wrong("scans behind the end");
     if (first != next_) wrong("scans out of order");
     next_ = first + std::ssize(coefficient);
@@ -256,7 +256,7 @@ TEST(SessionStress, LivesBehindEachOtherKeepTheirOrder) {
 class Slow final : public pipeline::Sink {
  public:
   void observed(daq::ScanIndex /*first*/, std::span<const double> coefficient,
-                const friction::LiveState& /*live*/) override {
+                const detect::LiveState& /*live*/) override {
     constexpr std::int64_t kTwoBlocks = 2 * std::int64_t{daq::ScanBlock::kMaxScans};
     seen_ += std::ssize(coefficient);
     if (seen_ >= kLongest) {
@@ -308,4 +308,4 @@ TEST(SessionStress, CommandsHaveTheirTurnThoughScansComeFasterThanTheyAreProcess
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::runtime

@@ -1,6 +1,6 @@
 // What a session counts when its ring is full, so that each index is found again.
 
-#include "daemon/session.hpp"
+#include "daemon/runtime/session.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 
 #include "drivers/factory/factory.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::runtime {
 namespace {
 
 /// Gives blocks of one scan as fast as they are read; before some of them it has lost scans.
@@ -137,4 +137,4 @@ TEST(Session, WhatArmingForgetsIsCounted) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::runtime

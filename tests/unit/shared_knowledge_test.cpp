@@ -1,8 +1,8 @@
-#include "core/friction/shared_knowledge.hpp"
+#include "core/estimate/shared_knowledge.hpp"
 
 #include <gtest/gtest.h>
 
-namespace stickslip::friction {
+namespace stickslip::estimate {
 namespace {
 
 constexpr double kOmega = 125.0;
@@ -49,4 +49,4 @@ TEST(SharedKnowledge, AForgottenStickRateStaysAsItWasThen) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::estimate

@@ -292,7 +292,7 @@ TEST(SimulatedBoard, ReadingsBecomeCoefficientsThroughItsOwnFacts) {
 TEST(SimulatedTruth, IsThatOfTheRepetitionWhichTheWindowSharesMostWith) {
   SleepingClock clock;
   const SimulatedTester tester = make(clock);
-  const friction::TruthSource& source = *tester.truth;
+  const model::TruthSource& source = *tester.truth;
   EXPECT_EQ(source.truth(0, kRepetitionScans)->scene_name, "ring-down-at-12-in-per-min");
   EXPECT_EQ(source.truth(2 * kRepetitionScans - 10, 3 * kRepetitionScans)->scene_name,
             "stick-slip-at-12-in-per-min");

@@ -1,4 +1,4 @@
-#include "core/friction/slip_guess.hpp"
+#include "core/analysis/slip_guess.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-namespace stickslip::friction {
+namespace stickslip::estimate {
 namespace {
 
 // A noisy pull whose first scan is a maximum, far above those around it: it looks loaded from rest, and there
@@ -22,16 +22,16 @@ TEST(SlipGuess, TraceThatBeginsWithItsPeak) {
     trace.value.push_back(k == 0 ? 1.0 : 0.1 * std::cos(2.0 * std::numbers::pi * scan / kScansPerPeriod));
     trace.usable.push_back(1);
   }
-  Fall fall;
+  detect::Fall fall;
   fall.peak_at = 0.0;
   fall.peak = 1.0;
   fall.trough_at = 0.5 * kScansPerPeriod;
   fall.trough = -0.1;
   fall.rise_from = 1.0;
-  const SharedParameters guess = first_guess(trace, std::vector{fall});
+  const model::SharedParameters guess = analysis::first_guess(trace, std::vector{fall});
   EXPECT_NEAR(guess.omega, 2.0 * std::numbers::pi * kScanRate_Hz / kScansPerPeriod, 1e-9);
   EXPECT_EQ(guess.r, 0.0) << "no scan shows the stick";
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::estimate

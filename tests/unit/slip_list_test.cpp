@@ -1,10 +1,10 @@
-#include "core/friction/slip_list.hpp"
+#include "core/analysis/slip_list.hpp"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-namespace stickslip::friction {
+namespace stickslip::detect {
 namespace {
 
 constexpr double kPeriod = 20.0;  // scans
@@ -37,7 +37,7 @@ std::vector<Fall> slips(int count, double rest = 0.0) {
 TEST(SlipList, RegularSlipsStay) {
   for (const int count : {0, 1, 2, 3, 40}) {
     for (const double rest : {0.0, kTrough}) {
-      const base::LongColumn<Fall> kept = kept_slips(slips(count, rest));
+      const base::LongColumn<Fall> kept = analysis::kept_slips(slips(count, rest));
       EXPECT_EQ(kept.size(), static_cast<std::size_t>(count)) << rest;
     }
   }
@@ -50,7 +50,7 @@ TEST(SlipList, SlipsOfAnySizeInAnyOrderStay) {
     const double size = 0.5 + 0.05 * ((7 * i) % 21);
     falls.push_back(fall(kPeriod * (1 + i), 0.31 + 0.07 * size, 0.31 - 0.07 * size, i == 0 ? 0.25 : 0.31));
   }
-  const base::LongColumn<Fall> kept = kept_slips(falls);
+  const base::LongColumn<Fall> kept = analysis::kept_slips(falls);
   EXPECT_EQ(kept.size(), falls.size());
 }
 
@@ -58,7 +58,7 @@ TEST(SlipList, TwoSpikesBeforeTheLoadingAreNoSlip) {
   std::vector<Fall> falls = slips(10);
   falls.front().rise_from = -0.01;
   falls.insert(falls.begin(), fall(30.0, 0.05, -0.01, 0.0));
-  const base::LongColumn<Fall> kept = kept_slips(falls);
+  const base::LongColumn<Fall> kept = analysis::kept_slips(falls);
   EXPECT_EQ(kept.size(), 10U);
   EXPECT_EQ(kept.front().peak_at, 100.0);
 }
@@ -67,7 +67,7 @@ TEST(SlipList, SpikesFarBelowRestBeforeTheLoadingAreNoSlip) {
   std::vector<Fall> falls = slips(10);
   falls.front().rise_from = -0.15;
   falls.insert(falls.begin(), fall(30.0, 0.003, -0.15, 0.0));
-  const base::LongColumn<Fall> kept = kept_slips(falls);
+  const base::LongColumn<Fall> kept = analysis::kept_slips(falls);
   ASSERT_EQ(kept.size(), 10U);
   EXPECT_EQ(kept[0].peak_at, 100.0);
 }
@@ -75,7 +75,7 @@ TEST(SlipList, SpikesFarBelowRestBeforeTheLoadingAreNoSlip) {
 TEST(SlipList, UnloadingIsNoSlip) {
   std::vector<Fall> falls = slips(10);
   falls.push_back(fall(900.0, 0.33, 0.001, kTrough));
-  const base::LongColumn<Fall> kept = kept_slips(falls);
+  const base::LongColumn<Fall> kept = analysis::kept_slips(falls);
   EXPECT_EQ(kept.size(), 10U);
 }
 
@@ -84,7 +84,7 @@ TEST(SlipList, SlipsThatEndAtRestStay) {
   std::vector<Fall> falls;
   falls.reserve(10);
   for (int i = 0; i < 10; ++i) falls.push_back(fall(100.0 + 40.0 * i, 0.5, 0.0, 0.0));
-  const base::LongColumn<Fall> kept = kept_slips(falls);
+  const base::LongColumn<Fall> kept = analysis::kept_slips(falls);
   EXPECT_EQ(kept.size(), 10U);
 }
 
@@ -94,7 +94,7 @@ TEST(SlipList, SpikesInTheHoldAfterThePullAreNoSlip) {
   std::vector<Fall> falls = slips(10);
   const double last = falls.back().peak_at;
   falls.push_back(fall(last + 10.0 * kPeriod, 0.40, 0.27, 0.30));
-  const base::LongColumn<Fall> kept = kept_slips(falls);
+  const base::LongColumn<Fall> kept = analysis::kept_slips(falls);
   EXPECT_EQ(kept.size(), 10U);
 }
 
@@ -106,7 +106,7 @@ TEST(SlipList, StepFromScanToScanIsNoSlip) {
     step.duration = duration;
     std::vector<Fall> with = falls;
     with.push_back(step);
-    EXPECT_EQ(kept_slips(with).size(), duration < 1.4 ? 10U : 11U);
+    EXPECT_EQ(analysis::kept_slips(with).size(), duration < 1.4 ? 10U : 11U);
   }
 }
 
@@ -115,7 +115,7 @@ TEST(SlipList, LastSlipAfterALongStickStays) {
   falls.reserve(10);
   for (int i = 0; i < 10; ++i)
     falls.push_back(fall(100.0 + 10.0 * kPeriod * i, kPeak, kTrough, i == 0 ? 0.0 : kTrough));
-  const base::LongColumn<Fall> kept = kept_slips(falls);
+  const base::LongColumn<Fall> kept = analysis::kept_slips(falls);
   EXPECT_EQ(kept.size(), falls.size());
 }
 
@@ -127,7 +127,7 @@ TEST(SlipList, SlipThatSpikesHaveSplitIsOne) {
   second.peak_at = falls[4].trough_at + 2.0;
   second.peak = 0.36;
   falls.insert(falls.begin() + 5, second);
-  const base::LongColumn<Fall> kept = kept_slips(falls);
+  const base::LongColumn<Fall> kept = analysis::kept_slips(falls);
   ASSERT_EQ(kept.size(), 10U);
   EXPECT_EQ(kept[4].peak, kPeak);
   EXPECT_EQ(kept[4].trough, kTrough);
@@ -135,4 +135,4 @@ TEST(SlipList, SlipThatSpikesHaveSplitIsOne) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::detect

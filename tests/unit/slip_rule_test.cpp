@@ -1,8 +1,8 @@
-#include "core/friction/slip_rule.hpp"
+#include "core/detect/slip_rule.hpp"
 
 #include <gtest/gtest.h>
 
-namespace stickslip::friction {
+namespace stickslip::detect {
 namespace {
 
 constexpr double kSigma = 0.5;
@@ -66,4 +66,4 @@ TEST(SlipRule, OnlyRatiosCount) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::detect

@@ -1,7 +1,7 @@
 // The storage thread on a disk that is full, fails or takes its time: what was handed over is there in the
 // end, or is a gap with its cause.
 
-#include "daemon/storage.hpp"
+#include "daemon/storage/storage.hpp"
 
 #include <gmock/gmock.h>
 
@@ -11,12 +11,12 @@
 #include "core/record/finaliser.hpp"
 #include "core/record/reader.hpp"
 #include "core/record/verdict.hpp"
-#include "daemon/finaliser.hpp"
+#include "daemon/storage/finaliser.hpp"
 #include "tests/support/faulty_disk.hpp"
 #include "tests/support/lacking_disk.hpp"
 #include "tests/support/record_samples.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::storage {
 namespace {
 
 using test::FaultyDisk;
@@ -27,7 +27,7 @@ constexpr double kRate_Hz = 350.0;
 constexpr std::int64_t kTenMinutes = 600 * 350;
 
 /// What was told, and a way to wait for it.
-class Heard final : public Facts {
+class Heard final : public daemon::Facts {
  public:
   void storage_waits(std::string_view why) override { add("waits: " + std::string{why}); }
   void storage_resumed() override { add("resumed"); }
@@ -134,13 +134,13 @@ TEST(LackingFileSystem, IsNoDiskThatRefuses) {
     disk.rename_to_new_error = EINVAL;
     disk.link_error = EPERM;
     disk.tells_room = false;
-    TestLog tests;
+    daemon::TestLog tests;
     Heard heard;
     {
       const auto finalise = [&](const fs::path& journal, ExpectedScans expected) {
         return record::finalise(journal, {}, disk, {}, expected);
       };
-      Storage storage{{folder / "records", DatedFolders::kMonth, &disk}, finalise, tests, heard};
+      Storage storage{{folder / "records", io::DatedFolders::kMonth, &disk}, finalise, tests, heard};
       storage.use(header(), nullptr);
       begin(storage, 1, 0);
       feed(storage, 0, 3500);
@@ -159,9 +159,9 @@ class RefusingDisk : public testing::TestWithParam<int> {};
 TEST_P(RefusingDisk, TenMinutesOfScansWaitInMemoryAndNothingIsLost) {
   const TemporaryFolder folder;
   FaultyDisk disk;
-  TestLog tests;
+  daemon::TestLog tests;
   Heard heard;
-  Storage storage{{folder / "records", DatedFolders::kMonth, &disk}, finalise_plainly, tests, heard};
+  Storage storage{{folder / "records", io::DatedFolders::kMonth, &disk}, finalise_plainly, tests, heard};
   storage.use(header(), nullptr);
   disk.refuse(GetParam());
   begin(storage, 1, 0);
@@ -188,9 +188,9 @@ INSTANTIATE_TEST_SUITE_P(Errors, RefusingDisk, testing::Values(ENOSPC, EIO, EDQU
 TEST(Storage, RemarksAreEventsOfEveryRecord) {
   const TemporaryFolder folder;
   FaultyDisk disk;
-  TestLog tests;
+  daemon::TestLog tests;
   Heard heard;
-  Storage storage{{folder.path(), DatedFolders::kNone, &disk}, finalise_plainly, tests, heard};
+  Storage storage{{folder.path(), io::DatedFolders::kNone, &disk}, finalise_plainly, tests, heard};
   storage.use(header(), nullptr, {"sampling: frequency not verifiable"});
   for (const std::int64_t number : {1, 2}) {
     begin(storage, number, 700 * number);
@@ -210,9 +210,9 @@ TEST(Storage, RemarksAreEventsOfEveryRecord) {
 TEST(Storage, ATestEndsByItsScansWhateverTheDateIs) {
   const TemporaryFolder folder;
   FaultyDisk disk;
-  TestLog tests;
+  daemon::TestLog tests;
   Heard heard;
-  Storage storage{{folder.path(), DatedFolders::kNone, &disk}, finalise_plainly, tests, heard};
+  Storage storage{{folder.path(), io::DatedFolders::kNone, &disk}, finalise_plainly, tests, heard};
   storage.use(header(), nullptr);
   begin(storage, 1, 700);
   constexpr std::int64_t kStart_ns = 1'795'265'582'000'000'000;
@@ -233,9 +233,9 @@ TEST(Storage, ADiskThatTakesItsTimeHoldsNobodyUp) {
   std::mutex gate;
   FaultyDisk disk;
   disk.hold([&gate] { const std::lock_guard wait{gate}; });
-  TestLog tests;
+  daemon::TestLog tests;
   Heard heard;
-  Storage storage{{folder.path(), DatedFolders::kDay, &disk}, finalise_plainly, tests, heard};
+  Storage storage{{folder.path(), io::DatedFolders::kDay, &disk}, finalise_plainly, tests, heard};
   storage.use(header(), nullptr);
   {
     // No write returns while the gate is shut.
@@ -258,9 +258,9 @@ TEST(Storage, ToldHowLongTheDiskTakes) {
     for (const auto until = Clock::now() + std::chrono::milliseconds{1}; Clock::now() < until;) {
     }
   });
-  TestLog tests;
+  daemon::TestLog tests;
   Heard heard;
-  Storage storage{{folder.path(), DatedFolders::kNone, &disk}, finalise_plainly, tests, heard};
+  Storage storage{{folder.path(), io::DatedFolders::kNone, &disk}, finalise_plainly, tests, heard};
   storage.use(header(), nullptr);
   begin(storage, 1, 0);
   feed(storage, 0, 3500);
@@ -281,9 +281,9 @@ TEST(Storage, ToldHowLongTheDiskTakes) {
 TEST(Storage, WhatDoesNotFitIsAGapAndTheTestGoesOn) {
   const TemporaryFolder folder;
   FaultyDisk disk;
-  TestLog tests;
+  daemon::TestLog tests;
   Heard heard;
-  Storage storage{{folder.path(), DatedFolders::kNone, &disk}, finalise_plainly, tests, heard};
+  Storage storage{{folder.path(), io::DatedFolders::kNone, &disk}, finalise_plainly, tests, heard};
   storage.use(header(), nullptr);
   disk.refuse(ENOSPC);
   begin(storage, 1, 0);
@@ -308,9 +308,9 @@ TEST(Storage, LittleRoomIsToldBeforeATestBegins) {
   const TemporaryFolder folder;
   FaultyDisk disk;
   disk.set_room(1'000'000);
-  TestLog tests;
+  daemon::TestLog tests;
   Heard heard;
-  Storage storage{{folder.path(), DatedFolders::kNone, &disk}, finalise_plainly, tests, heard};
+  Storage storage{{folder.path(), io::DatedFolders::kNone, &disk}, finalise_plainly, tests, heard};
   storage.use(header(), nullptr);
   begin(storage, 1, 0);
   end(storage, 1, 0);
@@ -326,13 +326,13 @@ TEST(Storage, LittleRoomIsToldBeforeATestBegins) {
 TEST(Storage, TellsThatItIsShortUntilThereIsRoomToSpare) {
   const TemporaryFolder folder;
   FaultyDisk disk;
-  TestLog tests;
+  daemon::TestLog tests;
   Heard heard;
-  Storage storage{{folder.path(), DatedFolders::kNone, &disk, std::chrono::milliseconds{1}},
+  Storage storage{{folder.path(), io::DatedFolders::kNone, &disk, std::chrono::milliseconds{1}},
                   finalise_plainly,
                   tests,
                   heard};
-  EXPECT_EQ(storage.state().kind, StorageState::Kind::kOk);
+  EXPECT_EQ(storage.state().kind, daemon::StorageState::Kind::kOk);
   storage.use(header(), nullptr);
   constexpr double kLoad_per_s = 350.0 * 25.0 + 9000.0;
   const auto set_room_s = [&disk](double room_s) {
@@ -340,10 +340,10 @@ TEST(Storage, TellsThatItIsShortUntilThereIsRoomToSpare) {
   };
   set_room_s(599.0);
   heard.wait_for("storage short: room for 9 min of tests, 10 are wanted; move records from ");
-  const StorageState little = storage.state();
-  EXPECT_EQ(little.kind, StorageState::Kind::kShort);
+  const daemon::StorageState little = storage.state();
+  EXPECT_EQ(little.kind, daemon::StorageState::Kind::kShort);
   EXPECT_EQ(little.room_h, 9.0 / 60.0);
-  EXPECT_THAT(why_no_test(little).value(), testing::HasSubstr(folder.path().string()));
+  EXPECT_THAT(daemon::why_no_test(little).value(), testing::HasSubstr(folder.path().string()));
   // A test that the force begins is recorded all the same.
   begin(storage, 1, 0);
   feed(storage, 0, 3500);
@@ -351,9 +351,9 @@ TEST(Storage, TellsThatItIsShortUntilThereIsRoomToSpare) {
   heard.wait_for("test 1 published");
   set_room_s(7300.0);
   heard.wait_for("has room");
-  EXPECT_EQ(storage.state().kind, StorageState::Kind::kOk);
+  EXPECT_EQ(storage.state().kind, daemon::StorageState::Kind::kOk);
   EXPECT_EQ(storage.state().room_h, 2.0);
-  EXPECT_EQ(why_no_test(storage.state()), std::nullopt);
+  EXPECT_EQ(daemon::why_no_test(storage.state()), std::nullopt);
   storage.stop();
   expect_whole(heard.file(1), 0, 3500);
 }
@@ -394,18 +394,18 @@ TEST(StorageState, SaysWhyAndWhatToDo) {
   DiskState disk;
   disk.room_h = 0.2;
   disk.is_short = true;
-  EXPECT_EQ(storage_state(disk, "records").why, "room for 12 min of tests, 10 are wanted");
+  EXPECT_EQ(storage::storage_state(disk, "records").why, "room for 12 min of tests, 10 are wanted");
   disk.trouble = "No space left on device";
   disk.waiting_size = 123'456;
-  const StorageState waiting = storage_state(disk, "records");
-  EXPECT_EQ(waiting.kind, StorageState::Kind::kWaiting);
+  const daemon::StorageState waiting = storage::storage_state(disk, "records");
+  EXPECT_EQ(waiting.kind, daemon::StorageState::Kind::kWaiting);
   EXPECT_EQ(waiting.waiting_size, 123'456U);
-  EXPECT_EQ(why_no_test(waiting).value().substr(0, 82),
+  EXPECT_EQ(daemon::why_no_test(waiting).value().substr(0, 82),
             "storage waiting: the disk refuses, 123 kB wait in memory: No space left on device;");
   disk.trouble = "records: its file system is not mounted any more";
   disk.to_do = "mount the file system of records again";
   EXPECT_EQ(
-      why_no_test(storage_state(disk, "records")),
+      daemon::why_no_test(storage::storage_state(disk, "records")),
       "storage waiting: the folder of the records is away, 123 kB wait in memory: records: its file system "
       "is "
       "not mounted any more; mount the file system of records again; memory holds ten minutes of scans, and "
@@ -414,7 +414,7 @@ TEST(StorageState, SaysWhyAndWhatToDo) {
 
 TEST(Storage, ARecordThatCouldNotBeMadeIsTriedAgain) {
   const TemporaryFolder folder;
-  TestLog tests;
+  daemon::TestLog tests;
   Heard heard;
   std::atomic<int> tries{0};
   const auto finalise = [&tries](const fs::path& journal, ExpectedScans) -> base::Result<record::Finalised> {
@@ -434,7 +434,7 @@ TEST(Storage, ARecordThatCouldNotBeMadeIsTriedAgain) {
 // The journal was durable; what the disk gives back is less.
 TEST(Storage, ScansThatAreInNoRecordAreNotCountedAsRecorded) {
   const TemporaryFolder folder;
-  TestLog tests;
+  daemon::TestLog tests;
   Heard heard;
   const auto finalise = [](const fs::path& journal, ExpectedScans expected) {
     std::string content = test::content_of(journal);
@@ -514,4 +514,4 @@ TEST(Ballast, FollowsNoLinkAndTakesTheNameOfOneThatAKillLeft) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::storage

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "daemon/sweep/grid.hpp"
+#include "cli/sweep/grid.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::sweep {
 namespace {
 
 using record::SweepAxis;
@@ -115,4 +115,4 @@ TEST(SweepGrid, TheLastAxisIsTheFastest) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::sweep

@@ -5,15 +5,16 @@
 #include <cmath>
 #include <optional>
 
+#include "cli/sweep/part_file.hpp"
+
 #include "core/record/sweep_file.hpp"
-#include "daemon/sweep/part_file.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/sweep_samples.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::sweep {
 namespace {
 
-using friction::Estimate;
+using analysis::Estimate;
 using record::SweepFacts;
 using record::SweepRun;
 using testing::AllOf;
@@ -24,14 +25,14 @@ using testing::IsEmpty;
 SweepRun run_number(std::int64_t number) {
   SweepRun run;
   run.number = number;
-  run.results.regime = friction::Regime::kRingDown;
+  run.results.regime = model::Regime::kRingDown;
   run.results.mu_s = Estimate::of(0.1 + static_cast<double>(number) / 3.0, 1e-300);
   run.results.mu_k = Estimate::of(-0.0);
   run.results.delta_mu = Estimate::none("fewer than \"three\" slips — β");
   run.truth.mu_s = 0.35;
   run.truth.mu_k = 0.30;
   run.truth.seed = 0xffff'ffff'ffff'fff0ULL + static_cast<std::uint64_t>(number);
-  run.truth.regime = friction::Regime::kMixed;
+  run.truth.regime = model::Regime::kMixed;
   run.true_cycle_count = 7;
   return run;
 }
@@ -79,8 +80,8 @@ TEST_F(SweepPartFile, GivesBackEachRunBitForBit) {
   EXPECT_EQ(table->truth("cycle_count").value[0], 7.0);
   EXPECT_TRUE(std::isnan(table->truth("amplitude").value[0]));
   EXPECT_EQ(table->seed()[5], 0xffff'ffff'ffff'fff5ULL);
-  EXPECT_EQ(friction::kRegimeNames[table->regime()[1]].first, friction::Regime::kRingDown);
-  EXPECT_EQ(friction::kRegimeNames[table->true_regime()[1]].first, friction::Regime::kMixed);
+  EXPECT_EQ(model::kRegimeNames[table->regime()[1]].first, model::Regime::kRingDown);
+  EXPECT_EQ(model::kRegimeNames[table->true_regime()[1]].first, model::Regime::kMixed);
   ASSERT_TRUE(part->remove());
   EXPECT_FALSE(std::filesystem::exists(file_));
 }
@@ -187,4 +188,4 @@ TEST(SweepFile, FollowsNoLink) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::sweep

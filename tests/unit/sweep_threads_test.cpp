@@ -5,17 +5,18 @@
 #include <numeric>
 #include <set>
 
+#include "cli/simulation/simulate.hpp"
+#include "cli/sweep/part_file.hpp"
+#include "cli/sweep/run.hpp"
+#include "cli/sweep/runner.hpp"
+
 #include "core/base/clock.hpp"
 #include "core/record/json_codec.hpp"
 #include "core/record/sweep_file.hpp"
-#include "daemon/simulate.hpp"
-#include "daemon/sweep/part_file.hpp"
-#include "daemon/sweep/run.hpp"
-#include "daemon/sweep/runner.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/sweep_samples.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::sweep {
 namespace {
 
 using record::SweepRun;
@@ -55,12 +56,12 @@ TEST(SweepRunner, ARunIsWhatSimulateGives) {
   for (const std::int64_t number : all_numbers(plan)) {
     const sim::Scene& scene = plan.points[static_cast<std::size_t>(number / plan.repeat)];
     const std::uint64_t seed = plan.seed_of(number);
-    const auto simulation = simulate(scene, seed, clock);
+    const auto simulation = simulation::simulate(scene, seed, clock);
     ASSERT_TRUE(simulation) << simulation.error().message;
     const SweepRun run = sweep_run(scene, seed, number);
     EXPECT_EQ(run.results, simulation->record.end->results);
     EXPECT_GT(run.results.gap_count.value.value_or(0.0), 0.0);
-    const friction::TestTruth& truth = *simulation->record.end->truth;
+    const model::TestTruth& truth = *simulation->record.end->truth;
     EXPECT_EQ(run.truth.seed, seed);
     EXPECT_EQ(run.truth.regime, truth.regime);
     EXPECT_EQ(run.truth.mu_s, truth.mu_s);
@@ -125,4 +126,4 @@ TEST(SweepRunner, AnErrorOfTheTakerEndsTheSweep) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::sweep

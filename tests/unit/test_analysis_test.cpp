@@ -1,4 +1,4 @@
-#include "core/friction/test_analysis.hpp"
+#include "core/analysis/test_analysis.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,13 +12,13 @@
 #include "tests/support/allocation_count.hpp"
 #include "tests/support/live_trials.hpp"
 
-namespace stickslip::friction {
+namespace stickslip::detect {
 namespace {
 
 TEST(TestAnalysis, AddsAScanWithoutAllocatingUntilABlockIsFull) {
   std::mt19937_64 engine{4};
   std::normal_distribution<double> normal{0.3, 0.001};
-  TestAnalysis analysis{AnalysisSettings{}};
+  analysis::TestAnalysis analysis{analysis::AnalysisSettings{}};
   analysis.add(0, 0.3, false);  // takes the first block of each column
   const std::uint64_t before = test::allocation_count();
   constexpr auto kBlock = static_cast<base::ScanIndex>(base::LongColumn<double>::kBlock);
@@ -29,15 +29,15 @@ TEST(TestAnalysis, AddsAScanWithoutAllocatingUntilABlockIsFull) {
 }
 
 struct Analysed {
-  TestResults results;
+  analysis::TestResults results;
   std::vector<Cycle> cycles;
   std::vector<Cycle> live;
 };
 
 Analysed analysed(const test::LiveScene& scene, EstimatorTier tier) {
-  AnalysisSettings settings;
+  analysis::AnalysisSettings settings;
   settings.estimator = tier;
-  TestAnalysis analysis{settings};
+  analysis::TestAnalysis analysis{settings};
   test::LiveTrial trial{scene};
   Analysed found;
   const auto take = [&] {
@@ -64,15 +64,16 @@ INSTANTIATE_TEST_SUITE_P(Tiers, EstimatorWithoutFit,
 // What needs no model is the same whatever the estimator; what the fit alone knows is not told without it.
 TEST_P(EstimatorWithoutFit, TellsNothingThatItDoesNotKnow) {
   const test::LiveScene scene;
-  const TestResults fit = analysed(scene, EstimatorTier::kFit).results;
-  const TestResults other = analysed(scene, GetParam()).results;
-  EXPECT_EQ(other.regime, Regime::kStickSlip);
+  const analysis::TestResults fit = analysed(scene, EstimatorTier::kFit).results;
+  const analysis::TestResults other = analysed(scene, GetParam()).results;
+  EXPECT_EQ(other.regime, model::Regime::kStickSlip);
   EXPECT_EQ(other.period_median, fit.period_median);
   EXPECT_EQ(other.static_coefficient, fit.static_coefficient);
   EXPECT_EQ(other.drift_rate, fit.drift_rate);
   EXPECT_EQ(other.cycle_count, fit.cycle_count);
-  for (const Estimate* unknown : {&other.omega, &other.gamma_over_2omega, &other.Q, &other.threshold_speed,
-                                  &other.delta_mu_combined, &other.pull_speed_measured}) {
+  for (const analysis::Estimate* unknown :
+       {&other.omega, &other.gamma_over_2omega, &other.Q, &other.threshold_speed, &other.delta_mu_combined,
+        &other.pull_speed_measured}) {
     EXPECT_FALSE(unknown->value);
     EXPECT_NE(unknown->reason.find(name(GetParam())), std::string::npos) << unknown->reason;
     EXPECT_NE(unknown->reason.find("\"fit\""), std::string::npos) << unknown->reason;
@@ -132,10 +133,10 @@ TEST_P(EstimatorWithoutFit, SeesAnEscape) {
   test::LiveScene scene;
   scene.escape_Q = 3.0;
   const Analysed found = analysed(scene, GetParam());
-  EXPECT_EQ(found.results.regime, Regime::kMixed) << found.results.regime_reason;
+  EXPECT_EQ(found.results.regime, model::Regime::kMixed) << found.results.regime_reason;
   ASSERT_TRUE(found.results.transition_time.value) << found.results.transition_time.reason;
   EXPECT_FALSE(found.results.transition_time.standard_error);
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::detect

@@ -1,15 +1,15 @@
-#include "daemon/tester_file.hpp"
+#include "core/record/tester_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-namespace stickslip::daemon {
+namespace stickslip::record {
 namespace {
 
-friction::Characterisation example() {
-  friction::Characterisation example;
+analysis::Characterisation example() {
+  analysis::Characterisation example;
   example.coupling = {125.6637061, 0.02201234, Eigen::Matrix2d::Zero()};
   example.coupling.covariance << 1e-4, -2e-7, -2e-7, 1e-8;
   example.ring_downs = 3;
@@ -45,4 +45,4 @@ TEST(TesterFile, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::record

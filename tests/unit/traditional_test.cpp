@@ -1,4 +1,4 @@
-#include "core/friction/traditional.hpp"
+#include "core/analysis/traditional.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,15 +8,15 @@
 #include <optional>
 #include <vector>
 
-namespace stickslip::friction {
+namespace stickslip::analysis {
 namespace {
 
 constexpr double kScanRate_Hz = 350.0;
 constexpr int kPeriod = 20;  // scans, so that peaks lie on scans
 constexpr int kFirstPeak = 10;
 
-Trace trace_of(const std::vector<double>& values) {
-  Trace trace;
+estimate::Trace trace_of(const std::vector<double>& values) {
+  estimate::Trace trace;
   trace.value = values;
   trace.usable.assign(trace.value.size(), 1);
   for (std::size_t k = 0; k < trace.value.size(); ++k) {
@@ -26,7 +26,7 @@ Trace trace_of(const std::vector<double>& values) {
 }
 
 /// 0.3 + 0.05 cos about the peaks at 10, 30, 50 …
-Trace oscillation(int scans) {
+estimate::Trace oscillation(int scans) {
   std::vector<double> values;
   values.reserve(static_cast<std::size_t>(scans));
   for (int k = 0; k < scans; ++k) {
@@ -35,10 +35,10 @@ Trace oscillation(int scans) {
   return trace_of(values);
 }
 
-std::vector<Fall> slips_at_the_peaks(int count) {
-  std::vector<Fall> slips;
+std::vector<detect::Fall> slips_at_the_peaks(int count) {
+  std::vector<detect::Fall> slips;
   for (int i = 0; i < count; ++i) {
-    Fall slip;
+    detect::Fall slip;
     slip.peak_at = kFirstPeak + kPeriod * i;
     slip.trough_at = slip.peak_at + 0.5 * kPeriod;
     slip.peak = 0.35;
@@ -49,7 +49,7 @@ std::vector<Fall> slips_at_the_peaks(int count) {
 }
 
 TEST(Traditional, StaticIsTheLargestScanOfTheFirstPeak) {
-  Trace trace = oscillation(400);
+  estimate::Trace trace = oscillation(400);
   trace.value[11] = 0.37;  // beside the interpolated maximum
   trace.value[30] = 0.40;  // another peak
   const TraditionalCoefficients found = traditional_coefficients(trace, slips_at_the_peaks(15), {});
@@ -65,13 +65,13 @@ TEST(Traditional, KineticIsTheMeanOfTenWholeCycles) {
 
 TEST(Traditional, KineticTakesTheMethodsCyclesAndNoMore) {
   // The level is i/10 in cycle i: the mean of n cycles is (n − 1)/20.
-  Trace trace = oscillation(400);
+  estimate::Trace trace = oscillation(400);
   for (std::size_t k = 0; k < trace.size(); ++k) {
     const std::size_t cycle = k < kFirstPeak ? 90 : (k - kFirstPeak) / kPeriod;
     trace.value[k] = 0.1 * static_cast<double>(cycle);
   }
   for (const int cycles : {1, 3, 10}) {
-    Method method;
+    model::Method method;
     method.kinetic_cycles = cycles;
     const TraditionalCoefficients found = traditional_coefficients(trace, slips_at_the_peaks(15), method);
     EXPECT_NEAR(found.kinetic_coefficient.value.value(), (cycles - 1) / 20.0, 1e-12) << cycles;
@@ -79,9 +79,9 @@ TEST(Traditional, KineticTakesTheMethodsCyclesAndNoMore) {
 }
 
 TEST(Traditional, StaticIsThePeakOfTheMethodsSlip) {
-  Trace trace = oscillation(400);
+  estimate::Trace trace = oscillation(400);
   trace.value[kFirstPeak + 2 * kPeriod] = 0.41;
-  Method method;
+  model::Method method;
   method.static_slip = 3;
   EXPECT_EQ(traditional_coefficients(trace, slips_at_the_peaks(15), method).static_coefficient.value, 0.41);
   const Estimate absent = traditional_coefficients(trace, slips_at_the_peaks(2), method).static_coefficient;
@@ -91,12 +91,12 @@ TEST(Traditional, StaticIsThePeakOfTheMethodsSlip) {
 
 // One metre is a second, so 350 scans; the value is the time since the first peak.
 TEST(Traditional, KineticIsTheMeanOverTheMethodsTravelAfterTheFirstPeak) {
-  Trace trace = oscillation(400);
+  estimate::Trace trace = oscillation(400);
   for (std::size_t k = 0; k < trace.size(); ++k) {
     trace.value[k] = trace.time_s[k] - kFirstPeak / kScanRate_Hz;
   }
-  Method method;
-  method.kinetic_travel = TravelWindow{0.2, 0.8};
+  model::Method method;
+  method.kinetic_travel = model::TravelWindow{0.2, 0.8};
   const auto kinetic = [&](std::optional<double> speed_m_per_s) {
     return traditional_coefficients(trace, slips_at_the_peaks(15), method, speed_m_per_s).kinetic_coefficient;
   };
@@ -113,15 +113,15 @@ TEST(Traditional, TravelOfSteadySlidingCountsFromTheEndOfTheLoading) {
   std::vector<double> values(100, 0.0);
   values.insert(values.end(), 350, 0.3);
   values.insert(values.end(), 350, 0.2);
-  Method method;
-  method.kinetic_travel = TravelWindow{0.0, 2.0};
+  model::Method method;
+  method.kinetic_travel = model::TravelWindow{0.0, 2.0};
   const TraditionalCoefficients found = traditional_coefficients(trace_of(values), {}, method, 1.5);
   // 2 m last 4/3 s: 350 scans of 0.3, then a third of that of 0.2 (116 or 117).
   EXPECT_NEAR(found.kinetic_coefficient.value.value(), (0.3 * 350 + 0.2 * 116.67) / 466.67, 1e-4);
 }
 
 TEST(Traditional, OscillationThatDiesAwayGoesOnWithItsMeanPeriod) {
-  Trace trace = oscillation(400);
+  estimate::Trace trace = oscillation(400);
   for (std::size_t k = kFirstPeak + 3 * kPeriod; k < trace.size(); ++k) trace.value[k] = 0.2;
   const TraditionalCoefficients found = traditional_coefficients(trace, slips_at_the_peaks(4), {});
   // Three cycles of mean 0.3 and seven of 0.2.
@@ -144,7 +144,7 @@ TEST(Traditional, OnePeakHasNoCycle) {
 }
 
 TEST(Traditional, UnusableScansAreLeftOutOfTheMean) {
-  Trace trace = oscillation(400);
+  estimate::Trace trace = oscillation(400);
   // A pair half a period apart, so that the others still average to 0.3.
   for (const std::size_t k : {45U, 55U}) {
     trace.value[k] = 5.0;
@@ -173,4 +173,4 @@ TEST(Traditional, TraceBelowZeroAndOneScan) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::analysis

@@ -1,4 +1,4 @@
-#include "core/friction/turning_points.hpp"
+#include "core/detect/turning_points.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace stickslip::friction {
+namespace stickslip::estimate {
 namespace {
 
 constexpr double kLineScan_s = 1.0 / 350.0;
@@ -30,7 +30,7 @@ std::vector<CyclePoint> line_of(std::size_t count) {
 }
 
 double slope_within(const std::vector<CyclePoint>& points) {
-  return slope_between(points, -1.0, 2.0, kNoise).value_or(std::nan(""));
+  return detect::slope_between(points, -1.0, 2.0, kNoise).value_or(std::nan(""));
 }
 
 // A fast loading has half a dozen scans, and a spike may stand on any of them, up or down.
@@ -102,4 +102,4 @@ TEST(SlopeBetween, OfABentRiseOfManyScansItIsTheMedian) {
 }
 
 }  // namespace
-}  // namespace stickslip::friction
+}  // namespace stickslip::estimate

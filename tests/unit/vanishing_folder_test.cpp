@@ -10,13 +10,13 @@
 #include "core/record/finaliser.hpp"
 #include "core/record/journal.hpp"
 #include "core/record/reader.hpp"
-#include "daemon/folder_watch.hpp"
-#include "daemon/storage.hpp"
+#include "daemon/storage/folder_watch.hpp"
+#include "daemon/storage/storage.hpp"
 #include "tests/support/faulty_disk.hpp"
 #include "tests/support/moving_disk.hpp"
 #include "tests/support/record_samples.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::storage {
 namespace {
 
 using test::MovingDisk;
@@ -27,7 +27,7 @@ using namespace std::chrono_literals;
 constexpr int kOtherDevice = 1000;
 
 /// Things that happen, in order, and a way to wait for them.
-class Told final : public Facts {
+class Told final : public daemon::Facts {
  public:
   void storage_waits(std::string_view why) override { add(std::string{why}); }
   void storage_resumed() override { add("resumed"); }
@@ -222,7 +222,7 @@ class StorageAstray : public testing::Test {
   const TemporaryFolder folder_;
   const fs::path records_ = folder_ / "disk" / "records";
   MovingDisk disk_;
-  TestLog tests_;
+  daemon::TestLog tests_;
   Told told_;
   std::optional<Storage> storage_;
   daq::ScanIndex next_ = 0;
@@ -268,7 +268,7 @@ TEST_F(StorageAstray, NothingIsWrittenBelowAMountThatWentAway) {
   disk_.unmount();
   disk_.hide({}, 0);
   while (!storage_->state().why.ends_with("not mounted any more")) std::this_thread::yield();
-  EXPECT_EQ(storage_->state().kind, StorageState::Kind::kWaiting);
+  EXPECT_EQ(storage_->state().kind, daemon::StorageState::Kind::kWaiting);
   EXPECT_THAT(storage_->state().to_do, testing::StartsWith("mount the file system of "));
   feed(350);
   end(1);
@@ -465,4 +465,4 @@ TEST(BallastAstray, IsTakenAgainWhereItWentWithItsFolder) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::storage

@@ -1,4 +1,4 @@
-#include "daemon/verify.hpp"
+#include "io/verify.hpp"
 
 #include <gmock/gmock.h>
 #include <hdf5.h>
@@ -13,7 +13,7 @@
 #include "tests/support/journal_samples.hpp"
 #include "tests/support/record_samples.hpp"
 
-namespace stickslip::daemon {
+namespace stickslip::io {
 namespace {
 
 using record::judge;
@@ -339,4 +339,4 @@ TEST(Verify, TextAndJsonSayTheSame) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::io

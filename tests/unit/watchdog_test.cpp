@@ -1,10 +1,10 @@
-#include "daemon/watchdog.hpp"
+#include "daemon/runtime/watchdog.hpp"
 
 #include <gmock/gmock.h>
 
 #include <map>
 
-namespace stickslip::daemon {
+namespace stickslip::runtime {
 namespace {
 
 using testing::ElementsAre;
@@ -94,4 +94,4 @@ TEST_F(Watched, IsFedWhileAllMoveAndTellsOnceWhatHangs) {
 }
 
 }  // namespace
-}  // namespace stickslip::daemon
+}  // namespace stickslip::runtime

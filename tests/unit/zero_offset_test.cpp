@@ -9,17 +9,17 @@
 namespace stickslip::pipeline {
 namespace {
 
-friction::TestResults some_results() {
-  friction::TestResults results;
-  results.static_coefficient = friction::Estimate::of(0.38, 0.001);
-  results.mu_k = friction::Estimate::of(0.3, 0.001);
+analysis::TestResults some_results() {
+  analysis::TestResults results;
+  results.static_coefficient = analysis::Estimate::of(0.38, 0.001);
+  results.mu_k = analysis::Estimate::of(0.3, 0.001);
   results.mu_k.systematic_uncertainty = 0.03;
-  results.delta_mu = friction::Estimate::of(0.05, 0.001);
+  results.delta_mu = analysis::Estimate::of(0.05, 0.001);
   return results;
 }
 
 TEST(ZeroOffset, IsAFindingAndASystematicPartOfLevelsAlone) {
-  friction::TestResults results = some_results();
+  analysis::TestResults results = some_results();
   add_zero_offset(results, -0.04, 0.01);
   ASSERT_EQ(results.findings.size(), 1U);
   EXPECT_NE(results.findings[0].find("-0.0400"), std::string::npos) << results.findings[0];
@@ -30,7 +30,7 @@ TEST(ZeroOffset, IsAFindingAndASystematicPartOfLevelsAlone) {
 }
 
 TEST(ZeroOffset, TheWorseOfTheTwoCounts) {
-  friction::TestResults results = some_results();
+  analysis::TestResults results = some_results();
   add_zero_offset(results, 0.004, -0.02);
   ASSERT_EQ(results.findings.size(), 1U);
   EXPECT_NE(results.findings[0].find("-0.0200 after"), std::string::npos) << results.findings[0];
@@ -40,7 +40,7 @@ TEST(ZeroOffset, TheWorseOfTheTwoCounts) {
 TEST(ZeroOffset, WithinTheLimitOrUnknownChangesNothing) {
   for (const std::optional<double> level :
        {std::optional<double>{}, std::optional{0.0025}, std::optional{-0.001}, std::optional{std::nan("")}}) {
-    friction::TestResults results = some_results();
+    analysis::TestResults results = some_results();
     add_zero_offset(results, level, level);
     EXPECT_TRUE(results.findings.empty());
     EXPECT_FALSE(results.static_coefficient.systematic_uncertainty);

@@ -3,16 +3,20 @@
 
 Table `includes`: FOLDER: folders whose headers it may include besides its own ("*": any).
 Table `wrapped`:  HEADER: the only folders that may include this header of a library.
-Prints one line per breach and exits with 1; exits with 2 if a table cannot be read.
+Prints one line per breach and exits with 1; exits with 2 if a table cannot be read. Only tests and bench may include anything,
+and no folder may reach itself through others.
 """
 
+import graphlib
 import pathlib
 import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "architecture.md"
-SOURCES = ("core", "drivers", "daemon", "tests", "bench")
+SOURCES = ("core", "drivers", "io", "report", "daemon", "cli", "tests", "bench")
+#: They include whatever they test.
+FREE = ("tests", "bench")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
@@ -39,6 +43,11 @@ def folder_of(path, folders):
 def main():
     includes, wrapped = read_table("includes"), read_table("wrapped")
     breaches, checked = [], 0
+    breaches += [f"{PAGE.name}: {folder} may not include everything" for folder, others in includes.items() if "*" in others and folder not in FREE]
+    try:
+        graphlib.TopologicalSorter({folder: others for folder, others in includes.items() if folder not in FREE}).prepare()
+    except graphlib.CycleError as error:
+        breaches.append(f"{PAGE.name}: a circle of folders: {' -> '.join(error.args[1])}")
     for top in SOURCES:
         for source in sorted((ROOT / top).rglob("*")):
             if source.suffix not in (".cpp", ".hpp"):

@@ -1,0 +1,101 @@
+#include <fmt/format.h>
+
+#include "cli/commands.hpp"
+#include "io/json_text.hpp"
+#include <nlohmann/json.hpp>
+
+#include "drivers/comedi/board_survey.hpp"
+
+namespace stickslip::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using drivers::BoardOffer;
+using drivers::SubdeviceOffer;
+
+Json to_json(const SubdeviceOffer& offer) {
+  Json json{{"subdevice", offer.number}, {"type", offer.type}, {"channel_count", offer.channel_count}};
+  if (offer.ranges.empty()) return json;
+  json["maxdata"] = offer.maxdata;
+  Json ranges = Json::array();
+  for (const drivers::InputRange& range : offer.ranges) {
+    ranges.push_back(
+        {{"min", range.min}, {"max", range.max}, {"unit", range.in_volts ? Json("V") : Json(nullptr)}});
+  }
+  json["ranges"] = ranges;
+  json["references"] = offer.references;
+  json["can_command"] = offer.can_command;
+  json["soft_calibrated"] = offer.soft_calibrated;
+  json["scan_rate_min"] = offer.slowest_Hz ? Json(*offer.slowest_Hz) : Json(nullptr);
+  json["scan_rate_max"] = offer.fastest_Hz ? Json(*offer.fastest_Hz) : Json(nullptr);
+  return json;
+}
+
+Json to_json(const BoardOffer& offer) {
+  Json json{{"device", offer.device}, {"usable", offer.usable()}};
+  json["problem"] = offer.usable() ? Json(nullptr) : Json(offer.problem);
+  json["driver"] = offer.driver;
+  json["board"] = offer.board;
+  json["subdevices"] = Json::array();
+  for (const SubdeviceOffer& subdevice : offer.subdevices) json["subdevices"].push_back(to_json(subdevice));
+  json["configuration"] = offer.configuration.empty() ? Json(nullptr) : Json(offer.configuration);
+  return json;
+}
+
+std::string line_of(const SubdeviceOffer& offer) {
+  std::string line =
+      fmt::format("  subdevice {}: {}, {} channels", offer.number, offer.type, offer.channel_count);
+  if (offer.ranges.empty()) return line + "\n";
+  line += fmt::format(", codes 0 to {}\n    ranges:", offer.maxdata);
+  for (const drivers::InputRange& range : offer.ranges) {
+    line += fmt::format(" {:g} to {:g} {};", range.min, range.max, range.in_volts ? "V" : "(no volts)");
+  }
+  line.back() = '\n';
+  line += fmt::format("    references: {}\n", fmt::join(offer.references, ", "));
+  if (offer.slowest_Hz && offer.fastest_Hz) {
+    line += fmt::format("    scan rates: {:.6g} to {:.6g} Hz, timed by the board\n", *offer.slowest_Hz,
+                        *offer.fastest_Hz);
+  } else {
+    line += "    scan rates: up to 2000 Hz, timed by this computer (acquisition = \"polled\")\n";
+  }
+  line += fmt::format("    calibration: {}\n", offer.soft_calibrated ? "soft" : "hard");
+  return line;
+}
+
+std::string text_of(const BoardOffer& offer) {
+  if (offer.board.empty() && !offer.usable()) return offer.problem + "\n";
+  std::string text = fmt::format("{}: {} (driver {})\n", offer.device, offer.board, offer.driver);
+  for (const SubdeviceOffer& subdevice : offer.subdevices) text += line_of(subdevice);
+  text += offer.usable() ? fmt::format("  a configuration for it:\n\n{}\n", offer.configuration)
+                         : fmt::format("  cannot be used: {}\n", offer.problem);
+  return text;
+}
+
+}  // namespace
+
+BoardsOutput run_boards(std::vector<std::string> devices, bool json) {
+  if (devices.empty()) devices = drivers::comedi_devices();
+  BoardsOutput output;
+  Json list = Json::array();
+  for (const std::string& device : devices) {
+    const auto calls = drivers::make_comedi_calls();
+    const BoardOffer offer = drivers::survey_board(device, *calls);
+    output.any_usable = output.any_usable || offer.usable();
+    if (json) {
+      list.push_back(to_json(offer));
+    } else {
+      output.text += text_of(offer);
+    }
+  }
+  if (json) {
+    output.text = io::json_document(Json{{"boards", list}});
+  } else if (devices.empty()) {
+    output.text =
+        "no board: there is no /dev/comedi*; plug one in, load its driver, or try the kernel's virtual one: "
+        "sudo "
+        "modprobe comedi_test\n";
+  }
+  return output;
+}
+
+}  // namespace stickslip::cli

@@ -1,0 +1,232 @@
+#include "cli/calibrate.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <cmath>
+#include <istream>
+#include <optional>
+#include <ostream>
+#include <utility>
+#include <vector>
+
+#include "cli/options.hpp"
+#include "cli/weighing.hpp"
+#include "io/calibration_file.hpp"
+#include "io/json_text.hpp"
+#include <nlohmann/json.hpp>
+
+#include "core/base/settings.hpp"
+#include "core/base/text.hpp"
+#include "daemon/types/calibration_json.hpp"
+
+namespace stickslip::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using base::Dimension;
+using base::Limits;
+using base::Result;
+
+/// All there is to judge.
+struct Weighed {
+  std::vector<daq::WeightReading> readings;
+  double gravity_m_per_s2 = 9.80665;
+  double span_V = 0.0;
+
+  [[nodiscard]] daq::WeighedCalibration result() const {
+    return daq::weigh(readings, gravity_m_per_s2, span_V);
+  }
+};
+
+Result<Weighed> read_points(const std::string& file) {
+  Result<base::Settings> settings = base::Settings::load(file);
+  if (!settings) return tl::unexpected(settings.error());
+  Weighed weighed;
+  weighed.gravity_m_per_s2 =
+      settings->quantity("gravity", Dimension::kAcceleration, Limits::above(0.0), weighed.gravity_m_per_s2);
+  weighed.span_V = settings->quantity("span", Dimension::kVoltage, Limits::at_least(0.0), 0.0);
+  for (base::Settings& point : settings->tables("point")) {
+    daq::WeightReading reading;
+    reading.mass_kg = point.quantity("mass", Dimension::kMass, Limits::between(0.0, daq::kHeaviestWeight_kg));
+    reading.voltage_V = point.quantity("voltage", Dimension::kVoltage, Limits::any());
+    reading.standard_error_V =
+        point.quantity_if_given("standard_error", Dimension::kVoltage, Limits::at_least(0.0));
+    reading.wander_V = point.quantity_if_given("wander", Dimension::kVoltage, Limits::at_least(0.0));
+    reading.saturated = point.boolean("saturated", false);
+    weighed.readings.push_back(reading);
+  }
+  if (const Result<void> ok = settings->finish(); !ok) return tl::unexpected(ok.error());
+  return weighed;
+}
+
+std::string reading_line(const daq::WeighedPoint& point) {
+  std::string text = fmt::format("  {:>10.6g} kg {:>12.6g} N {:>14.8g} V", point.reading.mass_kg,
+                                 point.force_N, point.reading.voltage_V);
+  if (point.reading.standard_error_V) text += fmt::format(" +- {:.2g} V", *point.reading.standard_error_V);
+  if (std::isfinite(point.residual_V)) text += fmt::format("   off the line {:+.3g} V", point.residual_V);
+  if (!point.refused.empty()) text += "   does not count: " + point.refused;
+  return text + "\n";
+}
+
+/// What a technician says at the prompt.
+enum class Answer { kRead, kUndo, kDone, kQuit, kNoMass };
+
+/// \param mass_kg  of kRead.
+Answer answer_of(std::string text, bool tare, double& mass_kg) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!text.empty() && blank(text.back())) text.pop_back();
+  while (!text.empty() && blank(text.front())) text.erase(text.begin());
+  if (text == "q" || text == "quit") return Answer::kQuit;
+  if (tare) {
+    mass_kg = 0.0;
+    return Answer::kRead;
+  }
+  if (text == "done" || text.empty()) return Answer::kDone;
+  if (text == "undo") return Answer::kUndo;
+  const auto mass = number_of("mass", text, Dimension::kMass, false);
+  if (!mass || !*mass || !(**mass >= 0.0) || !(**mass <= daq::kHeaviestWeight_kg)) return Answer::kNoMass;
+  mass_kg = **mass;
+  return Answer::kRead;
+}
+
+constexpr const char* kNextWeight =
+    "Hang the next weight (first heavier ones, then down again the same way) and type its mass, such as 500 "
+    "g;\n"
+    "0 for nothing, undo to forget the last, done to compute, q to give up.\n> ";
+
+Result<Weighed> ask(Weighing& weighing, double gravity_m_per_s2, const daq::WeighingTimes& times,
+                    std::istream& answers, std::ostream& prompts) {
+  Weighed weighed;
+  weighed.gravity_m_per_s2 = gravity_m_per_s2;
+  weighed.span_V = weighing.span_V();
+  const daq::BoardInfo& board = weighing.board();
+  fmt::print(prompts, "Load cell on {} {} {}, channel {}, {} to {} V.\n", board.driver,
+             base::printable(board.board_name), base::printable(board.device), board.channel,
+             board.range_min_V, board.range_max_V);
+  for (;;) {
+    const bool tare = weighed.readings.empty();
+    prompts << (tare ? "Take everything off the load cell, hook and pan stay; then press Enter, or q.\n> "
+                     : kNextWeight)
+            << std::flush;
+    std::string line;
+    if (!std::getline(answers, line)) line = tare ? "q" : "done";
+    double mass_kg = 0.0;
+    switch (answer_of(line, tare, mass_kg)) {
+      case Answer::kQuit:
+        return base::failure("given up: no calibration was made");
+      case Answer::kUndo:
+        weighed.readings.pop_back();
+        continue;
+      case Answer::kNoMass:
+        prompts << "  that is no mass: type it as 500 g or 0.5 kg\n";
+        continue;
+      case Answer::kDone: {
+        const std::string why = weighed.result().fit.reason;
+        if (why.empty() || !answers) return weighed;
+        fmt::print(prompts, "  not yet: {}\n", why);
+        continue;
+      }
+      case Answer::kRead:
+        break;
+    }
+    const Result<daq::WeightReading> reading = weighing.read(mass_kg, times);
+    if (!reading) return tl::unexpected(reading.error());
+    weighed.readings.push_back(*reading);
+    const daq::WeighedPoint point = weighed.result().points.back();
+    prompts << reading_line({point.reading, point.force_N, std::nan(""), point.refused});
+    // It stays in the list, for the record, but for the tare, without which nothing can be judged.
+    if (tare && !point.refused.empty()) weighed.readings.pop_back();
+  }
+}
+
+std::string text_of(const daq::WeighedCalibration& result, const io::StoredCalibration& stored,
+                    const std::string& file, const std::optional<io::StoredCalibration>& before) {
+  std::string text;
+  for (const daq::WeighedPoint& point : result.points) text += reading_line(point);
+  const daq::LoadCellFit& fit = result.fit;
+  text += fmt::format("gain {:.8g} +- {:.2g} N/V, zero {:.6g} +- {:.2g} V, of {} readings\n",
+                      stored.load_cell.gain_N_per_V, fit.gain_standard_error_N_per_V.value_or(std::nan("")),
+                      stored.load_cell.zero_V, fit.zero_standard_error_V.value_or(std::nan("")), fit.used);
+  text += fmt::format("off the line {:.2g} V, hysteresis {:+.2g} V\n", fit.residual_V.value_or(std::nan("")),
+                      fit.hysteresis_V.value_or(std::nan("")));
+  for (const std::string& finding : result.findings) text += "look: " + finding + "\n";
+  if (before) {
+    text += fmt::format("gain {:+.3g} % against that of {}\n",
+                        100.0 * (stored.load_cell.gain_N_per_V / before->load_cell.gain_N_per_V - 1.0),
+                        before->facts.date);
+  }
+  const std::string& expires = stored.facts.expires;
+  return text + fmt::format("kept in {}, {}\n", file,
+                            expires.empty() ? std::string{"valid for ever"} : "valid until " + expires);
+}
+
+std::string json_of(const daq::WeighedCalibration& result, const io::StoredCalibration& stored,
+                    const std::string& file) {
+  const Json all{{"file", file},
+                 {"date", stored.facts.date},
+                 {"expires", stored.facts.expires},
+                 {"certificate", stored.facts.certificate},
+                 {"gain", stored.load_cell.gain_N_per_V},
+                 {"gain_standard_error", daemon::known_json(stored.facts.gain_standard_error_N_per_V)},
+                 {"zero", stored.load_cell.zero_V},
+                 {"zero_standard_error", daemon::known_json(stored.facts.zero_standard_error_V)},
+                 {"residual", daemon::known_json(stored.facts.residual_V)},
+                 {"hysteresis", daemon::known_json(stored.facts.hysteresis_V)},
+                 {"findings", result.findings},
+                 {"points", daemon::points_json(result)}};
+  return io::json_document(all);
+}
+
+Result<Weighed> weigh_by(const CalibrateCommand& command, const std::optional<WeighingPlace>& place,
+                         std::istream& answers, std::ostream& prompts) {
+  if (!place) return read_points(command.points);
+  const auto settle_s = number_of("--settle", command.settle, Dimension::kTime, true);
+  if (!settle_s) return tl::unexpected(settle_s.error());
+  const auto reading_s = number_of("--reading", command.reading, Dimension::kTime, true);
+  if (!reading_s) return tl::unexpected(reading_s.error());
+  Result<Weighing> weighing = Weighing::open(*place);
+  if (!weighing) return tl::unexpected(weighing.error());
+  return ask(*weighing, place->gravity_m_per_s2, {settle_s->value_or(0.0), reading_s->value_or(0.0)}, answers,
+             prompts);
+}
+
+}  // namespace
+
+Result<std::string> run_calibrate(const CalibrateCommand& command, std::istream& answers,
+                                  std::ostream& prompts) {
+  if (command.config.empty() == command.points.empty()) {
+    return base::usage_error("either --config with the board to read or --points with readings is needed");
+  }
+  const auto days = base::parse_number(command.valid_days);
+  if (!days || !(*days >= 0.0) || !(*days <= io::kLongestValid_days)) {
+    return base::usage_error("--valid-days {}: 0 (for ever) to {}", command.valid_days,
+                             io::kLongestValid_days);
+  }
+  std::optional<WeighingPlace> place;
+  if (!command.config.empty()) {
+    auto loaded = load_weighing_place(command.config);
+    if (!loaded) return tl::unexpected(loaded.error());
+    place = *std::move(loaded);
+  }
+  std::filesystem::path folder = command.folder;
+  if (folder.empty() && place) folder = place->folder;
+  if (folder.empty()) {
+    return base::usage_error("--folder is needed: where the calibrations are kept, or [tester] calibration");
+  }
+  const Result<Weighed> weighed = weigh_by(command, place, answers, prompts);
+  if (!weighed) return tl::unexpected(weighed.error());
+  const daq::WeighedCalibration result = weighed->result();
+  if (!result.fit.load_cell) {
+    std::string points;
+    for (const daq::WeighedPoint& point : result.points) points += reading_line(point);
+    return base::failure("no calibration: {}\n{}", result.fit.reason, points);
+  }
+  const auto kept =
+      io::keep_result(result, {command.certificate, *days}, folder, base::make_system_clock()->realtime_ns());
+  if (!kept) return tl::unexpected(kept.error());
+  return command.json ? json_of(result, kept->stored, kept->file.string())
+                      : text_of(result, kept->stored, kept->file.string(), kept->before);
+}
+
+}  // namespace stickslip::cli

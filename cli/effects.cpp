@@ -1,0 +1,88 @@
+#include "cli/effects.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "io/or_null.hpp"
+#include <nlohmann/json.hpp>
+
+#include "core/evaluation/analyse.hpp"
+
+namespace stickslip::cli {
+namespace {
+
+using analysis::Estimate;
+using analysis::TestResults;
+
+constexpr std::array<std::pair<std::string_view, const Estimate TestResults::*>, 4> kShown{
+    {{"mu_s", &TestResults::mu_s},
+     {"mu_k", &TestResults::mu_k},
+     {"delta_mu", &TestResults::delta_mu},
+     {"static_coefficient", &TestResults::static_coefficient}}};
+
+/// "0.05002 ± 0.00031"; "–" without a value.
+std::string shown(const Estimate& estimate) {
+  if (!estimate.value) return "–";
+  if (!estimate.standard_error) return fmt::format("{:.5f}", *estimate.value);
+  return fmt::format("{:.5f} ± {:.5f}", *estimate.value, *estimate.standard_error);
+}
+
+std::string label(const analysis::Kept& kept) {
+  return kept.nothing() ? "all taken care of" : analysis::text_of(kept) + " kept";
+}
+
+}  // namespace
+
+base::Result<std::vector<Effect>> effects_of(record::Record record, const estimate::SharedPrior& prior) {
+  std::vector<Effect> effects{{{}, {}}};
+  for (const analysis::KeptName& name : analysis::kKeptNames) {
+    effects.emplace_back();
+    effects.back().kept.*name.flag = true;
+  }
+  for (Effect& effect : effects) {
+    record.header.process.kept = analysis::text_of(effect.kept);
+    base::Result<evaluation::TesterAnalysis> analysed = evaluation::analyse_with_tester(record, prior);
+    if (!analysed) return tl::unexpected(analysed.error());
+    effect.results = std::move(analysed->end.results);
+  }
+  return effects;
+}
+
+std::string effects_text(std::span<const Effect> effects) {
+  std::string text = fmt::format("{:<20}{:>19}{:>21}{:>21}{:>12}{:>9}  {}\n", "", "S", "K", "S−K", "change",
+                                 "static", "regime");
+  for (const Effect& effect : effects) {
+    const Estimate& own = effect.results.delta_mu;
+    const Estimate& all = effects.front().results.delta_mu;
+    const bool first = &effect == &effects.front();
+    const std::optional<double> change =
+        first || !own.value || !all.value ? std::nullopt : std::optional{*own.value - *all.value};
+    const Estimate& peak = effect.results.static_coefficient;
+    text += fmt::format(
+        "{:<20}{:>19}{:>21}{:>21}{:>12}{:>9}  {}\n", label(effect.kept), shown(effect.results.mu_s),
+        shown(effect.results.mu_k), shown(own), change ? fmt::format("{:+.5f}", *change) : "",
+        peak.value ? fmt::format("{:.4f}", *peak.value) : "–", model::name(effect.results.regime));
+    if (!own.value) text += fmt::format("–  no S−K: {}\n", own.reason);
+  }
+  return text;
+}
+
+nlohmann::ordered_json effects_json(std::span<const Effect> effects) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const Effect& effect : effects) {
+    nlohmann::ordered_json own{{"kept", analysis::text_of(effect.kept)},
+                               {"regime", model::name(effect.results.regime)}};
+    for (const auto& [name, estimate] : kShown) {
+      own[std::string{name}] = io::or_null((effect.results.*estimate).value);
+      own[std::string{name} + "_standard_error"] = io::or_null((effect.results.*estimate).standard_error);
+    }
+    json.push_back(std::move(own));
+  }
+  return json;
+}
+
+}  // namespace stickslip::cli

@@ -1,0 +1,22 @@
+/// \file
+/// Members of a daemon's answer as words for people.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/result.hpp"
+
+namespace stickslip::cli {
+
+/// A text of the object; a dash if it has none of that name.
+[[nodiscard]] std::string word(const nlohmann::ordered_json& json, const char* key);
+
+/// The JSON as the body of a request. Usage error: a text typed that is no UTF-8.
+[[nodiscard]] base::Result<std::string> body_of(const nlohmann::ordered_json& json);
+
+/// A number of the object; a dash if it has none of that name.
+[[nodiscard]] std::string number(const nlohmann::ordered_json& json, const char* key, int decimals);
+
+}  // namespace stickslip::cli

@@ -1,0 +1,108 @@
+// stickslip: the command line. Exit status 0 done, 1 the world did not allow it, 2 usage or input, 130
+// interrupted.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "cli/options.hpp"
+#include "cli/subcommands.hpp"
+#include "io/print_text.hpp"
+#include <CLI/CLI.hpp>
+
+#include "core/base/version.hpp"
+#include "core/record/read_apart.hpp"
+
+namespace stickslip::cli {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  stickslip demo                                       ten simulated tests, without a board
+  stickslip import pull.csv --column force --rate 350 --unit N --sled-mass "2331 g" -o pull.h5
+  stickslip import trace.csv --column mu --rate "2 kHz" --unit coefficient --speed "12 in/min" -o trace.h5
+  stickslip scenes                                     the shipped scenes, one line each
+  stickslip simulate stick-slip-at-12-in-per-min -o pull.h5 --seed 7
+  stickslip sweep ring-down-at-12-in-per-min --vary paper.mu_s=0.31:0.35:5 --repeat 20 -o sweep.h5
+  stickslip plot pull.h5 --from 1 --to 2               pull.svg: force, modes, peaks
+  stickslip accuracy threshold-oscillation -o a.html   error against time, for each way to solve it
+  stickslip analyze records/*.h5                       a table, with the truth where it is known
+  stickslip analyze trace.h5 --method iso-8295         stickslip methods lists the shipped ones
+  stickslip analyze trace.h5 --estimator peak          S and K as the tradition has them, for comparison
+  stickslip analyze trace.h5 --json                    {"tests": [{"file": …, results …, "details": …}]}
+  stickslip characterise ring-down.h5 -o tester.toml   omega and gamma of the tester, for --tester
+  stickslip report records/*.h5 -o report.html         replicates, coefficient against speed, traces
+  stickslip compare a*.h5 -- b*.h5                     do two materials differ, and how many tests would show it
+  stickslip verify records/*.h5                        whole or not, and why; exit status 0, 1, 3 or 4
+  stickslip recover records                            records from the journals that a stop left behind
+  stickslip boards                                     A/D boards, what they offer, what to configure
+  stickslip export pull.h5 --csv > pull.csv            scans for a spreadsheet
+  stickslip calibrate --config stickslipd.toml         the load cell, by hanging known weights
+  stickslip doctor                                     is everything there that a test needs?
+  stickslip status                                     what the daemon is doing
+  stickslip plan --name "liner 42" --replicate 3       what the tests to come are of
+  stickslip start; stickslip mark "sheet moved"; stickslip stop
+  stickslip watch                                      tests and cycles as they happen)";
+
+/// In `stickslip compare` a plain -- stands between two lists; to the parser that is an option with values,
+/// after which options may follow.
+std::vector<std::string> words(int count, char** arguments) {
+  std::vector<std::string> words(arguments + 1, arguments + count);
+  if (!words.empty() && words.front() == "compare") {
+    if (const auto mark = std::find(words.begin(), words.end(), "--"); mark != words.end())
+      *mark = kOtherMaterial;
+  }
+  std::reverse(words.begin(), words.end());  // As CLI11 takes them.
+  return words;
+}
+
+/// The command as a shell would take it again.
+std::string command_line(int count, char** arguments) {
+  std::string line = "stickslip";
+  for (int i = 1; i < count; ++i) line += " " + shell_word(arguments[i]);
+  return line;
+}
+
+int main_of(int count, char** arguments) {
+  CLI::App app{"stickslip: friction tests from the command line", "stickslip"};
+  app.footer(kExamples);
+  app.set_version_flag("--version", fmt::format("stickslip {} ({})", base::kVersion, base::kCommit));
+  app.require_subcommand(1);
+  Chosen chosen{command_line(count, arguments), {}};
+  add_demo(app, chosen);
+  add_making_commands(app, chosen);
+  add_showing_commands(app, chosen);
+  add_asking_commands(app, chosen);
+  add_commanding_commands(app, chosen);
+  add_analysing_commands(app, chosen);
+  add_caring_commands(app, chosen);
+  add_doctor(app, chosen);
+  add_manual(app, chosen);
+  add_exporting_commands(app, chosen);
+  add_calibrating_commands(app, chosen);
+  try {
+    app.parse(words(count, arguments));
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    io::print_error("stickslip", fmt::format("{}; see stickslip --help", error.what()));
+    return 2;
+  }
+  return chosen.run();
+}
+
+}  // namespace
+}  // namespace stickslip::cli
+
+int main(int count, char** arguments) {
+  stickslip::record::serve_if_reader(count, arguments);
+  try {
+    stickslip::record::read_records_apart();
+    return stickslip::cli::main_of(count, arguments);
+  } catch (const std::exception& error) {
+    stickslip::io::print_error("stickslip", error.what());
+    return 1;
+  }
+}

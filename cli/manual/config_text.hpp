@@ -1,0 +1,11 @@
+/// \file
+/// config/stickslipd.toml, in the program: each key with unit, range and default.
+#pragma once
+
+#include <string_view>
+
+namespace stickslip::manual {
+
+[[nodiscard]] std::string_view stickslipd_toml() noexcept;
+
+}  // namespace stickslip::manual

@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "io/json_text.hpp"
+#include "io/library.hpp"
+#include "io/method_file.hpp"
+#include <nlohmann/json.hpp>
+
+namespace stickslip::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+Json json_of(const std::optional<model::Nominal>& nominal) {
+  if (!nominal) return nullptr;
+  return {{"value", nominal->value}, {"tolerance", json_of(nominal->tolerance)}};
+}
+
+/// Points of time and speed.
+Json json_of(const std::optional<model::PullSpeed>& course) {
+  if (!course) return nullptr;
+  Json points = Json::array();
+  for (const model::SpeedPoint& point : course->points())
+    points.push_back(Json::array({point.at_s, point.speed_m_per_s}));
+  return points;
+}
+
+/// SI units; null where the method leaves it open.
+Json json_of(const io::MethodFile& file) {
+  const model::Method& method = file.method;
+  Json json{{"name", method.name}, {"description", file.description}, {"static_slip", method.static_slip}};
+  json["kinetic_cycles"] = method.kinetic_travel ? Json(nullptr) : Json(method.kinetic_cycles);
+  json["kinetic_travel"] = method.kinetic_travel
+                               ? Json::array({method.kinetic_travel->from_m, method.kinetic_travel->to_m})
+                               : Json(nullptr);
+  json["sled_mass"] = json_of(method.sled_mass_kg);
+  json["sled_area"] = json_of(method.sled_area_m2);
+  json["speed"] = json_of(method.pull_speed_m_per_s);
+  json["speed_course"] = json_of(method.speed_course);
+  json["replicates"] = method.replicates ? Json(*method.replicates) : Json(nullptr);
+  json["check"] = file.check;
+  return json;
+}
+
+}  // namespace
+
+base::Result<std::string> run_methods(const std::string& folder, bool json) {
+  const base::Result<std::filesystem::path> found = io::library_folder(io::kMethods, folder);
+  if (!found) return tl::unexpected(found.error());
+  std::vector<io::MethodFile> methods;
+  std::size_t longest = 0;
+  for (const std::filesystem::path& path : io::files_in(*found)) {
+    const base::Result<io::MethodFile> file = io::load_method(path);
+    if (!file) return tl::unexpected(file.error());
+    longest = std::max(longest, file->method.name.size());
+    methods.push_back(*file);
+  }
+  if (json) {
+    Json list = Json::array();
+    for (const io::MethodFile& file : methods) list.push_back(json_of(file));
+    return io::json_document(Json{{"folder", found->string()}, {"methods", std::move(list)}});
+  }
+  std::string text;
+  for (const io::MethodFile& file : methods) {
+    text += fmt::format("{:<{}}  {}\n", file.method.name, longest, file.description);
+  }
+  return text;
+}
+
+}  // namespace stickslip::cli

@@ -1,0 +1,157 @@
+#include <fmt/format.h>
+
+#include "cli/commands.hpp"
+#include "cli/json_words.hpp"
+#include "cli/paint.hpp"
+#include "io/json_text.hpp"
+#include <nlohmann/json.hpp>
+
+#include "daemon/client/client.hpp"
+
+namespace stickslip::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::int64_t count(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_number_integer() ? found->get<std::int64_t>() : 0;
+}
+
+/// An object, empty if there is none.
+Json part(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_object() ? *found : Json::object();
+}
+
+Ink of_state(const std::string& state) {
+  if (state == "acquiring") return Ink::kGreen;
+  if (state == "starting" || state == "stopping") return Ink::kYellow;
+  return Ink::kRed;
+}
+
+Ink of_bench(const std::string& bench) {
+  if (bench == "idle") return Ink::kNone;
+  if (bench == "degraded") return Ink::kRed;
+  return bench == "armed" ? Ink::kYellow : Ink::kGreen;
+}
+
+/// As the page has them: each by word first, colour helps.
+Ink of_regime(const std::string& regime) {
+  if (regime == "stick-slip") return Ink::kBlue;
+  if (regime == "ring-down") return Ink::kYellow;
+  return regime == "steady-sliding" ? Ink::kGreen : Ink::kNone;
+}
+
+class Lines {
+ public:
+  explicit Lines(bool colours) : paint_(colours) {}
+  void line(const char* what, const std::string& text, Ink colour = Ink::kNone) {
+    text_ += paint_(Ink::kFaint, fmt::format("{:<8}", what)) + "  " + paint_(colour, text) + "\n";
+  }
+  [[nodiscard]] std::string painted(Ink colour, const std::string& text) const {
+    return paint_(colour, text);
+  }
+  [[nodiscard]] std::string text() && { return std::move(text_); }
+
+ private:
+  Paint paint_;
+  std::string text_;
+};
+
+void board(Lines& lines, const Json& status) {
+  const Json board = part(status, "board");
+  if (board.empty()) return lines.line("board", "none", Ink::kRed);
+  const Json measured = part(status, "scan_rate_measured");
+  const double granted_Hz = board.value("scan_rate_granted", 0.0);
+  std::string text = fmt::format("{} ({}), {} Hz", word(board, "name"), word(board, "driver"),
+                                 number(board, "scan_rate_granted", 2));
+  if (!measured.empty() && granted_Hz > 0.0) {
+    text += fmt::format(", by this computer's clock {:+.0f} ppm",
+                        1e6 * (measured.value("value", granted_Hz) / granted_Hz - 1.0));
+  }
+  lines.line("board", text);
+}
+
+void tests(Lines& lines, const Json& status) {
+  const Json live = part(status, "live");
+  if (status.contains("current_test") && status["current_test"].is_number()) {
+    const std::string regime = word(live, "regime");
+    lines.line("test",
+               fmt::format("{}: {}, {}, {} slips, S - K {}", status["current_test"].dump(),
+                           word(live, "phase"), lines.painted(of_regime(regime), regime),
+                           count(live, "slip_count"), number(part(live, "latest_cycle"), "delta_mu", 4)));
+  }
+  const Json latest = part(status, "latest_test");
+  if (latest.empty()) return lines.line("latest", "no test has ended");
+  const Json results = part(latest, "results");
+  const std::string regime = word(results, "regime");
+  lines.line("latest",
+             fmt::format("test {}: {}, S {}, K {}, S - K {}, {} cycles; {}", count(latest, "number"),
+                         lines.painted(of_regime(regime), regime), number(results, "mu_s", 4),
+                         number(results, "mu_k", 4), number(results, "delta_mu", 4),
+                         number(results, "cycle_count", 0), word(latest, "file")));
+}
+
+std::string text_of(const Json& status) {
+  Lines lines{wants_colours()};
+  const std::string state = word(status, "state");
+  const std::string bench = word(status, "bench");
+  lines.line("state", state, of_state(state));
+  lines.line("bench", bench, of_bench(bench));
+  lines.line("detail", word(status, "detail"));
+  board(lines, status);
+  const Json scans = part(status, "scans");
+  const std::int64_t lost = count(scans, "in_gaps");
+  lines.line("scans",
+             fmt::format("{}: {} in records, {} between tests, {} under way; {} lost in {} gaps, {} overruns",
+                         count(status, "scan_count"), count(scans, "recorded"), count(scans, "idle"),
+                         count(scans, "under_way"), lost, count(status, "gap_count"),
+                         count(status, "overrun_count")),
+             lost > 0 ? Ink::kYellow : Ink::kNone);
+  tests(lines, status);
+  lines.line("tests", fmt::format("{} ended", count(status, "test_count")));
+  const Json storage = part(status, "storage");
+  const bool stored = word(storage, "state") == "ok";
+  lines.line("storage",
+             stored ? fmt::format("ok{}", storage.contains("room_h") && storage["room_h"].is_number()
+                                              ? fmt::format(", room for {} h", number(storage, "room_h", 0))
+                                              : "")
+                    : fmt::format("{}: {}; {}", word(storage, "state"), word(storage, "why"),
+                                  word(storage, "to_do")),
+             stored ? Ink::kNone : Ink::kRed);
+  if (const auto lacks = storage.find("lacks"); lacks != storage.end()) {
+    for (const Json& lack : *lacks) lines.line("lacks", lack.is_string() ? lack.get<std::string>() : "");
+  }
+  if (const Json fleet = part(status, "fleet"); !fleet.empty()) {
+    const bool connected = word(fleet, "state") == "connected";
+    lines.line(
+        "fleet",
+        fmt::format("{} at {} as {}{}; {} results wait, {} dropped", word(fleet, "state"),
+                    word(fleet, "broker"), word(fleet, "tester"), connected ? "" : ": " + word(fleet, "why"),
+                    count(fleet, "outbox_count"), count(fleet, "dropped_result_count")),
+        connected ? Ink::kNone : Ink::kYellow);
+  }
+  if (const Json page = part(status, "page"); !page.empty()) {
+    // To be copied into a shell: the token itself is for those who may read its file.
+    lines.line("page", fmt::format("{}#token=$(cat '{}')", word(page, "address"), word(page, "token_file")));
+  }
+  lines.line("version", word(status, "version"));
+  return std::move(lines).text();
+}
+
+}  // namespace
+
+base::Result<std::string> run_status(const std::string& socket, bool json) {
+  constexpr std::chrono::milliseconds kTimeout{5000};
+  const base::Result<daemon::HttpReply> reply =
+      client::request(socket, {"GET", "/v1/status", {}, {}, {}}, kTimeout);
+  if (!reply) return tl::unexpected(reply.error());
+  if (reply->status != 200)
+    return base::failure("{}: refused with {}: {}", socket, reply->status, reply->body);
+  const Json status = Json::parse(reply->body, nullptr, false);
+  if (!status.is_object()) return base::failure("{}: the answer is no JSON", socket);
+  return json ? io::json_document(status) : text_of(status);
+}
+
+}  // namespace stickslip::cli

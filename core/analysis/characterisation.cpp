@@ -1,0 +1,111 @@
+#include "core/analysis/characterisation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+#include <boost/math/distributions/chi_squared.hpp>
+
+namespace stickslip::analysis {
+namespace {
+
+constexpr double kInchPerMinute_m_per_s = 0.0254 / 60.0;
+/// Standard errors by which the speed must be off before it is a finding.
+constexpr double kSpeedSigmas = 3.0;
+
+double probability_of(double chi_squared, double freedom) {
+  return boost::math::cdf(
+      boost::math::complement(boost::math::chi_squared_distribution<double>{freedom}, chi_squared));
+}
+
+Eigen::Vector2d coupling_of(const TesterEstimate& estimate) {
+  return {estimate.omega, estimate.gamma_over_2omega};
+}
+
+}  // namespace
+
+TesterEstimate TesterEstimate::from(const model::SharedParameters& shared,
+                                    const Eigen::Matrix3d& covariance) {
+  const auto& [omega, gamma, r] = shared;
+  const double omega0_squared = omega * omega + 0.25 * gamma * gamma;
+  TesterEstimate estimate;
+  estimate.omega = omega;
+  estimate.gamma_over_2omega = gamma / (2.0 * omega);
+  estimate.speed_over_gravity_s = r / omega0_squared;
+  Eigen::Matrix3d slope = Eigen::Matrix3d::Identity();
+  slope.row(1) << -estimate.gamma_over_2omega / omega, 1.0 / (2.0 * omega), 0.0;
+  const double v = estimate.speed_over_gravity_s;
+  slope.row(2) << -2.0 * omega * v / omega0_squared, -0.5 * gamma * v / omega0_squared, 1.0 / omega0_squared;
+  estimate.covariance = slope * covariance * slope.transpose();
+  return estimate;
+}
+
+double Characterisation::probability() const {
+  return freedom > 0 ? probability_of(chi_squared, static_cast<double>(freedom)) : 1.0;
+}
+
+std::optional<Characterisation> pool_ring_downs(std::span<const TesterEstimate> ring_downs) {
+  Eigen::Matrix2d weight = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d weighted = Eigen::Vector2d::Zero();
+  for (const TesterEstimate& ring_down : ring_downs) {
+    const Eigen::Matrix2d one = Eigen::Matrix2d{ring_down.covariance.topLeftCorner<2, 2>()}.inverse();
+    weight += one;
+    weighted += one * coupling_of(ring_down);
+  }
+  const Eigen::Matrix2d covariance = weight.inverse();
+  const Eigen::Vector2d mean = covariance * weighted;
+  if (ring_downs.empty() || !covariance.allFinite() || !mean.allFinite()) return std::nullopt;
+  Characterisation result;
+  result.ring_downs = static_cast<int>(ring_downs.size());
+  result.freedom = 2 * (result.ring_downs - 1);
+  for (const TesterEstimate& ring_down : ring_downs) {
+    const Eigen::Vector2d off = coupling_of(ring_down) - mean;
+    const Eigen::Matrix2d one = Eigen::Matrix2d{ring_down.covariance.topLeftCorner<2, 2>()}.inverse();
+    result.chi_squared += off.dot(one * off);
+  }
+  const double ratio = result.freedom > 0 ? std::max(result.chi_squared / result.freedom, 1.0) : 1.0;
+  result.coupling = {mean[0], mean[1], ratio * covariance};
+  return result;
+}
+
+Estimate pull_speed_of(const TesterEstimate& estimate, double gravity_m_per_s2) {
+  return Estimate::of(estimate.speed_over_gravity_s * gravity_m_per_s2,
+                      std::sqrt(estimate.covariance(2, 2)) * gravity_m_per_s2);
+}
+
+std::optional<std::string> speed_finding(const Estimate& measured_m_per_s, const model::Tester& tester) {
+  if (!tester.pull_speed_m_per_s || !measured_m_per_s.value || !measured_m_per_s.standard_error) {
+    return std::nullopt;
+  }
+  const double plan = *tester.pull_speed_m_per_s;
+  const double error = *measured_m_per_s.standard_error;
+  const double difference = std::abs(*measured_m_per_s.value - plan);
+  if (!(difference > kSpeedTolerance * plan && difference > kSpeedSigmas * error)) return std::nullopt;
+  return fmt::format("the pull speed was {:.2f} +- {:.2f} in/min, the plan says {:.2f}",
+                     *measured_m_per_s.value / kInchPerMinute_m_per_s, error / kInchPerMinute_m_per_s,
+                     plan / kInchPerMinute_m_per_s);
+}
+
+TesterCheck check_tester(const TesterEstimate& alone, const TesterEstimate& with,
+                         const estimate::SharedPrior::Coupling& known, const model::Tester& tester) {
+  TesterCheck check;
+  const Eigen::Vector2d off = coupling_of(alone) - Eigen::Vector2d{known.omega, known.gamma_over_2omega};
+  const Eigen::Matrix2d spread = alone.covariance.topLeftCorner<2, 2>() + known.covariance;
+  check.chi_squared = off.dot(spread.inverse() * off);
+  check.probability = std::isfinite(check.chi_squared) ? probability_of(check.chi_squared, 2.0) : 0.0;
+  if (!check.agrees()) {
+    check.findings.push_back(fmt::format(
+        "the tester disagrees with its characterisation: chi-squared {:.1f} for 2 (omega {:.3f} rad/s here, "
+        "{:.3f} there; gamma/2omega {:.5f} here, {:.5f} there), so that it was {}",
+        check.chi_squared, alone.omega, known.omega, alone.gamma_over_2omega, known.gamma_over_2omega,
+        check.used() ? "used with doubt" : "not used"));
+  }
+  const TesterEstimate& best = check.used() ? with : alone;
+  check.pull_speed = pull_speed_of(best, tester.gravity_m_per_s2);
+  if (auto finding = speed_finding(check.pull_speed, tester)) check.findings.push_back(*std::move(finding));
+  return check;
+}
+
+}  // namespace stickslip::analysis

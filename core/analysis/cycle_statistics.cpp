@@ -1,0 +1,136 @@
+#include "core/analysis/cycle_statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <boost/math/distributions/students_t.hpp>
+
+#include "core/analysis/slip_estimator.hpp"
+#include "core/signal/statistics.hpp"
+
+namespace stickslip::analysis {
+
+namespace {
+
+constexpr std::size_t kFewestPeriods = 3;
+/// Probability with which a test without drift is taken to have one. It costs little: a slope that is not
+/// there turns K about the middle of the test by its own error; one that is there and stays in makes a short
+/// ring-down look as if its first slip had been captured.
+constexpr double kDriftLevel = 0.01;
+
+/// From one peak to the next, without a break between.
+std::size_t whole_cycles(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips) {
+  std::size_t count = slips.size() - std::min<std::size_t>(slips.size(), 1);
+  for (std::size_t i = 0; !trace.breaks.empty() && i + 1 < slips.size(); ++i) {
+    if (estimate::is_broken(trace, slips[i].peak_at, slips[i + 1].peak_at)) --count;
+  }
+  return count;
+}
+
+}  // namespace
+
+Estimate drift_of(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips) {
+  const std::size_t count = whole_cycles(trace, slips);
+  if (count < kFewestPeriods) return Estimate::none("fewer than three cycles");
+  // Worked out twice, for the mean and for the slope: there may be more than memory should hold.
+  const auto for_each_mean = [&](const auto& take) {
+    for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
+      if (estimate::is_broken(trace, slips[i].peak_at, slips[i + 1].peak_at)) continue;
+      const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
+      const auto end = static_cast<std::size_t>(std::lround(slips[i + 1].peak_at));
+      double mean = 0.0;
+      for (std::size_t k = first; k < end; ++k) mean += trace.value[k] / static_cast<double>(end - first);
+      take(0.5 * (trace.time_s[first] + trace.time_s[end]), mean);
+    }
+  };
+  const auto n = static_cast<double>(count);
+  double mean_t = 0.0;
+  double mean_c = 0.0;
+  for_each_mean([&](double t, double c) {
+    mean_t += t / n;
+    mean_c += c / n;
+  });
+  double s_tt = 0.0;
+  double s_tc = 0.0;
+  double s_cc = 0.0;
+  for_each_mean([&](double t, double c) {
+    s_tt += (t - mean_t) * (t - mean_t);
+    s_tc += (t - mean_t) * (c - mean_c);
+    s_cc += (c - mean_c) * (c - mean_c);
+  });
+  const double slope = s_tc / s_tt;
+  const double residual_variance = std::max(s_cc - slope * s_tc, 0.0) / (n - 2.0);
+  return Estimate::of(slope, std::sqrt(residual_variance / s_tt));
+}
+
+estimate::Drift significant_drift(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips) {
+  const Estimate slope = drift_of(trace, slips);
+  if (!slope.value || !slope.standard_error) return {};
+  const auto freedom = static_cast<double>(whole_cycles(trace, slips) - 2);
+  const double limit =
+      boost::math::quantile(boost::math::complement(boost::math::students_t{freedom}, 0.5 * kDriftLevel));
+  if (!(std::abs(*slope.value) > limit * *slope.standard_error)) return {};
+  double mean_s = 0.0;
+  for (std::size_t i = 1; i < slips.size(); ++i) {
+    mean_s += estimate::time_at(trace, slips[i].peak_at) / static_cast<double>(slips.size() - 1);
+  }
+  return {*slope.value, mean_s};
+}
+
+void period_results(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
+                    TestResults& results) {
+  if (slips.size() < 2) {
+    const std::string reason = slips.empty() ? "no oscillation" : "one slip has no period";
+    results.period_median = Estimate::none(reason);
+    results.oscillation_frequency = Estimate::none(reason);
+    return;
+  }
+  const std::size_t count = whole_cycles(trace, slips);
+  if (count == 0) {
+    results.period_median = results.oscillation_frequency =
+        Estimate::none("no two slips without a gap between");
+    return;
+  }
+  std::vector<std::size_t> first_slips;  // Of whole cycles, where some are broken.
+  double broken_s = 0.0;
+  const auto from_to = [&](std::size_t slip) {
+    return estimate::time_at(trace, slips[slip + 1].peak_at) - estimate::time_at(trace, slips[slip].peak_at);
+  };
+  for (std::size_t i = 0; count + 1 < slips.size() && i + 1 < slips.size(); ++i) {
+    if (estimate::is_broken(trace, slips[i].peak_at, slips[i + 1].peak_at)) {
+      broken_s += from_to(i);
+    } else {
+      first_slips.push_back(i);
+    }
+  }
+  const auto period = [&](std::size_t i) { return from_to(first_slips.empty() ? i : first_slips[i]); };
+  results.period_median = Estimate::of(signal::median_of(count, period));
+  if (results.regime == model::Regime::kRingDown && results.omega.value) {
+    results.oscillation_frequency =
+        Estimate::of(*results.omega.value / (2.0 * std::numbers::pi),
+                     results.omega.standard_error.value_or(std::nan("")) / (2.0 * std::numbers::pi));
+    return;
+  }
+  const auto n = static_cast<double>(count);
+  const double span_s = estimate::time_at(trace, slips.back().peak_at) -
+                        estimate::time_at(trace, slips.front().peak_at) - broken_s;
+  const double mean_s = span_s / n;
+  // A late peak lengthens one period and shortens the next: the error of the mean takes the covariance
+  // of neighbours into account, but never less than the two end points leave.
+  double variance = 0.0;
+  double neighbours = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double off = period(i) - mean_s;
+    variance += off * off / n;
+    if (i + 1 < count) neighbours += off * (period(i + 1) - mean_s) / n;
+  }
+  const double mean_variance = std::max(variance + 2.0 * neighbours, variance / n) / n;
+  results.oscillation_frequency =
+      n > 1.0 ? Estimate::of(1.0 / mean_s, std::sqrt(mean_variance) / (mean_s * mean_s))
+              : Estimate::of(1.0 / mean_s);
+}
+
+}  // namespace stickslip::analysis

@@ -1,0 +1,123 @@
+#include "core/analysis/grouping.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace stickslip::analysis {
+namespace {
+
+bool same_speed(const std::optional<double>& one, const std::optional<double>& other) {
+  if (!one || !other) return one.has_value() == other.has_value();
+  return std::abs(*one - *other) <= kSameSpeed * std::max(std::abs(*one), std::abs(*other));
+}
+
+bool slower(const std::optional<double>& one, const std::optional<double>& other) {
+  if (!one || !other) return one.has_value() && !other.has_value();
+  return *one < *other;
+}
+
+GroupQuantity summary(std::span<const MeasuredTest> tests, const SpeedGroup& group,
+                      const Quantity& quantity) {
+  GroupQuantity result;
+  std::vector<double> values;
+  for (const std::size_t test : group.tests) {
+    const Estimate& estimate = tests[test].results.*quantity.estimate;
+    if (estimate.value) {
+      values.push_back(*estimate.value);
+      result.tests.push_back(test);
+    } else {
+      result.absences.push_back({test, estimate.reason});
+    }
+  }
+  if (!values.empty()) result.replicates = describe_replicates(values);
+  return result;
+}
+
+}  // namespace
+
+std::vector<SpeedGroup> group_by_speed(std::span<const MeasuredTest> tests) {
+  std::vector<SpeedGroup> groups;
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    const std::optional<double>& speed = tests[i].pull_speed_m_per_s;
+    const auto found = std::find_if(groups.begin(), groups.end(), [&](const SpeedGroup& group) {
+      return same_speed(group.pull_speed_m_per_s, speed);
+    });
+    if (found == groups.end()) {
+      groups.push_back({speed, {i}, {}, {}});
+    } else {
+      found->tests.push_back(i);
+    }
+  }
+  std::stable_sort(groups.begin(), groups.end(), [](const SpeedGroup& one, const SpeedGroup& other) {
+    return slower(one.pull_speed_m_per_s, other.pull_speed_m_per_s);
+  });
+  for (SpeedGroup& group : groups) {
+    std::vector<SlipSums> slips;
+    for (const std::size_t test : group.tests) slips.push_back(tests[test].slips);
+    group.by_cycle = pool_slips(slips);
+    for (std::size_t q = 0; q < kQuantityCount; ++q)
+      group.quantities[q] = summary(tests, group, quantities()[q]);
+  }
+  return groups;
+}
+
+std::optional<double> pooled_over_groups(std::span<const SpeedGroup> groups, std::size_t quantity) {
+  std::vector<Replicates> replicates;
+  for (const SpeedGroup& group : groups) {
+    if (const auto& own = group.quantities[quantity].replicates) replicates.push_back(*own);
+  }
+  return pooled_standard_deviation(replicates);
+}
+
+std::vector<SpeedPair> pair_speeds(std::span<const SpeedGroup> a, std::span<const SpeedGroup> b) {
+  std::vector<SpeedPair> pairs;
+  for (std::size_t i = 0; i < a.size(); ++i) pairs.push_back({a[i].pull_speed_m_per_s, i, std::nullopt});
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    const auto found = std::find_if(pairs.begin(), pairs.end(), [&](const SpeedPair& pair) {
+      return !pair.b && same_speed(pair.pull_speed_m_per_s, b[i].pull_speed_m_per_s);
+    });
+    if (found == pairs.end()) {
+      pairs.push_back({b[i].pull_speed_m_per_s, std::nullopt, i});
+    } else {
+      found->b = i;
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(), [](const SpeedPair& one, const SpeedPair& other) {
+    return slower(one.pull_speed_m_per_s, other.pull_speed_m_per_s);
+  });
+  return pairs;
+}
+
+namespace {
+
+/// Why nothing can be compared; empty if both have tests at this speed.
+std::string missing_side(const SpeedPair& pair) {
+  if (!pair.a) return "no test of A at this speed";
+  return pair.b ? "" : "no test of B at this speed";
+}
+
+}  // namespace
+
+PooledComparison compare_pair_by_cycle(std::span<const SpeedGroup> a, std::span<const SpeedGroup> b,
+                                       const SpeedPair& pair) {
+  if (std::string reason = missing_side(pair); !reason.empty()) return {{}, std::move(reason)};
+  return compare_pooled(a[*pair.a].by_cycle, b[*pair.b].by_cycle);
+}
+
+Comparison compare_pair(std::span<const SpeedGroup> a, std::span<const SpeedGroup> b, const SpeedPair& pair,
+                        std::size_t quantity) {
+  Comparison none;
+  none.reason = missing_side(pair);
+  if (!none.reason.empty()) return none;
+  const GroupQuantity& of_a = a[*pair.a].quantities[quantity];
+  const GroupQuantity& of_b = b[*pair.b].quantities[quantity];
+  for (const auto& [side, group] : {std::pair{"A", &of_a}, std::pair{"B", &of_b}}) {
+    if (group->replicates) continue;
+    none.reason = std::string{"no test of "} + side + " has a value: " + group->absences.front().reason;
+    return none;
+  }
+  return compare(*of_a.replicates, *of_b.replicates);
+}
+
+}  // namespace stickslip::analysis

@@ -1,0 +1,334 @@
+#include "core/analysis/model_results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include <Eigen/Core>
+
+#include "core/analysis/cycle_features.hpp"
+#include "core/analysis/escape.hpp"
+#include "core/base/nan.hpp"
+#include "core/model/closed_forms.hpp"
+#include "core/model/threshold.hpp"
+#include "core/signal/statistics.hpp"
+
+namespace stickslip::analysis {
+namespace {
+
+/// From this many slips on, the first — often not representative [Penner 1995] — is left out of means.
+constexpr std::size_t kEnoughToLeaveOutTheFirst = 3;
+
+/// The six numbers from which all else follows, with their covariance: (ω, γ, r, S̄, K̄).
+struct Fitted {
+  Eigen::Matrix<double, 5, 1> value;
+  Eigen::Matrix<double, 5, 5> covariance;
+  signal::RunningVariance D;
+  signal::RunningVariance amplitude;
+  double drift = 0.0;           ///< Of S and K, where the slips begin in the mean.
+  double relative_speed = 1.0;  ///< Mean over the slips, of the speed at which r is given.
+};
+
+double half_range(const model::SlipWaveform& slip) {
+  return 0.5 * (slip.value(slip.peak_time_s()) - slip.value(slip.trough_time_s()));
+}
+
+/// The six numbers of a course that all slips share.
+void take(const estimate::UniformFit& uniform, Fitted& fitted) {
+  using Uniform = model::UniformParameters;
+  constexpr std::array<Eigen::Index, 5> kOrder{Uniform::kOmega, Uniform::kGamma, Uniform::kR, Uniform::kS,
+                                               Uniform::kK};
+  const Uniform::Vector value = uniform.parameters.vector();
+  for (Eigen::Index i = 0; i < 5; ++i) {
+    const Eigen::Index from = kOrder[static_cast<std::size_t>(i)];
+    fitted.value[i] = value[from];
+    for (Eigen::Index j = 0; j < 5; ++j) {
+      fitted.covariance(i, j) = uniform.covariance(from, kOrder[static_cast<std::size_t>(j)]);
+    }
+  }
+}
+
+/// Slips that count in the means: not the first if there are others (unless it is kept), and none whose S − K
+/// its few scans — a gap, spikes, the end of the pull — leave more uncertain than the typical S − K itself is
+/// large.
+std::vector<estimate::SlipWindow> slips_that_count(const SlipEstimates& estimates) {
+  std::span<const estimate::SlipWindow> windows = estimates.windows;
+  if (!estimates.first_counts && windows.size() >= kEnoughToLeaveOutTheFirst) windows = windows.subspan(1);
+  std::vector<double> sizes;
+  for (const estimate::SlipWindow& window : windows) sizes.push_back(std::abs(window.slip.S - window.slip.K));
+  const double typical = signal::median(sizes);
+  std::vector<estimate::SlipWindow> told;
+  std::copy_if(
+      windows.begin(), windows.end(), std::back_inserter(told),
+      [&](const estimate::SlipWindow& window) { return estimates.fit.delta_mu_error(window) <= typical; });
+  return told.empty() ? std::vector<estimate::SlipWindow>{windows.begin(), windows.end()} : told;
+}
+
+Fitted gather(const SlipEstimates& estimates) {
+  const estimate::SlipFit& fit = estimates.fit;
+  const std::vector<estimate::SlipWindow> windows = slips_that_count(estimates);
+
+  Fitted fitted;
+  signal::RunningVariance S;
+  signal::RunningVariance K;
+  Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d coupling = Eigen::Matrix3d::Zero();
+  if (!estimates.belt.is_constant()) fitted.relative_speed = 0.0;
+  for (const estimate::SlipWindow& window : windows) {
+    S.add(estimates.static_coefficient(window));
+    K.add(window.slip.K);
+    fitted.D.add(estimates.static_coefficient(window) - window.slip.K);
+    const model::SlipModel model{fit.shared, window.slip, window.captured, estimates.belt};
+    fitted.amplitude.add(half_range(model.waveform()));
+    if (!estimates.belt.is_constant()) {
+      fitted.relative_speed +=
+          estimates.belt.relative(window.slip.onset_s) / static_cast<double>(windows.size());
+    }
+    own += window.inverse_curvature;
+    coupling += window.coupling;
+    fitted.drift += estimates.drift.at(window.slip.onset_s) / static_cast<double>(windows.size());
+  }
+  if (estimates.uniform) {
+    take(*estimates.uniform, fitted);
+    return fitted;
+  }
+  const auto n = static_cast<double>(windows.size());
+  coupling /= n;
+  Eigen::Matrix2d own_mean = own.bottomRightCorner<2, 2>() / (n * n);
+  if (windows.size() > 1) {
+    // The scatter from slip to slip holds the noise of each and what the paper adds to it.
+    Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+    for (const estimate::SlipWindow& window : windows) {
+      const Eigen::Vector2d off{estimates.static_coefficient(window) - S.mean, window.slip.K - K.mean};
+      scatter += off * off.transpose();
+    }
+    own_mean = scatter / (n * (n - 1.0));
+  }
+  const Eigen::Matrix<double, 2, 3> pull = coupling.bottomRows<2>();
+  fitted.value << fit.shared.omega, fit.shared.gamma, fit.shared.r, S.mean, K.mean;
+  fitted.covariance.topLeftCorner<3, 3>() = fit.shared_covariance;
+  fitted.covariance.bottomLeftCorner<2, 3>() = -pull * fit.shared_covariance;
+  fitted.covariance.topRightCorner<3, 2>() = fitted.covariance.bottomLeftCorner<2, 3>().transpose();
+  fitted.covariance.bottomRightCorner<2, 2>() = own_mean + pull * fit.shared_covariance * pull.transpose();
+  return fitted;
+}
+
+/// Value and first-order standard error of function(ω, γ, r, S, K), by central differences with
+/// steps of the standard errors themselves (their third root of ε would be too small beside noise).
+template <typename Function>
+Estimate derived(const Fitted& fitted, const Function& function) {
+  Eigen::Matrix<double, 5, 1> gradient = Eigen::Matrix<double, 5, 1>::Zero();
+  for (Eigen::Index i = 0; i < 5; ++i) {
+    const double step = 0.01 * std::sqrt(fitted.covariance(i, i));
+    if (!(step > 0.0)) continue;
+    Eigen::Matrix<double, 5, 1> up = fitted.value;
+    Eigen::Matrix<double, 5, 1> down = fitted.value;
+    up[i] += step;
+    down[i] -= step;
+    gradient[i] = (function(up) - function(down)) / (2.0 * step);
+  }
+  return Estimate::of(function(fitted.value), std::sqrt(gradient.dot(fitted.covariance * gradient)));
+}
+
+model::Oscillator oscillator_of(const Eigen::Matrix<double, 5, 1>& p) {
+  return model::Oscillator::from_omega(p[0], p[1] / (2.0 * p[0]));
+}
+
+}  // namespace
+
+namespace {
+
+/// Standard errors by which a tester's damping may be found below zero by chance.
+constexpr double kNegativeDampingSigmas = 4.0;
+
+/// γ with its standard error.
+std::pair<double, double> damping_of(const SlipEstimates& estimates) noexcept {
+  using Uniform = model::UniformParameters;
+  if (estimates.uniform) {
+    return {estimates.uniform->parameters.shared.gamma,
+            std::sqrt(estimates.uniform->covariance(Uniform::kGamma, Uniform::kGamma))};
+  }
+  return {estimates.fit.shared.gamma, std::sqrt(estimates.fit.shared_covariance(1, 1))};
+}
+
+/// Friction that falls with speed feeds the oscillation: K is no constant then.
+bool feeds_the_oscillation(const SlipEstimates& estimates) noexcept {
+  const auto [gamma, error] = damping_of(estimates);
+  return gamma < -kNegativeDampingSigmas * error;
+}
+
+/// Damping as large as the fit admits (γ < 2ω), within its error: the scans hold no oscillation, or too few
+/// of each.
+bool is_overdamped(const SlipEstimates& estimates) noexcept {
+  constexpr double kSigmasOfDamping = 2.0;
+  const auto [gamma, error] = damping_of(estimates);
+  return gamma + kSigmasOfDamping * error > 2.0 * estimates.fit.shared.omega;
+}
+
+/// Why model_describes() says no.
+std::string why_not(const SlipEstimates& estimates, double sigma) {
+  const estimate::SlipFit& fit = estimates.fit;
+  if (!fit.converged) return "the fit of the model did not converge";
+  if (fit.residual_sigma > kLargestResidualSigmas * sigma) {
+    return fmt::format("the model leaves residuals of {:.1f} times the scan noise, {:.0f} are allowed",
+                       fit.residual_sigma / sigma, kLargestResidualSigmas);
+  }
+  const auto [gamma, error] = damping_of(estimates);
+  if (is_overdamped(estimates)) {
+    return fmt::format(
+        "overdamped: gamma/2omega {:.2g} +- {:.1g}, the scans show no oscillation of the model",
+        gamma / (2.0 * fit.shared.omega), error / (2.0 * fit.shared.omega));
+  }
+  return fmt::format(
+      "the model does not describe this friction: its damping, {:.2g} +- {:.1g} 1/s, would be negative",
+      gamma, error);
+}
+
+}  // namespace
+
+bool model_describes(const SlipEstimates& estimates, double sigma) noexcept {
+  return estimates.fit.converged && estimates.fit.residual_sigma <= kLargestResidualSigmas * sigma &&
+         !feeds_the_oscillation(estimates) && !is_overdamped(estimates);
+}
+
+void no_model_results(const std::string& reason, TestResults& results) {
+  for (Estimate* estimate :
+       {&results.mu_s, &results.mu_k, &results.delta_mu, &results.omega, &results.gamma_over_2omega,
+        &results.Q, &results.Q_threshold, &results.threshold_speed, &results.slip_speed_ratio_threshold,
+        &results.amplitude, &results.delta_mu_scatter, &results.escape_speed, &results.escape_speed_corrected,
+        &results.pull_speed_measured}) {
+    *estimate = Estimate::none(reason);
+  }
+  no_feature_results(reason, results);
+}
+
+void escape_results(const SlipEstimates& estimates, TestResults& results) {
+  const auto none = [&](const char* reason) {
+    results.escape_speed = results.escape_speed_corrected = Estimate::none(reason);
+  };
+  if (estimates.belt.is_constant()) return none("no course of the pull speed is known");
+  if (!(estimates.fit.shared.gamma > 0.0)) return none("the damping found is not positive");
+  const std::optional<double> scatter = delta_mu_scatter(estimates);
+  if (!scatter) return none("fewer than three slips to compare");
+  const EscapeSpeeds speeds = escape_speeds(escape_trials(estimates), *scatter);
+  results.escape_speed = speeds.first_escape;
+  results.escape_speed_corrected = speeds.of_mean_paper;
+}
+
+void model_results(std::span<const detect::Fall> slips, const SlipEstimates& estimates,
+                   const model::Tester& tester, double sigma, TestResults& results) {
+  if (!model_describes(estimates, sigma)) {
+    no_model_results(why_not(estimates, sigma), results);
+    // The traditional amplitude needs no model.
+    signal::RunningVariance amplitude;
+    for (const detect::Fall& slip : slips) amplitude.add(0.5 * slip.drop());
+    results.amplitude = Estimate::of(amplitude.mean, amplitude.error_of_mean());
+    return;
+  }
+  escape_results(estimates, results);
+  const Fitted fitted = gather(estimates);
+  using P = Eigen::Matrix<double, 5, 1>;
+  results.omega = derived(fitted, [](const P& p) { return p[0]; });
+  results.gamma_over_2omega = derived(fitted, [](const P& p) { return p[1] / (2.0 * p[0]); });
+  results.mu_s = derived(fitted, [&](const P& p) { return p[3] + fitted.drift; });
+  results.mu_k = derived(fitted, [&](const P& p) { return p[4] + fitted.drift; });
+  results.delta_mu = derived(fitted, [](const P& p) { return p[3] - p[4]; });
+  const model::SharedParameters shared{fitted.value[0], fitted.value[1], fitted.value[2]};
+  const double damper =
+      shared.gamma * shared.r * fitted.relative_speed / shared.oscillator().omega0_squared();
+  results.mu_s.systematic_uncertainty = std::abs(damper);
+  results.delta_mu.systematic_uncertainty = std::abs(damper);
+
+  const double n = fitted.amplitude.count;
+  results.amplitude = n > 1.0 && !estimates.uniform
+                          ? Estimate::of(fitted.amplitude.mean, fitted.amplitude.error_of_mean())
+                          : derived(fitted, [](const P& p) {
+                              return half_range({p[4], p[3] - p[4], p[2], oscillator_of(p)});
+                            });
+  results.delta_mu_scatter = n >= 3.0 ? Estimate::of(std::sqrt(fitted.D.variance()),
+                                                     std::sqrt(fitted.D.variance() / (2.0 * (n - 1.0))))
+                                      : Estimate::none("fewer than three slips to compare");
+
+  results.slip_speed_ratio_threshold =
+      estimates.belt.is_constant()
+          ? derived(fitted, [](const P& p) { return model::slip_speed_ratio_threshold(p[1] / (2.0 * p[0])); })
+          : Estimate::none(std::string{kSpeedChanges});
+  const double delta_mu = fitted.value[3] - fitted.value[4];
+  if (!(delta_mu > 0.0)) {
+    results.Q = results.Q_threshold = results.threshold_speed =
+        Estimate::none(fmt::format("S - K = {:.4g} is not positive", delta_mu));
+    return;
+  }
+  results.Q =
+      estimates.belt.is_constant()
+          ? derived(fitted, [](const P& p) { return model::dimensionless_speed(p[2], p[0], p[3] - p[4]); })
+          : Estimate::none(std::string{kSpeedChanges});
+  if (!(shared.gamma > 0.0)) {
+    results.Q_threshold = results.threshold_speed =
+        Estimate::none(fmt::format("the damping found, {:.3g}, is not positive", shared.gamma));
+    return;
+  }
+  results.Q_threshold =
+      derived(fitted, [](const P& p) { return model::Q_threshold(std::abs(p[1]) / (2.0 * p[0])); });
+  results.threshold_speed = derived(fitted, [&](const P& p) {
+    return model::threshold_speed_m_per_s(model::Oscillator::from_omega(p[0], std::abs(p[1]) / (2.0 * p[0])),
+                                          p[3] - p[4], tester.gravity_m_per_s2);
+  });
+}
+
+std::vector<detect::Cycle> cycle_table(const estimate::Trace& trace, std::span<const detect::Fall> slips,
+                                       const SlipEstimates& estimates) {
+  const estimate::SlipFit& fit = estimates.fit;
+  std::vector<detect::Cycle> cycles;
+  double last_capture_s = base::kNaN;
+  for (std::size_t i = 0; i < slips.size(); ++i) {
+    const detect::Fall& slip = slips[i];
+    detect::Cycle cycle;
+    cycle.number = static_cast<std::int64_t>(i);
+    cycle.peak_time_s = estimate::time_at(trace, slip.peak_at);
+    const bool has_next =
+        i + 1 < slips.size() && !estimate::is_broken(trace, slip.peak_at, slips[i + 1].peak_at);
+    cycle.period_s =
+        has_next ? estimate::time_at(trace, slips[i + 1].peak_at) - cycle.peak_time_s : base::kNaN;
+    cycle.peak = slip.peak;
+    cycle.trough = slip.trough;
+    cycle.force_drop = slip.drop();
+    cycle.onset_time_s = cycle.capture_time_s = cycle.stick_time_s = cycle.slip_time_s = base::kNaN;
+    cycle.delta_mu = cycle.delta_mu_standard_error = cycle.slip_speed_ratio = base::kNaN;
+    cycle.pull_speed_m_per_s = base::kNaN;
+    if (i == 0) cycle.flags |= detect::kCycleIsFirst;
+    const bool captured = estimates.ends[i] == SlipEnd::kCaptured;
+    if (captured) cycle.flags |= detect::kCycleCaptured;
+    const bool begins_from_stick = i == 0 || estimates.window_of_slip[i] != estimates.window_of_slip[i - 1];
+    if (fit.converged && begins_from_stick && estimates.has_window(i)) {
+      const estimate::SlipWindow& window = estimates.windows[estimates.window_of_slip[i]];
+      const model::SlipModel model{fit.shared, window.slip, captured, estimates.belt};
+      cycle.onset_time_s = window.slip.onset_s;
+      if (!estimates.belt.is_constant()) {
+        cycle.pull_speed_m_per_s =
+            estimates.belt.plan().speed_m_per_s(window.slip.onset_s - estimates.belt.start_s());
+      }
+      cycle.stick_time_s = window.slip.onset_s - last_capture_s;
+      cycle.delta_mu = estimates.static_coefficient(window) - window.slip.K;
+      cycle.delta_mu_standard_error = fit.delta_mu_error(window);
+      // [18], from the fitted waveform: difference quotients of scans read several per cent low.
+      cycle.slip_speed_ratio =
+          -model.waveform().rate(model.waveform().fastest_slip_time_s()) / model.waveform().r;
+      if (captured) {
+        cycle.slip_time_s = model.capture_s();
+        cycle.capture_time_s = window.slip.onset_s + model.capture_s();
+      }
+    }
+    last_capture_s = cycle.capture_time_s;
+    cycles.push_back(cycle);
+  }
+  return cycles;
+}
+
+}  // namespace stickslip::analysis

@@ -1,0 +1,25 @@
+/// \file
+/// Which results of a test are compared between tests.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "core/analysis/results.hpp"
+
+namespace stickslip::analysis {
+
+struct Quantity {
+  std::string_view name;   ///< As in the record.
+  std::string_view title;  ///< Short, for tables.
+  std::string_view unit;   ///< SI, "1" for a ratio.
+  int decimals;            ///< In tables.
+  Estimate analysis::TestResults::*estimate;
+};
+
+inline constexpr std::size_t kQuantityCount = 8;
+
+/// In the order of tables.
+[[nodiscard]] const std::array<Quantity, kQuantityCount>& quantities() noexcept;
+
+}  // namespace stickslip::analysis

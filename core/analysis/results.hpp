@@ -1,0 +1,152 @@
+/// \file
+/// Every scalar result of one test, under one name in HDF5, JSON, tables and messages.
+///
+///     for_each_result(results, [](const ResultName& name, const Estimate& estimate) { … });
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/model/regime.hpp"
+
+namespace stickslip::analysis {
+
+/// A number with how far to trust it, or the reason why there is none.
+struct Estimate {
+  std::optional<double> value;
+  std::optional<double> standard_error;          ///< Random: shrinks with replicates.
+  std::optional<double> systematic_uncertainty;  ///< Calibration, mass, conventions: does not.
+  std::string reason;                            ///< Set exactly when there is no value.
+
+  [[nodiscard]] static Estimate of(double number) {
+    if (!std::isfinite(number)) return none("not finite");
+    return {number, {}, {}, {}};
+  }
+  [[nodiscard]] static Estimate of(double number, double error) {
+    if (!std::isfinite(number)) return none("not finite");
+    return {number, std::isfinite(error) ? std::optional<double>{error} : std::nullopt, {}, {}};
+  }
+  [[nodiscard]] static Estimate none(std::string why) { return {{}, {}, {}, std::move(why)}; }
+
+  bool operator==(const Estimate&) const = default;
+};
+
+/// How a result is called everywhere.
+struct ResultName {
+  std::string_view name;
+  std::string_view unit;       ///< SI, "1" for a ratio or a count.
+  std::string_view long_name;  ///< For axes and tables.
+};
+
+/// Why there is no Q on a ramp: each slip has its own.
+inline constexpr std::string_view kSpeedChanges = "the pull speed changes";
+
+/// Results of one test. Symbols as in docs/glossary.md.
+struct TestResults {
+  model::Regime regime = model::Regime::kUndecided;
+  std::string regime_reason;  ///< What decided it, for people.
+
+  Estimate transition_time;        ///< s after the record's first scan, onset of the escape; only for mixed.
+  Estimate cycle_count;            ///< Falls that are slips.
+  Estimate stick_cycle_count;      ///< Those that ended in sticking.
+  Estimate period_median;          ///< s
+  Estimate oscillation_frequency;  ///< Hz, cycles over time.
+  Estimate static_coefficient;     ///< Traditional, by the method.
+  Estimate kinetic_coefficient;    ///< Traditional, by the method.
+  Estimate mu_s;                   ///< S of the model, corrected.
+  Estimate mu_k;                   ///< K of the model, corrected.
+  Estimate delta_mu;               ///< S − K.
+  Estimate amplitude;              ///< Half the mean range of the oscillation, coefficient.
+  Estimate gamma_over_2omega;
+  Estimate omega;  ///< rad/s, damped.
+  Estimate Q;      ///< Dimensionless speed.
+  Estimate Q_threshold;
+  Estimate threshold_speed;   ///< m/s
+  Estimate drift_rate;        ///< 1/s, of the mean coefficient.
+  Estimate delta_mu_scatter;  ///< Standard deviation of S − K from cycle to cycle.
+  Estimate spike_count;
+  Estimate gap_count;
+  Estimate lost_scan_count;
+  Estimate scan_rate_measured;  ///< Hz, from clocks.
+  Estimate escape_speed;        ///< m/s, at the first slip that did not stick; where the speed changes.
+  Estimate
+      escape_speed_corrected;  ///< m/s, threshold speed of the mean paper, from that slip and all before.
+
+  // From features of the cycles that stick, core/analysis/cycle_features.
+  Estimate delta_mu_from_amplitude;     ///< S − K by the amplitude ratio [17].
+  Estimate delta_mu_from_timing;        ///< S − K by the period.
+  Estimate delta_mu_from_slip_speed;    ///< S − K by the slip-to-stick speed ratio [18].
+  Estimate delta_mu_combined;           ///< The three, weighted by condition number and scatter.
+  Estimate mu_k_from_mean;              ///< K: the mean less what damping adds to it.
+  Estimate mu_s_from_amplitude;         ///< S: mu_k_from_mean + delta_mu_from_amplitude.
+  Estimate pull_speed_measured;         ///< m/s, from the stick slope and ω₀.
+  Estimate slip_speed_ratio_threshold;  ///< Of [18]: at or above, a slip ends in sticking.
+
+  /// What somebody should look at: the tester disagrees with its characterisation, the plan's speed is wrong.
+  std::vector<std::string> findings;
+
+  bool operator==(const TestResults&) const = default;
+};
+
+/// Visits all estimates in the order of the record; `results` may be const or not.
+/// \param visit  called as visit(ResultName, Estimate&).
+template <typename Results, typename Visitor>
+void for_each_result(Results& results, Visitor&& visit) {
+  visit(ResultName{"transition_time", "s", "time of the transition between regimes"},
+        results.transition_time);
+  visit(ResultName{"cycle_count", "1", "number of slips"}, results.cycle_count);
+  visit(ResultName{"stick_cycle_count", "1", "number of slips that ended in sticking"},
+        results.stick_cycle_count);
+  visit(ResultName{"period_median", "s", "median period"}, results.period_median);
+  visit(ResultName{"oscillation_frequency", "Hz", "frequency of the oscillation"},
+        results.oscillation_frequency);
+  visit(ResultName{"static_coefficient", "1", "static coefficient, traditional rule"},
+        results.static_coefficient);
+  visit(ResultName{"kinetic_coefficient", "1", "kinetic coefficient, traditional rule"},
+        results.kinetic_coefficient);
+  visit(ResultName{"mu_s", "1", "static coefficient S of the model"}, results.mu_s);
+  visit(ResultName{"mu_k", "1", "kinetic coefficient K of the model"}, results.mu_k);
+  visit(ResultName{"delta_mu", "1", "S - K of the model"}, results.delta_mu);
+  visit(ResultName{"amplitude", "1", "half the range of the oscillation"}, results.amplitude);
+  visit(ResultName{"gamma_over_2omega", "1", "damping of the tester, gamma/(2 omega)"},
+        results.gamma_over_2omega);
+  visit(ResultName{"omega", "rad/s", "angular frequency of the damped oscillator"}, results.omega);
+  visit(ResultName{"Q", "1", "dimensionless sled speed"}, results.Q);
+  visit(ResultName{"Q_threshold", "1", "dimensionless speed above which the sled does not stick again"},
+        results.Q_threshold);
+  visit(ResultName{"threshold_speed", "m/s", "speed above which the sled does not stick again"},
+        results.threshold_speed);
+  visit(ResultName{"drift_rate", "1/s", "drift of the mean coefficient"}, results.drift_rate);
+  visit(ResultName{"delta_mu_scatter", "1", "standard deviation of S - K from cycle to cycle"},
+        results.delta_mu_scatter);
+  visit(ResultName{"spike_count", "1", "number of spikes"}, results.spike_count);
+  visit(ResultName{"gap_count", "1", "number of gaps"}, results.gap_count);
+  visit(ResultName{"lost_scan_count", "1", "number of scans lost in gaps"}, results.lost_scan_count);
+  visit(ResultName{"scan_rate_measured", "Hz", "scan rate measured against the clock"},
+        results.scan_rate_measured);
+  visit(ResultName{"escape_speed", "m/s", "pull speed at the first slip that did not stick again"},
+        results.escape_speed);
+  visit(ResultName{"escape_speed_corrected", "m/s",
+                   "escape speed, corrected for being the first of many cycles"},
+        results.escape_speed_corrected);
+  visit(ResultName{"delta_mu_from_amplitude", "1", "S - K from the amplitude"},
+        results.delta_mu_from_amplitude);
+  visit(ResultName{"delta_mu_from_timing", "1", "S - K from the period"}, results.delta_mu_from_timing);
+  visit(ResultName{"delta_mu_from_slip_speed", "1", "S - K from the largest slip speed"},
+        results.delta_mu_from_slip_speed);
+  visit(ResultName{"delta_mu_combined", "1", "S - K from amplitude, period and slip speed"},
+        results.delta_mu_combined);
+  visit(ResultName{"mu_k_from_mean", "1", "K from the mean, without the bias of the damping"},
+        results.mu_k_from_mean);
+  visit(ResultName{"mu_s_from_amplitude", "1", "S from mean and amplitude"}, results.mu_s_from_amplitude);
+  visit(ResultName{"pull_speed_measured", "m/s", "pull speed from the slope of the sticks"},
+        results.pull_speed_measured);
+  visit(ResultName{"slip_speed_ratio_threshold", "1",
+                   "largest slip speed over drive speed from which on a slip ends in sticking"},
+        results.slip_speed_ratio_threshold);
+}
+
+}  // namespace stickslip::analysis

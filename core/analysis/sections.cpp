@@ -1,0 +1,192 @@
+#include "core/analysis/sections.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/LU>
+
+#include "core/analysis/cycle_features.hpp"
+#include "core/analysis/model_results.hpp"
+#include "core/analysis/slip_estimator.hpp"
+#include "core/base/nan.hpp"
+
+namespace stickslip::analysis {
+namespace {
+
+/// Mean of one result over the sections, weighted by their slips.
+class PooledEstimate {
+ public:
+  void add(const Estimate& estimate, double slips) {
+    first_ = slips_ == 0.0 ? estimate : first_;
+    ++sections_;
+    slips_ += slips;
+    if (!estimate.value) {
+      nothing_ = nothing_.value_or(estimate);
+      return;
+    }
+    value_ += slips * *estimate.value;
+    variance_ += std::pow(slips * estimate.standard_error.value_or(std::nan("")), 2);
+    systematic_ += slips * estimate.systematic_uncertainty.value_or(std::nan(""));
+  }
+
+  [[nodiscard]] Estimate mean() const {
+    if (sections_ == 1) return first_;
+    if (nothing_) return *nothing_;
+    Estimate mean = Estimate::of(value_ / slips_, std::sqrt(variance_) / slips_);
+    if (std::isfinite(systematic_)) mean.systematic_uncertainty = systematic_ / slips_;
+    return mean;
+  }
+
+ private:
+  int sections_ = 0;
+  double slips_ = 0.0;
+  Estimate first_;
+  std::optional<Estimate> nothing_;
+  double value_ = 0.0;
+  double variance_ = 0.0;
+  double systematic_ = 0.0;
+};
+
+class PooledResults {
+ public:
+  void add(TestResults& section, std::size_t slips) {
+    std::size_t i = 0;
+    for_each_result(section, [&](const ResultName&, const Estimate& estimate) {
+      if (i == pooled_.size()) pooled_.emplace_back();
+      pooled_[i++].add(estimate, static_cast<double>(slips));
+    });
+  }
+  [[nodiscard]] TestResults mean() const {
+    TestResults results;
+    std::size_t i = 0;
+    for_each_result(results, [&](const ResultName&, Estimate& estimate) { estimate = pooled_[i++].mean(); });
+    return results;
+  }
+
+ private:
+  std::vector<PooledEstimate> pooled_;
+};
+
+/// Mean of what the sections say about the tester, weighted by their covariances.
+class PooledTester {
+ public:
+  void add(const SlipEstimates& section) {
+    ++sections_;
+    if (!section.fit.converged) {
+      converged_ = false;
+      return;
+    }
+    latest_ = section.tester();
+    const Eigen::Matrix3d weight = latest_.covariance.inverse();
+    weight_ += weight;
+    weighted_ += weight * vector_of(latest_);
+  }
+  [[nodiscard]] std::optional<TesterEstimate> mean() const {
+    if (!converged_) return std::nullopt;
+    if (sections_ == 1) return latest_;
+    TesterEstimate mean;
+    mean.covariance = weight_.inverse();
+    const Eigen::Vector3d value = mean.covariance * weighted_;
+    mean.omega = value[0];
+    mean.gamma_over_2omega = value[1];
+    mean.speed_over_gravity_s = value[2];
+    return mean;
+  }
+
+ private:
+  static Eigen::Vector3d vector_of(const TesterEstimate& tester) {
+    return {tester.omega, tester.gamma_over_2omega, tester.speed_over_gravity_s};
+  }
+
+  int sections_ = 0;
+  bool converged_ = true;
+  TesterEstimate latest_;
+  Eigen::Matrix3d weight_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d weighted_ = Eigen::Vector3d::Zero();
+};
+
+/// Slips of the next section: no last one is much shorter than the others.
+std::size_t next_size(std::size_t left, std::size_t most) {
+  if (left <= most) return left;
+  return left < 2 * most ? left / 2 + 1 : most;
+}
+
+/// The next section begins with a slip that began from sticking: its last one of those, which both have.
+std::size_t begin_of_next(const SlipEstimates& section) {
+  for (std::size_t i = section.ends.size() - 1; i > 1; --i) {
+    if (section.ends[i - 1] == SlipEnd::kCaptured) return i;
+  }
+  return section.ends.size() - 1;
+}
+
+/// The rows of a section, of which the first also was the last of the section before.
+void append(const std::vector<detect::Cycle>& rows, std::size_t count, std::size_t first_slip,
+            double last_capture_s, TestEstimates& estimates) {
+  for (std::size_t i = 0; i < count; ++i) {
+    detect::Cycle row = rows[i];
+    row.number += static_cast<std::int64_t>(first_slip);
+    if (i == 0 && first_slip > 0) {
+      row.flags &= static_cast<std::uint8_t>(~detect::kCycleIsFirst);
+      row.stick_time_s = row.onset_time_s - last_capture_s;
+    }
+    if ((row.flags & detect::kCycleCaptured) != 0) ++estimates.captured;
+    estimates.cycles.push_back(row);
+  }
+}
+
+}  // namespace
+
+TestEstimates estimate_in_sections(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
+                                   double sigma, const estimate::SharedPrior& prior,
+                                   const model::Tester& tester, const std::filesystem::path& scratch,
+                                   std::size_t most, bool first_counts) {
+  TestEstimates whole;
+  whole.log_likelihood_ratios = base::LongColumn<double>{scratch};
+  whole.cycles = base::LongColumn<detect::Cycle>{scratch};
+  whole.onset_errors_s = base::LongColumn<double>{scratch};
+  PooledResults results;
+  PooledTester testers;
+  double last_capture_s = std::nan("");
+  // Where the speed changes, how each slip ended tells about all the others: escape_speeds().
+  if (!trace.belt.is_constant()) most = slips.size();
+  for (std::size_t first = 0; whole.cycles.size() < slips.size();) {
+    const std::size_t size = next_size(slips.size() - first, most);
+    std::vector<detect::Fall> section;
+    section.reserve(size);
+    for (std::size_t i = 0; i < size; ++i) section.push_back(slips[first + i]);
+    // The first slip of a later section also was the last of the section before.
+    const SlipEstimates estimates = estimate_slips(trace, section, sigma, prior, first_counts && first == 0);
+    whole.model_describes = whole.model_describes && model_describes(estimates, sigma);
+    testers.add(estimates);
+    TestResults own;
+    model_results(section, estimates, tester, sigma, own);
+    if (!trace.belt.is_constant()) {
+      no_feature_results("the pull speed changes during the test", own);
+    } else if (model_describes(estimates, sigma)) {
+      feature_results(trace, section, estimates, own);
+    }
+    results.add(own, size);
+
+    const std::size_t count = first + size < slips.size() ? begin_of_next(estimates) : size;
+    const std::vector<detect::Cycle> rows = cycle_table(trace, section, estimates);
+    append(rows, count, first, last_capture_s, whole);
+    for (std::size_t i = 0; i < count; ++i) {
+      whole.onset_errors_s.push_back(
+          std::isfinite(rows[i].onset_time_s)
+              ? estimates.fit.onset_error_s(estimates.windows[estimates.window_of_slip[i]])
+              : base::kNaN);
+    }
+    last_capture_s = rows[count - 1].capture_time_s;
+    const auto& ratios = estimates.log_likelihood_ratios;
+    for (std::size_t i = 0; i < std::min(count, ratios.size()); ++i) {
+      whole.log_likelihood_ratios.push_back(ratios[i]);
+    }
+    first += count;
+  }
+  whole.results = results.mean();
+  whole.tester = testers.mean();
+  return whole;
+}
+
+}  // namespace stickslip::analysis

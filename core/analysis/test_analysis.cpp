@@ -1,0 +1,372 @@
+#include "core/analysis/test_analysis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "core/analysis/cycle_statistics.hpp"
+#include "core/analysis/live_estimates.hpp"
+#include "core/analysis/model_results.hpp"
+#include "core/analysis/sections.hpp"
+#include "core/analysis/slip_list.hpp"
+#include "core/analysis/traditional.hpp"
+#include "core/detect/regime_rule.hpp"
+#include "core/estimate/sampling.hpp"
+#include "core/signal/statistics.hpp"
+#include "core/signal/whiteness.hpp"
+
+namespace stickslip::analysis {
+namespace {
+
+/// Smallest noise assumed, relative to the largest value: a trace without any noise or steps (a
+/// closed form in doubles) still has rounding, and turning points need a scale.
+constexpr double kSmallestRelativeNoise = 1e-9;
+
+double noise_floor(const base::LongColumn<double>& values, double step_coefficient) {
+  const double step = step_coefficient > 0.0 ? step_coefficient : signal::smallest_step(values);
+  double largest = 0.0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return std::max(
+      {signal::kRoundingSigma * step, kSmallestRelativeNoise * largest, std::numeric_limits<double>::min()});
+}
+
+/// Turning points must not follow noise before the noise is known.
+double hysteresis(double sigma) { return detect::SlipRule::kHysteresisSigmas * sigma; }
+
+base::LongColumn<detect::Fall> find_slips(const estimate::Trace& trace, double sigma,
+                                          const std::filesystem::path& scratch) {
+  detect::FallFinder finder;
+  detect::SlipRule rule;
+  base::LongColumn<detect::Fall> slips{scratch};
+  for (const double value : trace.value) {
+    if (const auto fall = finder.add(value, hysteresis(sigma)); fall && rule.is_slip(*fall, sigma)) {
+      slips.push_back(*fall);
+    }
+  }
+  return kept_slips(std::move(slips), scratch);
+}
+
+constexpr const char* kHiddenOscillation =
+    "no fall stands out of the noise, but the noise is not white: hum, or an oscillation of fewer than nine "
+    "scans a cycle; scan more often";
+
+/// What the model has found, beside what needs no model.
+void take_model_results(const TestResults& model, TestResults& results) {
+  std::vector<const Estimate*> from;
+  for_each_result(model, [&](const ResultName&, const Estimate& estimate) { from.push_back(&estimate); });
+  std::size_t i = 0;
+  for_each_result(results, [&](const ResultName&, Estimate& estimate) {
+    const Estimate& found = *from[i++];
+    if (found.value || !found.reason.empty()) estimate = found;
+  });
+}
+
+/// Scans too few for the oscillation that was found.
+std::optional<std::string> sampling_finding(double scan_rate_Hz, const TestResults& results) {
+  const Estimate& cycles_Hz = results.oscillation_frequency;
+  if (!results.omega.value && !cycles_Hz.value) return std::nullopt;
+  // No cycle is shorter than an oscillation; one that the model fits among too few scans may be a slower one.
+  const double frequency_Hz =
+      std::max(results.omega.value.value_or(0.0) / (2.0 * std::numbers::pi), cycles_Hz.value.value_or(0.0));
+  const double scans = scan_rate_Hz / frequency_Hz;
+  if (scans >= estimate::kFewScansACycle) return std::nullopt;
+  return fmt::format(
+      "{:.2g} scans a cycle of {:.3g} Hz: peaks are missed, and perhaps slips; {:.0f} scans/s or more", scans,
+      frequency_Hz, std::ceil(estimate::kFewScansACycle * frequency_Hz));
+}
+
+/// A stub of a test: without the noise there is no telling what is a slip.
+void too_short(std::size_t scan_count, TestResults& results) {
+  results.regime_reason =
+      fmt::format("{} scans, {} are needed to know their noise", scan_count, signal::kFewestScansForNoise);
+  no_model_results(results.regime_reason, results);
+  for (Estimate* estimate : {&results.cycle_count, &results.stick_cycle_count, &results.period_median,
+                             &results.oscillation_frequency, &results.static_coefficient,
+                             &results.kinetic_coefficient, &results.drift_rate}) {
+    *estimate = Estimate::none(results.regime_reason);
+  }
+}
+
+}  // namespace
+
+TestAnalysis::TestAnalysis(const AnalysisSettings& settings)
+    : settings_(settings),
+      indices_(settings.scratch_folder),
+      coefficients_(settings.scratch_folder),
+      saturated_(settings.scratch_folder),
+      speeds_m_per_s_(settings.scratch_folder),
+      live_({settings.scan_rate_Hz, settings.step_coefficient, settings.estimator, settings.prior,
+             !settings.kept.spikes}),
+      live_cycles_(settings.scratch_folder) {
+  constexpr std::size_t kRoom = 100;
+  new_cycles_.reserve(kRoom);
+  new_falls_.reserve(kRoom);
+  if (!(settings.scan_rate_Hz > 0.0) || !std::isfinite(settings.scan_rate_Hz)) {
+    throw std::invalid_argument(fmt::format("scan rate {} Hz must be positive", settings.scan_rate_Hz));
+  }
+}
+
+void TestAnalysis::speed(double speed_m_per_s) {
+  // What is not known is taken for what it was before.
+  if (std::isnan(speed_m_per_s)) {
+    speed_m_per_s =
+        speeds_m_per_s_.empty() ? 0.0 : std::as_const(speeds_m_per_s_)[speeds_m_per_s_.size() - 1];
+  }
+  speeds_m_per_s_.push_back(speed_m_per_s);
+}
+
+void TestAnalysis::add(base::ScanIndex index, double coefficient, bool saturated) {
+  indices_.push_back(index);
+  coefficients_.push_back(coefficient);
+  saturated_.push_back(saturated ? 1 : 0);
+  if (const auto cycle = live_.add(coefficient, saturated)) keep_live(*cycle);
+  if (const auto& fall = live_.fall_begun()) {
+    const auto peak = static_cast<std::size_t>(fall->peak_scan);
+    new_falls_.push_back({std::as_const(indices_)[peak], fall->peak, index});
+  }
+}
+
+void TestAnalysis::keep_live(const detect::LiveCycle& cycle) {
+  detect::LiveCycle kept = cycle;
+  kept.cycle.first_scan += indices_.front();
+  if (std::isfinite(cycle.decided_time_s)) {
+    kept.cycle.live_capture_evidence = cycle.evidence;
+    kept.cycle.live_decision_time_s = cycle.decided_time_s;
+  }
+  new_cycles_.push_back(kept.cycle);
+  live_cycles_.push_back(kept);
+}
+
+void TestAnalysis::end_live() {
+  if (const auto cycle = live_.end()) keep_live(*cycle);
+}
+
+void TestAnalysis::gap(base::ScanIndex first, std::int64_t count, bool estimated) {
+  gaps_.push_back({first, count, estimated});
+  live_.gap(count);
+}
+
+std::vector<detect::Cycle> TestAnalysis::take_new_cycles() {
+  std::vector<detect::Cycle> taken = new_cycles_;
+  new_cycles_.clear();  // Their room stays.
+  return taken;
+}
+
+std::vector<detect::FallBegun> TestAnalysis::take_new_falls() {
+  std::vector<detect::FallBegun> taken = new_falls_;
+  new_falls_.clear();  // Their room stays.
+  return taken;
+}
+
+TestResults TestAnalysis::finish() {
+  end_live();
+  TestResults results;
+  std::int64_t lost = 0;
+  for (const Gap& gap : gaps_) lost += gap.count;
+  results.gap_count = Estimate::of(static_cast<double>(gaps_.size()));
+  results.lost_scan_count = Estimate::of(static_cast<double>(lost));
+  results.scan_rate_measured = Estimate::none("no clock readings in the analysis");
+  results.transition_time = Estimate::none("no transition");
+
+  estimate::Trace trace = despiked_trace();
+  results.spike_count = settings_.kept.spikes ? Estimate::none("spikes are kept, and not looked for")
+                                              : Estimate::of(static_cast<double>(spikes_.size()));
+  if (trace.size() < signal::kFewestScansForNoise) {
+    too_short(trace.size(), results);
+    return results;
+  }
+  const double sigma = signal::scan_noise(trace.value, noise_floor(trace.value, settings_.step_coefficient));
+  base::LongColumn<detect::Fall> slips = find_slips(trace, sigma, settings_.scratch_folder);
+  break_at_gaps(trace, slips);
+  read_speeds(trace);
+  if (!slips.empty()) follow_speed(trace, slips);
+  results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
+  const TraditionalCoefficients traditional =
+      traditional_coefficients(trace, slips, settings_.method, settings_.tester.pull_speed_m_per_s);
+  results.static_coefficient = traditional.static_coefficient;
+  results.kinetic_coefficient = traditional.kinetic_coefficient;
+  if (slips.empty()) {
+    const detect::RegimeVerdict verdict = detect::judge_regime(0, {}, true);
+    results.regime = verdict.regime;
+    results.regime_reason = verdict.reason;
+    results.stick_cycle_count = Estimate::of(0.0);
+    if (signal::hides_an_oscillation(trace.value, noise_floor(trace.value, settings_.step_coefficient))) {
+      results.regime = model::Regime::kUndecided;
+      results.regime_reason = kHiddenOscillation;
+      results.cycle_count = results.stick_cycle_count = Estimate::none(kHiddenOscillation);
+    }
+    no_model_results("no slip", results);
+  } else {
+    const TestEstimates estimates =
+        fits_whole_test() ? estimate(trace, slips, sigma) : estimate_without_fit(trace, slips);
+    const detect::RegimeVerdict verdict =
+        detect::judge_regime(slips.size(), estimates.log_likelihood_ratios, estimates.model_describes);
+    results.regime = verdict.regime;
+    results.regime_reason = verdict.reason;
+    results.stick_cycle_count = verdict.regime == model::Regime::kUndecided
+                                    ? Estimate::none("undecided: " + verdict.reason)
+                                    : Estimate::of(static_cast<double>(estimates.captured));
+    take_model_results(estimates.results, results);
+    if (fits_whole_test() && estimates.model_describes) speed_results(trace, estimates, results);
+    if (verdict.transition_slip) {
+      results.transition_time = transition_time(trace, estimates, slips, *verdict.transition_slip);
+    }
+    keep_cycles(trace, estimates, slips);
+  }
+  period_results(trace, slips, results);
+  if (auto finding = sampling_finding(settings_.scan_rate_Hz, results))
+    results.findings.push_back(*std::move(finding));
+  results.drift_rate = drift_of(trace, slips);
+  return results;
+}
+
+estimate::Trace TestAnalysis::despiked_trace() {
+  const std::filesystem::path& scratch = settings_.scratch_folder;
+  estimate::Trace trace{base::LongColumn<double>{scratch},
+                        base::LongColumn<double>{scratch},
+                        base::LongColumn<std::uint8_t>{scratch},
+                        {},
+                        {}};
+  const double sigma =
+      signal::scan_noise(coefficients_, noise_floor(coefficients_, settings_.step_coefficient));
+  signal::Despiker despiker;
+  spikes_.clear();
+  spike_coefficients_.clear();
+  const base::LongColumn<base::ScanIndex>& indices = indices_;
+  const base::LongColumn<std::uint8_t>& saturated = saturated_;
+  const base::LongColumn<double>& measured = coefficients_;
+  const auto take = [&](const signal::DespikedScan& scan) {
+    const std::size_t k = trace.value.size();
+    if (scan.spike) {
+      spikes_.push_back(indices[k]);
+      spike_coefficients_.push_back(measured[k]);
+    }
+    trace.time_s.push_back(static_cast<double>(indices[k] - indices.front()) / settings_.scan_rate_Hz);
+    trace.value.push_back(scan.value);
+    trace.usable.push_back(!scan.spike && saturated[k] == 0 ? 1 : 0);
+  };
+  for (const double coefficient : measured) {
+    if (settings_.kept.spikes) {
+      take({coefficient, false});
+    } else if (const auto scan = despiker.add(coefficient, sigma)) {
+      take(*scan);
+    }
+  }
+  while (const auto scan = despiker.flush(sigma)) take(*scan);
+  return trace;
+}
+
+Estimate TestAnalysis::transition_time(const estimate::Trace& trace, const TestEstimates& estimates,
+                                       const base::LongColumn<detect::Fall>& slips, std::size_t slip) {
+  const double onset_s = estimates.cycles[slip].onset_time_s;
+  // A slip that did not begin from sticking has no onset: its peak has to do.
+  if (!std::isfinite(onset_s)) return Estimate::of(estimate::time_at(trace, slips[slip].peak_at));
+  return Estimate::of(onset_s, estimates.onset_errors_s[slip]);
+}
+
+TestEstimates TestAnalysis::estimate_without_fit(const estimate::Trace& trace,
+                                                 const base::LongColumn<detect::Fall>& slips) const {
+  LiveSettlement settlement;
+  settlement.first_counts = settings_.kept.first_slip;
+  settlement.reason =
+      fmt::format("the estimator \"{}\" does not fit the whole test; \"fit\" does, also afterwards",
+                  detect::name(settings_.estimator));
+  return estimates_from_live(trace, slips, live_cycles_, settlement, settings_.scratch_folder);
+}
+
+TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
+                                     double sigma) {
+  // Where the speed changes, the mean of a cycle does so too, without any drift of the paper.
+  if (!settings_.kept.drift && trace.belt.is_constant()) trace.drift = significant_drift(trace, slips);
+  trace.belt.take_off_drift(trace.drift.rate_per_s);
+  const auto estimates = [&](const estimate::SharedPrior& prior) {
+    return estimate_in_sections(trace, slips, sigma, prior, settings_.tester, settings_.scratch_folder,
+                                kMostSlipsTogether, settings_.kept.first_slip);
+  };
+  TestEstimates alone = estimates({});
+  if (alone.model_describes) tester_ = alone.tester;
+  if (settings_.prior.empty()) return alone;
+  TestEstimates with = estimates(settings_.prior);
+  if (!settings_.prior.coupling || !tester_ || !with.tester) return with;
+  tester_check_ = check_tester(*tester_, *with.tester, *settings_.prior.coupling, settings_.tester);
+  return tester_check_->used() ? std::move(with) : std::move(alone);
+}
+
+void TestAnalysis::speed_results(const estimate::Trace& trace, const TestEstimates& estimates,
+                                 TestResults& results) const {
+  if (!trace.belt.is_constant()) {
+    results.pull_speed_measured = Estimate::none("the pull speed changes during the test");
+    return;
+  }
+  if (!estimates.tester) {
+    results.pull_speed_measured = Estimate::none("the fit of the model did not converge");
+    return;
+  }
+  const TesterEstimate& found = *estimates.tester;
+  results.pull_speed_measured =
+      tester_check_ ? tester_check_->pull_speed : pull_speed_of(found, settings_.tester.gravity_m_per_s2);
+  if (results.pull_speed_measured.value) {
+    // The stick rate that was fitted is less by that of the drift.
+    const double omega0_squared =
+        found.omega * found.omega * (1.0 + found.gamma_over_2omega * found.gamma_over_2omega);
+    *results.pull_speed_measured.value +=
+        trace.drift.rate_per_s * settings_.tester.gravity_m_per_s2 / omega0_squared;
+  }
+  if (tester_check_) {
+    results.findings = tester_check_->findings;
+  } else if (auto finding = speed_finding(results.pull_speed_measured, settings_.tester)) {
+    results.findings.push_back(*std::move(finding));
+  }
+}
+
+void TestAnalysis::keep_cycles(const estimate::Trace& trace, const TestEstimates& estimates,
+                               const base::LongColumn<detect::Fall>& slips) {
+  const base::LongColumn<detect::Cycle>& cycles = estimates.cycles;
+  const base::LongColumn<double>& log_likelihood_ratios = estimates.log_likelihood_ratios;
+  const base::LongColumn<base::ScanIndex>& indices = indices_;
+  const base::LongColumn<std::uint8_t>& saturated = saturated_;
+  cycles_ = base::LongColumn<detect::Cycle>{settings_.scratch_folder};
+  LiveCycles live{trace, live_cycles_};
+  for (std::size_t i = 0; i < cycles.size(); ++i) {
+    detect::Cycle cycle = cycles[i];
+    const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
+    const auto end = i + 1 < slips.size() ? static_cast<std::size_t>(std::lround(slips[i + 1].peak_at))
+                                          : static_cast<std::size_t>(std::lround(slips[i].trough_at));
+    cycle.first_scan = indices[first];
+    const base::ScanIndex last_scan = indices[std::min(end, indices.size() - 1)];
+    // Spikes and gaps rise.
+    const auto spike = std::lower_bound(spikes_.begin(), spikes_.end(), cycle.first_scan);
+    if (spike != spikes_.end() && *spike < last_scan) cycle.flags |= detect::kCycleHasSpike;
+    const auto gap =
+        std::lower_bound(gaps_.begin(), gaps_.end(), cycle.first_scan,
+                         [](const Gap& candidate, base::ScanIndex scan) { return candidate.first < scan; });
+    if (gap != gaps_.end() && gap->first < last_scan) cycle.flags |= detect::kCycleHasGap;
+    if (std::any_of(saturated.begin() + static_cast<std::ptrdiff_t>(first),
+                    saturated.begin() + static_cast<std::ptrdiff_t>(std::min(end, saturated.size())),
+                    [](std::uint8_t flag) { return flag != 0; })) {
+      cycle.flags |= detect::kCycleIsSaturated;
+    }
+    if (measured_speed_ && std::isnan(cycle.pull_speed_m_per_s)) {
+      // Without a fit the peak, which is near it, stands for the onset.
+      const double at_s =
+          fits_whole_test() || std::isfinite(cycle.onset_time_s) ? cycle.onset_time_s : cycle.peak_time_s;
+      if (std::isfinite(at_s)) cycle.pull_speed_m_per_s = measured_speed_->speed_m_per_s(at_s);
+    }
+    if (fits_whole_test()) {
+      if (i < log_likelihood_ratios.size() && log_likelihood_ratios[i] != 0.0)
+        cycle.capture_evidence = log_likelihood_ratios[i];
+      if (const auto seen = live.next_at(slips[i], cycle.period_s)) {
+        cycle.live_capture_evidence = seen->cycle.live_capture_evidence;
+        cycle.live_decision_time_s = seen->cycle.live_decision_time_s;
+      }
+    }
+    cycles_.push_back(cycle);
+  }
+}
+
+}  // namespace stickslip::analysis

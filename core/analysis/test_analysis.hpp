@@ -1,0 +1,152 @@
+/// \file
+/// One test, scan by scan, from the first pre-trigger scan to the end: spikes out, slips found as they
+/// come, and at the end all results. Live, replay and batch run this same class over the same
+/// scans, so their results have the same bits.
+///
+///     TestAnalysis analysis{settings};
+///     for (…) analysis.add(index, coefficient, saturated);
+///     const TestResults results = analysis.finish();
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/analysis/characterisation.hpp"
+#include "core/analysis/kept.hpp"
+#include "core/analysis/results.hpp"
+#include "core/analysis/sections.hpp"
+#include "core/base/long_column.hpp"
+#include "core/base/scan_index.hpp"
+#include "core/detect/cycle.hpp"
+#include "core/detect/fall_finder.hpp"
+#include "core/detect/live_cycle.hpp"
+#include "core/detect/live_detector.hpp"
+#include "core/estimate/shared_prior.hpp"
+#include "core/estimate/trace.hpp"
+#include "core/model/method.hpp"
+#include "core/model/pull_speed.hpp"
+#include "core/model/tester.hpp"
+
+namespace stickslip::analysis {
+
+struct AnalysisSettings {
+  double scan_rate_Hz = 350.0;    ///< Granted; > 0.
+  double step_coefficient = 0.0;  ///< One A/D step; 0 if unknown: then it is taken from the trace.
+  model::Tester tester;
+  model::Method method;
+  /// Where S, K and S − K come from: those of each cycle, live and at the end, and those of the test. Only
+  /// kFit fits the whole test when it ends; the others take cycles and regime as they were seen while it ran,
+  /// and tell no ω, no γ and nothing that needs them.
+  detect::EstimatorTier estimator = detect::EstimatorTier::kFit;
+  estimate::SharedPrior prior;  ///< What is known of the tester beforehand; empty: the test tells it all.
+  Kept kept;                    ///< To see what spikes, drift or the first slip did.
+  /// Where to put the scans of a long test beside the latest few minutes; empty: they all stay in memory.
+  std::filesystem::path scratch_folder;
+  /// The pull speed is measured: one A/D step of it, ≥ 0; absent: speed() is not called.
+  std::optional<double> speed_step_m_per_s;
+};
+
+/// Thread-bound. Memory grows with the test by about 34 bytes a scan and 0.4 kB a slip; with a scratch folder
+/// it does not, but for 8 bytes of each spike, and all functions may throw std::system_error.
+class TestAnalysis {
+ public:
+  /// \throws std::invalid_argument unless the rate is positive and finite.
+  explicit TestAnalysis(const AnalysisSettings& settings);
+
+  /// The pull speed at the next scan, m/s; NaN where it is not known. Before each add() if
+  /// settings.speed_step_m_per_s says so, else never.
+  void speed(double speed_m_per_s);
+  /// \param index        rises; a jump is a gap. \param coefficient calibrated; must be finite.
+  /// \param saturated    the converter was at a rail.
+  void add(base::ScanIndex index, double coefficient, bool saturated);
+  /// Scans [first, first + count) did not arrive. \param estimated  nobody counted them.
+  void gap(base::ScanIndex first, std::int64_t count, bool estimated = false);
+
+  /// Cycles completed since the last call, as the detector sees them live; finish() refines them. A cycle is
+  /// complete when the next slip is seen, or the oscillation has died away.
+  [[nodiscard]] std::vector<detect::Cycle> take_new_cycles();
+  /// Falls of the force seen since the last call, LiveDetector::kFallDelayScans after they came.
+  [[nodiscard]] std::vector<detect::FallBegun> take_new_falls();
+  /// No more scans: the cycle under way is complete too. finish() does the same.
+  void end_live();
+  /// Phase and regime of the moment.
+  [[nodiscard]] const detect::LiveState& live() const noexcept { return live_.state(); }
+
+  /// Estimates over the whole test. Call once.
+  [[nodiscard]] TestResults finish();
+
+  /// After finish(): one for each slip.
+  [[nodiscard]] const base::LongColumn<detect::Cycle>& cycles() const noexcept { return cycles_; }
+  /// The same, for keeps.
+  [[nodiscard]] base::LongColumn<detect::Cycle> take_cycles() { return std::exchange(cycles_, {}); }
+  /// After finish(): what the test alone says about the tester; nothing without a fit that describes it.
+  [[nodiscard]] const std::optional<TesterEstimate>& tester() const noexcept { return tester_; }
+  /// After finish(): the test against settings.prior.coupling; nothing without either.
+  [[nodiscard]] const std::optional<TesterCheck>& tester_check() const noexcept { return tester_check_; }
+  /// After finish(): scans that the detector did not believe.
+  [[nodiscard]] const std::vector<base::ScanIndex>& spikes() const noexcept { return spikes_; }
+  /// After finish(): what was measured in each of them.
+  [[nodiscard]] const std::vector<double>& spike_coefficients() const noexcept { return spike_coefficients_; }
+
+ private:
+  struct Gap {
+    base::ScanIndex first;
+    std::int64_t count;
+    bool estimated;
+  };
+
+  void keep_live(const detect::LiveCycle& cycle);
+  /// Of the speed channel, with its resolution; fills measured_speed_.
+  void read_speeds(const estimate::Trace& trace);
+  /// The speed of the pull, as measured or else as planned, into the trace; forgets falls that are no slips.
+  void follow_speed(estimate::Trace& trace, base::LongColumn<detect::Fall>& slips) const;
+  /// All scans with the noise of the whole test known; fills spikes_ and spike_coefficients_.
+  [[nodiscard]] estimate::Trace despiked_trace();
+  /// Breaks the trace at the gaps that may hide a slip, and forgets the slips that reach into one.
+  void break_at_gaps(estimate::Trace& trace, base::LongColumn<detect::Fall>& slips) const;
+  /// When the slip began after which the sled behaved otherwise.
+  [[nodiscard]] static Estimate transition_time(const estimate::Trace& trace, const TestEstimates& estimates,
+                                                const base::LongColumn<detect::Fall>& slips,
+                                                std::size_t slip);
+  /// Into cycles_, with their flags.
+  void keep_cycles(const estimate::Trace& trace, const TestEstimates& estimates,
+                   const base::LongColumn<detect::Fall>& slips);
+  /// Fills pull_speed_measured and the findings.
+  void speed_results(const estimate::Trace& trace, const TestEstimates& estimates,
+                     TestResults& results) const;
+  /// By the fit, after taking off the drift; with the prior, unless the test alone contradicts it. Fills
+  /// tester_ and tester_check_.
+  [[nodiscard]] TestEstimates estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
+                                       double sigma);
+  /// The same from what was seen while the test ran.
+  [[nodiscard]] TestEstimates estimate_without_fit(const estimate::Trace& trace,
+                                                   const base::LongColumn<detect::Fall>& slips) const;
+  [[nodiscard]] bool fits_whole_test() const noexcept {
+    return settings_.estimator == detect::EstimatorTier::kFit;
+  }
+
+  AnalysisSettings settings_;
+  base::LongColumn<base::ScanIndex> indices_;
+  base::LongColumn<double> coefficients_;
+  base::LongColumn<std::uint8_t> saturated_;
+  base::LongColumn<double> speeds_m_per_s_;         ///< Empty unless measured.
+  std::optional<model::PullSpeed> measured_speed_;  ///< From the first scan on; in finish().
+  double speed_resolution_m_per_s_ = 0.0;
+  std::vector<Gap> gaps_;
+
+  detect::LiveDetector live_;
+  std::vector<detect::Cycle> new_cycles_;  ///< With room for those of a second at 100 a second.
+  std::vector<detect::FallBegun> new_falls_;
+  base::LongColumn<detect::LiveCycle> live_cycles_;  ///< As the live side saw them.
+
+  base::LongColumn<detect::Cycle> cycles_;
+  std::optional<TesterEstimate> tester_;
+  std::optional<TesterCheck> tester_check_;
+  std::vector<base::ScanIndex> spikes_;
+  std::vector<double> spike_coefficients_;
+};
+
+}  // namespace stickslip::analysis

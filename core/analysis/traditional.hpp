@@ -1,0 +1,30 @@
+/// \file
+/// The two numbers of the tradition. [Penner 1995, Experimental]
+#pragma once
+
+#include <optional>
+
+#include "core/analysis/results.hpp"
+#include "core/base/long_column.hpp"
+#include "core/detect/fall_finder.hpp"
+#include "core/estimate/trace.hpp"
+#include "core/model/method.hpp"
+
+namespace stickslip::analysis {
+
+struct TraditionalCoefficients {
+  Estimate static_coefficient;   ///< Largest scan of the peak of slip method.static_slip.
+  Estimate kinetic_coefficient;  ///< Mean over the cycles, peak to peak, or the travel after the first peak.
+};
+
+/// \param trace  not empty.
+/// \param slips  in the order of time; with none there is no static coefficient, and the kinetic one is
+///               the mean of the trace without its loading and unloading; a travel window then begins to
+///               count at the end of the loading.
+/// \param pull_speed_m_per_s  nominal, > 0; a travel window needs it.
+[[nodiscard]] TraditionalCoefficients traditional_coefficients(const estimate::Trace& trace,
+                                                               const base::LongColumn<detect::Fall>& slips,
+                                                               const model::Method& method,
+                                                               std::optional<double> pull_speed_m_per_s = {});
+
+}  // namespace stickslip::analysis

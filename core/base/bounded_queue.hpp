@@ -1,0 +1,65 @@
+/// \file
+/// A bounded queue between two threads, for what must not be lost: a full queue stalls the
+/// producer and counts it.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include <boost/lockfree/spsc_queue.hpp>
+
+#include "core/base/semaphore.hpp"
+
+namespace stickslip::base {
+
+/// One producer thread, one consumer thread.
+template <typename T>
+class BoundedQueue {
+ public:
+  explicit BoundedQueue(std::size_t capacity)
+      : queue_(capacity), free_slots_(static_cast<unsigned>(capacity)) {}
+
+  /// Producer only; waits for room.
+  void push(const T& item) {
+    put(item);
+    announce();
+  }
+
+  /// Producer only; waits for room. The consumer is not told until announce(): several items wake it once.
+  void put(const T& item) {
+    if (!free_slots_.try_acquire()) {
+      stalls_.fetch_add(1, std::memory_order_relaxed);
+      announce();  // It could wait for items that it does not know of, while this waits for it.
+      free_slots_.acquire();
+    }
+    // The slot was free before it was acquired, so this cannot fail.
+    queue_.push(item);
+    ++put_;
+  }
+  void announce() noexcept {
+    for (; put_ > 0; --put_) items_.release();
+  }
+
+  /// Consumer only; waits for an item, at most `timeout`. \return false if none came.
+  bool pop(T& item, std::chrono::milliseconds timeout) {
+    if (!items_.try_acquire_for(timeout)) return false;
+    queue_.pop(item);
+    free_slots_.release();
+    return true;
+  }
+
+  /// Times the producer had to wait. Any thread.
+  [[nodiscard]] std::uint64_t stall_count() const noexcept { return stalls_.load(std::memory_order_relaxed); }
+
+ private:
+  boost::lockfree::spsc_queue<T> queue_;
+  Semaphore free_slots_;
+  Semaphore items_;
+  std::atomic<std::uint64_t> stalls_{0};
+  unsigned put_ = 0;  ///< The producer's: not announced yet.
+};
+
+}  // namespace stickslip::base

@@ -1,0 +1,11 @@
+/// \file
+#pragma once
+
+#include <limits>
+
+namespace stickslip::base {
+
+/// Marks an unknown value.
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace stickslip::base

@@ -1,0 +1,15 @@
+/// \file
+/// A thread's name, as top(1), gdb and journald show it.
+#pragma once
+
+#include <pthread.h>
+
+namespace stickslip::base {
+
+/// Of the calling thread. \param name  at most 15 characters.
+inline void name_this_thread(const char* name) noexcept {
+  // It measures without a name, too.
+  static_cast<void>(::pthread_setname_np(::pthread_self(), name));
+}
+
+}  // namespace stickslip::base

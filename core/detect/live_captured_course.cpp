@@ -1,0 +1,165 @@
+#include "core/detect/live_captured_course.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "core/detect/junction.hpp"
+#include "core/model/damping.hpp"
+
+namespace stickslip::detect {
+namespace {
+
+constexpr int kMostLiveIterations = 8;
+
+void add(LiveCapturedCourse::Equations& sum, double residual, const Eigen::Vector4d& by) noexcept {
+  sum.cost += 0.5 * residual * residual;
+  sum.normal += by * by.transpose();
+  sum.gradient -= residual * by;
+}
+
+}  // namespace
+
+LiveCapturedCourse::LiveCapturedCourse(const Parameters& parameters, const model::SharedParameters& shared,
+                                       std::optional<double> expected_capture_s) noexcept
+    : p_(parameters),
+      shared_(shared),
+      omega0_squared_(shared.omega * shared.omega + 0.25 * shared.gamma * shared.gamma) {
+  const model::SlipWaveform first{p_[0], p_[1], p_[2], shared.oscillator()};
+  auto captured_s =
+      expected_capture_s ? model::capture_time_near_s(first, shared.r, *expected_capture_s) : std::nullopt;
+  if (!captured_s) captured_s = model::capture_time_s(first, shared.r);
+  is_captured_ = captured_s.has_value();
+  capture_tau_s_ = captured_s.value_or(first.rise_end_time_s());
+  const model::DampedBasis basis = model::damped_basis(first.oscillator, std::max(capture_tau_s_, 0.0));
+  by_free_ = {1.0, basis.cosine + 0.5 * shared.gamma * basis.sine, basis.sine};
+  rate_by_free_ = {0.0, -omega0_squared_ * basis.sine, basis.cosine - 0.5 * shared.gamma * basis.sine};
+  at_capture_ = by_free_.dot(p_.head<3>());
+  set_next_S(p_[3]);
+}
+
+void LiveCapturedCourse::set_next_S(double S) noexcept {
+  p_[3] = S;
+  onset_tau_s_ = capture_tau_s_ + (std::max(S, at_capture_) - at_capture_) / shared_.r;
+}
+
+LiveCapturedCourse LiveCapturedCourse::with_next_delta_mu(double delta_mu) const noexcept {
+  LiveCapturedCourse other = *this;
+  other.set_next_S(p_[0] + delta_mu);
+  return other;
+}
+
+LiveCapturedCourse::Point LiveCapturedCourse::after_onset(const LiveRow& row) const noexcept {
+  const auto& [omega, gamma, r] = shared_;
+  const double D = std::max(p_[3], at_capture_) - p_[0];
+  const double B = (r + 0.5 * gamma * D) / omega;
+  const double tau_s = row.tau_s - onset_tau_s_;
+  const double decay = std::exp(-0.5 * gamma * tau_s);
+  const double cosine = decay * std::cos(omega * tau_s);
+  const double sine = decay * std::sin(omega * tau_s);
+  const double swing = D * cosine + B * sine;
+  const double rate = r * cosine - (0.5 * gamma * B + omega * D) * sine;
+  const double by_D = cosine + 0.5 * gamma / omega * sine;
+  Point point;
+  point.value = p_[0] + swing - row.half_spread_s2 * (gamma * rate + omega0_squared_ * swing);
+  // The onset comes later by 1/r for each S, and earlier by what the capture is higher.
+  const double by_capture = rate / r;
+  point.by << by_capture * by_free_[0] + 1.0 - by_D, by_capture * by_free_[1], by_capture * by_free_[2],
+      by_D - by_capture;
+  return point;
+}
+
+double LiveCapturedCourse::residual(const LiveRow& row) const noexcept {
+  if (row.tau_s <= capture_tau_s_) return row.free_residual(p_.head<3>());
+  const double value = row.tau_s <= onset_tau_s_ ? while_stuck(row.tau_s) : after_onset(row).value;
+  return (row.value - value) * row.scale;
+}
+
+LiveCapturedCourse::Equations LiveCapturedCourse::unusual(double typical_delta_mu) const noexcept {
+  Equations sum;
+  const double D = std::max(p_[3], at_capture_) - p_[0];
+  const double ratio = D / typical_delta_mu;
+  Eigen::Vector4d by = Eigen::Vector4d::Zero();
+  if (ratio > kLeastRatio) by = Eigen::Vector4d{-1.0, 0.0, 0.0, 1.0} / (D * kDeltaMuLogScatter);
+  add(sum, std::log(std::max(ratio, kLeastRatio)) / kDeltaMuLogScatter, by);
+  // At a capture c′ is the stick rate but for rounding, which is not a shortfall.
+  if (is_captured_) return sum;
+  // At the end of its rise c′ is stationary, so that the shift of that moment drops out.
+  const double shortfall = (shared_.r - rate_by_free_.dot(p_.head<3>())) / (kStickRateSpread * shared_.r);
+  if (shortfall > 0.0) {
+    by.setZero();
+    by.head<3>() = -rate_by_free_ / (kStickRateSpread * shared_.r);
+    add(sum, shortfall, by);
+  }
+  return sum;
+}
+
+LiveCapturedCourse::Equations LiveCapturedCourse::equations(std::span<const LiveRow> rows,
+                                                            double typical_delta_mu) const noexcept {
+  Equations sum = unusual(typical_delta_mu);
+  auto row = rows.begin();
+  LiveFreeEquations slipping;
+  const LiveFreeCourse free = p_.head<3>();
+  for (; row != rows.end() && row->tau_s <= capture_tau_s_; ++row) slipping.add(*row, free);
+  sum.cost += slipping.cost;
+  sum.normal.topLeftCorner<3, 3>() += slipping.normal();
+  sum.gradient.head<3>() += slipping.gradient();
+  // c and c′ are continuous at the capture, whose shift drops out: all of a stick moves as its begin does.
+  double weights = 0.0;
+  double stuck_gradient = 0.0;
+  for (; row != rows.end() && row->tau_s <= onset_tau_s_; ++row) {
+    const double z = (row->value - while_stuck(row->tau_s)) * row->scale;
+    sum.cost += estimate::huber_cost(z, kChoiceLimit);
+    const double weight = estimate::huber_weight(z, kChoiceLimit) * row->scale;
+    weights += weight * row->scale;
+    stuck_gradient += weight * z;
+  }
+  sum.normal.topLeftCorner<3, 3>() += (weights * by_free_) * by_free_.transpose();
+  sum.gradient.head<3>() += stuck_gradient * by_free_;
+  for (; row != rows.end(); ++row) {
+    const Point point = after_onset(*row);
+    const double z = (row->value - point.value) * row->scale;
+    sum.cost += estimate::huber_cost(z, kChoiceLimit);
+    const double weight = estimate::huber_weight(z, kChoiceLimit) * row->scale;
+    sum.normal += (weight * row->scale * point.by) * point.by.transpose();
+    sum.gradient += weight * z * point.by;
+  }
+  return sum;
+}
+
+FittedCapture fit_captured(const FittedCapture& first, std::span<const LiveRow> rows,
+                           const model::SharedParameters& shared, double typical_delta_mu,
+                           double sigma) noexcept {
+  FittedCapture best = first;
+  double damping = model::kFirstDamping;
+  for (int iteration = 0; iteration < kMostLiveIterations; ++iteration) {
+    const LiveCapturedCourse::Equations& now = best.equations;
+    // In units of each parameter's own; the diagonal is one then, also for S where no row lies behind its
+    // onset.
+    const Eigen::Vector4d scale = now.normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    Eigen::Matrix4d scaled = scale.asDiagonal() * now.normal * scale.asDiagonal();
+    scaled.diagonal().setConstant(1.0 + damping);
+    const Eigen::Vector4d step = scale.cwiseProduct(scaled.inverse() * scale.cwiseProduct(now.gradient));
+    // What the step would gain, were the course linear.
+    if (0.5 * step.dot(now.gradient) < kLiveConverged) break;
+    const LiveCapturedCourse::Parameters trial = best.course.parameters() + step;
+    if (!step.allFinite() || !(trial[3] - trial[0] > -sigma)) {
+      damping *= 10.0;
+      continue;
+    }
+    FittedCapture next{LiveCapturedCourse{trial, shared, best.course.capture_s()}, {}};
+    next.equations = next.course.equations(rows, typical_delta_mu);
+    const double fallen = now.cost - next.equations.cost;
+    if (fallen >= 0.0) {
+      best = next;
+      damping *= 0.1;
+    } else {
+      damping *= 10.0;
+    }
+    if (std::abs(fallen) < kLiveConverged) break;
+  }
+  return best;
+}
+
+}  // namespace stickslip::detect

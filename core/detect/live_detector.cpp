@@ -1,0 +1,190 @@
+#include "core/detect/live_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/nan.hpp"
+#include "core/signal/statistics.hpp"
+
+namespace stickslip::detect {
+namespace {
+
+/// A force that is up by as much as a slip is down is being loaded.
+constexpr int kLoadedScans = 3;
+/// As for the whole test: a trace without noise still has rounding.
+constexpr double kSmallestNoise = 1e-9;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+LiveDetector::LiveDetector(const LiveSettings& settings)
+    : settings_(settings),
+      noise_(std::max(signal::kRoundingSigma * settings.step_coefficient, kSmallestNoise)),
+      usable_noise_(noise_),
+      follower_(settings.estimator, settings.scan_rate_Hz, settings.prior),
+      lowest_(kInfinity),
+      loading_at_(kInfinity),
+      highest_(-kInfinity) {}
+
+std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, bool saturated) {
+  const double sigma = noise_.known() ? noise_.sigma() : kInfinity;
+  // The despiker still held scans from before the gap when it was told.
+  if (position_ == gap_at_ && is_gap_to_come()) follow_gap();
+  const auto position = static_cast<double>(position_++);
+  if (scan.spike) flags_after_ |= kCycleHasSpike;
+  if (saturated) flags_after_ |= kCycleIsSaturated;
+  if (scan.value > highest_) {
+    highest_ = scan.value;
+    sum_at_highest_ = sum_;
+    count_at_highest_ = count_;
+    flags_to_highest_ |= flags_after_;
+    flags_after_ = 0;
+  }
+  sum_ += scan.value;
+  count_ += 1.0;
+  const bool usable = !scan.spike && !saturated;
+  follower_.add(scan.value, usable);
+  if (follower_.keeps_scans()) {
+    if (usable) {
+      follower_.keep(time_of(position), scan.value);
+      usable_noise_.add(scan.value);
+    } else {
+      usable_noise_.gap();
+    }
+  }
+  const auto amplitude = watch_.add(scan.value, usable);
+
+  const bool was_falling = finder_.falling();
+  const auto fall = finder_.add(scan.value, SlipRule::kHysteresisSigmas * sigma);
+  if (finder_.falling() && follower_.keeps_scans()) {
+    follower_.falls(time_of(static_cast<double>(finder_.high_at())),
+                    time_of(static_cast<double>(finder_.low_at())));
+  }
+  if (state_.phase < Phase::kCycles && usable) watch_phase(scan.value, sigma);
+  // What falls before anything was loaded are spikes that follow each other.
+  if (!was_falling && finder_.falling() && static_cast<double>(finder_.high_at()) >= loading_at_)
+    fall_begun_ = {static_cast<base::ScanIndex>(finder_.high_at()), finder_.high(), come_ - 1};
+  if (fall && rule_.is_slip(*fall, sigma) && fall->peak_at >= loading_at_)
+    return slip(*fall, time_of(position));
+  if (follower_.has_task() && follower_.step(time_of(position), usable_sigma())) take_decision();
+  if (amplitude && amplitude->is_over()) {
+    watch_.stop();
+    state_.regime = model::Regime::kSteadySliding;
+    state_.ring_down_since_s = base::kNaN;
+    return close();
+  }
+  return std::nullopt;
+}
+
+void LiveDetector::watch_phase(double value, double sigma) noexcept {
+  if (state_.phase == Phase::kIdle) {
+    lowest_ = std::min(lowest_, value);
+    above_ = value - lowest_ > SlipRule::kSignificantSigmas * sigma ? above_ + 1 : 0;
+    if (above_ < kLoadedScans) return;
+    state_.phase = Phase::kLoading;
+    loading_at_ = static_cast<double>(position_ - kLoadedScans);
+    return;
+  }
+  if (state_.phase == Phase::kLoading && finder_.falling()) state_.phase = Phase::kFirstSlip;
+  // What fell was none.
+  if (state_.phase == Phase::kFirstSlip && !finder_.falling() && state_.slip_count == 0)
+    state_.phase = Phase::kLoading;
+}
+
+std::optional<LiveCycle> LiveDetector::slip(const Fall& fall, double now_s) noexcept {
+  if (follower_.is_open() && follower_.force(now_s, usable_sigma(), &fall)) take_decision();
+  // The cycle before reaches from its peak to this one.
+  const double peak_s = time_of(fall.peak_at);
+  if (follower_.is_open()) {
+    cycle_flags_ |= flags_to_highest_;
+    LiveCycle& before = follower_.slip();
+    before.cycle.period_s = peak_s - before.cycle.peak_time_s;
+    if (settings_.estimator == EstimatorTier::kPeak) {
+      before.K = (sum_at_highest_ - sum_at_peak_) / (count_at_highest_ - count_at_peak_);
+      before.S = cycle_S_;
+      before.cycle.peak = cycle_S_;
+      before.cycle.delta_mu = before.S - before.K;
+    }
+  }
+  std::optional<LiveCycle> closed = close();
+  const bool begins_from_stick = state_.regime != model::Regime::kRingDown;
+  follower_.open(fall, peak_s, time_of(fall.trough_at), now_s, begins_from_stick, usable_sigma());
+  if (state_.phase < Phase::kFirstSlip) state_.phase = Phase::kFirstSlip;
+  ++state_.slip_count;
+  cycle_S_ = highest_;
+  sum_at_peak_ = sum_at_highest_;
+  count_at_peak_ = count_at_highest_;
+  cycle_flags_ = flags_after_;
+  flags_to_highest_ = flags_after_ = 0;
+  highest_ = -kInfinity;
+  return closed;
+}
+
+void LiveDetector::take_decision() noexcept {
+  if (state_.phase == Phase::kFirstSlip) state_.phase = Phase::kCycles;
+  if (follower_.captured()) {
+    state_.regime = model::Regime::kStickSlip;
+    state_.ring_down_since_s = base::kNaN;
+    watch_.stop();
+    return;
+  }
+  if (state_.regime != model::Regime::kRingDown) {
+    const Cycle& cycle = follower_.slip().cycle;
+    state_.ring_down_since_s = cycle.peak_time_s;
+  }
+  state_.regime = model::Regime::kRingDown;
+  if (!watch_.running())
+    watch_.start(follower_.shared().omega, follower_.shared().gamma, settings_.scan_rate_Hz);
+}
+
+std::optional<LiveCycle> LiveDetector::close() noexcept {
+  if (!follower_.is_open()) return std::nullopt;
+  std::optional<LiveCycle> closed{follower_.slip()};
+  Cycle& cycle = closed->cycle;
+  cycle.flags |= cycle_flags_;
+  cycle.number = state_.slip_count - 1;
+  if (cycle.number == 0) cycle.flags |= kCycleIsFirst;
+  // The scan's number in the acquisition is the caller's to add.
+  cycle.first_scan = std::llround(cycle.peak_time_s * settings_.scan_rate_Hz);
+  follower_.close();
+  // Its onset is known by now.
+  if (state_.ring_down_since_s == cycle.peak_time_s && std::isfinite(cycle.onset_time_s))
+    state_.ring_down_since_s = cycle.onset_time_s;
+  state_.latest = closed;
+  return closed;
+}
+
+void LiveDetector::follow_gap() noexcept {
+  const double last_s = time_of(static_cast<double>(position_ - 1));
+  if (follower_.gap(last_s, usable_sigma())) take_decision();
+  usable_noise_.gap();
+  if (watch_.running())
+    watch_.start(follower_.shared().omega, follower_.shared().gamma, settings_.scan_rate_Hz);
+}
+
+void LiveDetector::gap(std::int64_t count) noexcept {
+  noise_.gap();
+  flags_after_ |= kCycleHasGap;
+  const bool waits = is_gap_to_come();
+  if (waits && come_ == gap_at_) {
+    // One gap that is told in two parts.
+    lost_ += count;
+    return;
+  }
+  // Of two gaps with so few scans in between that the despiker holds them all, the first is not waited for.
+  if (waits) follow_gap();
+  lost_before_ = lost_;
+  lost_ += count;
+  gap_at_ = come_;
+}
+
+std::optional<LiveCycle> LiveDetector::end() noexcept {
+  const double now_s = time_of(static_cast<double>(position_));
+  if (follower_.is_open() && follower_.force(now_s, usable_sigma(), nullptr)) take_decision();
+  cycle_flags_ |= flags_to_highest_ | flags_after_;
+  state_.phase = Phase::kEnd;
+  return close();
+}
+
+}  // namespace stickslip::detect

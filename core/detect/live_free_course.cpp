@@ -1,0 +1,38 @@
+#include "core/detect/live_free_course.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <Eigen/LU>
+
+namespace stickslip::detect {
+namespace {
+
+/// Of reweighting: weights of a linear model settle in two or three rounds.
+constexpr int kLiveRounds = 3;
+
+}  // namespace
+
+double fit_free(std::span<const LiveRow> rows, LiveFreeCourse& p) noexcept {
+  double before = std::numeric_limits<double>::infinity();
+  bool unweighted = true;  // So was the last step: the first, as weights need a course.
+  for (int round = 0;; ++round) {
+    LiveFreeEquations sum;
+    for (const LiveRow& row : rows) sum.add(row, p, round > 0);
+    if (round > 0) {
+      const bool solved = unweighted && sum.all_within;
+      if (solved || round == kLiveRounds || std::abs(before - sum.cost) < kLiveConverged) return sum.cost;
+      unweighted = sum.all_within;
+      before = sum.cost;
+    }
+    const Eigen::Matrix3d normal = sum.normal();
+    // by_rate is smaller than the others by ω: its own unit.
+    const Eigen::Vector3d scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Eigen::Matrix3d scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+    // Of three equal scales: cofactors are exact enough.
+    const Eigen::Vector3d step = scale.cwiseProduct(scaled.inverse() * scale.cwiseProduct(sum.gradient()));
+    if (step.allFinite()) p += step;
+  }
+}
+
+}  // namespace stickslip::detect

@@ -1,0 +1,70 @@
+/// \file
+/// The force of a slip that goes on freely, fitted to the scans so far: linear least squares with Huber's
+/// weights.
+#pragma once
+
+#include <cmath>
+#include <span>
+
+#include <Eigen/Core>
+
+#include "core/detect/junction.hpp"
+#include "core/detect/live_rows.hpp"
+
+namespace stickslip::detect {
+
+/// Log-likelihood units: nothing against what decides.
+inline constexpr double kLiveConverged = 1e-2;
+
+/// Normal equations of rows on a free course, written out: three numbers make poor vectors.
+class LiveFreeEquations {
+ public:
+  /// \param weighted  by Huber; else as if no row were far off.
+  void add(const LiveRow& row, const LiveFreeCourse& p, bool weighted = true) noexcept {
+    const double z = row.free_residual(p);
+    cost += estimate::huber_cost(z, kChoiceLimit);
+    double weight = row.scale;
+    if (weighted && std::abs(z) > kChoiceLimit) {
+      weight *= estimate::huber_weight(z, kChoiceLimit);
+      all_within = false;
+    }
+    const double off = weight * z;
+    weight *= row.scale;
+    const double weighted_D = weight * row.by_D;
+    const double weighted_rate = weight * row.by_rate;
+    n00_ += weight;
+    n01_ += weighted_D;
+    n02_ += weighted_rate;
+    n11_ += weighted_D * row.by_D;
+    n12_ += weighted_rate * row.by_D;
+    n22_ += weighted_rate * row.by_rate;
+    g0_ += off;
+    g1_ += off * row.by_D;
+    g2_ += off * row.by_rate;
+  }
+  [[nodiscard]] Eigen::Matrix3d normal() const noexcept {
+    Eigen::Matrix3d matrix;
+    matrix << n00_, n01_, n02_, n01_, n11_, n12_, n02_, n12_, n22_;
+    return matrix;
+  }
+  [[nodiscard]] Eigen::Vector3d gradient() const noexcept { return {g0_, g1_, g2_}; }
+
+  double cost = 0.0;
+  bool all_within = true;  ///< No row was far off.
+
+ private:
+  double n00_ = 0.0;
+  double n01_ = 0.0;
+  double n02_ = 0.0;
+  double n11_ = 0.0;
+  double n12_ = 0.0;
+  double n22_ = 0.0;
+  double g0_ = 0.0;
+  double g1_ = 0.0;
+  double g2_ = 0.0;
+};
+
+/// \param p  becomes the course of least cost. \return that cost.
+double fit_free(std::span<const LiveRow> rows, LiveFreeCourse& p) noexcept;
+
+}  // namespace stickslip::detect

@@ -1,0 +1,208 @@
+#include "core/detect/live_junction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace stickslip::detect {
+namespace {
+
+/// Four parameters, and a choice.
+constexpr std::size_t kFewestRows = 8;
+/// By so much the bounds may be wrong: what reweighting leaves of its way to the least cost.
+constexpr double kBoundsSlack = 1.0;
+/// Log-likelihood units: a course that a fit makes better by less tells the same moments of capture and
+/// onset.
+constexpr double kStillBest = 1.0;
+
+/// Likelihood of a scan that is z off, with noise or a stray.
+double mixture(double z) noexcept { return std::exp(-0.5 * z * z) + kStrayDensity; }
+
+/// ln of a product of many factors, for the price of few logarithms.
+class LogOfProduct {
+ public:
+  void multiply(double factor) noexcept {
+    product_ *= factor;
+    if (product_ > kLarge || product_ < 1.0 / kLarge) {
+      sum_ += std::log(product_);
+      product_ = 1.0;
+    }
+  }
+  [[nodiscard]] double value() const noexcept { return sum_ + std::log(product_); }
+
+ private:
+  static constexpr double kLarge = 1e150;  // A factor more is still a number.
+  double product_ = 1.0;
+  double sum_ = 0.0;
+};
+
+}  // namespace
+
+void LiveJunction::lay_out(std::span<const estimate::CyclePoint> points,
+                           const model::SharedParameters& shared, double sigma,
+                           double typical_delta_mu) noexcept {
+  std::size_t kept = rows_.lay_out(points, shared, sigma);
+  if (typical_delta_mu != typical_delta_mu_ || shared.r != shared_.r) kept = 0;
+  shared_ = shared;
+  typical_delta_mu_ = typical_delta_mu;
+  if (kept < last_count_) last_count_ = 0;
+  if (kept < common_count_) common_count_ = 0;
+  if (strays_) rows_.readmit(common_count_, rows_.size());
+  strays_ = false;
+}
+
+bool LiveJunction::leave_out_a_stray_of_both(const Courses& courses) noexcept {
+  // One stray alone costs as much: below that there is none.
+  const double least = estimate::huber_cost(estimate::kStraySigmas, kChoiceLimit);
+  if (courses.free_cost < least || courses.captured.equations.cost < least) return false;
+  return rows_.leave_out_a_stray(common_count_, rows_.size(), [&](const LiveRow& row) {
+    return std::min(std::abs(row.free_residual(courses.free)),
+                    std::abs(courses.captured.course.residual(row)));
+  });
+}
+
+void LiveJunction::fit_common() noexcept {
+  // Up to the trough, half an oscillation after the peak, the two are the same course.
+  const double half_s = std::numbers::pi / shared_.omega;
+  const auto rows = rows_.all();
+  const auto same = static_cast<std::size_t>(
+      std::ranges::find_if(rows, [&](const LiveRow& row) { return !(row.tau_s < half_s); }) - rows.begin());
+  const std::size_t count = std::max<std::size_t>(same, 4);
+  if (count == common_count_) return;
+  common_count_ = count;
+  last_count_ = 0;
+  rows_.readmit(0, count);
+  common_ = LiveFreeCourse::Zero();
+  do {
+    common_cost_ = fit_free(rows.first(count), common_);
+  } while (rows_.leave_out_a_stray(0, count, [&](const LiveRow& row) { return row.free_residual(common_); }));
+  LiveCapturedCourse::Parameters p;
+  p << common_, common_[0] + typical_delta_mu_;
+  usual_ = LiveCapturedCourse{p, shared_};
+}
+
+double LiveJunction::carried_on_cost() const noexcept {
+  double cost = common_cost_;
+  for (const LiveRow& row : rows_.all().subspan(common_count_))
+    cost += estimate::huber_cost(row.free_residual(common_), kChoiceLimit);
+  return cost;
+}
+
+bool LiveJunction::is_misfit(double cost) const noexcept {
+  return 2.0 * cost > kMisfitSigmas * kMisfitSigmas * static_cast<double>(rows_.size());
+}
+
+LiveJunction::Bounds LiveJunction::last_captured_bounds() const noexcept {
+  if (last_count_ == 0) return {common_cost_, std::numeric_limits<double>::infinity()};
+  Bounds bounds{last_captured_.equations.cost, last_captured_.equations.cost};
+  for (const LiveRow& row : rows_.all().subspan(last_count_))
+    bounds.most += estimate::huber_cost(last_captured_.course.residual(row), kChoiceLimit);
+  return bounds;
+}
+
+double LiveJunction::log_likelihood_ratio(const Courses& courses, double residual_sigmas) const noexcept {
+  const double per_sigma = 1.0 / std::max(residual_sigmas, 1.0);
+  LogOfProduct rows;
+  for (const LiveRow& row : rows_.all()) {
+    rows.multiply(mixture(courses.captured.course.residual(row) * per_sigma) /
+                  mixture(row.free_residual(courses.free) * per_sigma));
+  }
+  const double unusual = courses.captured.course.unusual(typical_delta_mu_).cost;
+  return rows.value() - unusual * per_sigma * per_sigma;
+}
+
+void LiveJunction::fit_captured_course(Courses& courses, const FittedCapture& usual,
+                                       double decisive) const noexcept {
+  const auto fit = [&](const FittedCapture& from) {
+    return fit_captured(from, rows_.all(), shared_, typical_delta_mu_, rows_.sigma());
+  };
+  courses.captured = fit(usual);
+  // The second slip has not begun, and nothing says that it should have; or what is found tells already.
+  const double cost = courses.captured.equations.cost;
+  if (cost <= courses.free_cost && courses.captured.course.onset_tau_s() > rows_.back().tau_s) return;
+  if (decisive > 0.0 && cost <= courses.free_cost - decisive - kBoundsSlack && !is_misfit(cost)) return;
+  // The cost has two valleys: S − K as usual, and hardly any.
+  constexpr double kHardlyAny = 0.1;
+  const LiveCapturedCourse slight = usual_.with_next_delta_mu(kHardlyAny * typical_delta_mu_);
+  const FittedCapture other = fit({slight, slight.equations(rows_.all(), typical_delta_mu_)});
+  if (other.equations.cost < courses.captured.equations.cost) courses.captured = other;
+}
+
+JunctionEvidence LiveJunction::evidence_of(const Courses& courses, double first_s) const noexcept {
+  JunctionEvidence evidence;
+  evidence.known = true;
+  evidence.capture_s = first_s + courses.captured.course.capture_tau_s();
+  evidence.next_onset_s = first_s + courses.captured.course.onset_tau_s();
+  // Where both leave more than noise, the scans tell less than they seem to.
+  evidence.residual_sigmas = std::sqrt(2.0 * std::min(courses.free_cost, courses.captured.equations.cost) /
+                                       static_cast<double>(rows_.size()));
+  evidence.log_likelihood_ratio = log_likelihood_ratio(courses, evidence.residual_sigmas);
+  return evidence;
+}
+
+JunctionEvidence LiveJunction::ask(std::span<const estimate::CyclePoint> points,
+                                   const model::SharedParameters& shared, double sigma,
+                                   double typical_delta_mu, double decisive) noexcept {
+  JunctionEvidence evidence;
+  if (points.empty() || points.size() > estimate::CycleBuffer::kMostPoints) return evidence;
+  lay_out(points, shared, sigma, typical_delta_mu);
+  if (rows_.size() < kFewestRows) return evidence;
+  evidence.known = true;
+  fit_common();
+
+  // Most questions come too early to be answered. A course costs at least what the best of its kind costs for
+  // the common part or for the rows of the last answer, and at most what any of its kind costs for all rows:
+  // where these bounds leave no room for a decisive answer, it is not worked out.
+  Bounds free{common_cost_, carried_on_cost()};
+  const Bounds last = last_captured_bounds();
+  Bounds captured = last;
+  const double room = decisive - kBoundsSlack;
+  const auto cannot_be_captured = [&] { return free.most - captured.least < room; };
+  const auto cannot_tell = [&] {
+    return cannot_be_captured() && captured.most - free.least < room &&
+           !is_misfit(std::min(free.most, captured.most));
+  };
+  // Before the usual capture the usual captured course is the free one. (But for what a shortfall of c′ would
+  // add: the answer may come later.)
+  if (rows_.back().tau_s <= usual_.capture_tau_s()) captured.most = std::min(captured.most, free.most);
+  if (cannot_tell()) return evidence;
+  const auto usual_now = [&] {
+    return FittedCapture{usual_, usual_.equations(rows_.all(), typical_delta_mu_)};
+  };
+  std::optional<FittedCapture> usual;
+  if (cannot_be_captured()) {
+    usual = usual_now();
+    captured.most = std::min(captured.most, usual->equations.cost);
+    if (cannot_tell()) return evidence;
+  }
+  Courses courses;
+  courses.free = common_;
+  courses.free_cost = fit_free(rows_.all(), courses.free);
+  free = {courses.free_cost, courses.free_cost};
+  if (!usual && cannot_be_captured()) {
+    usual = usual_now();
+    captured.most = std::min(captured.most, usual->equations.cost);
+  }
+  if (cannot_tell()) return evidence;
+  if (decisive > 0.0 && last.most - last.least < kStillBest) {
+    // A fit would make the last captured course better by that much at most.
+    courses.captured = last_captured_;
+    courses.captured.equations.cost = last.most;
+    evidence = evidence_of(courses, points.front().time_s);
+    const double ratio = evidence.log_likelihood_ratio;
+    const bool tells = ratio > decisive || std::abs(ratio) + (last.most - last.least) < room;
+    if (tells && evidence.residual_sigmas <= kMisfitSigmas) return evidence;
+  }
+  fit_captured_course(courses, usual ? *usual : usual_now(), decisive);
+  while (leave_out_a_stray_of_both(courses)) {
+    strays_ = true;
+    courses.free_cost = fit_free(rows_.all(), courses.free);
+    fit_captured_course(courses, usual_now(), decisive);
+  }
+  last_captured_ = courses.captured;
+  last_count_ = strays_ ? 0 : rows_.size();
+  return evidence_of(courses, points.front().time_s);
+}
+
+}  // namespace stickslip::detect

@@ -1,0 +1,52 @@
+/// \file
+/// Is anything left of an oscillation that dies away? Its amplitude, fitted period by period.
+#pragma once
+
+#include <complex>
+#include <optional>
+
+#include <Eigen/Core>
+
+namespace stickslip::detect {
+
+/// One period of scans at a time gets K, a cosine and a sine with the known ω and γ by least squares, the
+/// waves turned from scan to scan and anew each period. O(1) for a scan, no allocation.
+class RingDownWatch {
+ public:
+  struct Amplitude {
+    double value = 0.0;           ///< At the end of the period, coefficient.
+    double standard_error = 0.0;  ///< From what the fit leaves.
+
+    /// Below three standard errors there is none to speak of.
+    [[nodiscard]] bool is_over() const noexcept { return !(value >= 3.0 * standard_error); }
+  };
+
+  /// \param omega > 0. \param gamma 1/s. \param scan_rate_Hz > 0.
+  void start(double omega, double gamma, double scan_rate_Hz) noexcept;
+  void stop() noexcept { running_ = false; }
+  [[nodiscard]] bool running() const noexcept { return running_; }
+
+  /// \param usable  else the scan only passes time. \return the amplitude when this scan ends a period.
+  std::optional<Amplitude> add(double value, bool usable) noexcept {
+    if (!running_) return std::nullopt;
+    return take(value, usable);
+  }
+
+ private:
+  [[nodiscard]] std::optional<Amplitude> take(double value, bool usable) noexcept;
+  [[nodiscard]] std::optional<Amplitude> close() noexcept;
+  void restart() noexcept;
+
+  bool running_ = false;
+  std::complex<double> turn_;  ///< From one scan to the next.
+  std::complex<double> wave_{1.0, 0.0};
+  double scans_in_period_ = 0.0;
+  double seen_ = 0.0;
+  double base_ = 0.0;  ///< First value: sums of what differs from it do not cancel.
+  Eigen::Matrix3d normal_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
+  double squares_ = 0.0;
+  double count_ = 0.0;
+};
+
+}  // namespace stickslip::detect

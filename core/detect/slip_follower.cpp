@@ -1,0 +1,487 @@
+#include "core/detect/slip_follower.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/base/nan.hpp"
+#include "core/detect/regime_rule.hpp"
+#include "core/detect/turning_points.hpp"
+#include "core/estimate/sampling.hpp"
+#include "core/model/capture.hpp"
+
+namespace stickslip::detect {
+namespace {
+
+/// ln 10⁴: then one wrong end in ten thousand slips at most [Wald, Ann. Math. Stat. 16:117–186, 1945,
+/// (3:42)].
+constexpr double kDecisive = 9.210340371976184;
+/// Periods after the peak when the question is first asked: when c′ of a slip that escapes is nearly done
+/// with rising (t₃ is three quarters of a period after the peak at most), or where captures took longer so
+/// far, a little before that, but no later than a free oscillation comes back; and when it is answered, come
+/// what may.
+constexpr double kFirstAsked = 0.6;
+constexpr double kEarlier = 2.0 / 32.0;
+constexpr double kLastFirstAsked = 1.0;
+constexpr double kMostPeriods = 2.5;
+/// Periods after the peak whose scans answer nearly every question that is asked late: a free oscillation is
+/// back by then, a captured one still sticks or slips again. What comes later costs more than it adds.
+constexpr double kLateAsked = 1.1;
+/// Part of the time from the onset to the peak whose scans the question may use: the onset is a guess.
+constexpr double kSurelySlipping = 0.6;
+/// Blocks of a slip under way: so many from its peak to its trough.
+constexpr double kBlocksPerFall = 16.0;
+/// Reach of the parabola through a turning point: a sixteenth of a period, where the course differs from its
+/// parabola by (π/8)⁴/24 = 0.1 % of the amplitude; at least the scan on each side.
+constexpr double kReachPerPeriod = 1.0 / 16.0;
+constexpr double kLeastReachScans = 1.6;
+/// Turning points know ω and r by such parts; only their ratio to what was known before matters.
+constexpr double kTurningPointSpread = 0.02;
+constexpr double kSlopeSpread = 0.05;
+/// One slip of so many teaches ω and r where FallHeights::kMemory of them have: each is known to a part of
+/// what one slip tells, and what they are used with need not be worked out anew.
+constexpr std::int64_t kMatureTaughtBy = 4;
+/// After so many slips the stick rate is known from more than a loading, and one rise does not overturn it.
+constexpr double kKnownSlips = 2.0;
+/// Rises of so many falls are mostly stick, and their middle is.
+constexpr double kMostlyStick = 3.0;
+/// The typical S − K follows the last so many.
+constexpr double kTypicalMemory = 16.0;
+/// S − K is typically not less than this part of the height of the peak over K.
+constexpr double kLeastTypical = 0.1;
+
+/// S − K of a slip whose peak is so high above K, by the undamped (2): roughly what is typical.
+double rough_delta_mu(double peak_above_K, const model::SharedParameters& shared) noexcept {
+  const double belt = shared.r / shared.omega;
+  const double square = peak_above_K * peak_above_K - belt * belt;
+  return std::max(std::sqrt(std::max(square, 0.0)), kLeastTypical * peak_above_K);
+}
+
+}  // namespace
+
+double SlipFollower::period_s() const noexcept { return 2.0 * std::numbers::pi / shared_.omega; }
+
+void SlipFollower::falls(double peak_s, double lowest_s) noexcept {
+  const double half_s = std::max(lowest_s - peak_s, scan_s_);
+  // From the onset, a quarter of an oscillation before the peak at most, to where it is caught again.
+  buffer_.keep_fine(peak_s - half_s, peak_s + 2.0 * half_s, half_s / kBlocksPerFall);
+}
+
+bool SlipFollower::gap(double now_s, double sigma) noexcept {
+  const bool asks =
+      !keeps_scans() && task_ == Task::kJudge && period_s() >= estimate::kFewScansACycle * scan_s_;
+  const bool decides = asks && judge(now_s, sigma, false);
+  buffer_.clear();
+  quick_junction_.gap();
+  gap_s_ = now_s + scan_s_;
+  whole_ = false;
+  if (rise_slope_ == 0.0) rise_slope_ = base::kNaN;
+  if (open_ && !decided_) task_ = Task::kNone;
+  return decides;
+}
+
+void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, double now_s,
+                        bool begins_from_stick, double sigma) noexcept {
+  // A free oscillation only shrinks: what falls by more than that was stuck in between, and the belt has
+  // another speed than was thought.
+  const bool contradicted =
+      !begins_from_stick && FallHeights::is_more_than(fall.drop(), freely_next_drop(), sigma);
+  if (contradicted) begins_from_stick = true;
+  open_ = true;
+  ++slip_number_;
+  decided_ = false;
+  begins_from_stick_ = begins_from_stick;
+  whole_ = !(peak_s <= gap_s_);
+  opened_s_ = now_s;
+  scans_since_open_ = 0;
+  fall_ = fall;
+  peak_s_ = peak_s;
+  trough_s_ = trough_s;
+  evidence_ = {};
+  question_from_s_ = base::kNaN;
+  if (!begins_from_stick) last_capture_s_ = base::kNaN;
+
+  const double half_s = std::max(trough_s - peak_s, scan_s_);
+  if (keeps_scans() && begins_from_stick && std::isnan(last_capture_s_)) {
+    // Nothing says where the stick began.
+    window_from_s_ = rise().line_from_s(buffer_.points(), window_from_s_);
+  }
+  rise_slope_ = 0.0;
+  if (!started_whole_) knowledge_.start(std::numbers::pi / half_s, rise_slope(sigma));
+  started_whole_ = started_whole_ || whole_;
+  if (contradicted) knowledge_.forget_stick_rate(rise_slope(sigma));
+  shared_ = knowledge_.best();
+  quick_junction_.fit_rows(shared_.omega);
+
+  if (keeps_scans() && !(typical_delta_mu_ > 0.0))
+    typical_delta_mu_ = rough_delta_mu(0.5 * fall.drop(), shared_);
+  if (keeps_scans()) open_question();
+  slip_ = {};
+  Cycle& cycle = slip_.cycle;
+  cycle.peak_time_s = peak_s;
+  cycle.peak = fall.peak;
+  cycle.trough = fall.trough;
+  cycle.force_drop = fall.drop();
+  for (double* unknown :
+       {&cycle.onset_time_s, &cycle.capture_time_s, &cycle.period_s, &cycle.stick_time_s, &cycle.slip_time_s,
+        &cycle.delta_mu, &cycle.delta_mu_standard_error, &cycle.slip_speed_ratio}) {
+    *unknown = base::kNaN;
+  }
+  next_task_s_ = -std::numeric_limits<double>::infinity();
+  if (tier_ == EstimatorTier::kFit && begins_from_stick && !knowledge_.characterised()) {
+    task_ = Task::kFirstFit;
+  } else {
+    task_ = Task::kJudge;
+    first_ask();
+  }
+}
+
+void SlipFollower::open_question() noexcept {
+  quick_junction_.open(last_scan_s(), peak_s_, 0.5 * (fall_.peak + fall_.trough), shared_);
+}
+
+Rise SlipFollower::rise() const noexcept {
+  return {fall_.rise_from, fall_.peak, peak_s_ - std::max(fall_.rise_duration, 1.0) * scan_s_, peak_s_};
+}
+
+double SlipFollower::rise_slope(double sigma) noexcept {
+  if (rise_slope_ == 0.0) {
+    look_back_to(rise().begin_s);
+    rise_slope_ = rise().slope(buffer_.points(), window_from_s_, sigma);
+  }
+  return rise_slope_;
+}
+
+void SlipFollower::look_back_to(double time_s) noexcept {
+  if (keeps_scans()) return;
+  buffer_.clear();
+  quick_junction_.rows().for_each_since(time_s, last_scan_s(),
+                                        [&](const estimate::CyclePoint& point) { buffer_.add(point); });
+}
+
+bool SlipFollower::do_task(double now_s, double sigma) noexcept {
+  switch (task_) {
+    case Task::kFirstFit:
+      first_fit(sigma);
+      task_ = Task::kJudge;
+      first_ask();
+      return false;
+    case Task::kJudge:
+      return judge(now_s, sigma, !(now_s < peak_s_ + kMostPeriods * period_s()));
+    case Task::kFit:
+      task_ = Task::kNone;
+      estimate(now_s, sigma);
+      return false;
+    case Task::kNone:
+      break;
+  }
+  return false;
+}
+
+bool SlipFollower::force(double now_s, double sigma, const Fall* next) noexcept {
+  if (!open_) return false;
+  const bool was_decided = decided_;
+  if (!keeps_scans()) {
+    force_by_heights(now_s, sigma, next);
+  } else {
+    if (task_ == Task::kFirstFit) task_ = Task::kJudge;
+    if (task_ == Task::kJudge) (void)judge(now_s, sigma, next != nullptr);
+    if (task_ == Task::kFit || (!decided_ && begins_from_stick_)) estimate(now_s, sigma);
+  }
+  task_ = Task::kNone;
+  return decided_ && !was_decided;
+}
+
+void SlipFollower::force_by_heights(double now_s, double sigma, const Fall* next) noexcept {
+  const bool has_next = next != nullptr && whole_;
+  const double heights = has_next ? heights_.evidence(fall_.drop(), next->drop(), freely_next_drop(),
+                                                      knowledge_.characterised(), sigma)
+                                  : 0.0;
+  if (!decided_) {
+    // Where heights leave a doubt, the scans are asked; and where these are gone or few, heights have to do.
+    const bool few = period_s() < estimate::kFewScansACycle * scan_s_;
+    if (heights > kDecisive) {
+      decide(heights, now_s);
+    } else if (task_ == Task::kJudge && !few) {
+      (void)judge(now_s, sigma, next != nullptr);
+    }
+    const double told = std::log(kDecisiveLikelihoodRatio);
+    const bool scans_tell = evidence_.known && std::abs(evidence_.log_likelihood_ratio) > told;
+    if (heights <= kDecisive && !scans_tell && std::abs(heights) > told) {
+      slip_.cycle.flags &= static_cast<std::uint8_t>(~kCycleCaptured);
+      slip_.cycle.capture_time_s = base::kNaN;
+      decide(heights, now_s);
+    }
+  }
+  if (has_next && decided_ && captured()) heights_.learn();
+}
+
+void SlipFollower::first_fit(double sigma) noexcept {
+  // Up to the trough, before which a capture cannot come.
+  const estimate::CycleFit fit =
+      estimate::fit_cycle(estimate::between(buffer_.points(), window_from_s_, trough_s_), false,
+                          first_guess(), knowledge_, sigma);
+  if (fit.converged) shared_ = fit.shared;
+  question_from_s_ = base::kNaN;
+  open_question();
+}
+
+double SlipFollower::slipping_before_peak_s() const noexcept {
+  if (!begins_from_stick_) return 0.0;
+  return kSurelySlipping * std::clamp(peak_s_ - first_guess().onset_s, 0.0, 0.25 * period_s());
+}
+
+void SlipFollower::first_ask() noexcept {
+  const double period = period_s();
+  if (!keeps_scans()) {
+    // The heights of the next fall tell most ends for less. What sticks for long has none so soon.
+    next_task_s_ = peak_s_ + kMostPeriods * period;
+    wait_scans_ = static_cast<std::int64_t>((next_task_s_ - opened_s_) / scan_s_);
+    return;
+  }
+  const double usual_s = std::min(usual_wait_s_ - kEarlier * period, kLastFirstAsked * period);
+  next_task_s_ = peak_s_ + std::max(kFirstAsked * period, usual_s);
+}
+
+void SlipFollower::open_late_question(double sigma) noexcept {
+  const bool mature = heights_.count() >= FallHeights::kMemory && slip_number_ % kMatureTaughtBy != 0;
+  if (late_number_ != slip_number_ && !mature)
+    learn_turning_points(std::max(trough_s_ - peak_s_, scan_s_), sigma);
+  late_number_ = slip_number_;
+  shared_ = knowledge_.best();
+  const model::Oscillator oscillator = shared_.oscillator();
+  const double drop = heights_.usual_drop(fall_.drop());
+  // The height of the peak to the first order of γ/2ω: what is missed is a tenth of what slips differ by.
+  const double above_K = 0.5 * drop * (1.0 + 0.5 * std::numbers::pi * oscillator.gamma_over_2omega());
+  typical_delta_mu_ = rough_delta_mu(above_K, shared_);
+  open_question();
+}
+
+QuickJunction::Answer SlipFollower::ask_quickly(double sigma) noexcept {
+  if (!keeps_scans()) {
+    open_late_question(sigma);
+    const QuickJunction::Answer early =
+        quick_junction_.ask(sigma, typical_delta_mu_, kDecisive, peak_s_ + kLateAsked * period_s());
+    if (early == QuickJunction::Answer::kCaptured || early == QuickJunction::Answer::kFree) return early;
+  }
+  return quick_junction_.ask(sigma, typical_delta_mu_, kDecisive);
+}
+
+bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
+  switch (ask_quickly(sigma)) {
+    case QuickJunction::Answer::kCaptured:
+    case QuickJunction::Answer::kFree:
+      evidence_ = quick_junction_.evidence();
+      break;
+    case QuickJunction::Answer::kNotYet:
+      if (!last) {
+        ask_again(now_s);
+        return false;
+      }
+      [[fallthrough]];
+    case QuickJunction::Answer::kDoubt:
+      ask_in_full(sigma, last ? 0.0 : kDecisive);
+      if (!keeps_scans() && !knowledge_.characterised()) learn_and_ask_again(sigma);
+      break;
+  }
+  slip_.evidence = evidence_.known ? evidence_.log_likelihood_ratio : base::kNaN;
+  // What neither course describes may be neither: an escape then takes more to be believed.
+  const double doubt = std::max(evidence_.residual_sigmas / kMisfitSigmas, 1.0);
+  const bool clear = evidence_.known && (evidence_.log_likelihood_ratio > kDecisive ||
+                                         evidence_.log_likelihood_ratio < -doubt * doubt * kDecisive);
+  if (!clear && !last) {
+    ask_again(now_s);
+    return false;
+  }
+  task_ = begins_from_stick_ && keeps_scans() ? Task::kFit : Task::kNone;
+  // At the next slip the sign decides; a sled that sticks goes on sticking as long as the scans tell nothing.
+  if (!evidence_.known) return false;
+  const double told = std::log(kDecisiveLikelihoodRatio);
+  if (evidence_.log_likelihood_ratio < 0.0 && evidence_.log_likelihood_ratio > -told) return false;
+  decide(evidence_.log_likelihood_ratio, now_s);
+  if (std::abs(std::log(shared_.r / knowledge_.best().r)) > kStickRateChange && shared_.r == rise_slope_)
+    knowledge_.forget_stick_rate(rise_slope_);
+  if (!captured()) return true;
+  wait_count_ = std::min(wait_count_ + 1.0, kTypicalMemory);
+  usual_wait_s_ += (now_s - peak_s_ - usual_wait_s_) / wait_count_;
+  if (!begins_from_stick_ || !keeps_scans())
+    slip_.cycle.capture_time_s = last_capture_s_ = window_from_s_ = evidence_.capture_s;
+  return true;
+}
+
+void SlipFollower::ask_in_full(double sigma, double decisive) noexcept {
+  if (std::isnan(question_from_s_)) question_from_s_ = peak_s_ - slipping_before_peak_s();
+  look_back_to(question_from_s_);
+  const auto points = buffer_.since(question_from_s_);
+  // Both courses begin where the question does.
+  const double latest_s = question_from_s_ + 2.0 * quick_junction_.rows().row_s();
+  if (!keeps_scans() && (points.empty() || points.front().first_s > latest_s)) {
+    evidence_ = {};
+    return;
+  }
+  evidence_ = junction_.ask(points, shared_, sigma, typical_delta_mu_, decisive);
+  if (!evidence_.known || !(evidence_.residual_sigmas > kMisfitSigmas)) return;
+  // Neither course fits: perhaps the belt has another speed now, which the rise before this slip tells.
+  model::SharedParameters other = shared_;
+  other.r = rise_slope(sigma);
+  if (!(std::abs(std::log(other.r / shared_.r)) > kStickRateChange)) return;
+  look_back_to(question_from_s_);
+  const JunctionEvidence with_other =
+      junction_.ask(buffer_.since(question_from_s_), other, sigma, typical_delta_mu_);
+  if (!belt_changed(with_other.residual_sigmas, evidence_.residual_sigmas)) return;
+  evidence_ = with_other;
+  shared_ = other;
+  question_from_s_ = base::kNaN;
+  open_question();
+}
+
+bool SlipFollower::belt_changed(double residual_sigmas, double before_sigmas) noexcept {
+  if (!BeltChange::explains(residual_sigmas, before_sigmas)) return false;
+  const bool seen_before = belt_change_.seen(slip_number_, rise_slope_);
+  return seen_before || (keeps_scans() ? typical_count_ : heights_.count()) < kKnownSlips;
+}
+
+void SlipFollower::decide(double evidence, double now_s) noexcept {
+  decided_ = true;
+  slip_.evidence = evidence;
+  slip_.decided_time_s = now_s;
+  if (evidence > 0.0) slip_.cycle.flags |= kCycleCaptured;
+}
+
+model::SlipParameters SlipFollower::first_guess() const noexcept {
+  const model::Oscillator oscillator = shared_.oscillator();
+  model::SlipParameters guess;
+  guess.K = K_of_turning_points(fall_.peak, fall_.trough, oscillator);
+  const double above = fall_.peak - guess.K;
+  const double D = std::max(slip_of_peak(above, shared_.r, oscillator).delta_mu, 0.1 * above);
+  guess.S = guess.K + D;
+  guess.onset_s = peak_s_ - model::SlipWaveform{guess.K, D, shared_.r, oscillator}.peak_time_s();
+  return guess;
+}
+
+void SlipFollower::learn_typical(double delta_mu) noexcept {
+  if (!(delta_mu > 0.0)) return;
+  typical_count_ = std::min(typical_count_ + 1.0, kTypicalMemory);
+  typical_delta_mu_ += (delta_mu - typical_delta_mu_) / typical_count_;
+}
+
+void SlipFollower::take_course(const model::SlipParameters& slip, double slip_speed_ratio,
+                               double capture_s) noexcept {
+  Cycle& cycle = slip_.cycle;
+  slip_.S = slip.S;
+  slip_.K = slip.K;
+  cycle.onset_time_s = slip.onset_s;
+  cycle.stick_time_s = slip.onset_s - last_capture_s_;
+  cycle.delta_mu = slip.S - slip.K;
+  cycle.slip_speed_ratio = slip_speed_ratio;
+  last_capture_s_ = base::kNaN;
+  if (!captured()) return;
+  cycle.slip_time_s = capture_s - slip.onset_s;
+  cycle.capture_time_s = last_capture_s_ = capture_s;
+}
+
+void SlipFollower::estimate(double now_s, double sigma) noexcept {
+  // Scans up to the middle of the stick belong to this slip, the others to the next.
+  double end_s = now_s;
+  if (decided_ && captured()) {
+    end_s =
+        0.5 * (evidence_.capture_s + std::min(std::max(now_s, evidence_.capture_s), evidence_.next_onset_s));
+  } else if (!decided_) {
+    end_s = trough_s_;
+  }
+  if (tier_ == EstimatorTier::kFit) {
+    estimate_by_fit(end_s, sigma);
+  } else {
+    estimate_by_turning_points(sigma);
+  }
+  window_from_s_ = end_s;
+  buffer_.forget_before(std::min(end_s, peak_s_ + period_s()));
+}
+
+void SlipFollower::estimate_by_fit(double end_s, double sigma) noexcept {
+  const bool is_captured = decided_ && captured();
+  const auto points = estimate::between(buffer_.points(), window_from_s_, end_s);
+  estimate::CycleFit fit = estimate::fit_cycle(points, is_captured, first_guess(), knowledge_, sigma);
+  if (fit.converged && fit.residual_sigmas > kMisfitSigmas && rise_slope(sigma) > 0.0 &&
+      std::abs(std::log(rise_slope_ / knowledge_.best().r)) > kStickRateChange) {
+    estimate::SharedKnowledge anew = knowledge_;
+    anew.forget_stick_rate(rise_slope_);
+    const estimate::CycleFit other = estimate::fit_cycle(points, is_captured, first_guess(), anew, sigma);
+    if (other.converged && belt_changed(other.residual_sigmas, fit.residual_sigmas)) {
+      knowledge_ = anew;
+      fit = other;
+    }
+  }
+  if (!fit.converged) return;
+  const model::SlipWaveform waveform{fit.slip.K, fit.slip.S - fit.slip.K, fit.shared.r,
+                                     fit.shared.oscillator()};
+  double capture_s = base::kNaN;
+  if (is_captured) {
+    capture_s =
+        fit.slip.onset_s + model::capture_time_s(waveform, fit.shared.r).value_or(waveform.rise_end_time_s());
+  }
+  take_course(fit.slip, -waveform.rate(waveform.fastest_slip_time_s()) / fit.shared.r, capture_s);
+  slip_.cycle.delta_mu_standard_error = std::sqrt(std::max(fit.delta_mu_variance(), 0.0));
+  learn_typical(fit.delta_mu());
+  if (fit.residual_sigmas < kMisfitSigmas) knowledge_.learn(fit.evidence);
+}
+
+void SlipFollower::learn_and_ask_again(double sigma) noexcept {
+  // Of a slip with another stick rate than the one known, that is all there is to learn.
+  if (!evidence_.known || !begins_from_stick_ || shared_.r == rise_slope_) return;
+  const bool is_captured = evidence_.log_likelihood_ratio > kDecisive;
+  double end_s = trough_s_;  // Whatever comes of it, it slips up to there.
+  if (is_captured) end_s = 0.5 * (evidence_.capture_s + evidence_.next_onset_s);
+  if (evidence_.log_likelihood_ratio < -kDecisive) end_s = last_scan_s();
+  look_back_to(rise().begin_s);
+  const double from_s = rise().line_from_s(buffer_.points(), std::max(rise().begin_s, window_from_s_));
+  const estimate::CycleFit fit = estimate::fit_cycle(estimate::between(buffer_.points(), from_s, end_s),
+                                                     is_captured, first_guess(), knowledge_, sigma);
+  if (!fit.converged || !(fit.residual_sigmas < kMisfitSigmas)) return;
+  knowledge_.learn(fit.evidence);
+  if (std::abs(evidence_.log_likelihood_ratio) > kDecisive) return;
+  const QuickJunction::Answer anew = ask_quickly(sigma);
+  if (anew == QuickJunction::Answer::kCaptured || anew == QuickJunction::Answer::kFree)
+    evidence_ = quick_junction_.evidence();
+}
+
+void SlipFollower::learn_turning_points(double fall_s, double sigma) noexcept {
+  if (!whole_) return;
+  const bool mostly_stick = fall_.rise_duration * scan_s_ > kMostlyStick * fall_s;
+  // Beside a characterisation ω of two turning points counts nothing.
+  if (knowledge_.characterised() && !mostly_stick) return;
+  estimate::SharedEvidence evidence;
+  const double omega = std::numbers::pi / fall_s;
+  evidence.information(0, 0) = 1.0 / (kTurningPointSpread * omega * kTurningPointSpread * omega);
+  if (const double slope = mostly_stick ? rise_slope(sigma) : 0.0; slope > 0.0) {
+    evidence.information(2, 2) = 1.0 / (kSlopeSpread * slope * kSlopeSpread * slope);
+    evidence.weighted[2] = evidence.information(2, 2) * slope;
+  }
+  evidence.weighted[0] = evidence.information(0, 0) * omega;
+  knowledge_.learn(evidence);
+}
+
+void SlipFollower::estimate_by_turning_points(double sigma) noexcept {
+  const double reach_s = std::max(kReachPerPeriod * period_s(), kLeastReachScans * scan_s_);
+  const TurningPoint peak =
+      parabola_vertex(buffer_.points(), peak_s_, reach_s, 1.0).value_or(TurningPoint{peak_s_, fall_.peak});
+  const TurningPoint trough = parabola_vertex(buffer_.points(), trough_s_, reach_s, -1.0)
+                                  .value_or(TurningPoint{trough_s_, fall_.trough});
+  slip_.cycle.peak_time_s = peak.time_s;
+  slip_.cycle.peak = peak.value;
+  slip_.cycle.trough = trough.value;
+  slip_.cycle.force_drop = peak.value - trough.value;
+  learn_turning_points(std::max(trough.time_s - peak.time_s, scan_s_), sigma);
+  const model::SharedParameters& shared = knowledge_.best();
+  const model::Oscillator oscillator = shared.oscillator();
+  model::SlipParameters slip;
+  slip.K = K_of_turning_points(peak.value, trough.value, oscillator);
+  const SlipOfPeak found = slip_of_peak(peak.value - slip.K, shared.r, oscillator);
+  slip.S = slip.K + found.delta_mu;
+  slip.onset_s = peak.time_s - found.peak_time_s;
+  take_course(slip, found.slip_speed_ratio, evidence_.capture_s);
+  learn_typical(found.delta_mu);
+}
+
+}  // namespace stickslip::detect

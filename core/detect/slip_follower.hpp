@@ -1,0 +1,171 @@
+/// \file
+/// One slip from its fall on: how does it end, and what are its S and K?
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "core/detect/belt_change.hpp"
+#include "core/detect/fall_finder.hpp"
+#include "core/detect/fall_heights.hpp"
+#include "core/detect/live_cycle.hpp"
+#include "core/detect/live_junction.hpp"
+#include "core/detect/quick_junction.hpp"
+#include "core/detect/rise.hpp"
+#include "core/estimate/cycle_fit.hpp"
+
+namespace stickslip::detect {
+
+/// Follows one slip at a time. What takes long, fits of up to 256 points, is done one for a scan, so that no
+/// scan waits for two; where scans are not kept, and must be asked in full, one scan does it all. Fixed
+/// memory, 70 kB; never allocates.
+class SlipFollower {
+ public:
+  /// \param scan_rate_Hz > 0.
+  SlipFollower(EstimatorTier tier, double scan_rate_Hz, estimate::SharedPrior prior)
+      : tier_(tier), scan_s_(1.0 / scan_rate_Hz), knowledge_(std::move(prior)), quick_junction_(scan_s_) {}
+
+  /// The next scan. \param usable  it is no spike and not saturated.
+  void add(double value, bool usable) noexcept {
+    quick_junction_.add(value, usable);
+    ++scans_since_open_;
+  }
+  /// The same once more, if it is usable and keeps_scans().
+  void keep(double time_s, double value) noexcept { buffer_.add(time_s, value); }
+  /// Every scan of the last cycle or two, for S and K. The tradition needs none: the rows of the quick
+  /// question are all it has.
+  [[nodiscard]] bool keeps_scans() const noexcept { return tier_ != EstimatorTier::kPeak; }
+  /// The force falls: its peak and the lowest so far.
+  void falls(double peak_s, double lowest_s) noexcept;
+  /// Scans are missing behind the last one: what was before does not belong to what comes. Where scans are
+  /// not kept, a slip that would have been asked about later is asked now. \return true when this decided how
+  /// it ends.
+  [[nodiscard]] bool gap(double now_s, double sigma) noexcept;
+
+  /// A fall was confirmed to be a slip; ends the one before. Call force() and take it first.
+  /// \param peak_s,trough_s  times of the fall's turning points. \param now_s  of the last scan.
+  /// \param begins_from_stick  the slip before was captured; if it was not, but this one is too large for
+  /// that, it begins from sticking all the same.
+  void open(const Fall& fall, double peak_s, double trough_s, double now_s, bool begins_from_stick,
+            double sigma) noexcept;
+  /// There is something to do now.
+  [[nodiscard]] bool has_task() const noexcept {
+    return task_ != Task::kNone && scans_since_open_ >= wait_scans_;
+  }
+  /// At most one task. \return true when this decided how the slip ends.
+  [[nodiscard]] bool step(double now_s, double sigma) noexcept {
+    return task_ != Task::kNone && !(now_s < next_task_s_) && do_task(now_s, sigma);
+  }
+  /// All that is left to do, with what is known. \param next  the slip that follows; nullptr if there is
+  /// none. \return true when this decided how the slip ends.
+  [[nodiscard]] bool force(double now_s, double sigma, const Fall* next) noexcept;
+  void close() noexcept { task_ = Task::kNone, open_ = false; }
+
+  [[nodiscard]] bool is_open() const noexcept { return open_; }
+  [[nodiscard]] bool decided() const noexcept { return decided_; }
+  [[nodiscard]] bool captured() const noexcept { return (slip_.cycle.flags & kCycleCaptured) != 0; }
+  [[nodiscard]] const LiveCycle& slip() const noexcept { return slip_; }
+  /// For what is better known outside.
+  [[nodiscard]] LiveCycle& slip() noexcept { return slip_; }
+  /// ω, γ and r as far as they are known.
+  [[nodiscard]] const model::SharedParameters& shared() const noexcept { return shared_; }
+
+ private:
+  /// The question is asked so often in a period.
+  static constexpr double kAskedPerPeriod = 32.0;
+
+  enum class Task { kNone, kFirstFit, kJudge, kFit };
+
+  /// Before the peak.
+  [[nodiscard]] Rise rise() const noexcept;
+  /// Its slope, worked out once for a slip and only if it is asked for. NaN behind a gap.
+  [[nodiscard]] double rise_slope(double sigma) noexcept;
+  [[nodiscard]] bool do_task(double now_s, double sigma) noexcept;
+  void first_fit(double sigma) noexcept;
+  void first_ask() noexcept;
+  /// Unless a scan is missing since the slip was opened.
+  [[nodiscard]] double last_scan_s() const noexcept {
+    return opened_s_ + static_cast<double>(scans_since_open_) * scan_s_;
+  }
+  /// With what is known by now.
+  void open_question() noexcept;
+  /// The same for a slip that was not asked about from its begin on.
+  void open_late_question(double sigma) noexcept;
+  /// force() where scans are not kept.
+  void force_by_heights(double now_s, double sigma, const Fall* next) noexcept;
+  /// By a few sums: at once, or of the first rows where they tell.
+  [[nodiscard]] QuickJunction::Answer ask_quickly(double sigma) noexcept;
+  [[nodiscard]] bool judge(double now_s, double sigma, bool last) noexcept;
+  /// The next drop if it goes on freely.
+  [[nodiscard]] double freely_next_drop() const noexcept {
+    return FallHeights::freely_next(fall_.drop(), shared_.oscillator().gamma_over_2omega());
+  }
+  /// \param residual_sigmas  what this slip's scans leave with the slope of the rise before it as stick rate.
+  /// \param before_sigmas  with the one known.
+  [[nodiscard]] bool belt_changed(double residual_sigmas, double before_sigmas) noexcept;
+  /// Where scans are not kept, the buffer has what rows there are, from then on.
+  void look_back_to(double time_s) noexcept;
+  /// evidence_ by all means, at far more cost. \param decisive  0: whatever comes of it.
+  void ask_in_full(double sigma, double decisive) noexcept;
+  /// Where scans are not kept and nobody characterised the tester, a slip from sticking that had to be asked
+  /// in full is fitted: it tells of ω, γ and r what turning points cannot, so that the next ones fit. If it
+  /// left a doubt, that may be gone now.
+  void learn_and_ask_again(double sigma) noexcept;
+  void decide(double evidence, double now_s) noexcept;
+  void ask_again(double now_s) noexcept { next_task_s_ = now_s + period_s() / kAskedPerPeriod; }
+  void estimate(double now_s, double sigma) noexcept;
+  void estimate_by_turning_points(double sigma) noexcept;
+  /// \param fall_s  from peak to trough.
+  void learn_turning_points(double fall_s, double sigma) noexcept;
+  void estimate_by_fit(double window_end_s, double sigma) noexcept;
+  /// \param capture_s  if it was captured.
+  void take_course(const model::SlipParameters& slip, double slip_speed_ratio, double capture_s) noexcept;
+  void learn_typical(double delta_mu) noexcept;
+  [[nodiscard]] model::SlipParameters first_guess() const noexcept;
+  /// How long before the peak it surely slips: the onset is a guess.
+  [[nodiscard]] double slipping_before_peak_s() const noexcept;
+  [[nodiscard]] double period_s() const noexcept;
+
+  EstimatorTier tier_;
+  double scan_s_;
+  estimate::SharedKnowledge knowledge_;
+  estimate::CycleBuffer buffer_;
+  LiveJunction junction_;
+  QuickJunction quick_junction_;
+
+  // The slip under way.
+  bool open_ = false;
+  bool decided_ = false;
+  bool begins_from_stick_ = false;
+  bool whole_ = false;  ///< No scan is missing since its peak.
+  Task task_ = Task::kNone;
+  double next_task_s_ = 0.0;
+  double opened_s_ = 0.0;              ///< Time of the last scan before it was opened,
+  std::int64_t scans_since_open_ = 0;  ///< and scans since then;
+  std::int64_t wait_scans_ = 0;        ///< so many before the first task.
+  LiveCycle slip_;
+  Fall fall_;
+  double peak_s_ = 0.0;
+  double trough_s_ = 0.0;
+  double rise_slope_ = 0.0;       ///< 0: not worked out; NaN: its scans are gone.
+  std::int64_t late_number_ = 0;  ///< Slip of the last late question.
+  BeltChange belt_change_;
+  std::int64_t slip_number_ = 0;
+  double gap_s_ =
+      -std::numeric_limits<double>::infinity();  ///< Where the last gap begins: a scan is missing.
+  bool started_whole_ = false;                   ///< knowledge_, by a fall without a gap.
+  double question_from_s_ = 0.0;                 ///< Scans from here on tell how it ends; NaN until asked.
+  model::SharedParameters shared_;
+  JunctionEvidence evidence_;
+
+  double window_from_s_ = 0.0;  ///< Scans before belong to the slip before.
+  double last_capture_s_ = std::numeric_limits<double>::quiet_NaN();  ///< NaN if unknown.
+  double typical_delta_mu_ = 0.0;
+  double typical_count_ = 0.0;  ///< Slips behind it.
+  FallHeights heights_;         ///< In its place where scans are not kept.
+  double usual_wait_s_ = 0.0;   ///< From a peak until captures were decided; 0 if none was.
+  double wait_count_ = 0.0;     ///< Slips behind it.
+};
+
+}  // namespace stickslip::detect

@@ -1,0 +1,45 @@
+/// \file
+/// What the turning points of a slip say about S and K by closed forms alone.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "core/estimate/cycle_buffer.hpp"
+#include "core/model/oscillator.hpp"
+
+namespace stickslip::detect {
+
+struct TurningPoint {
+  double time_s = 0.0;
+  double value = 0.0;
+};
+
+/// Vertex of the parabola that fits the points in [near_s − reach_s, near_s + reach_s) best.
+/// \param sign  +1 for a maximum, −1 for a minimum.
+/// \return nothing with fewer than three points, without the curvature, or if the vertex lies out of reach.
+[[nodiscard]] std::optional<TurningPoint> parabola_vertex(std::span<const estimate::CyclePoint> points,
+                                                          double near_s, double reach_s,
+                                                          double sign) noexcept;
+
+/// Slope of the points between `low` and `high`, with Huber's weights about their median line: of the few
+/// that a fast loading has, one spike that was not found would bend it by a tenth. \param sigma  noise of one
+/// scan. \return nothing with fewer than two points there.
+[[nodiscard]] std::optional<double> slope_between(std::span<const estimate::CyclePoint> points, double low,
+                                                  double high, double sigma) noexcept;
+
+/// K from a maximum and the minimum half an oscillation later, which is nearer to it by e^(−πγ/2ω).
+[[nodiscard]] double K_of_turning_points(double peak, double trough,
+                                         const model::Oscillator& oscillator) noexcept;
+
+/// A slip by its largest force.
+struct SlipOfPeak {
+  double delta_mu = 0.0;          ///< S − K ≥ 0; 0 if even no S − K peaks higher.
+  double peak_time_s = 0.0;       ///< t₁, from the onset to the peak.
+  double slip_speed_ratio = 0.0;  ///< [18]
+};
+/// [2] with damping, [17], solved for S − K. \param peak_above_K > 0. \param stick_rate_per_s r > 0.
+[[nodiscard]] SlipOfPeak slip_of_peak(double peak_above_K, double stick_rate_per_s,
+                                      const model::Oscillator& oscillator) noexcept;
+
+}  // namespace stickslip::detect

@@ -1,0 +1,115 @@
+#include "core/estimate/shared_knowledge.hpp"
+
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace stickslip::estimate {
+namespace {
+
+/// γ/2ω of a tester that nobody has measured: the paper's [Penner 1995, (19)], and how far it may be off:
+/// from none to three times as much. A dozen cycles know it ten times better (docs/detector.md).
+constexpr double kUsualGammaOver2Omega = 0.022;
+constexpr double kGammaOver2OmegaSpread = 0.05;
+/// How far turning points and the slope of a rise are off at most, in parts: three scans from peak to trough.
+constexpr double kOmegaSpread = 0.15;
+constexpr double kFirstStickRateSpread = 0.3;
+/// Part of what was known that the next cycle leaves: 32 cycles count.
+constexpr double kKept = 31.0 / 32.0;
+/// Part of the first knowledge that never fades. It is what is left where no cycle tells anything, as turning
+/// points nothing of γ: faded alone, knowledge ends after 20 000 cycles in numbers without digits. Where
+/// cycles tell something it does not count.
+constexpr double kNeverFades = 1e-6;
+/// Rounds of making what is known beforehand linear, where the answer is.
+constexpr int kKnowledgeRounds = 3;
+/// A step of so many standard deviations is the last: the next would be about its square.
+constexpr double kSettledSigmas = 1e-3;
+
+double inverse_square(double x) noexcept { return 1.0 / (x * x); }
+
+Eigen::Vector3d vector_of(const model::SharedParameters& shared) noexcept {
+  return {shared.omega, shared.gamma, shared.r};
+}
+
+}  // namespace
+
+void SharedKnowledge::start(double omega, double stick_rate_per_s) {
+  best_ = {omega, 2.0 * kUsualGammaOver2Omega * omega, stick_rate_per_s};
+  learnt_ = {};
+  if (prior_.coupling) {
+    best_.omega = prior_.coupling->omega;
+    best_.gamma = 2.0 * prior_.coupling->gamma_over_2omega * prior_.coupling->omega;
+  } else {
+    learnt_.information(0, 0) = inverse_square(kOmegaSpread * omega);
+    learnt_.information(1, 1) = inverse_square(2.0 * kGammaOver2OmegaSpread * omega);
+  }
+  if (prior_.belt) {
+    best_.r = prior_.belt->speed_over_gravity_s * best_.oscillator().omega0_squared();
+  } else {
+    learnt_.information(2, 2) = inverse_square(kFirstStickRateSpread * stick_rate_per_s);
+  }
+  learnt_.weighted = learnt_.information * vector_of(best_);
+  lasting_ = {kNeverFades * learnt_.information, kNeverFades * learnt_.weighted};
+}
+
+void SharedKnowledge::learn(const SharedEvidence& evidence) {
+  if (!evidence.information.allFinite() || !evidence.weighted.allFinite()) return;
+  learnt_.information =
+      lasting_.information + kKept * (learnt_.information - lasting_.information) + evidence.information;
+  learnt_.weighted = lasting_.weighted + kKept * (learnt_.weighted - lasting_.weighted) + evidence.weighted;
+  update_best();
+}
+
+void SharedKnowledge::forget_stick_rate(double stick_rate_per_s) {
+  // Of the Gaussian that was learnt, the distribution of (ω, γ) whatever r is; then r anew.
+  const double own = learnt_.information(2, 2);
+  if (own > 0.0) {
+    const Eigen::Vector3d column = learnt_.information.col(2);
+    const double weighted = learnt_.weighted[2];
+    learnt_.information -= column * column.transpose() / own;
+    learnt_.weighted -= column * (weighted / own);
+  }
+  learnt_.information.row(2).setZero();
+  learnt_.information.col(2).setZero();
+  learnt_.information(2, 2) = inverse_square(kFirstStickRateSpread * stick_rate_per_s);
+  learnt_.weighted[2] = learnt_.information(2, 2) * stick_rate_per_s;
+  lasting_.information(2, 2) = kNeverFades * learnt_.information(2, 2);
+  lasting_.weighted[2] = kNeverFades * learnt_.weighted[2];
+  best_.r = stick_rate_per_s;
+}
+
+PriorTerms SharedKnowledge::at(const model::SharedParameters& shared) const {
+  PriorTerms terms = prior_.at(shared);
+  const Eigen::Vector3d x = vector_of(shared);
+  const Eigen::Vector3d pull = learnt_.weighted - learnt_.information * x;
+  terms.information += learnt_.information;
+  terms.gradient += pull;
+  // ½ (x − m)ᵀ I (x − m) up to a constant, which no step changes, counted from the best value: no difference
+  // of large numbers.
+  const Eigen::Vector3d off = x - vector_of(best_);
+  terms.cost += 0.5 * off.dot(learnt_.information * off) -
+                off.dot(learnt_.weighted - learnt_.information * vector_of(best_));
+  return terms;
+}
+
+void SharedKnowledge::update_best() {
+  for (int round = 0; round < kKnowledgeRounds; ++round) {
+    const PriorTerms terms = at(best_);
+    // Scales of ω, γ and r differ by orders: each by its own.
+    const Eigen::Vector3d scale = terms.information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Eigen::Matrix3d scaled = scale.asDiagonal() * terms.information * scale.asDiagonal();
+    const Eigen::Vector3d scaled_step = scaled.inverse() * scale.cwiseProduct(terms.gradient);
+    const Eigen::Vector3d step = scale.cwiseProduct(scaled_step);
+    const model::SharedParameters next{best_.omega + step[0], best_.gamma + step[1], best_.r + step[2]};
+    if (!step.allFinite() || !(next.omega > 0.0) || !(next.r > 0.0) ||
+        !(std::abs(next.gamma) < 2.0 * next.omega)) {
+      return;
+    }
+    best_ = next;
+    // What is learnt is linear, and after a small step what is known beforehand is as well.
+    const bool settled = scaled_step.squaredNorm() < kSettledSigmas * kSettledSigmas;
+    if (settled || !(prior_.coupling || prior_.belt)) return;
+  }
+}
+
+}  // namespace stickslip::estimate

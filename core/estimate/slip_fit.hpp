@@ -1,0 +1,67 @@
+/// \file
+/// Maximum-likelihood fit of the closed-form model to all slips of a test at once: ω, γ and the
+/// stick rate r are shared, onset, S and K belong to each slip.
+///
+///     std::vector<SlipWindow> windows = …;            // with a first guess
+///     SharedParameters shared = …;
+///     const SlipFit fit = fit_slips(trace, windows, shared, sigma);
+///
+/// Levenberg–Marquardt [Marquardt, J. SIAM 11(2):431–441, 1963] on the normal equations, of which
+/// each slip's 3 × 3 block is eliminated first (Schur complement), so that the cost grows with the
+/// number of scans only. Robust by Huber's weights with k = 1.345, which keep 95 % efficiency for
+/// Gaussian noise [Huber, Ann. Math. Stat. 35:73–101, 1964].
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/estimate/shared_prior.hpp"
+#include "core/estimate/trace.hpp"
+#include "core/model/slip_model.hpp"
+
+namespace stickslip::estimate {
+
+/// Scans [first, end) of the trace belong to one slip.
+struct SlipWindow {
+  std::size_t first = 0;
+  std::size_t end = 0;
+  bool captured = false;
+  model::SlipParameters slip;  ///< First guess; the estimate after the fit.
+
+  // Set by the fit, for covariances.
+  Eigen::Matrix3d inverse_curvature = Eigen::Matrix3d::Zero();  ///< Of the slip's own block.
+  Eigen::Matrix3d coupling = Eigen::Matrix3d::Zero();           ///< −∂(own)/∂(shared) at the optimum.
+};
+
+struct SlipFit {
+  bool converged = false;
+  model::SharedParameters shared;
+  Eigen::Matrix3d shared_covariance = Eigen::Matrix3d::Zero();  ///< Of (ω, γ, r).
+  double residual_sigma = 0.0;  ///< Standard deviation of a scan about the model.
+  std::size_t scan_count = 0;
+  double cost = 0.0;        ///< Huber's, of scans and prior.
+  double cost_scale = 0.0;  ///< HuberSums::cost_scale().
+  double freedom = 0.0;     ///< Usable scans less parameters.
+
+  /// Covariance of the mean over `windows` of (onset, S, K); the scatter from slip to slip not included.
+  [[nodiscard]] Eigen::Matrix3d mean_covariance(const std::vector<SlipWindow>& windows) const;
+  /// Covariance of one slip's own parameters.
+  [[nodiscard]] Eigen::Matrix3d covariance(const SlipWindow& window) const;
+  /// Standard error of its onset, s.
+  [[nodiscard]] double onset_error_s(const SlipWindow& window) const;
+  /// Standard error of its S − K.
+  [[nodiscard]] double delta_mu_error(const SlipWindow& window) const;
+};
+
+/// \param sigma  noise of one scan, > 0; scales Huber's limit.
+/// \param windows,shared  first guess; windows receive the estimate. A window with fewer than four
+///        usable scans must not be passed.
+/// \param prior  what is known of the shared parameters beforehand.
+/// \return converged = false if no step lowers the cost or the equations are singular.
+[[nodiscard]] SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows,
+                                const model::SharedParameters& shared, double sigma,
+                                const SharedPrior& prior = {});
+
+}  // namespace stickslip::estimate

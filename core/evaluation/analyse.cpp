@@ -1,0 +1,137 @@
+#include "core/evaluation/analyse.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "core/base/wording.hpp"
+#include "core/pipeline/gain_uncertainty.hpp"
+#include "core/pipeline/true_rate.hpp"
+#include "core/pipeline/zero_offset.hpp"
+#include "core/record/method_text.hpp"
+#include "core/record/tester_file.hpp"
+
+namespace stickslip::evaluation {
+namespace {
+
+analysis::AnalysisSettings settings_of(const record::RecordHeader& header,
+                                       const daq::Calibration& calibration, const model::Method& method,
+                                       const analysis::Kept& kept) {
+  analysis::AnalysisSettings settings;
+  settings.scan_rate_Hz = header.board.scan_rate_granted_Hz;
+  settings.step_coefficient = calibration.step_coefficient();
+  settings.tester = header.tester.tester();
+  settings.method = method;
+  settings.estimator = record::estimator_from_text(header.process.method);
+  settings.kept = kept;
+  return settings;
+}
+
+}  // namespace
+
+RecordAnalysis::RecordAnalysis(daq::Calibration calibration, std::optional<daq::SecondChannel> speed,
+                               const analysis::AnalysisSettings& settings, std::vector<daq::Gap> gaps)
+    : calibration_(std::move(calibration)),
+      speed_(std::move(speed)),
+      scan_rate_granted_Hz_(settings.scan_rate_Hz),
+      analysis_(settings),
+      gaps_(std::move(gaps)) {}
+
+base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& header,
+                                                  const std::filesystem::path& scratch_folder,
+                                                  const estimate::SharedPrior& prior,
+                                                  std::vector<daq::Gap> gaps) {
+  if (header.board.quantity == daq::RawQuantity::kCounts && !header.load_cell) {
+    return base::usage_error("the record has counts but no load cell, so no forces");
+  }
+  const base::Result<model::Method> method = record::method_from_text(header.process.method);
+  if (!method) return tl::unexpected(method.error());
+  const std::optional<analysis::Kept> kept = analysis::kept_from_text(header.process.kept);
+  if (!kept) {
+    return base::usage_error(
+        "process/kept \"{}\" is not of \"spikes\", \"drift\" and \"first-slip\" with commas between",
+        base::one_line(header.process.kept, 100));
+  }
+  estimate::SharedPrior recorded;
+  if (prior.empty() && !header.process.characterisation.empty()) {
+    const auto coupling =
+        record::parse_tester(header.process.characterisation, "the record's characterisation");
+    if (!coupling) return tl::unexpected(coupling.error());
+    recorded.coupling = *coupling;
+  }
+  try {
+    daq::Calibration calibration{header.board, header.load_cell.value_or(daq::LoadCell{}),
+                                 header.tester.tester().normal_load_N()};
+    analysis::AnalysisSettings settings = settings_of(header, calibration, *method, *kept);
+    settings.scratch_folder = scratch_folder;
+    settings.prior = prior.empty() ? recorded : prior;
+    std::optional<daq::SecondChannel> speed;
+    if (const auto& second = header.board.second;
+        second && second->quantity == daq::SecondQuantity::kPullSpeed) {
+      speed = *second;
+      settings.speed_step_m_per_s = second->step();
+    }
+    RecordAnalysis analysis{std::move(calibration), std::move(speed), settings, std::move(gaps)};
+    analysis.gain_uncertainty_ =
+        pipeline::relative_gain_uncertainty(header.load_cell, header.calibration.gain_standard_error_N_per_V);
+    analysis.unloaded_level_ = header.plan.unloaded_level;
+    return analysis;
+  } catch (const std::invalid_argument& refused) {
+    return base::usage_error("the record cannot be analysed: {}", refused.what());
+  }
+}
+
+void RecordAnalysis::add(daq::ScanIndex first, std::span<const double> raw,
+                         std::span<const std::int32_t> second) {
+  if (raw.empty()) return;
+  // A jump of the index is a gap, as for the processor; the gaps stored tell whether somebody counted.
+  if (next_ && first != *next_) {
+    const auto known = std::find_if(gaps_.begin(), gaps_.end(), [&](const daq::Gap& gap) {
+      return gap.first == *next_ && gap.count == first - *next_;
+    });
+    analysis_.gap(*next_, first - *next_, known != gaps_.end() && known->estimated);
+  }
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    if (speed_) analysis_.speed(speed_->value(second.empty() ? daq::SecondChannel::kNoCode : second[i]));
+    analysis_.add(first++, calibration_.coefficient(raw[i]), calibration_.saturated(raw[i]));
+  }
+  next_ = first;
+  // Nobody looks on: the final ones come with the results.
+  static_cast<void>(analysis_.take_new_cycles());
+  static_cast<void>(analysis_.take_new_falls());
+}
+
+void RecordAnalysis::finish(record::EndRecord& end, std::span<const daq::ClockAnchor> anchors,
+                            std::span<const daq::Gap> gaps) {
+  end.results = analysis_.finish();
+  pipeline::add_true_rate(end.results, anchors, gaps, scan_rate_granted_Hz_);
+  pipeline::add_gain_uncertainty(end.results, gain_uncertainty_);
+  pipeline::add_zero_offset(end.results, unloaded_level_, end.unloaded_level);
+  end.cycles = analysis_.take_cycles();
+  end.spikes = analysis_.spikes();
+}
+
+base::Result<TesterAnalysis> analyse_with_tester(const record::Record& record,
+                                                 const estimate::SharedPrior& prior) {
+  base::Result<RecordAnalysis> analysis = RecordAnalysis::make(record.header, {}, prior, record.gaps);
+  if (!analysis) return tl::unexpected(analysis.error());
+  for (std::size_t i = 0; i < record.scan.size(); ++i) {
+    const std::span<const std::int32_t> second{record.second};
+    analysis->add(record.scan[i], std::span{record.raw}.subspan(i, 1),
+                  second.empty() ? second : second.subspan(i, 1));
+  }
+  TesterAnalysis result;
+  result.end = record.end.value_or(record::EndRecord{});
+  analysis->finish(result.end, record.anchors, record.gaps);
+  result.tester = analysis->tester();
+  result.check = analysis->tester_check();
+  return result;
+}
+
+base::Result<record::EndRecord> analyse(const record::Record& record) {
+  base::Result<TesterAnalysis> result = analyse_with_tester(record, {});
+  if (!result) return tl::unexpected(result.error());
+  return std::move(result->end);
+}
+
+}  // namespace stickslip::evaluation

@@ -1,0 +1,40 @@
+/// \file
+/// What the model says about whole cycles, in terms of the dimensionless speed Q and γ/2ω.
+/// Equation numbers: Penner 1995.
+#pragma once
+
+namespace stickslip::model {
+
+/// θ − φ = ω t₁ [9], [10], [15], in (0, π/2 − φ]. \param Q ≥ 0, infinity allowed.
+/// \param gamma_over_2omega ≥ 0, finite.
+[[nodiscard]] double peak_phase_rad(double Q, double gamma_over_2omega) noexcept;
+/// θ [9], rad. Domain as above.
+[[nodiscard]] double theta_rad(double Q, double gamma_over_2omega) noexcept;
+
+/// Q [8]. \param stick_rate_per_s r = ω₀² v/g ≥ 0. \param omega_rad_per_s damped, > 0.
+/// \param delta_mu S − K ≥ 0; infinity for 0.
+[[nodiscard]] double dimensionless_speed(double stick_rate_per_s, double omega_rad_per_s,
+                                         double delta_mu) noexcept;
+
+/// [2]: largest coefficient without damping.
+[[nodiscard]] double undamped_maximum(double mu_k, double delta_mu, double Q) noexcept;
+/// [3]: ω t_stick without damping = 2/Q, rad. \param Q > 0.
+[[nodiscard]] double undamped_stick_phase_rad(double Q) noexcept;
+/// [4]: ω t_slip without damping = 2π − 2 atan(1/Q), rad. \param Q > 0.
+[[nodiscard]] double undamped_slip_phase_rad(double Q) noexcept;
+
+/// [17]: half the range of the oscillation over S − K. \param Q ≥ 0, finite. ≥ 1 without damping.
+[[nodiscard]] double amplitude_ratio(double Q, double gamma_over_2omega) noexcept;
+/// [18]: largest slip speed over the speed of sticking. \param Q ≥ 0; infinity for 0.
+[[nodiscard]] double slip_speed_ratio(double Q, double gamma_over_2omega) noexcept;
+
+/// e^(πε), ε = γ/2ω: the least slip_speed_ratio() of a slip that ends in sticking. The extremes of c′ of a
+/// free oscillation follow each other by π/ω [16], [20], each smaller than the last by e^(−πε): after −ρ r at
+/// t₂ it rises to ρ r e^(−πε) at t₃, and the sled sticks exactly where that reaches r [20], [21]. So the
+/// ratio alone tells the regime, whatever S − K, speed and calibration are. \param gamma_over_2omega ≥ 0.
+[[nodiscard]] double slip_speed_ratio_threshold(double gamma_over_2omega) noexcept;
+
+/// γ/2ω = ln 2/(2π n) of an oscillation that halves in n cycles. \param cycles > 0.
+[[nodiscard]] double gamma_over_2omega_of_half_life(double cycles) noexcept;
+
+}  // namespace stickslip::model

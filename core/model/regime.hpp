@@ -1,0 +1,42 @@
+/// \file
+/// The word for what the sled did. Definitions: docs/glossary.md.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace stickslip::model {
+
+enum class Regime {
+  kStickSlip,      ///< Every slip of the pull ended in sticking.
+  kRingDown,       ///< No slip ended in sticking: one decaying oscillation.
+  kMixed,          ///< At least one of each.
+  kSteadySliding,  ///< No oscillation.
+  kUndecided,      ///< The data do not tell.
+};
+
+inline constexpr std::array<std::pair<Regime, std::string_view>, 5> kRegimeNames{{
+    {Regime::kStickSlip, "stick-slip"},
+    {Regime::kRingDown, "ring-down"},
+    {Regime::kMixed, "mixed"},
+    {Regime::kSteadySliding, "steady-sliding"},
+    {Regime::kUndecided, "undecided"},
+}};
+
+[[nodiscard]] constexpr std::string_view name(Regime regime) noexcept {
+  for (const auto& [value, text] : kRegimeNames) {
+    if (value == regime) return text;
+  }
+  return "undecided";
+}
+
+[[nodiscard]] constexpr std::optional<Regime> regime_from_name(std::string_view text) noexcept {
+  for (const auto& [value, known] : kRegimeNames) {
+    if (known == text) return value;
+  }
+  return std::nullopt;
+}
+
+}  // namespace stickslip::model

@@ -1,0 +1,43 @@
+#include "core/model/uniform_course.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/model/capture.hpp"
+
+namespace stickslip::model {
+
+std::optional<UniformCourse> UniformCourse::make(const UniformParameters& parameters) {
+  const auto& [shared, slip] = parameters;
+  const bool sound = std::isfinite(slip.onset_s) && std::isfinite(shared.omega) && shared.omega > 0.0 &&
+                     std::abs(shared.gamma) < 2.0 * shared.omega && shared.r > 0.0 && slip.S > slip.K;
+  if (!sound) return std::nullopt;
+  const SlipWaveform waveform{slip.K, slip.S - slip.K, shared.r, shared.oscillator()};
+  if (!capture_time_s(waveform, shared.r)) return std::nullopt;
+  return UniformCourse{parameters};
+}
+
+UniformCourse::UniformCourse(const UniformParameters& parameters)
+    : onset_s_(parameters.slip.onset_s), slip_(parameters.shared, parameters.slip, true) {
+  const double r = parameters.shared.r;
+  const SlipModelPoint capture = slip_.at(onset_s_ + slip_.capture_s());
+  const double stick_s = (parameters.slip.S - capture.value) / r;
+  period_s_ = slip_.capture_s() + stick_s;
+  period_by_ << 0.0, 1.0 - capture.by_slip[1], -capture.by_slip[2], -capture.by_shared;
+  period_by_[UniformParameters::kR] -= stick_s;
+  period_by_ /= r;
+}
+
+UniformPoint UniformCourse::at(double time_s) const noexcept {
+  // A cycle reaches from the capture before its onset to its own capture: both formulas agree there.
+  const double stick_s = period_s_ - slip_.capture_s();
+  const double cycle = std::max(std::floor((time_s - onset_s_ + stick_s) / period_s_), 0.0);
+  const SlipModelPoint point = slip_.at(time_s - cycle * period_s_);
+  UniformPoint result;
+  result.value = point.value;
+  result.by << point.by_slip, point.by_shared;
+  result.by += point.by_slip[0] * cycle * period_by_;
+  return result;
+}
+
+}  // namespace stickslip::model

@@ -1,0 +1,67 @@
+/// \file
+/// The force of a whole pull whose slips share one S and one K: stick and slip repeat to the last bit,
+/// and every onset and capture follows from six numbers. [Penner 1995, (9)–(22)]
+///
+///     if (const auto course = UniformCourse::make({shared, {onset_s, S, K}})) {
+///       const UniformPoint point = course->at(time_s);
+///
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "core/model/slip_model.hpp"
+
+namespace stickslip::model {
+
+struct UniformParameters {
+  SharedParameters shared;
+  SlipParameters slip;  ///< Of all slips; onset_s of the first of them.
+
+  static constexpr Eigen::Index kOnset = 0;
+  static constexpr Eigen::Index kS = 1;
+  static constexpr Eigen::Index kK = 2;
+  static constexpr Eigen::Index kOmega = 3;
+  static constexpr Eigen::Index kGamma = 4;
+  static constexpr Eigen::Index kR = 5;
+  using Vector = Eigen::Matrix<double, 6, 1>;
+  using Matrix = Eigen::Matrix<double, 6, 6>;
+
+  [[nodiscard]] Vector vector() const {
+    return (Vector{} << slip.onset_s, slip.S, slip.K, shared.omega, shared.gamma, shared.r).finished();
+  }
+  [[nodiscard]] static UniformParameters from(const Vector& p) {
+    return {{p[kOmega], p[kGamma], p[kR]}, {p[kOnset], p[kS], p[kK]}};
+  }
+};
+
+/// Value and derivatives at one time.
+struct UniformPoint {
+  double value = 0.0;
+  UniformParameters::Vector by = UniformParameters::Vector::Zero();
+};
+
+class UniformCourse {
+ public:
+  /// \return nothing unless the oscillator oscillates, S > K, r > 0, and the sled sticks again.
+  [[nodiscard]] static std::optional<UniformCourse> make(const UniformParameters& parameters);
+
+  /// Any time: before the first onset the sled sticks.
+  [[nodiscard]] UniformPoint at(double time_s) const noexcept;
+
+  /// From onset to onset: ω t_slip plus the stick that brings c from the capture back to S.
+  [[nodiscard]] double period_s() const noexcept { return period_s_; }
+  /// ∂ period/∂ parameters; the capture's own shift drops out, since c′ = r there.
+  [[nodiscard]] const UniformParameters::Vector& period_slope() const noexcept { return period_by_; }
+
+ private:
+  explicit UniformCourse(const UniformParameters& parameters);
+
+  double onset_s_;
+  SlipModel slip_;
+  double period_s_ = 0.0;
+  UniformParameters::Vector period_by_ = UniformParameters::Vector::Zero();
+};
+
+}  // namespace stickslip::model

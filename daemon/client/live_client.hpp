@@ -1,0 +1,18 @@
+/// \file
+/// The other side of the live stream, for the command line and for tests.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string_view>
+
+#include "core/base/result.hpp"
+
+namespace stickslip::client {
+
+/// Calls `use` with each frame until it says false or the stream ends. Errors (kFailure): nobody listens, or
+/// the stream is refused or breaks off; its orderly end is none.
+[[nodiscard]] base::Result<void> listen_live(const std::filesystem::path& socket,
+                                             const std::function<bool(std::string_view frame)>& use);
+
+}  // namespace stickslip::client

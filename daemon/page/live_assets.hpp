@@ -1,0 +1,20 @@
+/// \file
+/// The parts of the live page, as they lie in daemon/web; built in by cmake/embed.cmake.
+#pragma once
+
+#include <string_view>
+
+namespace stickslip::page {
+
+[[nodiscard]] std::string_view live_html() noexcept;
+[[nodiscard]] std::string_view live_css() noexcept;
+[[nodiscard]] std::string_view live_js() noexcept;
+[[nodiscard]] std::string_view scope_js() noexcept;
+[[nodiscard]] std::string_view tables_js() noexcept;
+[[nodiscard]] std::string_view tare_js() noexcept;
+[[nodiscard]] std::string_view calibrate_js() noexcept;
+[[nodiscard]] std::string_view batch_js() noexcept;
+[[nodiscard]] std::string_view batches_js() noexcept;
+[[nodiscard]] std::string_view shown_html() noexcept;
+
+}  // namespace stickslip::page

@@ -1,0 +1,132 @@
+#include "daemon/page/report_desk.hpp"
+
+#include <fcntl.h>
+
+#include <algorithm>
+#include <csignal>
+#include <system_error>
+#include <vector>
+
+#include "io/child_process.hpp"
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "core/base/contract.hpp"
+#include "core/base/wording.hpp"
+
+namespace stickslip::page {
+namespace {
+
+/// The acquisition goes before it, and so do all others.
+constexpr int kNiceness = 10;
+constexpr int kSignalled = 128;  // As ChildAnswer counts.
+
+/// Of `stickslip`: what is wanted goes to its standard output.
+std::vector<std::string> arguments_for(std::span<const daemon::ReportedBatch> batches,
+                                       daemon::ReportForm form, const std::filesystem::path& folder) {
+  std::vector<std::string> arguments;
+  if (batches.size() == 1) {
+    arguments = {"report", "--batch=" + batches[0].id};
+  } else {
+    arguments = {"compare", "--batch-a=" + batches[0].id, "--label-a=" + batches[0].label,
+                 "--batch-b=" + batches[1].id, "--label-b=" + batches[1].label};
+  }
+  switch (form) {
+    case daemon::ReportForm::kPage:
+      arguments.emplace_back("--output=-");
+      break;
+    case daemon::ReportForm::kCsv:
+      arguments.emplace_back("--csv=-");
+      break;
+    case daemon::ReportForm::kJson:
+      arguments.emplace_back("--json");
+      break;
+  }
+  arguments.push_back(std::filesystem::absolute(folder).string());
+  return arguments;
+}
+
+}  // namespace
+
+std::string program_beside_this() {
+  std::error_code error;
+  const auto own = std::filesystem::read_symlink("/proc/self/exe", error);
+  return (own.parent_path() / "stickslip").string();
+}
+
+struct ReportDesk::Job {
+  io::ChildProcess child;
+  boost::asio::posix::stream_descriptor end;
+  boost::asio::steady_timer patience;
+  Answer answer;
+  bool took_too_long = false;
+};
+
+ReportDesk::ReportDesk(Parts parts) : parts_(std::move(parts)) {}
+
+ReportDesk::~ReportDesk() = default;
+
+void ReportDesk::make(std::span<const daemon::ReportedBatch> batches, daemon::ReportForm form,
+                      Answer answer) {
+  STICKSLIP_EXPECTS(batches.size() == 1 || batches.size() == 2);
+  if (job_) {
+    answer(tl::unexpected(base::Error{base::ErrorKind::kBusy,
+                                      "another report is being made, one at a time; ask again in a moment"}));
+    return;
+  }
+  using std::chrono::ceil;
+  const io::ChildLimits limits{ceil<std::chrono::seconds>(parts_.longest), parts_.largest, kNiceness};
+  auto child =
+      io::ChildProcess::start(parts_.program, arguments_for(batches, form, parts_.folder), {}, limits);
+  if (!child) return answer(tl::unexpected(child.error()));
+  if (!*child) {
+    return answer(base::failure("{}: there is no such program; it makes the reports: install it there",
+                                parts_.program));
+  }
+  const record::Descriptor end = (*child)->ended();
+  // Asio closes its own.
+  const int own = ::fcntl(end.get(), F_DUPFD_CLOEXEC, 0);
+  if (own < 0) return answer(base::failure("the end of {} cannot be waited for", parts_.program));
+  job_ = std::make_unique<Job>(Job{**std::move(child),
+                                   {parts_.io, own},
+                                   boost::asio::steady_timer{parts_.io, parts_.longest},
+                                   std::move(answer)});
+  job_->end.async_wait(boost::asio::posix::stream_descriptor::wait_read,
+                       [this](boost::system::error_code error) {
+                         if (!error) ended();
+                       });
+  job_->patience.async_wait([this, job = job_.get()](boost::system::error_code error) {
+    // It may have ended since the timer did; then there may be another one.
+    if (error || job_.get() != job) return;
+    job_->took_too_long = true;
+    job_->child.end();
+  });
+}
+
+void ReportDesk::ended() {
+  const std::unique_ptr<Job> job = std::move(job_);
+  base::Result<io::ChildAnswer> made = job->child.wait();
+  if (!made) return job->answer(tl::unexpected(made.error()));
+  if (made->status == 0) return job->answer(std::move(made->output));
+  if (job->took_too_long || made->status == kSignalled + SIGXCPU) {
+    return job->answer(base::failure(
+        "the report took longer than {:.3g} s and was ended; `stickslip report --batch` takes its time",
+        std::chrono::duration<double>(parts_.longest).count()));
+  }
+  if (made->status == kSignalled + SIGXFSZ) {
+    return job->answer(base::failure(
+        "the report is larger than {:.3g} MiB; ask for csv or json, or `stickslip report --batch` makes it",
+        static_cast<double>(parts_.largest) / (1U << 20U)));
+  }
+  if (made->status > kSignalled)
+    return job->answer(
+        base::failure("signal {} ended the program that makes the report", made->status - kSignalled));
+  constexpr std::string_view kName = "stickslip: ";
+  std::string_view why = made->errors;
+  if (why.starts_with(kName)) why.remove_prefix(kName.size());
+  while (why.ends_with('\n')) why.remove_suffix(1);
+  constexpr std::size_t kLongestReason = 400;
+  job->answer(base::failure("there is no report: {}", base::one_line(why, kLongestReason)));
+}
+
+}  // namespace stickslip::page

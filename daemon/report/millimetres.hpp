@@ -1,9 +1,0 @@
-/// \file
-/// Reports and pictures speak of millimetres, the rest of the program of metres.
-#pragma once
-
-namespace stickslip::daemon {
-
-inline constexpr double kMillimetresPerMetre = 1e3;
-
-}  // namespace stickslip::daemon

@@ -1,0 +1,55 @@
+/// \file
+/// Where commands arrive and answers leave: between the control interface on the main thread and the bench on
+/// the processing thread.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "io/config.hpp"
+
+#include "daemon/runtime/calibration_desk.hpp"
+#include "daemon/runtime/session.hpp"
+#include "daemon/storage/storage.hpp"
+#include "daemon/types/bench.hpp"
+#include "daemon/types/test_log.hpp"
+
+namespace stickslip::runtime {
+
+class BenchDesk final : public daemon::Bench {
+ public:
+  struct Parts {
+    io::DaemonConfig& config;  ///< What is planned and tared stands there, for the next session as well.
+    const daemon::TestLog& tests;
+    storage::Storage& storage;
+    CalibrationDesk& calibrations;
+    std::function<daemon::Status()> status;
+    std::function<Session*()> session;                   ///< Null while there is none.
+    std::function<void(std::function<void()>)> on_main;  ///< From any thread: to the main thread.
+    daemon::Batches* batches;
+    daemon::Reports* reports;
+  };
+  explicit BenchDesk(Parts parts) : parts_(std::move(parts)), configured_method_(parts_.config.method) {}
+
+  [[nodiscard]] daemon::Status status() const override { return parts_.status(); }
+  [[nodiscard]] std::vector<daemon::TestSummary> tests() const override { return parts_.tests.tests(); }
+  [[nodiscard]] daemon::Plan plan() const override;
+  void set_plan(daemon::Plan plan) override;
+  void command(daemon::Command command, std::function<void(const daemon::Outcome&)> answer) override;
+  [[nodiscard]] daemon::Calibrator& calibrator() override { return parts_.calibrations; }
+  [[nodiscard]] daemon::Batches& batches() override { return *parts_.batches; }
+  [[nodiscard]] daemon::Reports& reports() override { return *parts_.reports; }
+
+ private:
+  /// Before the processing thread is asked.
+  [[nodiscard]] std::optional<std::string> refused_now(daemon::Command::Kind kind) const;
+  void answered(const daemon::Command& command, const daemon::Outcome& outcome);
+
+  Parts parts_;
+  model::Method configured_method_;
+};
+
+/// What the command does, between two blocks. Processing thread.
+[[nodiscard]] daemon::Outcome carry_out(const daemon::Command& command, pipeline::Processor& processor);
+
+}  // namespace stickslip::runtime

@@ -1,0 +1,97 @@
+#include "daemon/types/plan_json.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/quantity.hpp"
+#include "core/base/text.hpp"
+#include "core/base/wording.hpp"
+#include "core/model/limits.hpp"
+
+namespace stickslip::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// As in the configuration.
+constexpr std::int64_t kMostReplicates = 1'000'000;
+
+constexpr std::array<std::pair<const char*, std::string record::SampleFacts::*>, 5> kTexts{{
+    {"name", &record::SampleFacts::name},
+    {"grade", &record::SampleFacts::grade},
+    {"direction", &record::SampleFacts::direction},
+    {"side", &record::SampleFacts::side},
+    {"operator", &record::SampleFacts::operator_name},
+}};
+constexpr const char* kReplicate = "replicate";
+constexpr const char* kSpeed = "pull_speed";
+
+}  // namespace
+
+base::Result<double> pull_speed_of(std::string_view key, const Json& value) {
+  base::Result<double> speed = 0.0;
+  if (value.is_number()) {
+    speed = value.get<double>();
+  } else if (value.is_string()) {
+    speed = base::parse_quantity(value.get<std::string>(), base::Dimension::kSpeed);
+    if (!speed) return base::usage_error("{}: {}", key, speed.error().message);
+  } else {
+    return base::usage_error("{}: must be a number in m/s, or text such as \"12 in/min\"", key);
+  }
+  if (!(*speed > 0.0 && *speed <= model::kFastestPull_m_per_s)) {
+    return base::usage_error("{}: {} m/s; must be above 0 and at most {} m/s", key, *speed,
+                             model::kFastestPull_m_per_s);
+  }
+  return speed;
+}
+
+Json plan_json(const Plan& plan) {
+  Json json;
+  for (const auto& [key, member] : kTexts) {
+    const std::string& text = plan.sample.*member;
+    json[key] = text.empty() ? Json(nullptr) : Json(text);
+  }
+  json[kReplicate] = plan.sample.replicate ? Json(*plan.sample.replicate) : Json(nullptr);
+  json[kSpeed] = plan.pull_speed_m_per_s ? Json(*plan.pull_speed_m_per_s) : Json(nullptr);
+  return json;
+}
+
+base::Result<Plan> plan_of(const Json& json) {
+  Plan plan;
+  for (const auto& [key, value] : json.items()) {
+    if (value.is_null()) continue;
+    const auto text = std::find_if(kTexts.begin(), kTexts.end(),
+                                   [&key = key](const auto& own) { return own.first == key; });
+    if (text != kTexts.end()) {
+      if (!value.is_string()) return base::usage_error("{}: must be text", key);
+      const std::string said = value.get<std::string>();
+      if (const std::string refusal = base::name_refusal(said); !refusal.empty())
+        return base::usage_error("{}: {}", key, refusal);
+      plan.sample.*(text->second) = said;
+    } else if (key == kReplicate) {
+      if (!value.is_number_integer() || value.get<std::int64_t>() < 1 ||
+          value.get<std::int64_t>() > kMostReplicates) {
+        return base::usage_error("{}: must be a whole number from 1 to {}", key, kMostReplicates);
+      }
+      plan.sample.replicate = value.get<std::int64_t>();
+    } else if (key == kSpeed) {
+      const base::Result<double> speed = pull_speed_of(kSpeed, value);
+      if (!speed) return tl::unexpected(speed.error());
+      plan.pull_speed_m_per_s = *speed;
+    } else {
+      return base::usage_error(
+          "\"{}\": there is no such key; there are name, grade, direction, side, operator, replicate, "
+          "pull_speed",
+          base::one_line(key));
+    }
+  }
+  return plan;
+}
+
+}  // namespace stickslip::daemon

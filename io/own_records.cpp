@@ -1,0 +1,26 @@
+#include "io/own_records.hpp"
+
+#include <algorithm>
+#include <regex>
+
+#include "io/dated_folders.hpp"
+
+namespace stickslip::io {
+
+std::vector<std::filesystem::path> own_records(const std::filesystem::path& folder) {
+  // As storage.cpp names them.
+  static const std::regex own{R"(\d{8}T\d{6}Z-\d{4,}(-\d+)?\.h5)"};
+  // Of a folder that cannot be read recover_folder() tells.
+  std::vector<std::filesystem::path> found = find_files(folder, [](const std::filesystem::path& file) {
+                                               return std::regex_match(file.filename().string(), own);
+                                             }).files;
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.stem() < b.stem(); });
+  return found;
+}
+
+void keep_last(std::vector<std::filesystem::path>& records, std::size_t most) {
+  if (records.size() <= most) return;
+  records.erase(records.begin(), records.end() - static_cast<std::ptrdiff_t>(most));
+}
+
+}  // namespace stickslip::io

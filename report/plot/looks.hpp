@@ -1,0 +1,48 @@
+/// \file
+/// Colours, shapes and shades of figures. Colours after Okabe and Ito, Color Universal Design, 2008.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "report/plot/figure.hpp"
+
+namespace stickslip::plot {
+
+/// In the order of Colour.
+inline constexpr std::array<const char*, 7> kColours{"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                                     "#E69F00", "#56B4E9", "#000000"};
+/// gnuplot's numbers of symbols: filled circle, square, triangle, diamond; the same, open.
+inline constexpr std::array<int, 8> kShapes{7, 5, 9, 13, 6, 4, 8, 12};
+
+[[nodiscard]] inline const char* colour_of(const Curve& curve, std::size_t order) {
+  const std::size_t index = curve.colour ? static_cast<std::size_t>(*curve.colour) : order;
+  return kColours.at(index % kColours.size());
+}
+
+[[nodiscard]] inline int shape_of(std::size_t order) { return kShapes.at(order % kShapes.size()); }
+
+struct ShadeLook {
+  const char* colour;
+  double opacity;
+  const char* label;  ///< In the legend.
+};
+
+/// In this order they are painted and explained.
+inline constexpr std::array<Shade, 4> kShades{Shade::kWindow, Shade::kStick, Shade::kSlip, Shade::kSlack};
+
+[[nodiscard]] constexpr ShadeLook look(Shade shade) {
+  switch (shade) {
+    case Shade::kStick:
+      return {"#56B4E9", 0.30, "stick"};
+    case Shade::kSlip:
+      return {"#F0E442", 0.12, "slip"};
+    case Shade::kSlack:
+      return {"#999999", 0.30, "slack"};
+    case Shade::kWindow:
+      return {"#E69F00", 0.25, ""};
+  }
+  return {"#999999", 0.3, ""};
+}
+
+}  // namespace stickslip::plot

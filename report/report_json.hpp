@@ -1,0 +1,37 @@
+/// \file
+/// Reports for machines: JSON and CSV. SI units; names as in the record; null, or an empty cell, where there
+/// is no number, with the reason beside it.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "report/test_report.hpp"
+#include <nlohmann/json_fwd.hpp>
+
+namespace stickslip::report {
+
+/// {"tests": [{"file", "title", "method", "departures", "pull_speed", "regime", results …, "details"}],
+///  "groups": [{"pull_speed", "tests": [index …], "delta_mu_by_cycle": pooled_json(), "quantities": {NAME:
+///  {"unit", "count", "mean",
+///    "standard_deviation", "repeatability", "confidence_interval", "outlier", "absent"}}}],
+///  "pooled_standard_deviation": {NAME: …}}
+[[nodiscard]] nlohmann::ordered_json report_json(const Material& material);
+
+/// {"a": report_json() and "label", "b": …, "comparisons": [{"pull_speed", "regime":
+///    {"a_sticking", "a_sliding", "b_sticking", "b_sliding", "p"}, "delta_mu_by_cycle":
+///    {"difference", "confidence_interval", "t", "degrees_of_freedom", "p", "reason"}, "quantities": {NAME:
+///    {"difference", "confidence_interval", "t", "degrees_of_freedom", "p", "hedges_g",
+///     "hedges_g_interval", "tests_needed_80", "tests_needed_90", "reason"}}}],
+///  "combined": {NAME: {"p", "speeds"}}}
+[[nodiscard]] nlohmann::ordered_json comparison_json(const Material& a, const Material& b,
+                                                     const MaterialComparison& comparison);
+
+/// One line for each test; RFC 4180, header first.
+[[nodiscard]] std::string report_csv(const Material& material);
+
+/// One line for each speed and quantity.
+[[nodiscard]] std::string comparison_csv(const Material& a, const Material& b,
+                                         const MaterialComparison& comparison);
+
+}  // namespace stickslip::report

@@ -1,0 +1,98 @@
+#include "report/report_page.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "io/json_text.hpp"
+#include "report/assets.hpp"
+#include "report/report_json.hpp"
+#include <nlohmann/json.hpp>
+
+#include "core/base/version.hpp"
+
+namespace stickslip::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json quantities_json() {
+  Json json = Json::array();
+  for (const analysis::Quantity& quantity : analysis::quantities()) {
+    json.push_back({{"name", quantity.name},
+                    {"title", quantity.title},
+                    {"unit", quantity.unit},
+                    {"decimals", quantity.decimals}});
+  }
+  return json;
+}
+
+/// \param report  of the material, as report_json() gives it.
+Json material_json(const Material& material, Json report) {
+  report["label"] = material.label;
+  for (std::size_t i = 0; i < material.tests.size(); ++i)
+    report["tests"][i]["trace"] = Json::parse(material.tests[i].trace);
+  return report;
+}
+
+/// The template with each mark replaced, once, from the first to the last.
+std::string page_of(const Json& data, const ChartLibrary& charts) {
+  const std::string text = json_for_script(data);
+  const std::array<std::pair<std::string_view, std::string_view>, 7> parts{{
+      {"@LICENSE@", charts.license},
+      {"@UPLOT_CSS@", charts.style},
+      {"@REPORT_CSS@", report_css()},
+      {"@DATA@", text},
+      {"@UPLOT_JS@", charts.script},
+      {"@CHARTS_JS@", charts_js()},
+      {"@REPORT_JS@", report_js()},
+  }};
+  const std::string_view html = report_html();
+  std::string page;
+  std::size_t done = 0;
+  for (const auto& [mark, part] : parts) {
+    const std::size_t at = html.find(mark, done);
+    page.append(html.substr(done, at - done)).append(part);
+    done = at + mark.size();
+  }
+  return page.append(html.substr(done));
+}
+
+Json page_json(Json materials, Json comparison) {
+  return {{"program", fmt::format("stickslip {} ({})", base::kVersion, base::kCommit)},
+          {"quantities", quantities_json()},
+          {"materials", std::move(materials)},
+          {"comparison", std::move(comparison)}};
+}
+
+}  // namespace
+
+std::string json_for_script(const Json& json) {
+  std::string text;
+  for (const char c : io::json_text(json)) {
+    if (c == '<') {
+      text += "\\u003c";  // Only inside strings, where this means the same.
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+std::string report_page(const Material& material, const ChartLibrary& charts) {
+  return page_of(page_json(Json::array({material_json(material, report_json(material))}), nullptr), charts);
+}
+
+std::string comparison_page(const Material& a, const Material& b, const MaterialComparison& comparison,
+                            const ChartLibrary& charts) {
+  Json whole = comparison_json(a, b, comparison);
+  Json materials =
+      Json::array({material_json(a, std::move(whole["a"])), material_json(b, std::move(whole["b"]))});
+  whole.erase("a");
+  whole.erase("b");
+  return page_of(page_json(std::move(materials), std::move(whole)), charts);
+}
+
+}  // namespace stickslip::report

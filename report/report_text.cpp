@@ -1,0 +1,279 @@
+#include "report/report_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "report/millimetres.hpp"
+#include "report/table.hpp"
+
+#include "core/base/text.hpp"
+
+namespace stickslip::report {
+namespace {
+
+using analysis::GroupQuantity;
+using analysis::Interval;
+using analysis::Quantity;
+using analysis::Replicates;
+using analysis::SpeedGroup;
+
+constexpr std::string_view kAbsent = "–";
+
+std::string speed_text(const std::optional<double>& speed_m_per_s) {
+  if (!speed_m_per_s) return "speed not known";
+  return fmt::format("{:.4g} mm/s", *speed_m_per_s * kMillimetresPerMetre);
+}
+
+std::string number(const std::optional<double>& value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : std::string{kAbsent};
+}
+
+std::string interval(const std::optional<Interval>& value, int decimals) {
+  return value ? fmt::format("{:.{}f} … {:.{}f}", value->low, decimals, value->high, decimals)
+               : std::string{kAbsent};
+}
+
+/// "0.3812 ± 0.0012"; without the second part where the scatter is not known.
+std::string mean_text(const GroupQuantity& group, const Quantity& quantity) {
+  if (!group.replicates) return std::string{kAbsent};
+  const Replicates& own = *group.replicates;
+  if (!own.mean_interval) return number(own.mean, quantity.decimals);
+  return fmt::format("{:.{}f} ± {:.{}f}", own.mean, quantity.decimals, own.mean_interval->high - own.mean,
+                     quantity.decimals);
+}
+
+std::string count_of_tests(std::size_t count) {
+  return fmt::format("{} test{}", count, count == 1 ? "" : "s");
+}
+
+/// Fig. 1 has the first two; S and K stand beside them.
+constexpr std::size_t kFigureQuantities = 4;
+
+std::string figure_header(bool two) {
+  std::string text = fmt::format("{:<16}{:<14}{:>5}", "speed", two ? "material" : "", "tests");
+  for (std::size_t q = 0; q < kFigureQuantities; ++q)
+    text += fmt::format("  {:>17}", analysis::quantities()[q].title);
+  return text + "\n";
+}
+
+std::string figure_line(const std::string& speed, const std::string& label, const SpeedGroup& group) {
+  std::string text = fmt::format("{:<16}{:<14}{:>5}", speed, base::printable(label), group.tests.size());
+  for (std::size_t q = 0; q < kFigureQuantities; ++q) {
+    text += fmt::format("  {:>17}", mean_text(group.quantities[q], analysis::quantities()[q]));
+  }
+  return text + "\n";
+}
+
+constexpr int kDeltaMuDecimals = 4;
+
+/// Of all slips of the tests of a group, before the means of the tests.
+std::string by_cycle_line(const analysis::PooledDeltaMu& pooled) {
+  if (!pooled.mean.value)
+    return fmt::format("S−K by cycle   {}  {}\n", kAbsent, base::printable(pooled.mean.reason));
+  const auto error = [](const std::optional<double>& value) {
+    return value ? fmt::format(" ± {:.{}f} (standard error)", *value, kDeltaMuDecimals + 1) : std::string{};
+  };
+  std::string text = fmt::format("S−K by cycle   {:.{}f}{}", *pooled.mean.value, kDeltaMuDecimals + 1,
+                                 error(pooled.mean.standard_error));
+  if (const auto of_mean = analysis::mean_interval(pooled))
+    text += fmt::format(", 95 % {}", interval(of_mean, kDeltaMuDecimals));
+  text += fmt::format(": {} slip{} of {}, {} escaped", pooled.slip_count, pooled.slip_count == 1 ? "" : "s",
+                      count_of_tests(pooled.test_count), pooled.escaped_count);
+  if (pooled.scatter.value)
+    text += fmt::format(", scatter {:.{}f}", *pooled.scatter.value, kDeltaMuDecimals + 1);
+  return text + "\n";
+}
+
+std::string replicates_table(const Material& material, const SpeedGroup& group) {
+  std::string text = fmt::format("{:<15}{:>4}  {:>9}  {:>9}  {:>11}  {:>20}\n", "", "n", "mean", "s_r",
+                                 "r = 2.8 s_r", "95 % of the mean");
+  std::string notes;
+  for (std::size_t q = 0; q < analysis::kQuantityCount; ++q) {
+    const Quantity& quantity = analysis::quantities()[q];
+    const GroupQuantity& own = group.quantities[q];
+    const Replicates none;
+    const Replicates& values = own.replicates ? *own.replicates : none;
+    const std::string title = quantity.unit == "1" ? std::string{quantity.title}
+                                                   : fmt::format("{} ({})", quantity.title, quantity.unit);
+    text += fmt::format("{:<15}{:>4}  {:>9}  {:>9}  {:>11}  {:>20}\n", title, values.count,
+                        number(own.replicates ? std::optional{values.mean} : std::nullopt, quantity.decimals),
+                        number(values.standard_deviation, quantity.decimals + 1),
+                        number(values.repeatability, quantity.decimals + 1),
+                        interval(values.mean_interval, quantity.decimals));
+    if (values.outlier) {
+      const std::size_t test = own.tests[values.outlier->index];
+      notes += fmt::format("!  {} of {} stands out (Grubbs {:.2f} above {:.2f}, 5 %); it is not left out\n",
+                           quantity.title, base::printable(material.tests[test].file),
+                           values.outlier->statistic, values.outlier->critical);
+    }
+  }
+  return text + notes;
+}
+
+std::string limits_lines(const Material& material) {
+  std::string text;
+  for (const daemon::LimitVerdict& own : material.limits) {
+    const auto side = [](const std::optional<double>& limit) {
+      return limit ? fmt::format("{}", *limit) : std::string{kAbsent};
+    };
+    text +=
+        fmt::format("{}  {} {} … {}: {} of {} inside", own.passes() ? "pass" : "FAIL", own.quantity,
+                    side(own.limits.lowest), side(own.limits.highest),
+                    material.tests.size() - own.outside.size() - own.absent.size(), material.tests.size());
+    for (const auto& [what, tests] : {std::pair{"outside", &own.outside}, {"no value", &own.absent}}) {
+      if (tests->empty()) continue;
+      text += fmt::format("; {}: test", what);
+      for (const std::size_t test : *tests) text += fmt::format(" {}", test + 1);
+    }
+    text += "\n";
+  }
+  return text.empty() ? text : "\nLimits of the batch\n" + text;
+}
+
+std::string voided_lines(const Material& material) {
+  std::string text;
+  for (const VoidedTest& test : material.voided) {
+    text += fmt::format("x  {}: void, left out: {} ({}, {})\n", base::printable(test.file),
+                        base::printable(test.voiding.reason), base::printable(test.voiding.who),
+                        base::printable(test.voiding.at));
+  }
+  return text;
+}
+
+std::string tests_table(const Material& material) {
+  std::vector<TableRow> rows;
+  for (std::size_t i = 0; i < material.tests.size(); ++i) {
+    rows.push_back({static_cast<std::int64_t>(i) + 1, material.measured[i].results, material.tests[i].truth,
+                    material.tests[i].file});
+  }
+  std::string text = format_table(rows);
+  for (std::size_t i = 0; i < material.tests.size(); ++i) {
+    for (const std::string& line : material.tests[i].departures)
+      text += fmt::format("!  test {}: {}\n", i + 1, base::printable(line));
+  }
+  return text + voided_lines(material);
+}
+
+std::string methods_line(const Material& material) {
+  std::map<std::string, std::size_t> counts;
+  for (const ReportedTest& test : material.tests) ++counts[test.method];
+  std::string text;
+  for (const auto& [method, count] : counts) {
+    text += fmt::format("{}{}{}", text.empty() ? "" : "; ",
+                        method.empty() ? "method not known" : base::printable(method),
+                        counts.size() > 1 ? fmt::format(" ({})", count_of_tests(count)) : "");
+  }
+  return text;
+}
+
+std::string p_text(double p) { return p < 0.0001 ? "< 0.0001" : fmt::format("{:.4f}", p); }
+
+std::string needed_text(const std::optional<int>& count) {
+  return count ? fmt::format("{}", *count) : fmt::format("> {}", analysis::kMostTestsNeeded);
+}
+
+std::string regime_line(const RegimeComparison& regime) {
+  if (!regime.p) return {};
+  const auto counts = [](const RegimeCounts& own) {
+    return fmt::format("{} of {}", own.sticking, own.sticking + own.sliding);
+  };
+  return fmt::format("sticking       A {}, B {}, p {} (Fisher's exact test){}\n", counts(regime.a),
+                     counts(regime.b), p_text(*regime.p), *regime.p < analysis::kSignificance ? "  *" : "");
+}
+
+std::string comparison_table(const analysis::PooledComparison& by_cycle,
+                             const std::array<analysis::Comparison, analysis::kQuantityCount>& comparisons) {
+  const std::string& first = comparisons.front().reason;
+  const auto same = [&first](const analysis::Comparison& own) { return own.reason == first; };
+  if (!first.empty() && std::all_of(comparisons.begin(), comparisons.end(), same)) {
+    return fmt::format("{}  {}\n", kAbsent, base::printable(first));
+  }
+  std::string text = fmt::format("{:<15}{:>10}  {:>22}  {:>9}  {:>8}  {:>18}  {:>14}\n", "", "A − B", "95 %",
+                                 "p (Welch)", "g", "95 % of g", "tests 80/90 %");
+  std::map<std::string, std::string> reasons;
+  if (by_cycle.welch) {
+    text += fmt::format("{:<15}{:>10}  {:>22}  {:>9}{}\n", "S−K by cycle",
+                        number(by_cycle.welch->difference, kDeltaMuDecimals),
+                        interval(by_cycle.welch->interval, kDeltaMuDecimals), p_text(by_cycle.welch->p),
+                        by_cycle.welch->p < analysis::kSignificance ? "  *" : "");
+  } else {
+    text += fmt::format("{:<15}{:>10}\n", "S−K by cycle", kAbsent);
+    reasons[by_cycle.reason] = "S−K by cycle";
+  }
+  for (std::size_t q = 0; q < analysis::kQuantityCount; ++q) {
+    const Quantity& quantity = analysis::quantities()[q];
+    const analysis::Comparison& own = comparisons[q];
+    const std::string title = quantity.unit == "1" ? std::string{quantity.title}
+                                                   : fmt::format("{} ({})", quantity.title, quantity.unit);
+    if (!own.welch) {
+      text += fmt::format("{:<15}{:>10}\n", title, kAbsent);
+      std::string& titles = reasons[own.reason];
+      titles += fmt::format("{}{}", titles.empty() ? "" : ", ", quantity.title);
+      continue;
+    }
+    text += fmt::format("{:<15}{:>10}  {:>22}  {:>9}  {:>8.2f}  {:>18}  {:>14}{}\n", title,
+                        number(own.welch->difference, quantity.decimals),
+                        interval(own.welch->interval, quantity.decimals), p_text(own.welch->p), own.effect->g,
+                        interval(own.effect->interval, 1),
+                        fmt::format("{} / {}", needed_text(own.needed->for_80_percent),
+                                    needed_text(own.needed->for_90_percent)),
+                        own.welch->p < analysis::kSignificance ? "  *" : "");
+  }
+  for (const auto& [reason, titles] : reasons)
+    text += fmt::format("{}  no {}: {}\n", kAbsent, titles, base::printable(reason));
+  return text;
+}
+
+}  // namespace
+
+std::string report_text(const Material& material) {
+  std::string text = tests_table(material) + "method: " + methods_line(material) + "\n";
+  text += "\nCoefficient against speed (Fig. 1): mean ± half of its 95 % interval\n" + figure_header(false);
+  for (const SpeedGroup& group : material.groups) {
+    text += figure_line(speed_text(group.pull_speed_m_per_s), "", group);
+  }
+  for (const SpeedGroup& group : material.groups) {
+    text +=
+        fmt::format("\n{}, {}\n", speed_text(group.pull_speed_m_per_s), count_of_tests(group.tests.size()));
+    text += by_cycle_line(group.by_cycle) + replicates_table(material, group);
+  }
+  return text + limits_lines(material);
+}
+
+std::string comparison_text(const Material& a, const Material& b, const MaterialComparison& comparison) {
+  std::string text =
+      fmt::format("A: {}\n{}method: {}\n\nB: {}\n{}method: {}\n", base::printable(a.label), tests_table(a),
+                  methods_line(a), base::printable(b.label), tests_table(b), methods_line(b));
+  text += "\nCoefficient against speed (Fig. 1): mean ± half of its 95 % interval\n" + figure_header(true);
+  for (const analysis::SpeedPair& pair : comparison.pairs) {
+    std::string speed = speed_text(pair.pull_speed_m_per_s);
+    if (pair.a) text += figure_line(std::exchange(speed, ""), "A", a.groups[*pair.a]);
+    if (pair.b) text += figure_line(speed, "B", b.groups[*pair.b]);
+  }
+  for (std::size_t i = 0; i < comparison.pairs.size(); ++i) {
+    const analysis::SpeedPair& pair = comparison.pairs[i];
+    text +=
+        fmt::format("\n{}: A − B (* differs at 5 %)\n", speed_text(comparison.pairs[i].pull_speed_m_per_s));
+    if (pair.a) text += "A: " + by_cycle_line(a.groups[*pair.a].by_cycle);
+    if (pair.b) text += "B: " + by_cycle_line(b.groups[*pair.b].by_cycle);
+    text += comparison_table(comparison.by_cycle[i], comparison.comparisons[i]) +
+            regime_line(comparison.regimes[i]);
+  }
+  std::string combined;
+  for (std::size_t q = 0; q < analysis::kQuantityCount; ++q) {
+    if (!comparison.combined[q]) continue;
+    combined += fmt::format("{}{} {}", combined.empty() ? "" : ", ", analysis::quantities()[q].title,
+                            p_text(comparison.combined[q]->p));
+  }
+  if (!combined.empty()) text += "\nall speeds together, p (Fisher): " + combined + "\n";
+  return text;
+}
+
+}  // namespace stickslip::report

@@ -1,0 +1,165 @@
+#include "report/test_report.hpp"
+
+#include <map>
+#include <utility>
+
+#include "report/trace_json.hpp"
+#include <nlohmann/json.hpp>
+
+#include "core/analysis/kept.hpp"
+#include "core/base/wording.hpp"
+#include "core/model/method.hpp"
+#include "core/record/method_text.hpp"
+#include "core/record/read_apart.hpp"
+#include "daemon/types/batch_journal.hpp"
+
+namespace stickslip::report {
+
+namespace {
+
+/// What the journals beside records say; each is read once.
+class Voidings {
+ public:
+  base::Result<std::optional<daemon::Voiding>> of(const std::filesystem::path& file) {
+    const std::optional<std::filesystem::path> folder = daemon::journal_folder_of(file);
+    if (!folder) return std::optional<daemon::Voiding>{};
+    const auto [book, is_new] = books_.try_emplace(*folder);
+    if (is_new) {
+      const auto read = daemon::BatchJournal{*folder}.read_on(book->second);
+      if (!read) return tl::unexpected(read.error());
+    }
+    const daemon::Voiding* const voided = book->second.voided(daemon::name_in_journal(*folder, file));
+    return voided == nullptr ? std::optional<daemon::Voiding>{} : *voided;
+  }
+
+ private:
+  std::map<std::filesystem::path, daemon::BatchBook> books_;
+};
+
+/// "20261122T180301Z (liner 42), …", the latest first.
+std::string names_of(const daemon::BatchBook& book) {
+  std::string text;
+  for (auto batch = book.batches().rbegin(); batch != book.batches().rend(); ++batch)
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", batch->id, batch->plan.sample.name);
+  return text.empty() ? "none" : base::one_line(text, 400);
+}
+
+}  // namespace
+
+base::Result<Material> read_material(std::string label, std::span<const std::string> files,
+                                     bool with_traces) {
+  Material material;
+  material.label = std::move(label);
+  Voidings voidings;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const std::string& file = files[i];
+    auto voided = voidings.of(file);
+    if (!voided) return tl::unexpected(voided.error());
+    if (*voided) {
+      material.voided.push_back({file, **std::move(voided)});
+      continue;
+    }
+    base::Result<record::Record> record =
+        record::read_record_apart(file, i + 1 < files.size() ? files[i + 1] : std::string{});
+    if (!record) return tl::unexpected(record.error());
+    const record::TesterFacts& tester = record->header.tester;
+    ReportedTest test;
+    test.file = file;
+    test.title = record->header.title;
+    test.method = record->header.process.method;
+    // A method in another form is shown as it stands; nothing can be compared with it.
+    if (const base::Result<model::Method> method = record::method_from_text(test.method)) {
+      test.departures = model::departures(*method, tester.sled_mass_kg, tester.pull_speed_m_per_s);
+    }
+    if (with_traces) {
+      const base::Result<nlohmann::ordered_json> trace = trace_json(*record);
+      if (!trace) {
+        return tl::unexpected(
+            base::Error{trace.error().kind, fmt::format("{}: {}", file, trace.error().message)});
+      }
+      test.trace = trace->dump();
+    }
+    test.truth = std::move(record->end->truth);
+    const analysis::Kept kept =
+        analysis::kept_from_text(record->header.process.kept).value_or(analysis::Kept{});
+    material.measured.push_back({tester.pull_speed_m_per_s, std::move(record->end->results),
+                                 analysis::slip_sums(record->cycles, kept.first_slip)});
+    material.tests.push_back(std::move(test));
+  }
+  if (material.tests.empty() && !material.voided.empty()) {
+    return base::usage_error("{}: is void ({}), and so is all that was named; there is nothing to report",
+                             material.voided.front().file, material.voided.front().voiding.reason);
+  }
+  material.groups = analysis::group_by_speed(material.measured);
+  return material;
+}
+
+base::Result<Material> read_batch(std::string label, const std::string& id_or_name,
+                                  const std::filesystem::path& folder, bool with_traces) {
+  daemon::BatchBook book;
+  daemon::BatchJournal journal{folder};
+  if (const auto read = journal.read_on(book); !read) return tl::unexpected(read.error());
+  const daemon::Batch* const batch = book.find(id_or_name);
+  if (batch == nullptr) {
+    return base::usage_error("{}: has no batch \"{}\"; it has {}", journal.path().string(),
+                             base::one_line(id_or_name), names_of(book));
+  }
+  std::vector<std::string> files;
+  for (const daemon::BatchTest& test : batch->tests) files.push_back((folder / test.record).string());
+  if (files.empty()) return base::usage_error("batch {} has no test yet", batch->id);
+  base::Result<Material> material = read_material(std::move(label), files, with_traces);
+  if (!material) return material;
+  for (const auto& [quantity, limits] : batch->plan.limits)
+    material->limits.push_back(daemon::judged(quantity, limits, material->measured));
+  return material;
+}
+
+namespace {
+
+RegimeCounts regime_counts(const Material& material, const std::optional<std::size_t>& group) {
+  RegimeCounts counts;
+  if (!group) return counts;
+  for (const std::size_t test : material.groups[*group].tests) {
+    switch (material.measured[test].results.regime) {
+      case model::Regime::kStickSlip:
+      case model::Regime::kMixed:
+        ++counts.sticking;
+        break;
+      case model::Regime::kRingDown:
+      case model::Regime::kSteadySliding:
+        ++counts.sliding;
+        break;
+      case model::Regime::kUndecided:
+        break;
+    }
+  }
+  return counts;
+}
+
+}  // namespace
+
+MaterialComparison compare_materials(const Material& a, const Material& b) {
+  MaterialComparison result;
+  result.pairs = analysis::pair_speeds(a.groups, b.groups);
+  std::array<std::vector<double>, analysis::kQuantityCount> p;
+  for (const analysis::SpeedPair& pair : result.pairs) {
+    RegimeComparison regime{regime_counts(a, pair.a), regime_counts(b, pair.b), std::nullopt};
+    if (regime.a.sticking + regime.a.sliding > 0 && regime.b.sticking + regime.b.sliding > 0) {
+      regime.p = analysis::exact_p(regime.a.sticking, regime.a.sliding, regime.b.sticking, regime.b.sliding);
+    }
+    result.regimes.push_back(regime);
+    result.by_cycle.push_back(analysis::compare_pair_by_cycle(a.groups, b.groups, pair));
+    auto& comparisons = result.comparisons.emplace_back();
+    for (std::size_t q = 0; q < analysis::kQuantityCount; ++q) {
+      comparisons[q] = analysis::compare_pair(a.groups, b.groups, pair, q);
+      if (comparisons[q].welch) p[q].push_back(comparisons[q].welch->p);
+    }
+  }
+  for (std::size_t q = 0; q < analysis::kQuantityCount; ++q) {
+    if (p[q].size() < 2) continue;
+    result.combined[q] = {analysis::combined_p(p[q]), static_cast<int>(p[q].size())};
+  }
+  return result;
+}
+
+}  // namespace stickslip::report
