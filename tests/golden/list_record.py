@@ -47,18 +47,18 @@ def listing_of(data):
     return entry
 
 
-def main():
+def listing(path):
     datasets = {}
 
     def visit(name, item):
         if isinstance(item, h5py.Dataset):
             datasets[name] = listing_of(item)
 
-    with h5py.File(sys.argv[1]) as record:
+    with h5py.File(path) as record:
         record.visititems(visit)
-        root = {key: plain(value) for key, value in record.attrs.items()}
-    json.dump({"root": root, "datasets": datasets}, sys.stdout, indent=1, ensure_ascii=False)
+        return {"root": {key: plain(value) for key, value in record.attrs.items()}, "datasets": datasets}
+
+
+if __name__ == "__main__":
+    json.dump(listing(sys.argv[1]), sys.stdout, indent=1, ensure_ascii=False)
     print()
-
-
-main()

@@ -40,8 +40,9 @@ class UnixConnection(http.client.HTTPConnection):
 
 class RunningDaemon:
     def __init__(self, test, build, source, config="", speed=20, board=None, repeats=0, patient=False, prepare=lambda folder: None, program=None, records="records",
-                 environment=None):
-        """records: the folder of records, below that of the daemon. environment: more variables for it."""
+                 environment=None, whole=None):
+        """records: the folder of records, below that of the daemon. environment: more variables for it. whole: its configuration, which
+        names the socket "c.sock", in the place of all of these."""
         self.cli = build / "bin" / "stickslip"
         temporary = tempfile.TemporaryDirectory(prefix="stickslip-")
         test.addCleanup(temporary.cleanup)
@@ -61,7 +62,7 @@ scenes = ["{scene}"]
 repeats = {repeats}
 """
         file = self.folder / "d.toml"
-        file.write_text(f'{board}\n[record]\nfolder = "{records}"\n[control]\nsocket = "c.sock"\n{config}', encoding="utf-8")
+        file.write_text(whole or f'{board}\n[record]\nfolder = "{records}"\n[control]\nsocket = "c.sock"\n{config}', encoding="utf-8")
         self.environment = environment or {}
         self.command = [str(program or build / "bin" / "stickslipd"), "--config", str(file)]
         test.addCleanup(self.end)
