@@ -1,5 +1,6 @@
 /// \file
-/// The largest values that settings of a paper friction tester may have; what is larger is a mistake in a unit.
+/// The largest values that settings of a paper friction tester may have; what is larger is a mistake in a
+/// unit.
 #pragma once
 
 namespace stickslip::model {
