@@ -19,7 +19,7 @@ class EstimatorLimits : public testing::TestWithParam<test::LimitCase> {};
 
 TEST_P(EstimatorLimits, AreWithinATenthOfTheBound) {
   // What is promised of infinitely many seeds, beyond which a sample of this size is with probability 1e-4
-  // (sample_limits.hpp). With 300 seeds an rms may be 17 % above its promise, a variance 36 %, and a mean
+  // (sample_limits.hpp). With 300 seeds an rms may be 15 % above its promise, a variance 33 %, and a mean
   // 0.23 standard errors off.
   const double n = kSeeds;
   const test::LimitReport report = test::LimitScene{}.run(GetParam(), kSeeds);
