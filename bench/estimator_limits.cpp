@@ -1,6 +1,6 @@
 // How close the estimators come to the Cramér–Rao bound, by simulation through the whole analysis:
 //
-//     estimator_limits [SEEDS]      # default 4000
+//     estimator_limits [SEEDS [FIRST]]      # 4000 seeds from 1 on
 //
 // The table of docs/detector.md.
 
@@ -14,8 +14,9 @@
 int main(int argc, char** argv) {
   using namespace stickslip;
   const int seeds = argc > 1 ? std::atoi(argv[1]) : 4000;
-  if (seeds < 1) {
-    fmt::print(stderr, "usage: {} [SEEDS], a number from 1\n", argv[0]);
+  const int first = argc > 2 ? std::atoi(argv[2]) : 1;
+  if (seeds < 1 || first < 1) {
+    fmt::print(stderr, "usage: {} [SEEDS [FIRST]], numbers from 1\n", argv[0]);
     return 2;
   }
   const test::LimitScene scene;
@@ -33,7 +34,7 @@ int main(int argc, char** argv) {
              "rms/bound", "z mean", "z var.", "in 95 %");
   for (const test::LimitCase& which : test::kLimitCases) {
     const auto begin = std::chrono::steady_clock::now();
-    const test::LimitReport report = scene.run(which, seeds);
+    const test::LimitReport report = scene.run(which, seeds, first);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     for (const test::LimitTally& tally : report.tallies) {
       fmt::print("{:<48}{:<14}{:>10.4f}{:>11.3f}{:>10.3f}{:>10.3f}{:>9.1f} %\n", which.name(), tally.what,

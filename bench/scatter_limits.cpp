@@ -1,7 +1,7 @@
 // How well S − K is known of paper whose slips differ by 30 % (docs/detector.md, "Slips that differ"): single
 // tests, the slip that escapes, and replicates pooled by cycle, at three speeds.
 //
-//     scatter_limits [PULLS]      # 1000 pulls of 2 s at each speed, seeds 1 to PULLS
+//     scatter_limits [PULLS [FIRST]]      # 1000 pulls of 2 s at each speed, seeds from 1 on
 
 #include <fmt/format.h>
 
@@ -23,8 +23,8 @@ int number(const char* text) {
   int value = 0;
   const std::string_view whole{text};
   const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), value);
-  if (error == std::errc{} && end == whole.data() + whole.size() && value > 1) return value;
-  fmt::print(stderr, "scatter_limits: '{}' is no whole number above 1\n", whole);
+  if (error == std::errc{} && end == whole.data() + whole.size() && value > 0) return value;
+  fmt::print(stderr, "scatter_limits: '{}' is no whole number above 0\n", whole);
   std::exit(2);
 }
 
@@ -54,6 +54,7 @@ void print(double speed_in_per_min, const ScatterTrials& trials) {
 
 int main(int argc, char** argv) {
   const int pulls = argc > 1 ? number(argv[1]) : 1000;
+  const int first = argc > 2 ? number(argv[2]) : 1;
   fmt::print(
       "{} pulls of {} s a speed, S - K 0.05 with {:.0f} % log-normal scatter, first slips left out; biases "
       "with "
@@ -65,7 +66,7 @@ int main(int argc, char** argv) {
       "without S - K |\n|---|---|---|---|---|---|---|---|---|\n",
       pulls, ScatterTrials::kPull_s, 100.0 * ScatterTrials::kCv);
   for (const double speed_in_per_min : {3.0, 6.0, 12.0}) {
-    print(speed_in_per_min, ScatterTrials{speed_in_per_min, pulls});
+    print(speed_in_per_min, ScatterTrials{speed_in_per_min, pulls, first});
   }
   return 0;
 }

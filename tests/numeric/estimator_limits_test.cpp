@@ -8,16 +8,19 @@
 #include <cmath>
 #include <cstdio>
 
+#include "tests/support/sample_limits.hpp"
+
 namespace stickslip {
 namespace {
 
-constexpr int kSeeds = 400;
+constexpr int kSeeds = 300;
 
 class EstimatorLimits : public testing::TestWithParam<test::LimitCase> {};
 
 TEST_P(EstimatorLimits, AreWithinATenthOfTheBound) {
-  // Of N seeds an rms scatters by 1/√(2N) of itself, a variance by √(2/N), a mean by 1/√N, a part p by
-  // √(p(1 − p)/N). What is promised of infinitely many seeds, and three of these.
+  // What is promised of infinitely many seeds, beyond which a sample of this size is with probability 1e-4
+  // (sample_limits.hpp). With 300 seeds an rms may be 15 % above its promise, a variance 33 %, and a mean
+  // 0.23 standard errors off.
   const double n = kSeeds;
   const test::LimitReport report = test::LimitScene{}.run(GetParam(), kSeeds);
   EXPECT_EQ(report.without_result, 0);
@@ -25,11 +28,15 @@ TEST_P(EstimatorLimits, AreWithinATenthOfTheBound) {
     std::printf("%-14s bound %-9.3g rms/bound %.3f; z mean %6.3f variance %.3f; in 95 %%: %.1f %%\n",
                 tally.what, tally.bound, tally.rms_over_bound(), tally.normalised_mean(),
                 tally.normalised_variance(), 100.0 * tally.coverage());
-    EXPECT_LT(tally.rms_over_bound(), 1.1 * (1.0 + 3.0 / std::sqrt(2.0 * n))) << tally.what;
-    EXPECT_GT(tally.rms_over_bound(), 1.0 - 3.0 / std::sqrt(2.0 * n)) << tally.what << ": the bound is wrong";
-    EXPECT_NEAR(tally.normalised_mean(), 0.0, 3.0 / std::sqrt(n)) << tally.what;
-    EXPECT_NEAR(tally.normalised_variance(), 1.0, 0.1 + 3.0 * std::sqrt(2.0 / n)) << tally.what;
-    EXPECT_NEAR(tally.coverage(), 0.95, 0.01 + 3.0 * std::sqrt(0.95 * 0.05 / n)) << tally.what;
+    EXPECT_LT(tally.rms_over_bound(), 1.1 * std::sqrt(test::highest_mean_square(n))) << tally.what;
+    EXPECT_GT(tally.rms_over_bound(), std::sqrt(test::lowest_mean_square(n)))
+        << tally.what << ": the bound is wrong";
+    const double variance = tally.normalised_variance();
+    EXPECT_LT(std::abs(tally.normalised_mean()), test::farthest_mean(n) * std::sqrt(variance)) << tally.what;
+    EXPECT_LT(variance, 1.1 * test::highest_mean_square(n - 1.0)) << tally.what;
+    EXPECT_GT(variance, 0.9 * test::lowest_mean_square(n - 1.0)) << tally.what;
+    EXPECT_LE(tally.covered, test::highest_count(n, 0.96)) << tally.what;
+    EXPECT_GE(tally.covered, test::lowest_count(n, 0.94)) << tally.what;
   }
 }
 

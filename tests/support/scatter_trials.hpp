@@ -46,12 +46,12 @@ struct ScatterTrials {
     return *scene;
   }
 
-  /// \param seeds  1 to seeds, one test each.
-  ScatterTrials(double speed_in_per_min, int seeds) {
+  /// \param seeds  first_seed and those after it, one test each.
+  ScatterTrials(double speed_in_per_min, int seeds, int first_seed = 1) {
     const sim::Scene scene = scene_at(speed_in_per_min);
     sim::SceneRun run{scene, scene.scan_rate_Hz};
     const auto pull_end = static_cast<base::ScanIndex>((0.5 + kPull_s) * scene.scan_rate_Hz);
-    for (int seed = 1; seed <= seeds; ++seed) {
+    for (int seed = first_seed; seed < first_seed + seeds; ++seed) {
       run.restart(static_cast<std::uint64_t>(seed));
       analysis::TestAnalysis analysis{analysis::AnalysisSettings{}};
       base::ScanIndex index = 0;
