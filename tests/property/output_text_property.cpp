@@ -11,6 +11,7 @@
 
 #include "io/export_csv.hpp"
 #include "io/verify.hpp"
+#include "report/plot/script.hpp"
 #include "report/report_json.hpp"
 #include "report/report_page.hpp"
 #include "report/report_text.hpp"
@@ -205,6 +206,29 @@ RC_GTEST_PROP(OutputTextProperty, TablesOfScansAndCycles, ()) {
     const std::string csv = without_returns(table(named));
     expect_same_lines(csv, without_returns(table(plain)));
     expect_no_formula(csv);
+  }
+}
+
+plot::Figure named_figure(bool is_hostile) {
+  plot::Figure figure;
+  figure.title = next(is_hostile);
+  figure.x.label = next(is_hostile);
+  figure.notes = {next(is_hostile), next(is_hostile)};
+  plot::Panel& panel = figure.panels.emplace_back();
+  panel.y.label = next(is_hostile);
+  panel.curves = {{.label = next(is_hostile), .x = {0.0, 1.0}, .y = {0.3, 0.35}}};
+  panel.markers = {{0.5, 0.3, next(is_hostile)}};
+  return figure;
+}
+
+// gnuplot draws what stands between single quotes literally; a quote among it is written twice.
+RC_GTEST_PROP(OutputTextProperty, PicturesAsGnuplotIsToldThem, ()) {
+  const std::string script = plot::gnuplot_script(named_figure(true));
+  expect_same_lines(script, plot::gnuplot_script(named_figure(false)));
+  for (std::size_t begin = 0; begin < script.size(); begin = script.find('\n', begin) + 1) {
+    const std::string line = script.substr(begin, script.find('\n', begin) - begin);
+    RC_ASSERT(std::count(line.begin(), line.end(), '\'') % 2 == 0);
+    if (script.find('\n', begin) == script.npos) break;
   }
 }
 
