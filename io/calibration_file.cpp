@@ -74,7 +74,7 @@ base::Result<StoredCalibration> calibration_of(base::Settings settings) {
   return result;
 }
 
-/// None where there is no folder.
+/// The *.toml files of a folder; none if it does not exist.
 std::vector<std::filesystem::path> calibrations_in(const std::filesystem::path& folder) {
   std::error_code error;
   std::vector<std::filesystem::path> files;
@@ -84,7 +84,7 @@ std::vector<std::filesystem::path> calibrations_in(const std::filesystem::path& 
   return files;
 }
 
-/// "20261122T101500Z" of an ISO time in UTC.
+/// Turns an ISO 8601 time in UTC into "20261122T101500Z".
 std::string file_stem(const std::string& date) {
   std::string stem;
   for (const char c : date.substr(0, 19)) {

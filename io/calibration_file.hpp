@@ -1,6 +1,6 @@
 /// \file
-/// The history of a load cell's calibrations: one dated file each, beside each other in a folder, never
-/// changed afterwards. `stickslip calibrate` writes them, the daemon takes the latest.
+/// Calibration files of a load cell. A folder holds one TOML file for each calibration, named by its date and
+/// never changed. `stickslip calibrate` and the daemon write them; the daemon uses the latest.
 #pragma once
 
 #include <cstdint>
@@ -15,52 +15,57 @@
 
 namespace stickslip::io {
 
-/// What goes with the numbers.
+/// What the user states about a calibration, beside the readings.
 struct CalibrationPaper {
-  std::string certificate;    ///< Of the weights.
-  double valid_days = 365.0;  ///< 0: for ever.
+  std::string certificate;    ///< Of the weights, as free text; may be empty.
+  double valid_days = 365.0;  ///< From its date until it expires; 0: it never does.
 };
+/// Largest CalibrationPaper::valid_days that is accepted.
 inline constexpr double kLongestValid_days = 36'500.0;
 
-/// A load cell with where its numbers come from.
+/// A load cell and the origin of its numbers.
 struct StoredCalibration {
   daq::LoadCell load_cell;
   record::CalibrationFacts facts;
 };
 
-/// \param result  with a load cell (contract). \param date,expires  ISO 8601.
+/// Joins a fit with its date and its papers. \param result  must have a load cell (contract).
+/// \param date,expires  ISO 8601, UTC; an empty `expires`: never.
 [[nodiscard]] StoredCalibration stored_calibration(const daq::WeighedCalibration& result, std::string date,
                                                    std::string expires, std::string certificate);
 
-/// TOML with a comment on each key; numbers with all their digits.
+/// The calibration as TOML, with a comment on each key. Numbers have all their digits.
 [[nodiscard]] std::string calibration_text(const StoredCalibration& calibration);
-/// \param name  stands for the file in messages. Errors: kUsage with line.
+/// Reads what calibration_text() wrote. \param name  stands for the file in messages. Errors: kUsage, with
+/// the line.
 [[nodiscard]] base::Result<StoredCalibration> parse_calibration(std::string_view text, std::string_view name);
 
-/// The file, or the latest (by its date) of the *.toml files of a folder. Errors: kUsage.
+/// Reads a calibration file or, if `path` is a folder, all its *.toml files; returns the one with the latest
+/// date. Errors: kUsage.
 [[nodiscard]] base::Result<StoredCalibration> load_calibration(const std::filesystem::path& path);
 
-/// The folder is there and a calibration in it.
+/// True if the folder exists and holds a *.toml file.
 [[nodiscard]] bool holds_calibration(const std::filesystem::path& folder);
 
-/// FOLDER/20261122T101500Z.toml; the folder is made if absent. Never over another one: kUsage.
+/// Writes the calibration to a new file, FOLDER/20261122T101500Z.toml by its date, and returns the path.
+/// Makes the folder if it is absent. Errors: kUsage if the file exists, kFailure if it cannot be written.
 [[nodiscard]] base::Result<std::filesystem::path> keep_calibration(const std::filesystem::path& folder,
                                                                    const StoredCalibration& calibration);
 
 struct KeptCalibration {
   StoredCalibration stored;
   std::filesystem::path file;
-  std::optional<StoredCalibration> before;  ///< The latest of the folder until now.
+  std::optional<StoredCalibration> before;  ///< The folder's latest one before it, if any.
 };
 
-/// What was weighed, with its papers, as the newest of a folder. \param result  with a load cell (contract).
-/// \param now_ns  its date, since 1970. Errors: as load_calibration() and keep_calibration().
+/// Stores a new calibration, dated `now_ns`, in a folder. \param result  must have a load cell (contract).
+/// \param now_ns  nanoseconds since 1970, UTC. Errors: as load_calibration() and keep_calibration().
 [[nodiscard]] base::Result<KeptCalibration> keep_result(const daq::WeighedCalibration& result,
                                                         const CalibrationPaper& paper,
                                                         const std::filesystem::path& folder,
                                                         std::int64_t now_ns);
 
-/// Whether it is over at that time. \param now  ISO 8601 as record::iso_time().
+/// True if the calibration has expired at `now`. \param now  ISO 8601, as record::iso_time() writes it.
 [[nodiscard]] bool expired(const record::CalibrationFacts& facts, std::string_view now);
 
 }  // namespace stickslip::io

@@ -20,8 +20,8 @@ extern "C" {  // glibc 2.36 leaves it out.
 namespace stickslip::io {
 namespace {
 
-/// Files in memory stand at the child's ends: none of them can fill up while the other side waits, as pipes
-/// can.
+/// A file in memory. The child's input and output are such files, because pipes can fill up and deadlock both
+/// sides.
 record::Descriptor memory_file(const char* name) {
   return record::Descriptor{memfd_create(name, MFD_CLOEXEC)};
 }
@@ -48,8 +48,8 @@ bool read_all(int file, std::string& text) {
   }
 }
 
-/// What stands at the child's descriptors 0, 1 and 2. Nothing else of this process stays open in it: Asio's
-/// sockets are not closed on exec.
+/// Sets the child's descriptors 0, 1 and 2 and closes all others, because Asio's sockets are not closed on
+/// exec.
 class Redirections {
  public:
   Redirections(int input, int output, int errors) {
@@ -69,7 +69,8 @@ class Redirections {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// The daemon ignores SIGXFSZ, and what is ignored stays so in a child: it would go on past its limit.
+/// Restores the default action of SIGXFSZ in the child. The daemon ignores it and the child would inherit
+/// that.
 class LimitsEnd {
  public:
   LimitsEnd() {
@@ -90,8 +91,8 @@ class LimitsEnd {
   posix_spawnattr_t attributes_{};
 };
 
-/// From outside: posix_spawn knows no limits. What a child does before is little, except where this process
-/// is kept from its processor for a while: wait() looks at what it wrote.
+/// Sets the limits of a running child, because posix_spawn cannot. The child may exceed output_size before
+/// that, so wait() checks the size again.
 void limit(pid_t child, const ChildLimits& limits) {
   const rlimit no_core{0, 0};
   ::prlimit(child, RLIMIT_CORE, &no_core, nullptr);

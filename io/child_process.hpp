@@ -1,5 +1,5 @@
 /// \file
-/// A program that is asked one thing and answers it.
+/// Runs a program as a child process: input on its standard input, answer from its standard output.
 #pragma once
 
 #include <sys/types.h>
@@ -17,39 +17,40 @@
 namespace stickslip::io {
 
 struct ChildAnswer {
-  int status = 0;      ///< Its exit status; 128 and the signal's number if a signal ended it.
-  std::string output;  ///< What it wrote to its standard output,
-  std::string errors;  ///< and to its standard error.
+  int status = 0;      ///< Its exit status; 128 plus the signal's number if a signal ended it.
+  std::string output;  ///< What it wrote to its standard output.
+  std::string errors;  ///< What it wrote to its standard error.
 };
 
-/// What a child may take. It holds even where nobody waits for the child any more.
+/// Limits of a child. The kernel enforces them, also after this process has ended.
 struct ChildLimits {
   std::chrono::seconds processor_time{0};  ///< SIGXCPU ends a child that takes more; 0: no limit.
-  std::size_t output_size = 0;             ///< Bytes; SIGXFSZ ends a child that writes more; 0: no limit.
-  int niceness = 0;                        ///< 0 … 19, beside this process.
+  std::size_t output_size = 0;  ///< Bytes of one file; SIGXFSZ ends a child that writes more; 0: no limit.
+  int niceness = 0;             ///< 0 … 19, added to this process's.
 };
 
-/// A program that runs. Thread-bound.
+/// A running child process. Thread-bound.
 class ChildProcess {
  public:
-  /// Starts a program without the user's environment and gives it the input.
+  /// Starts a program without the user's environment; `input` is its standard input.
   /// \param program  a path, or a name that is looked for in PATH. \return nothing if there is no such
   /// program. Errors: kFailure if it cannot be started.
   [[nodiscard]] static base::Result<std::optional<ChildProcess>> start(const std::string& program,
                                                                        std::vector<std::string> arguments,
                                                                        std::string_view input,
                                                                        const ChildLimits& limits = {});
-  /// Ends it where nobody has waited for it.
+  /// Kills the child (SIGKILL) unless wait() has returned.
   ~ChildProcess();
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&&) = delete;
 
-  /// Another descriptor of the process (pidfd_open(2)): readable once it has ended. Not open if the system
-  /// refuses.
+  /// A new descriptor of the process (pidfd_open(2)), which becomes readable when the child ends. It is not
+  /// open if the system refuses.
   [[nodiscard]] record::Descriptor ended() const;
-  /// By SIGKILL. wait() tells so.
+  /// Kills the child (SIGKILL). wait() then returns the status 128 + SIGKILL.
   void end() noexcept;
-  /// Waits for its end; once. Errors: kFailure if it cannot be waited for or read.
+  /// Blocks until the child ends and returns its answer. Call it once. Errors: kFailure if waiting or reading
+  /// fails.
   [[nodiscard]] base::Result<ChildAnswer> wait();
 
  private:
@@ -57,15 +58,15 @@ class ChildProcess {
                std::size_t output_limit);
 
   std::string program_;
-  pid_t child_;  ///< 0: it has been waited for.
+  pid_t child_;  ///< 0 after wait().
   record::Descriptor output_;
   record::Descriptor errors_;
   std::size_t output_limit_;  ///< 0: none.
 };
 
-/// Starts a program without the user's environment, gives it the input and waits for its end.
-/// \param program  a path, or a name that is looked for in PATH. \return nothing if there is no such program.
-/// Errors: kFailure if it cannot be started, waited for or read.
+/// Starts a program as ChildProcess::start() does and blocks until it ends. \param program  a path, or a name
+/// that is looked for in PATH. \return nothing if there is no such program. Errors: kFailure if it cannot be
+/// started, waited for or read.
 [[nodiscard]] base::Result<std::optional<ChildAnswer>> ask_program(const std::string& program,
                                                                    std::vector<std::string> arguments,
                                                                    std::string_view input);

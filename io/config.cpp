@@ -56,7 +56,7 @@ constexpr std::array<std::pair<std::string_view, DatedFolders>, 3> kDatedFolders
 
 constexpr std::array<std::pair<std::string_view, bool>, 2> kBeginnings{{{"force", true}, {"command", false}}};
 
-/// A typing mistake of a factor of a thousand is refused; every real tester is far inside.
+/// Bounds that catch mistyped values. They lie far beyond real testers.
 constexpr double kFastestScanRate_Hz = 1e6;
 constexpr double kFastestClock = 1e4;
 constexpr double kStrongestGravity_m_per_s2 = 100.0;
@@ -65,7 +65,7 @@ constexpr double kLargestCoefficient = 10.0;
 constexpr double kLongestDwell_s = 3600.0;
 constexpr std::int64_t kMostRepeats = 1'000'000;
 constexpr std::int64_t kHighestFirstScan = std::int64_t{1}
-                                           << 52;  ///< There a double still tells half a scan.
+                                           << 52;  ///< A double still resolves half a scan there.
 constexpr std::int64_t kHighestChannel = 1023;
 constexpr std::int64_t kHighestProcessor = 1023;  ///< CPU_SETSIZE − 1
 
@@ -108,7 +108,7 @@ void read_replay(Settings table, const std::filesystem::path& folder, DaemonConf
   config.board.replay_file = resolved(folder, file);
 }
 
-/// The speed or the position, whichever has a channel.
+/// Reads the settings of the second channel: speed or position.
 std::optional<drivers::SecondInputSettings> read_second(Settings& table) {
   drivers::SecondInputSettings second;
   const base::Limits voltages = base::Limits::between(-kHighestVoltage_V, kHighestVoltage_V);

@@ -1,5 +1,5 @@
 /// \file
-/// What stickslipd is told to do. config/stickslipd.toml documents each key.
+/// The configuration of stickslipd. config/stickslipd.toml documents each key.
 #pragma once
 
 #include <filesystem>
@@ -25,15 +25,15 @@ namespace stickslip::io {
 
 /// What the acquisition thread asks of the kernel.
 struct RealtimeSettings {
-  int priority = 50;             ///< SCHED_FIFO, 1 … 99; 0 does not ask.
-  std::optional<int> processor;  ///< The only one to run on; any if absent.
+  int priority = 50;             ///< Of SCHED_FIFO, 1 … 99; 0: ordinary scheduling.
+  std::optional<int> processor;  ///< Runs on this one only; absent: on any.
   bool lock_memory = true;
 };
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
 
-/// What the file says about the bench; what it does not say is asked of the source of the scans
-/// (a scene and a record know their bench), else model::Tester's and daq::LoadCell's defaults.
+/// What the file says about the bench. An absent value is taken from the source of the scans (a scene and a
+/// record know their bench), else it is the default of model::Tester or daq::LoadCell.
 struct BenchConfig {
   std::optional<double> sled_mass_kg;
   std::optional<double> gravity_m_per_s2;
@@ -42,9 +42,9 @@ struct BenchConfig {
   std::optional<double> load_cell_gain_N_per_V;
   std::optional<double> load_cell_zero_V;
   std::string characterisation;  ///< Text of the file that `stickslip characterise` wrote; empty: none.
-  /// Of `stickslip calibrate`; it has given the load cell above.
+  /// The calibration file that gave the gain and zero above; absent if the configuration gave them.
   std::optional<record::CalibrationFacts> calibration;
-  std::filesystem::path calibration_folder;  ///< Where new ones are kept; empty: nowhere.
+  std::filesystem::path calibration_folder;  ///< Where new calibrations are stored; empty: nowhere.
 
   [[nodiscard]] model::Tester tester(const std::optional<model::Tester>& known) const;
   [[nodiscard]] daq::LoadCell load_cell(const std::optional<daq::LoadCell>& known) const;
@@ -52,12 +52,13 @@ struct BenchConfig {
 
 struct DaemonConfig {
   drivers::BoardConfig board;
-  std::optional<double> clock_steps_every_s;  ///< Of a simulated bench whose date is put right; none: never.
+  /// A simulated bench's date is stepped at this interval, by up to 1 h; absent: never.
+  std::optional<double> clock_steps_every_s;
   double clock_speed = 1.0;  ///< Board time over wall time; for boards that are not hardware.
   RealtimeSettings realtime;
   BenchConfig bench;
   pipeline::SegmenterSettings segmenter;  ///< Its scan rate is the board's.
-  bool begins_by_force = true;            ///< Else each test has to be armed or started.
+  bool begins_by_force = true;            ///< False: each test must be armed or started by command.
   model::Method method;
   record::SampleFacts sample;
   detect::EstimatorTier estimator = detect::EstimatorTier::kFit;
@@ -66,19 +67,19 @@ struct DaemonConfig {
   DatedFolders dated_folders = DatedFolders::kNone;
   bool read_only_records = false;
   std::optional<std::filesystem::path> control_socket;
-  std::string http;                    ///< Address and port of this machine; empty: none.
-  std::filesystem::path token_file;    ///< For http.
-  std::optional<FleetSettings> fleet;  ///< Nothing: no broker.
+  std::string http;                    ///< Address and port on this machine; empty: no TCP port.
+  std::filesystem::path token_file;    ///< File of the token that clients over TCP must send.
+  std::optional<FleetSettings> fleet;  ///< Absent: no broker.
   LogLevel log_level = LogLevel::kInfo;
   bool report_table = false;
-  std::string text;  ///< The file as it was read, for the records.
+  std::string text;  ///< The file's text, stored in each record.
 };
 
-/// Reads and checks a file. Scenes and records named in it are relative to its folder; the record
-/// folder and the control socket to the working directory. Errors: one line (kUsage).
+/// Reads and checks a configuration file. Paths of scenes and records in it are relative to its folder; those
+/// of the record folder and the control socket to the working directory. Errors: kUsage, one line.
 [[nodiscard]] base::Result<DaemonConfig> load_config(const std::filesystem::path& file);
 
-/// The same from settings already parsed. \param folder  of the file.
+/// As load_config(), from parsed settings. \param folder  of the configuration file.
 [[nodiscard]] base::Result<DaemonConfig> read_config(base::Settings settings,
                                                      const std::filesystem::path& folder);
 

@@ -1,5 +1,5 @@
 /// \file
-/// Where records stand.
+/// Folders of records by date, and the search for files in them.
 #pragma once
 
 #include <filesystem>
@@ -9,17 +9,17 @@
 
 namespace stickslip::io {
 
-/// In which folders below the one of the records a file stands, by the date of its start, UTC.
+/// How records are sorted into subfolders of the record folder, by the UTC date at which the test began.
 enum class DatedFolders {
   kNone,
   kMonth,  ///< 2026/11
   kDay,    ///< 2026-11-21
 };
 
-/// Folders below the one of the records in which records stand: years and months, or days.
+/// Depth of the deepest subfolder that holds records: 2 for kMonth (year/month).
 inline constexpr int kDeepestRecordFolder = 2;
 
-/// A folder that cannot be looked into.
+/// A folder that cannot be listed.
 struct UnreadFolder {
   std::filesystem::path folder;
   std::string why;
@@ -27,11 +27,11 @@ struct UnreadFolder {
 
 struct FilesFound {
   std::vector<std::filesystem::path> files;  ///< Sorted.
-  std::vector<UnreadFolder> unread;          ///< There may be more files in these.
+  std::vector<UnreadFolder> unread;          ///< These may hold more files.
 };
 
-/// Files in the folder of the records and in those of years, months and days below it. What is no longer
-/// there is no error; symbolic links to folders are not followed.
+/// Finds files in the record folder and in subfolders down to kDeepestRecordFolder. A folder that does not
+/// exist counts as empty. Symbolic links to folders are not followed, and `lost+found` is skipped.
 [[nodiscard]] FilesFound find_files(const std::filesystem::path& folder,
                                     const std::function<bool(const std::filesystem::path&)>& wanted);
 

@@ -25,7 +25,7 @@ constexpr std::string_view unit(daq::SecondQuantity quantity) noexcept {
   return quantity == daq::SecondQuantity::kPullSpeed ? "m/s" : "m";
 }
 
-/// One fact, on one line whatever is in it.
+/// Writes a fact as one comment line; line feeds in it are escaped.
 void add_fact(std::string& text, std::string_view name, std::string_view value, std::string_view unit = "") {
   if (value.empty()) return;
   text += fmt::format("# {}: {}", name, base::csv_comment(value));
@@ -98,7 +98,7 @@ std::string facts_text(const record::Record& record) {
   return text;
 }
 
-/// The unit as the end of a name: "_s", "_m_per_s", nothing for a ratio.
+/// Suffix of a name for a unit: "_s", "_m_per_s", empty for a ratio.
 std::string unit_suffix(std::string_view unit) {
   if (unit == "1") return {};
   std::string suffix{"_"};
@@ -121,7 +121,7 @@ std::string second_columns(const daq::SecondChannel& channel) {
   return fmt::format(",{0}_counts,{0}{1}", name, unit_suffix(unit(channel.quantity)));
 }
 
-/// A code that did not arrive leaves both fields empty.
+/// The fields of the second channel. Both are empty if the code did not arrive.
 void add_second(std::string& text, const daq::SecondChannel& channel, std::int32_t code) {
   text += code == daq::SecondChannel::kNoCode ? "," : fmt::format(",{}", code);
   text += "," + field_text(channel.value(code));

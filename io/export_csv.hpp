@@ -1,6 +1,5 @@
 /// \file
-/// A record as tables of text, for spreadsheets. Numbers have all their digits: read back they are the same
-/// to the last bit.
+/// A record as CSV, for spreadsheets. Numbers read back to the same bits.
 #pragma once
 
 #include <string>
@@ -9,14 +8,15 @@
 
 namespace stickslip::io {
 
-/// Lines that begin with # and tell the facts, a header whose names end in their units, one row for each scan
-/// that arrived: time_s, scan, the raw value, what follows from it (voltage_V, force_N, coefficient, as far
-/// as known), codes and values of a second channel (pull_speed_counts, pull_speed_m_per_s or
-/// sled_position_counts, sled_position_m; empty where none came), spike and saturated (0 or 1). What is
-/// missing is missing.
+/// The scans as CSV: comment lines (#) with the facts of the record, a header whose names end in their units,
+/// and one row for each scan that arrived. The columns are time_s, scan, the raw value, what follows from it
+/// as far as it is known (voltage_V, force_N, coefficient), codes and values of a second channel
+/// (pull_speed_counts, pull_speed_m_per_s or sled_position_counts, sled_position_m; empty where no code
+/// came), spike and saturated (0 or 1). Scans in gaps have no row.
 [[nodiscard]] std::string scans_csv(const record::Record& record);
 
-/// The same of the cycles; a number that is not known is an empty field.
+/// The cycles as CSV, with the same comment lines and one row for each cycle. An unknown number is an empty
+/// field.
 [[nodiscard]] std::string cycles_csv(const record::Record& record);
 
 }  // namespace stickslip::io

@@ -13,7 +13,7 @@
 namespace stickslip::io {
 namespace {
 
-/// IANA's ports of mqtt and secure-mqtt.
+/// Default ports, IANA's of mqtt and secure-mqtt.
 constexpr std::uint16_t kPlainPort = 1883;
 constexpr std::uint16_t kTlsPort = 8883;
 
@@ -31,7 +31,8 @@ bool is_word(std::string_view text) {
   });
 }
 
-/// Words between single slashes: no wildcard, no level that is empty, none that the broker keeps for itself.
+/// True for a valid topic: levels of letters, digits, '-', '_' and '.' between single slashes. This excludes
+/// wildcards and the broker's own topics ($…).
 bool is_topic(std::string_view text) {
   while (true) {
     const std::size_t slash = text.find('/');

@@ -1,5 +1,6 @@
 /// \file
-/// JSON as text: valid UTF-8 whose strings deceive no eye. The same JSON reads back.
+/// JSON as text in valid UTF-8, safe to show on a terminal: control and other misleading characters are
+/// escaped. The text reads back as the same JSON.
 #pragma once
 
 #include <string>
@@ -10,13 +11,13 @@
 
 namespace stickslip::io {
 
-/// On one line. Bytes of a string that are no UTF-8 are replaced by U+FFFD; what base::printable() would
-/// show by its number is escaped.
+/// The JSON on one line. U+FFFD replaces bytes that are not UTF-8. Characters that base::printable() would
+/// show by their number are escaped.
 [[nodiscard]] inline std::string json_text(const nlohmann::ordered_json& json) {
   return base::printable_lines(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-/// On lines indented by two blanks, with a line feed at the end: for people and files.
+/// The JSON on lines, indented by two blanks, with a final line feed: for people and files.
 [[nodiscard]] inline std::string json_document(const nlohmann::ordered_json& json) {
   return base::printable_lines(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) +
          "\n";

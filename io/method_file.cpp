@@ -12,7 +12,7 @@ using base::Dimension;
 using base::Limits;
 using base::Settings;
 
-// Bounds against slips of the pen, far from any tester.
+// Bounds that catch mistyped values, far beyond any tester.
 constexpr double kLargestSled_m2 = 1.0;
 constexpr double kLongestTravel_m = 10.0;
 constexpr double kLongestRamp_s = 1e5;

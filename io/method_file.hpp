@@ -16,7 +16,9 @@
 
 namespace stickslip::io {
 
+/// Largest number of kinetic cycles that a method may ask for.
 inline constexpr int kMostKineticCycles = 1000;
+/// Largest number of the slip at which a method may read the static coefficient.
 inline constexpr int kLastStaticSlip = 1000;
 
 struct MethodFile {
@@ -25,13 +27,13 @@ struct MethodFile {
   std::vector<std::string> check;  ///< What the user must compare with their copy of a standard.
 };
 
-/// Errors: kUsage, as base::Settings.
+/// Reads a method file. Errors: kUsage, as base::Settings.
 [[nodiscard]] base::Result<MethodFile> load_method(const std::filesystem::path& file);
 
-/// The same from text. \param name  stands for the file in messages.
+/// Reads a method from text. \param name  stands for the file in messages. Errors: kUsage.
 [[nodiscard]] base::Result<MethodFile> parse_method(std::string_view text, std::string_view name);
 
-/// Is this a word that can name a method: lower case letters, digits and hyphens?
+/// True if the text can name a method: lower-case letters, digits and hyphens.
 [[nodiscard]] bool is_method_name(std::string_view text);
 
 }  // namespace stickslip::io

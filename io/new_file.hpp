@@ -1,11 +1,9 @@
 /// \file
-/// Text files that are whole or not there.
+/// Writes text files atomically: the file is complete or absent.
 ///
-/// The text is built in a file beside the one that is asked for, under a name that cannot be known
-/// beforehand (PATH.UUID.part), which is made anew and never followed if it is a link. So nothing that lies
-/// in the folder already can be overwritten. It is made durable, then renamed. A kill between the two leaves
-/// a
-/// `.part` that nothing reads and that can be removed.
+/// The text is written to a new file PATH.UUID.part, made durable, then renamed to PATH. The unpredictable
+/// name and exclusive creation keep files and links in the folder from being overwritten or followed. A kill
+/// before the rename leaves a `.part` file, which nothing reads; remove it.
 #pragma once
 
 #include <sys/types.h>
@@ -17,11 +15,12 @@
 
 namespace stickslip::io {
 
-/// Permissions of what everybody may read.
+/// Mode of a file that all users may read.
 inline constexpr mode_t kEverybodyReads = 0644;
 
-/// Writes the whole text to a file that did not exist. On any error no file is left. Whether `path` is free
-/// can be asked before the work: record::check_publishable(). Errors: kUsage if `path` exists, else kFailure.
+/// Writes the text to a new file, durably; blocks on the disk. On any error no file is left.
+/// record::check_publishable() tells beforehand whether `path` is free. Errors: kUsage if `path` exists, else
+/// kFailure.
 [[nodiscard]] base::Result<void> write_new_file(const std::filesystem::path& path, std::string_view text,
                                                 mode_t mode = kEverybodyReads);
 

@@ -1,5 +1,5 @@
 /// \file
-/// JSON of what may be missing: null then, never a number that nobody measured.
+/// JSON of values that may be missing: null marks a missing value.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace stickslip::io {
 
-/// JSON has no infinity and no NaN.
+/// null if the value is infinite or NaN, which JSON cannot hold.
 [[nodiscard]] inline nlohmann::ordered_json or_null(double value) {
   if (!std::isfinite(value)) return nullptr;
   return value;
@@ -27,7 +27,7 @@ template <typename T>
   return *value;
 }
 
-/// As above: a number that is no number is missing as well.
+/// null if the value is absent, infinite or NaN.
 [[nodiscard]] inline nlohmann::ordered_json or_null(const std::optional<double>& value) {
   if (!value) return nullptr;
   return or_null(*value);

@@ -8,9 +8,9 @@
 namespace stickslip::io {
 
 std::vector<std::filesystem::path> own_records(const std::filesystem::path& folder) {
-  // As storage.cpp names them.
+  // As io/record_name.hpp names them, with the suffix of record::free_journal_path().
   static const std::regex own{R"(\d{8}T\d{6}Z-\d{4,}(-\d+)?\.h5)"};
-  // Of a folder that cannot be read recover_folder() tells.
+  // recover_folder() reports folders that cannot be read.
   std::vector<std::filesystem::path> found = find_files(folder, [](const std::filesystem::path& file) {
                                                return std::regex_match(file.filename().string(), own);
                                              }).files;

@@ -1,5 +1,5 @@
 /// \file
-/// The records of the daemon, by their names.
+/// Finds the records that a daemon made, by their file names.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,11 @@
 
 namespace stickslip::io {
 
-/// Records of the daemon in the folder and in those of years and months below it, in the order of their
-/// names: that of the clock of then. Folders that cannot be read are left out.
+/// The records named as by record_stem() in the record folder and its dated subfolders, sorted by name: by
+/// the wall clock at the start of each test. Unreadable folders are skipped.
 [[nodiscard]] std::vector<std::filesystem::path> own_records(const std::filesystem::path& folder);
 
-/// Leaves the last `most` of them.
+/// Removes all but the last `most` elements.
 void keep_last(std::vector<std::filesystem::path>& records, std::size_t most);
 
 }  // namespace stickslip::io

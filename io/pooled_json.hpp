@@ -1,6 +1,6 @@
 /// \file
-/// S − K pooled by cycle as JSON: the same in reports and in the summary of the latest tests; and what
-/// pooling needs to know of a test.
+/// S − K pooled by cycle as JSON, for reports and for the summary of the latest tests; and the sums over one
+/// test that pooling needs.
 #pragma once
 
 #include "io/or_null.hpp"
@@ -11,7 +11,7 @@
 namespace stickslip::io {
 
 /// {"value", "standard_error", "confidence_interval", "tests", "slips", "escaped", "scatter",
-///  "captured_alone", "reason" (of no value)}
+///  "captured_alone", "reason" (only if "value" is null)}
 [[nodiscard]] inline nlohmann::ordered_json pooled_json(const analysis::PooledDeltaMu& pooled) {
   const std::optional<analysis::Interval> interval = analysis::mean_interval(pooled);
   nlohmann::ordered_json json{{"value", or_null(pooled.mean.value)},
@@ -37,7 +37,7 @@ namespace stickslip::io {
           {"escaped_count", sums.escaped_count}};
 }
 
-/// \throws nlohmann::json::exception unless slip_sums_json() made it.
+/// Reads what slip_sums_json() made. \throws nlohmann::json::exception for other JSON.
 [[nodiscard]] inline analysis::SlipSums slip_sums_from_json(const nlohmann::ordered_json& json) {
   const auto number = [&json](const char* key) { return json.at(key).get<double>(); };
   return {.count = number("count"),

@@ -1,5 +1,5 @@
 /// \file
-/// The one way of text to a terminal.
+/// Prints text to a terminal without letting it control the terminal.
 #pragma once
 
 #include <fmt/format.h>
@@ -11,14 +11,14 @@
 
 namespace stickslip::io {
 
-/// A whole output with its line feeds. What a name in it could do to a terminal is shown by its number; a
-/// line feed within a name is for who writes the line to show, by base::printable(). \param has_colours those
-/// of Paint stay.
+/// Prints a text of several lines; characters that could control the terminal are shown by their number. Line
+/// feeds pass: the caller escapes those inside names with base::printable(). \param has_colours  true: colour
+/// sequences of Paint pass too.
 inline void print_text(std::FILE* stream, std::string_view text, bool has_colours = false) {
   fmt::print(stream, "{}", base::printable_lines(text, has_colours));
 }
 
-/// "stickslip: why", one line.
+/// Prints one line to stderr: "PROGRAM: WHY".
 inline void print_error(std::string_view program, std::string_view why) {
   fmt::print(stderr, "{}: {}\n", program, base::printable(why));
 }

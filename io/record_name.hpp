@@ -1,5 +1,5 @@
 /// \file
-/// Names of the records: when a test began and its number.
+/// File names of records: the time at which the test began, and its number.
 #pragma once
 
 #include <fmt/chrono.h>
@@ -14,12 +14,13 @@
 
 namespace stickslip::io {
 
-/// "20261121T125252Z-0003", in UTC.
+/// "20261121T125252Z-0003". \param seconds  since 1970, UTC.
 [[nodiscard]] inline std::string record_stem(std::time_t seconds, std::int64_t test_number) {
   return fmt::format("{:%Y%m%dT%H%M%SZ}-{:04}", fmt::gmtime(seconds), test_number);
 }
 
-/// The number of the test in such a name, whatever folders stand before it and whatever comes behind.
+/// The test number in such a name, which may have folders before it and anything after it; nothing if there
+/// is none.
 [[nodiscard]] inline std::optional<std::int64_t> test_number_in(std::string_view name) {
   constexpr std::string_view kAfterTime = "Z-";
   const std::size_t at = name.rfind(kAfterTime);

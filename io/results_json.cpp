@@ -10,7 +10,7 @@
 namespace stickslip::io {
 namespace {
 
-/// A count is a whole number, without a decimal point.
+/// The value as JSON. A result whose name ends in _count becomes an integer.
 nlohmann::ordered_json number(const std::string& name, const analysis::Estimate& estimate) {
   constexpr std::string_view kCount = "_count";
   if (!estimate.value) return nullptr;

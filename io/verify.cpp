@@ -21,7 +21,7 @@ using nlohmann::ordered_json;
 using record::Judgement;
 using record::Verdict;
 
-/// Of a file whose reader did not come back.
+/// Verdict on a file whose reading exceeded a limit or killed the child process.
 Verdict unreadable(const std::string& why) {
   Verdict verdict;
   verdict.judgement = Judgement::kDamaged;
@@ -29,7 +29,7 @@ Verdict unreadable(const std::string& why) {
   return verdict;
 }
 
-/// In the child.
+/// Runs in the child process.
 std::string judge_for_parent(std::string_view file, int /*memory_file*/) {
   // Names and texts of a file may be anything; JSON is UTF-8.
   return json_text(verdict_json(std::string{file}, record::judge(file)));
@@ -86,7 +86,7 @@ int exit_status_of(const ordered_json& verdict) {
   return judgement == record::name(Judgement::kDamaged) ? kSomeDamaged : kSomeNotJudged;
 }
 
-/// The one that somebody has to hear of first.
+/// The worse of two exit statuses.
 int worse(int a, int b) {
   constexpr std::array<int, 4> kRising{kAllComplete, kSomeIncomplete, kSomeNotJudged, kSomeDamaged};
   return std::max(std::find(kRising.begin(), kRising.end(), a),

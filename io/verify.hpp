@@ -1,5 +1,6 @@
 /// \file
-/// Verdicts on files, safe from the files: each is judged in a process of its own.
+/// Verifies records and journals. Each file is read in a process of its own, so that a damaged file cannot
+/// end this one.
 #pragma once
 
 #include <filesystem>
@@ -17,16 +18,17 @@ struct VerifyOutput {
   int exit_status = 0;
 };
 
-/// Exit statuses, the worst of all files: 3 before 4 before 1.
+/// Exit statuses. That of several files is the worst one; from the worst: 3, 4, 1, 0.
 inline constexpr int kAllComplete = 0;
 inline constexpr int kSomeIncomplete = 1;
 inline constexpr int kSomeDamaged = 3;
 inline constexpr int kSomeNotJudged = 4;
 
-/// One verdict with the names of docs/reliability.md. \param file  as it was given.
+/// One verdict as JSON, with the names of docs/reliability.md. \param file  the path as the user gave it.
 [[nodiscard]] nlohmann::ordered_json verdict_json(const std::string& file, const record::Verdict& verdict);
 
-/// Only while this process has one thread. \param json  {"files": [...]} instead of lines.
+/// Verifies the files one after the other; blocks. Call it only while this process has one thread. \param
+/// json  the text is {"files": [...]} instead of lines.
 [[nodiscard]] VerifyOutput verify_files(const std::vector<std::string>& files, bool json);
 
 }  // namespace stickslip::io

@@ -1,5 +1,5 @@
 /// \file
-/// The parts of the pages, as they lie in daemon/web; built in by cmake/embed.cmake.
+/// The files of the report page, from report/; cmake/embed.cmake builds them into the program.
 #pragma once
 
 #include <string_view>

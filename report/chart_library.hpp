@@ -1,5 +1,6 @@
 /// \file
-/// uPlot, which draws the charts of the pages: files beside the programs, in share/stickslip/pages.
+/// uPlot, the JavaScript library that draws the charts of the pages. Its files are installed in
+/// share/stickslip/pages.
 #pragma once
 
 #include <filesystem>
@@ -15,10 +16,11 @@ struct ChartLibrary {
   std::string license;
 };
 
-/// share/stickslip/pages beside the folder of this program: /usr/share/stickslip/pages of a package.
+/// The folder ../share/stickslip/pages, seen from the program's folder; in a package
+/// /usr/share/stickslip/pages.
 [[nodiscard]] std::filesystem::path chart_folder();
 
-/// kFailure: a file cannot be read; says how the files are made.
+/// Reads the files. Errors: kFailure if one cannot be read; the message says how to make them.
 [[nodiscard]] base::Result<ChartLibrary> read_chart_library(
     const std::filesystem::path& folder = chart_folder());
 

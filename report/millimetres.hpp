@@ -1,5 +1,5 @@
 /// \file
-/// Reports and pictures speak of millimetres, the rest of the program of metres.
+/// Conversion to millimetres, which reports and pictures use; the rest of the program uses metres.
 #pragma once
 
 namespace stickslip::report {

@@ -13,9 +13,10 @@
 namespace stickslip::report {
 namespace {
 
+/// Up to so many scans in view each scan is drawn as a dot.
 constexpr std::size_t kMostScansWithDots = 250;
 
-/// Two pixels each in a picture of the usual width.
+/// Most bands of modes in view: two pixels each at the usual width.
 constexpr std::size_t kMostBands = 400;
 
 /// The modes within the part; none if they change too often to be told apart.
@@ -32,7 +33,7 @@ std::vector<plot::Band> bands_of(const model::TestTruth& truth, const plot::Axis
   return bands;
 }
 
-/// Where a slip's S and K end: the next slip, else the end of the mode in which it is.
+/// Time at which the lines of a slip's S and K end: the next slip, else the end of its mode.
 double end_of_cycle(const model::TestTruth& truth, std::size_t i) {
   if (i + 1 < truth.cycles.size()) return truth.cycles[i + 1].onset_time_s;
   for (const model::ModeInterval& mode : truth.modes) {

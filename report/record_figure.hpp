@@ -1,6 +1,5 @@
 /// \file
-/// A record as a picture: the force over time, what the detector found in it, and the truth where it is
-/// known.
+/// Figure of a record: the force over time, the findings of the detector, and the truth if known.
 #pragma once
 
 #include <optional>
@@ -13,18 +12,19 @@
 
 namespace stickslip::report {
 
-/// Which part of it, and what with it. Times are in s after the first scan.
+/// Part of the record to draw, and additional panels. Times are in s after the first scan.
 struct RecordView {
-  std::string title{};             ///< Else the record's.
-  std::optional<double> from_s{};  ///< Else the start.
-  std::optional<double> to_s{};    ///< Else the end.
-  bool overview = false;           ///< Above it the whole record, with the part marked.
-  bool derivative = false;  ///< Below it the speed at which the coupling stretches [Penner 1995, Fig. 4].
+  std::string title{};             ///< Empty: that of the record.
+  std::optional<double> from_s{};  ///< Absent: from the start.
+  std::optional<double> to_s{};    ///< Absent: to the end.
+  bool overview = false;           ///< Adds a panel above with the whole record, the part marked.
+  /// Adds a panel below with the speed at which the coupling stretches [Penner 1995, Fig. 4].
+  bool derivative = false;
 };
 
-/// The force as a coefficient. Shaded: modes (stick, slip, slack) of the truth. Dashed: S and K of each slip
-/// in the truth. Points: peaks that the detector found. Errors: kUsage if the part is not in the record, or
-/// the record has counts without a load cell.
+/// Draws the force as a coefficient. The true modes (stick, slip, slack) are shaded, the true S and K of each
+/// slip dashed, the detected peaks marked by points. Errors: kUsage if the part is not in the record, or the
+/// record has counts without a load cell.
 [[nodiscard]] base::Result<plot::Figure> record_figure(const record::Record& record, const RecordView& view);
 
 }  // namespace stickslip::report

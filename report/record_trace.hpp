@@ -1,5 +1,5 @@
 /// \file
-/// The force of a record over time, as pictures and pages show it.
+/// Traces of a record over time, for pictures and pages.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace stickslip::report {
 
-/// Columns of equal length; a value that is not finite is a break.
+/// Columns of equal length. A non-finite value interrupts the line.
 struct RecordTrace {
   std::vector<double> time_s;  ///< After the record's first scan.
   std::vector<double> value;
@@ -20,12 +20,12 @@ struct RecordTrace {
 /// Errors: kUsage if the record has counts but no load cell, or facts that allow no calibration.
 [[nodiscard]] base::Result<RecordTrace> coefficient_trace(const record::Record& record);
 
-/// The second channel at each scan, m/s or m; a break at each gap and where no code came. Nothing without
-/// one.
+/// The second channel at each scan, m/s or m, with a break at each gap and each missing code. Nothing if
+/// there is no second channel.
 [[nodiscard]] std::optional<RecordTrace> second_trace(const record::Record& record);
 
-/// Differences of neighbours over their distance, half-way between them; Fig. 4 of [Penner 1995].
-/// \param factor  to the unit shown.
+/// The time derivative, by differences of neighbouring scans at the times half-way between them; Fig. 4 of
+/// [Penner 1995]. \param factor  multiplies it, to convert the unit.
 [[nodiscard]] RecordTrace derivative(const RecordTrace& trace, double factor);
 
 /// g/ω₀², which turns the rate of the coefficient into the speed at which the coupling stretches: dl/dt =

@@ -1,6 +1,6 @@
 /// \file
-/// Reports for machines: JSON and CSV. SI units; names as in the record; null, or an empty cell, where there
-/// is no number, with the reason beside it.
+/// Reports as JSON and CSV, in SI units and with the names of the record. A missing number is null or an
+/// empty cell, with the reason beside it.
 #pragma once
 
 #include <span>
@@ -27,10 +27,10 @@ namespace stickslip::report {
 [[nodiscard]] nlohmann::ordered_json comparison_json(const Material& a, const Material& b,
                                                      const MaterialComparison& comparison);
 
-/// One line for each test; RFC 4180, header first.
+/// CSV (RFC 4180) with a header and one line for each test.
 [[nodiscard]] std::string report_csv(const Material& material);
 
-/// One line for each speed and quantity.
+/// CSV with a header and one line for each speed and quantity.
 [[nodiscard]] std::string comparison_csv(const Material& a, const Material& b,
                                          const MaterialComparison& comparison);
 

@@ -29,7 +29,7 @@ Json quantities_json() {
   return json;
 }
 
-/// \param report  of the material, as report_json() gives it.
+/// \param report  report_json() of the material.
 Json material_json(const Material& material, Json report) {
   report["label"] = material.label;
   for (std::size_t i = 0; i < material.tests.size(); ++i)
@@ -37,7 +37,7 @@ Json material_json(const Material& material, Json report) {
   return report;
 }
 
-/// The template with each mark replaced, once, from the first to the last.
+/// Replaces each mark in the template once, in order.
 std::string page_of(const Json& data, const ChartLibrary& charts) {
   const std::string text = json_for_script(data);
   const std::array<std::pair<std::string_view, std::string_view>, 7> parts{{

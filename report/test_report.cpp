@@ -17,7 +17,7 @@ namespace stickslip::report {
 
 namespace {
 
-/// What the journals beside records say; each is read once.
+/// Reads the batch journals beside the records, each once.
 class Voidings {
  public:
   base::Result<std::optional<daemon::Voiding>> of(const std::filesystem::path& file) {

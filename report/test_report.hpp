@@ -1,6 +1,6 @@
 /// \file
-/// One material, or two to be compared: records read, grouped by speed, summarised. What terminal, JSON, CSV
-/// and page show is made from this.
+/// Reads the tests of one material, or of two to be compared, groups them by pull speed and summarises them.
+/// Reports as text, JSON, CSV and page are made from this.
 #pragma once
 
 #include <filesystem>
@@ -18,17 +18,17 @@
 
 namespace stickslip::report {
 
-/// One record without its scans.
+/// A test of a report: its record without the scans.
 struct ReportedTest {
   std::string file;
   std::string title;
-  std::string method;                   ///< As in the record.
-  std::vector<std::string> departures;  ///< From the method, one line each.
+  std::string method;                   ///< Text of the test method, as in the record.
+  std::vector<std::string> departures;  ///< Departures from the method, one line each.
   std::optional<model::TestTruth> truth;
-  std::string trace;  ///< For the page: trace_json() as text; empty unless asked for.
+  std::string trace;  ///< trace_json() as text, for the page; empty unless requested.
 };
 
-/// One record that does not count, and was not read.
+/// A void test: its record does not count and was not read.
 struct VoidedTest {
   std::string file;
   daemon::Voiding voiding;
@@ -36,29 +36,28 @@ struct VoidedTest {
 
 /// Tests of one material. `tests` and `measured` have equal lengths.
 struct Material {
-  std::string label;  ///< Empty where there is only one.
+  std::string label;  ///< Empty if there is only one material.
   std::vector<ReportedTest> tests;
   std::vector<analysis::MeasuredTest> measured;
   std::vector<analysis::SpeedGroup> groups;
-  std::vector<VoidedTest> voided;            ///< By the journals beside the records; in no number here.
-  std::vector<daemon::LimitVerdict> limits;  ///< Of a batch that has such.
+  std::vector<VoidedTest> voided;            ///< Void by the batch journals; in no number here.
+  std::vector<daemon::LimitVerdict> limits;  ///< Checks of the batch's limits; empty without limits.
 };
 
-/// Results are those in the files.
-/// \param with_traces  for the page.
-/// What is void is left out and listed. Errors, one line that names the file: of the first that cannot be
-/// read; kUsage if all are void.
+/// Reads records; the results are those in the files, not computed again. Void tests are listed and not read.
+/// \param with_traces  true: fills ReportedTest::trace. Errors: that of the first file that cannot be read,
+/// with its name; kUsage if all tests are void.
 [[nodiscard]] base::Result<Material> read_material(std::string label, std::span<const std::string> files,
                                                    bool with_traces);
 
-/// The tests of a batch, with its limits. \param label  as above. \param id_or_name  of the batch. \param
-/// folder  of its records. Errors: as above; kUsage if there is no such batch or it has no test.
+/// Reads the tests of a batch and checks its limits. \param id_or_name  as for BatchBook::find(). \param
+/// folder  the record folder. Errors: as read_material(); kUsage if there is no such batch or it has no test.
 [[nodiscard]] base::Result<Material> read_batch(std::string label, const std::string& id_or_name,
                                                 const std::filesystem::path& folder, bool with_traces);
 
-/// How many tests at one speed stuck again at least once (stick-slip, mixed), and how many never did
-/// (ring-down, steady sliding): the paper's qualitative difference between its two mills. Undecided ones are
-/// not counted.
+/// Counts of tests at one speed by regime: `sticking` those that stuck again at least once (stick-slip,
+/// mixed), `sliding` those that never did (ring-down, steady sliding). Undecided tests are not counted.
+/// [Penner 1995] tells its two mills apart by this.
 struct RegimeCounts {
   unsigned sticking = 0;
   unsigned sliding = 0;
@@ -67,7 +66,7 @@ struct RegimeCounts {
 struct RegimeComparison {
   RegimeCounts a;
   RegimeCounts b;
-  std::optional<double> p;  ///< Fisher's exact test; none where a material has no test to count.
+  std::optional<double> p;  ///< p value of Fisher's exact test; absent if a material has no counted test.
 };
 
 /// All comparisons of two materials, in the order of pair_speeds() and report::quantities().
@@ -78,10 +77,10 @@ struct MaterialComparison {
   std::vector<analysis::PooledComparison> by_cycle;  ///< One for each pair.
   std::vector<RegimeComparison> regimes;             ///< One for each pair.
   struct Combined {
-    double p = 0.0;  ///< Of all speeds together (Fisher).
+    double p = 0.0;  ///< Combined p value of all speeds (Fisher's method).
     int speed_count = 0;
   };
-  std::array<std::optional<Combined>, analysis::kQuantityCount> combined;  ///< None below two speeds.
+  std::array<std::optional<Combined>, analysis::kQuantityCount> combined;  ///< Absent below two speeds.
 };
 
 [[nodiscard]] MaterialComparison compare_materials(const Material& a, const Material& b);

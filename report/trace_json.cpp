@@ -59,8 +59,8 @@ Json cycles_json(const base::LongColumn<detect::Cycle>& cycles) {
   return json;
 }
 
-/// Where the force was last at or above half of its largest: what is after is unloading, as for the
-/// traditional rule.
+/// Time at which the force was last at or above half of its maximum. What follows is unloading, as in the
+/// rule of the traditional numbers.
 double end_of_pull_s(const RecordTrace& trace) {
   double largest = 0.0;
   for (const double value : trace.value) {
@@ -72,12 +72,12 @@ double end_of_pull_s(const RecordTrace& trace) {
   return 0.0;
 }
 
-/// Where the onset was not estimated, the peak is near it.
+/// Time of a slip's onset; that of its peak if the onset was not estimated.
 double start_s(const detect::Cycle& cycle) {
   return std::isfinite(cycle.onset_time_s) ? cycle.onset_time_s : cycle.peak_time_s;
 }
 
-/// \param last_slides  the last slip, of which no next one tells, goes on to the end of the pull.
+/// \param last_slides  true: the last slip goes on to the end of the pull.
 Json modes_json(const base::LongColumn<detect::Cycle>& cycles, double end_s, bool last_slides) {
   Json json = Json::array();
   const auto add = [&json](double from_s, double to_s, const char* mode) {
@@ -132,7 +132,7 @@ base::Result<Json> trace_json(const record::Record& record) {
   json["slope"]["limit"] = scaled && speed ? Json(*speed * kMillimetresPerMetre) : Json(nullptr);
   json["second"] = second_json(record);
   json["cycles"] = cycles_json(record.cycles);
-  // In a test that sticks the end of the pull cut the last slip short; nobody knows.
+  // In a stick-slip test the end of the pull interrupted the last slip, so its end is unknown.
   const model::Regime regime = record.end->results.regime;
   const bool last_slides = regime == model::Regime::kRingDown || regime == model::Regime::kMixed;
   json["modes"] = modes_json(record.cycles, end_s, last_slides);

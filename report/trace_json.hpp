@@ -1,5 +1,5 @@
 /// \file
-/// What a page draws of one record.
+/// The data that a page draws of a record.
 #pragma once
 
 #include <cstddef>
@@ -11,17 +11,17 @@
 
 namespace stickslip::report {
 
-/// Longest trace that a page holds whole; of a longer one the lowest and highest scan of each of half as many
-/// equal parts of its time.
+/// Most points of a trace on a page. A longer trace is thinned: its time is divided into half as many equal
+/// parts, and each part keeps its lowest and highest scan.
 inline constexpr std::size_t kMostPointsOnPage = 20'000;
 
 /// {"scan_count", "rate", "thinned", "force": {"time", "value"}, "slope": {"time", "value", "unit", "limit"},
 ///  "second": {"time", "value", "unit", "name"}, "cycles": {"time", "peak", "captured"},
 ///  "modes": [[from, to, "stick"|"slip"|"slide"], …], "transition"}.
-/// The second channel is null where there is none, else its values are in mm/s (pull_speed) or mm
-/// (sled_position). Times in s after the first scan, to the microsecond; coefficients to the millionth; null
-/// is a break. Modes are those that the detector found: a slip that did not end in sticking slides until the
-/// next onset, the last one of a ring-down until the force is taken away. Errors: as coefficient_trace().
+/// "second" is null without a second channel; its values are in mm/s (pull_speed) or mm (sled_position).
+/// Times are in s after the first scan, rounded to 1e-6; coefficients are rounded to 1e-6; null is a break.
+/// "modes" are the detected ones: a slip that did not end in sticking slides until the next onset, the last
+/// slip of a ring-down until the force is released. Errors: as coefficient_trace().
 [[nodiscard]] base::Result<nlohmann::ordered_json> trace_json(const record::Record& record);
 
 }  // namespace stickslip::report

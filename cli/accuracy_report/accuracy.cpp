@@ -18,7 +18,7 @@ namespace {
 
 using base::Result;
 
-// Parts of the progress bar, roughly as long as they take.
+// Parts of the progress bar, in proportion to their duration.
 constexpr double kMotionShare = 0.5;
 constexpr double kGrazingShare = 0.45;
 
@@ -31,7 +31,7 @@ std::string processor() {
   return "unknown processor";
 }
 
-/// The damping at which grazing is shown: the scene's, if a ring-down is neither endless nor over at once.
+/// γ/2ω at which grazing is shown: the scene's if it lies between kLeast and kMost, else kPenner.
 double grazing_damping(const model::Oscillator& oscillator) {
   constexpr double kPenner = 0.022;  // [Penner 1995, (19)]
   constexpr double kLeast = 0.005;

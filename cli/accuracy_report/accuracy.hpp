@@ -1,5 +1,6 @@
 /// \file
-/// `stickslip accuracy` without its looks: what accuracy costs in time on this machine, for one scene.
+/// Measurements of `stickslip accuracy`: error against computing time of several methods on this machine, for
+/// one scene.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@
 
 namespace stickslip::accuracy_report {
 
-/// Longest scene that is compared: ten minutes at 350 Hz. The slowest method needs 10 s for it.
+/// Most scans of a scene: ten minutes at 350 Hz, for which the slowest method needs 10 s.
 inline constexpr std::int64_t kMostComparedScans = 210'000;
 
 struct AccuracyReport {
@@ -24,19 +25,20 @@ struct AccuracyReport {
   std::string scene_description;
   std::int64_t scan_count = 0;
   double scan_rate_Hz = 0.0;
-  double asked_accuracy = 0.0;  ///< By the scene.
-  std::string chosen_method;    ///< What `simulate` takes for it.
-  std::string processor;        ///< Of this machine, as it calls itself.
+  double asked_accuracy = 0.0;  ///< The accuracy that the scene asks for.
+  std::string chosen_method;    ///< The method that `simulate` chooses for it.
+  std::string processor;        ///< Name of this machine's processor.
   accuracy::MotionComparison motion;
   double grazing_gamma_over_2omega = 0.0;
   std::vector<accuracy::GrazingRow> grazing;
   std::vector<accuracy::DetectionRow> detection;
   std::vector<accuracy::TierRow> tiers;
-  std::string no_detection;  ///< Why there is none; empty if there is.
+  std::string no_detection;  ///< Why `detection` is empty; empty if it is not.
 };
 
-/// \param progress  told 0 … 1.
-/// Errors: kUsage for a scene without a scan, or with more than kMostComparedScans.
+/// Measures one scene; blocks for seconds. \param clock  measures the computing times. \param progress called
+/// with the done part, 0 … 1. Errors: kUsage for a scene without a scan, or with more than
+/// kMostComparedScans.
 [[nodiscard]] base::Result<AccuracyReport> measure_accuracy(const sim::Scene& scene, std::uint64_t seed,
                                                             const base::Clock& clock,
                                                             const accuracy::Progress& progress = {});

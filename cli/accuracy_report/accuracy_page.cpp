@@ -10,7 +10,7 @@
 namespace stickslip::accuracy_report {
 namespace {
 
-// No colour carries meaning; ink on paper is enough.
+// Colours carry no meaning, so that the page can be printed in black.
 constexpr std::string_view kStyle = R"(
 body { font: 11pt/1.4 sans-serif; color: #000; background: #fff; max-width: 60em; margin: 2em auto; padding: 0 1em; }
 h1 { font-size: 1.5em; } h2 { font-size: 1.15em; margin-top: 2em; }

@@ -14,7 +14,7 @@ namespace {
 
 using base::Result;
 
-/// Debian's, which has Debian's SciPy; the one in PATH may be another.
+/// Debian's Python, which finds Debian's SciPy; one in PATH may not.
 constexpr const char* kPython = "/usr/bin/python3";
 
 nlohmann::json json_of(std::span<const accuracy::TierScene> scenes) {

@@ -1,5 +1,5 @@
 /// \file
-/// cli/accuracy_report/scipy_chain.py, built in by cmake/embed.cmake.
+/// The text of cli/accuracy_report/scipy_chain.py; cmake/embed.cmake builds it into the program.
 #pragma once
 
 #include <string_view>

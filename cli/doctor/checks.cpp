@@ -22,14 +22,15 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kSecondsPerDay = 86'400.0;
-/// Before a calibration expires, somebody should have time to hang the weights.
+/// A calibration that expires within this time is a warning, so that there is time for a new one.
 constexpr double kCalibrationDue_s = 30 * kSecondsPerDay;
-/// Less than a working day of scanning is worth a word.
+/// Room for less than this time of scanning, a working day, is a warning.
 constexpr double kLittleRoom_s = 8 * 3600.0;
-/// Journal and record of one scan at its largest (counts of 32 bits: twice 4 bytes, and time, scan, force,
-/// flags): as storage.cpp reckons.
+/// Largest growth of journal and record for one scan: counts of 32 bits twice, and time, scan, force, flags.
+/// As bytes_per_scan() in daemon/storage/storage.cpp.
 constexpr double kBytesPerScan = 2 * 4.0 + 8 + 8 + 4 + 1;
-/// mlockall() counts what is mapped, touched or not: 287 MB of a daemon at 350 Hz, 28 MB of them touched.
+/// Lockable memory that a daemon needs, bytes. mlockall() counts all mapped memory: 287 MB of a daemon at 350
+/// Hz, of which 28 MB are touched.
 constexpr std::uint64_t kLockedSize = 512ULL << 20;
 
 class Examination {
@@ -65,7 +66,7 @@ class Examination {
   void bad(std::string check, std::string what, std::string to_do) {
     findings_.push_back({std::move(check), Finding::Verdict::kBad, std::move(what), std::move(to_do)});
   }
-  /// A running daemon says so of itself.
+  /// Uses the status of a running daemon.
   [[nodiscard]] bool acquiring() const {
     const std::string state = status_.value("state", "");
     return state == "acquiring" || state.starts_with("storage");
@@ -127,7 +128,7 @@ class Examination {
     }
   }
 
-  /// Says nothing where a bench does what it should.
+  /// Gives no finding if the bench is in order.
   void look_at_bench() {
     const Json trouble = status_.value("bench_trouble", Json());
     if (!trouble.is_string()) return;
@@ -332,9 +333,9 @@ class Examination {
   const DoctorWorld& world_;
   std::vector<Finding> findings_;
   std::optional<io::DaemonConfig> config_;
-  Json status_ = Json::object();  ///< Empty while no daemon answers.
-  std::filesystem::path folder_;  ///< Of records, or above.
-  double scan_rate_Hz_ = 350.0;   ///< Until the board is known: [Penner 1995].
+  Json status_ = Json::object();  ///< Status of the daemon; empty if none answers.
+  std::filesystem::path folder_;  ///< The record folder, or its nearest existing parent.
+  double scan_rate_Hz_ = 350.0;   ///< That of [Penner 1995], until the board is known.
 };
 
 }  // namespace

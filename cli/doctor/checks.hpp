@@ -1,6 +1,6 @@
 /// \file
-/// Looks at an installation, from the configuration to the records: is everything there that a test needs,
-/// and if not, what is to be done?
+/// Checks of `stickslip doctor`: from the configuration to the records, whether an installation has all that
+/// a test needs, and how to repair it.
 #pragma once
 
 #include <cstdint>
@@ -20,26 +20,26 @@
 
 namespace stickslip::doctor {
 
-/// What is asked of the world; tests give their own.
+/// The dependencies of the checks; tests replace them.
 struct DoctorWorld {
   std::function<base::Result<drivers::OpenedBoard>(const drivers::BoardConfig&, base::Clock&)> open_board;
-  /// The daemon's answer to GET /v1/status.
+  /// Returns the daemon's reply to GET /v1/status.
   std::function<base::Result<daemon::HttpReply>(const std::filesystem::path& socket)> ask_status;
   std::function<bool()> clock_is_synchronised;
-  /// Highest SCHED_FIFO priority, and bytes of memory that may be locked (nothing: all).
+  /// Highest permitted SCHED_FIFO priority; and permitted bytes of locked memory (nothing: unlimited).
   std::function<int()> realtime_priority;
   std::function<std::optional<std::uint64_t>()> lockable_size;
-  std::function<std::int64_t(const std::filesystem::path& folder)> room;  ///< Bytes; −1: not known.
+  std::function<std::int64_t(const std::filesystem::path& folder)> room;  ///< Free bytes; −1: unknown.
   /// As record::probe_folder().
   std::function<base::Result<std::vector<record::FolderLack>>(const std::filesystem::path& folder)> probe;
   base::Clock* clock = nullptr;
 };
 
-/// That of this machine and this process. \param clock  outlives it.
+/// The dependencies on the real machine. \param clock  outlives the result.
 [[nodiscard]] DoctorWorld this_world(base::Clock& clock);
 
-/// In the order in which things are to be mended; each check gives one finding or more. Nothing stays
-/// changed, nothing is acquired, no running daemon disturbed.
+/// Runs all checks, each of which gives one finding or more, in the order of repair. They leave nothing
+/// changed, acquire no scans and do not disturb a running daemon.
 [[nodiscard]] std::vector<Finding> examine(const std::filesystem::path& configuration,
                                            const DoctorWorld& world);
 

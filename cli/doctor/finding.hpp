@@ -1,5 +1,5 @@
 /// \file
-/// What `stickslip doctor` has to say of one thing.
+/// A finding of `stickslip doctor`.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@ namespace stickslip::doctor {
 struct Finding {
   enum class Verdict {
     kGood,
-    kUnknown,  ///< Not looked at, because something else has to be mended first.
-    kWarning,  ///< It works; somebody should see to it.
-    kBad,      ///< No test can be measured and kept as it is.
+    kUnknown,  ///< Not checked: something else must be repaired first.
+    kWarning,  ///< Tests work, but this should be repaired.
+    kBad,      ///< Tests cannot be measured or recorded.
   };
-  std::string check;  ///< One word, the same in all versions.
+  std::string check;  ///< Name of the check, one word; stable between versions.
   Verdict verdict = Verdict::kGood;
-  std::string what;   ///< One line.
-  std::string to_do;  ///< Empty if good.
+  std::string what;   ///< What was found, one line.
+  std::string to_do;  ///< Remedy; empty if good.
 };
 
 [[nodiscard]] constexpr std::string_view name(Finding::Verdict verdict) noexcept {
@@ -35,7 +35,7 @@ struct Finding {
   return "good";
 }
 
-/// 0 all is good, 1 something is bad or could not be looked at, 3 there are warnings.
+/// Exit status: 1 if a finding is bad or unknown, else 3 if there is a warning, else 0.
 [[nodiscard]] inline int exit_status(const std::vector<Finding>& findings) noexcept {
   int status = 0;
   for (const Finding& finding : findings) {

@@ -10,9 +10,10 @@
 namespace stickslip::doctor {
 namespace {
 
+/// Longest wait for the daemon's reply.
 constexpr std::chrono::milliseconds kTimeout{5000};
 
-/// Root has all the rights that a limit would give.
+/// True for root, whom the resource limits do not restrict.
 bool is_root() { return ::geteuid() == 0; }
 
 constexpr int kHighestPriority = 99;

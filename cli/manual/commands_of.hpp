@@ -1,5 +1,5 @@
 /// \file
-/// What of a program's commands its manual shows.
+/// Selects the commands that a manual shows.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace stickslip::manual {
 
-/// The subcommands that are not hidden (of an empty group), in their order.
+/// The subcommands in their order, without hidden ones (those in an empty group).
 [[nodiscard]] inline std::vector<const CLI::App*> commands_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
 }

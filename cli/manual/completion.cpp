@@ -34,7 +34,7 @@ std::string list_of(const std::vector<Word>& words) {
   return list;
 }
 
-/// In single quotes, for all three shells; `also` gets a backslash.
+/// Quotes a text in single quotes for all three shells. \param also  characters that get a backslash.
 std::string quoted(const std::string& text, char also = '\0') {
   std::string out = "'";
   for (const char c : text) {

@@ -1,6 +1,5 @@
 /// \file
-/// Completion for shells, made from what the parser knows: commands, their options, and files for everything
-/// else.
+/// Shell completion, generated from the parser: commands, their options, and files for all other arguments.
 #pragma once
 
 #include <string>
@@ -9,7 +8,8 @@
 
 namespace stickslip::manual {
 
-/// \param program  the word to complete after. Scripts to be sourced, or put where the shell looks for them.
+/// Completion scripts, to be sourced or put into the shell's folder. \param program  name of the completed
+/// program.
 [[nodiscard]] std::string bash_completion(const CLI::App& app, const std::string& program);
 [[nodiscard]] std::string zsh_completion(const CLI::App& app, const std::string& program);
 [[nodiscard]] std::string fish_completion(const CLI::App& app, const std::string& program);

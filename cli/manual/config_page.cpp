@@ -10,7 +10,7 @@
 namespace stickslip::manual {
 namespace {
 
-/// One space between words.
+/// Joins the words of a text by single spaces.
 std::string plain(const std::string& text) {
   std::istringstream in{text};
   std::string out;
@@ -29,8 +29,8 @@ std::string config_page(std::string_view text, const PageFacts& facts) {
       "DESCRIPTION\n",
       "STICKSLIPD.TOML", facts.section, roff(facts.version), roff(facts.name));
   std::istringstream in{std::string{text}};
-  std::string what;       ///< Of the header or key, that may go on.
-  std::string paragraph;  ///< What the next text begins with.
+  std::string what;       ///< Text of the header or key, which the next line may continue.
+  std::string paragraph;  ///< Macro before the next text.
   const auto close = [&page, &what, &paragraph] {
     if (!what.empty()) page += paragraph + roff(plain(what)) + "\n";
     what.clear();

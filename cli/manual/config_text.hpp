@@ -1,5 +1,5 @@
 /// \file
-/// config/stickslipd.toml, in the program: each key with unit, range and default.
+/// The text of config/stickslipd.toml, built into the program: each key with unit, range and default.
 #pragma once
 
 #include <string_view>

@@ -1,6 +1,6 @@
 /// \file
-/// Manual pages in the man macros of roff [man(7)], made from what the programs know of themselves: a page
-/// cannot say otherwise than --help does.
+/// Manual pages in the man macros of roff [man(7)], generated from the parsers, so that a page agrees with
+/// --help.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace stickslip::manual {
 
-/// What --help does not hold.
+/// Parts of a page that --help does not have.
 struct PageFacts {
   std::string name;  ///< "stickslip".
   int section = 1;
@@ -20,11 +20,12 @@ struct PageFacts {
   std::string see_also;
 };
 
-/// Of a program with its options and subcommands; hidden ones (of an empty group) are left out.
+/// The page of a program with its options and subcommands, without hidden ones (those in an empty group).
 [[nodiscard]] std::string command_page(const CLI::App& app, const PageFacts& facts);
 
-/// Of a configuration file that documents itself as config/stickslipd.toml does: "[table]   # what", "key =
-/// value # what" or the same behind "# ", with lines that go on behind two spaces.
+/// The page of a configuration file with the form of config/stickslipd.toml. Its comments
+/// "[table]   # what" and "key = value # what" become the text, also if the line is commented out by "# ".
+/// Lines indented by two spaces continue a text.
 [[nodiscard]] std::string config_page(std::string_view text, const PageFacts& facts);
 
 }  // namespace stickslip::manual

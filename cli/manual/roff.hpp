@@ -7,8 +7,8 @@
 
 namespace stickslip::manual {
 
-/// In roff a backslash begins a command, as do a dot and a quote at the beginning of a line; a plain minus is
-/// a hyphen that pagers may break at, and is copied as one.
+/// Escapes a text for roff: backslashes, a dot or quote at the beginning of a line (both begin commands), and
+/// minus signs (unescaped they become hyphens, which break lines and are copied wrongly).
 [[nodiscard]] inline std::string roff(std::string_view text) {
   std::string out;
   bool begins = true;
@@ -26,7 +26,7 @@ namespace stickslip::manual {
   return out;
 }
 
-/// Lines as they are.
+/// A text whose lines stay as they are.
 [[nodiscard]] inline std::string roff_example(std::string_view text) {
   return ".nf\n" + roff(text) + "\n.fi\n";
 }

@@ -23,7 +23,7 @@ namespace stickslip::simulation {
 namespace {
 
 constexpr double kNanosecondsPerSecond = 1e9;
-/// Between two looks at the clock and the progress; one entry of the journal.
+/// Scans between two progress reports; also the size of a journal entry, scans.
 constexpr std::size_t kScansPerStep = 4096;
 
 double seconds_since(std::int64_t start_ns, const base::Clock& clock) {
@@ -43,11 +43,11 @@ record::RecordHeader header_of(const sim::Scene& scene, const model::Method& met
   return header;
 }
 
-/// Where the scans go.
+/// Destination of the scans.
 class ScanSink {
  public:
   virtual ~ScanSink() = default;
-  /// Consecutive scans with their noise-free force.
+  /// Adds consecutive scans with their noise-free force.
   virtual base::Result<void> scans(daq::ScanIndex first, std::span<const double> raw,
                                    std::span<const double> force) = 0;
 };
@@ -83,7 +83,7 @@ class JournalSink final : public ScanSink {
   record::JournalWriter& journal_;
 };
 
-/// Removes the journal when all is done or has failed.
+/// Removes the journal in its destructor, after success and failure.
 class JournalFile {
  public:
   explicit JournalFile(std::filesystem::path path) : path_(std::move(path)) {}
@@ -110,10 +110,10 @@ base::Result<std::int64_t> scans_of(const sim::Scene& scene) {
   return count;
 }
 
-/// Simulates and analyses; the record gets its end, all but the file's own facts.
+/// Simulates and analyses a scene, and fills the record except for the facts of its file.
 class Walk {
  public:
-  /// \param scratch  folder for what is too long for memory; empty: nothing is.
+  /// \param scratch  folder of nameless files for long tables; empty: all is in memory.
   Walk(const sim::Scene& scene, std::uint64_t seed, const base::Clock& clock, std::filesystem::path scratch,
        model::Method traditional)
       : scene_(scene),
@@ -191,7 +191,7 @@ class Walk {
   const base::Clock& clock_;
   std::filesystem::path scratch_;
   sim::SceneRun run_;
-  daq::ScanIndex first_ = 0;  ///< That arrived.
+  daq::ScanIndex first_ = 0;  ///< First scan that arrived.
 };
 
 std::string duration_text(double time_s) {
@@ -253,7 +253,7 @@ base::Result<Simulation> simulate_to_file(const sim::Scene& scene, std::uint64_t
   if (auto published = record::publish_journal(journal_path, result.record, file.path); !published) {
     return tl::unexpected(published.error());
   }
-  // Who wants the tables has the file.
+  // The file holds these tables.
   result.record.cycles.clear();
   result.record.end->truth->modes.clear();
   result.record.end->truth->cycles.clear();

@@ -1,7 +1,7 @@
 /// \file
-/// One repetition of a scene as a record, straight: no board, no threads, no waiting. Raw counts,
-/// analysis, truth and names are those of a daemon that plays the scene, but the record is the
-/// whole scene and not the part that the daemon would cut out as the test.
+/// Simulates one repetition of a scene as a record, without board, threads and real time. Raw counts,
+/// analysis, truth and names are those of a daemon that plays the scene, but the record holds the whole
+/// scene, not only the test in it.
 #pragma once
 
 #include <cstdint>
@@ -17,44 +17,44 @@
 
 namespace stickslip::simulation {
 
-/// Longest record: 40 hours at 350 Hz.
+/// Most scans of a simulated record: 40 hours at 350 Hz.
 inline constexpr std::int64_t kMostSimulatedScans = 50'000'000;
 
 struct Simulation {
-  record::Record record;        ///< With its end; process.program and process.configuration are left open.
-  std::int64_t scan_count = 0;  ///< Those that arrived.
-  std::string method;           ///< How the motion was solved, the accuracy in use and asked for.
-  double time_taken_s = 0.0;    ///< By the simulation itself, without analysis and file.
+  record::Record record;        ///< Complete, except for process.program and process.configuration.
+  std::int64_t scan_count = 0;  ///< Scans that arrived.
+  std::string method;           ///< Method that solved the motion, its accuracy and the requested one.
+  double time_taken_s = 0.0;    ///< Time of the simulation alone, without analysis and file.
 
   [[nodiscard]] double ns_per_scan() const noexcept;
   /// "2975 scans, 8.5 s at 350 Hz, seed 3; simulated in …"; also in the record.
   [[nodiscard]] std::string summary() const;
 };
 
-/// Told the part of the scans that has been simulated, 0 … 1; may be empty.
+/// Called with the simulated part of the scans, 0 … 1; may be empty.
 using SimulationProgress = std::function<void(double done)>;
 
-/// The record in memory: for pictures and comparisons of short scenes.
-/// \param seed   of the run: the same seed, the same bits. That of a record's truth repeats it.
-/// \param clock  measures the time taken and nothing else.
-/// Errors: kUsage for a scene without a scan, or with more than kMostSimulatedScans.
+/// Simulates into memory, for pictures and comparisons of short scenes; blocks.
+/// \param seed   decides the random numbers: equal seeds give equal bits. The seed in a record's truth
+/// reproduces the record. \param clock  only measures the time taken. Errors: kUsage for a scene without a
+/// scan, or with more than kMostSimulatedScans.
 [[nodiscard]] base::Result<Simulation> simulate(const sim::Scene& scene, std::uint64_t seed,
                                                 const base::Clock& clock,
                                                 const SimulationProgress& progress = {});
 
-/// What a file says about where it comes from.
+/// Path and origin of a simulated record file.
 struct SimulationFile {
   std::filesystem::path path;  ///< Must not exist.
   std::string program;         ///< process/program
   std::string configuration;   ///< process/configuration
-  model::Method method{};      ///< process/method, and the rule of results and truth.
+  model::Method method{};      ///< process/method; results and truth follow it.
 };
 
-/// The same into a file, scan by scan and slip by slip: what grows with them lies in nameless files beside
-/// FILE, but for what the fit of the slips needs (docs/simulate.md). The scans go to FILE.journal, which is
-/// gone in the end, whatever happens. \param progress  told 1 once before the analysis and once more before
-/// the file is built. \return the simulation without scans, raw values, noise-free force and tables of slips
-/// and modes. Errors: as simulate(); kUsage if the file is there already, kFailure if it cannot be written.
+/// Simulates into a file with bounded memory, except for the fit of the slips (docs/simulate.md); blocks.
+/// Long tables are in nameless files beside FILE, the scans in FILE.journal, which is removed in any case.
+/// \param progress  called with 1 before the analysis and again before the file is built. \return the
+/// simulation without scans, raw values, noise-free force and tables of slips and modes. Errors: as
+/// simulate(); kUsage if the file exists, kFailure if it cannot be written.
 [[nodiscard]] base::Result<Simulation> simulate_to_file(const sim::Scene& scene, std::uint64_t seed,
                                                         const base::Clock& clock, const SimulationFile& file,
                                                         const SimulationProgress& progress = {});

@@ -39,7 +39,7 @@ struct Quantity {
   std::string unit;  ///< Empty if there is none.
 };
 
-/// Which units there are is for the scene to know.
+/// Splits number and unit. The unit is checked later, by the scene.
 std::optional<Quantity> quantity_of(std::string_view text) {
   text = trimmed(text);
   const char* const end = text.data() + text.size();
@@ -50,7 +50,7 @@ std::optional<Quantity> quantity_of(std::string_view text) {
   return quantity;
 }
 
-/// 0.1 + 0.2 = 0.3, as people count: the nearest number with 15 digits.
+/// Rounds to 15 digits, so that 0.1 + 0.2 is 0.3.
 double rounded(double value) {
   const Result<double> short_value = base::parse_number(fmt::format("{:.15g}", value));
   return short_value ? *short_value : value;
@@ -68,7 +68,7 @@ std::vector<double> steps(double from, double to, std::int64_t count, bool logar
   return values;
 }
 
-/// \param place  begins every message.
+/// \param place  beginning of error messages.
 Result<SweepAxis> range_axis(std::string_view key, std::vector<std::string_view> parts,
                              const std::string& place) {
   const bool logarithmic = trimmed(parts.front()) == "log";

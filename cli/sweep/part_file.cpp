@@ -30,9 +30,10 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "stickslip-sweep-part";
 constexpr std::int64_t kFormatVersion = 1;
+/// Longest time that finished runs are not synced.
 constexpr std::int64_t kSyncInterval_ns = 1'000'000'000;
 
-/// Everything that decides the numbers: the same identity, the same runs.
+/// Identity of a sweep: all that decides the numbers of its runs.
 Json identity_of(const record::SweepFacts& facts) {
   Json axes = Json::array();
   for (const record::SweepAxis& axis : facts.axes) {
@@ -47,7 +48,7 @@ Json identity_of(const record::SweepFacts& facts) {
 
 std::string line_of(const Json& json) { return io::json_text(json) + "\n"; }
 
-/// What differs, for a person; empty if nothing does.
+/// The difference between two identities, for people; empty if they are equal.
 std::string difference(const Json& there, const Json& here) {
   for (const auto& [key, value] : here.items()) {
     const auto found = there.find(key);
@@ -63,7 +64,7 @@ std::string difference(const Json& there, const Json& here) {
 
 Json parsed(const std::string& line) { return Json::parse(line, nullptr, false); }
 
-/// A run if the line is one.
+/// Reads a line as a run; nothing if it is none.
 std::optional<record::SweepRun> run_of(const std::string& line, std::int64_t run_count) {
   try {
     record::SweepRun run = record::sweep_run_from_json(line);
@@ -74,7 +75,8 @@ std::optional<record::SweepRun> run_of(const std::string& line, std::int64_t run
   return std::nullopt;
 }
 
-/// \param use  told each line that has an end, until it says no. \return the size of those it took, bytes.
+/// \param use  called with each complete line until it returns false. \return bytes of the lines that it
+/// accepted.
 Result<std::int64_t> for_each_line(const std::filesystem::path& path,
                                    const std::function<bool(const std::string&)>& use) {
   std::ifstream in{path, std::ios::binary};

@@ -1,6 +1,6 @@
 /// \file
-/// The finished runs of a sweep that is still under way, so that it can be stopped at any moment and
-/// go on later: JSON lines, appended. The first says which sweep it is, each other one is a run.
+/// The part file: finished runs of an unfinished sweep, so that a stopped sweep can be resumed. It has lines
+/// of JSON: first the identity of the sweep, then one line for each run.
 ///
 ///     Result<PartFile> part = PartFile::open("sweep.h5.part", facts, clock);
 ///     part->missing();          // which runs are still to be done
@@ -24,25 +24,24 @@ namespace stickslip::sweep {
 /// Thread-bound.
 class PartFile {
  public:
-  /// Opens what is there or makes it. Lines that are not whole, and all after them, are dropped: those runs
-  /// are done again. \param facts  also stand for the sweep in the result. \param clock  outlives it; tells
-  /// when a second is over and nothing else.
-  /// Errors: kUsage if the file is something else, of another sweep (says what differs), or written by
-  /// another program right now; else kFailure.
+  /// Opens or creates the file. Runs from the first invalid line on are dropped and must be repeated. \param
+  /// facts  identify the sweep. \param clock  outlives this object; it only times the syncs. Errors: kUsage
+  /// if the file is no part file, belongs to another sweep (the message says what differs) or is in use by
+  /// another program; else kFailure.
   [[nodiscard]] static base::Result<PartFile> open(const std::filesystem::path& path,
                                                    const record::SweepFacts& facts, const base::Clock& clock);
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
   [[nodiscard]] std::int64_t done_count() const noexcept { return done_count_; }
-  /// Numbers of the runs that are not in the file, rising.
+  /// Numbers of the runs that are not in the file, ascending.
   [[nodiscard]] std::vector<std::int64_t> missing() const;
 
-  /// Written at once, on the disk within about a second, or with the next run.
+  /// Writes a run at once; syncs the file if the last sync is a second old. Errors: kFailure.
   [[nodiscard]] base::Result<void> append(const record::SweepRun& run);
-  /// All runs so far onto the disk.
+  /// Blocks until all runs so far are on the disk.
   [[nodiscard]] base::Result<void> sync();
 
-  /// The runs of the file.
+  /// Reads the runs of the file as a table.
   [[nodiscard]] base::Result<record::SweepTable> table() const;
 
   [[nodiscard]] base::Result<void> remove();
@@ -51,7 +50,7 @@ class PartFile {
   PartFile(std::filesystem::path path, record::Descriptor file, const record::SweepFacts& facts,
            const base::Clock& clock);
 
-  /// What the file holds, up to the first line that is not whole.
+  /// Reads the file up to the first invalid line.
   [[nodiscard]] base::Result<void> take_over(const record::SweepFacts& facts);
   [[nodiscard]] base::Result<void> write(const std::string& line);
 

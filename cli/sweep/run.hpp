@@ -1,6 +1,6 @@
 /// \file
-/// One run of a sweep: the results and the truth that `stickslip simulate` would give, without the
-/// record between.
+/// One run of a sweep: the results and the truth that `stickslip simulate` would give, without making a
+/// record.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@
 
 namespace stickslip::sweep {
 
-/// What one run needs: its memory goes with the scans of the scene, and all of it with the run.
-/// Usage error that names the scene: without a scan, or with more than kMostSimulatedScans.
+/// Checks that a scene can be run in memory, which grows with its scans. Errors: kUsage, with the scene's
+/// name, for a scene without a scan or with more than kMostSimulatedScans.
 [[nodiscard]] base::Result<void> check_runnable(const sim::Scene& scene);
 
-/// The same numbers for the same arguments, whoever else is running. Thread-safe.
-/// \param scene   check_runnable(). \param number  stands in the run and does nothing else.
+/// Simulates and analyses a scene; blocks. Equal arguments give equal numbers. Thread-safe.
+/// \param scene   must have passed check_runnable(). \param number  is only copied into the result.
 /// \throws std::invalid_argument if the analysis refuses the scene's tester.
 [[nodiscard]] record::SweepRun sweep_run(const sim::Scene& scene, std::uint64_t seed, std::int64_t number,
                                          detect::EstimatorTier estimator = detect::EstimatorTier::kFit);

@@ -18,8 +18,8 @@
 namespace stickslip::sweep {
 namespace {
 
-/// From the working threads to the caller's. Bounded, so that a slow disk slows the work down and does not
-/// fill the memory. Thread-safe.
+/// Queue of finished runs from the workers to the caller's thread. It is bounded, so that a slow disk slows
+/// the workers and memory does not fill. Thread-safe.
 class Finished {
  public:
   explicit Finished(std::size_t workers) : workers_(workers), room_(4 * workers) {}
@@ -37,7 +37,7 @@ class Finished {
     changed_.notify_all();
   }
 
-  /// Waits for a run; none when all workers have ended and all runs are taken.
+  /// Blocks until there is a run; nothing when all workers have ended and the queue is empty.
   std::optional<base::Result<record::SweepRun>> take() {
     std::unique_lock lock{mutex_};
     changed_.wait(lock, [this] { return !runs_.empty() || workers_ == 0; });

@@ -1,5 +1,5 @@
 /// \file
-/// The scans of a simulated test as an analysis gets them, without board, threads and files.
+/// Plays a scene as calibrated scans, without board, threads and files.
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@
 
 namespace stickslip::sweep {
 
-/// From volts of the scene's converter to the coefficient.
+/// Calibration from the raw readings of SceneRun to the coefficient.
 [[nodiscard]] inline daq::Calibration calibration_of(const sim::Scene& scene) {
   return {drivers::board_info_of({scene}, scene.scan_rate_Hz), drivers::load_cell_of(scene),
           drivers::tester_of({scene}).normal_load_N()};
 }
 
-/// Plays the scene once. \param add  called as add(scan, coefficient, saturated). \param gap  called as
-/// gap(first, count) where scans are missing between two that arrive.
+/// Plays the scene once; blocks. \param add  called for each scan that arrives as add(scan, coefficient,
+/// saturated). \param gap  called as gap(first, count) where scans are missing between two that arrive.
 /// \return false if no scan arrived.
 template <typename Add, typename Gap>
 bool play(const sim::Scene& scene, std::uint64_t seed, const daq::Calibration& calibration, Add add,

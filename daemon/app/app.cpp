@@ -21,7 +21,7 @@
 namespace stickslip::app {
 namespace {
 
-/// Tries to open a missing board: after 1, 2, 4, 8, 16, 30, 30 … s.
+/// Longest pause between attempts to open a missing board: 1, 2, 4, 8, 16, 30, 30 … s.
 constexpr std::chrono::seconds kLongestRetry{30};
 
 std::unique_ptr<base::Clock> clock_of(const io::DaemonConfig& config) {
@@ -31,7 +31,7 @@ std::unique_ptr<base::Clock> clock_of(const io::DaemonConfig& config) {
                                    config.board.simulated.faults.seed);
 }
 
-/// As far as permissions go.
+/// Makes the record read-only, if its permissions can be changed.
 storage::Finalise read_only(storage::Finalise finalise) {
   return [finalise = std::move(finalise)](const std::filesystem::path& journal,
                                           std::optional<std::int64_t> expected) {

@@ -1,5 +1,5 @@
 /// \file
-/// stickslipd as a whole: who lives how long, and what follows from what.
+/// stickslipd as a whole: owns all its parts and drives them through the daemon's states.
 #pragma once
 
 #include <atomic>
@@ -36,22 +36,23 @@
 
 namespace stickslip::app {
 
-/// What the daemon takes from the world; tests give their own.
+/// The daemon's dependencies; tests replace them.
 struct AppWorld {
-  runtime::RecordFolder record_folder;  ///< That of the configuration, prepared.
+  runtime::RecordFolder record_folder;  ///< The configured record folder, prepared.
   std::function<base::Result<drivers::OpenedBoard>(const drivers::BoardConfig&, base::Clock&,
                                                    const std::optional<daq::Continuation>&)>
       open_board;
   storage::Finalise finalise;
   daemon::Facts* facts = nullptr;  ///< Outlives the App.
-  /// Told each new line of STATUS=, on the main thread; may be empty.
+  /// Called on the main thread with each new line of STATUS=; may be empty.
   std::function<void(const std::string&)> status_changed;
-  /// Whether a signal to end came before run(); may be empty.
+  /// True if a signal to end came before run(); may be empty.
   std::function<bool()> stop_asked;
-  /// SIGHUP: whether the configuration as it is now is good. Empty: SIGHUP ends the program.
+  /// Called at SIGHUP: checks the present configuration file. Empty: SIGHUP ends the program.
   std::function<base::Result<void>()> check_config;
-  std::unique_ptr<base::Clock> clock;           ///< Null: the machine's, as fast as configured.
-  std::chrono::milliseconds first_retry{1000};  ///< Of a missing board; then twice as long each time.
+  std::unique_ptr<base::Clock> clock;  ///< Null: the machine's clock, at the configured speed.
+  /// Pause before a missing board is tried again; it doubles up to 30 s.
+  std::chrono::milliseconds first_retry{1000};
 };
 
 /// Thread-bound: the main thread. States:
@@ -64,41 +65,41 @@ class App {
   App(const App&) = delete;
   App& operator=(const App&) = delete;
 
-  /// Runs until SIGTERM, SIGINT or the end of the input: drains, ends the running test, finishes its file.
-  /// Or, after a SIGHUP, until no test and no calibration is under way. Errors mean that it never got ready:
-  /// kUsage (configuration), kFailure (record folder or control socket).
+  /// Blocks until SIGTERM, SIGINT or the end of the input; then drains the ring, ends the running test and
+  /// finishes its record. After SIGHUP it ends when no test and no calibration is under way. Errors mean that
+  /// the daemon never became ready: kUsage (configuration), kFailure (record folder or control socket).
   [[nodiscard]] base::Result<void> run();
 
-  /// Any thread, any time after construction: as SIGTERM.
+  /// Acts as SIGTERM. Any thread.
   void request_stop();
 
-  /// run() ended so that another App, with the configuration as it is now, takes its place.
+  /// True if run() ended because of SIGHUP: another App with the present configuration should take over.
   [[nodiscard]] bool is_to_be_reloaded() const noexcept { return reloads_; }
 
-  /// Tests so far.
+  /// The latest tests.
   [[nodiscard]] const daemon::TestLog& tests() const noexcept { return tests_; }
   [[nodiscard]] daemon::Status status() const;
   [[nodiscard]] daemon::ScanAccount scan_account() const;
 
  private:
-  /// The three in the middle wait for the board: it is not there, another program has it, its device
-  /// file is not for this user.
+  /// In the last three before kStopping the daemon waits for the board: it is missing, another program uses
+  /// it, or its device file forbids access.
   enum class State { kStarting, kAcquiring, kBoardMissing, kBoardBusy, kNoPermission, kStopping };
-  /// The word in status and log.
+  /// Name in status and log.
   [[nodiscard]] static std::string_view name(State state) noexcept;
-  /// The one to wait in after an error of this kind.
+  /// The waiting state after an error of this kind.
   [[nodiscard]] static State waiting_state(base::ErrorKind kind) noexcept;
 
   void wait_for_signal();
   void reload();
   void reload_when_idle();
-  /// On the processing thread: the bench rests.
+  /// Ends the session and begins the reload. Called on the processing thread, when the bench is at rest.
   void reload_at_rest(runtime::Session& session);
   void reload_now();
   void look_again_for_reload();
-  /// What the service manager watches.
+  /// The threads that the watchdog watches.
   [[nodiscard]] std::vector<runtime::WatchedPart> watched_parts();
-  /// The daemon is ready to be used, whether or not there is a board.
+  /// Reports readiness, whether or not there is a board.
   void tell_ready();
   [[nodiscard]] base::Result<void> open_session();
   void wait_for_board(const base::Error& why);
@@ -108,14 +109,14 @@ class App {
   void leave_when_idle();
   void tell_status();
   [[nodiscard]] std::string status_line() const;
-  [[nodiscard]] std::string state_line() const;  ///< Without the disk.
-  /// What the kernel granted; only while there is a session.
+  [[nodiscard]] std::string state_line() const;  ///< As status_line(), without the storage.
+  /// Real-time settings in force; valid while there is a session.
   [[nodiscard]] std::string realtime_facts() const;
-  /// Socket and port, as configured.
+  /// Opens the configured socket and port.
   [[nodiscard]] base::Result<void> open_control();
-  /// The broker, if one is configured.
+  /// Connects to the broker, if one is configured.
   [[nodiscard]] base::Result<void> open_fleet();
-  /// Who is told of the scans.
+  /// The sinks of a session.
   [[nodiscard]] std::vector<pipeline::Sink*> sinks();
 
   io::DaemonConfig config_;
@@ -133,28 +134,29 @@ class App {
   live::LiveStream live_;
   batch::BatchLeader batches_;
   page::ReportDesk reports_;
-  std::unique_ptr<base::Clock> wall_;  ///< Of leases, dates and messages: people's time.
+  std::unique_ptr<base::Clock> wall_;  ///< Wall time, for leases, dates and messages.
   runtime::CalibrationDesk calibrations_;
   runtime::BenchDesk desk_;
-  std::unique_ptr<fleet::Fleet> fleet_;  ///< Null without a broker.
+  std::unique_ptr<fleet::Fleet> fleet_;  ///< Null: no broker is configured.
   std::vector<std::unique_ptr<control::ControlServer>> control_;
-  std::optional<daemon::Status::Page> page_;  ///< While it is served.
+  std::optional<daemon::Status::Page> page_;  ///< The live page, while it is served.
   std::shared_ptr<const model::TruthSource> truth_;
   std::unique_ptr<runtime::Session> session_;
 
   runtime::Watchdog watchdog_;
   bool reload_asked_ = false;
-  std::atomic<bool> reload_at_rest_{false};  ///< The processing thread begins it when no test is under way.
+  /// The processing thread starts the reload when the bench is at rest.
+  std::atomic<bool> reload_at_rest_{false};
   bool reloads_ = false;
-  std::string process_facts_;  ///< Of prepare_process().
+  std::string process_facts_;  ///< Result of prepare_process().
   State state_ = State::kStarting;
-  std::string waiting_why_;  ///< While the board is waited for.
+  std::string waiting_why_;  ///< Why the board is not available.
   std::chrono::milliseconds retry_after_;
   runtime::SessionEnd continues_;
   runtime::SessionCounts counts_;
   std::uint64_t board_loss_count_ = 0;
-  std::int64_t issued_before_ = 0;  ///< Indices, by the sessions that are over.
-  runtime::SessionClocks clocks_;   ///< Of the latest session.
+  std::int64_t issued_before_ = 0;  ///< Scan indices issued in earlier sessions.
+  runtime::SessionClocks clocks_;   ///< Timing of the latest session.
   std::optional<std::int64_t> current_test_;
 };
 

@@ -9,7 +9,7 @@
 namespace stickslip::app {
 namespace {
 
-/// Room for longer is not told in one line: 30 days without a pause.
+/// The status line tells the room on the disk below this time of scanning only, h: 30 days.
 constexpr double kTellRoom_h = 720.0;
 
 }  // namespace
@@ -19,8 +19,8 @@ std::vector<runtime::WatchedPart> App::watched_parts() {
   const auto of_scans = [this](std::uint64_t count) {
     return runtime::Pulse{count, !session_ || state_ != State::kAcquiring};
   };
-  // A disk of which a call returns late is slow, not hung: the kernel tries again for three minutes before it
-  // says that a disk fails (30 s, six times: sd's timeout and retries), and memory has room for ten.
+  // A late system call means a slow disk, not a hanging thread: the kernel retries for three minutes before
+  // it reports a failing disk (sd: 30 s, six times), and memory holds ten minutes of scans.
   constexpr int kDiskPatience = 4;
   return {
       {"acquisition", [=, this] { return of_scans(session_ ? session_->delivered_scan_count() : 0); }},

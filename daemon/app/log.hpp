@@ -1,5 +1,5 @@
 /// \file
-/// The daemon's facts as lines of the log.
+/// Writes the daemon's events to the log.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace stickslip::app {
 
-/// \param level  lines below it are left out.
+/// Makes the receiver of events that logs them. \param level  less important lines are omitted.
 [[nodiscard]] std::unique_ptr<daemon::Facts> make_log(io::LogLevel level,
                                                       std::unique_ptr<LogOutput> output = make_log_output());
 

@@ -9,7 +9,7 @@
 #include <syslog.h>
 #include <unistd.h>
 
-// Else each entry would name this file, which tells nobody where a fact comes from.
+// Otherwise each entry would name this file as its origin, which is useless.
 #define SD_JOURNAL_SUPPRESS_LOCATION
 #include <systemd/sd-journal.h>
 

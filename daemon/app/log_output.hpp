@@ -1,5 +1,5 @@
 /// \file
-/// Where lines of the log go: to the journal with fields to filter by, or to stderr for people.
+/// Output of the log: the systemd journal, with fields to filter by, or stderr.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,17 @@
 
 namespace stickslip::app {
 
-/// One line, and what it is about.
+/// One line of the log with its fields.
 struct LogEntry {
   io::LogLevel level = io::LogLevel::kInfo;
-  std::string_view event{};  ///< A word for its kind, from one release to the next the same.
+  /// Identifier of the kind of line; stable between releases.
+  std::string_view event{};
   std::string message{};
-  std::optional<std::int64_t> test{};  ///< Number of the test that it is about.
-  std::string record{};                ///< Path of the record or journal that it is about; may be empty.
-  std::string_view state{};            ///< `state` of the status from here on; may be empty.
-  std::string_view cause{};            ///< Of a gap, or of the end of a test; may be empty.
-  std::optional<std::int64_t> first_scan{};  ///< Of a gap.
+  std::optional<std::int64_t> test{};        ///< Number of the test concerned.
+  std::string record{};                      ///< Path of the record or journal concerned; may be empty.
+  std::string_view state{};                  ///< New `state` of the status; may be empty.
+  std::string_view cause{};                  ///< Cause of a gap or of the end of a test; may be empty.
+  std::optional<std::int64_t> first_scan{};  ///< First missing scan of a gap.
   std::optional<std::int64_t> scan_count{};  ///< Missing in a gap.
 };
 
@@ -37,11 +38,12 @@ class LogOutput {
 /// \return true if the descriptor is the stream to the journal that the variable names [systemd.exec(5)].
 [[nodiscard]] bool leads_to_journal(int descriptor, const char* journal_stream);
 
-/// "NAME=value" each, as sd_journal_sendv(3) takes them: MESSAGE, PRIORITY, SYSLOG_IDENTIFIER, and those of
-/// STICKSLIP_EVENT, _TEST, _RECORD (absolute), _STATE, _CAUSE, _FIRST_SCAN, _SCAN_COUNT that the entry has.
+/// The entry as fields "NAME=value" for sd_journal_sendv(3): MESSAGE, PRIORITY, SYSLOG_IDENTIFIER, and those
+/// of STICKSLIP_EVENT, _TEST, _RECORD (absolute), _STATE, _CAUSE, _FIRST_SCAN, _SCAN_COUNT that the entry
+/// has.
 [[nodiscard]] std::vector<std::string> journal_fields(const LogEntry& entry);
 
-/// The journal where stderr leads there; else stderr, with time and level for people.
+/// The journal if stderr is connected to it; else stderr, with time and level.
 [[nodiscard]] std::unique_ptr<LogOutput> make_log_output();
 
 }  // namespace stickslip::app

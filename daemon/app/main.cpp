@@ -64,7 +64,7 @@ int print_result(const std::string& file) {
   return 0;
 }
 
-/// Follows the daemon's state in one line of a terminal.
+/// Shows the daemon's state in one line of the terminal.
 void show_status(const std::string& line) {
   fmt::print("\r\033[K{}", base::printable(line));
   std::fflush(stdout);
@@ -81,15 +81,14 @@ void print_table(const daemon::TestLog& tests) {
   if (!rows.empty()) io::print_text(stdout, report::format_table(rows));
 }
 
-/// Keeps what the signals do while one App has gone and the next has not come, each of which handles them
-/// itself.
+/// Handles the signals between two Apps of a reload. A running App handles them itself.
 class SignalsBetween {
  public:
   explicit SignalsBetween(bool reloads) {
     if (reloads) hangups_.add(SIGHUP);
     stops_.async_wait([this](boost::system::error_code error, int /*signal*/) { stop_asked_ = !error; });
   }
-  /// SIGTERM or SIGINT came, ever.
+  /// True if SIGTERM or SIGINT has come since the start.
   [[nodiscard]] bool stop_asked() {
     io_.poll();
     return stop_asked_;

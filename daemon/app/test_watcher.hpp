@@ -1,5 +1,5 @@
 /// \file
-/// Sees the tests on the processing thread: into the log, and told to who wants to know.
+/// Sink that enters tests into the TestLog and reports events of tests and bench.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,15 @@ namespace stickslip::app {
 
 class TestWatcher final : public pipeline::Sink {
  public:
-  /// \param current  told the number of the test that runs, or that none does; on the processing thread.
-  /// \param rests    told that no force is left, on the processing thread: the next test has not begun.
+  /// \param current  called on the processing thread with the number of the running test, or nothing when it
+  /// has ended. \param rests    called on the processing thread when the bench comes to rest, before the next
+  /// test begins.
   TestWatcher(daemon::TestLog& tests, daemon::Facts& facts,
               std::function<void(std::optional<std::int64_t>)> current, std::function<void()> rests)
       : tests_(tests), facts_(facts), current_(std::move(current)), rests_(std::move(rests)) {}
 
-  /// Only between sessions.
-  /// \param first_slip_counts  as AnalysisSettings::kept.
+  /// Call it only between sessions. \param truth  null if unknown. \param first_slip_counts  as
+  /// analysis::Kept::first_slip.
   void use(const model::TruthSource* truth, bool first_slip_counts) {
     truth_ = truth;
     first_slip_counts_ = first_slip_counts;
@@ -72,7 +73,7 @@ class TestWatcher final : public pipeline::Sink {
   std::function<void()> rests_;
   const model::TruthSource* truth_ = nullptr;
   bool first_slip_counts_ = false;
-  daq::ScanIndex first_ = 0;  ///< Of the running test, as its number.
+  daq::ScanIndex first_ = 0;  ///< First scan of the running test.
   std::int64_t number_ = 0;
 };
 

@@ -20,7 +20,8 @@
 namespace stickslip::batch {
 namespace {
 
-/// Identifies a batch, and sorts with the names of the records (storage.cpp).
+/// A new identifier of a batch. It begins with the time, so that it sorts among the names of records
+/// (io/record_name.hpp).
 std::string batch_id(std::int64_t realtime_ns, const daemon::BatchBook& book) {
   const std::time_t seconds = realtime_ns / 1'000'000'000;
   const std::string stem = fmt::format("{:%Y%m%dT%H%M%SZ}", fmt::gmtime(seconds));
@@ -132,7 +133,7 @@ void BatchLeader::lead() {
   const std::string id = batch != nullptr ? batch->id : "";
   const std::optional<daemon::BatchStep> step = next();
   if (step == planned_ && id == led_batch_) return;
-  // Nobody led before and nobody does now: what people planned stays.
+  // Without a batch before and now, the function has returned: the user's plan stays.
   daemon::Plan plan = parts_.plan();
   if (batch != nullptr) plan.sample = batch->plan.sample;
   plan.sample.batch = step ? id : "";
@@ -171,7 +172,7 @@ void BatchLeader::test_began(std::int64_t number) {
 
 void BatchLeader::record_published(std::int64_t number, const std::filesystem::path& file) {
   if (!under_way_.contains(number) && book_.current() == nullptr) return;
-  // Its own facts count, not what was thought when it began.
+  // The record itself says which step it is of; the plan may have changed since it began.
   boost::asio::post(pool_, [this, number, file] {
     const auto place = place_of(parts_.program, file, name_of(file));
     base::Result<void> written;

@@ -1,6 +1,6 @@
 /// \file
-/// Leads through a batch: plans the next test when one has begun, writes down what was recorded, and finds
-/// its place again after a restart.
+/// Runs the current batch: sets the plan of the next test, writes recorded tests to the batch journal, and
+/// resumes the batch after a restart.
 #pragma once
 
 #include <cstdint>
@@ -23,16 +23,21 @@
 
 namespace stickslip::batch {
 
-/// Main thread, but for the pool inside, which alone writes the journal and reads records.
+/// Main thread. After open(), a thread inside appends to the journal and reads records (in child processes);
+/// only close() waits for it.
 class BatchLeader final : public daemon::Batches {
  public:
   struct Parts {
-    std::filesystem::path folder;  ///< Of the records.
-    std::string program;           ///< Of place_of().
+    std::filesystem::path folder;  ///< The record folder.
+    std::string program;           ///< Path of stickslipd, for place_of().
+    /// Returns the plan of the coming tests.
     std::function<daemon::Plan()> plan;
+    /// Sets the plan of the coming tests.
     std::function<void(daemon::Plan)> set_plan;
-    std::function<void(daemon::TestSummary)> earlier;    ///< A test of the batch, of before this began.
-    std::function<void(std::function<void()>)> on_main;  ///< From any thread: to the main thread.
+    /// Called on the main thread with each test of the batch that an earlier run of the program recorded; may
+    /// be empty.
+    std::function<void(daemon::TestSummary)> earlier;
+    std::function<void(std::function<void()>)> on_main;  ///< Runs a function on the main thread. Any thread.
     const base::Clock* clock;                            ///< Outlives this object.
   };
   explicit BatchLeader(Parts parts);
@@ -41,16 +46,17 @@ class BatchLeader final : public daemon::Batches {
   BatchLeader(const BatchLeader&) = delete;
   BatchLeader& operator=(const BatchLeader&) = delete;
 
-  /// Reads the journal, adds the records that a stop kept it from adding, plans the next test. The tests of
-  /// the batch that goes on are told one after the other, from their records.
+  /// Call it once, after recovery. Reads the journal, adds records of the current batch that the journal
+  /// lacks, and sets the plan of the next test; blocks. Parts::earlier is then called for each test of the
+  /// current batch, one by one, without blocking.
   void open();
-  /// Behind those of the batch that goes on; 1 without one.
+  /// One more than the highest test number in the current batch; 1 without a batch.
   [[nodiscard]] std::int64_t next_test_number() const;
 
-  /// Waits for what is being written. Only what came before is told any more.
+  /// Blocks until the pending writes are done. Changes requested later are not written.
   void close();
 
-  // What became of tests.
+  // Events of tests.
   void test_began(std::int64_t number);
   void record_published(std::int64_t number, const std::filesystem::path& file);
   void record_failed(std::int64_t number);
@@ -66,23 +72,26 @@ class BatchLeader final : public daemon::Batches {
  private:
   [[nodiscard]] std::string now() const;
   [[nodiscard]] std::optional<daemon::BatchStep> next() const;
-  /// On the pool; then the book is read on, the next test planned, and `answer` told.
+  /// Appends an event on the pool's thread. Then, on the main thread, reads the journal, plans the next test
+  /// and calls `answer`.
   void append(daemon::BatchEvent event, Answer answer);
-  /// What the journal has got; trouble with it is kept for people.
+  /// Applies what was appended to the journal; sets trouble_.
   void read_on();
-  /// Plans the next test, if that is another than was planned.
+  /// Sets the plan of the next test if the step or the batch has changed.
   void lead();
-  /// The records of the current batch that the journal lacks.
+  /// Appends records of the current batch that the journal lacks; blocks.
   void reconcile();
-  /// Of these records from that index on; one at a time, so that nothing that is to be written waits for all.
+  /// Reads the records from index `at` on and calls Parts::earlier for each. Each is a job of its own, so
+  /// that appends need not wait for all.
   void tell_earlier(std::vector<std::string> records, std::size_t at);
 
   Parts parts_;
   daemon::BatchJournal journal_;
   daemon::BatchBook book_;
-  std::map<std::int64_t, daemon::BatchStep> under_way_;  ///< By the number of the test.
-  std::optional<daemon::BatchStep> planned_;             ///< What the next test will be.
-  std::string led_batch_;                                ///< Whose facts are in the plan; empty: of none.
+  /// Steps of tests without a published record. Key: number of the test.
+  std::map<std::int64_t, daemon::BatchStep> under_way_;
+  std::optional<daemon::BatchStep> planned_;  ///< The step that the plan is set to.
+  std::string led_batch_;                     ///< The batch whose sample is in the plan; empty: none.
   std::string trouble_;
   boost::asio::thread_pool pool_{1};
 };

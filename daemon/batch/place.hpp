@@ -1,5 +1,5 @@
 /// \file
-/// What a record says of its place in a batch.
+/// Reads the place of a record in a batch.
 #pragma once
 
 #include <filesystem>
@@ -11,9 +11,9 @@
 
 namespace stickslip::batch {
 
-/// Read by a process of its own (`program --result FILE`): HDF5's errors can end a process.
-/// \param name  of the record in the journal. \return nothing if it is of no batch. Errors: kFailure if it
-/// cannot be read.
+/// Reads a record in a child process (`program --result FILE`), because errors of HDF5 can end a process;
+/// blocks. \param name  of the record in the batch journal. \return nothing if the record belongs to no
+/// batch. Errors: kFailure if it cannot be read.
 [[nodiscard]] base::Result<std::optional<daemon::TestRecorded>> place_of(const std::string& program,
                                                                          const std::filesystem::path& file,
                                                                          const std::string& name);

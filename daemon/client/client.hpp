@@ -1,5 +1,5 @@
 /// \file
-/// The other side of the control socket, for the command line and for tests.
+/// Client of the control socket, for the command line and for tests.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,8 @@
 
 namespace stickslip::client {
 
-/// One request and its reply. Errors (kFailure): nobody listens, no answer in time.
+/// Sends a request; blocks until the reply is there. Errors: kFailure if no daemon listens or no reply comes
+/// in time.
 [[nodiscard]] base::Result<daemon::HttpReply> request(const std::filesystem::path& socket,
                                                       const daemon::HttpRequest& request,
                                                       std::chrono::milliseconds timeout);

@@ -1,5 +1,5 @@
 /// \file
-/// The other side of the live stream, for the command line and for tests.
+/// Client of the live stream, for the command line and for tests.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,8 @@
 
 namespace stickslip::client {
 
-/// Calls `use` with each frame until it says false or the stream ends. Errors (kFailure): nobody listens, or
-/// the stream is refused or breaks off; its orderly end is none.
+/// Calls `use` with each frame until `use` returns false or the daemon closes the stream; blocks. Errors:
+/// kFailure if no daemon listens, or the stream is refused or breaks off.
 [[nodiscard]] base::Result<void> listen_live(const std::filesystem::path& socket,
                                              const std::function<bool(std::string_view frame)>& use);
 

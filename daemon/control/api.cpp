@@ -32,6 +32,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Longest name of a controller.
 constexpr std::size_t kLongestController = 64;
 
 class Api {
@@ -66,7 +67,7 @@ class Api {
                                  const daemon::HttpAnswer&);
   struct Route {
     std::string_view method;
-    std::string_view path;  ///< A slash at its end: and one part more, the rest.
+    std::string_view path;  ///< A path that ends in a slash takes one more part, `rest`.
     bool changes;
     Function function;
   };
@@ -78,7 +79,7 @@ class Api {
     return path.substr(route.path.size());
   }
 
-  /// Names and repetitions first, for what changes something.
+  /// Calls the function of a route. If the route changes something, checks name and Idempotency-Key first.
   void dispatch(const Route& route, const daemon::HttpRequest& request, const std::string& rest,
                 daemon::HttpAnswer answer) {
     if (!route.changes) {
@@ -130,7 +131,7 @@ class Api {
 
   [[nodiscard]] std::int64_t now_ns() const { return clock_.monotonic_ns(); }
 
-  /// The bench for this client. \return false after a refusal.
+  /// Takes the lease of the bench for this client. \return false if it was refused; then `answer` was called.
   bool take(const daemon::HttpRequest& request, double for_s, const daemon::HttpAnswer& answer) {
     const auto holder = lease_.take(request.controller, for_s, now_ns());
     if (!holder) return true;
@@ -208,7 +209,7 @@ class Api {
             {"seconds_left", lease_.left_s(now_ns())}};
   }
 
-  // Who commands.
+  // Commands.
 
   void take_control(const daemon::HttpRequest& request, const std::string&,
                     const daemon::HttpAnswer& answer) {
@@ -312,7 +313,7 @@ class Api {
     command(daemon::Command::Kind::kTare, request, {}, answer);
   }
 
-  /// \param key  that its body may have; empty: none.
+  /// \param key  the only key that the body may have; empty: none.
   void command(daemon::Command::Kind kind, const daemon::HttpRequest& request, std::string_view key,
                const daemon::HttpAnswer& answer) {
     const auto body = object_of(request.body, {key});

@@ -1,12 +1,12 @@
 /// \file
-/// What the control interface answers, version 1. daemon/control/openapi.json describes it and is served at
-/// /v1/openapi.json.
+/// The control interface, version 1, as a handler of HTTP requests. daemon/control/openapi.json describes it
+/// and is served at /v1/openapi.json.
 ///
-/// Whoever reads needs no name. Who commands gives one in the header Stickslip-Controller and has the bench
-/// for half a minute; others are refused meanwhile. A request that changes something may carry an
-/// Idempotency-Key: repeated, it is answered as then, and nothing is done twice.
+/// Reading needs no name. A command needs one, in the header Stickslip-Controller; it reserves the bench for
+/// 30 s (lease.hpp), and commands under other names are refused meanwhile. A command may carry an
+/// Idempotency-Key: if it is repeated, the first reply is sent again and nothing is done twice.
 ///
-/// Every refusal is JSON too: {"error": "what is wrong and what is allowed"}.
+/// A refusal is JSON: {"error": "what is wrong and what is allowed"}.
 #pragma once
 
 #include "core/base/clock.hpp"
@@ -15,7 +15,7 @@
 
 namespace stickslip::control {
 
-/// \param bench,clock  outlive the handler. \param clock  of the leases: wall time.
+/// \param bench,clock  outlive the handler. \param clock  measures the leases; runs at wall speed.
 [[nodiscard]] daemon::HttpHandler make_api(daemon::Bench& bench, const base::Clock& clock);
 
 }  // namespace stickslip::control

@@ -1,5 +1,6 @@
 /// \file
-/// The requests about batches and void tests; api.hpp has seen to names, repetitions and who has the bench.
+/// Parts of the requests about batches and void tests. api.cpp has checked name, Idempotency-Key and lease
+/// before.
 #pragma once
 
 #include <string>
@@ -13,14 +14,14 @@
 
 namespace stickslip::control {
 
-/// {"batch": null}, or the current batch with its plan, tests and what comes next.
+/// {"batch": null}, or the current batch with its plan, its tests and the next step.
 [[nodiscard]] nlohmann::ordered_json batch_json(daemon::Batches& batches);
-/// The record that {"test": 7} or {"record": "…"} names: one of the latest tests, or one of a batch. Errors:
-/// kUsage.
+/// The name, in the batch journal, of the record that {"test": 7} (one of the latest tests) or {"record":
+/// "…"} (one of any batch) means. Errors: kUsage.
 [[nodiscard]] base::Result<std::string> record_named(const nlohmann::ordered_json& body,
                                                      const daemon::Bench& bench, daemon::Batches& batches);
 
-/// The answer of a request that changed something: the batch as it is now, or the refusal.
+/// Makes an Answer that replies with the batch after the change, or with the refusal.
 [[nodiscard]] daemon::Batches::Answer reply_with_batch(daemon::Batches& batches, daemon::HttpAnswer answer);
 
 }  // namespace stickslip::control

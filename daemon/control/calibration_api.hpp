@@ -1,6 +1,5 @@
 /// \file
-/// The requests about the load cell's calibration; api.hpp has seen to names, repetitions and who has the
-/// bench.
+/// The requests about the load cell's calibration. api.cpp checks name, Idempotency-Key and lease.
 #pragma once
 
 #include <functional>
@@ -11,11 +10,11 @@
 
 namespace stickslip::control {
 
-/// One of its steps, read and checked.
+/// A step of a calibration, ready to be carried out.
 using CalibrationStep = std::function<void(daemon::Calibrator&, daemon::Calibrator::Answer)>;
 
-/// \param request  POST or DELETE /v1/calibration, or POST /v1/calibration/weight, undo or finish. Errors
-/// (kUsage) say what is wrong with its body.
+/// Reads a step from a request. \param request  POST or DELETE /v1/calibration, or POST
+/// /v1/calibration/weight, undo or finish. Errors (kUsage) say what is wrong with its body.
 [[nodiscard]] base::Result<CalibrationStep> calibration_step(const daemon::HttpRequest& request);
 
 }  // namespace stickslip::control

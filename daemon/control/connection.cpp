@@ -28,7 +28,8 @@ namespace http = boost::beast::http;
 
 constexpr std::string_view kLivePath = "/v1/live";
 
-/// Nothing comes from elsewhere, nothing is written into the page, nobody frames it.
+/// Content-Security-Policy of the daemon's pages: no foreign sources, no inline scripts or styles, no
+/// framing.
 constexpr const char* kContentPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src data:; base-uri "
     "'none'; "
@@ -38,7 +39,7 @@ constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
 
 std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
-/// Headers of which two would leave open which one counts.
+/// Headers that a request may hold only once; two of them would be ambiguous.
 std::optional<std::string> repeated_header(const http::fields& header) {
   for (const char* name :
        {"Host", "Origin", "Authorization", "Expect", "Stickslip-Controller", "Idempotency-Key"}) {
@@ -47,7 +48,7 @@ std::optional<std::string> repeated_header(const http::fields& header) {
   return std::nullopt;
 }
 
-/// Who is at the other end of a Unix socket; all who come over TCP showed the same token.
+/// Identity of the client: "uid 1000" on a Unix socket, "token" over TCP.
 std::string peer_of(int socket) {
   ucred peer{};
   socklen_t size = sizeof peer;
@@ -98,7 +99,7 @@ class Connection : public Newcomer, public std::enable_shared_from_this<Connecti
     place_.reset();
   }
 
-  /// \return false if there is no room.
+  /// Admits the client. \return false if `connections` clients are admitted already.
   [[nodiscard]] bool let_in() {
     if (let_in_) return true;
     if (service_->connection_count >= service_->limits.connections) return false;
@@ -116,7 +117,7 @@ class Connection : public Newcomer, public std::enable_shared_from_this<Connecti
     if (!beast::iequals(parser_->get()[http::field::expect], "100-continue")) {
       return refuse(417, "Expect: only 100-continue is known");
     }
-    // Who is refused need not send the body.
+    // A refused client need not send the body.
     if (const auto refused = refusal_of_header()) return reply(*refused, parser_->get().version(), false);
     boost::asio::async_write(stream_, boost::asio::buffer(kContinue),
                              [self = shared_from_this()](beast::error_code failed, std::size_t) {
@@ -144,7 +145,7 @@ class Connection : public Newcomer, public std::enable_shared_from_this<Connecti
     // Else the client went away or was too slow: the stream closes with the last reference.
   }
 
-  /// And closes the connection: what follows could not be told from the rest of this request.
+  /// Sends a refusal and closes the connection, because the end of the faulty request is unknown.
   void refuse(int status, const std::string& why) { reply(daemon::refusal(status, why), 11, false); }
 
   [[nodiscard]] std::string_view header(http::field field) const { return view(parser_->get()[field]); }
@@ -169,7 +170,7 @@ class Connection : public Newcomer, public std::enable_shared_from_this<Connecti
       reply(*refused, version, false);
       return;
     }
-    // The page is for anybody: who reads it alone has shown nothing.
+    // Requests for the page need no token, so they do not admit a client.
     if ((service_->door.open || !is_page(path())) && !let_in()) {
       reply(daemon::refusal(
                 503, fmt::format("{} connections are open, and there is room for no more: close one, or "
@@ -233,19 +234,21 @@ class Connection : public Newcomer, public std::enable_shared_from_this<Connecti
 
   beast::basic_stream<boost::asio::generic::stream_protocol> stream_;
   std::shared_ptr<Service> service_;
-  std::optional<std::list<Newcomer*>::iterator> place_;  ///< Among the newcomers, until it is let in.
+  /// Position among the newcomers, until the client is admitted.
+  std::optional<std::list<Newcomer*>::iterator> place_;
   bool let_in_ = false;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
   http::response<http::string_body> response_;
   std::optional<http::response_serializer<http::string_body>> serializer_;
-  bool bodyless_ = false;  ///< HEAD.
+  bool bodyless_ = false;  ///< The request is HEAD: the reply has no body.
 };
 
 }  // namespace
 
 void serve_connection(AnySocket socket, std::shared_ptr<Service> service) {
-  // Who answers may be the last to let go, on any thread; a socket belongs to its own.
+  // The last owner may release the connection on any thread, so its destructor is dispatched to the socket's
+  // executor.
   const auto executor = socket.get_executor();
   const auto end_there = [executor](Connection* connection) {
     boost::asio::dispatch(executor, [owned = std::unique_ptr<Connection>{connection}] {});

@@ -1,6 +1,6 @@
 /// \file
-/// One connection of the control interface, over either kind of socket: request, reply, and again while the
-/// client keeps it; or the live stream from the request on that asks for it.
+/// A connection of the control interface, over a Unix or a TCP socket. It serves requests until the client
+/// closes it, or becomes a live stream at the request for one.
 #pragma once
 
 #include <cstddef>
@@ -17,11 +17,11 @@
 
 namespace stickslip::control {
 
-/// A connection without a request that was let in.
+/// A connection whose client is not admitted yet (HttpLimits).
 class Newcomer {
  public:
   virtual ~Newcomer() = default;
-  /// To make room for another.
+  /// Closes the connection, to make room for another one.
   virtual void turn_away() = 0;
 };
 
@@ -31,13 +31,14 @@ struct Service {
   daemon::HttpHandler handler;
   daemon::LiveHub* hub = nullptr;  ///< Null: no live stream. Outlives the connections.
   HttpLimits limits;
-  std::size_t connection_count = 0;     ///< Of clients that were let in.
-  std::list<Newcomer*> newcomers = {};  ///< The one that has been silent longest comes first.
+  std::size_t connection_count = 0;     ///< Connections of admitted clients.
+  std::list<Newcomer*> newcomers = {};  ///< The one silent for longest comes first.
 };
 
 using AnySocket = boost::asio::generic::stream_protocol::socket;
 
-/// Lives until the client goes, is too slow, or the io_context ends.
+/// Starts to serve a connection; does not block. The connection lives until the client closes it or is too
+/// slow, or the io_context ends.
 void serve_connection(AnySocket socket, std::shared_ptr<Service> service);
 
 }  // namespace stickslip::control

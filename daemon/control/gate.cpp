@@ -7,7 +7,7 @@
 namespace stickslip::control {
 namespace {
 
-/// Takes as long for every text of the same length.
+/// Compares in constant time for texts of equal length.
 bool same_secret(std::string_view a, std::string_view b) noexcept {
   if (a.size() != b.size()) return false;
   unsigned char difference = 0;

@@ -1,7 +1,8 @@
 /// \file
-/// Who comes in? On the Unix socket its permissions tell. On TCP any program of the machine and any page of a
-/// browser can knock: there the Host must be ours, an Origin must be ours, and all but the page itself wants
-/// the token. There are no cookies, so that another page's request carries nothing.
+/// Access control. The Unix socket relies on its file permissions. A TCP port can be reached by any program
+/// of the machine and by any page in a browser: there Host and Origin must be the daemon's own, and all
+/// requests but those for the page need the token. Cookies are not used, so that requests of foreign pages
+/// carry no rights.
 #pragma once
 
 #include <optional>
@@ -13,14 +14,14 @@
 
 namespace stickslip::control {
 
-/// What a listener asks of its clients.
+/// Access rules of a listener.
 struct Door {
-  bool open = true;                ///< The system let in whom it may: nothing more is asked.
-  std::vector<std::string> hosts;  ///< "127.0.0.1:8037" …
-  std::string token;               ///< Not empty unless open.
+  bool open = true;                ///< True: every connection is permitted, as on the Unix socket.
+  std::vector<std::string> hosts;  ///< Permitted values of Host: "127.0.0.1:8037" …
+  std::string token;               ///< The token; not empty unless open.
 };
 
-/// The headers that count here; empty where absent.
+/// Path and headers of a request that decide about access; empty if absent.
 struct Knock {
   std::string_view path;
   std::string_view host;
@@ -29,15 +30,17 @@ struct Knock {
   std::string_view protocols;  ///< Sec-WebSocket-Protocol.
 };
 
-/// A browser cannot set headers of a WebSocket: the token comes as a second subprotocol with this prefix.
+/// Prefix of the token as a second WebSocket subprotocol, because a browser cannot set other headers of a
+/// WebSocket.
 inline constexpr std::string_view kTokenProtocol = "token.";
 /// The subprotocol of the live stream.
 inline constexpr std::string_view kLiveProtocol = "stickslip.v1";
 
-/// Paths that anybody who is at the door may read: the page, which asks for the token itself.
+/// True for paths that need no token: the live page and its files. The page asks the user for the token.
 [[nodiscard]] bool is_page(std::string_view path) noexcept;
 
-/// Why not, if not: 403 for a foreign Host or Origin, 401 without the token.
+/// The refusal of a request, or nothing if it is permitted: 403 for a foreign Host or Origin, 401 without the
+/// token.
 [[nodiscard]] std::optional<daemon::HttpReply> refuse_at(const Door& door, const Knock& knock);
 
 }  // namespace stickslip::control

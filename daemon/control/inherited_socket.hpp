@@ -1,6 +1,6 @@
 /// \file
-/// Sockets that the service manager opened before it started the daemon [sd_listen_fds(3)]: who connects
-/// while the daemon is started, or started again, waits instead of being refused.
+/// Sockets that the service manager opened before it started the daemon [sd_listen_fds(3)]. Clients that
+/// connect during a start or restart wait instead of being refused.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace stickslip::control {
 
-/// A descriptor of the Unix socket that listens at that path, if there is one among them; the caller's to
-/// close, and there again at the next call.
+/// A duplicate descriptor of the inherited Unix socket that listens at `path`, or nothing. The caller closes
+/// it; the next call returns another one.
 [[nodiscard]] std::optional<int> inherited_socket(const std::filesystem::path& path);
 
 }  // namespace stickslip::control

@@ -1,5 +1,5 @@
 /// \file
-/// One controller at a time: who commands has the bench for a while, and everybody else is told who.
+/// The lease of the bench: one controller at a time may command, for a limited time.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,19 @@
 
 namespace stickslip::control {
 
-/// Times are nanoseconds of any clock that never steps. Who holds it is a name, no secret: the socket's
-/// permissions and the token keep strangers out.
+/// Times are nanoseconds of a monotonic clock. The holder is known by name only; access is restricted by the
+/// socket's permissions and the token.
 class Lease {
  public:
-  /// Each command keeps the bench for so long.
+  /// Lease that each command takes.
   static constexpr double kCommand_s = 30.0;
-  /// Each step of a calibration: somebody lifts a weight to the hook.
+  /// Lease that each step of a calibration takes: time to hang the next weight.
   static constexpr double kCalibration_s = 300.0;
+  /// Longest lease that a client may ask for.
   static constexpr double kLongest_s = 3600.0;
 
-  /// Takes it or makes it longer, never shorter. \return who holds it, if that is somebody else.
+  /// Takes or extends the lease; never shortens it. \return the holder if it is another one; then nothing
+  /// changes.
   [[nodiscard]] std::optional<std::string> take(const std::string& who, double for_s, std::int64_t now_ns) {
     if (auto other = holder(now_ns); other && *other != who) return other;
     const std::int64_t until_ns = now_ns + static_cast<std::int64_t>(for_s * 1e9);
@@ -26,7 +28,7 @@ class Lease {
     who_ = who;
     return std::nullopt;
   }
-  /// \return false if somebody else holds it.
+  /// Ends the lease. \return false if another controller holds it.
   [[nodiscard]] bool release(const std::string& who, std::int64_t now_ns) {
     if (const auto other = holder(now_ns); other && *other != who) return false;
     who_.clear();
@@ -36,7 +38,7 @@ class Lease {
     if (who_.empty() || now_ns >= until_ns_) return std::nullopt;
     return who_;
   }
-  /// Until it is free, s.
+  /// Seconds until the lease ends; 0 if it is free.
   [[nodiscard]] double left_s(std::int64_t now_ns) const {
     return holder(now_ns) ? 1e-9 * static_cast<double>(until_ns_ - now_ns) : 0.0;
   }

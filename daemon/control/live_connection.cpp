@@ -10,7 +10,7 @@ namespace beast = boost::beast;
 namespace http = boost::beast::http;
 namespace websocket = boost::beast::websocket;
 
-/// Nothing that a client may send is longer.
+/// Longest message accepted from a client, bytes.
 constexpr std::size_t kLongestMessage = 1024;
 
 class LiveConnection final : public daemon::LiveClient, public std::enable_shared_from_this<LiveConnection> {
@@ -56,7 +56,7 @@ class LiveConnection final : public daemon::LiveClient, public std::enable_share
   }
 
  private:
-  /// Others came while this one shook hands.
+  /// Closes the stream: other clients took the last places during the handshake.
   void say_that_it_is_full() {
     const websocket::close_reason why{websocket::close_code::try_again_later,
                                       std::string{kLiveIsFull}.c_str()};
@@ -87,7 +87,7 @@ class LiveConnection final : public daemon::LiveClient, public std::enable_share
                         });
   }
 
-  /// After this the hub knows nothing of it; it ends with what is still under way.
+  /// Leaves the hub. The object lives until its pending operations end.
   void leave() {
     service_->hub->leave(this);
     joined_.reset();
@@ -96,7 +96,7 @@ class LiveConnection final : public daemon::LiveClient, public std::enable_share
   websocket::stream<beast::basic_stream<boost::asio::generic::stream_protocol>> stream_;
   http::request<http::string_body> request_;
   std::shared_ptr<Service> service_;
-  std::shared_ptr<LiveConnection> joined_;  ///< Itself, while the hub knows it.
+  std::shared_ptr<LiveConnection> joined_;  ///< Keeps this object alive while it is in the hub.
   beast::flat_buffer buffer_;
   daemon::LiveQueue queue_;
   daemon::LiveFrame writing_;

@@ -1,5 +1,5 @@
 /// \file
-/// The live stream over a WebSocket. What the client says is not looked at.
+/// The live stream over a WebSocket. Messages from the client are ignored.
 #pragma once
 
 #include <memory>
@@ -13,12 +13,12 @@
 
 namespace stickslip::control {
 
-/// To a client for which there is no room, as status 503 or as the reason why the stream is closed.
+/// Refusal when kMostClients are connected: text of status 503, or reason of the WebSocket's close frame.
 inline constexpr std::string_view kLiveIsFull =
     "24 clients read the live stream, and there is room for no more: close one, or try again later";
 static_assert(daemon::LiveHub::kMostClients == 24);
 
-/// \param request  the one that asked for the upgrade.
+/// Starts to serve the live stream; does not block. \param request  the one that asked for the upgrade.
 void serve_live(AnySocket socket, boost::beast::http::request<boost::beast::http::string_body> request,
                 std::shared_ptr<Service> service);
 

@@ -36,8 +36,7 @@ class Page {
   std::string text_;
 };
 
-/// The bins of the status are the machine's: half a decade and wider would say less, finer ones more than
-/// needed.
+/// Writes a histogram of Prometheus. Its buckets are the bins of LatencyHistogram.
 void histogram(Page& page, std::string_view name, std::string_view help,
                const daq::LatencyHistogram& histogram) {
   page.head(name, "histogram", help);
@@ -54,7 +53,7 @@ void histogram(Page& page, std::string_view name, std::string_view help,
   page.value(fmt::format("{}_count", name), count);
 }
 
-/// What a label may hold: printable, with backslash and quote escaped.
+/// Text of a label: printable, with backslash and quote escaped.
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : base::printable(text)) {

@@ -1,5 +1,6 @@
 /// \file
-/// The description of the control interface (openapi.json), built in by cmake/embed.cmake.
+/// The description of the control interface: the text of openapi.json, which cmake/embed.cmake builds into
+/// the program.
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,5 @@
 /// \file
-/// A record as it lies on the disk, for whoever asks for it by its name.
+/// Serves the file of a record by its name.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,13 @@
 
 namespace stickslip::control {
 
-/// Larger ones are copied from the disk: the answer is held in memory.
+/// Largest record that is served, bytes: the reply is held in memory. Larger ones must be copied from the
+/// disk.
 inline constexpr std::uintmax_t kLargestServed = std::uintmax_t{64} << 20U;
 
-/// \param name  compared with the file names of these tests and used for nothing else: no text from outside
-/// reaches the file system. \return 404 where no test has it, or it is too large or gone.
+/// Reads the file of the test whose record has this name. \param name  is only compared with the file names
+/// of `tests`, so that no path from outside reaches the file system. \return 404 if no test has this name, or
+/// its file is too large or missing.
 [[nodiscard]] daemon::HttpReply record_reply(const std::string& name,
                                              std::span<const daemon::TestSummary> tests);
 

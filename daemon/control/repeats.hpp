@@ -1,9 +1,10 @@
 /// \file
-/// Requests with an Idempotency-Key: one that is repeated gets the answer of then, and nothing is done twice.
+/// Replies to requests with an Idempotency-Key. A repeated request gets the stored reply, and nothing is done
+/// twice.
 ///
-/// What was refused is not kept: nothing was done, and the next try may be granted. Each client has keys of
-/// its own, so that nobody else's can push them out. A client is a name (Stickslip-Controller) of somebody
-/// whom the system let in (HttpRequest::peer).
+/// Refusals are not stored: nothing was done, and the next attempt may succeed. Keys are stored per client,
+/// so that one client cannot displace those of another. A client is a pair of name (Stickslip-Controller) and
+/// identity (HttpRequest::peer).
 #pragma once
 
 #include <algorithm>
@@ -22,19 +23,21 @@ namespace stickslip::control {
 /// Main thread.
 class Repeats {
  public:
-  /// Of one client. Its older ones are forgotten: a client that repeats does so within minutes.
+  /// Most keys of one client. The oldest are forgotten: repetitions come within minutes.
   static constexpr std::size_t kKept = 256;
-  /// The same, in bytes of its requests and answers.
+  /// Most bytes of requests and replies stored for one client.
   static constexpr std::size_t kKeptSize = std::size_t{1} << 20U;
+  /// Longest key, bytes.
   static constexpr std::size_t kLongestKey = 128;
   static constexpr std::size_t kMostClients = 32;
-  /// A client that has used no key for so long makes room for another, and none before.
+  /// After this time without a key, a client may be forgotten in favour of a new one.
   static constexpr std::chrono::minutes kRemembered{10};
 
   enum class Found { kNew, kAnswered, kWaiting, kOther, kTooManyClients };
 
-  /// A new key is noted as waiting for its answer. kOther: the key was used for another request.
-  /// kTooManyClients: nothing is noted.
+  /// Looks up a request's key; a new key is stored as waiting for its reply. kAnswered: answer() has the
+  /// reply. kWaiting: the first request is still being carried out. kOther: the key was used for another
+  /// request. kTooManyClients: nothing is stored.
   [[nodiscard]] Found look(const daemon::HttpRequest& request, std::int64_t now_ns) {
     Client* const client = client_of(request, now_ns);
     if (client == nullptr) return Found::kTooManyClients;
@@ -50,6 +53,7 @@ class Repeats {
     return entry->reply ? Found::kAnswered : Found::kWaiting;
   }
 
+  /// Stores the reply to a request that look() found new; forgets the key if the reply is a refusal.
   void answered(const daemon::HttpRequest& request, const daemon::HttpReply& reply) {
     const auto client = known(request);
     if (client == clients_.end()) return;
@@ -63,7 +67,7 @@ class Repeats {
     }
   }
 
-  /// Only after kAnswered.
+  /// The stored reply. Call it only after look() returned kAnswered.
   [[nodiscard]] daemon::HttpReply answer(const daemon::HttpRequest& request) {
     daemon::HttpReply reply = find(known(request)->entries, request.idempotency_key)->reply.value();
     reply.replayed = true;
@@ -74,7 +78,7 @@ class Repeats {
   struct Entry {
     std::string key;
     std::string asked;
-    std::optional<daemon::HttpReply> reply;  ///< None: it waits.
+    std::optional<daemon::HttpReply> reply;  ///< Absent: the request is being carried out.
     [[nodiscard]] std::size_t size() const {
       return key.size() + asked.size() + (reply ? reply->body.size() : 0);
     }
@@ -99,7 +103,7 @@ class Repeats {
                         [name = name_of(request)](const Client& one) { return one.name == name; });
   }
 
-  /// \return null if there is no room for it.
+  /// The client of a request, made if it is new. \return null if kMostClients are active.
   [[nodiscard]] Client* client_of(const daemon::HttpRequest& request, std::int64_t now_ns) {
     if (const auto found = known(request); found != clients_.end()) return &*found;
     if (clients_.size() == kMostClients) {
@@ -112,7 +116,7 @@ class Repeats {
     return &clients_.emplace_back(Client{name_of(request), now_ns, {}});
   }
 
-  /// The oldest that are answered go; the newest stays, however long.
+  /// Removes the oldest entries with a reply until the limits hold. The newest entry stays, however long.
   static void shorten(Entries& entries) {
     std::size_t size = 0;
     for (const Entry& entry : entries) size += entry.size();

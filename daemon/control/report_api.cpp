@@ -32,7 +32,7 @@ constexpr std::array<Form, 3> kForms{{{"html", daemon::ReportForm::kPage, "text/
                                       {"csv", daemon::ReportForm::kCsv, "text/csv; charset=utf-8"},
                                       {"json", daemon::ReportForm::kJson, "application/json"}}};
 
-/// What stands behind the "?". No value that is allowed has anything to be decoded.
+/// The parameters behind the "?". They are not decoded: no allowed value needs it.
 base::Result<Query> query_of(const std::string& target, std::initializer_list<std::string_view> keys) {
   Query query;
   const std::size_t mark = target.find('?');

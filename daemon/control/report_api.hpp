@@ -12,14 +12,14 @@
 
 namespace stickslip::control {
 
-/// More are not listed; a report may still be asked for by the identifier.
+/// Most batches that batches_json() lists. Reports on older ones are available by identifier.
 inline constexpr std::size_t kMostListed = 1000;
 
 /// {"batches": [{"id", "name", "grade", "begun", "ended", "counted", "voided"}, …]}, the latest first.
 [[nodiscard]] nlohmann::ordered_json batches_json(const daemon::BatchBook& book);
 
-/// GET /v1/batches/ID/report?format=html|csv|json. \param rest  ID/report: compared with the journal, and
-/// used for nothing else.
+/// GET /v1/batches/ID/report?format=html|csv|json. \param rest  "ID/report"; it is only compared with the
+/// journal.
 void answer_report(const daemon::HttpRequest& request, const std::string& rest, const daemon::BatchBook& book,
                    daemon::Reports& reports, const daemon::HttpAnswer& answer);
 

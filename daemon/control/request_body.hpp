@@ -1,5 +1,5 @@
 /// \file
-/// The body of a request as JSON, and what came from outside as text that may be shown.
+/// Reads the body of a request as JSON, and makes text from outside safe to show.
 #pragma once
 
 #include <fmt/format.h>
@@ -18,11 +18,11 @@
 
 namespace stickslip::control {
 
-/// A request line may hold any bytes; an answer may not.
+/// Text from a request, made safe for a reply and cut to 100 characters.
 [[nodiscard]] inline std::string printable(const std::string& text) { return base::one_line(text, 100); }
 
-/// The JSON object of a body, with no keys but these, any if none are named; an empty body is an empty
-/// object.
+/// The JSON object in a body; an empty body is an empty object. \param keys  the allowed keys; empty: all.
+/// Errors: kUsage.
 [[nodiscard]] inline base::Result<nlohmann::ordered_json> object_of(
     const std::string& body, std::initializer_list<std::string_view> keys) {
   if (body.empty()) return nlohmann::ordered_json::object();

@@ -28,14 +28,14 @@ constexpr mode_t kOwnerAndGroup = S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP;
 
 using FileIdentity = std::pair<dev_t, ino_t>;
 
-/// Nothing where there is none; a link is not followed.
+/// The identity of a file, or nothing if it is absent. Links are not followed.
 std::optional<FileIdentity> file_at(const std::filesystem::path& path) {
   struct stat facts {};
   if (::lstat(path.c_str(), &facts) != 0) return std::nullopt;
   return FileIdentity{facts.st_dev, facts.st_ino};
 }
 
-/// Accepts until it is closed.
+/// Accepts connections until close().
 template <typename Protocol>
 class AcceptorOf : public ControlServer::Listener, public std::enable_shared_from_this<AcceptorOf<Protocol>> {
  public:
@@ -46,7 +46,7 @@ class AcceptorOf : public ControlServer::Listener, public std::enable_shared_fro
     acceptor_.async_accept(
         [self = this->shared_from_this()](boost::system::error_code error, typename Protocol::socket socket) {
           if (error == asio::error::operation_aborted) return;
-          // Whoever asks stays in the queue, and the next try would fail at once.
+          // The waiting client stays in the queue, so an immediate retry would fail again.
           if (error) return self->accept_later();
           serve_connection(AnySocket{std::move(socket)}, self->service_);
           self->accept();
@@ -80,7 +80,7 @@ class LocalAcceptor final : public AcceptorOf<Local> {
   LocalAcceptor(asio::io_context& io, std::filesystem::path path, std::shared_ptr<Service> service)
       : AcceptorOf(io, std::move(service)), path_(std::move(path)) {}
 
-  /// \param socket  that listens already; the acceptor's from now on.
+  /// \param socket  that listens already; this object owns it from now on.
   boost::system::error_code adopt(int socket) {
     boost::system::error_code error;
     acceptor_.assign(Local{}, socket, error);
@@ -93,7 +93,7 @@ class LocalAcceptor final : public AcceptorOf<Local> {
     const Local::endpoint endpoint{path_.string()};
     acceptor_.open(endpoint.protocol(), error);
     if (error) return error;
-    // Between bind and chmod nobody but the owner may come in.
+    // Between bind and chmod only the owner may connect.
     const mode_t before = ::umask(~static_cast<mode_t>(S_IRUSR | S_IWUSR) & 0777U);
     acceptor_.bind(endpoint, error);
     ::umask(before);
@@ -113,7 +113,7 @@ class LocalAcceptor final : public AcceptorOf<Local> {
 
  private:
   std::filesystem::path path_;
-  std::optional<FileIdentity> bound_;  ///< The socket file that this one made.
+  std::optional<FileIdentity> bound_;  ///< The socket file that this object made.
 };
 
 class TcpAcceptor final : public AcceptorOf<tcp> {
@@ -134,7 +134,7 @@ class TcpAcceptor final : public AcceptorOf<tcp> {
   }
 };
 
-/// Removes what a daemon that was killed has left behind.
+/// Removes the socket file that a killed daemon left behind.
 base::Result<void> remove_leftover(asio::io_context& io, const std::filesystem::path& path) {
   struct stat facts {};
   if (::lstat(path.c_str(), &facts) != 0) return {};
@@ -156,7 +156,8 @@ base::Result<void> remove_leftover(asio::io_context& io, const std::filesystem::
         path.string());
   }
   if (error == boost::system::errc::no_such_file_or_directory) return {};
-  // Only this says that there is nobody: a socket of another user, or one whose queue is full, is in use.
+  // Only connection_refused proves that no process listens. Any other error may come from a socket in use: of
+  // another user, or with a full queue.
   if (error != asio::error::connection_refused) {
     return base::failure(
         "control socket {}: is there, and whether anybody listens cannot be asked: {}: remove it if it is "
@@ -167,7 +168,7 @@ base::Result<void> remove_leftover(asio::io_context& io, const std::filesystem::
   return {};
 }
 
-/// No name is looked up: nothing but the machine itself can be meant.
+/// Resolves without look-up: only loopback addresses are accepted.
 base::Result<tcp::endpoint> loopback(const std::string& address) {
   const std::size_t colon = address.rfind(':');
   std::string host = address.substr(0, colon);

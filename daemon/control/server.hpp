@@ -1,6 +1,6 @@
 /// \file
-/// JSON over HTTP and a WebSocket: on a Unix socket for the command line and for curl, and where the
-/// configuration says so on a TCP port of this machine, for the page.
+/// The server of the control interface: HTTP with JSON, and a WebSocket. It listens on a Unix socket for the
+/// command line and curl, and if configured on a loopback TCP port for the page.
 ///
 ///     curl --unix-socket /run/stickslip/control.sock http://localhost/v1/status
 #pragma once
@@ -21,18 +21,18 @@ namespace stickslip::control {
 /// Thread-bound: the thread that runs the io_context.
 class ControlServer {
  public:
-  /// Listens at `socket` with mode 0660 (owner and group). A socket file that nobody answers is
-  /// left over and replaced. If the service manager listens there already, its socket is used, and stays.
-  /// Errors: kUsage if the path is too long for a socket or is another kind of file; kFailure if
-  /// another process listens there or the system refuses.
+  /// Listens at `socket` with mode 0660 (owner and group). A stale socket file is replaced. If the service
+  /// manager listens there already, its socket is used, and its file stays at the end. Errors: kUsage if the
+  /// path is too long for a socket or is another kind of file; kFailure if another process listens there or
+  /// the system refuses.
   [[nodiscard]] static base::Result<std::unique_ptr<ControlServer>> listen(
       boost::asio::io_context& io, const std::filesystem::path& socket, daemon::HttpHandler handler,
       HttpLimits limits = {}, daemon::LiveHub* hub = nullptr);
 
   /// Listens at a TCP port of this machine.
   /// \param address  "127.0.0.1:8037", "[::1]:8037" or "localhost:8037"; port 0: any, see address().
-  /// \param token    what every client but the reader of the page has to show; not empty (contract).
-  /// Errors: kUsage for an address that is none or is no loopback; kFailure if the system refuses.
+  /// \param token    required for all requests but those for the page; not empty (contract).
+  /// Errors: kUsage if the address is invalid or not loopback; kFailure if the system refuses.
   [[nodiscard]] static base::Result<std::unique_ptr<ControlServer>> listen_tcp(
       boost::asio::io_context& io, const std::string& address, const std::string& token,
       daemon::HttpHandler handler, HttpLimits limits = {}, daemon::LiveHub* hub = nullptr);
@@ -45,7 +45,7 @@ class ControlServer {
   /// Where it listens: a path, or address and port.
   [[nodiscard]] const std::string& address() const noexcept { return address_; }
 
-  /// What is behind it; one for each kind of socket.
+  /// Implementation; one for each kind of socket.
   class Listener {
    public:
     virtual ~Listener() = default;

@@ -1,5 +1,6 @@
 /// \file
-/// The latest tests together: mean, repeatability and interval of each result, and how they keep the limits.
+/// Summary of the latest tests: mean, repeatability and interval of each result, and the check of the batch's
+/// limits.
 #pragma once
 
 #include <functional>
@@ -13,8 +14,8 @@
 
 namespace stickslip::control {
 
-/// Of the current batch's tests while there is one, else of all. Void tests do not count.
-/// \param tests    the latest. \param name_of  of a test's record, in the journal.
+/// Summarises the current batch's tests if there is a batch, else all. Void tests do not count.
+/// \param tests    the latest ones. \param name_of  gives the name of a record in the batch journal.
 [[nodiscard]] nlohmann::ordered_json summary_json(
     std::span<const daemon::TestSummary> tests, const daemon::BatchBook& book,
     const std::function<std::string(const std::string&)>& name_of);

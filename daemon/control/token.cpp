@@ -17,13 +17,13 @@
 namespace stickslip::control {
 namespace {
 
-/// 256 bits: no guess reaches it.
+/// Bytes of a new token: 256 bits cannot be guessed.
 constexpr std::size_t kBytes = 32;
-constexpr std::size_t kShortest = 32;  ///< Of a token that somebody wrote by hand, in letters and digits.
+constexpr std::size_t kShortest = 32;  ///< Of a token written by hand, characters.
 constexpr std::size_t kLongest = 256;
 constexpr std::size_t kMostOfFile = 2 * kLongest;
 
-/// Not inlined: GCC 12 takes a size that it knows for one that the string's own buffer would have to hold.
+/// Not inlined: GCC 12 would warn wrongly that the text overflows the string's internal buffer.
 [[gnu::noinline]] bool could_be_token(std::string_view text) {
   return text.size() >= kShortest && text.size() <= kLongest &&
          std::all_of(text.begin(), text.end(), [](char c) {

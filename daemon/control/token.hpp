@@ -1,5 +1,5 @@
 /// \file
-/// The secret that clients over TCP have to show.
+/// The token: the secret that authorises clients over TCP.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,8 @@
 
 namespace stickslip::control {
 
-/// Reads the file; makes it, with a new token, where there is none. It belongs to owner and group (0640): who
-/// may read it may use the bench. Errors: kUsage if it holds no token or others may read it, kFailure if it
+/// Reads the token file; makes it, with a random token and mode 0640, if it is absent. Read access to the
+/// file grants use of the bench. Errors: kUsage if it holds no token or others may read it, kFailure if it
 /// cannot be read or made.
 [[nodiscard]] base::Result<std::string> load_token(const std::filesystem::path& file);
 

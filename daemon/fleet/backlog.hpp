@@ -1,6 +1,6 @@
 /// \file
-/// Results that a former program had no time to put into its outbox: they stand in the records. So an outbox
-/// need not be written before a test may end, and neither a kill nor a power cut between the two loses one.
+/// Reads results that never reached the outbox from the records. So a test can end before its result is in
+/// the outbox, and a kill or power cut in between loses no result.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +14,17 @@
 
 namespace stickslip::fleet {
 
-/// The result of a record, read by a process of its own (`stickslipd --result FILE`): HDF5's errors can end a
-/// process. Nothing if it cannot be read.
+/// Reads the result of a record in a child process (`program --result FILE`), because errors of HDF5 can end
+/// a process; blocks. Nothing if it cannot be read.
 [[nodiscard]] std::optional<FleetResult> ask_result(const std::string& program, const std::string& tester,
                                                     const std::filesystem::path& record);
 
-/// \param printed  by that process. Nothing unless it is a result whose id is a UUID.
+/// Makes a FleetResult of what the child printed. Nothing unless it is a result whose id is a UUID. \param
+/// record  its name, without folder and extension.
 [[nodiscard]] std::optional<FleetResult> parse_result(const std::string& record, const std::string& tester,
                                                       const std::string& printed);
 
-/// What that process prints: result_json(). Errors as record::read_record().
+/// The text that `--result` prints: result_json() of the record. Errors: as record::read_record().
 [[nodiscard]] base::Result<std::string> result_of_record(const std::filesystem::path& file);
 
 }  // namespace stickslip::fleet

@@ -14,7 +14,7 @@
 namespace stickslip::fleet {
 namespace {
 
-/// No more of the latest by name than the outbox holds.
+/// Records whose results never reached the outbox; at most the latest by name that fit into it.
 std::vector<std::filesystem::path> untold_records(Outbox& outbox, const io::FleetSettings& settings,
                                                   const std::filesystem::path& folder,
                                                   const base::Clock& wall) {
@@ -76,7 +76,7 @@ void Fleet::link_changed(const daemon::FleetState& state) {
   using Link = daemon::FleetState::Link;
   if (state.link == Link::kConnecting) return;
   const bool connected = state.link == Link::kConnected;
-  // A broker that is away is told once, not at each try.
+  // A failure is reported once, not at each attempt.
   if (connected == was_connected_ && state.why == why_told_) return;
   was_connected_ = connected;
   why_told_ = state.why;

@@ -1,5 +1,5 @@
 /// \file
-/// The daemon as one of many at a broker: state, health and results of its tests go there (docs/fleet.md).
+/// Connects the daemon to an MQTT broker and sends it state, health and results of tests (docs/fleet.md).
 #pragma once
 
 #include <atomic>
@@ -22,8 +22,8 @@
 
 namespace stickslip::fleet {
 
-/// Bound to the main thread, but for what says otherwise. As a sink it is of the processing thread and only
-/// posts.
+/// Main thread, unless stated otherwise. bench_changed() runs on the processing thread and only posts to the
+/// main thread.
 class Fleet final : public pipeline::Sink {
  public:
   struct Parts {
@@ -31,20 +31,20 @@ class Fleet final : public pipeline::Sink {
     const base::Clock& wall;
     daemon::Facts& facts;
     std::filesystem::path record_folder;
-    std::string program;  ///< Of backlog.hpp.
+    std::string program;  ///< Path of stickslipd, for backlog.hpp.
   };
-  /// After the records of a former program have been recovered, before a test can end.
+  /// Starts the publisher's thread. Call it after recovery and before a test can end.
   Fleet(boost::asio::io_context& io, const io::FleetSettings& settings, Parts parts);
 
-  /// The storage thread: a test is over.
+  /// Queues the result of an ended test. Storage thread; does not block.
   void test_recorded(const record::RecordHeader& header, const record::EndRecord& end,
                      const std::filesystem::path& file);
-  /// The status may be another.
+  /// Sends the state if it has changed.
   void state_changed();
   void bench_changed(pipeline::BenchState state) override;
 
   [[nodiscard]] daemon::FleetState state() const { return publisher_.state(); }
-  /// The last words; at most two seconds.
+  /// Sends the state "stopped" and the waiting results, then disconnects; blocks, as FleetPublisher::stop().
   void stop();
 
  private:
@@ -56,9 +56,9 @@ class Fleet final : public pipeline::Sink {
   boost::asio::steady_timer timer_;
   io::FleetSettings settings_;
   Parts parts_;
-  std::string told_;                     ///< The latest state, without its time.
-  std::atomic<bool> on_the_way_{false};  ///< A word of the bench to the main thread.
-  bool was_connected_ = false;           ///< Thread of the publisher, as the next.
+  std::string told_;                     ///< The state sent last, without its time.
+  std::atomic<bool> on_the_way_{false};  ///< A call of state_changed() is posted.
+  bool was_connected_ = false;           ///< Publisher's thread, with the next one.
   std::string why_told_;
   FleetPublisher publisher_;
 };

@@ -10,13 +10,13 @@
 namespace stickslip::fleet {
 namespace {
 
-/// The broker misses a tester that says nothing for half as long again.
+/// MQTT keep-alive. The broker ends a connection that is silent for 1.5 times this.
 constexpr int kKeepAlive_s = 15;
 
 /// Reason codes of MQTT 5 from here on are refusals (section 2.4).
 constexpr int kFirstRefusal = 0x80;
 
-/// mosquitto_lib_init() is not thread-safe; a static is made once.
+/// Initialises libmosquitto once: mosquitto_lib_init() is not thread-safe, a static variable is.
 void initialise_library() {
   struct Library {
     Library() { mosquitto_lib_init(); }

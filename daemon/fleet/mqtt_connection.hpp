@@ -1,6 +1,6 @@
 /// \file
-/// One connection to an MQTT 5 broker, from its beginning to its end: libmosquitto without threads of its own
-/// and without its queue. What is not acknowledged when the connection ends is its owner's to send again.
+/// A connection to an MQTT 5 broker, by libmosquitto without its threads and its queue. The owner must send
+/// again what was not acknowledged when the connection ends.
 #pragma once
 
 #include <cstdint>
@@ -27,24 +27,26 @@ struct MqttTarget {
   std::string host;
   std::uint16_t port = 0;
   bool tls = false;
-  std::string client;  ///< Unique at the broker: a second one of that name ends the first.
+  /// Client identifier. It must be unique at the broker: a second client of that name ends the connection of
+  /// the first.
+  std::string client;
   std::string user;
   std::optional<std::string> password;
-  std::filesystem::path ca_file;  ///< Empty: whom the system trusts.
+  std::filesystem::path ca_file;  ///< Empty: the system's certificate authorities.
   std::filesystem::path certificate_file;
   std::filesystem::path key_file;
 };
 
-/// Thread-bound. Nothing in it waits, but for looking up the name of the host in open().
+/// Thread-bound. No function blocks, except for open() while it looks up the host name.
 class MqttConnection {
  public:
   struct Events {
     std::function<void()> connected;
-    /// The broker has it; `refusal` is for people and empty if it took it.
+    /// The broker has answered a message. \param refusal  its reason; empty: accepted.
     std::function<void(int message, const std::string& refusal)> acknowledged;
   };
 
-  /// Begins to connect; events come from serve(). \param will  what the broker tells others if this ends
+  /// Begins to connect. serve() calls the events. \param will  the broker publishes it if the connection ends
   /// without goodbye(). Errors: kFailure.
   [[nodiscard]] static base::Result<std::unique_ptr<MqttConnection>> open(const MqttTarget& target,
                                                                           const MqttMessage& will,
@@ -53,15 +55,16 @@ class MqttConnection {
   MqttConnection(const MqttConnection&) = delete;
   MqttConnection& operator=(const MqttConnection&) = delete;
 
-  /// To poll(2) for; −1 if there is none.
+  /// The socket, for poll(2); −1 if there is none.
   [[nodiscard]] int socket() const;
+  /// True if poll(2) must wait for POLLOUT too.
   [[nodiscard]] bool wants_write() const;
-  /// What the socket is ready for is done, and what time asks for: at least once a second.
-  /// Errors: kFailure, the connection is over.
+  /// Reads and writes as the socket allows, and does the keep-alive. Call it when the socket is ready, and at
+  /// least once a second. Errors: kFailure; the connection has ended.
   [[nodiscard]] base::Result<void> serve(bool readable, bool writable);
-  /// \return the number under which it is acknowledged. Errors: kFailure, it was not sent.
+  /// Sends a message. \return its number in Events::acknowledged. Errors: kFailure; it was not sent.
   [[nodiscard]] base::Result<int> publish(const MqttMessage& message);
-  /// Ends it in order: the will is not told. What serve() says then is of no interest.
+  /// Disconnects without the will being published. Ignore the result of serve() afterwards.
   void goodbye();
 
  private:
@@ -75,8 +78,8 @@ class MqttConnection {
   };
   Events events_;
   std::unique_ptr<mosquitto, Free> client_;
-  std::string why_;         ///< Said by broker or library, before the end.
-  bool any_write_ = false;  ///< The socket is connected once it can be written to.
+  std::string why_;         ///< Reason from broker or library for the end of the connection.
+  bool any_write_ = false;  ///< The socket was writable once: it is connected.
 };
 
 }  // namespace stickslip::fleet

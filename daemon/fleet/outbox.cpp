@@ -24,18 +24,19 @@ namespace stickslip::fleet {
 namespace {
 
 constexpr const char* kExtension = ".json";
-constexpr char kMark = '_';  ///< Between sequence number, name of the record and its id; in none of them.
+/// Separates sequence number, name of the record and id, none of which contains it.
+constexpr char kMark = '_';
 constexpr const char* kTold = "told";
-constexpr const char* kNewest = "newest";  ///< Of former versions.
-/// Names of records that are gone are taken out of `told` when they are more than half, and not few.
+constexpr const char* kNewest = "newest";  ///< File of earlier versions.
+/// `told` is shortened when its names of missing records outnumber the others by this.
 constexpr std::size_t kFewLines = 1000;
 
 std::string whole_text(const std::filesystem::path& file) {
   return base::read_text(file).value_or(std::string{});
 }
 
-/// The result in a file; nothing if this is none of ours. Files of former versions have no sequence number:
-/// they are before all others.
+/// Reads the result in a file; nothing if it is no file of the outbox. Files of earlier versions have no
+/// sequence number; they come first.
 std::optional<FleetResult> read_result(const std::filesystem::path& file) {
   const std::string stem = file.stem().string();
   const std::size_t mark = stem.rfind(kMark);

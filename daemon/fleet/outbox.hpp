@@ -1,6 +1,6 @@
 /// \file
-/// Results on their way to the broker: in order, bounded, each a file of its own until the broker has it, so
-/// that they outlive the broker's absence and the daemon's end.
+/// The outbox: an ordered, bounded queue of results for the broker. Each result is a file until the broker
+/// has acknowledged it, so that it survives an absent broker and the end of the daemon.
 #pragma once
 
 #include <cstddef>
@@ -13,39 +13,38 @@
 
 namespace stickslip::fleet {
 
-/// What the broker is told of one test.
+/// The result of one test, as sent to the broker.
 struct FleetResult {
   std::string record;          ///< Name of the record, without folder and extension.
   std::string id;              ///< The record's entry_identifier_uuid.
   std::string payload;         ///< JSON.
-  std::uint64_t sequence = 0;  ///< Set by the outbox: the order in which results were put in.
+  std::uint64_t sequence = 0;  ///< Position in the order of add(); set by the outbox.
 };
 
-/// Thread-bound. The order is that of sequence numbers in the names of the files, no clock's. Beside the
-/// results the folder holds the file `told`: the names of the records that were ever put in, a line each.
-/// Records that it does not name were never told (backlog.hpp).
+/// Thread-bound; blocks on the disk. Sequence numbers in the file names define the order, not a clock. The
+/// folder also holds the file `told`, with the name of every record ever added, one a line. Records not named
+/// there were never sent (backlog.hpp).
 class Outbox {
  public:
-  /// Reads what a former program has left. A folder that cannot be made or read is as one that is full: all
-  /// stays in memory.
+  /// Reads the results that an earlier program left. If the folder cannot be made or read, results stay in
+  /// memory. \param most  capacity, results.
   Outbox(std::filesystem::path folder, std::size_t most);
 
   struct Added {
-    bool is_new = false;   ///< False: it waits already.
-    bool dropped = false;  ///< The oldest one had to go.
+    bool is_new = false;   ///< False: the outbox holds it already.
+    bool dropped = false;  ///< The oldest result was dropped to make room.
   };
   Added add(FleetResult result);
-  /// The broker has it. \return false if it is not here any more.
+  /// Removes a result that the broker has acknowledged. \return false if it is not in the outbox.
   bool remove(const std::string& id);
 
   [[nodiscard]] const std::deque<FleetResult>& results() const noexcept { return results_; }
-  /// Those of them that are in memory alone.
+  /// Number of results in memory only, because the disk refused them.
   [[nodiscard]] std::size_t unsaved_count() const noexcept { return unsaved_; }
-  /// Those of the records that were never put in, in the order given. An outbox that is new begins with the
-  /// tests to come: all records count as put in then. One of a former version has, instead of `told`, a file
-  /// `newest` with the name of the latest record by the clock of then: all up to it count as put in, or none
-  /// where that clock was ahead of today's.
-  /// \param records  all that there are now. \param now  a record that began now would be named so.
+  /// The records that were never added, in the given order. A new outbox takes all present records as added.
+  /// An outbox of an earlier version has a file `newest` instead of `told`, with the name of the latest
+  /// record sent. Records up to that name count as added; none do if that name lies in the future. \param
+  /// records  all present records. \param now  name that a record would have if its test began now.
   [[nodiscard]] std::vector<std::filesystem::path> untold(std::vector<std::filesystem::path> records,
                                                           const std::string& now);
   [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }
@@ -53,16 +52,16 @@ class Outbox {
  private:
   [[nodiscard]] std::filesystem::path path_of(const FleetResult& result) const;
   void load();
-  /// All that the disk has not got, oldest first, until it refuses.
+  /// Writes the unsaved results, oldest first, until the disk refuses.
   void save();
   void forget(std::size_t index);
-  /// Durable or not: what is missing there is told twice.
+  /// Appends lines to `told`. Errors are ignored: a missing line means that a result is sent twice.
   void note_told(std::string_view lines);
 
   std::filesystem::path folder_;
   std::size_t most_;
   std::deque<FleetResult> results_;
-  std::size_t unsaved_ = 0;  ///< The last ones of them.
+  std::size_t unsaved_ = 0;  ///< The last `unsaved_` results are in memory only.
   std::uint64_t next_sequence_ = 1;
 };
 

@@ -16,23 +16,25 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// Results on their way from the other threads: the thread takes them as long as the disk answers at all.
+/// Most results in the buffer from other threads. It fills only while the thread is blocked by the disk, the
+/// look-up of the broker's name or the reading of old records.
 constexpr std::size_t kMostNews = 64;
-/// Results sent and not acknowledged; below the 20 of Mosquitto's max_inflight_messages.
+/// Most results sent and not acknowledged; below Mosquitto's max_inflight_messages of 20.
 constexpr std::size_t kMostInFlight = 16;
+/// Longest pause between two attempts to connect.
 constexpr milliseconds kLongestBrokerPause{30'000};
-/// For a broker to answer, from the first packet to its acknowledgement.
+/// Longest wait for the broker to accept a connection.
 constexpr milliseconds kConnectTime{10'000};
-/// A connection that ends sooner was not meant to be: the pauses grow as if there had been none.
+/// A connection that ends sooner counts as a failed attempt: the pauses go on growing.
 constexpr milliseconds kWholeLife{10'000};
-/// After so many of them in a row the likely cause is said: Mosquitto 2.0.11 ends the connection of a client
-/// when another of its name comes, and gives no reason.
+/// After so many short connections in a row the text names the likely cause, a second client of the same
+/// name: Mosquitto 2.0.11 then ends the first one's connection without a reason.
 constexpr int kSuspicious = 2;
-/// For the last words, of the 10 s that a stop may take.
+/// Longest time that stop() lets a connection go on, of the 10 s that a stop of the daemon may take.
 constexpr milliseconds kGrace{4'000};
-/// libmosquitto wants to be asked once a second for its keep-alive.
+/// Longest wait while connected: libmosquitto must be called once a second for its keep-alive.
 constexpr milliseconds kIdleWait{1'000};
-/// While it connects: TLS does not say what it waits for.
+/// Longest wait while connecting: TLS does not tell which socket event it waits for.
 constexpr milliseconds kImpatient{50};
 
 }  // namespace

@@ -1,6 +1,6 @@
 /// \file
-/// The thread that talks to the broker. Nobody waits for it: what it is told goes into places of fixed size,
-/// and what does not fit is counted.
+/// The publisher's thread, which talks to the broker. Other threads do not wait for it: they put messages
+/// into bounded buffers; results that do not fit are counted.
 #pragma once
 
 #include <chrono>
@@ -26,30 +26,33 @@ namespace stickslip::fleet {
 class FleetPublisher {
  public:
   struct World {
-    /// What this tester is when the broker hears no more of it; asked for each connection.
+    /// Makes the MQTT will; called for each connection, on this object's thread.
     std::function<std::string()> last_will;
-    /// Results of a former program that its outbox does not hold, oldest first; asked once, and again for
-    /// the next one, until there is none.
+    /// Returns the next result that an earlier program did not put into the outbox, oldest first; nothing: no
+    /// more. Called at the start, on this object's thread; may block.
     std::function<std::optional<FleetResult>()> backlog;
-    /// The link is another; called on the thread of this class, may not wait.
+    /// Called on this object's thread when the state of the connection has changed; must not block.
     std::function<void(const daemon::FleetState&)> changed;
-    std::chrono::milliseconds first_retry{1000};  ///< Then twice as long each time, to half a minute.
+    /// Pause before the second attempt to connect; it doubles up to 30 s.
+    std::chrono::milliseconds first_retry{1000};
   };
 
-  /// \param outbox  as settings say.
+  /// Starts the thread. \param outbox  opened as `settings` say.
   FleetPublisher(io::FleetSettings settings, Outbox outbox, World world);
   /// As stop().
   ~FleetPublisher();
   FleetPublisher(const FleetPublisher&) = delete;
   FleetPublisher& operator=(const FleetPublisher&) = delete;
 
-  // Any thread; none of them waits for broker or disk.
-  void tell_state(std::string payload);   ///< Retained; what was not sent yet is replaced.
-  void tell_health(std::string payload);  ///< At most once; what was not sent yet is replaced.
-  void tell_result(FleetResult result);   ///< At least once.
+  // Any thread. None of these blocks on broker or disk.
+  void tell_state(std::string payload);   ///< Sends a retained message; replaces one not sent yet.
+  void tell_health(std::string payload);  ///< Sends a message at most once; replaces one not sent yet.
+  void tell_result(FleetResult result);   ///< Sends a message at least once, through the outbox.
   [[nodiscard]] daemon::FleetState state() const;
 
-  /// Tells the last state and what is left as far as two seconds allow, says goodbye, ends the thread.
+  /// Sends the last state and the waiting results, disconnects and ends the thread. Blocks until all is
+  /// acknowledged, as a rule for at most 4 s; an attempt to connect that is under way, or a backlog being
+  /// read, may add to it.
   void stop(std::string last_state);
 
  private:
@@ -57,16 +60,17 @@ class FleetPublisher {
 
   void run();
   void take_backlog();
-  /// One connection. \return whether the broker let it in.
+  /// Makes one connection and serves it until it ends. \return true if the broker accepted it.
   bool connect_once();
-  /// Until the connection is over or all is said. Errors: why it ended.
+  /// Serves the connection until it ends or, after stop(), all is sent. Errors: why it ended.
   [[nodiscard]] base::Result<void> talk();
   [[nodiscard]] base::Result<void> send_due();
   void acknowledged(int message, const std::string& refusal);
-  /// What others have told meanwhile.
+  /// Takes over the messages from other threads.
   void take_news();
   void accept(FleetResult result);
-  /// Until the socket or a teller wakes it. \return whether the socket is readable, writable.
+  /// Blocks until the socket is ready, wake() is called or the time is over. \return whether the socket is
+  /// readable, writable.
   std::pair<bool, bool> wait(int socket, bool wants_write, std::chrono::milliseconds longest);
   void wake();
   void set_link(daemon::FleetState::Link link, const std::string& why);
@@ -78,24 +82,25 @@ class FleetPublisher {
   Outbox outbox_;
   record::Descriptor wake_;  ///< An eventfd.
 
-  mutable std::mutex mutex_;  ///< Held for moves of texts.
+  mutable std::mutex mutex_;  ///< Held only to move texts.
   daemon::FleetState shown_;
   std::optional<std::string> news_state_;
   std::optional<std::string> news_health_;
   std::vector<FleetResult> news_results_;
   bool stopping_ = false;
-  Time stop_at_;  ///< Once stopping.
+  Time stop_at_;  ///< Valid while stopping_.
 
-  // Of the thread.
+  // The following belong to the thread.
   std::string state_;
   bool state_due_ = false;
   std::optional<std::string> health_;
   std::unique_ptr<MqttConnection> connection_;
   bool connected_ = false;
-  int short_lives_ = 0;                   ///< Connections in a row that ended soon.
-  std::string refusal_;                   ///< Of a message, by the broker.
-  std::optional<int> state_message_;      ///< Sent, not acknowledged.
-  std::map<int, std::string> in_flight_;  ///< Results: message and id.
+  int short_lives_ = 0;               ///< Connections in a row that ended before kWholeLife.
+  std::string refusal_;               ///< Why the broker refused a message; empty: it did not.
+  std::optional<int> state_message_;  ///< Number of the state message sent and not acknowledged.
+  /// Results sent and not acknowledged. Key: message number; value: id of the result.
+  std::map<int, std::string> in_flight_;
   std::thread thread_;
 };
 

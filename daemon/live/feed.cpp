@@ -16,15 +16,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Frames in a second: a picture that moves, and no more wake-ups than that.
+/// Frames per second of wall time: enough for smooth motion.
 constexpr double kFrames_Hz = 20.0;
-/// Parts in a second: a window of 10 s has two for each pixel of 2000.
+/// Parts per second of wall time: a window of 10 s has two for each of 2000 pixels.
 constexpr double kParts_Hz = 400.0;
-/// Spikes told at the end of a test; the record has all.
+/// Most spikes in the frame of a test's end; the record has all.
 constexpr std::size_t kMostSpikes = 1000;
 constexpr double kNanosecond_s = 1e-9;
 
-/// A coefficient as the page shows it: six decimals, a tenth of the finest step of a 16-bit board.
+/// Appends coefficients with six decimals, a tenth of the finest step of a 16-bit board.
 void append(std::string& text, const std::vector<double>& values) {
   for (const double value : values) {
     if (text.back() != '[') text += ',';

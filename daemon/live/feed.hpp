@@ -1,6 +1,6 @@
 /// \file
-/// The walk of the scans as frames of JSON for the live page: scans as lowest and highest of each part,
-/// cycles as they close, tests as they begin and end. What the frames hold: docs/control.md.
+/// Makes the frames of the live stream, in JSON: minimum and maximum of the force in each interval, cycles,
+/// tests, gaps, states of the bench. docs/control.md describes the frames.
 #pragma once
 
 #include <atomic>
@@ -14,17 +14,17 @@
 
 namespace stickslip::live {
 
-/// Sink of the processing thread. Without listeners it does nothing.
+/// A sink; its functions run on the processing thread. Without listeners it makes no frames.
 class LiveFeed final : public pipeline::Sink {
  public:
-  /// \param clock    the board's; outlives the feed.
-  /// \param publish  called on the processing thread for each frame; may not wait.
+  /// \param clock    clock of the board; outlives the feed.
+  /// \param publish  called on the processing thread with each frame; must not block.
   LiveFeed(const base::Clock& clock, std::function<void(std::string)> publish)
       : clock_(clock), publish_(std::move(publish)) {}
 
-  /// Any thread.
+  /// Sets the number of listeners. Any thread.
   void listeners(std::size_t count) noexcept { listeners_.store(count, std::memory_order_relaxed); }
-  /// Before a session. \param clock_speed  board time over wall time.
+  /// Call it before each session. \param clock_speed  board time over wall time.
   void use(double scan_rate_Hz, double clock_speed);
 
   void observed(daq::ScanIndex first, std::span<const double> coefficient,
@@ -46,9 +46,9 @@ class LiveFeed final : public pipeline::Sink {
   [[nodiscard]] bool heard() const noexcept { return listeners_.load(std::memory_order_relaxed) > 0; }
   void tell_gap(const daq::Gap& gap);
   void flush(const detect::LiveState& live);
-  /// Since 1970: when the read of the latest block of the running test came back.
+  /// Time of the read of the running test's latest block, s since 1970.
   [[nodiscard]] double read_time_s() const noexcept;
-  /// Since 1970: now, when an event has come to its sink.
+  /// Present time, s since 1970.
   [[nodiscard]] double sink_time_s() const;
 
   const base::Clock& clock_;
@@ -56,13 +56,13 @@ class LiveFeed final : public pipeline::Sink {
   std::atomic<std::size_t> listeners_{0};
   double scan_rate_Hz_ = 0.0;
   double clock_speed_ = 1.0;
-  std::size_t bucket_ = 1;       ///< Scans in one part.
+  std::size_t bucket_ = 1;       ///< Scans in one part, which is drawn as minimum and maximum.
   std::size_t frame_parts_ = 1;  ///< Parts in one frame.
   std::int64_t test_ = 0;
   daq::ScanIndex test_first_ = 0;
   std::int64_t read_realtime_ns_ = 0;  ///< Of the latest block of the running test.
 
-  // Of the next frame.
+  // The next frame.
   daq::ScanIndex first_ = 0;
   daq::ScanIndex next_ = 0;
   std::size_t in_part_ = 0;

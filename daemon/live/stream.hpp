@@ -1,6 +1,6 @@
 /// \file
-/// The live stream as a whole: frames from the processing thread, over a bounded way, to the clients on the
-/// main thread; and how the daemon is, once a second.
+/// The live stream: passes frames from the processing thread to the clients on the main thread, through a
+/// bounded queue, and adds a health frame once a second.
 #pragma once
 
 #include <atomic>
@@ -20,11 +20,11 @@ namespace stickslip::live {
 
 class LiveStream {
  public:
-  /// Frames on their way to the main thread: seconds of them, and then they are dropped and counted.
+  /// Most frames in the queue to the main thread: about six seconds. Further frames are dropped and counted.
   static constexpr int kMostOnTheWay = 128;
 
-  /// \param clock   the board's; outlives the stream.
-  /// \param health  a frame that says how the daemon is; asked while somebody listens.
+  /// \param clock   clock of the board; outlives the stream.
+  /// \param health  makes a health frame; called once a second on the main thread while there are clients.
   LiveStream(boost::asio::io_context& io, const base::Clock& clock, std::function<std::string()> health)
       : io_(io),
         timer_(io),
@@ -35,9 +35,9 @@ class LiveStream {
   [[nodiscard]] LiveFeed& feed() noexcept { return feed_; }
   [[nodiscard]] daemon::LiveHub& hub() noexcept { return hub_; }
   [[nodiscard]] const daemon::LiveHub& hub() const noexcept { return hub_; }
-  /// Frames that no client got, because the main thread was too slow. Any thread.
+  /// Frames dropped because the main thread was too slow. Any thread.
   [[nodiscard]] std::uint64_t lost_count() const noexcept { return lost_.load(std::memory_order_relaxed); }
-  /// Main thread: ends it for all.
+  /// Ends the stream for all clients. Main thread.
   void close() {
     timer_.cancel();
     hub_.close();

@@ -1,5 +1,5 @@
 /// \file
-/// The parts of the live page, as they lie in daemon/web; built in by cmake/embed.cmake.
+/// The files of the live page, from daemon/page; cmake/embed.cmake builds them into the program.
 #pragma once
 
 #include <string_view>

@@ -17,11 +17,11 @@
 namespace stickslip::page {
 namespace {
 
-/// The acquisition goes before it, and so do all others.
+/// Niceness of the child: acquisition and all other threads have precedence.
 constexpr int kNiceness = 10;
 constexpr int kSignalled = 128;  // As ChildAnswer counts.
 
-/// Of `stickslip`: what is wanted goes to its standard output.
+/// Arguments for `stickslip`, which writes the report to its standard output.
 std::vector<std::string> arguments_for(std::span<const daemon::ReportedBatch> batches,
                                        daemon::ReportForm form, const std::filesystem::path& folder) {
   std::vector<std::string> arguments;
@@ -96,7 +96,7 @@ void ReportDesk::make(std::span<const daemon::ReportedBatch> batches, daemon::Re
                          if (!error) ended();
                        });
   job_->patience.async_wait([this, job = job_.get()](boost::system::error_code error) {
-    // It may have ended since the timer did; then there may be another one.
+    // The job may have ended after the timer expired; another job may run now.
     if (error || job_.get() != job) return;
     job_->took_too_long = true;
     job_->child.end();

@@ -1,6 +1,6 @@
 /// \file
-/// Reports, made one at a time by a process of its own: HDF5's errors can end a process, and the daemon
-/// measures meanwhile.
+/// Makes reports, one at a time, in a child process, because errors of HDF5 can end a process and the daemon
+/// must go on measuring.
 #pragma once
 
 #include <chrono>
@@ -17,7 +17,7 @@
 
 namespace stickslip::page {
 
-/// The command line's program beside this one, which is not asked what it is called now.
+/// Path of the program `stickslip` in the folder of the running program.
 [[nodiscard]] std::string program_beside_this();
 
 /// Main thread.
@@ -25,13 +25,13 @@ class ReportDesk final : public daemon::Reports {
  public:
   struct Parts {
     boost::asio::io_context& io;                                   ///< Outlives this object.
-    std::filesystem::path folder;                                  ///< Of the records.
-    std::string program;                                           ///< That knows `report` and `compare`.
-    std::chrono::milliseconds longest = std::chrono::seconds{60};  ///< Then it is ended.
-    std::size_t largest = std::size_t{64} << 20U;                  ///< Bytes. The answer is held in memory.
+    std::filesystem::path folder;                                  ///< The record folder.
+    std::string program;                                           ///< Path of `stickslip`.
+    std::chrono::milliseconds longest = std::chrono::seconds{60};  ///< Time after which the child is killed.
+    std::size_t largest = std::size_t{64} << 20U;  ///< Most bytes of a report, which is held in memory.
   };
   explicit ReportDesk(Parts parts);
-  /// Ends what is being made; nobody is told.
+  /// Kills the child; the answer is not called.
   ~ReportDesk() override;
   ReportDesk(const ReportDesk&) = delete;
   ReportDesk& operator=(const ReportDesk&) = delete;
@@ -43,7 +43,7 @@ class ReportDesk final : public daemon::Reports {
   void ended();
 
   Parts parts_;
-  std::unique_ptr<Job> job_;  ///< Null: none is being made.
+  std::unique_ptr<Job> job_;  ///< Null: no report is being made.
 };
 
 }  // namespace stickslip::page

@@ -15,11 +15,11 @@ struct Asset {
   std::string_view path;
   const char* type;
   std::string text;
-  const char* policy = "";  ///< As HttpReply has it.
+  const char* policy = "";  ///< As HttpReply::content_policy.
 };
 
-/// A report draws with the script and style that stand in it. It gets no origin, so that nothing in it can
-/// reach what the live page keeps.
+/// Content-Security-Policy of a report: inline script and style are allowed. The sandbox gives it no origin,
+/// so that it cannot read the storage of the live page.
 constexpr const char* kReportPolicy =
     "sandbox allow-scripts allow-modals; default-src 'none'; script-src 'unsafe-inline'; style-src "
     "'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";

@@ -1,6 +1,6 @@
 /// \file
-/// The live page in front of the control interface: its few files by name, out of the program's memory, so
-/// that no path from outside ever reaches a folder.
+/// Serves the live page. Its files are in the program's memory and found by name, so that no path from
+/// outside reaches the file system.
 #pragma once
 
 #include "report/chart_library.hpp"
@@ -10,8 +10,8 @@
 
 namespace stickslip::page {
 
-/// \param api  gets every request that is none for the page.
-/// \param charts  where they could not be read the page is answered by 503 and the reason.
+/// \param api  gets all other requests.
+/// \param charts  if it is an error, requests for the page are answered by 503 and the reason.
 [[nodiscard]] daemon::HttpHandler make_site(daemon::HttpHandler api,
                                             const base::Result<report::ChartLibrary>& charts);
 

@@ -8,10 +8,10 @@
 namespace stickslip::runtime {
 namespace {
 
-/// Longest wait for scans, and thereby for a stop request to be seen.
+/// Longest wait for scans, and so for a stop request to take effect.
 constexpr std::chrono::milliseconds kReadTimeout{100};
-/// The consumer is not woken more often, by the board's clock: a Comedi board may deliver each scan by
-/// itself. What is told live may be 5 ms old.
+/// Shortest time between two wake-ups of the consumer, by the stamps of the blocks. A Comedi board may
+/// deliver each scan singly. Live results may be 5 ms old.
 constexpr std::int64_t kNewsPeriod_ns = 4'000'000;
 
 }  // namespace
@@ -61,7 +61,7 @@ void Acquisition::hand_over(daq::ScanBlock& block) noexcept {
     if (!ring_.has_room()) return;  // Told to stop: as if it had not been read.
   }
   const std::int64_t lost = block.first - issued_end_.value_or(block.first);
-  // Who has seen this count finds all blocks before this one in the ring.
+  // A reader that sees this count finds all earlier blocks in the ring.
   delivered_.fetch_add(block.count, std::memory_order_release);
   issued_.fetch_add(lost + block.count, std::memory_order_relaxed);
   issued_end_ = block.end();

@@ -16,62 +16,61 @@
 
 namespace stickslip::runtime {
 
-/// What becomes of a block that finds the ring full.
+/// What happens to a block when the ring is full.
 enum class FullRing : std::uint8_t {
-  kDrop,  ///< Dropped and counted: a board does not wait for its computer.
-  kWait,  ///< The thread waits. Only where the scans wait as well: simulated or replayed, and not in real
-          ///< time.
+  kDrop,  ///< The block is dropped and counted. For real boards, which cannot wait.
+  kWait,  ///< The acquisition thread blocks until there is room. Only for simulated or replayed scans that
+          ///< are not in real time.
 };
 
-/// Between start and end its thread never allocates, locks, logs or formats.
+/// Owns the acquisition thread. After its start the thread never allocates, locks, logs or formats.
 class Acquisition {
  public:
-  /// Why there will be no more blocks.
+  /// Why the acquisition ended.
   enum class End : std::uint8_t { kStopped, kEndOfInput, kBoardMissing, kFailed };
 
-  /// Board and ring must outlive this object.
-  /// \param issued_before  where the indices of the board before this one ended, of which it goes on; none:
-  /// there was none.
+  /// \param board,ring  outlive this object. \param issued_before  end of the scan indices of the previous
+  /// session, which this one continues; absent: this is the first session.
   Acquisition(daq::Board& board, daq::ScanRing& ring, io::RealtimeSettings realtime,
               FullRing full_ring = FullRing::kDrop, std::optional<daq::ScanIndex> issued_before = {});
-  /// Stops and waits for the thread.
+  /// Requests the stop and blocks until the thread has ended.
   ~Acquisition();
   Acquisition(const Acquisition&) = delete;
   Acquisition& operator=(const Acquisition&) = delete;
 
-  /// Starts the board, then the thread. Once. Errors: those of the board.
+  /// Starts the board, then the thread. Call it once. Errors: those of the board.
   [[nodiscard]] base::Result<void> start();
-  /// Any thread; the thread ends within one read timeout.
+  /// Requests the end of the acquisition; does not block. The thread ends within 100 ms. Any thread.
   void request_stop() noexcept {
     stop_requested_.store(true, std::memory_order_relaxed);
     made_room();
   }
 
-  /// Consumer: waits until there are blocks in the ring, the oldest at most 4 ms older than the latest, or
-  /// the thread has ended, or somebody called wake().
+  /// Consumer: blocks until new blocks are announced, the acquisition has ended or wake() was called. The
+  /// thread announces blocks at most once in 4 ms.
   void wait() noexcept { news_.acquire(); }
-  /// Any thread.
+  /// Ends the consumer's wait(). Any thread.
   void wake() noexcept { news_.release(); }
-  /// Consumer: blocks were taken out of the ring. Needed with FullRing::kWait only.
+  /// Consumer: states that blocks were taken out of the ring. Needed with FullRing::kWait only.
   void made_room() noexcept {
     room_made_.fetch_add(1, std::memory_order_release);
     room_made_.notify_one();
   }
-  /// Once set, all blocks are in the ring: whoever sees it and then empties the ring has them all.
+  /// Why the acquisition ended; nothing while it runs. Once it is set, the ring holds all remaining blocks.
   [[nodiscard]] std::optional<End> ended() const noexcept;
 
-  /// Any thread: scans that the board has delivered.
+  /// Scans that the board has delivered. Any thread.
   [[nodiscard]] std::uint64_t delivered_scan_count() const noexcept {
     return delivered_.load(std::memory_order_acquire);
   }
 
-  /// Any thread: indices that the board has given, of scans that it delivered or lost.
+  /// Scan indices that the board has issued, for scans delivered or lost. Any thread.
   [[nodiscard]] std::int64_t issued_index_count() const noexcept {
     return issued_.load(std::memory_order_relaxed);
   }
 
-  /// Only after ended(): indices that the board lost after the latest block that the ring took and before a
-  /// later one, which the ring dropped. No block tells the consumer of them.
+  /// Scans lost by the board behind the last block in the ring, which no block tells the consumer. This
+  /// happens if the ring dropped the next block. Valid after ended().
   [[nodiscard]] std::int64_t untold_lost_count() const noexcept { return untold_lost_; }
 
   /// Scheduling in use; valid after start().
@@ -98,11 +97,11 @@ class Acquisition {
   // Of the thread.
   std::optional<daq::ScanIndex> issued_end_;
   std::int64_t untold_lost_ = 0;
-  std::uint64_t overruns_ = 0;  ///< Blocks carry it.
-  bool untold_ = false;         ///< There are blocks in the ring that the consumer was not woken for.
-  std::int64_t told_ns_ = 0;    ///< Stamp of the latest block that it was woken for.
+  std::uint64_t overruns_ = 0;  ///< Overruns so far; blocks carry the count.
+  bool untold_ = false;         ///< The ring holds blocks that were not announced.
+  std::int64_t told_ns_ = 0;    ///< Stamp of the block announced last.
   base::Semaphore news_;
-  std::atomic<std::uint32_t> room_made_{0};  ///< Times; also counted when the thread is to stop.
+  std::atomic<std::uint32_t> room_made_{0};  ///< Number of made_room() calls; request_stop() adds one.
   base::Semaphore started_;
   std::thread thread_;
 };

@@ -9,7 +9,8 @@
 namespace stickslip::runtime {
 namespace {
 
-/// A start or stop that names its test may have been done; then it is told, not done again.
+/// The outcome of a start or stop whose named test has begun or ended already, or cannot; nothing if the
+/// command must be carried out.
 std::optional<daemon::Outcome> done_already(const daemon::Command& command,
                                             const pipeline::Processor& processor) {
   if (!command.test) return std::nullopt;

@@ -1,6 +1,6 @@
 /// \file
-/// Where commands arrive and answers leave: between the control interface on the main thread and the bench on
-/// the processing thread.
+/// Passes commands from the control interface (main thread) to the bench (processing thread), and the answers
+/// back.
 #pragma once
 
 #include <functional>
@@ -19,13 +19,13 @@ namespace stickslip::runtime {
 class BenchDesk final : public daemon::Bench {
  public:
   struct Parts {
-    io::DaemonConfig& config;  ///< What is planned and tared stands there, for the next session as well.
+    io::DaemonConfig& config;  ///< Holds plan and tare; the next session begins with them.
     const daemon::TestLog& tests;
     storage::Storage& storage;
     CalibrationDesk& calibrations;
     std::function<daemon::Status()> status;
-    std::function<Session*()> session;                   ///< Null while there is none.
-    std::function<void(std::function<void()>)> on_main;  ///< From any thread: to the main thread.
+    std::function<Session*()> session;                   ///< Returns null while there is no session.
+    std::function<void(std::function<void()>)> on_main;  ///< Runs a function on the main thread. Any thread.
     daemon::Batches* batches;
     daemon::Reports* reports;
   };
@@ -41,7 +41,7 @@ class BenchDesk final : public daemon::Bench {
   [[nodiscard]] daemon::Reports& reports() override { return *parts_.reports; }
 
  private:
-  /// Before the processing thread is asked.
+  /// Why the command is refused at once; nothing: the processing thread decides.
   [[nodiscard]] std::optional<std::string> refused_now(daemon::Command::Kind kind) const;
   void answered(const daemon::Command& command, const daemon::Outcome& outcome);
 
@@ -49,7 +49,7 @@ class BenchDesk final : public daemon::Bench {
   model::Method configured_method_;
 };
 
-/// What the command does, between two blocks. Processing thread.
+/// Carries out a command between two blocks. Processing thread.
 [[nodiscard]] daemon::Outcome carry_out(const daemon::Command& command, pipeline::Processor& processor);
 
 }  // namespace stickslip::runtime

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kNoScans = "no scans come from the board; stickslip status says why";
 
-/// Why no calibration can begin; empty: it can.
+/// Why no calibration can begin; empty: one can.
 std::string refusal_of(const pipeline::Processor& processor) {
   switch (processor.bench()) {
     case pipeline::BenchState::kIdle:
@@ -180,7 +180,7 @@ std::string CalibrationDesk::give_up() {
   open_.reset();
   lost_why_.clear();
   Session* const session = parts_.session();
-  // Whoever waits for the reading is told.
+  // Answers the request that waits for the reading.
   if (session != nullptr) {
     static_cast<void>(session->post([this](pipeline::Processor&) {
       if (scans_) end_reading(base::failure("given up"));

@@ -1,6 +1,6 @@
 /// \file
-/// The calibration of the load cell through the running daemon: weights are read from the scans as they go
-/// by, by the same judgement and into the same files as `stickslip calibrate`.
+/// Calibrates the load cell in the running daemon. Weights are read from passing scans, by the same criteria
+/// and into the same files as in `stickslip calibrate`.
 #pragma once
 
 #include <cstdint>
@@ -18,29 +18,31 @@
 
 namespace stickslip::runtime {
 
-/// Main thread, but for what is marked.
+/// Main thread, unless marked otherwise.
 class CalibrationDesk final : public daemon::Calibrator {
  public:
   struct Parts {
-    io::DaemonConfig& config;  ///< The calibration in use stands there, for the next session as well.
+    io::DaemonConfig& config;  ///< Holds the calibration in use; the next session begins with it.
     storage::Storage& storage;
-    std::function<Session*()> session;                   ///< Null while there is none.
-    std::function<void(std::function<void()>)> on_main;  ///< From any thread: to the main thread.
-    std::function<std::int64_t()> date_ns;               ///< Of a new one: people's time.
-    std::function<std::int64_t()> now_ns;                ///< By which one expires: that of the scans.
+    std::function<Session*()> session;                   ///< Returns null while there is no session.
+    std::function<void(std::function<void()>)> on_main;  ///< Runs a function on the main thread. Any thread.
+    /// Date of a new calibration: wall time, ns since 1970.
+    std::function<std::int64_t()> date_ns;
+    /// Time that decides whether one has expired: the clock of the scans, ns since 1970.
+    std::function<std::int64_t()> now_ns;
   };
   explicit CalibrationDesk(Parts parts) : parts_(std::move(parts)) {}
 
-  /// Before its first scan.
+  /// Call it before the first scan of a session.
   void session_began(const SessionSettings& settings);
-  /// A calibration that was under way is over, and what was read is lost.
+  /// Call it when a session has ended. A calibration under way is aborted; its readings are lost.
   void session_ended();
-  /// Why no test may begin, if so.
+  /// Why no test may begin: a calibration is under way. Else nothing.
   [[nodiscard]] std::optional<std::string> why_no_test() const;
 
-  /// Processing thread: each block as it was read.
+  /// Takes each block as it was read. Processing thread.
   void block(const daq::ScanBlock& block);
-  /// Processing thread: no more blocks in this session.
+  /// Call it after the last block of a session. Processing thread.
   void blocks_ended();
 
   [[nodiscard]] daemon::CalibrationView view() const override;
@@ -55,11 +57,11 @@ class CalibrationDesk final : public daemon::Calibrator {
   struct Open {
     std::string who;
     daq::WeighingTimes times;
-    bool granted = false;                 ///< The processing thread has said that the bench is idle.
-    std::optional<double> being_read_kg;  ///< Its answer is waited for.
+    bool granted = false;                 ///< The processing thread has confirmed that the bench is idle.
+    std::optional<double> being_read_kg;  ///< Mass of the weight being read; absent: none.
     std::vector<daq::WeightReading> readings;
   };
-  /// Processing thread: of the weight that is being read.
+  /// Scans of the weight being read. Processing thread.
   struct Scans {
     daq::WeightScans scans;
     double mass_kg;
@@ -68,7 +70,7 @@ class CalibrationDesk final : public daemon::Calibrator {
   };
 
   [[nodiscard]] daq::WeighedCalibration weighed() const;
-  /// Why nothing can be done with the one under way; empty: it can.
+  /// Why no step of a calibration can be taken now; empty: one can.
   [[nodiscard]] std::string not_ready() const;
   void was_read(const Reading& reading, const Answer& answer);
   void use(const record::CalibrationFacts& facts, const daq::LoadCell& cell, const std::string& who,
@@ -77,8 +79,8 @@ class CalibrationDesk final : public daemon::Calibrator {
 
   Parts parts_;
   std::optional<Open> open_;
-  std::uint64_t number_ = 0;  ///< Of the one under way: answers for an earlier one come too late.
-  std::string lost_why_;      ///< Of the one that was under way last.
+  std::uint64_t number_ = 0;  ///< Number of the calibration under way; answers to an earlier one are ignored.
+  std::string lost_why_;      ///< Why the latest calibration was aborted; empty: it was not.
   std::filesystem::path file_;
   daq::LoadCell session_load_cell_;
   record::CalibrationFacts session_facts_;

@@ -16,8 +16,9 @@
 namespace stickslip::runtime {
 namespace {
 
-/// As sd_notify(), which waits where the manager has ten messages that it has not read [unix(7)], and a main
-/// thread that waits takes no command and no signal. \return false if it would have to wait.
+/// Sends as sd_notify(), but does not block. sd_notify() blocks while the manager has ten unread messages
+/// [unix(7)], and the main thread would take no command and no signal. \return false if it would have to
+/// block.
 bool send_at_once(const std::string& message) {
   const char* const named = std::getenv("NOTIFY_SOCKET");
   const std::string_view name = named == nullptr ? "" : named;

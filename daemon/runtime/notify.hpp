@@ -1,6 +1,6 @@
 /// \file
-/// Tells the service manager how the daemon is [sd_notify(3)]. Without NOTIFY_SOCKET in the
-/// environment every call does nothing.
+/// Reports the daemon's state to the service manager [sd_notify(3)]. Without NOTIFY_SOCKET in the environment
+/// every call does nothing.
 #pragma once
 
 #include <chrono>
@@ -12,17 +12,17 @@ namespace stickslip::runtime {
 /// Thread-bound: the main thread.
 class Notify {
  public:
-  /// READY=1, once; later calls do nothing. Waits until the manager has room for it.
+  /// Sends READY=1, once; later calls do nothing. Blocks until the manager has room for it.
   void ready();
-  /// STATUS=…; repeated texts are sent once. One that the manager has no room for is left out: never waits.
+  /// Sends STATUS=TEXT if the text has changed. Does not block: drops the message if the manager has no room.
   void status(std::string_view text);
-  /// RELOADING=1, to be followed by ready(). Waits until the manager has room for it.
+  /// Sends RELOADING=1; call ready() later. Blocks until the manager has room for it.
   void reloading();
-  /// WATCHDOG=1. Never waits.
+  /// Sends WATCHDOG=1. Does not block.
   void alive();
-  /// In which alive() is to be called again [sd_watchdog_enabled(3)]; 0: nobody watches.
+  /// Interval in which alive() must be called again [sd_watchdog_enabled(3)]; 0: there is no watchdog.
   [[nodiscard]] static std::chrono::microseconds watchdog_interval();
-  /// STOPPING=1. Never waits.
+  /// Sends STOPPING=1. Does not block.
   void stopping();
 
  private:

@@ -14,9 +14,11 @@
 namespace stickslip::runtime {
 namespace {
 
-/// Processor time that a SCHED_FIFO thread may use without once waiting. The acquisition thread needs most
-/// after a halt, to empty the kernel's buffer: a million scans in 16000 reads, some 50 ms.
+/// Processor time that a SCHED_FIFO thread may use without blocking before SIGXCPU. The acquisition thread
+/// needs most after a halt of the board, some 50 ms: it empties the kernel's buffer of a million scans in
+/// 16000 reads.
 constexpr rlim_t kLongestBurst_us = 1'000'000;
+/// Processor time without blocking after which the kernel kills the process.
 constexpr rlim_t kKillAfter_us = 2'000'000;
 
 std::string error_text(int error) { return std::generic_category().message(error); }
@@ -53,8 +55,8 @@ std::string use_processor(int processor) {
   return fmt::format("any processor ({} refused: {})", processor, error_text(error));
 }
 
-/// On fault only: locking all at once would pull in every untouched page of each thread's stack, 8 MB a
-/// thread.
+/// Locks pages when they are first touched (MCL_ONFAULT). Locking all at once would load the untouched 8 MB
+/// stack of each thread.
 std::string lock_memory() {
   if (::mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0) return "memory locked";
   return fmt::format("memory not locked ({})", error_text(errno));

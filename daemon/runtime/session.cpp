@@ -8,7 +8,7 @@
 namespace stickslip::runtime {
 namespace {
 
-/// More than people can give; each of them waits for its answer.
+/// Most jobs in the queue. Users cannot give more commands: each waits for its answer.
 constexpr std::size_t kMostJobs = 64;
 
 pipeline::EndCause end_cause(Acquisition::End end) {

@@ -1,5 +1,6 @@
 /// \file
-/// What follows for a session and its records from the configuration and from the board that was opened.
+/// Derives the settings of a session and the header of its records from the configuration and the opened
+/// board.
 #pragma once
 
 #include <filesystem>
@@ -17,29 +18,30 @@
 
 namespace stickslip::runtime {
 
-/// A folder that records can be made in, by this process alone.
+/// A record folder that is writable and locked by this process.
 struct RecordFolder {
-  std::vector<std::string> lacks;  ///< What its file system lacks and what follows, a sentence each.
+  /// Features that its file system lacks, each a sentence with the consequence.
+  std::vector<std::string> lacks;
   storage::FolderLock lock;
 };
 
-/// Makes the folder if it is absent, tries there what records need, and locks it. Errors: kFailure if no
-/// record can be made there, or another daemon records into it.
+/// Makes the folder if it is absent, tests its file system for what records need, and locks it. Errors:
+/// kFailure if records cannot be made there, or another daemon holds the lock.
 [[nodiscard]] base::Result<RecordFolder> prepare_record_folder(
     const std::filesystem::path& folder, const record::FileCalls& calls = record::system_calls());
 
-/// \param continues  where the session before this one ended. Errors: kUsage.
+/// \param continues  where the previous session ended. Errors: kUsage.
 [[nodiscard]] base::Result<SessionSettings> session_settings(const io::DaemonConfig& config,
                                                              const drivers::OpenedBoard& opened,
                                                              const SessionEnd& continues);
 
-/// What all records of the session begin with. \param realtime  what the kernel granted.
+/// The header of all records of the session. \param realtime  the real-time settings in force.
 [[nodiscard]] record::RecordHeader record_header(const io::DaemonConfig& config,
                                                  const SessionSettings& settings, const daq::BoardInfo& board,
                                                  const std::string& realtime);
 
-/// Do the scans come often enough for the tester as it is planned or characterised? Errors: kUsage where they
-/// cannot tell slips, but for a replay.
+/// Checks the scan rate against the oscillation of the tester, as planned or characterised. Errors: kUsage if
+/// the rate is too low to detect slips, except for a replay.
 [[nodiscard]] base::Result<estimate::SamplingVerdict> check_sampling(const io::DaemonConfig& config,
                                                                      const SessionSettings& settings);
 

@@ -1,12 +1,12 @@
 /// \file
-/// Signals that mean nothing to the daemon and whose default is to end it.
+/// Ignores signals that the daemon does not use and whose default action would end it.
 #pragma once
 
 namespace stickslip::runtime {
 
-/// From now on SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGPIPE, SIGIO, SIGPWR, SIGSTKFLT and all
-/// real-time signals are ignored, as long as nobody handles them already; programs that are started from here
-/// ignore them too. SIGXFSZ as well: a limit to the size of files is then an error of writing (EFBIG).
+/// Ignores SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGPIPE, SIGIO, SIGPWR, SIGSTKFLT, SIGXFSZ and all
+/// real-time signals, unless they have a handler. Child processes inherit this. Without SIGXFSZ, a file above
+/// the size limit is a write error (EFBIG).
 void ignore_stray_signals();
 
 }  // namespace stickslip::runtime

@@ -1,7 +1,7 @@
 /// \file
-/// The service manager's watchdog [WatchdogSec= of systemd.service(5)] is fed while all parts of the daemon
-/// move: a thread that hangs has the daemon started again. The main thread, whose timer this is, feeds
-/// nothing while it hangs itself.
+/// Feeds the service manager's watchdog [WatchdogSec= of systemd.service(5)] while all threads of the daemon
+/// make progress. If one hangs, the manager restarts the daemon; so it does if the main thread hangs, which
+/// runs this timer.
 #pragma once
 
 #include <chrono>
@@ -16,30 +16,31 @@
 
 namespace stickslip::runtime {
 
-/// How far a part has come.
+/// Progress of a part of the daemon, a thread as a rule.
 struct Pulse {
-  std::uint64_t count = 0;  ///< Differs from the last one if it moved.
-  bool at_rest = false;     ///< It need not move, for a reason that the state says.
+  std::uint64_t count = 0;  ///< Changes whenever the part makes progress.
+  bool at_rest = false;     ///< The part is idle and need not make progress.
 };
 
 struct WatchedPart {
   std::string name;
   std::function<Pulse()> pulse;
-  /// Intervals of the watchdog for which it may stand still before it is said to hang.
+  /// Watchdog intervals without progress after which the part counts as hanging; 0: one look.
   int patience = 0;
 };
 
-/// Which parts hang, by looking at them from time to time.
+/// Detects parts that hang, by regular looks at their pulses.
 class PulseWatch {
  public:
-  /// Looks in an interval of the watchdog: so one look that comes late does not count.
+  /// Looks in each watchdog interval; several, so that one late look does no harm.
   static constexpr int kLooksPerInterval = 4;
 
   explicit PulseWatch(std::vector<WatchedPart> parts);
 
-  /// \return names of the parts that did not move since the last look, or for as long as they may.
+  /// Looks at all pulses. \return names of the parts that have made no progress for longer than their
+  /// patience.
   [[nodiscard]] const std::vector<std::string>& look();
-  /// As look() said last.
+  /// Result of the latest look().
   [[nodiscard]] const std::vector<std::string>& hanging() const noexcept { return hanging_; }
 
  private:
@@ -57,16 +58,16 @@ class Watchdog {
  public:
   struct Told {
     std::function<void()> feed;
-    /// What hangs has changed; nothing hangs if it is empty.
+    /// Called with the hanging parts when they change; empty: none hangs.
     std::function<void(const std::vector<std::string>&)> hanging;
   };
 
-  /// \param interval  the service manager's; 0: it does not watch, and nothing is looked at.
+  /// \param interval  that of the service manager; 0: there is no watchdog, and no look.
   Watchdog(boost::asio::io_context& io, std::chrono::microseconds interval, std::vector<WatchedPart> parts,
            Told told);
-  /// From now on; the daemon is ready.
+  /// Starts the looks. Call it when the daemon is ready.
   void start();
-  /// No look from now on.
+  /// Ends the looks.
   void stop() { timer_.cancel(); }
   [[nodiscard]] const std::vector<std::string>& hanging() const noexcept { return watch_.hanging(); }
 

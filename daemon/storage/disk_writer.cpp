@@ -16,7 +16,7 @@
 namespace stickslip::storage {
 namespace {
 
-/// 90 minutes of 16-bit counts at 350 scans/s, and the record of a short test.
+/// Size of the ballast, bytes: 90 minutes of 16-bit counts at 350 scans/s, and the record of a short test.
 constexpr std::int64_t kBallast = std::int64_t{4} << 20U;
 constexpr double kSecondsPerHour = 3600.0;
 constexpr double kSecondsPerMinute = 60.0;
@@ -219,7 +219,7 @@ std::optional<std::string> DiskWriter::write_all(bool sync) {
                         [&job](const Job& kept) { return kept.journal == job.journal; });
   };
   for (const Job& job : jobs) {
-    // Its record was made meanwhile, and who made it has removed the journal.
+    // Its record was made meanwhile, and the journal removed.
     if (job.handed_over && is_finished(job)) continue;
     // One that cannot be written holds up no other.
     const std::optional<std::string> refused =

@@ -1,5 +1,6 @@
 /// \file
-/// The disk thread: writes the journals, syncs them once a second, and goes on when the disk does not.
+/// The disk thread: writes the journals, syncs them once a second, and retries while the disk refuses. No
+/// other thread waits for it.
 #pragma once
 
 #include <atomic>
@@ -20,40 +21,43 @@
 
 namespace stickslip::storage {
 
-/// No test of the tester lasts longer.
+/// The disk is short of room below this time of scanning. It exceeds the longest test of the tester.
 inline constexpr double kLeastRoom_s = 600.0;
-/// When there is room again, so that a disk at the limit does not change its state each second.
+/// The disk is no longer short above this time of scanning. The hysteresis keeps a disk at the limit from
+/// changing its state each second.
 inline constexpr double kRoomAgain_s = 1.25 * kLeastRoom_s;
 
-/// What a journal takes beside the scans, bytes/s: heads of ten entries, two clock readings and twenty cycles
-/// as JSON of 400 bytes.
+/// Size of a journal beside its scans, bytes/s: in each second heads of ten entries, two clock readings, and
+/// twenty cycles as JSON of 400 bytes.
 inline constexpr double kOtherBytesPerSecond = 9000.0;
 
-/// How it is with the disk.
+/// State of the disk.
 struct DiskState {
-  std::optional<std::string> trouble;  ///< Why something waits in memory; nothing if all is written.
-  std::string to_do;                   ///< Where the folder of the records is away: how it comes back.
-  std::size_t waiting_size = 0;        ///< Bytes in memory then.
-  /// For how long there is room at least, scanning all the time: whole hours, below one whole minutes.
+  std::optional<std::string> trouble;  ///< Why entries wait in memory; absent: all is written.
+  std::string to_do;                   ///< Remedy if the record folder is away; else empty.
+  std::size_t waiting_size = 0;        ///< Bytes that wait in memory while there is trouble.
+  /// Hours of continuous scanning that the disk has room for, rounded down to hours, below 1 h to minutes.
+  /// Absent: unknown.
   std::optional<double> room_h;
-  bool is_short = false;  ///< Room for less than kLeastRoom_s, and since then for no more than kRoomAgain_s.
+  /// True below room for kLeastRoom_s, until there is room for kRoomAgain_s.
+  bool is_short = false;
 
   bool operator==(const DiskState&) const = default;
 };
 
-/// Room on a full disk for what has been begun: a file that is given away when the first write is refused.
-/// Gone with its owner.
+/// Reserve of disk space for a running test: a preallocated file, deleted when a write is refused. The
+/// destructor deletes it too.
 class Ballast {
  public:
-  /// \param folder  exists. \param calls  outlive it.
+  /// Calls take(). \param folder  must exist. \param calls  outlive this object.
   Ballast(const std::filesystem::path& folder, const record::FileCalls& calls);
   ~Ballast();
   Ballast(const Ballast&) = delete;
   Ballast& operator=(const Ballast&) = delete;
 
-  /// \return whether there was any to give.
+  /// Deletes the file. \return true if that freed room.
   bool give();
-  /// Takes it again where there is plenty of room.
+  /// Makes the file again if the disk has room for four of it.
   void take();
 
  private:
@@ -65,68 +69,76 @@ class Ballast {
 class DiskWriter {
  public:
   struct Settings {
-    std::filesystem::path folder;                 ///< Of the records.
-    std::chrono::milliseconds sync_period{1000};  ///< At most this much is lost at a power cut.
+    std::filesystem::path folder;  ///< The record folder.
+    /// Time between two syncs: a power cut loses at most this much.
+    std::chrono::milliseconds sync_period{1000};
     std::chrono::milliseconds retry_period{1000};
-    std::chrono::milliseconds patience{30'000};  ///< With a disk that refuses, when all is to end.
+    /// Time for which stop() retries on a disk that refuses.
+    std::chrono::milliseconds patience{30'000};
     const record::FileCalls* calls = &record::system_calls();
-    /// A journal had gone from `before` and was written anew. Called on the disk thread; may not wait.
+    /// Called on the disk thread when a journal was missing at `before` and was written again, at `now`. It
+    /// must not block.
     std::function<void(std::int64_t test, const std::filesystem::path& before,
                        const std::filesystem::path& now)>
         written_anew = {};
   };
   using Journal = std::shared_ptr<record::PatientJournal>;
 
-  /// Of a test whose journal was ended, with its scans: it is durable, or why it could not be made so.
+  /// Called when the journal of an ended test is durable (`why_not` is absent) or was given up (`why_not` is
+  /// the reason). \param scans  number of scans in the journal.
   using Ended = std::function<void(std::int64_t test, const std::filesystem::path& journal,
                                    std::int64_t scans, const std::optional<std::string>& why_not)>;
 
-  /// \param ended  called on the disk thread. \param changed  called on the disk thread when state() has
-  /// changed. Either may not wait.
+  /// Starts the disk thread. \param ended  called on the disk thread. \param changed  called on the disk
+  /// thread when state() has changed. Neither may block.
   DiskWriter(Settings settings, Ended ended, std::function<void(const DiskState&)> changed);
+  /// As stop().
   ~DiskWriter();
   DiskWriter(const DiskWriter&) = delete;
   DiskWriter& operator=(const DiskWriter&) = delete;
 
-  // Any thread.
+  // The following may be called from any thread. Only stop() and room_s() may block on the disk.
 
-  /// Writes the journal from now on.
+  /// Writes the journal of a test from now on.
   void begin(std::int64_t test, Journal journal);
-  /// Something was added to a journal.
+  /// Wakes the thread: entries were added to a journal.
   void wake();
-  /// Nothing will be added to it any more. When it is durable it is told as ended, and watched until its
-  /// record is made.
+  /// States that the journal is complete. The disk thread makes it durable, calls `ended`, and writes it
+  /// again if it vanishes before finished().
   void end(const Journal& journal);
-  /// Where the journal of a test that has ended stands. Errors: kFailure where its path does not lead to it.
+  /// Path of the journal of an ended test. Errors: kFailure if the journal is not at its path, or finished()
+  /// was called.
   [[nodiscard]] base::Result<std::filesystem::path> journal_of(std::int64_t test) const;
-  /// The record of a test that has ended is made.
+  /// States that the record of an ended test exists; its journal is no longer watched.
   void finished(std::int64_t test);
-  /// Bytes that the disk takes in each second of a test: journal and record.
+  /// Sets the growth of journal and record together, bytes in each second of scanning.
   void set_load(double bytes_per_s) { load_bytes_per_s_ = bytes_per_s; }
   [[nodiscard]] DiskState state() const;
-  /// Bytes of all journals that are not on the disk yet.
+  /// Bytes of all journals that are not written yet.
   [[nodiscard]] std::size_t waiting_size() const;
-  /// Times that the thread has come round: each second, unless a call of the disk does not return.
+  /// Loops of the thread so far: at least one each second, unless a system call hangs.
   [[nodiscard]] std::uint64_t rounds() const noexcept { return rounds_.load(std::memory_order_relaxed); }
-  /// Scans of the journals that have ended. Those whose journal is not where it belongs are in none of them
-  /// until it is there again, or all has ended.
+  /// Scans of ended journals. While a journal is missing at its path its scans are in none of the counts;
+  /// close_account() settles them.
   struct ScanCounts {
-    std::int64_t recorded = 0;  ///< Durable, in records or in journals that wait to become one.
-    std::int64_t lost = 0;      ///< Gaps for want of memory, in the same journals.
-    std::int64_t damaged = 0;   ///< Durable once, and not to be read when the record was made.
-    std::int64_t unsaved = 0;   ///< Of journals that the disk refused, or that were gone, to the end.
+    std::int64_t recorded = 0;  ///< Durable, in records or in journals that are not records yet.
+    std::int64_t lost = 0;      ///< Lost because memory was full; recorded as gaps.
+    /// Durable in a journal, but unreadable when the record was made; always 0 here, Storage counts them.
+    std::int64_t damaged = 0;
+    /// Never written: in journals that the disk refused, or that were missing, to the end.
+    std::int64_t unsaved = 0;
   };
   [[nodiscard]] ScanCounts scan_counts() const;
-  /// How long it took, each time, to write and sync what a journal held; what the disk refused is not in it.
+  /// Times to write and sync the new entries of a journal. Failed attempts are not counted.
   [[nodiscard]] daq::LatencyHistogram commit_time() const;
-  /// For how long there is room now; nothing if nobody knows.
+  /// Seconds of continuous scanning that the disk has room for now; nothing if unknown.
   [[nodiscard]] std::optional<double> room_s() const;
 
-  /// Writes what can be written, ends the thread. What the disk refuses for too long is told as ended with a
-  /// reason.
+  /// Writes all journals and ends the thread; blocks, at most for Settings::patience if the disk refuses.
+  /// Journals still unwritten then are given up: `ended` is called with the reason.
   void stop();
-  /// After stop(), when no more records are made: journals that are not where they belong are looked for once
-  /// more, and their scans counted as unsaved if they are gone.
+  /// Settles scan_counts() after stop(), when no more records are made: looks once more for journals without
+  /// a record; scans of missing ones count as unsaved, others as recorded.
   void close_account();
 
  private:
@@ -134,14 +146,14 @@ class DiskWriter {
     std::int64_t test;
     Journal journal;
     bool ended = false;
-    bool handed_over = false;  ///< Its record is being made.
+    bool handed_over = false;  ///< `ended` was called; its record is being made.
     std::optional<std::string> trouble = {};
   };
   using Clock = std::chrono::steady_clock;
   using Time = Clock::time_point;
 
   void run();
-  /// Writes all jobs, in order. \return why not.
+  /// Writes the journals of all jobs, in order. \return why one could not be written, if so.
   [[nodiscard]] std::optional<std::string> write_all(bool sync);
   [[nodiscard]] std::optional<std::string> write(const Job& job, bool sync);
   void hand_over(const Job& job);
@@ -153,7 +165,7 @@ class DiskWriter {
   std::function<void(const DiskState&)> changed_;
   std::atomic<double> load_bytes_per_s_{0.0};
   FolderWatch folder_watch_;
-  std::optional<FolderWatch::Away> away_;  ///< Disk thread.
+  std::optional<FolderWatch::Away> away_;  ///< Disk thread only.
   Ballast ballast_;
 
   mutable std::mutex mutex_;

@@ -39,8 +39,8 @@ class OwnProcessGroup {
   posix_spawnattr_t attributes_{};
 };
 
-/// Nothing of the daemon's stays open in the child but its stderr: Asio's sockets are not closed on exec, and
-/// a finaliser that outlives a killed daemon would keep the next one from listening.
+/// Closes all descriptors in the child but stdin, stdout and stderr. Asio's sockets are not closed on exec: a
+/// finaliser that outlives a killed daemon would keep the next daemon from listening.
 class OnlyOutput {
  public:
   /// \param output  becomes the child's stdout.
@@ -59,7 +59,7 @@ class OnlyOutput {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// Until its other end is closed.
+/// Reads until the other end is closed.
 std::string read_to_end(int file) {
   constexpr std::size_t kReadAtOnce = 4096;
   std::string text;
@@ -72,7 +72,7 @@ std::string read_to_end(int file) {
   }
 }
 
-/// Of the journal, after a finaliser that failed.
+/// What became of the journal after a failed finaliser, for the error message.
 std::string_view what_is_left(const std::filesystem::path& journal) {
   std::error_code error;
   if (std::filesystem::exists(journal, error)) return "the journal is kept";

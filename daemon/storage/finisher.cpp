@@ -8,6 +8,7 @@
 namespace stickslip::storage {
 namespace {
 
+/// Longest pause between two attempts for one journal.
 constexpr std::chrono::minutes kLongestPause{10};
 
 }  // namespace

@@ -1,5 +1,5 @@
 /// \file
-/// The thread that makes records of ended journals, so that none of it holds up the writing.
+/// The finisher's thread: makes the records of ended journals, so that it does not delay the disk thread.
 #pragma once
 
 #include <chrono>
@@ -19,26 +19,28 @@ namespace stickslip::storage {
 
 class Finisher {
  public:
-  /// \param scans  that were written to the journal.
+  /// Called after an attempt to make a record. \param scans  number of scans written to the journal.
   using Done =
       std::function<void(std::int64_t test, std::int64_t scans, const base::Result<record::Finalised>&)>;
 
-  /// Where the journal of a test stands now, or why it does not.
+  /// Returns the path of a test's journal, or why it is not at its path.
   using Where = std::function<base::Result<std::filesystem::path>(std::int64_t test)>;
 
-  /// \param where  asked on the thread before each attempt; a journal that is away is waited for.
-  /// \param finalise  called on the thread. \param done  too, after each attempt that gave something new.
-  /// \param first_retry  after a failure; then twice as long each time.
+  /// Starts the thread.
+  /// \param finalise  called on the thread. \param done  called on the thread after each attempt, but not if
+  /// it failed for the same reason as the one before. \param where  called on the thread before each attempt;
+  /// an error counts as a failed attempt. \param first_retry  pause after the first failure. It doubles with
+  /// each failure, up to 10 min.
   Finisher(Finalise finalise, Done done, Where where,
            std::chrono::milliseconds first_retry = std::chrono::seconds{5});
   ~Finisher();
   Finisher(const Finisher&) = delete;
   Finisher& operator=(const Finisher&) = delete;
 
-  /// \param scans  that were written to the journal. Any thread.
+  /// Queues a journal; does not block. Any thread. \param scans  number of scans written to the journal.
   void finish(std::int64_t test, std::int64_t scans);
 
-  /// Tries each of those that are left once more, ends the thread. What could not be made is told.
+  /// Tries each waiting journal once more, ends the thread; blocks. `done` reports the failures.
   void stop();
 
  private:
@@ -48,12 +50,12 @@ class Finisher {
     std::int64_t scans;
     Time due;
     std::chrono::milliseconds pause;
-    std::string refused;   ///< What was told last.
-    bool is_last = false;  ///< Taken when all was to end.
+    std::string refused;   ///< The reason reported last.
+    bool is_last = false;  ///< Taken after stop(): no retry.
   };
 
   void run();
-  /// The next job that is due, once there is one; nothing to end.
+  /// Blocks until a job is due and returns it; nothing: the thread is to end.
   [[nodiscard]] std::optional<Job> next();
 
   Finalise finalise_;

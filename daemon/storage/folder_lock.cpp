@@ -15,7 +15,8 @@
 namespace stickslip::storage {
 namespace {
 
-/// " (process 1234)", as /proc/locks [proc(5)] has it; empty where it does not say, such as in a container.
+/// The holder of a lock as " (process 1234)", from /proc/locks [proc(5)]; empty if it is not listed, such as
+/// in a container.
 std::string owner_of(int folder) {
   struct stat facts {};
   if (::fstat(folder, &facts) != 0) return {};

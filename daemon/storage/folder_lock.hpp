@@ -1,5 +1,5 @@
 /// \file
-/// One daemon at a time writes to a record folder.
+/// Lock that lets one daemon at a time write to a record folder.
 #pragma once
 
 #include <filesystem>
@@ -11,14 +11,15 @@
 
 namespace stickslip::storage {
 
-/// A lock of the folder itself (flock), which leaves no file behind and ends with the process. Programs that
-/// only read, and `stickslip recover`, do not ask for it. Where the file system has no locks everybody has it
-/// (record::probe_folder() tells).
+/// A flock(2) on the folder itself: it needs no file and ends with the process. Readers and `stickslip
+/// recover` do not take it. On a file system without locks take() always succeeds (record::probe_folder()
+/// tells).
 class FolderLock {
  public:
   /// Locks nothing.
   FolderLock() = default;
-  /// Errors: kFailure if another process has it; its number is told where the system knows it.
+  /// Takes the lock; does not block. Errors: kFailure if another process holds it, with its process ID if
+  /// known.
   [[nodiscard]] static base::Result<FolderLock> take(const std::filesystem::path& folder,
                                                      const record::FileCalls& calls = record::system_calls());
 

@@ -1,6 +1,6 @@
 /// \file
-/// Whether the folder of the records is where it was: a folder below a mount point whose file system went
-/// away is another one, and what is written there is hidden when the file system comes back.
+/// Detects that the file system of the record folder was unmounted. The path then leads to a folder on the
+/// file system below, and files written there would be hidden after the next mount.
 #pragma once
 
 #include <sys/types.h>
@@ -16,26 +16,26 @@ namespace stickslip::storage {
 
 class FolderWatch {
  public:
-  /// Takes the file system that the folder, or the nearest folder above it that is there, is on now for the
-  /// one that it belongs to. \param calls  outlive this object.
+  /// Remembers the file system that the folder is on now; of a missing folder, that of its nearest existing
+  /// parent. \param calls  outlive this object.
   FolderWatch(std::filesystem::path folder, const record::FileCalls& calls);
 
   struct Away {
     std::string why;
     std::string to_do;
   };
-  /// Why nothing may be written in the folder now. A folder that is missing on its own file system may be
-  /// made again; so may one on a file system that was mounted in its place since.
+  /// Why the folder must not be written to now; nothing if it may. It may be written to, and made if missing,
+  /// on its own file system, and on a new one that was mounted in its place.
   [[nodiscard]] std::optional<Away> look();
 
  private:
-  /// Devices of the folder and, each once in a row, of those above it. Empty with errno where none can be
-  /// had.
+  /// Device numbers of the folder and of its parents, without repetitions in a row. Empty, with errno set, if
+  /// they cannot be read.
   [[nodiscard]] std::vector<dev_t> devices() const;
 
   std::filesystem::path folder_;
   const record::FileCalls& calls_;
-  std::vector<dev_t> devices_;  ///< As they are meant to be.
+  std::vector<dev_t> devices_;  ///< The expected ones.
 };
 
 }  // namespace stickslip::storage

@@ -1,6 +1,6 @@
 /// \file
-/// Journals that a stop left behind become records: what the daemon does first, and `stickslip recover` by
-/// hand.
+/// Recovery: makes records of journals that an earlier program left behind. The daemon does it at its start,
+/// `stickslip recover` on request.
 #pragma once
 
 #include <cstdint>
@@ -14,26 +14,25 @@
 
 namespace stickslip::storage {
 
-/// Builds the finished file of a journal.
-/// \param expected  scans that were written to the journal.
+/// Builds the record of a journal. \param expected  scans written to the journal; absent: unknown.
 using Finalise = std::function<base::Result<record::Finalised>(const std::filesystem::path& journal,
                                                                std::optional<std::int64_t> expected)>;
 
-/// What became of journals, the worst last.
+/// Outcome of a recovery, from best to worst.
 enum class Recovery {
-  kDone,     ///< Each is a whole record, or held nothing.
-  kDamaged,  ///< Each is a record, but some could not be read whole and stay beside theirs.
-  kRefused,  ///< Some are no record, or may stand in a folder that cannot be looked into.
+  kDone,     ///< Every journal is a complete record, or held no scan.
+  kDamaged,  ///< Every journal is a record, but some were unreadable in part; those journals stay.
+  kRefused,  ///< Some journals are no records, or a folder cannot be listed.
 };
 
-/// Every journal in the folder and in those of the years and months below it, by name. One that somebody
-/// writes is left alone; one that a stop left before its header was whole holds nothing and is removed; all
-/// others are finalised. What cannot be is told and kept: the rest is done nevertheless. \return the
-/// worst.
+/// Recovers every journal in the record folder and its dated subfolders, in the order of their paths; blocks.
+/// A journal that another process writes is left alone; one with an incomplete header holds nothing and is
+/// removed; all others are finalised. A failure is reported to `facts`, the journal is kept, and recovery
+/// goes on. \return the worst outcome.
 [[nodiscard]] Recovery recover_folder(const std::filesystem::path& folder, const Finalise& finalise,
                                       daemon::Facts& facts);
 
-/// The same for one journal.
+/// Recovers one journal.
 [[nodiscard]] Recovery recover_journal(const std::filesystem::path& journal, const Finalise& finalise,
                                        daemon::Facts& facts);
 

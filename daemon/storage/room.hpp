@@ -1,5 +1,5 @@
 /// \file
-/// What the state of the disk means for those who measure.
+/// Translates the state of the disk into the state of the storage, with reason and remedy for people.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace stickslip::storage {
 
-/// Whether there is room for records, why not, and what to do. \param folder  of the records.
+/// \param folder  the record folder, for the texts.
 [[nodiscard]] daemon::StorageState storage_state(const DiskState& disk, const std::filesystem::path& folder);
 
 }  // namespace stickslip::storage

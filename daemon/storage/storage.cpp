@@ -23,17 +23,19 @@
 namespace stickslip::storage {
 namespace {
 
-/// Messages between processing and storage: half a minute of blocks at 350 scans/s.
+/// Capacity of the queue from the processing to the storage thread, messages: half a minute of blocks at 350
+/// scans/s.
 constexpr std::size_t kQueueCapacity = 4096;
-/// The storage thread wakes at least so often.
+/// Longest wait of the storage thread for a message.
 constexpr std::chrono::seconds kIdle{1};
-/// One journal entry holds this much time.
+/// Time that one journal entry of scans holds.
 constexpr double kEntry_s = 0.1;
 
 /// Scans in one journal entry of the noise-free force: 32 kB.
 constexpr std::size_t kForceEntry = 4096;
 
-/// So much is kept in memory while the disk refuses: scans, and what comes with them.
+/// Time of scanning that memory holds while the disk refuses: scans with their gaps, cycles and clock
+/// readings.
 constexpr double kLongestWait_s = 600.0;
 
 std::size_t scans_in_entry(const daq::BoardInfo& board) {
@@ -45,8 +47,8 @@ double encoded_size(const daq::BoardInfo& board) {
   return record::counts_fit_u16(board) ? sizeof(std::uint16_t) : sizeof(std::uint32_t);
 }
 
-/// Of journal and record together, the columns of the record (time, scan, value, force, flags) not
-/// compressed.
+/// Growth of journal and record together for one scan. The record's columns are time, scan, value, force and
+/// flags, uncompressed.
 double bytes_per_scan(const daq::BoardInfo& board) {
   constexpr double kColumns = sizeof(double) + sizeof(std::int64_t) + sizeof(float) + sizeof(std::uint8_t);
   return 2.0 * encoded_size(board) + kColumns;
@@ -292,7 +294,7 @@ void Storage::handle(const daq::Gap& gap) {
 }
 
 void Storage::handle(const daq::ClockAnchor& anchor) {
-  append_pending();  // A clock is not kept without the scan that it was read at.
+  append_pending();  // An anchor follows the scan that it belongs to.
   if (journal_) journal_->add_anchor(anchor);
 }
 
@@ -347,7 +349,7 @@ void Storage::append_force(model::TrueForce& force) {
       const auto left = static_cast<std::size_t>(stretch.end - stretch.first);
       const std::span<double> some = std::span{coefficient}.first(std::min(left, kForceEntry));
       force.next(stretch.first, some);
-      // Faster than any disk; with one that refuses, the record goes without.
+      // This is faster than the disk. If the disk refuses, the record lacks the noise-free force.
       while (!journal_->add_true_coefficients(stretch.first, some)) {
         disk_.wake();
         if (!journal_->wait_for_room(kIdle) && disk_.state().trouble) return;

@@ -1,6 +1,7 @@
 /// \file
-/// The storage thread: every test becomes a journal while it runs and a finished file at its end. It meets no
-/// disk: that is the disk thread's (disk_writer.hpp) and the finisher's.
+/// Storage of tests: each test is written to a journal while it runs and becomes a record at its end. The
+/// storage thread builds journal entries in memory; the disk thread (disk_writer.hpp) and the finisher's
+/// thread do all disk access.
 #pragma once
 
 #include <chrono>
@@ -31,21 +32,23 @@
 namespace stickslip::storage {
 
 struct StorageSettings {
-  std::filesystem::path folder;  ///< Made if absent, before the first test.
+  /// The record folder. It is made if it is absent when a journal is first written.
+  std::filesystem::path folder;
   io::DatedFolders dated_folders = io::DatedFolders::kNone;
   const record::FileCalls* calls = &record::system_calls();
-  std::chrono::milliseconds sync_period{1000};  ///< As that of DiskWriter.
+  std::chrono::milliseconds sync_period{1000};  ///< As DiskWriter::Settings::sync_period.
 };
 
-/// The record sink. As a sink it is bound to the processing thread. What the disk does not take at once waits
-/// in memory, ten minutes of scans at least; what does not fit is a gap with the cause storage-full.
+/// The sink that records tests. Its sink functions are called on the processing thread; they block only while
+/// the queue to the storage thread is full. While the disk refuses, entries wait in memory, at least ten
+/// minutes of scans; scans beyond that become a gap with the cause storage-full.
 class Storage final : public pipeline::Sink {
  public:
-  /// \param finalise  called on the finisher's thread. \param tests,facts  outlive this object.
-  /// What became of the record of a test.
+  /// Called with the record of a test, or why it could not be made.
   using Made = std::function<void(std::int64_t test, const base::Result<std::filesystem::path>& file)>;
-  /// \param changed  called on the disk thread when it is otherwise with the disk; may not wait.
-  /// \param made  called on the disk's or the finisher's thread; may not wait.
+  /// Starts the threads. \param finalise  called on the finisher's thread. \param tests,facts  outlive this
+  /// object. \param changed  called on the disk thread when disk() has changed; must not block. \param made
+  /// called on the disk thread or the finisher's thread; must not block.
   Storage(StorageSettings settings, Finalise finalise, daemon::TestLog& tests, daemon::Facts& facts,
           std::function<void()> changed = {}, Made made = {});
   /// As stop().
@@ -53,38 +56,39 @@ class Storage final : public pipeline::Sink {
   Storage(const Storage&) = delete;
   Storage& operator=(const Storage&) = delete;
 
-  /// What the records of the coming tests say about board, tester and program.
-  /// Only while no test can arrive: before a session starts.
-  /// \param remarks  an event each, in every record.
+  /// Sets the header of coming records: board, tester, program. Call it only while no test can arrive, before
+  /// a session starts. \param truth  null if the truth is unknown. \param remarks  each becomes an event in
+  /// every record.
   void use(record::RecordHeader header, const model::TruthSource* truth,
            std::vector<std::string> remarks = {});
 
-  /// What the records of the coming tests say otherwise, of those that begin after this.
-  /// On the processing thread, or while no test can arrive.
+  /// Changes the header of tests that begin later. Call it on the processing thread, or while no test can
+  /// arrive.
   void amend(const std::function<void(record::RecordHeader&)>& change);
 
-  /// Told of each test that is over, with what its record begins and ends with and where that will stand.
+  /// Called when a test has ended, with the header and end of its record and the future path of the record.
   using EndTold = std::function<void(const record::RecordHeader&, const record::EndRecord&,
                                      const std::filesystem::path&)>;
-  /// Only while no test can arrive. \param told  called on the storage thread; may not wait.
+  /// Sets the receiver of ends. Call it only while no test can arrive. \param told  called on the storage
+  /// thread; must not block.
   void tell_ends(EndTold told) { end_told_ = std::move(told); }
 
-  /// Writes all that was handed over, finalises, ends the thread. No sink calls afterwards.
+  /// Writes all tests, makes their records, ends the threads; blocks. Call no sink function afterwards.
   void stop();
 
-  /// How it is with the disk. Any thread.
+  /// State of the disk. Any thread.
   [[nodiscard]] DiskState disk() const { return disk_.state(); }
-  /// The same for people and for those who begin tests, at most a second old. Any thread.
+  /// State of the storage, with reason and remedy for people. At most a second old. Any thread.
   [[nodiscard]] daemon::StorageState state() const { return storage_state(disk_.state(), settings_.folder); }
-  /// Times the processing thread had to wait. Any thread.
+  /// Times that the processing thread had to wait for room in the queue. Any thread.
   [[nodiscard]] std::uint64_t stall_count() const noexcept { return queue_.stall_count(); }
 
-  /// As that of DiskWriter. Any thread.
+  /// As DiskWriter::commit_time(). Any thread.
   [[nodiscard]] daq::LatencyHistogram commit_time() const { return disk_.commit_time(); }
-  /// What became of the scans of tests that have ended. Any thread.
+  /// Scan counts of ended tests. Any thread.
   [[nodiscard]] DiskWriter::ScanCounts scan_counts() const;
-  /// Times that the storage thread, and the disk thread, have come round; at rest or not they do so each
-  /// second. Any thread.
+  /// Loops of the storage thread and of the disk thread so far: at least one each second, also at rest. Any
+  /// thread.
   [[nodiscard]] std::uint64_t storage_rounds() const noexcept {
     return rounds_.load(std::memory_order_relaxed);
   }
@@ -107,7 +111,7 @@ class Storage final : public pipeline::Sink {
   };
   struct Ended {
     std::shared_ptr<const record::EndRecord> end;
-    std::shared_ptr<model::TrueForce> force;  ///< Null if nobody knows it.
+    std::shared_ptr<model::TrueForce> force;  ///< Null if unknown.
   };
   /// Consecutive scans in the journal.
   struct Stretch {
@@ -131,15 +135,15 @@ class Storage final : public pipeline::Sink {
   void handle(const daq::Note& note);
   void handle(const Ended& message);
   void append_pending();
-  /// \param realtime_ns  when it happened.
+  /// \param realtime_ns  nanoseconds since 1970.
   void note_event(daq::ScanIndex scan, std::int64_t realtime_ns, std::string text);
   /// The noise-free force of the scans that are in the journal.
   void append_force(model::TrueForce& force);
-  /// For how long there is room, if that is too short for a test.
+  /// Seconds of scanning that the disk has room for, if below kLeastRoom_s; else nothing.
   [[nodiscard]] std::optional<double> little_room_s() const;
   void journal_ended(std::int64_t test, std::int64_t scans, const std::optional<std::string>& why_not);
   void record_made(std::int64_t test, const base::Result<std::filesystem::path>& file);
-  /// \param scans  that were written to the journal.
+  /// \param scans  number of scans written to the journal.
   void journal_finalised(std::int64_t test, std::int64_t scans, const base::Result<record::Finalised>& made);
   void disk_changed(const DiskState& state);
 
@@ -150,25 +154,25 @@ class Storage final : public pipeline::Sink {
   std::vector<std::string> remarks_;                    ///< Processing thread.
   const model::TruthSource* truth_ = nullptr;           ///< Processing thread.
   daq::ScanIndex first_ = 0;                            ///< Processing thread.
-  daq::ScanBlock collected_;                     ///< Processing thread: scans that the queue has not got yet.
-  std::vector<detect::Cycle> collected_cycles_;  ///< Processing thread: to follow them.
-  std::size_t collected_enough_ = 1;             ///< Processing thread: to hand them over.
+  daq::ScanBlock collected_;                            ///< Processing thread: scans not yet in the queue.
+  std::vector<detect::Cycle> collected_cycles_;  ///< Processing thread: cycles that follow these scans.
+  std::size_t collected_enough_ = 1;  ///< Processing thread: number of scans at which they are queued.
   base::BoundedQueue<Message> queue_;
 
   EndTold end_told_;
   std::int64_t number_ = 0;
-  record::RecordHeader begun_;         ///< Of the test that runs.
-  std::filesystem::path latest_path_;  ///< Of a journal that need not be on the disk yet.
+  record::RecordHeader begun_;         ///< Header of the running test's record.
+  std::filesystem::path latest_path_;  ///< Path of the latest journal, which may not exist yet.
   DiskWriter::Journal journal_;
   std::vector<double> pending_;               ///< Consecutive scans not yet appended.
   std::vector<std::int32_t> pending_second_;  ///< Of the same scans; none without a second channel.
   daq::ScanIndex pending_first_ = 0;
   daq::ClockStamp pending_stamp_;
-  std::vector<Stretch> recorded_;   ///< All of them.
+  std::vector<Stretch> recorded_;   ///< All stretches of the running test.
   std::size_t pending_enough_ = 1;  ///< scans_in_entry().
   std::function<void()> changed_;
   Made made_;
-  bool waits_ = false;  ///< Disk thread: as it was told last, as the next.
+  bool waits_ = false;  ///< Disk thread: state reported last, with the next two.
   std::string waits_for_;
   bool is_short_ = false;
   std::atomic<std::int64_t> damaged_scans_{0};  ///< Written by the finisher's thread.

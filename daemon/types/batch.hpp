@@ -1,5 +1,6 @@
 /// \file
-/// A batch: tests planned together, what became of them, and which comes next. Knows neither files nor time.
+/// A batch: tests planned together, their records, and the test that comes next. Pure data: no files, no
+/// clock.
 ///
 ///     BatchBook book;
 ///     book.apply({.at = …, .who = "ada", .what = BatchBegun{id, plan}});
@@ -19,7 +20,7 @@
 
 namespace stickslip::daemon {
 
-/// What a result may be; none: no limit on that side.
+/// Limits of a result. An absent side has no limit.
 struct ResultLimits {
   std::optional<double> lowest;
   std::optional<double> highest;
@@ -31,17 +32,18 @@ struct ResultLimits {
 };
 
 struct BatchPlan {
-  record::SampleFacts sample;  ///< Of all its tests; replicate, slide and batch are those of each step.
-  std::string method;          ///< As in a record's process/method; empty: that of the daemon.
-  std::vector<double> pull_speeds_m_per_s;     ///< In this order; empty: one, whatever the bench has.
+  record::SampleFacts sample;  ///< Shared by all tests; each step sets its replicate, slide and batch.
+  /// Test method as in a record's process/method; empty: that of the daemon.
+  std::string method;
+  std::vector<double> pull_speeds_m_per_s;     ///< In this order; empty: the bench's one.
   std::int64_t replicates = 1;                 ///< Sheets at each speed, ≥ 1.
   std::int64_t slides = 1;                     ///< Pulls of each sheet, ≥ 1.
-  std::map<std::string, ResultLimits> limits;  ///< By the name of the result.
+  std::map<std::string, ResultLimits> limits;  ///< Key: name of the result.
 
   bool operator==(const BatchPlan&) const = default;
 };
 
-/// A batch of more tests is refused.
+/// Most tests in one batch.
 inline constexpr std::int64_t kMostSteps = 10'000;
 
 /// One test of the plan.
@@ -53,15 +55,15 @@ struct BatchStep {
   bool operator==(const BatchStep&) const = default;
 };
 
-/// All, in the order in which they are made: speed by speed, sheet by sheet, slide by slide.
+/// All steps, in the order of measurement: the slides of a sheet, the sheets of a speed, the speeds.
 [[nodiscard]] std::vector<BatchStep> steps(const BatchPlan& plan);
 
 struct BatchTest {
-  std::string record;  ///< Its file, from the folder of the journal on.
+  std::string record;  ///< Path of its file, relative to the folder of the batch journal.
   BatchStep step;
 };
 
-/// Why a test does not count, though its file stays as it is.
+/// A test that was voided: it does not count. Its record stays unchanged.
 struct Voiding {
   std::string reason;
   std::string who;
@@ -74,10 +76,10 @@ struct Batch {
   std::string who;
   std::string begun_at;
   std::optional<std::string> ended_at;
-  std::vector<BatchTest> tests;  ///< As they were recorded.
+  std::vector<BatchTest> tests;  ///< In the order of recording.
 };
 
-// What can happen; each is a line of the journal.
+// The events of a batch; each is a line of the batch journal.
 
 struct BatchBegun {
   std::string batch;
@@ -94,34 +96,36 @@ struct TestVoided {
   std::string record;
   std::string reason;
 };
-/// Voided by mistake: it counts again.
+/// Undoes TestVoided: the test counts again.
 struct TestRestored {
   std::string record;
 };
 struct BatchEvent {
   std::string at;   ///< ISO 8601.
-  std::string who;  ///< Empty: the daemon itself.
+  std::string who;  ///< Name of the controller; empty: the daemon itself.
   std::variant<BatchBegun, BatchEnded, TestRecorded, TestVoided, TestRestored> what;
 };
 
-/// All batches of a folder of records. A value; events are applied in the order of the journal.
+/// All batches of a record folder, built from the events of their journal in order.
 class BatchBook {
  public:
-  /// Total: what names a batch that is not known, or says again what is known, changes nothing. A batch that
-  /// begins ends the one before.
+  /// Applies one event. An event about an unknown batch, or one that repeats an earlier event, changes
+  /// nothing. BatchBegun ends the batch before.
   void apply(const BatchEvent& event);
 
-  /// The latest, unless it has ended.
+  /// The latest batch, or null if it has ended or there is none.
   [[nodiscard]] const Batch* current() const noexcept;
-  /// By its identifier, or the latest of that sample name.
+  /// The batch of this identifier, else the latest one of this sample name, else null.
   [[nodiscard]] const Batch* find(std::string_view id_or_name) const noexcept;
   [[nodiscard]] const std::vector<Batch>& batches() const noexcept { return batches_; }
-  /// Null if the test counts.
+  /// The voiding of a test, or null if the test counts. \param record  as BatchTest::record.
   [[nodiscard]] const Voiding* voided(const std::string& record) const noexcept;
+  /// True if the batch has a test with this record.
   [[nodiscard]] bool has(std::string_view batch, std::string_view record) const noexcept;
 
-  /// The first step that no test stands for; none when all are made. A voided test stands for none, so that
-  /// it is asked for again. \param under_way  steps of tests that run, or whose file is not published yet.
+  /// The first step without a test that counts; nothing if every step has one. A step whose test was voided
+  /// is due again. \param under_way  steps of tests that run or whose record is not published yet; they are
+  /// not due.
   [[nodiscard]] std::optional<BatchStep> next_step(const Batch& batch,
                                                    std::span<const BatchStep> under_way) const;
 

@@ -16,10 +16,10 @@
 namespace stickslip::daemon {
 namespace {
 
-/// 2026/11/20261121T125252Z-0003.h5 has two folders above it.
+/// Folders between a record and its journal, at most: 2026/11/20261121T125252Z-0003.h5.
 constexpr int kDatedLevels = 2;
 
-/// Whether the file ends inside a line.
+/// True if the file ends inside a line.
 base::Result<bool> ends_torn(int file) {
   const off_t end = ::lseek(file, 0, SEEK_END);
   if (end < 0) return base::failure("{}", record::system_message(errno));

@@ -1,6 +1,6 @@
 /// \file
-/// The journal of batches: one line of JSON for each event, in a file beside the records that is only ever
-/// appended to. Several programs may append; whoever reads sees the lines that are whole.
+/// The journal of batches: an append-only file beside the records, one line of JSON for each event. Several
+/// programs may append to it (flock); readers see complete lines only.
 ///
 ///     BatchJournal journal{folder};
 ///     journal.append({at, "ada", TestVoided{"20261121T125252Z-0003.h5", "paper torn"}});
@@ -29,26 +29,27 @@ class BatchJournal {
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
-  /// Durable when it returns. A line that a power cut or a full disk left in the middle is closed first, so
-  /// that it spoils no other. Errors: kFailure.
+  /// Appends a line; blocks until it is on the disk. An incomplete last line, left by a power cut or a full
+  /// disk, is ended first. Errors: kFailure.
   [[nodiscard]] base::Result<void> append(const BatchEvent& event) const;
 
-  /// Applies what was appended since the last call. \return a remark for each line that means nothing: where
-  /// it is and why. Errors: kFailure. No file is an empty one.
+  /// Applies the events appended since the last call. \return a remark for each line that cannot be
+  /// understood: its place and why. A missing file counts as empty. Errors: kFailure if the file cannot be
+  /// read or has become shorter.
   [[nodiscard]] base::Result<std::vector<std::string>> read_on(BatchBook& book);
 
  private:
   std::filesystem::path path_;
   const record::FileCalls& calls_;
-  std::uintmax_t read_ = 0;  ///< Bytes, up to the end of a line.
-  std::int64_t line_ = 0;    ///< Lines, so far.
+  std::uintmax_t read_ = 0;  ///< Bytes read so far, up to the end of a line.
+  std::int64_t line_ = 0;    ///< Lines read so far.
 };
 
-/// The folder of the journal that tells of a record: its own or one of the two above it (dated folders). None
-/// if there is no journal.
+/// The folder of the journal for a record: the record's folder or one of the two above it (dated folders).
+/// Nothing if none of them holds a journal.
 [[nodiscard]] std::optional<std::filesystem::path> journal_folder_of(const std::filesystem::path& record);
 
-/// A record by the name it has in the journal of that folder.
+/// The name of a record in the journal of `folder`: its path relative to the folder.
 [[nodiscard]] std::string name_in_journal(const std::filesystem::path& folder,
                                           const std::filesystem::path& record);
 

@@ -27,7 +27,7 @@ constexpr const char* kSlides = "slides";
 constexpr const char* kLimits = "limits";
 constexpr std::size_t kMostSpeeds = 100;
 
-/// By its name among the shipped ones, or as a record tells it.
+/// Reads a method: the name of a shipped one, or the text of a record's process/method.
 base::Result<model::Method> method_of(const std::string& text) {
   if (!io::is_method_name(text)) return record::method_from_text(text);
   const auto file = io::find_in(io::kMethods, text, "");

@@ -1,5 +1,5 @@
 /// \file
-/// Batches as JSON: what the control interface takes and gives, and the lines of the journal.
+/// Batches as JSON, for the control interface and for the lines of the batch journal.
 #pragma once
 
 #include <string_view>
@@ -13,12 +13,13 @@ namespace stickslip::daemon {
 
 /// {"name": "liner 42", "grade": …, "direction": …, "side": …, "operator": …, "method": …, "pull_speeds":
 /// [0.00508],
-///  "replicates": 3, "slides": 1, "limits": {"mu_k": {"lowest": 0.2, "highest": 0.4}}}; nothing is left out.
+///  "replicates": 3, "slides": 1, "limits": {"mu_k": {"lowest": 0.2, "highest": 0.4}}}; all keys are present.
 [[nodiscard]] nlohmann::ordered_json batch_plan_json(const BatchPlan& plan);
 
-/// The name must be there; what else is absent or null has its default, that of the method where it says one
-/// (its speed, its number of replicates). The method is a name among the shipped ones or a record's text. A
-/// speed is m/s or text with a unit. Errors (kUsage) name the key, the value and what is allowed.
+/// Reads a plan. "name" is required. An absent or null pull_speeds or replicates uses the method's value, if
+/// it has one; other absent keys use their defaults. "method" is the name of a shipped method, or the text of
+/// a record's process/method. A speed is a number in m/s or text with a unit. Errors (kUsage) name the key,
+/// the value and what is allowed.
 [[nodiscard]] base::Result<BatchPlan> batch_plan_of(const nlohmann::ordered_json& json);
 
 /// {"pull_speed": 0.00508, "replicate": 1, "slide": 1}
@@ -26,9 +27,9 @@ namespace stickslip::daemon {
 /// {"reason": …, "by": …, "at": …}, or null.
 [[nodiscard]] nlohmann::ordered_json voiding_json(const Voiding* voiding);
 
-/// One line, without its end.
+/// The event as a line of the journal, without line feed.
 [[nodiscard]] std::string line_of(const BatchEvent& event);
-/// Errors (kUsage) say what is wrong with the line.
+/// Reads a line of the journal. Errors (kUsage) say what is wrong with it.
 [[nodiscard]] base::Result<BatchEvent> event_of(std::string_view line);
 
 }  // namespace stickslip::daemon

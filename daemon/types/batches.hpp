@@ -1,5 +1,5 @@
 /// \file
-/// What people ask about batches through the control interface.
+/// Interface between the control interface and the batches.
 #pragma once
 
 #include <cstdint>
@@ -13,33 +13,33 @@
 
 namespace stickslip::daemon {
 
-/// How far the current batch is.
+/// Progress of the current batch.
 struct BatchProgress {
   std::string id;
-  std::string name;  ///< Of its sample.
+  std::string name;  ///< Name of its sample.
   std::int64_t done = 0;
   std::int64_t planned = 0;
-  std::optional<BatchStep> next;  ///< None: all are made.
-  std::string trouble;            ///< Why the journal is behind; empty: it is not.
+  std::optional<BatchStep> next;  ///< Absent: every step has its test.
+  std::string trouble;            ///< Why the journal could not be written or read; empty: all is well.
 };
 
-/// Main thread.
+/// Main thread. Changes are written to the journal by another thread; none of the functions waits for it.
 class Batches {
  public:
   virtual ~Batches() = default;
-  /// Called on the main thread, once. Errors: kBusy where the state of things refuses, kUsage where the
-  /// request is wrong, else kFailure.
+  /// Called once, on the main thread, when the change is in the journal or refused. Errors: kBusy if the
+  /// present state forbids it, kUsage if the request is wrong, kFailure if the journal cannot be written.
   using Answer = std::function<void(const base::Result<void>&)>;
 
-  /// As the journal has it now.
+  /// All batches, after reading what was appended to the journal.
   [[nodiscard]] virtual const BatchBook& book() = 0;
   [[nodiscard]] virtual std::optional<BatchProgress> progress() const = 0;
-  /// Of a record, in the journal.
+  /// Name of a record in the journal: see name_in_journal().
   [[nodiscard]] virtual std::string name_of(const std::filesystem::path& record) const = 0;
 
   virtual void begin(BatchPlan plan, std::string who, Answer answer) = 0;
   virtual void end(std::string who, Answer answer) = 0;
-  /// \param record  by its name in the journal.
+  /// Makes a test void. \param record  its name in the journal.
   virtual void void_test(const std::string& record, std::string reason, std::string who, Answer answer) = 0;
   virtual void restore(const std::string& record, std::string who, Answer answer) = 0;
 };

@@ -1,5 +1,5 @@
 /// \file
-/// What people ask of the bench through the control interface, and what becomes of it.
+/// Interface between the control interface and the bench.
 #pragma once
 
 #include <cstdint>
@@ -20,11 +20,11 @@
 
 namespace stickslip::daemon {
 
-/// What the tests to come are of.
+/// What the coming tests measure, and how.
 struct Plan {
   record::SampleFacts sample;
   std::optional<double> pull_speed_m_per_s;
-  std::optional<model::Method> method;  ///< None: that of the configuration.
+  std::optional<model::Method> method;  ///< Absent: the one of the configuration.
 
   bool operator==(const Plan&) const = default;
 };
@@ -33,34 +33,36 @@ struct Command {
   enum class Kind { kArm, kStart, kStop, kMark, kTare };
   Kind kind = Kind::kArm;
   std::string who;
-  std::string text;  ///< Of a mark.
-  std::optional<std::int64_t>
-      test;  ///< Of start and stop: the test that is meant. What it asks may be done already.
+  std::string text;  ///< Text of a mark.
+  /// Of start and stop: number of the test that is to begin or end, so that a repeated command does nothing.
+  std::optional<std::int64_t> test;
 };
 
 struct Outcome {
-  pipeline::TareReport report;  ///< Of a command that is no tare: its first part.
-  bool already = false;         ///< It had been done before.
+  /// The CommandReport part is valid for all commands, the rest for a tare only.
+  pipeline::TareReport report;
+  bool already = false;  ///< The named test had begun or ended already; nothing was done.
 };
 
-/// What the control interface knows of the daemon. Main thread.
+/// The daemon as the control interface sees it. Main thread.
 class Bench {
  public:
   virtual ~Bench() = default;
 
   [[nodiscard]] virtual Status status() const = 0;
-  /// Oldest first.
+  /// The latest tests, oldest first.
   [[nodiscard]] virtual std::vector<TestSummary> tests() const = 0;
   [[nodiscard]] virtual Plan plan() const = 0;
-  /// For the tests that begin from here on. \param plan  checked.
+  /// Sets the plan of the tests that begin later. \param plan  must be valid, as from plan_of().
   virtual void set_plan(Plan plan) = 0;
-  /// \param answer  called on the main thread, once: at once, or when the processing thread has done it.
+  /// Gives a command; does not block. \param answer  called once, on the main thread: at once if the command
+  /// is refused, else when the processing thread has carried it out.
   virtual void command(Command command, std::function<void(const Outcome&)> answer) = 0;
-  /// Of the load cell. Outlives the bench.
+  /// Calibration of the load cell. Outlives this object.
   [[nodiscard]] virtual Calibrator& calibrator() = 0;
-  /// Lives as long as this.
+  /// Lives as long as this object.
   [[nodiscard]] virtual Batches& batches() = 0;
-  /// Lives as long as this.
+  /// Lives as long as this object.
   [[nodiscard]] virtual Reports& reports() = 0;
 };
 

@@ -70,7 +70,7 @@ Json session_json(const CalibrationSession& session) {
           {"missing", said(fit.reason)}};
 }
 
-/// A number, or text with a unit.
+/// Reads a quantity: a number, or text with a unit.
 base::Result<double> quantity_of(const char* key, const Json& value, base::Dimension dimension,
                                  const char* example) {
   if (value.is_number()) return value.get<double>();

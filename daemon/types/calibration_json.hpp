@@ -1,5 +1,5 @@
 /// \file
-/// Calibrations of the load cell as JSON, by the names of the record.
+/// Calibrations of the load cell as JSON, with the names of the record.
 #pragma once
 
 #include <optional>
@@ -13,18 +13,20 @@
 namespace stickslip::daemon {
 
 [[nodiscard]] nlohmann::ordered_json points_json(const daq::WeighedCalibration& weighed);
-/// null where absent or not finite.
+/// null if the value is absent, infinite or NaN.
 [[nodiscard]] nlohmann::ordered_json known_json(std::optional<double> value);
 [[nodiscard]] nlohmann::ordered_json calibration_json(const CalibrationView& view);
 
-// Of requests. Quantities are numbers in SI units, or text with a unit. Errors (kUsage) name the key.
+// Readers of request bodies. Quantities are numbers in SI units, or text with a unit. Errors (kUsage) name
+// the key.
 
+/// Longest settling and reading time of a weight.
 inline constexpr double kLongestWeighing_s = 60.0;
-/// settle, reading: to kLongestWeighing_s.
+/// Reads "settle" and "reading", each at most kLongestWeighing_s.
 [[nodiscard]] base::Result<daq::WeighingTimes> weighing_times_of(const nlohmann::ordered_json& json);
-/// mass: kg.
+/// Reads "mass", in kg.
 [[nodiscard]] base::Result<double> mass_of(const nlohmann::ordered_json& json);
-/// certificate, valid_days.
+/// Reads "certificate" and "valid_days".
 [[nodiscard]] base::Result<io::CalibrationPaper> paper_of(const nlohmann::ordered_json& json);
 
 }  // namespace stickslip::daemon

@@ -1,5 +1,5 @@
 /// \file
-/// The calibration of the load cell as people ask for it through the control interface.
+/// Interface between the control interface and the calibration of the load cell.
 #pragma once
 
 #include <functional>
@@ -15,41 +15,44 @@
 
 namespace stickslip::daemon {
 
-/// One that is under way.
+/// A calibration that is under way.
 struct CalibrationSession {
-  std::string who;  ///< Began it.
+  std::string who;  ///< Controller that began it.
   daq::WeighingTimes times;
-  std::optional<double> being_read_kg;  ///< Its scans are coming.
-  daq::WeighedCalibration weighed;      ///< Of the readings so far.
+  /// Mass of the weight that is being read; absent: none.
+  std::optional<double> being_read_kg;
+  daq::WeighedCalibration weighed;  ///< Fit of the readings so far.
 };
 
 struct CalibrationView {
-  // In use.
+  // The calibration in use.
   daq::LoadCell load_cell;
-  record::CalibrationFacts facts;  ///< Empty where the configuration gave the numbers.
+  record::CalibrationFacts facts;  ///< Empty if the configuration gave gain and zero.
   bool expired = false;
 
-  std::string folder;  ///< Where a new one will be kept; empty: nowhere.
-  std::string file;    ///< The one kept last by this daemon; empty: none.
+  std::string folder;  ///< Where a new calibration will be stored; empty: nowhere.
+  std::string file;    ///< The calibration that this daemon stored last; empty: none.
   std::optional<CalibrationSession> session;
 };
 
-/// Main thread. Each request ends in a refusal for people, empty if it was done.
+/// Main thread. Each request yields a text: why it was refused, or empty if it was done.
 class Calibrator {
  public:
   virtual ~Calibrator() = default;
-  /// Called once, at once or later.
+  /// Called once on the main thread, at once or later. \param refusal  empty: done.
   using Answer = std::function<void(std::string refusal)>;
 
   [[nodiscard]] virtual CalibrationView view() const = 0;
-  /// On an idle bench, which stays idle until finish() or give_up().
+  /// Begins a calibration; the bench must be idle. Tests and tares are refused until finish() or give_up().
   virtual void begin(const std::string& who, const daq::WeighingTimes& times, Answer answer) = 0;
-  /// Reads what hangs now. The first is the tare: 0. \param mass_kg  0 to kHeaviestWeight_kg.
+  /// Reads the weight that hangs on the cell now. The first reading is the tare, with mass 0. \param mass_kg
+  /// 0 to kHeaviestWeight_kg.
   virtual void weigh(double mass_kg, Answer answer) = 0;
-  /// Forgets the latest reading.
+  /// Removes the latest reading. \return why not; empty: done.
   [[nodiscard]] virtual std::string undo() = 0;
-  /// Keeps the calibration in a file of its own and uses it from here on.
+  /// Stores the calibration in a new file and uses it from now on.
   virtual void finish(const std::string& who, const io::CalibrationPaper& paper, Answer answer) = 0;
+  /// Ends the calibration without a result. \return why not; empty: done.
   [[nodiscard]] virtual std::string give_up() = 0;
 };
 

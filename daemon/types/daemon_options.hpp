@@ -1,5 +1,6 @@
 /// \file
-/// The options of stickslipd: for itself, its manual page and its completion.
+/// The command-line options of stickslipd, declared once for the program, its manual page and its shell
+/// completion.
 #pragma once
 
 #include <cstdint>

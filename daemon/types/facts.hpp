@@ -1,6 +1,5 @@
 /// \file
-/// What the daemon's parts have to say. They state facts; who implements this decides whether
-/// and how they are logged.
+/// Events that the parts of the daemon report. The implementation decides which of them are logged, and how.
 #pragma once
 
 #include <cstdint>
@@ -18,63 +17,63 @@
 
 namespace stickslip::daemon {
 
-/// Thread-safe: called from all threads but acquisition.
+/// Receiver of events. Thread-safe: all threads but the acquisition thread call it.
 class Facts {
  public:
   virtual ~Facts() = default;
 
   virtual void board_started(const daq::BoardInfo& /*board*/, std::string_view /*scheduling*/) {}
-  /// Before the start: do the scans come often enough?
+  /// Before a session: whether the scan rate suffices for the tester.
   virtual void sampling_checked(const estimate::SamplingVerdict& /*verdict*/) {}
-  /// Before the start: the load cell is due to be calibrated again.
+  /// Before a session: the calibration of the load cell has expired.
   virtual void calibration_expired(std::string_view /*expires*/) {}
   /// \param state  of the daemon: "board missing", "board busy" or "no permission".
   virtual void board_unavailable(std::string_view /*state*/, std::string_view /*why*/,
                                  double /*retry_in_s*/) {}
-  /// \param test  the one that runs, if one does.
+  /// \param test  number of the running test, if one runs.
   virtual void gap_seen(const daq::Gap& /*gap*/, std::optional<std::int64_t> /*test*/) {}
   /// A stall of the computer, or a step of its date. \param test  as above.
   virtual void clock_noted(const daq::Note& /*note*/, std::optional<std::int64_t> /*test*/) {}
-  /// The bench has been in a state that should pass by itself for so long. \param why  and what helps.
+  /// The bench stays in a state that should pass by itself. \param why  the reason, and the remedy.
   virtual void bench_stays(std::string_view /*state*/, double /*duration_s*/, std::string_view /*why*/) {}
   virtual void test_began(const pipeline::TestStart& /*start*/) {}
   virtual void test_ended(const pipeline::TestEnd& /*end*/) {}
   virtual void file_published(std::int64_t /*test*/, const std::filesystem::path& /*file*/) {}
   virtual void recording_failed(std::int64_t /*test*/, std::string_view /*why*/) {}
-  /// The journal of a test had gone from its place; it was written anew from what was open.
+  /// The journal of a test was missing at its path; it was written again from the open file.
   virtual void journal_written_anew(std::int64_t /*test*/, const std::filesystem::path& /*before*/,
                                     const std::filesystem::path& /*now*/) {}
-  /// The disk refuses, or the folder of the records is away; what comes waits in memory.
+  /// Writing fails, or the record folder is away; entries wait in memory.
   virtual void storage_waits(std::string_view /*why*/) {}
-  /// All that waited is written.
+  /// All waiting entries are on the disk.
   virtual void storage_resumed() {}
-  /// There is room for so few tests that none should be begun.
+  /// The disk has too little room to begin a test.
   virtual void storage_short(std::string_view /*why*/) {}
   virtual void storage_has_room() {}
-  /// A test begins, and there is room for so long only.
+  /// A test begins although the disk has room for `room_s` seconds only.
   virtual void little_room(std::int64_t /*test*/, double /*room_s*/) {}
-  /// At the start, once for each: what the file system of the records lacks, and what follows.
+  /// At the start, once for each feature that the file system of the records lacks, with the consequence.
   virtual void record_folder_lacks(std::string_view /*what*/) {}
-  /// A record was made, but not all that had been written could be read.
+  /// A record was made from a journal that could not be read completely.
   virtual void record_damaged(const std::filesystem::path& /*file*/, std::string_view /*loss*/) {}
   virtual void orphan_finalised(const std::filesystem::path& /*file*/) {}
   virtual void orphan_kept(const std::filesystem::path& /*journal*/, std::string_view /*why*/) {}
-  /// A folder of records cannot be looked into: journals in it became no records.
+  /// A record folder cannot be listed; journals in it are not recovered.
   virtual void folder_unread(const std::filesystem::path& /*folder*/, std::string_view /*why*/) {}
-  /// Nothing had been recorded; the journal is removed.
+  /// A journal without a scan was removed.
   virtual void orphan_empty(const std::filesystem::path& /*journal*/) {}
-  /// The broker is there, or away, or away for another reason.
+  /// The connection to the broker was made or lost, or fails for another reason than before.
   virtual void fleet_changed(const FleetState& /*state*/) {}
   virtual void control_listening(std::string_view /*socket*/) {}
-  /// Parts of the daemon that do not move any more, so that the service manager will start it again; none
-  /// if they move again. \param parts  separated by commas.
+  /// Threads of the daemon hang, so that the service manager will restart it. \param parts  their names,
+  /// separated by commas; empty: all run again.
   virtual void hanging(std::string_view /*parts*/) {}
-  /// A changed configuration is wrong and not used.
+  /// SIGHUP came, but the changed configuration is invalid; the present one stays in use.
   virtual void reload_refused(std::string_view /*why*/) {}
-  /// It is used as soon as nothing is being measured.
+  /// A changed configuration will be used when no test and no calibration is under way.
   virtual void reload_waits() {}
   virtual void stopping(std::string_view /*why*/) {}
-  /// At the end, when nothing is under way.
+  /// At the end of the program, when no scan is under way.
   virtual void scans_accounted(const ScanAccount& /*scans*/) {}
 };
 

@@ -1,5 +1,5 @@
 /// \file
-/// How it is with the broker, for status and metrics.
+/// State of the connection to the broker, for status and metrics.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@ struct FleetState {
   enum class Link {
     kConnecting,
     kConnected,
-    kWaiting,  ///< For the next try.
+    kWaiting,  ///< Pausing before the next attempt to connect.
   };
   Link link = Link::kConnecting;
-  std::string why;     ///< What was in the way the last time, for people; empty while connected.
+  std::string why;     ///< Why the last attempt or connection failed, as text; empty while connected.
   std::string broker;  ///< As configured.
   std::string tester;
-  std::uint64_t outbox_count = 0;          ///< Results that the broker has not got.
-  std::uint64_t sent_result_count = 0;     ///< That it has acknowledged, since the start of the program.
-  std::uint64_t dropped_result_count = 0;  ///< That a full outbox had no room for.
-  std::uint64_t unsaved_result_count = 0;  ///< That wait in memory alone, because the disk refused them.
+  std::uint64_t outbox_count = 0;          ///< Results that the broker has not acknowledged.
+  std::uint64_t sent_result_count = 0;     ///< Results acknowledged since the start of the program.
+  std::uint64_t dropped_result_count = 0;  ///< Results dropped because the outbox was full.
+  std::uint64_t unsaved_result_count = 0;  ///< Results held in memory only, because the disk refused them.
 };
 
 [[nodiscard]] constexpr std::string_view name(FleetState::Link link) noexcept {

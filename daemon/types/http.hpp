@@ -1,5 +1,5 @@
 /// \file
-/// One request and one reply of the control interface, free of any library.
+/// A request and a reply of the control interface, independent of the HTTP library.
 #pragma once
 
 #include <functional>
@@ -11,9 +11,10 @@ struct HttpRequest {
   std::string method;  ///< "GET".
   std::string target;  ///< "/v1/status".
   std::string body;
-  std::string controller;       ///< Header Stickslip-Controller: who commands.
+  std::string controller;       ///< Header Stickslip-Controller: name of the commanding client.
   std::string idempotency_key;  ///< Header Idempotency-Key.
-  std::string peer = {};  ///< Who the system says it is, "uid 1000"; the same for all who have the token.
+  /// Identity of the client: "uid 1000" on the Unix socket, one text for all clients with the token.
+  std::string peer = {};
 };
 
 struct HttpReply {
@@ -21,14 +22,16 @@ struct HttpReply {
   std::string body;   ///< JSON text, unless content_type says otherwise.
   std::string allow;  ///< Methods allowed, for status 405; else empty.
   std::string content_type = "application/json";
-  bool replayed = false;  ///< The answer of then to a request that is repeated.
-  /// Content-Security-Policy; empty: nothing but the daemon's own files.
+  /// This is the stored reply to an earlier request with the same Idempotency-Key.
+  bool replayed = false;
+  /// Header Content-Security-Policy; empty: the default, which allows the daemon's own files only.
   std::string content_policy = {};
 };
 
 using HttpAnswer = std::function<void(HttpReply)>;
 
-/// Called on the main thread; answers there too, once, at once or later. Must not throw.
+/// Called on the main thread. It calls the HttpAnswer once, on the main thread, at once or later. It must not
+/// throw.
 using HttpHandler = std::function<void(const HttpRequest&, HttpAnswer)>;
 
 }  // namespace stickslip::daemon

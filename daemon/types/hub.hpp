@@ -1,5 +1,5 @@
 /// \file
-/// Hands each frame of the live stream to all who listen. Main thread.
+/// Distributes the frames of the live stream to its clients. Main thread.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,14 +16,14 @@ namespace stickslip::daemon {
 
 using LiveFrame = std::shared_ptr<const std::string>;
 
-/// What waits for one client: bounded, and it counts what it dropped. The oldest frames go: a slow client is
-/// to see what is now. A client that was left out is told so by a frame of its own.
+/// Bounded queue of frames for one client. When it is full, the oldest frame is dropped and counted, so that
+/// a slow client sees recent frames. The client is told by a frame "dropped".
 class LiveQueue {
  public:
-  /// At 20 frames a second: three seconds.
+  /// Capacity, frames: three seconds at 20 frames/s.
   static constexpr std::size_t kMost = 64;
 
-  /// \return how many were dropped for it: 0 or 1.
+  /// Adds a frame. \return number of frames dropped: 0 or 1.
   std::size_t push(LiveFrame frame) {
     const bool full = frames_.size() == kMost;
     if (full) frames_.pop_front();
@@ -32,7 +32,8 @@ class LiveQueue {
     return full ? 1U : 0U;
   }
   [[nodiscard]] bool empty() const noexcept { return frames_.empty(); }
-  /// Not when empty.
+  /// The next frame: {"type": "dropped"} if frames were dropped since the last such frame, else the oldest
+  /// one. The queue must not be empty.
   [[nodiscard]] LiveFrame pop() {
     if (dropped_ != told_) {
       told_ = dropped_;
@@ -54,9 +55,9 @@ class LiveQueue {
 class LiveClient {
  public:
   virtual ~LiveClient() = default;
-  /// Never waits. \return frames dropped.
+  /// Takes a frame; does not block. \return number of frames dropped.
   virtual std::size_t offer(const LiveFrame& frame) = 0;
-  /// The stream is over.
+  /// Tells the client that the stream has ended.
   virtual void close() = 0;
 };
 
@@ -64,11 +65,11 @@ class LiveHub {
  public:
   static constexpr std::size_t kMostClients = 24;
 
-  /// \param changed  told how many listen.
+  /// \param changed  called with the number of clients when it changes.
   explicit LiveHub(std::function<void(std::size_t)> changed = {}) : changed_(std::move(changed)) {}
 
   [[nodiscard]] bool has_room() const noexcept { return clients_.size() < kMostClients; }
-  /// \return false if there are too many.
+  /// Adds a client, which must outlive its membership. \return false if kMostClients are there.
   [[nodiscard]] bool join(LiveClient* client) {
     if (!has_room()) return false;
     clients_.insert(client);
@@ -82,7 +83,7 @@ class LiveHub {
     for (LiveClient* client : clients_) dropped_ += client->offer(frame);
   }
   void close() {
-    // Each leaves while it is told.
+    // Clients leave while they are closed, so a copy is iterated.
     for (LiveClient* client : std::set<LiveClient*>{clients_}) client->close();
   }
   [[nodiscard]] std::size_t client_count() const noexcept { return clients_.size(); }

@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// As in the configuration.
+/// Largest replicate number, as in the configuration.
 constexpr std::int64_t kMostReplicates = 1'000'000;
 
 constexpr std::array<std::pair<const char*, std::string record::SampleFacts::*>, 5> kTexts{{

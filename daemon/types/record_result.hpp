@@ -1,5 +1,5 @@
 /// \file
-/// What a record says of its test, read by a process of its own: HDF5's errors can end a process.
+/// Reads the result of a record in a child process, because errors of HDF5 can end a process.
 #pragma once
 
 #include <filesystem>
@@ -12,11 +12,13 @@
 
 namespace stickslip::daemon {
 
-/// What `program --result FILE` prints. Errors: kFailure naming the file, with what that process said.
+/// Runs `program --result FILE` and returns the JSON that it prints; blocks. Errors: kFailure, with the file
+/// and the stderr of that process.
 [[nodiscard]] base::Result<nlohmann::ordered_json> result_of(const std::string& program,
                                                              const std::filesystem::path& file);
 
-/// A test of before the program began, with its record as its file. Errors as result_of().
+/// The summary of a test that an earlier run of the program recorded in `file`; blocks. Errors as
+/// result_of().
 [[nodiscard]] base::Result<TestSummary> earlier_test(const std::string& program,
                                                      const std::filesystem::path& file);
 

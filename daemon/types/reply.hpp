@@ -1,5 +1,5 @@
 /// \file
-/// Answers of the control interface as JSON.
+/// Replies of the control interface with a body of JSON.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ namespace stickslip::daemon {
   return {200, io::json_text(json), {}};
 }
 
-/// \param allow  the methods that are, for 405.
+/// {"error": why}. \param allow  the allowed methods, for status 405.
 [[nodiscard]] inline HttpReply refusal(int status, const std::string& why, std::string allow = {}) {
   return {status, io::json_text({{"error", why}}), std::move(allow)};
 }

@@ -1,5 +1,5 @@
 /// \file
-/// What people ask of the daemon about the tests of whole batches.
+/// Interface between the control interface and the reports on batches.
 #pragma once
 
 #include <functional>
@@ -11,8 +11,8 @@
 namespace stickslip::daemon {
 
 struct ReportedBatch {
-  std::string id;     ///< In the journal.
-  std::string label;  ///< For people.
+  std::string id;     ///< Identifier in the batch journal.
+  std::string label;  ///< Name shown in the report.
 };
 
 enum class ReportForm { kPage, kCsv, kJson };
@@ -21,11 +21,12 @@ enum class ReportForm { kPage, kCsv, kJson };
 class Reports {
  public:
   virtual ~Reports() = default;
-  /// The text of the report. Errors: kBusy while another one is being made; else why there is none.
+  /// Called with the text of the report. Errors: kBusy while another report is being made, else kFailure with
+  /// the reason.
   using Answer = std::function<void(base::Result<std::string>)>;
 
-  /// \param batches  one to be reported, or two to be compared (contract). \param answer  called on the main
-  /// thread, once, at once or later.
+  /// Makes a report on one batch, or a comparison of two; does not block. \param batches  one or two
+  /// (contract). \param answer  called once, on the main thread, at once or later.
   virtual void make(std::span<const ReportedBatch> batches, ReportForm form, Answer answer) = 0;
 };
 

@@ -47,7 +47,7 @@ Json to_json(const std::optional<daq::RateEstimate>& rate) {
           {"clock_reading_count", rate->anchor_count}};
 }
 
-/// Empty bins are left out.
+/// A histogram as JSON, without its empty bins.
 /// \param of_what  name of the number in a bin.
 Json to_json(const daq::LatencyHistogram& latency, const char* of_what) {
   Json bins = Json::array();
@@ -113,7 +113,7 @@ Json test_json(const TestSummary& test, bool with_details) {
   return json;
 }
 
-/// Names and units as in the table of cycles of a record.
+/// A cycle as JSON, with names and units of the table of cycles in a record.
 Json live_json(const detect::LiveState& live) {
   Json json;
   json["phase"] = detect::name(live.phase);

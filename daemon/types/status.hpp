@@ -1,5 +1,5 @@
 /// \file
-/// A picture of the daemon, as GET /v1/status gives it.
+/// A snapshot of the daemon, as GET /v1/status returns it.
 #pragma once
 
 #include <cstdint>
@@ -22,62 +22,63 @@
 
 namespace stickslip::daemon {
 
-/// A picture of the daemon at one moment.
+/// A snapshot of the daemon. Counts run since the start of the program unless stated otherwise.
 struct Status {
   /// "starting", "acquiring", "storage short", "storage waiting" (both while acquiring), "board missing",
   /// "board busy", "no permission", "stopping".
   std::string state;
-  std::string detail;  ///< The line of STATUS=, for people.
+  std::string detail;  ///< One line for people, as STATUS= tells the service manager.
   std::string version;
   std::optional<daq::BoardInfo> board;
   std::string scheduling;
   std::uint64_t scan_count = 0;
-  std::uint64_t dropped_scan_count = 0;  ///< By the ring.
-  std::uint64_t overrun_count = 0;       ///< By the board.
+  std::uint64_t dropped_scan_count = 0;  ///< Dropped because the ring was full.
+  std::uint64_t overrun_count = 0;       ///< Times the board lost scans and halted.
   std::uint64_t gap_count = 0;
-  std::int64_t lost_scan_count = 0;  ///< In gaps.
+  std::int64_t lost_scan_count = 0;  ///< Scans missing in gaps.
   ScanAccount scans;
   std::uint64_t board_loss_count = 0;                   ///< Times the board went away or failed.
-  std::optional<daq::RateEstimate> scan_rate_measured;  ///< Of the board's present life.
-  daq::LatencyHistogram latency;                        ///< Of reads.
-  std::optional<daq::ScanRing::Use> ring;               ///< Of the board's present life.
-  daq::LatencyHistogram commit_time;  ///< Of the disk: until what a journal was given was durable.
+  std::optional<daq::RateEstimate> scan_rate_measured;  ///< Since the board was opened.
+  daq::LatencyHistogram latency;                        ///< From a block's last scan to the end of its read.
+  std::optional<daq::ScanRing::Use> ring;               ///< Since the board was opened.
+  daq::LatencyHistogram commit_time;                    ///< Time to write and sync a journal's new entries.
+  /// Times that the processing thread waited for the storage thread.
   std::uint64_t storage_stall_count = 0;
-  std::int64_t test_count = 0;               ///< Ended.
-  std::optional<std::int64_t> current_test;  ///< Running now.
-  std::optional<detect::LiveState> live;     ///< Of the current test.
+  std::int64_t test_count = 0;               ///< Tests that have ended.
+  std::optional<std::int64_t> current_test;  ///< Number of the running test; absent: none.
+  std::optional<detect::LiveState> live;     ///< Of the running test.
   pipeline::BenchState bench = pipeline::BenchState::kDegraded;
-  std::string_view bench_trouble;  ///< What keeps it in its state; empty: nothing.
+  std::string_view bench_trouble;  ///< Why the bench stays in its state; empty: no trouble.
   std::optional<TestSummary> latest_test;
   StorageState storage;
-  /// Of the load cell; texts are empty where there is nothing to say.
+  /// Calibration of the load cell; unknown texts are empty.
   struct Calibration {
     std::string date;
     std::string expires;
     bool expired = false;
-    std::string under_way_by;  ///< Who is at a new one.
+    std::string under_way_by;  ///< Controller of the calibration under way; empty: none.
   } calibration;
-  std::optional<BatchProgress> batch;  ///< The current one.
-  std::optional<FleetState> fleet;     ///< Nothing without a broker.
+  std::optional<BatchProgress> batch;  ///< The current batch; absent: none.
+  std::optional<FleetState> fleet;     ///< Absent: no broker is configured.
   /// The live page over TCP.
   struct Page {
     std::string address;     ///< "http://127.0.0.1:8037/"
-    std::string token_file;  ///< Absolute; the token itself is told to nobody.
+    std::string token_file;  ///< Absolute path. The token itself is never shown.
   };
-  std::optional<Page> page;              ///< Nothing without [control] http.
-  std::int64_t live_client_count = 0;    ///< Of the live stream.
-  std::uint64_t live_dropped_count = 0;  ///< Frames that slow ones of them did not get.
+  std::optional<Page> page;              ///< Absent: [control] http is not set.
+  std::int64_t live_client_count = 0;    ///< Clients of the live stream.
+  std::uint64_t live_dropped_count = 0;  ///< Frames dropped for slow clients.
 };
 
-/// By the names of the record.
+/// The status as JSON, with the names of the record.
 [[nodiscard]] nlohmann::ordered_json status_json(const Status& status);
-/// \param with_details  units, uncertainties and reasons of all results too.
+/// A test as JSON. \param with_details  adds units, uncertainties and reasons of all results.
 [[nodiscard]] nlohmann::ordered_json test_json(const TestSummary& test, bool with_details);
 /// {"id": …, "name": …, "done": 3, "planned": 10, "next": {…}, "trouble": null}, or null.
 [[nodiscard]] nlohmann::ordered_json progress_json(const std::optional<BatchProgress>& progress);
 /// A frame of the live stream: {"type": "health", "status": …}.
 [[nodiscard]] std::string health_frame(const Status& status);
-/// Phase, regime and latest cycle of a test that runs.
+/// Phase, regime and latest cycle of the running test.
 [[nodiscard]] nlohmann::ordered_json live_json(const detect::LiveState& live);
 
 }  // namespace stickslip::daemon

@@ -1,5 +1,5 @@
 /// \file
-/// How it is with the room for records, for those who decide about tests and those who look.
+/// State of the storage of records: room, trouble and remedy.
 #pragma once
 
 #include <cstddef>
@@ -13,16 +13,16 @@ namespace stickslip::daemon {
 struct StorageState {
   enum class Kind {
     kOk,
-    kShort,    ///< There is room for less than kLeastRoom_s of tests.
-    kWaiting,  ///< The disk refuses, or the folder of the records is away; scans wait in memory.
+    kShort,    ///< Room for less than kLeastRoom_s of scanning.
+    kWaiting,  ///< Writing fails, or the record folder is away; scans wait in memory.
   };
   Kind kind = Kind::kOk;
-  std::optional<double>
-      room_h;  ///< For how long there is room, scanning all the time; absent if nobody knows.
-  std::size_t waiting_size = 0;  ///< Bytes in memory while the disk refuses.
-  std::string why;               ///< For people; empty if all is well.
-  std::string to_do;             ///< The same.
-  /// What the file system of the records lacks, and what follows; for people.
+  /// Hours of continuous scanning that the disk has room for; absent: unknown.
+  std::optional<double> room_h;
+  std::size_t waiting_size = 0;  ///< Bytes in memory while writing fails.
+  std::string why;               ///< Reason, for people; empty if all is well.
+  std::string to_do;             ///< Remedy, for people; empty if all is well.
+  /// Features that the file system of the records lacks, each with the consequence; for people.
   std::vector<std::string> lacks;
 };
 
@@ -38,8 +38,8 @@ struct StorageState {
   return "ok";
 }
 
-/// Why a test that somebody asks for should not begin; nothing if it may. A test that the force begins is
-/// recorded in any case: in memory, ten minutes at least.
+/// Why a test must not be begun by command; nothing if it may. A test that the force begins is recorded in
+/// any case: memory holds at least ten minutes.
 [[nodiscard]] std::optional<std::string> why_no_test(const StorageState& storage);
 
 }  // namespace stickslip::daemon

@@ -5,7 +5,7 @@
 namespace stickslip::daemon {
 
 void TestLog::add(TestSummary summary) {
-  // A day of slips would weigh megabytes and nobody reads them here.
+  // A day of slips would take megabytes, and these tables are not used here.
   if (summary.truth) {
     summary.truth->modes.clear();
     summary.truth->cycles.clear();

@@ -1,6 +1,6 @@
 /// \file
-/// What became of the latest tests: the processing thread adds, the storage thread says where
-/// the file is, control and report read.
+/// The latest tests in memory. The processing thread adds tests, the storage threads add their files, the
+/// control interface and the final table read.
 #pragma once
 
 #include <cstdint>
@@ -24,32 +24,33 @@ struct TestSummary {
   daq::ScanIndex end = 0;
   pipeline::EndCause cause = pipeline::EndCause::kUnloaded;
   analysis::TestResults results;
-  analysis::SlipSums slips;               ///< S − K of its slips, for tests together.
-  std::optional<model::TestTruth> truth;  ///< Without modes and cycles.
-  std::string file;                       ///< Empty until the file is published.
+  analysis::SlipSums slips;               ///< Sums over S − K of its slips, for pooling over tests.
+  std::optional<model::TestTruth> truth;  ///< Truth of a simulated test, without modes and cycles.
+  std::string file;                       ///< Path of the record; empty until it is published.
   std::string file_error;                 ///< Why there is no file; empty if there is one.
-  bool earlier =
-      false;  ///< Of before the program began: read from its record. Its scans count from another 0.
+  /// Recorded by an earlier run of the program and read from its record; its scan indices have another
+  /// origin.
+  bool earlier = false;
 };
 
 /// Thread-safe.
 class TestLog {
  public:
-  /// Tests kept; older ones are forgotten (their files are not).
+  /// Capacity, tests. The oldest test leaves the log; its record stays.
   static constexpr std::size_t kMaxTests = 1000;
 
   void add(TestSummary summary);
-  /// One of before the program began, in their order; before those that it made itself.
+  /// Adds a test of an earlier run of the program, behind the earlier ones and before this run's own.
   void add_earlier(TestSummary summary);
-  /// What was in the way before is forgotten.
+  /// Sets the path of a test's record and clears its file_error.
   void set_file(std::int64_t number, const std::string& file);
   void set_file_error(std::int64_t number, const std::string& error);
 
   /// Oldest first.
   [[nodiscard]] std::vector<TestSummary> tests() const;
-  /// Of this program's own.
+  /// The latest test of this run of the program.
   [[nodiscard]] std::optional<TestSummary> latest() const;
-  /// Since the start of the program.
+  /// Tests added since the start of the program.
   [[nodiscard]] std::int64_t test_count() const;
 
  private:

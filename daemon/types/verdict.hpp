@@ -1,5 +1,5 @@
 /// \file
-/// How tests keep the limits of their batch.
+/// Checks tests against the limits of their batch.
 #pragma once
 
 #include <cstddef>
@@ -12,16 +12,17 @@
 
 namespace stickslip::daemon {
 
-/// How the tests keep a limit of their batch.
+/// Result of checking tests against one limit.
 struct LimitVerdict {
   std::string quantity;  ///< Name of the result.
   ResultLimits limits;
-  std::vector<std::size_t> outside;  ///< Indices among the tests.
-  std::vector<std::size_t> absent;   ///< Those without such a result.
+  std::vector<std::size_t> outside;  ///< Indices of tests whose result is outside the limits.
+  std::vector<std::size_t> absent;   ///< Indices of tests without this result.
 
   [[nodiscard]] bool passes() const noexcept { return outside.empty() && absent.empty(); }
 };
 
+/// Checks the result `quantity` of each test against the limits.
 [[nodiscard]] LimitVerdict judged(const std::string& quantity, const ResultLimits& limits,
                                   std::span<const analysis::MeasuredTest> tests);
 

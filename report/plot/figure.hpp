@@ -1,5 +1,5 @@
 /// \file
-/// A picture of curves, as SVG, drawn by gnuplot.
+/// Figures of curves, drawn by gnuplot as SVG.
 ///
 ///     Figure figure;
 ///     figure.title = "Error against time";
@@ -8,8 +8,9 @@
 ///     figure.panels[0].curves = {{"CVODE", times, errors, CurveStyle::kLineAndPoints}};
 ///     const base::Result<std::string> svg = draw_svg(figure);
 ///
-/// The same figure gives the same text for one version of gnuplot: no date, no font of the machine. Colours
-/// tell apart for everybody [Okabe and Ito, Color Universal Design, 2008]; where they repeat, shapes differ.
+/// The output is reproducible for one version of gnuplot: it holds no date and no font of the machine.
+/// Colours are distinguishable with colour blindness [Okabe and Ito, Color Universal Design, 2008]; if they
+/// repeat, shapes differ.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +22,7 @@
 
 namespace stickslip::plot {
 
-/// from < to
+/// A range of an axis; from < to.
 struct AxisRange {
   double from = 0.0;
   double to = 1.0;
@@ -29,37 +30,37 @@ struct AxisRange {
 
 struct Axis {
   std::string label{};  ///< With its unit.
-  bool log = false;     ///< Values that are not positive are then left out.
-  /// Else from the curves and markers: all of x, y with a little room.
+  bool log = false;     ///< Logarithmic; values that are not positive are omitted.
+  /// Absent: the extent of curves and markers, for y with a margin.
   std::optional<AxisRange> range{};
 };
 
 enum class CurveStyle { kLine, kPoints, kLineAndPoints, kDashed };
 
-/// Okabe and Ito's colours but yellow, which white swallows.
+/// Okabe and Ito's colours without yellow, which is invisible on white.
 enum class Colour { kBlue, kVermilion, kGreen, kPurple, kOrange, kSkyBlue, kBlack };
 
-/// With more points than two for each column of pixels it is drawn by the lowest and the highest in each
-/// column: the same picture, and a file of bounded size. That needs x in rising order.
+/// A curve. If it has more than two points for each column of pixels, only the lowest and highest of each
+/// column are drawn: the picture is the same and the file bounded. x must then be in rising order.
 struct Curve {
-  std::string label{};  ///< In the legend; empty: not there.
-  /// As many x as y. What is not finite interrupts the line.
+  std::string label{};  ///< Name in the legend; empty: not in the legend.
+  /// x and y have equal lengths. A non-finite value interrupts the line.
   std::vector<double> x{};
   std::vector<double> y{};
   CurveStyle style = CurveStyle::kLine;
-  std::optional<Colour> colour{};  ///< Else the next in order.
+  std::optional<Colour> colour{};  ///< Absent: the next colour in order.
 };
 
 enum class Shade { kStick, kSlip, kSlack, kWindow };
 
-/// Part of the x axis with a subtle background.
+/// A part of the x axis with a shaded background.
 struct Band {
   double from = 0.0;
   double to = 0.0;
   Shade shade = Shade::kStick;
 };
 
-/// Words at a point.
+/// A text at a point.
 struct Marker {
   double x = 0.0;
   double y = 0.0;
@@ -71,21 +72,21 @@ struct Panel {
   std::vector<Curve> curves{};
   std::vector<Band> bands{};
   std::vector<Marker> markers{};
-  double height = 1.0;          ///< > 0, in proportion to the other panels.
-  std::optional<Axis> own_x{};  ///< Else the figure's.
+  double height = 1.0;          ///< Relative to the other panels; > 0.
+  std::optional<Axis> own_x{};  ///< Absent: the x axis of the figure.
 };
 
 struct Figure {
   std::string title{};
-  Axis x{};                        ///< Of all panels, one under the other.
+  Axis x{};                        ///< Of all panels, which are stacked.
   std::vector<Panel> panels{};     ///< At least one.
-  std::vector<std::string> notes;  ///< Small lines below.
+  std::vector<std::string> notes;  ///< Lines of small text below the panels.
   int width_px = 900;              ///< 200 to 4000; so is the height.
   int height_px = 450;
 };
 
-/// The picture as a whole SVG document. All texts are taken literally.
-/// Errors: kFailure if gnuplot is not installed (names the package) or fails.
+/// Draws the figure as an SVG document; blocks while gnuplot runs. Texts have no markup. Errors: kFailure if
+/// gnuplot is not installed (the message names the package) or fails.
 [[nodiscard]] base::Result<std::string> draw_svg(const Figure& figure);
 
 }  // namespace stickslip::plot

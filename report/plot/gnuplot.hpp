@@ -9,8 +9,8 @@
 
 namespace stickslip::plot {
 
-/// What gnuplot writes when it is given these commands: without a shell, without anybody's settings.
-/// Errors: kFailure if it is not installed, cannot be started, or ends with an error (its own words).
+/// Runs gnuplot with these commands, without a shell and without user settings, and returns its output;
+/// blocks. Errors: kFailure if it is not installed, cannot be started, or fails (with its message).
 [[nodiscard]] base::Result<std::string> run_gnuplot(std::string_view commands);
 
 }  // namespace stickslip::plot

@@ -25,10 +25,10 @@ inline constexpr std::array<int, 8> kShapes{7, 5, 9, 13, 6, 4, 8, 12};
 struct ShadeLook {
   const char* colour;
   double opacity;
-  const char* label;  ///< In the legend.
+  const char* label;  ///< Name in the legend.
 };
 
-/// In this order they are painted and explained.
+/// Order in which shades are painted and listed in the legend.
 inline constexpr std::array<Shade, 4> kShades{Shade::kWindow, Shade::kStick, Shade::kSlip, Shade::kSlack};
 
 [[nodiscard]] constexpr ShadeLook look(Shade shade) {

@@ -1,5 +1,5 @@
 /// \file
-/// What the axes of a figure show where nobody says it.
+/// Ranges and ticks of axes.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,14 @@
 
 namespace stickslip::plot {
 
-/// The axis's own range, else all x of these panels.
+/// The range of the axis if it is set, else the extent of x in these panels.
 [[nodiscard]] AxisRange x_range_of(const Axis& axis, const std::vector<const Panel*>& panels);
 
-/// The panel's own range, else all y within the x range, with a little room.
+/// The y range of the panel if it is set, else the extent of y within the x range, with a margin.
 [[nodiscard]] AxisRange y_range_of(const Panel& panel, const AxisRange& x);
 
-/// 1, 2 or 5 times a power of ten, so that at most so many steps (≥ 1) fit into the range.
+/// The smallest step of 1, 2 or 5 times a power of ten of which at most `most_steps` (≥ 1) fit into the
+/// range.
 [[nodiscard]] double tick_step(const AxisRange& range, double most_steps);
 
 }  // namespace stickslip::plot

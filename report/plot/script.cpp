@@ -27,15 +27,15 @@ constexpr int kTitle = 40;
 constexpr int kLegendRow = 20;
 constexpr int kLegendSample = 26;
 constexpr int kLegendGap = 22;
-constexpr int kTicks = 32;      ///< The numbers under an x axis,
-constexpr int kAxisLabel = 20;  ///< and its label.
+constexpr int kTicks = 32;      ///< Height of the numbers under an x axis.
+constexpr int kAxisLabel = 20;  ///< Height of its label.
 constexpr int kBetween = 14;
 constexpr int kNoteRow = 17;
 constexpr int kLeastPanel = 40;
-constexpr double kCharacter = 7.2;  ///< Mean width at this size of letters, rather too much than too little.
+constexpr double kCharacter = 7.2;  ///< Width of a character, px: an upper estimate of the mean.
 constexpr double kTickDistance = 27.0;
 
-/// Between single quotes gnuplot replaces nothing; a quote is written twice.
+/// A text in single quotes, in which gnuplot expands nothing; quotes are doubled.
 std::string gnuplot_text(std::string_view text) {
   std::string out = "'";
   for (const char c : base::printable(text)) {
@@ -45,25 +45,25 @@ std::string gnuplot_text(std::string_view text) {
   return out + "'";
 }
 
-/// Characters: all bytes but those that go on with a UTF-8 sequence.
+/// Number of characters: all bytes except continuation bytes of UTF-8.
 std::size_t length(std::string_view text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
-/// A panel with everything decided.
+/// A panel with its ranges and lines computed.
 struct PreparedPanel {
   struct Line {
     const Curve* curve = nullptr;
     std::size_t order = 0;
     std::vector<Polyline> pieces{};
   };
-  /// Where an entry of the legend stands, from the left and by row.
+  /// Position of an entry of the legend: from the left, and row.
   struct Entry {
     std::string label{};
     double x_px = 0.0;
     int row = 0;
-    const Line* line = nullptr;  ///< Else a shade.
+    const Line* line = nullptr;  ///< Null: the entry is a shade.
     Shade shade = Shade::kStick;
   };
   const Panel* panel = nullptr;
@@ -73,7 +73,7 @@ struct PreparedPanel {
   AxisRange x_range{};
   AxisRange y_range{};
   std::vector<Line> lines{};
-  std::vector<Band> bands{};  ///< Those in view, cut to it.
+  std::vector<Band> bands{};  ///< The bands in view, clipped to it.
   std::vector<Entry> legend{};
   int legend_rows = 0;
 
@@ -168,7 +168,7 @@ class Script {
     return out;
   }
 
-  /// From left to right, row by row. A shade is explained once on a page.
+  /// Lays out the legend from left to right, row by row. Each shade has one entry in the figure.
   void write_legend_of(PreparedPanel& panel, std::set<Shade>& explained) const {
     double x = kLeft;
     const auto place = [&](PreparedPanel::Entry entry) {
@@ -322,7 +322,7 @@ class Script {
     return "lines";
   }
 
-  /// Opens a block of data that ends with EOD; its name.
+  /// Opens a block of data that ends with EOD. \return its name.
   std::string next_block() {
     std::string name = fmt::format("$data{}", blocks_++);
     add("{} << EOD\n", name);

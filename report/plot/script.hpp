@@ -1,5 +1,5 @@
 /// \file
-/// A figure as commands of gnuplot.
+/// Translates a figure into commands of gnuplot.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace stickslip::plot {
 
-/// All of the figure: what is to be drawn, where, and the data themselves.
+/// The complete script: layout, styles and data of the figure.
 [[nodiscard]] std::string gnuplot_script(const Figure& figure);
 
 }  // namespace stickslip::plot

@@ -1,5 +1,5 @@
 /// \file
-/// Points of a line that can be seen.
+/// Reduces a curve to the points that are visible.
 #pragma once
 
 #include <cstddef>
@@ -15,9 +15,10 @@ struct Polyline {
   std::vector<double> y{};
 };
 
-/// The curve within the range, with the nearest neighbour on each side, broken where it is not finite or not
-/// positive on a log axis. More points than two for each of `columns` columns of the range are thinned to the
-/// lowest and highest of each column, in their order, the first and last point of each piece kept.
+/// The pieces of the curve within the range, each with its nearest neighbour outside on either side.
+/// Non-finite values, and values that are not positive on a logarithmic axis, separate pieces. If there are
+/// more than two points for each of `columns` columns of the range, only the lowest and highest point of each
+/// column remain, in their order, with the first and last point of each piece.
 [[nodiscard]] std::vector<Polyline> visible_pieces(const Curve& curve, const AxisRange& range, bool log_x,
                                                    bool log_y, std::size_t columns);
 
