@@ -21,9 +21,9 @@ int main(int argc, char** argv) {
   }
   const test::LimitScene scene;
   fmt::print(
-      "{} seeds (1 to {}) a case; S 0.35, K 0.30, 12 in/min, 350 Hz, 0.001 rms white, {} cycles after the "
+      "{} seeds ({} to {}) a case; S 0.35, K 0.30, 12 in/min, 350 Hz, 0.001 rms white, {} cycles after the "
       "first\n",
-      seeds, seeds, test::LimitScene::kCycles);
+      seeds, first, first + seeds - 1, test::LimitScene::kCycles);
   fmt::print("tester from one ring-down of {} s: gamma {:.2f} %\n", test::LimitScene::kRingDown_s,
              100.0 * std::sqrt(scene.coupling_covariance()(1, 1)) / 0.022);
   fmt::print(
