@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
+#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "cli/commands.hpp"
 #include "cli/effects.hpp"
 #include "cli/method_option.hpp"
+#include "cli/subcommands.hpp"
 #include "io/json_text.hpp"
 #include "io/results_json.hpp"
 #include "report/table.hpp"
@@ -22,6 +25,17 @@
 namespace stickslip::cli {
 
 namespace {
+
+struct AnalyzeOptions {
+  std::vector<std::string> files;
+  std::string method;     ///< As chosen_method() takes it; empty: that of each record.
+  std::string tester;     ///< File of a characterisation; empty: none.
+  std::string estimator;  ///< "peak", "interpolated" or "fit"; empty: that of each record.
+  /// Of analysis::kKeptNames, or "nothing" alone; empty: as each record says.
+  std::vector<std::string> keep;
+  bool effects = false;  ///< What each of them does, beside the results.
+  bool json = false;
+};
 
 /// The test against the characterisation, or why it could not be asked.
 nlohmann::ordered_json json_of(const std::optional<analysis::TesterCheck>& check) {
@@ -54,45 +68,42 @@ base::Result<std::optional<analysis::Kept>> chosen_kept(const std::vector<std::s
   return std::optional{chosen};
 }
 
-}  // namespace
-
-base::Result<std::string> run_analyze(const AnalyzeCommand& command) {
-  const base::Result<model::Method> method = chosen_method(command.method);
+base::Result<std::string> run_analyze(const AnalyzeOptions& options) {
+  const base::Result<model::Method> method = chosen_method(options.method);
   if (!method) return tl::unexpected(method.error());
   std::optional<detect::EstimatorTier> estimator;
-  if (!command.estimator.empty()) {
-    estimator = detect::estimator_tier_from_name(command.estimator);
+  if (!options.estimator.empty()) {
+    estimator = detect::estimator_tier_from_name(options.estimator);
     if (!estimator) {
       return base::usage_error("--estimator {}: must be \"peak\", \"interpolated\" or \"fit\"",
-                               base::one_line(command.estimator, 100));
+                               base::one_line(options.estimator, 100));
     }
   }
-  const base::Result<std::optional<analysis::Kept>> kept = chosen_kept(command.keep);
+  const base::Result<std::optional<analysis::Kept>> kept = chosen_kept(options.keep);
   if (!kept) return tl::unexpected(kept.error());
   estimate::SharedPrior prior;
-  if (!command.tester.empty()) {
-    const auto coupling = record::load_tester(command.tester);
+  if (!options.tester.empty()) {
+    const auto coupling = record::load_tester(options.tester);
     if (!coupling) return tl::unexpected(coupling.error());
     prior.coupling = *coupling;
   }
   nlohmann::ordered_json tests = nlohmann::ordered_json::array();
   std::vector<report::TableRow> rows;
   std::string effects_below;
-  for (std::size_t i = 0; i < command.files.size(); ++i) {
-    const std::string& file = command.files[i];
-    base::Result<record::Record> record =
-        record::read_record_apart(file, i + 1 < command.files.size() ? command.files[i + 1] : std::string{});
+  for (std::size_t i = 0; i < options.files.size(); ++i) {
+    const std::string& file = options.files[i];
+    base::Result<record::Record> record = record::read_record_in_turn(options.files, i);
     if (!record) return tl::unexpected(record.error());
     std::string& text = record->header.process.method;
     const std::optional<std::int64_t> record_number = record->header.test_number;
     const detect::EstimatorTier tier = estimator.value_or(record::estimator_from_text(text));
-    if (!command.tester.empty() && tier != detect::EstimatorTier::kFit) {
+    if (!options.tester.empty() && tier != detect::EstimatorTier::kFit) {
       return base::usage_error(
           "{}: --tester needs the fit of the whole test, and the estimator here is \"{}\"; add --estimator "
           "fit",
           file, detect::name(tier));
     }
-    if (!command.method.empty()) text = record::method_text(*method);
+    if (!options.method.empty()) text = record::method_text(*method);
     // An empty text is the default method, which is written only where something stands behind it.
     if (text.empty() && tier != detect::EstimatorTier::kFit) text = record::method_text({});
     text = record::with_estimator(text, tier);
@@ -104,30 +115,70 @@ base::Result<std::string> run_analyze(const AnalyzeCommand& command) {
     }
     record::EndRecord* const end = &analysed->end;
     std::vector<Effect> effects;
-    if (command.effects) {
+    if (options.effects) {
       auto found = effects_of(*std::move(record), prior);
       // The record has been analysed once: what it lacks is said above.
       if (!found) return tl::unexpected(found.error());
       effects = *std::move(found);
     }
-    if (command.json) {
+    if (options.json) {
       nlohmann::ordered_json test;
       test["file"] = file;
       test.update(io::results_json(end->results, true));
-      if (analysed->check || !command.tester.empty()) test["tester_check"] = json_of(analysed->check);
-      if (command.effects) test["effects"] = effects_json(effects);
+      if (analysed->check || !options.tester.empty()) test["tester_check"] = json_of(analysed->check);
+      if (options.effects) test["effects"] = effects_json(effects);
       tests.push_back(std::move(test));
     } else {
       const std::int64_t number = record_number.value_or(static_cast<std::int64_t>(rows.size()) + 1);
       rows.push_back({number, std::move(end->results), std::move(end->truth), file});
-      if (command.effects)
+      if (options.effects)
         effects_below +=
             fmt::format("\ntest {}, {}\n{}", number, base::printable(file), effects_text(effects));
     }
   }
-  if (!command.json) return report::format_table(rows) + effects_below;
+  if (!options.json) return report::format_table(rows) + effects_below;
   using Json = nlohmann::ordered_json;
   return io::json_document(Json{{"tests", std::move(tests)}});
+}
+
+}  // namespace
+
+void add_analyze(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<AnalyzeOptions>();
+  CLI::App* command = app.add_subcommand("analyze", "run the detector and the estimators over records");
+  command->add_option("files", options->files, "records")->required()->type_name("FILE.h5");
+  add_method_option(*command, options->method);
+  command
+      ->add_option(
+          "--tester", options->tester,
+          "what `stickslip characterise` wrote: S and K become surer, and what speaks against it is told")
+      ->type_name("FILE.toml");
+  command
+      ->add_option(
+          "--estimator", options->estimator,
+          "where S and K come from: \"peak\" (largest scan and mean of each cycle), \"interpolated\" "
+          "(turning points), \"fit\" (all scans, and with them omega, gamma and what needs them); default: "
+          "as the "
+          "record says")
+      ->type_name("NAME");
+  command
+      ->add_option("--keep", options->keep,
+                   "leave in what is taken care of otherwise, to see what it does: \"spikes\", \"drift\", "
+                   "\"first-slip\" (its peak is often not representative), one each time; \"nothing\" takes "
+                   "care of all; default: as the record says")
+      ->type_name("WHAT")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_flag("--effects", options->effects,
+                    "S, K and S - K with all three taken care of, and with each kept, side by side");
+  command->add_flag("--json", options->json,
+                    "JSON instead of a table; names as in the record, null where absent");
+  command->footer(
+      "Examples:\n"
+      "  stickslip analyze pull.h5 --effects                what spikes, drift and the first slip do to S - "
+      "K\n"
+      "  stickslip analyze pull.h5 --keep spikes --keep drift --json");
+  choose(*command, chosen, [options] { return run_analyze(*options); });
 }
 
 }  // namespace stickslip::cli

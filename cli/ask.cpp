@@ -19,6 +19,19 @@ constexpr std::chrono::milliseconds kTimeout{5000};
 
 }  // namespace
 
+void add_bench_options(CLI::App& command, BenchOptions& options, bool commands) {
+  command.add_option("--socket", options.socket, "the daemon's control socket")
+      ->capture_default_str()
+      ->type_name("PATH");
+  command.add_flag("--json", options.json, "JSON instead of text");
+  if (commands) {
+    command
+        .add_option("--as", options.who,
+                    "who commands; default: user@host. Others are refused for half a minute")
+        ->type_name("NAME");
+  }
+}
+
 std::string user_name() {
   const passwd* const user = ::getpwuid(::getuid());
   char host[256] = "";

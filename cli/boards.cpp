@@ -1,7 +1,13 @@
 #include <fmt/format.h>
 
-#include "cli/commands.hpp"
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/subcommands.hpp"
 #include "io/json_text.hpp"
+#include "io/print_text.hpp"
 #include <nlohmann/json.hpp>
 
 #include "drivers/comedi/board_survey.hpp"
@@ -12,6 +18,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 using drivers::BoardOffer;
 using drivers::SubdeviceOffer;
+
+struct BoardsOptions {
+  std::vector<std::string> devices;  ///< Empty: all there are.
+  bool json = false;
+};
 
 Json to_json(const SubdeviceOffer& offer) {
   Json json{{"subdevice", offer.number}, {"type", offer.type}, {"channel_count", offer.channel_count}};
@@ -71,31 +82,45 @@ std::string text_of(const BoardOffer& offer) {
   return text;
 }
 
-}  // namespace
-
-BoardsOutput run_boards(std::vector<std::string> devices, bool json) {
-  if (devices.empty()) devices = drivers::comedi_devices();
-  BoardsOutput output;
+/// \return 0 if any board can be used.
+int run_boards(const BoardsOptions& options) {
+  const std::vector<std::string> devices =
+      options.devices.empty() ? drivers::comedi_devices() : options.devices;
+  bool any_usable = false;
+  std::string text;
   Json list = Json::array();
   for (const std::string& device : devices) {
     const auto calls = drivers::make_comedi_calls();
     const BoardOffer offer = drivers::survey_board(device, *calls);
-    output.any_usable = output.any_usable || offer.usable();
-    if (json) {
+    any_usable = any_usable || offer.usable();
+    if (options.json) {
       list.push_back(to_json(offer));
     } else {
-      output.text += text_of(offer);
+      text += text_of(offer);
     }
   }
-  if (json) {
-    output.text = io::json_document(Json{{"boards", list}});
+  if (options.json) {
+    text = io::json_document(Json{{"boards", list}});
   } else if (devices.empty()) {
-    output.text =
+    text =
         "no board: there is no /dev/comedi*; plug one in, load its driver, or try the kernel's virtual one: "
-        "sudo "
-        "modprobe comedi_test\n";
+        "sudo modprobe comedi_test\n";
   }
-  return output;
+  io::print_text(stdout, text);
+  return any_usable && std::fflush(stdout) == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+void add_boards(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<BoardsOptions>();
+  CLI::App* command = app.add_subcommand(
+      "boards",
+      "list the boards under Linux Comedi and what a configuration should say; 1 if none can be used");
+  command->add_option("devices", options->devices, "only these; else all of /dev/comedi*")
+      ->type_name("DEVICE");
+  command->add_flag("--json", options->json, "JSON instead of text");
+  command->callback([&chosen, options] { chosen.run = [options] { return run_boards(*options); }; });
 }
 
 }  // namespace stickslip::cli

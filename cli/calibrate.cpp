@@ -1,16 +1,16 @@
-#include "cli/calibrate.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
 #include <cmath>
-#include <istream>
+#include <iostream>
+#include <memory>
 #include <optional>
-#include <ostream>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "cli/options.hpp"
+#include "cli/subcommands.hpp"
 #include "cli/weighing.hpp"
 #include "io/calibration_file.hpp"
 #include "io/json_text.hpp"
@@ -27,6 +27,18 @@ using Json = nlohmann::ordered_json;
 using base::Dimension;
 using base::Limits;
 using base::Result;
+
+/// Numbers as typed.
+struct CalibrateOptions {
+  std::string config;  ///< Of the daemon: its board is read. Empty: points are given.
+  std::string points;  ///< Readings made elsewhere, TOML. Empty: the board is read.
+  std::string folder;  ///< The history; empty: that of the configuration.
+  std::string certificate;
+  std::string valid_days = "365";  ///< 0: for ever.
+  std::string settle = "1 s";
+  std::string reading = "2 s";
+  bool json = false;
+};
 
 /// All there is to judge.
 struct Weighed {
@@ -178,12 +190,12 @@ std::string json_of(const daq::WeighedCalibration& result, const io::StoredCalib
   return io::json_document(all);
 }
 
-Result<Weighed> weigh_by(const CalibrateCommand& command, const std::optional<WeighingPlace>& place,
+Result<Weighed> weigh_by(const CalibrateOptions& options, const std::optional<WeighingPlace>& place,
                          std::istream& answers, std::ostream& prompts) {
-  if (!place) return read_points(command.points);
-  const auto settle_s = number_of("--settle", command.settle, Dimension::kTime, true);
+  if (!place) return read_points(options.points);
+  const auto settle_s = number_of("--settle", options.settle, Dimension::kTime, true);
   if (!settle_s) return tl::unexpected(settle_s.error());
-  const auto reading_s = number_of("--reading", command.reading, Dimension::kTime, true);
+  const auto reading_s = number_of("--reading", options.reading, Dimension::kTime, true);
   if (!reading_s) return tl::unexpected(reading_s.error());
   Result<Weighing> weighing = Weighing::open(*place);
   if (!weighing) return tl::unexpected(weighing.error());
@@ -191,30 +203,30 @@ Result<Weighed> weigh_by(const CalibrateCommand& command, const std::optional<We
              prompts);
 }
 
-}  // namespace
-
-Result<std::string> run_calibrate(const CalibrateCommand& command, std::istream& answers,
+/// \param answers  what the technician types. \param prompts  what is said in between.
+/// Errors: kFailure if the readings give no calibration; nothing is kept then.
+Result<std::string> run_calibrate(const CalibrateOptions& options, std::istream& answers,
                                   std::ostream& prompts) {
-  if (command.config.empty() == command.points.empty()) {
+  if (options.config.empty() == options.points.empty()) {
     return base::usage_error("either --config with the board to read or --points with readings is needed");
   }
-  const auto days = base::parse_number(command.valid_days);
+  const auto days = base::parse_number(options.valid_days);
   if (!days || !(*days >= 0.0) || !(*days <= io::kLongestValid_days)) {
-    return base::usage_error("--valid-days {}: 0 (for ever) to {}", command.valid_days,
+    return base::usage_error("--valid-days {}: 0 (for ever) to {}", options.valid_days,
                              io::kLongestValid_days);
   }
   std::optional<WeighingPlace> place;
-  if (!command.config.empty()) {
-    auto loaded = load_weighing_place(command.config);
+  if (!options.config.empty()) {
+    auto loaded = load_weighing_place(options.config);
     if (!loaded) return tl::unexpected(loaded.error());
     place = *std::move(loaded);
   }
-  std::filesystem::path folder = command.folder;
+  std::filesystem::path folder = options.folder;
   if (folder.empty() && place) folder = place->folder;
   if (folder.empty()) {
     return base::usage_error("--folder is needed: where the calibrations are kept, or [tester] calibration");
   }
-  const Result<Weighed> weighed = weigh_by(command, place, answers, prompts);
+  const Result<Weighed> weighed = weigh_by(options, place, answers, prompts);
   if (!weighed) return tl::unexpected(weighed.error());
   const daq::WeighedCalibration result = weighed->result();
   if (!result.fit.load_cell) {
@@ -223,10 +235,49 @@ Result<std::string> run_calibrate(const CalibrateCommand& command, std::istream&
     return base::failure("no calibration: {}\n{}", result.fit.reason, points);
   }
   const auto kept =
-      io::keep_result(result, {command.certificate, *days}, folder, base::make_system_clock()->realtime_ns());
+      io::keep_result(result, {options.certificate, *days}, folder, base::make_system_clock()->realtime_ns());
   if (!kept) return tl::unexpected(kept.error());
-  return command.json ? json_of(result, kept->stored, kept->file.string())
+  return options.json ? json_of(result, kept->stored, kept->file.string())
                       : text_of(result, kept->stored, kept->file.string(), kept->before);
+}
+
+constexpr const char* kCalibrateExamples =
+    R"(Hang known weights on the load cell: nothing first, then at least three, each heavier, then the same way down.
+A straight line by least squares gives gain and zero with their standard errors. A reading that cannot count
+(saturated, unstable, no change from the tare, less than 1 % of the range) is named with the reason. Each
+calibration is a file of its own, named by its date, and stays as it is; [tester] calibration in the daemon's
+configuration names the folder, and the latest goes into each record.
+
+Examples:
+  stickslip calibrate --config /etc/stickslip/stickslipd.toml --certificate "DKD-1234"
+  stickslip calibrate --points readings.toml --folder calibrations --valid-days 180
+
+A file of readings: [[point]] tables with mass = "500 g" and voltage = "1.25 V", the tare first; if known
+standard_error and wander (volts), saturated = true.)";
+
+}  // namespace
+
+void add_calibrate(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<CalibrateOptions>();
+  CLI::App* command = app.add_subcommand("calibrate", "gain and zero of a load cell from known weights");
+  command->footer(kCalibrateExamples);
+  command->add_option("--config", options->config, "of the daemon, which must not run: its board is read")
+      ->type_name("FILE.toml");
+  command->add_option("--points", options->points, "readings made elsewhere instead")->type_name("FILE.toml");
+  command->add_option("--folder", options->folder, "of the calibrations; else [tester] calibration")
+      ->type_name("DIR");
+  command->add_option("--certificate", options->certificate, "of the weights")->type_name("TEXT");
+  command->add_option("--valid-days", options->valid_days, "until a new one is due; 0: for ever")
+      ->capture_default_str()
+      ->type_name("N");
+  command->add_option("--settle", options->settle, "left for a weight to come to rest")
+      ->capture_default_str()
+      ->type_name("T");
+  command->add_option("--reading", options->reading, "for which each weight is read")
+      ->capture_default_str()
+      ->type_name("T");
+  command->add_flag("--json", options->json, "JSON instead of text");
+  choose(*command, chosen, [options] { return run_calibrate(*options, std::cin, std::cerr); });
 }
 
 }  // namespace stickslip::cli

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "cli/commands.hpp"
+#include "cli/subcommands.hpp"
 #include "io/json_text.hpp"
 #include "io/new_file.hpp"
 #include <nlohmann/json.hpp>
@@ -23,6 +27,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 using analysis::Characterisation;
 using analysis::TesterEstimate;
+
+struct CharacteriseOptions {
+  std::vector<std::string> files;  ///< Records of ring-downs.
+  std::string output;              ///< Empty: none.
+  bool json = false;
+};
 
 struct RingDowns {
   std::vector<TesterEstimate> estimates;  ///< One for each file.
@@ -54,8 +64,7 @@ base::Result<RingDowns> read_all(const std::vector<std::string>& files) {
   RingDowns ring_downs;
   for (std::size_t i = 0; i < files.size(); ++i) {
     const std::string& file = files[i];
-    base::Result<record::Record> record =
-        record::read_record_apart(file, i + 1 < files.size() ? files[i + 1] : std::string{});
+    base::Result<record::Record> record = record::read_record_in_turn(files, i);
     if (!record) return tl::unexpected(record.error());
     ring_downs.latest_ns = std::max(ring_downs.latest_ns, record->header.start_realtime_ns);
     base::Result<TesterEstimate> estimate = ring_down_of(file, *std::move(record));
@@ -121,24 +130,38 @@ std::string json_of(const std::vector<std::string>& files, const RingDowns& ring
   return io::json_document(all);
 }
 
-}  // namespace
-
-base::Result<std::string> run_characterise(const CharacteriseCommand& command) {
-  if (!command.output.empty()) {
-    if (auto free = record::check_publishable(command.output); !free) return tl::unexpected(free.error());
+base::Result<std::string> run_characterise(const CharacteriseOptions& options) {
+  if (!options.output.empty()) {
+    if (auto free = record::check_publishable(options.output); !free) return tl::unexpected(free.error());
   }
-  const base::Result<RingDowns> ring_downs = read_all(command.files);
+  const base::Result<RingDowns> ring_downs = read_all(options.files);
   if (!ring_downs) return tl::unexpected(ring_downs.error());
   const std::optional<Characterisation> result = analysis::pool_ring_downs(ring_downs->estimates);
   if (!result) return base::failure("the ring-downs have no finite mean");
   const std::string date = ring_downs->latest_ns ? record::iso_time(*ring_downs->latest_ns) : std::string{};
-  if (!command.output.empty()) {
-    if (auto written = io::write_new_file(command.output, record::tester_text(*result, date)); !written) {
+  if (!options.output.empty()) {
+    if (auto written = io::write_new_file(options.output, record::tester_text(*result, date)); !written) {
       return tl::unexpected(written.error());
     }
   }
-  return command.json ? json_of(command.files, *ring_downs, *result, date)
-                      : table_of(command.files, *ring_downs, *result);
+  return options.json ? json_of(options.files, *ring_downs, *result, date)
+                      : table_of(options.files, *ring_downs, *result);
+}
+
+}  // namespace
+
+void add_characterise(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<CharacteriseOptions>();
+  CLI::App* command = app.add_subcommand("characterise", "omega and gamma of the tester from its ring-downs");
+  command->add_option("files", options->files, "records of ring-downs")->required()->type_name("FILE.h5");
+  command->add_option("-o,--output", options->output, "where to keep it, a file that does not exist")
+      ->type_name("FILE.toml");
+  command->add_flag("--json", options->json, "JSON instead of a table");
+  command->footer(
+      "Examples:\n"
+      "  stickslip characterise ring-down-1.h5 ring-down-2.h5 -o tester.toml\n"
+      "  stickslip analyze records/*.h5 --tester tester.toml");
+  choose(*command, chosen, [options] { return run_characterise(*options); });
 }
 
 }  // namespace stickslip::cli

@@ -1,5 +1,3 @@
-// Subcommand demo: the daemon on the simulated tester, in a folder of the user's.
-
 #include <fmt/format.h>
 #include <unistd.h>
 

@@ -1,12 +1,13 @@
-// Subcommand doctor: looks at the installation.
-
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include "cli/doctor/checks.hpp"
 #include "cli/paint.hpp"
@@ -23,7 +24,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kInstalledConfig = "/etc/stickslip/stickslipd.toml";
 constexpr const char* kInstalledFolder = "/var/lib/stickslip";
 
-constexpr const char* kHelp =
+constexpr const char* kDoctorHelp =
     R"(Exit status: 0 all is good, 1 something is bad, 2 wrong usage, 3 there are warnings.
 Nothing stays changed. Rights are those of the user who asks; those of the service:
   sudo -u stickslip stickslip doctor)";
@@ -94,21 +95,21 @@ int run_doctor(const DoctorOptions& options) {
 }  // namespace
 
 void add_doctor(CLI::App& app, Chosen& chosen) {
-  const auto kept = std::make_shared<DoctorOptions>();
+  const auto options = std::make_shared<DoctorOptions>();
   CLI::App* command = app.add_subcommand(
       "doctor", "is everything there that a test needs? What is not, and what is to be done");
-  command->footer(kHelp);
-  command->add_option("--config", kept->config, "the daemon's configuration")
+  command->footer(kDoctorHelp);
+  command->add_option("--config", options->config, "the daemon's configuration")
       ->capture_default_str()
       ->type_name("FILE");
   command
       ->add_option(
-          "--folder", kept->folder,
+          "--folder", options->folder,
           "where the daemon runs, for relative names in it; default: /var/lib/stickslip for the installed "
           "configuration, else here")
       ->type_name("DIR");
-  command->add_flag("--json", kept->json, "JSON instead of text");
-  command->callback([&chosen, kept] { chosen.run = [kept] { return run_doctor(*kept); }; });
+  command->add_flag("--json", options->json, "JSON instead of text");
+  command->callback([&chosen, options] { chosen.run = [options] { return run_doctor(*options); }; });
 }
 
 }  // namespace stickslip::cli

@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "cli/commands.hpp"
+#include "cli/subcommands.hpp"
 #include "io/json_text.hpp"
 #include "io/library.hpp"
 #include "io/method_file.hpp"
@@ -14,6 +17,11 @@ namespace stickslip::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+struct MethodsOptions {
+  std::string folder;  ///< Empty: where the program finds them.
+  bool json = false;
+};
 
 Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
@@ -48,10 +56,8 @@ Json json_of(const io::MethodFile& file) {
   return json;
 }
 
-}  // namespace
-
-base::Result<std::string> run_methods(const std::string& folder, bool json) {
-  const base::Result<std::filesystem::path> found = io::library_folder(io::kMethods, folder);
+base::Result<std::string> run_methods(const MethodsOptions& options) {
+  const base::Result<std::filesystem::path> found = io::library_folder(io::kMethods, options.folder);
   if (!found) return tl::unexpected(found.error());
   std::vector<io::MethodFile> methods;
   std::size_t longest = 0;
@@ -61,7 +67,7 @@ base::Result<std::string> run_methods(const std::string& folder, bool json) {
     longest = std::max(longest, file->method.name.size());
     methods.push_back(*file);
   }
-  if (json) {
+  if (options.json) {
     Json list = Json::array();
     for (const io::MethodFile& file : methods) list.push_back(json_of(file));
     return io::json_document(Json{{"folder", found->string()}, {"methods", std::move(list)}});
@@ -71,6 +77,16 @@ base::Result<std::string> run_methods(const std::string& folder, bool json) {
     text += fmt::format("{:<{}}  {}\n", file.method.name, longest, file.description);
   }
   return text;
+}
+
+}  // namespace
+
+void add_methods(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<MethodsOptions>();
+  CLI::App* command = app.add_subcommand("methods", "list the shipped test methods");
+  command->add_option("--folder", options->folder, "another folder of methods")->type_name("DIR");
+  command->add_flag("--json", options->json, "JSON instead of lines, with all settings and what to check");
+  choose(*command, chosen, [options] { return run_methods(*options); });
 }
 
 }  // namespace stickslip::cli

@@ -1,109 +1,68 @@
-#include <fmt/format.h>
+#include <memory>
+#include <string>
+#include <vector>
 
-#include <algorithm>
-#include <array>
-#include <optional>
-#include <utility>
-
-#include "cli/commands.hpp"
-#include "io/json_text.hpp"
-#include "io/new_file.hpp"
+#include "cli/report_outputs.hpp"
+#include "cli/subcommands.hpp"
 #include "report/report_json.hpp"
 #include "report/report_page.hpp"
 #include "report/report_text.hpp"
 #include "report/test_report.hpp"
 #include <nlohmann/json.hpp>
 
-#include "core/record/finaliser.hpp"
-
 namespace stickslip::cli {
 namespace {
 
 using base::Result;
-using Json = nlohmann::ordered_json;
 
-/// Instead of a file to be made.
-constexpr const char* kStandardOutput = "-";
+struct ReportOptions : ReportOutputs {
+  std::vector<std::string> files;  ///< Of a batch: the folder of its records, one.
+  std::string batch;               ///< Its identifier or name; empty: the files are records.
+};
 
-/// Before the work, not only after it.
-Result<void> check_outputs(const ReportOptions& options) {
-  const std::array taken{options.csv == kStandardOutput, options.page == kStandardOutput, options.json};
-  if (std::count(taken.begin(), taken.end(), true) > 1)
-    return base::usage_error("-o -, --csv - and --json: one of them has the standard output to itself");
-  for (const std::string& file : {options.csv, options.page}) {
-    if (file.empty() || file == kStandardOutput) continue;
-    if (auto free = record::check_publishable(file); !free) return free;
+Result<std::string> run_report(const ReportOptions& options) {
+  if (auto free = check_outputs(options); !free) return tl::unexpected(free.error());
+  if (!options.batch.empty() && options.files.size() != 1) {
+    return base::usage_error("--batch {}: one folder of records is to be named, not {}", options.batch,
+                             options.files.size());
   }
-  if (!options.csv.empty() && options.csv == options.page) {
-    return base::usage_error("--csv and -o name the same file, {}", options.csv);
-  }
-  return {};
-}
-
-/// Files first, so that nothing is printed before all has succeeded.
-Result<std::string> deliver(const ReportOptions& options, const std::string& csv, const std::string& page,
-                            const Json& json, const std::string& text) {
-  std::string printed = options.json ? io::json_document(json) : text;
-  for (const auto& [file, made] : {std::pair{&options.csv, &csv}, {&options.page, &page}}) {
-    if (file->empty()) continue;
-    if (*file == kStandardOutput) {
-      printed = *made;
-    } else if (auto written = io::write_new_file(*file, *made); !written) {
-      return tl::unexpected(written.error());
-    }
-  }
-  return printed;
-}
-
-}  // namespace
-
-Result<std::string> run_report(const ReportCommand& command) {
-  if (auto free = check_outputs(command); !free) return tl::unexpected(free.error());
-  if (!command.batch.empty() && command.files.size() != 1) {
-    return base::usage_error("--batch {}: one folder of records is to be named, not {}", command.batch,
-                             command.files.size());
-  }
-  const bool with_traces = !command.page.empty();
+  const bool with_traces = !options.page.empty();
   const Result<report::ChartLibrary> charts =
       with_traces ? report::read_chart_library() : report::ChartLibrary{};
   if (!charts) return tl::unexpected(charts.error());
   const Result<report::Material> material =
-      command.batch.empty() ? report::read_material("", command.files, with_traces)
-                            : report::read_batch("", command.batch, command.files.front(), with_traces);
+      options.batch.empty() ? report::read_material("", options.files, with_traces)
+                            : report::read_batch("", options.batch, options.files.front(), with_traces);
   if (!material) return tl::unexpected(material.error());
-  return deliver(command, report::report_csv(*material),
+  return deliver(options, report::report_csv(*material),
                  with_traces ? report::report_page(*material, *charts) : "", report::report_json(*material),
                  report::report_text(*material));
 }
 
-Result<std::string> run_compare(const CompareCommand& command) {
-  const bool batches = !command.batch_a.empty() || !command.batch_b.empty();
-  if (batches &&
-      (command.batch_a.empty() || command.batch_b.empty() || command.a.size() != 1 || !command.b.empty())) {
-    return base::usage_error("--batch-a, --batch-b: both are to be named, and one folder of records, not {}",
-                             command.a.size() + command.b.size());
-  }
-  if (!batches && (command.a.empty() || command.b.empty())) {
-    return base::usage_error("compare needs records on both sides: stickslip compare A… -- B…");
-  }
-  if (auto free = check_outputs(command); !free) return tl::unexpected(free.error());
-  const bool with_traces = !command.page.empty();
-  const Result<report::ChartLibrary> charts =
-      with_traces ? report::read_chart_library() : report::ChartLibrary{};
-  if (!charts) return tl::unexpected(charts.error());
-  const auto side = [&](const std::string& label, const std::string& batch,
-                        const std::vector<std::string>& files) {
-    return batches ? report::read_batch(label, batch, command.a.front(), with_traces)
-                   : report::read_material(label, files, with_traces);
-  };
-  const Result<report::Material> a = side(command.label_a, command.batch_a, command.a);
-  if (!a) return tl::unexpected(a.error());
-  const Result<report::Material> b = side(command.label_b, command.batch_b, command.b);
-  if (!b) return tl::unexpected(b.error());
-  const report::MaterialComparison comparison = report::compare_materials(*a, *b);
-  return deliver(command, report::comparison_csv(*a, *b, comparison),
-                 with_traces ? report::comparison_page(*a, *b, comparison, *charts) : "",
-                 report::comparison_json(*a, *b, comparison), report::comparison_text(*a, *b, comparison));
+constexpr const char* kReportExamples =
+    R"(Shows the results that stand in records of one material: coefficient against speed (Fig. 1 of the paper), mean,
+scatter s_r, repeatability r = 2.8 s_r, 95 % confidence interval, outliers (named, never left out).
+
+Examples:
+  stickslip report records/*.h5
+  stickslip report pull.h5 -o pull.html                one page with traces to zoom in; needs no network
+  stickslip report --batch "liner 42" records          the tests of a batch that were not voided, and its limits
+  stickslip report records/*.h5 --json --csv tests.csv)";
+
+}  // namespace
+
+void add_report(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<ReportOptions>();
+  CLI::App* command =
+      app.add_subcommand("report", "replicates: means, repeatability, coefficient against speed");
+  command->footer(kReportExamples);
+  command->add_option("files", options->files, "records; with --batch the folder they are in")
+      ->required()
+      ->type_name("FILE.h5");
+  command->add_option("--batch", options->batch, "all tests of a batch, by its identifier or name")
+      ->type_name("BATCH");
+  add_report_outputs(*command, *options);
+  choose(*command, chosen, [options] { return run_report(*options); });
 }
 
 }  // namespace stickslip::cli

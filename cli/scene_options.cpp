@@ -14,6 +14,24 @@ namespace stickslip::cli {
 using base::Dimension;
 using base::Result;
 
+void add_scene_options(CLI::App& command, SceneOptions& options) {
+  command.add_option("scene", options.scene, "file, or name as in stickslip scenes")
+      ->required()
+      ->type_name("SCENE");
+  command.add_option("--seed", options.seed, "of the random numbers; else that of the scene")->type_name("N");
+  command.add_option("--set", options.set, "change a key of the scene; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  command.add_option("--without", options.without, "drop a listed effect; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("EFFECT");
+  command
+      .add_option("--duration", options.duration, "of the whole scene, s or with unit: the pull is fitted")
+      ->type_name("T");
+  command.add_option("--rate", options.rate, "scans per second; else that of the scene")->type_name("HZ");
+  command.add_option("--folder", options.folder, "of the scenes that have names")->type_name("DIR");
+}
+
 /// First what is dropped, so that it can be set anew in another way.
 Result<sim::SceneChanges> changes_of(const SceneOptions& options) {
   sim::SceneChanges changes;

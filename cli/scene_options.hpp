@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
 #include "core/base/result.hpp"
 #include "core/sim/scene.hpp"
 
@@ -21,6 +23,8 @@ struct SceneOptions {
   std::string rate;
   std::string duration;
 };
+
+void add_scene_options(CLI::App& command, SceneOptions& options);
 
 /// What the options make different from the scene's file. Usage error that names the option.
 [[nodiscard]] base::Result<sim::SceneChanges> changes_of(const SceneOptions& options);

@@ -1,19 +1,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "cli/commands.hpp"
 #include "cli/scene_library.hpp"
+#include "cli/subcommands.hpp"
 #include "io/json_text.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/sim/scene.hpp"
 
 namespace stickslip::cli {
+namespace {
 
-base::Result<std::string> run_scenes(const std::string& folder, bool json) {
-  const base::Result<std::filesystem::path> found = scene_folder(folder);
+struct ScenesOptions {
+  std::string folder;  ///< Empty: where the program finds them.
+  bool json = false;
+};
+
+base::Result<std::string> run_scenes(const ScenesOptions& options) {
+  const base::Result<std::filesystem::path> found = scene_folder(options.folder);
   if (!found) return tl::unexpected(found.error());
   std::vector<sim::Scene> scenes;
   std::size_t longest = 0;
@@ -23,7 +32,7 @@ base::Result<std::string> run_scenes(const std::string& folder, bool json) {
     longest = std::max(longest, scene->name.size());
     scenes.push_back(std::move(*scene));
   }
-  if (json) {
+  if (options.json) {
     using Json = nlohmann::ordered_json;
     Json list = Json::array();
     for (const sim::Scene& scene : scenes) {
@@ -35,6 +44,16 @@ base::Result<std::string> run_scenes(const std::string& folder, bool json) {
   for (const sim::Scene& scene : scenes)
     text += fmt::format("{:<{}}  {}\n", scene.name, longest, scene.description);
   return text;
+}
+
+}  // namespace
+
+void add_scenes(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<ScenesOptions>();
+  CLI::App* command = app.add_subcommand("scenes", "list the shipped scenes");
+  command->add_option("--folder", options->folder, "another folder of scenes")->type_name("DIR");
+  command->add_flag("--json", options->json, "JSON instead of lines");
+  choose(*command, chosen, [options] { return run_scenes(*options); });
 }
 
 }  // namespace stickslip::cli

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <string>
 #include <utility>
 
-#include "cli/commands.hpp"
 #include "cli/method_option.hpp"
 #include "cli/progress.hpp"
+#include "cli/scene_options.hpp"
+#include "cli/subcommands.hpp"
 #include "io/json_text.hpp"
 #include "io/results_json.hpp"
 #include "report/table.hpp"
@@ -22,14 +24,21 @@ namespace {
 using Json = nlohmann::ordered_json;
 using base::Result;
 
+struct SimulateOptions : SceneOptions {
+  std::string method;  ///< As chosen_method() takes it.
+  std::string output;
+  bool json = false;
+  std::string line;  ///< The whole command, for the record.
+};
+
 Result<simulation::Simulation> simulate_and_publish(const sim::Scene& scene, std::uint64_t seed,
                                                     const model::Method& method,
-                                                    const SimulateCommand& command) {
+                                                    const SimulateOptions& options) {
   ProgressBar bar{scene.name};
   const std::unique_ptr<base::Clock> clock = base::make_system_clock();
   bool simulated = false;
   return simulation::simulate_to_file(
-      scene, seed, *clock, {command.output, "stickslip simulate", command.line, method}, [&](double done) {
+      scene, seed, *clock, {options.output, "stickslip simulate", options.line, method}, [&](double done) {
         bar.show(done);
         if (done == 1.0) bar.show(std::exchange(simulated, true) ? "writing" : "analysing");
       });
@@ -52,23 +61,50 @@ std::string json_of(const simulation::Simulation& simulation, const std::string&
   return io::json_document(json);
 }
 
-}  // namespace
-
-Result<std::string> run_simulate(const SimulateCommand& command) {
-  const Result<ChosenScene> chosen = chosen_scene(command);
+Result<std::string> run_simulate(const SimulateOptions& options) {
+  const Result<ChosenScene> chosen = chosen_scene(options);
   if (!chosen) return tl::unexpected(chosen.error());
-  const Result<model::Method> method = chosen_method(command.method);
+  const Result<model::Method> method = chosen_method(options.method);
   if (!method) return tl::unexpected(method.error());
   // Before the work, not only after it.
-  if (auto free = record::check_publishable(command.output); !free) return tl::unexpected(free.error());
+  if (auto free = record::check_publishable(options.output); !free) return tl::unexpected(free.error());
 
   const Result<simulation::Simulation> simulation =
-      simulate_and_publish(chosen->scene, chosen->seed, *method, command);
+      simulate_and_publish(chosen->scene, chosen->seed, *method, options);
   if (!simulation) return tl::unexpected(simulation.error());
-  if (command.json) return json_of(*simulation, command.output);
+  if (options.json) return json_of(*simulation, options.output);
   const record::EndRecord& end = *simulation->record.end;
-  const std::vector<report::TableRow> rows{{1, end.results, end.truth, command.output}};
+  const std::vector<report::TableRow> rows{{1, end.results, end.truth, options.output}};
   return report::format_table(rows) + simulation->summary() + "\n";
+}
+
+constexpr const char* kSimulateExamples =
+    R"(Runs one repetition of a scene straight into a record: the same counts, analysis and truth as from the
+daemon that plays it, but the record is the whole scene; the daemon would cut out the test.
+Changes apply in this order: --without, --set, --rate, --duration.
+
+Examples:
+  stickslip simulate stick-slip-at-12-in-per-min -o pull.h5
+  stickslip simulate my-scene.toml -o pull.h5 --seed 7 --json
+  stickslip simulate threshold-oscillation -o above.h5 --set paper.mu_s=0.34 --set effects.white_noise.sd=0.002
+  stickslip simulate stick-slip-at-12-in-per-min -o hour.h5 --duration 3600
+  stickslip simulate stick-slip-at-12-in-per-min -o fast.h5 --rate "2 kHz" --without white_noise
+  stickslip simulate ring-down-at-12-in-per-min -o slow.h5 --set "effects.constant_speed.pull_speed=6 in/min")";
+
+}  // namespace
+
+void add_simulate(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<SimulateOptions>();
+  options->line = chosen.line;
+  CLI::App* command = app.add_subcommand("simulate", "run a scene straight into a record, with its truth");
+  command->footer(kSimulateExamples);
+  add_scene_options(*command, *options);
+  command->add_option("-o,--output", options->output, "record to make; must not exist")
+      ->required()
+      ->type_name("FILE.h5");
+  add_method_option(*command, options->method);
+  command->add_flag("--json", options->json, "JSON instead of a table; SI units, names as in the record");
+  choose(*command, chosen, [options] { return run_simulate(*options); });
 }
 
 }  // namespace stickslip::cli

@@ -1,8 +1,14 @@
 #include <fmt/format.h>
 
-#include "cli/commands.hpp"
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+
 #include "cli/json_words.hpp"
 #include "cli/paint.hpp"
+#include "cli/subcommands.hpp"
 #include "io/json_text.hpp"
 #include <nlohmann/json.hpp>
 
@@ -12,6 +18,11 @@ namespace stickslip::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+struct StatusOptions {
+  std::string socket = "/run/stickslip/control.sock";
+  bool json = false;
+};
 
 std::int64_t count(const Json& json, const char* key) {
   const auto found = json.find(key);
@@ -140,18 +151,28 @@ std::string text_of(const Json& status) {
   return std::move(lines).text();
 }
 
-}  // namespace
-
-base::Result<std::string> run_status(const std::string& socket, bool json) {
+base::Result<std::string> run_status(const StatusOptions& options) {
   constexpr std::chrono::milliseconds kTimeout{5000};
   const base::Result<daemon::HttpReply> reply =
-      client::request(socket, {"GET", "/v1/status", {}, {}, {}}, kTimeout);
+      client::request(options.socket, {"GET", "/v1/status", {}, {}, {}}, kTimeout);
   if (!reply) return tl::unexpected(reply.error());
   if (reply->status != 200)
-    return base::failure("{}: refused with {}: {}", socket, reply->status, reply->body);
+    return base::failure("{}: refused with {}: {}", options.socket, reply->status, reply->body);
   const Json status = Json::parse(reply->body, nullptr, false);
-  if (!status.is_object()) return base::failure("{}: the answer is no JSON", socket);
-  return json ? io::json_document(status) : text_of(status);
+  if (!status.is_object()) return base::failure("{}: the answer is no JSON", options.socket);
+  return options.json ? io::json_document(status) : text_of(status);
+}
+
+}  // namespace
+
+void add_status(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<StatusOptions>();
+  CLI::App* command = app.add_subcommand("status", "ask the running daemon");
+  command->add_option("--socket", options->socket, "its control socket")
+      ->capture_default_str()
+      ->type_name("PATH");
+  command->add_flag("--json", options->json, "JSON as GET /v1/status gives it, instead of text");
+  choose(*command, chosen, [options] { return run_status(*options); });
 }
 
 }  // namespace stickslip::cli

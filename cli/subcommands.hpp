@@ -1,13 +1,12 @@
 /// \file
-/// How the subcommands of `stickslip` come to the parser, in groups of one file each. A group declares its
-/// options; what a command does is in commands.hpp.
+/// The subcommands of `stickslip`. X.cpp holds all of `stickslip X`: its options and its help, which add_X()
+/// gives to the parser, and what it does. Nothing is printed and no file is left before all of it has
+/// succeeded.
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <string>
 
-#include "cli/scene_options.hpp"
 #include <CLI/CLI.hpp>
 
 #include "core/base/result.hpp"
@@ -20,35 +19,48 @@ struct Chosen {
   std::function<int()> run;  ///< \return the exit status.
 };
 
+// In the order in which help shows them. The parser and `chosen` outlive what is run.
+
+void add_demo(CLI::App& app, Chosen& chosen);
+void add_import(CLI::App& app, Chosen& chosen);
+void add_simulate(CLI::App& app, Chosen& chosen);
+void add_sweep(CLI::App& app, Chosen& chosen);
+void add_plot(CLI::App& app, Chosen& chosen);
+void add_accuracy(CLI::App& app, Chosen& chosen);
+void add_report(CLI::App& app, Chosen& chosen);
+void add_compare(CLI::App& app, Chosen& chosen);
+void add_scenes(CLI::App& app, Chosen& chosen);
+void add_boards(CLI::App& app, Chosen& chosen);
+void add_methods(CLI::App& app, Chosen& chosen);
+void add_status(CLI::App& app, Chosen& chosen);
+void add_arm(CLI::App& app, Chosen& chosen);
+void add_start(CLI::App& app, Chosen& chosen);
+void add_stop(CLI::App& app, Chosen& chosen);
+void add_mark(CLI::App& app, Chosen& chosen);
+void add_tare(CLI::App& app, Chosen& chosen);
+void add_plan(CLI::App& app, Chosen& chosen);
+void add_batch(CLI::App& app, Chosen& chosen);
+void add_void(CLI::App& app, Chosen& chosen);
+void add_list(CLI::App& app, Chosen& chosen);
+void add_show(CLI::App& app, Chosen& chosen);
+void add_watch(CLI::App& app, Chosen& chosen);
+void add_analyze(CLI::App& app, Chosen& chosen);
+void add_characterise(CLI::App& app, Chosen& chosen);
+void add_verify(CLI::App& app, Chosen& chosen);
+void add_recover(CLI::App& app, Chosen& chosen);
+void add_doctor(CLI::App& app, Chosen& chosen);
+void add_man(CLI::App& app, Chosen& chosen);
+void add_completion(CLI::App& app, Chosen& chosen);
+void add_export(CLI::App& app, Chosen& chosen);
+void add_calibrate(CLI::App& app, Chosen& chosen);
+
 /// Option before the second list of `stickslip compare`; a plain -- does the same.
 inline constexpr const char* kOtherMaterial = "--against";
-
-void add_making_commands(CLI::App& app, Chosen& chosen);       ///< import, simulate, sweep
-void add_showing_commands(CLI::App& app, Chosen& chosen);      ///< plot, accuracy, report, compare
-void add_analysing_commands(CLI::App& app, Chosen& chosen);    ///< analyze, characterise
-void add_asking_commands(CLI::App& app, Chosen& chosen);       ///< scenes, methods, boards, status
-void add_calibrating_commands(CLI::App& app, Chosen& chosen);  ///< calibrate
-void add_commanding_commands(CLI::App& app, Chosen& chosen);  ///< arm, start, stop, mark, tare, plan, list …
-void add_exporting_commands(CLI::App& app, Chosen& chosen);   ///< export
-void add_caring_commands(CLI::App& app, Chosen& chosen);      ///< verify, recover
-
-void add_doctor(CLI::App& app, Chosen& chosen);  ///< doctor
-void add_demo(CLI::App& app, Chosen& chosen);    ///< demo
-
-/// man, completion: made from the parser itself.
-/// \param app  outlives the parser's run.
-void add_manual(CLI::App& app, Chosen& chosen);
 
 /// What a command gave, on stdout, or its error on stderr. \return the exit status.
 [[nodiscard]] int print(const base::Result<std::string>& output);
 
 /// \param chosen  outlives the parser. \param run  called if the command is the one given.
 void choose(CLI::App& command, Chosen& chosen, std::function<base::Result<std::string>()> run);
-
-// Options of several groups.
-
-void add_method_option(CLI::App& command, std::string& method);
-/// Scene and changes.
-void add_scene_options(CLI::App& command, SceneOptions& options);
 
 }  // namespace stickslip::cli

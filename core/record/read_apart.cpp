@@ -213,4 +213,8 @@ base::Result<Record> read_record_apart(const std::filesystem::path& path, const 
   return readers.read(path, next);
 }
 
+base::Result<Record> read_record_in_turn(std::span<const std::string> files, std::size_t index) {
+  return read_record_apart(files[index], index + 1 < files.size() ? files[index + 1] : std::string{});
+}
+
 }  // namespace stickslip::record

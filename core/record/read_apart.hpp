@@ -8,8 +8,10 @@
 ///       … read_record_apart(path) …
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -58,5 +60,9 @@ void read_records_apart(std::function<bool()> given_up = {});
 /// nobody knows.
 [[nodiscard]] base::Result<Record> read_record_apart(const std::filesystem::path& path,
                                                      const std::filesystem::path& next = {});
+
+/// files[index], for those who read one after the other: the one after it is being read meanwhile.
+/// Errors as read_record_apart().
+[[nodiscard]] base::Result<Record> read_record_in_turn(std::span<const std::string> files, std::size_t index);
 
 }  // namespace stickslip::record

@@ -137,6 +137,20 @@ TEST(ReadApart, GivesEveryFieldToTheLastBit) {
   }
 }
 
+TEST(ReadApart, InTurnGivesTheNamedFileOfAListUpToTheLast) {
+  const test::TemporaryFolder folder;
+  const std::array<std::string, 2> files{folder / "1.h5", folder / "2.h5"};
+  ASSERT_TRUE(publish_record(test::sample_record(), files[0]));
+  ASSERT_TRUE(publish_record(test::whole_record(), files[1]));
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const auto here = read_record(files[i]);
+    ASSERT_TRUE(here) << here.error().message;
+    const auto in_turn = read_record_in_turn(files, i);
+    ASSERT_TRUE(in_turn) << in_turn.error().message;
+    test::expect_same_record(*here, *in_turn);
+  }
+}
+
 TEST(ReadApart, SaysWhatTheReaderSays) {
   const test::TemporaryFolder folder;
   test::write_content(folder / "text.h5", "t_s,F_over_mg\n1,2\n");

@@ -1,81 +1,25 @@
-// Subcommands that take care of records: verify, recover.
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "cli/subcommands.hpp"
-#include "io/print_text.hpp"
-#include "io/verify.hpp"
 
 #include "core/base/limited_child.hpp"
+#include "core/base/text.hpp"
 #include "daemon/storage/finaliser.hpp"
 #include "daemon/storage/recovery.hpp"
 
 namespace stickslip::cli {
 namespace {
-
-constexpr const char* kVerifyHelp =
-    R"(Judges files, records and journals alike: complete or not, and why. A record carries the number of its scans, a
-checksum of its raw values and one of the whole file; every byte is read, and what follows from the counts is
-computed again. A flipped bit anywhere is found. docs/reliability.md says what is looked at.
-
-Exit status:
-  0  all are complete
-  1  some are incomplete for a stated reason (interrupted, gaps, a journal)
-  2  wrong usage
-  3  some are damaged
-  4  some could not be judged: no such file, no record, made by a newer program
-
-Examples:
-  stickslip verify records/*.h5
-  stickslip verify records/*.h5 --json                 {"files": [{"file": …, "judgement": …, "findings": […]}]})";
-
-constexpr const char* kRecoverHelp =
-    R"(Makes records from the journals that a stop left behind, as the daemon does when it starts: marked interrupted,
-with the results that their scans allow. A journal that is being written is left alone. One in which nothing was
-recorded is removed.
-What is damaged in a journal is skipped, and the record holds all the rest. Such a journal is not removed but renamed
-to NAME.journal.damaged; no later run takes it for one that waits for its record.
-
-Exit status:
-  0  all was done
-  1  some journals became no record, or a folder cannot be looked into; each says why and stays as it is
-  2  wrong usage
-  3  all became records, but some were damaged and stay beside theirs
-
-Examples:
-  stickslip recover /var/lib/stickslip/records
-  stickslip recover records/20261121T125252Z-0003.journal)";
-
-struct VerifyOptions {
-  std::vector<std::string> files;
-  bool json = false;
-};
-
-void add_verify(CLI::App& app, Chosen& chosen) {
-  const auto kept = std::make_shared<VerifyOptions>();
-  CLI::App* verify = app.add_subcommand("verify", "whole or not, and why: any record or journal");
-  verify->footer(kVerifyHelp);
-  verify->add_option("files", kept->files, "records and journals")->required()->type_name("FILE");
-  verify->add_flag("--json", kept->json, "JSON instead of lines");
-  verify->callback([&chosen, kept] {
-    chosen.run = [kept] {
-      const io::VerifyOutput output = io::verify_files(kept->files, kept->json);
-      io::print_text(stdout, output.text);
-      return std::fflush(stdout) == 0 ? output.exit_status : 1;
-    };
-  });
-}
 
 /// Tells on stdout what became of each journal.
 class Teller final : public daemon::Facts {
@@ -135,7 +79,7 @@ class ApartFinaliser {
 };
 
 /// \return the exit status.
-base::Result<int> recover(const std::vector<std::string>& places) {
+base::Result<int> run_recover(const std::vector<std::string>& places) {
   constexpr int kDamagedStatus = 3;
   Teller teller;
   ApartFinaliser apart;
@@ -169,6 +113,25 @@ base::Result<int> recover(const std::vector<std::string>& places) {
   return base::failure("not every journal became a record; each line above says why");
 }
 
+constexpr const char* kRecoverHelp =
+    R"(Makes records from the journals that a stop left behind, as the daemon does when it starts: marked interrupted,
+with the results that their scans allow. A journal that is being written is left alone. One in which nothing was
+recorded is removed.
+What is damaged in a journal is skipped, and the record holds all the rest. Such a journal is not removed but renamed
+to NAME.journal.damaged; no later run takes it for one that waits for its record.
+
+Exit status:
+  0  all was done
+  1  some journals became no record, or a folder cannot be looked into; each says why and stays as it is
+  2  wrong usage
+  3  all became records, but some were damaged and stay beside theirs
+
+Examples:
+  stickslip recover /var/lib/stickslip/records
+  stickslip recover records/20261121T125252Z-0003.journal)";
+
+}  // namespace
+
 void add_recover(CLI::App& app, Chosen& chosen) {
   const auto places = std::make_shared<std::vector<std::string>>();
   CLI::App* command = app.add_subcommand("recover", "records from the journals that a stop left behind");
@@ -178,17 +141,10 @@ void add_recover(CLI::App& app, Chosen& chosen) {
       ->type_name("DIR|JOURNAL");
   command->callback([&chosen, places] {
     chosen.run = [places] {
-      const base::Result<int> status = recover(*places);
+      const base::Result<int> status = run_recover(*places);
       return status ? *status : print(tl::unexpected(status.error()));
     };
   });
-}
-
-}  // namespace
-
-void add_caring_commands(CLI::App& app, Chosen& chosen) {
-  add_verify(app, chosen);
-  add_recover(app, chosen);
 }
 
 }  // namespace stickslip::cli

@@ -1,0 +1,14 @@
+#include <memory>
+
+#include "cli/bench_command.hpp"
+
+namespace stickslip::cli {
+
+void add_arm(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<BenchCommand>();
+  options->verb = "arm";
+  CLI::App* command = add_bench_command(app, *options, "the force may begin the next test");
+  choose(*command, chosen, [options] { return run_bench_command(*options, {}); });
+}
+
+}  // namespace stickslip::cli

@@ -1,0 +1,86 @@
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/report_outputs.hpp"
+#include "cli/subcommands.hpp"
+#include "report/report_json.hpp"
+#include "report/report_page.hpp"
+#include "report/report_text.hpp"
+#include "report/test_report.hpp"
+#include <nlohmann/json.hpp>
+
+namespace stickslip::cli {
+namespace {
+
+using base::Result;
+
+struct CompareOptions : ReportOutputs {
+  std::vector<std::string> a;  ///< Of two batches: the folder of their records, one.
+  std::vector<std::string> b;
+  std::string batch_a;  ///< Its identifier or name; empty: the files are records.
+  std::string batch_b;
+  std::string label_a = "A";
+  std::string label_b = "B";
+};
+
+Result<std::string> run_compare(const CompareOptions& options) {
+  const bool batches = !options.batch_a.empty() || !options.batch_b.empty();
+  if (batches &&
+      (options.batch_a.empty() || options.batch_b.empty() || options.a.size() != 1 || !options.b.empty())) {
+    return base::usage_error("--batch-a, --batch-b: both are to be named, and one folder of records, not {}",
+                             options.a.size() + options.b.size());
+  }
+  if (!batches && (options.a.empty() || options.b.empty())) {
+    return base::usage_error("compare needs records on both sides: stickslip compare A… -- B…");
+  }
+  if (auto free = check_outputs(options); !free) return tl::unexpected(free.error());
+  const bool with_traces = !options.page.empty();
+  const Result<report::ChartLibrary> charts =
+      with_traces ? report::read_chart_library() : report::ChartLibrary{};
+  if (!charts) return tl::unexpected(charts.error());
+  const auto side = [&](const std::string& label, const std::string& batch,
+                        const std::vector<std::string>& files) {
+    return batches ? report::read_batch(label, batch, options.a.front(), with_traces)
+                   : report::read_material(label, files, with_traces);
+  };
+  const Result<report::Material> a = side(options.label_a, options.batch_a, options.a);
+  if (!a) return tl::unexpected(a.error());
+  const Result<report::Material> b = side(options.label_b, options.batch_b, options.b);
+  if (!b) return tl::unexpected(b.error());
+  const report::MaterialComparison comparison = report::compare_materials(*a, *b);
+  return deliver(options, report::comparison_csv(*a, *b, comparison),
+                 with_traces ? report::comparison_page(*a, *b, comparison, *charts) : "",
+                 report::comparison_json(*a, *b, comparison), report::comparison_text(*a, *b, comparison));
+}
+
+constexpr const char* kCompareExamples =
+    R"(Compares two materials at each speed: difference with 95 % interval, Welch's t test, effect size (Hedges' g), and how
+many tests of each would have found a difference as large with 80 % and 90 % probability.
+
+Examples:
+  stickslip compare thorold/*.h5 -- baie-comeau/*.h5 --label-a Thorold --label-b "Baie Comeau"
+  stickslip compare a*.h5 -- b*.h5 -o comparison.html
+  stickslip compare --batch-a "liner 42" --batch-b "liner 43" records -o comparison.html
+  stickslip compare a*.h5 -- b*.h5 --json --csv comparison.csv)";
+
+}  // namespace
+
+void add_compare(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<CompareOptions>();
+  CLI::App* command = app.add_subcommand("compare", "two materials: stickslip compare A… -- B…");
+  command->footer(kCompareExamples);
+  command->add_option("a", options->a, "records of the one; with --batch-a the folder of both batches")
+      ->type_name("A.h5");
+  command->add_option(kOtherMaterial, options->b, "records of the other; a plain -- does the same")
+      ->type_name("B.h5");
+  command->add_option("--batch-a", options->batch_a, "all tests of a batch, by its identifier or name")
+      ->type_name("BATCH");
+  command->add_option("--batch-b", options->batch_b, "all tests of the other batch")->type_name("BATCH");
+  command->add_option("--label-a", options->label_a, "what the one is called")->type_name("NAME");
+  command->add_option("--label-b", options->label_b, "what the other is called")->type_name("NAME");
+  add_report_outputs(*command, *options);
+  choose(*command, chosen, [options] { return run_compare(*options); });
+}
+
+}  // namespace stickslip::cli

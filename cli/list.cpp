@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "cli/ask.hpp"
+#include "cli/json_words.hpp"
+#include "cli/subcommands.hpp"
+#include <nlohmann/json.hpp>
+
+namespace stickslip::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string line_of_test(const Json& test) {
+  const Json& results = test["results"];
+  return fmt::format("{:>5}  {:<15}  {:>7}  {:>7}  {:>7}  {:>6}  {:<18}  {}\n",
+                     test["number"].get<std::int64_t>(), word(results, "regime"), number(results, "mu_s", 4),
+                     number(results, "mu_k", 4), number(results, "delta_mu", 4),
+                     number(results, "cycle_count", 0), word(test, "cause"), word(test, "file"));
+}
+
+base::Result<std::string> run_list(const BenchOptions& options) {
+  const base::Result<Json> list = ask(options, {"GET", "/v1/tests", {}, {}, {}});
+  if (!list) return tl::unexpected(list.error());
+  if (options.json) return list->dump(2) + "\n";
+  std::string text = fmt::format("{:>5}  {:<15}  {:>7}  {:>7}  {:>7}  {:>6}  {:<18}  {}\n", "test", "regime",
+                                 "S", "K", "S - K", "cycles", "ended", "file");
+  for (const Json& test : (*list)["tests"]) text += line_of_test(test);
+  return text;
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<BenchOptions>();
+  CLI::App* command = app.add_subcommand("list", "the tests of the running daemon");
+  add_bench_options(*command, *options, false);
+  choose(*command, chosen, [options] { return run_list(*options); });
+}
+
+}  // namespace stickslip::cli

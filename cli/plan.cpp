@@ -1,0 +1,78 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "cli/ask.hpp"
+#include "cli/json_words.hpp"
+#include "cli/plan_keys.hpp"
+#include "cli/subcommands.hpp"
+#include <nlohmann/json.hpp>
+
+#include "core/base/text.hpp"
+
+namespace stickslip::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct PlanOptions : BenchOptions {
+  bool clear = false;
+  std::array<PlanKey, 7> keys{{{"name", "of the sample"},
+                               {"grade", "of the paper"},
+                               {"direction", "such as MD"},
+                               {"side", "such as wire"},
+                               {"operator", "who measures"},
+                               {"replicate", "from 1"},
+                               {"pull_speed", "with unit: \"12 in/min\""}}};
+};
+
+/// A bare number stays one: a speed is in m/s then, as in all of the command line.
+Json plan_value(std::string_view key, const std::string& typed) {
+  if (key != "replicate" && key != "pull_speed") return typed;
+  Json parsed = Json::parse(typed, nullptr, false);
+  return parsed.is_discarded() ? Json(typed) : parsed;
+}
+
+base::Result<std::string> run_plan(const PlanOptions& options) {
+  base::Result<Json> plan = ask(options, {"GET", "/v1/plan", {}, {}, {}});
+  if (!plan) return tl::unexpected(plan.error());
+  if (options.clear) plan = Json::object();
+  bool changed = options.clear;
+  for (const PlanKey& key : options.keys) {
+    if (key.typed.empty()) continue;
+    (*plan)[key.key] = plan_value(key.key, key.typed);
+    changed = true;
+  }
+  if (changed) {
+    const base::Result<std::string> said = body_of(*plan);
+    if (!said) return tl::unexpected(said.error());
+    plan = ask(options, {"PUT", "/v1/plan", *said, {}, {}});
+    if (!plan) return tl::unexpected(plan.error());
+  }
+  if (options.json) return plan->dump(2) + "\n";
+  std::string text;
+  for (const auto& [key, value] : plan->items()) {
+    std::string shown = value.is_string() ? value.get<std::string>() : value.dump();
+    if (value.is_null()) shown = "–";
+    if (key == "pull_speed" && value.is_number()) shown = fmt::format("{:.6g} m/s", value.get<double>());
+    text += fmt::format("{:<10}  {}\n", key, base::printable(shown));
+  }
+  return text;
+}
+
+}  // namespace
+
+void add_plan(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<PlanOptions>();
+  CLI::App* command =
+      app.add_subcommand("plan", "say what the tests to come are of; without options: show it");
+  add_bench_options(*command, *options, true);
+  command->add_flag("--clear", options->clear, "forget what was said before");
+  add_plan_keys(*command, options->keys);
+  choose(*command, chosen, [options] { return run_plan(*options); });
+}
+
+}  // namespace stickslip::cli
