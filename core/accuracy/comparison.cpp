@@ -14,7 +14,7 @@
 namespace stickslip::accuracy {
 namespace {
 
-/// Of the CVODE run that is the reference where nothing else is, and of the one beside it.
+/// Accuracies of the CVODE run that serves as reference, and of the run that it is compared with.
 constexpr double kTightest = 1e-12;
 constexpr double kNextTightest = 1e-11;
 

@@ -1,5 +1,5 @@
 /// \file
-/// Error against time: the same motion by every method, against the best reference there is.
+/// Error and computing time of every method for one motion, compared with the best available reference.
 ///
 ///     const std::unique_ptr<base::Clock> clock = base::make_system_clock();
 ///     const MotionComparison table = compare_motion({motion, 350.0, 2800, 1}, shipped_methods(), *clock);
@@ -18,6 +18,7 @@
 
 namespace stickslip::accuracy {
 
+/// The motion to be computed, and its sampling.
 struct MotionCase {
   sim::Motion motion;
   double scan_rate_Hz = 350.0;
@@ -25,13 +26,13 @@ struct MotionCase {
   std::uint64_t seed = 1;
 };
 
-/// One row.
+/// One row: a method at one setting.
 struct MethodMeasurement {
   std::string method;
   std::string setting;
-  std::string lacks;  ///< Why there are no numbers; empty if there are.
-  /// Largest difference of the coefficient from the reference; none for the reference itself (and what
-  /// agrees with it in every bit), infinity if the method left the finite numbers.
+  std::string lacks;  ///< Reason why the method cannot compute this motion; empty if it can.
+  /// Largest difference of the coefficient from the reference; nullopt for the reference itself (and for
+  /// equality in every bit), infinity if the method gave a value that is not finite.
   std::optional<double> largest_error;
   double ns_per_scan = 0.0;
   std::int64_t capture_count = 0;
@@ -43,16 +44,16 @@ struct MotionComparison {
   std::int64_t capture_count = 0;       ///< By the reference.
   std::vector<MethodMeasurement> rows;  ///< In the order of the methods.
 
-  /// Of the exact closed forms; nothing if the motion has none.
+  /// Computing time of the closed forms; nullopt if the motion has none.
   [[nodiscard]] std::optional<double> exact_ns_per_scan() const;
 };
 
 /// 0 … 1
 using Progress = std::function<void(double done)>;
 
-/// Each method is timed by least_time_ns(). The reference is in 50 digits where the motion allows; else
-/// CVODE at its tightest, as uncertain as the accuracy that it has in use, and at least as it is
-/// different from ten times that tolerance.
+/// Runs and times each method (least_time_ns()). The reference has 50 digits if the motion allows it;
+/// otherwise it is CVODE at its smallest tolerance. Its uncertainty is then the larger of its stated accuracy
+/// and the difference from a run with ten times that tolerance.
 [[nodiscard]] MotionComparison compare_motion(const MotionCase& motion_case,
                                               std::span<const std::unique_ptr<Method>> methods,
                                               const base::Clock& clock, const Progress& progress = {});

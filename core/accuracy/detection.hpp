@@ -1,6 +1,6 @@
 /// \file
-/// The same question for detection: how far from the truth is S − K, and what does a cycle cost? An estimator
-/// takes part by filling Estimator and standing in shipped_estimators().
+/// Error of S − K and computing time per cycle of each estimator of a test. A new estimator implements
+/// Estimator and is added to shipped_estimators().
 ///
 ///     const std::vector<DetectionRow> rows = compare_estimators(test, shipped_estimators(), *clock);
 #pragma once
@@ -21,7 +21,7 @@
 
 namespace stickslip::accuracy {
 
-/// One test as an estimator sees it, and what it should find.
+/// One test, input of the estimators, with its truth.
 struct ObservedTest {
   analysis::AnalysisSettings settings;  ///< Rate, A/D step, tester, method.
   std::vector<base::ScanIndex> scan;    ///< Rises; a jump is a gap.
@@ -29,7 +29,7 @@ struct ObservedTest {
   std::vector<bool> saturated;          ///< One for each scan.
   model::TestTruth truth;
 
-  /// Mean S − K of the slips that began by giving way; nothing if there were none.
+  /// Mean S − K of the slips that began from sticking; nullopt if there were none.
   [[nodiscard]] std::optional<double> true_delta_mu() const;
 };
 
@@ -40,13 +40,13 @@ class Estimator {
 
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
   [[nodiscard]] virtual std::string setting() const = 0;
-  /// S − K of the whole test; without the truth, of course.
+  /// S − K of the whole test; must not use the truth.
   [[nodiscard]] virtual analysis::Estimate delta_mu(const ObservedTest& test) const = 0;
 };
 
-/// What the instrument does: analysis::TestAnalysis, scan by scan, with the fit of the whole test at its end.
+/// The instrument's own estimator: analysis::TestAnalysis with the fit of the whole test.
 [[nodiscard]] std::unique_ptr<Estimator> make_whole_test_fit();
-/// What the tradition has: first peak less the mean of the cycles that follow.
+/// The traditional estimator: first peak minus the mean of the following cycles.
 [[nodiscard]] std::unique_ptr<Estimator> make_traditional_difference();
 
 [[nodiscard]] std::vector<std::unique_ptr<Estimator>> shipped_estimators();
@@ -56,7 +56,7 @@ struct DetectionRow {
   std::string setting;
   std::string reason;                  ///< Why there is no estimate; empty if there is.
   std::optional<double> error;         ///< Estimate less truth, of S − K.
-  std::optional<double> us_per_cycle;  ///< None if the truth has no cycle.
+  std::optional<double> us_per_cycle;  ///< Nullopt if the truth has no cycle.
 };
 
 /// Timed as compare_motion() does.

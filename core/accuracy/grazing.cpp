@@ -71,8 +71,7 @@ GoesOn goes_on(const Method& method, double gamma_over_2omega, double Q) {
   const std::size_t last = scans(2.0 * period_s);
   const std::size_t to_first_slip = scans(motion.mu_s / rate);
   std::vector<double> coefficient(to_first_slip + scans(cycles * period_s) + last);
-  // No longer than it is looked at: who is asked for an accuracy over the whole course must not work for
-  // more.
+  // No longer than it is observed: a method with an accuracy over the whole course must not work for more.
   motion.belt[0].duration_s = static_cast<double>(coefficient.size()) / kScanRate_Hz;
   if (method.run(motion, kScanRate_Hz, 1, coefficient).undecided_count > 0) return GoesOn::kUndecided;
   const std::span<const double> all = coefficient;

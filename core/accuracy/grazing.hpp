@@ -1,6 +1,7 @@
 /// \file
-/// The decisive event: a hair below the threshold the sled still reaches the belt's speed and sticks, a hair
-/// above it does not, and the oscillation dies. Which methods see the difference, and down to where?
+/// Test of the methods near the threshold: just below it the sled still reaches the belt's speed and sticks,
+/// just above it does not and the oscillation decays. The table shows down to which distance each method is
+/// correct.
 #pragma once
 
 #include <array>
@@ -18,11 +19,11 @@ namespace stickslip::accuracy {
 inline constexpr int kFinestStep = 13;
 
 enum class Grazing {
-  kFound,     ///< Sticks for ever below, dies above.
-  kMissed,    ///< Dies on both sides: the capture below was stepped over.
-  kFalse,     ///< Sticks for ever on both sides: one above that is not there.
-  kReversed,  ///< Both.
-  kUndecided  ///< The method itself calls it too close to tell, on one side at least.
+  kFound,     ///< Sticks in every cycle below, decays above: correct.
+  kMissed,    ///< Decays on both sides: the capture below was missed.
+  kFalse,     ///< Sticks on both sides: a false capture above.
+  kReversed,  ///< Sticks above and decays below: both errors.
+  kUndecided  ///< The method reports it as undecided, on at least one side.
 };
 [[nodiscard]] std::string_view name(Grazing grazing) noexcept;
 
@@ -38,17 +39,18 @@ struct GrazingRow {
 
 enum class GoesOn { kYes, kNo, kUndecided };
 
-/// Does the oscillation of this motion still go on, at more than half its first range, after so many cycles
-/// that a ring-down would be well below that?
+/// Whether the oscillation persists: its range exceeds half of the first one after so many cycles that a
+/// ring-down would be well below that.
 [[nodiscard]] GoesOn goes_on(const Method& method, double gamma_over_2omega, double Q);
 
-/// \param gamma_over_2omega  0.005 … 1: of less, a ring-down lasts too long.
+/// \param gamma_over_2omega  0.005 … 1: below that a ring-down lasts too long.
 [[nodiscard]] std::vector<GrazingRow> grazing_table(double gamma_over_2omega,
                                                     std::span<const std::unique_ptr<Method>> methods,
                                                     const Progress& progress = {});
 
-/// Q at which this method's oscillation dies, by bisection.
-/// \param low,high  goes on at low and dies at high. \param width  of what is left of them, > 0.
+/// Q at which this method's oscillation begins to decay, by bisection.
+/// \param low,high  the oscillation persists at low and decays at high.
+/// \param width  final width of the bracket, > 0.
 [[nodiscard]] double apparent_threshold(const Method& method, double gamma_over_2omega, double low,
                                         double high, double width);
 

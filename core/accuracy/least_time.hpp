@@ -1,5 +1,5 @@
 /// \file
-/// How long something takes when nothing disturbs it.
+/// Computing time of a function, without disturbances.
 #pragma once
 
 #include <algorithm>
@@ -10,12 +10,13 @@
 
 namespace stickslip::accuracy {
 
-/// Repeats it until a clock with a resolution of microseconds has three digits. The least time counts: what
-/// else the machine does only ever adds. \return ns, ≥ 1.
+/// Runs `work` repeatedly, until a clock with a resolution of microseconds gives three digits, and takes the
+/// shortest time, since disturbances only add to it.
+/// \return ns, ≥ 1.
 template <typename Work>
 [[nodiscard]] std::int64_t least_time_ns(const base::Clock& clock, const Work& work) {
   constexpr std::int64_t kEnough_ns = 20'000'000;
-  // One run of something slow may have been disturbed, three hardly; but nobody waits for ever.
+  // At least three runs, since a single slow one may have been disturbed, unless they take too long.
   constexpr int kFewestRuns = 3;
   constexpr std::int64_t kTooLong_ns = 300'000'000;
   std::int64_t least_ns = std::numeric_limits<std::int64_t>::max();

@@ -1,5 +1,5 @@
 /// \file
-/// One interface for every way of computing a motion that `stickslip accuracy` compares.
+/// Interface of the methods for computing a motion that `stickslip accuracy` compares.
 ///
 ///     std::vector<double> coefficient(3500);
 ///     for (const auto& method : shipped_methods())
@@ -17,10 +17,10 @@
 
 namespace stickslip::accuracy {
 
-/// What a run tells beside the coefficient.
+/// Results of a run beside the coefficient.
 struct RunOutcome {
   std::int64_t capture_count = 0;    ///< Slips that ended because the sled reached the belt's speed.
-  std::int64_t undecided_count = 0;  ///< Captures, or none, that the method itself calls too close to tell.
+  std::int64_t undecided_count = 0;  ///< Captures, found or not, that the method reports as undecided.
 };
 
 /// Stateless. Thread-safe.
@@ -28,11 +28,11 @@ class Method {
  public:
   virtual ~Method() = default;
 
-  /// Rows of one method make one curve.
+  /// Name of the method; rows with one name form one curve.
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
-  /// What buys accuracy: tolerance, step or width; empty if there is nothing to choose.
+  /// Accuracy setting: tolerance, step or width; empty if there is none.
   [[nodiscard]] virtual std::string setting() const = 0;
-  /// What of this motion it cannot do; empty if it can do all.
+  /// Feature of this motion that the method does not support; empty if it supports all.
   [[nodiscard]] virtual std::string_view lacks(const sim::Motion& motion) const noexcept = 0;
   /// The coefficient at scans 0, 1, …
   /// \param motion  lacks() is empty. \param scan_rate_Hz > 0. \param seed of the motion's random numbers.
@@ -45,16 +45,17 @@ class Method {
 /// sim::NumericSolver: SUNDIALS CVODE with root finding and our test of grazing.
 /// \param accuracy 1e-12 … 1e-2.
 [[nodiscard]] std::unique_ptr<Method> make_cvode(double accuracy);
-/// Boost.odeint's Dormand–Prince 5(4) from scan to scan; a sled that is past the belt's speed at a scan
-/// is taken back by bisection. \param tolerance > 0, absolute and relative, of a step.
+/// Boost.odeint's Dormand–Prince 5(4) from scan to scan; a sled that is past the belt's speed at a scan is
+/// taken back by bisection.
+/// \param tolerance > 0, absolute and relative, of a step.
 [[nodiscard]] std::unique_ptr<Method> make_odeint(double tolerance);
-/// Semi-implicit (symplectic) Euler; who passes the belt's speed in a step, sticks.
+/// Semi-implicit (symplectic) Euler; the sled sticks when it passes the belt's speed in a step.
 /// \param steps_per_scan ≥ 1
 [[nodiscard]] std::unique_ptr<Method> make_euler(int steps_per_scan);
-/// ρ, our choice: wide enough that the curve still has a maximum near S.
+/// ρ of make_tanh(), chosen so large that the curve has a maximum near S.
 inline constexpr double kStribeckOverTanh = 3.0;
 
-/// Friction made smooth, so that nothing ever sticks, by Runge–Kutta of order 4:
+/// Smoothed friction, with which the sled never sticks, solved by Runge–Kutta of order 4:
 ///     μ(V) = (K + (S − K) e^(−(V/ρw)²)) tanh(V/w).
 /// [the usual combination of Stribeck's curve and tanh: Andersson, Söderberg and Björklund, Tribology
 ///  International 40(4):580–587, 2007, (8); 1 : 10 as Simscape's Translational Friction]

@@ -17,7 +17,7 @@ using sim::Motion;
 
 using State = std::array<double, 2>;  // c, c′
 
-/// An event's time, s: below it a bisection gains nothing.
+/// Resolution of an event's time at which the bisection ends, s.
 constexpr double kClosest_s = 1e-15;
 
 class Odeint final : public Method {

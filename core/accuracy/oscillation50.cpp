@@ -7,7 +7,7 @@
 namespace stickslip::accuracy {
 namespace {
 
-/// Of the 50 digits of a Real; the rest is lost to rounding in the function.
+/// Bits to which roots are refined; the other digits of a Real are lost to rounding in the function.
 constexpr int kRootBits = 155;  // 46 digits.
 
 /// \param low,high  y goes from below the level to at least the level without turning back.

@@ -1,6 +1,6 @@
 /// \file
-/// The damped oscillation once more in 50 digits, straight from the paper's formulas and written
-/// without regard to cancellation: what the stable forms in doubles are compared with.
+/// The damped oscillation in 50 digits, directly from the paper's formulas and without regard to
+/// cancellation: reference for the stable forms in double precision.
 ///
 ///     const Oscillation50 slip{K, D, r, gamma, omega_squared};
 ///     const std::optional<Real> capture = slip.first_rise_of_rate(belt_rate);

@@ -1,5 +1,5 @@
 /// \file
-/// What the peers have in common: the forces on a sled, and Coulomb's two sentences.
+/// Common part of the stepping methods: forces on the sled, and Coulomb friction.
 #pragma once
 
 #include <cmath>
@@ -23,7 +23,7 @@ struct PeerSled {
   bool one_way;
   double damper_share_s;
 
-  /// Of the coupling, as c″.
+  /// Acceleration c″ by the coupling.
   [[nodiscard]] double pull(double c, double rate) const {
     return one_way && c < 0.0 ? 0.0 : -omega0_squared * c - gamma * rate;
   }

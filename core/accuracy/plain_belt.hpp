@@ -1,5 +1,5 @@
 /// \file
-/// The belt as the stepping peers see it: one speed until the next segment.
+/// Belt with a constant speed in each segment, for the stepping methods.
 #pragma once
 
 #include <cstddef>

@@ -19,11 +19,11 @@
 
 namespace stickslip::accuracy {
 
-/// What keeps the motion from having a reference in 50 digits; empty if nothing does: belt at constant
-/// speeds, any damping, either coupling, either convention of onset, paper everywhere the same.
+/// Feature of the motion that excludes a reference in 50 digits; empty if there is none. Supported: constant
+/// belt speeds, any damping, both couplings, both onset conventions, uniform paper.
 [[nodiscard]] std::string_view lacks_reference(const sim::Motion& motion) noexcept;
 
-/// Needs the same memory however long it runs. Thread-bound.
+/// Runs in constant memory. Thread-bound.
 class Reference {
  public:
   /// \param motion  lacks_reference() is empty. \param scan_rate_Hz > 0.
@@ -31,9 +31,9 @@ class Reference {
 
   /// The coefficient at the next scans.
   void next(std::span<double> coefficient);
-  /// Goes on by `scans` at the cost of the events alone.
+  /// Skips `scans` scans; takes time only for the events between.
   void skip(std::int64_t scans);
-  /// The coefficient at the next scan, in all its digits; stays there.
+  /// The coefficient at the next scan, with all digits; does not advance.
   [[nodiscard]] Real now();
 
   /// Slips so far that ended because the sled reached the belt's speed.

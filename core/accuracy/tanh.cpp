@@ -12,7 +12,7 @@ namespace {
 
 using sim::Motion;
 
-/// Step times slope of the friction, at the most: half the limit 2.78 of the method's stability.
+/// Largest product of step and slope of the friction: half of the method's stability limit 2.78.
 constexpr double kStepTimesSlope = 1.4;
 constexpr int kFewestSteps = 4;
 

@@ -1,6 +1,6 @@
 /// \file
-/// What S − K of one cycle costs and is worth, live: each estimator at several scan rates, against the least
-/// error that any could have.
+/// Error and computing time of live S − K per cycle: each estimator tier at several scan rates, relative to
+/// the Cramér–Rao bound.
 ///
 ///     for (const TierRow& row : compare_tiers(*clock, peer)) …
 #pragma once
@@ -16,7 +16,7 @@
 
 namespace stickslip::accuracy {
 
-/// What is simulated, for people.
+/// Description of the simulated scene.
 inline constexpr std::string_view kTierScene =
     "S 0.35, K 0.30, 20 Hz, γ/2ω 0.022 characterised, 12 in/min, noise 0.001 rms; bound: the least sd of one "
     "cycle "
@@ -33,14 +33,14 @@ struct TierRow {
   double us_per_cycle = 0.0;  ///< Of the whole detector over the whole test, by the cycles.
 };
 
-/// What all estimators get at one scan rate: the force of several tests, scan by scan.
+/// Input of all estimators at one scan rate: the force of several tests.
 struct TierScene {
   double scan_rate_Hz = 0.0;
   double frequency_Hz = 0.0;  ///< Of the oscillation.
   std::vector<std::vector<double>> tests;
 };
 
-/// Of one scene by somebody else's program, which sees whole tests at once and measures its own time.
+/// Result of an external program for one scene; it gets whole tests and measures its own time.
 struct PeerOutcome {
   double ns_per_scan = 0.0;       ///< Of the first test.
   std::vector<double> estimates;  ///< Of S − K, of the cycles of all tests but the first of each.

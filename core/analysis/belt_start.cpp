@@ -12,13 +12,14 @@ namespace {
 
 /// A rise that starts below this part of its peak is the loading of a test from rest.
 constexpr double kFromRest = 0.5;
-/// The part of the loading that is used, of the way from rest to the peak: above, the slip may have begun,
-/// since S is at least 0.85 of the peak up to the threshold speed for S − K up to K/6 [Penner 1995, (2)];
-/// below, a sled that the start left behind catches up.
+/// Range of the loading that is fitted, as fractions of the way from rest to the peak. Above it the slip may
+/// have begun: S is at least 0.85 of the peak up to the threshold speed, for S − K up to K/6 [Penner 1995,
+/// (2)]. Below it the sled may still lag behind the belt's start.
 constexpr double kLow = 0.2;
 constexpr double kHigh = 0.8;
 constexpr std::size_t kFewestStartScans = 4;
-/// Scans before the start from which the zero is taken, and how long before it they end.
+/// Fewest scans before the start of which the zero is the mean, and the time before the start at which they
+/// end.
 constexpr std::size_t kFewestIdle = 16;
 constexpr double kIdleEndsBefore_s = 0.01;
 constexpr int kIterations = 12;

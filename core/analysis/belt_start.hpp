@@ -1,5 +1,6 @@
 /// \file
-/// When did the belt start? A plan tells the speed from then on, the trace only shows when force appears.
+/// Start time of the belt, from the loading: a plan gives the speed from the start on, the trace only the
+/// force.
 #pragma once
 
 #include <optional>
@@ -10,13 +11,15 @@
 
 namespace stickslip::analysis {
 
-/// The plan over the time of the trace, laid so that the loading up to the first slip agrees with it: there
-/// the force is r ∫p from the start on, r and the start being fitted to the middle of the loading by least
-/// squares, about the mean of the scans before. A belt that starts with a jump to v leaves the sled behind
-/// for v/(K g), which has the loading lag by half of that: it is taken off. Of 20 scans with a noise of 1/50
-/// of S − K the start is known to 0.3 ms, on a ramp from 0.3 v_th by 2 mm/s² 0.03 % of the speed. \param
-/// first  the first slip. \param gravity_m_per_s2 > 0 \return one speed throughout if the plan says so;
-/// nothing if the trace does not hold the loading from rest.
+/// Belt speed over the time of the trace: the plan, shifted so that it agrees with the loading up to the
+/// first slip. The loading is r ∫p from the start on, above the mean of the scans before. Least squares over
+/// its middle determine r and the start. A belt that starts with a jump to v leaves the sled behind for v/(K
+/// g), and the loading lags by half of that; the lag is subtracted. From 20 scans with noise of 1/50 of S − K
+/// the start has a standard error of 0.3 ms, which on a ramp from 0.3 v_th by 2 mm/s² is 0.03 % of the speed.
+/// \param first  the first slip.
+/// \param gravity_m_per_s2 > 0.
+/// \return constant_belt() if the plan has one speed; nullopt if the trace does not contain the loading from
+/// rest.
 [[nodiscard]] std::optional<model::BeltCourse> belt_from_loading(const estimate::Trace& trace,
                                                                  const detect::Fall& first,
                                                                  const model::PullSpeed& plan,

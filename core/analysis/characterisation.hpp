@@ -1,6 +1,6 @@
 /// \file
-/// ω and γ belong to the tester, not to the paper: measured once on ring-downs, they hold for every test
-/// until something is changed, and every test is a check of them and of its pull speed.
+/// Characterisation of a tester: ω and γ, which belong to the tester and not to the paper, pooled from
+/// ring-downs. Each later test checks them and its pull speed.
 #pragma once
 
 #include <optional>
@@ -16,11 +16,11 @@
 
 namespace stickslip::analysis {
 
-/// What one test says about the tester, with the paper's numbers estimated beside it.
+/// Estimate of the tester's parameters from one test.
 struct TesterEstimate {
   double omega = 0.0;  ///< rad/s
   double gamma_over_2omega = 0.0;
-  double speed_over_gravity_s = 0.0;  ///< v/g = r/ω₀², from the slope of the sticks.
+  double speed_over_gravity_s = 0.0;  ///< v/g = r/ω₀², from the stick rate.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 
   /// \param covariance  of (ω, γ, r).
@@ -28,54 +28,59 @@ struct TesterEstimate {
                                            const Eigen::Matrix3d& covariance);
 };
 
+/// Pooled ω and γ/2ω with the test of their agreement.
 struct Characterisation {
-  estimate::SharedPrior::Coupling coupling;  ///< Covariance widened if the ring-downs disagree.
+  estimate::SharedPrior::Coupling coupling;  ///< Covariance scaled by χ²/freedom where that exceeds 1.
   int ring_downs = 0;
   double chi_squared = 0.0;  ///< Of the ring-downs about their mean.
   int freedom = 0;           ///< 2 (ring_downs − 1)
 
-  /// Probability of a χ² at least this large if they agree; 1 for a single ring-down.
+  /// Probability of a χ² at least this large if the ring-downs have equal parameters; 1 for a single one.
   [[nodiscard]] double probability() const;
 };
 
-/// Probability below which a disagreement is a finding. Every test is asked: at one in ten thousand a season
-/// of tests on a sound tester hardly raises one, while a changed spring is off by many standard errors.
+/// Probability below which a test that disagrees with the characterisation is reported. Every test is
+/// checked; at 1e-4 a season of tests of a sound tester causes hardly one false report, while a changed
+/// spring is off by many standard errors.
 inline constexpr double kDisagreement = 1e-4;
-/// Probability below which the characterisation is not used for the test. γ of ten cycles alone is 28 times
-/// less certain: at one in ten thousand chance alone made the rms error of γ 1.8 times the bound, here it
-/// adds 0.1 %.
+/// Probability below which the characterisation is not used for a test. The γ of ten cycles alone has a
+/// standard error 28 times larger. At 1e-4, false rejections raised the rms error of γ to 1.8 times the
+/// bound; at 1e-7 they add 0.1 %.
 inline constexpr double kNotThisTester = 1e-7;
 
-/// Mean of the ring-downs, weighted by their covariances. Where they differ more than those say (χ² above its
-/// freedom) the covariance is widened by that ratio [Birge, Phys. Rev. 40:207–227, 1932].
-/// \return nothing if there is none or a covariance is singular.
+/// Mean of the ring-downs, weighted by their inverse covariances. If χ² exceeds its degrees of freedom, the
+/// covariance is multiplied by their ratio [Birge, Phys. Rev. 40:207–227, 1932].
+/// \return nullopt if there is no ring-down or a covariance is singular.
 [[nodiscard]] std::optional<Characterisation> pool_ring_downs(std::span<const TesterEstimate> ring_downs);
 
-/// Part by which the speed may be off before it is a finding: belts keep a twentieth, wrong settings do not.
+/// Relative deviation of the measured from the planned speed up to which nothing is reported: belts hold
+/// their speed to 5 %.
 inline constexpr double kSpeedTolerance = 0.05;
 
-/// What a test says about the tester that was characterised.
+/// Check of one test against the characterisation and the planned speed.
 struct TesterCheck {
-  double chi_squared = 0.0;  ///< Of ω and γ/2ω of the test alone, two degrees of freedom.
+  double chi_squared = 0.0;  ///< Of the test alone against the characterisation; 2 degrees of freedom.
   double probability = 1.0;
-  Estimate pull_speed;                ///< m/s, from the stick slope and ω₀.
-  std::vector<std::string> findings;  ///< For people; empty: nothing to object to.
+  Estimate pull_speed;                ///< m/s, from the stick rate and ω₀.
+  std::vector<std::string> findings;  ///< Text for the user; empty if there is none.
 
   [[nodiscard]] bool agrees() const noexcept { return probability >= kDisagreement; }
-  /// The characterisation counts for this test.
+  /// The characterisation is used for this test.
   [[nodiscard]] bool used() const noexcept { return probability >= kNotThisTester; }
 };
 
 /// v = (v/g) g, m/s, with its standard error.
 [[nodiscard]] Estimate pull_speed_of(const TesterEstimate& estimate, double gravity_m_per_s2);
 
-/// What to say if the speed measured is not the planned one: off by kSpeedTolerance and three standard
-/// errors. Nothing if there is no plan or no speed.
+/// Text of the finding if the measured speed differs from the planned one by more than kSpeedTolerance and by
+/// more than three standard errors. Nullopt otherwise, and if either is unknown.
 [[nodiscard]] std::optional<std::string> speed_finding(const Estimate& measured_m_per_s,
                                                        const model::Tester& tester);
 
-/// \param alone  the test without the characterisation. \param with  the same with it: only there the speed
-///               is known well. \param tester  with the planned speed, if there is a plan.
+/// \param alone  estimate without the characterisation.
+/// \param with  estimate with it; the speed is taken from this one, which is the more precise.
+/// \param known  the characterisation.
+/// \param tester  holds the planned speed, if there is one.
 [[nodiscard]] TesterCheck check_tester(const TesterEstimate& alone, const TesterEstimate& with,
                                        const estimate::SharedPrior::Coupling& known,
                                        const model::Tester& tester);

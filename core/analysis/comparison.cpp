@@ -25,8 +25,9 @@ MeanWithError mean_of(const Replicates& tests) {
   return {tests.mean, *tests.standard_deviation / std::sqrt(n), n};
 }
 
-/// The noncentrality at which the noncentral t with these degrees of freedom falls below `t` with
-/// this probability. \throws std::runtime_error where there is no answer in double.
+/// The noncentrality at which the noncentral t with these degrees of freedom falls below `t` with this
+/// probability.
+/// \throws std::runtime_error where there is no answer in double.
 double noncentrality(double t, double degrees_of_freedom, double probability) {
   const auto excess = [&](double centre) {
     return boost::math::cdf(boost::math::non_central_t{degrees_of_freedom, centre}, t) - probability;
@@ -39,7 +40,7 @@ double noncentrality(double t, double degrees_of_freedom, double probability) {
   constexpr int kMostDoublings = 20;
   for (int i = 0; i < kMostDoublings && !(excess(low) > 0.0); ++i) low -= (width *= 2.0);
   for (int i = 0; i < kMostDoublings && !(excess(high) < 0.0); ++i) high += (width *= 2.0);
-  constexpr int kBits = 40;  // Twelve digits: more than anybody reads of a confidence interval.
+  constexpr int kBits = 40;  // Twelve digits, enough for a confidence interval.
   std::uintmax_t most_steps = 200;
   const auto [below, above] = boost::math::tools::toms748_solve(
       excess, low, high, boost::math::tools::eps_tolerance<double>{kBits}, most_steps);
@@ -154,7 +155,7 @@ Comparison compare(const Replicates& a, const Replicates& b) {
   }
   result.welch = welch(mean_of(a), mean_of(b));
   result.effect = effect_size(a, b);
-  // Beyond this each test shows it: two tests of each have a power of 0.99999.
+  // Effect beyond which two tests of each material have a power of 0.99999.
   constexpr double kLargestEffect = 25.0;
   const double effect = std::min(std::abs(result.effect->g), kLargestEffect);
   result.needed = TestsNeeded{tests_needed(effect, 0.8), tests_needed(effect, 0.9)};

@@ -1,5 +1,6 @@
 /// \file
-/// Do two materials differ, by how much, and how many tests would have shown it?
+/// Comparison of two materials: significance and size of the difference, and the number of tests needed to
+/// detect it.
 ///
 ///     const Comparison found = compare(describe_replicates(a), describe_replicates(b));
 ///     if (found.welch && found.welch->p < kSignificance) …
@@ -22,14 +23,14 @@ struct Welch {
   double p = 0.0;                   ///< Two-sided.
 };
 
-/// A mean of several tests as Welch's test takes it.
+/// Mean of several tests: input of welch().
 struct MeanWithError {
   double mean = 0.0;
   double standard_error = 0.0;
   double count = 0.0;  ///< Of tests, ≥ 2.
 };
 
-/// \param a,b  not both without error.
+/// \param a,b  at least one with a standard error > 0.
 [[nodiscard]] Welch welch(const MeanWithError& a, const MeanWithError& b);
 
 /// The difference in units of the scatter of single tests, without the bias of small samples
@@ -41,40 +42,47 @@ struct EffectSize {
                  ///< Educ. Psychol. Meas. 61, 532]; none where that has no answer in double.
 };
 
-/// Tests of each material with which Student's t test (two-sided, 5 %) finds a difference as large as the one
-/// seen, with this probability [Cohen 1988, Statistical Power Analysis, 2.4; noncentral t by Boost.Math].
+/// Number of tests of each material with which Student's t test (two-sided, 5 %) detects a difference as
+/// large as the one found, with the stated power [Cohen 1988, Statistical Power Analysis, 2.4; noncentral t
+/// by Boost.Math].
 struct TestsNeeded {
-  std::optional<int> for_80_percent;  ///< None: more than kMostTestsNeeded.
+  std::optional<int> for_80_percent;  ///< Nullopt: more than kMostTestsNeeded.
   std::optional<int> for_90_percent;
 };
 
 inline constexpr int kMostTestsNeeded = 10'000;
 
+/// All statistics of compare().
 struct Comparison {
   std::optional<Welch> welch;
   std::optional<EffectSize> effect;
   std::optional<TestsNeeded> needed;
-  std::string reason;  ///< Why nothing of this is known; set exactly then.
+  std::string reason;  ///< Why the other members are empty; set exactly then.
 };
 
-/// Needs two values of each, and some scatter.
+/// Requires two values of each material and a scatter > 0; otherwise only `reason` is set.
 [[nodiscard]] Comparison compare(const Replicates& a, const Replicates& b);
 
 /// Probability that Student's t test with `count` tests of each material, two-sided at 5 %, finds a
-/// difference of `effect` standard deviations. \param effect  ≥ 0. \param count  ≥ 2.
+/// difference of `effect` standard deviations.
+/// \param effect  ≥ 0.
+/// \param count  ≥ 2.
 [[nodiscard]] double power_of_t_test(double effect, int count);
 
-/// The least count that reaches the power; none above kMostTestsNeeded. \param power  in (0, 1).
+/// Smallest count that reaches the power; nullopt above kMostTestsNeeded. \param power  in (0, 1).
 [[nodiscard]] std::optional<int> tests_needed(double effect, double power);
 
-/// Of so many tests of A and B some are of one kind (such as: sticking) and the others not. Probability of a
-/// table as unlikely as this one, or more so, if A and B do not differ: two-sided, by the sum of all that are
-/// no likelier [Fisher 1935, J. R. Stat. Soc. 98, 39; hypergeometric distribution by Boost.Math]. \param
-/// a_yes,a_no,b_yes,b_no  ≥ 0. \return  1 where one of the materials or kinds is empty.
+/// Fisher's exact test of a 2 × 2 table: do A and B have equal shares of tests with a property, such as
+/// sticking? Two-sided p: the sum of the probabilities of all tables that are no more probable than this one,
+/// if A and B do not differ [Fisher 1935, J. R. Stat. Soc. 98, 39; hypergeometric distribution by
+/// Boost.Math].
+/// \param a_yes,a_no,b_yes,b_no  ≥ 0.
+/// \return  p; 1 if a row or a column of the table is empty.
 [[nodiscard]] double exact_p(unsigned a_yes, unsigned a_no, unsigned b_yes, unsigned b_no);
 
-/// Several independent tests of "no difference" as one: −2 Σ ln p is χ² with 2k degrees of freedom
-/// [Fisher 1932, Statistical Methods for Research Workers, 21.1]. \param p  at least one, in [0, 1].
+/// Fisher's combined p of k independent tests of no difference: −2 Σ ln p is χ² with 2k degrees of freedom
+/// [Fisher 1932, Statistical Methods for Research Workers, 21.1].
+/// \param p  at least one, in [0, 1].
 [[nodiscard]] double combined_p(std::span<const double> p);
 
 }  // namespace stickslip::analysis

@@ -18,7 +18,7 @@
 namespace stickslip::analysis {
 namespace {
 
-/// What is read off a cycle: half range, period, largest slip speed over that of the belt, mean.
+/// Features of a cycle: half range, period, largest slip speed over belt speed, mean.
 constexpr Eigen::Index kFeatureCount = 4;
 using Features = Eigen::Matrix<double, kFeatureCount, 1>;
 constexpr Eigen::Index kAmplitude = 0;
@@ -26,13 +26,13 @@ constexpr Eigen::Index kPeriod = 1;
 constexpr Eigen::Index kSlipSpeed = 2;
 constexpr Eigen::Index kMean = 3;
 
-/// How much of a slip a sinusoid is laid through about a turning point or the steepest place: two radians,
-/// less than any slip lasts, and one scan more than the numbers fitted at the least. It must not depend on
-/// S − K: to leave out slips that are short of scans would leave out those with a large S − K.
+/// Width of the interval about a turning point, or the steepest point, to which a sinusoid is fitted: two
+/// radians, which every slip exceeds, and at least one scan more than the fitted parameters. The width must
+/// not depend on S − K: to leave out slips that are short of scans would leave out those with a large S − K.
 constexpr double kWidth_rad = 2.0;
 constexpr std::size_t kFewestFitted = 4;
 
-/// Largest distance of two neighbouring scans within a cycle, in scans: further apart is a gap.
+/// Largest distance of neighbouring scans within a cycle, in scan periods; a larger one is a gap.
 constexpr double kGapFromScans = 1.5;
 
 struct Shared {

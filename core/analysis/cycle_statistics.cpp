@@ -16,9 +16,9 @@ namespace stickslip::analysis {
 namespace {
 
 constexpr std::size_t kFewestPeriods = 3;
-/// Probability with which a test without drift is taken to have one. It costs little: a slope that is not
-/// there turns K about the middle of the test by its own error; one that is there and stays in makes a short
-/// ring-down look as if its first slip had been captured.
+/// Significance level of the drift: the probability that a test without drift is corrected for one. Such an
+/// error costs little: it turns K about the middle of the test by the slope's own error. A real drift that is
+/// not corrected costs more: it makes the first slip of a short ring-down look captured.
 constexpr double kDriftLevel = 0.01;
 
 /// From one peak to the next, without a break between.

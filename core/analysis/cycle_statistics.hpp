@@ -1,5 +1,5 @@
 /// \file
-/// What can be said from peak to peak without the model: periods, and the drift of the mean.
+/// Statistics from peak to peak, without the model: periods, and the drift of the mean.
 #pragma once
 
 #include "core/analysis/results.hpp"
@@ -12,8 +12,7 @@ namespace stickslip::analysis {
 /// Slope of the means from peak to peak against time, by least squares: an oscillation averages out.
 [[nodiscard]] Estimate drift_of(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips);
 
-/// The same as something to take off before the model is fitted: none unless it is significant, so that a
-/// test without drift stays as it is.
+/// Drift to subtract before the model is fitted; zero unless drift_of() is significant.
 [[nodiscard]] estimate::Drift significant_drift(const estimate::Trace& trace,
                                                 const base::LongColumn<detect::Fall>& slips);
 

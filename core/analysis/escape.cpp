@@ -22,7 +22,7 @@ struct Place {
   double sign = 1.0;  ///< 1: captured.
 };
 
-/// From here on Φ(z) is 1 to the last bit.
+/// z beyond which Φ(z) is 1 in double precision.
 constexpr double kCertain = 8.3;
 
 /// ln Φ(z)

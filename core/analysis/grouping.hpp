@@ -1,5 +1,5 @@
 /// \file
-/// Tests by their pull speed, as in Fig. 1 of [Penner 1995], and two materials at equal speeds.
+/// Tests grouped by pull speed, as in Fig. 1 of [Penner 1995], and two materials compared at equal speeds.
 #pragma once
 
 #include <array>
@@ -18,17 +18,18 @@
 
 namespace stickslip::analysis {
 
-/// Nominal speeds that differ by less are one: what is typed in in/min and in mm/s differs in its last
-/// digits, and no two speeds that a laboratory chooses are as close.
+/// Relative difference up to which nominal speeds count as equal. The same speed typed in in/min and in mm/s
+/// differs in its last digits; speeds that a laboratory distinguishes differ by more.
 inline constexpr double kSameSpeed = 0.01;
 
+/// One test with its results: input of group_by_speed().
 struct MeasuredTest {
-  std::optional<double> pull_speed_m_per_s;  ///< Nominal; none if not known.
+  std::optional<double> pull_speed_m_per_s;  ///< Nominal; nullopt if unknown.
   TestResults results;
-  SlipSums slips{};  ///< Of its table of cycles; empty if there is none.
+  SlipSums slips{};  ///< From its table of cycles; empty without one.
 };
 
-/// Why one test of a group has no number.
+/// Reason why a test has no value of a quantity.
 struct Absence {
   std::size_t test = 0;  ///< Index among all tests.
   std::string reason;
@@ -36,26 +37,28 @@ struct Absence {
 
 /// One quantity over the tests of a group.
 struct GroupQuantity {
-  std::optional<Replicates> replicates;  ///< None if no test has a value.
-  std::vector<std::size_t> tests;        ///< Those with a value; Outlier::index points into this.
+  std::optional<Replicates> replicates;  ///< Nullopt if no test has a value.
+  std::vector<std::size_t> tests;  ///< Indices of the tests with a value; Outlier::index refers to this list.
   std::vector<Absence> absences;
 };
 
+/// Tests at one pull speed.
 struct SpeedGroup {
   std::optional<double> pull_speed_m_per_s;  ///< Of the first test.
   std::vector<std::size_t> tests;            ///< Indices among all tests.
-  PooledDeltaMu by_cycle;                    ///< S − K of all their slips.
+  PooledDeltaMu by_cycle;                    ///< S − K pooled over all their slips.
   std::array<GroupQuantity, kQuantityCount> quantities;
 };
 
-/// Rising speeds; tests without one come last.
+/// Groups in the order of rising speed; tests without a speed form the last.
 [[nodiscard]] std::vector<SpeedGroup> group_by_speed(std::span<const MeasuredTest> tests);
 
 /// s_r of a quantity over all groups, each about its own mean.
 [[nodiscard]] std::optional<double> pooled_over_groups(std::span<const SpeedGroup> groups,
                                                        std::size_t quantity);
 
-/// The same speed in both materials; an index is none where a material has no test at this speed.
+/// One speed with the index of its group in each material; nullopt where a material has no test at this
+/// speed.
 struct SpeedPair {
   std::optional<double> pull_speed_m_per_s;
   std::optional<std::size_t> a;
@@ -65,7 +68,7 @@ struct SpeedPair {
 [[nodiscard]] std::vector<SpeedPair> pair_speeds(std::span<const SpeedGroup> a,
                                                  std::span<const SpeedGroup> b);
 
-/// S − K by cycle of both at one speed, or the reason why there is none.
+/// Comparison of S − K pooled by cycle at one speed, or the reason why there is none.
 [[nodiscard]] PooledComparison compare_pair_by_cycle(std::span<const SpeedGroup> a,
                                                      std::span<const SpeedGroup> b, const SpeedPair& pair);
 

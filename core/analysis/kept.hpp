@@ -1,6 +1,6 @@
 /// \file
-/// What may be kept in a test, to see what it does: the three practical problems of [Penner 1995,
-/// Experimental], each of which the analysis takes care of unless it is told not to.
+/// Corrections that an analysis may leave out, to show their effect. They treat the three practical problems
+/// of [Penner 1995, Experimental]: spikes, drift, and a first slip that is not representative.
 ///
 ///     AnalysisSettings settings;
 ///     settings.kept = *kept_from_text("spikes,drift");
@@ -14,10 +14,11 @@
 
 namespace stickslip::analysis {
 
+/// Each flag that is true switches one correction off.
 struct Kept {
-  bool spikes = false;  ///< Spikes are scans like others; else they are replaced and left out of fits.
-  bool drift = false;   ///< One K for the whole test; else a significant drift is taken off before the fits.
-  bool first_slip = false;  ///< It counts in means like the others; else it does not where there are others.
+  bool spikes = false;  ///< Spikes stay in the trace; otherwise they are replaced, and fits leave them out.
+  bool drift = false;   ///< Drift stays; otherwise a significant drift is subtracted before the fits.
+  bool first_slip = false;  ///< Means include the first slip; otherwise only if it is the only one.
 
   bool operator==(const Kept&) const = default;
   [[nodiscard]] bool nothing() const { return *this == Kept{}; }
@@ -28,17 +29,17 @@ struct KeptName {
   bool Kept::*flag;
 };
 
-/// As in records and for `stickslip analyze --keep`.
+/// Names in records and for `stickslip analyze --keep`.
 inline constexpr std::array<KeptName, 3> kKeptNames{
     {{"spikes", &Kept::spikes}, {"drift", &Kept::drift}, {"first-slip", &Kept::first_slip}}};
 
-/// What either keeps.
+/// Union: each flag set in either.
 [[nodiscard]] Kept either(const Kept& one, const Kept& other) noexcept;
 
-/// Names with commas between them, in the order of kKeptNames; empty if nothing is kept.
+/// Names of the set flags, separated by commas, in the order of kKeptNames; empty if no flag is set.
 [[nodiscard]] std::string text_of(const Kept& kept);
 
-/// Reads what text_of() wrote, in any order; nothing if a name is unknown.
+/// Inverse of text_of(), for names in any order; nullopt if a name is unknown.
 [[nodiscard]] std::optional<Kept> kept_from_text(std::string_view text);
 
 }  // namespace stickslip::analysis

@@ -1,6 +1,6 @@
 /// \file
-/// A test as the live side saw it, slip by slip, for the estimators that fit nothing when it ends: no ω, no
-/// γ, and how a slip ended is what was decided while the test ran. The scans are not looked at again.
+/// Results of a test from the cycles of the live detector, for the estimator tiers without a whole-test fit.
+/// They give no ω and no γ, and each slip's end is that decided live. The scans are not used again.
 #pragma once
 
 #include <cstddef>
@@ -16,16 +16,17 @@
 
 namespace stickslip::analysis {
 
-/// Finds again, one slip after the other, the cycles that the live side saw.
+/// Matches the slips of the whole test, one after the other, with the cycles of the live detector.
 class LiveCycles {
  public:
   /// \param trace  must outlive this, as \param cycles, in the order of time.
   LiveCycles(const estimate::Trace& trace, const base::LongColumn<detect::LiveCycle>& cycles) noexcept
       : trace_(&trace), cycles_(&cycles) {}
 
-  /// The cycle whose peak is nearest, within half a period, and was not given before; nothing where the live
-  /// side saw none there. \param slip  later than that of the call before. \param period_s  to the next; NaN
-  /// if there is none.
+  /// The live cycle whose peak is nearest to the slip's, within half a period, and that no earlier call
+  /// returned; nullopt if there is none.
+  /// \param slip  later than that of the call before.
+  /// \param period_s  time to the next slip; NaN if there is none.
   [[nodiscard]] std::optional<detect::LiveCycle> next_at(const detect::Fall& slip, double period_s);
 
  private:
@@ -34,16 +35,16 @@ class LiveCycles {
   std::size_t next_ = 0;
 };
 
-/// What the estimators without a fit need to know beside the scans.
+/// Settings of estimates_from_live().
 struct LiveSettlement {
-  bool first_counts = false;  ///< The first slip counts in means.
-  std::string reason;         ///< Why all else is none.
+  bool first_counts = false;  ///< Means include the first slip.
+  std::string reason;         ///< Reason given for all results that these tiers do not determine.
 };
 
-/// In the place of estimate_in_sections(). Of the results S, K, S − K and its scatter have values, means over
-/// the slips that the live side saw, and the amplitude, half the mean drop. How a slip ended does not count
-/// beside a gap, nor of the last one, in which the pull ended.
-/// \param slips  of the whole test, not empty: one row for each.
+/// Replaces estimate_in_sections(). Values are given to S, K and S − K (means over the live cycles), the
+/// scatter of S − K, and the amplitude (half the mean drop). A slip's end counts as unknown beside a gap, and
+/// for the last slip, in which the pull ended.
+/// \param slips  of the whole test, not empty; the result has one cycle for each.
 [[nodiscard]] TestEstimates estimates_from_live(const estimate::Trace& trace,
                                                 const base::LongColumn<detect::Fall>& slips,
                                                 const base::LongColumn<detect::LiveCycle>& live,

@@ -10,7 +10,8 @@
 namespace stickslip::analysis {
 namespace {
 
-/// Of a reading four, of which one in 16 000 strays further; of the point that a line begins at two more.
+/// Standard deviations of a reading's noise: four for the reading, which one in 16 000 exceeds, and two for
+/// the point at which the line begins.
 constexpr double kSigmas = 6.0;
 
 }  // namespace

@@ -1,13 +1,14 @@
 /// \file
-/// The pull speed as a channel read it, scan by scan, as lines between points: what the fits take for a plan.
+/// Pull speed from a speed channel, reduced to lines between points: a PullSpeed that the fits use like a
+/// plan.
 ///
 ///     MeasuredSpeed measured{step_m_per_s, noise_m_per_s};
 ///     for (…) measured.add(time_s, speed_m_per_s);
 ///     if (const auto course = measured.course()) …
 ///
-/// Points are set where no line through the one before stays within the channel's resolution of every
-/// reading; their speeds are then those of the least-squares fit of lines between them, so that noise and
-/// rounding of the readings are averaged away, and what is left of them does not look like acceleration.
+/// A point is set where no line from the point before stays within the channel's resolution of every reading.
+/// The speeds of the points are the least-squares fit of the lines between them. This averages noise and
+/// rounding, so that they do not appear as acceleration.
 #pragma once
 
 #include <cstddef>
@@ -18,21 +19,21 @@
 
 namespace stickslip::analysis {
 
-/// Memory: of the points alone. Thread-bound.
+/// Stores the points only, not the readings. Thread-bound.
 class MeasuredSpeed {
  public:
-  /// \param resolution_m_per_s  ≥ 0: readings are off the true speed by no more, and less than that is rest.
+  /// \param resolution_m_per_s  ≥ 0: largest error of a reading; the belt is at rest below it.
   explicit MeasuredSpeed(double resolution_m_per_s) : resolution_m_per_s_(resolution_m_per_s) {}
 
-  /// How far readings may stray from a line: six standard deviations of their noise, of which a rounding to
-  /// steps has 1/√12 at least.
+  /// Resolution of a channel: six standard deviations of a reading's noise, which is at least that of the
+  /// rounding, step/√12.
   [[nodiscard]] static double resolution(double noise_m_per_s, double step_m_per_s) noexcept;
 
   /// \param time_s  rises, from 0 s on.
   void add(double time_s, double speed_m_per_s);
 
-  /// From time 0 on. \return nothing if the belt never pulled, or changed its speed more often than a
-  /// PullSpeed can say.
+  /// Pull speed from time 0 on.
+  /// \return nullopt if the belt never pulled, or if more than PullSpeed::kMostPoints points are needed.
   [[nodiscard]] std::optional<model::PullSpeed> course();
 
  private:

@@ -22,7 +22,7 @@
 namespace stickslip::analysis {
 namespace {
 
-/// From this many slips on, the first — often not representative [Penner 1995] — is left out of means.
+/// Fewest slips for which means leave out the first, which is often not representative [Penner 1995].
 constexpr std::size_t kEnoughToLeaveOutTheFirst = 3;
 
 /// The six numbers from which all else follows, with their covariance: (ω, γ, r, S̄, K̄).
@@ -144,7 +144,7 @@ model::Oscillator oscillator_of(const Eigen::Matrix<double, 5, 1>& p) {
 
 namespace {
 
-/// Standard errors by which a tester's damping may be found below zero by chance.
+/// Standard errors by which an estimated damping may lie below zero by chance.
 constexpr double kNegativeDampingSigmas = 4.0;
 
 /// γ with its standard error.
@@ -163,8 +163,8 @@ bool feeds_the_oscillation(const SlipEstimates& estimates) noexcept {
   return gamma < -kNegativeDampingSigmas * error;
 }
 
-/// Damping as large as the fit admits (γ < 2ω), within its error: the scans hold no oscillation, or too few
-/// of each.
+/// Whether γ reaches the fit's limit 2ω within two standard errors: the scans show no oscillation, or are too
+/// few for each.
 bool is_overdamped(const SlipEstimates& estimates) noexcept {
   constexpr double kSigmasOfDamping = 2.0;
   const auto [gamma, error] = damping_of(estimates);

@@ -1,5 +1,5 @@
 /// \file
-/// From the fitted slips to results with standard errors, and to the table of cycles.
+/// Results with standard errors, and the table of cycles, from the fitted slips.
 #pragma once
 
 #include <span>
@@ -15,15 +15,15 @@ namespace stickslip::analysis {
 /// Largest residual in units of the scan noise up to which the model counts as describing the trace.
 inline constexpr double kLargestResidualSigmas = 5.0;
 
-/// The whole-test fit converged, leaves residuals that the scan noise explains, and its damping is none that
-/// feeds the oscillation.
+/// Whether the fit converged, its residuals agree with the noise of the scans, and its damping is not
+/// significantly negative.
 [[nodiscard]] bool model_describes(const SlipEstimates& estimates, double sigma) noexcept;
 
 /// Fills mu_s, mu_k, delta_mu, omega, gamma_over_2omega, Q, Q_threshold, threshold_speed,
 /// slip_speed_ratio_threshold, amplitude
-/// and delta_mu_scatter, each with its standard error or the reason why there is none.
-/// γ v/g is the systematic uncertainty of S and S − K: whether the coupling's damper counts at
-/// the slip onset is a convention that no trace can tell (here: spring only, [Penner 1995, (13)]).
+/// and delta_mu_scatter, each with its standard error, or the reason why it is absent. The systematic
+/// uncertainty of S and S − K is γ v/g: whether the damper's force counts at the slip onset is a convention
+/// that no trace can decide (here: spring only, [Penner 1995, (13)]).
 /// \param sigma  noise of one scan.
 void model_results(std::span<const detect::Fall> slips, const SlipEstimates& estimates,
                    const model::Tester& tester, double sigma, TestResults& results);
@@ -31,10 +31,10 @@ void model_results(std::span<const detect::Fall> slips, const SlipEstimates& est
 /// Fills escape_speed and escape_speed_corrected. \param estimates  converged.
 void escape_results(const SlipEstimates& estimates, TestResults& results);
 
-/// The same reason for all of them.
+/// Sets all results of model_results() to absent, with this reason.
 void no_model_results(const std::string& reason, TestResults& results);
 
-/// One row for each slip. Flags for spikes, gaps and saturation are the caller's.
+/// Table of cycles, one row for each slip. The caller sets the flags for spikes, gaps and saturation.
 [[nodiscard]] std::vector<detect::Cycle> cycle_table(const estimate::Trace& trace,
                                                      std::span<const detect::Fall> slips,
                                                      const SlipEstimates& estimates);

@@ -1,6 +1,6 @@
 /// \file
-/// S − K pooled by cycle (core/analysis/pooled_slips) as one number of a group of tests: its interval, and
-/// two such groups side by side.
+/// Statistics of S − K pooled by cycle (core/analysis/pooled_slips): confidence interval, and comparison of
+/// two groups of tests.
 #pragma once
 
 #include <optional>
@@ -12,15 +12,16 @@
 
 namespace stickslip::analysis {
 
-/// 95 % of the mean, Student's t with one degree of freedom fewer than tests; none without a standard error.
+/// 95 % confidence interval of the mean, by Student's t with test_count − 1 degrees of freedom; nullopt
+/// without a standard error.
 [[nodiscard]] std::optional<Interval> mean_interval(const PooledDeltaMu& pooled);
 
 struct PooledComparison {
-  std::optional<Welch> welch;  ///< Of the pooled means with their standard errors.
+  std::optional<Welch> welch;  ///< Test of the difference of the pooled means.
   std::string reason;          ///< Why there is none; set exactly then.
 };
 
-/// Needs two tests of each with a slip after the first.
+/// Requires of each group two tests with a slip after the first.
 [[nodiscard]] PooledComparison compare_pooled(const PooledDeltaMu& a, const PooledDeltaMu& b);
 
 }  // namespace stickslip::analysis

@@ -1,5 +1,5 @@
 /// \file
-/// Which results of a test are compared between tests.
+/// The results of a test that reports compare between tests.
 #pragma once
 
 #include <array>
@@ -9,6 +9,7 @@
 
 namespace stickslip::analysis {
 
+/// One compared result: name, title, unit and member of TestResults.
 struct Quantity {
   std::string_view name;   ///< As in the record.
   std::string_view title;  ///< Short, for tables.
@@ -19,7 +20,7 @@ struct Quantity {
 
 inline constexpr std::size_t kQuantityCount = 8;
 
-/// In the order of tables.
+/// The quantities in the order of tables.
 [[nodiscard]] const std::array<Quantity, kQuantityCount>& quantities() noexcept;
 
 }  // namespace stickslip::analysis

@@ -1,5 +1,5 @@
 /// \file
-/// Repeated tests of one material: mean, repeatability, confidence interval, and the value that stands out.
+/// Repeated tests of one material: mean, repeatability, confidence interval, outlier.
 ///
 ///     const Replicates five = describe_replicates(coefficients);
 ///     five.repeatability;   // two single tests differ by less than this, 95 times of 100
@@ -11,7 +11,7 @@
 
 namespace stickslip::analysis {
 
-/// Of all intervals and significance tests here: two-sided, 5 %.
+/// Significance level of the intervals and tests of replicates and comparisons; two-sided.
 inline constexpr double kSignificance = 0.05;
 
 /// r = 2.8 s_r: two single results of one laboratory differ by less, 95 times of 100 (1.96 √2 = 2.77,
@@ -23,17 +23,18 @@ struct Interval {
   double high = 0.0;
 };
 
-/// The value farthest from the mean, if it lies too far: named, never removed.
+/// The value farthest from the mean, if it exceeds Grubbs' limit. It is reported, never removed.
 struct Outlier {
   std::size_t index = 0;   ///< Among the values given.
   double statistic = 0.0;  ///< |value − mean|/s.
-  double critical = 0.0;   ///< Grubbs' limit for so many values.
+  double critical = 0.0;   ///< Grubbs' limit for this number of values.
 };
 
+/// Statistics of repeated tests.
 struct Replicates {
   std::size_t count = 0;
   double mean = 0.0;
-  std::optional<double> standard_deviation;  ///< s_r, n − 1 in the divisor; none of a single value.
+  std::optional<double> standard_deviation;  ///< s_r, with divisor n − 1; nullopt for a single value.
   std::optional<double> repeatability;       ///< r = 2.8 s_r.
   std::optional<Interval> mean_interval;     ///< 95 %, Student's t [Student 1908].
   std::optional<Outlier> outlier;
@@ -47,7 +48,7 @@ struct Replicates {
 /// \param count  ≥ 3.
 [[nodiscard]] double grubbs_limit(std::size_t count);
 
-/// √(Σ(nᵢ − 1)sᵢ²/Σ(nᵢ − 1)) over groups with their own means; none if no group has two values.
+/// √(Σ(nᵢ − 1)sᵢ²/Σ(nᵢ − 1)) over groups, each about its own mean; nullopt if no group has two values.
 [[nodiscard]] std::optional<double> pooled_standard_deviation(std::span<const Replicates> groups);
 
 }  // namespace stickslip::analysis

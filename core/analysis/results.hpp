@@ -1,5 +1,5 @@
 /// \file
-/// Every scalar result of one test, under one name in HDF5, JSON, tables and messages.
+/// The scalar results of one test. Each has one name in HDF5, JSON, tables and messages.
 ///
 ///     for_each_result(results, [](const ResultName& name, const Estimate& estimate) { … });
 #pragma once
@@ -14,11 +14,11 @@
 
 namespace stickslip::analysis {
 
-/// A number with how far to trust it, or the reason why there is none.
+/// A value with its uncertainties, or the reason why it is absent.
 struct Estimate {
   std::optional<double> value;
-  std::optional<double> standard_error;          ///< Random: shrinks with replicates.
-  std::optional<double> systematic_uncertainty;  ///< Calibration, mass, conventions: does not.
+  std::optional<double> standard_error;          ///< Random: decreases with replicates.
+  std::optional<double> systematic_uncertainty;  ///< From calibration, mass, conventions; constant.
   std::string reason;                            ///< Set exactly when there is no value.
 
   [[nodiscard]] static Estimate of(double number) {
@@ -34,20 +34,20 @@ struct Estimate {
   bool operator==(const Estimate&) const = default;
 };
 
-/// How a result is called everywhere.
+/// Name, unit and description of a result.
 struct ResultName {
   std::string_view name;
   std::string_view unit;       ///< SI, "1" for a ratio or a count.
   std::string_view long_name;  ///< For axes and tables.
 };
 
-/// Why there is no Q on a ramp: each slip has its own.
+/// Reason for the absence of Q on a ramp, where each slip has its own.
 inline constexpr std::string_view kSpeedChanges = "the pull speed changes";
 
 /// Results of one test. Symbols as in docs/glossary.md.
 struct TestResults {
   model::Regime regime = model::Regime::kUndecided;
-  std::string regime_reason;  ///< What decided it, for people.
+  std::string regime_reason;  ///< What decided the regime; text for the user.
 
   Estimate transition_time;        ///< s after the record's first scan, onset of the escape; only for mixed.
   Estimate cycle_count;            ///< Falls that are slips.
@@ -73,19 +73,20 @@ struct TestResults {
   Estimate scan_rate_measured;  ///< Hz, from clocks.
   Estimate escape_speed;        ///< m/s, at the first slip that did not stick; where the speed changes.
   Estimate
-      escape_speed_corrected;  ///< m/s, threshold speed of the mean paper, from that slip and all before.
+      escape_speed_corrected;  ///< m/s, threshold speed of the mean paper, from that slip and all captures.
 
   // From features of the cycles that stick, core/analysis/cycle_features.
   Estimate delta_mu_from_amplitude;     ///< S − K by the amplitude ratio [17].
   Estimate delta_mu_from_timing;        ///< S − K by the period.
   Estimate delta_mu_from_slip_speed;    ///< S − K by the slip-to-stick speed ratio [18].
   Estimate delta_mu_combined;           ///< The three, weighted by condition number and scatter.
-  Estimate mu_k_from_mean;              ///< K: the mean less what damping adds to it.
+  Estimate mu_k_from_mean;              ///< K: the mean, corrected for the bias by damping.
   Estimate mu_s_from_amplitude;         ///< S: mu_k_from_mean + delta_mu_from_amplitude.
-  Estimate pull_speed_measured;         ///< m/s, from the stick slope and ω₀.
-  Estimate slip_speed_ratio_threshold;  ///< Of [18]: at or above, a slip ends in sticking.
+  Estimate pull_speed_measured;         ///< m/s, from the stick rate and ω₀.
+  Estimate slip_speed_ratio_threshold;  ///< Smallest ratio [18] of a slip that ends in sticking.
 
-  /// What somebody should look at: the tester disagrees with its characterisation, the plan's speed is wrong.
+  /// Warnings for the user, such as: the tester disagrees with its characterisation, the pull speed is not
+  /// the planned one.
   std::vector<std::string> findings;
 
   bool operator==(const TestResults&) const = default;

@@ -1,6 +1,6 @@
 /// \file
-/// All slips of a test, however many: a long test is estimated in sections of so many slips that their fit
-/// needs little memory, and what the sections say is put together. Most tests are one section.
+/// Estimates of a test with any number of slips. A long test is fitted in sections, which bounds memory, and
+/// their results are combined. Most tests are one section.
 #pragma once
 
 #include <cstddef>
@@ -19,26 +19,29 @@
 
 namespace stickslip::analysis {
 
-/// Slips whose ω, γ and stick rate are found together: of a minute of stick and slip at the least. Of so many
-/// slips the three are known ten times better than each slip's own numbers, which gain nothing from more.
+/// Slips of a section, which share ω, γ and stick rate; at least a minute of stick-slip. From so many slips
+/// the shared parameters are ten times more precise than those of each slip, which would gain nothing from
+/// more.
 inline constexpr std::size_t kMostSlipsTogether = 1024;
 
+/// Combined estimates of all sections.
 struct TestEstimates {
-  /// Those of model_results() and feature_results() only. Of several sections the mean, weighted by their
-  /// slips; nothing where one section has nothing.
+  /// Only the results of model_results() and feature_results(). Means over sections, weighted by their slips;
+  /// absent if one section has no value.
   TestResults results;
   base::LongColumn<double> log_likelihood_ratios;  ///< Captured over free, one fewer than slips.
   base::LongColumn<detect::Cycle> cycles;          ///< One for each slip, as from cycle_table().
-  base::LongColumn<double> onset_errors_s;  ///< Standard error of each onset; NaN where it is not known.
-  std::int64_t captured = 0;                ///< Slips that ended in sticking.
-  bool model_describes = true;              ///< Each section.
-  /// What the test says about the tester; nothing if the fit of a section did not converge.
+  base::LongColumn<double> onset_errors_s;         ///< Standard error of each onset; NaN if unknown.
+  std::int64_t captured = 0;                       ///< Slips that ended in sticking.
+  bool model_describes = true;                     ///< model_describes() holds for each section.
+  /// Estimate of the tester's parameters; nullopt if the fit of a section did not converge.
   std::optional<TesterEstimate> tester;
 };
 
 /// \param slips  falls that are slips, in the order of time, not empty. \param sigma  noise of one scan, > 0.
 /// \param scratch  folder for the columns of a long test; empty: memory.
-/// \param most  slips of a section, > 2. \param first_counts  the first slip of the test counts in means.
+/// \param most  slips of a section, > 2.
+/// \param first_counts  means include the first slip of the test.
 [[nodiscard]] TestEstimates estimate_in_sections(const estimate::Trace& trace,
                                                  const base::LongColumn<detect::Fall>& slips, double sigma,
                                                  const estimate::SharedPrior& prior,

@@ -15,11 +15,11 @@
 namespace stickslip::analysis {
 namespace {
 
-/// Rounds of deciding which slips were captured and fitting what follows from it.
+/// Limit of the rounds; each decides which slips were captured and fits the model with these decisions.
 constexpr int kDecisionRounds = 3;
-/// Log of the likelihood ratio up to which a capture is not believed against other evidence: 400 to 1.
+/// Log-likelihood ratio up to which other evidence overrules a capture: 400 to 1.
 constexpr double kDoubtful = 6.0;
-/// Part by which another guess of the stick rate must differ to be worth a try.
+/// Smallest relative difference of a second guess of the stick rate that is tried.
 constexpr double kOtherRate = 0.1;
 
 /// Fills the likelihood ratios.
@@ -32,7 +32,7 @@ std::vector<SlipEnd> judge_ends(const estimate::Trace& trace, std::span<const de
   const bool cut = pull_ended_in_last_slip(trace, slips, shared);
   for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
     if (pull_of(trace, slips[i]) != pull_of(trace, slips[i + 1]) || follows_a_break(trace, slips, i + 1)) {
-      // The belt stopped in between, or nobody looked: its end is not known.
+      // The belt stopped in between, or a break follows: the end is unknown.
       estimates.log_likelihood_ratios.push_back(0.0);
       continue;
     }
@@ -49,13 +49,14 @@ std::vector<SlipEnd> judge_ends(const estimate::Trace& trace, std::span<const de
   return ends;
 }
 
-/// S − K that stays below so many of its standard errors is no stick.
+/// Standard errors below which S − K counts as zero: then the slip did not begin from sticking.
 constexpr double kInsignificant = 3.0;
 
-/// A slip just above the threshold speed goes on almost as if it had been captured for a moment, at the least
-/// possible amplitude: then "captured" fits as well, and needs a next slip with S − K at or below 0. A stick
-/// ends at S > K, so such captures are none; nor, where the fit finds no answer, are those that the scans
-/// hardly tell. \return whether an end was changed.
+/// Changes doubtful captures into free ends. Just above the threshold speed a free oscillation looks almost
+/// like a short capture: "captured" then fits as well, but gives the next slip S − K ≤ 0. A stick ends at S >
+/// K, so such a capture is rejected. If the fit did not converge, all captures with a ratio up to kDoubtful
+/// are rejected.
+/// \return whether an end was changed.
 bool free_the_doubtful(SlipEstimates& estimates) {
   bool changed = false;
   for (std::size_t i = 0; i < estimates.log_likelihood_ratios.size(); ++i) {
@@ -70,13 +71,14 @@ bool free_the_doubtful(SlipEstimates& estimates) {
   return changed;
 }
 
-/// Log-likelihood, in units of a cost, by which other ends must be worse before they are refused, and within
-/// which one end alone is a matter of chance: three parameters more or less are worth 1.5 by themselves.
+/// Increase of the fit's cost, in units of log-likelihood, below which changed slip ends are always accepted.
 constexpr double kWorse = 9.0;
+/// Increase of the cost that chance explains; three parameters more or less change it by 1.5.
 constexpr double kChance = 3.0;
-/// So many times what the slips themselves say must the whole say against it.
+/// Changed ends are rejected only if the increase of the cost is at least this multiple of the sum of the
+/// changed slips' |log-likelihood ratios|.
 constexpr double kOutweighs = 3.0;
-/// Log-likelihood ratio of an end that is a matter of chance.
+/// Size of the log-likelihood ratio given to a single changed end that the whole fit does not confirm.
 constexpr double kUnsure = 0.1;
 
 std::size_t different(const std::vector<SlipEnd>& a, const std::vector<SlipEnd>& b) {
@@ -85,11 +87,12 @@ std::size_t different(const std::vector<SlipEnd>& a, const std::vector<SlipEnd>&
   return count;
 }
 
-/// Single slips have turned over the ends that a fit was based on: does the fit of the whole bear them out? A
-/// spike that was not found makes a slip look like another; all other slips know better what it was.
-/// \param before  the fit, converged. \param after  with the new ends; where it is worse it becomes `before`
-/// with what the whole says of the ends in question.
-/// \return whether `after` was kept.
+/// Accepts or rejects changed slip ends by the cost of the whole fit. A missed spike can reverse the decision
+/// on a single slip; the fit of all slips is then the better evidence.
+/// \param before  converged fit with the old ends.
+/// \param after  fit with the new ends. If rejected, it becomes `before`, with likelihood ratios of the
+///        changed ends taken from the increase of the cost.
+/// \return whether `after` was accepted.
 bool weigh_new_ends(const SlipEstimates& before, SlipEstimates& after) {
   // Windows may have grown or shrunk.
   const double expected = before.fit.cost * static_cast<double>(after.fit.scan_count) /
@@ -121,8 +124,8 @@ bool weigh_new_ends(const SlipEstimates& before, SlipEstimates& after) {
   return false;
 }
 
-/// Rounds of deciding which slips were captured and fitting what follows from it, from a first guess.
-/// \param found  ends to begin with; empty: those that the guess says.
+/// Alternates between deciding which slips were captured and fitting the model, from a first guess.
+/// \param found  initial ends; if empty they are decided from the guess.
 SlipEstimates rounds(const estimate::Trace& trace, std::span<const detect::Fall> slips, double sigma,
                      const estimate::SharedPrior& prior, model::SharedParameters shared,
                      std::vector<SlipEnd> found = {}) {
@@ -154,7 +157,8 @@ SlipEstimates rounds(const estimate::Trace& trace, std::span<const detect::Fall>
   return estimates;
 }
 
-/// The model leaves hardly more than noise. Of 500 scans, that is 1.00 ± 0.03 of it.
+/// Whether the fit converged with residuals of at most 1.2 σ; for 500 scans of pure noise they are (1.00 ±
+/// 0.03) σ.
 bool describes_well(const SlipEstimates& estimates, double sigma) noexcept {
   constexpr double kNoiseOnly = 1.2;
   return estimates.fit.converged && estimates.fit.residual_sigma <= kNoiseOnly * sigma;
@@ -166,8 +170,9 @@ bool better(const SlipEstimates& a, const SlipEstimates& b) noexcept {
 
 /// A better first guess from those slips alone that most surely began from sticking — the likelier half —
 /// each up to its trough, where it does not matter yet how it ends. Turning points tell ω to half a per cent,
-/// and then slips that differ much can be taken for a free oscillation, which no fit survives. \param tried
-/// has the likelihood ratios. \return nothing if this does not converge either.
+/// and then slips that differ much can be taken for a free oscillation, which no fit survives.
+/// \param tried has the likelihood ratios.
+/// \return nothing if this does not converge either.
 std::optional<model::SharedParameters> guess_from_sure_slips(const estimate::Trace& trace,
                                                              std::span<const detect::Fall> slips,
                                                              double sigma, const estimate::SharedPrior& prior,
@@ -195,8 +200,9 @@ std::optional<model::SharedParameters> guess_from_sure_slips(const estimate::Tra
 }
 
 /// Nothing but the loading and the first slip tells the stick rate of a ring-down, and a rate that is off by
-/// a tenth hides a first slip that did stick again. \param free  converged, no slip captured. \param captured
-/// the fit with the first one captured.
+/// a tenth hides a first slip that did stick again.
+/// \param free  converged, no slip captured.
+/// \param captured the fit with the first one captured.
 bool first_stuck_after_all(const SlipEstimates& free, const SlipEstimates& captured, double sigma) {
   if (!captured.fit.converged || captured.windows.size() < 2 || captured.ends[0] != SlipEnd::kCaptured) {
     return false;

@@ -1,5 +1,5 @@
 /// \file
-/// First guesses of what a fit starts from, out of turning points and slopes.
+/// First guesses of a fit's parameters, from turning points and slopes.
 #pragma once
 
 #include <cstddef>
@@ -11,22 +11,24 @@
 
 namespace stickslip::analysis {
 
-/// The scan nearest to a position between scans; the first if it lies before it.
+/// The scan nearest to a fractional position; scan 0 for a negative one.
 [[nodiscard]] std::size_t scan_at(double position);
 [[nodiscard]] double scans_per_s(const estimate::Trace& trace);
 
-/// Level from which the force rises to the peak: the median about the turning point, which two spikes there
-/// do not move.
+/// Level from which the force rises to the peak: the median about the turning point, which up to two spikes
+/// do not affect.
 [[nodiscard]] double level_before(const estimate::Trace& trace, const detect::Fall& fall);
 
-/// Median slope of the rises to the peaks: half of a rise is stick, where there is any.
+/// Stick rate at the largest belt speed, 1/s: median slope of the rises, each between 30 and 70 % of its
+/// height, where the sled sticks if it does at all.
 [[nodiscard]] double slope_of_sticks(const estimate::Trace& trace, std::span<const detect::Fall> slips);
 
-/// ω from half periods, γ of the paper's tester, the stick rate from the loading, or the sticks where the
-/// trace begins later. \param slips  not empty.
+/// ω from half periods, γ of the paper's tester, and the stick rate from the loading, or from the sticks if
+/// the trace begins after the loading.
+/// \param slips  not empty.
 [[nodiscard]] model::SharedParameters first_guess(const estimate::Trace& trace,
                                                   std::span<const detect::Fall> slips);
-/// One slip's own parameters from its peak and trough.
+/// Onset, S and K of one slip from its peak and trough.
 [[nodiscard]] model::SlipParameters first_guess(const estimate::Trace& trace, const detect::Fall& slip,
                                                 const model::SharedParameters& shared);
 
@@ -34,12 +36,12 @@ namespace stickslip::analysis {
 [[nodiscard]] double rate_at(const estimate::Trace& trace, const detect::Fall& slip,
                              const model::SharedParameters& shared);
 
-/// Where a slip is at its lowest, in scans: half an oscillation after its peak. What follows may be flat (a
-/// belt that stops), and its lowest scan anywhere.
+/// Position of a slip's trough in scans: Fall::trough_at, but at most 1.15 half periods after the peak. After
+/// a stop of the belt the force is flat, and its lowest scan may lie anywhere.
 [[nodiscard]] double trough_at(const estimate::Trace& trace, const detect::Fall& slip,
                                const model::SharedParameters& shared);
 
-/// S − K of a slip by its amplitude, [2]: median of those that moved faster than the belt.
+/// Typical S − K: the median over slips, by the amplitude [2], of those faster than the belt.
 [[nodiscard]] double typical_delta_mu(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                                       const model::SharedParameters& shared);
 

@@ -9,23 +9,27 @@
 namespace stickslip::analysis {
 namespace {
 
-/// Fewest falls of which a median is typical.
+/// Fewest falls that have a meaningful median.
 constexpr std::size_t kFewestForMedian = 3;
-/// Rest, from which the force was loaded, is where the first rise began; if the troughs are not even this
-/// part of the way up to the peaks, the trace begins in the middle of a test, or slips may end at rest.
+/// Smallest median trough, as a fraction of the median peak, both above the level where the first rise began,
+/// at which that level is the unloaded force. If the troughs are lower, the trace begins within a test, or
+/// slips unload the coupling fully.
 constexpr double kLoaded = 0.2;
-/// A first fall that stays within this part of the load from rest comes before the loading.
+/// A first fall whose peak is below this fraction of the load comes before the loading.
 constexpr double kNotLoaded = 0.25;
-/// A fall to within this part of the load from rest is the unloading, or comes before or after all load.
+/// A first or last fall that ends within this fraction of the load from the unloaded force is not a slip: it
+/// is the unloading, or lies before or after the test.
 constexpr double kAtRest = 0.05;
-/// In the model, peak and trough are half an oscillation apart, and so are trough and next peak at least.
+/// Fraction of half an oscillation below which the distance from a trough to the next peak shows one split
+/// slip; in the model it is at least 1.
 constexpr double kShortestHalf = 0.5;
-/// A last fall later than this many halves after the one before is no free oscillation, and if the force has
-/// climbed less steeply than this part of the usual, the sled did not stick to a moving belt either.
+/// A last fall is not a slip if it is later than kLate half oscillations after the one before, so that it is
+/// no free oscillation, and the force has risen with less than kFlat times the usual slope, so that the sled
+/// did not stick to a moving belt.
 constexpr double kLate = 3.2;
 constexpr double kFlat = 0.25;
-/// A slip of the model takes 0.3 of an oscillation, whatever its size. One that falls, but for one scan, in
-/// less than this part of the usual time is a step between two spikes.
+/// A fall whose duration, increased by one scan, is below this fraction of the median is a step between two
+/// spikes: a slip of the model takes 0.3 of an oscillation, whatever its size.
 constexpr double kQuick = 0.4;
 
 /// Falls [first, end).

@@ -1,5 +1,5 @@
 /// \file
-/// The slips of a whole test, seen together: what looked like a slip when it came and is none.
+/// Final selection of the slips of a test, by criteria that need all of its falls.
 #pragma once
 
 #include <filesystem>
@@ -9,13 +9,13 @@
 
 namespace stickslip::analysis {
 
-/// `falls`, which the rule of single slips has let pass, without
+/// Falls that are slips: `falls`, already selected one by one by detect::SlipRule, without
 /// - falls before the force has been loaded and after it is unloaded: two spikes at rest;
 /// - falls in the hold after a pull, where the force does not climb;
 /// - falls too quick for the oscillation that the others show: steps between spikes;
 /// - the unloading itself, the last fall, which ends where the loading began though the slips do not;
-/// and with two falls joined that are closer than a quarter of an oscillation: one slip, split by what
-/// disturbed it. \param scratch  folder for a long list; empty: memory.
+/// Two falls closer than a quarter of an oscillation are joined: they are one slip, split by a disturbance.
+/// \param scratch  folder for a long list; empty: memory.
 [[nodiscard]] base::LongColumn<detect::Fall> kept_slips(base::LongColumn<detect::Fall> falls,
                                                         const std::filesystem::path& scratch = {});
 

@@ -8,10 +8,10 @@
 namespace stickslip::analysis {
 namespace {
 
-/// Slips of which the last may be left out because the pull ended in it.
+/// Fewest slips for which the last may be left out because the pull ended in it.
 constexpr std::size_t kFewestForEndOfPull = 4;
 
-/// Part of the loading that a motor takes to get to its speed.
+/// Part of the loading during which the motor reaches its speed.
 constexpr double kRoundedStart = 0.2;
 
 /// A window of a free oscillation ends this many periods after the trough of its last slip: by
@@ -87,7 +87,7 @@ void lay_windows(const estimate::Trace& trace, std::span<const detect::Fall> sli
   for (std::size_t i = 0; i < slips.size(); ++i) {
     const bool loading = begins_a_pull(trace, slips, i);
     const bool begins = loading || estimates.ends[i - 1] == SlipEnd::kCaptured;
-    // After a break nobody knows whether the sled stuck, until a slip has ended in sticking.
+    // After a break it is unknown whether the sled stuck, until a slip has ended in sticking.
     const bool unknown = !begins && !estimates.has_window(i - 1);
     if (unknown || ((i == 0 || !loading) && follows_a_break(trace, slips, i))) {
       estimates.window_of_slip.push_back(SlipEstimates::kNoWindow);

@@ -1,7 +1,7 @@
 /// \file
-/// One test, scan by scan, from the first pre-trigger scan to the end: spikes out, slips found as they
-/// come, and at the end all results. Live, replay and batch run this same class over the same
-/// scans, so their results have the same bits.
+/// Analysis of one test, scan by scan, from the first pre-trigger scan to the end. Slips are reported live;
+/// finish() returns all results. Live, replay and batch run this same class over the same scans, so their
+/// results have the same bits.
 ///
 ///     TestAnalysis analysis{settings};
 ///     for (…) analysis.add(index, coefficient, saturated);
@@ -34,61 +34,63 @@ namespace stickslip::analysis {
 
 struct AnalysisSettings {
   double scan_rate_Hz = 350.0;    ///< Granted; > 0.
-  double step_coefficient = 0.0;  ///< One A/D step; 0 if unknown: then it is taken from the trace.
+  double step_coefficient = 0.0;  ///< One A/D step; 0 if unknown, then estimated from the trace.
   model::Tester tester;
   model::Method method;
-  /// Where S, K and S − K come from: those of each cycle, live and at the end, and those of the test. Only
-  /// kFit fits the whole test when it ends; the others take cycles and regime as they were seen while it ran,
-  /// and tell no ω, no γ and nothing that needs them.
+  /// Estimator of S, K and S − K, of each cycle and of the test. Only kFit fits the whole test at its end.
+  /// The other tiers use the cycles and the regime as detected live, and give no ω, no γ and no result that
+  /// needs them.
   detect::EstimatorTier estimator = detect::EstimatorTier::kFit;
-  estimate::SharedPrior prior;  ///< What is known of the tester beforehand; empty: the test tells it all.
-  Kept kept;                    ///< To see what spikes, drift or the first slip did.
-  /// Where to put the scans of a long test beside the latest few minutes; empty: they all stay in memory.
+  estimate::SharedPrior prior;  ///< Of the tester's parameters; may be empty.
+  Kept kept;                    ///< Corrections to leave out, to show their effect.
+  /// Folder for a scratch file that holds the scans of a long test except the latest few minutes; empty: all
+  /// in memory.
   std::filesystem::path scratch_folder;
-  /// The pull speed is measured: one A/D step of it, ≥ 0; absent: speed() is not called.
+  /// One A/D step of the measured pull speed, ≥ 0; nullopt: no speed channel, speed() is not called.
   std::optional<double> speed_step_m_per_s;
 };
 
 /// Thread-bound. Memory grows with the test by about 34 bytes a scan and 0.4 kB a slip; with a scratch folder
-/// it does not, but for 8 bytes of each spike, and all functions may throw std::system_error.
+/// only by 8 bytes a spike, and all functions may throw std::system_error.
 class TestAnalysis {
  public:
   /// \throws std::invalid_argument unless the rate is positive and finite.
   explicit TestAnalysis(const AnalysisSettings& settings);
 
-  /// The pull speed at the next scan, m/s; NaN where it is not known. Before each add() if
-  /// settings.speed_step_m_per_s says so, else never.
+  /// The pull speed at the next scan, m/s; NaN if unknown. Call before each add() if
+  /// settings.speed_step_m_per_s is set, else never.
   void speed(double speed_m_per_s);
   /// \param index        rises; a jump is a gap. \param coefficient calibrated; must be finite.
   /// \param saturated    the converter was at a rail.
   void add(base::ScanIndex index, double coefficient, bool saturated);
-  /// Scans [first, first + count) did not arrive. \param estimated  nobody counted them.
+  /// Scans [first, first + count) are missing.
+  /// \param estimated  the count comes from a clock.
   void gap(base::ScanIndex first, std::int64_t count, bool estimated = false);
 
   /// Cycles completed since the last call, as the detector sees them live; finish() refines them. A cycle is
   /// complete when the next slip is seen, or the oscillation has died away.
   [[nodiscard]] std::vector<detect::Cycle> take_new_cycles();
-  /// Falls of the force seen since the last call, LiveDetector::kFallDelayScans after they came.
+  /// Falls of the force detected since the last call, LiveDetector::kFallDelayScans after they happened.
   [[nodiscard]] std::vector<detect::FallBegun> take_new_falls();
-  /// No more scans: the cycle under way is complete too. finish() does the same.
+  /// Ends the live detection and completes the cycle under way. finish() does this too.
   void end_live();
-  /// Phase and regime of the moment.
+  /// Present phase and regime.
   [[nodiscard]] const detect::LiveState& live() const noexcept { return live_.state(); }
 
-  /// Estimates over the whole test. Call once.
+  /// Returns the results of the whole test. Call once.
   [[nodiscard]] TestResults finish();
 
-  /// After finish(): one for each slip.
+  /// After finish(): one cycle for each slip.
   [[nodiscard]] const base::LongColumn<detect::Cycle>& cycles() const noexcept { return cycles_; }
-  /// The same, for keeps.
+  /// Moves the cycles out.
   [[nodiscard]] base::LongColumn<detect::Cycle> take_cycles() { return std::exchange(cycles_, {}); }
-  /// After finish(): what the test alone says about the tester; nothing without a fit that describes it.
+  /// After finish(): the tester's parameters from this test alone; nullopt unless a fit describes the test.
   [[nodiscard]] const std::optional<TesterEstimate>& tester() const noexcept { return tester_; }
-  /// After finish(): the test against settings.prior.coupling; nothing without either.
+  /// After finish(): check against settings.prior.coupling; nullopt without it or without tester().
   [[nodiscard]] const std::optional<TesterCheck>& tester_check() const noexcept { return tester_check_; }
-  /// After finish(): scans that the detector did not believe.
+  /// After finish(): scans that were found to be spikes.
   [[nodiscard]] const std::vector<base::ScanIndex>& spikes() const noexcept { return spikes_; }
-  /// After finish(): what was measured in each of them.
+  /// After finish(): the measured coefficient of each spike.
   [[nodiscard]] const std::vector<double>& spike_coefficients() const noexcept { return spike_coefficients_; }
 
  private:
@@ -99,7 +101,7 @@ class TestAnalysis {
   };
 
   void keep_live(const detect::LiveCycle& cycle);
-  /// Of the speed channel, with its resolution; fills measured_speed_.
+  /// Reads the speed channel and its resolution; fills measured_speed_.
   void read_speeds(const estimate::Trace& trace);
   /// The speed of the pull, as measured or else as planned, into the trace; forgets falls that are no slips.
   void follow_speed(estimate::Trace& trace, base::LongColumn<detect::Fall>& slips) const;
@@ -121,7 +123,7 @@ class TestAnalysis {
   /// tester_ and tester_check_.
   [[nodiscard]] TestEstimates estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                        double sigma);
-  /// The same from what was seen while the test ran.
+  /// Estimates from the live cycles, for the tiers without a whole-test fit.
   [[nodiscard]] TestEstimates estimate_without_fit(const estimate::Trace& trace,
                                                    const base::LongColumn<detect::Fall>& slips) const;
   [[nodiscard]] bool fits_whole_test() const noexcept {

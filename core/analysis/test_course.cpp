@@ -27,8 +27,8 @@ void keep_pulled(const estimate::Trace& trace, base::LongColumn<detect::Fall>& s
   slips = std::move(kept);
 }
 
-/// A belt whose speed, from the first slip to the last, strays by less than this part of it pulls at one
-/// speed: a stick rate that is off by a hundredth is within what a fit of one test tells of it.
+/// Relative variation of the speed, from the first slip to the last, up to which it counts as constant: an
+/// error of 1 % of the stick rate is within the precision of a single test.
 constexpr double kOneSpeed = 0.01;
 
 bool changes(const model::PullSpeed& speed, double from_s, double to_s, double resolution_m_per_s) {
@@ -52,7 +52,7 @@ void TestAnalysis::break_at_gaps(estimate::Trace& trace, base::LongColumn<detect
   const base::LongColumn<detect::Fall>& falls = slips;
   if (gaps_.empty() || falls.empty()) return;
   // Peak and trough are half an oscillation apart: no gap that is shorter hides both. Whether what is longer
-  // hides a slip, or three, no fit can tell; nor what happened when, if nobody counted the scans.
+  // hides a slip, or three, no fit can tell; nor when it happened, if the scans were not counted.
   const double half =
       signal::median_of(falls.size(), [&](std::size_t i) { return falls[i].trough_at - falls[i].peak_at; });
   for (const Gap& gap : gaps_) {

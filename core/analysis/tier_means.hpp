@@ -1,5 +1,5 @@
 /// \file
-/// S, K and S − K of a test from those of its cycles, for the estimators that know cycles alone.
+/// S, K and S − K of a test as means over its cycles, for the estimator tiers without a whole-test fit.
 #pragma once
 
 #include "core/analysis/results.hpp"
@@ -8,8 +8,8 @@
 
 namespace stickslip::analysis {
 
-/// Means over cycles in a fixed memory. The first — often not representative [Penner 1995] — counts only if
-/// there is no other, or if it is kept.
+/// Running means over cycles, in fixed memory. The first cycle, often not representative [Penner 1995], is
+/// left out if there are others, unless first_counts.
 class TierMeans {
  public:
   explicit TierMeans(bool first_counts = false) noexcept : leaves_out_first_(!first_counts) {}

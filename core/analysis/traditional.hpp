@@ -1,5 +1,5 @@
 /// \file
-/// The two numbers of the tradition. [Penner 1995, Experimental]
+/// Traditional static and kinetic coefficient of a test. [Penner 1995, Experimental]
 #pragma once
 
 #include <optional>
@@ -18,10 +18,10 @@ struct TraditionalCoefficients {
 };
 
 /// \param trace  not empty.
-/// \param slips  in the order of time; with none there is no static coefficient, and the kinetic one is
-///               the mean of the trace without its loading and unloading; a travel window then begins to
-///               count at the end of the loading.
-/// \param pull_speed_m_per_s  nominal, > 0; a travel window needs it.
+/// \param slips  in the order of time. Without slips there is no static coefficient, and the kinetic one is
+///        the mean of the trace without loading and unloading; a travel window then counts from the end of
+///        the loading.
+/// \param pull_speed_m_per_s  nominal, > 0; required by a travel window.
 [[nodiscard]] TraditionalCoefficients traditional_coefficients(const estimate::Trace& trace,
                                                                const base::LongColumn<detect::Fall>& slips,
                                                                const model::Method& method,

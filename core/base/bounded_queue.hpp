@@ -1,6 +1,6 @@
 /// \file
-/// A bounded queue between two threads, for what must not be lost: a full queue stalls the
-/// producer and counts it.
+/// A bounded queue between two threads that never drops an item: while it is full, push() blocks, and the
+/// stall is counted.
 #pragma once
 
 #include <atomic>
@@ -28,22 +28,24 @@ class BoundedQueue {
     announce();
   }
 
-  /// Producer only; waits for room. The consumer is not told until announce(): several items wake it once.
+  /// Producer only. Blocks until the queue has room. The consumer sees the item only after announce(), so
+  /// that several items wake it once.
   void put(const T& item) {
     if (!free_slots_.try_acquire()) {
       stalls_.fetch_add(1, std::memory_order_relaxed);
-      announce();  // It could wait for items that it does not know of, while this waits for it.
+      announce();  // Prevents a deadlock: the consumer must see the items put so far, to free a slot.
       free_slots_.acquire();
     }
     // The slot was free before it was acquired, so this cannot fail.
     queue_.push(item);
     ++put_;
   }
+  /// Producer only. Makes all items put so far visible to the consumer.
   void announce() noexcept {
     for (; put_ > 0; --put_) items_.release();
   }
 
-  /// Consumer only; waits for an item, at most `timeout`. \return false if none came.
+  /// Consumer only. Takes the oldest item; waits for one at most `timeout`. \return false after the timeout.
   bool pop(T& item, std::chrono::milliseconds timeout) {
     if (!items_.try_acquire_for(timeout)) return false;
     queue_.pop(item);
@@ -59,7 +61,7 @@ class BoundedQueue {
   Semaphore free_slots_;
   Semaphore items_;
   std::atomic<std::uint64_t> stalls_{0};
-  unsigned put_ = 0;  ///< The producer's: not announced yet.
+  unsigned put_ = 0;  ///< Items not announced yet; used by the producer only.
 };
 
 }  // namespace stickslip::base

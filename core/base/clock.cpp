@@ -63,7 +63,7 @@ class SteppingClock final : public Clock {
  public:
   SteppingClock(std::unique_ptr<Clock> clock, double every_s, std::uint64_t seed)
       : clock_(std::move(clock)), every_s_(every_s), begin_ns_(clock_->monotonic_ns()) {
-    // Drawn here: who reads a clock may be a thread that may not allocate.
+    // Drawn in advance, since a thread that reads the clock may not allocate.
     std::mt19937_64 random{seed};
     std::uniform_real_distribution<double> step_s{-kLargestClockStep_s, kLargestClockStep_s};
     for (std::int64_t& step : steps_ns_) step = std::llround(1e9 * step_s(random));
@@ -78,7 +78,7 @@ class SteppingClock final : public Clock {
   void sleep_until(std::int64_t deadline_ns) override { clock_->sleep_until(deadline_ns); }
 
  private:
-  static constexpr std::size_t kSteps = 1024;  ///< Then they come again.
+  static constexpr std::size_t kSteps = 1024;  ///< The sequence repeats after this number.
 
   std::unique_ptr<Clock> clock_;
   double every_s_;

@@ -1,7 +1,6 @@
 /// \file
-/// Time as a parameter: who needs a clock takes one, so that tests move it by hand and the
-/// simulated bench runs faster than the wall. Results never use these clocks: their time is
-/// the scan index over the granted rate.
+/// Clocks, passed as parameters: tests move theirs by hand, and a simulated bench runs faster than real time.
+/// Results never depend on these clocks: their time is the scan index over the granted rate.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +13,7 @@ class Clock {
  public:
   virtual ~Clock() = default;
 
-  /// CLOCK_MONOTONIC_RAW, or what stands for it: never steps, not slewed by NTP.
+  /// CLOCK_MONOTONIC_RAW or its replacement: never steps, not slewed by NTP.
   [[nodiscard]] virtual std::int64_t monotonic_ns() const = 0;
   /// Since 1970-01-01T00:00:00Z.
   [[nodiscard]] virtual std::int64_t realtime_ns() const = 0;
@@ -27,12 +26,13 @@ class Clock {
 /// \throws std::invalid_argument unless speed is positive and finite.
 [[nodiscard]] std::unique_ptr<Clock> make_system_clock(double speed = 1.0);
 
-/// The same clock, but that its date is put right now and then: in each stretch of `every_s` of its time,
-/// from the second on, realtime_ns() is off by another amount, uniform to ±kLargestClockStep_s, that follows
-/// from the seed. \throws std::invalid_argument unless every_s is positive and finite.
+/// Wraps a clock so that its date steps, for tests. In each interval of `every_s` after the first,
+/// realtime_ns() has another error, uniform in ±kLargestClockStep_s and determined by the seed.
+/// \throws std::invalid_argument unless every_s is positive and finite.
 [[nodiscard]] std::unique_ptr<Clock> make_stepping_clock(std::unique_ptr<Clock> clock, double every_s,
                                                          std::uint64_t seed);
 
+/// Largest error of realtime_ns() of a stepping clock, s.
 inline constexpr double kLargestClockStep_s = 3600.0;
 
 }  // namespace stickslip::base

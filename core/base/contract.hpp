@@ -1,6 +1,6 @@
 /// \file
-/// Contract checks: a caller broke a documented promise, so the program stops at once with
-/// the place. Never for bad input, a board or a disk: those are values (result.hpp).
+/// Contract checks: if a caller breaks a documented precondition, the program prints the place and aborts.
+/// Never used for bad input or failures of board and disk, which are values (result.hpp).
 #pragma once
 
 #include <cstdio>

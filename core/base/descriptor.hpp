@@ -1,5 +1,5 @@
 /// \file
-/// Who owns a file descriptor.
+/// Owner of a file descriptor.
 #pragma once
 
 #include <unistd.h>

@@ -1,13 +1,12 @@
 /// \file
-/// One number for each scan, or one row for each slip, of which there may be more than memory should hold.
+/// A vector for one value per scan or one row per slip that may grow beyond memory.
 ///
 ///     LongColumn<double> force{folder};
 ///     force.push_back(0.3);
 ///     for (const double value : std::as_const(force)) …
 ///
-/// Without a folder it is a vector in blocks. With one, the latest few blocks stay in memory and the others
-/// are fetched from a nameless file there; who walks through it, or looks around in one place, reads each
-/// block once.
+/// Without a folder it is a vector in blocks. With a folder, the latest few blocks stay in memory and the
+/// others are read from an unnamed file there. Sequential or local access reads each block once.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +34,7 @@ class LongColumn {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
-  /// Elements. Of numbers 3 min at 350 scans/s; of rows of a table, of which there are fewer, 32 kB.
+  /// Elements of a block: for numbers 3 min at 350 scans/s; for rows of a table, which are fewer, 32 kB.
   static constexpr std::size_t kBlock = sizeof(T) <= sizeof(double)
                                             ? std::size_t{1} << 16U
                                             : std::bit_floor((std::size_t{1} << 15U) / sizeof(T));
@@ -142,7 +141,7 @@ class LongColumn {
   std::unique_ptr<ScratchFile> file_;
 };
 
-/// Reads by value: what it points to may be in the file in a moment.
+/// Iterator; reads by value, since the element may move to the file at the next access.
 template <typename T>
 template <bool kConst>
 class LongColumn<T>::Iterator {

@@ -5,7 +5,7 @@
 
 namespace stickslip::base {
 
-/// Marks an unknown value.
+/// NaN, which marks an unknown value.
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace stickslip::base

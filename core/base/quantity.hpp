@@ -1,5 +1,5 @@
 /// \file
-/// Numbers with units as people at a bench write them, turned into SI.
+/// Parsing of numbers with units, such as "12 in/min", into SI.
 ///
 ///     parse_quantity("12 in/min", Dimension::kSpeed)   → 0.00508 (m/s)
 ///     parse_quantity("2331 g", Dimension::kMass)       → 2.331 (kg)
@@ -17,7 +17,7 @@
 
 namespace stickslip::base {
 
-/// What a number measures. The comment is the SI unit in which values are returned.
+/// Physical dimension of a number. The comment of each is the SI unit of returned values.
 enum class Dimension {
   kDimensionless,     ///< 1
   kTime,              ///< s
@@ -47,8 +47,8 @@ enum class Dimension {
 
 /// "number unit" (blanks between them optional) in SI units. A dimensionless quantity may stand
 /// without a unit or in %, ppm. Micro is "u" or "µ", powers are "^2" or "²".
-/// \return the value, or an error that names the text and the allowed units, without a place:
-///         who knows the file and the key puts them in front.
+/// \return the value, or an error that names the text and the allowed units, without a place: the caller
+/// prefixes file and key.
 [[nodiscard]] Result<double> parse_quantity(std::string_view text, Dimension dimension);
 
 /// Unit in which parse_quantity() returns; "1" if dimensionless.

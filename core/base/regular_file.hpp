@@ -1,5 +1,6 @@
 /// \file
-/// Files that somebody names to be read. Opening one waits for nobody: a FIFO or a device is refused by name.
+/// Opening of input files given by the user. Opening never blocks: a FIFO or a device is refused with its
+/// kind.
 #pragma once
 
 #include <sys/stat.h>
@@ -15,22 +16,25 @@
 
 namespace stickslip::base {
 
-/// Why a thing of that kind is not read ("is a FIFO, not a regular file"); empty for a regular file.
+/// Reason why a file of this mode is refused ("is a FIFO, not a regular file"); empty for a regular file.
 [[nodiscard]] std::string why_not_regular(mode_t mode);
 
+/// An open input file.
 struct RegularFile {
   Descriptor file;         ///< Its offset is 0.
-  std::uint64_t size = 0;  ///< Bytes; of a pipe 0.
+  std::uint64_t size = 0;  ///< Bytes; 0 for a pipe.
 };
 
-/// Errors, with the path: kUsage if it is not there or no regular file, kFailure if the system refuses it.
+/// Opens a regular file for reading. Errors, with the path: kUsage if it does not exist or is not a regular
+/// file, kFailure if the system refuses.
 [[nodiscard]] Result<RegularFile> open_regular(const std::filesystem::path& path);
 
-/// As open_regular(), and also what this process was given open, of any kind but a folder: /dev/stdin, and
-/// /dev/fd/63 as a shell's <(command) names it.
+/// As open_regular(), and also opens inherited descriptors of any kind except a folder: /dev/stdin, and
+/// /dev/fd/63 from a shell's <(command).
 [[nodiscard]] Result<RegularFile> open_text(const std::filesystem::path& path);
 
-/// The whole content, or its first `longest` bytes. Errors as open_text(); kFailure if it cannot be read.
+/// Reads the whole content, or its first `longest` bytes. Errors as open_text(); kFailure if it cannot be
+/// read.
 [[nodiscard]] Result<std::string> read_text(const std::filesystem::path& path,
                                             std::size_t longest = std::numeric_limits<std::size_t>::max());
 

@@ -1,7 +1,6 @@
 /// \file
-/// Values or reasons. Three kinds of error are kept apart in this project: a broken
-/// contract stops the program (contract.hpp); a refused request and an adverse event
-/// are values of these types.
+/// Result of a function that may fail: a value or an Error. A broken contract stops the program instead
+/// (contract.hpp).
 ///
 ///     Result<double> rate = parse_rate(text);
 ///     if (!rate) return tl::unexpected(rate.error());
@@ -16,17 +15,17 @@
 
 namespace stickslip::base {
 
-/// Who has to act, and thereby the exit status of a program that stops because of it.
+/// Kind of an error; it determines the exit status of a program that stops because of it.
 enum class ErrorKind {
   kUsage,         ///< The request or its input is wrong (exit status 2).
-  kFailure,       ///< The request was right, the world was not: disk, board (exit status 1).
-  kBusy,          ///< Somebody else holds what is wanted (exit status 1).
-  kNoPermission,  ///< Somebody has to be given a right first (exit status 1).
-  /// Somebody asked to stop; the same request goes on from there (exit status 130, as after Ctrl-C).
+  kFailure,       ///< A valid request failed, for example at the disk or the board (exit status 1).
+  kBusy,          ///< The resource is in use by another process (exit status 1).
+  kNoPermission,  ///< A permission is missing (exit status 1).
+  /// The user stopped it; repeating the request resumes it (exit status 130, as after Ctrl-C).
   kInterrupted,
 };
 
-/// One line for a person: what is wrong, where, the value, what is allowed, what to do.
+/// An error with one line for the user: what is wrong, where, the value, what is allowed, what to do.
 struct Error {
   ErrorKind kind = ErrorKind::kFailure;
   std::string message;
@@ -50,13 +49,13 @@ struct Error {
 template <typename T>
 using Result = tl::expected<T, Error>;
 
-/// Wrong request or input. \param format,args as for fmt::format.
+/// Error of kind kUsage: the request or its input is wrong. \param format,args as for fmt::format.
 template <typename... Args>
 [[nodiscard]] tl::unexpected<Error> usage_error(fmt::format_string<Args...> format, Args&&... args) {
   return tl::unexpected(Error{ErrorKind::kUsage, fmt::format(format, std::forward<Args>(args)...)});
 }
 
-/// The world did not allow it. \param format,args as for fmt::format.
+/// Error of kind kFailure: a valid request failed. \param format,args as for fmt::format.
 template <typename... Args>
 [[nodiscard]] tl::unexpected<Error> failure(fmt::format_string<Args...> format, Args&&... args) {
   return tl::unexpected(Error{ErrorKind::kFailure, fmt::format(format, std::forward<Args>(args)...)});

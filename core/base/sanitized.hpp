@@ -1,5 +1,6 @@
 /// \file
-/// Is this build watched by a sanitizer? It runs ten times as slowly, and maps terabytes for its notes.
+/// kSanitized: whether this build runs under AddressSanitizer or ThreadSanitizer. Such a build is ten times
+/// slower and maps terabytes of address space.
 #pragma once
 
 // GCC has macros for it, clang has features.

@@ -1,5 +1,5 @@
 /// \file
-/// The time base of the whole product.
+/// Scan index, the time base of all results.
 #pragma once
 
 #include <cstdint>

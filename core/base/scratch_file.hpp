@@ -1,5 +1,5 @@
 /// \file
-/// A file without a name, for what is too long for memory; it is gone with its owner.
+/// An unnamed temporary file for data that do not fit into memory; it disappears with its owner.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace stickslip::base {
 
-/// All functions throw std::system_error that says what could not be done in which folder.
+/// All functions throw std::system_error that names the operation and the folder.
 class ScratchFile {
  public:
   explicit ScratchFile(const std::filesystem::path& folder);
@@ -18,7 +18,7 @@ class ScratchFile {
   ScratchFile& operator=(const ScratchFile&) = delete;
 
   void write(std::uint64_t position, std::span<const std::byte> bytes);
-  /// \param bytes  lie within what was written.
+  /// \param bytes  must have been written before.
   void read(std::uint64_t position, std::span<std::byte> bytes) const;
 
  private:

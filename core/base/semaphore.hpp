@@ -1,6 +1,7 @@
 /// \file
-/// A counting semaphore whose waiters sleep at once. That of GCC 12 gives its processor away several times
-/// before: three threads that wait 350 times a second each spent more on that than on the scans.
+/// A counting semaphore whose waiters sleep at once. std::counting_semaphore of GCC 12 yields the processor
+/// several times first: with three threads that each wait 350 times a second, this cost more than processing
+/// the scans.
 #pragma once
 
 #include <semaphore.h>
@@ -12,7 +13,7 @@
 
 namespace stickslip::base {
 
-/// Any threads. The count may reach INT_MAX.
+/// Thread-safe. The count may reach INT_MAX.
 class Semaphore {
  public:
   explicit Semaphore(unsigned count = 0) noexcept { static_cast<void>(::sem_init(&semaphore_, 0, count)); }
@@ -20,7 +21,7 @@ class Semaphore {
   Semaphore(const Semaphore&) = delete;
   Semaphore& operator=(const Semaphore&) = delete;
 
-  /// Does not wait, and calls the kernel only if somebody else does.
+  /// Increments the count. Never blocks; calls the kernel only if a thread is waiting.
   void release() noexcept { static_cast<void>(::sem_post(&semaphore_)); }
 
   void acquire() noexcept {
@@ -28,7 +29,7 @@ class Semaphore {
     }
   }
   [[nodiscard]] bool try_acquire() noexcept { return ::sem_trywait(&semaphore_) == 0; }
-  /// \return false if it was not released in time.
+  /// Decrements the count; waits at most `timeout`. \return false after the timeout.
   [[nodiscard]] bool try_acquire_for(std::chrono::milliseconds timeout) noexcept {
     constexpr std::int64_t kPerSecond = 1'000'000'000;
     timespec deadline{};

@@ -1,6 +1,6 @@
 /// \file
-/// Checked reading of TOML settings: each key is asked for once with its dimension, range and
-/// default, and what is wrong becomes one line with its place.
+/// Checked reading of TOML settings. Each key is read once, with its dimension, range and default; an error
+/// is one line with its place.
 ///
 ///     Result<Settings> settings = Settings::load("tester.toml");
 ///     if (!settings) return tl::unexpected(settings.error());
@@ -9,12 +9,12 @@
 ///     const bool damped = tester.boolean("damped", true);           // optional, with default
 ///     if (Result<void> ok = settings->finish(); !ok) return tl::unexpected(ok.error());
 ///
-/// A getter that fails remembers why and returns a harmless stand-in (the default, else zero), so
-/// that a reader asks for everything in a row; values count only after finish() has said yes.
-/// finish() refuses keys that nobody asked for.
+/// A getter that fails stores the reason and returns a substitute (the default, else zero), so that a reader
+/// can call all getters in sequence. Values are valid only if finish() succeeds. finish() refuses keys that
+/// were not read.
 ///
-/// A document can be changed before it is read, as by options of a command; errors about what was
-/// changed then name the option instead of a line of the file:
+/// A document can be changed before it is read, for example by command-line options. Errors about a changed
+/// value then name the option instead of a line of the file:
 ///
 ///     if (auto set = settings->set("paper.mu_s", "0.34", "--set paper.mu_s=0.34"); !set) …
 #pragma once
@@ -62,28 +62,29 @@ class Settings {
   /// Longest file that is read, bytes.
   static constexpr std::size_t kLargestFile = 1 << 20;
 
-  /// Reads and parses a file. Usage error: unreadable, too long, no TOML (with file:line).
+  /// Reads and parses a file. Usage error: unreadable, too long, invalid TOML (with file:line).
   [[nodiscard]] static Result<Settings> load(const std::filesystem::path& file);
   /// Parses text. \param name stands for the file in messages.
   [[nodiscard]] static Result<Settings> parse(std::string_view text, std::string_view name);
 
-  /// Sets a key of the document, whatever table this is; tables on its way are made.
-  /// \param path    dotted, no arrays. \param value  TOML; what is none is taken as a string.
+  /// Sets a key of the document, from any of its tables; creates missing tables on the path.
+  /// \param path    dotted from the root, no arrays.
+  /// \param value  TOML; text that is not TOML is taken as a string.
   /// \param origin  stands for the place in messages, e.g. the option as typed.
-  /// Usage error: empty name in the path, a value on the way, a text that is no UTF-8.
+  /// Usage error: empty name in the path, a value on the path that is not a table, text that is not UTF-8.
   [[nodiscard]] Result<void> set(std::string_view path, std::string_view value, std::string_view origin);
-  /// Removes a key or table that must be there; else usage error with what is.
+  /// Removes a key or table. Usage error if it is absent; the message lists the keys present.
   [[nodiscard]] Result<void> remove(std::string_view path, std::string_view origin);
 
-  /// Name given to load() or parse(), and the whole text: as it was read, or, once changed, the
-  /// changed document written anew under a line that says what changed.
+  /// Name given to load() or parse(), and the whole text: as read, or, after a change, the changed document
+  /// written anew below a line that lists the changes.
   [[nodiscard]] const std::string& source_name() const noexcept;
   [[nodiscard]] const std::string& source_text() const noexcept;
 
-  /// Is the key there? Does not count as asking for it.
+  /// Whether the key is present. Does not count as reading it.
   [[nodiscard]] bool has(std::string_view key) const;
 
-  /// A sub-table; where it is absent, an empty one (its required keys are then missing).
+  /// A sub-table; an empty one if absent, whose required keys are then missing.
   [[nodiscard]] Settings table(std::string_view key);
   /// [[key]] tables in order; none if absent.
   [[nodiscard]] std::vector<Settings> tables(std::string_view key);
@@ -105,7 +106,7 @@ class Settings {
   [[nodiscard]] std::vector<std::string> texts(
       std::string_view key, const std::optional<std::vector<std::string>>& fallback = std::nullopt);
 
-  /// One of the names; returns what it stands for.
+  /// Reads one of the names; returns its value.
   template <typename T>
   [[nodiscard]] T choice(std::string_view key, std::span<const std::pair<std::string_view, T>> names,
                          std::optional<T> fallback = std::nullopt) {
@@ -118,16 +119,16 @@ class Settings {
     return names[choice_index(key, texts, fallback_index)].second;
   }
 
-  /// Remembers that the value of `key` (or the absence of the key) is refused; for rules that
-  /// single getters cannot know, such as S ≥ K. Ends like "must not be below mu_k = 0.3".
+  /// Reports the value or the absence of `key` as an error, for rules over several keys, such as S ≥ K.
+  /// \param why  end of the message, such as "must not be below mu_k = 0.3".
   void refuse(std::string_view key, std::string_view why);
 
-  /// Of the whole document: success, or the most telling error: a wrong value, else an unknown
-  /// key, else a missing one.
+  /// Result for the whole document: success, or the most important error: a wrong value, else an unknown key,
+  /// else a missing one.
   [[nodiscard]] Result<void> finish() const;
 
-  /// Dotted paths of all keys asked for so far in the whole document, sorted; "[]" follows the
-  /// name of an array of tables.
+  /// Dotted paths of all keys read so far in the whole document, sorted; "[]" follows the name of an array of
+  /// tables.
   [[nodiscard]] std::vector<std::string> known_keys() const;
 
  private:

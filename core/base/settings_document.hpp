@@ -1,5 +1,5 @@
 /// \file
-/// What stands behind Settings; for its implementation only.
+/// Implementation of Settings; not for other includers.
 #pragma once
 
 #include <fmt/format.h>
@@ -25,12 +25,12 @@ inline constexpr std::size_t kLongestParserMessage = 200;
   return parent.empty() ? std::string{key} : fmt::format("{}.{}", parent, key);
 }
 
-/// What has been asked of one table, which may be absent from the text.
+/// Keys read from one table, which may be absent from the text.
 struct Settings::Node {
   const toml::table* table = nullptr;
   std::string path;        ///< Dotted, empty for the root.
   std::string known_path;  ///< As path, but "[]" instead of the number in an array of tables.
-  std::string place;       ///< Of the table's header, or of what should hold it.
+  std::string place;       ///< Place of the table's header, or of the table that should contain it.
   std::set<std::string, std::less<>> asked;
   std::map<std::string, std::vector<Node*>, std::less<>> children;
 };
@@ -42,11 +42,11 @@ struct Settings::Document {
   std::deque<Node> nodes;
   std::optional<Error> first_wrong;
   std::optional<Error> first_missing;
-  /// Of values and tables that set() brought in, by path.
+  /// Origins of the values and tables that set() added, by path.
   std::map<std::string, std::string, std::less<>> origins;
   std::vector<std::string> changes;  ///< Origins of all changes, in order.
 
-  /// Where the value stands in the text, or who set it.
+  /// Place of the value in the text, or the origin of the set() that wrote it.
   [[nodiscard]] std::string place_of(std::string_view path, const toml::node& value) const;
   void wrong(std::string_view place, std::string_view what) {
     if (!first_wrong) first_wrong = error_at(place, what);
@@ -57,10 +57,10 @@ struct Settings::Document {
   void missing(std::string_view place, std::string_view what) {
     if (!first_missing) first_missing = error_at(place, what);
   }
-  /// A fault in the file may come from a change elsewhere, so all are named.
+  /// Error at a place. It lists all changes, since a change elsewhere may have caused it.
   [[nodiscard]] Error error_at(std::string_view place, std::string_view what) const;
   [[nodiscard]] std::optional<Error> first_unknown(const Node& node) const;
-  /// The root changed: `text` must be it. Usage error if it cannot be written.
+  /// Rewrites `text` after a change of the root. Usage error if the root cannot be written.
   [[nodiscard]] Result<void> changed(std::string_view origin);
 };
 

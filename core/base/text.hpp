@@ -1,6 +1,5 @@
 /// \file
-/// Text that somebody else wrote (names, remarks, paths, requests), made safe for what this program writes,
-/// and refused where it comes in.
+/// Untrusted text (names, remarks, paths, requests): made safe for output, and checked at input.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +8,7 @@
 
 namespace stickslip::base {
 
-/// Longest name or remark that is taken, in bytes.
+/// Longest accepted name or remark, bytes.
 inline constexpr std::size_t kLongestName = 200;
 
 [[nodiscard]] bool is_utf8(std::string_view text);
@@ -18,12 +17,12 @@ inline constexpr std::size_t kLongestName = 200;
 /// are no UTF-8 (\x1b), other control characters (\u007f, \u009b), what changes the direction of text or
 /// breaks a line
 /// (\u202e, \u2028), and characters without width that are no part of words (\u200b, \ufeff). All other text,
-/// in any language, stays as it is; a backslash too, so that the numbers are for eyes, not for reading back.
+/// in any language, stays as it is, including a backslash, so that the result cannot be converted back.
 [[nodiscard]] std::string printable(std::string_view text);
 
 /// As printable(), of a whole output: line feed, the CR before it, and tab stay, for the output's own format
-/// put them there. JSON stays the same JSON. \param colours_stay  also the codes with which Paint changes
-/// colours.
+/// put them there. JSON stays the same JSON.
+/// \param colours_stay  also the codes with which Paint changes colours.
 [[nodiscard]] std::string printable_lines(std::string_view text, bool colours_stay = false);
 
 /// A text as one cell of a table in CSV: printable, quoted as RFC 4180 says, and with an apostrophe in front
@@ -35,8 +34,8 @@ inline constexpr std::size_t kLongestName = 200;
 /// guarded as in csv_cell().
 [[nodiscard]] std::string csv_comment(std::string_view text);
 
-/// Why this text is not taken as a name or remark, with what to do; empty if it is taken: UTF-8, at most
-/// `longest` bytes, nothing in it that printable() would change. A caller puts the place in front.
+/// Reason why a text is refused as a name or remark, with the remedy; empty if it is accepted. Accepted is
+/// UTF-8 of at most `longest` bytes that printable() would not change. The caller prefixes the place.
 [[nodiscard]] std::string name_refusal(std::string_view text, std::size_t longest = kLongestName);
 
 }  // namespace stickslip::base

@@ -6,9 +6,9 @@
 
 namespace stickslip::base {
 
-/// Of the calling thread. \param name  at most 15 characters.
+/// Sets the name of the calling thread. \param name  at most 15 characters.
 inline void name_this_thread(const char* name) noexcept {
-  // It measures without a name, too.
+  // A failure is harmless.
   static_cast<void>(::pthread_setname_np(::pthread_self(), name));
 }
 

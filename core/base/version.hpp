@@ -1,5 +1,5 @@
 /// \file
-/// Which program this is.
+/// Version and commit of this program.
 #pragma once
 
 namespace stickslip::base {

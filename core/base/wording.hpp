@@ -1,5 +1,5 @@
 /// \file
-/// Small helps for messages of one line.
+/// Helper functions for messages of one line.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +13,10 @@ namespace stickslip::base {
 /// The text as printable() shows it, cut after about `longest` bytes, never inside a UTF-8 sequence.
 [[nodiscard]] std::string one_line(std::string_view text, std::size_t longest = 60);
 
-/// Why something failed, whole and in one line: it may cite what stands in a file.
+/// Message of an exception as one printable line; it may quote the content of a file.
 [[nodiscard]] std::string reason_of(const std::exception& error);
 
-/// What the system says about an errno value.
+/// The system's message for an errno value.
 [[nodiscard]] std::string system_message(int error);
 
 /// "did you mean sled_mass? Known here: …" if a known word is within three edits of `word`,

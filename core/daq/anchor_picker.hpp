@@ -1,10 +1,9 @@
 /// \file
-/// One clock anchor for each half second: the read that came least late.
+/// Selects one clock anchor for each half second: the read with the smallest delay.
 ///
-/// A read is late by what the board's driver, the scheduler and the load of the machine add: never early,
-/// usually by a fraction of a scan, sometimes by much. The least of a window is what the board alone did
-/// (the idea of NTP's clock filter, RFC 5905 section 10), and a window with one late read says as much as
-/// one without.
+/// Driver, scheduler and load of the machine delay a read: usually by a fraction of a scan period, sometimes
+/// by much, and never negatively. The minimum over a window is the delay of the board alone, as in NTP's
+/// clock filter (RFC 5905, section 10), so a single late read has no effect.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +26,7 @@ class AnchorPicker {
       : period_ns_(1e9 / granted_Hz),
         window_scans_(std::max<std::int64_t>(1, std::llround(kWindow_s * granted_Hz))) {}
 
-  /// \return the anchor of the window that ended before this block, if one did and has any.
+  /// \return the anchor of the window that this block ends, if it ends one that has an anchor.
   [[nodiscard]] std::optional<ClockAnchor> observe(const ScanBlock& block) noexcept {
     std::optional<ClockAnchor> picked;
     const ScanIndex last = block.end() - 1;
@@ -47,7 +46,8 @@ class AnchorPicker {
     return picked;
   }
 
-  /// The anchor of the window that has begun, if it has any; forgets it. Also to begin anew after a jump.
+  /// Returns and removes the anchor of the present window, if any, and starts a new window. Also called after
+  /// a jump of the index.
   [[nodiscard]] std::optional<ClockAnchor> flush() noexcept {
     window_open_ = false;
     std::optional<ClockAnchor> last;
@@ -55,7 +55,7 @@ class AnchorPicker {
     return last;
   }
 
-  /// That of the window that has begun, so far.
+  /// Anchor of the present window so far.
   [[nodiscard]] const std::optional<ClockAnchor>& best() const noexcept { return best_; }
 
   /// How much later than `reference` this anchor was, by the granted rate, ns.

@@ -1,6 +1,6 @@
 /// \file
-/// The seam between the product and the world. Hardware, simulation and replay are equal
-/// implementations and pass one conformance suite (tests/conformance); no caller asks which.
+/// Interface of a board. Hardware, simulation and replay implement it and pass one conformance suite
+/// (tests/conformance); no caller distinguishes them.
 ///
 ///     base::Result<void> started = board.start();
 ///     daq::ScanBlock block;
@@ -20,7 +20,7 @@
 
 namespace stickslip::daq {
 
-/// What a raw reading is.
+/// Physical quantity of a raw reading.
 enum class RawQuantity {
   kCounts,       ///< A/D code, 0 … maxdata.
   kVolts,        ///< Imported, V.
@@ -28,10 +28,10 @@ enum class RawQuantity {
   kCoefficient,  ///< Imported, force over the sled's weight.
 };
 
-/// Facts about the board in use, read back from it: what is granted, not what was asked.
+/// Properties of the board in use, read back from it: granted, not requested, values.
 struct BoardInfo {
   std::string driver;      ///< "comedi", "simulated", "replay".
-  std::string board_name;  ///< As the board names itself.
+  std::string board_name;  ///< Name reported by the board.
   std::string device;      ///< Path or scene or file; for people.
   int subdevice = 0;
   int channel = 0;
@@ -49,16 +49,16 @@ struct BoardInfo {
   /// unknown.
   std::string calibration;
   /// "command" (the board's own timer) or "polled" (one reading at a time, timed by this computer); empty:
-  /// not said.
+  /// unknown.
   std::string acquisition;
-  std::string notes;                    ///< What the board changed of what was asked; for the log.
-  std::optional<SecondChannel> second;  ///< Read in each scan too; only where quantity is kCounts.
+  std::string notes;                    ///< Requested settings that the board changed; for the log.
+  std::optional<SecondChannel> second;  ///< Second channel, read in each scan; only if quantity is kCounts.
 };
 
 /// How a read ended.
 enum class ReadStatus {
   kScans,         ///< The block holds at least one scan.
-  kTimeout,       ///< Nothing came in time; also before start() and after stop().
+  kTimeout,       ///< No scan arrived in time; also before start() and after stop().
   kEndOfInput,    ///< There will be no more scans (end of a replay or a simulation). Repeats.
   kOverrun,       ///< The board lost scans and halted; start() again. Reported once.
   kBoardMissing,  ///< The board is gone; only a new board object can bring it back. Repeats.
@@ -86,7 +86,7 @@ class Board {
   /// Ends the acquisition; scans not read are lost. Allowed at any time, any number of times.
   virtual void stop() noexcept = 0;
 
-  /// Why the last start() or read() failed, for people; empty if none did.
+  /// Reason for the last failure of start() or read(), for the user; empty if neither failed.
   [[nodiscard]] virtual std::string last_error() const { return {}; }
 };
 

@@ -1,5 +1,6 @@
 /// \file
-/// Raw reading → volts → newtons → coefficient, all linear but the board's polynomial.
+/// Conversion of a raw reading to volts, newtons and coefficient. All steps are linear except the board's
+/// polynomial.
 ///
 ///     Calibration calibration{board.info(), load_cell, normal_load_N};
 ///     double c = calibration.coefficient(block.raw[0]);
@@ -31,22 +32,23 @@ class Calibration {
   /// Force over the normal load.
   [[nodiscard]] double coefficient(double raw) const noexcept;
 
-  /// The same with another zero of the load cell, finite.
+  /// Copy with another zero of the load cell, finite.
   [[nodiscard]] Calibration with_zero(double zero_V) const {
     Calibration other = *this;
     other.load_cell_.zero_V = zero_V;
     return other;
   }
-  /// The load cell stands between reading and force.
+  /// Whether the raw reading is a voltage or a count, so that the load cell's gain and zero apply.
   [[nodiscard]] bool measures_voltage() const noexcept {
     return quantity_ == RawQuantity::kCounts || quantity_ == RawQuantity::kVolts;
   }
   [[nodiscard]] const LoadCell& load_cell() const noexcept { return load_cell_; }
 
   [[nodiscard]] double normal_load_N() const noexcept { return normal_load_N_; }
-  /// One A/D step as a coefficient; 0 if the reading is no count.
+  /// One A/D step as a coefficient; 0 unless raw readings are counts.
   [[nodiscard]] double step_coefficient() const noexcept { return step_coefficient_; }
-  /// At a rail of the converter (code 0 or maxdata): the true value lies outside.
+  /// Whether the reading is at a rail of the converter (code 0 or maxdata); the true value may then lie
+  /// outside.
   [[nodiscard]] bool saturated(double raw) const noexcept {
     return quantity_ == RawQuantity::kCounts && (raw <= 0.0 || raw >= maxdata_);
   }

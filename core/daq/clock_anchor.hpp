@@ -1,5 +1,5 @@
 /// \file
-/// A scan and the time at which it was taken, as well as that is known.
+/// Clock anchor: a scan index with the clock readings at that scan.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace stickslip::daq {
 
-/// The clocks at a scan: from these the true scan rate is fitted.
+/// Clock readings at a scan, from which the true scan rate is fitted.
 struct ClockAnchor {
   base::ScanIndex scan = 0;
   std::int64_t monotonic_ns = 0;

@@ -1,5 +1,5 @@
 /// \file
-/// Lost scans are data: a jump in the scan index becomes a Gap with its cause.
+/// Gaps: missing scans, found from jumps of the scan index, each with its cause.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,9 @@ enum class GapCause {
   kOverrun,       ///< The board's buffer overflowed.
   kRingFull,      ///< The processing thread was too slow: the ring dropped whole blocks.
   kBoardMissing,  ///< The board was unplugged.
-  kMissingScans,  ///< The source itself says that they are missing (a replayed gap).
-  kStorageFull,   ///< They arrived; the disk refused them for longer than memory lasted.
-  kDamaged,       ///< They were stored; the journal cannot be read where they stood.
+  kMissingScans,  ///< The source reports them as missing (a replayed gap).
+  kStorageFull,   ///< They arrived; writing failed for longer than memory could hold them.
+  kDamaged,       ///< They were stored; that part of the journal is unreadable.
 };
 
 [[nodiscard]] constexpr std::string_view name(GapCause cause) noexcept {
@@ -40,23 +40,23 @@ enum class GapCause {
   return "unknown";
 }
 
-/// Scans [first, first + count) did not arrive.
+/// Scans [first, first + count) are missing.
 struct Gap {
   ScanIndex first = 0;
   std::int64_t count = 0;
-  bool estimated = false;  ///< The board did not count them: the index after the gap comes from a clock.
+  bool estimated = false;  ///< The count comes from a clock, not from the board.
   GapCause cause = GapCause::kUnknown;
 };
 
-/// Compares each block with the end of the one before.
+/// Finds gaps by comparing each block with the end of the one before.
 class GapTracker {
  public:
   GapTracker() = default;
-  /// \param next  where an acquisition before this one ended: the first block may have a gap then.
+  /// \param next  end of an earlier acquisition; the first block may then follow a gap.
   explicit GapTracker(std::optional<ScanIndex> next) noexcept : next_(next) {}
 
-  /// \param cause what to blame if there is a jump before this block.
-  /// \param halted  the board had halted in between: the jump is an estimate, whatever else to blame.
+  /// \param cause cause to assign if the index jumps before this block.
+  /// \param halted  the board had halted in between; the gap is then estimated, whatever the cause.
   /// \return the gap before the block, if any. The first block ever never has one.
   [[nodiscard]] std::optional<Gap> observe(const ScanBlock& block, GapCause cause = GapCause::kUnknown,
                                            bool halted = false) noexcept {

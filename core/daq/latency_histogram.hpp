@@ -1,5 +1,5 @@
 /// \file
-/// How late scans are read, in octaves: fixed size, no allocation, a value that can be copied.
+/// Histogram of the delays of reads, in octaves. Fixed size; does not allocate; copyable.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace stickslip::daq {
 
-/// Bin 0 holds all below kFirstLimit_s, each further one twice as wide; the last holds all above.
+/// Bin 0 counts delays below kFirstLimit_s. The upper limit doubles from bin to bin; the last bin has none.
 class LatencyHistogram {
  public:
   static constexpr std::size_t kBins = 18;
@@ -18,7 +18,7 @@ class LatencyHistogram {
   using Counts = std::array<std::uint64_t, kBins>;
 
   LatencyHistogram() = default;
-  /// One that was stored.
+  /// Restores a stored histogram.
   LatencyHistogram(const Counts& counts, double largest_s) noexcept
       : counts_(counts), largest_s_(largest_s) {}
 
@@ -27,7 +27,7 @@ class LatencyHistogram {
     return bin + 1 >= kBins ? HUGE_VAL : std::ldexp(kFirstLimit_s, static_cast<int>(bin));
   }
 
-  /// \param late_ns  below 0 counts as 0: the reference itself was late then.
+  /// \param late_ns  delay; a negative one counts as 0, since then the reference was late.
   void add(double late_ns) noexcept {
     const double late_s = std::max(0.0, 1e-9 * late_ns);
     std::size_t bin = 0;
@@ -39,9 +39,10 @@ class LatencyHistogram {
 
   [[nodiscard]] const Counts& counts() const noexcept { return counts_; }
   [[nodiscard]] double largest_s() const noexcept { return largest_s_; }
-  /// Of what was added to this one, not of what was stored: records keep no sum.
+  /// Sum of the delays added to this object. A restored histogram starts at 0, since records do not store the
+  /// sum.
   [[nodiscard]] double sum_s() const noexcept { return sum_s_; }
-  /// What a record keeps of both.
+  /// Compares the stored members: counts and largest delay.
   bool operator==(const LatencyHistogram& other) const noexcept {
     return counts_ == other.counts_ && largest_s_ == other.largest_s_;
   }

@@ -1,6 +1,6 @@
 /// \file
-/// Gain and zero of a load cell from weights hung on it: least squares of volts against newtons, which are
-/// the ones known well.
+/// Gain and zero of a load cell from hung weights: least squares of voltage on force, since the force has the
+/// smaller error.
 ///
 ///     const LoadCellFit fit = fit_load_cell({{0.0, 0.012}, {9.807, 2.464}, {19.61, 4.917}});
 ///     if (!fit.load_cell) complain(fit.reason);
@@ -18,21 +18,22 @@ namespace stickslip::daq {
 struct LoadPoint {
   double force_N = 0.0;
   double voltage_V = 0.0;
-  bool saturated = false;  ///< At a rail of the converter: does not count.
+  bool saturated = false;  ///< At a rail of the converter; ignored.
 };
 
+/// Result of fit_load_cell().
 struct LoadCellFit {
-  std::optional<LoadCell> load_cell;                  ///< None: see the reason.
+  std::optional<LoadCell> load_cell;                  ///< Nullopt: see reason.
   std::optional<double> gain_standard_error_N_per_V;  ///< From three points on.
   std::optional<double> zero_standard_error_V;        ///< From three points on.
-  std::optional<double> residual_V;  ///< Standard deviation about the line, from three points on.
-  std::optional<double>
-      hysteresis_V;    ///< Mean reading under falling less that under rising loads, about the line.
-  int used = 0;        ///< Points that count.
-  std::string reason;  ///< Set exactly when there is no load cell.
+  std::optional<double> residual_V;    ///< Standard deviation about the line, from three points on.
+  std::optional<double> hysteresis_V;  ///< Mean residual under falling less that under rising loads.
+  int used = 0;                        ///< Points used.
+  std::string reason;                  ///< Set exactly when there is no load cell.
 };
 
-/// No answer, but a reason, for fewer than two different loads, and where the voltage does not follow them.
+/// Fits the line. The result has a reason instead of a load cell if there are fewer than two different loads,
+/// or if the voltage does not change with them.
 [[nodiscard]] LoadCellFit fit_load_cell(std::span<const LoadPoint> points);
 
 }  // namespace stickslip::daq

@@ -1,6 +1,6 @@
 /// \file
-/// What a person did during a test, or the computer suffered, at a scan of it: kept in the record as an
-/// event, and done or told again at the same scan when the record is replayed.
+/// Note: a command of the user, or a disturbance of the computer, at a scan of a test. The record stores it
+/// as an event; a replay repeats it at the same scan.
 ///
 ///     "command: start, by ada"   "command: stop, by ada"   "mark: the sheet moved"   "bench: zero set to
 ///     0.01 V"   "stall: this scan was read 41.3 s late"   "clock step: the date went 3600 s back"
@@ -19,16 +19,16 @@ namespace stickslip::daq {
 
 struct Note {
   enum class Kind {
-    kStart,  ///< The test began here, whatever the force.
-    kStop,   ///< This was its last scan.
-    kMark,   ///< Nothing but the text.
-    kBench,  ///< Before the test: armed, tared. Stands at its first scan.
-    kStall,  ///< The computer stood still; the scans of that time were read late.
-    kStep,   ///< The date was set.
+    kStart,  ///< A command began the test at this scan.
+    kStop,   ///< A command ended the test; this is its last scan.
+    kMark,   ///< A remark.
+    kBench,  ///< The bench was armed or tared before the test; placed at the test's first scan.
+    kStall,  ///< The computer stalled; this scan was read late.
+    kStep,   ///< The computer's date was set.
   };
   Kind kind = Kind::kMark;
   base::ScanIndex scan = 0;
-  std::string text;  ///< Who; of all others: what.
+  std::string text;  ///< Of kStart and kStop: name of the user; otherwise a description.
 
   bool operator==(const Note&) const = default;
 };
@@ -42,7 +42,7 @@ inline constexpr std::string_view kStall = "stall: ";
 inline constexpr std::string_view kStep = "clock step: ";
 }  // namespace note_words
 
-/// As in the record's events.
+/// Text of the record's event.
 [[nodiscard]] inline std::string to_text(const Note& note) {
   switch (note.kind) {
     case Note::Kind::kStart:
@@ -61,7 +61,7 @@ inline constexpr std::string_view kStep = "clock step: ";
   return fmt::format("{}{}", note_words::kMark, note.text);
 }
 
-/// Nothing if the event is none of these.
+/// Inverse of to_text(); nullopt for any other event.
 [[nodiscard]] inline std::optional<Note> parse_note(base::ScanIndex scan, std::string_view event) {
   const auto as = [&](Note::Kind kind, std::string_view words) {
     return Note{kind, scan, std::string{event.substr(words.size())}};

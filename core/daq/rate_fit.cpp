@@ -7,10 +7,11 @@
 namespace stickslip::daq {
 namespace {
 
-/// A board whose rate is off by more is not known; a backlog is read thousands of times faster.
+/// Factor between median and granted rate beyond which the anchors are a backlog read in a burst. No known
+/// board is off by as much, and a backlog is read thousands of times faster.
 constexpr double kFarthestRate = 10.0;
 
-/// The median of the rates between neighbours; that granted where most neighbours were read in a burst.
+/// Median of the rates between neighbouring anchors; the granted rate if most of them were read in a burst.
 double usual_rate_Hz(std::span<const ClockAnchor> anchors, double granted_Hz) {
   std::vector<double> period_ns;
   for (std::size_t i = 1; i < anchors.size(); ++i) {

@@ -5,15 +5,15 @@
 ///     for (const ClockAnchor& anchor : anchors) fit.add(anchor);
 ///     if (const auto rate = fit.estimate()) show(rate->rate_Hz, rate->standard_error_Hz);
 ///
-/// An index that was itself derived from a clock (after an overrun) says nothing about the rate across the
-/// place where it was derived: begin_segment() gives what follows an intercept of its own, the slope is
-/// common. Sums are centred as they grow (Welford), so a session of months keeps its digits.
+/// After an overrun the index is derived from a clock, and the jump there has no information about the rate.
+/// begin_segment() gives the following anchors an intercept of their own; the slope is common. Centred
+/// running sums (Welford) keep the precision over months.
 ///
-/// A read can only be late, never early: the computer stalled, and what piled up is then read in a burst. So
-/// of two anchors that do not agree the earlier reading is right. An anchor that is later than the one before
-/// allows does not count; one that is earlier shows that those before were late, or that the clock stood
-/// still (a suspended machine), and begins a segment. Segments of one anchor say nothing about the rate: a
-/// whole test that was read in a burst gives none.
+/// A read can only be late, never early: after a stall of the computer the backlog is read in a burst. So if
+/// two anchors disagree, the one with the smaller delay is right. An anchor that is too late relative to the
+/// one before is ignored. One that is too early shows that those before it were late, or that the clock
+/// stopped (a suspended machine); it begins a segment. A segment of one anchor has no information about the
+/// rate, so a test that was read in one burst has no estimate.
 #pragma once
 
 #include <cstdint>
@@ -25,41 +25,44 @@
 
 namespace stickslip::daq {
 
+/// Fitted scan rate.
 struct RateEstimate {
   double rate_Hz = 0.0;
   double standard_error_Hz = 0.0;  ///< From the scatter of the anchors about the line.
-  std::int64_t anchor_count = 0;   ///< Those that count.
+  std::int64_t anchor_count = 0;   ///< Anchors used.
 
   bool operator==(const RateEstimate&) const = default;
 };
 
-/// Real-time safe. A value: copies are pictures of a moment.
+/// Real-time safe. Copyable; a copy is a snapshot.
 class RateFit {
  public:
-  /// Fewer leave a standard error of so few degrees of freedom that nothing can be said from it.
+  /// Fewest anchors that give an estimate; with fewer the standard error has too few degrees of freedom.
   static constexpr std::int64_t kFewestAnchors = 5;
 
-  /// Two anchors agree if the clock between them went as the scans say, but for so much of that time (no
-  /// more than kLongestDrift_ns), the rate not being known better,
+  /// Two anchors agree if the clock time between them equals the time of the scans at the expected rate to
+  /// within kUsualDelay_ns + min(kRateDoubt · time, kLongestDrift_ns). kRateDoubt is the relative uncertainty
+  /// of the expected rate.
   static constexpr double kRateDoubt = 0.02;
   static constexpr double kLongestDrift_ns = 100e6;
-  /// and for so much that any read may be late.
+  /// Usual delay of a read, ns.
   static constexpr double kUsualDelay_ns = 20e6;
-  /// So many late ones in a row are no late reads: scans went missing that nobody counted.
+  /// Number of late anchors in a row that are taken for uncounted missing scans instead of late reads; a new
+  /// segment begins.
   static constexpr int kLastingDelay = 5;
 
-  /// \param granted_Hz  positive; the origin from which deviations are summed.
-  /// \param expected_Hz  positive; the rate by which anchors are compared.
+  /// \param granted_Hz  positive; the sums are of deviations from this rate.
+  /// \param expected_Hz  positive; rate by which anchors are compared.
   RateFit(double granted_Hz, double expected_Hz) noexcept
       : period_ns_(1e9 / granted_Hz), expected_ns_(1e9 / expected_Hz) {}
   explicit RateFit(double granted_Hz) noexcept : RateFit(granted_Hz, granted_Hz) {}
 
-  /// \param anchor  its scan lies after all before. \return false if it was read late and does not count.
+  /// \param anchor  with a scan after all earlier ones. \return false if it was late and is ignored.
   bool add(const ClockAnchor& anchor) noexcept;
-  /// The next anchor's index has no known distance from those before.
+  /// Begins a segment: the distance of the next anchor's index from earlier ones is unknown.
   void begin_segment() noexcept;
 
-  /// None while there are too few anchors that count.
+  /// Nullopt while there are fewer than kFewestAnchors.
   [[nodiscard]] std::optional<RateEstimate> estimate() const noexcept;
 
  private:
@@ -70,16 +73,16 @@ class RateFit {
   int late_in_a_row_ = 0;
   std::int64_t segment_size_ = 0;
   double mean_scan_ = 0.0;
-  double mean_late_ns_ = 0.0;  ///< Time less index times granted period.
-  std::int64_t anchors_ = 0;   ///< In segments of two and more.
+  double mean_late_ns_ = 0.0;  ///< Time minus index times granted period.
+  std::int64_t anchors_ = 0;   ///< In segments of two or more.
   std::int64_t segments_ = 0;
   double scan_scan_ = 0.0;  ///< Sums of products of deviations from the segment's means.
   double scan_late_ = 0.0;
   double late_late_ = 0.0;
 };
 
-/// The fit of a test's anchors, compared by the pace of most of them.
-/// \param gaps  of the test; those whose length was estimated part the anchors.
+/// Fits the anchors of a test; the expected rate is the median of the rates between neighbours.
+/// \param gaps  of the test; an estimated gap begins a segment.
 [[nodiscard]] std::optional<RateEstimate> fit_rate(std::span<const ClockAnchor> anchors,
                                                    std::span<const Gap> gaps, double granted_Hz);
 

@@ -1,5 +1,5 @@
 /// \file
-/// The true rate of an acquisition while it runs, and with it where the index goes on after a halt.
+/// True scan rate during an acquisition, and the scan index at which it continues after a halt.
 ///
 ///     RateMeter meter{info.scan_rate_granted_Hz};
 ///     meter.observe(block);                        // each block
@@ -14,15 +14,15 @@
 
 namespace stickslip::daq {
 
-/// All that is needed to number the scans after a halt, also on another board object.
+/// State from which scans are numbered after a halt, also with another board object.
 struct Continuation {
   ScanIndex end = 0;        ///< One past the last scan delivered.
-  ClockAnchor anchor;       ///< A scan of which the time is known.
-  double scan_rate_Hz = 0;  ///< Measured where that is known well, else granted.
+  ClockAnchor anchor;       ///< Scan with known time.
+  double scan_rate_Hz = 0;  ///< Measured if precise enough, else granted.
 };
 
-/// The index of the first scan of a board that is started now: it comes one period later. The scans since
-/// `from` are counted by the clock, and at least one was lost.
+/// Index of the first scan of a board started at `now_ns`, one period later. The clock gives the number of
+/// scans since `from`; at least one counts as lost.
 [[nodiscard]] ScanIndex first_scan_after(const Continuation& from, std::int64_t now_ns) noexcept;
 
 /// Real-time safe.
@@ -33,21 +33,21 @@ class RateMeter {
 
   /// Blocks in the order of their indices.
   void observe(const ScanBlock& block) noexcept;
-  /// A board was started; its first scan, one period after `now_ns`, has this index. No distance to the
-  /// scans before is known but what the clock said.
+  /// To be called when a board was started whose first scan, one period after `now_ns`, has index `first`.
+  /// The distance to earlier scans comes from the clock only.
   void started(ScanIndex first, std::int64_t now_ns) noexcept;
-  /// The index of the coming block was derived from a clock.
+  /// To be called when the index of the next block was derived from a clock.
   void restarted() noexcept;
 
-  /// Of all blocks so far; none before there are enough anchors.
+  /// Rate over all blocks so far; nullopt with too few anchors.
   [[nodiscard]] std::optional<RateEstimate> estimate() const noexcept { return fit_.estimate(); }
-  /// None before anything was observed.
+  /// Nullopt before the first block.
   [[nodiscard]] std::optional<Continuation> continuation() const noexcept;
-  /// How late this block was read, compared with the most prompt one of late, ns; none at the beginning.
+  /// Delay of this block relative to the most prompt of the recent ones, ns; nullopt at the beginning.
   [[nodiscard]] std::optional<double> lateness_ns(const ScanBlock& block) const noexcept;
 
  private:
-  /// Beyond this the granted rate is as good a guess over the length of a gap.
+  /// Largest relative standard error at which the measured rate is preferred to the granted one.
   static constexpr double kUsableRelativeError = 100e-6;
 
   double granted_Hz_;

@@ -1,6 +1,6 @@
 /// \file
-/// What a record says about its scans that a replay cannot see: the clocks of then, why scans are missing,
-/// and what people did.
+/// Data of a record that a replay of its scans cannot reproduce: clock anchors, causes of gaps, commands and
+/// remarks.
 #pragma once
 
 #include <memory>
@@ -18,10 +18,10 @@ namespace stickslip::daq {
 struct RecordedFacts {
   std::vector<ClockAnchor> anchors;             ///< Rising.
   std::vector<Gap> gaps;                        ///< Rising.
-  std::shared_ptr<const SelfCheck> self_check;  ///< Null if there is none.
+  std::shared_ptr<const SelfCheck> self_check;  ///< Null if absent.
   std::optional<LatencyHistogram> read_latency;
-  std::vector<Note> notes{};  ///< Scans not falling.
-  /// Of the unloaded cell before the test, as a coefficient; absent where it was not known.
+  std::vector<Note> notes{};  ///< In the order of their scans.
+  /// Coefficient read by the unloaded cell before the test; nullopt if unknown.
   std::optional<double> unloaded_level = {};
 };
 

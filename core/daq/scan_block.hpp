@@ -1,5 +1,6 @@
 /// \file
-/// The unit that travels from the board to the detector: consecutive scans of one channel, or of two.
+/// Scan block, the unit that travels from the board to the detector: consecutive scans of one or two
+/// channels.
 #pragma once
 
 #include <array>
@@ -17,8 +18,8 @@ using base::ScanIndex;
 struct ClockStamp {
   std::int64_t monotonic_ns = 0;
   std::int64_t realtime_ns = 0;
-  /// The read had to wait for the scans, so the stamp tells when the last of them was taken. False while
-  /// scans that had piled up are fetched.
+  /// True if the read waited for the scans, so that the stamp is the time of the last one. False while a
+  /// backlog is read.
   bool prompt = true;
 };
 
@@ -29,15 +30,15 @@ struct ScanBlock {
   ScanIndex first = 0;      ///< Index of raw[0].
   std::uint32_t count = 0;  ///< Scans in use, 0 … kMaxScans.
   ClockStamp stamp;
-  // Of the acquisition so far, as of this block: what they rose by since the block before is to blame for a
-  // jump between the two. Boards leave them alone.
+  // Totals of the acquisition up to this block; their increase since the block before is the cause of a jump
+  // between the two. The acquisition thread sets them, not the board.
   std::uint64_t overrun_count = 0;       ///< Halts of the board.
-  std::uint64_t dropped_scan_count = 0;  ///< By a full ring.
+  std::uint64_t dropped_scan_count = 0;  ///< Scans dropped by a full ring.
   /// Raw readings: A/D counts (a double holds every count of up to 53 bits exactly), or the
   /// values of an imported trace in the unit that BoardInfo names.
   std::array<double, kMaxScans> raw{};
   bool has_second = false;                       ///< As BoardInfo::second; the same in all blocks of a board.
-  std::array<std::int32_t, kMaxScans> second{};  ///< Its codes; SecondChannel::kNoCode where none came.
+  std::array<std::int32_t, kMaxScans> second{};  ///< Its codes; SecondChannel::kNoCode for a missing one.
 
   [[nodiscard]] ScanIndex end() const noexcept { return first + static_cast<ScanIndex>(count); }
   [[nodiscard]] std::span<const double> scans() const noexcept { return {raw.data(), count}; }

@@ -19,8 +19,8 @@ class ScanRing {
   /// \param capacity blocks; choose it for at least 60 s (see capacity_for()).
   explicit ScanRing(std::size_t capacity) : queue_(capacity), capacity_(capacity) {}
 
-  /// Blocks needed to bridge `bridge_s` seconds when a read may deliver as little as one block
-  /// every 5 ms (a Comedi wake-up at 250 Hz delivers every 8 ms) or as much as full blocks.
+  /// Capacity in blocks that holds `bridge_s` seconds, for reads that deliver a short block every 5 ms
+  /// (Comedi at 250 Hz: every 8 ms) as well as full blocks.
   [[nodiscard]] static std::size_t capacity_for(double scan_rate_Hz, double bridge_s = 60.0) {
     constexpr double kReadsPerSecond = 200.0;
     const double full_blocks_per_second = scan_rate_Hz / static_cast<double>(ScanBlock::kMaxScans);
@@ -28,7 +28,7 @@ class ScanRing {
   }
 
   /// Writes every page once, so that the producer's first round through the ring takes no page faults.
-  /// Before there is a producer or a consumer.
+  /// Call before producer and consumer start.
   void touch() {
     const ScanBlock block;
     while (queue_.push(block)) {
@@ -56,10 +56,10 @@ class ScanRing {
     return queue_.pop(out, most);
   }
 
-  /// In blocks.
+  /// Use of the ring, in blocks.
   struct Use {
     std::size_t capacity = 0;
-    std::size_t high_water = 0;  ///< Most that waited at once, as far as the consumer has come.
+    std::size_t high_water = 0;  ///< Most blocks found waiting by a pop().
   };
   /// Any thread.
   [[nodiscard]] Use use() const noexcept { return {capacity_, high_water_.load(std::memory_order_relaxed)}; }

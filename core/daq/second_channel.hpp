@@ -1,5 +1,6 @@
 /// \file
-/// A second input that is read in each scan, after the force: how fast the sled is pulled, or where it is.
+/// Second channel: an input read in each scan after the force, for the pull speed or the position of the
+/// sled.
 #pragma once
 
 #include <cmath>
@@ -30,7 +31,7 @@ enum class SecondQuantity {
   return std::nullopt;
 }
 
-/// As granted by the board, and what stands behind it: quantity = (voltage − zero) · gain.
+/// Settings granted by the board, and the sensor: quantity = (voltage − zero) · gain.
 struct SecondChannel {
   SecondQuantity quantity = SecondQuantity::kPullSpeed;
   int channel = 1;
@@ -44,10 +45,10 @@ struct SecondChannel {
   double gain_per_V = 1.0;  ///< m/s or m for each volt; finite and not 0.
   double zero_V = 0.0;      ///< Output at rest, or at the origin.
 
-  /// Stands for a code that did not arrive.
+  /// Marks a missing code.
   static constexpr std::int32_t kNoCode = -1;
 
-  /// m/s or m; NaN for kNoCode. Real-time safe.
+  /// Value of a code, m/s or m; NaN for kNoCode. Real-time safe.
   [[nodiscard]] double value(std::int32_t code) const noexcept {
     if (code < 0) return std::numeric_limits<double>::quiet_NaN();
     const double x = static_cast<double>(code) - expansion_origin;

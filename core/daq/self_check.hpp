@@ -1,5 +1,5 @@
 /// \file
-/// What the unloaded tester said of itself just before a test.
+/// Self-check of the unloaded tester just before a test.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@
 
 namespace stickslip::daq {
 
-/// Of consecutive scans in which nothing pulled, right before the first scan of the record. Forces are those
-/// of the load cell with its calibration; what too few scans cannot tell is absent.
+/// Results over consecutive unloaded scans, right before the first scan of the record. Forces are calibrated.
+/// A result is absent if there are too few scans for it.
 struct SelfCheck {
   base::ScanIndex first_scan = 0;
-  std::vector<double> raw;  ///< The scans themselves, as in the record: all below follows from them.
+  std::vector<double> raw;  ///< Raw readings of these scans; the members below follow from them.
   std::optional<double> zero_N;
   std::optional<double> zero_standard_error_N;
   std::optional<double> drift_N_per_s;
@@ -26,10 +26,10 @@ struct SelfCheck {
   std::optional<double> hum_standard_error_N;
   std::optional<std::int64_t> spike_count;
   std::optional<std::int64_t> saturated_count;
-  /// Of all scans since the acquisition began, by the computer's clock; a fact of then, not of `raw`.
+  /// Scan rate since the acquisition began, by the computer's clock; not computed from `raw`.
   std::optional<double> scan_rate_Hz;
   std::optional<double> scan_rate_standard_error_Hz;
-  std::vector<std::string> findings;  ///< What somebody should look at; empty: nothing.
+  std::vector<std::string> findings;  ///< Warnings for the user; empty if there are none.
 
   bool operator==(const SelfCheck&) const = default;
 };

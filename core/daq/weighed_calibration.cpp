@@ -12,10 +12,10 @@
 namespace stickslip::daq {
 namespace {
 
-/// Chance alone makes one in a thousand of this size: Student's t of 2 (kReadingParts − 1) = 18 degrees of
-/// freedom.
+/// Critical value of Student's t with 2 (kReadingParts − 1) = 18 degrees of freedom, two-sided at 1 in 1000.
 constexpr double kSignificant = 3.92;
-/// Of the largest change: what a load cell of class C3 (OIML R 60) keeps several times over.
+/// Largest deviation from the line, relative to the largest difference from the tare; a load cell of class C3
+/// (OIML R 60) is several times better.
 constexpr double kLargestDeviation = 0.002;
 
 /// Why a reading does not count; empty: it does.

@@ -1,6 +1,6 @@
 /// \file
-/// The scans of one weight on the load cell: those in which it comes to rest are left out, the next are the
-/// reading. The same for `stickslip calibrate` and for the daemon.
+/// Collects the scans of one hung weight: skips those of the settling time, then records those of the
+/// reading. Used by `stickslip calibrate` and by the daemon.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace stickslip::daq {
 
-/// How long a weight is left to come to rest, and is read after that.
+/// Settling time and reading time of a weight.
 struct WeighingTimes {
   double settle_s = 1.0;
   double reading_s = 2.0;
@@ -19,6 +19,7 @@ struct WeighingTimes {
   bool operator==(const WeighingTimes&) const = default;
 };
 
+/// Largest accepted mass of a weight, kg.
 inline constexpr double kHeaviestWeight_kg = 1e4;
 
 class WeightScans {
@@ -26,12 +27,12 @@ class WeightScans {
   /// \param times  not negative. At least daq::kReadingParts scans are read.
   WeightScans(const daq::BoardInfo& board, const WeighingTimes& times);
 
-  /// Of consecutive scans; of no use once full().
+  /// Adds the next scan. Not needed once full().
   void add(double raw);
   [[nodiscard]] bool full() const noexcept { return voltages_V_.size() >= wanted_; }
   [[nodiscard]] std::size_t count() const noexcept { return voltages_V_.size(); }
   [[nodiscard]] std::size_t wanted() const noexcept { return wanted_; }
-  /// Only when full (contract).
+  /// Reading of the collected scans. Only when full() (contract).
   [[nodiscard]] daq::WeightReading reading(double mass_kg) const;
 
  private:

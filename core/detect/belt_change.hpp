@@ -1,5 +1,5 @@
 /// \file
-/// Has the belt got another speed, or were there spikes in the rise that says so?
+/// Detects a change of the belt's speed from the slopes of rises, and distinguishes it from spikes.
 #pragma once
 
 #include <algorithm>
@@ -10,15 +10,17 @@
 
 namespace stickslip::detect {
 
-/// Change of ln r from which on the belt has another speed.
+/// Smallest change of ln r that counts as another belt speed; stick rates closer than this agree.
 inline constexpr double kStickRateChange = 0.05;
 
-/// Rises of the force whose slope is not the stick rate known. One may hold spikes that were not found; of
-/// two in a row that agree, it is the belt.
+/// Registers rises whose slope differs from the known stick rate. A single one may be caused by missed
+/// spikes; two in a row that agree show a new belt speed.
 class BeltChange {
  public:
-  /// A slip that the stick rate known does not describe. \param slip  its number. \param rate  slope of the
-  /// rise before it, > 0. \return the slip before was one too, and agrees.
+  /// Registers a slip that the known stick rate does not describe.
+  /// \param slip  its number.
+  /// \param rate  slope of the rise before it, > 0.
+  /// \return whether the slip before was registered too, with an equal rate.
   [[nodiscard]] bool seen(std::int64_t slip, double rate) noexcept {
     if (slip != latest_.slip) {
       before_ = latest_;
@@ -27,8 +29,8 @@ class BeltChange {
     return before_.slip + 1 == slip && std::abs(std::log(rate / before_.rate)) < kStickRateChange;
   }
 
-  /// Whether another stick rate is what a misfit comes from: with it the scans are described, or half of the
-  /// misfit is gone. A spike that was not found leaves most of its misfit whatever the speed.
+  /// Whether another stick rate explains a misfit: it removes the misfit, or half of it. A missed spike
+  /// leaves most of the misfit at any rate.
   [[nodiscard]] static bool explains(double residual_sigmas, double before_sigmas) noexcept {
     return residual_sigmas < std::min(before_sigmas, std::max(kMisfitSigmas, 0.5 * before_sigmas));
   }

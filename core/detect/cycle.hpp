@@ -1,5 +1,5 @@
 /// \file
-/// One cycle of stick and slip as the detector found it.
+/// One cycle of stick and slip, as detected.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ enum CycleFlag : std::uint8_t {
   kCycleIsFirst = 1U << 4U,      ///< The first slip of the pull: often not representative.
 };
 
-/// From one slip to the next. Times are seconds after scan 0 of the test's record: (scan index −
-/// first index of the record) / granted rate. NaN where not known.
+/// A cycle, from one slip to the next. Times are seconds after scan 0 of the test's record: (scan index −
+/// first index of the record) / granted rate. NaN if unknown.
 struct Cycle {
   std::int64_t number = 0;         ///< From 0.
   base::ScanIndex first_scan = 0;  ///< Scan nearest to the peak, index of the acquisition.
@@ -36,13 +36,12 @@ struct Cycle {
   double delta_mu_standard_error = 0.0;
   double slip_speed_ratio = 0.0;  ///< Largest slip speed over drive speed [Penner 1995, (18)].
   std::uint8_t flags = 0;         ///< CycleFlag bits.
-  /// At the onset, where the speed is known to change; NaN elsewhere.
+  /// Pull speed at the onset if the speed changes; else NaN.
   double pull_speed_m_per_s = std::numeric_limits<double>::quiet_NaN();
-  /// Log of the likelihood ratio of "the slip was captured" over "it went on freely": > 0 for captured. From
-  /// the whole test, or without its fit from what was known when the cycle closed; NaN where nothing tells,
-  /// as of the last slip.
+  /// Log-likelihood ratio of capture over free oscillation; > 0 for captured. From the fit of the whole test,
+  /// or, without that, from the time the cycle closed; NaN if undetermined, as for the last slip.
   double capture_evidence = std::numeric_limits<double>::quiet_NaN();
-  /// The same when it was decided while the test ran, and that moment.
+  /// Log-likelihood ratio at the live decision, and the time of that decision.
   double live_capture_evidence = std::numeric_limits<double>::quiet_NaN();
   double live_decision_time_s = std::numeric_limits<double>::quiet_NaN();
 };

@@ -1,5 +1,5 @@
 /// \file
-/// Turning points of a noisy force: rises and falls that are large against the noise of a scan.
+/// Finds the turning points of a noisy force: rises and falls that are large against the noise of a scan.
 #pragma once
 
 #include <algorithm>
@@ -19,29 +19,29 @@ struct Fall {
   double trough_at = 0.0;  ///< Position of the following minimum, interpolated.
   double peak = 0.0;       ///< Value at the maximum, interpolated.
   double trough = 0.0;     ///< Value at the minimum, interpolated.
-  /// Scans from the last above 90 % to the first below 10 % of the drop. Of a fall of more than
+  /// Scans from the last above 90 % to the first below 10 % of the drop. For a fall of more than
   /// signal::kMostSteps scans it may be too large by 0.2 % of the time from peak to trough.
   double duration = 0.0;
   double rise_duration = 0.0;  ///< Scans from the turning point before to the peak.
   double rise_from = 0.0;      ///< Value at that turning point.
 
-  double robust_drop = 0.0;  ///< Drop of the median of three, on which noise hardly counts.
+  double robust_drop = 0.0;  ///< Drop of the median of three, which noise hardly affects.
 
   [[nodiscard]] double drop() const noexcept { return peak - trough; }
 };
 
-/// Follows the force with hysteresis: a maximum is one as soon as the force has fallen below it by
-/// the hysteresis, a minimum likewise. Runs on the median of three scans, so that no single scan
-/// makes a turning point; the values reported come from the scans themselves. Its memory, 100 kB, is taken
-/// when it is made and does not depend on the trace; each scan costs amortised O(1). Move-only.
+/// Follows the force with hysteresis: a maximum is confirmed as soon as the force has fallen below it by the
+/// hysteresis, a minimum likewise. Runs on the median of three scans, so that no single scan makes a turning
+/// point; the values reported come from the scans themselves. Its memory, 100 kB, is taken when it is made
+/// and does not depend on the trace; each scan costs amortised O(1). Move-only.
 class FallFinder {
  public:
   /// \param value       despiked coefficient of the next scan.
   /// \param hysteresis  > 0; the caller scales it to the noise and may change it from scan to scan.
-  /// \return the fall that this scan completes: it has risen from the trough by the hysteresis.
+  /// \return the fall that this scan confirms: the force has risen from the trough by the hysteresis.
   [[nodiscard]] std::optional<Fall> add(double value, double hysteresis);
 
-  /// Scans since the last confirmed turning point; for finding out that nothing moves.
+  /// Scans since the last confirmed turning point.
   [[nodiscard]] double scans_since_turn() const noexcept;
   [[nodiscard]] bool falling() const noexcept { return direction_ == Direction::kDown; }
   /// Positions of the highest and lowest median since the last confirmed turning points: while falling(), of
@@ -57,7 +57,7 @@ class FallFinder {
   static constexpr std::size_t kReach = 2;
   static constexpr std::size_t kScans = 2 * kReach + 1;
 
-  /// Those from position − kReach on, none before the trace.
+  /// Scans from position − kReach on, none before the trace.
   using Scans = std::array<double, kScans>;
 
   /// A candidate for a turning point.
@@ -96,7 +96,7 @@ class FallFinder {
   Direction direction_ = Direction::kUnknown;
   Extreme high_;
   Extreme low_;
-  Scans about_high_{};  ///< From kReach scans behind it on; nobody asks before.
+  Scans about_high_{};  ///< Valid from kReach scans after it on.
   Scans about_low_{};
   Extreme turn_;  ///< The confirmed turning point before high_ (direction up) or peak (down).
 

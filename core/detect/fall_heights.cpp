@@ -10,9 +10,9 @@
 namespace stickslip::detect {
 namespace {
 
-/// What a free oscillation loses may be wrong by such a part where nobody measured the damping.
+/// Relative uncertainty of a free oscillation's decay without a characterisation of the tester.
 constexpr double kDampingError = 0.3;
-/// Peaks between scans are off by this part of a drop.
+/// Error of a drop by peaks between scans, relative to the drop.
 constexpr double kPeakError = 0.02;
 
 double log_normal_density(double x, double mean, double deviation) noexcept {

@@ -1,33 +1,33 @@
 /// \file
-/// How a slip ended, by the heights of its fall and of the next one alone.
+/// Decides from the drops of a slip and of the next one whether the first was captured.
 #pragma once
 
 namespace stickslip::detect {
 
-/// Knows what the falls of a test are usually like, and keeps no scans. Fixed size; never allocates.
+/// Stores the typical drop of the test's slips, and no scans. Fixed size; never allocates.
 class FallHeights {
  public:
-  /// Slips that count for what is usual.
+  /// Memory of the typical drop, in slips.
   static constexpr double kMemory = 16.0;
 
-  /// \param gamma_over_2omega  of the oscillation. \return the fall after one of `drop` if nothing sticks in
-  /// between: a free oscillation only shrinks.
+  /// \param gamma_over_2omega  of the oscillation.
+  /// \return drop that follows one of `drop` in a free oscillation, which decays.
   [[nodiscard]] static double freely_next(double drop, double gamma_over_2omega) noexcept;
-  /// \param sigma  noise of a scan. \return whether that is more than noise, and what is missed between
-  /// scans, make of `freely_next`: something stuck in between.
+  /// \param sigma  noise of a scan.
+  /// \return whether `drop` exceeds `freely_next` by more than noise and sampling explain, so that the sled
+  /// has stuck in between.
   [[nodiscard]] static bool is_more_than(double drop, double freely_next, double sigma) noexcept;
 
-  /// Of a fall and the one after it.
-  /// \param is_damping_known  somebody has measured what freely_next() rests on.
-  /// \return ln of the likelihood ratio, captured over free.
+  /// Log-likelihood ratio, captured over free, from a drop and the next one.
+  /// \param is_damping_known  the damping in freely_next() comes from a characterisation.
   [[nodiscard]] double evidence(double drop, double next_drop, double freely_next, bool is_damping_known,
                                 double sigma) noexcept;
-  /// The slip that evidence() was asked about last was captured.
+  /// Updates the typical drop: the slip of the latest evidence() call was captured.
   void learn() noexcept;
 
-  /// Slips behind usual_drop(), kMemory at most.
+  /// Number of slips in usual_drop(), at most kMemory.
   [[nodiscard]] double count() const noexcept { return count_; }
-  /// Of a slip from sticking. \param otherwise  where none is known.
+  /// Typical drop of a slip that begins from sticking. \param otherwise  returned if none is known.
   [[nodiscard]] double usual_drop(double otherwise) const noexcept;
 
  private:

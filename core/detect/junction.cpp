@@ -15,7 +15,7 @@
 namespace stickslip::detect {
 namespace {
 
-/// Fewest scans on which four parameters and a choice make sense.
+/// Fewest scans for a decision: twice the four parameters.
 constexpr std::size_t kFewestJunctionScans = 8;
 constexpr int kMostJunctionIterations = 40;
 constexpr double kJunctionConverged = 1e-6;  ///< Log-likelihood units.

@@ -1,6 +1,6 @@
 /// \file
-/// Scans from one peak of the force to the trough after the next as so few points that what is worked out
-/// from them costs the same at any scan rate and however long the sled sticks in between.
+/// Scans from one peak of the force to the trough after the next peak, reduced to a bounded number of points,
+/// so that the computing time does not depend on scan rate and length of the stick.
 #pragma once
 
 #include <cstddef>
@@ -25,10 +25,10 @@ struct JunctionPoint {
   double sine_to_end = 0.0;
 };
 
-/// Points of the usable scans in [first, end): each scan is one as long as there are few; of more, neighbours
-/// are averaged so that the 1.25 periods at each end, where the slips are, become 96 points, the line
+/// Points of the usable scans in [first, end): each scan is a point if there are few. Otherwise neighbours
+/// are averaged: the 1.25 periods at each end, which contain the slips, become 96 points each, the line
 /// between them 64. A mean over 1/77 of a period is off the curve by (2π/77)²/24 = 0.03 % of the amplitude.
-/// Of one junction; its memory is used again for the next.
+/// Holds one junction at a time and reuses its memory.
 class JunctionScans {
  public:
   static constexpr std::size_t kMostPoints = 256;

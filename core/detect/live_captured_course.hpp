@@ -1,6 +1,6 @@
 /// \file
-/// The force from one slip to the next if the sled is captured in between: slip, stick, slip again; and the
-/// fit of it to the scans so far.
+/// Captured trajectory: the force of a slip, the stick after its capture, and the next slip; and its fit to
+/// the scans so far.
 #pragma once
 
 #include <optional>
@@ -13,40 +13,40 @@
 
 namespace stickslip::detect {
 
-/// A course with fixed ω, γ and r. [Penner 1995, (11)–(14), (20)]
+/// Captured trajectory with fixed ω, γ and r. [Penner 1995, (11)–(14), (20)]
 class LiveCapturedCourse {
  public:
   /// K, c(0) − K, c′(0), and S of the next slip.
   using Parameters = Eigen::Vector4d;
 
   LiveCapturedCourse() = default;
-  /// \param expected_capture_s  where the capture is of a course that differs a little.
+  /// \param expected_capture_s  capture time of a slightly different trajectory.
   LiveCapturedCourse(const Parameters& parameters, const model::SharedParameters& shared,
                      std::optional<double> expected_capture_s = {}) noexcept;
 
-  /// The same with another S − K of the next slip.
+  /// Copy with another S − K of the next slip.
   [[nodiscard]] LiveCapturedCourse with_next_delta_mu(double delta_mu) const noexcept;
 
   [[nodiscard]] const Parameters& parameters() const noexcept { return p_; }
-  /// Of the capture; where c′ does not reach the stick rate, of the end of its rise. After the first point.
+  /// Capture time after the first point, s; the end of the rise of c′ if that does not reach the stick rate.
   [[nodiscard]] double capture_tau_s() const noexcept { return capture_tau_s_; }
-  /// Nothing where c′ does not reach the stick rate.
+  /// Capture time after the first point, s; nullopt if c′ does not reach the stick rate.
   [[nodiscard]] std::optional<double> capture_s() const noexcept {
     return is_captured_ ? std::optional{capture_tau_s_} : std::nullopt;
   }
   [[nodiscard]] double onset_tau_s() const noexcept { return onset_tau_s_; }  ///< Of the next slip.
-  /// How far a row is off, in standard deviations.
+  /// Residual of a row, in standard deviations.
   [[nodiscard]] double residual(const LiveRow& row) const noexcept;
 
-  /// Normal equations of what is off.
+  /// Normal equations of the residuals.
   struct Equations {
     Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
     Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
     double cost = 0.0;
   };
-  /// What of the course is unusual: its next S − K, and a c′ that does not reach the stick rate.
+  /// Prior terms: S − K of the next slip, and the shortfall of c′ below the stick rate.
   [[nodiscard]] Equations unusual(double typical_delta_mu) const noexcept;
-  /// That and the rows, with Huber's weights.
+  /// Prior terms plus the residuals of the rows, with Huber's weights.
   [[nodiscard]] Equations equations(std::span<const LiveRow> rows, double typical_delta_mu) const noexcept;
 
  private:
@@ -72,13 +72,13 @@ class LiveCapturedCourse {
   double onset_tau_s_ = 0.0;
 };
 
-/// A course and what it leaves.
+/// A trajectory with its normal equations and cost.
 struct FittedCapture {
   LiveCapturedCourse course;
   LiveCapturedCourse::Equations equations;
 };
 
-/// The course of least cost near a first one. Bounded time, no allocation.
+/// Trajectory of least cost, from a first guess. Bounded time, no allocation.
 [[nodiscard]] FittedCapture fit_captured(const FittedCapture& first, std::span<const LiveRow> rows,
                                          const model::SharedParameters& shared, double typical_delta_mu,
                                          double sigma) noexcept;

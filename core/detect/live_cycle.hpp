@@ -1,5 +1,5 @@
 /// \file
-/// What is known of a test while it runs.
+/// Live results of a running test: cycles, falls, phase and regime.
 #pragma once
 
 #include <array>
@@ -15,9 +15,9 @@
 
 namespace stickslip::detect {
 
-/// Where S and K of a cycle come from, by rising cost (docs/accuracy.md says how much).
+/// Estimator of S and K of a cycle, in the order of rising computing time (docs/accuracy.md).
 enum class EstimatorTier {
-  kPeak,          ///< Largest scan and mean: the tradition.
+  kPeak,          ///< Largest scan and mean: the traditional estimate.
   kInterpolated,  ///< Peak and trough between the scans, and the closed forms of the turning points.
   kFit,           ///< Maximum likelihood of the closed form on all scans.
 };
@@ -43,11 +43,11 @@ inline constexpr std::array<std::pair<EstimatorTier, std::string_view>, 3> kEsti
   return std::nullopt;
 }
 
-/// How far a test has come. They follow one another; kEnd from any.
+/// Phase of a test. Phases follow in this order; kEnd may follow any.
 enum class Phase {
-  kIdle,       ///< Nothing pulls yet.
+  kIdle,       ///< No pull yet.
   kLoading,    ///< The force rises for the first time.
-  kFirstSlip,  ///< It fell, and how that ends is not known yet.
+  kFirstSlip,  ///< The force has fallen; the end of this slip is not decided yet.
   kCycles,     ///< All after that.
   kEnd,
 };
@@ -57,29 +57,29 @@ enum class Phase {
   return kNames[static_cast<std::size_t>(phase)];
 }
 
-/// A cycle with what the live side alone tells of it. NaN where not known.
+/// A cycle with its live estimates. NaN if unknown.
 struct LiveCycle {
   Cycle cycle;
   double S = std::numeric_limits<double>::quiet_NaN();
   double K = std::numeric_limits<double>::quiet_NaN();
-  /// Log of the likelihood ratio of captured over free that decided, or of what was known at the end.
+  /// Log-likelihood ratio of captured over free at the decision, or at the end if there was none.
   double evidence = std::numeric_limits<double>::quiet_NaN();
   double decided_time_s = std::numeric_limits<double>::quiet_NaN();  ///< When it was decided.
 };
 
-/// A fall of the force as soon as it is seen; whether it is a slip is known when it is over.
+/// A fall of the force at its detection; whether it is a slip is decided when it is over.
 struct FallBegun {
   base::ScanIndex peak_scan = 0;  ///< Of the highest median of three scans.
   double peak = 0.0;              ///< That median.
-  base::ScanIndex seen_scan = 0;  ///< The scan that showed it.
+  base::ScanIndex seen_scan = 0;  ///< Scan at which it was detected.
 };
 
-/// What holds at the moment.
+/// Present state of a test.
 struct LiveState {
   Phase phase = Phase::kIdle;
   model::Regime regime =
       model::Regime::kUndecided;  ///< Stick-slip, ring-down or steady sliding; undecided before the first.
-  /// Onset, or peak where it is not known, of the slip that was not captured; NaN unless it rings down.
+  /// Onset (the peak if unknown) of the slip that was not captured; NaN unless the regime is ring-down.
   double ring_down_since_s = std::numeric_limits<double>::quiet_NaN();
   std::int64_t slip_count = 0;
   std::optional<LiveCycle> latest;  ///< The cycle closed last.

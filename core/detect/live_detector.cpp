@@ -10,7 +10,8 @@
 namespace stickslip::detect {
 namespace {
 
-/// A force that is up by as much as a slip is down is being loaded.
+/// Number of scans in a row that must exceed the lowest value by the drop of a slip, for the loading to be
+/// detected.
 constexpr int kLoadedScans = 3;
 /// As for the whole test: a trace without noise still has rounding.
 constexpr double kSmallestNoise = 1e-9;

@@ -1,17 +1,17 @@
 /// \file
-/// The detector while the test runs: phase and regime of the moment, and each cycle as it closes.
+/// Live detector: present phase and regime of a test, and each cycle as it closes.
 ///
 ///     LiveDetector detector{settings};
 ///     for (…) if (const auto cycle = detector.add(coefficient, saturated)) use(*cycle);
 ///     if (const auto last = detector.end()) use(*last);
 ///
-/// What it says depends on the scans alone, not on how they come in blocks. O(1) for a scan; the fits that a
-/// closing cycle needs are of bounded size and, but for `peak`, spread over scans. Never allocates after it
-/// is made.
+/// Results depend on the scans only, not on their division into blocks. O(1) for a scan. The fits of a
+/// closing cycle have bounded size and, except for `peak`, are distributed over scans. Allocates only in the
+/// constructor.
 ///
-/// A fall is told kFallDelayScans after the scan at which the force, the median of three scans, has fallen by
-/// the hysteresis below its highest. Where the highest scan stands alone its median is lower, and the scans
-/// themselves may have fallen as far a scan earlier.
+/// A fall is reported kFallDelayScans after the scan at which the median of three scans has fallen below its
+/// maximum by the hysteresis. If the highest scan is isolated, the median's maximum is lower, and the scans
+/// themselves may have fallen by the hysteresis one scan earlier.
 #pragma once
 
 #include <array>
@@ -40,23 +40,24 @@ struct LiveSettings {
 /// Thread-bound. 200 kB, taken when it is made.
 class LiveDetector {
  public:
-  /// The despiker holds three scans back, and the median of three waits for one; without despiking it is one.
+  /// Delay of a fall's report: three scans of the despiker and one of the median of three; without despiking
+  /// one.
   static constexpr int kFallDelayScans = 4;
 
   explicit LiveDetector(const LiveSettings& settings);
 
-  /// The next scan. \return the cycle that it closes: at the peak after the next trough its successor is
-  /// seen.
+  /// The next scan.
+  /// \return the cycle that it closes: at the peak after the next trough its successor is seen.
   std::optional<LiveCycle> add(double coefficient, bool saturated);
-  /// So many scans did not arrive.
+  /// `count` scans are missing.
   void gap(std::int64_t count) noexcept;
   /// The test is over. \return the last cycle, if one is open.
   std::optional<LiveCycle> end() noexcept;
 
   [[nodiscard]] const LiveState& state() const noexcept { return state_; }
-  /// The fall that the last scan showed, if it did; its scans are counted from the first that came.
+  /// The fall detected at the latest scan, if any; scan numbers count from the first scan added.
   [[nodiscard]] const std::optional<FallBegun>& fall_begun() const noexcept { return fall_begun_; }
-  /// The slip under way with what is known of it; nothing between none and the first.
+  /// The slip under way with its present estimates; null if there is none.
   [[nodiscard]] const LiveCycle* under_way() const noexcept {
     return follower_.is_open() ? &follower_.slip() : nullptr;
   }

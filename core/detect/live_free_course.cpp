@@ -8,7 +8,7 @@
 namespace stickslip::detect {
 namespace {
 
-/// Of reweighting: weights of a linear model settle in two or three rounds.
+/// Limit of the rounds of reweighting; the weights of a linear model converge in two or three.
 constexpr int kLiveRounds = 3;
 
 }  // namespace

@@ -1,6 +1,5 @@
 /// \file
-/// The force of a slip that goes on freely, fitted to the scans so far: linear least squares with Huber's
-/// weights.
+/// Fit of a free oscillation to the scans so far: linear least squares with Huber's weights.
 #pragma once
 
 #include <cmath>
@@ -13,13 +12,13 @@
 
 namespace stickslip::detect {
 
-/// Log-likelihood units: nothing against what decides.
+/// Change of the cost, in units of log-likelihood, below which the fit has converged.
 inline constexpr double kLiveConverged = 1e-2;
 
-/// Normal equations of rows on a free course, written out: three numbers make poor vectors.
+/// Normal equations of rows about a free oscillation, in scalars, which is faster for three parameters.
 class LiveFreeEquations {
  public:
-  /// \param weighted  by Huber; else as if no row were far off.
+  /// \param weighted  with Huber's weights; otherwise all weights are 1.
   void add(const LiveRow& row, const LiveFreeCourse& p, bool weighted = true) noexcept {
     const double z = row.free_residual(p);
     cost += estimate::huber_cost(z, kChoiceLimit);
@@ -50,7 +49,7 @@ class LiveFreeEquations {
   [[nodiscard]] Eigen::Vector3d gradient() const noexcept { return {g0_, g1_, g2_}; }
 
   double cost = 0.0;
-  bool all_within = true;  ///< No row was far off.
+  bool all_within = true;  ///< No residual exceeded Huber's limit.
 
  private:
   double n00_ = 0.0;
@@ -64,7 +63,7 @@ class LiveFreeEquations {
   double g2_ = 0.0;
 };
 
-/// \param p  becomes the course of least cost. \return that cost.
+/// \param p  first guess; becomes the parameters of least cost. \return that cost.
 double fit_free(std::span<const LiveRow> rows, LiveFreeCourse& p) noexcept;
 
 }  // namespace stickslip::detect

@@ -8,15 +8,16 @@
 namespace stickslip::detect {
 namespace {
 
-/// Four parameters, and a choice.
+/// Fewest rows for an evaluation: twice the four parameters of the captured trajectory.
 constexpr std::size_t kFewestRows = 8;
-/// By so much the bounds may be wrong: what reweighting leaves of its way to the least cost.
+/// Error allowed in the bounds of a cost, log-likelihood units: iterative reweighting may end this far above
+/// the minimum.
 constexpr double kBoundsSlack = 1.0;
-/// Log-likelihood units: a course that a fit makes better by less tells the same moments of capture and
-/// onset.
+/// Largest improvement by a new fit, log-likelihood units, for which the last captured trajectory is used
+/// again; its times of capture and onset are then unchanged.
 constexpr double kStillBest = 1.0;
 
-/// Likelihood of a scan that is z off, with noise or a stray.
+/// Likelihood of a residual z, as noise or as an outlier.
 double mixture(double z) noexcept { return std::exp(-0.5 * z * z) + kStrayDensity; }
 
 /// ln of a product of many factors, for the price of few logarithms.
@@ -118,11 +119,12 @@ void LiveJunction::fit_captured_course(Courses& courses, const FittedCapture& us
     return fit_captured(from, rows_.all(), shared_, typical_delta_mu_, rows_.sigma());
   };
   courses.captured = fit(usual);
-  // The second slip has not begun, and nothing says that it should have; or what is found tells already.
+  // No second fit is needed if the next slip has not begun and the free trajectory is no better, or if the
+  // result is decisive already.
   const double cost = courses.captured.equations.cost;
   if (cost <= courses.free_cost && courses.captured.course.onset_tau_s() > rows_.back().tau_s) return;
   if (decisive > 0.0 && cost <= courses.free_cost - decisive - kBoundsSlack && !is_misfit(cost)) return;
-  // The cost has two valleys: S − K as usual, and hardly any.
+  // The cost has two minima: at the typical S − K of the next slip, and near zero.
   constexpr double kHardlyAny = 0.1;
   const LiveCapturedCourse slight = usual_.with_next_delta_mu(kHardlyAny * typical_delta_mu_);
   const FittedCapture other = fit({slight, slight.equations(rows_.all(), typical_delta_mu_)});

@@ -1,6 +1,6 @@
 /// \file
-/// The question of core/detect/junction while the slip is still under way: was it captured, or does it go
-/// on? Asked again as scans come in, so in bounded time and without allocating.
+/// Live likelihood ratio of capture over free oscillation (core/detect/junction), for the slip under way.
+/// Evaluated repeatedly as scans arrive; bounded time, no allocation.
 #pragma once
 
 #include <limits>
@@ -11,36 +11,38 @@
 
 namespace stickslip::detect {
 
-/// Residuals that many times the noise: neither course describes the scans.
+/// Standard deviation of the residuals, in σ, beyond which neither trajectory describes the scans.
 inline constexpr double kMisfitSigmas = 2.0;
 
-/// Density, over that of noise at its middle, of scans that no course explains: one in twenty is a spike that
-/// was not found, anywhere within the ±6 σ that the despiker lets pass. A scan tells ln 101 = 4.6 at most:
-/// two strays hardly decide, three seldom meet.
+/// Likelihood density of an outlier, relative to the peak density of noise: one scan in twenty is a missed
+/// spike, uniform within the ±6 σ that the despiker lets pass. It limits the log-likelihood ratio of a scan
+/// to ln 101 = 4.6, so that two outliers hardly decide; three rarely occur together.
 inline constexpr double kStrayDensity = 0.01;
 
 struct JunctionEvidence {
-  /// Captured over free; about 0 as long as the scans cannot tell.
+  /// Captured over free; about 0 while the scans do not decide.
   double log_likelihood_ratio = 0.0;
   double capture_s = std::numeric_limits<double>::quiet_NaN();     ///< If captured.
   double next_onset_s = std::numeric_limits<double>::quiet_NaN();  ///< If captured; may be yet to come.
-  double residual_sigmas = 0.0;  ///< What the better of the two leaves, over the noise.
-  bool known = false;            ///< There were scans enough to ask.
+  double residual_sigmas = 0.0;  ///< Standard deviation of the better trajectory's residuals, in σ.
+  bool known = false;            ///< There were enough scans for an evaluation.
 };
 
-/// Room for the points of one question.
+/// Evaluator with memory for the points of one slip.
 class LiveJunction {
  public:
-  /// \param points  from a maximum of the force on. \param shared  ω, γ and r, held fixed.
-  /// \param sigma   noise of one scan. \param typical_delta_mu  S − K of the slips so far, roughly; > 0.
-  /// \param decisive  of the ratio's size. An answer that is certainly smaller is not worked out, which is
-  /// most of the time it costs: `known`, and nothing more. 0: always.
+  /// \param points  from a maximum of the force on.
+  /// \param shared  ω, γ and r, held fixed.
+  /// \param sigma  noise of one scan.
+  /// \param typical_delta_mu  typical S − K of the slips so far, > 0.
+  /// \param decisive  smallest |log-likelihood ratio| of interest. A ratio that is certainly smaller is not
+  ///        computed, which saves most of the time; then only `known` is set. 0: always compute.
   [[nodiscard]] JunctionEvidence ask(std::span<const estimate::CyclePoint> points,
                                      const model::SharedParameters& shared, double sigma,
                                      double typical_delta_mu, double decisive = 0.0) noexcept;
 
  private:
-  /// Both courses, each at its best.
+  /// Both trajectories, each with its parameters of least cost.
   struct Courses {
     LiveFreeCourse free = LiveFreeCourse::Zero();
     double free_cost = 0.0;

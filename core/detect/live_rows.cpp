@@ -7,14 +7,14 @@
 namespace stickslip::detect {
 namespace {
 
-/// Rows of a question: forty a period, whose blocks differ from their curvature term by less than 10⁻⁵ of the
-/// amplitude, and which have the same scans at the next question.
+/// Rows a period. The mean over a row then differs from its second-order approximation by less than 10⁻⁵ of
+/// the amplitude. The borders are fixed in time, so that rows can be reused at the next evaluation.
 constexpr double kRowsPerPeriod = 40.0;
-/// Of so many rows one may be left out, and of all no more than three: more are no strays, but neither
-/// course.
+/// Limits of outliers: one in kRowsPerStray rows, and kMostStrays in all. With more, neither trajectory
+/// describes the scans.
 constexpr std::size_t kRowsPerStray = 5;
 constexpr std::size_t kMostStrays = 3;
-/// Of a free course, which through as many rows goes without leaving anything.
+/// Parameters of a free oscillation; more rows than this must remain, since it fits as many exactly.
 constexpr std::size_t kFreeParameters = 3;
 
 }  // namespace

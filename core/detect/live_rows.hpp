@@ -1,5 +1,6 @@
 /// \file
-/// The points of one slip as the rows of a fit: what a free course of them is, worked out once for each.
+/// Rows of a fit: the points of one slip with the design matrix of a free oscillation, computed once for
+/// each.
 #pragma once
 
 #include <array>
@@ -15,33 +16,34 @@
 
 namespace stickslip::detect {
 
-/// A free course, linear in its parameters: K, c(0) − K, c′(0); times from the first point.
+/// Parameters of a free oscillation, in which it is linear: K, c(0) − K, c′(0), with time from the first
+/// point.
 using LiveFreeCourse = Eigen::Vector3d;
 
-/// Neighbouring points together. Without initial values: an array of them needs none.
+/// Mean of neighbouring points. Members have no initial values, since an array of rows is only partly used.
 struct LiveRow {
   double tau_s;  ///< Mean time after the first point.
   double value;  ///< Mean of the points.
   double scale;  ///< √count/σ; 0 for a stray.
   double root_count;
   double half_spread_s2;
-  double by_D;              ///< What c(0) − K adds, its mean over the points.
-  double by_rate;           ///< What c′(0) adds, s.
+  double by_D;              ///< Coefficient of c(0) − K: derivative of the mean over the points.
+  double by_rate;           ///< Coefficient of c′(0), s.
   double begin_s;           ///< Time of its first point,
   double end_s;             ///< and of its last.
   std::size_t first_point;  ///< Index of it.
-  bool stray;               ///< No course explains it: left out.
+  bool stray;               ///< Outlier, left out of the fits.
 
-  /// Off a free course, in standard deviations.
+  /// Residual about a free oscillation, in standard deviations.
   [[nodiscard]] double free_residual(const LiveFreeCourse& p) const noexcept {
     return (value - (p[0] + (by_D * p[1] + by_rate * p[2]))) * scale;
   }
 };
 
-/// Rows of a question, forty a period at most. Those that were there at the last one are kept.
+/// Rows of one slip, at most forty a period. Rows of the last evaluation are reused.
 class LiveRows {
  public:
-  /// \return so many rows at the beginning are as they were the last time, for the same courses and noise.
+  /// \return number of leading rows that are unchanged since the last call, with the same ω, γ and noise.
   std::size_t lay_out(std::span<const estimate::CyclePoint> points, const model::SharedParameters& shared,
                       double sigma) noexcept;
 
@@ -50,9 +52,10 @@ class LiveRows {
   [[nodiscard]] const LiveRow& back() const noexcept { return rows_[size_ - 1]; }
   [[nodiscard]] double sigma() const noexcept { return sigma_; }
 
-  /// Leaves out the row of [from, to) that is farthest off, if no noise is so far off and not too many are
-  /// left out already. \param sigmas_off  of a row, how far from what explains it best. \return whether it
-  /// did.
+  /// Marks the row of [from, to) with the largest residual as an outlier, if it exceeds
+  /// estimate::kStraySigmas and not too many rows are marked already.
+  /// \param sigmas_off  residual of a row about the better trajectory, in standard deviations.
+  /// \return whether a row was marked.
   template <typename SigmasOff>
   bool leave_out_a_stray(std::size_t from, std::size_t to, SigmasOff sigmas_off) noexcept {
     std::size_t farthest = to;
@@ -65,7 +68,7 @@ class LiveRows {
     }
     return farthest != to && leave_out(farthest, from, to);
   }
-  /// None of [from, to) is a stray any more.
+  /// Removes the outlier marks of [from, to).
   void readmit(std::size_t from, std::size_t to) noexcept;
 
  private:

@@ -10,13 +10,13 @@
 namespace stickslip::detect {
 namespace {
 
-/// Rows before the capture that three parameters need, with something left.
+/// Fewest rows before the capture: more than the three parameters of the slip.
 constexpr double kFewestBeforeCapture = 5.0;
-/// Rounds of finding the capture by the course of the rows before it.
+/// Limit of the rounds that alternate between the capture time and the fit of the rows before it.
 constexpr int kMostCaptureRounds = 4;
-/// Steps towards the course of least cost: the first is nearly there.
+/// Limit of the steps towards the least cost; the first is nearly sufficient.
 constexpr int kMostCaptureSteps = 3;
-/// Log-likelihood units: nothing against what decides.
+/// Decrease of the cost, log-likelihood units, below which the iteration ends.
 constexpr double kSmallGain = 0.1;
 /// S − K that is typical but for such a part costs nothing.
 constexpr double kTypical = 1e-3;

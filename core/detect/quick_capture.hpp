@@ -1,6 +1,6 @@
 /// \file
-/// The captured course of core/detect/live_captured_course through rows at equal times: slip, stick, slip
-/// again, fitted at a hundredth of the price.
+/// Captured trajectory (slip, stick, next slip) fitted to rows at equal intervals; a hundred times faster
+/// than core/detect/live_captured_course.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace stickslip::detect {
 
-/// Where c′ of a free course reaches the stick rate.
+/// Capture: point at which c′ of a free oscillation reaches the stick rate.
 struct StickBegin {
   std::size_t row = 0;  ///< The last before; where it is looked for next.
   double tau_s = 0.0;   ///< After the first row.
@@ -20,15 +20,15 @@ struct StickBegin {
 };
 
 enum class Crossing {
-  kThere,   ///< Before the newest row.
-  kToCome,  ///< The course reaches it behind that.
-  kNever,   ///< It turns round before.
+  kThere,   ///< Before the latest row.
+  kToCome,  ///< After the latest row.
+  kNever,   ///< c′ does not reach the stick rate.
 };
 
-/// \param begin  its row is where to look first, if it makes sense; becomes what is found.
+/// \param begin  its row is the start of the search, if valid; becomes the capture found.
 [[nodiscard]] Crossing find_stick(const SlipRows& slip, const RowCourse& p, StickBegin& begin) noexcept;
 
-/// The end of the rise of c′ of a course that does not reach the stick rate.
+/// End of the rise of c′, for a free oscillation that does not reach the stick rate.
 struct RiseEnd {
   std::size_t row = 0;  ///< Next to it, maybe to come.
   TurnedBasis basis;    ///< Of that row.
@@ -36,29 +36,30 @@ struct RiseEnd {
 };
 [[nodiscard]] RiseEnd find_rise_end(const SlipRows& slip, const RowCourse& p) noexcept;
 
-/// Parameters K, A, B of the slip, and S of the next.
+/// Fit of the captured trajectory, with parameters K, A, B of the slip, and S of the next slip.
 class QuickCapture {
  public:
   QuickCapture() = default;
 
-  /// The course whose slip fits the rows before its capture best, with the usual S − K of the next.
+  /// Begins with the trajectory that fits the rows before its capture best, and the typical S − K of the next
+  /// slip.
   /// \param guess  row before the capture. \param row_variance  σ² of a row.
   [[nodiscard]] Crossing start(const SlipRows& slip, std::size_t guess, double typical_delta_mu,
                                double row_variance) noexcept;
-  /// Anew for rows that have come.
+  /// Recomputes events and cost after new rows.
   [[nodiscard]] Crossing update(const SlipRows& slip) noexcept { return work_out(slip); }
-  /// Steps towards the course of least cost, until it costs no more than that is enough. For the rows of the
-  /// last start() or update().
+  /// Iterates towards the least cost, until it is at most `enough`. Uses the rows of the last start() or
+  /// update().
   void improve(const SlipRows& slip, double enough) noexcept;
 
   [[nodiscard]] const RowCourse& slip() const noexcept { return p_; }
   [[nodiscard]] const StickBegin& stick() const noexcept { return stick_; }
   [[nodiscard]] double onset_tau_s() const noexcept { return onset_tau_s_; }
-  /// What is unusual of the next S − K, in standard deviations.
+  /// Deviation of the next S − K from the typical one, in standard deviations of the prior.
   [[nodiscard]] double unusual() const noexcept { return unusual_; }
-  /// Of the rows it was worked out for: half the sum of squares over the variance.
+  /// Cost over these rows: half the sum of squared residuals over the variance.
   [[nodiscard]] double cost() const noexcept { return cost_; }
-  /// c while it sticks.
+  /// c during the stick.
   [[nodiscard]] double line(double tau_s, double r) const noexcept {
     return stick_.level + r * (tau_s - stick_.tau_s);
   }
@@ -66,7 +67,7 @@ class QuickCapture {
   [[nodiscard]] double next_slip(const SlipRows& slip, const TurnedBasis& b) const noexcept {
     return p_.K + slip.attenuation() * (next_D_ * b.cosine + next_B_ * b.sine);
   }
-  /// Over the rows behind the capture, in their order. \param on_line  called with a row and c there.
+  /// Visits the rows after the capture in order. \param on_line  called with a row and c there.
   /// \param in_next  called with a row of the next slip, c there and the basis, turned since the onset.
   template <typename OnLine, typename InNext>
   void for_each_behind(const SlipRows& slip, const OnLine& on_line, const InNext& in_next) const {

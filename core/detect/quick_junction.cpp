@@ -10,15 +10,15 @@
 namespace stickslip::detect {
 namespace {
 
-/// Rows of a period; half or twice as many do as well.
+/// Rows a period; the result hardly depends on it within a factor of two.
 constexpr double kQuickRowsPerPeriod = 24.0;
-/// Three parameters and a choice.
+/// Fewest rows for a decision.
 constexpr double kFewestRowsToChoose = 8.0;
-/// By so much a fit with Huber's weights may find another ratio.
+/// Possible difference of the log-likelihood ratio from that of a fit with Huber's weights.
 constexpr double kSlack = 1.0;
-/// Log-likelihood units that a row costs at most, nearly always: two standard deviations.
+/// Cost of a row that is hardly ever exceeded, log-likelihood units: that of two standard deviations.
 constexpr double kUsualOfRow = 2.0;
-/// Scans of a row at most, for numbers that are none.
+/// Limit of the scans in a row, against invalid numbers.
 constexpr double kMostScansARow = 1e6;
 
 /// Lines under −ln(e^{−a} + kStrayDensity), which says how little a free course explains a scan with a =

@@ -1,6 +1,6 @@
 /// \file
-/// The question of core/detect/live_junction for the price of a few sums: was the slip captured or does it
-/// go on freely, where the scans leave no doubt?
+/// Fast path of core/detect/live_junction: decides from running sums whether a slip was captured, and returns
+/// kDoubt when LiveJunction is needed.
 #pragma once
 
 #include <cstddef>
@@ -14,17 +14,17 @@
 
 namespace stickslip::detect {
 
-/// Both courses through rows at equal times. The free one is a matter of one elimination. The captured one is
-/// fitted once for a slip or twice: in between, a row that comes only adds what the course leaves of it.
+/// Compares both trajectories on rows at equal times. The free one needs one elimination. The captured one is
+/// fitted once or twice for a slip; in between, a new row only adds its residual to the cost.
 ///
-/// What it does not know: Huber's weights, a stick rate that is wrong, more than the begin of the next slip.
-/// Where any of these could matter it says so, and LiveJunction has to be asked. Fixed size; never allocates.
+/// It has no Huber weights, no error of the stick rate, and only the beginning of the next slip. If one of
+/// these could matter it returns kDoubt. Fixed size; never allocates.
 class QuickJunction {
  public:
   enum class Answer {
-    kDoubt,     ///< LiveJunction has to be asked.
-    kNotYet,    ///< The scans so far decide nothing.
-    kCaptured,  ///< They do, and evidence() says how.
+    kDoubt,     ///< LiveJunction must decide.
+    kNotYet,    ///< The scans so far do not decide.
+    kCaptured,  ///< Decided; evidence() holds the result.
     kFree,
   };
 
@@ -35,17 +35,18 @@ class QuickJunction {
   void add(double value, bool usable) noexcept { rows_.add(value, usable); }
   /// Scans are missing.
   void gap() noexcept;
-  /// A slip begins. \param omega  of its oscillation, rad/s: where the rows do not fit it, it gets none, and
-  /// the next one has others.
+  /// Adapts the length of the rows when a slip begins. If it does not suit this slip's ω, the slip has no
+  /// rows, and the next one gets rows of another length.
+  /// \param omega  of its oscillation, rad/s.
   void fit_rows(double omega) noexcept;
-  /// A slip whose scans from peak_s on belong to one course. \param now_s  time of the last scan.
+  /// Begins a slip whose scans from peak_s on are connected. \param now_s  time of the last scan.
   /// \param level  about its middle.
   void open(double now_s, double peak_s, double level, const model::SharedParameters& shared) noexcept;
   /// \param sigma  noise of one scan. \param typical_delta_mu,decisive  as in LiveJunction; decisive > 0.
-  /// \param until_s  by what came before then; not earlier than the last time for a slip.
+  /// \param until_s  uses only rows before this time; must not decrease during a slip.
   [[nodiscard]] Answer ask(double sigma, double typical_delta_mu, double decisive,
                            double until_s = std::numeric_limits<double>::infinity()) noexcept;
-  /// Of the last answer that decided.
+  /// Evidence of the last decisive answer.
   [[nodiscard]] const JunctionEvidence& evidence() const noexcept { return evidence_; }
   [[nodiscard]] const ScanRows& rows() const noexcept { return rows_; }
 
@@ -66,8 +67,8 @@ class QuickJunction {
   [[nodiscard]] bool improve(const Free& free, double decisive) noexcept;
   [[nodiscard]] bool has_stray(const RowCourse& free) const noexcept;
   /// Captured over free, where a stray tells no more than one scan can: not more than the full question says.
-  /// \param scale  1/σ² of a row, or less where neither course fits. \return if that is decisive, perhaps
-  /// less than the whole.
+  /// \param scale  1/σ² of a row, or less where neither course fits.
+  /// \return if that is decisive, perhaps less than the whole.
   [[nodiscard]] double told(const RowCourse& free_course, double scale, double decisive) const noexcept;
 
   ScanRows rows_;

@@ -1,5 +1,5 @@
 /// \file
-/// From what each slip did to the word for the test.
+/// Regime of a test, from the likelihood ratios of its slips' ends.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ struct RegimeVerdict {
   std::optional<std::size_t> transition_slip;
 };
 
-/// Likelihood ratio of the best two classes below which the data do not tell.
+/// Likelihood ratio of the best two regimes below which the result is undecided.
 inline constexpr double kDecisiveLikelihoodRatio = 20.0;
 
 /// \param slip_count  slips of the test.

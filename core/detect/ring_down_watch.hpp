@@ -1,5 +1,5 @@
 /// \file
-/// Is anything left of an oscillation that dies away? Its amplitude, fitted period by period.
+/// Amplitude of a decaying oscillation, fitted period by period, to detect its end.
 #pragma once
 
 #include <complex>
@@ -9,15 +9,15 @@
 
 namespace stickslip::detect {
 
-/// One period of scans at a time gets K, a cosine and a sine with the known ω and γ by least squares, the
-/// waves turned from scan to scan and anew each period. O(1) for a scan, no allocation.
+/// Fits K, a cosine and a sine with known ω and γ to each period by least squares. The basis functions are
+/// advanced by a rotation from scan to scan and restarted each period. O(1) for a scan, no allocation.
 class RingDownWatch {
  public:
   struct Amplitude {
     double value = 0.0;           ///< At the end of the period, coefficient.
-    double standard_error = 0.0;  ///< From what the fit leaves.
+    double standard_error = 0.0;  ///< From the residuals of the fit.
 
-    /// Below three standard errors there is none to speak of.
+    /// Whether the amplitude is below three standard errors.
     [[nodiscard]] bool is_over() const noexcept { return !(value >= 3.0 * standard_error); }
   };
 
@@ -26,7 +26,7 @@ class RingDownWatch {
   void stop() noexcept { running_ = false; }
   [[nodiscard]] bool running() const noexcept { return running_; }
 
-  /// \param usable  else the scan only passes time. \return the amplitude when this scan ends a period.
+  /// \param usable  false: the scan only advances time. \return the amplitude when this scan ends a period.
   std::optional<Amplitude> add(double value, bool usable) noexcept {
     if (!running_) return std::nullopt;
     return take(value, usable);

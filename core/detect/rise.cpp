@@ -7,8 +7,8 @@
 namespace stickslip::detect {
 namespace {
 
-/// Parts of a rise between which its slope is the stick rate; the wider ones where a fast loading leaves so
-/// few scans between the others that a stray one could bend them.
+/// Range of a rise, as fractions of its height, in which its slope is the stick rate. With fewer than kFewest
+/// points there, as in a fast loading, the wider range is used, so that one outlier has less effect.
 constexpr double kFrom = 0.3;
 constexpr double kTo = 0.7;
 constexpr double kFastFrom = 0.1;

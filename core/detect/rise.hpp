@@ -1,5 +1,5 @@
 /// \file
-/// The rise of the force before a slip: from where it is a line, and how steep that is.
+/// The rise of the force before a slip: start and slope of its linear part.
 #pragma once
 
 #include <span>
@@ -15,12 +15,13 @@ struct Rise {
   double begin_s;  ///< Time of the turning point,
   double peak_s;   ///< and of the peak, later.
 
-  /// A first loading has a rounded start, and rest before it.
-  /// \param points  among them those of the rise. \return when the line begins, from_s at the earliest.
+  /// Start of the linear part; a first loading has a rounded start, with rest before it.
+  /// \param points  include those of the rise.
+  /// \return time at which the line begins, from_s at the earliest.
   [[nodiscard]] double line_from_s(std::span<const estimate::CyclePoint> points,
                                    double from_s) const noexcept;
-  /// Of the stick, 1/s: its stick rate. By the points from from_s on, or the whole rise where they tell
-  /// nothing. \param sigma  noise of one scan.
+  /// Slope of the stick, 1/s, from the points from from_s on; from the whole rise if these are too few.
+  /// \param sigma  noise of one scan.
   [[nodiscard]] double slope(std::span<const estimate::CyclePoint> points, double from_s,
                              double sigma) const noexcept;
 };

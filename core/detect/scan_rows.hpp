@@ -1,5 +1,5 @@
 /// \file
-/// The newest scans as rows at equal times, each the mean of as many scans.
+/// The latest scans as rows at equal intervals; each row is the mean of the same number of scans.
 ///
 ///     ScanRows rows{scan_s};
 ///     rows.add(coefficient, usable);
@@ -14,10 +14,10 @@
 
 namespace stickslip::detect {
 
-/// A row with a scan that is not usable has weight 0, but its place. Fixed size; never allocates.
+/// A row that contains an unusable scan has weight 0 and keeps its place. Fixed size; never allocates.
 class ScanRows {
  public:
-  /// Rows kept.
+  /// Number of stored rows.
   static constexpr std::size_t kMost = 256;
 
   struct Row {
@@ -39,22 +39,23 @@ class ScanRows {
     sum_ = 0.0;
     usable_ = true;
   }
-  /// Forgets all rows. \param scans  of each that comes, > 0.
+  /// Removes all rows.
+  /// \param scans  per row from now on, > 0.
   void restart(std::size_t scans) noexcept;
 
   [[nodiscard]] double scan_s() const noexcept { return scan_s_; }
   [[nodiscard]] std::size_t scans_per_row() const noexcept { return scans_; }
   [[nodiscard]] double row_s() const noexcept { return static_cast<double>(scans_) * scan_s_; }
-  /// So many have come since the restart; the last kMost are there.
+  /// Number of rows completed since the restart; the last kMost are stored.
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
   /// \param number  counted from the restart.
   [[nodiscard]] const Row& operator[](std::size_t number) const noexcept { return rows_[number % kMost]; }
-  /// Mean time of the newest. \param now_s  of the last scan.
+  /// Mean time of the latest row. \param now_s  of the last scan.
   [[nodiscard]] double newest_s(double now_s) const noexcept {
     return now_s - (static_cast<double>(in_row_) + 0.5 * (static_cast<double>(scans_) - 1.0)) * scan_s_;
   }
 
-  /// The usable ones that begin then or later, oldest first. \param now_s  of the last scan.
+  /// Visits the usable rows that begin at since_s or later, oldest first. \param now_s  of the last scan.
   /// \param use  called with a CyclePoint.
   template <typename Use>
   void for_each_since(double since_s, double now_s, const Use& use) const {

@@ -17,41 +17,42 @@ namespace {
 /// ln 10⁴: then one wrong end in ten thousand slips at most [Wald, Ann. Math. Stat. 16:117–186, 1945,
 /// (3:42)].
 constexpr double kDecisive = 9.210340371976184;
-/// Periods after the peak when the question is first asked: when c′ of a slip that escapes is nearly done
-/// with rising (t₃ is three quarters of a period after the peak at most), or where captures took longer so
-/// far, a little before that, but no later than a free oscillation comes back; and when it is answered, come
-/// what may.
+/// Times of the evaluations, in periods after the peak. The first is at kFirstAsked, when the rise of c′ of a
+/// free oscillation is nearly over (t₃ is at most three quarters of a period after the peak). If captures
+/// took longer so far, it is kEarlier before their usual time, but at kLastFirstAsked at the latest, when a
+/// free oscillation is back at its peak. At kMostPeriods the decision is made with the available evidence.
 constexpr double kFirstAsked = 0.6;
 constexpr double kEarlier = 2.0 / 32.0;
 constexpr double kLastFirstAsked = 1.0;
 constexpr double kMostPeriods = 2.5;
-/// Periods after the peak whose scans answer nearly every question that is asked late: a free oscillation is
-/// back by then, a captured one still sticks or slips again. What comes later costs more than it adds.
+/// Periods after the peak whose scans decide nearly every late evaluation: by then a free oscillation has
+/// returned, and a captured sled still sticks or slips again. Later scans add less than they cost.
 constexpr double kLateAsked = 1.1;
-/// Part of the time from the onset to the peak whose scans the question may use: the onset is a guess.
+/// Part of the time from the onset to the peak whose scans are used; the onset is only estimated.
 constexpr double kSurelySlipping = 0.6;
-/// Blocks of a slip under way: so many from its peak to its trough.
+/// Number of blocks from peak to trough of a slip under way.
 constexpr double kBlocksPerFall = 16.0;
 /// Reach of the parabola through a turning point: a sixteenth of a period, where the course differs from its
 /// parabola by (π/8)⁴/24 = 0.1 % of the amplitude; at least the scan on each side.
 constexpr double kReachPerPeriod = 1.0 / 16.0;
 constexpr double kLeastReachScans = 1.6;
-/// Turning points know ω and r by such parts; only their ratio to what was known before matters.
+/// Relative standard deviations of ω from turning points and of r from the slope of a rise; only their ratio
+/// to those of the prior matters.
 constexpr double kTurningPointSpread = 0.02;
 constexpr double kSlopeSpread = 0.05;
-/// One slip of so many teaches ω and r where FallHeights::kMemory of them have: each is known to a part of
-/// what one slip tells, and what they are used with need not be worked out anew.
+/// After FallHeights::kMemory slips only every kMatureTaughtBy-th slip updates ω and r: a single slip then
+/// hardly changes them, and quantities derived from them need not be recomputed.
 constexpr std::int64_t kMatureTaughtBy = 4;
-/// After so many slips the stick rate is known from more than a loading, and one rise does not overturn it.
+/// Number of slips from which on a single deviating rise does not replace the stick rate.
 constexpr double kKnownSlips = 2.0;
-/// Rises of so many falls are mostly stick, and their middle is.
+/// Duration of a rise, relative to that of the fall, above which the middle of the rise is stick.
 constexpr double kMostlyStick = 3.0;
-/// The typical S − K follows the last so many.
+/// Memory of the typical S − K, in slips.
 constexpr double kTypicalMemory = 16.0;
-/// S − K is typically not less than this part of the height of the peak over K.
+/// Smallest typical S − K, relative to the height of the peak above K.
 constexpr double kLeastTypical = 0.1;
 
-/// S − K of a slip whose peak is so high above K, by the undamped (2): roughly what is typical.
+/// Approximate S − K of a slip from the height of its peak above K, by the undamped (2).
 double rough_delta_mu(double peak_above_K, const model::SharedParameters& shared) noexcept {
   const double belt = shared.r / shared.omega;
   const double square = peak_above_K * peak_above_K - belt * belt;

@@ -1,5 +1,5 @@
 /// \file
-/// One slip from its fall on: how does it end, and what are its S and K?
+/// Follows a slip from its fall on: decides how it ends, and estimates S and K.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@
 
 namespace stickslip::detect {
 
-/// Follows one slip at a time. What takes long, fits of up to 256 points, is done one for a scan, so that no
-/// scan waits for two; where scans are not kept, and must be asked in full, one scan does it all. Fixed
-/// memory, 70 kB; never allocates.
+/// Follows one slip at a time. Fits of up to 256 points are done one per scan, so that no scan waits for two;
+/// only without stored scans (tier kPeak) a full evaluation is done within one scan. Fixed memory, 70 kB;
+/// never allocates.
 class SlipFollower {
  public:
   /// \param scan_rate_Hz > 0.
@@ -31,34 +31,35 @@ class SlipFollower {
     quick_junction_.add(value, usable);
     ++scans_since_open_;
   }
-  /// The same once more, if it is usable and keeps_scans().
+  /// Stores the scan for the fits; call after add() if the scan is usable and keeps_scans().
   void keep(double time_s, double value) noexcept { buffer_.add(time_s, value); }
-  /// Every scan of the last cycle or two, for S and K. The tradition needs none: the rows of the quick
-  /// question are all it has.
+  /// Whether the scans of the last one or two cycles are stored, for S and K. The tier kPeak stores none; it
+  /// has only the rows of QuickJunction.
   [[nodiscard]] bool keeps_scans() const noexcept { return tier_ != EstimatorTier::kPeak; }
-  /// The force falls: its peak and the lowest so far.
+  /// Reports a fall under way: times of its peak and of its lowest point so far.
   void falls(double peak_s, double lowest_s) noexcept;
-  /// Scans are missing behind the last one: what was before does not belong to what comes. Where scans are
-  /// not kept, a slip that would have been asked about later is asked now. \return true when this decided how
-  /// it ends.
+  /// Scans are missing after the last one; later scans are not connected with earlier ones. Without stored
+  /// scans, the slip under way is evaluated now.
+  /// \return true if this decided how the slip ends.
   [[nodiscard]] bool gap(double now_s, double sigma) noexcept;
 
-  /// A fall was confirmed to be a slip; ends the one before. Call force() and take it first.
+  /// Begins a confirmed slip and ends the one before; call force() and read slip() first.
   /// \param peak_s,trough_s  times of the fall's turning points. \param now_s  of the last scan.
-  /// \param begins_from_stick  the slip before was captured; if it was not, but this one is too large for
-  /// that, it begins from sticking all the same.
+  /// \param begins_from_stick  the slip before was captured. A slip too large for a free oscillation is taken
+  ///        to begin from sticking in any case.
   void open(const Fall& fall, double peak_s, double trough_s, double now_s, bool begins_from_stick,
             double sigma) noexcept;
-  /// There is something to do now.
+  /// Whether a task is due.
   [[nodiscard]] bool has_task() const noexcept {
     return task_ != Task::kNone && scans_since_open_ >= wait_scans_;
   }
-  /// At most one task. \return true when this decided how the slip ends.
+  /// Does at most one task. \return true if it decided how the slip ends.
   [[nodiscard]] bool step(double now_s, double sigma) noexcept {
     return task_ != Task::kNone && !(now_s < next_task_s_) && do_task(now_s, sigma);
   }
-  /// All that is left to do, with what is known. \param next  the slip that follows; nullptr if there is
-  /// none. \return true when this decided how the slip ends.
+  /// Does all remaining tasks with the available scans.
+  /// \param next  the slip that follows; nullptr if there is none.
+  /// \return true if this decided how the slip ends.
   [[nodiscard]] bool force(double now_s, double sigma, const Fall* next) noexcept;
   void close() noexcept { task_ = Task::kNone, open_ = false; }
 
@@ -66,9 +67,9 @@ class SlipFollower {
   [[nodiscard]] bool decided() const noexcept { return decided_; }
   [[nodiscard]] bool captured() const noexcept { return (slip_.cycle.flags & kCycleCaptured) != 0; }
   [[nodiscard]] const LiveCycle& slip() const noexcept { return slip_; }
-  /// For what is better known outside.
+  /// Mutable, so that the caller can set values that it knows better.
   [[nodiscard]] LiveCycle& slip() noexcept { return slip_; }
-  /// ω, γ and r as far as they are known.
+  /// Present estimates of ω, γ and r.
   [[nodiscard]] const model::SharedParameters& shared() const noexcept { return shared_; }
 
  private:

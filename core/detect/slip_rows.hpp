@@ -1,6 +1,6 @@
 /// \file
-/// The rows of one slip at equal times, and the free course through them: least squares without a
-/// transcendental function and without going over the rows again.
+/// The rows of one slip at equal intervals, and the free oscillation fitted to them: least squares from
+/// running sums, without transcendental functions for each row.
 ///
 ///     slip.begin(rows, now_s, peak_s, level, shared);
 ///     slip.take(rows);                                   // Those that have come since.
@@ -24,22 +24,22 @@ struct TurnedBasis {
   double sine = 0.0;
 };
 
-/// K, and what the basis is multiplied with.
+/// Parameters of a free oscillation: K, and the factors of cosine and sine.
 struct RowCourse {
   double K = 0.0;
   double A = 0.0;
   double B = 0.0;
 };
 
-/// A course is linear in its three parameters, and the basis of the next row is that of this one, turned;
-/// sums of products grow with each row, and a row's sums tell what a course through all rows up to it costs
-/// at least. Values are less a level, for their digits. Fixed size; never allocates.
+/// A free oscillation is linear in its three parameters, and a rotation gives the basis of the next row. The
+/// sums of products up to each row are stored and give the smallest cost over these rows. A level is
+/// subtracted from the values, for precision. Fixed size; never allocates.
 class SlipRows {
  public:
   static constexpr std::size_t kMost = ScanRows::kMost;
 
-  /// Normal equations of 1, cosine and sine, and of the values, over the rows up to one. Without initial
-  /// values: an array of them needs none.
+  /// Sums of the normal equations (1, cosine, sine, value) up to a row. Members have no initial values, since
+  /// an array of them is only partly used.
   struct Sums {
     double n;
     double y;
@@ -54,11 +54,12 @@ class SlipRows {
   };
   struct Fit {
     RowCourse course;
-    double square_sum = 0.0;  ///< That it leaves.
+    double square_sum = 0.0;  ///< Residual sum of squares.
   };
 
-  /// \param now_s  time of the last scan. \param peak_s  rows from then on are of the slip.
-  /// \return whether they are all there.
+  /// \param now_s  time of the last scan.
+  /// \param peak_s  rows from this time on belong to the slip.
+  /// \return whether all of them are stored.
   [[nodiscard]] bool begin(const ScanRows& rows, double now_s, double peak_s, double level,
                            const model::SharedParameters& shared) noexcept;
   /// \param until_s  only those before. \return whether there was room for them.
@@ -69,7 +70,7 @@ class SlipRows {
   [[nodiscard]] double omega0_squared() const noexcept { return omega0_squared_; }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] double row_s() const noexcept { return row_s_; }
-  /// Last row of the first half of an oscillation, in which nothing is captured.
+  /// Last row of the first half period, in which a capture is impossible.
   [[nodiscard]] std::size_t half() const noexcept { return half_; }
   [[nodiscard]] double first_s() const noexcept { return first_s_; }
   [[nodiscard]] double tau_s(std::size_t k) const noexcept { return static_cast<double>(k) * row_s_; }
@@ -92,18 +93,18 @@ class SlipRows {
     double jerk;
   };
   [[nodiscard]] Motion motion(const RowCourse& p, const TurnedBasis& b) const noexcept;
-  /// How far the rows [0, size) are off a course. An expression: not to be kept.
+  /// Residuals of the rows [0, size) about a free oscillation. An Eigen expression: do not store it.
   [[nodiscard]] auto off(const RowCourse& p, std::size_t size) const noexcept {
     return column(values_, size) - p.K - (attenuation_ * p.A) * column(cosines_, size) -
            (attenuation_ * p.B) * column(sines_, size);
   }
-  /// Mean over a row of c − K of a course with this basis, over its value in the middle.
+  /// Mean of c − K over a row, relative to its value in the middle of the row.
   [[nodiscard]] double attenuation() const noexcept { return attenuation_; }
   [[nodiscard]] auto weights() const noexcept { return column(weights_, size_); }
 
-  /// Course of least squares through the rows up to that one; of three rows at least.
+  /// Least-squares free oscillation through the rows 0 … k; k ≥ 2.
   [[nodiscard]] Fit fit(std::size_t k) const noexcept;
-  /// Of d · (K, A, B) of that course, for values of variance 1.
+  /// Variance of d · (K, A, B) of fit(k), for values of variance 1.
   [[nodiscard]] double variance(std::size_t k, const RowCourse& d) const noexcept;
 
  private:

@@ -1,5 +1,5 @@
 /// \file
-/// Which falls are slips? One rule for every trace, rate and file.
+/// Slip rule: decides which falls are slips, for every trace and scan rate.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace stickslip::detect {
 
-/// A slip is a fall that is significant against the measured noise and fast against the stick
-/// before it, and that stick is one: the force climbed without falling on the way. Limits are
-/// in standard deviations σ of the noise of one scan, or ratios; none depends on rate or file.
+/// A slip is a fall that is significant against the measured noise and fast relative to the rise before it,
+/// and the rise contains no fall larger than kLargestFallInStick of the drop. Limits are in standard
+/// deviations σ of the noise of one scan, or ratios; none depends on the scan rate or the file.
 ///
 /// They were placed on measured traces of paper on paper: textbook saw-teeth have slips of 16 σ up
 /// with falls of at most 0.10 of the rise before; a nearly sinusoidal trace has slips of 22 σ up
@@ -19,16 +19,17 @@ namespace stickslip::detect {
 /// takes 1.10 of that rise or more. So at 2000 scans/s and at every rate down to 350.
 class SlipRule {
  public:
-  /// Hysteresis of the turning points in σ: noise alone, through a median of three (which leaves
-  /// 0.67 σ), would have to swing over 9 of its own standard deviations.
+  /// Hysteresis of the turning points in σ: 9 standard deviations of the median of three, which are 0.67 σ
+  /// each.
   static constexpr double kHysteresisSigmas = 6.0;
   /// Smallest drop of a slip in σ.
   static constexpr double kSignificantSigmas = 12.0;
-  /// A fall inside the rise larger than this part of the drop: the sled was sliding, not sticking.
+  /// Largest fall inside the rise, relative to the drop; with a larger one the sled was sliding, not
+  /// sticking.
   static constexpr double kLargestFallInStick = 1.0 / 3.0;
-  /// Fall::duration counts from scan to scan: 90 % is crossed up to a scan after the one, 10 % up to a scan
-  /// before the other. What took less for certain must not take longer than the rise; in the model it takes
-  /// at most 0.59 of it, asin(0.8)/(π/2), as half a swing has its 10–90 %.
+  /// Largest error of Fall::duration, in scans: each of the crossings of 90 % and 10 % is up to one scan
+  /// inside the counted interval. A slip's duration less this must not exceed that of the rise; in the model
+  /// it is at most asin(0.8)/(π/2) = 0.59 of it, the 10–90 % time of half an oscillation.
   static constexpr double kDurationExcess = 2.0;
 
   /// \param falls come in the order of time. \param sigma noise of one scan.

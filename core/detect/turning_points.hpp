@@ -1,5 +1,5 @@
 /// \file
-/// What the turning points of a slip say about S and K by closed forms alone.
+/// S and K of a slip from its turning points, by closed forms.
 #pragma once
 
 #include <optional>
@@ -17,24 +17,27 @@ struct TurningPoint {
 
 /// Vertex of the parabola that fits the points in [near_s − reach_s, near_s + reach_s) best.
 /// \param sign  +1 for a maximum, −1 for a minimum.
-/// \return nothing with fewer than three points, without the curvature, or if the vertex lies out of reach.
+/// \return nullopt with fewer than three points, with the wrong sign of curvature, or if the vertex lies
+/// outside the interval.
 [[nodiscard]] std::optional<TurningPoint> parabola_vertex(std::span<const estimate::CyclePoint> points,
                                                           double near_s, double reach_s,
                                                           double sign) noexcept;
 
-/// Slope of the points between `low` and `high`, with Huber's weights about their median line: of the few
-/// that a fast loading has, one spike that was not found would bend it by a tenth. \param sigma  noise of one
-/// scan. \return nothing with fewer than two points there.
+/// Slope of the points with values between `low` and `high`, with Huber's weights about their median line: a
+/// fast loading has few points, and one missed spike would change the slope by 10 %.
+/// \param sigma  noise of one scan.
+/// \return nothing with fewer than two points there.
 [[nodiscard]] std::optional<double> slope_between(std::span<const estimate::CyclePoint> points, double low,
                                                   double high, double sigma) noexcept;
 
-/// K from a maximum and the minimum half an oscillation later, which is nearer to it by e^(−πγ/2ω).
+/// K from a maximum and the minimum half an oscillation later, whose distance from K is smaller by the factor
+/// e^(−πγ/2ω).
 [[nodiscard]] double K_of_turning_points(double peak, double trough,
                                          const model::Oscillator& oscillator) noexcept;
 
-/// A slip by its largest force.
+/// Parameters of a slip from its peak force.
 struct SlipOfPeak {
-  double delta_mu = 0.0;          ///< S − K ≥ 0; 0 if even no S − K peaks higher.
+  double delta_mu = 0.0;          ///< S − K ≥ 0; 0 if the peak is lower than that for S = K.
   double peak_time_s = 0.0;       ///< t₁, from the onset to the peak.
   double slip_speed_ratio = 0.0;  ///< [18]
 };

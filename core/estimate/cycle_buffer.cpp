@@ -5,11 +5,12 @@
 namespace stickslip::estimate {
 namespace {
 
-/// Points left when neighbours have been merged: room for the next ones without merging at every scan.
+/// Number of points after a merge: leaves room, so that merging is not needed at every scan.
 constexpr std::size_t kLeft = CycleBuffer::kMostPoints * 3 / 4;
-/// A block is at most its age over this long; as fine as there is room for.
+/// Finest resolution tried: a block is at most 1/64 of its age long.
 constexpr double kFinest = 64.0;
-/// As long as its age: points are then no more than twice the binary digits of the number of scans.
+/// Coarsest resolution: a block is at most as long as its age. The number of points is then at most 2 log₂ of
+/// the number of scans.
 constexpr double kCoarsest = 1.0;
 
 /// Means and variances of both together [Chan, Golub and LeVeque, Am. Stat. 37(3):242–247, 1983].

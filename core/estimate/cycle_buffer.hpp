@@ -1,5 +1,5 @@
 /// \file
-/// The scans of one cycle in little room: few at full resolution, the others as means of blocks.
+/// Compressed scans of one cycle: recent scans singly, older ones as means of blocks, in fixed memory.
 ///
 ///     CycleBuffer buffer;
 ///     buffer.add(time_s, coefficient);
@@ -12,39 +12,39 @@
 
 namespace stickslip::estimate {
 
-/// Mean of consecutive scans. Without initial values: an array of them needs none.
+/// Mean over a block of consecutive scans. Members have no initial values, so that an array of points costs
+/// nothing.
 struct CyclePoint {
   double time_s;     ///< Mean of their times.
   double value;      ///< Mean of their coefficients.
   double spread_s2;  ///< Variance of their times about the mean; 0 for one scan.
-  double count;      ///< How many; the mean has σ²/count.
+  double count;      ///< Number of scans; the mean has the variance σ²/count.
   double first_s;    ///< Time of the first of them.
   double last_s;     ///< Time of the last of them.
 };
 
-/// At most kMostPoints points, whatever the scan rate and the length of the stick. When they are full,
-/// neighbours are merged, and a block may be as long as a part of its age: what lies one oscillation back is
-/// kept by eighths of it or better however many scans it has, and the line of a stick, whose mean lies on
-/// it, costs little. What must be kept finer for longer, a slip under way, is told by keep_fine().
-/// The mean of a curved course differs from the value at the mean time by c″·spread/2 + O(c⁗ h⁴/1920) for a
-/// block of length h: who compares them adds the first, and the rest is below 10⁻⁴ of the amplitude for
-/// blocks of a tenth of an oscillation. Never allocates; add() is amortised O(1), at most kMostPoints steps a
-/// few times.
+/// Holds at most kMostPoints points, whatever the scan rate and the length of the stick. When it is full,
+/// neighbouring points are merged into blocks. A block may be as long as a fraction of its age; one
+/// oscillation back it spans at most an eighth of an oscillation. This loses little of a stick, whose mean
+/// lies on its line. keep_fine() limits the blocks of a slip under way. The mean of a curved trajectory
+/// differs from its value at the mean time by c″·spread/2 + O(c⁗ h⁴/1920) for a block of length h. A
+/// comparison must add the first term; the rest is below 10⁻⁴ of the amplitude for blocks of a tenth of an
+/// oscillation. Never allocates. add() is amortised O(1) and at worst a few passes over kMostPoints points.
 class CycleBuffer {
  public:
   static constexpr std::size_t kMostPoints = 256;
 
-  /// \param time_s  rises from call to call. Scans that are not to be used are not added.
+  /// \param time_s  rises from call to call. Leave out unusable scans.
   void add(double time_s, double value) noexcept { add({time_s, value, 0.0, 1.0, time_s, time_s}); }
   void add(const CyclePoint& point) noexcept;
-  /// Blocks in [from_s, to_s] grow no longer than longest_s. The latest call counts.
+  /// Limits the length of blocks in [from_s, to_s] to longest_s. Replaces the limit of an earlier call.
   void keep_fine(double from_s, double to_s, double longest_s) noexcept;
-  /// Leaves out the points that end before.
+  /// Removes the points that end before time_s.
   void forget_before(double time_s) noexcept;
   void clear() noexcept { size_ = 0; }
 
   [[nodiscard]] std::span<const CyclePoint> points() const noexcept { return {points_.data(), size_}; }
-  /// Those that begin at time_s or later.
+  /// Points that begin at time_s or later.
   [[nodiscard]] std::span<const CyclePoint> since(double time_s) const noexcept;
 
  private:

@@ -17,19 +17,22 @@ namespace {
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = CycleCourse::Row;
 
-/// Each takes up to 256 points: what bounds the time of the scan that closes a cycle.
+/// Limit of the iterations, over up to 256 points each. It bounds the processing time of the scan that closes
+/// a cycle.
 constexpr int kMostCycleIterations = 12;
-/// Change of the cost, in units of log-likelihood, below which nothing that matters changes: a parameter
-/// moves by √(2 · this) of its standard error.
+/// Change of the cost, in units of log-likelihood, below which the fit has converged: a parameter then moves
+/// by √(2 · this) of its standard error.
 constexpr double kCycleConverged = 1e-5;
+/// Factors of the damping after a step that lowers the cost and one that does not.
 constexpr double kCycleEasier = 0.1;
 constexpr double kCycleHarder = 10.0;
-/// S may fall below K by what noise does to them, as in the fit of the whole test.
+/// Lowest S − K in σ that a step may reach, as in fit_slips(): noise may bring S slightly below K.
 constexpr double kLowestSigmas = 6.0;
 constexpr std::size_t kFewestCyclePoints = 4;
-/// What Huber's weights cost of Gaussian noise [Huber 1964].
+/// Variance of Huber's estimate over that of least squares, for Gaussian noise: 95 % efficiency [Huber 1964].
 constexpr double kHuberVariance = 1.0 / 0.95;
-/// Standard deviation of residuals of n scans is known to 1/√2n; so many of these are no chance.
+/// Residuals are larger than noise if their standard deviation exceeds 1 by this many of its standard errors,
+/// 1/√(2n) for n scans.
 constexpr double kCycleMisfitSigmas = 3.0;
 
 struct CycleEquations {

@@ -1,11 +1,11 @@
 /// \file
-/// Maximum-likelihood fit of the closed form to the scans of one slip, while the test runs.
+/// Live maximum-likelihood fit of the closed form to the scans of one slip.
 ///
 ///     const CycleFit fit = fit_cycle(buffer.points(), true, first_guess, knowledge, sigma);
 ///
 /// Levenberg–Marquardt on six parameters with analytic derivatives and Huber's weights, as the fit of the
-/// whole test (core/estimate/slip_fit); what is known of ω, γ and r so far stands beside the scans as
-/// observations. All matrices have fixed sizes: nothing is allocated.
+/// whole test (core/estimate/slip_fit); the present knowledge of ω, γ and r (SharedKnowledge) enters as a
+/// Gaussian prior. All matrices have fixed sizes; nothing is allocated.
 #pragma once
 
 #include <span>
@@ -18,10 +18,11 @@
 
 namespace stickslip::estimate {
 
-/// The course of one slip at one time with its curvature, from one exponential, one sine and one cosine.
+/// Trajectory of one slip with its curvature and derivatives, evaluated from one exponential, one sine and
+/// one cosine.
 class CycleCourse {
  public:
-  using Row = Eigen::Matrix<double, 6, 1>;  ///< By (onset, S, K, ω, γ, r).
+  using Row = Eigen::Matrix<double, 6, 1>;  ///< Derivatives by (onset, S, K, ω, γ, r).
 
   struct Point {
     double value = 0.0;
@@ -29,15 +30,16 @@ class CycleCourse {
     Row by = Row::Zero();
   };
 
-  /// As SlipModel: stick before the onset, and behind the capture if `captured`.
+  /// As SlipModel: stick before the onset, and after the capture if `captured`.
   CycleCourse(const model::SharedParameters& shared, const model::SlipParameters& slip,
               bool captured) noexcept;
 
   [[nodiscard]] Point at(double time_s) const noexcept;
-  /// The mean over the scans of a point: the value at their mean time and half the curvature times their
-  /// variance in time. `by` is left as it is at the mean time: it steers the steps, and is off by as little.
+  /// Mean of the trajectory over the scans of a point: the value at their mean time plus half the curvature
+  /// times the variance of their times. `by` is that at the mean time; its error is as small, and affects
+  /// only the steps of the fit.
   [[nodiscard]] Point mean_over(const CyclePoint& point) const noexcept;
-  /// Seconds after the onset; infinity if not captured.
+  /// Capture time, seconds after the onset; infinity if not captured.
   [[nodiscard]] double capture_s() const noexcept { return capture_s_; }
   [[nodiscard]] const model::SlipWaveform& waveform() const noexcept { return waveform_; }
 
@@ -51,15 +53,16 @@ class CycleCourse {
   Point at_capture_;
 };
 
+/// Result of fit_cycle().
 struct CycleFit {
   bool converged = false;
   model::SlipParameters slip;
   model::SharedParameters shared;
   Eigen::Matrix3d covariance =
-      Eigen::Matrix3d::Zero();   ///< Of (onset, S, K), with what is not known of ω, γ, r.
-  SharedEvidence evidence;       ///< What these scans alone say about ω, γ and r.
-  double capture_s = 0.0;        ///< After the onset; infinity if not captured.
-  double residual_sigmas = 0.0;  ///< Standard deviation about the model over that of noise.
+      Eigen::Matrix3d::Zero();  ///< Of (onset, S, K), including the uncertainty of ω, γ and r.
+  SharedEvidence evidence;      ///< Information about ω, γ and r from these scans alone, without the prior.
+  double capture_s = 0.0;       ///< After the onset; infinity if not captured.
+  double residual_sigmas = 0.0;  ///< Standard deviation of the residuals, in σ.
   int iterations = 0;
 
   [[nodiscard]] double delta_mu() const noexcept { return slip.S - slip.K; }
@@ -68,10 +71,10 @@ struct CycleFit {
   }
 };
 
-/// \param points  of one slip: from the stick before to where it sticks again, or the oscillation after it.
-/// \param start   first guess of the slip's own parameters; those of the tester are knowledge.best().
+/// \param points  of one slip: from the stick before it to the stick, or the free oscillation, after it.
+/// \param start   first guess of onset, S and K; that of ω, γ and r is knowledge.best().
 /// \param sigma   noise of one scan, > 0.
-/// \return converged = false with fewer than four points, or if there is no answer.
+/// \return converged = false with fewer than four points, or if the fit does not converge.
 [[nodiscard]] CycleFit fit_cycle(std::span<const CyclePoint> points, bool captured,
                                  const model::SlipParameters& start, const SharedKnowledge& knowledge,
                                  double sigma) noexcept;

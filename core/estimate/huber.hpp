@@ -1,6 +1,6 @@
 /// \file
-/// Huber's robust weights, and what they cost in certainty. [Huber, Ann. Math. Stat. 35:73–101, 1964;
-/// Robust Statistics, 1981]
+/// Huber's robust loss and weights, and the covariance of estimates made with them. [Huber, Ann. Math. Stat.
+/// 35:73–101, 1964; Robust Statistics, 1981]
 #pragma once
 
 #include <algorithm>
@@ -8,10 +8,11 @@
 
 namespace stickslip::estimate {
 
-/// Huber's limit in standard deviations: 95 % efficiency for Gaussian noise.
+/// Huber's limit k for estimates, in standard deviations: 95 % efficiency for Gaussian noise.
 inline constexpr double kHuberLimit = 1.345;
 
-/// Noise is that far off once in two million scans: what is farther is a spike that the despiker let pass.
+/// Residual, in standard deviations, beyond which a scan is a missed spike: Gaussian noise exceeds it once in
+/// two million scans.
 inline constexpr double kStraySigmas = 5.0;
 
 /// ρ(z): quadratic within the limit, linear outside.
@@ -26,7 +27,7 @@ inline constexpr double kStraySigmas = 5.0;
   return size <= limit ? 1.0 : limit / size;
 }
 
-/// What a fit needs to know of all its residuals, each in units of σ.
+/// Sums over the residuals of a fit, each in units of σ.
 class HuberSums {
  public:
   /// \return the weight of this residual in the normal equations: ψ(z)/z.
@@ -44,7 +45,8 @@ class HuberSums {
   [[nodiscard]] double cost() const noexcept { return cost_; }    ///< Σρ
   [[nodiscard]] double count() const noexcept { return count_; }  ///< Residuals.
 
-  /// Weighted degrees of freedom left by so many parameters; a fit without any has no error to tell.
+  /// Weighted degrees of freedom: sum of weights less the number of parameters. If not positive, the standard
+  /// errors are undefined.
   [[nodiscard]] double freedom(double parameters) const noexcept { return weight_sum_ - parameters; }
 
   /// Standard deviation of the residuals in σ; 0 without freedom.
@@ -52,17 +54,19 @@ class HuberSums {
     return freedom(parameters) > 0.0 ? std::sqrt(square_sum_ / freedom(parameters)) : 0.0;
   }
 
-  /// Σψ²/(n − p)/mean ψ′: twice a difference of costs over this is χ², as twice that of log-likelihoods
-  /// is for Gaussian noise [Hampel et al., Robust Statistics, 1986, section 7.2]; 0 without freedom.
+  /// Scale of the cost, Σψ²/(n − p)/mean ψ′: twice a difference of costs divided by it is distributed as χ²,
+  /// like twice a log-likelihood ratio of Gaussian noise [Hampel et al., Robust Statistics, 1986, section
+  /// 7.2]; 0 without freedom.
   [[nodiscard]] double cost_scale(double parameters) const noexcept {
     const double left = count_ - parameters;
     return left > 0.0 ? psi_square_sum_ / left / inlier_part() : 0.0;
   }
 
-  /// (Σ w J Jᵀ)⁻¹ times this is the covariance, in σ²: κ² · Σψ²/(n − p)/(mean ψ′)² · (JᵀJ)⁻¹, where the
-  /// weighted sum is smaller by the mean weight. κ = 1 + (p/n)(1 − mean ψ′)/mean ψ′ is the correction for
-  /// few residuals to each parameter [Huber 1981, (7.6.12)]: 1.8 % of a standard error at n/p = 12.
-  /// Weighted least squares instead would leave out that the weights follow the noise: 15 % too small.
+  /// Factor by which (Σ w J Jᵀ)⁻¹ becomes the covariance, in σ². The covariance is κ² · Σψ²/(n − p)/(mean
+  /// ψ′)² · (JᵀJ)⁻¹, where the weighted sum is smaller by the mean weight. κ = 1 + (p/n)(1 − mean ψ′)/mean ψ′
+  /// is the correction for few residuals to each parameter [Huber 1981, (7.6.12)]: 1.8 % of a standard error
+  /// at n/p = 12. The covariance of weighted least squares would be 15 % too small, since it ignores that the
+  /// weights depend on the noise.
   [[nodiscard]] double covariance_scale(double parameters) const noexcept {
     if (!(count_ > parameters)) return 0.0;
     const double inliers = inlier_part();

@@ -1,5 +1,5 @@
 /// \file
-/// How well a test can be known at all: the Cramér–Rao bound of the closed-form model.
+/// Cramér–Rao bound of the closed-form model: the smallest possible standard errors of a test's parameters.
 /// [Rao, Bull. Calcutta Math. Soc. 37:81–91, 1945; Cramér, Mathematical Methods of Statistics, 1946, 32.3]
 ///
 ///     const UniformParameters::Matrix scans = fisher_information(course, times_s, 0.001);
@@ -13,19 +13,19 @@
 
 namespace stickslip::estimate {
 
-/// Σ J Jᵀ/σ²: what scans with white Gaussian noise tell about (onset, S, K, ω, γ, r).
+/// Fisher information Σ J Jᵀ/σ² of scans with white Gaussian noise about (onset, S, K, ω, γ, r).
 /// \param sigma  noise of one scan, > 0.
 [[nodiscard]] model::UniformParameters::Matrix fisher_information(const model::UniformCourse& course,
                                                                   std::span<const double> times_s,
                                                                   double sigma);
 
-/// What the scans of one free oscillation after a slip onset tell about (ω, γ/2ω), with its onset, S, K
-/// and stick rate unknown. \return covariance of (ω, γ/2ω) at the bound.
+/// Bound for one free oscillation after a slip onset, with onset, S, K and stick rate unknown.
+/// \return smallest covariance of (ω, γ/2ω).
 [[nodiscard]] Eigen::Matrix2d ring_down_bound(const model::SharedParameters& shared,
                                               const model::SlipParameters& slip,
                                               std::span<const double> times_s, double sigma);
 
-/// Least standard errors of an estimate without bias.
+/// Smallest standard errors of an unbiased estimate.
 struct UniformBounds {
   double S = 0.0;
   double K = 0.0;
@@ -34,7 +34,8 @@ struct UniformBounds {
   double gamma_over_2omega = 0.0;
 };
 
-/// \param information  of the scans. \param prior adds what is known beforehand, none if empty.
+/// \param information  of the scans.
+/// \param prior  adds its information; may be empty.
 [[nodiscard]] UniformBounds cramer_rao_bounds(const model::UniformParameters& parameters,
                                               const model::UniformParameters::Matrix& information,
                                               const SharedPrior& prior);

@@ -1,5 +1,5 @@
 /// \file
-/// Do the scans come often enough for the oscillation that is to be expected?
+/// Checks the scan rate against the expected frequency of the oscillation.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,10 @@
 
 namespace stickslip::estimate {
 
-/// Below this many scans a cycle peaks alias: a median of three, which the detector runs on, flattens what is
-/// shorter.
+/// Fewest scans a cycle that are accepted. Below, the detector's median of three flattens the peaks.
 inline constexpr double kFewestScansACycle = 3.0;
-/// Below this many the largest scan misses the peak by more than 1 − cos(π/8) = 7.6 % of the amplitude.
+/// Fewest scans a cycle without a warning. Below, the largest scan may be under the peak by more than 1 −
+/// cos(π/8) = 7.6 % of the amplitude.
 inline constexpr double kFewScansACycle = 8.0;
 
 struct SamplingVerdict {
@@ -22,7 +22,8 @@ struct SamplingVerdict {
   std::string reason;  ///< For people; empty if fine.
 };
 
-/// f of the plan: ω/2π if the tester is characterised, √(k/m)/2π from a stiffness; nothing without either.
+/// Expected frequency: ω/2π if the tester is characterised, else √(k/m)/2π from the stiffness; nullopt
+/// without either.
 [[nodiscard]] std::optional<double> expected_frequency_Hz(const model::Tester& tester,
                                                           const SharedPrior& prior);
 

@@ -7,22 +7,24 @@
 namespace stickslip::estimate {
 namespace {
 
-/// γ/2ω of a tester that nobody has measured: the paper's [Penner 1995, (19)], and how far it may be off:
-/// from none to three times as much. A dozen cycles know it ten times better (docs/detector.md).
+/// Initial γ/2ω of a tester without characterisation, that of the paper [Penner 1995, (19)], and its standard
+/// deviation, which covers 0 to three times the value. A dozen cycles determine it ten times better
+/// (docs/detector.md).
 constexpr double kUsualGammaOver2Omega = 0.022;
 constexpr double kGammaOver2OmegaSpread = 0.05;
-/// How far turning points and the slope of a rise are off at most, in parts: three scans from peak to trough.
+/// Relative standard deviations of the initial ω, from turning points, and of the initial stick rate, from
+/// the slope of a rise; they cover the worst case, three scans from peak to trough.
 constexpr double kOmegaSpread = 0.15;
 constexpr double kFirstStickRateSpread = 0.3;
-/// Part of what was known that the next cycle leaves: 32 cycles count.
+/// Factor by which learnt information fades with each cycle: an effective memory of 32 cycles.
 constexpr double kKept = 31.0 / 32.0;
-/// Part of the first knowledge that never fades. It is what is left where no cycle tells anything, as turning
-/// points nothing of γ: faded alone, knowledge ends after 20 000 cycles in numbers without digits. Where
-/// cycles tell something it does not count.
+/// Fraction of the initial information that does not fade. It keeps the information matrix regular where the
+/// cycles determine nothing, as turning points determine nothing of γ; with fading alone the matrix would
+/// underflow after 20 000 cycles. Where the cycles do determine a parameter it is negligible.
 constexpr double kNeverFades = 1e-6;
-/// Rounds of making what is known beforehand linear, where the answer is.
+/// Limit of the rounds in which the prior is linearised again about the new estimate.
 constexpr int kKnowledgeRounds = 3;
-/// A step of so many standard deviations is the last: the next would be about its square.
+/// Step in standard deviations below which the rounds end; the next step would be about its square.
 constexpr double kSettledSigmas = 1e-3;
 
 double inverse_square(double x) noexcept { return 1.0 / (x * x); }

@@ -1,6 +1,6 @@
 /// \file
-/// What is known of ω, γ and the stick rate while a test runs: what was known before it, and what its cycles
-/// so far have told, of which the older counts less.
+/// Running estimate of ω, γ and the stick rate during a test: the prior, updated by each cycle, with a fading
+/// memory.
 #pragma once
 
 #include "core/estimate/shared_prior.hpp"
@@ -8,37 +8,41 @@
 
 namespace stickslip::estimate {
 
-/// What the scans of one cycle alone say about (ω, γ, r): half of (x − x̂)ᵀ information (x − x̂) is their cost.
+/// Gaussian likelihood of x = (ω, γ, r) from the scans of one cycle alone: its cost is ½ (x − x̂)ᵀ
+/// information (x − x̂).
 struct SharedEvidence {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d weighted = Eigen::Vector3d::Zero();  ///< information · x̂
 };
 
-/// Information filter with a fading memory. Fixed size; does not allocate.
+/// Information filter with fading memory: 32 cycles count. The prior does not fade. Fixed size; does not
+/// allocate.
 class SharedKnowledge {
  public:
   explicit SharedKnowledge(SharedPrior prior) : prior_(std::move(prior)) {}
 
-  /// ω and γ are measured beforehand.
+  /// ω and γ come from a characterisation of the tester.
   [[nodiscard]] bool characterised() const noexcept { return prior_.coupling.has_value(); }
 
-  /// From turning points and slopes; ω and γ only count if they were not known before.
+  /// Initial estimate from turning points and slopes. A characterised ω, and a stick rate known from the pull
+  /// speed, take precedence.
   void start(double omega, double stick_rate_per_s);
+  /// Adds the information of one cycle and fades that of earlier ones. Ignores evidence that is not finite.
   void learn(const SharedEvidence& evidence);
-  /// The belt has another speed now: what was learnt of r does not hold.
+  /// Restarts the estimate of r after a change of the belt's speed.
   void forget_stick_rate(double stick_rate_per_s);
 
-  /// All that is known, as observations beside the scans; linear about `shared`.
+  /// Prior and learnt information as terms of a fit's normal equations, linearised about `shared`.
   [[nodiscard]] PriorTerms at(const model::SharedParameters& shared) const;
-  /// Best values so far.
+  /// Present estimate.
   [[nodiscard]] const model::SharedParameters& best() const noexcept { return best_; }
 
  private:
   void update_best();
 
   SharedPrior prior_;
-  SharedEvidence learnt_;   ///< lasting_ is part of it.
-  SharedEvidence lasting_;  ///< Of the first knowledge, what does not fade.
+  SharedEvidence learnt_;   ///< Information of the cycles, lasting_ included.
+  SharedEvidence lasting_;  ///< Part of the initial information that does not fade.
   model::SharedParameters best_;
 };
 

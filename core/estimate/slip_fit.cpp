@@ -17,14 +17,14 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Nearly always a dozen is enough.
+/// Limit of the iterations; a dozen nearly always suffices.
 constexpr int kMostFitIterations = 60;
-/// A pull speed known to a millionth makes a narrow, bent valley of the cost, along which some fits need a
-/// hundred.
+/// Limit of the iterations with a prior. A pull speed known to 1e-6 gives the cost a narrow, curved valley,
+/// along which some fits need a hundred iterations.
 constexpr int kMostFitIterationsWithPrior = 200;
 /// Relative change of the cost below which the fit has converged.
 constexpr double kFitConverged = 1e-10;
-/// Factors of the damping after success and failure.
+/// Factors of the damping after a step that lowers the cost and one that does not.
 constexpr double kFitEasier = 0.2;
 constexpr double kFitHarder = 5.0;
 
@@ -76,16 +76,17 @@ Matrix3d damped(const Matrix3d& matrix, double damping) {
   return result;
 }
 
-/// Physical region of the shared parameters: an oscillation that decays slower than it swings.
+/// Whether the shared parameters are physical: ω > 0, r > 0 and |γ| < 2ω.
 bool admissible(const model::SharedParameters& shared) {
   return std::isfinite(shared.omega) && shared.omega > 0.0 && shared.r > 0.0 &&
          std::abs(shared.gamma) < 2.0 * shared.omega;
 }
 
-/// S may fall below K by what noise does to them, no further: a free oscillation also meets the line of the
-/// stick half a turn before its onset, with S far below K, and a step can land in that valley.
+/// Whether each S − K is at least −6σ, as noise allows. The cost has a second minimum with S far below K,
+/// which a step could reach: there the free oscillation meets the line of the stick half a period before the
+/// onset.
 bool admissible(const std::vector<SlipWindow>& windows, double sigma) {
-  constexpr double kLowestFitSigmas = 6.0;  // Half of the least fall that is a slip.
+  constexpr double kLowestFitSigmas = 6.0;  // Half of detect::SlipRule::kSignificantSigmas.
   return std::all_of(windows.begin(), windows.end(), [&](const SlipWindow& window) {
     return window.slip.S - window.slip.K >= -kLowestFitSigmas * sigma;
   });

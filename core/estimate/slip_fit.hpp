@@ -23,18 +23,19 @@
 
 namespace stickslip::estimate {
 
-/// Scans [first, end) of the trace belong to one slip.
+/// Scans [first, end) of the trace that belong to one slip, with its parameters.
 struct SlipWindow {
   std::size_t first = 0;
   std::size_t end = 0;
   bool captured = false;
   model::SlipParameters slip;  ///< First guess; the estimate after the fit.
 
-  // Set by the fit, for covariances.
-  Eigen::Matrix3d inverse_curvature = Eigen::Matrix3d::Zero();  ///< Of the slip's own block.
+  // Set by fit_slips() for covariances.
+  Eigen::Matrix3d inverse_curvature = Eigen::Matrix3d::Zero();  ///< Of the slip's own block (onset, S, K).
   Eigen::Matrix3d coupling = Eigen::Matrix3d::Zero();           ///< −∂(own)/∂(shared) at the optimum.
 };
 
+/// Result of fit_slips(): shared parameters, covariances and cost.
 struct SlipFit {
   bool converged = false;
   model::SharedParameters shared;
@@ -43,22 +44,23 @@ struct SlipFit {
   std::size_t scan_count = 0;
   double cost = 0.0;        ///< Huber's, of scans and prior.
   double cost_scale = 0.0;  ///< HuberSums::cost_scale().
-  double freedom = 0.0;     ///< Usable scans less parameters.
+  double freedom = 0.0;     ///< Degrees of freedom: usable scans less parameters.
 
-  /// Covariance of the mean over `windows` of (onset, S, K); the scatter from slip to slip not included.
+  /// Covariance of the mean of (onset, S, K) over `windows`, from noise alone: without the scatter from slip
+  /// to slip.
   [[nodiscard]] Eigen::Matrix3d mean_covariance(const std::vector<SlipWindow>& windows) const;
   /// Covariance of one slip's own parameters.
   [[nodiscard]] Eigen::Matrix3d covariance(const SlipWindow& window) const;
-  /// Standard error of its onset, s.
+  /// Standard error of the slip's onset, s.
   [[nodiscard]] double onset_error_s(const SlipWindow& window) const;
-  /// Standard error of its S − K.
+  /// Standard error of the slip's S − K.
   [[nodiscard]] double delta_mu_error(const SlipWindow& window) const;
 };
 
 /// \param sigma  noise of one scan, > 0; scales Huber's limit.
-/// \param windows,shared  first guess; windows receive the estimate. A window with fewer than four
-///        usable scans must not be passed.
-/// \param prior  what is known of the shared parameters beforehand.
+/// \param windows,shared  first guess; `windows` receives the estimate. Each window needs at least four
+///        usable scans.
+/// \param prior  of the shared parameters.
 /// \return converged = false if no step lowers the cost or the equations are singular.
 [[nodiscard]] SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows,
                                 const model::SharedParameters& shared, double sigma,

@@ -1,5 +1,5 @@
 /// \file
-/// The scans of one test as the estimators see them.
+/// Input of the estimators: the scans of one test, with drift, belt speed and breaks.
 #pragma once
 
 #include <algorithm>
@@ -12,10 +12,10 @@
 
 namespace stickslip::estimate {
 
-/// What K and S change by together while a test lasts, in a line.
+/// Linear drift common to K and S during a test.
 struct Drift {
   double rate_per_s = 0.0;
-  double zero_at_s = 0.0;  ///< Where it counts as none.
+  double zero_at_s = 0.0;  ///< Time at which the drift is zero.
 
   [[nodiscard]] double at(double time_s) const noexcept { return rate_per_s * (time_s - zero_at_s); }
 };
@@ -24,17 +24,17 @@ struct Drift {
 struct Trace {
   base::LongColumn<double> time_s;        ///< (scan index − first index of the record) / granted rate.
   base::LongColumn<double> value;         ///< Coefficient; a spike is replaced by the median around it.
-  base::LongColumn<std::uint8_t> usable;  ///< 0 for a spike or a saturated scan: left out of fits.
+  base::LongColumn<std::uint8_t> usable;  ///< 0 for a spike or a saturated scan; fits leave it out.
 
-  /// Taken off for the fits, and added again to what they find. Exact for the model: with c − βt for c, K and
-  /// S become constant, and the stick rate r is less by β.
+  /// Drift that fits subtract from the trace and add to their results. Exact for the model: with c − βt in
+  /// place of c, K and S are constant and the stick rate is r − β.
   Drift drift;
 
-  /// Over the time of the trace.
+  /// Belt speed over the time of the trace.
   model::BeltCourse belt;
 
-  /// Scans before which the trace is broken: what the sled did between them and the scan before is not known.
-  /// Rising. Gaps of a few scans that were counted break nothing.
+  /// First scans after a break, rising: the motion between such a scan and the one before it is unknown. A
+  /// counted gap shorter than half an oscillation is no break.
   std::vector<std::size_t> breaks{};
   double lost_s = 0.0;  ///< Time without scans, over all gaps.
 
@@ -43,7 +43,7 @@ struct Trace {
   [[nodiscard]] std::size_t size() const noexcept { return value.size(); }
 };
 
-/// There is a break between two positions.
+/// Whether a break lies between two positions, in scans.
 [[nodiscard]] inline bool is_broken(const Trace& trace, double from, double to) noexcept {
   const auto at = [](std::size_t scan) { return static_cast<double>(scan) - 0.5; };
   const auto first = std::upper_bound(trace.breaks.begin(), trace.breaks.end(), from,
@@ -51,7 +51,7 @@ struct Trace {
   return first != trace.breaks.end() && at(*first) < to;
 }
 
-/// Position between scans → time of the trace.
+/// Time of a fractional scan position, by linear interpolation.
 [[nodiscard]] inline double time_at(const Trace& trace, double position) noexcept {
   const auto before =
       static_cast<std::size_t>(std::clamp(position, 0.0, static_cast<double>(trace.size() - 1)));
@@ -60,8 +60,8 @@ struct Trace {
          (position - static_cast<double>(before)) * (trace.time_s[after] - trace.time_s[before]);
 }
 
-/// First scan at or after a time; the size of the trace if there is none. It is looked for from \p near on,
-/// in steps that double [Bentley and Yao 1976]: scans far away may have to be fetched from a file.
+/// First scan at or after a time; the size of the trace if there is none. The search starts at \p near and
+/// doubles its steps [Bentley and Yao 1976], since scans far away may have to be read from a file.
 [[nodiscard]] inline std::size_t scan_at_or_after(const Trace& trace, double time_s, std::size_t near) {
   const std::size_t size = trace.size();
   std::size_t first = std::min(near, size);

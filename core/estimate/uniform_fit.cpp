@@ -19,6 +19,7 @@ using P = model::UniformParameters;
 constexpr int kMostUniformIterations = 60;
 /// Decrease of the cost relative to it below which the fit has converged.
 constexpr double kUniformConverged = 1e-10;
+/// Factors of the damping after a step that lowers the cost and one that does not.
 constexpr double kUniformEasier = 0.1;
 constexpr double kUniformHarder = 5.0;
 

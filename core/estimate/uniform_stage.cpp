@@ -10,8 +10,10 @@ namespace {
 
 using P = model::UniformParameters;
 
+/// Fewest slips for the comparison.
 constexpr std::size_t kFewestSlips = 3;
-/// The period is close to linear over the standard errors of what it follows from.
+/// Newton steps of the first guess by its period; few suffice, since the period is nearly linear over the
+/// standard errors of the parameters.
 constexpr int kPeriodSteps = 4;
 
 /// Onsets against the number of the cycle: a straight line.

@@ -1,5 +1,5 @@
 /// \file
-/// Do the slips of a test differ by more than noise? If not, one S and one K tell more.
+/// Tests whether the slips of a test differ by more than noise; if not, fits one S and one K to all of them.
 #pragma once
 
 #include <optional>
@@ -10,17 +10,18 @@
 
 namespace stickslip::estimate {
 
-/// Probability with which slips that do not differ are taken to differ. That costs certainty only: then the
-/// fit slip by slip stays, which is right in either case. One in a hundred tests with three times the
-/// variance adds 1 % to the rms error.
+/// Significance level of the F test: the probability that slips with equal S and K are taken to differ. Such
+/// an error costs precision only: the fit slip by slip is then used, which is valid in either case. Three
+/// times the variance in one of a hundred tests adds 1 % to the rms error.
 inline constexpr double kScatterLevel = 0.01;
 
-/// Fits one course to all slips but the first, which is often not representative [Penner 1995] (or, if
-/// `first_counts`, to all), and compares it with the fit slip by slip of the same scans by an F test on the
-/// robust costs: 3n + 3 parameters against 6 [Hampel et al., Robust Statistics, 1986, section 7.2]. \param
-/// windows,shared  fitted by fit_slips() to the whole test. \return nothing if a slip did not end in
-/// sticking, there are fewer than three, the fit does not converge,
-///         or the slips differ significantly.
+/// Fits periodic stick-slip to all slips but the first, which is often not representative [Penner 1995], and
+/// compares it with the fit slip by slip of the same scans. The comparison is an F test on the robust costs,
+/// 3n + 3 parameters against 6 [Hampel et al., Robust Statistics, 1986, section 7.2].
+/// \param windows,shared  fitted by fit_slips() to the whole test.
+/// \param first_counts  includes the first slip.
+/// \return nullopt if a slip did not end in sticking, there are fewer than three, the fit does not converge,
+/// or the slips differ significantly.
 [[nodiscard]] std::optional<UniformFit> uniform_if_slips_agree(const Trace& trace,
                                                                const std::vector<SlipWindow>& windows,
                                                                const model::SharedParameters& shared,

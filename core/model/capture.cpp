@@ -20,12 +20,12 @@ double root_between(const Function& function, double low, double high, double at
   return 0.5 * (bracket.first + bracket.second);
 }
 
-/// What a step may leave of the error, as a part of the time: half of the last digit.
+/// Error of the time left by the last step, relative to the time: half a unit in the last place.
 constexpr double kSettled = 1e-16;
-/// Where the root is nearly double, so that steps only divide the error by three, it is known to √ε = 1.5e-8
-/// at best.
+/// Step, relative to t₃, at which the search ends near a double root: there a step divides the error only by
+/// three, and the root is determined to √ε = 1.5e-8 at best.
 constexpr double kSettledStep = 1e-9;
-/// Halving alone needs 50.
+/// Limit of the number of steps; bisection alone needs 50.
 constexpr int kMostSteps = 60;
 
 /// Halley's step towards c′ = belt rate, for which c‴ = −γ c″ − ω₀² c′ is at hand.

@@ -1,5 +1,5 @@
 /// \file
-/// What the model says about whole cycles, in terms of the dimensionless speed Q and γ/2ω.
+/// Closed forms of whole cycles, as functions of the dimensionless speed Q and γ/2ω.
 /// Equation numbers: Penner 1995.
 #pragma once
 
@@ -28,13 +28,14 @@ namespace stickslip::model {
 /// [18]: largest slip speed over the speed of sticking. \param Q ≥ 0; infinity for 0.
 [[nodiscard]] double slip_speed_ratio(double Q, double gamma_over_2omega) noexcept;
 
-/// e^(πε), ε = γ/2ω: the least slip_speed_ratio() of a slip that ends in sticking. The extremes of c′ of a
-/// free oscillation follow each other by π/ω [16], [20], each smaller than the last by e^(−πε): after −ρ r at
-/// t₂ it rises to ρ r e^(−πε) at t₃, and the sled sticks exactly where that reaches r [20], [21]. So the
-/// ratio alone tells the regime, whatever S − K, speed and calibration are. \param gamma_over_2omega ≥ 0.
+/// e^(πε), ε = γ/2ω: the smallest slip_speed_ratio() ρ of a slip that ends in sticking. The extremes of c′ of
+/// a free oscillation follow each other by π/ω, each smaller than the last by e^(−πε) [16], [20]. So c′ rises
+/// from −ρ r at t₂ to ρ r e^(−πε) at t₃, and the sled is captured exactly where that is ≥ r [20], [21]. The
+/// ratio alone tells the regime, whatever S − K, speed and calibration are.
+/// \param gamma_over_2omega ≥ 0.
 [[nodiscard]] double slip_speed_ratio_threshold(double gamma_over_2omega) noexcept;
 
-/// γ/2ω = ln 2/(2π n) of an oscillation that halves in n cycles. \param cycles > 0.
+/// γ/2ω = ln 2/(2π n) of an oscillation whose amplitude halves in n cycles. \param cycles > 0.
 [[nodiscard]] double gamma_over_2omega_of_half_life(double cycles) noexcept;
 
 }  // namespace stickslip::model

@@ -1,6 +1,5 @@
 /// \file
-/// The largest values that settings of a paper friction tester may have; what is larger is a mistake in a
-/// unit.
+/// Largest accepted settings of a paper friction tester. A larger value is taken for a mistake in a unit.
 #pragma once
 
 namespace stickslip::model {

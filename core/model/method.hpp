@@ -1,5 +1,5 @@
 /// \file
-/// How a laboratory makes a test and turns its trace into two traditional numbers.
+/// Test method: how a test is made and how its trace becomes the static and the kinetic coefficient.
 #pragma once
 
 #include <optional>
@@ -10,16 +10,15 @@
 
 namespace stickslip::model {
 
-/// A number that a method asks for.
+/// Required value of a test condition, with its tolerance.
 struct Nominal {
   double value = 0.0;
-  std::optional<double>
-      tolerance;  ///< Allowed difference, in the unit of the value; none: it is not checked.
+  std::optional<double> tolerance;  ///< Allowed difference, in the unit of the value; nullopt: not checked.
 
   bool operator==(const Nominal&) const = default;
 };
 
-/// Belt travel after the first peak, 0 ≤ from < to.
+/// Interval of belt travel, counted from the first peak; 0 ≤ from < to.
 struct TravelWindow {
   double from_m = 0.0;
   double to_m = 0.0;
@@ -33,22 +32,21 @@ struct Method {
   std::string name = "penner-1995";
   int static_slip = 1;      ///< The slip whose peak is the static coefficient, from 1.
   int kinetic_cycles = 10;  ///< Cycles after the first peak that the kinetic coefficient averages, ≥ 1.
-  std::optional<TravelWindow> kinetic_travel;  ///< Instead of the cycles.
+  std::optional<TravelWindow> kinetic_travel;  ///< If set, replaces kinetic_cycles.
 
-  // How the test is to be made; none where the method leaves it open.
+  // Required test conditions; nullopt where the method leaves one open.
   std::optional<Nominal> sled_mass_kg;
   std::optional<double> sled_area_m2;
   std::optional<Nominal> pull_speed_m_per_s;
-  std::optional<PullSpeed>
-      speed_course;  ///< Where the speed is meant to change; then instead of the nominal.
+  std::optional<PullSpeed> speed_course;  ///< Planned speed of a ramp test; replaces pull_speed_m_per_s.
   std::optional<int> replicates;
 
   bool operator==(const Method&) const = default;
 };
 
-/// What of a test is not as its method asks, one line each: "pull speed 0.00508 m/s, iso-8295 asks
-/// 0.00166667 ± 0.000166667 m/s". What the tester does not tell is not compared.
-/// \param sled_mass_kg,pull_speed_m_per_s  of the test; none where not known.
+/// Departures of a test from its method, one line each, such as "pull speed 0.00508 m/s, iso-8295 asks
+/// 0.00166667 ± 0.000166667 m/s". Unknown values are not compared.
+/// \param sled_mass_kg,pull_speed_m_per_s  of the test; nullopt if unknown.
 [[nodiscard]] std::vector<std::string> departures(const Method& method, std::optional<double> sled_mass_kg,
                                                   std::optional<double> pull_speed_m_per_s);
 

@@ -19,14 +19,18 @@ namespace stickslip::model {
 /// Sn(ω², t) = sin(ωt)/ω in seconds, sinh(κt)/κ for ω² = −κ² < 0, t for ω² = 0. Domain as above.
 [[nodiscard]] double entire_sine(double omega_squared, double t_s) noexcept;
 
-/// The tester's coupling; the paper under test has no part in it.
+/// Oscillator of sled and coupling; its parameters belong to the tester, not to the paper.
 struct Oscillator {
   double gamma_per_s = 0.0;  ///< γ ≥ 0
   double omega_squared = 0.0;  ///< ω² = ω₀² − γ²/4 [7], rad²/s²; ≤ 0 if the motion does not oscillate.
 
-  /// From what a decaying trace shows. \param omega_rad_per_s > 0, damped. \param gamma_over_2omega ≥ 0.
+  /// From the frequency and decay of a free oscillation.
+  /// \param omega_rad_per_s > 0, damped.
+  /// \param gamma_over_2omega ≥ 0.
   [[nodiscard]] static Oscillator from_omega(double omega_rad_per_s, double gamma_over_2omega) noexcept;
-  /// From what the coupling is. \param omega0_squared = k/m > 0. \param gamma_per_s ≥ 0, may overdamp.
+  /// From stiffness, mass and damping of the coupling.
+  /// \param omega0_squared = k/m > 0.
+  /// \param gamma_per_s ≥ 0, may overdamp.
   [[nodiscard]] static Oscillator from_omega0(double omega0_squared, double gamma_per_s) noexcept;
 
   [[nodiscard]] double omega0_squared() const noexcept {
@@ -45,7 +49,7 @@ struct Oscillator {
   }
 };
 
-/// The two solutions of the oscillator that start with (1, −γ/2) and (0, 1).
+/// The two solutions of the oscillator with initial value and rate (1, −γ/2) and (0, 1).
 struct DampedBasis {
   double cosine;  ///< e^(−γt/2) C(ω², t)
   double sine;    ///< e^(−γt/2) Sn(ω², t), s

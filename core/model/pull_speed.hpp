@@ -1,6 +1,6 @@
 /// \file
-/// How fast a test is meant to pull, where the speed changes in a known way: lines between points, which is
-/// what a test plan says and what a speed channel would read.
+/// Pull speed as a known function of time, linear between points: the plan of a ramp test, or the reading of
+/// a speed channel.
 ///
 ///     const auto ramp = PullSpeed::make({{0.0, 0.0023}, {4.5, 0.0113}});   // a ramp of 2 mm/s²
 ///     const double v = ramp->speed_m_per_s(1.5);
@@ -14,10 +14,10 @@
 
 namespace stickslip::model {
 
-/// The end of what does not end, in seconds.
+/// End time of an interval that does not end, s.
 inline constexpr double kForEver = std::numeric_limits<double>::infinity();
 
-/// At t seconds after the belt has started.
+/// Speed at a time after the start of the belt.
 struct SpeedPoint {
   double at_s = 0.0;
   double speed_m_per_s = 0.0;  ///< Negative: the carriage returns.
@@ -27,7 +27,7 @@ struct SpeedPoint {
 
 class PullSpeed {
  public:
-  /// A stretch of time in which the belt pulls, v > 0.
+  /// Interval of time in which the belt pulls, v > 0.
   struct Pull {
     double start_s = 0.0;
     double end_s = 0.0;  ///< Infinity if it never stops.
@@ -36,29 +36,29 @@ class PullSpeed {
   /// Most points that a plan may have.
   static constexpr std::size_t kMostPoints = 100'000;
 
-  /// \param points  the first at 0 s, none before the one before; two at one time are a jump. At rest before
-  ///                the first, on at its speed after the last.
-  /// \return nothing unless all are finite, there are at most kMostPoints and the belt pulls at some time.
+  /// \param points  the first at 0 s, times not falling; two points at one time are a jump. The belt is at
+  ///        rest before the first point and keeps the speed of the last.
+  /// \return nullopt unless all values are finite, there are at most kMostPoints, and v > 0 at some time.
   [[nodiscard]] static std::optional<PullSpeed> make(std::vector<SpeedPoint> points);
-  /// From text(). \return nothing if it is none.
+  /// Reads the form that text() writes. \return nullopt if `text` is malformed.
   [[nodiscard]] static std::optional<PullSpeed> parse(std::string_view text);
-  /// "0:0.0023 4.5:0.0113", s and m/s; each number is read back to the last bit.
+  /// "0:0.0023 4.5:0.0113", s and m/s; parse() restores each number to the last bit.
   [[nodiscard]] std::string text() const;
 
-  // At t seconds after the start. At a jump, what comes after it.
+  // Values at t_s seconds after the start; at a jump, those after it.
   [[nodiscard]] double speed_m_per_s(double t_s) const noexcept;
   [[nodiscard]] double acceleration_m_per_s2(double t_s) const noexcept;
   /// ∫v from the start, m; 0 before it.
   [[nodiscard]] double travel_m(double t_s) const noexcept;
-  /// Until when the acceleration stays what it is at t; infinity after the last point.
+  /// End of the linear piece that contains t_s; infinity after the last point.
   [[nodiscard]] double steady_until_s(double t_s) const noexcept;
 
   /// > 0
   [[nodiscard]] double largest_m_per_s() const noexcept { return largest_m_per_s_; }
-  /// One speed from the start to the end.
+  /// One speed from the start on.
   [[nodiscard]] bool is_constant() const noexcept;
   [[nodiscard]] const std::vector<SpeedPoint>& points() const noexcept { return points_; }
-  /// Rising, at least one.
+  /// In the order of time, at least one.
   [[nodiscard]] const std::vector<Pull>& pulls() const noexcept { return pulls_; }
 
   bool operator==(const PullSpeed& other) const { return points_ == other.points_; }

@@ -1,5 +1,5 @@
 /// \file
-/// The word for what the sled did. Definitions: docs/glossary.md.
+/// Regime of a pull: stick-slip, ring-down, mixed, steady sliding, undecided. Definitions: docs/glossary.md.
 #pragma once
 
 #include <array>

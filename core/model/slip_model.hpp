@@ -10,18 +10,18 @@
 
 namespace stickslip::model {
 
-/// What all slips of a test share.
+/// Parameters common to all slips of a test.
 struct SharedParameters {
   double omega = 0.0;  ///< rad/s, damped.
   double gamma = 0.0;  ///< 1/s
-  double r = 0.0;      ///< Rate of the coefficient while sticking, 1/s; BeltCourse says when.
+  double r = 0.0;      ///< Stick rate, 1/s; on a changing belt at its largest speed (BeltCourse).
 
   [[nodiscard]] Oscillator oscillator() const noexcept {
     return Oscillator::from_omega(omega, gamma / (2.0 * omega));
   }
 };
 
-/// What belongs to one slip.
+/// Parameters of one slip.
 struct SlipParameters {
   double onset_s = 0.0;  ///< Time of the slip onset.
   double S = 0.0;        ///< Coefficient at the onset; S of the paper less a/g of an accelerating belt.
@@ -38,8 +38,9 @@ struct SlipModelPoint {
 /// One slip with fixed parameters, ready to be evaluated at many times.
 class SlipModel {
  public:
-  /// \param captured  the sled sticks again where c′ = r (at t₃ if c′ does not get there);
-  ///                  otherwise the oscillation goes on for ever. \param belt  outlives this.
+  /// \param captured  the sled sticks again where c′ equals the stick rate (at t₃ if c′ does not reach it);
+  ///        otherwise the oscillation never ends.
+  /// \param belt  must outlive this object.
   SlipModel(const SharedParameters& shared, const SlipParameters& slip, bool captured,
             const BeltCourse& belt = constant_belt()) noexcept;
 

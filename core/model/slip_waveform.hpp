@@ -23,7 +23,7 @@ struct SlipWaveform {
   [[nodiscard]] double value(double t_s) const noexcept;
   /// c′(t) [12], 1/s.
   [[nodiscard]] double rate(double t_s) const noexcept;
-  /// The same where damped_basis(oscillator, t) is known.
+  /// c′(t) from damped_basis(oscillator, t), 1/s.
   [[nodiscard]] double rate(const DampedBasis& at) const noexcept {
     return r * at.cosine - (oscillator.gamma_per_s * r / 2.0 + oscillator.omega0_squared() * D) * at.sine;
   }
@@ -33,19 +33,19 @@ struct SlipWaveform {
     double rate;
     double acceleration;
   };
-  /// Both for the price of one.
+  /// c′ and c″ from one evaluation of the basis.
   [[nodiscard]] Motion motion(double t_s) const noexcept;
 
-  // The following only if oscillator.oscillates().
+  // The following require oscillator.oscillates().
 
   /// t₁ [15]: maximum of the force. In (−π/ω, π/ω]; negative if it lies before the start.
   [[nodiscard]] double peak_time_s() const noexcept;
   /// t₂ = t₁ + (π/2 − φ)/ω [16]: fastest slip, least c′.
   [[nodiscard]] double fastest_slip_time_s() const noexcept;
-  /// t₃ = t₂ + π/ω [20]: c′ ends its rise. Sticking again happens in [t₂, t₃] or not at all:
-  /// exactly when rate(t₃) ≥ the rate of the belt.
+  /// t₃ = t₂ + π/ω [20]: end of the rise of c′. Capture happens in [t₂, t₃] or not at all; it happens exactly
+  /// when rate(t₃) ≥ the rate of the belt.
   [[nodiscard]] double rise_end_time_s() const noexcept;
-  /// t₁ + π/ω: minimum of the force, if sticking does not come first (it cannot for r > 0).
+  /// t₁ + π/ω: minimum of the force. For r > 0 capture cannot come before it.
   [[nodiscard]] double trough_time_s() const noexcept;
 };
 

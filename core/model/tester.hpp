@@ -1,5 +1,5 @@
 /// \file
-/// What is known about the tester before a test. [Penner 1995, Experimental]
+/// Known properties of the tester. [Penner 1995, Experimental]
 #pragma once
 
 #include <optional>
@@ -15,9 +15,9 @@ inline constexpr double kStandardGravity_m_per_s2 = 9.80665;
 struct Tester {
   double sled_mass_kg = 2.331;  ///< [Penner 1995]
   double gravity_m_per_s2 = kStandardGravity_m_per_s2;
-  std::optional<double> pull_speed_m_per_s;  ///< Nominal; absent if not known.
-  std::optional<double> stiffness_N_per_m;   ///< Of the coupling; absent if not known.
-  /// The course of the speed where it is meant to change: a test plan's, or what a speed channel read.
+  std::optional<double> pull_speed_m_per_s;  ///< Nominal; nullopt if unknown.
+  std::optional<double> stiffness_N_per_m;   ///< Of the coupling; nullopt if unknown.
+  /// Pull speed over time, planned or measured by a speed channel; nullopt: constant.
   std::optional<PullSpeed> speed_course;
 
   [[nodiscard]] double normal_load_N() const noexcept { return sled_mass_kg * gravity_m_per_s2; }

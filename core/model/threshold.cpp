@@ -70,7 +70,7 @@ Threshold strongly_damped(double t) {
   return {theta, std::sin(x) * (1.0 + t * t) / (std::cos(x) - t * std::sin(x))};
 }
 
-/// Where the two forms take turns; both hold in a wide range around it.
+/// tan φ above which the form for strong damping is used; both forms hold in a wide range around it.
 constexpr double kStrongDamping = 0.3;
 
 Threshold threshold(double t) noexcept {

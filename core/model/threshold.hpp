@@ -1,23 +1,24 @@
 /// \file
-/// The speed above which the sled does not stick again, and the oscillation dies. [Penner 1995, (22)]
+/// Threshold speed: above it the sled does not stick again and the oscillation decays. [Penner 1995, (22)]
 ///
 ///     const double Q_th = Q_threshold(0.022);                     // 1.93871744784
 ///     const double v_th = threshold_speed_m_per_s(tester, 0.05, kStandardGravity_m_per_s2);
 ///
-/// With x = θ − φ: tan φ · (x − φ + 3π/2) = ln(cos φ/sin x). The difference is monotone with one
-/// change of sign, found between bounds that are known beforehand by Algorithm 748 [Alefeld, Potra
-/// and Shi, ACM TOMS 21(3):327–344, 1995], so the search cannot fail.
+/// With x = θ − φ: tan φ · (x − φ + 3π/2) = ln(cos φ/sin x). The difference of both sides is monotone and
+/// changes its sign once, between bounds known in advance. Algorithm 748 [Alefeld, Potra and Shi, ACM TOMS
+/// 21(3):327–344, 1995] finds the root and cannot fail.
 #pragma once
 
 #include "core/model/oscillator.hpp"
 
 namespace stickslip::model {
 
-/// Largest γ/2ω with a threshold that a double can hold.
+/// Largest γ/2ω whose threshold is representable as a double.
 inline constexpr double kLargestGammaOver2Omega = 100.0;
 
-/// \param gamma_over_2omega  0 … kLargestGammaOver2Omega; infinity for 0 (without damping the sled
-///                           always sticks again), NaN outside.
+/// Q_th [22].
+/// \param gamma_over_2omega  0 … kLargestGammaOver2Omega.
+/// \return infinity for 0 (without damping the sled always sticks again); NaN outside the domain.
 [[nodiscard]] double Q_threshold(double gamma_over_2omega) noexcept;
 
 /// θ at the threshold [9], rad; π/2 without damping. Domain as Q_threshold().
@@ -28,7 +29,7 @@ inline constexpr double kLargestGammaOver2Omega = 100.0;
 [[nodiscard]] double threshold_speed_m_per_s(const Oscillator& oscillator, double delta_mu,
                                              double gravity_m_per_s2) noexcept;
 
-/// The converse: S − K from a measured threshold speed.
+/// S − K from a measured threshold speed: inverse of threshold_speed_m_per_s().
 [[nodiscard]] double delta_mu_of_threshold_speed(const Oscillator& oscillator, double threshold_speed_m_per_s,
                                                  double gravity_m_per_s2) noexcept;
 

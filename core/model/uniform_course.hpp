@@ -1,6 +1,6 @@
 /// \file
-/// The force of a whole pull whose slips share one S and one K: stick and slip repeat to the last bit,
-/// and every onset and capture follows from six numbers. [Penner 1995, (9)–(22)]
+/// Periodic stick-slip: the force of a pull whose slips share one S and one K. Cycles repeat exactly; six
+/// parameters determine every onset and capture. [Penner 1995, (9)–(22)]
 ///
 ///     if (const auto course = UniformCourse::make({shared, {onset_s, S, K}})) {
 ///       const UniformPoint point = course->at(time_s);
@@ -17,7 +17,7 @@ namespace stickslip::model {
 
 struct UniformParameters {
   SharedParameters shared;
-  SlipParameters slip;  ///< Of all slips; onset_s of the first of them.
+  SlipParameters slip;  ///< Common to all slips; onset_s is that of the first.
 
   static constexpr Eigen::Index kOnset = 0;
   static constexpr Eigen::Index kS = 1;
@@ -42,17 +42,18 @@ struct UniformPoint {
   UniformParameters::Vector by = UniformParameters::Vector::Zero();
 };
 
+/// Periodic trajectory with derivatives by its six parameters.
 class UniformCourse {
  public:
-  /// \return nothing unless the oscillator oscillates, S > K, r > 0, and the sled sticks again.
+  /// \return nullopt unless the oscillator oscillates, S > K, r > 0 and the sled is captured.
   [[nodiscard]] static std::optional<UniformCourse> make(const UniformParameters& parameters);
 
-  /// Any time: before the first onset the sled sticks.
+  /// Force at any time; before the first onset the sled sticks.
   [[nodiscard]] UniformPoint at(double time_s) const noexcept;
 
   /// From onset to onset: ω t_slip plus the stick that brings c from the capture back to S.
   [[nodiscard]] double period_s() const noexcept { return period_s_; }
-  /// ∂ period/∂ parameters; the capture's own shift drops out, since c′ = r there.
+  /// ∂ period/∂ parameters. The shift of the capture time has no effect on it, since c′ = r there.
   [[nodiscard]] const UniformParameters::Vector& period_slope() const noexcept { return period_by_; }
 
  private:

@@ -1,5 +1,5 @@
 /// \file
-/// What the bench is doing, and what may come next: the table of docs/states.md as a function.
+/// State machine of the bench: the table of docs/states.md as a function.
 ///
 ///     BenchMachine bench{/*automatic=*/true};
 ///     if (const std::string_view why_not = bench.observe(BenchEvent::kStart); !why_not.empty())
@@ -15,12 +15,12 @@
 namespace stickslip::pipeline {
 
 enum class BenchState {
-  kIdle,       ///< Scans come; nothing but a command begins a test.
+  kIdle,       ///< Scans arrive; only a command begins a test.
   kArmed,      ///< The force or a command begins a test.
   kLoading,    ///< A test runs and no slip has been seen.
   kRunning,    ///< A test runs, and at least one slip has been seen.
-  kFinishing,  ///< The test is over; its force is still there.
-  kDegraded,   ///< No scans come: the board is missing, busy, or has not begun.
+  kFinishing,  ///< The test is over; the force has not returned to the unloaded level.
+  kDegraded,   ///< No scans arrive: the board is missing, busy, or not started.
 };
 inline constexpr std::size_t kBenchStates = 6;
 
@@ -29,45 +29,45 @@ inline constexpr std::size_t kBenchStates = 6;
   return state == BenchState::kIdle || state == BenchState::kArmed;
 }
 
-/// What keeps a bench from the tests to come; told when it is seen, and until the state changes.
+/// Condition that prevents further tests; reported from its detection until the state changes.
 enum class BenchTrouble {
   kNone,
   kLongFinishing,  ///< For longer than a carriage takes to go back.
   kLongLoading,    ///< For longer than a pull needs to slip.
   kLongRunning,    ///< For longer than a pull takes.
-  kLongArmed,      ///< Somebody armed it, and no pull came.
+  kLongArmed,      ///< Armed by command, and no pull followed.
   kPulledAgain,    ///< While finishing: such pulls are in no record.
 };
 
-/// What it is to be in the state for so long, in seconds, that somebody should look; kNone: no trouble.
+/// Longest normal time in a state, s, and the trouble reported beyond it; kNone: no limit.
 struct Patience {
   BenchTrouble trouble = BenchTrouble::kNone;
   double longest_s = 0.0;
 };
 
-/// \param automatic  the bench arms itself, and waits for the next pull as long as it takes.
+/// \param automatic  the bench arms itself and waits for the next pull without limit.
 [[nodiscard]] Patience patience(BenchState state, bool automatic) noexcept;
 
-/// What it is, and what helps. Empty for kNone.
+/// Description of the trouble with its remedy, for the user; empty for kNone.
 [[nodiscard]] std::string_view words(BenchTrouble trouble) noexcept;
 
-/// What can happen to it.
+/// Inputs of the state machine.
 enum class BenchEvent {
   // Commands: each may be refused.
   kArm,
   kStart,
   kStop,
-  // What the scans show.
+  // Detected from the scans.
   kForceRose,   ///< It stayed above the trigger.
   kSlipped,     ///< The force fell for the first time.
   kForceEnded,  ///< The rule for the end of a test holds.
   kUnloaded,    ///< No force is left of the last test.
   // Faults.
   kBoardLost,  ///< No more scans.
-  kBoardBack,  ///< Scans come again, or for the first time.
+  kBoardBack,  ///< Scans arrive again, or for the first time.
 };
 inline constexpr std::size_t kBenchEvents = 9;
-/// Those before it are commands.
+/// First event that is not a command.
 inline constexpr BenchEvent kFirstNoCommand = BenchEvent::kForceRose;
 
 [[nodiscard]] constexpr std::string_view name(BenchState state) noexcept {
@@ -87,14 +87,15 @@ inline constexpr BenchEvent kFirstNoCommand = BenchEvent::kForceRose;
   return state == BenchState::kLoading || state == BenchState::kRunning;
 }
 
+/// Result of step().
 struct BenchStep {
   BenchState next;
-  std::string_view refusal;  ///< Why a command is refused, for people; empty: it is not.
+  std::string_view refusal;  ///< Reason for refusing a command, for the user; empty: accepted.
 };
 
-/// Total: each event in each state has its step. What is no command is never refused; where it means nothing
-/// the state stays.
-/// \param automatic  after a test, and when scans come, the bench arms itself.
+/// Transition function, defined for every event in every state. Only commands can be refused; any other event
+/// without meaning in a state leaves it unchanged.
+/// \param automatic  the bench arms itself after a test, and when scans arrive.
 [[nodiscard]] BenchStep step(BenchState state, BenchEvent event, bool automatic) noexcept;
 
 /// Thread-bound.
@@ -102,7 +103,7 @@ class BenchMachine {
  public:
   explicit BenchMachine(bool automatic) noexcept : automatic_(automatic) {}
 
-  /// \return why the event, a command, is refused; empty if it is not. A refusal changes nothing.
+  /// \return reason for refusing a command; empty if accepted. A refusal leaves the state unchanged.
   [[nodiscard]] std::string_view observe(BenchEvent event) noexcept {
     const BenchStep taken = step(state_, event, automatic_);
     state_ = taken.next;

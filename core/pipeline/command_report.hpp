@@ -1,5 +1,5 @@
 /// \file
-/// What became of a command to the bench.
+/// Outcome of a command to the bench.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,17 @@
 namespace stickslip::pipeline {
 
 struct CommandReport {
-  std::string refusal;                       ///< Why nothing was done, for people; empty: it was done.
-  BenchState state = BenchState::kDegraded;  ///< Afterwards.
+  std::string refusal;                       ///< Reason for a refusal, for the user; empty: done.
+  BenchState state = BenchState::kDegraded;  ///< State after the command.
   std::int64_t test = 0;     ///< The running test, else the next one; of a stop: the test that it ended.
-  base::ScanIndex scan = 0;  ///< Where it takes effect.
+  base::ScanIndex scan = 0;  ///< Scan at which it takes effect.
 };
 
 struct TareReport : CommandReport {
   double zero_V = 0.0;                 ///< The new one.
-  double zero_standard_error_V = 0.0;  ///< As far as the scatter of the scans tells.
-  double moved_N = 0.0;                ///< By so much the force is less from here on.
-  std::size_t scan_count = 0;          ///< Looked at.
+  double zero_standard_error_V = 0.0;  ///< From the scatter of the scans.
+  double moved_N = 0.0;                ///< Decrease of all forces from this scan on, N.
+  std::size_t scan_count = 0;          ///< Scans used.
 };
 
 }  // namespace stickslip::pipeline

@@ -13,7 +13,7 @@
 namespace stickslip::pipeline {
 namespace {
 
-/// What was done before a test is told in its record, the latest of it.
+/// Most notes from before a test that its record contains; older ones are dropped.
 constexpr std::size_t kMostForLater = 16;
 
 }  // namespace

@@ -15,17 +15,16 @@ namespace {
 
 using detect::SlipRule;
 
-/// Smallest noise assumed, in terms of the trigger: a scene without noise has no scale of its own.
+/// Smallest noise assumed, relative to the trigger, for scenes without noise.
 constexpr double kSmallestRelativeNoise = 1e-4;
-/// Time constant of the average that flatness is judged on, in scans.
+/// Time constant, in scans, of the average by which a flat force is detected.
 constexpr double kSmoothing = 8.0;
-/// The belt can only have stopped if the last fall was in full swing: at least this part of the
-/// largest, and twice what makes a slip significant. The last significant fall of an oscillation
-/// that dies away is by its nature a small one.
+/// Smallest last fall, relative to the largest and in σ, after which a stop of the belt is accepted. The last
+/// significant fall of a decaying oscillation is smaller.
 constexpr double kFullSwing = 0.5;
 constexpr double kFullSwingSigmas = 2.0 * SlipRule::kSignificantSigmas;
 constexpr int kFewestFalls = 2;
-/// Missing periods after which the oscillation has stopped.
+/// Number of periods without a fall after which the oscillation has stopped.
 constexpr double kMissingPeriods = 4.0;
 
 double noise_floor(const SegmenterSettings& settings) {

@@ -1,20 +1,19 @@
 /// \file
-/// Where does a test begin and end in an endless stream of scans?
+/// Segmenter: finds where tests begin and end in a stream of scans.
 ///
 ///     Segmenter segmenter{settings};
 ///     if (segmenter.observe(index, coefficient) == Segmenter::Event::kTestStarts) …
 ///
-/// The force tells, or somebody who commands. By the force a test begins when it stays above a trigger. It
-/// ends when it stays near zero again (the carriage has returned), or when a full oscillation stops from one
-/// period to the next and the force lies flat: then the belt has stopped with the coupling stretched.
-/// Trigger and end are above the level of the unloaded cell, which is followed on quiet scans
-/// (unloaded_level.hpp): before a test each quiet force up to UnloadedLevel::kFarthest is that level; during
-/// and after a test only one that lies below a third of the largest force. Until a level is known it is taken
-/// for the calibrated zero; but a force that has not been below the trigger begins a test only from kFarthest
-/// on.
+/// A test begins when the force stays above a trigger, or by command. It ends by command, when the force
+/// stays near zero again (the carriage has returned), or when a full oscillation stops within a period and
+/// the force lies flat (the belt has stopped with the coupling stretched).
+/// Trigger and end threshold are relative to the level of the unloaded cell, which quiet scans give
+/// (unloaded_level.hpp). Before a test each quiet force up to UnloadedLevel::kFarthest is that level; during
+/// and after a test only one below a third of the largest force. The level is 0 until it is known; until the
+/// force has been below the trigger, only a force above kFarthest begins a test.
 ///
-/// An oscillation that dies away into a flat force is no end: the sled slides steadily, and
-/// whether the belt still moves cannot be seen in the force.
+/// An oscillation that decays into a flat force does not end a test: the sled slides steadily, and the force
+/// does not show whether the belt still moves.
 #pragma once
 
 #include <cstddef>
@@ -36,21 +35,21 @@ struct SegmenterSettings {
   double scan_rate_Hz = 350.0;
   double step_coefficient = 0.0;    ///< One A/D step; 0 if unknown.
   double start_coefficient = 0.05;  ///< Trigger, above the unloaded level.
-  double start_dwell_s = 0.010;     ///< So long above the trigger.
-  double end_coefficient = 0.02;    ///< Unloaded below it; < start_coefficient (hysteresis).
-  double unload_dwell_s = 0.25;     ///< So long below it; longer than the slack part of a cycle.
-  double no_motion_dwell_s = 0.5;   ///< So long flat, and at least four periods.
-  double pre_trigger_s = 0.25;      ///< Kept from before the trigger.
+  double start_dwell_s = 0.010;     ///< Time above the trigger that begins a test.
+  double end_coefficient = 0.02;    ///< End threshold; < start_coefficient (hysteresis).
+  double unload_dwell_s = 0.25;    ///< Time below it that ends a test; must exceed the slack part of a cycle.
+  double no_motion_dwell_s = 0.5;  ///< Time of flat force that ends a test, at least four periods.
+  double pre_trigger_s = 0.25;     ///< Part of the record before the trigger.
 
-  /// Of the first scan, where it is known from a record: it stands until the first test has begun.
+  /// Unloaded level at the first scan, if a record gives it; holds until the first test begins.
   std::optional<double> unloaded_level = {};
 
   /// Scans from before the trigger that belong to the record.
   [[nodiscard]] std::size_t pre_trigger_scans() const noexcept;
 };
 
-/// Deterministic; what it decides during a test depends on the scans of the record only, so that
-/// a replayed record ends where it ended. Thread-bound.
+/// Deterministic. Decisions during a test depend only on the scans of its record, so that a replay ends at
+/// the same scan. Thread-bound.
 class Segmenter {
  public:
   enum class Event {
@@ -58,45 +57,47 @@ class Segmenter {
     kTestStarts,
     kUnloaded,
     kNoRelativeMotion,
-    kPulledAgain,  ///< Before the force of a test was seen to be gone; no test begins by it. Once a test.
+    kPulledAgain,  ///< Rose again before unloading was detected; begins no test. Once a test.
   };
 
   /// \throws std::invalid_argument unless rate and dwells are positive and
   ///         0 ≤ end_coefficient < start_coefficient.
   explicit Segmenter(const SegmenterSettings& settings);
 
-  /// Whether a force above the trigger begins a test; at first it does. Changes nothing for a running test.
+  /// Enables or disables the trigger by force; initially enabled. No effect on a running test.
   void trigger_by_force(bool on) noexcept { by_force_ = on; }
-  /// From here on a force above the trigger begins a test. \return true if it was there within the
-  /// pre-trigger time already: then what was kept is forgotten, because a replay, which cannot see when this
-  /// was called, would have begun the test there.
+  /// Enables the trigger by force from the next scan on.
+  /// \return true if the force was at the trigger within the pre-trigger time already. The pre-trigger scans
+  /// are then discarded: a replay, which does not know the time of this call, would have begun the test
+  /// there.
   [[nodiscard]] bool arm();
-  /// The next scan begins a test, whatever its force; only while ready(). Until the force has once stayed
-  /// above the trigger, no unloading ends that test.
+  /// Begins a test with the next scan, whatever its force; only while ready(). Unloading ends this test only
+  /// after the force has stayed above the trigger.
   void start() noexcept;
-  /// The scan observed last was the last of the running test; or the start that was asked for is not to be.
+  /// Ends the running test with the latest scan, or cancels a pending start().
   void stop() noexcept;
 
-  /// \param index rises; a jump forgets what was kept for the trigger.
+  /// \param index rises; a jump discards the pre-trigger scans.
   [[nodiscard]] Event observe(base::ScanIndex index, double coefficient);
 
-  /// The next scan may belong to the record of a test to come. False during a test, and while the force of
-  /// the last one is still there.
+  /// Whether a test can begin. False during a test, and until the force of the last one has returned to the
+  /// unloaded level.
   [[nodiscard]] bool ready() const noexcept { return state_ == State::kReady; }
 
   /// A test has started and not ended.
   [[nodiscard]] bool running() const noexcept { return state_ == State::kRunning; }
 
-  /// What the unloaded cell reads, as quiet scans told; nothing before they did.
+  /// Present level of the unloaded cell, from quiet scans; nullopt before the first.
   [[nodiscard]] std::optional<double> unloaded_level() const noexcept { return level_; }
-  /// What the cell read at the end of the latest test; only after kUnloaded, and if the force was quiet.
+  /// Level at the end of the latest test; nullopt unless it ended with kUnloaded and a quiet force.
   [[nodiscard]] std::optional<double> level_after() const noexcept { return level_after_; }
-  /// A force from here on begins a test, while one can begin.
+  /// Coefficient at and above which a test begins.
   [[nodiscard]] double trigger() const noexcept;
-  /// The latest scans are quiet, at whatever force.
+  /// Whether the latest scans are quiet, at any force.
   [[nodiscard]] bool quiet() const noexcept { return quiet_scans_.quiet(); }
-  /// What the cell shows now is zero from here on, and no force is left of the last test. Not while a test
-  /// runs. \param kept  what was observed since ready(), by the new zero. \return true as arm() does.
+  /// Adopts a new zero after a tare; ready() holds afterwards. Not while a test runs.
+  /// \param kept  coefficients observed since ready(), recomputed with the new zero.
+  /// \return as arm().
   [[nodiscard]] bool tared(std::span<const double> kept);
 
  private:
@@ -110,7 +111,7 @@ class Segmenter {
   /// Follows the unloaded level; not while a test runs.
   void track();
   [[nodiscard]] double base() const noexcept { return UnloadedLevel::of_decisions(level_.value_or(0.0)); }
-  /// The force was at the trigger within what is kept.
+  /// Whether the force was at the trigger within the pre-trigger scans.
   [[nodiscard]] bool was_above() const;
   /// A quiet force has just been found, and it is no load of the test.
   [[nodiscard]] bool lies_unloaded();

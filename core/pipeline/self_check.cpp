@@ -15,21 +15,21 @@
 namespace stickslip::pipeline {
 namespace {
 
-// What somebody should look at, as coefficients (force over the sled's weight) where it is a force.
+// Limits beyond which the user is warned. Forces are given as coefficients (force over the sled's weight).
 
 /// A tenth of the smallest S − K of Penner's Table 1 (0.025): a bias of every coefficient of that size shows.
 constexpr double kLargestZero = 0.0025;
-/// The same in a test of a minute.
+/// Drift by kLargestZero in a minute.
 constexpr double kLargestDrift_per_s = kLargestZero / 60.0;
-/// A tenth of an amplitude of 0.05, that of S − K = 0.05: beyond it turning points are the noise's.
+/// A tenth of the amplitude for S − K = 0.05; larger noise creates turning points of its own.
 constexpr double kLargestNoise = 0.005;
 /// As the noise: what is left of it after 17 scans a cycle is a ripple on the peaks.
 constexpr double kLargestHum = 0.0025;
-/// What random tests are held to (docs/detector.md).
+/// Rate of spikes at which the detector is tested (docs/detector.md).
 constexpr double kMostSpikes_per_s = 20.0;
-/// Ten times what a quartz and its ageing do.
+/// Ten times the error of an aged quartz.
 constexpr double kLargestRateError = 1e-3;
-/// A finding is told where chance alone makes one in a thousand.
+/// Standard errors by which a limit must be exceeded; chance alone does so once in a thousand.
 constexpr double kSignificant = 3.3;
 
 constexpr double kMains_Hz[] = {50.0, 60.0};

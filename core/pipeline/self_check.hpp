@@ -1,6 +1,6 @@
 /// \file
-/// Is the unloaded tester fit for a test? Noise, hum, spikes, saturation, zero and its drift, from the scans
-/// in which nothing pulled.
+/// Self-check of the unloaded tester: noise, hum, spikes, saturation, zero and its drift, from unloaded
+/// scans.
 ///
 ///     const daq::SelfCheck check = check_idle(990, raw, calibration, 350.0);
 ///     for (const std::string& finding : check.findings) warn(finding);
@@ -17,34 +17,36 @@
 namespace stickslip::pipeline {
 
 /// Least squares of the forces, spikes replaced, by a straight line with sine and cosine of 50 and of 60 Hz.
-/// A function of its arguments alone: a record that is looked at again says the same to the last bit.
-/// \param raw  consecutive scans from `first` on. Fewer than kFewestIdleScans, or less than kShortestIdle_s
-/// of
-///             them, tell nothing of noise, hum and drift, and a rate that cannot show 60 Hz nothing of hum.
-/// \param rate  of all scans so far, as far as known.
+/// Depends on its arguments only, so that a record gives the same result to the last bit.
+/// \param raw  consecutive scans from `first` on. With fewer than kFewestIdleScans, or less than
+///        kShortestIdle_s, noise, hum and drift are absent; hum is absent too if the scan rate cannot resolve
+///        60 Hz.
+/// \param rate  measured over all scans so far, if known.
 [[nodiscard]] daq::SelfCheck check_idle(base::ScanIndex first, std::span<const double> raw,
                                         const daq::Calibration& calibration, double scan_rate_Hz,
                                         const std::optional<daq::RateEstimate>& rate = {});
 
-/// Six parameters are fitted; with ten times as many scans a standard error is known to a tenth.
+/// Fewest scans for noise, hum and drift: ten for each of the six parameters, so that a standard error is
+/// known to 10 %.
 inline constexpr std::size_t kFewestIdleScans = 60;
-/// 50 and 60 Hz beat in 0.1 s: what is shorter cannot tell them apart.
+/// Shortest time for noise, hum and drift. 50 and 60 Hz beat with a period of 0.1 s; a shorter time cannot
+/// separate them.
 inline constexpr double kShortestIdle_s = 0.15;
 
-/// The latest idle scans. Thread-bound, allocates.
+/// Buffer of the latest idle scans. Thread-bound, allocates.
 class IdleScans {
  public:
-  /// As long as the drift needs, and no more than a record should carry.
+  /// Length of the buffer: enough for the drift, and small enough for a record.
   static constexpr double kKept_s = 5.0;
   static constexpr std::size_t kMostScans = 8192;
 
   explicit IdleScans(double scan_rate_Hz) noexcept;
 
-  /// A jump of the index, as any clear(), begins anew.
+  /// Adds a scan. A jump of the index clears the buffer first.
   void add(base::ScanIndex index, double raw);
   void clear() noexcept { scans_.clear(); }
 
-  /// Nothing if there are none.
+  /// check_idle() of the buffered scans; nullopt if there are none.
   [[nodiscard]] std::optional<daq::SelfCheck> check(const daq::Calibration& calibration,
                                                     const std::optional<daq::RateEstimate>& rate) const;
 

@@ -1,5 +1,5 @@
 /// \file
-/// Where the walk of a scan ends: record, live page, table, broker are sinks.
+/// Sink: receives tests with their scans and results. Record, live page, table and broker are sinks.
 #pragma once
 
 #include <cstdint>
@@ -25,22 +25,22 @@ namespace stickslip::pipeline {
 
 /// A test began. Its scans follow, pre-trigger scans first.
 struct TestStart {
-  std::int64_t number = 0;                           ///< Since the start of the program, from 1.
-  daq::ScanIndex first = 0;                          ///< First scan that belongs to the test's record.
-  daq::ScanIndex trigger = 0;                        ///< Scan that began it: the force or a command did.
-  daq::ClockStamp stamp;                             ///< When the trigger was seen; less a stall before.
-  std::shared_ptr<const daq::SelfCheck> self_check;  ///< Null if there was nothing to look at.
+  std::int64_t number = 0;     ///< Since the start of the program, from 1.
+  daq::ScanIndex first = 0;    ///< First scan that belongs to the test's record.
+  daq::ScanIndex trigger = 0;  ///< Scan at which the force or a command began it.
+  daq::ClockStamp stamp;       ///< When the trigger was detected, corrected for a stall.
+  std::shared_ptr<const daq::SelfCheck> self_check;  ///< Null if there were no idle scans.
   bool by_command = false;
-  /// What the unloaded cell read, as a coefficient; absent where no quiet scans told.
+  /// Coefficient read by the unloaded cell; nullopt if no quiet scans gave it.
   std::optional<double> unloaded_level = {};
 };
 
-/// Why a test is over.
+/// Cause of the end of a test.
 enum class EndCause {
   kUnloaded,          ///< The force went back to zero.
   kNoRelativeMotion,  ///< The belt stopped; the coupling stays stretched.
   kEndOfInput,        ///< The source has no more scans.
-  kCommand,           ///< Somebody commanded it.
+  kCommand,           ///< A command ended it.
   kStopped,           ///< The program was told to stop.
   kBoardMissing,      ///< The board went away.
 };
@@ -75,17 +75,19 @@ struct TestEnd {
   std::int64_t number = 0;
   daq::ScanIndex end = 0;  ///< One past the last scan of the record.
   EndCause cause = EndCause::kUnloaded;
-  /// What the unloaded cell read at the end; absent unless the test ended by unloading, and quietly.
+  /// Coefficient read by the unloaded cell at the end; nullopt unless the test ended by unloading with a
+  /// quiet force.
   std::optional<double> unloaded_level = {};
   analysis::TestResults results;
   base::LongColumn<detect::Cycle> cycles;             ///< Final values, after the whole-test estimate.
   std::vector<daq::ScanIndex> spikes;                 ///< Scans replaced for the detector.
-  std::vector<double> spike_coefficients;             ///< What was measured in each of them.
-  std::optional<daq::LatencyHistogram> read_latency;  ///< Of its blocks; none where no clock could tell.
+  std::vector<double> spike_coefficients;             ///< Measured coefficient of each spike.
+  std::optional<daq::LatencyHistogram> read_latency;  ///< Delays of its blocks; nullopt without a clock.
 };
 
-/// Called from the processing thread, in order: began, (scans | gap | anchor | fall | cycle | note)*, ended.
-/// Must not throw; may block only if it must never lose data (the record), and then stalls the walk.
+/// Interface of a sink. The processing thread calls it in this order: began, (scans | gap | anchor | fall |
+/// cycle | note)*, ended. Must not throw. Only a sink that must never lose data (the record) may block; it
+/// then stalls the processing.
 class Sink {
  public:
   virtual ~Sink() = default;
@@ -96,26 +98,27 @@ class Sink {
   virtual void scans(daq::ScanIndex /*first*/, std::span<const double> /*raw*/,
                      std::span<const std::int32_t> /*second*/, const daq::ClockStamp& /*stamp*/) {}
   virtual void gap(const daq::Gap& /*gap*/) {}
-  /// The clocks at a scan of the running test; rising, and after the scan itself.
+  /// Clock readings at a scan of the running test; in rising order, and after the scan itself.
   virtual void anchor(const daq::ClockAnchor& /*anchor*/) {}
-  /// As soon as it is seen: perhaps a slip, of which the cycle follows.
+  /// A fall, as soon as it is detected; if it is a slip, its cycle follows.
   virtual void fall(const detect::FallBegun& /*fall*/) {}
-  /// As soon as it is known, before the whole-test estimate refines it.
+  /// A cycle, as soon as it is complete, before the whole-test estimate refines it.
   virtual void cycle(const detect::Cycle& /*cycle*/) {}
-  /// What a person did or the computer suffered, at a scan of the running test; in no order with its scans.
+  /// A note at a scan of the running test; not ordered relative to the scans.
   virtual void note(const daq::Note& /*note*/) {}
   virtual void test_ended(const TestEnd& /*end*/) {}
-  /// What the computer suffered while no test was running.
+  /// A disturbance of the computer while no test was running.
   virtual void note_between_tests(const daq::Note& /*note*/) {}
   /// Scans lost while no test was running.
   virtual void gap_between_tests(const daq::Gap& /*gap*/) {}
-  /// Each scan, whether a test runs or not, in blocks; after all else that the block brought.
-  /// \param live  after the last of them; idle between tests.
+  /// Every scan, also between tests, in blocks; called after all other calls for the block.
+  /// \param live  state after the last scan; idle between tests.
   virtual void observed(daq::ScanIndex /*first*/, std::span<const double> /*coefficient*/,
                         const detect::LiveState& /*live*/) {}
-  /// The bench is in another state.
+  /// The state of the bench has changed.
   virtual void bench_changed(BenchState /*state*/) {}
-  /// Something keeps it in its state. \param duration_s  so far.
+  /// A trouble keeps the bench in its state.
+  /// \param duration_s  time in the state so far.
   virtual void bench_stays(BenchState /*state*/, double /*duration_s*/, BenchTrouble /*trouble*/) {}
 };
 

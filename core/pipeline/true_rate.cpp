@@ -9,9 +9,10 @@
 namespace stickslip::pipeline {
 namespace {
 
-/// The computer's own quartz may be as far off; no finding below it, and no rate is known better.
+/// Relative error of the computer's quartz: lower limit of the rate's uncertainty, and of a deviation that is
+/// reported.
 constexpr double kClockTolerance = 100e-6;
-/// Standard errors that chance alone does not reach.
+/// Standard errors that a reported deviation must exceed.
 constexpr double kSureErrors = 5.0;
 
 }  // namespace

@@ -1,5 +1,5 @@
 /// \file
-/// What the clocks say about the scan rate of a test, as a result.
+/// Scan rate of a test by the clock, as a result.
 #pragma once
 
 #include <span>
@@ -10,10 +10,10 @@
 
 namespace stickslip::pipeline {
 
-/// Sets `scan_rate_measured`, and adds a finding where the rate is not the granted one: by which factor all
-/// that has a time in it is wrong, for results use the granted rate, so that the same scans give the same
-/// results wherever they are analysed.
-/// \param anchors,gaps  of the test, both rising; without anchors nothing changes.
+/// Sets `scan_rate_measured`. If it differs from the granted rate, adds a finding with the factor by which
+/// all times are wrong. Results are not corrected: they use the granted rate, so that the same scans always
+/// give the same results.
+/// \param anchors,gaps  of the test, both rising; without anchors the results are unchanged.
 void add_true_rate(analysis::TestResults& results, std::span<const daq::ClockAnchor> anchors,
                    std::span<const daq::Gap> gaps, double granted_Hz);
 

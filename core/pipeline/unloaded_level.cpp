@@ -13,17 +13,19 @@ namespace {
 
 /// Standard deviation over the median absolute deviation, of Gaussian noise.
 constexpr double kSigmaOverMad = 1.4826;
-/// The highest and the lowest of four medians of pure noise are farther apart once in some 10 000 stretches.
+/// Largest range of a quiet stretch's four medians, in standard errors; noise alone exceeds it once in about
+/// 10 000 stretches.
 constexpr double kMostSpreadErrors = 6.0;
-/// Nearly all scans of a quiet stretch lie so near to the median; the rest are spikes. An excursion that
-/// fills less than half of a stretch moves neither the median nor the median deviation.
+/// A quiet stretch has at most kMostOutside of its scans farther than kBandSigmas from the median (spikes).
+/// This test finds excursions shorter than half of a stretch, which affect neither the median nor the median
+/// deviation.
 constexpr double kBandSigmas = 4.0;
 constexpr double kMostOutside = 0.05;
-/// Of a trace without noise.
+/// Smallest spread assumed, for traces without noise.
 constexpr double kSmallestSpread = UnloadedLevel::kNearest / 10.0;
-/// Rates that no board has may stand in a file.
+/// Limit of the scans in a stretch, since a file may claim any scan rate.
 constexpr double kMostScans = 1e6;
-/// A level between two steps may show as either.
+/// Spread by rounding, in A/D steps: a level between two codes may be read as either.
 constexpr double kRoundedSteps = 1.5;
 
 }  // namespace

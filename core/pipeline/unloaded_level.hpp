@@ -1,6 +1,5 @@
 /// \file
-/// What does the cell read with no load on it? The level of quiet scans, for deciding where tests begin and
-/// end.
+/// Level of the unloaded load cell, from quiet scans; the segmenter's thresholds are relative to it.
 ///
 ///     UnloadedLevel level{rate_Hz, UnloadedLevel::kQuiet_s, step};
 ///     level.add(coefficient);
@@ -9,7 +8,7 @@
 /// A force is quiet when its medians over the four quarters of a stretch differ by no more
 /// than their noise explains, that noise is small, and nearly all scans lie within it. Pulling, ringing,
 /// loading and unloading are not quiet. A quiet force may still be a load (a sled that slides steadily, a
-/// belt that stopped): whether it is the unloaded cell is decided by who asks, with fits().
+/// belt that stopped): the caller decides with fits() whether it is the unloaded cell.
 #pragma once
 
 #include <array>
@@ -22,42 +21,43 @@ namespace stickslip::pipeline {
 /// Coefficients are force over normal load. Deterministic; thread-bound; add() does not allocate.
 class UnloadedLevel {
  public:
-  /// No quiet force farther from the calibrated zero is taken for the unloaded cell: friction of paper is
-  /// higher.
+  /// Largest distance of the unloaded level from the calibrated zero; the friction of paper is higher.
   static constexpr double kFarthest = 0.1;
-  /// A level so near is the calibrated zero: that of the self-check's finding (self_check.cpp), a tenth of
-  /// the smallest S − K of Penner's Table 1. So a tester whose zero is right decides with zero itself.
+  /// Largest distance at which the level is taken to equal the calibrated zero, so that a correctly tared
+  /// tester uses exactly 0. The self-check's limit (self_check.cpp), a tenth of the smallest S − K of
+  /// Penner's Table 1.
   static constexpr double kNearest = 0.0025;
-  /// After a load: only below this part of the largest force, above the level before, is a quiet force
-  /// unloaded. A belt that stopped, and a sled that slides, hold more.
+  /// After a load a quiet force counts as unloaded only below this part of the largest force, both above the
+  /// earlier level. A stopped belt and a sliding sled hold more.
   static constexpr double kUnloadedPart = 1.0 / 3.0;
-  /// Twice what the self-check complains of: what scatters more may hide a motion.
+  /// Largest noise of a quiet stretch, twice the self-check's limit; larger noise may hide a motion.
   static constexpr double kLargestNoise = 0.01;
-  /// Shortest stretch that tells a level before a test, or ends one.
+  /// Length of a quiet stretch that gives a level before a test, or ends one.
   static constexpr double kQuiet_s = 0.5;
 
-  /// \param scan_rate_Hz  > 0. \param stretch_s  that is to be quiet; at least eight scans.
+  /// \param scan_rate_Hz  > 0. \param stretch_s  length of a stretch; at least eight scans.
   /// \param step_coefficient  one A/D step; 0 if unknown.
   UnloadedLevel(double scan_rate_Hz, double stretch_s, double step_coefficient);
 
   /// Consecutive scans.
   void add(double coefficient);
-  /// The scans so far are no part of a stretch to come: after a gap, or where a record begins.
+  /// Starts a new stretch, after a gap or at the beginning of a record.
   void clear() noexcept;
 
-  /// The level of the stretch that has just become complete or longer, if it was quiet; else nothing. Only in
-  /// the scan that completes a quarter of a stretch.
+  /// Level of the latest stretch, if the latest scan has completed a quarter and the stretch is quiet; else
+  /// nullopt.
   [[nodiscard]] std::optional<double> news() const noexcept { return news_; }
   [[nodiscard]] std::size_t stretch_scans() const noexcept { return kQuarters * quarter_.size(); }
-  /// The latest complete stretch was quiet.
+  /// Whether the latest complete stretch was quiet.
   [[nodiscard]] bool quiet() const noexcept { return quiet_; }
 
-  /// A quiet force at `level` may be the unloaded cell.
-  /// \param largest  highest force of the test that it comes after. \param before  the level before that
+  /// Whether a quiet force at `level` may be that of the unloaded cell; fits_after() is for the time after a
   /// test.
+  /// \param largest  highest force of the test that it comes after.
+  /// \param before  the level before that test.
   [[nodiscard]] static bool fits(double level) noexcept;
   [[nodiscard]] static bool fits_after(double level, double largest, double before) noexcept;
-  /// \return 0 for a level so near to it that it is the calibrated zero.
+  /// The level used for decisions: 0 if `level` is within kNearest of it, else `level`.
   [[nodiscard]] static double of_decisions(double level) noexcept;
 
  private:

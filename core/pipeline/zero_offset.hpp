@@ -1,5 +1,5 @@
 /// \file
-/// What a zero that is off leaves open in the coefficients of a test.
+/// Systematic uncertainty of coefficients from an offset of the zero.
 #pragma once
 
 #include <optional>
@@ -8,11 +8,11 @@
 
 namespace stickslip::pipeline {
 
-/// Where the unloaded cell read more than UnloadedLevel::kNearest before or after the test, says so in the
-/// findings, and adds the worse of the two in quadrature to the systematic uncertainty of each coefficient
-/// that it shifts. Differences such as S − K, amplitudes, times and frequencies keep theirs: a zero shifts
-/// both of their ends. No value changes. \param before,after  as coefficients; absent where they are not
-/// known: then nothing is added.
+/// If the unloaded cell read more than UnloadedLevel::kNearest before or after the test, adds a finding, and
+/// adds the larger of the two levels in quadrature to the systematic uncertainty of each coefficient that it
+/// shifts. Differences such as S − K, amplitudes, times and frequencies are not affected. Values are not
+/// changed.
+/// \param before,after  levels as coefficients; nullopt if unknown.
 void add_zero_offset(analysis::TestResults& results, std::optional<double> before,
                      std::optional<double> after);
 

@@ -1,5 +1,5 @@
 /// \file
-/// A measured trace from elsewhere becomes a record.
+/// Import of a measured trace from a CSV file as a record.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace stickslip::record {
 
-/// What a CSV file cannot say about itself.
+/// Request for an import: the file and the facts that it does not contain.
 struct CsvImportRequest {
   std::filesystem::path path;
   std::string column;                                          ///< Header of the column with the values.
@@ -26,8 +26,9 @@ struct CsvImportRequest {
 
 /// Reads strictly [RFC 4180 with a header line, lines that begin with # before it left out]: every row as
 /// long as the header, every value a finite number, every step of the time column 1/rate within the rounding
-/// of its printed digits. \return the record, with an end that has no results (reason "not analysed") and
-/// scan 0 first. Errors: kUsage naming file:line, value and remedy; kFailure if the file cannot be read.
+/// of its printed digits.
+/// \return the record, with an end that has no results (reason "not analysed") and scan 0 first. Errors:
+/// kUsage naming file:line, value and remedy; kFailure if the file cannot be read.
 [[nodiscard]] base::Result<Record> read_csv(const CsvImportRequest& request);
 
 }  // namespace stickslip::record

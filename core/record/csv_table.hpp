@@ -1,5 +1,5 @@
 /// \file
-/// Two columns of numbers out of a CSV file, read strictly.
+/// Strict reader of two columns of numbers from a CSV file.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace stickslip::record {
 
-/// One column with what its digits can resolve.
+/// One column with the resolution of its printed digits.
 struct CsvColumn {
   std::string name;
   std::vector<double> values;
@@ -29,7 +29,8 @@ struct CsvTable {
   std::vector<std::int64_t> line;  ///< Of each row, from 1.
 };
 
-/// \param column  must be there. \param time_columns  the first of these that is there, if any.
+/// \param column  must exist.
+/// \param time_columns  names of a time column; the first one present is read, if any.
 /// Errors: kUsage naming file:line, value and remedy; kFailure if the file cannot be read.
 [[nodiscard]] base::Result<CsvTable> read_csv_table(const std::filesystem::path& path,
                                                     const std::string& column,

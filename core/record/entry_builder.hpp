@@ -1,5 +1,5 @@
 /// \file
-/// The entries of a journal as bytes, ready to be written in one go.
+/// Encodes the entries of a journal as bytes, each ready for one write().
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace stickslip::record {
 
-/// For one journal. What a function gives is valid until the next call; head and CRC are in it.
+/// Encoder of one journal. Returned bytes include head and CRC and are valid until the next call.
 class EntryBuilder {
  public:
   using Bytes = std::span<const std::byte>;
@@ -26,7 +26,7 @@ class EntryBuilder {
   /// \param raw    consecutive, not empty; counts are whole numbers in 0 … maxdata (contract).
   [[nodiscard]] Bytes scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp& stamp);
   [[nodiscard]] Bytes true_coefficients(daq::ScanIndex first, std::span<const double> coefficient);
-  /// Codes of the second channel of scans that stand before it.
+  /// Codes of the second channel, for scans that are in the journal already.
   [[nodiscard]] Bytes second(daq::ScanIndex first, std::span<const std::int32_t> codes);
   [[nodiscard]] Bytes spikes(std::span<const daq::ScanIndex> spikes);
   [[nodiscard]] Bytes gap(const daq::Gap& gap);

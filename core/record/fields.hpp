@@ -1,6 +1,6 @@
 /// \file
-/// Every single fact of a record with its name, unit and meaning, once: the journal's JSON, the
-/// HDF5 writer and the HDF5 reader all walk these tables.
+/// Tables of a record's fields with name, unit and meaning. The journal's JSON, the HDF5 writer and the HDF5
+/// reader all use them.
 ///
 ///     for_each_field(header.tester, [](const FieldName& name, auto& value) { … });
 ///
@@ -16,7 +16,7 @@
 
 namespace stickslip::record {
 
-/// Attributes of a result, and the columns of a sweep that have the same.
+/// Names of a result's attributes, and of the columns of a sweep with the same meaning.
 inline constexpr const char* kStandardError = "standard_error";
 inline constexpr const char* kSystematic = "systematic_uncertainty";
 
@@ -75,7 +75,7 @@ void for_each_field(Facts& facts, Visitor&& visit) {
         facts.unloaded_level);
 }
 
-/// All but the scans, which are stored like those of the record.
+/// All fields except the scans, which are stored like those of the record.
 template <FieldsOf<daq::SelfCheck> Check, typename Visitor>
 void for_each_field(Check& check, Visitor&& visit) {
   visit(FieldName{"first_scan", "1", "first scan looked at [1]"}, check.first_scan);
@@ -129,7 +129,7 @@ void for_each_field(Facts& facts, Visitor&& visit) {
   visit(FieldName{"simulation", "", ""}, facts.simulation);
 }
 
-/// The second channel, but what it measures: that has to be known before.
+/// All fields of the second channel except its quantity, which must be set before the call.
 template <FieldsOf<daq::SecondChannel> Channel, typename Visitor>
 void for_each_field(Channel& channel, Visitor&& visit) {
   const bool speed = channel.quantity == daq::SecondQuantity::kPullSpeed;
@@ -147,7 +147,7 @@ void for_each_field(Channel& channel, Visitor&& visit) {
   visit(FieldName{"zero", "V", "voltage at rest or at the origin [V]"}, channel.zero_V);
 }
 
-/// What the input is called.
+/// Names of the input.
 template <FieldsOf<daq::BoardInfo> Info, typename Visitor>
 void for_each_name_field(Info& board, Visitor&& visit) {
   visit(FieldName{"driver", "", ""}, board.driver);
@@ -155,7 +155,7 @@ void for_each_name_field(Info& board, Visitor&& visit) {
   visit(FieldName{"device", "", ""}, board.device);
 }
 
-/// The converter; meaningless for imported values.
+/// Fields of the converter; not used for imported values.
 template <FieldsOf<daq::BoardInfo> Info, typename Visitor>
 void for_each_converter_field(Info& board, Visitor&& visit) {
   visit(FieldName{"subdevice", "1", "number of the subdevice [1]"}, board.subdevice);

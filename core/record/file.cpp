@@ -26,7 +26,7 @@ int rename_over_own(const char* from, const char* to, const FileCalls& calls) {
 
 int rename_by_link(const char* from, const char* to, const FileCalls& calls) {
   if (calls.link(from, to) == 0) {
-    // It has its new name; the old one, if it stays, is that of a file that nobody finished.
+    // The file has its new name; if the old one remains, it looks like an unfinished file.
     static_cast<void>(calls.unlink(from));
     return 0;
   }

@@ -1,5 +1,5 @@
 /// \file
-/// Durable files: every result checked, errors with the path and the system's words.
+/// Durable file operations. Every result is checked; errors contain the path and the system's message.
 #pragma once
 
 #include <cstddef>
@@ -22,25 +22,25 @@ using base::system_message;
 [[nodiscard]] base::Result<void> sync_path(const std::filesystem::path& path,
                                            const FileCalls& calls = system_calls());
 
-/// fsync of a folder: names in it survive a power cut. A file system that cannot sync folders (EINVAL and the
-/// like) is none that refuses: that this may lose a name is told once, by probe_folder().
+/// fsync of a folder, so that names in it survive a power cut. Succeeds on a file system that cannot sync
+/// folders (EINVAL and the like); probe_folder() reports that limitation.
 [[nodiscard]] base::Result<void> sync_folder(const std::filesystem::path& folder,
                                              const FileCalls& calls = system_calls());
 
-/// Whether a call failed because the file system does not know it.
+/// Whether errno means that the file system does not support the call.
 [[nodiscard]] bool is_unsupported(int error) noexcept;
 
 /// The folder that holds a file, "." for a bare name.
 [[nodiscard]] std::filesystem::path folder_of(const std::filesystem::path& path);
 
-/// Renames without ever replacing; kUsage if `to` exists. The folder is synced. Where the file system cannot
-/// rename so, the file gets its new name as a second one and loses the first; where there are no second names
-/// either, the new name is taken by an empty file, which is then replaced: a stop between leaves it.
+/// Renames without ever replacing; kUsage if `to` exists. The folder is synced. Without RENAME_NOREPLACE, it
+/// links the new name and removes the old one. Without hard links, it creates an empty file under the new
+/// name and renames over it; a stop in between leaves the empty file.
 [[nodiscard]] base::Result<void> rename_to_new(const std::filesystem::path& from,
                                                const std::filesystem::path& to,
                                                const FileCalls& calls = system_calls());
 
-/// Makes the folders that are missing and their names durable. Errors: kFailure.
+/// Creates the missing folders of a path and syncs their names. Errors: kFailure.
 [[nodiscard]] base::Result<void> make_folders(const std::filesystem::path& folder,
                                               const FileCalls& calls = system_calls());
 

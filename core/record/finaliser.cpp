@@ -74,7 +74,7 @@ base::Result<void> build_verified(const Record& record, const ScanSource& scans,
   // Synced before it is read back, so that what is compared is what a disk can keep.
   if (auto sealed = seal_file(part, calls); !sealed) return sealed;
   auto verified = verify_record(part, record, scans, calls);
-  // What was just written and reads otherwise is nobody's wrong request.
+  // A difference in a file just written is a failure, not a usage error.
   if (!verified) verified.error().kind = base::ErrorKind::kFailure;
   return verified;
 }
@@ -89,7 +89,8 @@ bool is_there(const std::filesystem::path& path) {
   return std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
 }
 
-/// What a stop leaves where rename_to_new() has to take the name first.
+/// Whether the path is an empty regular file: a stop within rename_to_new() leaves one on file systems
+/// without hard links.
 bool is_empty_file(const std::filesystem::path& path) {
   struct stat found {};
   return ::lstat(path.c_str(), &found) == 0 && S_ISREG(found.st_mode) && found.st_size == 0;
@@ -147,7 +148,7 @@ void tell_unread(const JournalReading& reading, EndRecord& end) {
   }
 }
 
-/// Renames a damaged journal to a name that nobody has. \return the name.
+/// Renames a damaged journal to a free name. \return the name.
 base::Result<std::filesystem::path> set_aside(const std::filesystem::path& journal, const FileCalls& calls) {
   if (journal.extension() == kDamagedExtension) return journal;
   auto damaged = with_suffix(journal, std::string{kDamagedExtension});

@@ -1,5 +1,5 @@
 /// \file
-/// What the file system of a folder lacks that keeps records, and what follows for the people.
+/// Probe of a records folder: file system features that are missing, and their consequences.
 #pragma once
 
 #include <filesystem>
@@ -11,17 +11,17 @@
 
 namespace stickslip::record {
 
-/// For people: each is the end of a sentence that begins with the folder.
+/// A missing feature. Both texts complete a sentence that begins with the folder.
 struct FolderLack {
   std::string what;     ///< "cannot sync folders (fsync: Invalid argument)"
   std::string follows;  ///< "a power cut may take the name of the newest record with it"
 };
 
-/// Tries in the folder what journals and records need: a new file, write, sync, lock, second name, rename
-/// without replacing, sync of the folder, room. The files of it have random names and are gone when it
-/// returns; those that a kill left before are removed. \return what is lacking, in spite of which records can
-/// be made; none on ext4, XFS, Btrfs. Errors: kFailure if none can be made there, one line without the
-/// folder.
+/// Tries the operations that journals and records need: create, write, sync, lock, hard link, rename without
+/// replacing, sync of the folder, free space. Its files have random names and are removed, as are those left
+/// by a killed probe.
+/// \return missing features without which records can still be made; none on ext4, XFS, Btrfs. Errors:
+/// kFailure if no record can be made; one line without the folder.
 [[nodiscard]] base::Result<std::vector<FolderLack>> probe_folder(const std::filesystem::path& folder,
                                                                  const FileCalls& calls = system_calls());
 

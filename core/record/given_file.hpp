@@ -1,6 +1,5 @@
 /// \file
-/// A file that somebody gives to be read. What the system refuses is kept apart from what the content is:
-/// only content can be damaged.
+/// An input file given by the user. It distinguishes read errors of the system from damaged content.
 ///
 ///     auto file = GivenFile::open(path);       // else: no such file, no permission, cannot be read now …
 ///     if (auto locked = file->share(); !locked) …  // somebody is writing it
@@ -25,26 +24,29 @@ namespace stickslip::record {
 /// Why a file cannot be read, by errno, and what to do: one line without the file's name.
 [[nodiscard]] std::string why_unreadable(int error);
 
-/// Copies are the same open file. Thread-safe but for share().
+/// Copies share the open file. Thread-safe except share().
 class GivenFile {
  public:
-  /// A regular file; opening waits for nobody. \param calls  outlives it. Errors, without the file's name:
-  /// kUsage if it is not there or no file, kNoPermission, kFailure.
+  /// Opens a regular file; never blocks.
+  /// \param calls  must outlive the object.
+  /// Errors, without the file's name: kUsage if it does not exist or is not a regular file, kNoPermission,
+  /// kFailure.
   [[nodiscard]] static base::Result<GivenFile> open(const std::filesystem::path& path,
                                                     const FileCalls& calls = system_calls());
 
-  /// Keeps those who lock what they write (HDF5 does) from writing it while it is open. Where the file system
-  /// has no locks nobody can. Errors: kBusy if somebody writes it, without the file's name.
+  /// Takes a shared lock, which prevents writing by programs that lock (HDF5 does) while the file is open. No
+  /// effect without locks in the file system. Errors: kBusy if a program is writing the file; without the
+  /// file's name.
   [[nodiscard]] base::Result<void> share() const;
 
-  /// At most bytes.size() bytes from `position` on. \return how many; −1 and errno if the system refused.
+  /// Reads at most bytes.size() bytes from `position` on. \return their number; −1 with errno on an error.
   [[nodiscard]] ssize_t read(std::span<std::byte> bytes, std::uint64_t position) const;
-  /// Reads all of it and forgets it. \return whether the system lets it be read.
+  /// Reads the whole file and discards it. \return whether there was no read error.
   [[nodiscard]] bool is_readable() const;
 
   [[nodiscard]] std::uint64_t size() const noexcept { return state_->size; }
   [[nodiscard]] int descriptor() const noexcept { return state_->file.get(); }
-  /// errno of the latest read that the system refused; 0 if none was.
+  /// errno of the latest failed read; 0 if none failed.
   [[nodiscard]] int refused() const noexcept { return state_->refused; }
 
  private:
@@ -58,7 +60,8 @@ class GivenFile {
   std::shared_ptr<State> state_;
 };
 
-/// The same of a record: open(), share() and is_readable(), for HDF5 crashes where a read is refused.
+/// Opens a record: open(), share() and is_readable(). The last one is needed since HDF5 crashes on a read
+/// error.
 [[nodiscard]] base::Result<GivenFile> open_shared(const std::filesystem::path& path,
                                                   const FileCalls& calls = system_calls());
 

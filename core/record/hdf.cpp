@@ -25,7 +25,7 @@ herr_t keep_reason(unsigned /*depth*/, const H5E_error2_t* error, void* kept) no
 void throw_refused(const std::string& what) {
   Reason reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, keep_reason, &reason);
-  // As operator new does: who limits the memory of a process hears of it from there.
+  // As operator new does, so that a handler that limits memory is informed.
   if (const std::new_handler told = std::get_new_handler(); reason.no_memory && told != nullptr) told();
   std::replace(reason.text.begin(), reason.text.end(), '\n', ' ');
   throw HdfError(what + ": " + (reason.text.empty() ? "refused by HDF5" : reason.text));

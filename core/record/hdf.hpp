@@ -1,6 +1,6 @@
 /// \file
-/// HDF5 handles that close themselves and calls that cannot fail unnoticed. Inside this folder
-/// errors travel as HdfError; the public functions turn them into values.
+/// RAII handles of HDF5, and checked calls. Within this folder errors are exceptions, HdfError; the public
+/// functions convert them into values.
 #pragma once
 
 #include <hdf5.h>
@@ -11,14 +11,14 @@
 
 namespace stickslip::record {
 
-/// One line without the file's name, which the public functions add.
+/// Error of HDF5: one line without the file's name, which the public functions add.
 class HdfError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// \throws HdfError naming `what` and the library's innermost reason. Where that is memory, the process's
-/// std::new_handler is called before.
+/// \throws HdfError naming `what` and the library's innermost reason. If memory was exhausted, calls the
+/// process's std::new_handler first.
 [[noreturn]] void throw_refused(const std::string& what);
 
 /// Owns an HDF5 id. \tparam Close  the library's function for its kind.

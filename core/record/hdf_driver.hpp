@@ -1,6 +1,6 @@
 /// \file
-/// HDF5 writes and reads its files through the table of calls; what it closed is on the disk, and a read that
-/// the system refused is known as such.
+/// HDF5 file driver on FileCalls: a closed file is synced, and read errors of the system are distinguished
+/// from damage.
 #pragma once
 
 #include <filesystem>
@@ -11,17 +11,19 @@
 
 namespace stickslip::record {
 
-/// Files opened with these access properties are written and read through `calls`, and synced when they are
-/// closed by the descriptor that wrote them: what the disk refused late is an error of closing. For new
-/// files: there is no lock. \param calls  outlives the file. Throws HdfError.
+/// Makes files opened with these access properties use `calls`. Closing syncs the file by the descriptor that
+/// wrote it, so that a late write error is an error of closing. For new files only: it takes no lock.
+/// \param calls  must outlive the file.
+/// \throws HdfError.
 void write_through(const PropertyHandle& access, const FileCalls& calls);
 
-/// Whether the signature of HDF5 stands where one may stand: at 0, 512, 1024, 2048 … bytes.
+/// Whether the file has HDF5's signature at an allowed position: 0, 512, 1024, 2048 … bytes.
 [[nodiscard]] bool is_hdf5(const GivenFile& file);
 
-/// Opens a file that is there for reading, through what is open already and without a lock of HDF5's: whether
-/// somebody writes it is GivenFile::share()'s to say. \param path  for messages. Throws HdfError if it is no
-/// HDF5 file or its structure cannot be read.
+/// Opens an existing file for reading through its open descriptor, without HDF5's lock; call
+/// GivenFile::share() first to exclude writers.
+/// \param path  for messages.
+/// \throws HdfError if it is not an HDF5 file or its structure cannot be read.
 [[nodiscard]] FileHandle open_hdf5(const GivenFile& file, const std::filesystem::path& path);
 
 }  // namespace stickslip::record

@@ -1,6 +1,6 @@
 /// \file
-/// Reading data sets and attributes of files that may hold anything. All functions throw HdfError
-/// that names the object and what is wrong with it.
+/// Reads data sets and attributes of untrusted files. All functions throw HdfError that names the object and
+/// the fault.
 #pragma once
 
 #include <optional>
@@ -36,16 +36,16 @@ template <typename T>
 /// Rows [first, first + values.size()) of a column of type T.
 template <typename T>
 void read_rows(const DatasetHandle& column, const std::string& name, std::size_t first, std::span<T> values);
-/// The same of a column of texts.
+/// Rows [first, first + count) of a column of texts.
 [[nodiscard]] std::vector<std::string> read_text_rows(const DatasetHandle& column, const std::string& name,
                                                       std::size_t first, std::size_t count);
-/// Rows of a column.
+/// Number of rows of a column.
 [[nodiscard]] std::size_t row_count(hid_t parent, const std::string& name);
 /// Whether the stored type of a data set is T.
 template <typename T>
 [[nodiscard]] bool holds(hid_t parent, const std::string& name);
 
-/// Visitor for for_each_field(): the reverse of FieldWriter.
+/// Visitor for for_each_field() that reads the fields; inverse of FieldWriter.
 class FieldReader {
  public:
   explicit FieldReader(hid_t parent) : parent_(parent) {}

@@ -16,7 +16,7 @@
 
 namespace stickslip::record {
 
-/// A new file, in place of an old one, that every HDF5 since 1.8 reads; open for writing.
+/// Creates a file, replacing an old one, in a format that HDF5 1.8 and later read; open for writing.
 [[nodiscard]] FileHandle create_file(const std::filesystem::path& path,
                                      const FileCalls& calls = system_calls());
 
@@ -25,7 +25,7 @@ namespace stickslip::record {
 
 /// Variable-length UTF-8 attribute.
 void write_attribute(hid_t object, const std::string& name, std::string_view text);
-/// The same, an array.
+/// Array of variable-length UTF-8 texts as an attribute.
 void write_attribute(hid_t object, const std::string& name, const std::vector<std::string>& texts);
 template <typename T>
 void write_number_attribute(hid_t object, const std::string& name, T value);
@@ -48,7 +48,7 @@ class ColumnWriter {
   void append(std::span<const T> values);
 
   [[nodiscard]] const DatasetHandle& dataset() const& noexcept { return dataset_; }
-  /// When all is written.
+  /// The data set, after all rows were appended.
   [[nodiscard]] DatasetHandle dataset() && noexcept { return std::move(dataset_); }
 
  private:
@@ -79,13 +79,13 @@ class TextColumnWriter {
 /// Column of texts, fixed length.
 DatasetHandle write_texts(hid_t parent, const std::string& name, const std::vector<std::string>& texts);
 
-/// Gives a column the axis of another table. \param name  of the column.
+/// Attaches the dimension scale of another table to a column. \param name  of the column.
 void attach_scale(const DatasetHandle& column, const DatasetHandle& scale, const std::string& name);
-/// Numbers over several dimensions, the last the fastest: as write_column().
+/// Array of numbers in row-major order; stored as by write_column().
 template <typename T>
 DatasetHandle write_array(hid_t parent, const FieldName& name, std::span<const hsize_t> shape,
                           std::span<const T> values);
-/// Texts over several dimensions, none of them zero: fixed length, compressed.
+/// Array of texts, no dimension zero; fixed length, compressed.
 DatasetHandle write_text_array(hid_t parent, const std::string& name, std::span<const hsize_t> shape,
                                const std::vector<std::string_view>& texts);
 
@@ -107,7 +107,7 @@ class TableWriter {
     return attached(write_texts(group_.get(), name, texts), name);
   }
 
-  /// Adds a column that is written afterwards.
+  /// Adds a column to be written piece by piece afterwards.
   template <typename T>
   [[nodiscard]] ColumnWriter<T> add_empty(const FieldName& name, std::size_t count) {
     ColumnWriter<T> column{group_.get(), name, count};
@@ -125,7 +125,7 @@ class TableWriter {
   [[nodiscard]] hid_t group() const noexcept { return group_.get(); }
 
  private:
-  /// Makes the column the scale, or gives it the scale.
+  /// Makes the first column the scale; attaches the scale to others.
   void attach(const DatasetHandle& column, const std::string& name);
   DatasetHandle attached(DatasetHandle column, const std::string& name) {
     attach(column, name);
@@ -133,10 +133,10 @@ class TableWriter {
   }
 
   GroupHandle group_;
-  std::vector<DatasetHandle> scale_;  ///< One, once there is a column.
+  std::vector<DatasetHandle> scale_;  ///< The scale; empty before the first column.
 };
 
-/// Visitor for for_each_field(): one scalar data set per known fact.
+/// Visitor for for_each_field(): writes one data set for each field that is not empty.
 class FieldWriter {
  public:
   explicit FieldWriter(hid_t parent) : parent_(parent) {}

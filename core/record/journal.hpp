@@ -6,10 +6,9 @@
 ///     journal->sync();                           // once a second
 ///     journal->append_end(end);
 ///
-/// Each entry is one write() of a 32-byte head and its payload under one CRC-32C, so that a reader
-/// knows every whole entry from a torn one. Measured to lose nothing that was written at kill -9
-/// and nothing that was synced at a power cut, which HDF5 written live does.
-/// Layout of an entry: docs/record-file.md.
+/// Each entry is one write() of a 32-byte head and its payload under one CRC-32C, so that a reader can tell
+/// complete entries from torn ones. Measured: kill -9 loses nothing that was written, and a power cut nothing
+/// that was synced; HDF5 written live loses both. Layout of an entry: docs/record-file.md.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +32,7 @@
 namespace stickslip::record {
 
 inline constexpr std::string_view kJournalExtension = ".journal";
-/// Of the finished file.
+/// Extension of the record.
 inline constexpr std::string_view kRecordExtension = ".h5";
 
 /// Not thread-safe: the storage thread owns it. Move-only. Destruction closes without syncing.
@@ -46,15 +45,15 @@ class JournalWriter {
                                                           RecordHeader header,
                                                           const FileCalls& calls = system_calls());
 
-  // Every append either adds a whole entry or returns why not (kFailure) and leaves the file as it was: the
-  // same entry may be tried again.
+  // Every append either adds a complete entry, or returns an error (kFailure) and leaves the file unchanged,
+  // so that it can be repeated.
 
   /// \param first  rises strictly over all scans of the journal.
   /// \param raw    consecutive, not empty; counts are whole numbers in 0 … maxdata (contract).
   [[nodiscard]] base::Result<void> append_scans(daq::ScanIndex first, std::span<const double> raw,
                                                 const daq::ClockStamp& stamp);
   /// The noise-free force of scans that are in the journal already (model::TrueForce).
-  /// \param first  rises strictly over all that are given. \param coefficient  consecutive.
+  /// \param first  rises strictly over all calls. \param coefficient  consecutive.
   [[nodiscard]] base::Result<void> append_true_coefficients(daq::ScanIndex first,
                                                             std::span<const double> coefficient);
   /// Codes of the second channel, of scans that are in the journal already. As above.
@@ -86,12 +85,12 @@ class JournalWriter {
 struct ScanRun {
   daq::ScanIndex first = 0;
   std::size_t count = 0;
-  std::size_t row = 0;  ///< Scans before it.
+  std::size_t row = 0;  ///< Number of scans before it.
 
   [[nodiscard]] daq::ScanIndex end() const noexcept { return first + static_cast<daq::ScanIndex>(count); }
 };
 
-/// An entry with values of consecutive scans.
+/// Position of an entry with values of consecutive scans.
 struct EntryPlace {
   std::uint64_t position = 0;  ///< Byte of the file.
   std::uint64_t size = 0;      ///< Bytes.
@@ -101,41 +100,42 @@ struct EntryPlace {
   [[nodiscard]] daq::ScanIndex end() const noexcept { return first + static_cast<daq::ScanIndex>(count); }
 };
 
-/// What a journal held: all its whole entries that make sense, in the order of the scans wherever they stand.
+/// Content of a journal: all complete and valid entries, in the order of their scans.
 struct JournalReading {
-  /// Without scan, raw, second and true_coefficient if they were not to be kept. Scans that are missing
-  /// between others and of which no entry says why are gaps: damaged, or unknown if every byte could be read.
+  /// With JournalScans::kCount its scan, raw, second and true_coefficient are empty. Missing scans without a
+  /// gap entry become gaps with the cause damaged, or unknown if every byte was readable.
   Record record;
   std::size_t scan_count = 0;
   std::vector<ScanRun> runs;  ///< All scans, rising.
-  // Rising, none overlaps another.
+  // Rising and without overlap.
   std::deque<EntryPlace> scans;
   std::deque<EntryPlace> true_coefficients;
   std::deque<EntryPlace> second_codes;
   std::uint64_t file_size = 0;
-  std::vector<UnreadBytes> damaged;     ///< By place.
-  std::optional<UnreadBytes> torn_end;  ///< As a stop leaves it.
+  std::vector<UnreadBytes> damaged;     ///< In the order of position.
+  std::optional<UnreadBytes> torn_end;  ///< Incomplete end of the file, as after a stop.
 
-  /// Bytes that are damaged.
+  /// Number of damaged bytes.
   [[nodiscard]] std::uint64_t damaged_size() const noexcept;
-  /// Why the first of the bytes that gave nothing did not; empty if all gave something.
+  /// Reason why the first unread bytes could not be read; empty if all were read.
   [[nodiscard]] std::string why_unread() const;
 };
 
+/// Whether read_journal() keeps the scans in memory or only counts them.
 enum class JournalScans { kKeep, kCount };
 
-/// Reads every whole entry; its memory, unless the scans are kept, is that of the tables. Errors: kFailure if
-/// the file cannot be read, or its header is damaged and whole entries stand behind it; kUsage if it is no
+/// Reads every complete entry. Memory is that of the tables, and of the scans with kKeep. Errors: kFailure if
+/// the file cannot be read, or if its header is damaged but complete entries follow; kUsage if it is not a
 /// journal.
 [[nodiscard]] base::Result<JournalReading> read_journal(const std::filesystem::path& path,
                                                         JournalScans scans = JournalScans::kKeep,
                                                         const FileCalls& calls = system_calls());
 
-/// The scans of a journal straight from the disk. Throws std::runtime_error if the file is no longer what
-/// was read.
+/// Source of a journal's scans, read from disk. Throws std::runtime_error if the file changed since
+/// read_journal().
 class JournalScanSource final : public ScanSource {
  public:
-  /// \param reading  of this journal; outlives it. \param calls  too.
+  /// \param reading  of this journal; must outlive the object, as must `calls`.
   JournalScanSource(std::filesystem::path path, const JournalReading& reading,
                     const FileCalls& calls = system_calls())
       : path_(std::move(path)), reading_(reading), calls_(calls) {}
@@ -153,7 +153,7 @@ class JournalScanSource final : public ScanSource {
  private:
   void for_each_entry(const std::deque<EntryPlace>& places,
                       const std::function<void(const Entry&)>& use) const;
-  /// Values of all scans from those entries, in pieces as those of the scans.
+  /// Values of a column from those entries, in the same pieces as the scans.
   template <typename Value>
   void for_each_column_piece(const std::deque<EntryPlace>& places, Value absent,
                              const std::function<void(std::span<const Value>)>& use) const;

@@ -1,5 +1,5 @@
 /// \file
-/// Who may touch a journal, and which of them hold nothing.
+/// Locks of journals, and removal of empty ones.
 #pragma once
 
 #include <chrono>
@@ -11,12 +11,14 @@
 
 namespace stickslip::record {
 
-/// The right to write or to finish a journal, while it lives. The kernel takes it back from who is killed.
+/// Exclusive lock on a journal, for writing or finalising it, during the life of the object. The kernel
+/// releases it if the process is killed.
 class JournalLock {
  public:
-  /// \param longest  to wait for somebody who has it: a finaliser whose daemon was killed ends soon.
-  /// Errors: kUsage if there is no such file, kFailure if somebody else keeps the right, or has removed the
-  /// file. Where the file system has no locks everybody has it.
+  /// \param longest  time to wait for another holder, such as the finaliser of a killed daemon, which ends
+  ///        soon.
+  /// Errors: kUsage if the file does not exist, kFailure if another process keeps the lock or has removed the
+  /// file. On a file system without locks it always succeeds.
   [[nodiscard]] static base::Result<JournalLock> take(const std::filesystem::path& journal,
                                                       std::chrono::milliseconds longest = {},
                                                       const FileCalls& calls = system_calls());
@@ -26,13 +28,13 @@ class JournalLock {
   Descriptor file_;
 };
 
-/// Takes the right for a file that has just been made. \return false if somebody else has it.
+/// Locks a newly created file. \return false if another process holds the lock.
 [[nodiscard]] bool lock_journal(int descriptor, const FileCalls& calls = system_calls()) noexcept;
 
-/// A journal that is nothing but a torn end (journal_entries.hpp) is what a stop leaves before the header,
-/// which comes first, is written and synced: nothing was recorded. All others stay. \return whether it was
-/// one and is gone. Errors: kFailure if it cannot be read or removed, or somebody writes it for longer than
-/// `longest`.
+/// Removes a journal that consists of a torn end only (journal_entries.hpp). A stop before the header was
+/// synced leaves such a file; it contains no data. Other journals are not changed.
+/// \return whether it was removed. Errors: kFailure if it cannot be read or removed, or if another process
+/// holds it for longer than `longest`.
 [[nodiscard]] base::Result<bool> remove_if_empty(const std::filesystem::path& journal,
                                                  std::chrono::milliseconds longest = {});
 

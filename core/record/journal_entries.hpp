@@ -1,6 +1,6 @@
 /// \file
-/// The entries of a journal one after the other, in the memory of the largest of them. What is no whole entry
-/// is skipped: reading goes on at the next one, wherever it stands.
+/// Sequential reader of a journal's entries, in the memory of the largest entry. Damaged bytes are skipped up
+/// to the next complete entry.
 ///
 ///     auto entries = JournalEntries::open(path);
 ///     while (const auto entry = entries->next()) …
@@ -21,7 +21,7 @@
 
 namespace stickslip::record {
 
-/// Bytes of a journal that gave nothing.
+/// Unreadable bytes of a journal, with the reason.
 struct UnreadBytes {
   std::uint64_t first = 0;
   std::uint64_t size = 0;
@@ -36,34 +36,32 @@ class JournalEntries {
   [[nodiscard]] static base::Result<JournalEntries> open(const std::filesystem::path& path,
                                                          const FileCalls& calls = system_calls());
 
-  /// The next whole entry, valid until the next call of any kind. Nothing when none follows, and after an
+  /// The next complete entry, valid until the next call of any function. Nullopt at the end and after an
   /// error().
   [[nodiscard]] std::optional<Entry> next();
-  /// The whole entry that begins at the byte `position`, valid as above; next() goes on as if nobody had
-  /// asked.
+  /// The complete entry at byte `position`, valid as above. Does not affect next().
   [[nodiscard]] std::optional<Entry> at(std::uint64_t position);
 
-  /// Byte at which the last entry of next() begins.
+  /// Position of the latest entry from next().
   [[nodiscard]] std::uint64_t position() const noexcept { return position_; }
-  /// What was skipped so far because it is damaged, rising.
+  /// Damaged bytes skipped so far, rising.
   [[nodiscard]] const std::vector<UnreadBytes>& skipped() const noexcept { return skipped_; }
-  /// Once next() gave nothing: the end of the file, if it is as a stop leaves it. Either the file ends within
-  /// an entry, or it has zeros from the border of a sector within an entry on. Damage can look the same.
+  /// After next() returned nullopt: the end of the file if it looks as after a stop. The file then ends
+  /// within an entry, or contains zeros from a sector boundary within an entry on. Damage can look the same.
   [[nodiscard]] const std::optional<UnreadBytes>& torn_end() const noexcept { return torn_end_; }
-  /// Why the file cannot be read on, and what to do; empty if it can. What the disk does not give is not
-  /// damaged.
+  /// Read error of the disk with its remedy; empty if there was none. Such bytes do not count as damaged.
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
   [[nodiscard]] std::uint64_t file_size() const noexcept { return file_size_; }
 
  private:
   JournalEntries(Descriptor file, std::uint64_t size, const FileCalls& calls)
       : file_(std::move(file)), calls_(&calls), file_size_(size) {}
-  /// Lets bytes_ hold those from `first` on, `size` of them or fewer at the end of the file.
+  /// Reads `size` bytes from `first` on into bytes_; fewer at the end of the file.
   void read(std::uint64_t first, std::size_t size);
   [[nodiscard]] std::optional<Entry> entry_at(std::uint64_t position, std::string& why);
-  /// Where the next magic stands, from `first` on.
+  /// Position of the next magic number from `first` on.
   [[nodiscard]] std::optional<std::uint64_t> find_magic(std::uint64_t first);
-  /// Whether a stop can have left [first, end of file) so; no whole entry stands in it.
+  /// Whether a stop can have left [first, end of file), which contains no complete entry.
   [[nodiscard]] bool is_torn(std::uint64_t first);
 
   Descriptor file_;

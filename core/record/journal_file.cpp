@@ -14,7 +14,7 @@ namespace stickslip::record {
 namespace {
 
 constexpr mode_t kFileMode = 0644;
-/// Room asked for ahead: 20 minutes at 350 scans/s. Measured: it can be used in full on a full disk.
+/// Disk space reserved ahead: 20 minutes at 350 scans/s. Measured: all of it can be used on a full disk.
 constexpr std::uint64_t kReserve = std::uint64_t{1} << 20U;
 constexpr std::uint64_t kCopyPiece = std::uint64_t{1} << 20U;
 

@@ -1,5 +1,5 @@
 /// \file
-/// The file of a journal: whole entries or nothing.
+/// The file of a journal; each write adds complete entries or nothing.
 #pragma once
 
 #include <cstddef>
@@ -18,50 +18,51 @@ namespace stickslip::record {
 /// Not thread-safe. Move-only. Destruction closes without syncing.
 class JournalFile {
  public:
-  /// Makes the file, which must not exist, locks it (journal_care.hpp), writes its first entry and makes
-  /// content and name durable. Errors (kFailure) leave no file behind. \param calls  outlive the file.
+  /// Creates the file, which must not exist, locks it (journal_care.hpp), writes its first entry, and syncs
+  /// content and name. Errors (kFailure) leave no file behind.
+  /// \param calls  outlive the file.
   [[nodiscard]] static base::Result<JournalFile> create(const std::filesystem::path& path,
                                                         std::span<const std::byte> header,
                                                         const FileCalls& calls);
 
-  /// What stands at the path of the file.
+  /// Relation of the file's path to the open file.
   enum class Place {
     kItself,
     kNothing,  ///< Removed, renamed, or its folder was.
     kAnother,  ///< Another file.
-    kUnknown,  ///< It cannot be looked at: errno says why.
+    kUnknown,  ///< The path cannot be examined; see errno.
   };
   [[nodiscard]] Place place() const;
 
-  /// Makes another file with the same entries, read from what is open: what stands at the path does not
-  /// matter. As create() otherwise. Errors: kFailure; this file stays what it is.
+  /// Creates another file with the same entries, read from the open file, whatever is at its path. Otherwise
+  /// as create(). Errors: kFailure; this file is unchanged.
   [[nodiscard]] base::Result<JournalFile> copy_to(const std::filesystem::path& path) const;
 
-  /// Gives the lock back: others may finish the journal.
+  /// Releases the lock, so that another process may finalise the journal.
   void unlock();
 
-  /// Adds whole entries, or none: then the file is cut back to what it was, now or before the next attempt,
-  /// and the same may be tried again.
+  /// Adds complete entries. On an error none is added: the file is truncated to its old size, now or before
+  /// the next attempt, and the call may be repeated.
   [[nodiscard]] base::Result<void> append(std::span<const std::byte> entries);
 
-  /// fdatasync: everything appended so far survives a power cut if this succeeds. If not, nothing is known of
-  /// what was appended since the last success: the kernel may have dropped it [fsync(2); Rebello et al. 2020,
-  /// "Can applications recover from fsync failures?"].
+  /// fdatasync: everything appended so far survives a power cut if this succeeds. If it fails, the data
+  /// appended since the last success may be lost: the kernel may have dropped them [fsync(2); Rebello et al.
+  /// 2020, "Can applications recover from fsync failures?"].
   [[nodiscard]] base::Result<void> sync();
 
-  /// Forgets what was appended behind `size`, now or before the next attempt to append.
+  /// Truncates the file to `size`, now or before the next append.
   void cut_to(std::uint64_t size);
-  /// What was reserved behind the end; before the next attempt to append at the latest.
+  /// Releases the disk space reserved beyond the end, now or before the next append.
   void give_room_back();
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
-  /// Bytes in whole entries.
+  /// Bytes of complete entries.
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
  private:
   JournalFile(std::filesystem::path path, Descriptor file, const FileCalls& calls)
       : path_(std::move(path)), file_(std::move(file)), calls_(&calls) {}
-  /// A new file, filled, durable; or none.
+  /// Creates a file, fills and syncs it; removes it on an error.
   [[nodiscard]] static base::Result<JournalFile> make(
       const std::filesystem::path& path, const FileCalls& calls,
       const std::function<base::Result<void>(JournalFile&)>& fill);
@@ -72,8 +73,8 @@ class JournalFile {
   Descriptor file_;
   const FileCalls* calls_;
   std::uint64_t size_ = 0;
-  std::uint64_t reserved_ = 0;  ///< Bytes from the beginning on for which there is room on the disk.
-  bool has_rest_ = false;       ///< Something may stand behind size_.
+  std::uint64_t reserved_ = 0;  ///< Bytes from the beginning on with reserved disk space.
+  bool has_rest_ = false;       ///< Bytes may exist beyond size_.
 };
 
 }  // namespace stickslip::record

@@ -54,7 +54,7 @@ struct Entry {
   std::span<const std::byte> payload;
 };
 
-/// The entry at the front of `bytes`, or nothing with `why` set if it is not whole.
+/// The entry at the start of `bytes`; nullopt with `why` set if it is not complete.
 [[nodiscard]] std::optional<Entry> first_entry(std::span<const std::byte> bytes, std::string& why);
 
 }  // namespace stickslip::record

@@ -1,7 +1,7 @@
 /// \file
-/// The parts of a journal that are JSON, the end, which is JSON and tables, and the runs of a sweep on their
-/// way. Doubles come back bit for bit: finite ones as the shortest digits that do, NaN as null, infinities
-/// as "inf" and "-inf".
+/// JSON codec of a journal's entries, of its end (JSON and tables), and of the runs of a sweep between
+/// processes. Doubles are restored bit for bit: finite ones have the shortest sufficient digits, NaN is null,
+/// infinities are "inf" and "-inf".
 #pragma once
 
 #include <cstddef>
@@ -23,8 +23,8 @@ namespace stickslip::record {
 void append_end_bytes(const EndRecord& end, std::vector<std::byte>& bytes);
 [[nodiscard]] std::string sweep_run_to_json(const SweepRun& run);
 
-// The way back. \throws std::exception (whose what() says why) if the text is not what the function
-// above writes.
+// Inverse functions. \throws std::exception, with the reason in what(), if the function above does not write
+// such a text.
 
 [[nodiscard]] RecordHeader header_from_json(std::string_view text);
 [[nodiscard]] daq::Gap gap_from_json(std::string_view text);

@@ -1,5 +1,5 @@
 /// \file
-/// Values under their keys in JSON: what the parts of a journal are made of.
+/// Reading and writing of values under keys in JSON, for the entries of a journal.
 #pragma once
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ template <typename T>
 struct IsOptional : std::false_type {};
 template <typename T>
 struct IsOptional<std::optional<T>> : std::true_type {};
-/// Empty stands for not known.
+/// Types whose empty value means unknown.
 template <typename T>
 concept Many = std::is_same_v<T, std::string> || std::is_same_v<T, std::vector<double>> ||
     std::is_same_v<T, std::vector<std::string>>;
@@ -70,7 +70,7 @@ void decode(const Json& from, T& value) {
   }
 }
 
-/// Writes a value under its key; absent optionals, empty texts and columns get none.
+/// Writes a value under its key. Writes nothing for an absent optional and an empty text or column.
 template <typename T>
 void put(Json& object, std::string_view key, const T& value) {
   if constexpr (IsOptional<T>::value) {
@@ -122,7 +122,7 @@ inline std::string dump(const Json& value) {
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Columns of a cycle in the first journals; what came later may be missing.
+/// Columns of a cycle in the oldest journals; later columns may be missing.
 inline constexpr std::size_t kFirstCycleColumns = 15;
 
 inline std::size_t cycle_columns() {

@@ -17,9 +17,9 @@ namespace {
 /// Largest relative difference of the rate that the clocks imply from the rate granted: what the daemon
 /// accepts at most of a board by default ([board.comedi] scan_rate_tolerance). Crystals differ by 1e-4.
 constexpr double kRateTolerance = 0.01;
-/// Of a normal distribution of the fitted rate: 1 in 3.5 million.
+/// Standard errors of the fitted rate beyond which a deviation is certain: 1 in 3.5 million.
 constexpr double kCertain = 5.0;
-/// A clock that was set by more than this during a test is worth a word; NTP slews by 0.5 ms/s.
+/// Step of the date during a test beyond which a note is made; NTP slews by 0.5 ms/s.
 constexpr double kClockStep_ns = 1e9;
 
 bool begins_as_journal(const GivenFile& file) {

@@ -1,5 +1,5 @@
 /// \file
-/// The parts of judge(): each adds what it finds to the verdict.
+/// The parts of judge(). Each adds its findings to the verdict.
 #pragma once
 
 #include <filesystem>
@@ -14,23 +14,24 @@ namespace stickslip::record {
 void judge_record(const GivenFile& given, const std::filesystem::path& path, Verdict& verdict);
 void judge_journal(const std::filesystem::path& path, Verdict& verdict);
 
-// Of a record; all but the first may throw HdfError where something is not there.
+// For records. All but the first may throw HdfError if an object is missing.
 
-/// Reads every data set under `file` chunk by chunk, so that damage has a place.
+/// Reads every data set under `file` chunk by chunk, to locate damage.
 void judge_chunks(hid_t file, Verdict& verdict);
-/// Walks the scans: order, gaps, count, checksum, and what follows from the counts.
-/// \param record  all but the scans, with gaps, spikes not yet.
+/// Checks the scans: order, gaps, number, checksum, and the columns computed from the counts.
+/// \param record  everything except scans and spikes.
 void judge_raw(hid_t entry, const Record& record, Verdict& verdict);
 
-// Of both.
+// For records and journals.
 
-/// Order, and the rate that they imply. \param first,end  scans of the test.
+/// Checks the order of the clock anchors and the scan rate that they imply.
+/// \param first,end  scans of the test.
 void judge_clocks(const Record& record, daq::ScanIndex first, daq::ScanIndex end, Verdict& verdict);
-/// What has to be known to compute anything, and what should be.
+/// Checks that the header contains the required and the recommended facts.
 void judge_facts(const RecordHeader& header, Verdict& verdict);
 /// Lists the gaps.
 void judge_gaps(const std::vector<daq::Gap>& gaps, Verdict& verdict);
-/// The status and its reasons.
+/// Adds the status with its reasons.
 void judge_status(const EndRecord& end, Verdict& verdict);
 
 }  // namespace stickslip::record

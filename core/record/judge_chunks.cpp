@@ -9,10 +9,11 @@
 namespace stickslip::record {
 namespace {
 
-/// Larger chunks are none of this program's: 35 000 rows of numbers, or of texts of some hundred bytes.
+/// Largest chunk read. This program writes smaller ones: 35 000 rows of numbers, or of texts of some hundred
+/// bytes.
 constexpr std::size_t kLargestChunk = std::size_t{1} << 28U;
 constexpr int kMostDimensions = H5S_MAX_RANK;
-/// Chunks of one data set that are named; a file may claim to have any number.
+/// Most chunks of one data set that are reported singly, since a file may claim any number.
 constexpr int kMostNamed = 100;
 
 struct Walk {

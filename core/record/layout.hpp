@@ -1,6 +1,6 @@
 /// \file
-/// The groups of a record file, each with its way in and its way back (layout_*.cpp). The layout
-/// is described in docs/record-file.md. All functions throw HdfError.
+/// Writers and readers of the groups of a record file (layout_*.cpp). The layout is described in
+/// docs/record-file.md. All functions throw HdfError.
 #pragma once
 
 #include "core/record/hdf.hpp"
@@ -24,17 +24,17 @@ void read_identity(hid_t entry, Record& record);
 /// \return SHA-256 of the raw values as the file stores them (u16, u32 or f64, little-endian), hexadecimal.
 [[nodiscard]] std::string write_raw(hid_t entry, const Record& record, const ScanSource& scans);
 void read_raw(hid_t entry, Record& record);
-/// What read_raw() tells of the board, without the scans.
+/// The part of read_raw() about the board, without the scans.
 void read_quantity(hid_t entry, daq::BoardInfo& board);
 /// Throws unless scans, raw values and noise-free force are those of the source, to the last bit.
 void verify_scans(hid_t entry, const daq::BoardInfo& board, const ScanSource& scans);
 
 /// Second channel: columns of raw, and instrument/second. Expects both groups to be written.
 void write_second(hid_t entry, const Record& record, const ScanSource& scans);
-/// What is written there of the channel itself; sets header.board.second.
+/// Reads the settings of the channel; sets header.board.second.
 void read_second_channel(hid_t entry, Record& record);
 void read_second(hid_t entry, Record& record);
-/// Throws unless its codes are those of the source.
+/// Throws unless the codes of the second channel are those of the source.
 void verify_second(hid_t entry, const Record& record, const ScanSource& scans);
 
 void write_tables(hid_t entry, const Record& record);  ///< cycles, gaps, events

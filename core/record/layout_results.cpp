@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kReason = "reason";
 constexpr const char* kFindings = "findings";
-/// The last result that every record has; those after it came later.
+/// The last result in the oldest records; later results were added by newer versions.
 constexpr std::string_view kLastOfTheFirst = "scan_rate_measured";
 
 }  // namespace

@@ -1,6 +1,5 @@
 /// \file
-/// Tables with a row for each slip, of which there may be more than memory should hold: written and read
-/// piece by piece.
+/// Tables with a row for each slip, written and read piece by piece, since they may exceed memory.
 #pragma once
 
 #include <fmt/format.h>
@@ -19,10 +18,12 @@
 
 namespace stickslip::record {
 
-/// Rows that are in memory at a time: a chunk of the file, so that each is packed and unpacked once.
+/// Rows in memory at a time: one chunk of the file, so that each chunk is compressed and decompressed once.
 inline constexpr std::size_t kRowsPerPiece = ScanSource::kPiece;
 
-/// All of a column. \param column  ColumnWriter or TextColumnWriter. \param value_of  called with each row.
+/// Writes a whole column.
+/// \param column  ColumnWriter or TextColumnWriter.
+/// \param value_of  called with each row.
 template <typename Column, typename Row, typename ValueOf>
 void write_rows(Column& column, const base::LongColumn<Row>& rows, const ValueOf& value_of) {
   std::vector<std::invoke_result_t<const ValueOf&, const Row&>> piece;

@@ -14,7 +14,7 @@
 namespace stickslip::record {
 namespace {
 
-/// Written at once: where there is little room, some of it is used.
+/// Largest single write; small, so that a nearly full disk is still used.
 constexpr std::size_t kPiece = std::size_t{1} << 16U;
 
 /// Bytes of whole entries at the front, at least one entry, else about kPiece.
@@ -215,7 +215,7 @@ std::optional<std::string> PatientJournal::settle() {
   } else if (!trouble) {
     trouble = synced.error().message;
   }
-  // Nobody knows what of it is on the disk: all of it once more.
+  // After a failed sync it is unknown which part is on disk; all of it is written again.
   file_->cut_to(synced_size_);
   const std::lock_guard lock{mutex_};
   unsynced_.insert(unsynced_.end(), waiting_.begin(), waiting_.end());
@@ -234,7 +234,7 @@ std::optional<std::string> PatientJournal::stay() {
     case JournalFile::Place::kAnother:
       break;
   }
-  // Who finishes a journal removes it when its record has its name.
+  // The finaliser removes the journal after the record is published.
   std::error_code ignored;
   if (handed_over_ && std::filesystem::exists(record_of(path_), ignored)) return std::nullopt;
   return write_anew();

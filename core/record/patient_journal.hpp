@@ -1,16 +1,15 @@
 /// \file
-/// A journal that waits for the disk. Who records hands entries over and never meets the disk; who owns the
-/// disk writes what waits, tries again where it was refused, and says so.
+/// A journal buffered in memory. The storage thread adds entries and never accesses the disk. The disk thread
+/// writes them, and repeats and reports failed writes.
 ///
 ///     PatientJournal journal{path, header, memory};      // touches no file
 ///     journal.add_scans(first, raw, stamp);               // storage thread: into memory
 ///     if (const auto trouble = journal.settle()) …        // disk thread: onto the disk and synced, or why
 ///     not
 ///
-/// A journal whose path does not lead to it any more, because somebody removed or renamed it or its folder,
-/// is written anew from the open file.
+/// If the file or its folder is removed or renamed, the journal is written again from the open file.
 ///
-/// What does not fit into the memory is lost: scans become a gap with the cause storage-full.
+/// Entries that do not fit into memory are lost; lost scans become a gap with the cause storage-full.
 #pragma once
 
 #include <condition_variable>
@@ -30,13 +29,14 @@ namespace stickslip::record {
 /// Two threads: one adds, one writes.
 class PatientJournal {
  public:
-  /// \param path  made with its folders when it is first written; if something stands there then, under
-  /// another name (journal_name.hpp).
-  /// \param memory  bytes of entries that may wait. \param calls  outlive the journal.
+  /// \param path  created with its folders at the first write; under another name if it then exists
+  ///        (journal_name.hpp).
+  /// \param memory  limit of buffered entries, bytes.
+  /// \param calls  must outlive the journal.
   PatientJournal(std::filesystem::path path, RecordHeader header, std::size_t memory,
                  const FileCalls& calls = system_calls());
 
-  // The thread that adds. Contracts as in EntryBuilder. \return false: lost for want of memory.
+  // For the storage thread. Contracts as in EntryBuilder. \return false if lost for lack of memory.
 
   /// \param second  codes of the second channel: as many, or none if there is no such channel.
   bool add_scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp& stamp,
@@ -45,37 +45,39 @@ class PatientJournal {
   bool add_cycle(const detect::Cycle& cycle);
   bool add_anchor(const ClockAnchor& anchor);
   bool add_event(const Event& event);
-  /// Kept whatever the memory.
+  /// Added even if memory is full.
   void add_gap(const daq::Gap& gap);
-  /// The last entry, kept whatever the memory. Its status becomes incomplete if scans were lost.
+  /// The last entry; added even if memory is full. Its status becomes incomplete if scans were lost.
   void add_end(EndRecord end);
-  /// Waits, at most so long, until half of the memory is free. \return whether it is.
+  /// Blocks until half of the memory is free, at most `longest`. \return whether it is.
   bool wait_for_room(std::chrono::milliseconds longest) const;
 
-  /// Scans that were kept so far, and those that were lost for want of memory. Any thread, as the next.
+  /// Numbers of scans accepted and lost for lack of memory so far. These and the next two functions: any
+  /// thread.
   [[nodiscard]] std::int64_t kept_scan_count() const;
   [[nodiscard]] std::int64_t lost_scan_count() const;
-  /// Bytes that are not on the disk yet.
+  /// Bytes not written to the disk yet.
   [[nodiscard]] std::size_t waiting_size() const;
 
-  /// Where it stands or will stand; another name once something else stood at its path.
+  /// Present or future path; differs from the constructor's if that was occupied.
   [[nodiscard]] std::filesystem::path path() const;
 
-  // The thread that writes. \return why not all could be done; what was refused is kept.
+  // For the disk thread. \return reason of a failure; unwritten data stay buffered.
 
   [[nodiscard]] std::optional<std::string> write();
-  /// The same, and makes it durable. What an fsync refused is written again.
+  /// As write(), followed by a sync. Data of a failed sync are written again.
   [[nodiscard]] std::optional<std::string> settle();
-  /// Sees to it that the path leads to the journal: one that is gone is written anew, beside what stands
-  /// there now. Of a journal that was handed over, its record stands for it.
+  /// Checks that the path leads to the journal. If not, writes it again, under another name if the path is
+  /// occupied. After hand_over(), an existing record suffices.
   [[nodiscard]] std::optional<std::string> stay();
-  /// Times that it was written anew.
+  /// Number of times that the journal was written again.
   [[nodiscard]] int anew_count() const noexcept { return anew_count_; }
   /// Whether settle() has nothing to do. A journal that is not on the disk yet has its header to write.
   [[nodiscard]] bool settled() const { return file_ && unsynced_.empty() && waiting_size() == 0; }
-  /// After the last entry: the room that was reserved behind the end is free for others, such as the record.
+  /// After the last entry: releases the disk space reserved beyond the end, for example for the record.
   void give_room_back();
-  /// After it: others may finish the journal. It stays open, to be written anew if it vanishes before.
+  /// After that: releases the lock, so that the journal can be finalised. The file stays open, to be written
+  /// again if it disappears before.
   void hand_over();
 
  private:
@@ -97,7 +99,7 @@ class PatientJournal {
 
   // Adding.
   EntryBuilder builder_;
-  std::vector<LostScans> lost_;  ///< Not yet told by a gap.
+  std::vector<LostScans> lost_;  ///< Not yet reported by a gap.
 
   mutable std::mutex mutex_;  ///< Of the members up to the next comment.
   mutable std::condition_variable taken_;

@@ -1,6 +1,6 @@
 /// \file
-/// What a file may claim of scans and clocks. Who wrote it is not known; so it is asked where a claim is
-/// read, and differences and sums of what was read cannot overflow.
+/// Range checks of scan indices and clocks read from untrusted files, so that their sums and differences
+/// cannot overflow.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,16 @@
 
 namespace stickslip::record {
 
-/// The last whole number up to which a double, and so the time of a scan, tells each from the next. At 100
-/// kHz an acquisition gets there in 2855 years.
+/// Largest scan index accepted: a double, and so a scan's time, is exact up to it. At 100 kHz an acquisition
+/// reaches it in 2855 years.
 inline constexpr daq::ScanIndex kLastScan = std::int64_t{1} << 53;
 
-/// Throws std::invalid_argument naming the value and the limits, or gives back what it was given.
+/// Returns its argument, or throws std::invalid_argument naming the value and the limits.
 /// \{
 daq::ScanIndex possible(daq::ScanIndex scan);
-/// It begins at a possible scan and ends at one.
+/// Checks first and last scan.
 daq::Gap possible(const daq::Gap& gap);
-/// Neither clock of Linux can be set below zero.
+/// Checks the scan, and that both clocks are ≥ 0: Linux cannot set them below.
 daq::ClockAnchor possible(const daq::ClockAnchor& anchor);
 /// \}
 

@@ -1,5 +1,5 @@
 /// \file
-/// Reads finished records back, whole: everything that is needed to run the test again.
+/// Reads finished records: everything that is needed to repeat the analysis.
 #pragma once
 
 #include <filesystem>
@@ -11,17 +11,17 @@
 
 namespace stickslip::record {
 
-/// What can be computed from the raw values (results, cycles, flags) and what tells of them (gaps, events)
-/// may be missing from a file that was thinned out: it is then absent from the record as well. \return the
-/// record with `end` and `sha256` set. Errors are one line that names the file and what is wrong: kUsage if
-/// it is no HDF5 file, no record, another version, cut short, damaged or has data of other types or shapes;
-/// kBusy, kNoPermission or kFailure if it cannot be looked at, as open_shared().
+/// Reads a record. Objects that can be computed from the raw values (results, cycles, flags), gaps and events
+/// may be missing from a reduced file, and are then absent from the record.
+/// \return the record with `end` and `sha256` set. Errors are one line that names the file and what is wrong:
+/// kUsage if it is not an HDF5 file, not a record, of another version, truncated, damaged or has data of
+/// other types or shapes; kBusy, kNoPermission or kFailure if it cannot be opened, as open_shared().
 [[nodiscard]] base::Result<Record> read_record(const std::filesystem::path& path,
                                                const FileCalls& calls = system_calls());
 
-/// Reads the whole file back, its scans piece by piece. Errors: kUsage if anything in it makes no sense or
-/// its scans (index, raw value, noise-free force) are not those of the source, to the last bit; kFailure if
-/// it cannot be looked at.
+/// Verifies a file against the record and source it was written from, piece by piece. Errors: kUsage if the
+/// file is invalid or its scans (index, raw value, noise-free force) differ from the source in any bit;
+/// kFailure if it cannot be read.
 [[nodiscard]] base::Result<void> verify_record(const std::filesystem::path& path, const Record& record,
                                                const ScanSource& scans,
                                                const FileCalls& calls = system_calls());

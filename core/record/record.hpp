@@ -1,6 +1,6 @@
 /// \file
-/// What one record holds, in memory: the same for a journal, a finished HDF5 file and an
-/// imported trace. Names and units in the file: docs/record-file.md.
+/// Content of a record in memory, common to journals, HDF5 files and imported traces. Names and units in the
+/// file: docs/record-file.md.
 #pragma once
 
 #include <cstdint>
@@ -25,40 +25,40 @@ namespace stickslip::record {
 
 inline constexpr std::string_view kFormat = "stickslip-record";
 inline constexpr std::int64_t kFormatVersion = 2;
-inline constexpr std::int64_t kOldestFormatVersion = 1;  ///< That is still read.
+inline constexpr std::int64_t kOldestFormatVersion = 1;  ///< Oldest version that can be read.
 
-/// What is wrong with a file or journal of this version, for the file's name to stand before; empty: nothing.
+/// Reason why a file of this version cannot be read, without the file's name; empty if it can.
 [[nodiscard]] std::string version_refusal(std::int64_t version);
 
-/// How whole the record is.
+/// Completeness of a record.
 enum class Status {
   kComplete,     ///< The test ended and everything was written.
-  kInterrupted,  ///< The program stopped before the end of the test: told to, or killed.
-  kRecovered,    ///< Something was lost or repaired on the way; see the reasons.
+  kInterrupted,  ///< The program was stopped or killed before the end of the test.
+  kRecovered,    ///< Data were lost or repaired; see the reasons.
   /// Scans could not be stored (disk full), the board went away before the end of the test, or the journal
   /// was damaged.
   kIncomplete,
 };
 
-/// The word in files and messages.
+/// Name in files and messages.
 [[nodiscard]] std::string_view name(Status status) noexcept;
 [[nodiscard]] std::optional<Status> status_from_name(std::string_view text) noexcept;
 
-/// What is known about the tester; what is not known is absent, never a default.
+/// Facts about the tester. An unknown value is absent, never a default.
 struct TesterFacts {
   std::optional<double> sled_mass_kg;
   std::optional<double> gravity_m_per_s2;
   std::optional<double> pull_speed_m_per_s;
   std::optional<double> stiffness_N_per_m;
-  std::string speed_course;  ///< model::PullSpeed::text(); empty where the speed is not meant to change.
+  std::string speed_course;  ///< model::PullSpeed::text(); empty for a constant speed.
 
   [[nodiscard]] static TesterFacts of(const model::Tester& tester);
-  /// With model::Tester's defaults for what is absent.
+  /// Conversion; absent values get model::Tester's defaults.
   [[nodiscard]] model::Tester tester() const;
   bool operator==(const TesterFacts&) const = default;
 };
 
-/// Where the load cell's numbers come from; empty or absent where nobody said.
+/// Origin of the load cell's calibration; empty or absent if unknown.
 struct CalibrationFacts {
   std::string date;  ///< ISO 8601.
   std::string certificate;
@@ -66,19 +66,19 @@ struct CalibrationFacts {
   std::optional<double> zero_standard_error_V;
   std::optional<double> residual_V;    ///< Standard deviation of the weights' readings about the line.
   std::optional<double> hysteresis_V;  ///< As daq::LoadCellFit.
-  std::string expires;                 ///< ISO 8601: from then on a new one is due.
-  // One element for each weight that was hung, in that order; all empty where nobody said.
+  std::string expires;                 ///< ISO 8601; date of expiry.
+  // One element for each weight, in the order of hanging; all empty if unknown.
   std::vector<double> mass_kg;
   std::vector<double> force_N;
   std::vector<double> voltage_V;
   std::vector<double> voltage_standard_error_V;
-  std::vector<double> point_residual_V;  ///< Off the line.
-  std::vector<std::string> refused;      ///< Why it does not count; empty: it does.
+  std::vector<double> point_residual_V;  ///< Deviation from the line.
+  std::vector<std::string> refused;      ///< Reason of a refusal; empty if accepted.
 
   bool operator==(const CalibrationFacts&) const = default;
 };
 
-/// How the test was to be found in the force (pipeline::SegmenterSettings); absent where nobody looked.
+/// Settings of the segmenter (pipeline::SegmenterSettings); absent if it was not used.
 struct PlanFacts {
   std::optional<double> start_coefficient;
   std::optional<double> start_dwell_s;
@@ -86,36 +86,36 @@ struct PlanFacts {
   std::optional<double> end_coefficient;
   std::optional<double> end_dwell_s;
   std::optional<double> no_motion_dwell_s;
-  /// What the unloaded cell read before the test; trigger and end are above it. Absent where it is not known.
+  /// Level of the unloaded cell before the test, to which trigger and end are relative; absent if unknown.
   std::optional<double> unloaded_level{};
 
   bool operator==(const PlanFacts&) const = default;
 };
 
-/// The sheet under the sled; empty where nobody said.
+/// Facts about the sample; empty if unknown.
 struct SampleFacts {
   std::string name;
   std::string grade;
   std::string direction;
   std::string side;
   std::optional<std::int64_t> replicate;  ///< From 1.
-  std::optional<std::int64_t> slide;      ///< Which pull of the same sheet, from 1.
+  std::optional<std::int64_t> slide;      ///< Number of the pull of this sheet, from 1.
   std::string batch;                      ///< Identifier of the batch that the test was planned in.
   std::string operator_name;
 
   bool operator==(const SampleFacts&) const = default;
 };
 
-/// Which program made the record, and told to do what.
+/// Program that made the record, with its settings.
 struct ProcessFacts {
   std::string program;
   std::string version;
   std::string commit;
-  std::string configuration;  ///< The configuration file as it was read, whole.
+  std::string configuration;  ///< Complete text of the configuration file.
   std::string estimator;      ///< Tier of the estimators.
   std::string method;         ///< Preset of the traditional rule.
-  std::string kept;           ///< Of spikes, drift and the first slip, analysis::text_of(); empty: nothing.
-  /// What was known of the tester beforehand: the file of its characterisation, whole; empty: nothing.
+  std::string kept;           ///< Corrections left out, analysis::text_of(Kept); empty: none.
+  /// Complete text of the tester's characterisation file; empty: none.
   std::string characterisation;
   std::string realtime;    ///< Scheduling and memory locking that were granted.
   std::string simulation;  ///< Method, accuracy, extent and time of a simulation without a clock.
@@ -137,12 +137,12 @@ struct RecordHeader {
   SampleFacts sample;
   ProcessFacts process;
   PlanFacts plan;
-  std::optional<daq::SelfCheck> self_check;  ///< Absent where nothing was looked at before the test.
+  std::optional<daq::SelfCheck> self_check;  ///< Absent without idle scans before the test.
 };
 
 using daq::ClockAnchor;
 
-/// Something a person should know about, at a scan of the test.
+/// Event at a scan of the test, as text for the user.
 struct Event {
   daq::ScanIndex scan = 0;
   std::int64_t realtime_ns = 0;
@@ -151,7 +151,7 @@ struct Event {
   bool operator==(const Event&) const = default;
 };
 
-/// EndRecord::cause of a test that the program did not live to end.
+/// EndRecord::cause of a test during which the program died.
 inline constexpr std::string_view kProgramDied = "program-died";
 /// The reason for Status::kInterrupted.
 inline constexpr std::string_view kInterruptedWhy = "the program stopped before the end of the test";
@@ -160,11 +160,11 @@ inline constexpr std::string_view kInterruptedWhy = "the program stopped before 
 struct EndRecord {
   Status status = Status::kComplete;
   std::vector<std::string> reasons;  ///< Why the status is not complete.
-  std::string cause;                 ///< Why the test was over: pipeline::name(EndCause), or kProgramDied.
+  std::string cause;                 ///< Cause of the end: pipeline::name(EndCause), or kProgramDied.
   std::optional<std::int64_t> end_realtime_ns;  ///< realtime_at() the end of the last scan.
   std::optional<double> compute_time_s;
   std::optional<daq::LatencyHistogram> read_latency;  ///< How late the blocks were read.
-  /// What the unloaded cell read at the end; absent unless the test ended by unloading, and quietly.
+  /// Level of the unloaded cell at the end; absent unless the test ended by unloading with a quiet force.
   std::optional<double> unloaded_level{};
   analysis::TestResults results;
   base::LongColumn<detect::Cycle> cycles;  ///< Final; replaces those noted during the test.
@@ -172,15 +172,15 @@ struct EndRecord {
   std::optional<model::TestTruth> truth;
 };
 
-/// When the scan was taken, since 1970: the start of the test and the scans since at the granted rate,
-/// whatever the clock did in between. None if the start is not known, or no clock could show the time.
+/// Time of a scan since 1970, ns: start of the test plus scans at the granted rate, independent of later
+/// clock steps. Nullopt if the start is unknown or the time is out of range.
 [[nodiscard]] std::optional<std::int64_t> realtime_at(const RecordHeader& header,
                                                       daq::ScanIndex scan) noexcept;
 
-/// Why a result is absent that the program that made the record did not know.
+/// Reason of a result's absence in a record of an older version.
 inline constexpr std::string_view kNoSuchResultThen = "the record was made before there was this result";
 
-/// Results of a test that could not be evaluated: every one absent for `reason`.
+/// Results of a test that could not be evaluated: all absent, with `reason`.
 [[nodiscard]] analysis::TestResults absent_results(const std::string& reason);
 
 /// One test. scan and raw have equal lengths; scan rises strictly, a jump is a gap.
@@ -188,7 +188,7 @@ struct Record {
   RecordHeader header;
   std::vector<daq::ScanIndex> scan;  ///< Index of the acquisition.
   std::vector<double> raw;           ///< In board.quantity.
-  /// Noise-free force of each scan (model::TrueForce), NaN where not known; empty if of none.
+  /// Noise-free force of each scan (model::TrueForce), NaN if unknown; empty if unknown for all.
   std::vector<double> true_coefficient;
   /// Code of the second channel of each scan, daq::SecondChannel::kNoCode where it did not arrive; empty
   /// unless header.board.second.

@@ -1,6 +1,6 @@
 /// \file
-/// The scans of a record piece by piece, wherever they are: so that a file is built and verified in the
-/// same memory however long the test was.
+/// Source of a record's scans, piece by piece, from memory or a file. Files are thus built and verified in
+/// constant memory.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ struct ScanPiece {
   std::span<const double> raw;
 };
 
-/// Gives the same each time it is asked. All functions may throw std::exception where a file is read.
+/// Repeated calls give the same data. All functions may throw std::exception if a file is read.
 class ScanSource {
  public:
   /// Rows of a piece, all but the last: 100 s at 350 scans/s, and a chunk of the file.
@@ -31,17 +31,17 @@ class ScanSource {
   /// Scan periods from the first scan to the end of the last; 0 if there is none.
   [[nodiscard]] virtual std::int64_t extent() const = 0;
   virtual void for_each_piece(const std::function<void(const ScanPiece&)>& use) const = 0;
-  /// The noise-free force is known.
+  /// Whether the noise-free force is available.
   [[nodiscard]] virtual bool has_force() const = 0;
   /// As many values as scans, in pieces of the same lengths; NaN where not known.
   virtual void for_each_force_piece(const std::function<void(std::span<const double>)>& use) const = 0;
-  /// There are codes of a second channel.
+  /// Whether codes of a second channel are available.
   [[nodiscard]] virtual bool has_second() const = 0;
   /// As many codes as scans, in pieces of the same lengths; daq::SecondChannel::kNoCode where none came.
   virtual void for_each_second_piece(const std::function<void(std::span<const std::int32_t>)>& use) const = 0;
 };
 
-/// Those of a record in memory, which outlives it.
+/// Source on a record in memory, which must outlive it.
 class RecordScans final : public ScanSource {
  public:
   explicit RecordScans(const Record& record) : record_(record) {}

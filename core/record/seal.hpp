@@ -1,6 +1,5 @@
 /// \file
-/// The seal of a record: how many scans were committed, and a checksum of the whole file that stands inside
-/// it.
+/// The seal of a record: the number of scans, and a checksum of the whole file, stored inside it.
 ///
 ///     { … write_seal(entry, scan_count); }   // while the file is built
 ///     seal_file(path);                       // after it is closed
@@ -21,20 +20,23 @@
 
 namespace stickslip::record {
 
-/// Into the group process, which exists: scan_count and room for the checksum. Throws HdfError.
+/// Writes scan_count and a placeholder for the checksum into the group process, which must exist. Throws
+/// HdfError.
 void write_seal(hid_t entry, std::size_t scan_count);
 
-/// Puts the checksum into a closed file with write_seal() and syncs it. Errors: kFailure.
+/// Writes the checksum into a closed file that has a placeholder from write_seal(), and syncs it. Errors:
+/// kFailure.
 [[nodiscard]] base::Result<void> seal_file(const std::filesystem::path& path, const FileCalls& calls);
 
 enum class Seal {
   kSound,
   kBroken,  ///< At least one bit of the file is not what was published.
   kOpen,    ///< The file was left before it was sealed.
-  kNone,    ///< Made before there were seals.
+  kNone,    ///< Made by a version without seals.
 };
 
-/// \param file  that `entry` is in. Throws HdfError where the file cannot be read.
+/// \param file  that contains `entry`.
+/// \throws HdfError if the file cannot be read.
 [[nodiscard]] Seal check_seal(hid_t entry, const GivenFile& file);
 
 }  // namespace stickslip::record

@@ -1,6 +1,6 @@
 /// \file
-/// What a sweep found, in memory: a scene run at every point of a grid, several times each.
-/// Runs are numbered from 0 on, repetitions of one point first, the last axis next.
+/// Results of a sweep: a scene run several times at every point of a grid. Runs are numbered from 0 on,
+/// repetitions of one point first, the last axis next.
 #pragma once
 
 #include <cstddef>
@@ -22,20 +22,20 @@ struct SweepAxis {
   std::string key;                 ///< Its dotted path.
   std::string unit;                ///< Of the values, as it was asked for; "1" if there is none.
   std::vector<double> values;      ///< In this unit; for words 0, 1, …
-  std::vector<std::string> words;  ///< What the values stand for; empty if they are numbers.
+  std::vector<std::string> words;  ///< Texts that the values number; empty for numeric values.
 
   bool operator==(const SweepAxis&) const = default;
 };
 
-/// What was asked for, and by whom it was done: all that decides the numbers.
+/// Request and program version of a sweep: everything that determines its results.
 struct SweepFacts {
   std::string version;     ///< Of the program.
   std::string commit;      ///< Of the program.
-  std::string command;     ///< Without what changes no number: output, threads.
+  std::string command;     ///< Without options that do not affect results: output, threads.
   std::string method;      ///< Preset of the traditional rule.
   std::string scene_name;  ///< Of the file.
-  std::string scene_text;  ///< The scene of the first point, whole.
-  std::uint64_t seed = 0;  ///< From which, and its number, each run has its own.
+  std::string scene_text;  ///< Complete text of the scene at the first point.
+  std::uint64_t seed = 0;  ///< Base seed; each run's seed follows from it and the run's number.
   std::vector<SweepAxis> axes;
   std::int64_t repeat = 1;  ///< Runs at each point; at least 1.
 
@@ -45,12 +45,12 @@ struct SweepFacts {
   [[nodiscard]] std::vector<std::size_t> indices_of(std::int64_t point) const;
 };
 
-/// One run, with its truth but for lists and texts.
+/// One run; its truth has no lists and texts.
 struct SweepRun {
   std::int64_t number = 0;
   analysis::TestResults results;
   model::TestTruth truth;
-  std::int64_t true_cycle_count = 0;  ///< Slips, those after the pull too.
+  std::int64_t true_cycle_count = 0;  ///< Number of true slips, including those after the pull.
 };
 
 /// The runs by columns: about 700 bytes each.
@@ -79,7 +79,7 @@ class SweepTable {
   /// \param name must be that of a result or truth.
   [[nodiscard]] const Result& result(std::string_view name) const;
   [[nodiscard]] const Truth& truth(std::string_view name) const;
-  /// The first is empty: there is a value.
+  /// Distinct reasons; the first is empty and means that there is a value.
   [[nodiscard]] const std::deque<std::string>& reasons() const noexcept { return reasons_; }
   /// Indices of model::kRegimeNames.
   [[nodiscard]] const std::vector<std::uint8_t>& regime() const noexcept { return regime_; }

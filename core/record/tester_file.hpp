@@ -1,6 +1,6 @@
 /// \file
-/// The characterisation of a tester as a file, kept like a calibration: `stickslip characterise` writes it,
-/// `stickslip analyze --tester` reads it.
+/// File of a tester's characterisation. `stickslip characterise` writes it, `stickslip analyze --tester`
+/// reads it.
 #pragma once
 
 #include <filesystem>
@@ -12,13 +12,14 @@
 
 namespace stickslip::record {
 
-/// TOML with a comment on each key. \param date  ISO 8601, of the latest ring-down; empty if unknown.
+/// Text of the file: TOML with a comment on each key.
+/// \param date  ISO 8601, of the latest ring-down; empty if unknown.
 [[nodiscard]] std::string tester_text(const analysis::Characterisation& characterisation,
                                       std::string_view date);
 
-/// Errors: kUsage with file and line, as for every settings file.
+/// Reads a characterisation file. Errors: kUsage with file and line.
 [[nodiscard]] base::Result<estimate::SharedPrior::Coupling> load_tester(const std::filesystem::path& file);
-/// The same from text. \param name  stands for the file in messages.
+/// Parses the text of a characterisation file. \param name  stands for the file in messages.
 [[nodiscard]] base::Result<estimate::SharedPrior::Coupling> parse_tester(std::string_view text,
                                                                          std::string_view name);
 

@@ -1,5 +1,5 @@
 /// \file
-/// What is to be said of a file that ought to hold a test: complete or not, and why.
+/// Verdict about a record or journal: complete, incomplete or damaged, with findings.
 ///
 ///     const Verdict verdict = judge(path);
 ///     if (verdict.judgement == Judgement::kDamaged) for (const Finding& finding : verdict.findings) …
@@ -20,9 +20,9 @@ namespace stickslip::record {
 
 enum class Judgement {
   kComplete,    ///< A finished record: everything is there and agrees with everything else.
-  kIncomplete,  ///< Sound, but something is missing for a reason that it says.
-  kDamaged,     ///< It contradicts its checksums or itself, or is cut short.
-  kNotJudged,   ///< No file, none of a kind and version that this program reads, or it cannot be looked at.
+  kIncomplete,  ///< Undamaged, but data are missing; the file states the reason.
+  kDamaged,     ///< Checksums or contents are inconsistent, or the file is truncated.
+  kNotJudged,   ///< The file does not exist, has an unknown kind or version, or cannot be read.
 };
 
 [[nodiscard]] std::string_view name(Judgement judgement) noexcept;
@@ -42,11 +42,11 @@ struct Verdict {
   std::string kind;  ///< "record" or "journal"; empty if it is neither.
   std::optional<std::int64_t> format_version;
   std::optional<std::int64_t> scans_present;
-  std::optional<std::int64_t> scans_committed;  ///< As the finaliser counted them.
-  std::string status;                           ///< As the file says it.
+  std::optional<std::int64_t> scans_committed;  ///< Number counted by the finaliser.
+  std::string status;                           ///< Status stated in the file.
   std::vector<daq::Gap> gaps;
-  std::string sha256_stored;  ///< Of the raw values,
-  std::string sha256_found;   ///< and of those that stand there.
+  std::string sha256_stored;  ///< Checksum of the raw values stored in the file.
+  std::string sha256_found;   ///< Checksum computed from the raw values.
   std::vector<Finding> findings;
 
   void note(std::string_view place, std::string_view text) { add(Finding::Weight::kNote, place, text); }
@@ -56,15 +56,14 @@ struct Verdict {
   void damage(std::string_view place, std::string_view text) { add(Finding::Weight::kDamage, place, text); }
 
  private:
-  /// Both may cite what stands in the file.
+  /// Adds a finding; both texts may quote the file and are made printable.
   void add(Finding::Weight weight, std::string_view place, std::string_view text) {
     findings.push_back({weight, base::one_line(place, place.size()), base::one_line(text, text.size())});
   }
 };
 
-/// Any file: reads every byte of a record and every entry of a journal. A file made to deceive HDF5 may still
-/// end the process; who judges strangers' files does so in a process of its own (io/verify.hpp). Throws
-/// only std::bad_alloc.
+/// Judges any file: reads every byte of a record and every entry of a journal. A malicious file may crash
+/// HDF5, so judge untrusted files in a separate process (io/verify.hpp). Throws only std::bad_alloc.
 [[nodiscard]] Verdict judge(const std::filesystem::path& path, const FileCalls& calls = system_calls());
 
 }  // namespace stickslip::record

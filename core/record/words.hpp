@@ -1,5 +1,5 @@
 /// \file
-/// Enumerators by the words that stand for them in files.
+/// Names of enumerators in files.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace stickslip::record {
 
-/// What the raw values are called, and their unit.
+/// Name and unit of the raw values.
 struct QuantityName {
   std::string_view name;  ///< Of the data set and in JSON.
   std::string_view unit;

@@ -10,19 +10,20 @@ namespace stickslip::signal {
 namespace {
 
 constexpr std::size_t kMiddle = kCubicWindow / 2;
-/// Part of the misfit that one outlier may leave unexplained. Of noise-free courses without a spike the
-/// middle alone leaves: a corner 0.14, a step 0.22, a jump of the curvature 0.38, a cosine of 4 scans a cycle
-/// 0.49.
+/// Largest unexplained part of the misfit: one or two outliers must explain the rest. It excludes noise-free
+/// signals without a spike, of which an outlier in the middle leaves unexplained: 0.14 of a corner, 0.22 of a
+/// step, 0.38 of a jump of the curvature, 0.49 of a cosine of 4 scans a cycle.
 constexpr double kUnexplained = 0.05;
-/// What noise leaves of seven scans without one and a cubic: χ² with two degrees of freedom, 99 %.
+/// Misfit in σ² that noise alone leaves after a cubic and one outlier are fitted to seven scans: 99 %
+/// quantile of χ² with two degrees of freedom.
 constexpr double kNoiseLeaves = 9.21;
-/// Two outliers leave one degree of freedom, which says little. They must be larger than this many second
-/// differences of what is left: 0.8 is the largest for a cosine of 4.5 scans a cycle or more, 0.9 for
-/// corners, 1.0 for a fall within two scans.
+/// Smallest height of two outliers, relative to the largest second difference of the repaired window. The
+/// misfit alone does not suffice for two, since one degree of freedom is left. Signals without a spike reach
+/// at most 0.8 (a cosine of 4.5 scans a cycle or more), 0.9 (corners), 1.0 (a fall within two scans).
 constexpr double kCurvatures = 1.5;
 
-/// Rows: the orthonormal polynomials of degree 4, 5 and 6 over seven points, which a cubic cannot follow.
-/// [Table of orthogonal polynomials: Fisher and Yates, Statistical Tables, 1938]
+/// Projection on the misfit of a cubic. Rows: the orthonormal polynomials of degree 4, 5 and 6 over seven
+/// points. [Table of orthogonal polynomials: Fisher and Yates, Statistical Tables, 1938]
 const Eigen::Matrix<double, 3, 7>& beyond_cubic() noexcept {
   static const Eigen::Matrix<double, 3, 7> kRows = [] {
     Eigen::Matrix<double, 3, 7> rows;

@@ -1,5 +1,5 @@
 /// \file
-/// Which scans of seven spoil a cubic through them?
+/// Outlier test: deviation of the middle of seven scans from a cubic.
 #pragma once
 
 #include <cstddef>
@@ -8,15 +8,17 @@
 
 namespace stickslip::signal {
 
-/// Scans of a window for CubicOutlier.
+/// Scans of a window.
 inline constexpr std::size_t kCubicWindow = 7;
 
-/// An outlier must be worth this many standard deviations: noise alone is in 6 of ten million scans.
+/// Smallest significance of an outlier, in standard deviations; noise alone exceeds it in 6 of ten million
+/// scans.
 inline constexpr double kOutlierSigmas = 5.0;
 
-/// Surely no outlier: what a cubic leaves of the seven is worth less. By the orthogonal polynomials of degree
-/// 4, 5 and 6 over seven points [Fisher and Yates, Statistical Tables, 1938], in few operations, for every
-/// scan; so close to the limit that roundings count it says no, and cubic_outlier() decides.
+/// Fast path: true if the window certainly has no outlier, since its misfit to a cubic is below
+/// kOutlierSigmas. Computed from the orthogonal polynomials of degree 4, 5 and 6 over seven points [Fisher
+/// and Yates, Statistical Tables, 1938]. Within rounding errors of the limit it returns false;
+/// cubic_outlier() then decides.
 [[nodiscard]] inline bool follows_a_cubic(std::span<const double, kCubicWindow> v, double sigma) noexcept {
   constexpr double kRoundings = 1e-9;
   const double outer = v[0] + v[6];
@@ -30,10 +32,12 @@ inline constexpr double kOutlierSigmas = 5.0;
   return all <= (1.0 - kRoundings) * kOutlierSigmas * kOutlierSigmas * sigma * sigma;
 }
 
-/// Is the middle of seven equidistant values an outlier of the cubic that fits the others best? Tried are
-/// the middle, each after it, and each two of these, for a price of (5 σ)² an outlier: values before the
-/// middle are taken to be sound. \param sigma  standard deviation of the noise of one value. \return what to
-/// subtract from the middle; nothing if it is sound or if the answer is not clear.
+/// Tests whether the middle of seven equidistant values is an outlier of the cubic through the others. The
+/// candidates are the middle, each value after it, and each pair of these, with a penalty of (5 σ)² for each
+/// outlier. Values before the middle must be repaired already.
+/// \param sigma  standard deviation of the noise of one value.
+/// \return height of the outlier, to be subtracted from the middle; nullopt if it is none or if the result is
+/// ambiguous.
 [[nodiscard]] std::optional<double> cubic_outlier(std::span<const double, kCubicWindow> window,
                                                   double sigma) noexcept;
 

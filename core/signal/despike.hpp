@@ -21,22 +21,23 @@ struct DespikedScan {
   bool spike = false;
 };
 
-/// Two tests, either of which suffices.
+/// Detects spikes by two tests; a scan that either of them finds is a spike.
 ///
 /// Hampel identifier over five scans [Hampel, J. Am. Stat. Assoc. 69 (1974) 383]: a scan is a
 /// spike if it is farther from the median of itself and two neighbours on each side than three
-/// scaled median absolute deviations and than five standard deviations of the scan noise. The
-/// first limit spares curved parts of the trace (at a peak the five differ by more than the noise),
-/// the second spares flat ones. It finds what stands out of a flat trace, several in a row too, but on
-/// a slope of an oscillation the five differ by so much that a spike as large as the amplitude passes.
+/// scaled median absolute deviations and than five standard deviations of the scan noise. The first limit
+/// protects curved parts of the trace (at a peak the five differ by more than the noise), the second flat
+/// ones. The test finds spikes on a flat trace, up to two in a row. On the slope of an oscillation the five
+/// differ so much that it misses a spike as large as the amplitude.
 ///
-/// Outlier of a cubic over seven scans, three on each side, for those: at 17.5 scans a cycle a cubic
-/// leaves 0.4 % of an amplitude. Of the seven, that one scan is left out, or those two from the middle on,
-/// without which the cubic fits best; each must be worth five standard deviations and explain all but a
-/// small part of the misfit, which neither corners nor steps nor few scans a cycle can (from 5 on; below, the
-/// noise found is that of the oscillation). Scans before the middle enter repaired.
+/// Outlier of a cubic over seven scans, three on each side, for spikes on slopes: at 17.5 scans a cycle a
+/// cubic leaves 0.4 % of the amplitude. One scan, or two from the middle on, are outliers if the cubic fits
+/// the others best, each exceeds five standard deviations, and they explain nearly all of the misfit.
+/// Corners, steps and oscillations with at least 5 scans a cycle fail the last condition (with fewer, the
+/// estimated noise is that of the oscillation). Scans before the middle enter repaired.
 ///
-/// Delay three scans; three at each end are judged by the first test alone. Does not allocate.
+/// The delay is three scans. The three scans at each end are tested by the first test only. Does not
+/// allocate.
 class Despiker {
  public:
   /// \param sigma  standard deviation of the noise of one scan (NoiseEstimator).
@@ -45,14 +46,14 @@ class Despiker {
     if (size_ == kWidth) return judge_middle(sigma);
     return begin(sigma);
   }
-  /// The scans still inside, one a call; then nothing, and the filter is empty again.
+  /// Returns the remaining scans, one per call; then nullopt, and the filter is empty.
   [[nodiscard]] std::optional<DespikedScan> flush(double sigma) noexcept;
 
  private:
   static constexpr std::size_t kWidth = 7;
   static constexpr std::size_t kDelay = 3;
 
-  /// As the window fills.
+  /// While the window fills.
   [[nodiscard]] std::optional<DespikedScan> begin(double sigma) noexcept;
   /// With three on each side.
   [[nodiscard]] DespikedScan judge_middle(double sigma) noexcept;
@@ -61,7 +62,7 @@ class Despiker {
 
   SlidingWindow<kWidth> window_;  ///< The newest `size_` are in use; judged ones repaired.
   std::size_t size_ = 0;
-  std::size_t judged_ = 0;  ///< Leading scans of the window that have been given out.
+  std::size_t judged_ = 0;  ///< Leading scans of the window that were returned already.
 };
 
 }  // namespace stickslip::signal

@@ -1,15 +1,15 @@
 /// \file
-/// Where a course of values was last above, or first below, any level that is asked for afterwards, in a
-/// memory that does not grow with the course.
+/// Position at which a sequence of values was last above, or first below, a level that is given afterwards;
+/// in bounded memory.
 ///
 ///     LastAbove above;
 ///     for (…) above.add(position, value);
 ///     const auto position = above.find(level);
 ///
-/// Only values that nothing behind (LastAbove) or before (FirstBelow) them outdoes can ever be the answer:
-/// stairs, of which stationary noise has about ln n after n values, and a clean fall one for each value.
-/// While kMostSteps suffice the answers are exact. Beyond that neighbours are merged: an answer is then off
-/// by less than 2/(kMostSteps − 2) of the course, 0.1 %.
+/// Only a value that no later one reaches (LastAbove), or no earlier one undercuts (FirstBelow), can be an
+/// answer. These values form a staircase. Stationary noise has about ln n steps after n values, a monotone
+/// fall one for each value. Up to kMostSteps steps the answers are exact. Beyond that neighbours are merged,
+/// and the error of an answer is below 2/(kMostSteps − 2) of the length, 0.1 %.
 #pragma once
 
 #include <cstddef>
@@ -19,22 +19,22 @@
 
 namespace stickslip::signal {
 
-/// Most steps of the stairs that are kept; 32 kB.
+/// Largest number of stored steps; 32 kB.
 inline constexpr std::size_t kMostSteps = 2048;
 
-/// A value of the course. Without initial values: stairs have room for many and write those they use.
+/// A value with its position. Members have no initial values, since an array of steps is only partly used.
 struct CourseStep {
   std::size_t position;
   double value;
 };
 
-/// Steps with rising positions and falling values, no more than kMostSteps. When they are too many, positions
-/// are divided into cells, twice as wide each time, and of each cell one step is kept: m steps in different
-/// cells of w positions are more than (m − 2) w positions long, so that w < 2 · length/(kMostSteps − 2).
-/// Allocates when it is made and never again. Move-only; one that was moved from can only be assigned to.
+/// Steps with rising positions and falling values, no more than kMostSteps. When they are too many, the
+/// positions are divided into cells, whose width doubles each time, and one step of each cell is stored. m
+/// steps in different cells of width w span more than (m − 2) w positions, so that w < 2 · length/(kMostSteps
+/// − 2). Allocates only in the constructor. Move-only; a moved-from object can only be assigned to.
 class Stairs {
  public:
-  /// Which step of a cell is kept.
+  /// Which step of a cell is stored.
   enum class Keep { kFirst, kLast };
 
   explicit Stairs(Keep keep)
@@ -44,7 +44,7 @@ class Stairs {
     size_ = 0;
     cell_bits_ = 0;
   }
-  /// Behind and below the last one.
+  /// Appends a step, which must lie after and below the last one.
   void push(std::size_t position, double value) noexcept {
     if (cell_bits_ == 0 && size_ < kMostSteps) {
       CourseStep& step = steps_[size_++];
@@ -86,9 +86,9 @@ class LastAbove {
     while (!stairs_.empty() && stairs_.lowest() <= value) stairs_.pop();
     stairs_.push(position, value);
   }
-  /// Puts a later part of the course behind this one and empties it. Amortised O(1) for each value.
+  /// Appends a later part of the sequence and empties it. Amortised O(1) for each value.
   void take(LastAbove& later) noexcept;
-  /// Nothing if no value is above the level. At most as late as the exact answer.
+  /// Last position above the level, or an earlier one after merging; nullopt if no value is above.
   [[nodiscard]] std::optional<std::size_t> find(double level) const noexcept;
 
  private:
@@ -104,7 +104,7 @@ class FirstBelow {
     if (!stairs_.empty() && !(value < stairs_.lowest())) return;
     stairs_.push(position, value);
   }
-  /// Nothing if no value is below the level. At least as late as the exact answer.
+  /// First position below the level, or a later one after merging; nullopt if no value is below.
   [[nodiscard]] std::optional<std::size_t> find(double level) const noexcept;
 
  private:

@@ -13,8 +13,8 @@ constexpr double kGaussianMad = 0.6744897501960817;
 /// √70: gain of the fourth difference for white noise.
 constexpr double kFourthDifferenceGain = 8.366600265340756;
 
-/// Part by which a block's median differs from that of all blocks at most, nearly always: its standard
-/// deviation is √(1/4/64)/0.636 = 0.098 σ, 15 % of it.
+/// Relative distance of a block's median from that of all blocks that is hardly ever exceeded: two standard
+/// deviations, each √(1/4/64)/0.636 = 0.098 σ or 15 % of the median.
 constexpr double kNearly = 0.3;
 
 /// signal::median() with a guess, which only saves time: nth_element stumbles over noise at every second

@@ -1,5 +1,5 @@
 /// \file
-/// How noisy are single scans? Measured from the trace itself, whatever moves slowly in it.
+/// Standard deviation of a scan's noise, estimated from the trace itself, independent of slow motion in it.
 ///
 ///     double sigma = scan_noise(values, step / std::sqrt(12.0));
 #pragma once
@@ -16,13 +16,13 @@ namespace stickslip::signal {
 /// Standard deviation of white noise on single scans, from fourth differences: these let pass
 /// (2 sin(π f/fs))⁴ of a sinusoid's amplitude, 1.7 % at 17.5 scans a cycle, and √70 of the noise
 /// [Σ binomial(4,k)² = 70]. Robust: the median absolute difference of blocks of 64, over 0.6745
-/// (its value for unit Gaussian noise), then the median over blocks, so that neither spikes nor
-/// slips count. Streaming, O(1) memory and bounded time per scan; does not allocate.
+/// (its value for unit Gaussian noise), then the median over blocks, so that spikes and slips have no effect.
+/// Streaming, O(1) memory and bounded time per scan; does not allocate.
 class NoiseEstimator {
  public:
   static constexpr std::size_t kBlock = 64;
 
-  /// \param floor  smallest answer: what one A/D step alone makes, step/√12.
+  /// \param floor  smallest estimate: the rounding noise of one A/D step, step/√12.
   explicit NoiseEstimator(double floor) noexcept;
 
   void add(double value) noexcept {
@@ -33,10 +33,10 @@ class NoiseEstimator {
     block_[in_block_++] = std::abs(fourth_difference);
     if (in_block_ == kBlock) close_block();
   }
-  /// Forgets the neighbours (not the estimate): differences do not reach across a gap.
+  /// To be called at a gap: no difference spans it. The estimate is unchanged.
   void gap() noexcept { seen_ = 0; }
 
-  /// A block is complete, so sigma() has been measured.
+  /// Whether at least one block is complete, so that sigma() is measured.
   [[nodiscard]] bool known() const noexcept { return block_count_ > 0; }
   /// Standard deviation of one scan; the floor until known().
   [[nodiscard]] double sigma() const noexcept { return sigma_; }
@@ -54,15 +54,16 @@ class NoiseEstimator {
   std::size_t seen_ = 0;
   std::array<double, kBlock> block_{};
   std::size_t in_block_ = 0;
-  std::array<double, kBlocks> medians_{};  ///< In the order of time, round and round.
+  std::array<double, kBlocks> medians_{};  ///< In the order of time; a ring buffer.
   std::array<double, kBlocks> sorted_{};   ///< The same in the order of size.
   std::size_t block_count_ = 0;
 };
 
-/// Fewest scans that tell their noise: one block of fourth differences.
+/// Fewest scans for an estimate: one block of fourth differences.
 inline constexpr std::size_t kFewestScansForNoise = 68;
 
-/// The same for a whole trace. \return the floor if there are fewer than kFewestScansForNoise values.
+/// Noise of a whole trace, by NoiseEstimator.
+/// \return the floor if there are fewer than kFewestScansForNoise values.
 /// \tparam Values  any range of double.
 template <typename Values>
 [[nodiscard]] double scan_noise(const Values& values, double floor) {

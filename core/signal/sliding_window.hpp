@@ -1,5 +1,5 @@
 /// \file
-/// The newest few values of a stream, side by side.
+/// The latest few values of a stream, contiguous in memory.
 #pragma once
 
 #include <algorithm>
@@ -9,9 +9,9 @@
 
 namespace stickslip::signal {
 
-/// The last kWidth values, oldest first; zeros before the first. They move through a room of several widths
-/// and only now and then back to its begin: to shift them at each scan would cost more than most tests of
-/// them.
+/// The last kWidth values, oldest first; zeros before the first. The window moves through a buffer of several
+/// widths and is copied back to its start only at the end: shifting at each scan would cost more than most
+/// uses of the window.
 template <std::size_t kWidth>
 class SlidingWindow {
  public:

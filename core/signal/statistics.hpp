@@ -1,5 +1,5 @@
 /// \file
-/// Order statistics that every part of the detector shares.
+/// Medians, and running means and variances.
 #pragma once
 
 #include <algorithm>
@@ -23,11 +23,11 @@ inline constexpr double kRoundingSigma = 0.28867513459481287;
   return *middle;
 }
 
-/// Up to this many values a median sorts copies of them; of more it bisects, in memory that does not grow.
+/// Largest number of values that median_of() copies and sorts; for more it bisects, in constant memory.
 inline constexpr std::size_t kMostSorted = std::size_t{1} << 16U;
 
-/// The same of value(0) … value(count − 1), each asked for once, or 64 times if there are more than
-/// kMostSorted. \param count  > 0. \param value  no NaN.
+/// Upper median of value(0) … value(count − 1). Each is evaluated once, or 64 times if count > kMostSorted.
+/// \param count  > 0. \param value  no NaN.
 template <typename Value>
 [[nodiscard]] double median_of(std::size_t count, const Value& value) {
   if (count <= kMostSorted) {
@@ -50,8 +50,8 @@ template <typename Value>
   return std::bit_cast<double>((answer & kSign) != 0 ? answer & ~kSign : ~answer);
 }
 
-/// Mean of any number of values, without a large sum: its error stays below some ε of the largest value,
-/// however many there are. [Welford, Technometrics 4(3):419–420, 1962]
+/// Running mean. Its error is a few ε of the largest value, whatever the number of values. [Welford,
+/// Technometrics 4(3):419–420, 1962]
 struct RunningMean {
   double mean = 0.0;
   double count = 0.0;  ///< A double counts exactly up to 2⁵³.
@@ -62,7 +62,7 @@ struct RunningMean {
   }
 };
 
-/// Mean and variance likewise.
+/// Running mean and variance.
 struct RunningVariance {
   double mean = 0.0;
   double count = 0.0;
@@ -74,9 +74,9 @@ struct RunningVariance {
     mean += off / count;
     square_sum += off * (value - mean);
   }
-  /// Of one value from another; 0 while there are no two.
+  /// Variance with divisor n − 1; 0 for fewer than two values.
   [[nodiscard]] double variance() const noexcept { return count > 1.0 ? square_sum / (count - 1.0) : 0.0; }
-  /// Standard error of the mean. Only with a value.
+  /// Standard error of the mean. Requires at least one value.
   [[nodiscard]] double error_of_mean() const noexcept { return std::sqrt(variance() / count); }
 };
 

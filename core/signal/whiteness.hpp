@@ -1,6 +1,6 @@
 /// \file
-/// Is what looks like noise white? An oscillation of few scans a cycle passes for noise wherever that is
-/// measured from neighbouring scans.
+/// Test of noise for whiteness. An estimate from neighbouring scans takes an oscillation of few scans a cycle
+/// for noise.
 #pragma once
 
 #include <algorithm>
@@ -13,15 +13,16 @@
 
 namespace stickslip::signal {
 
-/// An oscillation of three to nine scans a cycle is hidden in what was taken for noise.
+/// Whether the apparent noise contains an oscillation of three to nine scans a cycle.
 ///
-/// Second differences are rid of drift and slow waves, and those of white noise know nothing of each other
-/// from three scans on: with n of them their autocorrelation there is 0 ± √(1.94/n) [Bartlett 1946, with
-/// −2/3 and 1/6 at one and two scans]. An oscillation makes it rise again after it was negative, to its share
-/// of the power, at the scan nearest to its period: more than one half is asked for, and five standard
-/// deviations. Differences count for no more than one and a half times their median, so that spikes hide
-/// nothing. \tparam Values  any range of double. \param floor  differences that rounding alone makes, as
-/// noise of a scan.
+/// Uses second differences, which remove drift and slow waves. Those of white noise are uncorrelated at lags
+/// of three scans and more: the autocorrelation of n of them is 0 ± √(1.94/n) [Bartlett 1946, with −2/3 and
+/// 1/6 at lags 1 and 2]. An oscillation gives a positive maximum after negative values, at the lag nearest to
+/// its period and as high as its share of the power. The maximum must exceed one half and five standard
+/// deviations. Differences are clipped at one and a half times their median, so that spikes cannot mask an
+/// oscillation.
+/// \tparam Values  any range of double.
+/// \param floor  noise of a scan by rounding alone.
 template <typename Values>
 [[nodiscard]] bool hides_an_oscillation(const Values& values, double floor) {
   constexpr std::size_t kLags = 10;

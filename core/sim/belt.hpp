@@ -1,5 +1,5 @@
 /// \file
-/// The belt of a motion as functions of time.
+/// Speed and travel of a motion's belt as functions of time.
 ///
 ///     belt_speed(segment).value(t);            // m/s, t after the start of the segment
 ///     belt_speed_m_per_s(motion.belt, 2.0);    // at 2 s of the scene
@@ -16,12 +16,12 @@ namespace stickslip::sim {
 /// v(t) of a segment, m/s. Starts at exactly speed + decaying_speed.
 [[nodiscard]] Course belt_speed(const BeltSegment& segment);
 
-/// At this moment of the scene, ≥ 0; where two segments meet, that of the later one. Without regard to
+/// Belt speed at a time ≥ 0 of the scene; at the border of two segments, that of the later. Ignores
 /// halt_when_unloaded.
 [[nodiscard]] double belt_speed_m_per_s(const std::vector<BeltSegment>& belt, double time_s);
 
-/// Least and largest way ∫v dt that the belt will have gone within this time, m: (≤ 0, ≥ 0). Without regard
-/// to halt_when_unloaded, so they may be wider than what happens.
+/// Smallest and largest travel ∫v dt of the belt within this time, m: (≤ 0, ≥ 0). Ignores halt_when_unloaded,
+/// so the true range may be narrower.
 [[nodiscard]] std::pair<double, double> belt_travel_range_m(const std::vector<BeltSegment>& belt,
                                                             double duration_s);
 

@@ -1,5 +1,5 @@
 /// \file
-/// The belt's speed in the unit in which the solvers see it, the rate r = ω₀² v/g of the coefficient.
+/// Belt speed as a rate of the coefficient, r = ω₀² v/g: the unit of the solvers.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ struct BeltRate {
   double decaying = 0.0;  ///< 1/s
   double inverse_time_constant_per_s = 0.0;
 
-  /// \param factor  ω₀²/g. \param elapsed_s  since the start of the segment: there t is zero.
+  /// \param factor  ω₀²/g. \param elapsed_s  time after the start of the segment at which t is zero.
   [[nodiscard]] static BeltRate of(const BeltSegment& segment, double factor, double elapsed_s) noexcept {
     BeltRate belt;
     belt.rate = factor * (segment.speed_m_per_s + elapsed_s * (segment.acceleration_m_per_s2 +

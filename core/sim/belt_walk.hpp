@@ -1,5 +1,5 @@
 /// \file
-/// The belt's course, segment by segment, and what goes with it.
+/// Present belt segment during a simulation, and the drift of K with time or travel.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace stickslip::sim {
 
-/// Where along its course the belt is.
+/// Present position of the belt in its sequence of segments.
 class BeltWalk {
  public:
   /// \param motion  outlives this. \param scan_rate_Hz > 0
@@ -21,7 +21,7 @@ class BeltWalk {
         scan_rate_Hz_(scan_rate_Hz),
         factor_(motion.oscillator.omega0_squared() / motion.gravity_m_per_s2) {}
 
-  /// Before the first segment, at rest: its end is scan 0.
+  /// Returns to the state before the first segment: at rest, ending at scan 0.
   void restart() noexcept {
     next_ = 0;
     segment_ = {};
@@ -30,7 +30,7 @@ class BeltWalk {
     travel_ = 0.0;
   }
 
-  /// At the end of the present segment.
+  /// To be called at the end of the present segment.
   void next_segment() noexcept {
     travel_ = travel(end_);
     start_ = end_;
@@ -43,7 +43,7 @@ class BeltWalk {
     end_ = start_.later(segment_.duration_s * scan_rate_Hz_);
   }
 
-  /// For the rest of the segment.
+  /// Stops the belt for the rest of the segment.
   void halt(const ScanTime& now) noexcept {
     travel_ = travel(now);
     start_ = now;
@@ -52,15 +52,15 @@ class BeltWalk {
 
   [[nodiscard]] bool halts_when_unloaded() const noexcept { return segment_.halt_when_unloaded; }
   [[nodiscard]] const ScanTime& segment_end() const noexcept { return end_; }
-  /// Until the end of the segment.
+  /// Time until the end of the segment.
   [[nodiscard]] double left_s(const ScanTime& now) const noexcept {
     return end_.periods_since(now) / scan_rate_Hz_;
   }
-  /// With t = 0 now.
+  /// Belt rate of the segment, with t = 0 now.
   [[nodiscard]] BeltRate from(const ScanTime& now) const noexcept {
     return BeltRate::of(segment_, factor_, elapsed_s(now));
   }
-  /// Net way since scan 0, in units of the coefficient.
+  /// Net belt travel since scan 0, in units of the coefficient.
   [[nodiscard]] double travel(const ScanTime& now) const noexcept {
     return travel_ + BeltRate::of(segment_, factor_, 0.0).travel(elapsed_s(now));
   }
@@ -80,10 +80,10 @@ class BeltWalk {
   double travel_ = 0.0;  ///< Up to start_.
 };
 
-/// The factor f of K over a piece of the motion: KineticDrift.
+/// The factor f of K (KineticDrift) over a piece of the motion.
 struct DriftCourse {
   std::optional<KineticDrift> drift;
-  double x = 0.0;        ///< Where the piece starts, in units of the drift's scale.
+  double x = 0.0;        ///< x at the start of the piece, in units of the drift's scale.
   double x_per_s = 0.0;  ///< Of a drift over time,
   double x_per_c = 0.0;  ///< of one over belt travel: in units of the coefficient.
   BeltRate belt;

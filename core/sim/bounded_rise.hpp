@@ -1,5 +1,5 @@
 /// \file
-/// Where a smooth function of time first rises to zero, whatever it does in between.
+/// First zero of a smooth function of time, found from a bound of its second derivative.
 #pragma once
 
 #include <algorithm>
@@ -11,15 +11,15 @@ namespace stickslip::sim {
 
 /// First t ≥ 0 at which f reaches zero from below.
 ///
-/// Over each stretch f lies below the parabola of its value, its slope and the largest second derivative
-/// there, so that where the parabola meets zero f has not done so yet: that is the next point. The points
-/// come closer to a simple zero as Newton's, never pass it, and leave no touch out.
+/// Over each interval f lies below the parabola with its value and slope at the start and the largest second
+/// derivative in it. So f has no zero before that of the parabola, which is the next point. The points
+/// converge to a simple zero like Newton's method, never pass it, and miss no touching of zero.
 ///
 /// \param f          value(t), slope(t), and bend(from, to) ≥ the second derivative in between.
 ///                   f(0) = 0 is no event if f falls at first.
-/// \param longest_s  how far to look; may be very long.
-/// \param stretch_s  > 0, of the first stretch; those that follow are longer.
-/// \param rounding   ≥ 0: a value of f this close to zero is zero.
+/// \param longest_s  end of the search; may be very long.
+/// \param stretch_s  > 0, length of the first interval; later ones are longer.
+/// \param rounding   ≥ 0: a value of f within this of zero counts as zero.
 template <typename Function>
 [[nodiscard]] std::optional<double> bounded_rise_s(const Function& f, double longest_s, double stretch_s,
                                                    double rounding) {

@@ -1,5 +1,5 @@
 /// \file
-/// The moment at which something that only rises reaches zero.
+/// Root of a monotonically rising function in a bracket.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 /// \file
-/// The instants at which a jittering converter looks.
+/// Sampling instants of a converter with jitter.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,9 @@ class JitteringClock {
 
   void restart(std::uint64_t seed);
 
-  /// Instant of this scan. Ask for all in order, from 0 on. Never before the start nor before the
-  /// one before: with a standard deviation up to a tenth of a scan period that takes seven of them.
+  /// Instant of a scan. Call for all scans in order, from 0 on. Instants are clipped so that none lies before
+  /// the start or the one before; with a standard deviation of up to a tenth of a scan period this affects
+  /// deviations of seven standard deviations only.
   [[nodiscard]] ScanTime instant(std::int64_t scan);
 
  private:

@@ -1,6 +1,6 @@
 /// \file
-/// A function of time made of a polynomial and a few decays: what belt and paper prescribe, and how
-/// the force follows where nothing oscillates.
+/// Function of time: the sum of a polynomial and a few exponential decays. It describes belt speed, drift of
+/// K, and the force without its oscillation.
 ///
 ///     Course speed{0.01};                     // v = 0.01 − 0.002 t + 0.003 (1 − e^(−5t))
 ///     speed.add_power(1, -0.002);
@@ -40,18 +40,18 @@ class Course {
   Course& operator+=(const Course& other);
 
   [[nodiscard]] double value(double t_s) const noexcept;
-  /// The sum of the sizes of its terms: what its rounding is relative to.
+  /// Sum of the absolute values of its terms, to which the rounding error is relative.
   [[nodiscard]] double magnitude(double t_s) const noexcept;
   [[nodiscard]] Course scaled(double factor) const;
   [[nodiscard]] Course derivative() const;
-  /// From 0.
+  /// Integral from 0.
   [[nodiscard]] Course integral() const;
-  /// The same from a later moment on. \param by_s ≥ 0
+  /// The function of t + by_s. \param by_s ≥ 0
   [[nodiscard]] Course later(double by_s) const;
-  /// Its derivative plus λ times itself, for the λ of a decay: a course without that decay.
+  /// Derivative plus λ times the function, for the λ of a decay; the result has no such decay.
   [[nodiscard]] Course without_decay(int index) const;
-  /// What follows it: the particular solution p of p″ + γp′ + ω₀² p = ω₀² (this). Keep away from resonance:
-  /// resonance().
+  /// Forced response: the particular solution p of p″ + γp′ + ω₀² p = ω₀² (this). Requires a
+  /// distance_from_resonance() well above zero for each decay.
   [[nodiscard]] Course response(const model::Oscillator& oscillator) const;
 
   [[nodiscard]] int powers() const noexcept { return powers_; }  ///< Highest k + 1; 0: no polynomial.
@@ -70,8 +70,8 @@ class Course {
 /// φ₀ … φ_(count−1) of λ at t ≥ 0.
 [[nodiscard]] std::array<double, Course::kOrders> decay_integrals(double rate_per_s, double t_s, int count);
 
-/// (λ² − γλ + ω₀²)/ω₀²: how far a decay is from being a motion of the oscillator itself; zero is resonance,
-/// which only overdamped oscillators can meet.
+/// (λ² − γλ + ω₀²)/ω₀²: distance of a decay from a free motion of the oscillator; zero is resonance, possible
+/// only for an overdamped oscillator.
 [[nodiscard]] double distance_from_resonance(double rate_per_s, const model::Oscillator& oscillator);
 
 }  // namespace stickslip::sim

@@ -19,16 +19,16 @@ namespace stickslip::sim {
 
 inline constexpr int kMaxOdeSize = 3;
 inline constexpr int kMaxOdeEvents = 3;
-/// Those beyond a system's size count for nothing.
+/// State of a system; components beyond its size are ignored.
 using OdeState = std::array<double, kMaxOdeSize>;
 
 /// y′ = rate(t, y), with events where a function of t and y rises to zero.
 class OdeSystem {
  public:
   struct Event {
-    double value = -1.0;  ///< Below zero before the event; one that is not wanted stays at −1.
+    double value = -1.0;  ///< Below zero before the event; −1 for an unused event.
     double slope = 0.0;   ///< Its derivative along the motion, 1/s
-    /// Error to be expected of an extreme: one that is nearer to zero may be on either side.
+    /// Expected error of `value` at an extreme; an extreme closer to zero than this is undecided.
     double doubt = 0.0;
   };
   using Events = std::array<Event, kMaxOdeEvents>;
@@ -40,12 +40,12 @@ class OdeSystem {
   [[nodiscard]] virtual Events events(double t_s, const OdeState& y) const = 0;
 };
 
-/// CVODE looks for events only where their sign differs at the ends of a step. This class adds what it
-/// misses: an extreme inside the step, found where the slope changes its sign, decides by the sign of the
-/// event there; and an event that is zero at the start, from where it first falls. An extreme exactly at
-/// zero counts. With steps no longer than the time between two extremes nothing is stepped over.
+/// Integrator with complete event detection. CVODE finds an event only if its sign differs at the ends of a
+/// step. This class also finds one at an extreme inside the step, located where the slope changes its sign,
+/// and one that is zero at the start and falls first. An extreme exactly at zero is an event. No event is
+/// missed while steps are not longer than the time between two extremes.
 ///
-/// Allocates when constructed; not afterwards, if CVODE keeps its word. Thread-bound.
+/// Allocates when constructed; not afterwards, as far as CVODE itself does not. Thread-bound.
 class Cvode {
  public:
   enum class Method {
@@ -54,7 +54,7 @@ class Cvode {
   };
   struct Step {
     double t_s = 0.0;                  ///< Solved up to here.
-    std::optional<std::size_t> event;  ///< The first in the step, exactly at t_s.
+    std::optional<std::size_t> event;  ///< Index of the first event in the step, which is exactly at t_s.
   };
 
   /// \param system  outlives this. \param size  of its state. \param timescale_s > 0; of the first step.
@@ -67,21 +67,21 @@ class Cvode {
   void set_tolerance(const OdeState& tolerance);
   void set_longest_step(double longest_s);
 
-  /// At t = 0 again, with this state.
+  /// Starts again at t = 0 with this state.
   void restart(const OdeState& state);
 
-  /// One internal step, or the part of it up to an event; then the rest of it.
-  /// Where CVODE gives up, it is started again from the last good point with ten times the tolerance.
-  /// \throws std::runtime_error where even 10⁶ times the tolerance is of no use.
+  /// Takes one internal step, or the part of it up to an event; the next call takes the rest. If CVODE fails,
+  /// it is restarted from the last good point with ten times the tolerance.
+  /// \throws std::runtime_error if it fails with 10⁶ times the tolerance too.
   Step step();
 
   /// \param t_s  within what the last step() has solved.
   [[nodiscard]] OdeState state_at(double t_s) const;
 
-  /// By what the tolerances had to be widened so far; 1 if all went well.
+  /// Factor by which the tolerances were increased so far; 1 without a failure.
   [[nodiscard]] double widened() const noexcept { return widened_; }
-  /// Events, and events that did not happen, whose extreme was nearer to zero than its doubt; since
-  /// construction.
+  /// Number of extremes closer to zero than their doubt since construction, so that the event may wrongly be
+  /// found or missed.
   [[nodiscard]] long undecided_count() const noexcept { return undecided_; }
   /// Since construction.
   [[nodiscard]] long step_count() const noexcept { return steps_; }

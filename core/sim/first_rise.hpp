@@ -1,7 +1,7 @@
 /// \file
-/// Where a damped oscillation, alone or on a course, first rises to a level: the one event of a slip.
-/// Capture is the rate of the force reaching the rate of the belt; slack is the (negative) force reaching
-/// zero. Without an oscillation: where sticking gives way, where a coupling is taut.
+/// First time at which a damped oscillation, alone or added to a Course, rises to a level. All events are of
+/// this kind: capture (the rate of the force reaches that of the belt), slack (the negative force reaches
+/// zero), and, without an oscillation, slip onset and a coupling that becomes taut.
 #pragma once
 
 #include <optional>
@@ -11,20 +11,20 @@
 
 namespace stickslip::sim {
 
+/// Whether a maximum exactly at the level is an event.
 enum class Touch { kCounts, kDoesNot };
 
 /// First t > 0 at which y(t) rises through `level`, given y(0) ≤ level.
 ///
-/// Between its extremes, which are known in closed form, y is monotone. Its first maximum is the
-/// highest that it will ever reach above zero, so the sign of y there minus the level decides
-/// whether the event exists; only then its time is bracketed and refined. Nothing is stepped over,
-/// grazing included.
+/// y is monotone between its extremes, which are known in closed form. Its first maximum is the largest. So
+/// the sign of y − level there decides whether the event exists; only then its time is bracketed and refined.
+/// No event is missed, grazing included.
 ///
 /// \param y      homogeneous: y.K = 0.
 /// \param touch  whether a maximum exactly at the level is an event.
 [[nodiscard]] std::optional<double> first_rise_s(const model::SlipWaveform& y, double level, Touch touch);
 
-/// An oscillation on a course.
+/// Sum of an oscillation and a Course.
 struct Curve {
   model::SlipWaveform wave;  ///< Homogeneous: wave.K = 0; wave.D = wave.r = 0 where nothing oscillates.
   Course course;

@@ -1,5 +1,5 @@
 /// \file
-/// How far the force swings in the first slip of a scene whose friction has no closed form.
+/// Amplitude of the first slip of a scene whose friction has no closed form.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace stickslip::sim {
 
-/// Half the range of the coefficient over one free period from the onset on, looked at 2000 times: below
-/// the true one by at most 1.3e-6 of it.
+/// Half the range of the coefficient over one free period from the onset on. From 2000 samples, so it is too
+/// small by at most a relative 1.3e-6.
 /// \param scene  oscillates. \param seed  of the run. \param onset_s  of the slip.
 [[nodiscard]] double first_slip_amplitude(const Scene& scene, std::uint64_t seed, double onset_s);
 

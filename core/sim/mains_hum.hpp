@@ -1,5 +1,5 @@
 /// \file
-/// The mains' voltage at a scan, from the scan's index alone.
+/// Mains hum at a scan, as a function of the scan index.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,9 @@
 
 namespace stickslip::sim {
 
-/// Cycles of the mains at this scan, less whole cycles: within 2 ulp of one cycle however large
-/// the index is. The product of frequency and index is kept in two doubles [error-free product by
-/// fused multiply-add: Ogita, Rump and Oishi, SIAM J. Sci. Comput. 26(6):1955–1988, 2005, Alg. 3.5],
-/// and fmod is exact.
+/// Fractional part of the mains cycles at this scan; the error is within 2 ulp of one cycle for any index.
+/// The product of frequency and index is kept in two doubles [error-free product by fused multiply-add:
+/// Ogita, Rump and Oishi, SIAM J. Sci. Comput. 26(6):1955–1988, 2005, Alg. 3.5], and fmod is exact.
 [[nodiscard]] double mains_cycles(double frequency_Hz, double scan_rate_Hz, std::int64_t scan) noexcept;
 
 /// \param scan  0 ≤ scan < 2⁵³

@@ -1,5 +1,5 @@
 /// \file
-/// Which scans never arrive.
+/// Random bursts of missing scans.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace stickslip::sim {
 
-/// Goes from burst to burst, so that the scans between them cost nothing.
+/// Sequence of bursts; scans between them take no computing time.
 class MissingBursts {
  public:
   static constexpr std::string_view kName = "missing_scans";

@@ -1,5 +1,5 @@
 /// \file
-/// What the motion stage of a scene comes to, whichever way it is solved, and what it tells others.
+/// Input of the motion solvers (oscillator, friction, belt), and interfaces to observe the motion.
 ///
 ///     Motion motion;
 ///     motion.oscillator = model::Oscillator::from_omega(omega, 0.022);
@@ -21,12 +21,12 @@
 
 namespace stickslip::sim {
 
-/// The belt for a while. At t after the start of the segment its speed is
+/// Segment of the belt's motion. At t after the start of the segment its speed is
 ///     v(t) = speed + acceleration t + jerk t²/2 + decaying_speed e^(−t/time_constant).
 struct BeltSegment {
   double duration_s = 0.0;
   double speed_m_per_s = 0.0;  ///< Negative: the carriage returns.
-  /// Stop the belt for the rest of the segment as soon as the force is zero.
+  /// The belt stops for the rest of the segment as soon as the force is zero.
   bool halt_when_unloaded = false;
   double acceleration_m_per_s2 = 0.0;
   double jerk_m_per_s3 = 0.0;
@@ -35,8 +35,8 @@ struct BeltSegment {
 };
 
 /// Effect `kinetic_drift` (motion): K changes by a factor f(x) of the time since the start of the scene or of
-/// the way ∫v dt that the belt has gone since then (back again where it returns); S − K of the contact stays
-/// what it is, so that S goes with it.
+/// the way ∫v dt that the belt has gone since then (back again where it returns); S − K of the contact is
+/// unchanged, so S changes by the same amount.
 ///     linear       f = 1 + change · x/scale
 ///     exponential  f = 1 + change · (1 − e^(−x/scale))
 struct KineticDrift {
@@ -52,8 +52,8 @@ struct KineticDrift {
 ///     K(V) = K + per_speed · V + stribeck_rise · e^(−(V/stribeck_speed)^stribeck_exponent).
 /// [Armstrong-Hélouvry, Dupont and Canudas de Wit, Automatica 30(7):1083–1138, 1994, (4)]
 struct VelocityDependence {
-  double per_speed_s_per_m = 0.0;       ///< Any sign: below zero, the faster the less friction.
-  double stribeck_rise = 0.0;           ///< ≥ 0, at most S − K: what is added to K at V → 0.
+  double per_speed_s_per_m = 0.0;       ///< Any sign; below zero friction decreases with speed.
+  double stribeck_rise = 0.0;           ///< Increase of K at V → 0; from 0 to S − K.
   double stribeck_speed_m_per_s = 1.0;  ///< > 0
   double stribeck_exponent = 1.0;       ///< > 0; 1 (Tustin), 2 (Gaussian).
 };
@@ -73,41 +73,41 @@ struct RateAndState {
   double mu_0 = 0.0;                     ///< ≥ 0; of steady sliding at V₀.
 };
 
-/// What the motion stage of a scene comes to.
+/// All parameters of the motion.
 struct Motion {
   model::Oscillator oscillator;
   double mu_s = 0.0;  ///< S ≥ mu_k
   double mu_k = 0.0;  ///< K ≥ 0
   double gravity_m_per_s2 = 0.0;
   bool damper_counts_at_onset = false;  ///< Slip starts when spring and damper together hold S.
-  PaperSettings paper;                  ///< How S and K differ from contact to contact.
+  PaperSettings paper;                  ///< Variation of S and K from contact to contact.
   bool one_way_coupling = false;
-  std::vector<BeltSegment> belt;  ///< In order; at rest after the last.
+  std::vector<BeltSegment> belt;  ///< In the order of time; the belt rests after the last.
   /// ≥ 0; above zero only with one_way_coupling. The sled has been riding on the belt, at its first speed.
   double startup_slack_m = 0.0;
   std::optional<KineticDrift> kinetic_drift;
   std::optional<VelocityDependence> velocity_dependence;  ///< Numeric only.
-  std::optional<RateAndState> rate_and_state;             ///< Numeric only; then S and K count for nothing.
+  std::optional<RateAndState> rate_and_state;             ///< Numeric only; replaces S and K.
 };
 
-/// The sled changes its mode.
+/// Change of the sled's mode.
 struct ModeStart {
   ScanTime time;
   model::Mode mode = model::Mode::kStick;
-  bool onset = false;        ///< A slip that starts because sticking gave way.
+  bool onset = false;        ///< A slip that begins from sticking.
   bool capture = false;      ///< The slip before ended because the sled had reached the belt's speed.
-  Coefficients paper;        ///< S and K in force.
+  Coefficients paper;        ///< S and K of the present contact.
   double coefficient = 0.0;  ///< Of the spring; below zero the slack.
 };
 
-/// Told of each change of mode, in order.
+/// Observer of the changes of mode, called in order.
 class MotionObserver {
  public:
   virtual ~MotionObserver() = default;
   virtual void mode_began(const ModeStart& start) = 0;
 };
 
-/// A stretch of time during which the force has one closed form: c(t) = h(t) + course(t), t from its start.
+/// Interval of time in which the force has one closed form, c(t) = h(t) + course(t), with t from its start.
 struct ForceStretch {
   double duration_s = 0.0;
   Course course;
@@ -116,7 +116,7 @@ struct ForceStretch {
   double wave_rate_per_s = 0.0;
 };
 
-/// Shown the force between the instants, stretch by stretch without a hole.
+/// Receiver of the continuous force, as consecutive ForceStretch intervals without gaps.
 class ForceFollower {
  public:
   virtual ~ForceFollower() = default;

@@ -1,14 +1,13 @@
 /// \file
-/// What every solver may take for granted about a motion.
+/// Contract of a motion that every solver relies on.
 #pragma once
 
 #include "core/sim/motion.hpp"
 
 namespace stickslip::sim {
 
-/// Contract: every number is in the range that its comment in motion.hpp names, and finite (a segment of the
-/// belt may last for ever). Out of range no branch of a motion means anything. Scenes are checked, with an
-/// error for people, where they are read.
+/// Checks the contract: every number is finite and in the range stated in motion.hpp; only a belt segment may
+/// last infinitely. Scenes are checked when read, with error messages.
 void expect_sound(const Motion& motion);
 
 }  // namespace stickslip::sim

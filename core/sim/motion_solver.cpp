@@ -11,8 +11,8 @@ namespace stickslip::sim {
 
 namespace {
 
-/// Nearer to resonance a decay's response and the oscillation grow beyond each other's digits; three of
-/// sixteen are given.
+/// Smallest distance from resonance for closed forms. Near resonance a decay's response and the oscillation
+/// are large and cancel; at this distance three of sixteen digits are lost.
 constexpr double kNearestResonance = 1e-3;
 
 bool responds_regularly(double rate_per_s, const model::Oscillator& oscillator) {

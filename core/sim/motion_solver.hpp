@@ -1,5 +1,5 @@
 /// \file
-/// One interface for every way of solving the motion, and the choice among them.
+/// Interface of the motion solvers, and the choice of one.
 ///
 ///     std::unique_ptr<MotionSolver> sled = make_motion_solver(motion, 350.0, 1e-6);
 ///     std::array<double, 64> coefficient;
@@ -18,51 +18,53 @@
 
 namespace stickslip::sim {
 
-/// Of closed forms: some roundings of a double. What n cycles make of it: docs/accuracy.md.
+/// Accuracy of closed forms: a few roundings of a double. For its growth over n cycles see docs/accuracy.md.
 inline constexpr double kExactAccuracy = 8.0 * std::numeric_limits<double>::epsilon();
 
-/// How the motion is solved, and how far its numbers can be trusted.
+/// Method of the solution, and its accuracy.
 struct SolverMethod {
   std::string_view name;  ///< For people and records.
-  double accuracy = 0.0;  ///< In use: largest error of the coefficient to be expected.
-  /// Captures so far that happened, or did not, by less than the accuracy in use can tell.
+  double accuracy = 0.0;  ///< Expected largest error of the coefficient.
+  /// Captures so far, found or not, that were closer than the accuracy can decide.
   std::int64_t undecided_count = 0;
 };
 
-/// Needs the same memory however long it runs. Thread-bound.
+/// Runs in constant memory. Thread-bound.
 class MotionSolver {
  public:
   virtual ~MotionSolver() = default;
 
-  /// Back to scan 0, at rest and unloaded, with these random numbers. Does not allocate.
+  /// Returns to scan 0, at rest and unloaded, with the random numbers of `seed`. Does not allocate.
   virtual void restart(std::uint64_t seed) = 0;
 
-  /// The coefficient F/(m g) at the next scans, the same however they are divided into calls. Does not
-  /// allocate.
+  /// Writes the coefficient F/(m g) at the next scans; the values do not depend on the division into calls.
+  /// Does not allocate.
   virtual void next(std::span<double> coefficient) = 0;
 
-  /// The coefficient at any instants in non-decreasing order; next() and skip() keep count of their
-  /// own, and may go on only at scans that are not before the last instant. Does not allocate.
+  /// The coefficient at any instant; instants must not decrease. next() and skip() have a counter of their
+  /// own and may continue only at scans not before the latest instant. Does not allocate.
   [[nodiscard]] virtual double at(const ScanTime& instant) = 0;
 
-  /// As at(), but shows the whole force since the last call instead of its value. Does not allocate.
+  /// As at(), but passes the continuous force since the last call to `follower`. Does not allocate.
   virtual void follow_to(const ScanTime& instant, ForceFollower& follower) = 0;
 
-  /// Goes on by `scans` without looking at them, at the cost of the events alone.
+  /// Skips `scans` scans; takes time only for the events between.
   virtual void skip(std::int64_t scans) = 0;
 
   [[nodiscard]] virtual SolverMethod method() const = 0;
 };
 
-/// Does every effect of this motion admit closed forms? Not the nonlinear laws; not a drift of K that is
+/// Whether every effect of this motion has a closed form. Not the nonlinear laws; not a drift of K that is
 /// exponential over the travel of a belt that changes its speed; not a drift in resonance with an overdamped
 /// oscillator.
 [[nodiscard]] bool has_closed_form(const Motion& motion) noexcept;
 
 /// The cheapest solver that meets the accuracy: closed forms wherever the motion admits them, since
 /// they are both the fastest and the most accurate (docs/accuracy.md); else SUNDIALS CVODE.
-/// \param scan_rate_Hz > 0. \param accuracy  of the coefficient, > 0. \param observer may be null; outlives
-/// the solver. \param seed as in restart().
+/// \param scan_rate_Hz > 0.
+/// \param accuracy  of the coefficient, > 0.
+/// \param observer may be null; outlives the solver.
+/// \param seed as in restart().
 [[nodiscard]] std::unique_ptr<MotionSolver> make_motion_solver(const Motion& motion, double scan_rate_Hz,
                                                                double accuracy,
                                                                MotionObserver* observer = nullptr,

@@ -1,5 +1,5 @@
 /// \file
-/// What the numeric solver asks of the two kinds of friction law it can solve.
+/// Interface of the two kinds of friction law that the numeric solver supports.
 #pragma once
 
 #include <algorithm>
@@ -21,21 +21,22 @@ struct SpringForce {
   double rate_per_s = 0.0;
 };
 
-/// The motion, a stretch of time after the other. Thread-bound.
+/// The motion as consecutive intervals of time. Thread-bound.
 class NumericMotion {
  public:
   virtual ~NumericMotion() = default;
 
-  /// Back to scan 0, at rest and unloaded.
+  /// Returns to scan 0, at rest and unloaded.
   virtual void restart(std::uint64_t seed) = 0;
 
-  // The present stretch, in which the force is known.
+  // The present interval, in which the force is known.
   [[nodiscard]] virtual const ScanTime& known_from() const = 0;
   [[nodiscard]] virtual const ScanTime& known_to() const = 0;
-  /// \param instant  in the present stretch.
+  /// \param instant  in the present interval.
   [[nodiscard]] virtual SpringForce force_at(const ScanTime& instant) const = 0;
 
-  /// On to the next stretch, which starts where this one ends. It may take no time, as after an event.
+  /// Advances to the next interval, which starts where this one ends. It may have zero length, as after an
+  /// event.
   virtual void advance() = 0;
 
   [[nodiscard]] virtual SolverMethod method() const = 0;
@@ -49,19 +50,19 @@ class NumericMotion {
                                                                         double scan_rate_Hz, double accuracy,
                                                                         MotionObserver* observer);
 
-/// A slip that lasts longer starts its clock anew, so that the clock keeps 2⁻⁵²·64 s = 1e-14 s.
+/// Longest time before a slip's clock restarts at zero, so that its resolution stays at 2⁻⁵²·64 s = 1e-14 s.
 inline constexpr double kLongestPiece_s = 64.0;
 
-/// From the accuracy asked for to the tolerance of CVODE's steps.
+/// Choice of CVODE's step tolerance for a requested accuracy.
 ///
 /// The errors of the steps add up over a cycle, and, since each cycle starts where the last one ended, over
 /// the cycles: error ≤ growth · (1 + cycles while the belt moves) · tolerance, with a growth that is
 /// measured for each method (tests/numeric/numeric_solver_accuracy_test.cpp).
 struct ToleranceChoice {
   double tolerance = 0.0;  ///< Of a coefficient in one step.
-  double accuracy = 0.0;   ///< To be expected: more than was asked for where rounding sets the limit.
+  double accuracy = 0.0;   ///< Expected accuracy; larger than requested if rounding sets the limit.
 
-  /// \param least_tolerance  below which rounding has the say.
+  /// \param least_tolerance  below which rounding dominates.
   static ToleranceChoice of(const Motion& motion, double accuracy, double growth, double least_tolerance) {
     double moving_s = 0.0;
     for (const BeltSegment& segment : motion.belt) moving_s += segment.duration_s;
@@ -72,7 +73,7 @@ struct ToleranceChoice {
   }
 
  private:
-  /// Coarser, steps of CVODE are no longer small against a period.
+  /// Largest tolerance; beyond it CVODE's steps are not small against a period.
   static constexpr double kCoarsest = 1e-4;
 };
 

@@ -1,5 +1,5 @@
 /// \file
-/// The paper as the sled finds it: S and K of the contact at hand.
+/// The paper: S and K of the present contact.
 ///
 ///     Paper paper{settings, 0.35, 0.30};
 ///     paper.restart(seed);
@@ -7,8 +7,8 @@
 ///     paper.now().mu_s;         // what holds it there, and
 ///     paper.now().mu_k;         // what it will slide with.
 ///
-/// A contact begins when the sled is captured, keeps its S and K while it sticks, and hands them to the
-/// slip that ends it. Each effect is a small class that changes the two; what is not listed is not built.
+/// A contact begins at a capture and keeps its S and K during the stick and the slip that ends it. Each
+/// effect is a small class that changes the two; only the effects listed in the scene are created.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@
 
 namespace stickslip::sim {
 
-/// Effect `scatter` (motion): no two places of a paper are alike.
+/// Effect `scatter` (motion): S and K vary from place to place.
 struct Scatter {
   double delta_mu_cv =
       0.0;               ///< Coefficient of variation of S − K, log-normal about the scene's: never S < K.
@@ -28,7 +28,7 @@ struct Scatter {
   double correlation_length_m = std::numeric_limits<double>::infinity();  ///< > 0, of sliding.
 };
 
-/// Effect `first_peak` (motion): the first slip is not like the others.
+/// Effect `first_peak` (motion): S of the first slip differs from the others.
 struct FirstPeak {
   double change = 0.0;  ///< Added to S until the first slip; S never goes below K.
   double sd = 0.0;      ///< Of the change, normal from run to run.
@@ -41,7 +41,7 @@ struct ContactAgeing {
   double cutoff_s = 0.001;  ///< t₀ > 0
 
   [[nodiscard]] double growth(double rested_s) const noexcept;
-  /// Its first derivative, 1/s, and its second without the sign, 1/s²; both only fall.
+  /// First derivative, 1/s, and absolute value of the second, 1/s²; both decrease monotonically.
   [[nodiscard]] double growth_rate_per_s(double rested_s) const noexcept;
   [[nodiscard]] double growth_bend_per_s2(double rested_s) const noexcept;
   /// First t ≥ 0 at which held + rate · t reaches mu_s + growth(rested_s + t).
@@ -66,9 +66,10 @@ class PaperEffect {
  public:
   virtual ~PaperEffect() = default;
 
-  /// As scenes write it.
+  /// Name of the effect in scenes.
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
-  /// Back to the first contact. \param seed of the scene's run; the effect mixes in its name.
+  /// Returns to the first contact.
+  /// \param seed  of the scene's run; the effect adds its name to it.
   virtual void restart(std::uint64_t seed) = 0;
   /// A new contact; keeps S ≥ K ≥ 0. Does not allocate.
   virtual void renew(Coefficients& contact) = 0;
@@ -81,7 +82,7 @@ class PaperEffect {
 
 class Paper {
  public:
-  /// \param mean  before the effects.
+  /// \param mean  S and K before the effects.
   Paper(const PaperSettings& settings, const Coefficients& mean);
 
   void restart(std::uint64_t seed);
@@ -89,7 +90,7 @@ class Paper {
   void renew();
   /// The contact has given way after this rest.
   void slipped(double rested_s);
-  /// What a contact holds after this rest.
+  /// Static limit of the contact after this time at rest.
   [[nodiscard]] double static_limit(double rested_s) const noexcept {
     return ageing_ ? now_.mu_s + ageing_->growth(rested_s) : now_.mu_s;
   }
@@ -100,17 +101,18 @@ class Paper {
   [[nodiscard]] double static_limit_bend_per_s2(double rested_s) const noexcept {
     return ageing_ ? ageing_->growth_bend_per_s2(rested_s) : 0.0;
   }
-  /// What S has gained by then.
+  /// Increase of S by contact ageing after this time at rest.
   [[nodiscard]] double growth(double rested_s) const noexcept {
     return ageing_ ? ageing_->growth(rested_s) : 0.0;
   }
-  /// After this rest, when will a force that grows at this rate (> 0, 1/s) from `held` be too much?
+  /// Time until a force that rises from `held` at `rate` (> 0, 1/s) exceeds the static limit, after this time
+  /// at rest.
   [[nodiscard]] double gives_way_s(double held, double rate, double rested_s) const {
     return ageing_ ? ageing_->gives_way_s(held, rate, now_.mu_s, rested_s) : (now_.mu_s - held) / rate;
   }
 
   [[nodiscard]] const Coefficients& now() const noexcept { return now_; }
-  /// Sliding this far brings a new place; infinite if the paper is everywhere the same.
+  /// Sliding distance to a new contact, m; infinite if the paper is uniform.
   [[nodiscard]] double correlation_length_m() const noexcept { return correlation_length_m_; }
 
  private:

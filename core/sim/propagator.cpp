@@ -13,12 +13,12 @@ using model::Mode;
 
 namespace {
 
-/// Scans from one evaluation of the closed form of a slip to the next; between them a wave is turned on by a
-/// matrix, which adds about a rounding of the swing a scan.
+/// Scans between two evaluations of a slip's closed form. In between, a constant matrix advances the
+/// oscillation by one scan; each step adds an error of about one rounding of the amplitude.
 constexpr std::int64_t kStride = 16;
 
-/// How near the limit the force of a contact that gives way is set to the limit. Beyond it lies only what the
-/// damper held.
+/// Distance from the static limit, relative to max(1, limit), within which the force at a slip onset is set
+/// exactly to the limit. A larger difference is real: the share that the damper held.
 constexpr double kAtTheLimit = 1e-9;
 
 }  // namespace
@@ -102,7 +102,7 @@ double Propagator::at(const ScanTime& instant) {
   return coefficient_at(instant);
 }
 
-/// Anchors are counted from the start of the piece, so that it does not matter who asked before.
+/// Anchors are counted from the start of the piece, so that the result does not depend on earlier calls.
 void Propagator::stride_to(std::int64_t scan) {
   const std::int64_t first = start_.scan + (start_.fraction > 0.0 ? 1 : 0);
   const std::int64_t anchor = first + (scan - first) / kStride * kStride;

@@ -1,14 +1,14 @@
 /// \file
-/// The motion of the sled without steps: closed-form pieces joined at events whose times are
-/// solved for, so that the result does not depend on the scan rate.
+/// Exact motion of the sled without time steps: closed-form pieces joined at events whose times are solved
+/// for. The result does not depend on the scan rate.
 ///
 ///     Propagator sled{motion, 350.0};
 ///     std::array<double, 64> coefficient;
 ///     sled.next(coefficient);  // scans 0 … 63
 ///
 /// Conventions of Penner 1995: slip starts when the spring alone holds S [13], unless the motion asks
-/// for spring and damper; the load cell reads the spring. What a belt's acceleration a adds, a/g, counts
-/// always: the friction that takes the sled along is q = c + a/g.
+/// for spring and damper; the load cell reads the spring. The share a/g of the belt's acceleration a always
+/// counts: the friction that moves the sled with the belt is q = c + a/g.
 ///
 /// Each piece is an oscillation on a course: c(t) = h(t) + p(t). While the belt's speed and K are constant
 /// ("plain") p is a line, a parabola or K, and everything about it is written out; else p is a Course.
@@ -31,8 +31,10 @@ namespace stickslip::sim {
 /// Needs the same memory however long it runs. Thread-bound.
 class Propagator final : public MotionSolver {
  public:
-  /// \param motion  has_closed_form(). \param scan_rate_Hz > 0. \param observer may be null; outlives the
-  /// propagator. \param seed as in restart().
+  /// \param motion  has_closed_form().
+  /// \param scan_rate_Hz > 0.
+  /// \param observer may be null; outlives the propagator.
+  /// \param seed as in restart().
   Propagator(const Motion& motion, double scan_rate_Hz, MotionObserver* observer = nullptr,
              std::uint64_t seed = 1);
 
@@ -45,9 +47,9 @@ class Propagator final : public MotionSolver {
   [[nodiscard]] SolverMethod method() const override { return {"exact closed forms", kExactAccuracy}; }
 
  private:
-  /// What the sled is doing; two of them are slips, two are slack.
+  /// Phase of the motion: kSlower and kFaster are slips, kFree and kRide are slack.
   enum class Phase { kStick, kSlower, kFaster, kFree, kRide };
-  /// How the present piece will end.
+  /// Event that ends the present piece.
   enum class Ending {
     kNever,
     kGivesWay,
@@ -77,13 +79,13 @@ class Propagator final : public MotionSolver {
     Wave wave{0.0, 0.0};
   };
 
-  /// What one scan period makes of a wave: a 2 × 2 matrix.
+  /// 2 × 2 matrix that advances a wave by one scan period.
   struct Turn {
     double h_from_h, h_from_rate, rate_from_h, rate_from_rate;
   };
 
-  /// What a slip depends on unless its belt or K change, and when it ends. A motion that repeats itself is
-  /// solved once.
+  /// Initial conditions of a slip with constant belt speed and K: key of the cached event times, so that a
+  /// periodic motion is solved once.
   struct PlainSlip {
     State begun{0.0, 0.0};
     double level = 0.0;  ///< ±K
@@ -120,7 +122,7 @@ class Propagator final : public MotionSolver {
   /// The closed form of the piece that begins.
   void set_out();
   [[nodiscard]] double mu_k() const { return drift_factor_ * paper_.now().mu_k; }
-  /// What holds the sled at start_.
+  /// Static limit at start_.
   [[nodiscard]] double static_limit() const {
     return paper_.static_limit(rested_s()) + (mu_k() - paper_.now().mu_k);
   }

@@ -1,6 +1,6 @@
 /// \file
-/// Seeds that keep random streams apart: each effect draws from its own, so that adding one effect
-/// never changes another's numbers, and each repetition of a scene from its own.
+/// Seeds of independent random streams, one for each effect and each repetition of a scene, so that adding an
+/// effect never changes another's numbers.
 #pragma once
 
 #include <cstdint>

@@ -11,9 +11,9 @@ using model::Mode;
 
 namespace {
 
-/// Largest error of the coefficient over tolerance and cycles.
+/// Largest error of the coefficient, divided by tolerance and number of cycles (measured).
 constexpr double kRateAndStateGrowth = 60.0;
-/// Of x and ψ against that of c: V, and with it c′, is exponential in x/a.
+/// Tolerance of x and ψ relative to that of c: V, and with it c′, is exponential in x/a.
 constexpr double kTightest = 1e-3;
 /// Newton's iteration ends at roundings of c − x.
 constexpr double kLeastRateAndStateTolerance = 1e-12;

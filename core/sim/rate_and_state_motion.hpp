@@ -1,8 +1,8 @@
 /// \file
-/// The sled on a rate-and-state contact: one equation from rest to slip, with no mode of its own.
+/// Motion of the sled with rate-and-state friction: one equation for stick and slip, without distinct modes.
 ///
-/// Modes are names here, for those who judge a detector. Two thresholds, so that neither rounding nor a
-/// steady creep near one of them makes events:
+/// Modes are assigned by thresholds, to compare a detector with. There are two, so that neither rounding nor
+/// steady creep near one of them causes events:
 ///     slip onset  |V| rises through half the belt's speed. A slip accelerates exponentially, so that this
 ///                 is the peak of the force within the time of a few e-foldings, and a sled that comes to
 ///                 slide steadily (V = belt speed) crosses it too.

@@ -1,18 +1,18 @@
 /// \file
-/// What a scene may ask of the sampling stage: when the converter looks, and which looks are lost.
+/// Settings of the sampling stage: sampling instants and missing scans.
 #pragma once
 
 namespace stickslip::sim {
 
-/// Effect `clock_rate_error`: the converter's clock is off by a constant factor that nobody knows of.
+/// Effect `clock_rate_error`: the converter's clock has a constant relative error, unknown to the evaluation.
 struct ClockRateError {
   double relative = 0.0;  ///< True scan rate over the nominal one, less 1.
 
   bool operator==(const ClockRateError&) const = default;
 };
 
-/// Effect `clock_jitter`: each scan is early or late by its own normal number. It moves the instant at
-/// which the motion is seen; a force that does not change does not notice.
+/// Effect `clock_jitter`: each sampling instant has an independent normal error. It changes the instant at
+/// which the motion is sampled; a constant force is unaffected.
 struct ClockJitter {
   double sd_s = 0.0;
 };

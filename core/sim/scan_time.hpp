@@ -13,7 +13,7 @@ struct ScanTime {
   std::int64_t scan = 0;
   double fraction = 0.0;  ///< 0 ≤ fraction < 1
 
-  /// \param periods ≥ 0, scan periods later; past the range of the index it stays at its end.
+  /// \param periods ≥ 0, scan periods later; saturates at the largest index.
   [[nodiscard]] ScanTime later(double periods) const noexcept {
     const double sum = fraction + periods;
     const double whole = std::floor(sum);

@@ -1,12 +1,12 @@
 /// \file
-/// What the simulated tester is to play: one test of one paper on one tester.
+/// Scene: settings of a simulated test of one paper on one tester.
 ///
 ///     base::Result<Scene> scene = load_scene("config/scenes/stick-slip-at-12-in-per-min.toml");
 ///
-/// A scene names its effects; what it does not name is not built. They act in four stages, in this
-/// order: motion (what the sled does), transducer (what the load cell makes of it), sampling (when
-/// the converter looks) and signal (what happens to the voltage on the way into the record). A new
-/// effect is a setting of its stage, a reader in scene_file*.cpp, and a part of motion_of() or of SceneRun.
+/// A scene lists its effects; others are not simulated. They act in four stages, in this order: motion (of
+/// the sled), transducer (response of load cell and filter), sampling (instants of the converter) and signal
+/// (noise and quantisation of the voltage). A new effect is a setting of its stage, a reader in
+/// scene_file*.cpp, and a part of motion_of() or of SceneRun.
 #pragma once
 
 #include <cstdint>
@@ -86,11 +86,11 @@ struct Stribeck {
 struct Scene {
   std::string name;         ///< The file's name without its ending.
   std::string description;  ///< One line for people.
-  std::string text;         ///< The file, whole; with changes, as a file that would give this scene.
+  std::string text;         ///< Complete text of the file; after changes, a file that gives this scene.
   std::uint64_t seed = 1;
   double scan_rate_Hz = 350.0;  ///< Unless the board is asked for another.
   double duration_s = 0.0;      ///< Of one repetition.
-  double accuracy = 1e-9;       ///< Of the coefficient: chooses how the motion is solved.
+  double accuracy = 1e-9;       ///< Of the coefficient; determines the solver.
 
   double sled_mass_kg = 0.0;
   double gravity_m_per_s2 = model::kStandardGravity_m_per_s2;
@@ -140,24 +140,24 @@ struct SceneDuration {
   std::string origin;
 };
 
-/// What is to be different from the file.
+/// Changes to a scene file.
 struct SceneChanges {
   std::vector<SceneChange> changes;  ///< In this order.
-  /// Of the whole scene; a pull takes up the difference.
+  /// Duration of the whole scene; the pull is lengthened or shortened.
   std::optional<SceneDuration> duration;
 };
 
 /// Usage error with file, line, value and what is allowed: unreadable file, unknown key or effect,
-/// missing or wrong unit, value out of range, S < K. Where a change is to blame it is named.
+/// missing or wrong unit, value out of range, S < K. An error caused by a change names it.
 [[nodiscard]] base::Result<Scene> load_scene(const std::filesystem::path& file,
                                              const SceneChanges& changes = {});
-/// The same from text. \param file stands for the file in messages and gives the scene its name.
+/// Parses the text of a scene. \param file  stands for the file in messages and gives the scene its name.
 [[nodiscard]] base::Result<Scene> parse_scene(std::string_view text, const std::filesystem::path& file);
 
 /// The motion stage of the scene.
 [[nodiscard]] Motion motion_of(const Scene& scene);
 
-/// When the belt pulls, in seconds of the scene.
+/// Interval in which the belt pulls, seconds of the scene.
 struct Pull {
   double start_s = 0.0;
   double end_s = 0.0;
@@ -166,16 +166,15 @@ struct Pull {
 /// The pull of `constant_speed`, or from the first to the last movement of `piecewise_speed`.
 [[nodiscard]] std::optional<Pull> pull_of(const Scene& scene);
 
-/// The speed that the pull is meant to have; none if it is meant to change.
+/// Nominal pull speed; nullopt if the speed changes during the pull.
 [[nodiscard]] std::optional<double> steady_pull_speed_m_per_s(const Scene& scene);
 
-/// The course of the speed where it changes while the belt pulls, from the first movement on, curves as lines
-/// between so many points that they are off by less than a thousandth of the speed's change; none for a
-/// steady pull. Up to the stop: what a carriage does then with the force, stopping when it is zero, no plan
-/// tells.
+/// Pull speed over time if it changes, from the first movement to the stop; nullopt for a steady pull. Curves
+/// are approximated by lines within 0.1 % of the speed's change. The return of the carriage is left out,
+/// since its end depends on the force.
 [[nodiscard]] std::optional<model::PullSpeed> pull_speed_of(const Scene& scene);
 
-/// What the converter's clock really does when it is set to this rate.
+/// True scan rate at this nominal rate, with the clock's error.
 [[nodiscard]] double true_scan_rate_Hz(const Scene& scene, double scan_rate_Hz) noexcept;
 
 /// Scans of one repetition at this nominal rate, missing ones too: all that begin before its end.

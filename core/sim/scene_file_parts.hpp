@@ -1,6 +1,6 @@
 /// \file
-/// Readers of a scene's effects, one function for each stage that has a file of its own. They set
-/// what is listed; mistakes stay in the settings until finish().
+/// Readers of a scene's effects, one function for each stage that has a file of its own. They set the listed
+/// effects; errors are reported by Settings::finish().
 #pragma once
 
 #include <string_view>
@@ -10,24 +10,24 @@
 
 namespace stickslip::sim {
 
-// Limits of sense, not of the method: a value outside is taken for a slip of the pen.
+// Plausibility limits, not limits of the method: a value outside is taken for a typing error.
 inline constexpr double kLargestCoefficient = 10.0;
 inline constexpr double kHighestVoltage_V = 1000.0;
 
 inline constexpr double kLongestPhase_s = 1e8;
 inline constexpr double kFastestBelt_m_per_s = 10.0;
 
-/// Those of the motion stage that say how the belt moves, with the scene's duration.
+/// Reads the effects of the motion stage that move the belt, and the scene's duration.
 /// \param scene_table  the whole scene. \param effects  the table [effects].
 void read_belt_effects(base::Settings scene_table, base::Settings effects, Scene& scene);
 
 /// `kinetic_drift`. \param effects  the table [effects]. \param scene  with paper, belt and duration.
 void read_kinetic_drift(base::Settings effects, Scene& scene);
 
-/// Those of the motion stage that change S and K. \param effects  the table [effects].
+/// Reads the effects of the motion stage that change S and K. \param effects  the table [effects].
 void read_paper_effects(base::Settings effects, Scene& scene);
 
-/// Those of the motion stage that replace Coulomb friction. \param effects  the table [effects].
+/// Reads the effects of the motion stage that replace Coulomb friction. \param effects  the table [effects].
 /// \param scene  with S and K.
 void read_friction_laws(base::Settings effects, Scene& scene);
 
@@ -40,7 +40,7 @@ void read_sampling_effects(base::Settings effects, Scene& scene);
 /// \param effects  the table [effects]. \param scene  with tester, load cell and scan rate.
 void read_signal_effects(base::Settings effects, Scene& scene);
 
-/// Makes the effect known, so that the message about an unknown one names it. \return is it listed?
+/// Registers the effect's name for the message about an unknown one. \return whether the effect is listed.
 [[nodiscard]] inline bool lists(base::Settings& effects, std::string_view name) {
   (void)effects.table(name);
   return effects.has(name);

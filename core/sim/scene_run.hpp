@@ -29,38 +29,37 @@
 
 namespace stickslip::sim {
 
-/// Builds what the scene lists and nothing else. Needs the same memory however long the scene is.
-/// Thread-bound.
+/// Simulates the listed effects only. Runs in constant memory. Thread-bound.
 class SceneRun {
  public:
-  /// \param scan_rate_Hz > 0, nominal. Stands at the first scan, with the scene's own seed.
+  /// \param scan_rate_Hz > 0, nominal. Starts at the first scan with the scene's seed.
   SceneRun(const Scene& scene, double scan_rate_Hz);
 
-  /// Back to the first scan, with these random numbers. Does not allocate.
+  /// Returns to the first scan, with the random numbers of `seed`. Does not allocate.
   void restart(std::uint64_t seed);
 
-  /// Index of the next scan that arrives; their whole number at the end of the scene.
+  /// Index of the next scan that is not missing; the number of scans at the end of the scene.
   [[nodiscard]] std::int64_t next_scan() const noexcept { return next_scan_; }
 
   /// The next consecutive readings, from next_scan() on: counts if the scene lists `quantisation`,
-  /// else volts. The same, however the scans are divided into calls. Does not allocate.
-  /// \return how many were written: less than the size only where scans are missing and at the end of
-  ///         the scene, none only there.
+  /// else volts. The values do not depend on the division into calls. Does not allocate.
+  /// \return number written: below the size only before missing scans and at the end of the scene; 0 only at
+  /// the end.
   std::size_t next(std::span<double> raw) { return next(raw, {}); }
 
-  /// The same with the noise-free force of each reading: the coefficient of the coupling at the instant at
-  /// which the converter looks, before transducer and signal. Asking for it changes no reading.
+  /// As next(raw), and also writes the noise-free force of each reading: the coefficient in the coupling at
+  /// the sampling instant, before transducer and signal stage. Readings are the same with and without it.
   /// \param coefficient  as many as `raw`, or none at all.
   std::size_t next(std::span<double> raw, std::span<double> coefficient);
 
-  /// How the motion is solved, and how far its numbers can be trusted.
+  /// Method of the solution, and its accuracy.
   [[nodiscard]] SolverMethod method() const { return motion_->method(); }
 
   /// Names of the effects that were built, in the order of the stages.
   [[nodiscard]] std::vector<std::string_view> effects() const;
 
  private:
-  /// Consecutive scans, whether they arrive or not: what is lost takes its random numbers along.
+  /// Simulates consecutive scans, missing ones included, so that those use their random numbers too.
   /// \param coefficient  receives the noise-free force; as many as `readings`, or none.
   void make(std::span<double> readings, std::span<double> coefficient);
   /// What the converter sees at these scans, before the signal stage, where the instants or the force

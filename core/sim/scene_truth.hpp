@@ -1,5 +1,5 @@
 /// \file
-/// What a scene's record will be compared with.
+/// Truth of a scene, with which its record is compared.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ namespace stickslip::sim {
 /// scans over the nominal rate. What has no place in the record is in true seconds (the frequency).
 ///
 /// Regime over the pull: stick-slip if each slip that began by giving way ended in sticking, ring-down
-/// if none did, mixed otherwise; a slip that the end of the pull cut short before it could tell is not
-/// asked; a sled that a fast start of the belt leaves sliding has not stuck either. Steady-sliding if the
-/// slip cannot oscillate; undecided if there is no slip to ask. Frequency: of the onsets if there are two,
-/// else ω/2π of the ring-down. Amplitude: half the range of the first slip in closed form [17], with zero as
-/// the least force of a one-way coupling; of a motion without closed forms that of the force itself. What
-/// rate-and-state friction calls a slip, and which S and K it then has: rate_and_state_motion.hpp.
+/// if none did, mixed otherwise; a slip that the end of the pull interrupts is ignored; a sled that slides
+/// because of a fast start of the belt has not stuck. Steady-sliding if the slip cannot oscillate; undecided
+/// without a slip. Frequency: of the onsets if there are two, else ω/2π of the ring-down. Amplitude: half the
+/// range of the first slip in closed form [17], with zero as the least force of a one-way coupling; of a
+/// motion without closed forms that of the force itself. What rate-and-state friction calls a slip, and which
+/// S and K it then has: rate_and_state_motion.hpp.
 ///
 /// \param method  by which the traditional coefficients are read from the force.
 /// \param scratch_folder  of the tables of a long test (base::LongColumn), which throw std::system_error

@@ -1,5 +1,5 @@
 /// \file
-/// The signal stage: what happens to the load cell's voltage on its way into the record.
+/// The signal stage: effects on the load cell's voltage.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,13 @@ class SignalEffect {
  public:
   virtual ~SignalEffect() = default;
 
-  /// As scenes write it.
+  /// Name of the effect in scenes.
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
-  /// Back to the first scan. \param seed of the scene's run; the effect mixes in its name.
+  /// Returns to the first scan.
+  /// \param seed  of the scene's run; the effect adds its name to it.
   virtual void restart(std::uint64_t seed) = 0;
-  /// Changes consecutive readings in place, the same however they are divided into calls.
-  /// Does not allocate.
+  /// Changes consecutive readings in place; the values do not depend on the division into calls. Does not
+  /// allocate.
   virtual void apply(std::span<double> reading) = 0;
 };
 

@@ -1,5 +1,5 @@
 /// \file
-/// What a scene may ask of the signal stage. Sizes are volts at the converter.
+/// Settings of the signal stage. Sizes are volts at the converter.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ struct MainsHum {
   std::vector<Harmonic> harmonics;  ///< The fundamental first.
 };
 
-/// Effect `spikes`: single scans that are off, at the times of a Poisson process, up or down alike.
+/// Effect `spikes`: errors of single scans, at the times of a Poisson process, equally likely up and down.
 struct Spikes {
   enum class Sizes { kFixed, kUniform, kExponential };
   double rate_per_s = 0.0;

@@ -11,9 +11,9 @@ using model::Mode;
 
 namespace {
 
-/// Largest error of the coefficient over tolerance and cycles.
+/// Largest error of the coefficient, divided by tolerance and number of cycles (measured).
 constexpr double kSlidingGrowth = 200.0;
-/// Of a coefficient of one: below, CVODE's error estimates are roundings.
+/// Smallest tolerance for a coefficient of order one; below it CVODE's error estimates are rounding errors.
 constexpr double kLeastSlidingTolerance = 16.0 * std::numeric_limits<double>::epsilon();
 /// Rates of the belt before and after a change that differ by less are the same: they came by sums.
 constexpr double kSameRate = 64.0 * std::numeric_limits<double>::epsilon();

@@ -24,9 +24,9 @@ class SlidingMotion final : public NumericMotion {
   [[nodiscard]] SolverMethod method() const override;
 
  private:
-  /// What the sled is doing; two of them are slips, two are slack.
+  /// Phase of the motion: kSlower and kFaster are slips, kFree and kRide are slack.
   enum class Phase { kStick, kSlower, kFaster, kFree, kRide };
-  /// How the present piece ends; kOngoing as long as CVODE has not found out.
+  /// Event that ends the present piece; kOngoing until CVODE has found it.
   enum class Ending {
     kOngoing,
     kGivesWay,

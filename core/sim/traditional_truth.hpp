@@ -1,5 +1,5 @@
 /// \file
-/// What the traditional rule would read from the force itself: no noise, no converter, no scans.
+/// Traditional coefficients of the noise-free, continuous force.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct TraditionalTruth {
 /// \param seed      of the run.
 /// \param onset_s   first slip onset.
 /// \param pull_speed_m_per_s  turns the method's travel into time.
-/// \return without the number that the pull is too short for.
+/// \return a coefficient is nullopt if the pull is too short for it.
 [[nodiscard]] TraditionalTruth traditional_truth(const Scene& scene, std::uint64_t seed, double onset_s,
                                                  const model::Method& method, double pull_speed_m_per_s);
 

@@ -28,7 +28,7 @@ namespace stickslip::sim {
 /// Does not allocate after construction. Thread-bound.
 class Transducer final : public ForceFollower {
  public:
-  /// What is not given is not built; at least one is.
+  /// At least one of load_cell and anti_alias must be given.
   /// \param oscillator    of the motion
   /// \param scan_rate_Hz  at which the force is mostly asked for: the responses over one whole period
   ///                      are computed only once.
@@ -40,7 +40,7 @@ class Transducer final : public ForceFollower {
 
   void follow(const ForceStretch& stretch) override;
 
-  /// The coefficient as the converter sees it at the end of what was followed.
+  /// Output coefficient at the end of the force passed so far.
   [[nodiscard]] double output() const { return state_[output_]; }
 
  private:

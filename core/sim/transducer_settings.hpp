@@ -1,5 +1,5 @@
 /// \file
-/// What a scene may ask of the transducer stage: how the voltage follows the force.
+/// Settings of the transducer stage: response of the voltage to the force.
 #pragma once
 
 namespace stickslip::sim {

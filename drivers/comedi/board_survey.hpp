@@ -1,5 +1,5 @@
 /// \file
-/// What a board offers, asked of the board itself, and what a configuration should say to use it.
+/// Survey of a board: its capabilities, read from the board, and a configuration that uses it.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct SubdeviceOffer {
   std::uint32_t maxdata = 0;
   std::vector<InputRange> ranges;       ///< Of channel 0.
   std::vector<std::string> references;  ///< As written in a configuration.
-  bool can_command = false;             ///< Times its scans by itself.
+  bool can_command = false;             ///< Supports asynchronous commands: the board times the scans.
   bool soft_calibrated = false;
   std::optional<double> slowest_Hz;  ///< Of one channel; absent without commands.
   std::optional<double> fastest_Hz;

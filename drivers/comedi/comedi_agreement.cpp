@@ -18,7 +18,7 @@ using base::Result;
 /// that the board never agrees.
 constexpr int kMostTests = 5;
 constexpr double kNanosecondsPerSecond = 1e9;
-/// Beyond this a thread of a common computer cannot read each scan at its time.
+/// Highest rate at which a thread of an ordinary computer can read each scan in time.
 constexpr double kFastestPolling_Hz = 2000.0;
 
 /// Nanoseconds between scans, rounded.

@@ -1,5 +1,5 @@
 /// \file
-/// The bargaining for a rate: what is asked of a board is changed by it, and read back.
+/// Negotiation of the scan rate: the board may change the request, and the result is read back.
 #pragma once
 
 #include <optional>

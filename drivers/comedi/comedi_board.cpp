@@ -30,12 +30,12 @@ constexpr std::int64_t kProbePeriods = 8;
 /// … but not shorter than this, so that fast rates do not busy the processor.
 constexpr std::int64_t kShortestProbe_ms = 20;
 constexpr std::size_t kLargestScan_bytes = 8;  ///< Two samples of 4.
-/// A board that says nothing for so long, and for so many periods, is as good as unplugged: some drivers
-/// neither deliver nor report when their device has gone.
+/// Time and scan periods without a scan after which a board counts as unplugged: some drivers neither deliver
+/// nor report an error when their device is removed.
 constexpr std::int64_t kLongestSilence_ns = 5'000'000'000;
 constexpr std::int64_t kSilentPeriods = 50;
-/// Where the board does not wake its reader at each scan, half its FIFO may have to fill: half of 8192
-/// samples take 11.7 s at 350 Hz.
+/// The same time for a board that does not wake its reader at each scan: half of its FIFO may have to fill
+/// first, which for 8192 samples takes 11.7 s at 350 Hz.
 constexpr std::int64_t kLongestSilenceOfAFifo_ns = 30'000'000'000;
 
 class ComediBoard final : public daq::Board {

@@ -24,20 +24,20 @@ namespace stickslip::drivers {
 
 /// Where the polynomial from codes to volts comes from.
 enum class CalibrationSource {
-  kByFlag,  ///< Soft where the board says that it is calibrated so, else hard, else none.
+  kByFlag,  ///< Soft if the board's flag says so, else hard, else none.
   kSoft,    ///< The board's calibration file.
   kHard,    ///< As the range is reported.
   kNone,    ///< The range, spread over the codes evenly.
 };
 
-/// Who times the scans.
+/// Source of the scan timing.
 enum class AcquisitionMode {
   kByFlag,   ///< The board where it can, else this computer.
   kCommand,  ///< The board, by an asynchronous command.
   kPolled,   ///< This computer, one reading at a time: worse by its wake-up latency.
 };
 
-/// The second input of each scan, and what stands behind it: quantity = (voltage − zero) · gain.
+/// The second input of each scan, and its sensor: quantity = (voltage − zero) · gain.
 struct SecondInputSettings {
   daq::SecondQuantity quantity = daq::SecondQuantity::kPullSpeed;
   unsigned channel = 1;
@@ -48,7 +48,7 @@ struct SecondInputSettings {
   double zero_V = 0.0;
 };
 
-/// What is asked of a board; BoardInfo says what was granted.
+/// Requested settings of a board; BoardInfo holds the granted ones.
 struct ComediBoardSettings {
   std::string device = "/dev/comedi0";
   std::optional<unsigned> subdevice;  ///< The first analog input if absent.
@@ -65,18 +65,18 @@ struct ComediBoardSettings {
   double scan_rate_tolerance = 0.01;
   /// The kernel's buffer, bytes; rounded up to pages. Comedi's default: 50 min at 350 Hz and 2 bytes.
   unsigned buffer_size = 2048U * 1024U;
-  /// Of the board object before this one, if there was one: the index goes on as the clock says.
+  /// State of an earlier board object; the index continues from it by the clock.
   std::optional<daq::Continuation> continues;
 };
 
-/// Opens the board and asks it what it will grant; acquires nothing and disturbs no other program.
+/// Opens the board and negotiates its settings; acquires nothing and disturbs no other program.
 /// \param clock  must outlive the board.
 /// \return a usage error if the settings do not suit the board, a failure if the board cannot be used;
 ///         either says what to do.
 [[nodiscard]] base::Result<std::unique_ptr<daq::Board>> make_comedi_board(const ComediBoardSettings& settings,
                                                                           base::Clock& clock);
 
-/// The same over the calls given: for tests.
+/// As above, with replaced calls, for tests.
 [[nodiscard]] base::Result<std::unique_ptr<daq::Board>> make_comedi_board(const ComediBoardSettings& settings,
                                                                           base::Clock& clock,
                                                                           std::unique_ptr<ComediCalls> calls);

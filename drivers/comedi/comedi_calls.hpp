@@ -1,6 +1,6 @@
 /// \file
-/// What this product uses of libcomedi and of the file behind a board, as a table that a test can
-/// fake (tests/support/fake_comedi.hpp). Nothing is decided here: one call, one libcomedi function.
+/// Table of the libcomedi functions and file operations in use, which tests can replace
+/// (tests/support/fake_comedi.hpp). Each function makes one call of libcomedi.
 ///
 /// Every int is ≥ 0 on success and −errno on failure, also where libcomedi reports otherwise.
 #pragma once
@@ -44,7 +44,7 @@ inline constexpr unsigned kLargeSample = 0x10000000;  ///< SDF_LSAMPL: a sample 
 
 inline constexpr int kAnalogInput = 1;  ///< COMEDI_SUBD_AI
 
-/// Against what the input is measured (AREF_…).
+/// Reference potential of the input (AREF_…).
 enum class AnalogReference : unsigned { kGround = 0, kCommon = 1, kDifferential = 2, kOther = 3 };
 
 /// One entry of a channel list.
@@ -93,7 +93,7 @@ class ComediCalls {
 
   /// comedi_open(), then O_NONBLOCK and FD_CLOEXEC, which it does not set.
   virtual int open(const std::string& device) = 0;
-  /// Ends a command of ours too. Allowed when nothing is open.
+  /// Closes the device and ends a running command of this process. Allowed when nothing is open.
   virtual void close() noexcept = 0;
 
   virtual std::string driver_name() = 0;
@@ -115,11 +115,11 @@ class ComediCalls {
   virtual base::Result<ConversionPolynomial> soft_calibration(unsigned subdevice, unsigned channel,
                                                               unsigned range) = 0;
 
-  /// \return 0 if the board takes the command as it is; 1 … 5 is the stage that objected, and
-  /// `command` then holds what the board would take instead.
+  /// \return 0 if the board accepts the command unchanged; 1 … 5 is the stage that refused it, and `command`
+  /// then holds the board's alternative.
   virtual int command_test(ComediCommand& command) = 0;
   virtual int command(const ComediCommand& command) = 0;
-  /// Throws away what was not read.
+  /// Ends the command; unread scans are lost.
   virtual int cancel(unsigned subdevice) noexcept = 0;
   /// \return the size in use. The setting outlives close().
   virtual int set_buffer_size(unsigned subdevice, unsigned size) = 0;
@@ -127,14 +127,14 @@ class ComediCalls {
   /// One reading of the first channel, now (comedi_data_read). Real-time safe. \return ≥ 0 and the code.
   virtual int read_one(const ComediCommand& input, std::uint32_t& code) noexcept = 0;
 
-  /// Waits until there may be something to read. \return 0 if the time is over: also when the board
-  /// was removed, which no poll() reports. Real-time safe.
+  /// Waits until there may be something to read.
+  /// \return 0 if the time is over: also when the board was removed, which no poll() reports. Real-time safe.
   virtual int poll(std::chrono::milliseconds timeout) noexcept = 0;
   /// \return bytes, not necessarily whole samples; 0 if the command ended by itself. Real-time safe.
   virtual int read(std::span<std::byte> buffer) noexcept = 0;
 };
 
-/// The real ones.
+/// The real calls.
 [[nodiscard]] std::unique_ptr<ComediCalls> make_comedi_calls();
 
 }  // namespace stickslip::drivers

@@ -31,7 +31,7 @@ std::string group_name(gid_t group) {
   return fmt::format("{}", group);
 }
 
-/// Which group would help, by the device file itself.
+/// Message for a denied permission; it names the group that may use the device file.
 std::string explain_permission(const std::string& device) {
   constexpr const char* kGroupOfThePackage = "iocard";
   constexpr mode_t kGroupMayUse = S_IRGRP | S_IWGRP;

@@ -1,5 +1,5 @@
 /// \file
-/// Errors of a board in words: what it means, what to do.
+/// Messages for errors of a board, with remedies.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace stickslip::drivers {
 /// One line for a person: what `error` (errno, > 0) means for this device and what to do.
 [[nodiscard]] std::string explain_comedi_error(const std::string& device, int error);
 
-/// The same as an error, of the kind that says who has to act.
+/// explain_comedi_error() as an Error of the matching kind.
 [[nodiscard]] base::Error comedi_error(const std::string& device, int error);
 
 }  // namespace stickslip::drivers

@@ -1,5 +1,5 @@
 /// \file
-/// What a board grants: the checks and the bargaining before the first scan.
+/// Setup of a board: checks and negotiation before the first scan.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace stickslip::drivers {
 
-/// Everything that is fixed once a board has been asked.
+/// Settings fixed by the negotiation.
 struct ComediSetup {
   daq::BoardInfo info;
   ComediCommand command;  ///< As the board takes it, unchanged.

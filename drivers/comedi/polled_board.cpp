@@ -15,7 +15,7 @@ namespace {
 
 using daq::ReadStatus;
 
-/// Scans are handed over in bundles of this length, as boards with commands do: the ring is sized for that.
+/// Time between deliveries of scans, as with boards that have commands; the ring is sized for it.
 constexpr std::int64_t kBundle_ns = 8'000'000;
 
 class PolledBoard final : public daq::Board {

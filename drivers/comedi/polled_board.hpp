@@ -1,5 +1,5 @@
 /// \file
-/// A board without commands: read one scan at a time, when this computer's clock says so.
+/// A board without asynchronous commands, read one scan at a time, timed by this computer's clock.
 #pragma once
 
 #include <memory>
@@ -10,8 +10,9 @@
 
 namespace stickslip::drivers {
 
-/// Each reading is as late as the thread wakes up, so the scans jitter by that. A scan whose time went by
-/// unread is a jump of the index, counted. \param clock  outlives the board.
+/// The wake-up latency of the thread delays each reading, so the scans jitter. A scan that could not be read
+/// in time is a gap with known count.
+/// \param clock  must outlive the board.
 [[nodiscard]] std::unique_ptr<daq::Board> make_polled_board(ComediSetup setup,
                                                             const ComediBoardSettings& settings,
                                                             base::Clock& clock,

@@ -1,5 +1,5 @@
 /// \file
-/// Which board, and what each driver needs to know.
+/// Configuration of the board: kind of driver, and settings of each.
 #pragma once
 
 #include <filesystem>

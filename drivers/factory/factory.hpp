@@ -1,5 +1,5 @@
 /// \file
-/// The only place that knows which driver stands behind a board.
+/// Board factory, the only place that distinguishes drivers.
 #pragma once
 
 #include <memory>
@@ -20,24 +20,24 @@ namespace stickslip::drivers {
 
 struct OpenedBoard {
   std::unique_ptr<daq::Board> board;
-  std::shared_ptr<const model::TruthSource> truth;  ///< Null if nobody knows the truth.
-  // What the source of the scans knows about the bench behind them; absent for hardware.
+  std::shared_ptr<const model::TruthSource> truth;  ///< Null if there is no truth.
+  // Properties of the bench known from a scene or a record; absent for hardware.
   std::optional<daq::LoadCell> load_cell;
   std::optional<model::Tester> tester;
-  std::string characterisation;  ///< Of a replayed record: what was known of its tester beforehand.
+  std::string characterisation;  ///< Of a replayed record: text of its tester's characterisation.
   std::shared_ptr<const daq::RecordedFacts> recorded;  ///< Null unless a record is replayed.
-  record::CalibrationFacts calibration{};              ///< Of load_cell, as a replayed record knows it.
+  record::CalibrationFacts calibration{};              ///< Of load_cell, from a replayed record.
   std::string kept{};                                  ///< Of a replayed record: its process.kept.
 };
 
 /// \param clock  outlives the board.
-/// \param continues  where the acquisition before this one ended; only boards that can go away need it.
-/// Errors: kUsage if the configuration or a file it names is wrong; kFailure if the board is not
-/// there, in which case a later try may succeed.
+/// \param continues  state of an earlier acquisition; needed only by boards that can be unplugged.
+/// Errors: kUsage if the configuration or a file it names is wrong; kFailure if the board is not there, in
+/// which case a later try may succeed.
 [[nodiscard]] base::Result<OpenedBoard> open_board(const BoardConfig& config, base::Clock& clock,
                                                    const std::optional<daq::Continuation>& continues = {});
 
-/// Reads all that open_board() would read but touches no hardware.
+/// Reads and checks everything that open_board() would read, without accessing hardware.
 [[nodiscard]] base::Result<void> check_board(const BoardConfig& config);
 
 }  // namespace stickslip::drivers

@@ -1,7 +1,6 @@
 /// \file
-/// A weight on the load cell of the simulated tester, in the place of what the scene plays: to rehearse a
-/// calibration without hardware. A file says what hangs, so that a shell, a script or a test can be the
-/// hands.
+/// Simulated weight on the load cell, to rehearse a calibration without hardware. It replaces the scene's
+/// force. A file holds the mass, so that a shell, a script or a test can change it.
 #pragma once
 
 #include <array>
@@ -19,7 +18,7 @@ namespace stickslip::drivers {
 
 class HangingWeight {
  public:
-  /// What the pendulum of a hook of 25 cm does.
+  /// Frequency of a pendulum of 25 cm, the length of a hook.
   static constexpr double kSwing_Hz = 1.0;
   /// Standard deviation of a scan where the scene lists no white noise: a quiet amplifier before 16 bits of
   /// 20 V.
@@ -28,13 +27,13 @@ class HangingWeight {
   /// \param file  holds a mass in kg, and if the weight swings by how much of it the reading does, in kg:
   /// "0.5" or "0.5 0.01". While it is not there nothing is hung, and the scene plays; what cannot be
   /// understood (a file half written) leaves things as they were.
-  /// \param scene  its load cell, gravity, noise and converter. \param board  read through the same
-  /// converter.
+  /// \param scene  its load cell, gravity, noise and converter.
+  /// \param board  read through the same converter.
   HangingWeight(const std::filesystem::path& file, const sim::Scene& scene, const daq::BoardInfo& board);
 
-  /// Looks what hangs now. Allocates nothing.
+  /// Reads the file. Does not allocate.
   void look() noexcept;
-  /// What the converter gives for it, if something hangs. \param first  index of raw[0].
+  /// If a weight hangs, replaces `raw` with the converter's readings of it. \param first  index of raw[0].
   void read(base::ScanIndex first, std::span<double> raw) noexcept;
 
  private:

@@ -1,6 +1,6 @@
 /// \file
-/// Which repetition of which scene a scan belongs to, so that the board and the truth agree without
-/// sharing any state that changes.
+/// Playlist: maps a scan index to the repetition of a scene. Board and truth both use it, without shared
+/// mutable state.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace stickslip::drivers {
 
 /// One playing of one scene.
 struct Repetition {
-  std::int64_t number = 0;    ///< Of all that are played, from 0.
+  std::int64_t number = 0;    ///< Among all repetitions played, from 0.
   std::size_t scene = 0;      ///< Index into Playlist::scenes().
   base::ScanIndex first = 0;  ///< Its first scan.
   std::int64_t count = 0;     ///< Its scans.

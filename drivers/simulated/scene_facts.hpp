@@ -1,6 +1,6 @@
 /// \file
-/// What a bench that plays scenes knows about itself. Of what must be the same in all of them, the
-/// first scene tells.
+/// Board, load cell and tester of a bench that plays scenes. Properties that all scenes must share are taken
+/// from the first.
 #pragma once
 
 #include <optional>
@@ -21,8 +21,8 @@ namespace stickslip::drivers {
 
 [[nodiscard]] daq::LoadCell load_cell_of(const sim::Scene& scene);
 
-/// Mass and gravity; the pull speed, or its course, if it is the same in all scenes. \param scenes  at least
-/// one.
+/// Mass and gravity; the pull speed, or its course, if it is the same in all scenes.
+/// \param scenes  at least one.
 [[nodiscard]] model::Tester tester_of(const std::vector<sim::Scene>& scenes);
 
 }  // namespace stickslip::drivers

@@ -164,7 +164,7 @@ class SimulatedBoard final : public daq::Board {
   base::Clock& clock_;
   std::optional<daq::Continuation> continues_;  ///< Until the first start.
   daq::BoardInfo info_;
-  double true_scan_rate_Hz_;         ///< At which scans fall due; nobody is told.
+  double true_scan_rate_Hz_;         ///< Rate at which scans fall due; not reported.
   std::vector<sim::SceneRun> runs_;  ///< One for each scene.
   std::vector<std::vector<sim::BeltSegment>> belts_;
   std::optional<HangingWeight> hanging_;

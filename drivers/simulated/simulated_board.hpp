@@ -25,7 +25,7 @@ namespace stickslip::drivers {
 
 struct SimulatedBoardSettings {
   std::vector<std::filesystem::path> scenes;  ///< Played in this order.
-  int repeats = 1;  ///< Each scene so many times in a row; 0: the list round and round for ever.
+  int repeats = 1;  ///< Repetitions of each scene in a row; 0: the list is repeated without end.
   std::optional<double> scan_rate_Hz;  ///< Else that of the scenes. Granted as asked.
   model::Method method{};              ///< By which the truth reads the traditional coefficients.
   /// A second input reads the belt's speed through a converter like the force's, this much for each volt, not
@@ -36,12 +36,12 @@ struct SimulatedBoardSettings {
   SimulatedFaults faults{};
   /// Index of the first scan, ≥ 0: as of a board that has been running since index 0.
   base::ScanIndex first_scan = 0;
-  /// Of a board before this one that was pulled out; it comes back where the clock says.
+  /// State of an earlier board that was unplugged; the index continues from it by the clock.
   std::optional<daq::Continuation> continues{};
 };
 
-/// Two equal implementations of the seams, made from one list of scenes, and the facts about the
-/// tester that a bench would know from its own papers.
+/// Board and truth source made from one list of scenes, with the load cell and the tester that a real bench
+/// would have documented.
 struct SimulatedTester {
   std::unique_ptr<daq::Board> board;
   std::shared_ptr<const model::TruthSource> truth;

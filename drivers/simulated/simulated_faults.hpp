@@ -1,6 +1,5 @@
 /// \file
-/// Troubles of a bench, simulated: an A/D board that loses scans and one whose cable is pulled out, at
-/// random.
+/// Simulated faults of a bench at random times: overruns of the A/D board, and loss of the board.
 ///
 ///     board = drivers::with_faults(std::move(board), {.overruns_every_s = 3600.0, .seed = 7});
 #pragma once
@@ -12,18 +11,17 @@
 
 namespace stickslip::drivers {
 
-/// Times between two of a kind are exponential with these means, s of the board's time; 0: none.
+/// Mean times between faults of a kind, s of the board's time; exponentially distributed. 0: no such fault.
 struct SimulatedFaults {
   double overruns_every_s = 0.0;  ///< The board loses up to kLongestOverrun_s of scans and halts.
   double losses_every_s = 0.0;    ///< The board is gone; a new one is found at once.
   std::uint64_t seed = 1;
 };
 
-/// Scans that an overrun loses are uniform from one to those of so long.
+/// Longest loss by an overrun, s; the number of lost scans is uniform from 1 to this.
 inline constexpr double kLongestOverrun_s = 5.0;
 
-/// The same board with the faults put on it. Which scans they hit follows from the seed and from the index of
-/// the first scan.
+/// Adds the faults to a board. Seed and index of the first scan determine the affected scans.
 [[nodiscard]] std::unique_ptr<daq::Board> with_faults(std::unique_ptr<daq::Board> board,
                                                       const SimulatedFaults& faults);
 

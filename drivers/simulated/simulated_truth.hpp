@@ -1,5 +1,5 @@
 /// \file
-/// The truth about the simulated board's scans, found again by simulating without scans.
+/// Truth about the simulated board's scans, computed again from the scenes.
 #pragma once
 
 #include <filesystem>
@@ -16,8 +16,9 @@ namespace stickslip::drivers {
 void move_into_window(model::TestTruth& truth, double window_start_s, double window_length_s,
                       const std::filesystem::path& scratch_folder = {});
 
-/// Answers for the repetition that shares most scans with the window; where the window cuts it, modes
-/// and cycles are cut too. Nothing for a window without scans or behind the end of the list.
+/// Truth source for the simulated board. It returns the truth of the repetition that shares most scans with
+/// the window, with modes and cycles limited to the window; nullopt for a window without scans or after the
+/// end of the list.
 /// \param method  as for sim::scene_truth().
 [[nodiscard]] std::shared_ptr<const model::TruthSource> make_simulated_truth(
     std::shared_ptr<const Playlist> playlist, model::Method method = {});
