@@ -7,8 +7,8 @@
 #include <string>
 #include <system_error>
 
-#include "cli/scene_library.hpp"
 #include "cli/subcommands.hpp"
+#include "io/library.hpp"
 
 #include "core/base/wording.hpp"
 
@@ -25,7 +25,7 @@ Examples:
 
 /// Becomes the daemon. \return only where that failed.
 base::Result<std::string> run_demo(const std::string& folder) {
-  const auto scenes = scene_folder("");
+  const auto scenes = io::library_folder(io::kScenes, "");
   if (!scenes) return tl::unexpected(scenes.error());
   const std::filesystem::path config = scenes->parent_path() / "demo.toml";
   std::error_code error;

@@ -8,9 +8,9 @@
 
 #include "cli/options.hpp"
 #include "cli/progress.hpp"
-#include "cli/scene_library.hpp"
 #include "cli/simulation/simulate.hpp"
 #include "cli/subcommands.hpp"
+#include "io/library.hpp"
 #include "io/new_file.hpp"
 #include "report/plot/figure.hpp"
 #include "report/record_figure.hpp"
@@ -62,7 +62,7 @@ bool is_record(const std::string& input) {
 /// \param title  becomes the scene's, in words.
 Result<record::Record> record_of(const PlotOptions& options, std::string& title) {
   if (is_record(options.input)) return record::read_record_apart(options.input);
-  const Result<std::filesystem::path> file = find_scene(options.input, options.folder);
+  const Result<std::filesystem::path> file = io::find_in(io::kScenes, options.input, options.folder);
   if (!file) return tl::unexpected(file.error());
   const Result<sim::Scene> scene = sim::load_scene(*file);
   if (!scene) return tl::unexpected(scene.error());

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "cli/options.hpp"
-#include "cli/scene_library.hpp"
+#include "io/library.hpp"
 
 #include "core/base/wording.hpp"
 
@@ -63,7 +63,7 @@ Result<std::uint64_t> seed_of(const SceneOptions& options, const sim::Scene& sce
 Result<ChosenScene> chosen_scene(const SceneOptions& options) {
   const Result<sim::SceneChanges> changes = changes_of(options);
   if (!changes) return tl::unexpected(changes.error());
-  const Result<std::filesystem::path> file = find_scene(options.scene, options.folder);
+  const Result<std::filesystem::path> file = io::find_in(io::kScenes, options.scene, options.folder);
   if (!file) return tl::unexpected(file.error());
   Result<sim::Scene> scene = sim::load_scene(*file, *changes);
   if (!scene) return tl::unexpected(scene.error());

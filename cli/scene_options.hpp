@@ -37,7 +37,7 @@ struct ChosenScene {
   std::uint64_t seed = 0;
 };
 
-/// The scene with all its options. Usage error: as find_scene(), changes_of(), sim::load_scene(), seed_of().
+/// The scene with all its options. Usage error: as io::find_in(), changes_of(), sim::load_scene(), seed_of().
 [[nodiscard]] base::Result<ChosenScene> chosen_scene(const SceneOptions& options);
 
 /// Usage error that names the option, the text and the range.

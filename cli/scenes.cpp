@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "cli/scene_library.hpp"
 #include "cli/subcommands.hpp"
 #include "io/json_text.hpp"
+#include "io/library.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/sim/scene.hpp"
@@ -22,11 +22,11 @@ struct ScenesOptions {
 };
 
 base::Result<std::string> run_scenes(const ScenesOptions& options) {
-  const base::Result<std::filesystem::path> found = scene_folder(options.folder);
+  const base::Result<std::filesystem::path> found = io::library_folder(io::kScenes, options.folder);
   if (!found) return tl::unexpected(found.error());
   std::vector<sim::Scene> scenes;
   std::size_t longest = 0;
-  for (const std::filesystem::path& file : scenes_in(*found)) {
+  for (const std::filesystem::path& file : io::files_in(*found)) {
     base::Result<sim::Scene> scene = sim::load_scene(file);
     if (!scene) return tl::unexpected(scene.error());
     longest = std::max(longest, scene->name.size());

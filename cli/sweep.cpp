@@ -14,7 +14,6 @@
 
 #include "cli/options.hpp"
 #include "cli/progress.hpp"
-#include "cli/scene_library.hpp"
 #include "cli/scene_options.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/sweep/grid.hpp"
@@ -23,6 +22,7 @@
 #include "cli/sweep/runner.hpp"
 #include "cli/sweep/summary.hpp"
 #include "io/json_text.hpp"
+#include "io/library.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/base/clock.hpp"
@@ -113,7 +113,7 @@ Result<Sweep> sweep_of(const SweepOptions& options) {
   facts.axes = *std::move(axes);
   const Result<sim::SceneChanges> common = changes_of(options);
   if (!common) return tl::unexpected(common.error());
-  const Result<std::filesystem::path> file = find_scene(options.scene, options.folder);
+  const Result<std::filesystem::path> file = io::find_in(io::kScenes, options.scene, options.folder);
   if (!file) return tl::unexpected(file.error());
 
   for (std::int64_t point = 0; point < facts.point_count(); ++point) {
