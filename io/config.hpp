@@ -60,7 +60,8 @@ struct DaemonConfig {
   bool begins_by_force = true;            ///< Else each test has to be armed or started.
   model::Method method;
   record::SampleFacts sample;
-  detect::EstimatorTier estimator = detect::EstimatorTier::kFit;
+  /// Absent: that of a replayed record, else "fit".
+  std::optional<detect::EstimatorTier> estimator;
   analysis::Kept kept;
   std::filesystem::path record_folder;
   DatedFolders dated_folders = DatedFolders::kNone;

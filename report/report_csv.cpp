@@ -82,17 +82,18 @@ void welch_cells(Line& line, const std::optional<analysis::Welch>& welch) {
 
 std::string report_csv(const Material& material) {
   Line header;
-  header.text("file").text("title").text("method").text("pull_speed").text("regime");
+  header.text("file").text("title").text("method").text("estimator").text("pull_speed").text("regime");
   std::string text;
   std::vector<const analysis::PooledDeltaMu*> by_cycle(material.tests.size());
   for (const analysis::SpeedGroup& group : material.groups) {
     for (const std::size_t test : group.tests) by_cycle[test] = &group.by_cycle;
   }
-  std::size_t cells = 11;  // Beside the results.
+  std::size_t cells = 12;  // Beside the results.
   for (std::size_t i = 0; i < material.tests.size(); ++i) {
     const analysis::MeasuredTest& measured = material.measured[i];
     Line line;
-    line.text(material.tests[i].file).text(material.tests[i].title).text(material.tests[i].method);
+    const ReportedTest& test = material.tests[i];
+    line.text(test.file).text(test.title).text(test.method).text(test.estimator);
     line.number(measured.pull_speed_m_per_s).text(model::name(measured.results.regime));
     std::string reasons;
     analysis::for_each_result(

@@ -163,11 +163,13 @@ std::string tests_table(const Material& material) {
 
 std::string methods_line(const Material& material) {
   std::map<std::string, std::size_t> counts;
-  for (const ReportedTest& test : material.tests) ++counts[test.method];
+  for (const ReportedTest& test : material.tests) {
+    const std::string method = test.method.empty() ? "method not known" : test.method;
+    ++counts[test.estimator == "fit" ? method : fmt::format("{}, estimator {}", method, test.estimator)];
+  }
   std::string text;
   for (const auto& [method, count] : counts) {
-    text += fmt::format("{}{}{}", text.empty() ? "" : "; ",
-                        method.empty() ? "method not known" : base::printable(method),
+    text += fmt::format("{}{}{}", text.empty() ? "" : "; ", base::printable(method),
                         counts.size() > 1 ? fmt::format(" ({})", count_of_tests(count)) : "");
   }
   return text;

@@ -23,6 +23,7 @@ struct ReportedTest {
   std::string file;
   std::string title;
   std::string method;                   ///< As in the record.
+  std::string estimator = "fit";        ///< As in the record, where that names one.
   std::vector<std::string> departures;  ///< From the method, one line each.
   std::optional<model::TestTruth> truth;
   std::string trace;  ///< For the page: trace_json() as text; empty unless asked for.

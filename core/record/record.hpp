@@ -112,7 +112,7 @@ struct ProcessFacts {
   std::string version;
   std::string commit;
   std::string configuration;  ///< The configuration file as it was read, whole.
-  std::string estimator;      ///< Tier of the estimators.
+  std::string estimator;      ///< estimator_of(); empty: "fit".
   std::string method;         ///< Preset of the traditional rule.
   std::string kept;           ///< Of spikes, drift and the first slip, analysis::text_of(); empty: nothing.
   /// What was known of the tester beforehand: the file of its characterisation, whole; empty: nothing.

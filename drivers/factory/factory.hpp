@@ -27,7 +27,9 @@ struct OpenedBoard {
   std::string characterisation;  ///< Of a replayed record: what was known of its tester beforehand.
   std::shared_ptr<const daq::RecordedFacts> recorded;  ///< Null unless a record is replayed.
   record::CalibrationFacts calibration{};              ///< Of load_cell, as a replayed record knows it.
-  std::string kept{};                                  ///< Of a replayed record: its process.kept.
+  // Of a replayed record: its process.kept and process.estimator.
+  std::string kept{};
+  std::string estimator{};
 };
 
 /// \param clock  outlives the board.

@@ -105,6 +105,7 @@ Material named_material(bool is_hostile) {
     reported.file = next(is_hostile);
     reported.title = next(is_hostile);
     reported.method = next(is_hostile);
+    reported.estimator = next(is_hostile);
   }
   material.tests[2].departures = {next(is_hostile)};
   material.voided = {{next(is_hostile), {next(is_hostile), next(is_hostile), next(is_hostile)}}};
