@@ -18,6 +18,7 @@
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
 #include "core/evaluation/analyse.hpp"
+#include "core/record/estimator_field.hpp"
 #include "core/record/method_text.hpp"
 #include "core/record/read_apart.hpp"
 #include "core/record/tester_file.hpp"
@@ -94,20 +95,18 @@ base::Result<std::string> run_analyze(const AnalyzeOptions& options) {
     const std::string& file = options.files[i];
     base::Result<record::Record> record = record::read_record_in_turn(options.files, i);
     if (!record) return tl::unexpected(record.error());
-    std::string& text = record->header.process.method;
+    record::ProcessFacts& process = record->header.process;
     const std::optional<std::int64_t> record_number = record->header.test_number;
-    const detect::EstimatorTier tier = estimator.value_or(record::estimator_from_text(text));
-    if (!options.tester.empty() && tier != detect::EstimatorTier::kFit) {
+    if (estimator) process.estimator = detect::name(*estimator);
+    const base::Result<detect::EstimatorTier> tier = record::estimator_of(process);
+    if (tier && !options.tester.empty() && *tier != detect::EstimatorTier::kFit) {
       return base::usage_error(
           "{}: --tester needs the fit of the whole test, and the estimator here is \"{}\"; add --estimator "
           "fit",
-          file, detect::name(tier));
+          file, detect::name(*tier));
     }
-    if (!options.method.empty()) text = record::method_text(*method);
-    // An empty text is the default method, which is written only where something stands behind it.
-    if (text.empty() && tier != detect::EstimatorTier::kFit) text = record::method_text({});
-    text = record::with_estimator(text, tier);
-    if (*kept) record->header.process.kept = analysis::text_of(**kept);
+    if (!options.method.empty()) process.method = record::method_text(*method);
+    if (*kept) process.kept = analysis::text_of(**kept);
     base::Result<evaluation::TesterAnalysis> analysed = evaluation::analyse_with_tester(*record, prior);
     if (!analysed) {
       return tl::unexpected(

@@ -17,7 +17,6 @@
 #include "core/evaluation/analyse.hpp"
 #include "core/record/finaliser.hpp"
 #include "core/record/iso_time.hpp"
-#include "core/record/method_text.hpp"
 #include "core/record/read_apart.hpp"
 #include "core/record/tester_file.hpp"
 
@@ -42,8 +41,7 @@ struct RingDowns {
 /// What one record says; refused unless it is a ring-down that the model describes.
 base::Result<TesterEstimate> ring_down_of(const std::string& file, record::Record record) {
   // Whatever the test itself was measured with.
-  record.header.process.method =
-      record::with_estimator(std::move(record.header.process.method), detect::EstimatorTier::kFit);
+  record.header.process.estimator = detect::name(detect::EstimatorTier::kFit);
   base::Result<evaluation::TesterAnalysis> test = evaluation::analyse_with_tester(record, {});
   if (!test)
     return tl::unexpected(base::Error{test.error().kind, fmt::format("{}: {}", file, test.error().message)});

@@ -313,7 +313,9 @@ DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
   read_method(settings.table("method"), folder, config.method);
   config.board.simulated.method = config.method;
   Settings analysis = settings.table("analysis");
-  config.estimator = analysis.choice<detect::EstimatorTier>("estimator", kEstimators, config.estimator);
+  const auto estimator =
+      analysis.choice<detect::EstimatorTier>("estimator", kEstimators, detect::EstimatorTier::kFit);
+  if (analysis.has("estimator")) config.estimator = estimator;
   config.kept = {.spikes = analysis.boolean("keep_spikes", false),
                  .drift = analysis.boolean("keep_drift", false),
                  .first_slip = analysis.boolean("keep_first_slip", false)};

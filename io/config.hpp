@@ -61,7 +61,8 @@ struct DaemonConfig {
   bool begins_by_force = true;            ///< False: each test must be armed or started by command.
   model::Method method;
   record::SampleFacts sample;
-  detect::EstimatorTier estimator = detect::EstimatorTier::kFit;
+  /// Absent: that of a replayed record, else "fit".
+  std::optional<detect::EstimatorTier> estimator;
   analysis::Kept kept;
   std::filesystem::path record_folder;
   DatedFolders dated_folders = DatedFolders::kNone;

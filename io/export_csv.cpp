@@ -83,6 +83,7 @@ std::string facts_text(const record::Record& record) {
   }
   line(FieldName{"replicate", "1", ""}, header.sample.replicate);
   add_fact(text, "method", header.process.method);
+  add_fact(text, "estimator", header.process.estimator);
   if (!record.end) return text;
   add_fact(text, "status", record::name(record.end->status));
   const analysis::TestResults& results = record.end->results;

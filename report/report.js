@@ -211,7 +211,7 @@
     const show = i => { viewers[m].show(i); document.getElementById(`traces-${m}`).scrollIntoView({block: "start"}); };
     const notes = material.tests.flatMap((t, i) => [...t.departures, ...t.findings].map(d => node("li", {}, node("b", {}, `test ${i + 1}`), `: ${d}`)));
     section(`all-tests-${m}`, two ? `Tests of ${nameOf(m)}` : "Tests",
-      node("p", {class: "note"}, "Method: " + [...new Set(material.tests.map(t => t.method || "not known"))].join("; ")),
+      node("p", {class: "note"}, "Method: " + [...new Set(material.tests.map(t => (t.method || "not known") + (t.estimator === "fit" ? "" : ", estimator " + t.estimator)))].join("; ")),
       table(`tests-${m}`, ["test", "file", "speed", "regime", ...data.quantities.map(title)], material.tests.map((t, i) => row(
         node("td", {}, node("button", {type: "button", class: "link", onclick: () => show(i)}, String(i + 1))),
         node("td", {class: "text"}, t.file), speed(t.pull_speed), node("td", {class: "text", title: t.details.regime ? t.details.regime.reason : ""}, t.regime),

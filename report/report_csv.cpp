@@ -1,173 +1,149 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <optional>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "io/table.hpp"
 #include "report/report_json.hpp"
 
 #include "core/analysis/results.hpp"
-#include "core/base/text.hpp"
 
 namespace stickslip::report {
 namespace {
 
-/// One line of cells.
-class Line {
- public:
-  Line& text(std::string_view cell) {
-    separate();
-    line_ += base::csv_cell(cell);
-    return *this;
-  }
+using Cells = std::vector<io::Table::Cell>;
 
-  /// The shortest digits that read back to the same number; empty if there is none.
-  template <typename T>
-  Line& number(const std::optional<T>& value) {
-    separate();
-    if (value) line_ += fmt::format("{}", *value);
-    return *this;
-  }
+template <typename... T>
+void add(Cells& cells, const T&... values) {
+  (cells.push_back(io::cell(values)), ...);
+}
 
-  Line& interval(const std::optional<analysis::Interval>& value) {
-    number(value ? std::optional{value->low} : std::nullopt);
-    return number(value ? std::optional{value->high} : std::nullopt);
-  }
+void add_interval(Cells& cells, const std::optional<analysis::Interval>& value) {
+  add(cells, value ? std::optional{value->low} : std::nullopt,
+      value ? std::optional{value->high} : std::nullopt);
+}
 
-  [[nodiscard]] std::string end() const { return line_ + "\r\n"; }
-
- private:
-  void separate() {
-    if (!first_) line_ += ',';
-    first_ = false;
-  }
-
-  std::string line_;
-  bool first_ = true;
-};
+io::Table table_of(const std::vector<std::string>& names) {
+  std::vector<io::Table::Column> columns;
+  for (const std::string& name : names) columns.push_back({.name = name});
+  return io::Table{std::move(columns)};
+}
 
 /// One side of a comparison.
-void summary_cells(Line& line, const Material& material, const std::optional<std::size_t>& group,
+void summary_cells(Cells& cells, const Material& material, const std::optional<std::size_t>& group,
                    std::size_t q) {
   const analysis::GroupQuantity* own = group ? &material.groups[*group].quantities[q] : nullptr;
   const analysis::Replicates none;
   const bool has = own != nullptr && own->replicates;
   const analysis::Replicates& replicates = has ? *own->replicates : none;
-  line.number(std::optional{replicates.count});
-  line.number(has ? std::optional{replicates.mean} : std::nullopt);
-  line.number(replicates.standard_deviation)
-      .number(replicates.repeatability)
-      .interval(replicates.mean_interval);
+  add(cells, replicates.count, has ? std::optional{replicates.mean} : std::nullopt,
+      replicates.standard_deviation, replicates.repeatability);
+  add_interval(cells, replicates.mean_interval);
 }
 
 /// The same of S − K by cycle, whose scatter is not one of single tests.
-void by_cycle_cells(Line& line, const Material& material, const std::optional<std::size_t>& group) {
+void by_cycle_cells(Cells& cells, const Material& material, const std::optional<std::size_t>& group) {
   const analysis::PooledDeltaMu none;
   const analysis::PooledDeltaMu& pooled = group ? material.groups[*group].by_cycle : none;
-  line.number(std::optional{pooled.test_count}).number(pooled.mean.value).text("").text("");
-  line.interval(analysis::mean_interval(pooled));
+  add(cells, pooled.test_count, pooled.mean.value, "", "");
+  add_interval(cells, analysis::mean_interval(pooled));
 }
 
-void welch_cells(Line& line, const std::optional<analysis::Welch>& welch) {
-  line.number(welch ? std::optional{welch->difference} : std::nullopt);
-  line.interval(welch ? std::optional{welch->interval} : std::nullopt);
-  line.number(welch ? std::optional{welch->t} : std::nullopt);
-  line.number(welch ? std::optional{welch->degrees_of_freedom} : std::nullopt);
-  line.number(welch ? std::optional{welch->p} : std::nullopt);
+void welch_cells(Cells& cells, const std::optional<analysis::Welch>& welch) {
+  if (!welch) return cells.resize(cells.size() + 6);
+  add(cells, welch->difference);
+  add_interval(cells, welch->interval);
+  add(cells, welch->t, welch->degrees_of_freedom, welch->p);
 }
 
 }  // namespace
 
 std::string report_csv(const Material& material) {
-  Line header;
-  header.text("file").text("title").text("method").text("pull_speed").text("regime");
-  std::string text;
+  std::vector<std::string> names{"file", "title", "method", "estimator", "pull_speed", "regime"};
+  const analysis::TestResults none;
+  analysis::for_each_result(none, [&](const analysis::ResultName& name, const analysis::Estimate&) {
+    names.emplace_back(name.name);
+  });
+  for (const char* name : {"at_speed_delta_mu_by_cycle", "at_speed_delta_mu_by_cycle_standard_error",
+                           "at_speed_slips", "at_speed_escaped", "absent", "voided"}) {
+    names.emplace_back(name);
+  }
+  io::Table table = table_of(names);
   std::vector<const analysis::PooledDeltaMu*> by_cycle(material.tests.size());
   for (const analysis::SpeedGroup& group : material.groups) {
     for (const std::size_t test : group.tests) by_cycle[test] = &group.by_cycle;
   }
-  std::size_t cells = 11;  // Beside the results.
   for (std::size_t i = 0; i < material.tests.size(); ++i) {
     const analysis::MeasuredTest& measured = material.measured[i];
-    Line line;
-    line.text(material.tests[i].file).text(material.tests[i].title).text(material.tests[i].method);
-    line.number(measured.pull_speed_m_per_s).text(model::name(measured.results.regime));
+    const ReportedTest& test = material.tests[i];
+    Cells cells;
+    add(cells, test.file, test.title, test.method, test.estimator, measured.pull_speed_m_per_s,
+        model::name(measured.results.regime));
     std::string reasons;
     analysis::for_each_result(
         measured.results, [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
-          if (i == 0) {
-            header.text(name.name);
-            ++cells;
-          }
-          line.number(estimate.value);
+          add(cells, estimate.value);
           if (!estimate.value) {
             reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", name.name, estimate.reason);
           }
         });
-    if (i == 0) {
-      for (const char* name : {"at_speed_delta_mu_by_cycle", "at_speed_delta_mu_by_cycle_standard_error",
-                               "at_speed_slips", "at_speed_escaped"}) {
-        header.text(name);
-      }
-      text = header.text("absent").text("voided").end();
-    }
     const analysis::PooledDeltaMu& pooled = *by_cycle[i];
-    line.number(pooled.mean.value).number(pooled.mean.standard_error);
-    line.number(std::optional{pooled.slip_count}).number(std::optional{pooled.escaped_count});
-    text += line.text(reasons).text("").end();
+    add(cells, pooled.mean.value, pooled.mean.standard_error, pooled.slip_count, pooled.escaped_count,
+        reasons);
+    table.add(std::move(cells));
   }
   // No numbers, so that nobody averages them.
   for (const VoidedTest& test : material.voided) {
-    Line line;
-    line.text(test.file);
-    for (std::size_t cell = 1; cell + 1 < cells; ++cell) line.text("");
-    text += line.text(test.voiding.reason).end();
+    Cells cells(names.size());
+    cells.front() = test.file;
+    cells.back() = test.voiding.reason;
+    table.add(std::move(cells));
   }
-  return text;
+  return table.csv();
 }
 
 std::string comparison_csv(const Material& a, const Material& b, const MaterialComparison& comparison) {
-  Line header;
-  header.text("pull_speed").text("quantity").text("unit");
+  std::vector<std::string> names{"pull_speed", "quantity", "unit"};
   for (const char* side : {"a", "b"}) {
     for (const char* name :
          {"count", "mean", "standard_deviation", "repeatability", "mean_low", "mean_high"}) {
-      header.text(fmt::format("{}_{}", side, name));
+      names.push_back(fmt::format("{}_{}", side, name));
     }
   }
   for (const char* name :
        {"difference", "difference_low", "difference_high", "t", "degrees_of_freedom", "p", "hedges_g",
         "hedges_g_low", "hedges_g_high", "tests_needed_80", "tests_needed_90", "reason"}) {
-    header.text(name);
+    names.emplace_back(name);
   }
-  std::string text = header.end();
+  io::Table table = table_of(names);
   for (std::size_t i = 0; i < comparison.pairs.size(); ++i) {
     const analysis::SpeedPair& pair = comparison.pairs[i];
-    Line by_cycle;
-    by_cycle.number(pair.pull_speed_m_per_s).text("delta_mu_by_cycle").text("1");
+    Cells by_cycle;
+    add(by_cycle, pair.pull_speed_m_per_s, "delta_mu_by_cycle", "1");
     by_cycle_cells(by_cycle, a, pair.a);
     by_cycle_cells(by_cycle, b, pair.b);
     welch_cells(by_cycle, comparison.by_cycle[i].welch);
-    for (int empty = 0; empty < 5; ++empty) by_cycle.text("");  // No g, no number of tests.
-    text += by_cycle.text(comparison.by_cycle[i].reason).end();
+    by_cycle.resize(names.size());  // No g, no number of tests.
+    by_cycle.back() = comparison.by_cycle[i].reason;
+    table.add(std::move(by_cycle));
     for (std::size_t q = 0; q < analysis::kQuantityCount; ++q) {
       const analysis::Quantity& quantity = analysis::quantities()[q];
       const auto& [welch, effect, needed, reason] = comparison.comparisons[i][q];
-      Line line;
-      line.number(comparison.pairs[i].pull_speed_m_per_s).text(quantity.name).text(quantity.unit);
-      summary_cells(line, a, comparison.pairs[i].a, q);
-      summary_cells(line, b, comparison.pairs[i].b, q);
-      welch_cells(line, welch);
-      line.number(effect ? std::optional{effect->g} : std::nullopt);
-      line.interval(effect ? effect->interval : std::nullopt);
-      line.number(needed ? needed->for_80_percent : std::nullopt);
-      line.number(needed ? needed->for_90_percent : std::nullopt);
-      text += line.text(reason).end();
+      Cells cells;
+      add(cells, pair.pull_speed_m_per_s, quantity.name, quantity.unit);
+      summary_cells(cells, a, pair.a, q);
+      summary_cells(cells, b, pair.b, q);
+      welch_cells(cells, welch);
+      add(cells, effect ? std::optional{effect->g} : std::nullopt);
+      add_interval(cells, effect ? effect->interval : std::nullopt);
+      add(cells, needed ? needed->for_80_percent : std::nullopt,
+          needed ? needed->for_90_percent : std::nullopt, reason);
+      table.add(std::move(cells));
     }
   }
-  return text;
+  return table.csv();
 }
 
 }  // namespace stickslip::report

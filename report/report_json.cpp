@@ -26,6 +26,7 @@ Json test_json(const ReportedTest& test, const analysis::MeasuredTest& measured)
   Json json{{"file", test.file},
             {"title", test.title},
             {"method", test.method},
+            {"estimator", test.estimator},
             {"departures", test.departures},
             {"pull_speed", io::or_null(measured.pull_speed_m_per_s)}};
   json.update(io::results_json(measured.results, true));

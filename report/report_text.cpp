@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/table.hpp"
 #include "report/millimetres.hpp"
 #include "report/table.hpp"
 
@@ -56,19 +57,22 @@ std::string count_of_tests(std::size_t count) {
 /// Fig. 1 has the first two; S and K stand beside them.
 constexpr std::size_t kFigureQuantities = 4;
 
-std::string figure_header(bool two) {
-  std::string text = fmt::format("{:<16}{:<14}{:>5}", "speed", two ? "material" : "", "tests");
+io::Table figure_table(bool two) {
+  using enum io::Table::Align;
+  std::vector<io::Table::Column> columns{{.heading = "speed", .align = kLeft, .width = 14},
+                                         {.heading = two ? "material" : "", .align = kLeft, .width = 12},
+                                         {.heading = "tests"}};
   for (std::size_t q = 0; q < kFigureQuantities; ++q)
-    text += fmt::format("  {:>17}", analysis::quantities()[q].title);
-  return text + "\n";
+    columns.push_back({.heading = std::string{analysis::quantities()[q].title}, .width = 17});
+  return io::Table{std::move(columns)};
 }
 
-std::string figure_line(const std::string& speed, const std::string& label, const SpeedGroup& group) {
-  std::string text = fmt::format("{:<16}{:<14}{:>5}", speed, base::printable(label), group.tests.size());
-  for (std::size_t q = 0; q < kFigureQuantities; ++q) {
-    text += fmt::format("  {:>17}", mean_text(group.quantities[q], analysis::quantities()[q]));
-  }
-  return text + "\n";
+void add_to_figure(io::Table& table, const std::string& speed, const std::string& label,
+                   const SpeedGroup& group) {
+  std::vector<io::Table::Cell> cells{speed, label, io::cell(group.tests.size())};
+  for (std::size_t q = 0; q < kFigureQuantities; ++q)
+    cells.emplace_back(mean_text(group.quantities[q], analysis::quantities()[q]));
+  table.add(std::move(cells));
 }
 
 constexpr int kDeltaMuDecimals = 4;
@@ -91,22 +95,29 @@ std::string by_cycle_line(const analysis::PooledDeltaMu& pooled) {
   return text + "\n";
 }
 
+std::string title_of(const Quantity& quantity) {
+  return quantity.unit == "1" ? std::string{quantity.title}
+                              : fmt::format("{} ({})", quantity.title, quantity.unit);
+}
+
 std::string replicates_table(const Material& material, const SpeedGroup& group) {
-  std::string text = fmt::format("{:<15}{:>4}  {:>9}  {:>9}  {:>11}  {:>20}\n", "", "n", "mean", "s_r",
-                                 "r = 2.8 s_r", "95 % of the mean");
+  io::Table table{{{.heading = "", .align = io::Table::Align::kLeft, .width = 13},
+                   {.heading = "n", .width = 4},
+                   {.heading = "mean", .width = 9},
+                   {.heading = "s_r", .width = 9},
+                   {.heading = "r = 2.8 s_r"},
+                   {.heading = "95 % of the mean", .width = 20}}};
   std::string notes;
   for (std::size_t q = 0; q < analysis::kQuantityCount; ++q) {
     const Quantity& quantity = analysis::quantities()[q];
     const GroupQuantity& own = group.quantities[q];
     const Replicates none;
     const Replicates& values = own.replicates ? *own.replicates : none;
-    const std::string title = quantity.unit == "1" ? std::string{quantity.title}
-                                                   : fmt::format("{} ({})", quantity.title, quantity.unit);
-    text += fmt::format("{:<15}{:>4}  {:>9}  {:>9}  {:>11}  {:>20}\n", title, values.count,
-                        number(own.replicates ? std::optional{values.mean} : std::nullopt, quantity.decimals),
-                        number(values.standard_deviation, quantity.decimals + 1),
-                        number(values.repeatability, quantity.decimals + 1),
-                        interval(values.mean_interval, quantity.decimals));
+    table.add({title_of(quantity), io::cell(values.count),
+               number(own.replicates ? std::optional{values.mean} : std::nullopt, quantity.decimals),
+               number(values.standard_deviation, quantity.decimals + 1),
+               number(values.repeatability, quantity.decimals + 1),
+               interval(values.mean_interval, quantity.decimals)});
     if (values.outlier) {
       const std::size_t test = own.tests[values.outlier->index];
       notes += fmt::format("!  {} of {} stands out (Grubbs {:.2f} above {:.2f}, 5 %); it is not left out\n",
@@ -114,7 +125,7 @@ std::string replicates_table(const Material& material, const SpeedGroup& group) 
                            values.outlier->statistic, values.outlier->critical);
     }
   }
-  return text + notes;
+  return table.text() + notes;
 }
 
 std::string limits_lines(const Material& material) {
@@ -163,11 +174,13 @@ std::string tests_table(const Material& material) {
 
 std::string methods_line(const Material& material) {
   std::map<std::string, std::size_t> counts;
-  for (const ReportedTest& test : material.tests) ++counts[test.method];
+  for (const ReportedTest& test : material.tests) {
+    const std::string method = test.method.empty() ? "method not known" : test.method;
+    ++counts[test.estimator == "fit" ? method : fmt::format("{}, estimator {}", method, test.estimator)];
+  }
   std::string text;
   for (const auto& [method, count] : counts) {
-    text += fmt::format("{}{}{}", text.empty() ? "" : "; ",
-                        method.empty() ? "method not known" : base::printable(method),
+    text += fmt::format("{}{}{}", text.empty() ? "" : "; ", base::printable(method),
                         counts.size() > 1 ? fmt::format(" ({})", count_of_tests(count)) : "");
   }
   return text;
@@ -195,37 +208,42 @@ std::string comparison_table(const analysis::PooledComparison& by_cycle,
   if (!first.empty() && std::all_of(comparisons.begin(), comparisons.end(), same)) {
     return fmt::format("{}  {}\n", kAbsent, base::printable(first));
   }
-  std::string text = fmt::format("{:<15}{:>10}  {:>22}  {:>9}  {:>8}  {:>18}  {:>14}\n", "", "A − B", "95 %",
-                                 "p (Welch)", "g", "95 % of g", "tests 80/90 %");
+  using enum io::Table::Align;
+  io::Table table{{{.heading = "", .align = kLeft, .width = 13},
+                   {.heading = "A − B", .width = 10},
+                   {.heading = "95 %", .width = 22},
+                   {.heading = "p (Welch)"},
+                   {.heading = "g", .format = ".2f", .width = 8},
+                   {.heading = "95 % of g", .width = 18},
+                   {.heading = "tests 80/90 %", .width = 14},
+                   {.heading = "", .align = kLeft}}};
+  const auto star = [](double p) { return p < analysis::kSignificance ? "*" : ""; };
   std::map<std::string, std::string> reasons;
   if (by_cycle.welch) {
-    text += fmt::format("{:<15}{:>10}  {:>22}  {:>9}{}\n", "S−K by cycle",
-                        number(by_cycle.welch->difference, kDeltaMuDecimals),
-                        interval(by_cycle.welch->interval, kDeltaMuDecimals), p_text(by_cycle.welch->p),
-                        by_cycle.welch->p < analysis::kSignificance ? "  *" : "");
+    table.add({"S−K by cycle", number(by_cycle.welch->difference, kDeltaMuDecimals),
+               interval(by_cycle.welch->interval, kDeltaMuDecimals), p_text(by_cycle.welch->p), "", "", "",
+               star(by_cycle.welch->p)});
   } else {
-    text += fmt::format("{:<15}{:>10}\n", "S−K by cycle", kAbsent);
+    table.add({"S−K by cycle", {}});
     reasons[by_cycle.reason] = "S−K by cycle";
   }
   for (std::size_t q = 0; q < analysis::kQuantityCount; ++q) {
     const Quantity& quantity = analysis::quantities()[q];
     const analysis::Comparison& own = comparisons[q];
-    const std::string title = quantity.unit == "1" ? std::string{quantity.title}
-                                                   : fmt::format("{} ({})", quantity.title, quantity.unit);
     if (!own.welch) {
-      text += fmt::format("{:<15}{:>10}\n", title, kAbsent);
+      table.add({title_of(quantity), {}});
       std::string& titles = reasons[own.reason];
       titles += fmt::format("{}{}", titles.empty() ? "" : ", ", quantity.title);
       continue;
     }
-    text += fmt::format("{:<15}{:>10}  {:>22}  {:>9}  {:>8.2f}  {:>18}  {:>14}{}\n", title,
-                        number(own.welch->difference, quantity.decimals),
-                        interval(own.welch->interval, quantity.decimals), p_text(own.welch->p), own.effect->g,
-                        interval(own.effect->interval, 1),
-                        fmt::format("{} / {}", needed_text(own.needed->for_80_percent),
-                                    needed_text(own.needed->for_90_percent)),
-                        own.welch->p < analysis::kSignificance ? "  *" : "");
+    table.add({title_of(quantity), number(own.welch->difference, quantity.decimals),
+               interval(own.welch->interval, quantity.decimals), p_text(own.welch->p), own.effect->g,
+               interval(own.effect->interval, 1),
+               fmt::format("{} / {}", needed_text(own.needed->for_80_percent),
+                           needed_text(own.needed->for_90_percent)),
+               star(own.welch->p)});
   }
+  std::string text = table.text();
   for (const auto& [reason, titles] : reasons)
     text += fmt::format("{}  no {}: {}\n", kAbsent, titles, base::printable(reason));
   return text;
@@ -235,10 +253,11 @@ std::string comparison_table(const analysis::PooledComparison& by_cycle,
 
 std::string report_text(const Material& material) {
   std::string text = tests_table(material) + "method: " + methods_line(material) + "\n";
-  text += "\nCoefficient against speed (Fig. 1): mean ± half of its 95 % interval\n" + figure_header(false);
-  for (const SpeedGroup& group : material.groups) {
-    text += figure_line(speed_text(group.pull_speed_m_per_s), "", group);
-  }
+  text += "\nCoefficient against speed (Fig. 1): mean ± half of its 95 % interval\n";
+  io::Table figure = figure_table(false);
+  for (const SpeedGroup& group : material.groups)
+    add_to_figure(figure, speed_text(group.pull_speed_m_per_s), "", group);
+  text += figure.text();
   for (const SpeedGroup& group : material.groups) {
     text +=
         fmt::format("\n{}, {}\n", speed_text(group.pull_speed_m_per_s), count_of_tests(group.tests.size()));
@@ -251,12 +270,14 @@ std::string comparison_text(const Material& a, const Material& b, const Material
   std::string text =
       fmt::format("A: {}\n{}method: {}\n\nB: {}\n{}method: {}\n", base::printable(a.label), tests_table(a),
                   methods_line(a), base::printable(b.label), tests_table(b), methods_line(b));
-  text += "\nCoefficient against speed (Fig. 1): mean ± half of its 95 % interval\n" + figure_header(true);
+  text += "\nCoefficient against speed (Fig. 1): mean ± half of its 95 % interval\n";
+  io::Table figure = figure_table(true);
   for (const analysis::SpeedPair& pair : comparison.pairs) {
     std::string speed = speed_text(pair.pull_speed_m_per_s);
-    if (pair.a) text += figure_line(std::exchange(speed, ""), "A", a.groups[*pair.a]);
-    if (pair.b) text += figure_line(speed, "B", b.groups[*pair.b]);
+    if (pair.a) add_to_figure(figure, std::exchange(speed, ""), "A", a.groups[*pair.a]);
+    if (pair.b) add_to_figure(figure, speed, "B", b.groups[*pair.b]);
   }
+  text += figure.text();
   for (std::size_t i = 0; i < comparison.pairs.size(); ++i) {
     const analysis::SpeedPair& pair = comparison.pairs[i];
     text +=

@@ -6,7 +6,9 @@
 #include <map>
 #include <string_view>
 #include <utility>
+#include <vector>
 
+#include "io/table.hpp"
 #include "report/ramp_text.hpp"
 
 #include "core/base/text.hpp"
@@ -22,40 +24,39 @@ constexpr std::string_view kAbsent = "–";
 
 struct Column {
   std::string_view title;
-  int width;
-  int decimals;
+  std::size_t width;
+  std::string_view format;
   const Estimate TestResults::*measured;
   std::optional<double> (*truth)(const TestTruth&);
 };
 
 constexpr std::array<Column, 8> kColumns{{
-    {"static", 7, 4, &TestResults::static_coefficient,
+    {"static", 7, ".4f", &TestResults::static_coefficient,
      [](const TestTruth& t) { return t.static_coefficient; }},
-    {"kinetic", 7, 4, &TestResults::kinetic_coefficient,
+    {"kinetic", 7, ".4f", &TestResults::kinetic_coefficient,
      [](const TestTruth& t) { return t.kinetic_coefficient; }},
-    {"S", 7, 4, &TestResults::mu_s, [](const TestTruth& t) -> std::optional<double> { return t.mu_s; }},
-    {"K", 7, 4, &TestResults::mu_k, [](const TestTruth& t) -> std::optional<double> { return t.mu_k; }},
-    {"S−K", 7, 4, &TestResults::delta_mu,
+    {"S", 7, ".4f", &TestResults::mu_s, [](const TestTruth& t) -> std::optional<double> { return t.mu_s; }},
+    {"K", 7, ".4f", &TestResults::mu_k, [](const TestTruth& t) -> std::optional<double> { return t.mu_k; }},
+    {"S−K", 7, ".4f", &TestResults::delta_mu,
      [](const TestTruth& t) -> std::optional<double> { return t.mu_s - t.mu_k; }},
-    {"f (Hz)", 7, 3, &TestResults::oscillation_frequency,
+    {"f (Hz)", 7, ".3f", &TestResults::oscillation_frequency,
      [](const TestTruth& t) { return t.oscillation_frequency_Hz; }},
-    {"amplitude", 9, 4, &TestResults::amplitude, [](const TestTruth& t) { return t.amplitude; }},
-    {"γ/2ω", 7, 5, &TestResults::gamma_over_2omega,
+    {"amplitude", 9, ".4f", &TestResults::amplitude, [](const TestTruth& t) { return t.amplitude; }},
+    {"γ/2ω", 7, ".5f", &TestResults::gamma_over_2omega,
      [](const TestTruth& t) -> std::optional<double> { return t.gamma_over_2omega; }},
 }};
 
-constexpr int kRegimeWidth = 14;
-
-std::string cell(const std::optional<double>& value, const Column& column) {
-  return value ? fmt::format("{:.{}f}", *value, column.decimals) : std::string{kAbsent};
-}
-
-std::string line(std::string_view number, std::string_view kind, std::string_view regime,
-                 const std::array<std::string, kColumns.size()>& cells, std::string_view where) {
-  std::string text = fmt::format("{:>4}  {:<8}  {:<{}}", number, kind, regime, kRegimeWidth);
-  for (std::size_t i = 0; i < kColumns.size(); ++i)
-    text += fmt::format("  {:>{}}", cells[i], kColumns[i].width);
-  return fmt::format("{}  {}\n", text, base::printable(where));
+io::Table table_without_rows() {
+  using enum io::Table::Align;
+  std::vector<io::Table::Column> columns{{.heading = "test"},
+                                         {.heading = "", .align = kLeft, .width = 8},
+                                         {.heading = "regime", .align = kLeft, .width = 14}};
+  for (const Column& column : kColumns) {
+    columns.push_back(
+        {.heading = std::string{column.title}, .format = std::string{column.format}, .width = column.width});
+  }
+  columns.push_back({.heading = "file, scene", .align = kLeft});
+  return io::Table{std::move(columns)};
 }
 
 /// Why numbers are absent, each reason once with the tests it concerns.
@@ -80,22 +81,21 @@ std::string footnotes(std::span<const TableRow> rows) {
 }  // namespace
 
 std::string format_table(std::span<const TableRow> rows) {
-  std::array<std::string, kColumns.size()> cells;
-  for (std::size_t i = 0; i < kColumns.size(); ++i) cells[i] = kColumns[i].title;
-  std::string text = line("test", "", "regime", cells, "file, scene");
-  std::string findings;
+  io::Table table = table_without_rows();
   for (const TableRow& row : rows) {
-    for (std::size_t i = 0; i < kColumns.size(); ++i) {
-      cells[i] = cell((row.results.*kColumns[i].measured).value, kColumns[i]);
-    }
-    text += line(fmt::format("{}", row.number), row.truth ? "measured" : "", model::name(row.results.regime),
-                 cells, row.where);
+    std::vector<io::Table::Cell> cells{row.number, row.truth ? "measured" : "",
+                                       io::cell(model::name(row.results.regime))};
+    for (const Column& column : kColumns) cells.push_back(io::cell((row.results.*column.measured).value));
+    cells.emplace_back(row.where);
+    table.add(std::move(cells));
     if (!row.truth) continue;
-    for (std::size_t i = 0; i < kColumns.size(); ++i) {
-      cells[i] = cell(kColumns[i].truth(*row.truth), kColumns[i]);
-    }
-    text += line("", "truth", model::name(row.truth->regime), cells, row.truth->scene_name);
+    cells = {"", "truth", io::cell(model::name(row.truth->regime))};
+    for (const Column& column : kColumns) cells.push_back(io::cell(column.truth(*row.truth)));
+    cells.emplace_back(row.truth->scene_name);
+    table.add(std::move(cells));
   }
+  std::string text = table.text();
+  std::string findings;
   for (const TableRow& row : rows) {
     for (const std::string& finding : row.results.findings) {
       findings += fmt::format("!  test {}: {}\n", row.number, base::printable(finding));

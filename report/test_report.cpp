@@ -67,6 +67,7 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
     test.file = file;
     test.title = record->header.title;
     test.method = record->header.process.method;
+    if (!record->header.process.estimator.empty()) test.estimator = record->header.process.estimator;
     // A method in another form is shown as it stands; nothing can be compared with it.
     if (const base::Result<model::Method> method = record::method_from_text(test.method)) {
       test.departures = model::departures(*method, tester.sled_mass_kg, tester.pull_speed_m_per_s);

@@ -23,6 +23,7 @@ struct ReportedTest {
   std::string file;
   std::string title;
   std::string method;                   ///< Text of the test method, as in the record.
+  std::string estimator = "fit";        ///< As in the record, if that names one.
   std::vector<std::string> departures;  ///< Departures from the method, one line each.
   std::optional<model::TestTruth> truth;
   std::string trace;  ///< trace_json() as text, for the page; empty unless requested.

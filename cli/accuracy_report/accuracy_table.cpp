@@ -6,9 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "io/json_text.hpp"
 #include "io/or_null.hpp"
+#include "io/table.hpp"
 #include <nlohmann/json.hpp>
 
 namespace stickslip::accuracy_report {
@@ -18,72 +21,90 @@ using accuracy::Grazing;
 using accuracy::GrazingRow;
 using accuracy::MethodMeasurement;
 using Json = nlohmann::ordered_json;
+using io::Table;
 
-constexpr std::string_view kAbsent = "–";
-
-std::string number(const std::optional<double>& value, int digits) {
-  return value ? fmt::format("{:.{}g}", *value, digits) : std::string{kAbsent};
-}
+constexpr auto kLeft = Table::Align::kLeft;
 
 /// No double is nearer to the truth than this; so that nothing is "more exact" by chance.
 double shown_error(double error) { return std::fmax(error, std::numeric_limits<double>::epsilon() / 8.0); }
 
-std::string motion_rows(const AccuracyReport& report) {
+Table measured_methods(const AccuracyReport& report) {
   const std::optional<double> exact_ns = report.motion.exact_ns_per_scan();
-  std::string text = fmt::format("{:<30} {:<22} {:>10} {:>10} {:>8} {:>9}  {}\n", "method", "setting",
-                                 "error", "ns/scan", "× exact", "captures", "capture near the threshold");
+  Table table{{{.name = "method", .heading = "method", .align = kLeft},
+               {.name = "setting", .heading = "setting", .align = kLeft},
+               {.name = "cannot"},
+               {.name = "largest_error"},
+               {.heading = "error"},
+               {.name = "ns_per_scan", .heading = "ns/scan", .format = ".4g"},
+               {.heading = "× exact", .format = ".3g"},
+               {.name = "captures", .heading = "captures"},
+               {.heading = "capture near the threshold", .align = kLeft}}};
   for (std::size_t i = 0; i < report.motion.rows.size(); ++i) {
     const MethodMeasurement& row = report.motion.rows[i];
     if (!row.lacks.empty()) {
-      text += fmt::format("{:<30} {:<22} {:>10}  cannot: {}\n", row.method, row.setting, kAbsent, row.lacks);
+      table.add({row.method, row.setting, row.lacks, {}, {}, {}, {}, {}, "cannot: " + row.lacks});
       continue;
     }
-    const std::string error = row.largest_error ? number(row.largest_error, 2) : "reference";
-    const std::optional<double> factor =
-        exact_ns ? std::optional<double>{row.ns_per_scan / *exact_ns} : std::nullopt;
-    text +=
-        fmt::format("{:<30} {:<22} {:>10} {:>10.4g} {:>8} {:>9}  {}\n", row.method, row.setting, error,
-                    row.ns_per_scan, number(factor, 3), row.capture_count, grazing_words(report.grazing[i]));
+    table.add({row.method,
+               row.setting,
+               {},
+               io::cell(row.largest_error),
+               row.largest_error ? fmt::format("{:.2g}", *row.largest_error) : "reference",
+               row.ns_per_scan,
+               io::cell(exact_ns ? std::optional{row.ns_per_scan / *exact_ns} : std::nullopt),
+               row.capture_count,
+               grazing_words(report.grazing[i])});
   }
-  return text;
+  return table;
 }
 
 std::string grazing_rows(const AccuracyReport& report) {
-  std::string text = fmt::format("{:<30} {:<22}  n =", "method", "setting");
-  for (int n = 1; n <= accuracy::kFinestStep; ++n) text += fmt::format("{:>3}", n);
-  text += '\n';
+  std::vector<Table::Column> columns{{.heading = "method", .align = kLeft},
+                                     {.heading = "setting", .align = kLeft},
+                                     {.heading = "n =", .align = kLeft}};
+  for (int n = 1; n <= accuracy::kFinestStep; ++n) columns.push_back({.heading = fmt::format("{}", n)});
+  Table table{std::move(columns)};
   for (const GrazingRow& row : report.grazing) {
-    text += fmt::format("{:<30} {:<22}     ", row.method, row.setting);
-    for (const Grazing step : row.steps) text += fmt::format("  {}", grazing_symbol(step));
-    text += '\n';
+    std::vector<Table::Cell> cells{row.method, row.setting, ""};
+    for (const Grazing step : row.steps) cells.emplace_back(std::string{grazing_symbol(step)});
+    table.add(std::move(cells));
   }
-  return text;
+  return table.text();
 }
 
-std::string detection_rows(const AccuracyReport& report) {
-  if (!report.no_detection.empty()) return report.no_detection + "\n";
-  std::string text = fmt::format("{:<53} {:>10} {:>10}\n", "estimator", "error", "µs/cycle");
+Table measured_estimators(const AccuracyReport& report) {
+  Table table{{{.name = "estimator", .heading = "estimator", .align = kLeft},
+               {.name = "setting"},
+               {.name = "error", .heading = "error", .format = ".2g"},
+               {.name = "us_per_cycle", .heading = "µs/cycle", .format = ".4g"},
+               {.name = "reason", .heading = "", .align = kLeft}}};
   for (const accuracy::DetectionRow& row : report.detection) {
-    const std::string why = row.reason.empty() ? std::string{} : "  " + row.reason;
-    text += fmt::format("{:<53} {:>10} {:>10}{}\n", row.estimator, number(row.error, 2),
-                        number(row.us_per_cycle, 4), why);
+    table.add({row.estimator, row.setting, io::cell(row.error), io::cell(row.us_per_cycle),
+               row.reason.empty() ? Table::Cell{} : row.reason});
   }
-  return text;
+  return table;
 }
 
-std::string tier_rows(const AccuracyReport& report) {
-  std::string text = fmt::format("{:>10} {:>8}  {:<24} {:>9} {:>9} {:>8} {:>10}\n", "scans/s", "a cycle",
-                                 "estimator", "bias, %", "sd, %", "× bound", "µs/cycle");
+Table measured_live_estimators(const AccuracyReport& report) {
+  Table table{{{.name = "scan_rate", .heading = "scans/s", .format = ".6g"},
+               {.heading = "a cycle", .format = ".3g"},
+               {.name = "estimator", .heading = "estimator", .align = kLeft},
+               {.name = "bias"},
+               {.heading = "bias, %", .format = ".2f"},
+               {.name = "deviation"},
+               {.heading = "sd, %", .format = ".2f"},
+               {.name = "over_bound", .heading = "× bound", .format = ".3g"},
+               {.name = "us_per_cycle", .heading = "µs/cycle", .format = ".4g"},
+               {.name = "reason", .heading = "", .align = kLeft}}};
   for (const accuracy::TierRow& row : report.tiers) {
-    text += fmt::format("{:>10.6g} {:>8.3g}  {:<24} ", row.scan_rate_Hz, row.scans_per_cycle, row.estimator);
     if (row.reason.empty()) {
-      text += fmt::format("{:>9.2f} {:>9.2f} {:>8.3g} {:>10.4g}\n", 100.0 * row.bias, 100.0 * row.deviation,
-                          row.over_bound, row.us_per_cycle);
+      table.add({row.scan_rate_Hz, row.scans_per_cycle, row.estimator, row.bias, 100.0 * row.bias,
+                 row.deviation, 100.0 * row.deviation, row.over_bound, row.us_per_cycle});
     } else {
-      text += row.reason + '\n';
+      table.add({row.scan_rate_Hz, row.scans_per_cycle, row.estimator, {}, {}, {}, {}, {}, {}, row.reason});
     }
   }
-  return text;
+  return table;
 }
 
 }  // namespace
@@ -127,43 +148,16 @@ std::string accuracy_table(const AccuracyReport& report) {
       "S − K of single cycles, live, at several scan rates: {}\n{}",
       report.scene_name, report.scan_count, report.scan_rate_Hz, report.processor, motion.reference,
       motion.reference_uncertainty, motion.capture_count, report.asked_accuracy, report.chosen_method,
-      motion_rows(report), report.grazing_gamma_over_2omega, grazing_rows(report), detection_rows(report),
-      accuracy::kTierScene, tier_rows(report));
+      measured_methods(report).text(), report.grazing_gamma_over_2omega, grazing_rows(report),
+      report.no_detection.empty() ? measured_estimators(report).text() : report.no_detection + "\n",
+      accuracy::kTierScene, measured_live_estimators(report).text());
 }
 
 std::string accuracy_json(const AccuracyReport& report) {
-  Json methods = Json::array();
-  for (std::size_t i = 0; i < report.motion.rows.size(); ++i) {
-    const MethodMeasurement& row = report.motion.rows[i];
-    Json grazing = Json::array();
+  Json methods = measured_methods(report).json();
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    Json& grazing = methods[i]["grazing"] = Json::array();
     for (const Grazing step : report.grazing[i].steps) grazing.push_back(accuracy::name(step));
-    const bool measured = row.lacks.empty();
-    methods.push_back({{"method", row.method},
-                       {"setting", row.setting},
-                       {"cannot", measured ? Json(nullptr) : Json(row.lacks)},
-                       {"largest_error", io::or_null(row.largest_error)},
-                       {"ns_per_scan", measured ? Json(row.ns_per_scan) : Json(nullptr)},
-                       {"captures", measured ? Json(row.capture_count) : Json(nullptr)},
-                       {"grazing", std::move(grazing)}});
-  }
-  Json tiers = Json::array();
-  for (const accuracy::TierRow& row : report.tiers) {
-    const bool measured = row.reason.empty();
-    tiers.push_back({{"scan_rate", row.scan_rate_Hz},
-                     {"estimator", row.estimator},
-                     {"bias", measured ? Json(row.bias) : Json(nullptr)},
-                     {"deviation", measured ? Json(row.deviation) : Json(nullptr)},
-                     {"over_bound", measured ? Json(row.over_bound) : Json(nullptr)},
-                     {"us_per_cycle", measured ? Json(row.us_per_cycle) : Json(nullptr)},
-                     {"reason", measured ? Json(nullptr) : Json(row.reason)}});
-  }
-  Json estimators = Json::array();
-  for (const accuracy::DetectionRow& row : report.detection) {
-    estimators.push_back({{"estimator", row.estimator},
-                          {"setting", row.setting},
-                          {"error", io::or_null(row.error)},
-                          {"us_per_cycle", io::or_null(row.us_per_cycle)},
-                          {"reason", row.reason.empty() ? Json(nullptr) : Json(row.reason)}});
   }
   const Json json{{"scene", report.scene_name},
                   {"scan_count", report.scan_count},
@@ -177,8 +171,8 @@ std::string accuracy_json(const AccuracyReport& report) {
                     {"captures", report.motion.capture_count}}},
                   {"methods", std::move(methods)},
                   {"grazing_gamma_over_2omega", report.grazing_gamma_over_2omega},
-                  {"estimators", std::move(estimators)},
-                  {"live_estimators", std::move(tiers)}};
+                  {"estimators", measured_estimators(report).json()},
+                  {"live_estimators", measured_live_estimators(report).json()}};
   return io::json_document(json);
 }
 

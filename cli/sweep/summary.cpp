@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cli/sweep/grid.hpp"
+#include "io/table.hpp"
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <nlohmann/json.hpp>
 
@@ -18,14 +19,12 @@ namespace {
 /// More are not read any more.
 constexpr std::int64_t kMostLines = 40;
 constexpr std::size_t kMostColumns = 60;
-constexpr const char* kAbsent = "–";
 /// Of model::kRegimeNames, in the map.
 constexpr std::string_view kLetters = "SRMGU";
 static_assert(kLetters.size() == model::kRegimeNames.size());
 /// Of kJudgedResults, those in the table.
 constexpr std::array<std::pair<std::size_t, std::string_view>, 3> kShownErrors{
     {{0, "error of S − K"}, {1, "error of S"}, {2, "error of K"}}};
-constexpr int kErrorWidth = 18;
 
 SweepError error_of(const std::vector<double>& measured, const std::vector<double>& truth, std::size_t first,
                     std::size_t count) {
@@ -60,54 +59,40 @@ std::string shown_value(const record::SweepAxis& axis, std::size_t index) {
   return axis.words.empty() ? fmt::format("{:.6g}", axis.values[index]) : axis.words[index];
 }
 
-std::size_t axis_width(const record::SweepAxis& axis) {
-  std::size_t width = title_of(axis).size();
-  for (std::size_t i = 0; i < axis.values.size(); ++i) width = std::max(width, shown_value(axis, i).size());
-  return width;
-}
-
-std::string shown_error(const SweepError& error) {
-  if (error.count == 0) return kAbsent;
+io::Table::Cell shown_error(const SweepError& error) {
+  if (error.count == 0) return {};
   if (error.count == 1) return fmt::format("{:+.5f}", error.mean);
   return fmt::format("{:+.5f} ± {:.5f}", error.mean, error.standard_deviation);
 }
 
-std::string columns_title() {
-  std::string text = "  runs";
-  for (const auto& [regime, word] : model::kRegimeNames) text += fmt::format("  {}", word);
-  text += "   right";
-  for (const auto& [index, title] : kShownErrors) text += fmt::format("  {:>{}}", title, kErrorWidth);
-  return text + "\n";
-}
-
-std::string columns_of(const PointSummary& point) {
-  std::string text = fmt::format("  {:>4}", point.run_count);
-  for (std::size_t i = 0; i < point.regimes.size(); ++i) {
-    const auto width = model::kRegimeNames[i].second.size();
-    text += point.regimes[i] == 0
-                ? fmt::format("  {:>{}}", kAbsent, width)
-                : fmt::format("  {:>{}.0f} %", 100.0 * share(point.regimes[i], point.run_count), width - 2);
+/// A line for each point, or, where no axis tells them apart, one for all.
+std::string lines(const record::SweepFacts& facts, const record::SweepTable& table, bool by_point) {
+  const std::vector<record::SweepAxis> axes = by_point ? facts.axes : std::vector<record::SweepAxis>{};
+  std::vector<io::Table::Column> columns;
+  for (const record::SweepAxis& axis : axes)
+    columns.push_back({.heading = std::string{short_name(axis)}, .unit = axis.unit});
+  columns.push_back({.heading = "runs"});
+  for (const auto& [regime, word] : model::kRegimeNames) columns.push_back({.heading = std::string{word}});
+  columns.push_back({.heading = "right"});
+  for (const auto& [index, title] : kShownErrors) columns.push_back({.heading = std::string{title}});
+  io::Table shown{std::move(columns)};
+  const std::int64_t runs = by_point ? facts.repeat : facts.run_count();
+  for (std::int64_t first = 0; first < facts.run_count(); first += runs) {
+    const PointSummary point = summary_of(table, first, runs);
+    const auto percent = [&](std::int64_t part) {
+      return fmt::format("{:.0f} %", 100.0 * share(part, point.run_count));
+    };
+    std::vector<io::Table::Cell> cells;
+    const std::vector<std::size_t> indices = facts.indices_of(first / facts.repeat);
+    for (std::size_t i = 0; i < axes.size(); ++i) cells.emplace_back(shown_value(axes[i], indices[i]));
+    cells.emplace_back(point.run_count);
+    for (const std::int64_t count : point.regimes)
+      cells.push_back(count == 0 ? io::Table::Cell{} : percent(count));
+    cells.emplace_back(percent(point.regime_right));
+    for (const auto& [index, title] : kShownErrors) cells.push_back(shown_error(point.errors[index]));
+    shown.add(std::move(cells));
   }
-  text += fmt::format("  {:>4.0f} %", 100.0 * share(point.regime_right, point.run_count));
-  for (const auto& [index, title] : kShownErrors) {
-    text += fmt::format("  {:>{}}", shown_error(point.errors[index]), kErrorWidth);
-  }
-  return text + "\n";
-}
-
-std::string lines(const record::SweepFacts& facts, const record::SweepTable& table) {
-  std::string text;
-  for (const record::SweepAxis& axis : facts.axes)
-    text += fmt::format("  {:>{}}", title_of(axis), axis_width(axis));
-  text += columns_title();
-  for (std::int64_t point = 0; point < facts.point_count(); ++point) {
-    const std::vector<std::size_t> indices = facts.indices_of(point);
-    for (std::size_t i = 0; i < indices.size(); ++i) {
-      text += fmt::format("  {:>{}}", shown_value(facts.axes[i], indices[i]), axis_width(facts.axes[i]));
-    }
-    text += columns_of(summary_of(table, point * facts.repeat, facts.repeat));
-  }
-  return text;
+  return shown.text();
 }
 
 /// The most frequent regime; a small letter if it is not that of all runs.
@@ -123,15 +108,16 @@ std::string map(const record::SweepFacts& facts, const record::SweepTable& table
   const std::size_t last = across.values.size() - 1;
   std::string text = fmt::format("{} down, {} across, {} … {}\n", title_of(down), title_of(across),
                                  shown_value(across, 0), shown_value(across, last));
+  io::Table letters{{{.heading = ""}, {.heading = "", .align = io::Table::Align::kLeft}}};
   for (std::size_t i = 0; i < down.values.size(); ++i) {
-    text += fmt::format("  {:>{}} ", shown_value(down, i), axis_width(down));
+    std::string line;
     for (std::size_t j = 0; j <= last; ++j) {
       const auto point = static_cast<std::int64_t>(i * across.values.size() + j);
-      text += fmt::format(" {}", letter_of(summary_of(table, point * facts.repeat, facts.repeat)));
+      line += fmt::format(" {}", letter_of(summary_of(table, point * facts.repeat, facts.repeat)));
     }
-    text += "\n";
+    letters.add({shown_value(down, i), line});
   }
-  text += "  ";
+  text += letters.text();
   for (std::size_t i = 0; i < kLetters.size(); ++i) {
     text += fmt::format("{} {}, ", kLetters[i], model::kRegimeNames[i].second);
   }
@@ -157,10 +143,10 @@ PointSummary summary_of(const record::SweepTable& table, std::int64_t first, std
 }
 
 std::string sweep_table_text(const record::SweepFacts& facts, const record::SweepTable& table) {
-  if (facts.point_count() <= kMostLines) return lines(facts, table);
+  if (facts.point_count() <= kMostLines) return lines(facts, table, true);
   const bool has_map = facts.axes.size() == 2 && facts.axes[1].values.size() <= kMostColumns;
   return (has_map ? map(facts, table) : fmt::format("{} points, all together:\n", facts.point_count())) +
-         columns_title() + columns_of(summary_of(table, 0, facts.run_count()));
+         lines(facts, table, false);
 }
 
 nlohmann::ordered_json sweep_points_json(const record::SweepFacts& facts, const record::SweepTable& table) {

@@ -8,6 +8,7 @@
 #include "core/pipeline/gain_uncertainty.hpp"
 #include "core/pipeline/true_rate.hpp"
 #include "core/pipeline/zero_offset.hpp"
+#include "core/record/estimator_field.hpp"
 #include "core/record/method_text.hpp"
 #include "core/record/tester_file.hpp"
 
@@ -16,13 +17,13 @@ namespace {
 
 analysis::AnalysisSettings settings_of(const record::RecordHeader& header,
                                        const daq::Calibration& calibration, const model::Method& method,
-                                       const analysis::Kept& kept) {
+                                       detect::EstimatorTier estimator, const analysis::Kept& kept) {
   analysis::AnalysisSettings settings;
   settings.scan_rate_Hz = header.board.scan_rate_granted_Hz;
   settings.step_coefficient = calibration.step_coefficient();
   settings.tester = header.tester.tester();
   settings.method = method;
-  settings.estimator = record::estimator_from_text(header.process.method);
+  settings.estimator = estimator;
   settings.kept = kept;
   return settings;
 }
@@ -46,6 +47,8 @@ base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& he
   }
   const base::Result<model::Method> method = record::method_from_text(header.process.method);
   if (!method) return tl::unexpected(method.error());
+  const base::Result<detect::EstimatorTier> estimator = record::estimator_of(header.process);
+  if (!estimator) return tl::unexpected(estimator.error());
   const std::optional<analysis::Kept> kept = analysis::kept_from_text(header.process.kept);
   if (!kept) {
     return base::usage_error(
@@ -62,7 +65,7 @@ base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& he
   try {
     daq::Calibration calibration{header.board, header.load_cell.value_or(daq::LoadCell{}),
                                  header.tester.tester().normal_load_N()};
-    analysis::AnalysisSettings settings = settings_of(header, calibration, *method, *kept);
+    analysis::AnalysisSettings settings = settings_of(header, calibration, *method, *estimator, *kept);
     settings.scratch_folder = scratch_folder;
     settings.prior = prior.empty() ? recorded : prior;
     std::optional<daq::SecondChannel> speed;

@@ -103,7 +103,10 @@ TareReport Processor::tare(const std::string& who) {
   report.scan_count = check->raw.size();
   calibration_ = calibration_.with_zero(report.zero_V);
   std::vector<double> kept;
-  for (const Waiting& scan : waiting_) kept.push_back(calibration_.coefficient(scan.raw));
+  for (Scan& scan : waiting_) {
+    scan.coefficient = calibration_.coefficient(scan.raw);
+    kept.push_back(scan.coefficient);
+  }
   if (segmenter_.tared(kept)) discard_waiting();
   follow_bench();
   report.state = bench_.state();

@@ -57,11 +57,12 @@ void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause, bo
 
   std::size_t not_handed_over = 0;  // First scan of the running test that the sinks have not seen.
   for (std::size_t i = 0; i < block.count; ++i) {
-    const daq::ScanIndex index = block.first + static_cast<daq::ScanIndex>(i);
+    const Scan scan{block.first + static_cast<daq::ScanIndex>(i), block.raw[i],
+                    calibration_.coefficient(block.raw[i]), block.second[i]};
     const bool before = test_is_running();
-    coefficients_[i] = calibration_.coefficient(block.raw[i]);
-    next_scan_ = index + 1;
-    const std::optional<EndCause> over = observe(index, block.raw[i], block.second[i], block.stamp);
+    coefficients_[i] = scan.coefficient;
+    next_scan_ = scan.index + 1;
+    const std::optional<EndCause> over = observe(scan, block.stamp);
     if (!before && test_is_running()) not_handed_over = i + 1;
     if (over) {
       hand_over(block, not_handed_over, i + 1);
@@ -79,14 +80,13 @@ void Processor::process(const daq::ScanBlock& block, daq::GapCause gap_cause, bo
   for (Sink* sink : sinks_) sink->observed(block.first, std::span{coefficients_}.first(block.count), now);
 }
 
-std::optional<EndCause> Processor::observe(daq::ScanIndex index, double raw, std::int32_t second,
-                                           const daq::ClockStamp& stamp) {
-  repeat_start(index);
+std::optional<EndCause> Processor::observe(const Scan& scan, const daq::ClockStamp& stamp) {
+  repeat_start(scan.index);
   const bool ready = segmenter_.ready();
-  const Segmenter::Event event = segmenter_.observe(index, calibration_.coefficient(raw));
+  const Segmenter::Event event = segmenter_.observe(scan.index, scan.coefficient);
   if (test_is_running()) {
-    analyse(index, raw, second);
-    if (repeat_others(index)) return stop_again();
+    analyse(scan);
+    if (repeat_others(scan.index)) return stop_again();
     if (event == Segmenter::Event::kNone) return std::nullopt;
     static_cast<void>(happens(BenchEvent::kForceEnded));
     return event == Segmenter::Event::kUnloaded ? EndCause::kUnloaded : EndCause::kNoRelativeMotion;
@@ -95,7 +95,7 @@ std::optional<EndCause> Processor::observe(daq::ScanIndex index, double raw, std
   if (!ready) {
     // For a tare: a quiet force may be a zero that moved.
     if (segmenter_.quiet() && !segmenter_.ready()) {
-      idle_.add(index, raw);
+      idle_.add(scan.index, scan.raw);
     } else {
       idle_.clear();
     }
@@ -103,15 +103,15 @@ std::optional<EndCause> Processor::observe(daq::ScanIndex index, double raw, std
     if (event == Segmenter::Event::kPulledAgain) trouble(BenchTrouble::kPulledAgain);
     return std::nullopt;
   }
-  waiting_.push_back({index, raw, second});
+  waiting_.push_back(scan);
   if (event == Segmenter::Event::kTestStarts) {
     static_cast<void>(happens(BenchEvent::kForceRose));
-    begin(index, stamp);
-    if (repeat_others(index)) return stop_again();
+    begin(scan.index, stamp);
+    if (repeat_others(scan.index)) return stop_again();
   } else if (waiting_.size() > settings_.segmenter.pre_trigger_scans()) {
-    const Waiting& oldest = waiting_.front();
+    const Scan& oldest = waiting_.front();
     // A bench that is not armed may be loaded by hand, which says nothing of its zero.
-    if (bench_.state() == BenchState::kIdle && calibration_.coefficient(oldest.raw) >= segmenter_.trigger()) {
+    if (bench_.state() == BenchState::kIdle && oldest.coefficient >= segmenter_.trigger()) {
       idle_.clear();
     } else {
       idle_.add(oldest.index, oldest.raw);
@@ -197,10 +197,10 @@ void Processor::begin(daq::ScanIndex trigger, daq::ClockStamp stamp) {
   std::vector<double> raw;
   raw.reserve(waiting_.size());
   std::vector<std::int32_t> second;
-  for (const Waiting& scan : waiting_) {
+  for (const Scan& scan : waiting_) {
     raw.push_back(scan.raw);
     if (settings_.second) second.push_back(scan.second);
-    analyse(scan.index, scan.raw, scan.second);
+    analyse(scan);
   }
   waiting_.clear();
   for (Sink* sink : sinks_) {
@@ -223,9 +223,9 @@ std::shared_ptr<const daq::SelfCheck> Processor::self_check() const {
   return check ? std::make_shared<const daq::SelfCheck>(*check) : nullptr;
 }
 
-void Processor::analyse(daq::ScanIndex index, double raw, std::int32_t second) {
-  if (measures_speed()) analysis_->speed(settings_.second->value(second));
-  analysis_->add(index, calibration_.coefficient(raw), calibration_.saturated(raw));
+void Processor::analyse(const Scan& scan) {
+  if (measures_speed()) analysis_->speed(settings_.second->value(scan.second));
+  analysis_->add(scan.index, scan.coefficient, calibration_.saturated(scan.raw));
 }
 
 void Processor::end(daq::ScanIndex end, EndCause cause) {

@@ -110,17 +110,16 @@ class Processor {
   [[nodiscard]] const daq::RateMeter& rate_meter() const noexcept { return meter_; }
 
  private:
-  /// A scan kept in case a test starts soon.
-  struct Waiting {
+  struct Scan {
     daq::ScanIndex index;
     double raw;
+    double coefficient;   ///< Of `raw`, by calibration_; a new zero while the scan waits makes it anew.
     std::int32_t second;  ///< Means nothing where there is no second channel.
   };
 
   void note_gap(daq::Gap gap);
   /// One scan. \return why it was the last of a test, if it was.
-  [[nodiscard]] std::optional<EndCause> observe(daq::ScanIndex index, double raw, std::int32_t second,
-                                                const daq::ClockStamp& stamp);
+  [[nodiscard]] std::optional<EndCause> observe(const Scan& scan, const daq::ClockStamp& stamp);
   /// Lets the machine take its step, and tells who wants to know. \return why it is refused.
   [[nodiscard]] std::string_view happens(BenchEvent event);
   /// What follows for the machine from the analysis and from the segmenter.
@@ -147,7 +146,7 @@ class Processor {
   void finish_clocks(daq::ScanIndex end);
   void discard_waiting() noexcept;
   void begin(daq::ScanIndex trigger, daq::ClockStamp stamp);
-  void analyse(daq::ScanIndex index, double raw, std::int32_t second);
+  void analyse(const Scan& scan);
   void end(daq::ScanIndex end, EndCause cause);
   [[nodiscard]] bool measures_speed() const noexcept {
     return settings_.second && settings_.second->quantity == daq::SecondQuantity::kPullSpeed;
@@ -161,8 +160,8 @@ class Processor {
   daq::GapTracker gaps_;
   Segmenter segmenter_;
   BenchMachine bench_;
-  std::deque<Waiting> waiting_;  ///< Consecutive, the latest last.
-  IdleScans idle_;               ///< Those before them.
+  std::deque<Scan> waiting_;  ///< In case a test starts soon; consecutive, the latest last.
+  IdleScans idle_;            ///< Those before them.
   std::optional<analysis::TestAnalysis> analysis_;
   std::int64_t number_;
   daq::ScanIndex next_scan_ = 0;

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/record/estimator_field.hpp"
 #include "core/record/json_fields.hpp"
 #include "core/record/possible.hpp"
 #include "core/record/words.hpp"
@@ -69,6 +70,7 @@ RecordHeader header_from_json(std::string_view text) {
   for_each_field(header.tester, taker(object.at("tester")));
   for_each_field(header.sample, taker(object.at("sample")));
   for_each_field(header.process, taker(object.at("process")));
+  read_estimator_of_0_1(header.process);
   take(object, "uuid", header.uuid);
   take(object, "title", header.title);
   take(object, "test_number", header.test_number);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "core/record/estimator_field.hpp"
 #include "core/record/hdf_read.hpp"
 #include "core/record/hdf_write.hpp"
 #include "core/record/layout.hpp"
@@ -29,6 +30,7 @@ void read_process(hid_t entry, Record& record) {
   const GroupHandle group = open_group(entry, "process");
   const FieldReader read{group.get()};
   for_each_field(record.header.process, read);
+  read_estimator_of_0_1(record.header.process);
   const std::string status = read_text(group.get(), "status");
   const auto known = status_from_name(status);
   if (!known) throw HdfError(fmt::format("process/status '{}' is unknown", status));

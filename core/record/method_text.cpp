@@ -6,6 +6,7 @@
 
 #include "core/base/quantity.hpp"
 #include "core/base/wording.hpp"
+#include "core/detect/live_cycle.hpp"
 
 namespace stickslip::record {
 namespace {
@@ -43,8 +44,6 @@ bool read_travel(std::string_view text, std::optional<model::TravelWindow>& wind
          read_number(text.substr(split + 1), window->to_m) && window->from_m < window->to_m;
 }
 
-constexpr std::string_view kEstimatorKey = " estimator=";
-
 /// Points stand side by side with spaces; the settings of a method do, too.
 constexpr char kBetweenPoints = ',';
 
@@ -64,7 +63,7 @@ bool read_setting(std::string_view key, std::string_view value, model::Method& m
   if (key == "speed") return read_nominal(value, method.pull_speed_m_per_s);
   if (key == "speed_course") return read_course(value, method.speed_course);
   if (key == "replicates") return read_count(value, method.replicates.emplace());
-  // No part of the method: estimator_from_text() reads it.
+  // No part of the method: version 0.1 wrote it there, and read_estimator_of_0_1() reads it.
   if (key == "estimator") return detect::estimator_tier_from_name(value).has_value();
   return false;
 }
@@ -114,23 +113,6 @@ base::Result<model::Method> method_from_text(std::string_view text) {
         base::one_line(text, 200));
   }
   return method;
-}
-
-std::string with_estimator(std::string text, detect::EstimatorTier tier) {
-  if (const std::size_t at = text.find(kEstimatorKey); at != std::string::npos) {
-    const std::size_t end = text.find(' ', at + 1);
-    text.erase(at, end == std::string::npos ? end : end - at);
-  }
-  if (tier == detect::EstimatorTier::kFit) return text;
-  return text + std::string{kEstimatorKey} + std::string{detect::name(tier)};
-}
-
-detect::EstimatorTier estimator_from_text(std::string_view text) {
-  const std::size_t at = text.find(kEstimatorKey);
-  if (at == std::string_view::npos) return detect::EstimatorTier::kFit;
-  const std::string_view rest = text.substr(at + kEstimatorKey.size());
-  return detect::estimator_tier_from_name(rest.substr(0, rest.find(' ')))
-      .value_or(detect::EstimatorTier::kFit);
 }
 
 }  // namespace stickslip::record

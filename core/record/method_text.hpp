@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "core/base/result.hpp"
-#include "core/detect/live_cycle.hpp"
 #include "core/model/method.hpp"
 
 namespace stickslip::record {
@@ -18,12 +17,5 @@ namespace stickslip::record {
 
 /// Reads what method_text() wrote; an empty text is the default method. Error: kUsage.
 [[nodiscard]] base::Result<model::Method> method_from_text(std::string_view text);
-
-/// A method's text with the estimator at its end; "fit", the default, is not written. So a record says by
-/// itself how its numbers came about.
-[[nodiscard]] std::string with_estimator(std::string text, detect::EstimatorTier tier);
-
-/// Reads what with_estimator() wrote.
-[[nodiscard]] detect::EstimatorTier estimator_from_text(std::string_view text);
 
 }  // namespace stickslip::record

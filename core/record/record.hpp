@@ -112,7 +112,7 @@ struct ProcessFacts {
   std::string version;
   std::string commit;
   std::string configuration;  ///< Complete text of the configuration file.
-  std::string estimator;      ///< Tier of the estimators.
+  std::string estimator;      ///< estimator_of(); empty: "fit".
   std::string method;         ///< Preset of the traditional rule.
   std::string kept;           ///< Corrections left out, analysis::text_of(Kept); empty: none.
   /// Complete text of the tester's characterisation file; empty: none.

@@ -74,17 +74,16 @@ void BenchDesk::set_plan(daemon::Plan plan) {
   Session* const session = parts_.session();
   if (session == nullptr) return;
   // A session that is over takes it from the configuration.
-  static_cast<void>(
-      session->post([&storage = parts_.storage, plan = std::move(plan), method = parts_.config.method,
-                     estimator = parts_.config.estimator](pipeline::Processor& processor) {
-        processor.plan_pull_speed(plan.pull_speed_m_per_s);
-        processor.plan_method(method);
-        storage.amend([&](record::RecordHeader& header) {
-          header.sample = plan.sample;
-          header.tester.pull_speed_m_per_s = plan.pull_speed_m_per_s;
-          header.process.method = record::with_estimator(record::method_text(method), estimator);
-        });
-      }));
+  static_cast<void>(session->post([&storage = parts_.storage, plan = std::move(plan),
+                                   method = parts_.config.method](pipeline::Processor& processor) {
+    processor.plan_pull_speed(plan.pull_speed_m_per_s);
+    processor.plan_method(method);
+    storage.amend([&](record::RecordHeader& header) {
+      header.sample = plan.sample;
+      header.tester.pull_speed_m_per_s = plan.pull_speed_m_per_s;
+      header.process.method = record::method_text(method);
+    });
+  }));
 }
 
 std::optional<std::string> BenchDesk::refused_now(daemon::Command::Kind kind) const {

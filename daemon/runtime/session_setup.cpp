@@ -70,8 +70,9 @@ base::Result<SessionSettings> session_settings(const io::DaemonConfig& config,
     if (!coupling) return tl::unexpected(coupling.error());
     analysis.prior.coupling = *std::move(coupling);
   }
-  analysis.estimator = config.estimator;
-  // A damaged word of a record keeps nothing; `stickslip analyze` refuses it.
+  // As the next: a damaged word of a record is left out; `stickslip analyze` refuses it.
+  analysis.estimator = config.estimator.value_or(
+      detect::estimator_tier_from_name(opened.estimator).value_or(detect::EstimatorTier::kFit));
   analysis.kept =
       analysis::either(config.kept, analysis::kept_from_text(opened.kept).value_or(analysis::Kept{}));
   return settings;
@@ -95,8 +96,8 @@ record::RecordHeader record_header(const io::DaemonConfig& config, const Session
   header.process.version = base::kVersion;
   header.process.commit = base::kCommit;
   header.process.configuration = config.text;
-  header.process.method = record::with_estimator(record::method_text(settings.processor.analysis.method),
-                                                 settings.processor.analysis.estimator);
+  header.process.estimator = detect::name(settings.processor.analysis.estimator);
+  header.process.method = record::method_text(settings.processor.analysis.method);
   header.process.kept = analysis::text_of(settings.processor.analysis.kept);
   header.process.characterisation = settings.characterisation;
   header.process.realtime = realtime;

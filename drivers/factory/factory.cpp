@@ -31,6 +31,7 @@ base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::C
   std::string characterisation = record->header.process.characterisation;
   record::CalibrationFacts calibration = record->header.calibration;
   std::string kept = record->header.process.kept;
+  std::string estimator = record->header.process.estimator;
   auto recorded = std::make_shared<daq::RecordedFacts>(
       daq::RecordedFacts{std::move(record->anchors),
                          std::move(record->gaps),
@@ -47,9 +48,15 @@ base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::C
   std::stable_sort(recorded->notes.begin(), recorded->notes.end(),
                    [](const daq::Note& a, const daq::Note& b) { return a.scan < b.scan; });
   Replay replay = make_replay(std::move(*record), clock);
-  return OpenedBoard{
-      std::move(replay.board), std::move(replay.truth), load_cell,      tester, std::move(characterisation),
-      std::move(recorded),     std::move(calibration),  std::move(kept)};
+  return OpenedBoard{std::move(replay.board),
+                     std::move(replay.truth),
+                     load_cell,
+                     tester,
+                     std::move(characterisation),
+                     std::move(recorded),
+                     std::move(calibration),
+                     std::move(kept),
+                     std::move(estimator)};
 }
 
 base::Result<OpenedBoard> open_comedi(ComediBoardSettings settings, base::Clock& clock,

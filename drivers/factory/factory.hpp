@@ -27,7 +27,9 @@ struct OpenedBoard {
   std::string characterisation;  ///< Of a replayed record: text of its tester's characterisation.
   std::shared_ptr<const daq::RecordedFacts> recorded;  ///< Null unless a record is replayed.
   record::CalibrationFacts calibration{};              ///< Of load_cell, from a replayed record.
-  std::string kept{};                                  ///< Of a replayed record: its process.kept.
+  // Of a replayed record: its process.kept and process.estimator.
+  std::string kept{};
+  std::string estimator{};
 };
 
 /// \param clock  outlives the board.

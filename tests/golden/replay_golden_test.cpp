@@ -13,6 +13,7 @@
 
 #include "core/evaluation/analyse.hpp"
 #include "core/pipeline/processor.hpp"
+#include "core/record/estimator_field.hpp"
 #include "core/record/finaliser.hpp"
 #include "core/record/method_text.hpp"
 #include "core/record/reader.hpp"
@@ -69,8 +70,10 @@ class Collector final : public pipeline::Sink {
 /// \param lost  one scan in so many is dropped; 0: none.
 /// \param characterisation  of the tester, as in the configuration; empty: what the board knows of it.
 /// \param kept  by the configuration, with what a replayed record kept.
+/// \param estimator  of the configuration; empty: that of a replayed record.
 std::vector<record::Record> run(drivers::OpenedBoard opened, unsigned seed, int lost,
-                                const std::string& characterisation = {}, const analysis::Kept& kept = {}) {
+                                const std::string& characterisation = {}, const analysis::Kept& kept = {},
+                                const std::string& estimator = {}) {
   const daq::BoardInfo& info = opened.board->info();
   record::RecordHeader header;
   header.board = info;
@@ -78,6 +81,7 @@ std::vector<record::Record> run(drivers::OpenedBoard opened, unsigned seed, int 
   header.tester = record::TesterFacts::of(*opened.tester);
   header.process.method = record::method_text({});
   header.process.characterisation = characterisation.empty() ? opened.characterisation : characterisation;
+  header.process.estimator = estimator.empty() ? opened.estimator : estimator;
   header.process.kept = analysis::text_of(analysis::either(kept, *analysis::kept_from_text(opened.kept)));
   Collector collector{header};
 
@@ -86,6 +90,7 @@ std::vector<record::Record> run(drivers::OpenedBoard opened, unsigned seed, int 
   settings.analysis.scan_rate_Hz = info.scan_rate_granted_Hz;
   settings.analysis.tester = *opened.tester;
   settings.analysis.kept = analysis::either(kept, *analysis::kept_from_text(opened.kept));
+  settings.analysis.estimator = record::estimator_of(header.process).value();
   settings.recorded = opened.recorded;
   settings.second = info.second;
   if (!header.process.characterisation.empty()) {
@@ -212,6 +217,7 @@ void expect_same_bits_from_file(const record::Record& live, const std::filesyste
   ASSERT_EQ(replayed.size(), 1U);
   EXPECT_EQ(replayed[0].header.process.characterisation, live.header.process.characterisation);
   EXPECT_EQ(replayed[0].header.process.kept, live.header.process.kept);
+  EXPECT_EQ(replayed[0].header.process.estimator, stored->header.process.estimator);
   expect_same_results(live, replayed[0]);
 }
 
@@ -273,6 +279,37 @@ TEST(ReplayGoldenOfWhatIsKept, RecordCarriesItAndGivesTheSameBits) {
     EXPECT_NE(handled->results, live[0].end->results);
     stored->header.process.kept = "hum";
     EXPECT_FALSE(analyse(*stored));
+  }
+  std::filesystem::remove(file);
+}
+
+// By its field, and by the method's text of version 0.1.
+TEST(ReplayGoldenOfAnEstimator, RecordCarriesItAndGivesTheSameBits) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / fmt::format("stickslip-golden-estimator-{}.h5", ::getpid());
+  for (const std::string word : {"peak", "interpolated"}) {
+    SCOPED_TRACE(word);
+    test::ManualClock clock;
+    auto board = drivers::open_board(scene("stick-slip-at-12-in-per-min.toml"), clock);
+    ASSERT_TRUE(board) << board.error().message;
+    record::Record live = run(std::move(*board), 1, 0, {}, {}, word).at(0);
+    for (const bool version_0_1 : {false, true}) {
+      SCOPED_TRACE(version_0_1 ? "of version 0.1" : "of this version");
+      if (version_0_1) {
+        live.header.process.method += " estimator=" + std::exchange(live.header.process.estimator, {});
+      }
+      std::filesystem::remove(file);
+      std::optional<record::Record> stored;
+      ASSERT_NO_FATAL_FAILURE(expect_same_bits_from_file(live, file, clock, stored));
+      EXPECT_EQ(stored->header.process.estimator, word);
+      EXPECT_EQ(stored->header.process.method, record::method_text({}));
+
+      // It did count.
+      stored->header.process.estimator.clear();
+      const auto fitted = analyse(*stored);
+      ASSERT_TRUE(fitted);
+      EXPECT_NE(fitted->results, live.end->results);
+    }
   }
   std::filesystem::remove(file);
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io/export_csv.hpp"
+#include "io/table.hpp"
 #include "io/verify.hpp"
 #include "report/plot/script.hpp"
 #include "report/report_json.hpp"
@@ -106,6 +107,7 @@ Material named_material(bool is_hostile) {
     reported.file = next(is_hostile);
     reported.title = next(is_hostile);
     reported.method = next(is_hostile);
+    reported.estimator = next(is_hostile);
   }
   material.tests[2].departures = {next(is_hostile)};
   material.voided = {{next(is_hostile), {next(is_hostile), next(is_hostile), next(is_hostile)}}};
@@ -207,6 +209,23 @@ RC_GTEST_PROP(OutputTextProperty, TablesOfScansAndCycles, ()) {
     expect_same_lines(csv, without_returns(table(plain)));
     expect_no_formula(csv);
   }
+}
+
+RC_GTEST_PROP(OutputTextProperty, Tables, ()) {
+  using io::Table;
+  const auto table_of = [](bool is_hostile) {
+    Table table{{{.name = next(is_hostile), .heading = next(is_hostile), .align = Table::Align::kLeft},
+                 {.name = next(is_hostile), .heading = next(is_hostile), .unit = next(is_hostile)}}};
+    for (int row = 0; row < 3; ++row) table.add({next(is_hostile), next(is_hostile)});
+    return table;
+  };
+  const Table named = table_of(true);
+  const Table plain = table_of(false);
+  expect_same_lines(named.text(), plain.text());
+  const std::string csv = without_returns(named.csv());
+  expect_same_lines(csv, without_returns(plain.csv()));
+  expect_no_formula(csv);
+  RC_ASSERT(named.json().size() == plain.json().size());
 }
 
 plot::Figure named_figure(bool is_hostile) {

@@ -146,20 +146,6 @@ TEST(MethodText, ReadsBackToTheSameMethodForEveryShippedOne) {
   EXPECT_EQ(record::method_from_text(record::method_text(third)).value(), third);
 }
 
-TEST(MethodText, CarriesTheEstimatorUnlessItIsTheFit) {
-  using detect::EstimatorTier;
-  const std::string plain = record::method_text({});
-  EXPECT_EQ(record::with_estimator(plain, EstimatorTier::kFit), plain);
-  EXPECT_EQ(record::estimator_from_text(plain), EstimatorTier::kFit);
-  const std::string peak = record::with_estimator(plain, EstimatorTier::kPeak);
-  EXPECT_EQ(peak, plain + " estimator=peak");
-  EXPECT_EQ(record::estimator_from_text(peak), EstimatorTier::kPeak);
-  EXPECT_EQ(record::method_from_text(peak).value(), model::Method{});
-  EXPECT_EQ(record::with_estimator(peak, EstimatorTier::kInterpolated), plain + " estimator=interpolated");
-  EXPECT_EQ(record::with_estimator(peak, EstimatorTier::kFit), plain);
-  EXPECT_FALSE(record::method_from_text(plain + " estimator=best"));
-}
-
 TEST(MethodText, RefusesWhatIsNoMethod) {
   for (const char* text : {"penner-1995", "x kinetic_cycles=0", "x kinetic_cycles=3x", " kinetic_cycles=3",
                            "x kinetic_travel=0.06", "x kinetic_travel=0.06:0.01", "x kinetic_cycles=3 speed=",
