@@ -15,7 +15,7 @@
 
 #include "core/base/limited_child.hpp"
 #include "core/base/text.hpp"
-#include "daemon/storage/finaliser.hpp"
+#include "daemon/storage/finaliser_process.hpp"
 #include "daemon/storage/recovery.hpp"
 
 namespace stickslip::cli {

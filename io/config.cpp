@@ -8,7 +8,7 @@
 #include "io/method_file.hpp"
 
 #include "core/base/text.hpp"
-#include "core/model/limits.hpp"
+#include "core/model/largest_settings.hpp"
 #include "core/record/tester_file.hpp"
 
 namespace stickslip::io {

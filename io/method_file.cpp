@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "core/model/limits.hpp"
+#include "core/model/largest_settings.hpp"
 
 namespace stickslip::io {
 namespace {

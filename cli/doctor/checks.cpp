@@ -14,7 +14,7 @@
 #include "core/record/iso_time.hpp"
 #include "daemon/runtime/session_setup.hpp"
 #include "daemon/storage/disk_writer.hpp"
-#include "daemon/storage/finaliser.hpp"
+#include "daemon/storage/finaliser_process.hpp"
 
 namespace stickslip::doctor {
 namespace {

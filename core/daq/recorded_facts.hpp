@@ -11,7 +11,7 @@
 #include "core/daq/gap.hpp"
 #include "core/daq/latency_histogram.hpp"
 #include "core/daq/note.hpp"
-#include "core/daq/self_check.hpp"
+#include "core/daq/self_check_values.hpp"
 
 namespace stickslip::daq {
 

@@ -9,8 +9,8 @@
 
 #include "core/detect/junction_scans.hpp"
 #include "core/estimate/huber.hpp"
+#include "core/estimate/levenberg_marquardt.hpp"
 #include "core/model/capture.hpp"
-#include "core/model/damping.hpp"
 
 namespace stickslip::detect {
 namespace {
@@ -192,8 +192,8 @@ JunctionEquations<Course::kCount> equations_of(const JunctionScans& scans, const
 template <int kCount, typename Make>
 double least_cost(const JunctionScans& scans, const Make& make, Parameters<kCount> p, double sigma) {
   JunctionEquations<kCount> equations = equations_of(scans, make(p), sigma);
-  double damping = model::kFirstDamping;
-  for (int iteration = 0; iteration < kMostJunctionIterations && damping < model::kHopeless; ++iteration) {
+  double damping = estimate::kFirstDamping;
+  for (int iteration = 0; iteration < kMostJunctionIterations && damping < estimate::kHopeless; ++iteration) {
     Eigen::Matrix<double, kCount, kCount> damped = equations.normal;
     damped.diagonal() *= 1.0 + damping;
     const Parameters<kCount> trial = p + damped.ldlt().solve(equations.gradient);

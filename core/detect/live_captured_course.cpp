@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 
 #include "core/detect/junction.hpp"
-#include "core/model/damping.hpp"
+#include "core/estimate/levenberg_marquardt.hpp"
 
 namespace stickslip::detect {
 namespace {
@@ -132,7 +132,7 @@ FittedCapture fit_captured(const FittedCapture& first, std::span<const LiveRow> 
                            const model::SharedParameters& shared, double typical_delta_mu,
                            double sigma) noexcept {
   FittedCapture best = first;
-  double damping = model::kFirstDamping;
+  double damping = estimate::kFirstDamping;
   for (int iteration = 0; iteration < kMostLiveIterations; ++iteration) {
     const LiveCapturedCourse::Equations& now = best.equations;
     // In units of each parameter's own; the diagonal is one then, also for S where no row lies behind its

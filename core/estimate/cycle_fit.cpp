@@ -8,8 +8,8 @@
 #include <Eigen/LU>
 
 #include "core/estimate/huber.hpp"
+#include "core/estimate/levenberg_marquardt.hpp"
 #include "core/model/capture.hpp"
-#include "core/model/damping.hpp"
 
 namespace stickslip::estimate {
 namespace {
@@ -180,7 +180,7 @@ CycleFit fit_cycle(std::span<const CyclePoint> points, bool captured, const mode
   fit.shared = knowledge.best();
   if (points.size() < kFewestCyclePoints || !admissible(start, fit.shared, sigma)) return fit;
   CycleEquations equations = assemble(points, captured, fit.slip, fit.shared, knowledge, sigma);
-  double damping = model::kFirstDamping;
+  double damping = kFirstDamping;
   while (!fit.converged && fit.iterations < kMostCycleIterations) {
     ++fit.iterations;
     const Vector6d step = step_of(equations, damping);

@@ -9,7 +9,7 @@
 #include <Eigen/LU>
 
 #include "core/estimate/huber.hpp"
-#include "core/model/damping.hpp"
+#include "core/estimate/levenberg_marquardt.hpp"
 
 namespace stickslip::estimate {
 namespace {
@@ -154,9 +154,9 @@ SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows, const mo
   fit.shared = shared;
   if (windows.empty() || !admissible(shared)) return fit;
   NormalEquations equations = assemble(trace, windows, fit.shared, sigma, prior);
-  double damping = model::kFirstDamping;
+  double damping = kFirstDamping;
   const int most = prior.empty() ? kMostFitIterations : kMostFitIterationsWithPrior;
-  for (int iteration = 0; iteration < most && !fit.converged && damping < model::kHopeless; ++iteration) {
+  for (int iteration = 0; iteration < most && !fit.converged && damping < kHopeless; ++iteration) {
     const Step step = solve(equations, sigma, damping);
     model::SharedParameters trial = fit.shared;
     std::vector<model::SlipParameters> before;
@@ -181,7 +181,7 @@ SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows, const mo
       fit.converged = equations.cost - there.cost <= kFitConverged * equations.cost;
       fit.shared = trial;
       equations = std::move(there);
-      damping = std::max(damping * kFitEasier, model::kSmallestDamping);
+      damping = std::max(damping * kFitEasier, kSmallestDamping);
     } else {
       // At the optimum the cost cannot fall, and rounding decides its sign.
       fit.converged = there.cost - equations.cost <= kFitConverged * equations.cost;

@@ -9,7 +9,7 @@
 #include <Eigen/LU>
 
 #include "core/estimate/huber.hpp"
-#include "core/model/damping.hpp"
+#include "core/estimate/levenberg_marquardt.hpp"
 
 namespace stickslip::estimate {
 namespace {
@@ -75,9 +75,9 @@ UniformFit fit_uniform(const Trace& trace, std::size_t first, std::size_t end, c
   UniformFit fit;
   fit.parameters = guess;
   UniformEquations equations = assemble(trace, first, end, guess, sigma, prior);
-  double damping = model::kFirstDamping;
-  for (int iteration = 0; iteration < kMostUniformIterations && !fit.converged &&
-                          damping < model::kHopeless && std::isfinite(equations.cost);
+  double damping = kFirstDamping;
+  for (int iteration = 0; iteration < kMostUniformIterations && !fit.converged && damping < kHopeless &&
+                          std::isfinite(equations.cost);
        ++iteration) {
     // Only what the scans say is damped: a step along what the prior holds fixed must stay easy.
     P::Matrix damped = equations.normal + equations.prior;
@@ -90,7 +90,7 @@ UniformFit fit_uniform(const Trace& trace, std::size_t first, std::size_t end, c
       fit.converged = equations.cost - there.cost <= kUniformConverged * equations.cost;
       fit.parameters = trial;
       equations = there;
-      damping = std::max(damping * kUniformEasier, model::kSmallestDamping);
+      damping = std::max(damping * kUniformEasier, kSmallestDamping);
     } else {
       // At the optimum the cost cannot fall, and rounding decides its sign.
       fit.converged = there.cost - equations.cost <= kUniformConverged * equations.cost;

@@ -12,7 +12,7 @@
 
 #include "core/daq/calibration.hpp"
 #include "core/daq/rate_fit.hpp"
-#include "core/daq/self_check.hpp"
+#include "core/daq/self_check_values.hpp"
 
 namespace stickslip::pipeline {
 

@@ -16,7 +16,7 @@
 #include "core/daq/latency_histogram.hpp"
 #include "core/daq/note.hpp"
 #include "core/daq/scan_block.hpp"
-#include "core/daq/self_check.hpp"
+#include "core/daq/self_check_values.hpp"
 #include "core/detect/cycle.hpp"
 #include "core/detect/live_cycle.hpp"
 #include "core/pipeline/bench_state.hpp"

@@ -16,7 +16,7 @@
 #include "core/daq/clock_anchor.hpp"
 #include "core/daq/gap.hpp"
 #include "core/daq/latency_histogram.hpp"
-#include "core/daq/self_check.hpp"
+#include "core/daq/self_check_values.hpp"
 #include "core/detect/cycle.hpp"
 #include "core/model/tester.hpp"
 #include "core/model/truth.hpp"

@@ -9,7 +9,7 @@
 
 #include "core/base/settings.hpp"
 #include "core/base/wording.hpp"
-#include "core/model/limits.hpp"
+#include "core/model/largest_settings.hpp"
 #include "core/sim/scene.hpp"
 #include "core/sim/scene_file_parts.hpp"
 

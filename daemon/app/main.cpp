@@ -25,7 +25,7 @@
 #include "daemon/app/log.hpp"
 #include "daemon/fleet/backlog.hpp"
 #include "daemon/runtime/stray_signals.hpp"
-#include "daemon/storage/finaliser.hpp"
+#include "daemon/storage/finaliser_process.hpp"
 #include "daemon/types/daemon_options.hpp"
 
 namespace stickslip::app {

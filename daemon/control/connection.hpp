@@ -13,7 +13,7 @@
 #include "daemon/control/gate.hpp"
 #include "daemon/control/limits.hpp"
 #include "daemon/types/http.hpp"
-#include "daemon/types/hub.hpp"
+#include "daemon/types/live_hub.hpp"
 
 namespace stickslip::control {
 

@@ -14,7 +14,7 @@
 #include "core/base/result.hpp"
 #include "daemon/control/limits.hpp"
 #include "daemon/types/http.hpp"
-#include "daemon/types/hub.hpp"
+#include "daemon/types/live_hub.hpp"
 
 namespace stickslip::control {
 

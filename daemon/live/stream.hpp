@@ -14,7 +14,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "daemon/live/feed.hpp"
-#include "daemon/types/hub.hpp"
+#include "daemon/types/live_hub.hpp"
 
 namespace stickslip::live {
 

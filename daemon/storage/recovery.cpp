@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/record/journal_care.hpp"
-#include "daemon/storage/finaliser.hpp"
+#include "daemon/storage/finaliser_process.hpp"
 
 namespace stickslip::storage {
 

@@ -18,7 +18,7 @@
 #include "core/record/journal.hpp"
 #include "core/record/journal_name.hpp"
 #include "core/record/words.hpp"
-#include "daemon/storage/finaliser.hpp"
+#include "daemon/storage/finaliser_process.hpp"
 
 namespace stickslip::storage {
 namespace {

@@ -12,7 +12,7 @@
 #include "core/base/quantity.hpp"
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
-#include "core/model/limits.hpp"
+#include "core/model/largest_settings.hpp"
 
 namespace stickslip::daemon {
 namespace {

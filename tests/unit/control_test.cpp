@@ -8,7 +8,7 @@
 #include "daemon/control/api.hpp"
 #include "daemon/control/gate.hpp"
 #include "daemon/control/repeats.hpp"
-#include "daemon/types/hub.hpp"
+#include "daemon/types/live_hub.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/unit/paper_bench.hpp"
 

@@ -5,7 +5,7 @@
 #include "core/record/finaliser.hpp"
 #include "core/record/journal_care.hpp"
 #include "core/record/verdict.hpp"
-#include "daemon/storage/finaliser.hpp"
+#include "daemon/storage/finaliser_process.hpp"
 #include "tests/support/closed_folder.hpp"
 #include "tests/support/journal_samples.hpp"
 #include "tests/support/record_samples.hpp"

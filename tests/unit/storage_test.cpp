@@ -11,7 +11,7 @@
 #include "core/record/finaliser.hpp"
 #include "core/record/reader.hpp"
 #include "core/record/verdict.hpp"
-#include "daemon/storage/finaliser.hpp"
+#include "daemon/storage/finaliser_process.hpp"
 #include "tests/support/faulty_disk.hpp"
 #include "tests/support/lacking_disk.hpp"
 #include "tests/support/record_samples.hpp"

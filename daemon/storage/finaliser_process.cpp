@@ -1,4 +1,4 @@
-#include "daemon/storage/finaliser.hpp"
+#include "daemon/storage/finaliser_process.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "daemon/storage/finisher.hpp"
+#include "daemon/storage/finaliser_thread.hpp"
 
 #include <algorithm>
 #include <utility>

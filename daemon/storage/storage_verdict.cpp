@@ -1,4 +1,4 @@
-#include "daemon/storage/room.hpp"
+#include "daemon/storage/storage_verdict.hpp"
 
 #include <fmt/format.h>
 
