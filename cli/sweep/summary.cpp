@@ -113,7 +113,8 @@ std::string map(const record::SweepFacts& facts, const record::SweepTable& table
     std::string line;
     for (std::size_t j = 0; j <= last; ++j) {
       const auto point = static_cast<std::int64_t>(i * across.values.size() + j);
-      line += fmt::format(" {}", letter_of(summary_of(table, point * facts.repeat, facts.repeat)));
+      line += fmt::format("{}{}", j > 0 ? " " : "",
+                          letter_of(summary_of(table, point * facts.repeat, facts.repeat)));
     }
     letters.add({shown_value(down, i), line});
   }
