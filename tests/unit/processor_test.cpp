@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 #include <span>
 #include <string>
 #include <vector>
@@ -304,6 +305,37 @@ TEST_F(ProcessorTest, ScansFromBeforeATareCountWithTheNewZero) {
   EXPECT_EQ(diary_.starts[0].first, other.starts[0].first);
   EXPECT_EQ(diary_.values, other.values) << "raw, whatever the zero";
   expect_same_results(diary_.ends[0], other.ends[0]);
+}
+
+// The analysis too sees the scans that waited with the new zero: what it left out as a spike says so.
+TEST_F(ProcessorTest, WhatWaitsIsCalibratedAnewByATare) {
+  settings_.segmenter.pre_trigger_s = 0.95;  // A spike needs the noise of 68 scans before it.
+  board_.quantity = daq::RawQuantity::kVolts;
+  Processor tared{settings_, {board_, {2.0, -0.01}, 1.0}, {&diary_}};
+  constexpr daq::ScanIndex kPull = 500;  // The bench is quiet for longer before it.
+  constexpr daq::ScanIndex kTare = kPull - 5;
+  constexpr daq::ScanIndex kSpike = kPull - 15;
+  constexpr double kSpike_V = -0.2;  // Upwards it would be a load.
+  const auto feed_noise = [&tared](daq::ScanIndex first, daq::ScanIndex end) {
+    std::mt19937 random{7};
+    std::normal_distribution<double> noise{0.0, 1e-4};
+    for (daq::ScanIndex index = 0; index < end; ++index) {
+      const double value = (index < kPull ? 0.0 : reading(index - kPull + kLoaded)) + noise(random);
+      if (index < first) continue;
+      daq::ScanBlock block;
+      block.first = index;
+      block.count = 1;
+      block.raw[0] = index == kSpike ? kSpike_V : value;
+      tared.process(block, daq::GapCause::kRingFull);
+    }
+  };
+  feed_noise(0, kTare);
+  const TareReport report = tared.tare("ada");
+  ASSERT_EQ(report.refusal, "");
+  feed_noise(kTare, kPull - kLoaded + kEnd);
+  ASSERT_EQ(diary_.ends.size(), 1U);
+  ASSERT_EQ(diary_.ends[0].spikes, std::vector<daq::ScanIndex>{kSpike});
+  EXPECT_EQ(diary_.ends[0].spike_coefficients.at(0), (kSpike_V - report.zero_V) * 2.0);
 }
 
 TEST_F(ProcessorTest, ANewCalibrationNeedsAnIdleBench) {
