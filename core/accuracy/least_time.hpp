@@ -10,8 +10,8 @@
 
 namespace stickslip::accuracy {
 
-/// Runs `work` repeatedly, until a clock with a resolution of microseconds gives three digits, and takes the
-/// shortest time, since disturbances only add to it.
+/// Shortest time of several runs of `work`, since disturbances only add to it. Stops when at least three runs
+/// add up to 20 ms, or fewer to 0.3 s.
 /// \return ns, ≥ 1.
 template <typename Work>
 [[nodiscard]] std::int64_t least_time_ns(const base::Clock& clock, const Work& work) {

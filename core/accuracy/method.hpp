@@ -49,16 +49,18 @@ class Method {
 /// taken back by bisection.
 /// \param tolerance > 0, absolute and relative, of a step.
 [[nodiscard]] std::unique_ptr<Method> make_odeint(double tolerance);
-/// Semi-implicit (symplectic) Euler; the sled sticks when it passes the belt's speed in a step.
+/// Semi-implicit (symplectic) Euler. A sled that passes the belt's speed in a step sticks if static friction
+/// holds it, else it slides on at the other side of that speed.
 /// \param steps_per_scan ≥ 1
 [[nodiscard]] std::unique_ptr<Method> make_euler(int steps_per_scan);
-/// ρ of make_tanh(), chosen so large that the curve has a maximum near S.
+/// ρ of make_tanh(): Stribeck's speed over the width w. With 3 the largest friction is K + 0.43 (S − K) for
+/// S 0.35, K 0.30; with 10 it is K + 0.88 (S − K), but weakens over more of the belt's speed.
 inline constexpr double kStribeckOverTanh = 3.0;
 
 /// Smoothed friction, with which the sled never sticks, solved by Runge–Kutta of order 4:
 ///     μ(V) = (K + (S − K) e^(−(V/ρw)²)) tanh(V/w).
 /// [the usual combination of Stribeck's curve and tanh: Andersson, Söderberg and Björklund, Tribology
-///  International 40(4):580–587, 2007, (8); 1 : 10 as Simscape's Translational Friction]
+///  International 40(4):580–587, 2007, (8)]
 /// \param width  w over the belt's fastest speed, > 0; the step follows from it by stability.
 [[nodiscard]] std::unique_ptr<Method> make_tanh(double width, double stribeck_over_tanh = kStribeckOverTanh);
 

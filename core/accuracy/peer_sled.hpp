@@ -9,7 +9,7 @@
 
 namespace stickslip::accuracy {
 
-/// As coefficient units: c″ = pull(c, c′) + friction.
+/// Forces on the sled in units of the coefficient c: c″ = pull(c, c′) + ω₀² μ, where μ is ±K while it slides.
 struct PeerSled {
   explicit PeerSled(const sim::Motion& motion)
       : omega0_squared(motion.oscillator.omega0_squared()),

@@ -27,10 +27,10 @@ struct TierRow {
   double scans_per_cycle = 0.0;  ///< Of the oscillation.
   std::string estimator;
   std::string reason;         ///< Why there are no numbers; empty if there are.
-  double bias = 0.0;          ///< Mean error of S − K over its truth.
-  double deviation = 0.0;     ///< Of the error from cycle to cycle, over the truth.
+  double bias = 0.0;          ///< Mean of (S − K found)/(true S − K) − 1.
+  double deviation = 0.0;     ///< Standard deviation of the same.
   double over_bound = 0.0;    ///< deviation over the Cramér–Rao bound of a cycle.
-  double us_per_cycle = 0.0;  ///< Of the whole detector over the whole test, by the cycles.
+  double us_per_cycle = 0.0;  ///< Time for a whole test over its cycles.
 };
 
 /// Input of all estimators at one scan rate: the force of several tests.

@@ -77,10 +77,10 @@ struct TesterCheck {
 [[nodiscard]] std::optional<std::string> speed_finding(const Estimate& measured_m_per_s,
                                                        const model::Tester& tester);
 
-/// \param alone  estimate without the characterisation.
-/// \param with  estimate with it; the speed is taken from this one, which is the more precise.
-/// \param known  the characterisation.
-/// \param tester  holds the planned speed, if there is one.
+/// Compares ω and γ/2ω of the test alone with the characterisation, and the pull speed with the plan. The
+/// speed is that of `with` if the characterisation is used for this test (TesterCheck::used), else of
+/// `alone`. \param alone  estimate without the characterisation. \param with  estimate with it. \param known
+/// the characterisation. \param tester  holds the planned speed, if there is one.
 [[nodiscard]] TesterCheck check_tester(const TesterEstimate& alone, const TesterEstimate& with,
                                        const estimate::SharedPrior::Coupling& known,
                                        const model::Tester& tester);

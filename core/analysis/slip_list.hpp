@@ -14,7 +14,8 @@ namespace stickslip::analysis {
 /// - falls in the hold after a pull, where the force does not climb;
 /// - falls too quick for the oscillation that the others show: steps between spikes;
 /// - the unloading itself, the last fall, which ends where the loading began though the slips do not;
-/// Two falls closer than a quarter of an oscillation are joined: they are one slip, split by a disturbance.
+/// Two falls are joined if the time from trough to next peak is less than a quarter of an oscillation: they
+/// are one slip, split by a disturbance. Fewer than three falls are returned unchanged.
 /// \param scratch  folder for a long list; empty: memory.
 [[nodiscard]] base::LongColumn<detect::Fall> kept_slips(base::LongColumn<detect::Fall> falls,
                                                         const std::filesystem::path& scratch = {});

@@ -5,7 +5,8 @@
 
 namespace stickslip::model {
 
-/// θ − φ = ω t₁ [9], [10], [15], in (0, π/2 − φ]. \param Q ≥ 0, infinity allowed.
+/// ω t₁ = θ − φ [9], [10], [15], rad: phase from the onset of a slip to the peak of the force, in
+/// [0, π/2 − φ]; 0 for Q = 0. \param Q ≥ 0, infinity allowed.
 /// \param gamma_over_2omega ≥ 0, finite.
 [[nodiscard]] double peak_phase_rad(double Q, double gamma_over_2omega) noexcept;
 /// θ [9], rad. Domain as above.

@@ -29,8 +29,8 @@ namespace stickslip::pipeline {
 /// Fewest scans for noise, hum and drift: ten for each of the six parameters, so that a standard error is
 /// known to 10 %.
 inline constexpr std::size_t kFewestIdleScans = 60;
-/// Shortest time for noise, hum and drift. 50 and 60 Hz beat with a period of 0.1 s; a shorter time cannot
-/// separate them.
+/// Shortest time for noise, hum and drift: one and a half beats of 50 and 60 Hz (0.1 s), which tells the two
+/// apart.
 inline constexpr double kShortestIdle_s = 0.15;
 
 /// Buffer of the latest idle scans. Thread-bound, allocates.

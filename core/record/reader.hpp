@@ -20,8 +20,9 @@ namespace stickslip::record {
                                                const FileCalls& calls = system_calls());
 
 /// Verifies a file against the record and source it was written from, piece by piece. Errors: kUsage if the
-/// file is invalid or its scans (index, raw value, noise-free force) differ from the source in any bit;
-/// kFailure if it cannot be read.
+/// file is invalid or its scans (index, raw value, code of the second channel, noise-free force where both
+/// have it) differ from the source in any bit;
+/// kFailure if it cannot be read. Of `record` only the board is compared.
 [[nodiscard]] base::Result<void> verify_record(const std::filesystem::path& path, const Record& record,
                                                const ScanSource& scans,
                                                const FileCalls& calls = system_calls());
