@@ -95,7 +95,7 @@ class Calibration(unittest.TestCase):
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         daemon.wait_for_rest(frames)
-        self.assertEqual(self.post("/v1/start")[0], 200)
+        self.assertEqual(self.post("/v1/arm")[0], 200)  # A whole pull, however long the request takes.
         wait_for(frames, lambda frame: frame["type"] == "test-ended")
         record_file = daemon.record(1)
         with h5py.File(record_file) as record:
