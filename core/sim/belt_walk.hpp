@@ -50,6 +50,8 @@ class BeltWalk {
     segment_ = {};
   }
 
+  /// Before the first call of next_segment().
+  [[nodiscard]] bool before_first() const noexcept { return next_ == 0; }
   [[nodiscard]] bool halts_when_unloaded() const noexcept { return segment_.halt_when_unloaded; }
   [[nodiscard]] const ScanTime& segment_end() const noexcept { return end_; }
   /// Time until the end of the segment.

@@ -83,7 +83,8 @@ struct Motion {
   PaperSettings paper;                  ///< Variation of S and K from contact to contact.
   bool one_way_coupling = false;
   std::vector<BeltSegment> belt;  ///< In the order of time; the belt rests after the last.
-  /// ≥ 0; above zero only with one_way_coupling. The sled has been riding on the belt, at its first speed.
+  /// ≥ 0; above zero only with one_way_coupling. At scan 0 the sled moves with the belt, at the speed of the
+  /// first segment, even if that has no length.
   double startup_slack_m = 0.0;
   std::optional<KineticDrift> kinetic_drift;
   std::optional<VelocityDependence> velocity_dependence;  ///< Numeric only.

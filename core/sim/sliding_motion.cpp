@@ -239,6 +239,8 @@ void SlidingMotion::pass_end() {
   const Ending ending = ending_;
   const double share = onset_share(solved_s_);
   const Coefficients limit = limits(solved_s_);
+  // A sled that is slack from the start has been riding on the belt, at the speed of the first segment.
+  const bool rides_from_start = phase_ == Phase::kRide && walk_.before_first();
   start_ = known_to_;
   if (ending == Ending::kSegment) walk_.next_segment();
   look_at_belt();
@@ -273,12 +275,9 @@ void SlidingMotion::pass_end() {
       meet_new_place();
       enter(state, false);
       return;
-    case Ending::kSegment: {
-      // A sled that is slack from the start has been riding on the belt.
-      const bool rides_from_start = phase_ == Phase::kRide && start_ == ScanTime{};
+    case Ending::kSegment:
       enter({state.c, rides_from_start ? belt_.at(0.0) : state.rate}, false);
       return;
-    }
     case Ending::kFreshStart:
       begun_ = state;
       begin_sliding();

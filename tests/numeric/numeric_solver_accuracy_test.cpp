@@ -56,6 +56,13 @@ sim::Motion taut_later() {
   return motion;
 }
 
+/// As a scene without an idle time begins: the sled is at rest when the belt starts.
+sim::Motion slack_at_rest() {
+  sim::Motion motion = taut_later();
+  motion.belt.insert(motion.belt.begin(), sim::BeltSegment{});
+  return motion;
+}
+
 sim::Motion drifting(sim::KineticDrift::Course course, sim::KineticDrift::Over over) {
   sim::Motion motion = lasting(motion_at(1.0, kDamping));
   const bool in_time = over == sim::KineticDrift::Over::kTime;
@@ -117,6 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"slack", with_slack(kDamping)}, Case{"undamped_slack", with_slack(0.0)},
         Case{"overdamped", overdamped()}, Case{"ramp_up", on_a_ramp(1.5)}, Case{"ramp_down", on_a_ramp(0.3)},
         Case{"slow_motor", with_slow_motor()}, Case{"startup_slack", taut_later()},
+        Case{"startup_slack_at_rest", slack_at_rest()},
         Case{"linear_drift", drifting(sim::KineticDrift::Course::kLinear, sim::KineticDrift::Over::kTime)},
         Case{"exponential_drift_over_travel",
              drifting(sim::KineticDrift::Course::kExponential, sim::KineticDrift::Over::kBeltTravel)},
