@@ -18,11 +18,12 @@ namespace stickslip::accuracy {
 /// Q = Q_th(1 ∓ 10⁻ⁿ), n = 1 … kFinestStep.
 inline constexpr int kFinestStep = 13;
 
+/// Verdict on a method at Q_th(1 ∓ 10⁻ⁿ), by goes_on() on each side; captures are not counted.
 enum class Grazing {
-  kFound,     ///< Sticks in every cycle below, decays above: correct.
+  kFound,     ///< Goes on below, decays above: correct.
   kMissed,    ///< Decays on both sides: the capture below was missed.
-  kFalse,     ///< Sticks on both sides: a false capture above.
-  kReversed,  ///< Sticks above and decays below: both errors.
+  kFalse,     ///< Goes on on both sides: a false capture above.
+  kReversed,  ///< Goes on above and decays below: both errors.
   kUndecided  ///< The method reports it as undecided, on at least one side.
 };
 [[nodiscard]] std::string_view name(Grazing grazing) noexcept;

@@ -30,9 +30,10 @@ struct Oscillation50 {
   [[nodiscard]] Real omega0_squared() const { return omega_squared + gamma * gamma / 4; }
 
   /// First t > 0 at which c rises to `level`, or falls to it; nothing if it never does.
+  /// \param level  > c(0) for a rise, < c(0) for a fall; = c(0) only if c first goes the other way.
   [[nodiscard]] std::optional<Real> first_rise(const Real& level) const;
   [[nodiscard]] std::optional<Real> first_fall(const Real& level) const;
-  /// First t > 0 at which c′ rises to `level`, or falls to it.
+  /// First t > 0 at which c′ rises to `level`, or falls to it. \param level  as above, with c′(0) for c(0).
   [[nodiscard]] std::optional<Real> first_rise_of_rate(const Real& level) const;
   [[nodiscard]] std::optional<Real> first_fall_of_rate(const Real& level) const;
 

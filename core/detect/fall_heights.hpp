@@ -1,10 +1,11 @@
 /// \file
-/// Decides from the drops of a slip and of the next one whether the first was captured.
+/// Evidence, from the drops of a slip and of the next one, that the first was captured.
 #pragma once
 
 namespace stickslip::detect {
 
-/// Stores the typical drop of the test's slips, and no scans. Fixed size; never allocates.
+/// Stores the typical drop (force from peak to trough) of the slips that begin from sticking, and no scans.
+/// Fixed size; never allocates.
 class FallHeights {
  public:
   /// Memory of the typical drop, in slips.
@@ -22,7 +23,8 @@ class FallHeights {
   /// \param is_damping_known  the damping in freely_next() comes from a characterisation.
   [[nodiscard]] double evidence(double drop, double next_drop, double freely_next, bool is_damping_known,
                                 double sigma) noexcept;
-  /// Updates the typical drop: the slip of the latest evidence() call was captured.
+  /// Adds next_drop of the latest evidence() call to the typical drop: its slip began from sticking, since
+  /// the one before it was captured.
   void learn() noexcept;
 
   /// Number of slips in usual_drop(), at most kMemory.

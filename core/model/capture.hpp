@@ -23,13 +23,14 @@ namespace stickslip::model {
 [[nodiscard]] std::optional<double> capture_time_near_s(const SlipWaveform& slip, double belt_rate_per_s,
                                                         double near_s) noexcept;
 
-/// Capture time on a belt whose speed may change: the last upward crossing of c′ and the belt's rate about
-/// t₃. It exists exactly when the maximum of c′ − belt rate is not negative. A steady acceleration moves that
-/// maximum from t₃ to where c″ equals the slope of the belt's rate. The maximum is searched within a quarter
-/// of an oscillation of t₃; this suffices while |r p′| < ω |c′|, 100 times the acceleration of a ramp that
-/// reaches the threshold speed in a second.
-/// \param r  stick rate at the belt's reference speed.
-/// \param onset_s  time of the slip's onset.
+/// Capture time on a belt whose speed may change: where c′ rises to the belt's rate, between t₂ and the
+/// maximum of c′ − belt rate near t₃; t₂ if c′ is not below the belt's rate there. It exists exactly when
+/// that maximum is not negative. A steady acceleration moves that maximum from t₃ to where c″ equals the
+/// slope of the belt's rate. The maximum is searched within a quarter of an oscillation of t₃; this suffices
+/// while |r p′| < ω |c′|, 100 times the acceleration of a ramp that reaches the threshold speed in a second.
+/// \param r  stick rate at the plan's largest speed; p is BeltCourse::relative().
+/// \param onset_s  time of the slip's onset, on the belt's time axis.
+/// \return seconds after the onset; nullopt if the sled is not captured.
 [[nodiscard]] std::optional<double> capture_time_s(const SlipWaveform& slip, const BeltCourse& belt, double r,
                                                    double onset_s) noexcept;
 

@@ -100,7 +100,8 @@ struct EntryPlace {
   [[nodiscard]] daq::ScanIndex end() const noexcept { return first + static_cast<daq::ScanIndex>(count); }
 };
 
-/// Content of a journal: all complete and valid entries, in the order of their scans.
+/// Content of a journal: all complete and valid entries. Cycles and events are in the order of the file
+/// (cycles are the end's if there is one), all others in the order of their scans.
 struct JournalReading {
   /// With JournalScans::kCount its scan, raw, second and true_coefficient are empty. Missing scans without a
   /// gap entry become gaps with the cause damaged, or unknown if every byte was readable.

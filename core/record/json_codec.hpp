@@ -23,8 +23,9 @@ namespace stickslip::record {
 void append_end_bytes(const EndRecord& end, std::vector<std::byte>& bytes);
 [[nodiscard]] std::string sweep_run_to_json(const SweepRun& run);
 
-// Inverse functions. \throws std::exception, with the reason in what(), if the function above does not write
-// such a text.
+// Inverse functions: X_from_… of X_to_…, end_from_bytes() of append_end_bytes(). They also read the texts of
+// older versions, and ignore unknown keys. \throws std::exception, with the reason in what(), if a value is
+// missing or makes no sense.
 
 [[nodiscard]] RecordHeader header_from_json(std::string_view text);
 [[nodiscard]] daq::Gap gap_from_json(std::string_view text);

@@ -33,11 +33,12 @@ class ScanSource {
   virtual void for_each_piece(const std::function<void(const ScanPiece&)>& use) const = 0;
   /// Whether the noise-free force is available.
   [[nodiscard]] virtual bool has_force() const = 0;
-  /// As many values as scans, in pieces of the same lengths; NaN where not known.
+  /// Requires has_force(). As many values as scans, in pieces of the same lengths; NaN where not known.
   virtual void for_each_force_piece(const std::function<void(std::span<const double>)>& use) const = 0;
   /// Whether codes of a second channel are available.
   [[nodiscard]] virtual bool has_second() const = 0;
-  /// As many codes as scans, in pieces of the same lengths; daq::SecondChannel::kNoCode where none came.
+  /// Requires has_second(). As many codes as scans, in pieces of the same lengths;
+  /// daq::SecondChannel::kNoCode where none came.
   virtual void for_each_second_piece(const std::function<void(std::span<const std::int32_t>)>& use) const = 0;
 };
 
