@@ -324,7 +324,7 @@ void register_all() {
     };
     for (const auto tier :
          {detect::EstimatorTier::kPeak, detect::EstimatorTier::kInterpolated, detect::EstimatorTier::kFit}) {
-      const std::string name{model::name(tier)};
+      const std::string name{detect::name(tier)};
       add("whole/" + name, [=](benchmark::State& state) {
         whole(state, tier, one_test_s(rate_Hz));
       })->UseManualTime();

@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   fmt::print("{} random tests of {} s, seed {}, estimator {}\n", count, base->constant_speed->pull_s, seed,
-             model::name(*estimator));
+             detect::name(*estimator));
   fmt::print("S - K 0.02 to 0.1, its scatter 0 to 30 %, Q/Q_th 0.3 to 3\n");
   for (const double noise : {0.02, 0.05, 0.1}) {
     const test::Disturbance disturbance{.noise = noise};

@@ -16,8 +16,6 @@
 namespace stickslip::io {
 namespace {
 
-constexpr std::string_view kNothing = "–";
-
 bool is_nothing(const Table::Cell& cell) {
   const double* number = std::get_if<double>(&cell);
   return std::holds_alternative<std::monostate>(cell) || (number != nullptr && !std::isfinite(*number));
@@ -32,7 +30,7 @@ std::string number_or_text(const Table::Cell& cell, const std::string& format) {
 
 std::string shown(const Table::Cell& cell, const Table::Column& column) {
   if (!is_nothing(cell)) return base::printable(number_or_text(cell, column.format));
-  return column.align == Table::Align::kRight ? std::string{kNothing} : std::string{};
+  return column.align == Table::Align::kRight ? std::string{kAbsent} : std::string{};
 }
 
 std::string csv_of(const Table::Cell& cell) {

@@ -20,6 +20,9 @@
 
 namespace stickslip::io {
 
+/// Stands in text for a number that is absent.
+inline constexpr std::string_view kAbsent = "–";
+
 /// Places of a terminal that a text takes: a wide character (紙) takes two, a combining one none.
 /// \param text  UTF-8; a byte that is none counts as one.
 [[nodiscard]] std::size_t display_width(std::string_view text);

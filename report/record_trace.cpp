@@ -2,15 +2,13 @@
 
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <stdexcept>
 
+#include "core/base/nan.hpp"
 #include "core/daq/calibration.hpp"
 
 namespace stickslip::report {
 namespace {
-
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 /// \param value_of  of each row.
 template <typename ValueOf>
@@ -23,7 +21,7 @@ RecordTrace trace_of(const record::Record& record, const ValueOf& value_of) {
     };
     if (i > 0 && record.scan[i] != record.scan[i - 1] + 1) {
       trace.time_s.push_back(time_of(record.scan[i - 1] + 1));
-      trace.value.push_back(kNothing);
+      trace.value.push_back(base::kNaN);
     }
     trace.time_s.push_back(time_of(record.scan[i]));
     trace.value.push_back(value_of(i));

@@ -25,25 +25,23 @@ using analysis::Quantity;
 using analysis::Replicates;
 using analysis::SpeedGroup;
 
-constexpr std::string_view kAbsent = "–";
-
 std::string speed_text(const std::optional<double>& speed_m_per_s) {
   if (!speed_m_per_s) return "speed not known";
   return fmt::format("{:.4g} mm/s", *speed_m_per_s * kMillimetresPerMetre);
 }
 
 std::string number(const std::optional<double>& value, int decimals) {
-  return value ? fmt::format("{:.{}f}", *value, decimals) : std::string{kAbsent};
+  return value ? fmt::format("{:.{}f}", *value, decimals) : std::string{io::kAbsent};
 }
 
 std::string interval(const std::optional<Interval>& value, int decimals) {
   return value ? fmt::format("{:.{}f} … {:.{}f}", value->low, decimals, value->high, decimals)
-               : std::string{kAbsent};
+               : std::string{io::kAbsent};
 }
 
 /// "0.3812 ± 0.0012"; without the second part where the scatter is not known.
 std::string mean_text(const GroupQuantity& group, const Quantity& quantity) {
-  if (!group.replicates) return std::string{kAbsent};
+  if (!group.replicates) return std::string{io::kAbsent};
   const Replicates& own = *group.replicates;
   if (!own.mean_interval) return number(own.mean, quantity.decimals);
   return fmt::format("{:.{}f} ± {:.{}f}", own.mean, quantity.decimals, own.mean_interval->high - own.mean,
@@ -80,7 +78,7 @@ constexpr int kDeltaMuDecimals = 4;
 /// Of all slips of the tests of a group, before the means of the tests.
 std::string by_cycle_line(const analysis::PooledDeltaMu& pooled) {
   if (!pooled.mean.value)
-    return fmt::format("S−K by cycle   {}  {}\n", kAbsent, base::printable(pooled.mean.reason));
+    return fmt::format("S−K by cycle   {}  {}\n", io::kAbsent, base::printable(pooled.mean.reason));
   const auto error = [](const std::optional<double>& value) {
     return value ? fmt::format(" ± {:.{}f} (standard error)", *value, kDeltaMuDecimals + 1) : std::string{};
   };
@@ -132,7 +130,7 @@ std::string limits_lines(const Material& material) {
   std::string text;
   for (const daemon::LimitVerdict& own : material.limits) {
     const auto side = [](const std::optional<double>& limit) {
-      return limit ? fmt::format("{}", *limit) : std::string{kAbsent};
+      return limit ? fmt::format("{}", *limit) : std::string{io::kAbsent};
     };
     text +=
         fmt::format("{}  {} {} … {}: {} of {} inside", own.passes() ? "pass" : "FAIL", own.quantity,
@@ -206,7 +204,7 @@ std::string comparison_table(const analysis::PooledComparison& by_cycle,
   const std::string& first = comparisons.front().reason;
   const auto same = [&first](const analysis::Comparison& own) { return own.reason == first; };
   if (!first.empty() && std::all_of(comparisons.begin(), comparisons.end(), same)) {
-    return fmt::format("{}  {}\n", kAbsent, base::printable(first));
+    return fmt::format("{}  {}\n", io::kAbsent, base::printable(first));
   }
   using enum io::Table::Align;
   io::Table table{{{.heading = "", .align = kLeft, .width = 13},
@@ -245,7 +243,7 @@ std::string comparison_table(const analysis::PooledComparison& by_cycle,
   }
   std::string text = table.text();
   for (const auto& [reason, titles] : reasons)
-    text += fmt::format("{}  no {}: {}\n", kAbsent, titles, base::printable(reason));
+    text += fmt::format("{}  no {}: {}\n", io::kAbsent, titles, base::printable(reason));
   return text;
 }
 

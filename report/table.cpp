@@ -20,8 +20,6 @@ using analysis::Estimate;
 using analysis::TestResults;
 using model::TestTruth;
 
-constexpr std::string_view kAbsent = "–";
-
 struct Column {
   std::string_view title;
   std::size_t width;
@@ -72,7 +70,7 @@ std::string footnotes(std::span<const TableRow> rows) {
   }
   std::string text;
   for (const auto& [key, tests] : tests_of) {
-    text += fmt::format("{}  no {} in test {}: {}\n", kAbsent, kColumns[key.first].title, tests,
+    text += fmt::format("{}  no {} in test {}: {}\n", io::kAbsent, kColumns[key.first].title, tests,
                         base::printable(key.second));
   }
   return text;

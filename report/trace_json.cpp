@@ -1,7 +1,6 @@
 #include "report/trace_json.hpp"
 
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -12,13 +11,13 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/long_column.hpp"
+#include "core/base/nan.hpp"
 
 namespace stickslip::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kStepsPerUnit = 1e6;
 
 Json rounded(double value) {
@@ -41,7 +40,7 @@ RecordTrace thinned(RecordTrace trace) {
        plot::visible_pieces(curve, whole, false, false, kMostPointsOnPage / 2)) {
     if (!thin.time_s.empty()) {
       thin.time_s.push_back(piece.x.front());
-      thin.value.push_back(kNothing);
+      thin.value.push_back(base::kNaN);
     }
     thin.time_s.insert(thin.time_s.end(), piece.x.begin(), piece.x.end());
     thin.value.insert(thin.value.end(), piece.y.begin(), piece.y.end());
