@@ -13,11 +13,11 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace stickslip;
   const std::string_view text{reinterpret_cast<const char*>(data), size};
-  const auto calibration = daemon::parse_calibration(text, "x.toml");
+  const auto calibration = io::parse_calibration(text, "x.toml");
   STICKSLIP_EXPECTS(calibration || calibration.error().exit_status() == 2);
   STICKSLIP_EXPECTS(calibration || calibration.error().message.find('\n') == std::string::npos);
   if (calibration) {
-    const auto again = daemon::parse_calibration(io::calibration_text(*calibration), "y.toml");
+    const auto again = io::parse_calibration(io::calibration_text(*calibration), "y.toml");
     STICKSLIP_EXPECTS(again);
     const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
     STICKSLIP_EXPECTS(bits(again->load_cell.gain_N_per_V) == bits(calibration->load_cell.gain_N_per_V));
