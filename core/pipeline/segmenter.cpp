@@ -147,7 +147,10 @@ Segmenter::Event Segmenter::observe(base::ScanIndex index, double coefficient) {
       return Event::kNone;
     case State::kRunning:
       follow(coefficient);
-      was_loaded_ = was_loaded_ || loaded();
+      if (!was_loaded_ && loaded()) {
+        was_loaded_ = true;
+        quiet_scans_.clear();  // The rest before the load is no unloading.
+      }
       end_tail_.push_back(coefficient);
       if (end_tail_.size() > end_scans_.stretch_scans()) end_tail_.pop_front();
       if (was_loaded_ && (unloaded || lies_unloaded())) {

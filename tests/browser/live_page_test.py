@@ -24,7 +24,7 @@ from chromium import Chromium
 from contrast import CONTROLS, MARK, TARGETS, TARGET_PX, TEXT, TEXTS, colours, contrast, rgb
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "system"))
-from running_daemon import RunningDaemon  # noqa: E402
+from running_daemon import PATIENT, RunningDaemon  # noqa: E402
 from service_manager import TIMEOUT_S  # noqa: E402
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
@@ -319,7 +319,7 @@ class LivePage(unittest.TestCase):
         self.assertTrue(gaps <= told["gap_count"] and lost <= told["lost_scan_count"], (gaps, lost, told["gap_count"], told["lost_scan_count"]))
 
     def test_a_page_that_is_reloaded_in_the_middle_of_a_test_goes_on(self):
-        daemon = self.daemon('[test]\nbegins = "command"\n', speed=2, patient=True)
+        daemon = self.daemon('[test]\nbegins = "command"\n', speed=2, times=PATIENT)
         frames = self.listen(daemon)
         page = self.page()
         self.start(page)
@@ -553,7 +553,7 @@ class LivePage(unittest.TestCase):
             page.until(f"!document.querySelector('dialog:modal') && document.activeElement.id === '{opener}'")
 
     def test_fingers_meet_its_controls_on_a_tablet(self):
-        daemon = self.daemon('[test]\nbegins = "command"\n', speed=2, patient=True)
+        daemon = self.daemon('[test]\nbegins = "command"\n', speed=2, times=PATIENT)
         page = self.page(touch=True)
         self.assertTrue(page.value("matchMedia('(pointer: coarse)').matches"))
         page.resize(820, 1180)

@@ -25,7 +25,7 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "system"))
 
 import interface
 import list_record
-from running_daemon import RunningDaemon, patient_scene, wait_for
+from running_daemon import RunningDaemon, scene_with, wait_for
 
 # Files that a configuration names, and what makes them exist.
 NAMED = ("hanging", "plant-ca.pem", "bench-7.pem", "bench-7.key")
@@ -110,12 +110,12 @@ tester = "bench-7"
 def freeze_state(build, source, folder):
     """A daemon is killed in its second test. Returns the record of the first."""
     def prepare(place):
-        (place / "first.toml").write_text(uncommented(patient_scene(source, idle="5 s", pull="2 s", rest="5 s")))
-        (place / "second.toml").write_text(uncommented(patient_scene(source, idle="5 s", pull="600 s", rest="5 s")))
+        (place / "first.toml").write_text(uncommented(scene_with(source, interface.TIMES)))
+        (place / "second.toml").write_text(uncommented(scene_with(source, {**interface.TIMES, "pull": "600 s"})))
         shutil.copytree(folder / "config" / "calibrations", place / "calibrations")
 
     with Stack() as stack:
-        daemon = RunningDaemon(stack, build, source, board=BOARD, prepare=prepare)
+        daemon = RunningDaemon(stack, build, source, board=BOARD, prepare=prepare, times=interface.TIMES)
         status, told = daemon.ask("POST", "/v1/batch", PLAN)
         assert status == 200, told
         process, frames = daemon.watch()

@@ -23,7 +23,8 @@ SOURCE = pathlib.Path(sys.argv[2]).resolve()
 
 class Batch(unittest.TestCase):
     def setUp(self):
-        self.daemon = RunningDaemon(self, BUILD, SOURCE, '[test]\nbegins = "command"\n')
+        times = {"idle": "10 s", "pull": "5 s", "rest": "1 s"}
+        self.daemon = RunningDaemon(self, BUILD, SOURCE, '[test]\nbegins = "command"\n', times=times)
 
     def run_cli(self, *arguments, status=0):
         done = self.daemon.run(*arguments, *(() if "--as" in arguments or arguments == ("batch",) else ("--as", "ada")))
@@ -129,7 +130,7 @@ class Batch(unittest.TestCase):
         self.assertEqual([test["file"] for test in report["tests"]], counted)
         self.assertEqual([(test["file"], test["reason"], test["by"]) for test in report["voided"]], [(str(folder / records[2].name), "paper torn", "ada")])
         limits = {limit["quantity"]: limit for limit in report["limits"]}
-        self.assertTrue(limits["delta_mu"]["pass"])  # The scene has S - K 0.05, known to 0.0013.
+        self.assertTrue(limits["delta_mu"]["pass"], report["limits"])  # The scene has S - K 0.05, known to 0.0013.
         self.assertEqual((limits["mu_k"]["pass"], limits["mu_k"]["outside"]), (False, [0, 1, 2, 3]))
         self.assertEqual(report["groups"][0]["quantities"]["delta_mu"]["count"], 4)
         text = self.report("--batch", batch, folder, "-o", folder / "page.html", "--csv", folder / "table.csv")

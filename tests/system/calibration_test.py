@@ -19,7 +19,7 @@ import h5py
 import numpy
 
 from hanging import NOTHING_HANGS, Hanging, standard_errors_allowed, weighing_board
-from running_daemon import RunningDaemon, wait_for
+from running_daemon import PATIENT, RunningDaemon, wait_for
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
@@ -31,7 +31,7 @@ UP_AND_DOWN = [0, 0.5, 1, 1.5, 1, 0.5, 0]
 
 class Calibration(unittest.TestCase):
     def start(self, board=None, begins="command"):
-        self.daemon = RunningDaemon(self, BUILD, SOURCE, board=board or weighing_board(self, SOURCE),
+        self.daemon = RunningDaemon(self, BUILD, SOURCE, board=board or weighing_board(self, SOURCE), times=PATIENT,
                                     config=f'[test]\nbegins = "{begins}"\n')
         return self.daemon
 
@@ -95,7 +95,7 @@ class Calibration(unittest.TestCase):
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         daemon.wait_for_rest(frames)
-        self.assertEqual(self.post("/v1/arm")[0], 200)  # A whole pull, however long the request takes.
+        self.assertEqual(self.post("/v1/arm")[0], 200)
         wait_for(frames, lambda frame: frame["type"] == "test-ended")
         record_file = daemon.record(1)
         with h5py.File(record_file) as record:

@@ -24,7 +24,7 @@ import h5py
 import numpy
 
 from hanging import Hanging, weighing_board
-from running_daemon import TIMEOUT_S, RunningDaemon, UnixConnection, wait_for
+from running_daemon import PATIENT, TIMEOUT_S, RunningDaemon, UnixConnection, wait_for
 from schema import complaints
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
@@ -35,7 +35,7 @@ CLI = BUILD / "bin" / "stickslip"
 class Daemon(RunningDaemon):
     def __init__(self, test, config="", **options):
         # Half the frames of the other tests: a client that a sanitizer slows down reads them as they come.
-        super().__init__(test, BUILD, SOURCE, config, speed=5, patient=True, **options)
+        super().__init__(test, BUILD, SOURCE, config, speed=5, times=PATIENT, **options)
 
 
 @contextlib.contextmanager

@@ -6,7 +6,7 @@ import tempfile
 
 from scipy.stats import norm, t
 
-from running_daemon import patient_scene
+from running_daemon import PATIENT, scene_with
 
 
 def standard_errors_allowed(readings):
@@ -45,7 +45,7 @@ class Hanging:
 def weighing_board(test, source, calibrations="calibrations", speed=50):
     """For RunningDaemon: a tester whose load cell has a zero of its own, and gain by its data sheet."""
     hanging = test.hanging
-    scene = patient_scene(source)
+    scene = scene_with(source, PATIENT)
     assert scene.count('load_cell_zero = "0 V"') == 1 and f'load_cell_gain = "{hanging.GAIN:g} N/V"' in scene
     own = hanging.folder / "scene.toml"
     assert scene.count("\nsd = 0.001 ") == 1

@@ -13,6 +13,8 @@ TIMEOUT_S = 240
 # What --help calls a value → one that is taken. Others take any word.
 VALUES = {"HZ": "350", "N": "1", "T": "1 s", "UNIT": "N", "SHELL": "bash", "N|FILE.h5": "1", "V": "1 m/s", "COUNT": "1"}
 
+TIMES = {"idle": "5 s", "pull": "2 s", "rest": "5 s"}  # Of the first test of the frozen state.
+
 
 def run(*words, cwd=None):
     return subprocess.run([str(word) for word in words], cwd=cwd, capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
@@ -113,7 +115,7 @@ def begin(daemon, frames):
 def goes_on(test, build, source, state):
     """Starts the daemon in a copy of `state`, which another one left, and measures one test there. Returns what it answers of the time
     before; the record that it made of each journal; description of the API, live stream and metrics."""
-    daemon = RunningDaemon(test, build, source, whole=(state / "d.toml").read_text(encoding="utf-8"),
+    daemon = RunningDaemon(test, build, source, times=TIMES, whole=(state / "d.toml").read_text(encoding="utf-8"),
                            prepare=lambda folder: shutil.copytree(state, folder, dirs_exist_ok=True))
     made = [daemon.folder / journal.relative_to(state).with_suffix(".h5") for journal in state.rglob("*.journal")]
     answers = {path: daemon.ask("GET", path)[1] for path in ("/v1/batch", "/v1/batches", "/v1/calibration", "/v1/plan")}

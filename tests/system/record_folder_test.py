@@ -13,7 +13,7 @@ import subprocess
 import sys
 import unittest
 
-from running_daemon import RunningDaemon
+from running_daemon import PATIENT, RunningDaemon
 from service_manager import TIMEOUT_S
 from small_disk import mount, own_mounts
 
@@ -36,7 +36,7 @@ def rows_in(*folders):
 
 class RecordFolder(unittest.TestCase):
     def start(self, prepare=lambda folder: (folder / "disk").mkdir()):
-        self.daemon = RunningDaemon(self, BUILD, SOURCE, records="disk/records", prepare=prepare, patient=True)
+        self.daemon = RunningDaemon(self, BUILD, SOURCE, records="disk/records", prepare=prepare, times=PATIENT)
         self.records = self.daemon.folder / "disk" / "records"
 
     def told(self, wanted):

@@ -18,12 +18,21 @@ from service_manager import TIMEOUT_S
 SCENE = "config/scenes/stick-slip-at-12-in-per-min.toml"
 
 
-def patient_scene(source, idle="3 s", pull="60 s", rest="3 s"):
-    """Text of the shipped scene with another pull and other rests: so long that several commands fit in each, on a busy machine too."""
+SHIPPED = {"idle": "0.5 s", "pull": "5 s", "rest": "1 s"}
+PATIENT = {"idle": "6 s", "pull": "60 s", "rest": "3 s"}  # Several commands fit in each, on a busy machine too.
+
+
+def seconds(text):
+    return float(text.removesuffix(" s"))
+
+
+def scene_with(source, times):
+    """Text of the shipped scene with another idle time, pull and rest."""
     scene = (source / SCENE).read_text(encoding="utf-8")
-    for old, new in (("\nidle = \"0.5 s\"", f"\nidle = \"{idle}\""), ("\npull = \"5 s\"", f"\npull = \"{pull}\""), ("\nrest = \"1 s\"", f"\nrest = \"{rest}\"")):
-        assert scene.count(old) == 1, old
-        scene = scene.replace(old, new)
+    for name, shipped in SHIPPED.items():
+        line = f'\n{name} = "{shipped}"'
+        assert scene.count(line) == 1, line
+        scene = scene.replace(line, f'\n{name} = "{times[name]}"')
     return scene
 
 
@@ -39,9 +48,9 @@ class UnixConnection(http.client.HTTPConnection):
 
 
 class RunningDaemon:
-    def __init__(self, test, build, source, config="", speed=20, board=None, repeats=0, patient=False, prepare=lambda folder: None, program=None, records="records",
+    def __init__(self, test, build, source, config="", speed=20, board=None, repeats=0, times=None, prepare=lambda folder: None, program=None, records="records",
                  environment=None, whole=None):
-        """records: the folder of records, below that of the daemon. environment: more variables for it. whole: its configuration, which
+        """times: idle, pull and rest of the tests of the board's scene, which is the shipped one without. records: the folder of records, below that of the daemon. environment: more variables for it. whole: its configuration, which
         names the socket "c.sock", in the place of all of these."""
         self.cli = build / "bin" / "stickslip"
         temporary = tempfile.TemporaryDirectory(prefix="stickslip-")
@@ -50,9 +59,10 @@ class RunningDaemon:
         self.socket = self.folder / "c.sock"
         prepare(self.folder)
         scene = source / SCENE
-        if patient:
-            scene = self.folder / "patient.toml"
-            scene.write_text(patient_scene(source), encoding="utf-8")
+        self.times = times or SHIPPED
+        if times and not (board or whole):
+            scene = self.folder / "scene.toml"
+            scene.write_text(scene_with(source, times), encoding="utf-8")
         board = board or f"""
 [board]
 driver = "simulated"
@@ -141,12 +151,25 @@ repeats = {repeats}
                 return found[1]
 
     def wait_for_rest(self, frames):
-        """Until the load cell is unloaded: a whole pull is to come. Frames that nobody has read meanwhile tell of the past."""
-        def rests(frame):
-            if frame["type"] != "scans" or max(frame["highest"]) >= 0.02:
+        """Until a rest between two pulls has begun of which a third at least is left, so that a whole pull is to come. Frames that waited to
+        be read tell of the past: the status tells how far the scans have come since."""
+        idle, rest = (seconds(self.times[name]) for name in ("idle", "rest"))
+        loaded, end = False, None  # Of the rest that is under way: its end, in seconds of scans. None: unknown.
+
+        def leaves_time(frame):
+            nonlocal loaded, end
+            if frame["type"] != "scans":
                 return False
-            return self.ask("GET", "/v1/status")[1]["scan_count"] - frame["first_scan"] < frame["scan_rate"]
-        wait_for(frames, rests)
+            if max(frame["highest"]) >= 0.02:
+                loaded, end = True, None
+                return False
+            first = frame["first_scan"] / frame["scan_rate"]
+            if loaded:
+                loaded, end = False, first + rest + idle
+            elif end is None and first < idle:
+                end = idle
+            return end is not None and self.ask("GET", "/v1/status")[1]["scan_count"] / frame["scan_rate"] < end - (rest + idle) / 3
+        wait_for(frames, leaves_time)
 
     def record(self, number):
         """The record of a test that has ended: the finaliser may still be at it."""

@@ -36,7 +36,7 @@ import h5py
 
 import broker
 import small_disk
-from running_daemon import RunningDaemon, patient_scene
+from running_daemon import RunningDaemon, scene_with
 from service_manager import TIMEOUT_S
 
 SCAN_RATE_HZ = 350
@@ -126,7 +126,7 @@ class Soak:
             if disk_may_be_full:
                 small_disk.mount(folder / "disk", DISK_MIB)
                 self.addCleanup(lambda: subprocess.run(["umount", "-l", str(folder / "disk")], check=False))
-            (folder / "scene.toml").write_text(patient_scene(source, **TIMES) + DRIFT, encoding="utf-8")
+            (folder / "scene.toml").write_text(scene_with(source, TIMES) + DRIFT, encoding="utf-8")
 
         first_scan = WRAP - int(0.1 * DAY_S * SCAN_RATE_HZ)
         board = f"""

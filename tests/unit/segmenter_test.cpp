@@ -111,6 +111,29 @@ TEST(Segmenter, UnloadingEndsTheTest) {
             (std::vector<Seen>{{203, Event::kTestStarts}, {500 + kUnloadDwell - 1, Event::kUnloaded}}));
 }
 
+TEST(Segmenter, RestBeforeTheLoadDoesNotEndATestThatACommandBegan) {
+  // The load may begin at any scan of a quiet stretch, whose quarters have 43 scans.
+  for (int rest = 200; rest < 300; ++rest) {
+    Course course;
+    course.level(0.0, rest).load(0.3, 20).oscillate(0.05, 30);
+    const base::ScanIndex end = course.size();
+    course.level(0.0, 2 * kUnloadDwell);
+    Segmenter segmenter{SegmenterSettings{}};
+    segmenter.trigger_by_force(false);
+    segmenter.start();
+    std::vector<Seen> seen;
+    for (base::ScanIndex scan = 0; scan < course.size(); ++scan) {
+      if (const Event event = segmenter.observe(scan, course.values()[static_cast<std::size_t>(scan)]);
+          event != Event::kNone)
+        seen.push_back({scan, event});
+    }
+    ASSERT_EQ(seen.size(), 2U) << rest;
+    EXPECT_EQ(seen[0], (Seen{0, Event::kTestStarts}));
+    EXPECT_EQ(seen[1].event, Event::kUnloaded);
+    EXPECT_GT(seen[1].scan, end) << rest;
+  }
+}
+
 TEST(Segmenter, SlackPartOfACycleDoesNotEndTheTest) {
   // Force near zero for 60 of every 90 scans, shorter than the dwell of 88.
   std::vector<double> values(200, 0.0);
