@@ -1,8 +1,14 @@
+#include "io/traces/import.hpp"
+
 #include <fmt/format.h>
 
+#include <array>
+#include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cli/method_option.hpp"
 #include "cli/options.hpp"
@@ -11,7 +17,6 @@
 #include "core/base/text.hpp"
 #include "core/base/version.hpp"
 #include "core/evaluation/analyse.hpp"
-#include "core/record/csv_import.hpp"
 #include "core/record/finaliser.hpp"
 #include "core/record/method_text.hpp"
 
@@ -21,42 +26,88 @@ namespace {
 using base::Dimension;
 using base::Result;
 
-/// Numbers as typed: "350", "350 Hz", "12 in/min"; bare numbers are in SI units.
+/// Numbers as typed: "350 Hz", "12 in/min".
 struct ImportOptions {
-  std::string csv;
+  std::string file;
   std::string column;
+  std::string unit;
   std::string time_column;
+  std::string time_unit;
   std::string rate;
-  std::string unit;  ///< "coefficient", "N" or "V".
   std::string speed;
   std::string sled_mass;
   std::string stiffness;
   std::string load_cell_gain;
   std::string load_cell_zero;
+  std::string encoding;
+  std::string separator;
+  std::string decimal;
+  std::int64_t skip = 0;
+  bool inspect = false;
+  bool invert = false;
+  bool reverse = false;
+  bool resample = false;
+  bool skip_doubled = false;
+  std::string sample;
+  std::string grade;
+  std::string person;
+  std::int64_t replicate = 0;
   std::string method;  ///< As chosen_method() takes it.
   std::string output;
 };
 
-Result<daq::RawQuantity> quantity_of(const std::string& unit) {
-  if (unit == "coefficient") return daq::RawQuantity::kCoefficient;
-  if (unit == "N") return daq::RawQuantity::kForce_N;
-  if (unit == "V") return daq::RawQuantity::kVolts;
-  return base::usage_error("--unit: \"{}\" is unknown; allowed: coefficient, N, V", unit);
+Result<traces::DialectOptions> dialect_of(const ImportOptions& options) {
+  traces::DialectOptions dialect;
+  dialect.skip = options.skip;
+  if (!options.encoding.empty()) {
+    dialect.encoding = traces::encoding_from_name(options.encoding);
+    if (!dialect.encoding) {
+      return base::usage_error(
+          "--encoding: \"{}\" is unknown; allowed: UTF-8, UTF-16LE, UTF-16BE, Windows-1252, Latin-1",
+          base::printable(options.encoding));
+    }
+  }
+  constexpr std::array kSeparators{std::pair{"comma", ','},
+                                   std::pair{",", ','},
+                                   std::pair{"semicolon", ';'},
+                                   std::pair{";", ';'},
+                                   std::pair{"tab", '\t'},
+                                   std::pair{"blanks", traces::kBlanks},
+                                   std::pair{"none", traces::kNoSeparator}};
+  for (const auto& [name, separator] : kSeparators) {
+    if (options.separator == name) dialect.separator = separator;
+  }
+  if (!options.separator.empty() && !dialect.separator) {
+    return base::usage_error("--separator: \"{}\" is unknown; allowed: comma, semicolon, tab, blanks, none",
+                             base::printable(options.separator));
+  }
+  if (options.decimal == "." || options.decimal == "point") dialect.decimal = '.';
+  if (options.decimal == "," || options.decimal == "comma") dialect.decimal = ',';
+  if (!options.decimal.empty() && !dialect.decimal) {
+    return base::usage_error("--decimal: \"{}\" is unknown; allowed: point, comma",
+                             base::printable(options.decimal));
+  }
+  return dialect;
 }
 
-Result<record::CsvImportRequest> request_of(const ImportOptions& options) {
-  record::CsvImportRequest request;
-  request.path = options.csv;
+Result<traces::ImportRequest> request_of(const ImportOptions& options) {
+  traces::ImportRequest request;
+  request.path = options.file;
+  const auto dialect = dialect_of(options);
+  if (!dialect) return tl::unexpected(dialect.error());
+  request.dialect = *dialect;
   request.column = options.column;
+  request.unit = options.unit;
   request.time_column = options.time_column;
-
-  const Result<daq::RawQuantity> quantity = quantity_of(options.unit);
-  if (!quantity) return tl::unexpected(quantity.error());
-  request.quantity = *quantity;
+  request.time_unit = options.time_unit;
+  request.invert = options.invert;
+  request.reverse = options.reverse;
+  request.resample = options.resample;
+  request.skip_doubled = options.skip_doubled;
 
   const auto rate_Hz = number_of("--rate", options.rate, Dimension::kFrequency, true);
   if (!rate_Hz) return tl::unexpected(rate_Hz.error());
-  request.rate_Hz = rate_Hz->value_or(0.0);
+  request.rate_Hz = *rate_Hz;
   const auto speed = number_of("--speed", options.speed, Dimension::kSpeed, true);
   if (!speed) return tl::unexpected(speed.error());
   request.tester.pull_speed_m_per_s = *speed;
@@ -70,19 +121,22 @@ Result<record::CsvImportRequest> request_of(const ImportOptions& options) {
   if (!gain) return tl::unexpected(gain.error());
   const auto zero = number_of("--load-cell-zero", options.load_cell_zero, Dimension::kVoltage, false);
   if (!zero) return tl::unexpected(zero.error());
+  if (*gain && **gain != 0.0) request.load_cell = daq::LoadCell{**gain, zero->value_or(0.0)};
+  if ((*gain && **gain == 0.0) || (*zero && !*gain)) {
+    return base::usage_error("--load-cell-zero needs --load-cell-gain, not 0, such as \"2 N/V\"");
+  }
 
-  if (*quantity == daq::RawQuantity::kVolts) {
-    if (!*gain || **gain == 0.0) {
-      return base::usage_error("--unit V needs --load-cell-gain, not 0, such as \"2 N/V\"");
+  for (const auto& [name, text] :
+       {std::pair{"--sample", &options.sample}, std::pair{"--grade", &options.grade},
+        std::pair{"--operator", &options.person}}) {
+    if (const std::string refusal = base::name_refusal(*text); !refusal.empty()) {
+      return base::usage_error("{}: {}", name, refusal);
     }
-    request.load_cell = daq::LoadCell{**gain, zero->value_or(0.0)};
-  } else if (*gain || *zero) {
-    return base::usage_error("--load-cell-gain and --load-cell-zero are for --unit V only");
   }
-  if (*quantity != daq::RawQuantity::kCoefficient && !*mass) {
-    return base::usage_error("--unit {} needs --sled-mass: a coefficient is force over the sled's weight",
-                             options.unit);
-  }
+  request.sample.name = options.sample;
+  request.sample.grade = options.grade;
+  request.sample.operator_name = options.person;
+  if (options.replicate > 0) request.sample.replicate = options.replicate;
   request.process.program = "stickslip import";
   request.process.version = base::kVersion;
   request.process.commit = base::kCommit;
@@ -92,54 +146,105 @@ Result<record::CsvImportRequest> request_of(const ImportOptions& options) {
   return request;
 }
 
-Result<std::string> run_import(const ImportOptions& options) {
-  const Result<record::CsvImportRequest> request = request_of(options);
+/// "x.h5", or "x-2.h5" where there are several.
+std::string output_of(const std::string& output, std::size_t number, std::size_t count) {
+  if (count == 1) return output;
+  const std::filesystem::path path{output};
+  return (path.parent_path() /
+          fmt::format("{}-{}{}", path.stem().string(), number, path.extension().string()))
+      .string();
+}
+
+Result<std::string> run_import(const ImportOptions& options, const std::string& command_line) {
+  Result<traces::ImportRequest> request = request_of(options);
   if (!request) return tl::unexpected(request.error());
-  Result<record::Record> record = record::read_csv(*request);
-  if (!record) return tl::unexpected(record.error());
-  Result<record::EndRecord> end = evaluation::analyse(*record);
-  if (!end) return tl::unexpected(end.error());
-  end->reasons.clear();
-  const std::size_t scans = record->scan.size();
-  record::set_end(*record, std::move(*end));
-  if (const Result<void> published = record::publish_record(*record, options.output); !published) {
-    return tl::unexpected(published.error());
+  if (options.inspect) return traces::inspect(*request);
+  if (options.column.empty() || options.output.empty()) {
+    return base::usage_error(
+        "--column and --output are needed; --inspect shows the columns and a command that has them");
   }
-  return fmt::format("{}: {} scans\n", base::printable(options.output), scans);
+  Result<traces::Imported> imported = traces::import_trace(*request);
+  if (!imported) return tl::unexpected(imported.error());
+  std::string text = std::move(imported->report);
+  std::vector<record::Record>& records = imported->records;
+  for (record::Record& record : records) {
+    record.header.process.source_command = command_line;
+    Result<record::EndRecord> end = evaluation::analyse(record);
+    if (!end) return tl::unexpected(end.error());
+    const std::vector<std::string> findings = std::move(record.end->results.findings);
+    end->results.findings.insert(end->results.findings.end(), findings.begin(), findings.end());
+    end->reasons.clear();
+    record::set_end(record, std::move(*end));
+  }
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const record::Record& record = records[i];
+    const std::string output = output_of(options.output, i + 1, records.size());
+    if (const Result<void> published = record::publish_record(record, output); !published) {
+      return tl::unexpected(published.error());
+    }
+    text += fmt::format("{}: {} scans", base::printable(output), record.scan.size());
+    std::int64_t missing = 0;
+    for (const daq::Gap& gap : record.gaps) missing += gap.count;
+    if (missing > 0)
+      text += fmt::format(", {} missing in {} gap{}", missing, record.gaps.size(),
+                          record.gaps.size() == 1 ? "" : "s");
+    text += "\n";
+    for (const std::string& finding : record.end->results.findings)
+      text += fmt::format("  finding: {}\n", base::printable(finding));
+  }
+  return text;
 }
 
 }  // namespace
 
 void add_import(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<ImportOptions>();
-  CLI::App* command = app.add_subcommand("import", "make a record from a measured trace in a CSV file");
-  command->add_option("csv", options->csv, "file with a header line")->required()->type_name("FILE.csv");
-  command->add_option("--column", options->column, "header of the column with the values")
-      ->required()
-      ->type_name("NAME");
-  command->add_option("--rate", options->rate, "scans per second; a time column is checked against it")
-      ->required()
-      ->type_name("HZ");
-  command->add_option("--unit", options->unit, "of the values: coefficient, N or V")
-      ->required()
-      ->type_name("UNIT");
-  command->add_option("-o,--output", options->output, "record to make; must not exist")
-      ->required()
-      ->type_name("FILE.h5");
-  command
-      ->add_option("--time-column", options->time_column,
-                   "header of the time in s (else t, t_s, time, time_s)")
-      ->type_name("NAME");
+  CLI::App* command = app.add_subcommand("import", "make records from a measured trace in a file of text");
+  const auto text = [command](const char* name, std::string& value, const char* what, const char* type) {
+    return command->add_option(name, value, what)->type_name(type);
+  };
+  text("file", options->file, "table of numbers, as another program exported it", "FILE.csv")->required();
+  text("--column", options->column, "heading or number of the column with the values", "NAME");
+  text("-o,--output", options->output,
+       "record to make, must not exist; x.h5 becomes x-1.h5, x-2.h5 … where the trace has several tests",
+       "FILE.h5");
+  command->add_flag("--inspect", options->inspect,
+                    "show the columns and a command that imports them; import nothing");
+  text("--unit", options->unit,
+       "of the values: N, mN, kN, gf, kgf, lbf, ozf, V, mV, coefficient, percent; else that of the heading",
+       "UNIT");
+  text("--sled-mass", options->sled_mass, "kg or with unit; needed for a force or a voltage", "M");
+  text("--rate", options->rate,
+       "scans per second; else the time column tells it, which is checked against it", "HZ");
+  text("--time-column", options->time_column,
+       "heading or number of the time; else by its name; none: do not read it", "NAME");
+  text("--time-unit", options->time_unit, "s, ms, us, min or h; else that of the heading, else by inspection",
+       "UNIT");
+  text("--speed", options->speed, "pull speed, m/s or with unit", "V");
+  text("--stiffness", options->stiffness, "of the coupling, N/m or with unit", "K");
+  text("--load-cell-gain", options->load_cell_gain, "N/V or with unit; needed for V", "GAIN");
+  text("--load-cell-zero", options->load_cell_zero, "V or with unit; for V, default 0 V", "ZERO");
+  command->add_flag("--invert", options->invert, "the force is negative while the sled slides");
+  command->add_flag("--reverse", options->reverse, "read the rows from the last to the first");
+  command->add_flag("--resample", options->resample,
+                    "unequal intervals: interpolate the scans at equal ones");
+  command->add_flag("--skip-doubled", options->skip_doubled,
+                    "leave out rows with the time of the row before");
+  text("--encoding", options->encoding, "UTF-8, UTF-16LE, UTF-16BE, Windows-1252, Latin-1; else recognised",
+       "NAME");
+  text("--separator", options->separator, "comma, semicolon, tab, blanks or none; else recognised", "WORD");
+  text("--decimal", options->decimal, "point or comma; else recognised", "WORD");
+  command->add_option("--skip", options->skip, "lines at the beginning that are no part of the table")
+      ->type_name("LINES")
+      ->check(CLI::NonNegativeNumber);
+  text("--sample", options->sample, "name of the sample", "TEXT");
+  text("--grade", options->grade, "grade of the sample", "TEXT");
+  text("--operator", options->person, "who measured", "TEXT");
+  command->add_option("--replicate", options->replicate, "number of the replicate, from 1")
+      ->type_name("COUNT")
+      ->check(CLI::PositiveNumber);
   add_method_option(*command, options->method);
-  command->add_option("--speed", options->speed, "pull speed, m/s or with unit")->type_name("V");
-  command->add_option("--sled-mass", options->sled_mass, "kg or with unit; needed for N and V")
-      ->type_name("M");
-  command->add_option("--stiffness", options->stiffness, "of the coupling, N/m or with unit")->type_name("K");
-  command->add_option("--load-cell-gain", options->load_cell_gain, "N/V or with unit; needed for V")
-      ->type_name("GAIN");
-  command->add_option("--load-cell-zero", options->load_cell_zero, "V or with unit; for V, default 0 V")
-      ->type_name("ZERO");
-  choose(*command, chosen, [options] { return run_import(*options); });
+  choose(*command, chosen, [options, &chosen] { return run_import(*options, chosen.line); });
 }
 
 }  // namespace stickslip::cli

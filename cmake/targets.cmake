@@ -1,10 +1,14 @@
-# stickslip_library(NAME [SOURCES ...] [PUBLIC ...] [PRIVATE ...]): one folder, one static library.
+# stickslip_library(NAME [SOURCES ...] [PUBLIC ...] [PRIVATE ...] [BUNCH n]): one folder, one static library. BUNCH: sources
+# that the presets with bunches compile at once; fewer than eight where their headers take long, so that an edit is built soon.
 function(stickslip_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "BUNCH" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   if(ARG_SOURCES)
     add_library(${name} STATIC ${ARG_SOURCES})
     target_link_libraries(${name} PUBLIC stickslip_flags ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
     stickslip_precompiled(${name} stickslip_library_headers)
+    if(ARG_BUNCH)
+      set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE ${ARG_BUNCH})
+    endif()
     # What is generated stays alone: clang-tidy reads bunches before anything is built.
     foreach(source ${ARG_SOURCES})
       if(source MATCHES "^${CMAKE_BINARY_DIR}/")

@@ -12,6 +12,9 @@
 namespace stickslip::analysis {
 namespace {
 
+/// So many scans at the beginning tell whether the trace begins under load; a spike among them does not.
+constexpr std::ptrdiff_t kFirstScans = 5;
+
 /// Mean of the usable scans in [first, end), without large sums.
 double mean_of(const estimate::Trace& trace, std::size_t first, std::size_t end) {
   signal::RunningMean mean;
@@ -40,6 +43,15 @@ Estimate largest_scan(const estimate::Trace& trace, const detect::Fall& slip) {
   double largest = trace.value[peak];
   for (std::size_t k = peak > 0 ? peak - 1 : 0; k <= last; ++k) largest = std::max(largest, trace.value[k]);
   return Estimate::of(largest);
+}
+
+/// Whether the trace begins while the sled slides: half of its first scans are above half of the largest.
+bool begins_under_load(const estimate::Trace& trace) {
+  const double half = 0.5 * *std::max_element(trace.value.begin(), trace.value.end());
+  const auto first = std::min<std::ptrdiff_t>(kFirstScans, static_cast<std::ptrdiff_t>(trace.size()));
+  const auto loaded = std::count_if(trace.value.begin(), trace.value.begin() + first,
+                                    [half](double value) { return value >= half; });
+  return 2 * loaded > first;
 }
 
 /// Peak to peak: a whole number of cycles, so that the phase does not matter.
@@ -103,6 +115,10 @@ TraditionalCoefficients traditional_coefficients(const estimate::Trace& trace,
       slips.size() < wanted ? Estimate::none(fmt::format("{} slips, the method reads the peak of slip {}",
                                                          slips.size(), wanted))
                             : largest_scan(trace, slips[wanted - 1]);
+  if (begins_under_load(trace)) {
+    result.static_coefficient =
+        Estimate::none("the trace begins under load: the peak before the first slip is not in it");
+  }
   result.kinetic_coefficient = method.kinetic_travel
                                    ? mean_of_travel(trace, estimate::time_at(trace, slips.front().peak_at),
                                                     *method.kinetic_travel, pull_speed_m_per_s)

@@ -13,7 +13,8 @@
 namespace stickslip::analysis {
 
 struct TraditionalCoefficients {
-  Estimate static_coefficient;   ///< Largest scan of the peak of slip method.static_slip.
+  /// Largest scan of the peak of slip method.static_slip; none where the trace begins under load.
+  Estimate static_coefficient;
   Estimate kinetic_coefficient;  ///< Mean over the cycles, peak to peak, or the travel after the first peak.
 };
 

@@ -58,7 +58,8 @@ constexpr std::array kForceUnits{Unit{"N", 1, 1},
                                  Unit{"kN", 1e3, 1},
                                  Unit{"gf", kKilogramForce_N, 1e3},
                                  Unit{"kgf", kKilogramForce_N, 1},
-                                 Unit{"lbf", kPoundForce_N, 1}};
+                                 Unit{"lbf", kPoundForce_N, 1},
+                                 Unit{"ozf", kPoundForce_N, 16}};
 constexpr std::array kVoltageUnits{Unit{"V", 1, 1}, Unit{"mV", 1, 1e3}, Unit{"uV", 1, 1e6}};
 constexpr std::array kStiffnessUnits{Unit{"N/m", 1, 1}, Unit{"N/mm", 1e3, 1}, Unit{"kN/m", 1e3, 1},
                                      Unit{"lbf/in", kPoundForce_N, kInch_m}};

@@ -6,6 +6,7 @@
 
 #include "core/base/wording.hpp"
 #include "core/pipeline/gain_uncertainty.hpp"
+#include "core/pipeline/plausibility.hpp"
 #include "core/pipeline/true_rate.hpp"
 #include "core/pipeline/zero_offset.hpp"
 #include "core/record/estimator_field.hpp"
@@ -78,6 +79,7 @@ base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& he
     analysis.gain_uncertainty_ =
         pipeline::relative_gain_uncertainty(header.load_cell, header.calibration.gain_standard_error_N_per_V);
     analysis.unloaded_level_ = header.plan.unloaded_level;
+    analysis.sled_mass_kg_ = header.tester.tester().sled_mass_kg;
     return analysis;
   } catch (const std::invalid_argument& refused) {
     return base::usage_error("the record cannot be analysed: {}", refused.what());
@@ -110,6 +112,7 @@ void RecordAnalysis::finish(record::EndRecord& end, std::span<const daq::ClockAn
   pipeline::add_true_rate(end.results, anchors, gaps, scan_rate_granted_Hz_);
   pipeline::add_gain_uncertainty(end.results, gain_uncertainty_);
   pipeline::add_zero_offset(end.results, unloaded_level_, end.unloaded_level);
+  pipeline::add_plausibility(end.results, sled_mass_kg_);
   end.cycles = analysis_.take_cycles();
   end.spikes = analysis_.spikes();
 }

@@ -54,6 +54,7 @@ class RecordAnalysis {
   double scan_rate_granted_Hz_;
   std::optional<double> gain_uncertainty_;  ///< Relative.
   std::optional<double> unloaded_level_;    ///< As a coefficient.
+  double sled_mass_kg_ = 0.0;
   analysis::TestAnalysis analysis_;
   std::vector<daq::Gap> gaps_;
   std::optional<daq::ScanIndex> next_;

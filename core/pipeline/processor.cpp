@@ -8,6 +8,7 @@
 
 #include "core/base/contract.hpp"
 #include "core/pipeline/gain_uncertainty.hpp"
+#include "core/pipeline/plausibility.hpp"
 #include "core/pipeline/true_rate.hpp"
 #include "core/pipeline/zero_offset.hpp"
 
@@ -241,6 +242,7 @@ void Processor::end(daq::ScanIndex end, EndCause cause) {
   add_gain_uncertainty(ended.results, settings_.gain_uncertainty);
   if (cause == EndCause::kUnloaded) ended.unloaded_level = segmenter_.level_after();
   add_zero_offset(ended.results, unloaded_level_, ended.unloaded_level);
+  add_plausibility(ended.results, settings_.analysis.tester.sled_mass_kg);
   ended.cycles = analysis_->cycles();
   ended.spikes = analysis_->spikes();
   ended.spike_coefficients = analysis_->spike_coefficients();

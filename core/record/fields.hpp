@@ -127,6 +127,11 @@ void for_each_field(Facts& facts, Visitor&& visit) {
   visit(FieldName{"characterisation", "", ""}, facts.characterisation);
   visit(FieldName{"realtime", "", ""}, facts.realtime);
   visit(FieldName{"simulation", "", ""}, facts.simulation);
+  visit(FieldName{"source_file", "", ""}, facts.source_file);
+  visit(FieldName{"source_size", "1", "bytes of the imported file [1]"}, facts.source_size);
+  visit(FieldName{"source_sha256", "", ""}, facts.source_sha256);
+  visit(FieldName{"source_reading", "", ""}, facts.source_reading);
+  visit(FieldName{"source_command", "", ""}, facts.source_command);
 }
 
 /// All fields of the second channel except its quantity, which must be set before the call.

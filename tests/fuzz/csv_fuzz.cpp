@@ -1,24 +1,42 @@
-// Any file is a trace or is refused in one line; a trace has as many scans as values.
+// Any file becomes records or is refused in one line; a record has as many scans as values, and its indices rise.
 
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <functional>
 #include <string>
 
 #include "core/base/contract.hpp"
-#include "core/record/csv_import.hpp"
+#include "io/traces/import.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace stickslip;
   static const int file = ::memfd_create("trace.csv", MFD_CLOEXEC);
   STICKSLIP_EXPECTS(::ftruncate(file, 0) == 0 && ::pwrite(file, data, size, 0) == static_cast<ssize_t>(size));
-  record::CsvImportRequest request;
+  traces::ImportRequest request;
   request.path = "/proc/self/fd/" + std::to_string(file);
-  request.column = "force";
-  request.rate_Hz = 350.0;
-  request.quantity = daq::RawQuantity::kForce_N;
-  const auto record = record::read_csv(request);
-  STICKSLIP_EXPECTS(record || record.error().message.find('\n') == std::string::npos);
-  STICKSLIP_EXPECTS(!record || (record->scan.size() == record->raw.size() && record->end));
+  // The first byte says what the user states.
+  const unsigned options = size == 0 ? 0 : data[0];
+  request.column = (options & 1U) != 0 ? "force" : "2";
+  request.unit = "N";
+  request.tester.sled_mass_kg = 2.331;
+  if ((options & 2U) != 0) request.rate_Hz = 350.0;
+  request.invert = (options & 4U) != 0;
+  request.reverse = (options & 8U) != 0;
+  request.resample = (options & 16U) != 0;
+  request.skip_doubled = (options & 32U) != 0;
+  if ((options & 64U) != 0) request.dialect.decimal = ',';
+  const auto imported = traces::import_trace(request);
+  STICKSLIP_EXPECTS(imported || imported.error().message.find('\n') == std::string::npos);
+  STICKSLIP_EXPECTS(!imported || !imported->records.empty());
+  if (imported) {
+    for (const record::Record& record : imported->records) {
+      STICKSLIP_EXPECTS(record.scan.size() == record.raw.size() && record.end);
+      STICKSLIP_EXPECTS(std::is_sorted(record.scan.begin(), record.scan.end(), std::less_equal<>{}));
+    }
+  }
+  const auto inspected = traces::inspect(request);
+  STICKSLIP_EXPECTS(inspected || inspected.error().message.find('\n') == std::string::npos);
   return 0;
 }

@@ -85,11 +85,21 @@ inline record::RecordHeader sample_header() {
                         {"", "", "unsteady"}};
   header.tester = {2.331, 9.81, 0.00508, 4200.0, "0:0.00508 2.5:0.0101"};
   header.sample = {"linerboard 42", "kraft", "MD", "wire", 3, 2, "20261122T180301Z", "Ada"};
-  header.process = {"stickslipd",        "0.1.0",
-                    "8a83624",           "[tester]\nsled_mass = \"2331 g\"\n",
-                    "closed form",       "TAPPI T 816",
-                    "spikes,first-slip", "[tester]\nomega = \"125.7 rad/s\"\n",
-                    "SCHED_FIFO 20",     "exact closed forms"};
+  header.process = {"stickslipd",
+                    "0.1.0",
+                    "8a83624",
+                    "[tester]\nsled_mass = \"2331 g\"\n",
+                    "closed form",
+                    "TAPPI T 816",
+                    "spikes,first-slip",
+                    "[tester]\nomega = \"125.7 rad/s\"\n",
+                    "SCHED_FIFO 20",
+                    "exact closed forms",
+                    "trace.csv",
+                    43'566,
+                    "0f",
+                    "recognised: UTF-8",
+                    "stickslip import trace.csv"};
   header.plan = {0.05, 0.01, 0.25, 0.02, 0.25, 0.5, 0.0031};
   daq::SelfCheck& check = header.self_check.emplace();
   check = {990, {2000.0, 2001.0, 1999.0}, 0.02, 1e-3, -2e-4, 3e-4, 0.005, 1e-4, 2e-4, 5e-5, 1, 2, 350.1, 0.02,

@@ -1,0 +1,20 @@
+/// \file
+/// Findings on results that no friction tester gives.
+#pragma once
+
+#include "core/analysis/results.hpp"
+
+namespace stickslip::pipeline {
+
+/// Wider than any friction of paper, film, textile or rubber; a wrong unit is off by 9.8 or by 1000.
+inline constexpr double kLowestCoefficient = 0.01;
+inline constexpr double kHighestCoefficient = 5.0;
+/// Wider than any sled of a friction tester; the standards have 0.2 kg (ISO 8295) to 2.331 kg.
+inline constexpr double kLightestSled_kg = 0.005;
+inline constexpr double kHeaviestSled_kg = 20.0;
+
+/// Adds a finding for a static or kinetic coefficient, and for a sled, outside these limits: a wrong unit,
+/// gain or mass looks so.
+void add_plausibility(analysis::TestResults& results, double sled_mass_kg);
+
+}  // namespace stickslip::pipeline

@@ -1,0 +1,332 @@
+#include "io/traces/dialect.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "core/base/wording.hpp"
+
+namespace stickslip::traces {
+namespace {
+
+/// Of the beginning that is looked at.
+constexpr std::size_t kMostLines = 2000;
+constexpr std::size_t kMostBytes = std::size_t{1} << 18U;
+/// A column is numeric where so many of its cells are numbers or holes.
+constexpr double kNumericShare = 0.9;
+/// A reading is possible where so many of the lines after its first row are rows.
+constexpr double kRowShare = 0.8;
+
+struct Head {
+  std::vector<std::string> lines;
+  Encoding encoding = Encoding::kUtf8;
+};
+
+struct Row {
+  std::int64_t line = 0;  ///< Of its beginning, from 1.
+  std::vector<std::string> fields;
+};
+
+/// One way to read the file.
+struct Reading {
+  Dialect dialect;
+  std::vector<Row> rows;
+  std::size_t first = 0;  ///< Of the table, in rows.
+  std::size_t texts = 0;  ///< Columns of text.
+};
+
+base::Result<Head> read_head(const std::string& path, const DialectOptions& options) {
+  auto file = TextFile::open(path, options.encoding);
+  if (!file) return tl::unexpected(file.error());
+  Head head;
+  head.encoding = file->encoding();
+  std::size_t bytes = 0;
+  std::string line;
+  while (head.lines.size() < kMostLines && bytes < kMostBytes) {
+    const auto more = file->next(line);
+    if (!more) return tl::unexpected(more.error());
+    if (!*more) break;
+    bytes += line.size();
+    head.lines.push_back(line);
+  }
+  return head;
+}
+
+std::vector<std::string_view> views(const std::vector<std::string>& texts) {
+  return {texts.begin(), texts.end()};
+}
+
+std::vector<Row> rows_of(const Head& head, char separator, std::int64_t skip) {
+  std::vector<Row> rows;
+  RowReader reader{separator};
+  bool open = false;
+  for (std::size_t i = static_cast<std::size_t>(skip); i < head.lines.size(); ++i) {
+    if (!open && trimmed(head.lines[i]).empty()) continue;
+    if (!open) rows.push_back({static_cast<std::int64_t>(i) + 1, {}});
+    open = !reader.add(head.lines[i]);
+    if (!open) rows.back().fields.assign(reader.fields().begin(), reader.fields().end());
+  }
+  if (open) rows.pop_back();
+  return rows;
+}
+
+/// "Force" of "Force:0.12".
+std::string_view label_of(std::string_view field) {
+  const std::size_t colon = field.find_first_of(":=");
+  if (colon == std::string_view::npos || colon == 0) return {};
+  const std::string_view label = trimmed(field.substr(0, colon));
+  if (!label.empty() && label.find_first_of("0123456789") != std::string_view::npos) return {};
+  return read_cell(field.substr(colon + 1), '.').kind == CellKind::kNumber ? label : std::string_view{};
+}
+
+bool has_number(const std::vector<std::string>& fields, char decimal) {
+  return std::any_of(fields.begin(), fields.end(), [decimal](const std::string& field) {
+    return read_cell(field, decimal).kind == CellKind::kNumber || !label_of(field).empty();
+  });
+}
+
+/// The table's width, labels and kinds of columns. \return whether there are any.
+bool find_columns(Reading& reading) {
+  Dialect& dialect = reading.dialect;
+  std::map<std::size_t, std::size_t> widths;
+  for (const Row& row : reading.rows) {
+    if (has_number(row.fields, dialect.decimal)) ++widths[row.fields.size()];
+  }
+  if (widths.empty()) return false;
+  const std::size_t width = std::max_element(widths.begin(), widths.end(), [](const auto& a, const auto& b) {
+                              return a.second < b.second;
+                            })->first;
+  dialect.columns.resize(width);
+  dialect.numeric.assign(width, false);
+  std::vector<const Row*> alike;
+  for (const Row& row : reading.rows) {
+    if (row.fields.size() == width && has_number(row.fields, dialect.decimal)) alike.push_back(&row);
+  }
+  const Row& middle = *alike[alike.size() / 2];
+  for (const std::string& field : middle.fields) dialect.labels.emplace_back(label_of(field));
+  if (std::any_of(dialect.labels.begin(), dialect.labels.end(),
+                  [](const std::string& label) { return label.empty(); })) {
+    dialect.labels.clear();
+  }
+  bool any = false;
+  for (std::size_t c = 0; c < width; ++c) {
+    std::size_t numbers = 0;
+    std::size_t texts = 0;
+    for (const Row* row : alike) {
+      const CellKind kind = read_cell(dialect.content(c, row->fields[c]), dialect.decimal).kind;
+      numbers += kind == CellKind::kNumber ? 1U : 0U;
+      texts += kind == CellKind::kText ? 1U : 0U;
+    }
+    dialect.numeric[c] = numbers > 0 && static_cast<double>(texts) <=
+                                            (1.0 - kNumericShare) * static_cast<double>(alike.size());
+    any = any || dialect.numeric[c];
+    reading.texts += !dialect.numeric[c] && texts > 0 ? 1U : 0U;
+  }
+  return any;
+}
+
+/// The first row that is followed by rows. \return whether the lines after it are rows as well.
+bool find_first_row(Reading& reading) {
+  const auto is_row = [&reading](const Row& row) { return reading.dialect.is_row(views(row.fields)); };
+  const auto& rows = reading.rows;
+  std::size_t first = 0;
+  while (first < rows.size() &&
+         !(is_row(rows[first]) && (first + 1 >= rows.size() || is_row(rows[first + 1]))))
+    ++first;
+  if (first == rows.size()) {
+    first = static_cast<std::size_t>(std::find_if(rows.begin(), rows.end(), is_row) - rows.begin());
+    if (first == rows.size()) return false;
+  }
+  reading.first = first;
+  reading.dialect.first_row_line = rows[first].line;
+  const auto good = std::count_if(rows.begin() + static_cast<std::ptrdiff_t>(first), rows.end(), is_row);
+  return static_cast<double>(good) >=
+             kRowShare * static_cast<double>(std::min<std::size_t>(rows.size() - first, 5)) &&
+         2 * static_cast<std::size_t>(good) >= rows.size() - first;
+}
+
+bool is_heading(const Row& row, const Dialect& dialect) {
+  const std::size_t width = dialect.columns.size();
+  if (row.fields.size() < width) return false;
+  std::size_t texts = 0;
+  for (std::size_t c = 0; c < width; ++c) {
+    if (!dialect.numeric[c]) continue;
+    const CellKind kind = read_cell(row.fields[c], dialect.decimal).kind;
+    if (kind == CellKind::kNumber && read_cell(row.fields[c], dialect.decimal).unit.empty()) return false;
+    texts += kind == CellKind::kText ? 1U : 0U;
+  }
+  return texts > 0;
+}
+
+bool is_units_row(const Row& row) {
+  return std::all_of(row.fields.begin(), row.fields.end(),
+                     [](const std::string& field) { return trimmed(field).empty() || is_unit(field); });
+}
+
+void find_heading(Reading& reading) {
+  Dialect& dialect = reading.dialect;
+  if (!dialect.labels.empty()) {
+    for (std::size_t c = 0; c < dialect.columns.size(); ++c)
+      dialect.columns[c] = column_name(dialect.labels[c]);
+    return;
+  }
+  if (reading.first == 0) return;
+  const auto& rows = reading.rows;
+  std::size_t heading = reading.first - 1;
+  const Row* units = nullptr;
+  if (is_units_row(rows[heading]) && heading > 0 && is_heading(rows[heading - 1], dialect))
+    units = &rows[heading--];
+  if (!is_heading(rows[heading], dialect)) return;
+  dialect.header_line = rows[heading].line;
+  dialect.units_line = units == nullptr ? 0 : units->line;
+  for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
+    std::string_view text = rows[heading].fields[c];
+    while (c == 0 && text.starts_with('#')) text.remove_prefix(1);
+    dialect.columns[c] =
+        column_name(text, units != nullptr && c < units->fields.size() ? units->fields[c] : std::string{});
+  }
+}
+
+std::optional<Reading> read_as(const Head& head, char separator, char decimal, std::int64_t skip) {
+  Reading reading;
+  reading.dialect.encoding = head.encoding;
+  reading.dialect.separator = separator;
+  reading.dialect.decimal = decimal;
+  reading.rows = rows_of(head, separator, skip);
+  if (!find_columns(reading) || !find_first_row(reading)) return std::nullopt;
+  find_heading(reading);
+  return reading;
+}
+
+/// The numbers of the first row, for a message.
+std::string shown(const Reading& reading) {
+  std::string text;
+  const Row& row = reading.rows[reading.first];
+  for (std::size_t c = 0; c < row.fields.size() && c < 4; ++c) {
+    const Cell cell = read_cell(reading.dialect.content(c, row.fields[c]), reading.dialect.decimal);
+    if (!text.empty()) text += " and ";
+    text += cell.kind == CellKind::kNumber ? fmt::format("{}", cell.value)
+                                           : fmt::format("\"{}\"", base::one_line(row.fields[c], 20));
+  }
+  return text;
+}
+
+bool equal(const Reading& a, const Reading& b) {
+  if (a.dialect.columns.size() != b.dialect.columns.size() || a.first != b.first) return false;
+  for (std::size_t i = a.first; i < std::min(a.rows.size(), b.rows.size()); ++i) {
+    for (std::size_t c = 0; c < std::min(a.rows[i].fields.size(), b.rows[i].fields.size()); ++c) {
+      const Cell one = read_cell(a.rows[i].fields[c], a.dialect.decimal);
+      const Cell other = read_cell(b.rows[i].fields[c], b.dialect.decimal);
+      if (one.kind != other.kind || one.value != other.value) return false;
+    }
+  }
+  return true;
+}
+
+/// A heading of several names with commas and no blank behind one is no name with a decimal comma below it.
+bool heading_says_commas(const Reading& commas, const Head& head) {
+  const std::int64_t line = commas.dialect.header_line;
+  if (commas.dialect.separator != ',' || line == 0) return false;
+  return head.lines[static_cast<std::size_t>(line) - 1].find(", ") == std::string::npos;
+}
+
+std::string option_of(const Reading& reading, const Reading& other) {
+  if (reading.dialect.decimal != other.dialect.decimal)
+    return fmt::format("--decimal \"{}\"", reading.dialect.decimal);
+  return fmt::format("--separator {}", separator_name(reading.dialect.separator));
+}
+
+}  // namespace
+
+std::string_view Dialect::content(std::size_t column, std::string_view field) const {
+  if (column >= labels.size()) return field;
+  const std::size_t mark = field.find_first_of(":=");
+  if (mark == std::string_view::npos || trimmed(field.substr(0, mark)) != labels[column]) return field;
+  return field.substr(mark + 1);
+}
+
+bool Dialect::is_row(const std::vector<std::string_view>& fields) const {
+  for (std::size_t c = columns.size(); c < fields.size(); ++c) {
+    if (!trimmed(fields[c]).empty()) return false;
+  }
+  bool any = false;
+  for (std::size_t c = 0; c < columns.size() && c < fields.size(); ++c) {
+    if (!numeric[c]) continue;
+    const CellKind kind = read_cell(content(c, fields[c]), decimal).kind;
+    if (kind == CellKind::kText) return false;
+    any = any || kind == CellKind::kNumber;
+  }
+  return any;
+}
+
+std::string Dialect::text() const {
+  std::string names;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (c > 0) names += ", ";
+    names += columns[c].text.empty() ? fmt::format("{}", c + 1) : base::one_line(columns[c].text, 40);
+  }
+  return fmt::format("recognised: {}, separator {}, decimal {}, {}, rows from line {}\ncolumns: {}\n",
+                     name(encoding), separator_name(separator), decimal == '.' ? "point" : "comma",
+                     header_line > 0   ? fmt::format("heading in line {}", header_line)
+                     : !labels.empty() ? std::string{"a label in each cell"}
+                                       : std::string{"no heading"},
+                     first_row_line, names);
+}
+
+bool is_no_row(std::string_view line) {
+  const std::string_view text = trimmed(line);
+  return text.empty() || text.front() == '#' || text.front() == '%' || text.starts_with("//");
+}
+
+base::Result<Dialect> recognise(const std::string& path, const DialectOptions& options) {
+  auto head = read_head(path, options);
+  if (!head) return tl::unexpected(head.error());
+  if (head->lines.empty()) return base::usage_error("{}: is empty: a table of numbers is needed", path);
+  DialectOptions stated = options;
+  if (const std::string_view first = head->lines.front(); first.starts_with("sep=") && first.size() == 5) {
+    if (!stated.separator) stated.separator = first.back();
+    stated.skip = std::max<std::int64_t>(stated.skip, 1);
+  }
+  std::vector<Reading> readings;
+  for (const char separator : {'\t', ';', ',', kNoSeparator, kBlanks}) {
+    for (const char decimal : {'.', ','}) {
+      if (separator == decimal || (stated.separator && *stated.separator != separator) ||
+          (stated.decimal && *stated.decimal != decimal))
+        continue;
+      auto reading = read_as(*head, separator, decimal, stated.skip);
+      if (!reading) continue;
+      if (std::none_of(readings.begin(), readings.end(),
+                       [&](const Reading& other) { return equal(*reading, other); }))
+        readings.push_back(std::move(*reading));
+    }
+  }
+  if (readings.empty()) {
+    return base::usage_error(
+        "{}: no table of numbers is found in its first {} lines. Look at it, and state what you see: "
+        "--encoding, "
+        "--separator, --decimal, --skip",
+        path, head->lines.size());
+  }
+  const std::size_t fewest =
+      std::min_element(readings.begin(), readings.end(), [](const Reading& a, const Reading& b) {
+        return a.texts < b.texts;
+      })->texts;
+  std::erase_if(readings, [fewest](const Reading& reading) { return reading.texts > fewest; });
+  for (const Reading& reading : readings) {
+    if (readings.size() > 1 && heading_says_commas(reading, *head)) return reading.dialect;
+  }
+  if (readings.size() > 1) {
+    const Reading& one = readings[0];
+    const Reading& other = readings[1];
+    return base::usage_error(
+        "{}:{}: \"{}\" has two readings: {} ({}), or {} ({}). Give the option that is right", path,
+        one.dialect.first_row_line,
+        base::one_line(head->lines[static_cast<std::size_t>(one.dialect.first_row_line) - 1], 40), shown(one),
+        option_of(one, other), shown(other), option_of(other, one));
+  }
+  return readings.front().dialect;
+}
+
+}  // namespace stickslip::traces

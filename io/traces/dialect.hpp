@@ -1,0 +1,54 @@
+/// \file
+/// How a file writes its table: recognised from its beginning before any value is read.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/traces/cell.hpp"
+#include "io/traces/column_name.hpp"
+#include "io/traces/row_reader.hpp"
+#include "io/traces/text_file.hpp"
+
+#include "core/base/result.hpp"
+
+namespace stickslip::traces {
+
+/// What the user states; the rest is recognised.
+struct DialectOptions {
+  std::optional<Encoding> encoding;
+  std::optional<char> separator;
+  std::optional<char> decimal;  ///< '.' or ','.
+  std::int64_t skip = 0;        ///< Lines at the beginning that are no part of the table.
+};
+
+struct Dialect {
+  Encoding encoding = Encoding::kUtf8;
+  char separator = ',';
+  char decimal = '.';
+  std::int64_t header_line = 0;  ///< From 1; 0: the file has no heading.
+  std::int64_t units_line = 0;   ///< Of a row of units below it; 0: none.
+  std::int64_t first_row_line = 0;
+  std::vector<ColumnName> columns;  ///< As many as a row has fields; texts are empty without a heading.
+  std::vector<bool> numeric;        ///< Columns that hold numbers alone; others may hold any text.
+  std::vector<std::string> labels;  ///< "Force" where each cell reads "Force:0.12"; else empty.
+
+  /// The field as a cell holds it: without its label.
+  [[nodiscard]] std::string_view content(std::size_t column, std::string_view field) const;
+  /// Whether these fields are one row of scans: a number or a hole in each numeric column, one number at
+  /// least.
+  [[nodiscard]] bool is_row(const std::vector<std::string_view>& fields) const;
+  /// Two lines: what was recognised.
+  [[nodiscard]] std::string text() const;
+};
+
+/// Whether a line is a comment or blank, and no part of the table.
+[[nodiscard]] bool is_no_row(std::string_view line);
+
+/// Errors: as TextFile; kUsage if there is no table, or if two readings are possible: both are shown with the
+/// option that decides.
+[[nodiscard]] base::Result<Dialect> recognise(const std::string& path, const DialectOptions& options);
+
+}  // namespace stickslip::traces

@@ -1,0 +1,436 @@
+#include "io/traces/import.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <numeric>
+#include <utility>
+
+#include "io/traces/cut.hpp"
+#include "io/traces/grid.hpp"
+#include "io/traces/quantity_unit.hpp"
+#include "io/traces/trace_table.hpp"
+
+#include "core/base/nan.hpp"
+#include "core/base/quantity.hpp"
+#include "core/base/text.hpp"
+#include "core/base/wording.hpp"
+#include "core/daq/calibration.hpp"
+
+namespace stickslip::traces {
+namespace {
+
+using base::Result;
+using daq::RawQuantity;
+
+/// A time column without a unit is read in the one of s, ms and µs that gives a rate and a length between
+/// these; friction tests are neither slower, faster, shorter nor longer.
+constexpr double kSlowest_Hz = 5.0;
+constexpr double kFastest_Hz = 20'000.0;
+constexpr double kShortest_s = 1.0;
+constexpr double kLongest_s = 3.0 * 3600.0;
+/// Times since 1970 of the years 2001 to 2096.
+constexpr double kEarliestEpoch_s = 1e9;
+constexpr double kLatestEpoch_s = 4e9;
+/// More holes than this part of the scans are refused: it is another column that has the force.
+constexpr double kMostHoles = 0.5;
+/// The force counts as that of sliding above this part of its largest value.
+constexpr double kSlidingShare = 0.5;
+/// Values above all but this part of the scans are left to spikes when the largest is sought.
+constexpr double kSpikeShare = 0.01;
+
+/// The columns that a request means.
+struct Columns {
+  std::size_t value = 0;
+  std::optional<std::size_t> time;
+  bool counts_scans = false;  ///< The time column has indices of scans.
+};
+
+Result<Columns> columns_of(const ImportRequest& request, const Dialect& dialect) {
+  Columns columns;
+  const auto value = find_column(dialect, request.path, request.column);
+  if (!value) return tl::unexpected(value.error());
+  columns.value = *value;
+  if (request.time_column == "none") return columns;
+  if (!request.time_column.empty()) {
+    const auto time = find_column(dialect, request.path, request.time_column);
+    if (!time) return tl::unexpected(time.error());
+    columns.time = *time;
+    return columns;
+  }
+  columns.time = time_column_of(dialect, columns.value);
+  if (!columns.time && request.rate_Hz) {
+    columns.time = counter_column_of(dialect, columns.value);
+    columns.counts_scans = columns.time.has_value();
+  }
+  return columns;
+}
+
+/// The unit of the values, stated, of the cells or of the heading.
+Result<std::string> unit_of(const ImportRequest& request, const ColumnName& column,
+                            const std::string& cell_unit) {
+  const std::string& own = cell_unit.empty() ? column.unit : cell_unit;
+  if (request.unit.empty()) {
+    if (!own.empty()) return own;
+    return base::usage_error(
+        "{}: column \"{}\" does not say its unit: give --unit, such as N, mN, gf, V or coefficient",
+        request.path, base::one_line(column.text, 40));
+  }
+  const auto stated = quantity_unit(request.unit);
+  const auto found = quantity_unit(own);
+  if (!own.empty() && stated && found &&
+      (stated->quantity != found->quantity || stated->scale != found->scale)) {
+    return base::usage_error("{}: column \"{}\" is in {}, --unit says {}: give --unit {}", request.path,
+                             base::one_line(column.text, 40), base::one_line(own, 20), request.unit,
+                             base::one_line(own, 20));
+  }
+  return request.unit;
+}
+
+struct TimeUnit {
+  std::string name;
+  double seconds = 1.0;
+  bool inspected = false;  ///< Nothing states it.
+};
+
+/// What the heading says, or its name: "millis".
+std::string stated_time_unit(const ImportRequest& request, const ColumnName& column) {
+  if (!request.time_unit.empty()) return request.time_unit;
+  const std::string name = folded(column.name);
+  if (name.starts_with("milli")) return "ms";
+  if (name.starts_with("micros")) return "us";
+  return column.unit == "sec" ? "s" : column.unit;
+}
+
+Result<TimeUnit> time_unit_of(const ImportRequest& request, const ColumnName& column,
+                              const TraceTable& table) {
+  if (table.time_in_seconds) return TimeUnit{"s"};
+  if (const std::string stated = stated_time_unit(request, column); !stated.empty()) {
+    const auto seconds = base::parse_quantity("1 " + stated, base::Dimension::kTime);
+    if (seconds) return TimeUnit{stated, *seconds};
+    return base::usage_error("{}: the unit of the time is \"{}\": give --time-unit s, ms, us, min or h",
+                             request.path, base::one_line(stated, 20));
+  }
+  const auto [low, high] = std::minmax_element(table.time.begin(), table.time.end());
+  const double length = *high - *low;
+  const double count = static_cast<double>(table.time.size() - 1);
+  std::vector<TimeUnit> possible;
+  for (const TimeUnit& unit :
+       {TimeUnit{"s", 1.0, true}, TimeUnit{"ms", 1e-3, true}, TimeUnit{"us", 1e-6, true}}) {
+    const double rate_Hz = count / (length * unit.seconds);
+    const bool fits = request.rate_Hz
+                          ? std::abs(std::log2(rate_Hz / *request.rate_Hz)) < 1.0
+                          : rate_Hz >= kSlowest_Hz && rate_Hz <= kFastest_Hz &&
+                                length * unit.seconds >= kShortest_s && length * unit.seconds <= kLongest_s;
+    if (fits) possible.push_back(unit);
+  }
+  if (possible.size() == 1) return possible.front();
+  // A column that does not advance, and a rate that fits no unit, have messages of their own.
+  if (!(length > 0.0) || request.rate_Hz) return TimeUnit{"s", 1.0, true};
+  return base::usage_error(
+      "{}: column \"{}\" does not say its unit; it runs at {:.4g} Hz in s, {:.4g} Hz in ms, {:.4g} Hz in us: "
+      "give --time-unit",
+      request.path, base::one_line(column.text, 40), count / length, 1e3 * count / length,
+      1e6 * count / length);
+}
+
+/// Start of the first row since 1970, where the times tell.
+std::optional<std::int64_t> start_of(const TraceTable& table, double unit_s) {
+  constexpr double kNanosecond = 1e-9;
+  if (table.date_s) return *table.date_s * 1'000'000'000 + std::llround(table.first_time / kNanosecond);
+  const double since = table.first_time * unit_s;
+  if (since < kEarliestEpoch_s || since > kLatestEpoch_s) return std::nullopt;
+  return std::llround(since / kNanosecond);
+}
+
+/// Scans of one run on equal intervals.
+struct Run {
+  double rate_Hz = 0.0;
+  std::vector<daq::ScanIndex> scan;
+  std::vector<double> raw;
+};
+
+/// Values at equal intervals, by linear interpolation between rows; none across a hole or a missing row.
+Run resampled(const Grid& grid, const std::vector<double>& time, const std::vector<double>& value) {
+  Run run;
+  run.rate_Hz = grid.rate_Hz;
+  const double step = 1.0 / grid.rate_Hz;
+  std::size_t right = 1;
+  const double end = time.back() + 1e-9 * step;
+  for (daq::ScanIndex k = 0; static_cast<double>(k) * step <= end - time.front(); ++k) {
+    const double at = time.front() + static_cast<double>(k) * step;
+    while (right + 1 < time.size() && time[right] < at) ++right;
+    const double length = time[right] - time[right - 1];
+    if (length > 2.0 * step || !(length > 0.0)) continue;
+    const double mean = std::lerp(value[right - 1], value[right], (at - time[right - 1]) / length);
+    if (!std::isfinite(mean)) continue;
+    run.scan.push_back(k);
+    run.raw.push_back(mean);
+  }
+  return run;
+}
+
+Run run_of(const Grid& grid, const std::vector<double>& time, const std::vector<double>& value) {
+  if (!grid.uniform) return resampled(grid, time, value);
+  Run run;
+  run.rate_Hz = grid.rate_Hz;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    if (!std::isfinite(value[i]) || (!grid.doubled.empty() && grid.doubled[i])) continue;
+    run.scan.push_back(grid.index[i]);
+    run.raw.push_back(value[i]);
+  }
+  return run;
+}
+
+/// Mean coefficient of the scans of sliding, with its sign; spikes do not count.
+double sliding_level(const std::vector<double>& coefficient) {
+  std::vector<double> sizes;
+  for (const double c : coefficient) sizes.push_back(std::abs(c));
+  const auto at = sizes.begin() +
+                  static_cast<std::ptrdiff_t>((1.0 - kSpikeShare) * static_cast<double>(sizes.size() - 1));
+  std::nth_element(sizes.begin(), at, sizes.end());
+  const double largest = *at;
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const double c : coefficient) {
+    if (std::abs(c) < kSlidingShare * largest || std::abs(c) > largest) continue;
+    sum += c;
+    ++count;
+  }
+  return count == 0 ? 0.0 : sum / static_cast<double>(count);
+}
+
+class Importer {
+ public:
+  Importer(const ImportRequest& request, Dialect dialect) : request_(request), dialect_(std::move(dialect)) {}
+
+  Result<Imported> import() {
+    const auto columns = columns_of(request_, dialect_);
+    if (!columns) return tl::unexpected(columns.error());
+    columns_ = *columns;
+    auto table = read_table(request_.path, dialect_, columns_.value, columns_.time);
+    if (!table) return tl::unexpected(table.error());
+    table_ = std::move(*table);
+    imported_.report = dialect_.text();
+    if (table_.value.size() < 2) {
+      return base::usage_error("{}: there {} of scans; two at least are needed", request_.path,
+                               table_.value.empty() ? "are no rows" : "is one row");
+    }
+    if (!columns_.time && !request_.rate_Hz) {
+      return base::usage_error(
+          "{}: no column is a time by its name: give --time-column NAME, or --rate HZ if the scans are "
+          "evenly spaced",
+          request_.path);
+    }
+    if (auto ok = find_quantity(); !ok) return tl::unexpected(ok.error());
+    if (auto ok = find_times(); !ok) return tl::unexpected(ok.error());
+    if (request_.reverse) {
+      std::reverse(table_.value.begin(), table_.value.end());
+      std::reverse(time_s_.begin(), time_s_.end());
+    }
+    for (double& value : table_.value) value *= scale_;
+    const std::vector<std::size_t> runs = time_s_.empty() ? std::vector<std::size_t>{0} : runs_in(time_s_);
+    if (runs.size() > 1)
+      note("{} runs: the clock starts again in line {}", runs.size(), table_.line(runs[1]));
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const std::size_t end = i + 1 < runs.size() ? runs[i + 1] : table_.value.size();
+      if (auto added = add_run(runs[i], end); !added) return tl::unexpected(added.error());
+    }
+    for (const std::string& text : table_.notes) note("{}", text);
+    return finish();
+  }
+
+ private:
+  template <typename... Args>
+  void note(fmt::format_string<Args...> format, Args&&... args) {
+    notes_ += fmt::format("{}: {}\n", base::printable(request_.path),
+                          fmt::format(format, std::forward<Args>(args)...));
+  }
+
+  Result<void> find_quantity() {
+    const auto unit = unit_of(request_, dialect_.columns[columns_.value], table_.cell_unit);
+    if (!unit) return tl::unexpected(unit.error());
+    const auto known = quantity_unit(*unit);
+    if (!known) return tl::unexpected(known.error());
+    unit_ = *unit;
+    quantity_ = known->quantity;
+    scale_ = known->scale;
+    load_cell_ = request_.load_cell;
+    if (quantity_ == RawQuantity::kVolts && !load_cell_) {
+      return base::usage_error("{}: --unit {} needs --load-cell-gain, such as \"2 N/V\"", request_.path,
+                               unit_);
+    }
+    if (quantity_ != RawQuantity::kVolts && load_cell_) {
+      return base::usage_error("--load-cell-gain and --load-cell-zero are for --unit V and mV only");
+    }
+    if (quantity_ != RawQuantity::kCoefficient && !request_.tester.sled_mass_kg) {
+      return base::usage_error(
+          "{}: --unit {} needs --sled-mass: a coefficient is force over the sled's weight", request_.path,
+          unit_);
+    }
+    if (request_.invert) {
+      if (load_cell_) {
+        load_cell_->gain_N_per_V = -load_cell_->gain_N_per_V;
+      } else {
+        scale_ = -scale_;
+      }
+    }
+    return {};
+  }
+
+  Result<void> find_times() {
+    if (!columns_.time) {
+      note("no column of times is read: the rate is not checked");
+      return {};
+    }
+    const ColumnName& column = dialect_.columns[*columns_.time];
+    grid_options_.rate_Hz = request_.rate_Hz;
+    grid_options_.resample = request_.resample;
+    grid_options_.skip_doubled = request_.skip_doubled;
+    double unit_s = 1.0;
+    if (columns_.counts_scans) {
+      unit_s = 1.0 / *request_.rate_Hz;
+      note("column \"{}\" counts the scans: the rate is not checked", base::one_line(column.text, 40));
+    } else {
+      const auto unit = time_unit_of(request_, column, table_);
+      if (!unit) return tl::unexpected(unit.error());
+      unit_s = unit->seconds;
+      grid_options_.time_unit = unit->name;
+      start_ns_ = start_of(table_, unit_s);
+      note("time from column {} \"{}\" in {}{}", *columns_.time + 1, base::one_line(column.text, 40),
+           unit->name, unit->inspected ? ", by inspection" : "");
+    }
+    time_s_ = std::move(table_.time);
+    for (double& time : time_s_) time *= unit_s;
+    grid_options_.digit_s = std::pow(10.0, -table_.time_decimals) * unit_s;
+    return {};
+  }
+
+  Result<void> add_run(std::size_t begin, std::size_t end) {
+    const auto first = static_cast<std::ptrdiff_t>(begin);
+    const auto last = static_cast<std::ptrdiff_t>(end);
+    const std::vector<double> value{table_.value.begin() + first, table_.value.begin() + last};
+    Run run;
+    if (time_s_.empty()) {
+      Grid grid;
+      grid.rate_Hz = *request_.rate_Hz;
+      grid.index.resize(value.size());
+      std::iota(grid.index.begin(), grid.index.end(), std::int64_t{0});
+      run = run_of(grid, {}, value);
+    } else {
+      const std::vector<double> time{time_s_.begin() + first, time_s_.begin() + last};
+      const auto grid = grid_of(time, grid_options_, [this, begin](std::size_t row) {
+        return fmt::format("{}:{}", request_.path, table_.line(begin + row));
+      });
+      if (!grid) return tl::unexpected(grid.error());
+      run = run_of(*grid, time, value);
+      tell(*grid, begin);
+    }
+    if (static_cast<double>(run.raw.size()) < (1.0 - kMostHoles) * static_cast<double>(value.size()) ||
+        run.raw.size() < 2) {
+      return base::usage_error("{}: {} of {} values of column \"{}\" are missing: choose another column",
+                               request_.path, value.size() - run.raw.size(), value.size(),
+                               base::one_line(dialect_.columns[columns_.value].text, 40));
+    }
+    return add_tests(run);
+  }
+
+  void tell(const Grid& grid, std::size_t begin) {
+    if (!grid.rate_checked) {
+      note("the time column is too coarse to check the rate of {:.6g} Hz", grid.rate_Hz);
+      findings_.push_back(
+          fmt::format("scan rate {:.6g} Hz is not checked: the time column is too coarse", grid.rate_Hz));
+      return;
+    }
+    note("{:.7g} scans a second by the time column, largest jitter {:.2g} % of the interval, in line {}",
+         grid.rate_Hz, 100.0 * grid.largest_jitter, table_.line(begin + grid.largest_row));
+    if (!grid.uniform) note("scans interpolated at equal intervals of {:.6g} s", 1.0 / grid.rate_Hz);
+    if (const auto doubled = std::count(grid.doubled.begin(), grid.doubled.end(), true); doubled > 0)
+      note("{} rows with the time of the row before left out", doubled);
+  }
+
+  Result<void> add_tests(const Run& run) {
+    record::Record whole;
+    record::RecordHeader& header = whole.header;
+    header.title = std::filesystem::path{request_.path}.stem().string();
+    header.board.driver = "import";
+    header.board.device = std::filesystem::path{request_.path}.filename().string();
+    header.board.quantity = quantity_;
+    header.board.scan_rate_requested_Hz = request_.rate_Hz.value_or(run.rate_Hz);
+    header.board.scan_rate_granted_Hz = run.rate_Hz;
+    header.load_cell = load_cell_;
+    header.tester = request_.tester;
+    header.sample = request_.sample;
+    header.process = request_.process;
+    header.start_realtime_ns = start_ns_;
+    const daq::Calibration calibration{header.board, load_cell_.value_or(daq::LoadCell{}),
+                                       header.tester.tester().normal_load_N()};
+    std::vector<double> coefficient;
+    for (const double raw : run.raw) coefficient.push_back(calibration.coefficient(raw));
+    if (const double level = sliding_level(coefficient); level < 0.0) {
+      return base::usage_error("{}: the force is negative while sliding, {:.4g} as a coefficient: {}",
+                               request_.path, level,
+                               request_.invert ? "leave out --invert" : "give --invert");
+    }
+    for (const auto& [begin, end] : tests_in(run.scan, coefficient, run.rate_Hz)) {
+      record::Record record = whole;
+      const auto from = static_cast<std::ptrdiff_t>(begin);
+      const auto to = static_cast<std::ptrdiff_t>(end);
+      record.scan.assign(run.scan.begin() + from, run.scan.begin() + to);
+      record.raw.assign(run.raw.begin() + from, run.raw.begin() + to);
+      for (std::size_t i = 1; i < record.scan.size(); ++i) {
+        const daq::ScanIndex next = record.scan[i - 1] + 1;
+        if (record.scan[i] > next)
+          record.gaps.push_back({next, record.scan[i] - next, false, daq::GapCause::kMissingScans});
+      }
+      imported_.records.push_back(std::move(record));
+    }
+    return {};
+  }
+
+  Result<Imported> finish() {
+    std::int64_t number = 0;
+    for (record::Record& record : imported_.records) {
+      record.header.uuid = record::make_uuid();
+      if (imported_.records.size() > 1) record.header.test_number = ++number;
+      record::ProcessFacts& process = record.header.process;
+      process.source_size = table_.size;
+      process.source_file = std::filesystem::path{request_.path}.filename().string();
+      process.source_sha256 = table_.sha256;
+      process.source_reading = imported_.report + notes_;
+      record.end.emplace().results = record::absent_results("not analysed");
+      record.end->cause = "end-of-input";
+      record.end->results.findings = findings_;
+    }
+    imported_.report += notes_;
+    return std::move(imported_);
+  }
+
+  const ImportRequest& request_;
+  Dialect dialect_;
+  Columns columns_;
+  TraceTable table_;
+  std::vector<double> time_s_;
+  GridOptions grid_options_;
+  std::optional<std::int64_t> start_ns_;
+  std::string unit_;
+  RawQuantity quantity_ = RawQuantity::kForce_N;
+  double scale_ = 1.0;
+  std::optional<daq::LoadCell> load_cell_;
+  std::vector<std::string> findings_;
+  std::string notes_;
+  Imported imported_;
+};
+
+}  // namespace
+
+Result<Imported> import_trace(const ImportRequest& request) {
+  auto dialect = recognise(request.path, request.dialect);
+  if (!dialect) return tl::unexpected(dialect.error());
+  return Importer{request, std::move(*dialect)}.import();
+}
+
+}  // namespace stickslip::traces

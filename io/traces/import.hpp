@@ -1,0 +1,48 @@
+/// \file
+/// Records from a trace that another program exported as text.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/traces/dialect.hpp"
+
+#include "core/base/result.hpp"
+#include "core/record/record.hpp"
+
+namespace stickslip::traces {
+
+/// The file and the facts that it may not contain.
+struct ImportRequest {
+  std::string path;
+  DialectOptions dialect;
+  std::string column;       ///< Heading or number of the values.
+  std::string unit;         ///< Of the values; empty: of the heading or of the cells.
+  std::string time_column;  ///< Heading or number; empty: by its name; "none": no column is a time.
+  std::string time_unit;    ///< s, ms, us, min or h; empty: of the heading, else by inspection.
+  std::optional<double> rate_Hz;
+  bool invert = false;        ///< The force is negative while sliding.
+  bool reverse = false;       ///< Rows from the last to the first.
+  bool resample = false;      ///< Scans at equal intervals by linear interpolation.
+  bool skip_doubled = false;  ///< Leave out a row with the time of the row before it.
+  record::TesterFacts tester;
+  std::optional<daq::LoadCell> load_cell;  ///< For V.
+  record::SampleFacts sample;
+  record::ProcessFacts process;
+};
+
+struct Imported {
+  std::vector<record::Record> records;  ///< One for each test of the trace, without results.
+  std::string report;                   ///< What was recognised and left out: lines for people.
+};
+
+/// The columns, with unit, first values, smallest and largest, and the command that imports them.
+[[nodiscard]] base::Result<std::string> inspect(const ImportRequest& request);
+
+/// Reads the file and makes records that are not analysed yet. Scans are at equal intervals; missing rows and
+/// holes are gaps. A trace of several tests is cut where the force has returned to zero between them. Errors:
+/// kUsage with place, value and a remedy; kFailure if the file cannot be read.
+[[nodiscard]] base::Result<Imported> import_trace(const ImportRequest& request);
+
+}  // namespace stickslip::traces

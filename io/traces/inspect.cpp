@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "io/table.hpp"
+#include "io/traces/import.hpp"
+#include "io/traces/quantity_unit.hpp"
+#include "io/traces/trace_table.hpp"
+
+#include "core/base/text.hpp"
+#include "core/base/wording.hpp"
+
+namespace stickslip::traces {
+namespace {
+
+using base::Result;
+
+constexpr std::size_t kFirstValues = 3;
+
+/// What a shell takes as one word.
+std::string shell_quoted(std::string_view text) {
+  std::string word{"'"};
+  for (const char c : text) word += c == '\'' ? std::string{"'\\''"} : std::string{c};
+  return word + "'";
+}
+
+/// The column that is a force by its unit or its name, else the last one with numbers.
+std::size_t likely_column(const Dialect& dialect) {
+  std::size_t last = 0;
+  for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
+    if (!dialect.numeric[c] || time_rank(dialect.columns[c]) > 0) continue;
+    const std::string name = folded(dialect.columns[c].name);
+    const auto unit = quantity_unit(dialect.columns[c].unit);
+    const bool by_name = name.starts_with("force") || name.starts_with("kraft") || name.starts_with("load") ||
+                         name.starts_with("friction") || name.starts_with("reibkraft") || name == "f";
+    if (by_name || (unit && unit->quantity == daq::RawQuantity::kForce_N)) return c;
+    last = c;
+  }
+  return last;
+}
+
+std::string command(const ImportRequest& request, const Dialect& dialect, const std::string& cell_unit) {
+  const std::size_t column = likely_column(dialect);
+  const ColumnName& name = dialect.columns[column];
+  const std::string& own = cell_unit.empty() ? name.unit : cell_unit;
+  std::string text = fmt::format("stickslip import {} --column {}", shell_quoted(request.path),
+                                 name.text.empty() ? std::to_string(column + 1) : shell_quoted(name.text));
+  if (own.empty() || !quantity_unit(own)) text += " --unit N";
+  if (!time_column_of(dialect, column)) {
+    text += dialect.header_line == 0 && column != 0 ? " --time-column 1 --time-unit s" : " --rate '350 Hz'";
+  }
+  return text + " --sled-mass '2331 g' -o " +
+         shell_quoted(request.path.substr(0, request.path.rfind('.')) + ".h5");
+}
+
+}  // namespace
+
+Result<std::string> inspect(const ImportRequest& request) {
+  const auto dialect = recognise(request.path, request.dialect);
+  if (!dialect) return tl::unexpected(dialect.error());
+  using Column = io::Table::Column;
+  constexpr auto kLeft = io::Table::Align::kLeft;
+  io::Table columns{
+      {Column{.heading = "column"}, Column{.heading = "name", .align = kLeft},
+       Column{.heading = "unit", .align = kLeft}, Column{.heading = "first values", .align = kLeft},
+       Column{.heading = "smallest", .format = ".6g"}, Column{.heading = "largest", .format = ".6g"}}};
+  std::string likely_unit;
+  for (std::size_t c = 0; c < dialect->columns.size(); ++c) {
+    std::string first;
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    std::string unit = dialect->columns[c].unit;
+    if (dialect->numeric[c]) {
+      const auto table = read_table(request.path, *dialect, c, std::nullopt);
+      if (!table) return tl::unexpected(table.error());
+      for (std::size_t i = 0; i < table->value.size(); ++i) {
+        if (i < kFirstValues) first += fmt::format("{}{:.6g}", i == 0 ? "" : ", ", table->value[i]);
+        if (!std::isfinite(table->value[i])) continue;
+        low = std::min(low, table->value[i]);
+        high = std::max(high, table->value[i]);
+      }
+      if (!table->cell_unit.empty()) unit = table->cell_unit;
+    } else {
+      first = "no numbers";
+    }
+    if (c == likely_column(*dialect)) likely_unit = unit;
+    columns.add({io::cell(c + 1), base::one_line(dialect->columns[c].text, 30), base::one_line(unit, 12),
+                 first, low, high});
+  }
+  return dialect->text() + columns.text() +
+         "to import: " + base::printable(command(request, *dialect, likely_unit)) + "\n";
+}
+
+}  // namespace stickslip::traces

@@ -1,0 +1,254 @@
+#include "io/traces/trace_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+
+#include "io/traces/trace_time.hpp"
+
+#include "core/base/nan.hpp"
+#include "core/base/wording.hpp"
+
+namespace stickslip::traces {
+namespace {
+
+constexpr std::size_t kLongestShown = 40;
+
+std::string listed(const Dialect& dialect) {
+  std::string text;
+  for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
+    text += fmt::format("{}{} \"{}\"", c == 0 ? "" : ", ", c + 1,
+                        base::one_line(dialect.columns[c].text, kLongestShown));
+  }
+  return text;
+}
+
+/// The best of the columns by `rank`, and of equal ones the nearest before `column`, else the first after it.
+template <typename Rank>
+std::optional<std::size_t> best_before(const Dialect& dialect, std::size_t column, Rank rank) {
+  std::optional<std::size_t> best;
+  int best_rank = 0;
+  for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
+    const int own = c == column ? 0 : rank(dialect.columns[c]);
+    if (own == 0 || own < best_rank) continue;
+    if (own == best_rank && c > column) continue;
+    best = c;
+    best_rank = own;
+  }
+  return best;
+}
+
+class TableReader {
+ public:
+  TableReader(std::string path, const Dialect& dialect, std::size_t value_column,
+              std::optional<std::size_t> time_column)
+      : path_(std::move(path)), dialect_(dialect), value_column_(value_column), time_column_(time_column) {}
+
+  base::Result<TraceTable> read() {
+    auto file = TextFile::open(path_, dialect_.encoding);
+    if (!file) return tl::unexpected(file.error());
+    RowReader reader{dialect_.separator};
+    std::string line;
+    std::int64_t row_line = 0;
+    bool open = false;
+    while (true) {
+      const auto more = file->next(line);
+      if (!more) return tl::unexpected(more.error());
+      if (!*more) break;
+      if (file->line_number() < dialect_.first_row_line || (!open && is_no_row(line))) continue;
+      if (!open) row_line = file->line_number();
+      open = !reader.add(line);
+      if (open) continue;
+      if (auto taken = take(reader.fields(), row_line); !taken) return tl::unexpected(taken.error());
+    }
+    if (open) strange(row_line, "a quote that does not end");
+    if (!file->line_was_ended()) leave_out_cut_line(file->line_number());
+    if (strange_rows_ > 0) {
+      table_.notes.push_back(fmt::format("{} line{} from line {} on left out: no scans", strange_rows_,
+                                         strange_rows_ == 1 ? "" : "s", strange_line_));
+    }
+    table_.sha256 = file->sha256();
+    table_.size = file->bytes_read();
+    return std::move(table_);
+  }
+
+ private:
+  static std::string_view field(const std::vector<std::string_view>& fields, std::size_t column) {
+    return column < fields.size() ? fields[column] : std::string_view{};
+  }
+
+  void strange(std::int64_t line, std::string what) {
+    if (strange_rows_++ > 0) return;
+    strange_line_ = line;
+    strange_what_ = std::move(what);
+  }
+
+  [[nodiscard]] std::string column_shown(std::size_t column) const {
+    const std::string& text = dialect_.columns[column].text;
+    return text.empty() ? fmt::format("column {}", column + 1)
+                        : fmt::format("column '{}'", base::one_line(text, kLongestShown));
+  }
+
+  base::Result<void> take(const std::vector<std::string_view>& fields, std::int64_t line) {
+    const std::string_view value_text = dialect_.content(value_column_, field(fields, value_column_));
+    const Cell value = read_cell(value_text, dialect_.decimal);
+    std::optional<TimeCell> time;
+    std::string_view time_text;
+    if (time_column_) {
+      time_text = trimmed(dialect_.content(*time_column_, field(fields, *time_column_)));
+      time = read_time_cell(time_text, dialect_.decimal);
+    }
+    const bool no_time = time_column_ && !time;
+    const bool time_is_hole = no_time && read_cell(time_text, dialect_.decimal).kind != CellKind::kText;
+    if (value.kind == CellKind::kText || (no_time && !time_is_hole) || !dialect_.is_row(fields)) {
+      const bool value_is_wrong = value.kind == CellKind::kText;
+      strange(
+          line,
+          fmt::format("{} is '{}'", column_shown(value_is_wrong || !no_time ? value_column_ : *time_column_),
+                      base::one_line(value_is_wrong || !no_time ? value_text : time_text, kLongestShown)));
+      return {};
+    }
+    const bool hole = value.kind != CellKind::kNumber;
+    if (hole && no_time) return {};
+    if (strange_rows_ > 0) {
+      return base::usage_error(
+          "{}:{}: {}, and scans follow in line {}: a number is needed there; correct the line or remove it",
+          path_, strange_line_, strange_what_, line);
+    }
+    if (no_time) {
+      return base::usage_error(
+          "{}:{}: {} has no time beside the value {}: give --time-column none and --rate HZ if the scans "
+          "are evenly spaced",
+          path_, line, column_shown(*time_column_), value.value);
+    }
+    if (!hole) {
+      if (!table_.cell_unit.empty() && value.unit != table_.cell_unit) {
+        return base::usage_error("{}:{}: {} is '{}', the rows before are in {}: correct the line", path_,
+                                 line, column_shown(value_column_), base::one_line(value_text, kLongestShown),
+                                 table_.cell_unit);
+      }
+      table_.cell_unit = value.unit;
+    }
+    add(hole ? base::kNaN : value.value, time, line);
+    // The last number of the line, which would be cut first.
+    const Cell last = read_cell(dialect_.content(fields.size() - 1, fields.back()), dialect_.decimal);
+    last_decimals_ = last.decimals;
+    last_fields_ = fields.size();
+    if (file_rows_++ > 0) {
+      most_decimals_ = std::max(most_decimals_, previous_decimals_);
+      most_fields_ = std::max(most_fields_, previous_fields_);
+    }
+    previous_decimals_ = last_decimals_;
+    previous_fields_ = last_fields_;
+    return {};
+  }
+
+  void add(double value, const std::optional<TimeCell>& time, std::int64_t line) {
+    if (time) {
+      if (table_.time.empty()) {
+        table_.first_time = time->value;
+        table_.date_s = time->date_s;
+        table_.time_in_seconds = time->in_seconds;
+      }
+      const std::int64_t days = time->date_s && table_.date_s ? *time->date_s - *table_.date_s : 0;
+      table_.time.push_back(time->value - table_.first_time + static_cast<double>(days));
+      table_.time_decimals = std::max(table_.time_decimals, time->decimals);
+    }
+    const std::size_t row = table_.value.size();
+    table_.value.push_back(value);
+    if (table_.places.empty() || table_.line(row) != line) table_.places.emplace_back(row, line);
+  }
+
+  /// A file that was cut by a full disk ends in the middle of a number.
+  void leave_out_cut_line(std::int64_t line) {
+    if (file_rows_ < 2 || table_.line(table_.value.size() - 1) != line) return;
+    if (last_fields_ >= most_fields_ && last_decimals_ >= most_decimals_) return;
+    table_.value.pop_back();
+    if (!table_.time.empty()) table_.time.pop_back();
+    table_.notes.push_back(fmt::format(
+        "line {} left out: it is the last one, has no line end, and is shorter than the others", line));
+  }
+
+  std::string path_;
+  const Dialect& dialect_;
+  std::size_t value_column_;
+  std::optional<std::size_t> time_column_;
+  TraceTable table_;
+  std::size_t strange_rows_ = 0;  ///< That are no scans, since the last scan.
+  std::int64_t strange_line_ = 0;
+  std::string strange_what_;
+  std::size_t file_rows_ = 0;
+  int last_decimals_ = 0;
+  int previous_decimals_ = 0;
+  int most_decimals_ = 0;  ///< Of all rows but the last one.
+  std::size_t last_fields_ = 0;
+  std::size_t previous_fields_ = 0;
+  std::size_t most_fields_ = 0;
+};
+
+}  // namespace
+
+base::Result<std::size_t> find_column(const Dialect& dialect, const std::string& path,
+                                      const std::string& wanted) {
+  const std::string form = folded(wanted);
+  const auto find = [&](auto&& is_it) -> base::Result<std::optional<std::size_t>> {
+    std::optional<std::size_t> found;
+    for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
+      if (dialect.columns[c].text.empty() || !is_it(dialect.columns[c])) continue;
+      if (found) {
+        return base::usage_error("{}: columns {} and {} are both called \"{}\": give the number", path,
+                                 *found + 1, c + 1, base::one_line(wanted, kLongestShown));
+      }
+      found = c;
+    }
+    return found;
+  };
+  auto found = find([&](const ColumnName& column) { return column.text == wanted; });
+  if (found && !*found) found = find([&](const ColumnName& column) { return folded(column.text) == form; });
+  if (found && !*found) {
+    const std::string bare = folded(column_name(wanted).name);
+    found = find(
+        [&](const ColumnName& column) { return folded(column.name) == form || folded(column.name) == bare; });
+  }
+  if (!found) return tl::unexpected(found.error());
+  if (*found) return **found;
+  std::size_t number = 0;
+  const auto [end, status] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
+  if (status == std::errc{} && end == wanted.data() + wanted.size() && number >= 1 &&
+      number <= dialect.columns.size()) {
+    return number - 1;
+  }
+  if (dialect.header_line == 0 && dialect.labels.empty()) {
+    return base::usage_error("{}: the file has no heading, so no column \"{}\": give the number, 1 … {}",
+                             path, base::one_line(wanted, kLongestShown), dialect.columns.size());
+  }
+  return base::usage_error("{}:{}: there is no column \"{}\"; there are {}", path, dialect.header_line,
+                           base::one_line(wanted, kLongestShown), listed(dialect));
+}
+
+std::optional<std::size_t> time_column_of(const Dialect& dialect, std::size_t value_column) {
+  return best_before(dialect, value_column, time_rank);
+}
+
+std::optional<std::size_t> counter_column_of(const Dialect& dialect, std::size_t value_column) {
+  return best_before(dialect, value_column,
+                     [](const ColumnName& column) { return is_scan_counter(column) ? 1 : 0; });
+}
+
+std::int64_t TraceTable::line(std::size_t row) const {
+  const auto after =
+      std::upper_bound(places.begin(), places.end(), row,
+                       [](std::size_t wanted, const auto& place) { return wanted < place.first; });
+  if (after == places.begin()) return 0;
+  const auto& [first, line] = *std::prev(after);
+  return line + static_cast<std::int64_t>(row - first);
+}
+
+base::Result<TraceTable> read_table(const std::string& path, const Dialect& dialect, std::size_t value_column,
+                                    std::optional<std::size_t> time_column) {
+  return TableReader{path, dialect, value_column, time_column}.read();
+}
+
+}  // namespace stickslip::traces

@@ -1,0 +1,118 @@
+#include "io/traces/trace_time.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <vector>
+
+#include "io/traces/cell.hpp"
+
+namespace stickslip::traces {
+namespace {
+
+/// A whole number of a few digits, all of the text.
+std::optional<int> whole(std::string_view text) {
+  int value = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || text.size() > 4 || status != std::errc{} || end != text.data() + text.size() ||
+      value < 0)
+    return std::nullopt;
+  return value;
+}
+
+std::vector<std::string_view> split(std::string_view text, char mark) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    const std::size_t at = text.find(mark);
+    parts.push_back(text.substr(0, at));
+    if (at == std::string_view::npos) return parts;
+    text.remove_prefix(at + 1);
+  }
+}
+
+/// "12:00:01.5", "00:01.5"
+std::optional<TimeCell> read_clock(std::string_view text, char decimal) {
+  const auto parts = split(text, ':');
+  if (parts.size() < 2 || parts.size() > 3) return std::nullopt;
+  TimeCell time;
+  time.in_seconds = true;
+  for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
+    const auto part = whole(parts[i]);
+    if (!part) return std::nullopt;
+    time.value = 60.0 * (time.value + *part);
+  }
+  // Either mark stands before the fraction, whatever the other numbers of the file have.
+  const char mark = parts.back().find(',') != std::string_view::npos   ? ','
+                    : parts.back().find('.') != std::string_view::npos ? '.'
+                                                                       : decimal;
+  const Cell seconds = read_cell(parts.back(), mark);
+  if (seconds.kind != CellKind::kNumber || !seconds.unit.empty() || seconds.value < 0.0 ||
+      seconds.value >= 61.0)
+    return std::nullopt;
+  time.value += seconds.value;
+  time.decimals = seconds.decimals;
+  return time;
+}
+
+/// "2026-11-25"
+std::optional<std::int64_t> read_date(std::string_view text) {
+  const auto parts = split(text, text.find('/') != std::string_view::npos ? '/' : '-');
+  if (parts.size() != 3 || parts[0].size() != 4) return std::nullopt;
+  const auto year = whole(parts[0]);
+  const auto month = whole(parts[1]);
+  const auto day = whole(parts[2]);
+  if (!year || !month || !day) return std::nullopt;
+  const std::chrono::year_month_day date{std::chrono::year{*year},
+                                         std::chrono::month{static_cast<unsigned>(*month)},
+                                         std::chrono::day{static_cast<unsigned>(*day)}};
+  if (!date.ok()) return std::nullopt;
+  return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::sys_days{date}.time_since_epoch())
+      .count();
+}
+
+/// Takes "Z", "+01:00" or nothing from the end. \return the offset in s; nothing if it is no offset.
+std::optional<int> take_offset(std::string_view& clock) {
+  if (clock.ends_with('Z')) {
+    clock.remove_suffix(1);
+    return 0;
+  }
+  const std::size_t at = clock.find_first_of("+-");
+  if (at == std::string_view::npos) return 0;
+  const auto parts = split(clock.substr(at + 1), ':');
+  const auto hours = whole(parts[0].substr(0, 2));
+  const auto minutes = parts.size() > 1       ? whole(parts[1])
+                       : parts[0].size() == 4 ? whole(parts[0].substr(2))
+                                              : std::optional{0};
+  if (!hours || !minutes) return std::nullopt;
+  const int sign = clock[at] == '-' ? -1 : 1;
+  clock = clock.substr(0, at);
+  return sign * (3600 * *hours + 60 * *minutes);
+}
+
+std::optional<TimeCell> read_moment(std::string_view text, char decimal) {
+  const std::size_t between = text.find_first_of("T ");
+  if (between == std::string_view::npos) return std::nullopt;
+  const auto date = read_date(text.substr(0, between));
+  std::string_view clock = trimmed(text.substr(between + 1));
+  const auto offset = take_offset(clock);
+  if (!date || !offset) return std::nullopt;
+  auto time = read_clock(clock, decimal);
+  if (time) time->date_s = *date - *offset;
+  return time;
+}
+
+}  // namespace
+
+std::optional<TimeCell> read_time_cell(std::string_view text, char decimal) {
+  text = trimmed(text);
+  if (const Cell cell = read_cell(text, decimal); cell.kind == CellKind::kNumber) {
+    TimeCell time;
+    time.value = cell.value;
+    time.decimals = cell.decimals;
+    return time;
+  }
+  if (auto time = read_moment(text, decimal)) return time;
+  return read_clock(text, decimal);
+}
+
+}  // namespace stickslip::traces

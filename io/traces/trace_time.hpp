@@ -1,0 +1,25 @@
+/// \file
+/// A cell of a time column, in seconds.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace stickslip::traces {
+
+struct TimeCell {
+  double value = 0.0;  ///< In the column's unit; of a clock or a date in s.
+  int decimals = 0;    ///< Printed digits behind the decimal mark.
+  /// Whole seconds since 1970, UTC, that `value` counts from: dates alone. Text without an offset is taken as
+  /// UTC.
+  std::optional<std::int64_t> date_s;
+  bool in_seconds = false;  ///< "00:01:02.5" and dates have their unit in them.
+};
+
+/// A number, "hh:mm:ss.fff", "mm:ss.f", or a date and time of ISO 8601 ("2026-11-25T12:00:00.5Z"). \return
+/// nothing for other text.
+[[nodiscard]] std::optional<TimeCell> read_time_cell(std::string_view text, char decimal);
+
+}  // namespace stickslip::traces
