@@ -9,6 +9,7 @@
 
 #include "io/json_text.hpp"
 #include "io/or_null.hpp"
+#include "io/table.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/base/limited_child.hpp"
@@ -67,16 +68,16 @@ std::string summary(const ordered_json& verdict) {
 }
 
 std::string lines(const ordered_json& verdict) {
-  std::string text = fmt::format("{:<10}  {}", verdict["judgement"].get<std::string>(),
-                                 base::printable(verdict["file"].get<std::string>()));
-  if (const std::string more = summary(verdict); !more.empty()) text += ": " + more;
-  text += "\n";
+  const std::string more = summary(verdict);
+  Table file = Table::list({10, 0});
+  file.add({verdict["judgement"].get<std::string>(),
+            verdict["file"].get<std::string>() + (more.empty() ? "" : ": " + more)});
+  Table findings = Table::list({12, 0});
   for (const ordered_json& finding : verdict["findings"]) {
-    text += fmt::format("  {:<10}  {}: {}\n", finding["weight"].get<std::string>(),
-                        base::printable(finding["place"].get<std::string>()),
-                        base::printable(finding["text"].get<std::string>()));
+    findings.add({"  " + finding["weight"].get<std::string>(),
+                  finding["place"].get<std::string>() + ": " + finding["text"].get<std::string>()});
   }
-  return text;
+  return file.text() + findings.text();
 }
 
 int exit_status_of(const ordered_json& verdict) {
