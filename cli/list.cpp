@@ -18,13 +18,13 @@ base::Result<std::string> run_list(const BenchOptions& options) {
   if (!list) return tl::unexpected(list.error());
   if (options.json) return list->dump(2) + "\n";
   using enum io::Table::Align;
-  io::Table table{{{.heading = "test", .width = 5},
-                   {.heading = "regime", .align = kLeft, .width = 15},
-                   {.heading = "S", .width = 7},
-                   {.heading = "K", .width = 7},
-                   {.heading = "S - K", .width = 7},
+  io::Table table{{{.heading = "test"},
+                   {.heading = "regime", .align = kLeft},
+                   {.heading = "S"},
+                   {.heading = "K"},
+                   {.heading = "S - K"},
                    {.heading = "cycles"},
-                   {.heading = "ended", .align = kLeft, .width = 18},
+                   {.heading = "ended", .align = kLeft},
                    {.heading = "file", .align = kLeft}}};
   for (const Json& test : (*list)["tests"]) {
     const Json& results = test["results"];

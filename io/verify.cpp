@@ -13,7 +13,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/limited_child.hpp"
-#include "core/base/text.hpp"
 
 namespace stickslip::io {
 namespace {
@@ -55,7 +54,7 @@ ordered_json judged(base::LimitedChild& judge, const std::string& file) {
 std::string summary(const ordered_json& verdict) {
   std::string text;
   if (verdict["kind"].is_string()) {
-    text += base::printable(verdict["kind"].get<std::string>());
+    text += verdict["kind"].get<std::string>();
     if (verdict["format_version"].is_number())
       text += fmt::format(" version {}", verdict["format_version"].get<std::int64_t>());
   }
@@ -63,7 +62,7 @@ std::string summary(const ordered_json& verdict) {
     text += fmt::format(", {} scans", verdict["scans_present"].get<std::int64_t>());
   if (!verdict["gaps"].empty()) text += fmt::format(", {} gaps", verdict["gaps"].size());
   if (verdict["status"].is_string() && verdict["status"] != "complete")
-    text += ", " + base::printable(verdict["status"].get<std::string>());
+    text += ", " + verdict["status"].get<std::string>();
   return text;
 }
 
