@@ -12,6 +12,7 @@
 #include "io/table.hpp"
 #include <nlohmann/json.hpp>
 
+#include "core/base/text.hpp"
 #include "daemon/client/client.hpp"
 
 namespace stickslip::cli {
@@ -58,7 +59,7 @@ struct Lines {
   Paint paint{wants_colours()};
   io::Table list = io::Table::list({8, 0});
 
-  /// \param text  whose own colours stay where the line has none.
+  /// \param text  printable; its own colours stay where the line has none.
   void line(const char* what, const std::string& text, Ink colour = Ink::kNone) {
     list.add({paint(Ink::kFaint, what), colour == Ink::kNone ? text : paint(colour, text)});
   }
@@ -126,7 +127,8 @@ std::string text_of(const Json& status) {
                                   word(storage, "to_do")),
              stored ? Ink::kNone : Ink::kRed);
   if (const auto lacks = storage.find("lacks"); lacks != storage.end()) {
-    for (const Json& lack : *lacks) lines.line("lacks", lack.is_string() ? lack.get<std::string>() : "");
+    for (const Json& lack : *lacks)
+      lines.line("lacks", lack.is_string() ? base::printable(lack.get<std::string>()) : "");
   }
   if (const Json fleet = part(status, "fleet"); !fleet.empty()) {
     const bool connected = word(fleet, "state") == "connected";
