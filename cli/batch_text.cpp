@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/json_words.hpp"
+#include "io/table.hpp"
 #include <nlohmann/json.hpp>
 
 namespace stickslip::cli {
@@ -21,14 +22,15 @@ std::string step_text(const Json& step) {
 std::string batch_text(const Json& answer) {
   const Json& batch = answer["batch"];
   if (batch.is_null()) return "there is no batch; stickslip batch begin --name NAME plans one\n";
-  std::string text = fmt::format("batch {}: {}, {} of {} tests made\n", batch["id"].get<std::string>(),
-                                 word(batch, "name"), batch["done"].dump(), batch["planned"].dump());
+  io::Table tests = io::Table::list({0, 0});
   for (const Json& test : batch["tests"]) {
-    text += fmt::format("  {:<36}  {}\n", step_text(test), test["record"].get<std::string>());
+    tests.add({"  " + step_text(test), word(test, "record")});
     if (const Json& voided = test["voided"]; !voided.is_null())
-      text += fmt::format("    void: {}, by {}\n", voided["reason"].get<std::string>(),
-                          voided["by"].get<std::string>());
+      tests.add({fmt::format("    void: {}, by {}", word(voided, "reason"), word(voided, "by"))});
   }
+  std::string text =
+      fmt::format("batch {}: {}, {} of {} tests made\n{}", batch["id"].get<std::string>(),
+                  word(batch, "name"), batch["done"].dump(), batch["planned"].dump(), tests.text());
   text += batch["next"].is_null() ? "all are made\n" : fmt::format("next: {}\n", step_text(batch["next"]));
   if (batch["trouble"].is_string()) text += fmt::format("trouble: {}\n", batch["trouble"].get<std::string>());
   return text;

@@ -14,6 +14,7 @@
 #include "cli/weighing.hpp"
 #include "io/calibration_file.hpp"
 #include "io/json_text.hpp"
+#include "io/table.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/base/settings.hpp"
@@ -72,13 +73,18 @@ Result<Weighed> read_points(const std::string& file) {
   return weighed;
 }
 
-std::string reading_line(const daq::WeighedPoint& point) {
-  std::string text = fmt::format("  {:>10.6g} kg {:>12.6g} N {:>14.8g} V", point.reading.mass_kg,
-                                 point.force_N, point.reading.voltage_V);
-  if (point.reading.standard_error_V) text += fmt::format(" +- {:.2g} V", *point.reading.standard_error_V);
-  if (std::isfinite(point.residual_V)) text += fmt::format("   off the line {:+.3g} V", point.residual_V);
-  if (!point.refused.empty()) text += "   does not count: " + point.refused;
-  return text + "\n";
+std::string readings_table(const std::vector<daq::WeighedPoint>& points) {
+  io::Table table{{{.heading = "mass", .unit = "kg", .format = ".6g"},
+                   {.heading = "force", .unit = "N", .format = ".6g"},
+                   {.heading = "voltage", .unit = "V", .format = ".8g"},
+                   {.heading = "standard error", .unit = "V", .format = ".2g"},
+                   {.heading = "off the line", .unit = "V", .format = "+.3g"},
+                   {.heading = "", .align = io::Table::Align::kLeft}}};
+  for (const auto& [reading, force_N, residual_V, refused] : points) {
+    table.add({reading.mass_kg, force_N, reading.voltage_V, io::cell(reading.standard_error_V), residual_V,
+               refused.empty() ? "" : "does not count: " + refused});
+  }
+  return table.text();
 }
 
 /// What a technician says at the prompt.
@@ -146,7 +152,8 @@ Result<Weighed> ask(Weighing& weighing, double gravity_m_per_s2, const daq::Weig
     if (!reading) return tl::unexpected(reading.error());
     weighed.readings.push_back(*reading);
     const daq::WeighedPoint point = weighed.result().points.back();
-    prompts << reading_line({point.reading, point.force_N, std::nan(""), point.refused});
+    fmt::print(prompts, "  {:.6g} kg, {:.6g} N: {:.8g} V{}\n", mass_kg, point.force_N, reading->voltage_V,
+               point.refused.empty() ? "" : "; does not count: " + point.refused);
     // It stays in the list, for the record, but for the tare, without which nothing can be judged.
     if (tare && !point.refused.empty()) weighed.readings.pop_back();
   }
@@ -154,8 +161,7 @@ Result<Weighed> ask(Weighing& weighing, double gravity_m_per_s2, const daq::Weig
 
 std::string text_of(const daq::WeighedCalibration& result, const io::StoredCalibration& stored,
                     const std::string& file, const std::optional<io::StoredCalibration>& before) {
-  std::string text;
-  for (const daq::WeighedPoint& point : result.points) text += reading_line(point);
+  std::string text = readings_table(result.points);
   const daq::LoadCellFit& fit = result.fit;
   text += fmt::format("gain {:.8g} +- {:.2g} N/V, zero {:.6g} +- {:.2g} V, of {} readings\n",
                       stored.load_cell.gain_N_per_V, fit.gain_standard_error_N_per_V.value_or(std::nan("")),
@@ -230,9 +236,8 @@ Result<std::string> run_calibrate(const CalibrateOptions& options, std::istream&
   if (!weighed) return tl::unexpected(weighed.error());
   const daq::WeighedCalibration result = weighed->result();
   if (!result.fit.load_cell) {
-    std::string points;
-    for (const daq::WeighedPoint& point : result.points) points += reading_line(point);
-    return base::failure("no calibration: {}\n{}", result.fit.reason, points);
+    prompts << readings_table(result.points);
+    return base::failure("no calibration: {}", result.fit.reason);
   }
   const auto kept =
       io::keep_result(result, {options.certificate, *days}, folder, base::make_system_clock()->realtime_ns());

@@ -14,6 +14,7 @@
 #include "cli/subcommands.hpp"
 #include "io/json_text.hpp"
 #include "io/print_text.hpp"
+#include "io/table.hpp"
 #include <nlohmann/json.hpp>
 
 namespace stickslip::cli {
@@ -61,16 +62,15 @@ std::string json_of(const std::vector<doctor::Finding>& findings) {
       Json{{"exit_status", doctor::exit_status(findings)}, {"findings", std::move(list)}});
 }
 
-std::string text_of(const std::vector<doctor::Finding>& findings, const Paint& paint) {
-  std::string text;
+std::string text_of(const std::vector<doctor::Finding>& findings, bool colours) {
+  const Paint paint{colours};
+  io::Table list = io::Table::list({7, 11, 0});
   for (const doctor::Finding& finding : findings) {
-    text +=
-        fmt::format("{}  {:<11}  {}\n",
-                    paint(colour_of(finding.verdict), fmt::format("{:<7}", doctor::name(finding.verdict))),
-                    finding.check, base::printable(finding.what));
-    if (!finding.to_do.empty()) text += fmt::format("{:<22}→ {}\n", "", base::printable(finding.to_do));
+    list.add({paint(colour_of(finding.verdict), doctor::name(finding.verdict)), finding.check,
+              base::printable(finding.what)});
+    if (!finding.to_do.empty()) list.add({"", "", "→ " + base::printable(finding.to_do)});
   }
-  return text;
+  return list.text(colours);
 }
 
 int run_doctor(const DoctorOptions& options) {
@@ -87,7 +87,7 @@ int run_doctor(const DoctorOptions& options) {
   const auto clock = base::make_system_clock();
   const std::vector<doctor::Finding> findings =
       doctor::examine(options.folder.empty() ? options.config : config.string(), doctor::this_world(*clock));
-  io::print_text(stdout, options.json ? json_of(findings) : text_of(findings, Paint{wants_colours()}),
+  io::print_text(stdout, options.json ? json_of(findings) : text_of(findings, wants_colours()),
                  wants_colours());
   return std::fflush(stdout) == 0 ? doctor::exit_status(findings) : 1;
 }

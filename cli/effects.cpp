@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "io/or_null.hpp"
+#include "io/table.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/evaluation/analyse.hpp"
@@ -26,7 +26,7 @@ constexpr std::array<std::pair<std::string_view, const Estimate TestResults::*>,
 
 /// "0.05002 ± 0.00031"; "–" without a value.
 std::string shown(const Estimate& estimate) {
-  if (!estimate.value) return "–";
+  if (!estimate.value) return std::string{io::kAbsent};
   if (!estimate.standard_error) return fmt::format("{:.5f}", *estimate.value);
   return fmt::format("{:.5f} ± {:.5f}", *estimate.value, *estimate.standard_error);
 }
@@ -53,22 +53,25 @@ base::Result<std::vector<Effect>> effects_of(record::Record record, const estima
 }
 
 std::string effects_text(std::span<const Effect> effects) {
-  std::string text = fmt::format("{:<20}{:>19}{:>21}{:>21}{:>12}{:>9}  {}\n", "", "S", "K", "S−K", "change",
-                                 "static", "regime");
+  using enum io::Table::Align;
+  io::Table table{{{.heading = "", .align = kLeft},
+                   {.heading = "S"},
+                   {.heading = "K"},
+                   {.heading = "S−K"},
+                   {.heading = "change", .format = "+.5f"},
+                   {.heading = "static", .format = ".4f"},
+                   {.heading = "regime", .align = kLeft}}};
   for (const Effect& effect : effects) {
     const Estimate& own = effect.results.delta_mu;
     const Estimate& all = effects.front().results.delta_mu;
-    const bool first = &effect == &effects.front();
-    const std::optional<double> change =
-        first || !own.value || !all.value ? std::nullopt : std::optional{*own.value - *all.value};
-    const Estimate& peak = effect.results.static_coefficient;
-    text += fmt::format(
-        "{:<20}{:>19}{:>21}{:>21}{:>12}{:>9}  {}\n", label(effect.kept), shown(effect.results.mu_s),
-        shown(effect.results.mu_k), shown(own), change ? fmt::format("{:+.5f}", *change) : "",
-        peak.value ? fmt::format("{:.4f}", *peak.value) : "–", model::name(effect.results.regime));
-    if (!own.value) text += fmt::format("–  no S−K: {}\n", own.reason);
+    io::Table::Cell change = "";
+    if (&effect != &effects.front() && own.value && all.value) change = *own.value - *all.value;
+    table.add({label(effect.kept), shown(effect.results.mu_s), shown(effect.results.mu_k), shown(own), change,
+               io::cell(effect.results.static_coefficient.value),
+               io::cell(model::name(effect.results.regime))});
+    if (!own.value) table.add({fmt::format("{}  no S−K: {}", io::kAbsent, own.reason)});
   }
-  return text;
+  return table.text();
 }
 
 nlohmann::ordered_json effects_json(std::span<const Effect> effects) {

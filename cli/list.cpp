@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -7,6 +5,7 @@
 #include "cli/ask.hpp"
 #include "cli/json_words.hpp"
 #include "cli/subcommands.hpp"
+#include "io/table.hpp"
 #include <nlohmann/json.hpp>
 
 namespace stickslip::cli {
@@ -14,22 +13,26 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string line_of_test(const Json& test) {
-  const Json& results = test["results"];
-  return fmt::format("{:>5}  {:<15}  {:>7}  {:>7}  {:>7}  {:>6}  {:<18}  {}\n",
-                     test["number"].get<std::int64_t>(), word(results, "regime"), number(results, "mu_s", 4),
-                     number(results, "mu_k", 4), number(results, "delta_mu", 4),
-                     number(results, "cycle_count", 0), word(test, "cause"), word(test, "file"));
-}
-
 base::Result<std::string> run_list(const BenchOptions& options) {
   const base::Result<Json> list = ask(options, {"GET", "/v1/tests", {}, {}, {}});
   if (!list) return tl::unexpected(list.error());
   if (options.json) return list->dump(2) + "\n";
-  std::string text = fmt::format("{:>5}  {:<15}  {:>7}  {:>7}  {:>7}  {:>6}  {:<18}  {}\n", "test", "regime",
-                                 "S", "K", "S - K", "cycles", "ended", "file");
-  for (const Json& test : (*list)["tests"]) text += line_of_test(test);
-  return text;
+  using enum io::Table::Align;
+  io::Table table{{{.heading = "test"},
+                   {.heading = "regime", .align = kLeft},
+                   {.heading = "S"},
+                   {.heading = "K"},
+                   {.heading = "S - K"},
+                   {.heading = "cycles"},
+                   {.heading = "ended", .align = kLeft},
+                   {.heading = "file", .align = kLeft}}};
+  for (const Json& test : (*list)["tests"]) {
+    const Json& results = test["results"];
+    table.add({test["number"].get<std::int64_t>(), word(results, "regime"), number(results, "mu_s", 4),
+               number(results, "mu_k", 4), number(results, "delta_mu", 4), number(results, "cycle_count", 0),
+               word(test, "cause"), word(test, "file")});
+  }
+  return table.text();
 }
 
 }  // namespace

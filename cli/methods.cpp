@@ -1,16 +1,13 @@
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "cli/subcommands.hpp"
 #include "io/json_text.hpp"
 #include "io/library.hpp"
 #include "io/method_file.hpp"
+#include "io/table.hpp"
 #include <nlohmann/json.hpp>
 
 namespace stickslip::cli {
@@ -59,24 +56,16 @@ Json json_of(const io::MethodFile& file) {
 base::Result<std::string> run_methods(const MethodsOptions& options) {
   const base::Result<std::filesystem::path> found = io::library_folder(io::kMethods, options.folder);
   if (!found) return tl::unexpected(found.error());
-  std::vector<io::MethodFile> methods;
-  std::size_t longest = 0;
+  Json methods = Json::array();
+  io::Table list = io::Table::list({0, 0});
   for (const std::filesystem::path& path : io::files_in(*found)) {
     const base::Result<io::MethodFile> file = io::load_method(path);
     if (!file) return tl::unexpected(file.error());
-    longest = std::max(longest, file->method.name.size());
-    methods.push_back(*file);
+    methods.push_back(json_of(*file));
+    list.add({file->method.name, file->description});
   }
-  if (options.json) {
-    Json list = Json::array();
-    for (const io::MethodFile& file : methods) list.push_back(json_of(file));
-    return io::json_document(Json{{"folder", found->string()}, {"methods", std::move(list)}});
-  }
-  std::string text;
-  for (const io::MethodFile& file : methods) {
-    text += fmt::format("{:<{}}  {}\n", file.method.name, longest, file.description);
-  }
-  return text;
+  if (!options.json) return list.text();
+  return io::json_document({{"folder", found->string()}, {"methods", methods}});
 }
 
 }  // namespace

@@ -17,8 +17,7 @@ class Paint {
  public:
   explicit Paint(bool on) : on_(on) {}
 
-  /// Nothing but the text itself where there are no colours. A width for a table is to be given to the text
-  /// before.
+  /// The text as base::printable() has it; without colours nothing else.
   [[nodiscard]] std::string operator()(Ink colour, std::string_view text) const;
 
  private:

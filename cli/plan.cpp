@@ -9,9 +9,8 @@
 #include "cli/json_words.hpp"
 #include "cli/plan_keys.hpp"
 #include "cli/subcommands.hpp"
+#include "io/table.hpp"
 #include <nlohmann/json.hpp>
-
-#include "core/base/text.hpp"
 
 namespace stickslip::cli {
 namespace {
@@ -53,14 +52,14 @@ base::Result<std::string> run_plan(const PlanOptions& options) {
     if (!plan) return tl::unexpected(plan.error());
   }
   if (options.json) return plan->dump(2) + "\n";
-  std::string text;
+  io::Table list = io::Table::list({0, 0});
   for (const auto& [key, value] : plan->items()) {
     std::string shown = value.is_string() ? value.get<std::string>() : value.dump();
-    if (value.is_null()) shown = "–";
+    if (value.is_null()) shown = io::kAbsent;
     if (key == "pull_speed" && value.is_number()) shown = fmt::format("{:.6g} m/s", value.get<double>());
-    text += fmt::format("{:<10}  {}\n", key, base::printable(shown));
+    list.add({key, shown});
   }
-  return text;
+  return list.text();
 }
 
 }  // namespace

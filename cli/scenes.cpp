@@ -1,14 +1,10 @@
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <memory>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "cli/subcommands.hpp"
 #include "io/json_text.hpp"
 #include "io/library.hpp"
+#include "io/table.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/sim/scene.hpp"
@@ -24,26 +20,16 @@ struct ScenesOptions {
 base::Result<std::string> run_scenes(const ScenesOptions& options) {
   const base::Result<std::filesystem::path> found = io::library_folder(io::kScenes, options.folder);
   if (!found) return tl::unexpected(found.error());
-  std::vector<sim::Scene> scenes;
-  std::size_t longest = 0;
+  using enum io::Table::Align;
+  io::Table scenes{{{.name = "name", .heading = "", .align = kLeft},
+                    {.name = "description", .heading = "", .align = kLeft}}};
   for (const std::filesystem::path& file : io::files_in(*found)) {
-    base::Result<sim::Scene> scene = sim::load_scene(file);
+    const base::Result<sim::Scene> scene = sim::load_scene(file);
     if (!scene) return tl::unexpected(scene.error());
-    longest = std::max(longest, scene->name.size());
-    scenes.push_back(std::move(*scene));
+    scenes.add({scene->name, scene->description});
   }
-  if (options.json) {
-    using Json = nlohmann::ordered_json;
-    Json list = Json::array();
-    for (const sim::Scene& scene : scenes) {
-      list.push_back({{"name", scene.name}, {"description", scene.description}});
-    }
-    return io::json_document(Json{{"folder", found->string()}, {"scenes", std::move(list)}});
-  }
-  std::string text;
-  for (const sim::Scene& scene : scenes)
-    text += fmt::format("{:<{}}  {}\n", scene.name, longest, scene.description);
-  return text;
+  if (!options.json) return scenes.text();
+  return io::json_document({{"folder", found->string()}, {"scenes", scenes.json()}});
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "cli/ask.hpp"
 #include "cli/json_words.hpp"
 #include "cli/subcommands.hpp"
+#include "io/table.hpp"
 #include <nlohmann/json.hpp>
 
 namespace stickslip::cli {
@@ -23,9 +24,10 @@ base::Result<std::string> run_show(const ShowOptions& options) {
       ask(options, {"GET", fmt::format("/v1/tests/{}", options.test), {}, {}, {}});
   if (!test) return tl::unexpected(test.error());
   if (options.json) return test->dump(2) + "\n";
-  std::string text =
+  const std::string text =
       fmt::format("test {}: {}, ended: {}\nfile: {}\n", (*test)["number"].dump(),
                   word((*test)["results"], "regime"), word(*test, "cause"), word(*test, "file"));
+  io::Table list = io::Table::list({0, 0});
   for (const auto& [name, detail] : (*test)["results"]["details"].items()) {
     if (!detail.contains("value")) continue;
     const Json& value = detail["value"];
@@ -33,11 +35,11 @@ base::Result<std::string> run_show(const ShowOptions& options) {
                                   ? fmt::format(" ± {:.2g}", detail["standard_error"].get<double>())
                                   : "";
     const std::string unit = word(detail, "unit");
-    text += value.is_null() ? fmt::format("  {:<26} – {}\n", name, word(detail, "reason"))
-                            : fmt::format("  {:<26} {:.6g}{}{}\n", name, value.get<double>(), error,
-                                          unit == "1" ? "" : " " + unit);
+    list.add({"  " + name, value.is_null() ? fmt::format("{} {}", io::kAbsent, word(detail, "reason"))
+                                           : fmt::format("{:.6g}{}{}", value.get<double>(), error,
+                                                         unit == "1" ? "" : " " + unit)});
   }
-  return text;
+  return text + list.text();
 }
 
 }  // namespace

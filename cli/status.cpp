@@ -4,14 +4,15 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <utility>
 
 #include "cli/json_words.hpp"
 #include "cli/paint.hpp"
 #include "cli/subcommands.hpp"
 #include "io/json_text.hpp"
+#include "io/table.hpp"
 #include <nlohmann/json.hpp>
 
+#include "core/base/text.hpp"
 #include "daemon/client/client.hpp"
 
 namespace stickslip::cli {
@@ -54,20 +55,14 @@ Ink of_regime(const std::string& regime) {
   return regime == "steady-sliding" ? Ink::kGreen : Ink::kNone;
 }
 
-class Lines {
- public:
-  explicit Lines(bool colours) : paint_(colours) {}
-  void line(const char* what, const std::string& text, Ink colour = Ink::kNone) {
-    text_ += paint_(Ink::kFaint, fmt::format("{:<8}", what)) + "  " + paint_(colour, text) + "\n";
-  }
-  [[nodiscard]] std::string painted(Ink colour, const std::string& text) const {
-    return paint_(colour, text);
-  }
-  [[nodiscard]] std::string text() && { return std::move(text_); }
+struct Lines {
+  Paint paint{wants_colours()};
+  io::Table list = io::Table::list({8, 0});
 
- private:
-  Paint paint_;
-  std::string text_;
+  /// \param text  printable; its own colours stay where the line has none.
+  void line(const char* what, const std::string& text, Ink colour = Ink::kNone) {
+    list.add({paint(Ink::kFaint, what), colour == Ink::kNone ? text : paint(colour, text)});
+  }
 };
 
 void board(Lines& lines, const Json& status) {
@@ -90,7 +85,7 @@ void tests(Lines& lines, const Json& status) {
     const std::string regime = word(live, "regime");
     lines.line("test",
                fmt::format("{}: {}, {}, {} slips, S - K {}", status["current_test"].dump(),
-                           word(live, "phase"), lines.painted(of_regime(regime), regime),
+                           word(live, "phase"), lines.paint(of_regime(regime), regime),
                            count(live, "slip_count"), number(part(live, "latest_cycle"), "delta_mu", 4)));
   }
   const Json latest = part(status, "latest_test");
@@ -99,13 +94,13 @@ void tests(Lines& lines, const Json& status) {
   const std::string regime = word(results, "regime");
   lines.line("latest",
              fmt::format("test {}: {}, S {}, K {}, S - K {}, {} cycles; {}", count(latest, "number"),
-                         lines.painted(of_regime(regime), regime), number(results, "mu_s", 4),
+                         lines.paint(of_regime(regime), regime), number(results, "mu_s", 4),
                          number(results, "mu_k", 4), number(results, "delta_mu", 4),
                          number(results, "cycle_count", 0), word(latest, "file")));
 }
 
 std::string text_of(const Json& status) {
-  Lines lines{wants_colours()};
+  Lines lines;
   const std::string state = word(status, "state");
   const std::string bench = word(status, "bench");
   lines.line("state", state, of_state(state));
@@ -132,7 +127,8 @@ std::string text_of(const Json& status) {
                                   word(storage, "to_do")),
              stored ? Ink::kNone : Ink::kRed);
   if (const auto lacks = storage.find("lacks"); lacks != storage.end()) {
-    for (const Json& lack : *lacks) lines.line("lacks", lack.is_string() ? lack.get<std::string>() : "");
+    for (const Json& lack : *lacks)
+      lines.line("lacks", lack.is_string() ? base::printable(lack.get<std::string>()) : "");
   }
   if (const Json fleet = part(status, "fleet"); !fleet.empty()) {
     const bool connected = word(fleet, "state") == "connected";
@@ -148,7 +144,7 @@ std::string text_of(const Json& status) {
     lines.line("page", fmt::format("{}#token=$(cat '{}')", word(page, "address"), word(page, "token_file")));
   }
   lines.line("version", word(status, "version"));
-  return std::move(lines).text();
+  return lines.list.text(wants_colours());
 }
 
 base::Result<std::string> run_status(const StatusOptions& options) {

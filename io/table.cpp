@@ -28,8 +28,8 @@ std::string number_or_text(const Table::Cell& cell, const std::string& format) {
   return fmt::format(fmt::runtime("{:" + format + "}"), std::get<double>(cell));
 }
 
-std::string shown(const Table::Cell& cell, const Table::Column& column) {
-  if (!is_nothing(cell)) return base::printable(number_or_text(cell, column.format));
+std::string shown(const Table::Cell& cell, const Table::Column& column, bool colours_stay) {
+  if (!is_nothing(cell)) return base::printable(number_or_text(cell, column.format), colours_stay);
   return column.align == Table::Align::kRight ? std::string{kAbsent} : std::string{};
 }
 
@@ -60,6 +60,10 @@ std::size_t display_width(std::string_view text) {
   const locale_t before = ::uselocale(utf8);
   std::size_t width = 0;
   while (!text.empty()) {
+    if (const std::size_t size = base::colour_size(text); size > 0) {
+      text.remove_prefix(size);
+      continue;
+    }
     std::mbstate_t state{};
     wchar_t character = 0;
     const std::size_t size = std::mbrtowc(&character, text.data(), text.size(), &state);
@@ -74,12 +78,19 @@ std::size_t display_width(std::string_view text) {
 
 Table::Table(std::vector<Column> columns) : columns_(std::move(columns)) {}
 
+Table Table::list(const std::vector<std::size_t>& widths) {
+  std::vector<Column> columns;
+  for (const std::size_t width : widths)
+    columns.push_back({.heading = "", .align = Align::kLeft, .width = width});
+  return Table{std::move(columns)};
+}
+
 void Table::add(std::vector<Cell> cells) {
   STICKSLIP_EXPECTS(cells.size() <= columns_.size());
   rows_.push_back(std::move(cells));
 }
 
-std::string Table::text() const {
+std::string Table::text(bool colours_stay) const {
   std::vector<std::vector<std::string>> lines(rows_.size() + 1);
   std::vector<std::pair<Align, std::size_t>> places;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
@@ -91,8 +102,9 @@ std::string Table::text() const {
     std::size_t width = std::max(column.width, display_width(lines[0].back()));
     for (std::size_t r = 0; r < rows_.size(); ++r) {
       if (c >= rows_[r].size()) continue;
-      lines[r + 1].push_back(shown(rows_[r][c], column));
-      width = std::max(width, display_width(lines[r + 1].back()));
+      lines[r + 1].push_back(shown(rows_[r][c], column, colours_stay));
+      if (column.align == Align::kRight || c + 1 < rows_[r].size())
+        width = std::max(width, display_width(lines[r + 1].back()));
     }
     places.emplace_back(column.align, width);
   }
@@ -100,9 +112,10 @@ std::string Table::text() const {
   for (const std::vector<std::string>& line : lines) {
     std::string padded;
     for (std::size_t i = 0; i < line.size(); ++i) {
-      const std::string blanks(places[i].second - display_width(line[i]), ' ');
+      const auto& [align, width] = places[i];
+      const std::string blanks(width - std::min(width, display_width(line[i])), ' ');
       if (i > 0) padded += "  ";
-      padded += places[i].first == Align::kLeft ? line[i] + blanks : blanks + line[i];
+      padded += align == Align::kLeft ? line[i] + blanks : blanks + line[i];
     }
     padded.erase(padded.find_last_not_of(' ') + 1);
     if (!padded.empty() || &line != &lines.front()) text += padded + '\n';

@@ -23,7 +23,8 @@ namespace stickslip::io {
 /// Stands in text for a number that is absent.
 inline constexpr std::string_view kAbsent = "–";
 
-/// Places of a terminal that a text takes: a wide character (紙) takes two, a combining one none.
+/// Places of a terminal that a text takes: a wide character (紙) takes two, a combining one and a colour code
+/// (base::colour_size()) none.
 /// \param text  UTF-8; a byte that is none counts as one.
 [[nodiscard]] std::size_t display_width(std::string_view text);
 
@@ -45,13 +46,17 @@ class Table {
 
   explicit Table(std::vector<Column> columns);
 
-  /// A row. \param cells  at most one for each column; in text a row ends with its last cell, elsewhere
-  /// nothing stands in the columns behind it.
+  /// For text alone: left-aligned columns without headings, at least so wide.
+  [[nodiscard]] static Table list(const std::vector<std::size_t>& widths);
+
+  /// A row. \param cells  at most one for each column. In text a row ends with its last cell, which runs over
+  /// the columns behind it if its own is left-aligned; in CSV and JSON those columns hold nothing.
   void add(std::vector<Cell> cells);
 
   /// Headings, unless all are blank, and rows, each as one line that base::printable() would leave as it is;
   /// two blanks between columns, none at the end. Nothing is "–" in a column of Align::kRight, else blank.
-  [[nodiscard]] std::string text() const;
+  /// \param colours_stay  as for base::printable().
+  [[nodiscard]] std::string text(bool colours_stay = false) const;
   /// As RFC 4180, with a line of names; texts as base::csv_cell(), numbers with the fewest digits that read
   /// back to the same, nothing as an empty cell.
   [[nodiscard]] std::string csv() const;

@@ -9,10 +9,10 @@
 
 #include "io/json_text.hpp"
 #include "io/or_null.hpp"
+#include "io/table.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/base/limited_child.hpp"
-#include "core/base/text.hpp"
 
 namespace stickslip::io {
 namespace {
@@ -54,7 +54,7 @@ ordered_json judged(base::LimitedChild& judge, const std::string& file) {
 std::string summary(const ordered_json& verdict) {
   std::string text;
   if (verdict["kind"].is_string()) {
-    text += base::printable(verdict["kind"].get<std::string>());
+    text += verdict["kind"].get<std::string>();
     if (verdict["format_version"].is_number())
       text += fmt::format(" version {}", verdict["format_version"].get<std::int64_t>());
   }
@@ -62,21 +62,21 @@ std::string summary(const ordered_json& verdict) {
     text += fmt::format(", {} scans", verdict["scans_present"].get<std::int64_t>());
   if (!verdict["gaps"].empty()) text += fmt::format(", {} gaps", verdict["gaps"].size());
   if (verdict["status"].is_string() && verdict["status"] != "complete")
-    text += ", " + base::printable(verdict["status"].get<std::string>());
+    text += ", " + verdict["status"].get<std::string>();
   return text;
 }
 
 std::string lines(const ordered_json& verdict) {
-  std::string text = fmt::format("{:<10}  {}", verdict["judgement"].get<std::string>(),
-                                 base::printable(verdict["file"].get<std::string>()));
-  if (const std::string more = summary(verdict); !more.empty()) text += ": " + more;
-  text += "\n";
+  const std::string more = summary(verdict);
+  Table file = Table::list({10, 0});
+  file.add({verdict["judgement"].get<std::string>(),
+            verdict["file"].get<std::string>() + (more.empty() ? "" : ": " + more)});
+  Table findings = Table::list({12, 0});
   for (const ordered_json& finding : verdict["findings"]) {
-    text += fmt::format("  {:<10}  {}: {}\n", finding["weight"].get<std::string>(),
-                        base::printable(finding["place"].get<std::string>()),
-                        base::printable(finding["text"].get<std::string>()));
+    findings.add({"  " + finding["weight"].get<std::string>(),
+                  finding["place"].get<std::string>() + ": " + finding["text"].get<std::string>()});
   }
-  return text;
+  return file.text() + findings.text();
 }
 
 int exit_status_of(const ordered_json& verdict) {

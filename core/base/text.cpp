@@ -49,11 +49,23 @@ void add_shown(std::string& out, std::string_view text, const Character& charact
   }
 }
 
-/// Bytes of a code "ESC [ digits m" at the beginning of the text; 0 if there is none.
-std::size_t colour_size(std::string_view text) {
-  if (!text.starts_with("\033[")) return 0;
-  const std::size_t end = text.find_first_not_of("0123456789", 2);
-  return end <= 4 && text[end] == 'm' ? end + 1 : 0;  // npos is larger.
+std::string shown(std::string_view text, bool lines_stay, bool colours_stay) {
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    std::size_t size = colours_stay ? colour_size(text) : 0;
+    if (lines_stay && (text.front() == '\n' || text.front() == '\t')) size = 1;
+    if (lines_stay && text.starts_with("\r\n")) size = 2;
+    if (size > 0) {
+      out += text.substr(0, size);
+    } else {
+      const Character character = first_of(text);
+      add_shown(out, text, character);
+      size = character.size;
+    }
+    text.remove_prefix(size);
+  }
+  return out;
 }
 
 bool begins_a_formula(std::string_view text) {
@@ -62,6 +74,12 @@ bool begins_a_formula(std::string_view text) {
 }
 
 }  // namespace
+
+std::size_t colour_size(std::string_view text) {
+  if (!text.starts_with("\033[")) return 0;
+  const std::size_t end = text.find_first_not_of("0123456789", 2);
+  return end <= 4 && text[end] == 'm' ? end + 1 : 0;  // npos is larger.
+}
 
 bool is_utf8(std::string_view text) {
   while (!text.empty()) {
@@ -72,32 +90,10 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
-std::string printable(std::string_view text) {
-  std::string out;
-  while (!text.empty()) {
-    const Character character = first_of(text);
-    add_shown(out, text, character);
-    text.remove_prefix(character.size);
-  }
-  return out;
-}
+std::string printable(std::string_view text, bool colours_stay) { return shown(text, false, colours_stay); }
 
 std::string printable_lines(std::string_view text, bool colours_stay) {
-  std::string out;
-  out.reserve(text.size());
-  while (!text.empty()) {
-    std::size_t kept = text.front() == '\n' || text.front() == '\t' ? 1 : text.starts_with("\r\n") ? 2 : 0;
-    if (kept == 0 && colours_stay) kept = colour_size(text);
-    if (kept > 0) {
-      out += text.substr(0, kept);
-      text.remove_prefix(kept);
-      continue;
-    }
-    const Character character = first_of(text);
-    add_shown(out, text, character);
-    text.remove_prefix(character.size);
-  }
-  return out;
+  return shown(text, true, colours_stay);
 }
 
 std::string csv_cell(std::string_view text) {

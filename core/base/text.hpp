@@ -13,16 +13,19 @@ inline constexpr std::size_t kLongestName = 200;
 
 [[nodiscard]] bool is_utf8(std::string_view text);
 
+/// Bytes of a colour code "ESC [ digits m" at the beginning of the text; 0 if there is none.
+[[nodiscard]] std::size_t colour_size(std::string_view text);
+
 /// The text as one line of valid UTF-8. Shown by their numbers: control characters below 0x20 and bytes that
 /// are no UTF-8 (\x1b), other control characters (\u007f, \u009b), what changes the direction of text or
 /// breaks a line
 /// (\u202e, \u2028), and characters without width that are no part of words (\u200b, \ufeff). All other text,
 /// in any language, stays as it is, including a backslash, so that the result cannot be converted back.
-[[nodiscard]] std::string printable(std::string_view text);
+/// \param colours_stay  true: colour codes stay; the caller has escaped those of untrusted text.
+[[nodiscard]] std::string printable(std::string_view text, bool colours_stay = false);
 
 /// As printable(), of a whole output: line feed, the CR before it, and tab stay, for the output's own format
 /// put them there. JSON stays the same JSON.
-/// \param colours_stay  also the codes with which Paint changes colours.
 [[nodiscard]] std::string printable_lines(std::string_view text, bool colours_stay = false);
 
 /// A text as one cell of a table in CSV: printable, quoted as RFC 4180 says, and with an apostrophe in front

@@ -20,6 +20,7 @@ TEST(DisplayWidth, CountsPlacesOfATerminal) {
   EXPECT_EQ(display_width("gru\u0308n"), 4U) << "a letter and a combining mark";
   EXPECT_EQ(display_width("紙 42"), 5U) << "a wide character";
   EXPECT_EQ(display_width("a\xff"), 2U) << "no UTF-8";
+  EXPECT_EQ(display_width("\033[32mgood\033[0m"), 4U) << "colour codes";
 }
 
 TEST(Table, PadsByDisplayWidth) {
@@ -58,8 +59,8 @@ TEST(Table, HasADashABlankAnEmptyCellAndNullForNothing) {
   table.add({std::numeric_limits<double>::infinity()});  // Ends with its last cell.
   table.add({cell(std::optional<double>{}), "because"});
   EXPECT_EQ(table.text(),
-            "n  why      last\n"
-            "–              –\n"
+            "n  why  last\n"
+            "–          –\n"
             "–\n"
             "–  because\n");
   EXPECT_EQ(table.csv(), "n,why,last\r\n,,\r\n,,\r\n,because,\r\n");
@@ -79,6 +80,36 @@ TEST(Table, HasNoLineOfBlankHeadings) {
   table.add({"0.5", "S S r"});
   table.add({"12", ""});
   EXPECT_EQ(table.text(), "0.5  S S r\n 12\n");
+}
+
+TEST(Table, LastCellOfARowRunsOverTheColumnsBehindItIfLeftAligned) {
+  Table table{{{.heading = "kept", .align = kLeft}, {.heading = "S"}}};
+  table.add({"spikes", 0.25});
+  table.add({"no drift to take off"});
+  EXPECT_EQ(table.text(),
+            "kept       S\n"
+            "spikes  0.25\n"
+            "no drift to take off\n");
+}
+
+TEST(Table, ListHasLeftAlignedColumnsWithoutHeadings) {
+  Table list = Table::list({4, 0, 0});
+  EXPECT_EQ(list.text(), "");
+  list.add({"bad", "disk", "full"});
+  list.add({"", "", "→ delete"});
+  list.add({"good", "filesystem"});
+  EXPECT_EQ(list.text(),
+            "bad   disk  full\n"
+            "            → delete\n"
+            "good  filesystem\n");
+}
+
+TEST(Table, PadsColouredCellsAndKeepsOtherControlCharactersOut) {
+  Table list = Table::list({0, 0});
+  list.add({"\033[31mbad\033[0m", "a\n\033[2J"});
+  list.add({"good", "b"});
+  EXPECT_EQ(list.text(true), "\033[31mbad\033[0m   a\\x0a\\x1b[2J\ngood  b\n");
+  EXPECT_EQ(list.text().find('\033'), std::string::npos);
 }
 
 // A spreadsheet would run the formula; numbers are none.
