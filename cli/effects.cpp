@@ -31,20 +31,20 @@ std::string shown(const Estimate& estimate) {
   return fmt::format("{:.5f} ± {:.5f}", *estimate.value, *estimate.standard_error);
 }
 
-std::string label(const analysis::Kept& kept) {
-  return kept.nothing() ? "all taken care of" : analysis::text_of(kept) + " kept";
+std::string label(const analysis::SkippedCorrections& skipped) {
+  return skipped.none() ? "all taken care of" : analysis::text_of(skipped) + " kept";
 }
 
 }  // namespace
 
 base::Result<std::vector<Effect>> effects_of(record::Record record, const estimate::SharedPrior& prior) {
   std::vector<Effect> effects{{{}, {}}};
-  for (const analysis::KeptName& name : analysis::kKeptNames) {
+  for (const analysis::CorrectionName& name : analysis::kCorrectionNames) {
     effects.emplace_back();
-    effects.back().kept.*name.flag = true;
+    effects.back().skipped.*name.flag = true;
   }
   for (Effect& effect : effects) {
-    record.header.process.kept = analysis::text_of(effect.kept);
+    record.header.process.kept = analysis::text_of(effect.skipped);
     base::Result<evaluation::TesterAnalysis> analysed = evaluation::analyse_with_tester(record, prior);
     if (!analysed) return tl::unexpected(analysed.error());
     effect.results = std::move(analysed->end.results);
@@ -63,7 +63,7 @@ std::string effects_text(std::span<const Effect> effects) {
         first || !own.value || !all.value ? std::nullopt : std::optional{*own.value - *all.value};
     const Estimate& peak = effect.results.static_coefficient;
     text += fmt::format(
-        "{:<20}{:>19}{:>21}{:>21}{:>12}{:>9}  {}\n", label(effect.kept), shown(effect.results.mu_s),
+        "{:<20}{:>19}{:>21}{:>21}{:>12}{:>9}  {}\n", label(effect.skipped), shown(effect.results.mu_s),
         shown(effect.results.mu_k), shown(own), change ? fmt::format("{:+.5f}", *change) : "",
         peak.value ? fmt::format("{:.4f}", *peak.value) : "–", model::name(effect.results.regime));
     if (!own.value) text += fmt::format("–  no S−K: {}\n", own.reason);
@@ -74,7 +74,7 @@ std::string effects_text(std::span<const Effect> effects) {
 nlohmann::ordered_json effects_json(std::span<const Effect> effects) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const Effect& effect : effects) {
-    nlohmann::ordered_json own{{"kept", analysis::text_of(effect.kept)},
+    nlohmann::ordered_json own{{"kept", analysis::text_of(effect.skipped)},
                                {"regime", model::name(effect.results.regime)}};
     for (const auto& [name, estimate] : kShown) {
       own[std::string{name}] = io::or_null((effect.results.*estimate).value);

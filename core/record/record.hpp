@@ -114,7 +114,7 @@ struct ProcessFacts {
   std::string configuration;  ///< Complete text of the configuration file.
   std::string estimator;      ///< estimator_of(); empty: "fit".
   std::string method;         ///< Preset of the traditional rule.
-  std::string kept;           ///< Corrections left out, analysis::text_of(Kept); empty: none.
+  std::string kept;           ///< Corrections left out, analysis::text_of(SkippedCorrections); empty: none.
   /// Complete text of the tester's characterisation file; empty: none.
   std::string characterisation;
   std::string realtime;    ///< Scheduling and memory locking that were granted.

@@ -251,7 +251,7 @@ base::Result<void> App::open_session() {
     return started;
   }
   calibrations_.session_began(settings);
-  watcher_.use(truth_.get(), settings.processor.analysis.kept.first_slip);
+  watcher_.use(truth_.get(), settings.processor.analysis.skipped.first_slip);
   live_.feed().use(settings.processor.analysis.scan_rate_Hz, config_.clock_speed);
   storage_.use(runtime::record_header(config_, settings, session_->board_info(), realtime_facts()),
                truth_.get(), std::move(remarks));

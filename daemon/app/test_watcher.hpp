@@ -25,7 +25,7 @@ class TestWatcher final : public pipeline::Sink {
       : tests_(tests), facts_(facts), current_(std::move(current)), rests_(std::move(rests)) {}
 
   /// Call it only between sessions. \param truth  null if unknown. \param first_slip_counts  as
-  /// analysis::Kept::first_slip.
+  /// analysis::SkippedCorrections::first_slip.
   void use(const model::TruthSource* truth, bool first_slip_counts) {
     truth_ = truth;
     first_slip_counts_ = first_slip_counts;
