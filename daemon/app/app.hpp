@@ -31,7 +31,7 @@
 #include "daemon/runtime/session_setup.hpp"
 #include "daemon/runtime/watchdog.hpp"
 #include "daemon/storage/storage.hpp"
-#include "daemon/types/facts.hpp"
+#include "daemon/types/event_receiver.hpp"
 #include "daemon/types/test_log.hpp"
 
 namespace stickslip::app {
@@ -43,7 +43,7 @@ struct AppWorld {
                                                    const std::optional<daq::Continuation>&)>
       open_board;
   storage::Finalise finalise;
-  daemon::Facts* facts = nullptr;  ///< Outlives the App.
+  daemon::EventReceiver* events = nullptr;  ///< Outlives the App.
   /// Called on the main thread with each new line of STATUS=; may be empty.
   std::function<void(const std::string&)> status_changed;
   /// True if a signal to end came before run(); may be empty.

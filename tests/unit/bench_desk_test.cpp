@@ -21,7 +21,7 @@ namespace {
 using Kind = Command::Kind;
 
 /// Waits for the storage to say that it is short.
-class HeardOfRoom final : public Facts {
+class HeardOfRoom final : public EventReceiver {
  public:
   void storage_short(std::string_view) override {
     const std::lock_guard lock{mutex_};
