@@ -80,8 +80,8 @@ App::App(io::DaemonConfig config, AppWorld world)
       live_(io_, *clock_, [this] { return daemon::health_frame(status()); }),
       batches_({.folder = config_.record_folder,
                 .program = "/proc/self/exe",
-                .plan = [this] { return desk_.plan(); },
-                .set_plan = [this](daemon::Plan plan) { desk_.set_plan(std::move(plan)); },
+                .plan = [this] { return commands_.plan(); },
+                .set_plan = [this](daemon::Plan plan) { commands_.set_plan(std::move(plan)); },
                 .earlier = [this](daemon::TestSummary test) { tests_.add_earlier(std::move(test)); },
                 .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
                 .clock = clock_.get()}),
@@ -94,15 +94,15 @@ App::App(io::DaemonConfig config, AppWorld world)
            .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
            .date_ns = [this] { return wall_->realtime_ns(); },
            .now_ns = [this] { return clock_->realtime_ns(); }}),
-      desk_({.config = config_,
-             .tests = tests_,
-             .storage = storage_,
-             .calibrations = calibrations_,
-             .status = [this] { return status(); },
-             .session = [this] { return session_.get(); },
-             .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
-             .batches = &batches_,
-             .reports = &reports_}),
+      commands_({.config = config_,
+                 .tests = tests_,
+                 .storage = storage_,
+                 .calibrations = calibrations_,
+                 .status = [this] { return status(); },
+                 .session = [this] { return session_.get(); },
+                 .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
+                 .batches = &batches_,
+                 .reports = &reports_}),
       watchdog_(io_, runtime::Notify::watchdog_interval(), watched_parts(),
                 {.feed = [this] { notify_.alive(); },
                  .hanging =
@@ -164,7 +164,7 @@ void App::request_stop() {
 base::Result<void> App::open_control() {
   if (!config_.control_socket && config_.http.empty()) return {};
   const daemon::HttpHandler api =
-      page::make_site(control::make_api(desk_, *wall_), report::read_chart_library());
+      page::make_site(control::make_api(commands_, *wall_), report::read_chart_library());
   const auto keep =
       [this](base::Result<std::unique_ptr<control::ControlServer>> server) -> base::Result<void> {
     if (!server) return tl::unexpected(server.error());

@@ -24,8 +24,8 @@
 #include "daemon/control/server.hpp"
 #include "daemon/fleet/fleet.hpp"
 #include "daemon/live/stream.hpp"
-#include "daemon/page/report_desk.hpp"
-#include "daemon/runtime/bench_desk.hpp"
+#include "daemon/page/report_jobs.hpp"
+#include "daemon/runtime/command_service.hpp"
 #include "daemon/runtime/notify.hpp"
 #include "daemon/runtime/session.hpp"
 #include "daemon/runtime/session_setup.hpp"
@@ -133,10 +133,10 @@ class App {
   TestWatcher watcher_;
   live::LiveStream live_;
   batch::BatchLeader batches_;
-  page::ReportDesk reports_;
+  page::ReportJobs reports_;
   std::unique_ptr<base::Clock> wall_;  ///< Wall time, for leases, dates and messages.
-  runtime::CalibrationDesk calibrations_;
-  runtime::BenchDesk desk_;
+  runtime::CalibrationService calibrations_;
+  runtime::CommandService commands_;
   std::unique_ptr<fleet::Fleet> fleet_;  ///< Null: no broker is configured.
   std::vector<std::unique_ptr<control::ControlServer>> control_;
   std::optional<daemon::Status::Page> page_;  ///< The live page, while it is served.
