@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "cli/json_words.hpp"
+#include "cli/json_members.hpp"
 #include "cli/paint.hpp"
 #include "cli/subcommands.hpp"
 #include "io/json_text.hpp"
