@@ -3,10 +3,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/record/enum_names.hpp"
 #include "core/record/estimator_field.hpp"
 #include "core/record/json_fields.hpp"
-#include "core/record/possible.hpp"
-#include "core/record/words.hpp"
+#include "core/record/range_check.hpp"
 
 namespace stickslip::record {
 
@@ -99,9 +99,9 @@ std::string gap_to_json(const daq::Gap& gap) {
 daq::Gap gap_from_json(std::string_view text) {
   const Json object = Json::parse(text);
   const auto cause = object.at("cause").get<std::string>();
-  return possible(daq::Gap{object.at("first_scan").get<daq::ScanIndex>(),
-                           object.at("scan_count").get<std::int64_t>(), object.at("estimated").get<bool>(),
-                           word(cause, gap_cause_from_name(cause))});
+  return range_checked(daq::Gap{object.at("first_scan").get<daq::ScanIndex>(),
+                                object.at("scan_count").get<std::int64_t>(),
+                                object.at("estimated").get<bool>(), word(cause, gap_cause_from_name(cause))});
 }
 
 std::string cycle_to_json(const detect::Cycle& cycle) { return dump(cycle_to_array(cycle)); }
@@ -114,8 +114,8 @@ std::string event_to_json(const Event& event) {
 
 Event event_from_json(std::string_view text) {
   const Json object = Json::parse(text);
-  return {possible(object.at("scan").get<daq::ScanIndex>()), object.at("realtime_ns").get<std::int64_t>(),
-          object.at("text").get<std::string>()};
+  return {range_checked(object.at("scan").get<daq::ScanIndex>()),
+          object.at("realtime_ns").get<std::int64_t>(), object.at("text").get<std::string>()};
 }
 
 }  // namespace stickslip::record

@@ -6,9 +6,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/record/enum_names.hpp"
 #include "core/record/json_codec.hpp"
 #include "core/record/json_fields.hpp"
-#include "core/record/words.hpp"
 
 namespace stickslip::record {
 namespace {

@@ -14,10 +14,10 @@
 #include "io/record_name.hpp"
 
 #include "core/base/thread_name.hpp"
+#include "core/record/enum_names.hpp"
 #include "core/record/iso_time.hpp"
 #include "core/record/journal.hpp"
 #include "core/record/journal_name.hpp"
-#include "core/record/words.hpp"
 #include "daemon/storage/finaliser_process.hpp"
 
 namespace stickslip::storage {
