@@ -15,7 +15,7 @@
 
 #include "io/config.hpp"
 #include "io/print_text.hpp"
-#include "report/table.hpp"
+#include "report/truth_table.hpp"
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 

@@ -13,7 +13,7 @@
 
 #include "io/json_text.hpp"
 #include "report/report_page.hpp"
-#include "report/table.hpp"
+#include "report/truth_table.hpp"
 
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
