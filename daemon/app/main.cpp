@@ -125,7 +125,7 @@ int run(const std::string& file) {
     };
     world.events = log.get();
     world.stop_asked = [&signals] { return signals.stop_asked(); };
-    // Kept as it was found good: it may be used much later.
+    // The configuration that was checked: it may be used much later.
     if (reloads) {
       world.check_config = [&file, &next]() -> base::Result<void> {
         base::Result<io::DaemonConfig> found = good_config(file);
