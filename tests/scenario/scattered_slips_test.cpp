@@ -31,11 +31,11 @@ analysis::PooledDeltaMu pool_and_print(double speed_in_per_min, const test::Scat
   return pooled;
 }
 
-/// 1 %, and what the scatter allows the mean of so many slips.
+/// What the scatter allows the mean of so many slips; of 1000 tests at each speed no bias is seen
+/// (docs/evidence.md).
 double allowed_bias(const analysis::PooledDeltaMu& pooled) {
   const auto n = static_cast<double>(pooled.slip_count);
-  return 0.01 * test::ScatterTrials::kDeltaMu +
-         test::farthest_mean(n) * std::sqrt(n) * *pooled.mean.standard_error;
+  return test::farthest_mean(n) * std::sqrt(n) * *pooled.mean.standard_error;
 }
 
 TEST(ScatteredSlips, TheirMeanIsAsGoodAsTheirNumberAllows) {
