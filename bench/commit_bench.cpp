@@ -79,7 +79,7 @@ class Committing final : public pipeline::Sink {
     journal_.add_anchor({first, stamp.monotonic_ns, stamp.realtime_ns});
     journal_.add_anchor({first, stamp.monotonic_ns, stamp.realtime_ns});
     const auto begin = std::chrono::steady_clock::now();
-    if (journal_.settle()) failed_ = true;
+    if (journal_.save()) failed_ = true;
     commits_s_.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   }
   void cycle(const detect::Cycle& cycle) override { journal_.add_cycle(cycle); }
@@ -90,7 +90,7 @@ class Committing final : public pipeline::Sink {
     record.cycles = end.cycles;
     record.spikes = end.spikes;
     journal_.add_end(std::move(record));
-    if (journal_.settle()) failed_ = true;
+    if (journal_.save()) failed_ = true;
   }
   [[nodiscard]] const std::vector<double>& commits_s() const { return commits_s_; }
   [[nodiscard]] bool failed() const { return failed_; }

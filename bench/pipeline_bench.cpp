@@ -52,7 +52,7 @@ base::Result<record::Finalised> keep_journal(const std::filesystem::path& journa
 }
 
 /// Counts what the walk lost, which would make it fast.
-class Losses final : public daemon::Facts {
+class Losses final : public daemon::EventReceiver {
  public:
   void storage_waits(std::string_view why) override { why_ = why; }
   void recording_failed(std::int64_t /*test*/, std::string_view why) override { why_ = why; }

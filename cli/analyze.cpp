@@ -11,10 +11,10 @@
 #include "cli/subcommands.hpp"
 #include "io/json_text.hpp"
 #include "io/results_json.hpp"
-#include "report/table.hpp"
+#include "report/truth_table.hpp"
 #include <nlohmann/json.hpp>
 
-#include "core/analysis/kept.hpp"
+#include "core/analysis/skipped_corrections.hpp"
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
 #include "core/evaluation/analyse.hpp"
@@ -32,7 +32,7 @@ struct AnalyzeOptions {
   std::string method;     ///< As chosen_method() takes it; empty: that of each record.
   std::string tester;     ///< File of a characterisation; empty: none.
   std::string estimator;  ///< "peak", "interpolated" or "fit"; empty: that of each record.
-  /// Of analysis::kKeptNames, or "nothing" alone; empty: as each record says.
+  /// Of analysis::kCorrectionNames, or "nothing" alone; empty: as each record says.
   std::vector<std::string> keep;
   bool effects = false;  ///< What each of them does, beside the results.
   bool json = false;
@@ -53,12 +53,14 @@ nlohmann::ordered_json json_of(const std::optional<analysis::TesterCheck>& check
 }
 
 /// Nothing if nothing was given.
-base::Result<std::optional<analysis::Kept>> chosen_kept(const std::vector<std::string>& given) {
-  if (given.empty()) return std::optional<analysis::Kept>{};
-  if (given == std::vector<std::string>{"nothing"}) return std::optional{analysis::Kept{}};
-  analysis::Kept chosen;
+base::Result<std::optional<analysis::SkippedCorrections>> chosen_corrections(
+    const std::vector<std::string>& given) {
+  if (given.empty()) return std::optional<analysis::SkippedCorrections>{};
+  if (given == std::vector<std::string>{"nothing"}) return std::optional{analysis::SkippedCorrections{}};
+  analysis::SkippedCorrections chosen;
   for (const std::string& word : given) {
-    const std::optional<analysis::Kept> one = word.empty() ? std::nullopt : analysis::kept_from_text(word);
+    const std::optional<analysis::SkippedCorrections> one =
+        word.empty() ? std::nullopt : analysis::skipped_from_text(word);
     if (!one) {
       return base::usage_error(
           "--keep {}: must be \"spikes\", \"drift\" or \"first-slip\", or \"nothing\" alone",
@@ -80,8 +82,8 @@ base::Result<std::string> run_analyze(const AnalyzeOptions& options) {
                                base::one_line(options.estimator, 100));
     }
   }
-  const base::Result<std::optional<analysis::Kept>> kept = chosen_kept(options.keep);
-  if (!kept) return tl::unexpected(kept.error());
+  const base::Result<std::optional<analysis::SkippedCorrections>> skipped = chosen_corrections(options.keep);
+  if (!skipped) return tl::unexpected(skipped.error());
   estimate::SharedPrior prior;
   if (!options.tester.empty()) {
     const auto coupling = record::load_tester(options.tester);
@@ -106,7 +108,7 @@ base::Result<std::string> run_analyze(const AnalyzeOptions& options) {
           file, detect::name(*tier));
     }
     if (!options.method.empty()) process.method = record::method_text(*method);
-    if (*kept) process.kept = analysis::text_of(**kept);
+    if (*skipped) process.kept = analysis::text_of(**skipped);
     base::Result<evaluation::TesterAnalysis> analysed = evaluation::analyse_with_tester(*record, prior);
     if (!analysed) {
       return tl::unexpected(

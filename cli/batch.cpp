@@ -10,7 +10,7 @@
 
 #include "cli/ask.hpp"
 #include "cli/batch_text.hpp"
-#include "cli/json_words.hpp"
+#include "cli/json_members.hpp"
 #include "cli/plan_keys.hpp"
 #include "cli/subcommands.hpp"
 #include <nlohmann/json.hpp>

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/json_words.hpp"
+#include "cli/json_members.hpp"
 #include "io/table.hpp"
 #include <nlohmann/json.hpp>
 

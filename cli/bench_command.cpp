@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "cli/json_words.hpp"
+#include "cli/json_members.hpp"
 
 namespace stickslip::cli {
 

@@ -31,20 +31,20 @@ std::string shown(const Estimate& estimate) {
   return fmt::format("{:.5f} ± {:.5f}", *estimate.value, *estimate.standard_error);
 }
 
-std::string label(const analysis::Kept& kept) {
-  return kept.nothing() ? "all taken care of" : analysis::text_of(kept) + " kept";
+std::string label(const analysis::SkippedCorrections& skipped) {
+  return skipped.none() ? "all taken care of" : analysis::text_of(skipped) + " kept";
 }
 
 }  // namespace
 
 base::Result<std::vector<Effect>> effects_of(record::Record record, const estimate::SharedPrior& prior) {
   std::vector<Effect> effects{{{}, {}}};
-  for (const analysis::KeptName& name : analysis::kKeptNames) {
+  for (const analysis::CorrectionName& name : analysis::kCorrectionNames) {
     effects.emplace_back();
-    effects.back().kept.*name.flag = true;
+    effects.back().skipped.*name.flag = true;
   }
   for (Effect& effect : effects) {
-    record.header.process.kept = analysis::text_of(effect.kept);
+    record.header.process.kept = analysis::text_of(effect.skipped);
     base::Result<evaluation::TesterAnalysis> analysed = evaluation::analyse_with_tester(record, prior);
     if (!analysed) return tl::unexpected(analysed.error());
     effect.results = std::move(analysed->end.results);
@@ -66,8 +66,8 @@ std::string effects_text(std::span<const Effect> effects) {
     const Estimate& all = effects.front().results.delta_mu;
     io::Table::Cell change = "";
     if (&effect != &effects.front() && own.value && all.value) change = *own.value - *all.value;
-    table.add({label(effect.kept), shown(effect.results.mu_s), shown(effect.results.mu_k), shown(own), change,
-               io::cell(effect.results.static_coefficient.value),
+    table.add({label(effect.skipped), shown(effect.results.mu_s), shown(effect.results.mu_k), shown(own),
+               change, io::cell(effect.results.static_coefficient.value),
                io::cell(model::name(effect.results.regime))});
     if (!own.value) table.add({fmt::format("{}  no S−K: {}", io::kAbsent, own.reason)});
   }
@@ -77,7 +77,7 @@ std::string effects_text(std::span<const Effect> effects) {
 nlohmann::ordered_json effects_json(std::span<const Effect> effects) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const Effect& effect : effects) {
-    nlohmann::ordered_json own{{"kept", analysis::text_of(effect.kept)},
+    nlohmann::ordered_json own{{"kept", analysis::text_of(effect.skipped)},
                                {"regime", model::name(effect.results.regime)}};
     for (const auto& [name, estimate] : kShown) {
       own[std::string{name}] = io::or_null((effect.results.*estimate).value);

@@ -8,8 +8,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "core/analysis/kept.hpp"
 #include "core/analysis/results.hpp"
+#include "core/analysis/skipped_corrections.hpp"
 #include "core/base/result.hpp"
 #include "core/estimate/shared_prior.hpp"
 #include "core/record/record.hpp"
@@ -17,16 +17,18 @@
 namespace stickslip::cli {
 
 struct Effect {
-  analysis::Kept kept;
+  analysis::SkippedCorrections skipped;
   analysis::TestResults results;
 };
 
-/// The record analysed with nothing kept, and with each of analysis::kKeptNames kept alone, in this order.
+/// The record analysed with all corrections, and without each of analysis::kCorrectionNames in turn, in this
+/// order.
 /// \param prior  as analyse_with_tester(). Errors: as there.
 [[nodiscard]] base::Result<std::vector<Effect>> effects_of(record::Record record,
                                                            const estimate::SharedPrior& prior);
 
-/// A table of S, K, S − K and the traditional static coefficient, with what each kept thing changed S − K by.
+/// A table of S, K, S − K and the traditional static coefficient, with the change of S − K by each skipped
+/// correction.
 /// \param effects  of effects_of().
 [[nodiscard]] std::string effects_text(std::span<const Effect> effects);
 

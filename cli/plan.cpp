@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "cli/ask.hpp"
-#include "cli/json_words.hpp"
+#include "cli/json_members.hpp"
 #include "cli/plan_keys.hpp"
 #include "cli/subcommands.hpp"
 #include "io/table.hpp"

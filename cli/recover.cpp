@@ -22,7 +22,7 @@ namespace stickslip::cli {
 namespace {
 
 /// Tells on stdout what became of each journal.
-class Teller final : public daemon::Facts {
+class Teller final : public daemon::EventReceiver {
  public:
   void orphan_finalised(const std::filesystem::path& file) override {
     fmt::print("made     {}\n", base::printable(file.string()));

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cli/ask.hpp"
-#include "cli/json_words.hpp"
+#include "cli/json_members.hpp"
 #include "cli/subcommands.hpp"
 #include "io/table.hpp"
 #include <nlohmann/json.hpp>

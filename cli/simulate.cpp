@@ -12,7 +12,7 @@
 #include "cli/subcommands.hpp"
 #include "io/json_text.hpp"
 #include "io/results_json.hpp"
-#include "report/table.hpp"
+#include "report/truth_table.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/record/finaliser.hpp"

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "cli/json_words.hpp"
+#include "cli/json_members.hpp"
 #include "cli/paint.hpp"
 #include "cli/subcommands.hpp"
 #include "io/json_text.hpp"

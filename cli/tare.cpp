@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cli/bench_command.hpp"
-#include "cli/json_words.hpp"
+#include "cli/json_members.hpp"
 
 namespace stickslip::cli {
 namespace {

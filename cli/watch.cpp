@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "cli/ask.hpp"
-#include "cli/json_words.hpp"
+#include "cli/json_members.hpp"
 #include "cli/subcommands.hpp"
 #include "io/print_text.hpp"
 #include <nlohmann/json.hpp>

@@ -316,9 +316,9 @@ DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
   const auto estimator =
       analysis.choice<detect::EstimatorTier>("estimator", kEstimators, detect::EstimatorTier::kFit);
   if (analysis.has("estimator")) config.estimator = estimator;
-  config.kept = {.spikes = analysis.boolean("keep_spikes", false),
-                 .drift = analysis.boolean("keep_drift", false),
-                 .first_slip = analysis.boolean("keep_first_slip", false)};
+  config.skipped = {.spikes = analysis.boolean("keep_spikes", false),
+                    .drift = analysis.boolean("keep_drift", false),
+                    .first_slip = analysis.boolean("keep_first_slip", false)};
   Settings record = settings.table("record");
   config.record_folder = record.text("folder", "records");
   if (config.record_folder.empty()) record.refuse("folder", "must name a folder");

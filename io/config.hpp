@@ -10,7 +10,7 @@
 #include "io/dated_folders.hpp"
 #include "io/fleet_settings.hpp"
 
-#include "core/analysis/kept.hpp"
+#include "core/analysis/skipped_corrections.hpp"
 #include "core/base/result.hpp"
 #include "core/base/settings.hpp"
 #include "core/daq/calibration.hpp"
@@ -63,7 +63,7 @@ struct DaemonConfig {
   record::SampleFacts sample;
   /// Absent: that of a replayed record, else "fit".
   std::optional<detect::EstimatorTier> estimator;
-  analysis::Kept kept;
+  analysis::SkippedCorrections skipped;
   std::filesystem::path record_folder;
   DatedFolders dated_folders = DatedFolders::kNone;
   bool read_only_records = false;

@@ -12,9 +12,9 @@
 #include "core/base/text.hpp"
 #include "core/daq/calibration.hpp"
 #include "core/daq/second_channel.hpp"
+#include "core/record/enum_names.hpp"
 #include "core/record/fields.hpp"
 #include "core/record/iso_time.hpp"
-#include "core/record/words.hpp"
 
 namespace stickslip::io {
 namespace {

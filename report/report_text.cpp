@@ -12,7 +12,7 @@
 
 #include "io/table.hpp"
 #include "report/millimetres.hpp"
-#include "report/table.hpp"
+#include "report/truth_table.hpp"
 
 #include "core/base/text.hpp"
 

@@ -6,7 +6,7 @@
 #include "report/trace_json.hpp"
 #include <nlohmann/json.hpp>
 
-#include "core/analysis/kept.hpp"
+#include "core/analysis/skipped_corrections.hpp"
 #include "core/base/wording.hpp"
 #include "core/model/method.hpp"
 #include "core/record/method_text.hpp"
@@ -81,10 +81,10 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
       test.trace = trace->dump();
     }
     test.truth = std::move(record->end->truth);
-    const analysis::Kept kept =
-        analysis::kept_from_text(record->header.process.kept).value_or(analysis::Kept{});
+    const analysis::SkippedCorrections skipped =
+        analysis::skipped_from_text(record->header.process.kept).value_or(analysis::SkippedCorrections{});
     material.measured.push_back({tester.pull_speed_m_per_s, std::move(record->end->results),
-                                 analysis::slip_sums(record->cycles, kept.first_slip)});
+                                 analysis::slip_sums(record->cycles, skipped.first_slip)});
     material.tests.push_back(std::move(test));
   }
   if (material.tests.empty() && !material.voided.empty()) {

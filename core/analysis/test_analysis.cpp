@@ -101,7 +101,7 @@ TestAnalysis::TestAnalysis(const AnalysisSettings& settings)
       saturated_(settings.scratch_folder),
       speeds_m_per_s_(settings.scratch_folder),
       live_({settings.scan_rate_Hz, settings.step_coefficient, settings.estimator, settings.prior,
-             !settings.kept.spikes}),
+             !settings.skipped.spikes}),
       live_cycles_(settings.scratch_folder) {
   constexpr std::size_t kRoom = 100;
   new_cycles_.reserve(kRoom);
@@ -174,8 +174,8 @@ TestResults TestAnalysis::finish() {
   results.transition_time = Estimate::none("no transition");
 
   estimate::Trace trace = despiked_trace();
-  results.spike_count = settings_.kept.spikes ? Estimate::none("spikes are kept, and not looked for")
-                                              : Estimate::of(static_cast<double>(spikes_.size()));
+  results.spike_count = settings_.skipped.spikes ? Estimate::none("spikes are kept, and not looked for")
+                                                 : Estimate::of(static_cast<double>(spikes_.size()));
   if (trace.size() < signal::kFewestScansForNoise) {
     too_short(trace.size(), results);
     return results;
@@ -188,7 +188,10 @@ TestResults TestAnalysis::finish() {
   results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
   const TraditionalCoefficients traditional =
       traditional_coefficients(trace, slips, settings_.method, settings_.tester.pull_speed_m_per_s);
-  results.static_coefficient = traditional.static_coefficient;
+  results.static_coefficient =
+      traditional.static_coefficient.value && begins_under_load(trace)
+          ? Estimate::none("the trace begins under load: the peak before the first slip is not in it")
+          : traditional.static_coefficient;
   results.kinetic_coefficient = traditional.kinetic_coefficient;
   if (slips.empty()) {
     const detect::RegimeVerdict verdict = detect::judge_regime(0, {}, true);
@@ -251,7 +254,7 @@ estimate::Trace TestAnalysis::despiked_trace() {
     trace.usable.push_back(!scan.spike && saturated[k] == 0 ? 1 : 0);
   };
   for (const double coefficient : measured) {
-    if (settings_.kept.spikes) {
+    if (settings_.skipped.spikes) {
       take({coefficient, false});
     } else if (const auto scan = despiker.add(coefficient, sigma)) {
       take(*scan);
@@ -272,7 +275,7 @@ Estimate TestAnalysis::transition_time(const estimate::Trace& trace, const TestE
 TestEstimates TestAnalysis::estimate_without_fit(const estimate::Trace& trace,
                                                  const base::LongColumn<detect::Fall>& slips) const {
   LiveSettlement settlement;
-  settlement.first_counts = settings_.kept.first_slip;
+  settlement.first_counts = settings_.skipped.first_slip;
   settlement.reason =
       fmt::format("the estimator \"{}\" does not fit the whole test; \"fit\" does, also afterwards",
                   detect::name(settings_.estimator));
@@ -282,11 +285,11 @@ TestEstimates TestAnalysis::estimate_without_fit(const estimate::Trace& trace,
 TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                      double sigma) {
   // Where the speed changes, the mean of a cycle does so too, without any drift of the paper.
-  if (!settings_.kept.drift && trace.belt.is_constant()) trace.drift = significant_drift(trace, slips);
+  if (!settings_.skipped.drift && trace.belt.is_constant()) trace.drift = significant_drift(trace, slips);
   trace.belt.take_off_drift(trace.drift.rate_per_s);
   const auto estimates = [&](const estimate::SharedPrior& prior) {
     return estimate_in_sections(trace, slips, sigma, prior, settings_.tester, settings_.scratch_folder,
-                                kMostSlipsTogether, settings_.kept.first_slip);
+                                kMostSlipsTogether, settings_.skipped.first_slip);
   };
   TestEstimates alone = estimates({});
   if (alone.model_describes) tester_ = alone.tester;

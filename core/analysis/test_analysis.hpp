@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "core/analysis/characterisation.hpp"
-#include "core/analysis/kept.hpp"
 #include "core/analysis/results.hpp"
 #include "core/analysis/sections.hpp"
+#include "core/analysis/skipped_corrections.hpp"
 #include "core/base/long_column.hpp"
 #include "core/base/scan_index.hpp"
 #include "core/detect/cycle.hpp"
@@ -42,7 +42,7 @@ struct AnalysisSettings {
   /// needs them.
   detect::EstimatorTier estimator = detect::EstimatorTier::kFit;
   estimate::SharedPrior prior;  ///< Of the tester's parameters; may be empty.
-  Kept kept;                    ///< Corrections to leave out, to show their effect.
+  SkippedCorrections skipped;   ///< Corrections to leave out, to show their effect.
   /// Folder for a scratch file that holds the scans of a long test except the latest few minutes; empty: all
   /// in memory.
   std::filesystem::path scratch_folder;

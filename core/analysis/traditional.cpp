@@ -45,15 +45,6 @@ Estimate largest_scan(const estimate::Trace& trace, const detect::Fall& slip) {
   return Estimate::of(largest);
 }
 
-/// Whether the trace begins while the sled slides: half of its first scans are above half of the largest.
-bool begins_under_load(const estimate::Trace& trace) {
-  const double half = 0.5 * *std::max_element(trace.value.begin(), trace.value.end());
-  const auto first = std::min<std::ptrdiff_t>(kFirstScans, static_cast<std::ptrdiff_t>(trace.size()));
-  const auto loaded = std::count_if(trace.value.begin(), trace.value.begin() + first,
-                                    [half](double value) { return value >= half; });
-  return 2 * loaded > first;
-}
-
 /// Peak to peak: a whole number of cycles, so that the phase does not matter.
 Estimate mean_of_cycles(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                         int cycles) {
@@ -96,6 +87,14 @@ Estimate mean_of_travel(const estimate::Trace& trace, double start_s, const mode
 
 }  // namespace
 
+bool begins_under_load(const estimate::Trace& trace) {
+  const double half = 0.5 * *std::max_element(trace.value.begin(), trace.value.end());
+  const auto first = std::min<std::ptrdiff_t>(kFirstScans, static_cast<std::ptrdiff_t>(trace.size()));
+  const auto loaded = std::count_if(trace.value.begin(), trace.value.begin() + first,
+                                    [half](double value) { return value >= half; });
+  return 2 * loaded > first;
+}
+
 TraditionalCoefficients traditional_coefficients(const estimate::Trace& trace,
                                                  const base::LongColumn<detect::Fall>& slips,
                                                  const model::Method& method,
@@ -115,10 +114,6 @@ TraditionalCoefficients traditional_coefficients(const estimate::Trace& trace,
       slips.size() < wanted ? Estimate::none(fmt::format("{} slips, the method reads the peak of slip {}",
                                                          slips.size(), wanted))
                             : largest_scan(trace, slips[wanted - 1]);
-  if (begins_under_load(trace)) {
-    result.static_coefficient =
-        Estimate::none("the trace begins under load: the peak before the first slip is not in it");
-  }
   result.kinetic_coefficient = method.kinetic_travel
                                    ? mean_of_travel(trace, estimate::time_at(trace, slips.front().peak_at),
                                                     *method.kinetic_travel, pull_speed_m_per_s)

@@ -13,8 +13,7 @@
 namespace stickslip::analysis {
 
 struct TraditionalCoefficients {
-  /// Largest scan of the peak of slip method.static_slip; none where the trace begins under load.
-  Estimate static_coefficient;
+  Estimate static_coefficient;   ///< Largest scan of the peak of slip method.static_slip.
   Estimate kinetic_coefficient;  ///< Mean over the cycles, peak to peak, or the travel after the first peak.
 };
 
@@ -27,5 +26,9 @@ struct TraditionalCoefficients {
                                                                const base::LongColumn<detect::Fall>& slips,
                                                                const model::Method& method,
                                                                std::optional<double> pull_speed_m_per_s = {});
+
+/// Whether the trace begins while the sled slides: half of its first scans are above half of the largest. The
+/// first peak is then no static one.
+[[nodiscard]] bool begins_under_load(const estimate::Trace& trace);
 
 }  // namespace stickslip::analysis

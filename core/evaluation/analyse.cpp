@@ -18,14 +18,15 @@ namespace {
 
 analysis::AnalysisSettings settings_of(const record::RecordHeader& header,
                                        const daq::Calibration& calibration, const model::Method& method,
-                                       detect::EstimatorTier estimator, const analysis::Kept& kept) {
+                                       detect::EstimatorTier estimator,
+                                       const analysis::SkippedCorrections& skipped) {
   analysis::AnalysisSettings settings;
   settings.scan_rate_Hz = header.board.scan_rate_granted_Hz;
   settings.step_coefficient = calibration.step_coefficient();
   settings.tester = header.tester.tester();
   settings.method = method;
   settings.estimator = estimator;
-  settings.kept = kept;
+  settings.skipped = skipped;
   return settings;
 }
 
@@ -50,8 +51,9 @@ base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& he
   if (!method) return tl::unexpected(method.error());
   const base::Result<detect::EstimatorTier> estimator = record::estimator_of(header.process);
   if (!estimator) return tl::unexpected(estimator.error());
-  const std::optional<analysis::Kept> kept = analysis::kept_from_text(header.process.kept);
-  if (!kept) {
+  const std::optional<analysis::SkippedCorrections> skipped =
+      analysis::skipped_from_text(header.process.kept);
+  if (!skipped) {
     return base::usage_error(
         "process/kept \"{}\" is not of \"spikes\", \"drift\" and \"first-slip\" with commas between",
         base::one_line(header.process.kept, 100));
@@ -66,7 +68,7 @@ base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& he
   try {
     daq::Calibration calibration{header.board, header.load_cell.value_or(daq::LoadCell{}),
                                  header.tester.tester().normal_load_N()};
-    analysis::AnalysisSettings settings = settings_of(header, calibration, *method, *estimator, *kept);
+    analysis::AnalysisSettings settings = settings_of(header, calibration, *method, *estimator, *skipped);
     settings.scratch_folder = scratch_folder;
     settings.prior = prior.empty() ? recorded : prior;
     std::optional<daq::SecondChannel> speed;

@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "core/base/contract.hpp"
+#include "core/record/enum_names.hpp"
 #include "core/record/json_codec.hpp"
-#include "core/record/words.hpp"
 
 namespace stickslip::record {
 namespace {

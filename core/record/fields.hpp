@@ -26,53 +26,53 @@ struct FieldName {
   std::string_view long_name;  ///< With the unit, for axes; empty for text.
 };
 
-/// `const Facts` or `Facts`: each table serves reading and writing.
-template <typename T, typename Facts>
-concept FieldsOf = std::same_as<std::remove_const_t<T>, Facts>;
+/// `const Fields` or `Fields`: each table serves reading and writing.
+template <typename T, typename Fields>
+concept FieldsOf = std::same_as<std::remove_const_t<T>, Fields>;
 
-template <FieldsOf<TesterFacts> Facts, typename Visitor>
-void for_each_field(Facts& facts, Visitor&& visit) {
-  visit(FieldName{"sled_mass", "kg", "mass of the sled [kg]"}, facts.sled_mass_kg);
-  visit(FieldName{"gravity", "m/s^2", "acceleration of gravity [m/s^2]"}, facts.gravity_m_per_s2);
-  visit(FieldName{"pull_speed", "m/s", "nominal pull speed [m/s]"}, facts.pull_speed_m_per_s);
-  visit(FieldName{"stiffness", "N/m", "stiffness of the coupling [N/m]"}, facts.stiffness_N_per_m);
-  visit(FieldName{"speed_course", "", ""}, facts.speed_course);
+template <FieldsOf<TesterFacts> Fields, typename Visitor>
+void for_each_field(Fields& fields, Visitor&& visit) {
+  visit(FieldName{"sled_mass", "kg", "mass of the sled [kg]"}, fields.sled_mass_kg);
+  visit(FieldName{"gravity", "m/s^2", "acceleration of gravity [m/s^2]"}, fields.gravity_m_per_s2);
+  visit(FieldName{"pull_speed", "m/s", "nominal pull speed [m/s]"}, fields.pull_speed_m_per_s);
+  visit(FieldName{"stiffness", "N/m", "stiffness of the coupling [N/m]"}, fields.stiffness_N_per_m);
+  visit(FieldName{"speed_course", "", ""}, fields.speed_course);
 }
 
-template <FieldsOf<CalibrationFacts> Facts, typename Visitor>
-void for_each_field(Facts& facts, Visitor&& visit) {
-  visit(FieldName{"date", "", ""}, facts.date);
-  visit(FieldName{"certificate", "", ""}, facts.certificate);
+template <FieldsOf<CalibrationFacts> Fields, typename Visitor>
+void for_each_field(Fields& fields, Visitor&& visit) {
+  visit(FieldName{"date", "", ""}, fields.date);
+  visit(FieldName{"certificate", "", ""}, fields.certificate);
   visit(FieldName{"gain_standard_error", "N/V", "standard error of the load cell gain [N/V]"},
-        facts.gain_standard_error_N_per_V);
+        fields.gain_standard_error_N_per_V);
   visit(FieldName{"zero_standard_error", "V", "standard error of the load cell zero [V]"},
-        facts.zero_standard_error_V);
+        fields.zero_standard_error_V);
   visit(FieldName{"residual", "V", "standard deviation of the readings about the line [V]"},
-        facts.residual_V);
+        fields.residual_V);
   visit(FieldName{"hysteresis", "V", "reading under falling less that under rising loads [V]"},
-        facts.hysteresis_V);
-  visit(FieldName{"expires", "", ""}, facts.expires);
-  visit(FieldName{"weight_mass", "kg", "mass of each weight hung [kg]"}, facts.mass_kg);
-  visit(FieldName{"weight_force", "N", "force of each weight hung [N]"}, facts.force_N);
-  visit(FieldName{"weight_voltage", "V", "voltage under each weight [V]"}, facts.voltage_V);
+        fields.hysteresis_V);
+  visit(FieldName{"expires", "", ""}, fields.expires);
+  visit(FieldName{"weight_mass", "kg", "mass of each weight hung [kg]"}, fields.mass_kg);
+  visit(FieldName{"weight_force", "N", "force of each weight hung [N]"}, fields.force_N);
+  visit(FieldName{"weight_voltage", "V", "voltage under each weight [V]"}, fields.voltage_V);
   visit(FieldName{"weight_voltage_standard_error", "V", "standard error of the voltage [V]"},
-        facts.voltage_standard_error_V);
+        fields.voltage_standard_error_V);
   visit(FieldName{"weight_residual", "V", "voltage under each weight less that of the line [V]"},
-        facts.point_residual_V);
-  visit(FieldName{"weight_refused", "", ""}, facts.refused);
+        fields.point_residual_V);
+  visit(FieldName{"weight_refused", "", ""}, fields.refused);
 }
 
-template <FieldsOf<PlanFacts> Facts, typename Visitor>
-void for_each_field(Facts& facts, Visitor&& visit) {
+template <FieldsOf<PlanFacts> Fields, typename Visitor>
+void for_each_field(Fields& fields, Visitor&& visit) {
   visit(FieldName{"start_coefficient", "1", "a test begins above this coefficient [1]"},
-        facts.start_coefficient);
-  visit(FieldName{"start_dwell", "s", "for so long [s]"}, facts.start_dwell_s);
-  visit(FieldName{"pre_trigger", "s", "kept from before the trigger [s]"}, facts.pre_trigger_s);
-  visit(FieldName{"end_coefficient", "1", "a test ends below this coefficient [1]"}, facts.end_coefficient);
-  visit(FieldName{"end_dwell", "s", "for so long [s]"}, facts.end_dwell_s);
-  visit(FieldName{"no_motion_dwell", "s", "or when it lies flat for so long [s]"}, facts.no_motion_dwell_s);
+        fields.start_coefficient);
+  visit(FieldName{"start_dwell", "s", "for so long [s]"}, fields.start_dwell_s);
+  visit(FieldName{"pre_trigger", "s", "kept from before the trigger [s]"}, fields.pre_trigger_s);
+  visit(FieldName{"end_coefficient", "1", "a test ends below this coefficient [1]"}, fields.end_coefficient);
+  visit(FieldName{"end_dwell", "s", "for so long [s]"}, fields.end_dwell_s);
+  visit(FieldName{"no_motion_dwell", "s", "or when it lies flat for so long [s]"}, fields.no_motion_dwell_s);
   visit(FieldName{"unloaded_level", "1", "above this coefficient, which the unloaded cell read [1]"},
-        facts.unloaded_level);
+        fields.unloaded_level);
 }
 
 /// All fields except the scans, which are stored like those of the record.
@@ -98,40 +98,40 @@ void for_each_field(Check& check, Visitor&& visit) {
   visit(FieldName{"findings", "", ""}, check.findings);
 }
 
-template <FieldsOf<daq::LoadCell> Facts, typename Visitor>
-void for_each_field(Facts& facts, Visitor&& visit) {
-  visit(FieldName{"gain", "N/V", "force per voltage of the load cell [N/V]"}, facts.gain_N_per_V);
-  visit(FieldName{"zero", "V", "voltage at no force [V]"}, facts.zero_V);
+template <FieldsOf<daq::LoadCell> Fields, typename Visitor>
+void for_each_field(Fields& fields, Visitor&& visit) {
+  visit(FieldName{"gain", "N/V", "force per voltage of the load cell [N/V]"}, fields.gain_N_per_V);
+  visit(FieldName{"zero", "V", "voltage at no force [V]"}, fields.zero_V);
 }
 
-template <FieldsOf<SampleFacts> Facts, typename Visitor>
-void for_each_field(Facts& facts, Visitor&& visit) {
-  visit(FieldName{"name", "", ""}, facts.name);
-  visit(FieldName{"grade", "", ""}, facts.grade);
-  visit(FieldName{"direction", "", ""}, facts.direction);
-  visit(FieldName{"side", "", ""}, facts.side);
-  visit(FieldName{"replicate", "1", "number of the replicate, from 1 [1]"}, facts.replicate);
-  visit(FieldName{"slide", "1", "number of the pull of this sheet, from 1 [1]"}, facts.slide);
-  visit(FieldName{"batch", "", ""}, facts.batch);
+template <FieldsOf<SampleFacts> Fields, typename Visitor>
+void for_each_field(Fields& fields, Visitor&& visit) {
+  visit(FieldName{"name", "", ""}, fields.name);
+  visit(FieldName{"grade", "", ""}, fields.grade);
+  visit(FieldName{"direction", "", ""}, fields.direction);
+  visit(FieldName{"side", "", ""}, fields.side);
+  visit(FieldName{"replicate", "1", "number of the replicate, from 1 [1]"}, fields.replicate);
+  visit(FieldName{"slide", "1", "number of the pull of this sheet, from 1 [1]"}, fields.slide);
+  visit(FieldName{"batch", "", ""}, fields.batch);
 }
 
-template <FieldsOf<ProcessFacts> Facts, typename Visitor>
-void for_each_field(Facts& facts, Visitor&& visit) {
-  visit(FieldName{"program", "", ""}, facts.program);
-  visit(FieldName{"version", "", ""}, facts.version);
-  visit(FieldName{"commit", "", ""}, facts.commit);
-  visit(FieldName{"configuration", "", ""}, facts.configuration);
-  visit(FieldName{"estimator", "", ""}, facts.estimator);
-  visit(FieldName{"method", "", ""}, facts.method);
-  visit(FieldName{"kept", "", ""}, facts.kept);
-  visit(FieldName{"characterisation", "", ""}, facts.characterisation);
-  visit(FieldName{"realtime", "", ""}, facts.realtime);
-  visit(FieldName{"simulation", "", ""}, facts.simulation);
-  visit(FieldName{"source_file", "", ""}, facts.source_file);
-  visit(FieldName{"source_size", "1", "bytes of the imported file [1]"}, facts.source_size);
-  visit(FieldName{"source_sha256", "", ""}, facts.source_sha256);
-  visit(FieldName{"source_reading", "", ""}, facts.source_reading);
-  visit(FieldName{"source_command", "", ""}, facts.source_command);
+template <FieldsOf<ProcessFacts> Fields, typename Visitor>
+void for_each_field(Fields& fields, Visitor&& visit) {
+  visit(FieldName{"program", "", ""}, fields.program);
+  visit(FieldName{"version", "", ""}, fields.version);
+  visit(FieldName{"commit", "", ""}, fields.commit);
+  visit(FieldName{"configuration", "", ""}, fields.configuration);
+  visit(FieldName{"estimator", "", ""}, fields.estimator);
+  visit(FieldName{"method", "", ""}, fields.method);
+  visit(FieldName{"kept", "", ""}, fields.kept);
+  visit(FieldName{"characterisation", "", ""}, fields.characterisation);
+  visit(FieldName{"realtime", "", ""}, fields.realtime);
+  visit(FieldName{"simulation", "", ""}, fields.simulation);
+  visit(FieldName{"source_file", "", ""}, fields.source_file);
+  visit(FieldName{"source_size", "1", "bytes of the imported file [1]"}, fields.source_size);
+  visit(FieldName{"source_sha256", "", ""}, fields.source_sha256);
+  visit(FieldName{"source_reading", "", ""}, fields.source_reading);
+  visit(FieldName{"source_command", "", ""}, fields.source_command);
 }
 
 /// All fields of the second channel except its quantity, which must be set before the call.
@@ -201,13 +201,13 @@ void for_each_field(Truth& truth, Visitor&& visit) {
   visit(FieldName{"amplitude", "1", "true half range of the first full cycle [1]"}, truth.amplitude);
 }
 
-template <FieldsOf<model::SolverFacts> Facts, typename Visitor>
-void for_each_field(Facts& facts, Visitor&& visit) {
-  visit(FieldName{"method", "", ""}, facts.method);
-  visit(FieldName{"accuracy", "1", "largest error of the coefficient to be expected [1]"}, facts.accuracy);
-  visit(FieldName{"accuracy_asked", "1", "accuracy that the scene asks for [1]"}, facts.accuracy_asked);
+template <FieldsOf<model::SolverFacts> Fields, typename Visitor>
+void for_each_field(Fields& fields, Visitor&& visit) {
+  visit(FieldName{"method", "", ""}, fields.method);
+  visit(FieldName{"accuracy", "1", "largest error of the coefficient to be expected [1]"}, fields.accuracy);
+  visit(FieldName{"accuracy_asked", "1", "accuracy that the scene asks for [1]"}, fields.accuracy_asked);
   visit(FieldName{"time_per_scan", "s", "time taken by the simulation for each scan [s]"},
-        facts.time_per_scan_s);
+        fields.time_per_scan_s);
 }
 
 /// Columns of the table of cycles. \param visit  called as visit(FieldName, member pointer).

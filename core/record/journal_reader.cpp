@@ -11,7 +11,7 @@
 #include "core/record/journal.hpp"
 #include "core/record/journal_entries.hpp"
 #include "core/record/json_codec.hpp"
-#include "core/record/possible.hpp"
+#include "core/record/range_check.hpp"
 
 namespace stickslip::record {
 namespace {
@@ -68,8 +68,8 @@ class Content {
   void add(const Entry& entry, std::uint64_t position) {
     Record& record = reading_.record;
     const auto place = [&](std::size_t count) {
-      const daq::ScanIndex first = possible(entry.head.first_scan);
-      if (count > 0) possible(first + static_cast<daq::ScanIndex>(count) - 1);
+      const daq::ScanIndex first = range_checked(entry.head.first_scan);
+      if (count > 0) range_checked(first + static_cast<daq::ScanIndex>(count) - 1);
       return EntryPlace{position, kEntryHeadSize + entry.payload.size(), first, count};
     };
     switch (static_cast<EntryType>(entry.head.type)) {
@@ -95,7 +95,7 @@ class Content {
         return;
       case EntryType::kAnchor: {
         const auto times = values_of<std::int64_t>(entry.payload);
-        record.anchors.push_back(possible(ClockAnchor{entry.head.first_scan, times.at(0), times.at(1)}));
+        record.anchors.push_back(range_checked(ClockAnchor{entry.head.first_scan, times.at(0), times.at(1)}));
         return;
       }
       case EntryType::kEvent:

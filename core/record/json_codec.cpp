@@ -3,10 +3,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/record/enum_names.hpp"
 #include "core/record/estimator_field.hpp"
 #include "core/record/json_fields.hpp"
-#include "core/record/possible.hpp"
-#include "core/record/words.hpp"
+#include "core/record/range_check.hpp"
 
 namespace stickslip::record {
 
@@ -17,27 +17,27 @@ std::string header_to_json(const RecordHeader& header) {
   for_each_rate_field(header.board, putter(board));
   board["quantity"] = name(header.board.quantity).name;
   if (header.board.second) {
-    board["second"] = facts_to_json(*header.board.second);
+    board["second"] = fields_to_json(*header.board.second);
     board["second"]["quantity"] = daq::name(header.board.second->quantity);
   }
 
   Json object{{"format", kFormat},
               {"format_version", kFormatVersion},
               {"board", std::move(board)},
-              {"calibration", facts_to_json(header.calibration)},
-              {"tester", facts_to_json(header.tester)},
-              {"sample", facts_to_json(header.sample)},
-              {"process", facts_to_json(header.process)}};
+              {"calibration", fields_to_json(header.calibration)},
+              {"tester", fields_to_json(header.tester)},
+              {"sample", fields_to_json(header.sample)},
+              {"process", fields_to_json(header.process)}};
   put(object, "uuid", header.uuid);
   put(object, "title", header.title);
   put(object, "test_number", header.test_number);
   put(object, "trigger_scan", header.trigger_scan);
   put(object, "start_realtime_ns", header.start_realtime_ns);
   put(object, "operator", header.sample.operator_name);
-  if (header.load_cell) object["load_cell"] = facts_to_json(*header.load_cell);
-  if (const Json plan = facts_to_json(header.plan); !plan.empty()) object["plan"] = plan;
+  if (header.load_cell) object["load_cell"] = fields_to_json(*header.load_cell);
+  if (const Json plan = fields_to_json(header.plan); !plan.empty()) object["plan"] = plan;
   if (header.self_check) {
-    object["self_check"] = facts_to_json(*header.self_check);
+    object["self_check"] = fields_to_json(*header.self_check);
     put(object["self_check"], "raw", header.self_check->raw);
   }
   return dump(object);
@@ -99,9 +99,9 @@ std::string gap_to_json(const daq::Gap& gap) {
 daq::Gap gap_from_json(std::string_view text) {
   const Json object = Json::parse(text);
   const auto cause = object.at("cause").get<std::string>();
-  return possible(daq::Gap{object.at("first_scan").get<daq::ScanIndex>(),
-                           object.at("scan_count").get<std::int64_t>(), object.at("estimated").get<bool>(),
-                           word(cause, gap_cause_from_name(cause))});
+  return range_checked(daq::Gap{object.at("first_scan").get<daq::ScanIndex>(),
+                                object.at("scan_count").get<std::int64_t>(),
+                                object.at("estimated").get<bool>(), word(cause, gap_cause_from_name(cause))});
 }
 
 std::string cycle_to_json(const detect::Cycle& cycle) { return dump(cycle_to_array(cycle)); }
@@ -114,8 +114,8 @@ std::string event_to_json(const Event& event) {
 
 Event event_from_json(std::string_view text) {
   const Json object = Json::parse(text);
-  return {possible(object.at("scan").get<daq::ScanIndex>()), object.at("realtime_ns").get<std::int64_t>(),
-          object.at("text").get<std::string>()};
+  return {range_checked(object.at("scan").get<daq::ScanIndex>()),
+          object.at("realtime_ns").get<std::int64_t>(), object.at("text").get<std::string>()};
 }
 
 }  // namespace stickslip::record

@@ -6,9 +6,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/record/enum_names.hpp"
 #include "core/record/json_codec.hpp"
 #include "core/record/json_fields.hpp"
-#include "core/record/words.hpp"
 
 namespace stickslip::record {
 namespace {
@@ -54,11 +54,11 @@ analysis::TestResults results_from_json(const Json& object) {
 }
 
 Json truth_to_json(const model::TestTruth& truth) {
-  Json object = facts_to_json(truth);
+  Json object = fields_to_json(truth);
   object["regime"] = model::name(truth.regime);
   object["mode_count"] = truth.modes.size();
   object["cycle_count"] = truth.cycles.size();
-  if (truth.solver) object["solver"] = facts_to_json(*truth.solver);
+  if (truth.solver) object["solver"] = fields_to_json(*truth.solver);
   return object;
 }
 

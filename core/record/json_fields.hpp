@@ -104,10 +104,10 @@ inline auto taker(const Json& object) {
   return [&object](const FieldName& name, auto& value) { take(object, name.name, value); };
 }
 
-template <typename Facts>
-Json facts_to_json(const Facts& facts) {
+template <typename Fields>
+Json fields_to_json(const Fields& fields) {
   Json object = Json::object();
-  for_each_field(facts, putter(object));
+  for_each_field(fields, putter(object));
   return object;
 }
 

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "core/daq/calibration.hpp"
+#include "core/record/enum_names.hpp"
 #include "core/record/hdf_read.hpp"
 #include "core/record/judge.hpp"
 #include "core/record/layout.hpp"
-#include "core/record/possible.hpp"
+#include "core/record/range_check.hpp"
 #include "core/record/sha256.hpp"
-#include "core/record/words.hpp"
 
 namespace stickslip::record {
 namespace {
@@ -89,7 +89,7 @@ void judge_columns(hid_t raw, const std::string& name, const Record& record, Ver
     std::vector<float> force_N(forces ? count : 0);
     read_rows<double>(times, "time", row, time_s);
     read_rows<std::int64_t>(indices, "scan", row, scan);
-    for (const daq::ScanIndex index : scan) possible(index);
+    for (const daq::ScanIndex index : scan) range_checked(index);
     read_rows<Stored>(values, name, row, value);
     read_rows<std::uint8_t>(flags, "flags", row, flag);
     if (forces) read_rows<float>(*forces, "force", row, force_N);

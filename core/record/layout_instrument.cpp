@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/record/enum_names.hpp"
 #include "core/record/hdf_read.hpp"
 #include "core/record/hdf_write.hpp"
 #include "core/record/layout.hpp"
-#include "core/record/possible.hpp"
-#include "core/record/words.hpp"
+#include "core/record/range_check.hpp"
 
 namespace stickslip::record {
 namespace {
@@ -62,7 +62,7 @@ void read_timing(hid_t entry, Record& record) {
   const auto monotonic = read_column<std::int64_t>(group.get(), "monotonic_raw", scan.size());
   const auto realtime = read_column<std::int64_t>(group.get(), "realtime", scan.size());
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    record.anchors.push_back(possible(ClockAnchor{scan[i], monotonic[i], realtime[i]}));
+    record.anchors.push_back(range_checked(ClockAnchor{scan[i], monotonic[i], realtime[i]}));
   }
   record.end->read_latency = read_latency(group.get());
 }

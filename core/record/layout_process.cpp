@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
+#include "core/record/enum_names.hpp"
 #include "core/record/estimator_field.hpp"
 #include "core/record/hdf_read.hpp"
 #include "core/record/hdf_write.hpp"
 #include "core/record/layout.hpp"
-#include "core/record/words.hpp"
 
 namespace stickslip::record {
 namespace {

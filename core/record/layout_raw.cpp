@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "core/daq/calibration.hpp"
+#include "core/record/enum_names.hpp"
 #include "core/record/hdf_read.hpp"
 #include "core/record/hdf_write.hpp"
 #include "core/record/layout.hpp"
-#include "core/record/possible.hpp"
+#include "core/record/range_check.hpp"
 #include "core/record/sha256.hpp"
-#include "core/record/words.hpp"
 
 namespace stickslip::record {
 namespace {
@@ -186,7 +186,7 @@ void read_raw(hid_t entry, Record& record) {
   const GroupHandle raw = open_group(entry, "raw");
   daq::BoardInfo& board = record.header.board;
   record.scan = read_column<std::int64_t>(raw.get(), "scan");
-  for (const daq::ScanIndex scan : record.scan) possible(scan);
+  for (const daq::ScanIndex scan : record.scan) range_checked(scan);
   read_quantity(entry, board);
   if (board.quantity == daq::RawQuantity::kCounts) {
     if (holds<std::uint16_t>(raw.get(), "counts")) {

@@ -4,12 +4,12 @@
 #include <array>
 #include <string_view>
 
+#include "core/record/enum_names.hpp"
 #include "core/record/hdf_read.hpp"
 #include "core/record/hdf_write.hpp"
 #include "core/record/layout.hpp"
 #include "core/record/long_tables.hpp"
-#include "core/record/possible.hpp"
-#include "core/record/words.hpp"
+#include "core/record/range_check.hpp"
 
 namespace stickslip::record {
 namespace {
@@ -85,7 +85,7 @@ std::vector<daq::Gap> read_gaps(hid_t entry) {
   for (std::size_t i = 0; i < first.size(); ++i) {
     const auto cause = gap_cause_from_name(causes[i]);
     if (!cause) throw HdfError(fmt::format("gaps/cause '{}' is unknown", causes[i]));
-    gaps.push_back(possible(daq::Gap{first[i], count[i], estimated[i] != 0, *cause}));
+    gaps.push_back(range_checked(daq::Gap{first[i], count[i], estimated[i] != 0, *cause}));
   }
   return gaps;
 }
@@ -106,7 +106,8 @@ std::vector<Event> read_events(hid_t entry) {
   const auto texts = read_texts(group.get(), "text");
   if (texts.size() != scan.size()) throw HdfError("events/text has another length than events/scan");
   std::vector<Event> events;
-  for (std::size_t i = 0; i < scan.size(); ++i) events.push_back({possible(scan[i]), realtime[i], texts[i]});
+  for (std::size_t i = 0; i < scan.size(); ++i)
+    events.push_back({range_checked(scan[i]), realtime[i], texts[i]});
   return events;
 }
 

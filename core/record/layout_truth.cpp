@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <string_view>
 
+#include "core/record/enum_names.hpp"
 #include "core/record/hdf_read.hpp"
 #include "core/record/hdf_write.hpp"
 #include "core/record/layout.hpp"
 #include "core/record/long_tables.hpp"
-#include "core/record/words.hpp"
 
 namespace stickslip::record {
 

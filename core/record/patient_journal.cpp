@@ -204,8 +204,8 @@ std::optional<std::string> PatientJournal::write() {
   return trouble;
 }
 
-std::optional<std::string> PatientJournal::settle() {
-  if (auto astray = stay()) return astray;
+std::optional<std::string> PatientJournal::save() {
+  if (auto astray = ensure_at_path()) return astray;
   std::optional<std::string> trouble = write();
   if (!file_ || unsynced_.empty()) return trouble;
   if (const auto synced = file_->sync()) {
@@ -223,7 +223,7 @@ std::optional<std::string> PatientJournal::settle() {
   return trouble;
 }
 
-std::optional<std::string> PatientJournal::stay() {
+std::optional<std::string> PatientJournal::ensure_at_path() {
   if (!file_) return std::nullopt;
   switch (file_->place()) {
     case JournalFile::Place::kItself:

@@ -4,8 +4,7 @@
 ///
 ///     PatientJournal journal{path, header, memory};      // touches no file
 ///     journal.add_scans(first, raw, stamp);               // storage thread: into memory
-///     if (const auto trouble = journal.settle()) …        // disk thread: onto the disk and synced, or why
-///     not
+///     if (const auto trouble = journal.save()) …          // disk thread: written and synced, or why not
 ///
 /// If the file or its folder is removed or renamed, the journal is written again from the open file.
 ///
@@ -65,15 +64,15 @@ class PatientJournal {
   // For the disk thread. \return reason of a failure; unwritten data stay buffered.
 
   [[nodiscard]] std::optional<std::string> write();
-  /// As write(), followed by a sync. Data of a failed sync are written again.
-  [[nodiscard]] std::optional<std::string> settle();
+  /// As ensure_at_path() and write(), followed by a sync. Data of a failed sync are written again.
+  [[nodiscard]] std::optional<std::string> save();
   /// Checks that the path leads to the journal. If not, writes it again, under another name if the path is
   /// occupied. After hand_over(), an existing record suffices.
-  [[nodiscard]] std::optional<std::string> stay();
+  [[nodiscard]] std::optional<std::string> ensure_at_path();
   /// Number of times that the journal was written again.
   [[nodiscard]] int anew_count() const noexcept { return anew_count_; }
-  /// Whether settle() has nothing to do. A journal that is not on the disk yet has its header to write.
-  [[nodiscard]] bool settled() const { return file_ && unsynced_.empty() && waiting_size() == 0; }
+  /// Whether save() has nothing to do. A journal that is not on the disk yet has its header to write.
+  [[nodiscard]] bool saved() const { return file_ && unsynced_.empty() && waiting_size() == 0; }
   /// After the last entry: releases the disk space reserved beyond the end, for example for the record.
   void give_room_back();
   /// After that: releases the lock, so that the journal can be finalised. The file stays open, to be written

@@ -32,7 +32,7 @@ void check_format(const FileHandle& file) {
   if (const std::string refusal = version_refusal(*version); !refusal.empty()) throw HdfError(refusal);
 }
 
-/// Facts without which nothing can be computed from the raw values.
+/// Fields without which nothing can be computed from the raw values.
 void check_facts(const Record& record) {
   const daq::BoardInfo& board = record.header.board;
   if (!(board.scan_rate_granted_Hz > 0.0) || !std::isfinite(board.scan_rate_granted_Hz)) {

@@ -44,7 +44,7 @@ enum class Status {
 [[nodiscard]] std::string_view name(Status status) noexcept;
 [[nodiscard]] std::optional<Status> status_from_name(std::string_view text) noexcept;
 
-/// Facts about the tester. An unknown value is absent, never a default.
+/// The tester. An unknown value is absent, never a default.
 struct TesterFacts {
   std::optional<double> sled_mass_kg;
   std::optional<double> gravity_m_per_s2;
@@ -92,7 +92,7 @@ struct PlanFacts {
   bool operator==(const PlanFacts&) const = default;
 };
 
-/// Facts about the sample; empty if unknown.
+/// The sample; a text is empty if unknown.
 struct SampleFacts {
   std::string name;
   std::string grade;
@@ -114,7 +114,7 @@ struct ProcessFacts {
   std::string configuration;  ///< Complete text of the configuration file.
   std::string estimator;      ///< estimator_of(); empty: "fit".
   std::string method;         ///< Preset of the traditional rule.
-  std::string kept;           ///< Corrections left out, analysis::text_of(Kept); empty: none.
+  std::string kept;           ///< Corrections left out, analysis::text_of(SkippedCorrections); empty: none.
   /// Complete text of the tester's characterisation file; empty: none.
   std::string characterisation;
   std::string realtime;    ///< Scheduling and memory locking that were granted.

@@ -55,7 +55,7 @@ App::App(io::DaemonConfig config, AppWorld world)
       clock_(world_.clock ? std::move(world_.clock) : clock_of(config_)),
       storage_(
           {.folder = config_.record_folder, .dated_folders = config_.dated_folders}, finalise_, tests_,
-          *world_.facts, [this] { boost::asio::post(io_, [this] { tell_status(); }); },
+          *world_.events, [this] { boost::asio::post(io_, [this] { tell_status(); }); },
           [this](std::int64_t test, const base::Result<std::filesystem::path>& file) {
             boost::asio::post(io_, [this, test, file] {
               if (file) {
@@ -66,7 +66,7 @@ App::App(io::DaemonConfig config, AppWorld world)
             });
           }),
       watcher_(
-          tests_, *world_.facts,
+          tests_, *world_.events,
           [this](std::optional<std::int64_t> number) {
             boost::asio::post(io_, [this, number] {
               current_test_ = number;
@@ -80,8 +80,8 @@ App::App(io::DaemonConfig config, AppWorld world)
       live_(io_, *clock_, [this] { return daemon::health_frame(status()); }),
       batches_({.folder = config_.record_folder,
                 .program = "/proc/self/exe",
-                .plan = [this] { return desk_.plan(); },
-                .set_plan = [this](daemon::Plan plan) { desk_.set_plan(std::move(plan)); },
+                .plan = [this] { return commands_.plan(); },
+                .set_plan = [this](daemon::Plan plan) { commands_.set_plan(std::move(plan)); },
                 .earlier = [this](daemon::TestSummary test) { tests_.add_earlier(std::move(test)); },
                 .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
                 .clock = clock_.get()}),
@@ -94,20 +94,20 @@ App::App(io::DaemonConfig config, AppWorld world)
            .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
            .date_ns = [this] { return wall_->realtime_ns(); },
            .now_ns = [this] { return clock_->realtime_ns(); }}),
-      desk_({.config = config_,
-             .tests = tests_,
-             .storage = storage_,
-             .calibrations = calibrations_,
-             .status = [this] { return status(); },
-             .session = [this] { return session_.get(); },
-             .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
-             .batches = &batches_,
-             .reports = &reports_}),
+      commands_({.config = config_,
+                 .tests = tests_,
+                 .storage = storage_,
+                 .calibrations = calibrations_,
+                 .status = [this] { return status(); },
+                 .session = [this] { return session_.get(); },
+                 .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
+                 .batches = &batches_,
+                 .reports = &reports_}),
       watchdog_(io_, runtime::Notify::watchdog_interval(), watched_parts(),
                 {.feed = [this] { notify_.alive(); },
                  .hanging =
                      [this](const std::vector<std::string>& parts) {
-                       world_.facts->hanging(fmt::format("{}", fmt::join(parts, ", ")));
+                       world_.events->hanging(fmt::format("{}", fmt::join(parts, ", ")));
                        tell_status();
                      }}),
       retry_after_(world_.first_retry) {}
@@ -122,10 +122,10 @@ base::Result<void> App::run() {
   if (world_.stop_asked && world_.stop_asked()) request_stop();
 
   process_facts_ = runtime::prepare_process(config_.realtime);
-  for (const std::string& lack : world_.record_folder.lacks) world_.facts->record_folder_lacks(lack);
+  for (const std::string& lack : world_.record_folder.lacks) world_.events->record_folder_lacks(lack);
   if (base::Result<void> opened = open_control(); !opened) return opened;
   // What cannot be recovered is told and kept; the measurement goes on.
-  static_cast<void>(storage::recover_folder(config_.record_folder, finalise_, *world_.facts));
+  static_cast<void>(storage::recover_folder(config_.record_folder, finalise_, *world_.events));
   batches_.open();
   continues_.next_test_number = batches_.next_test_number();
   if (base::Result<void> opened = open_fleet(); !opened) return opened;
@@ -140,7 +140,7 @@ base::Result<void> App::run() {
   io_.run();
 
   storage_.stop();
-  world_.facts->scans_accounted(scan_account());
+  world_.events->scans_accounted(scan_account());
   // What the last record means for its batch.
   io_.restart();
   io_.poll();
@@ -164,11 +164,11 @@ void App::request_stop() {
 base::Result<void> App::open_control() {
   if (!config_.control_socket && config_.http.empty()) return {};
   const daemon::HttpHandler api =
-      page::make_site(control::make_api(desk_, *wall_), report::read_chart_library());
+      page::make_site(control::make_api(commands_, *wall_), report::read_chart_library());
   const auto keep =
       [this](base::Result<std::unique_ptr<control::ControlServer>> server) -> base::Result<void> {
     if (!server) return tl::unexpected(server.error());
-    world_.facts->control_listening((*server)->address());
+    world_.events->control_listening((*server)->address());
     control_.push_back(*std::move(server));
     return {};
   };
@@ -192,7 +192,7 @@ base::Result<void> App::open_fleet() {
   fleet_ = std::make_unique<fleet::Fleet>(io_, *config_.fleet,
                                           fleet::Fleet::Parts{.status = [this] { return status(); },
                                                               .wall = *wall_,
-                                                              .facts = *world_.facts,
+                                                              .events = *world_.events,
                                                               .record_folder = config_.record_folder,
                                                               .program = "/proc/self/exe"});
   storage_.tell_ends([this](const record::RecordHeader& header, const record::EndRecord& end,
@@ -216,12 +216,12 @@ base::Result<void> App::open_session() {
   const runtime::SessionSettings& settings = *made;
   const auto verdict = runtime::check_sampling(config_, settings);
   if (!verdict) return tl::unexpected(verdict.error());
-  world_.facts->sampling_checked(*verdict);
+  world_.events->sampling_checked(*verdict);
   std::vector<std::string> remarks;
   if (!verdict->reason.empty()) remarks.push_back("sampling: " + verdict->reason);
 
   if (io::expired(settings.calibration, record::iso_time(clock_->realtime_ns()))) {
-    world_.facts->calibration_expired(settings.calibration.expires);
+    world_.events->calibration_expired(settings.calibration.expires);
   }
 
   runtime::SessionEvents events;
@@ -230,7 +230,7 @@ base::Result<void> App::open_session() {
       if (state_ == State::kStopping) return;
       state_ = State::kAcquiring;
       retry_after_ = world_.first_retry;
-      world_.facts->board_started(session_->board_info(), realtime_facts());
+      world_.events->board_started(session_->board_info(), realtime_facts());
       tell_status();
       tell_ready();
     });
@@ -251,7 +251,7 @@ base::Result<void> App::open_session() {
     return started;
   }
   calibrations_.session_began(settings);
-  watcher_.use(truth_.get(), settings.processor.analysis.kept.first_slip);
+  watcher_.use(truth_.get(), settings.processor.analysis.skipped.first_slip);
   live_.feed().use(settings.processor.analysis.scan_rate_Hz, config_.clock_speed);
   storage_.use(runtime::record_header(config_, settings, session_->board_info(), realtime_facts()),
                truth_.get(), std::move(remarks));
@@ -262,8 +262,8 @@ base::Result<void> App::open_session() {
 void App::wait_for_board(const base::Error& why) {
   state_ = waiting_state(why.kind);
   waiting_why_ = why.message;
-  world_.facts->board_unavailable(name(state_), why.message,
-                                  std::chrono::duration<double>(retry_after_).count());
+  world_.events->board_unavailable(name(state_), why.message,
+                                   std::chrono::duration<double>(retry_after_).count());
   tell_status();
   tell_ready();
   retry_timer_.expires_after(retry_after_);
@@ -309,7 +309,7 @@ void App::session_ended(runtime::Acquisition::End end) {
 void App::stop(const std::string& why) {
   if (state_ == State::kStopping) return;
   state_ = State::kStopping;
-  world_.facts->stopping(why);
+  world_.events->stopping(why);
   if (!reloads_) notify_.stopping();
   tell_status();
   retry_timer_.cancel();

@@ -24,14 +24,14 @@
 #include "daemon/control/server.hpp"
 #include "daemon/fleet/fleet.hpp"
 #include "daemon/live/stream.hpp"
-#include "daemon/page/report_desk.hpp"
-#include "daemon/runtime/bench_desk.hpp"
+#include "daemon/page/report_jobs.hpp"
+#include "daemon/runtime/command_service.hpp"
 #include "daemon/runtime/notify.hpp"
 #include "daemon/runtime/session.hpp"
 #include "daemon/runtime/session_setup.hpp"
 #include "daemon/runtime/watchdog.hpp"
 #include "daemon/storage/storage.hpp"
-#include "daemon/types/facts.hpp"
+#include "daemon/types/event_receiver.hpp"
 #include "daemon/types/test_log.hpp"
 
 namespace stickslip::app {
@@ -43,7 +43,7 @@ struct AppWorld {
                                                    const std::optional<daq::Continuation>&)>
       open_board;
   storage::Finalise finalise;
-  daemon::Facts* facts = nullptr;  ///< Outlives the App.
+  daemon::EventReceiver* events = nullptr;  ///< Outlives the App.
   /// Called on the main thread with each new line of STATUS=; may be empty.
   std::function<void(const std::string&)> status_changed;
   /// True if a signal to end came before run(); may be empty.
@@ -133,10 +133,10 @@ class App {
   TestWatcher watcher_;
   live::LiveStream live_;
   batch::BatchLeader batches_;
-  page::ReportDesk reports_;
+  page::ReportJobs reports_;
   std::unique_ptr<base::Clock> wall_;  ///< Wall time, for leases, dates and messages.
-  runtime::CalibrationDesk calibrations_;
-  runtime::BenchDesk desk_;
+  runtime::CalibrationService calibrations_;
+  runtime::CommandService commands_;
   std::unique_ptr<fleet::Fleet> fleet_;  ///< Null: no broker is configured.
   std::vector<std::unique_ptr<control::ControlServer>> control_;
   std::optional<daemon::Status::Page> page_;  ///< The live page, while it is served.

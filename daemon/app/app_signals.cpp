@@ -27,11 +27,11 @@ void App::wait_for_signal() {
 void App::reload() {
   if (state_ == State::kStopping) return;
   if (const base::Result<void> good = world_.check_config(); !good) {
-    world_.facts->reload_refused(good.error().message);
+    world_.events->reload_refused(good.error().message);
     return;
   }
   if (std::exchange(reload_asked_, true)) return;
-  world_.facts->reload_waits();
+  world_.events->reload_waits();
   reload_when_idle();
 }
 

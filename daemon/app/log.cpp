@@ -9,7 +9,7 @@
 namespace stickslip::app {
 namespace {
 
-class Log final : public daemon::Facts {
+class Log final : public daemon::EventReceiver {
  public:
   Log(io::LogLevel level, std::unique_ptr<LogOutput> output) : level_(level), output_(std::move(output)) {}
 
@@ -245,7 +245,7 @@ class Log final : public daemon::Facts {
 
 }  // namespace
 
-std::unique_ptr<daemon::Facts> make_log(io::LogLevel level, std::unique_ptr<LogOutput> output) {
+std::unique_ptr<daemon::EventReceiver> make_log(io::LogLevel level, std::unique_ptr<LogOutput> output) {
   return std::make_unique<Log>(level, std::move(output));
 }
 

@@ -7,12 +7,12 @@
 #include "io/config.hpp"
 
 #include "daemon/app/log_output.hpp"
-#include "daemon/types/facts.hpp"
+#include "daemon/types/event_receiver.hpp"
 
 namespace stickslip::app {
 
 /// Makes the receiver of events that logs them. \param level  less important lines are omitted.
-[[nodiscard]] std::unique_ptr<daemon::Facts> make_log(io::LogLevel level,
-                                                      std::unique_ptr<LogOutput> output = make_log_output());
+[[nodiscard]] std::unique_ptr<daemon::EventReceiver> make_log(
+    io::LogLevel level, std::unique_ptr<LogOutput> output = make_log_output());
 
 }  // namespace stickslip::app

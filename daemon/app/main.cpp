@@ -15,7 +15,7 @@
 
 #include "io/config.hpp"
 #include "io/print_text.hpp"
-#include "report/table.hpp"
+#include "report/truth_table.hpp"
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 
@@ -113,7 +113,7 @@ int run(const std::string& file) {
   for (std::optional<io::DaemonConfig> next{*std::move(config)}; next;) {
     const bool table = next->report_table;
     const bool terminal = table && ::isatty(STDOUT_FILENO) != 0;
-    const std::unique_ptr<daemon::Facts> log = make_log(next->log_level);
+    const std::unique_ptr<daemon::EventReceiver> log = make_log(next->log_level);
 
     base::Result<runtime::RecordFolder> folder = runtime::prepare_record_folder(next->record_folder);
     if (!folder) return refused(folder.error());
@@ -123,9 +123,9 @@ int run(const std::string& file) {
     world.finalise = [](const std::filesystem::path& journal, std::optional<std::int64_t> expected) {
       return storage::run_finaliser("/proc/self/exe", journal, expected);
     };
-    world.facts = log.get();
+    world.events = log.get();
     world.stop_asked = [&signals] { return signals.stop_asked(); };
-    // Kept as it was found good: it may be used much later.
+    // The configuration that was checked: it may be used much later.
     if (reloads) {
       world.check_config = [&file, &next]() -> base::Result<void> {
         base::Result<io::DaemonConfig> found = good_config(file);

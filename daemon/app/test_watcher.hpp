@@ -10,7 +10,7 @@
 
 #include "core/model/truth.hpp"
 #include "core/pipeline/sink.hpp"
-#include "daemon/types/facts.hpp"
+#include "daemon/types/event_receiver.hpp"
 #include "daemon/types/test_log.hpp"
 
 namespace stickslip::app {
@@ -20,12 +20,12 @@ class TestWatcher final : public pipeline::Sink {
   /// \param current  called on the processing thread with the number of the running test, or nothing when it
   /// has ended. \param rests    called on the processing thread when the bench comes to rest, before the next
   /// test begins.
-  TestWatcher(daemon::TestLog& tests, daemon::Facts& facts,
+  TestWatcher(daemon::TestLog& tests, daemon::EventReceiver& events,
               std::function<void(std::optional<std::int64_t>)> current, std::function<void()> rests)
-      : tests_(tests), facts_(facts), current_(std::move(current)), rests_(std::move(rests)) {}
+      : tests_(tests), events_(events), current_(std::move(current)), rests_(std::move(rests)) {}
 
   /// Call it only between sessions. \param truth  null if unknown. \param first_slip_counts  as
-  /// analysis::Kept::first_slip.
+  /// analysis::SkippedCorrections::first_slip.
   void use(const model::TruthSource* truth, bool first_slip_counts) {
     truth_ = truth;
     first_slip_counts_ = first_slip_counts;
@@ -34,7 +34,7 @@ class TestWatcher final : public pipeline::Sink {
   void test_began(const pipeline::TestStart& start) override {
     first_ = start.first;
     number_ = start.number;
-    facts_.test_began(start);
+    events_.test_began(start);
     current_(start.number);
   }
 
@@ -42,15 +42,15 @@ class TestWatcher final : public pipeline::Sink {
     if (pipeline::rests(state)) rests_();
   }
   void bench_stays(pipeline::BenchState state, double duration_s, pipeline::BenchTrouble trouble) override {
-    facts_.bench_stays(pipeline::name(state), duration_s, pipeline::words(trouble));
+    events_.bench_stays(pipeline::name(state), duration_s, pipeline::words(trouble));
   }
-  void gap(const daq::Gap& gap) override { facts_.gap_seen(gap, number_); }
-  void gap_between_tests(const daq::Gap& gap) override { facts_.gap_seen(gap, std::nullopt); }
+  void gap(const daq::Gap& gap) override { events_.gap_seen(gap, number_); }
+  void gap_between_tests(const daq::Gap& gap) override { events_.gap_seen(gap, std::nullopt); }
   void note(const daq::Note& note) override {
     using Kind = daq::Note::Kind;
-    if (note.kind == Kind::kStall || note.kind == Kind::kStep) facts_.clock_noted(note, number_);
+    if (note.kind == Kind::kStall || note.kind == Kind::kStep) events_.clock_noted(note, number_);
   }
-  void note_between_tests(const daq::Note& note) override { facts_.clock_noted(note, std::nullopt); }
+  void note_between_tests(const daq::Note& note) override { events_.clock_noted(note, std::nullopt); }
 
   void test_ended(const pipeline::TestEnd& end) override {
     daemon::TestSummary summary;
@@ -62,13 +62,13 @@ class TestWatcher final : public pipeline::Sink {
     summary.slips = analysis::slip_sums(end.cycles, first_slip_counts_);
     if (truth_ != nullptr) summary.truth = truth_->truth(first_, end.end);
     tests_.add(std::move(summary));
-    facts_.test_ended(end);
+    events_.test_ended(end);
     current_(std::nullopt);
   }
 
  private:
   daemon::TestLog& tests_;
-  daemon::Facts& facts_;
+  daemon::EventReceiver& events_;
   std::function<void(std::optional<std::int64_t>)> current_;
   std::function<void()> rests_;
   const model::TruthSource* truth_ = nullptr;

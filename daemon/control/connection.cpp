@@ -157,9 +157,9 @@ class Connection : public Newcomer, public std::enable_shared_from_this<Connecti
   [[nodiscard]] std::optional<daemon::HttpReply> refusal_of_header() const {
     if (const auto twice = repeated_header(parser_->get()))
       return daemon::refusal(400, fmt::format("{}: stands there twice; send it once", *twice));
-    return refuse_at(service_->door,
-                     {path(), header(http::field::host), header(http::field::origin),
-                      header(http::field::authorization), header(http::field::sec_websocket_protocol)});
+    return access_refusal(service_->policy,
+                          {path(), header(http::field::host), header(http::field::origin),
+                           header(http::field::authorization), header(http::field::sec_websocket_protocol)});
   }
 
   void answer_request() {
@@ -171,7 +171,7 @@ class Connection : public Newcomer, public std::enable_shared_from_this<Connecti
       return;
     }
     // Requests for the page need no token, so they do not admit a client.
-    if ((service_->door.open || !is_page(path())) && !let_in()) {
+    if ((service_->policy.open || !is_page(path())) && !let_in()) {
       reply(daemon::refusal(
                 503, fmt::format("{} connections are open, and there is room for no more: close one, or "
                                  "try again later",

@@ -10,7 +10,7 @@
 
 #include <boost/asio/generic/stream_protocol.hpp>
 
-#include "daemon/control/gate.hpp"
+#include "daemon/control/access.hpp"
 #include "daemon/control/limits.hpp"
 #include "daemon/types/http.hpp"
 #include "daemon/types/live_hub.hpp"
@@ -27,7 +27,7 @@ class Newcomer {
 
 /// What all connections of a listener share.
 struct Service {
-  Door door;
+  AccessPolicy policy;
   daemon::HttpHandler handler;
   daemon::LiveHub* hub = nullptr;  ///< Null: no live stream. Outlives the connections.
   HttpLimits limits;

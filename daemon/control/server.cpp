@@ -240,7 +240,7 @@ base::Result<std::unique_ptr<ControlServer>> ControlServer::listen_tcp(
   }
   const unsigned short port = listener->port();
   for (const char* host : {"127.0.0.1", "localhost", "[::1]"})
-    service->door.hosts.push_back(fmt::format("{}:{}", host, port));
+    service->policy.hosts.push_back(fmt::format("{}:{}", host, port));
   listener->accept();
   const std::string host = address.substr(0, address.rfind(':'));
   return std::unique_ptr<ControlServer>(

@@ -80,7 +80,7 @@ void Fleet::link_changed(const daemon::FleetState& state) {
   if (connected == was_connected_ && state.why == why_told_) return;
   was_connected_ = connected;
   why_told_ = state.why;
-  parts_.facts.fleet_changed(state);
+  parts_.events.fleet_changed(state);
 }
 
 void Fleet::tick() {

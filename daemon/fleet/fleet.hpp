@@ -17,7 +17,7 @@
 #include "core/pipeline/sink.hpp"
 #include "core/record/record.hpp"
 #include "daemon/fleet/publisher.hpp"
-#include "daemon/types/facts.hpp"
+#include "daemon/types/event_receiver.hpp"
 #include "daemon/types/status.hpp"
 
 namespace stickslip::fleet {
@@ -29,7 +29,7 @@ class Fleet final : public pipeline::Sink {
   struct Parts {
     std::function<daemon::Status()> status;
     const base::Clock& wall;
-    daemon::Facts& facts;
+    daemon::EventReceiver& events;
     std::filesystem::path record_folder;
     std::string program;  ///< Path of stickslipd, for backlog.hpp.
   };

@@ -8,8 +8,8 @@
 #include "io/results_json.hpp"
 #include <nlohmann/json.hpp>
 
-#include "core/analysis/kept.hpp"
 #include "core/analysis/pooled_slips.hpp"
+#include "core/analysis/skipped_corrections.hpp"
 #include "core/record/iso_time.hpp"
 #include "daemon/types/bench.hpp"
 #include "daemon/types/plan_json.hpp"
@@ -43,8 +43,9 @@ Json result_json(const record::RecordHeader& header, const record::EndRecord& en
   json["estimator"] = io::or_null(header.process.estimator);
   json["version"] = io::or_null(header.process.version);
   json["results"] = io::results_json(end.results, true);
-  const analysis::Kept kept = analysis::kept_from_text(header.process.kept).value_or(analysis::Kept{});
-  json["slips"] = io::slip_sums_json(analysis::slip_sums(cycles, kept.first_slip));
+  const analysis::SkippedCorrections skipped =
+      analysis::skipped_from_text(header.process.kept).value_or(analysis::SkippedCorrections{});
+  json["slips"] = io::slip_sums_json(analysis::slip_sums(cycles, skipped.first_slip));
   return json;
 }
 

@@ -73,8 +73,8 @@ base::Result<SessionSettings> session_settings(const io::DaemonConfig& config,
   // As the next: a damaged word of a record is left out; `stickslip analyze` refuses it.
   analysis.estimator = config.estimator.value_or(
       detect::estimator_tier_from_name(opened.estimator).value_or(detect::EstimatorTier::kFit));
-  analysis.kept =
-      analysis::either(config.kept, analysis::kept_from_text(opened.kept).value_or(analysis::Kept{}));
+  analysis.skipped = analysis::either(
+      config.skipped, analysis::skipped_from_text(opened.kept).value_or(analysis::SkippedCorrections{}));
   return settings;
 }
 
@@ -98,7 +98,7 @@ record::RecordHeader record_header(const io::DaemonConfig& config, const Session
   header.process.configuration = config.text;
   header.process.estimator = detect::name(settings.processor.analysis.estimator);
   header.process.method = record::method_text(settings.processor.analysis.method);
-  header.process.kept = analysis::text_of(settings.processor.analysis.kept);
+  header.process.kept = analysis::text_of(settings.processor.analysis.skipped);
   header.process.characterisation = settings.characterisation;
   header.process.realtime = realtime;
   return header;

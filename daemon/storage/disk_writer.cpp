@@ -193,7 +193,7 @@ void DiskWriter::close_account() {
   const std::lock_guard lock{mutex_};
   for (const Job& job : std::exchange(jobs_, {})) {
     if (!job.handed_over) continue;
-    std::int64_t& count = away || job.journal->stay() ? scans_.unsaved : scans_.recorded;
+    std::int64_t& count = away || job.journal->ensure_at_path() ? scans_.unsaved : scans_.recorded;
     count += job.journal->kept_scan_count();
     scans_.lost += job.journal->lost_scan_count();
   }
@@ -254,11 +254,11 @@ std::optional<std::string> DiskWriter::write(const Job& job, bool sync) {
   const std::filesystem::path before = job.journal->path();
   const int anew = job.journal->anew_count();
   std::optional<std::string> trouble;
-  if (job.journal->settled()) {
-    trouble = job.journal->stay();
+  if (job.journal->saved()) {
+    trouble = job.journal->ensure_at_path();
   } else {
     const Time began = Clock::now();
-    trouble = job.journal->settle();
+    trouble = job.journal->save();
     const std::chrono::nanoseconds took = Clock::now() - began;
     if (!trouble) {
       const std::lock_guard lock{mutex_};

@@ -10,7 +10,7 @@
 
 #include "core/base/result.hpp"
 #include "core/record/finaliser.hpp"
-#include "daemon/types/facts.hpp"
+#include "daemon/types/event_receiver.hpp"
 
 namespace stickslip::storage {
 
@@ -27,13 +27,13 @@ enum class Recovery {
 
 /// Recovers every journal in the record folder and its dated subfolders, in the order of their paths; blocks.
 /// A journal that another process writes is left alone; one with an incomplete header holds nothing and is
-/// removed; all others are finalised. A failure is reported to `facts`, the journal is kept, and recovery
+/// removed; all others are finalised. A failure is reported to `events`, the journal is kept, and recovery
 /// goes on. \return the worst outcome.
 [[nodiscard]] Recovery recover_folder(const std::filesystem::path& folder, const Finalise& finalise,
-                                      daemon::Facts& facts);
+                                      daemon::EventReceiver& events);
 
 /// Recovers one journal.
 [[nodiscard]] Recovery recover_journal(const std::filesystem::path& journal, const Finalise& finalise,
-                                       daemon::Facts& facts);
+                                       daemon::EventReceiver& events);
 
 }  // namespace stickslip::storage

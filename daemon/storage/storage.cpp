@@ -14,10 +14,10 @@
 #include "io/record_name.hpp"
 
 #include "core/base/thread_name.hpp"
+#include "core/record/enum_names.hpp"
 #include "core/record/iso_time.hpp"
 #include "core/record/journal.hpp"
 #include "core/record/journal_name.hpp"
-#include "core/record/words.hpp"
 #include "daemon/storage/finaliser_process.hpp"
 
 namespace stickslip::storage {
@@ -77,11 +77,11 @@ std::filesystem::path journal_path(const StorageSettings& settings, const pipeli
 
 }  // namespace
 
-Storage::Storage(StorageSettings settings, Finalise finalise, daemon::TestLog& tests, daemon::Facts& facts,
-                 std::function<void()> changed, Made made)
+Storage::Storage(StorageSettings settings, Finalise finalise, daemon::TestLog& tests,
+                 daemon::EventReceiver& events, std::function<void()> changed, Made made)
     : settings_(std::move(settings)),
       tests_(tests),
-      facts_(facts),
+      events_(events),
       queue_(kQueueCapacity),
       changed_(std::move(changed)),
       made_(std::move(made)),
@@ -98,7 +98,7 @@ Storage::Storage(StorageSettings settings, Finalise finalise, daemon::TestLog& t
            .calls = settings_.calls,
            .written_anew =
                [this](std::int64_t test, const std::filesystem::path& before,
-                      const std::filesystem::path& now) { facts_.journal_written_anew(test, before, now); }},
+                      const std::filesystem::path& now) { events_.journal_written_anew(test, before, now); }},
           [this](std::int64_t test, const std::filesystem::path& /*journal*/, std::int64_t scans,
                  const std::optional<std::string>& why_not) { journal_ended(test, scans, why_not); },
           [this](const DiskState& state) { disk_changed(state); }),
@@ -249,7 +249,7 @@ void Storage::handle(const Began& message) {
   const std::string expires = header.calibration.expires;
   begun_ = header;
   const std::optional<double> little_s = little_room_s();
-  if (little_s) facts_.little_room(number_, *little_s);
+  if (little_s) events_.little_room(number_, *little_s);
   const double rate_Hz = header.board.scan_rate_granted_Hz;
   pending_enough_ = scans_in_entry(header.board);
   const auto memory = static_cast<std::size_t>(kLongestWait_s *
@@ -373,12 +373,12 @@ void Storage::journal_ended(std::int64_t test, std::int64_t scans,
 void Storage::disk_changed(const DiskState& state) {
   const std::string why = daemon::why_no_test(storage_state(state, settings_.folder)).value_or("");
   // Another remedy is another trouble.
-  if (state.trouble && (!waits_ || state.to_do != waits_for_)) facts_.storage_waits(why);
-  if (!state.trouble && waits_) facts_.storage_resumed();
+  if (state.trouble && (!waits_ || state.to_do != waits_for_)) events_.storage_waits(why);
+  if (!state.trouble && waits_) events_.storage_resumed();
   waits_ = state.trouble.has_value();
   waits_for_ = state.to_do;
-  if (state.is_short && !is_short_) facts_.storage_short(why);
-  if (!state.is_short && is_short_) facts_.storage_has_room();
+  if (state.is_short && !is_short_) events_.storage_short(why);
+  if (!state.is_short && is_short_) events_.storage_has_room();
   is_short_ = state.is_short;
   if (changed_) changed_();
 }
@@ -390,7 +390,7 @@ void Storage::journal_finalised(std::int64_t test, std::int64_t scans,
   if (!made) return record_made(test, tl::unexpected(made.error()));
   record_made(test, made->file);
   damaged_scans_ += std::max<std::int64_t>(scans - made->scan_count, 0);
-  if (const std::string loss = loss_of(*made, scans); !loss.empty()) facts_.record_damaged(made->file, loss);
+  if (const std::string loss = loss_of(*made, scans); !loss.empty()) events_.record_damaged(made->file, loss);
 }
 
 DiskWriter::ScanCounts Storage::scan_counts() const {
@@ -403,9 +403,9 @@ DiskWriter::ScanCounts Storage::scan_counts() const {
 void Storage::record_made(std::int64_t test, const base::Result<std::filesystem::path>& file) {
   if (file) {
     tests_.set_file(test, file->string());
-    facts_.file_published(test, *file);
+    events_.file_published(test, *file);
   } else {
-    facts_.recording_failed(test, file.error().message);
+    events_.recording_failed(test, file.error().message);
     tests_.set_file_error(test, file.error().message);
   }
   if (made_) made_(test, file);

@@ -25,7 +25,7 @@
 #include "daemon/storage/finaliser_thread.hpp"
 #include "daemon/storage/recovery.hpp"
 #include "daemon/storage/storage_verdict.hpp"
-#include "daemon/types/facts.hpp"
+#include "daemon/types/event_receiver.hpp"
 #include "daemon/types/storage_state.hpp"
 #include "daemon/types/test_log.hpp"
 
@@ -46,10 +46,10 @@ class Storage final : public pipeline::Sink {
  public:
   /// Called with the record of a test, or why it could not be made.
   using Made = std::function<void(std::int64_t test, const base::Result<std::filesystem::path>& file)>;
-  /// Starts the threads. \param finalise  called on the finisher's thread. \param tests,facts  outlive this
+  /// Starts the threads. \param finalise  called on the finisher's thread. \param tests,events  outlive this
   /// object. \param changed  called on the disk thread when disk() has changed; must not block. \param made
   /// called on the disk thread or the finisher's thread; must not block.
-  Storage(StorageSettings settings, Finalise finalise, daemon::TestLog& tests, daemon::Facts& facts,
+  Storage(StorageSettings settings, Finalise finalise, daemon::TestLog& tests, daemon::EventReceiver& events,
           std::function<void()> changed = {}, Made made = {});
   /// As stop().
   ~Storage() override;
@@ -149,7 +149,7 @@ class Storage final : public pipeline::Sink {
 
   StorageSettings settings_;
   daemon::TestLog& tests_;
-  daemon::Facts& facts_;
+  daemon::EventReceiver& events_;
   std::shared_ptr<const record::RecordHeader> header_;  ///< Processing thread.
   std::vector<std::string> remarks_;                    ///< Processing thread.
   const model::TruthSource* truth_ = nullptr;           ///< Processing thread.

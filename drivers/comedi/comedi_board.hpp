@@ -6,7 +6,7 @@
 ///     auto board = make_comedi_board(settings, *clock);
 ///     if (!board) return tl::unexpected(board.error());
 ///
-/// Facts about Comedi that shape this code are named where they are used. The kernel gives scans no
+/// Properties of Comedi that shape this code are named where they are used. The kernel gives scans no
 /// time stamp: after a restart the clock tells how many scans went by.
 #pragma once
 

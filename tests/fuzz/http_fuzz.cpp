@@ -1,12 +1,12 @@
 // Whatever comes over a connection, the server answers in HTTP or says nothing. The first bit chooses between
 // the Unix socket and a TCP port.
 
-#include "tests/fuzz/door.hpp"
+#include "tests/fuzz/raw_client.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace stickslip;
   if (size == 0) return 0;
-  fuzz::RawClient client{(data[0] & 1) != 0 ? fuzz::tcp_door() : control::Door{}};
+  fuzz::RawClient client{(data[0] & 1) != 0 ? fuzz::tcp_policy() : control::AccessPolicy{}};
   const std::string answer = client.send({data + 1, size - 1});
   client.say_no_more();
   const std::string rest = client.send({});

@@ -1,6 +1,6 @@
 // A client of the live stream that sends anything: the stream goes on or ends, and others get their frames.
 
-#include "tests/fuzz/door.hpp"
+#include "tests/fuzz/raw_client.hpp"
 
 namespace {
 
@@ -16,7 +16,7 @@ std::span<const std::uint8_t> bytes_of(std::string_view text) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace stickslip;
-  fuzz::RawClient client{control::Door{}};
+  fuzz::RawClient client{control::AccessPolicy{}};
   STICKSLIP_EXPECTS(client.send(bytes_of(kUpgrade)).starts_with("HTTP/1.1 101"));
   STICKSLIP_EXPECTS(client.hub().client_count() == 1);
   // In two parts, with a frame between them: a client is read and written to at once.

@@ -12,11 +12,11 @@
 #include <filesystem>
 #include <functional>
 
+#include "core/record/enum_names.hpp"
 #include "core/record/finaliser.hpp"
 #include "core/record/iso_time.hpp"
 #include "core/record/journal_format.hpp"
 #include "core/record/reader.hpp"
-#include "core/record/words.hpp"
 #include "tests/golden/record_listing.hpp"
 #include "tests/support/record_equality.hpp"
 #include "tests/support/record_samples.hpp"

@@ -69,10 +69,11 @@ class Collector final : public pipeline::Sink {
 /// Plays the board to its end through the processor, in blocks of random sizes.
 /// \param lost  one scan in so many is dropped; 0: none.
 /// \param characterisation  of the tester, as in the configuration; empty: what the board knows of it.
-/// \param kept  by the configuration, with what a replayed record kept.
+/// \param skipped  by the configuration, beside those that a replayed record skipped.
 /// \param estimator  of the configuration; empty: that of a replayed record.
 std::vector<record::Record> run(drivers::OpenedBoard opened, unsigned seed, int lost,
-                                const std::string& characterisation = {}, const analysis::Kept& kept = {},
+                                const std::string& characterisation = {},
+                                const analysis::SkippedCorrections& skipped = {},
                                 const std::string& estimator = {}) {
   const daq::BoardInfo& info = opened.board->info();
   record::RecordHeader header;
@@ -82,14 +83,15 @@ std::vector<record::Record> run(drivers::OpenedBoard opened, unsigned seed, int 
   header.process.method = record::method_text({});
   header.process.characterisation = characterisation.empty() ? opened.characterisation : characterisation;
   header.process.estimator = estimator.empty() ? opened.estimator : estimator;
-  header.process.kept = analysis::text_of(analysis::either(kept, *analysis::kept_from_text(opened.kept)));
+  header.process.kept =
+      analysis::text_of(analysis::either(skipped, *analysis::skipped_from_text(opened.kept)));
   Collector collector{header};
 
   pipeline::ProcessorSettings settings;
   settings.segmenter.scan_rate_Hz = info.scan_rate_granted_Hz;
   settings.analysis.scan_rate_Hz = info.scan_rate_granted_Hz;
   settings.analysis.tester = *opened.tester;
-  settings.analysis.kept = analysis::either(kept, *analysis::kept_from_text(opened.kept));
+  settings.analysis.skipped = analysis::either(skipped, *analysis::skipped_from_text(opened.kept));
   settings.analysis.estimator = record::estimator_of(header.process).value();
   settings.recorded = opened.recorded;
   settings.second = info.second;
@@ -251,11 +253,11 @@ TEST(ReplayGoldenOfAKnownTester, RecordCarriesWhatWasKnownAndGivesTheSameBits) {
   std::filesystem::remove(file);
 }
 
-// Each of the three problems kept, on a scene that has it: the record says so, and without that its numbers
-// would be others.
-TEST(ReplayGoldenOfWhatIsKept, RecordCarriesItAndGivesTheSameBits) {
+// Each of the three corrections skipped, on a scene that has it: the record says so, and without that its
+// numbers would be others.
+TEST(ReplayGoldenOfSkippedCorrections, RecordCarriesItAndGivesTheSameBits) {
   const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / fmt::format("stickslip-golden-kept-{}.h5", ::getpid());
+      std::filesystem::temp_directory_path() / fmt::format("stickslip-golden-skipped-{}.h5", ::getpid());
   for (const auto& [name, words] :
        {std::pair{"drift-hum-and-spikes.toml", "spikes"}, std::pair{"drifting-friction.toml", "drift"},
         std::pair{"abnormal-first-peak.toml", "first-slip"},
@@ -266,7 +268,7 @@ TEST(ReplayGoldenOfWhatIsKept, RecordCarriesItAndGivesTheSameBits) {
     auto board = drivers::open_board(scene(name), clock);
     ASSERT_TRUE(board) << board.error().message;
     const std::vector<record::Record> live =
-        run(std::move(*board), 1, 0, {}, *analysis::kept_from_text(words));
+        run(std::move(*board), 1, 0, {}, *analysis::skipped_from_text(words));
     ASSERT_EQ(live.size(), 1U);
 
     std::optional<record::Record> stored;

@@ -9,6 +9,7 @@
 
 #include "core/analysis/test_analysis.hpp"
 #include "tests/support/estimator_limits.hpp"
+#include "tests/support/sample_limits.hpp"
 #include "tests/support/sanitized.hpp"
 #include "tests/support/scatter_trials.hpp"
 
@@ -73,11 +74,11 @@ struct Tallies {
 void expect_right(const char* what, const Tally& tally, int tests, double cycles) {
   ASSERT_GT(tally.count, tests / 2) << what;
   const double n = tally.count;
-  EXPECT_LE(std::abs(tally.mean()), 4.0 * std::sqrt(tally.variance() / n)) << what;
+  EXPECT_LE(std::abs(tally.mean()), test::farthest_mean(n) * std::sqrt(tally.variance())) << what;
   const double student = (cycles - 1.0) / (cycles - 3.0);
-  EXPECT_LT(tally.variance(), student * (1.0 + 4.0 * std::sqrt(2.0 / n))) << what;
+  EXPECT_LT(tally.variance(), student * test::highest_mean_square(n - 1.0)) << what;
   // Features and ω, γ, r come from the same scans: where their errors cancel, what is given is too much.
-  EXPECT_GT(tally.variance(), 0.8 * (1.0 - 4.0 * std::sqrt(2.0 / n))) << what;
+  EXPECT_GT(tally.variance(), 0.8 * test::lowest_mean_square(n - 1.0)) << what;
 }
 
 TEST(CycleFeatures, GiveTheTruthWithinTheirStandardErrors) {

@@ -15,6 +15,7 @@
 #include "core/estimate/cycle_fit.hpp"
 #include "tests/support/allocation_count.hpp"
 #include "tests/support/live_trials.hpp"
+#include "tests/support/sample_limits.hpp"
 #include "tests/support/sanitized.hpp"
 
 namespace stickslip::detect {
@@ -108,10 +109,10 @@ TEST(LiveDetector, FitOfACycleIsAsGoodAsItSaysAtAnyScanRate) {
     const Errors errors = errors_of(scene, EstimatorTier::kFit, true, fewer(at.trials));
     SCOPED_TRACE(at.scan_rate_Hz);
     EXPECT_LE(errors.without, 0.01 * errors.count + 1.0);
-    // Standard error of a mean of errors, of which neighbours share ω, γ and r: four of them and the bias.
-    EXPECT_LE(std::abs(errors.mean), 4.0 * errors.deviation / std::sqrt(errors.count) + 0.002);
-    // χ² of n errors is known to √(2/n); the Huber part that noise spares makes the pull a little small.
-    EXPECT_LE(errors.pull, 1.0 + 4.0 / std::sqrt(2.0 * errors.count));
+    // The mean of errors, of which neighbours share ω, γ and r, and the bias.
+    EXPECT_LE(std::abs(errors.mean), test::farthest_mean(errors.count) * errors.deviation + 0.002);
+    // The Huber part that noise spares makes the pull a little small.
+    EXPECT_LE(errors.pull, std::sqrt(test::highest_mean_square(errors.count)));
     EXPECT_GE(errors.pull, 0.5);
   }
 }
@@ -127,7 +128,7 @@ TEST(LiveDetector, TiersDifferAsTheClosedFormsSay) {
   EXPECT_GT(peak.mean, 0.4);
   EXPECT_LT(peak.mean, std::hypot(1.0, scene.Q) - 1.0);
   EXPECT_LT(std::abs(interpolated.mean), 0.02);
-  EXPECT_LE(std::abs(fit.mean), 4.0 * fit.deviation / std::sqrt(fit.count) + 0.002);
+  EXPECT_LE(std::abs(fit.mean), test::farthest_mean(fit.count) * fit.deviation + 0.002);
   EXPECT_LT(fit.deviation, 0.7 * interpolated.deviation);
 }
 

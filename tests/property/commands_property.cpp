@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kRate_Hz = 100.0;
 
-struct Kept {
+struct RecordedTest {
   TestStart start;
   std::vector<double> raw;
   std::vector<daq::Note> notes;
@@ -34,7 +34,7 @@ class Recorder final : public Sink {
   }
   void scans(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t>,
              const daq::ClockStamp&) override {
-    Kept& test = tests.back();
+    RecordedTest& test = tests.back();
     contiguous = contiguous && first == test.start.first + static_cast<daq::ScanIndex>(test.raw.size());
     test.raw.insert(test.raw.end(), raw.begin(), raw.end());
   }
@@ -52,7 +52,7 @@ class Recorder final : public Sink {
     observed_count += coefficient.size();
   }
 
-  std::vector<Kept> tests;
+  std::vector<RecordedTest> tests;
   int running = 0;
   bool contiguous = true;
   std::size_t observed_count = 0;
@@ -120,7 +120,7 @@ void feed(Processor& processor, const std::vector<double>& values, daq::ScanInde
   }
 }
 
-void replay_gives(const Kept& test, bool automatic) {
+void replay_gives(const RecordedTest& test, bool automatic) {
   ProcessorSettings settings = settings_of(automatic);
   auto recorded = std::make_shared<daq::RecordedFacts>();
   recorded->notes = test.notes;
@@ -132,7 +132,7 @@ void replay_gives(const Kept& test, bool automatic) {
   feed(processor, test.raw, test.start.first, static_cast<std::size_t>(*rc::gen::inRange(1, 65)));
   processor.finish(EndCause::kEndOfInput);
   RC_ASSERT(again.tests.size() == 1U);
-  const Kept& other = again.tests.front();
+  const RecordedTest& other = again.tests.front();
   RC_ASSERT(other.start.first == test.start.first);
   RC_ASSERT(other.start.trigger == test.start.trigger);
   RC_ASSERT(other.start.by_command == test.start.by_command);
@@ -195,9 +195,9 @@ RC_GTEST_PROP(Commands, KeepMachineSegmenterAndRecordTogether, (bool automatic))
   RC_ASSERT(record.contiguous);
   // The account closes: each scan is in a record or was idle.
   std::size_t recorded = 0;
-  for (const Kept& test : record.tests) recorded += test.raw.size();
+  for (const RecordedTest& test : record.tests) recorded += test.raw.size();
   RC_ASSERT(recorded + static_cast<std::size_t>(processor.idle_scan_count()) == force.size());
-  for (const Kept& test : record.tests) {
+  for (const RecordedTest& test : record.tests) {
     RC_ASSERT(test.end.end == test.start.first + static_cast<daq::ScanIndex>(test.raw.size()));
     for (const daq::Note& note : test.notes) {
       RC_ASSERT(note.scan >= test.start.first);
@@ -226,7 +226,7 @@ TEST(Commands, ATestBegunByHandWaitsForItsForceAndEndsWithIt) {
   feed(processor, std::vector<double>(100, 0.3), 300, 10);
   feed(processor, std::vector<double>(100, 0.0), 400, 10);
   ASSERT_EQ(record.tests.size(), 1U);
-  const Kept& test = record.tests[0];
+  const RecordedTest& test = record.tests[0];
   EXPECT_EQ(test.start.trigger, 200);
   EXPECT_EQ(test.start.first, 200 - 20);
   EXPECT_TRUE(test.start.by_command);
@@ -271,7 +271,7 @@ RC_GTEST_PROP(Commands, EachPullHasItsRecordWhateverTheZero, ()) {
   RC_ASSERT(processor.bench() == BenchState::kArmed);
   processor.finish(EndCause::kEndOfInput);
   RC_ASSERT(record.tests.size() == static_cast<std::size_t>(pulls));
-  for (const Kept& test : record.tests) replay_gives(test, true);
+  for (const RecordedTest& test : record.tests) replay_gives(test, true);
 }
 
 /// Pulls above a zero that creeps, steps and is noisy; `pulls` holds where each stands at its full height.
@@ -324,10 +324,11 @@ RC_GTEST_PROP(Commands, NoPullIsLostInSilence, ()) {
   std::size_t missing = 0;
   bool before = true;
   for (const auto& pull : day.pulls) {
-    const bool recorded = std::any_of(record.tests.begin(), record.tests.end(), [&pull](const Kept& test) {
-      return test.start.first <= static_cast<daq::ScanIndex>(pull.first) &&
-             test.end.end >= static_cast<daq::ScanIndex>((pull.first + pull.second) / 2);
-    });
+    const bool recorded =
+        std::any_of(record.tests.begin(), record.tests.end(), [&pull](const RecordedTest& test) {
+          return test.start.first <= static_cast<daq::ScanIndex>(pull.first) &&
+                 test.end.end >= static_cast<daq::ScanIndex>((pull.first + pull.second) / 2);
+        });
     if (before && !recorded) ++missing;
     before = recorded;
   }
@@ -335,7 +336,7 @@ RC_GTEST_PROP(Commands, NoPullIsLostInSilence, ()) {
       std::count(record.troubles.begin(), record.troubles.end(), BenchTrouble::kPulledAgain));
   RC_CLASSIFY(missing > 0, "a pull is in no record, and that is told");
   RC_ASSERT(missing <= told);
-  for (const Kept& test : record.tests) replay_gives(test, true);
+  for (const RecordedTest& test : record.tests) replay_gives(test, true);
 }
 
 TEST(Commands, AForceThatStaysIsToldOnce) {

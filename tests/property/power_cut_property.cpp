@@ -248,8 +248,8 @@ std::vector<Promise> write_patiently(const CrashDisk& disk, const record::FileCa
   record::PatientJournal journal{path, header, kPlenty, calls};
   daq::ScanIndex next = 0;
   // What waits is written until the disk has taken it.
-  const auto settle = [&] {
-    while (journal.settle()) {
+  const auto save = [&] {
+    while (journal.save()) {
     }
     promises.push_back({disk.promise(), static_cast<std::size_t>(next), false});
   };
@@ -263,14 +263,14 @@ std::vector<Promise> write_patiently(const CrashDisk& disk, const record::FileCa
       }
       static_cast<void>(journal.write());
     }
-    settle();
+    save();
   }
   record::EndRecord end = test::sample_end();
   end.status = record::Status::kComplete;
   end.reasons.clear();
   end.spikes.clear();
   journal.add_end(std::move(end));
-  settle();
+  save();
   return promises;
 }
 

@@ -13,7 +13,7 @@
 
 #include "io/json_text.hpp"
 #include "report/report_page.hpp"
-#include "report/table.hpp"
+#include "report/truth_table.hpp"
 
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
@@ -28,9 +28,9 @@ using test::expect_safe;
 using test::hostile;
 using test::lines_of;
 
-class Kept final : public app::LogOutput {
+class CollectedLines final : public app::LogOutput {
  public:
-  explicit Kept(std::vector<std::string>& lines) : lines_(lines) {}
+  explicit CollectedLines(std::vector<std::string>& lines) : lines_(lines) {}
   void write(const app::LogEntry& entry) override { lines_.push_back(entry.message); }
 
  private:
@@ -87,7 +87,8 @@ RC_GTEST_PROP(TextProperty, TheTableHasItsLinesWhateverTheFileIsCalled, ()) {
 
 RC_GTEST_PROP(TextProperty, ALogEntryIsOneSafeLine, ()) {
   std::vector<std::string> lines;
-  app::make_log(io::LogLevel::kInfo, std::make_unique<Kept>(lines))->orphan_kept(*hostile(), *hostile());
+  app::make_log(io::LogLevel::kInfo, std::make_unique<CollectedLines>(lines))
+      ->orphan_kept(*hostile(), *hostile());
   RC_ASSERT(lines.size() == 1U);
   expect_safe(lines.front());
   RC_ASSERT(lines_of(lines.front()) == 0);

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "core/sim/scene.hpp"
+#include "tests/support/sample_limits.hpp"
 #include "tests/support/sanitized.hpp"
 
 namespace stickslip {
@@ -50,9 +51,9 @@ TEST(Promise, ErrorsAreThoseOfTheConditions) {
   const double delta_mu = test::expected_delta_mu_error(cell);
   EXPECT_GT(result->stuck.delta_mu.relative_error(), delta_mu * (1.0 - spread));
   EXPECT_LT(result->stuck.delta_mu.relative_error(), 1.5 * delta_mu * (1.0 + spread));
-  // No bias beyond four standard errors of the mean.
+  // No bias.
   EXPECT_NEAR(result->stuck.delta_mu.mean() / test::PromiseCell::kDeltaMu, 1.0,
-              4.0 * result->stuck.delta_mu.relative_error() / std::sqrt(n));
+              test::farthest_mean(n) * result->stuck.delta_mu.relative_error());
 }
 
 }  // namespace

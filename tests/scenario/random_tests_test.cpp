@@ -12,6 +12,7 @@
 #include "core/sim/scene.hpp"
 #include "tests/support/escape_trials.hpp"
 #include "tests/support/regime_tally.hpp"
+#include "tests/support/sample_limits.hpp"
 
 namespace stickslip {
 namespace {
@@ -22,26 +23,6 @@ constexpr std::uint64_t kSeed = 7;
 base::Result<sim::Scene> base_scene() {
   return sim::load_scene(std::filesystem::path{STICKSLIP_SOURCE_DIR} /
                          "config/scenes/ring-down-at-12-in-per-min.toml");
-}
-
-/// Mean and four standard deviations of a binomial count.
-double highest_count(double of, double share) {
-  return of * share + 4.0 * std::sqrt(of * share * (1.0 - share));
-}
-
-/// Least count that so many tests exceed with a probability below 10⁻⁴ if each counts with probability
-/// `share`.
-int highest_likely(int of, double share) {
-  constexpr double kUnlikely = 1e-4;
-  double probability = std::pow(1.0 - share, of);  // Of the count, by its recurrence.
-  double above = 1.0 - probability;
-  int count = 0;
-  while (above > kUnlikely && count < of) {
-    probability *= share / (1.0 - share) * static_cast<double>(of - count) / static_cast<double>(count + 1);
-    above -= probability;
-    ++count;
-  }
-  return count;
 }
 
 /// What so many tests have shown, and one more: of none in a thousand nobody knows that it never happens.
@@ -92,8 +73,9 @@ void expect_as_documented(detect::EstimatorTier estimator, const std::array<Clas
     std::printf("%-28s %4d tests, %d wrong, %d undecided\n", expected.name, found.tests, found.wrong,
                 found.undecided);
     EXPECT_GT(found.tests, kTests / 50) << "else the test shows little";
-    EXPECT_LE(found.wrong, highest_likely(found.tests, one_more(expected.wrong, expected.tests)));
-    EXPECT_LE(found.undecided, highest_likely(found.tests, one_more(expected.undecided, expected.tests)));
+    EXPECT_LE(found.wrong, test::highest_count(found.tests, one_more(expected.wrong, expected.tests)));
+    EXPECT_LE(found.undecided,
+              test::highest_count(found.tests, one_more(expected.undecided, expected.tests)));
   }
 }
 
@@ -113,11 +95,10 @@ TEST(RandomTests, TransitionIsTheOnsetOfTheSlipThatEscaped) {
   std::printf("%d mixed tests, rms %.4f ms, variance %.3f, another slip in %d\n", found.tests,
               1e3 * found.rms_s(), found.variance(), found.other_slip);
   ASSERT_GT(found.told(), kTests / 20);
-  EXPECT_LE(found.other_slip, highest_likely(found.tests, kOtherSlip));
-  // The mean of n squares of normal numbers scatters by √(2/n), a root of it by 1/√(2n) of itself: four of
-  // these.
-  EXPECT_LT(found.variance(), kTransitionVariance + 4.0 * std::sqrt(2.0 / found.told()));
-  EXPECT_LT(found.rms_s(), kTransitionRms_s * (1.0 + 4.0 / std::sqrt(2.0 * found.told())));
+  EXPECT_LE(found.other_slip, test::highest_count(found.tests, kOtherSlip));
+  const double n = found.told();
+  EXPECT_LT(found.variance(), kTransitionVariance * test::highest_mean_square(n));
+  EXPECT_LT(found.rms_s(), kTransitionRms_s * std::sqrt(test::highest_mean_square(n)));
 }
 
 TEST(RandomTests, EscapesAreDeclaredSoonAndCapturesAreNotTakenForThem) {
@@ -140,9 +121,9 @@ TEST(RandomTests, EscapesAreDeclaredSoonAndCapturesAreNotTakenForThem) {
   EXPECT_GT(escapes, 100);
   // Of 302 222 captured slips 26 were taken for escapes; of 12 409 escapes 12.2 % took longer than 1.5
   // periods, where 10.1 % could not be told sooner, and 0.06 % longer than 3 (docs/detector.md).
-  EXPECT_LE(false_escapes, highest_count(captured, 8.6e-5));
-  EXPECT_LE(not_soon, highest_count(escapes, 0.122));
-  EXPECT_LE(not_in_three, highest_count(escapes, 0.0006));
+  EXPECT_LE(false_escapes, test::highest_count(captured, 8.6e-5));
+  EXPECT_LE(not_soon, test::highest_count(escapes, 0.122));
+  EXPECT_LE(not_in_three, test::highest_count(escapes, 0.0006));
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ class TroubledClock final : public base::Clock {
   std::size_t next_ = 0;
 };
 
-class Published final : public Facts {
+class Published final : public EventReceiver {
  public:
   void file_published(std::int64_t test, const fs::path& file) override {
     const std::lock_guard lock{mutex_};

@@ -27,7 +27,7 @@ TIMEOUT_S = 300
 
 
 def parts(text):
-    """Facts before the header, and the rows as dictionaries."""
+    """Metadata before the header, and the rows as dictionaries."""
     lines = text.splitlines()
     facts = dict(line[2:].split(": ", 1) for line in lines if line.startswith("# "))
     return facts, list(csv.DictReader(line for line in lines if not line.startswith("#")))

@@ -199,7 +199,7 @@ class Outbox(Case):
             self.assertEqual(len(list((daemon.folder / "outbox").glob("*.json"))), 2)
 
 
-class Doors(Case):
+class Access(Case):
     def certificates(self, folder):
         def openssl(*arguments):
             subprocess.run(["openssl", *arguments], cwd=folder, check=True, capture_output=True, timeout=TIMEOUT_S)
@@ -222,8 +222,8 @@ class Doors(Case):
         password = folder / "password"
         password.write_text("open sesame\n", encoding="ascii")
         password.chmod(0o600)
-        door = f'user = "bench-7"\npassword_file = "{password}"\nca_file = "{folder}/ca.pem"\n'
-        daemon = self.daemon(fleet(broker.port, more=door, scheme="mqtts"), speed=50, repeats=1)
+        login = f'user = "bench-7"\npassword_file = "{password}"\nca_file = "{folder}/ca.pem"\n'
+        daemon = self.daemon(fleet(broker.port, more=login, scheme="mqtts"), speed=50, repeats=1)
         listener.results(1)
         errors = daemon.end()[1]
         self.assertNotIn("sesame", errors)
@@ -236,10 +236,10 @@ class Doors(Case):
         (folder / "other").mkdir()
         self.certificates(folder / "other")
         for more, scheme, tester, why in (
-                (door.replace(str(password), str(wrong)), "mqtts", "bench-7", "(?i)not authori[sz]ed|bad user"),
-                (door.replace(f"{folder}/ca.pem", f"{folder}/other/ca.pem"), "mqtts", "bench-7", "(?i)certificate"),
-                (door.replace(f'ca_file = "{folder}/ca.pem"\n', ""), "mqtt", "bench-7", "."),
-                (door, "mqtts", "bench-8", "(?i)refuses what it is told: not authori[sz]ed")):
+                (login.replace(str(password), str(wrong)), "mqtts", "bench-7", "(?i)not authori[sz]ed|bad user"),
+                (login.replace(f"{folder}/ca.pem", f"{folder}/other/ca.pem"), "mqtts", "bench-7", "(?i)certificate"),
+                (login.replace(f'ca_file = "{folder}/ca.pem"\n', ""), "mqtt", "bench-7", "."),
+                (login, "mqtts", "bench-8", "(?i)refuses what it is told: not authori[sz]ed")):
             with self.subTest(why=why):
                 refused = self.daemon(fleet(broker.port, tester=tester, more=more, scheme=scheme))
                 found = self.fleet_of(refused, lambda found: found["why"])

@@ -38,7 +38,7 @@ struct Life {
 };
 
 /// Thread-safe; keeps what the daemon had to say.
-class Diary final : public Facts {
+class Diary final : public EventReceiver {
  public:
   void board_unavailable(std::string_view state, std::string_view why, double /*retry_in_s*/) override {
     const std::lock_guard lock{mutex_};
@@ -98,7 +98,7 @@ class BoardFaults : public testing::Test {
     ManualClock& time = *clock;
     world.clock = std::move(clock);
     world.first_retry = 0ms;
-    world.facts = &diary_;
+    world.events = &diary_;
     world.status_changed = [this](const std::string& line) { lines_.push_back(line); };
     world.finalise = [this](const std::filesystem::path& journal,
                             std::optional<std::int64_t>) -> base::Result<record::Finalised> {

@@ -90,13 +90,13 @@ TEST(Config, ShippedFileShowsTheDefaults) {
   // That of a replayed record gives way to one that is written, even the default.
   EXPECT_EQ(written->estimator, detect::EstimatorTier::kFit);
   EXPECT_EQ(plain.estimator, std::nullopt);
-  EXPECT_EQ(written->kept, plain.kept);
+  EXPECT_EQ(written->skipped, plain.skipped);
 }
 
 TEST(Config, KeepsWhatItIsTold) {
-  EXPECT_TRUE(read(kGood)->kept.nothing());
+  EXPECT_TRUE(read(kGood)->skipped.none());
   const DaemonConfig config = *read(kGood + "[analysis]\nkeep_spikes = true\nkeep_first_slip = true\n");
-  EXPECT_EQ(analysis::text_of(config.kept), "spikes,first-slip");
+  EXPECT_EQ(analysis::text_of(config.skipped), "spikes,first-slip");
 }
 
 TEST(Config, ResolvesScenesAgainstItsOwnFolder) {

@@ -104,7 +104,7 @@ class ControlServerTest : public testing::Test {
 
   /// Sends bytes as they are; returns all that comes back until the server closes.
   [[nodiscard]] static std::string raw(int descriptor, const std::string& bytes, bool half_close = false) {
-    // Whoever is refused may find the door closed already.
+    // Whoever is refused may find the connection closed already.
     static_cast<void>(::send(descriptor, bytes.data(), bytes.size(), MSG_NOSIGNAL));
     if (half_close) ::shutdown(descriptor, SHUT_WR);
     std::string answer;
@@ -194,7 +194,7 @@ TEST_F(ControlServerTest, WhereNoFileCanBeOpenedItWaitsInsteadOfTryingWithoutEnd
 enum class Way { kBySocket, kByTcp };
 
 /// What holds at the socket holds at the TCP port, for whoever has the token.
-class EitherDoor : public ControlServerTest, public testing::WithParamInterface<Way> {
+class EitherListener : public ControlServerTest, public testing::WithParamInterface<Way> {
  protected:
   void open(HttpLimits limits = {}) {
     if (GetParam() == Way::kBySocket) {
@@ -230,10 +230,10 @@ class EitherDoor : public ControlServerTest, public testing::WithParamInterface<
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(, EitherDoor, testing::Values(Way::kBySocket, Way::kByTcp),
+INSTANTIATE_TEST_SUITE_P(, EitherListener, testing::Values(Way::kBySocket, Way::kByTcp),
                          [](const auto& way) { return way.param == Way::kBySocket ? "Socket" : "Tcp"; });
 
-TEST_P(EitherDoor, RefusesWhatIsTooLongOrNoHttp) {
+TEST_P(EitherListener, RefusesWhatIsTooLongOrNoHttp) {
   HttpLimits limits;
   limits.header_size = 256;
   limits.body_size = 16;
@@ -247,14 +247,14 @@ TEST_P(EitherDoor, RefusesWhatIsTooLongOrNoHttp) {
   EXPECT_THAT(answer_to("\x01\x02\x03\r\n\r\n"), testing::StartsWith("HTTP/1.1 400 "));
 }
 
-TEST_P(EitherDoor, LeavesAClientThatSaysNothing) {
+TEST_P(EitherListener, LeavesAClientThatSaysNothing) {
   HttpLimits limits;
   limits.time = 20ms;
   open(limits);
   EXPECT_EQ(answer_to("GET /v1/st"), "");
 }
 
-TEST_P(EitherDoor, AnswersPipelinedRequestsInOrder) {
+TEST_P(EitherListener, AnswersPipelinedRequestsInOrder) {
   open();
   const std::string answer = answer_to(asks("GET", "/v1/status") + "\r\n\r\n" + asks("GET", "/v1/plan") +
                                        "\r\n\r\n" + asks("GET", "/nothing") + kClose);
@@ -266,7 +266,7 @@ TEST_P(EitherDoor, AnswersPipelinedRequestsInOrder) {
   EXPECT_NE(nothing, std::string::npos);
 }
 
-TEST_P(EitherDoor, AnswersAClientThatHasClosedItsOwnSide) {
+TEST_P(EitherListener, AnswersAClientThatHasClosedItsOwnSide) {
   open();
   EXPECT_THAT(answer_to(asks("GET", "/v1/status") + "\r\n\r\n", true), testing::StartsWith("HTTP/1.1 200 "));
   EXPECT_EQ(answer_to(asks("GET", "/v1/status") + "\r\n", true), "") << "no whole request";
@@ -274,7 +274,7 @@ TEST_P(EitherDoor, AnswersAClientThatHasClosedItsOwnSide) {
 
 // Bytes that trickle do not hold a connection longer than a request may take. There is room for one: while it
 // is held nobody else is answered.
-TEST_P(EitherDoor, LeavesAClientWhoseHeaderTrickles) {
+TEST_P(EitherListener, LeavesAClientWhoseHeaderTrickles) {
   HttpLimits limits;
   limits.time = 50ms;
   limits.header_size = 1U << 30U;
@@ -286,7 +286,7 @@ TEST_P(EitherDoor, LeavesAClientWhoseHeaderTrickles) {
   EXPECT_TRUE(is_answered_at_last());
 }
 
-TEST_P(EitherDoor, LeavesAClientWhoseBodyTrickles) {
+TEST_P(EitherListener, LeavesAClientWhoseBodyTrickles) {
   HttpLimits limits;
   limits.time = 50ms;
   limits.body_size = 1U << 30U;
@@ -300,7 +300,7 @@ TEST_P(EitherDoor, LeavesAClientWhoseBodyTrickles) {
 
 // It asks again and again and takes no answer: what the kernel's buffers do not hold waits for it no longer
 // than a reply may take to leave.
-TEST_P(EitherDoor, LeavesAClientThatDoesNotRead) {
+TEST_P(EitherListener, LeavesAClientThatDoesNotRead) {
   HttpLimits limits;
   limits.time = 50ms;
   limits.connections = 1;
@@ -314,7 +314,7 @@ TEST_P(EitherDoor, LeavesAClientThatDoesNotRead) {
   EXPECT_TRUE(is_answered_at_last());
 }
 
-TEST_P(EitherDoor, HasRoomForSoManyConnectionsAndNotForOneMore) {
+TEST_P(EitherListener, HasRoomForSoManyConnectionsAndNotForOneMore) {
   HttpLimits limits;
   limits.connections = 2;
   open(limits);
@@ -337,7 +337,7 @@ TEST_P(EitherDoor, HasRoomForSoManyConnectionsAndNotForOneMore) {
 
 // Idle ones, ones that ask for a page, ones that come again and again: none of them has shown a token, and
 // whoever has one is answered each time.
-TEST_P(EitherDoor, WhoHasATokenIsAnsweredWhateverNewcomersDo) {
+TEST_P(EitherListener, WhoHasATokenIsAnsweredWhateverNewcomersDo) {
   HttpLimits limits;
   limits.time = 1h;
   limits.newcomer_time = 1h;  // So that not the time saves it.
@@ -356,7 +356,7 @@ TEST_P(EitherDoor, WhoHasATokenIsAnsweredWhateverNewcomersDo) {
 }
 
 // However many come and say nothing, no more than so many are kept: the one silent longest goes.
-TEST_P(EitherDoor, TheNewcomerThatWasSilentLongestMakesRoom) {
+TEST_P(EitherListener, TheNewcomerThatWasSilentLongestMakesRoom) {
   HttpLimits limits;
   limits.time = 1h;
   limits.newcomer_time = 1h;
@@ -392,7 +392,7 @@ TEST_F(ControlServerTest, WhoReadsThePageHasNotBeenSilent) {
   for (const int one : {first, second, third}) ::close(one);
 }
 
-TEST_P(EitherDoor, ANewcomerHasLessTimeThanWhoWasLetIn) {
+TEST_P(EitherListener, ANewcomerHasLessTimeThanWhoWasLetIn) {
   HttpLimits limits;
   limits.time = 1h;
   limits.newcomer_time = 20ms;
@@ -408,7 +408,7 @@ TEST_P(EitherDoor, ANewcomerHasLessTimeThanWhoWasLetIn) {
   EXPECT_THAT(raw(known, asks("GET", "/v1/status") + kClose), testing::HasSubstr("HTTP/1.1 200 "));
 }
 
-TEST_P(EitherDoor, AnswersHeadAsGetButForTheBody) {
+TEST_P(EitherListener, AnswersHeadAsGetButForTheBody) {
   open();
   for (const char* path : {"/v1/status", "/nothing", "/v1/live"}) {
     const std::string whole = answer_to(asks("GET", path) + kClose);
@@ -424,7 +424,7 @@ TEST_P(EitherDoor, AnswersHeadAsGetButForTheBody) {
   EXPECT_THAT(two, testing::HasSubstr("\"pull_speed\":null"));
 }
 
-TEST_P(EitherDoor, RefusesHeadersThatStandThereTwice) {
+TEST_P(EitherListener, RefusesHeadersThatStandThereTwice) {
   open();
   for (const char* name :
        {"Host", "hOST", "Origin", "Authorization", "Expect", "Stickslip-Controller", "Idempotency-Key"}) {
@@ -435,7 +435,7 @@ TEST_P(EitherDoor, RefusesHeadersThatStandThereTwice) {
   }
 }
 
-TEST_P(EitherDoor, SaysContinueToWhoWaitsForIt) {
+TEST_P(EitherListener, SaysContinueToWhoWaitsForIt) {
   HttpLimits limits;
   limits.body_size = 16;
   open(limits);
@@ -464,7 +464,7 @@ constexpr const char* kUpgrade =
     "\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: "
     "dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
 
-TEST_P(EitherDoor, RefusesMoreListenersThanItHasRoomForAndSaysSo) {
+TEST_P(EitherListener, RefusesMoreListenersThanItHasRoomForAndSaysSo) {
   open();
   const std::string ask =
       asks("GET", "/v1/live") + (GetParam() == Way::kBySocket ? "\r\nHost: x" : "") + kUpgrade;

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/control/access.hpp"
 #include "daemon/control/api.hpp"
-#include "daemon/control/gate.hpp"
 #include "daemon/control/repeats.hpp"
 #include "daemon/types/live_hub.hpp"
 #include "tests/support/manual_clock.hpp"
@@ -387,14 +387,14 @@ TEST_F(ControlApi, MetricsAreThoseOfTheStatus) {
   EXPECT_THAT(reply.body, testing::HasSubstr("\nstickslip_scan_rate_hertz 350\n"));
 }
 
-const control::Door kTcp{false, {"127.0.0.1:80", "localhost:80"}, "secret"};
+const control::AccessPolicy kTcp{false, {"127.0.0.1:80", "localhost:80"}, "secret"};
 
-int status_at(const control::Door& door, const control::Knock& knock) {
-  const auto refused = control::refuse_at(door, knock);
+int status_at(const control::AccessPolicy& policy, const control::AccessRequest& request) {
+  const auto refused = control::access_refusal(policy, request);
   return refused ? refused->status : 200;
 }
 
-TEST(Gate, TcpWantsHostOriginAndToken) {
+TEST(AccessPolicy, TcpWantsHostOriginAndToken) {
   const std::string_view host = "127.0.0.1:80";
   const std::string_view bearer = "Bearer secret";
   EXPECT_EQ(status_at({}, {"/v1/start", "anything", "http://evil", "", ""}), 200)

@@ -29,7 +29,7 @@ class JournalPlace : public testing::Test {
     fs::create_directory(folder_ / "records");
     journal_.emplace(folder_ / "records" / "a.journal", test::sample_header(), kPlenty, calls);
     add();
-    ASSERT_EQ(journal_->settle(), std::nullopt);
+    ASSERT_EQ(journal_->save(), std::nullopt);
     ASSERT_EQ(journal_->path(), folder_ / "records" / "a.journal");
   }
   void add() {
@@ -58,12 +58,12 @@ TEST_F(JournalPlace, AnUnlinkedJournalIsWrittenAnew) {
   begin(disk_);
   fs::remove(journal_->path());
   add();
-  EXPECT_EQ(journal_->settle(), std::nullopt);
+  EXPECT_EQ(journal_->save(), std::nullopt);
   EXPECT_EQ(journal_->anew_count(), 1);
   EXPECT_EQ(journal_->path(), folder_ / "records" / "a.journal");
   expect_all();
   add();
-  EXPECT_EQ(journal_->settle(), std::nullopt);
+  EXPECT_EQ(journal_->save(), std::nullopt);
   EXPECT_EQ(journal_->anew_count(), 1);
   expect_all();
   EXPECT_FALSE(record::JournalLock::take(journal_->path()));
@@ -72,8 +72,8 @@ TEST_F(JournalPlace, AnUnlinkedJournalIsWrittenAnew) {
 TEST_F(JournalPlace, NothingIsWrittenAndItIsSeenAllTheSame) {
   begin(disk_);
   fs::remove(journal_->path());
-  EXPECT_TRUE(journal_->settled());
-  EXPECT_EQ(journal_->stay(), std::nullopt);
+  EXPECT_TRUE(journal_->saved());
+  EXPECT_EQ(journal_->ensure_at_path(), std::nullopt);
   expect_all();
 }
 
@@ -82,7 +82,7 @@ TEST_F(JournalPlace, AnotherFileAtThePathIsNotOverwritten) {
   fs::remove(journal_->path());
   std::ofstream{folder_ / "records" / "a.journal"} << "somebody's notes";
   add();
-  EXPECT_EQ(journal_->settle(), std::nullopt);
+  EXPECT_EQ(journal_->save(), std::nullopt);
   EXPECT_EQ(test::content_of(folder_ / "records" / "a.journal"), "somebody's notes");
   EXPECT_EQ(journal_->path(), folder_ / "records" / "a-2.journal");
   expect_all();
@@ -94,7 +94,7 @@ TEST_F(JournalPlace, ACopyInItsPlaceIsAnotherFile) {
   fs::copy(journal_->path(), folder_ / "copy");
   fs::rename(folder_ / "copy", journal_->path());
   add();
-  EXPECT_EQ(journal_->settle(), std::nullopt);
+  EXPECT_EQ(journal_->save(), std::nullopt);
   EXPECT_EQ(journal_->path(), folder_ / "records" / "a-2.journal");
   expect_all();
 }
@@ -104,7 +104,7 @@ TEST_F(JournalPlace, ALinkInItsPlaceIsAnotherFile) {
   fs::rename(journal_->path(), folder_ / "moved");
   fs::create_symlink(folder_ / "moved", journal_->path());
   add();
-  EXPECT_EQ(journal_->settle(), std::nullopt);
+  EXPECT_EQ(journal_->save(), std::nullopt);
   EXPECT_EQ(journal_->path(), folder_ / "records" / "a-2.journal");
   expect_all();
 }
@@ -117,7 +117,7 @@ TEST_F(JournalPlace, AFileOfTheSameNumberOnAnotherDeviceIsAnotherFile) {
   fs::create_hard_link(folder_ / "elsewhere" / "a.journal", journal_->path());
   disk_.mount(folder_ / "records", 1);
   add();
-  EXPECT_EQ(journal_->settle(), std::nullopt);
+  EXPECT_EQ(journal_->save(), std::nullopt);
   EXPECT_EQ(journal_->path(), folder_ / "records" / "a-2.journal");
   expect_all();
 }
@@ -145,7 +145,7 @@ TEST_F(JournalPlace, AFileWithoutANameIsGoneAlthoughItIsStillFound) {
   begin(names);
   names.remove(journal_->path());
   add();
-  EXPECT_EQ(journal_->settle(), std::nullopt);
+  EXPECT_EQ(journal_->save(), std::nullopt);
   EXPECT_EQ(journal_->path(), folder_ / "records" / "a-2.journal");
   expect_all();
   journal_.reset();
@@ -156,7 +156,7 @@ TEST_F(JournalPlace, AFileThatWasThereFirstIsNotOverwritten) {
   std::ofstream{folder_ / "records" / "a.journal"} << "somebody's notes";
   journal_.emplace(folder_ / "records" / "a.journal", test::sample_header(), kPlenty, disk_);
   add();
-  EXPECT_EQ(journal_->settle(), std::nullopt);
+  EXPECT_EQ(journal_->save(), std::nullopt);
   EXPECT_EQ(journal_->path(), folder_ / "records" / "a-2.journal");
   expect_all();
 }
@@ -165,7 +165,7 @@ TEST_F(JournalPlace, AFolderThatWasRenamedIsMadeAgain) {
   begin(disk_);
   fs::rename(folder_ / "records", folder_ / "elsewhere");
   add();
-  EXPECT_EQ(journal_->settle(), std::nullopt);
+  EXPECT_EQ(journal_->save(), std::nullopt);
   EXPECT_EQ(journal_->path(), folder_ / "records" / "a.journal");
   expect_all();
 }
@@ -176,10 +176,10 @@ TEST_P(CannotLook, IsNotGone) {
   begin(disk_);
   disk_.hide(folder_ / "records", GetParam());
   add();
-  EXPECT_THAT(journal_->settle().value_or(""), testing::HasSubstr(std::strerror(GetParam())));
+  EXPECT_THAT(journal_->save().value_or(""), testing::HasSubstr(std::strerror(GetParam())));
   EXPECT_GT(journal_->waiting_size(), 0U);
   disk_.hide({}, 0);
-  EXPECT_EQ(journal_->settle(), std::nullopt);
+  EXPECT_EQ(journal_->save(), std::nullopt);
   EXPECT_EQ(journal_->anew_count(), 0);
   expect_all();
 }
@@ -192,10 +192,10 @@ TEST_F(JournalPlace, WhatCannotBeReadBackWaitsAndSaysSo) {
   fs::remove(journal_->path());
   disk_.refuse_reads(EIO);
   add();
-  EXPECT_THAT(journal_->settle().value_or(""), testing::HasSubstr("cannot be read back"));
+  EXPECT_THAT(journal_->save().value_or(""), testing::HasSubstr("cannot be read back"));
   EXPECT_TRUE(fs::is_empty(folder_ / "records"));
   disk_.refuse_reads(0);
-  EXPECT_EQ(journal_->settle(), std::nullopt);
+  EXPECT_EQ(journal_->save(), std::nullopt);
   expect_all();
 }
 
@@ -210,9 +210,9 @@ TEST_F(JournalPlace, NothingIsLostWhereItIsRefused) {
     fs::remove_all(folder_ / "records");
     add();
     faulty.refuse(call, 1, ENOSPC);
-    static_cast<void>(journal_->settle());
+    static_cast<void>(journal_->save());
     faulty.works_again();
-    EXPECT_EQ(journal_->settle(), std::nullopt) << call;
+    EXPECT_EQ(journal_->save(), std::nullopt) << call;
     expect_all();
   }
 }
@@ -223,12 +223,12 @@ TEST_F(JournalPlace, AJournalWhoseRecordIsMadeIsNotWrittenAnew) {
   EXPECT_TRUE(record::JournalLock::take(journal_->path()));
   // As long as there is no record, it is; and others may still finish it.
   fs::remove(journal_->path());
-  EXPECT_EQ(journal_->stay(), std::nullopt);
+  EXPECT_EQ(journal_->ensure_at_path(), std::nullopt);
   expect_all();
   EXPECT_TRUE(record::JournalLock::take(journal_->path()));
   std::ofstream{folder_ / "records" / "a.h5"} << "its record";
   fs::remove(journal_->path());
-  EXPECT_EQ(journal_->stay(), std::nullopt);
+  EXPECT_EQ(journal_->ensure_at_path(), std::nullopt);
   EXPECT_FALSE(fs::exists(journal_->path()));
   EXPECT_EQ(journal_->anew_count(), 1);
 }

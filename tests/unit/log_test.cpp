@@ -30,7 +30,7 @@ class Fields final : public LogOutput {
 
 class LogTest : public testing::Test {
  protected:
-  std::unique_ptr<daemon::Facts> log(io::LogLevel level = io::LogLevel::kInfo) {
+  std::unique_ptr<daemon::EventReceiver> log(io::LogLevel level = io::LogLevel::kInfo) {
     return make_log(level, std::make_unique<Fields>(lines_));
   }
 
@@ -78,10 +78,10 @@ TEST_F(LogTest, AFileSystemThatLacksSomethingIsAWarning) {
 }
 
 TEST_F(LogTest, WhatIsBelowTheLevelIsLeftOut) {
-  const std::unique_ptr<daemon::Facts> facts = log(io::LogLevel::kWarning);
-  facts->stopping("told to");
+  const std::unique_ptr<daemon::EventReceiver> events = log(io::LogLevel::kWarning);
+  events->stopping("told to");
   EXPECT_TRUE(lines_.empty());
-  facts->storage_waits("no space");
+  events->storage_waits("no space");
   EXPECT_EQ(lines_.size(), 1U);
 }
 
@@ -112,9 +112,9 @@ TEST_F(LogTest, ScansThatTheDiskDamagedAreNotInRecords) {
 
 // What is lost to nobody's knowledge is an error of its own kind, so that an alarm can be set on it.
 TEST_F(LogTest, ScansUnaccountedForAreAnEventOfTheirOwn) {
-  const std::unique_ptr<daemon::Facts> facts = log();
-  facts->scans_accounted({.issued = 10, .idle = 4, .in_gaps = 1, .recorded = 5});
-  facts->scans_accounted({.issued = 10, .idle = 4, .in_gaps = 1, .recorded = 3});
+  const std::unique_ptr<daemon::EventReceiver> events = log();
+  events->scans_accounted({.issued = 10, .idle = 4, .in_gaps = 1, .recorded = 5});
+  events->scans_accounted({.issued = 10, .idle = 4, .in_gaps = 1, .recorded = 3});
   ASSERT_EQ(lines_.size(), 2U);
   EXPECT_EQ(lines_[0].at(3), "STICKSLIP_EVENT=scans-accounted");
   EXPECT_EQ(lines_[1].at(1), "PRIORITY=3");

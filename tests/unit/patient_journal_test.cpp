@@ -54,7 +54,7 @@ int write_test(PatientJournal& journal, int seconds) {
       next += static_cast<daq::ScanIndex>(kScansInEntry);
       if (journal.write()) ++refused;
     }
-    if (journal.settle()) ++refused;
+    if (journal.save()) ++refused;
   }
   journal.add_end(sound_end());
   return refused;
@@ -65,7 +65,7 @@ TEST(PatientJournal, RoomReservedBehindTheEndIsGivenBack) {
   const test::TemporaryFolder folder;
   PatientJournal journal{folder.path() / "a.journal", test::sample_header(), kMemory};
   write_test(journal, 2);
-  ASSERT_FALSE(journal.settle());
+  ASSERT_FALSE(journal.save());
   const auto allocated = [&] {
     struct stat facts {};
     EXPECT_EQ(::stat(journal.path().c_str(), &facts), 0);
@@ -76,7 +76,7 @@ TEST(PatientJournal, RoomReservedBehindTheEndIsGivenBack) {
   if (allocated() <= kFileSystemBlock) GTEST_SKIP() << "this file system reserves nothing";
   journal.give_room_back();
   EXPECT_LE(allocated(), kFileSystemBlock);
-  EXPECT_FALSE(journal.settle());
+  EXPECT_FALSE(journal.save());
 }
 
 /// All scans in order, each value the first scan of its entry.
@@ -97,7 +97,7 @@ TEST_P(RefusedOnce, AtEveryCallOfTheSystemNothingIsLost) {
     FaultyDisk disk;
     PatientJournal journal{folder / "whole.journal", test::sample_header(), kMemory, disk};
     EXPECT_EQ(write_test(journal, 4), 0);
-    EXPECT_FALSE(journal.settle());
+    EXPECT_FALSE(journal.save());
     calls = disk.calls();
   }
   ASSERT_GT(calls, 20);
@@ -110,7 +110,7 @@ TEST_P(RefusedOnce, AtEveryCallOfTheSystemNothingIsLost) {
       PatientJournal journal{path, test::sample_header(), kMemory, disk};
       write_test(journal, 4);
       disk.works_again();
-      EXPECT_EQ(journal.settle(), std::nullopt) << call;
+      EXPECT_EQ(journal.save(), std::nullopt) << call;
       EXPECT_EQ(journal.waiting_size(), 0U);
       const auto read = record::read_journal(path);
       ASSERT_TRUE(read) << call << ": " << read.error().message;
@@ -128,7 +128,7 @@ TEST_P(RefusedOnce, TheFinaliserLeavesTheJournalAndNoHalfFile) {
     const test::HastyCalls disk;
     PatientJournal journal{path, test::sample_header(), kMemory, disk};
     write_test(journal, 2);
-    ASSERT_EQ(journal.settle(), std::nullopt);
+    ASSERT_EQ(journal.save(), std::nullopt);
   };
   write(folder / "a.journal");
   FaultyDisk counting;
@@ -183,12 +183,12 @@ TEST(PatientJournal, WhatAnFsyncRefusedIsWrittenAgain) {
   const TemporaryFolder folder;
   DroppingDisk disk;
   PatientJournal journal{folder / "a.journal", test::sample_header(), kMemory, disk};
-  ASSERT_EQ(journal.settle(), std::nullopt);
+  ASSERT_EQ(journal.save(), std::nullopt);
   disk.synced = static_cast<off_t>(fs::file_size(folder / "a.journal"));
   journal.add_scans(0, std::vector<double>(kScansInEntry, 0.0), {});
   disk.drop = true;
-  EXPECT_NE(journal.settle(), std::nullopt);
-  EXPECT_EQ(journal.settle(), std::nullopt);
+  EXPECT_NE(journal.save(), std::nullopt);
+  EXPECT_EQ(journal.save(), std::nullopt);
   const auto read = record::read_journal(folder / "a.journal");
   ASSERT_TRUE(read);
   EXPECT_EQ(read->why_unread(), "");
@@ -208,14 +208,14 @@ TEST(PatientJournal, WhatDoesNotFitIntoTheMemoryIsAGapWithItsCause) {
   };
   for (int entry = 0; entry < 25; ++entry) {
     EXPECT_EQ(add(entry), entry < 10) << entry;
-    EXPECT_NE(journal->settle(), std::nullopt);
+    EXPECT_NE(journal->save(), std::nullopt);
   }
   EXPECT_EQ(journal->lost_scan_count(), 15 * 35);
   disk.works_again();
-  EXPECT_EQ(journal->settle(), std::nullopt);
+  EXPECT_EQ(journal->save(), std::nullopt);
   EXPECT_TRUE(add(25));
   journal->add_end(sound_end());
-  EXPECT_EQ(journal->settle(), std::nullopt);
+  EXPECT_EQ(journal->save(), std::nullopt);
 
   journal.reset();  // Its lock too.
   const auto file = record::finalise(folder / "a.journal");
@@ -238,19 +238,19 @@ TEST(PatientJournal, WhatDoesNotFitIntoTheMemoryIsAGapWithItsCause) {
 TEST(PatientJournal, GoesOnWhenARealLimitIsLifted) {
   const TemporaryFolder folder;
   PatientJournal journal{folder / "a.journal", test::sample_header(), kMemory};
-  ASSERT_EQ(journal.settle(), std::nullopt);
+  ASSERT_EQ(journal.save(), std::nullopt);
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
   const rlimit tight{fs::file_size(folder / "a.journal") + 50, before.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &tight), 0);
   write_test(journal, 3);
-  const auto refused = journal.settle();
+  const auto refused = journal.save();
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
   std::signal(SIGXFSZ, old_handler);
   ASSERT_TRUE(refused);
   EXPECT_THAT(*refused, testing::HasSubstr("File too large"));
-  EXPECT_EQ(journal.settle(), std::nullopt);
+  EXPECT_EQ(journal.save(), std::nullopt);
   expect_all(record::read_journal(folder / "a.journal")->record, 3 * 3 * kScansInEntry);
 }
 

@@ -15,7 +15,7 @@
 #include "core/record/fields.hpp"
 #include "core/record/journal.hpp"
 #include "core/record/json_codec.hpp"
-#include "core/record/possible.hpp"
+#include "core/record/range_check.hpp"
 #include "tests/support/journal_samples.hpp"
 #include "tests/support/record_equality.hpp"
 #include "tests/support/record_samples.hpp"

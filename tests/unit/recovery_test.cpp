@@ -21,7 +21,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-class Heard final : public daemon::Facts {
+class Heard final : public daemon::EventReceiver {
  public:
   void orphan_finalised(const fs::path& file) override { text += "made " + file.filename().string() + "\n"; }
   void record_damaged(const fs::path& file, std::string_view loss) override {

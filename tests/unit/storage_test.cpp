@@ -27,7 +27,7 @@ constexpr double kRate_Hz = 350.0;
 constexpr std::int64_t kTenMinutes = 600 * 350;
 
 /// What was told, and a way to wait for it.
-class Heard final : public daemon::Facts {
+class Heard final : public daemon::EventReceiver {
  public:
   void storage_waits(std::string_view why) override { add("waits: " + std::string{why}); }
   void storage_resumed() override { add("resumed"); }

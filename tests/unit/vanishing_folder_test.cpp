@@ -27,7 +27,7 @@ using namespace std::chrono_literals;
 constexpr int kOtherDevice = 1000;
 
 /// Things that happen, in order, and a way to wait for them.
-class Told final : public daemon::Facts {
+class Told final : public daemon::EventReceiver {
  public:
   void storage_waits(std::string_view why) override { add(std::string{why}); }
   void storage_resumed() override { add("resumed"); }

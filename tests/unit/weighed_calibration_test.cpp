@@ -7,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/sample_limits.hpp"
+
 namespace stickslip::daq {
 namespace {
 
@@ -55,7 +57,7 @@ TEST(WeighedCalibration, ExactReadingsGiveGainAndZero) {
 }
 
 TEST(WeighedCalibration, StandardErrorsAreThoseOfRepeatedCalibrations) {
-  constexpr int kRuns = 500;
+  constexpr int kRuns = 300;
   constexpr double kNoise_V = 1e-3;
   std::mt19937_64 random{kSeed};
   std::normal_distribution<double> noise{0.0, kNoise_V};
@@ -69,8 +71,11 @@ TEST(WeighedCalibration, StandardErrorsAreThoseOfRepeatedCalibrations) {
     gain_errors += std::pow(result.fit.load_cell->gain_N_per_V - kCellGain_N_per_V, 2);
     gain_variances += std::pow(*result.fit.gain_standard_error_N_per_V, 2);
   }
-  // The ratio of two χ²-like sums of 500 and 500·5 terms: √(2/500 + 2/2500) = 7 %; three of those.
-  EXPECT_NEAR(gain_errors / gain_variances, 1.0, 0.21);
+  // Each standard error is one of 7 − 2 degrees of freedom: the ratio of two mean squares, of n and of 5 n.
+  constexpr double kFreedom = 5.0 * kRuns;
+  const double ratio = gain_errors / gain_variances;
+  EXPECT_LT(ratio, test::highest_mean_square(kRuns) / test::lowest_mean_square(kFreedom));
+  EXPECT_GT(ratio, test::lowest_mean_square(kRuns) / test::highest_mean_square(kFreedom));
 }
 
 TEST(WeighedCalibration, BadReadingsAreLeftOutWithTheReason) {

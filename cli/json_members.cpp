@@ -1,4 +1,4 @@
-#include "cli/json_words.hpp"
+#include "cli/json_members.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "daemon/runtime/bench_desk.hpp"
+#include "daemon/runtime/command_service.hpp"
 
 #include <fmt/format.h>
 
@@ -61,13 +61,13 @@ daemon::Outcome carry_out(const daemon::Command& command, pipeline::Processor& p
   return {processor.tare(command.who), false};
 }
 
-daemon::Plan BenchDesk::plan() const {
+daemon::Plan CommandService::plan() const {
   daemon::Plan plan{parts_.config.sample, parts_.config.bench.pull_speed_m_per_s, std::nullopt};
   if (!(parts_.config.method == configured_method_)) plan.method = parts_.config.method;
   return plan;
 }
 
-void BenchDesk::set_plan(daemon::Plan plan) {
+void CommandService::set_plan(daemon::Plan plan) {
   parts_.config.sample = plan.sample;
   parts_.config.bench.pull_speed_m_per_s = plan.pull_speed_m_per_s;
   parts_.config.method = plan.method.value_or(configured_method_);
@@ -86,7 +86,7 @@ void BenchDesk::set_plan(daemon::Plan plan) {
   }));
 }
 
-std::optional<std::string> BenchDesk::refused_now(daemon::Command::Kind kind) const {
+std::optional<std::string> CommandService::refused_now(daemon::Command::Kind kind) const {
   const bool test = kind == daemon::Command::Kind::kArm || kind == daemon::Command::Kind::kStart;
   if (test || kind == daemon::Command::Kind::kTare) {
     if (auto why_not = parts_.calibrations.why_no_test()) return why_not;
@@ -94,7 +94,7 @@ std::optional<std::string> BenchDesk::refused_now(daemon::Command::Kind kind) co
   return test ? daemon::why_no_test(parts_.storage.state()) : std::nullopt;
 }
 
-void BenchDesk::command(daemon::Command command, std::function<void(const daemon::Outcome&)> answer) {
+void CommandService::command(daemon::Command command, std::function<void(const daemon::Outcome&)> answer) {
   if (auto why_not = refused_now(command.kind)) {
     daemon::Outcome outcome;
     outcome.report.refusal = *std::move(why_not);
@@ -123,7 +123,7 @@ void BenchDesk::command(daemon::Command command, std::function<void(const daemon
   answer(outcome);
 }
 
-void BenchDesk::answered(const daemon::Command& command, const daemon::Outcome& outcome) {
+void CommandService::answered(const daemon::Command& command, const daemon::Outcome& outcome) {
   if (command.kind == daemon::Command::Kind::kTare && outcome.report.refusal.empty()) {
     parts_.config.bench.load_cell_zero_V = outcome.report.zero_V;
   }

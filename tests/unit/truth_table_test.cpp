@@ -1,9 +1,9 @@
+#include "report/truth_table.hpp"
+
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
-
-#include "report/table.hpp"
 
 namespace stickslip::report {
 namespace {
@@ -19,7 +19,7 @@ TableRow row() {
   return row;
 }
 
-TEST(ReportTable, PutsTheTruthBelowTheMeasuredNumberAndSaysWhyOneIsAbsent) {
+TEST(TruthTable, PutsTheTruthBelowTheMeasuredNumberAndSaysWhyOneIsAbsent) {
   TableRow with_truth = row();
   with_truth.truth.emplace();
   with_truth.truth->regime = model::Regime::kStickSlip;
@@ -36,14 +36,14 @@ TEST(ReportTable, PutsTheTruthBelowTheMeasuredNumberAndSaysWhyOneIsAbsent) {
   // clang-format on
 }
 
-TEST(ReportTable, HasOneLineForATestWhoseTruthNobodyKnows) {
+TEST(TruthTable, HasOneLineForATestWhoseTruthNobodyKnows) {
   const TableRow without = row();
   const std::string table = format_table({&without, 1});
   EXPECT_EQ(table.find("truth"), std::string::npos);
   EXPECT_EQ(table.find("measured"), std::string::npos);
 }
 
-TEST(ReportTable, TellsEachReasonOnceWithItsTests) {
+TEST(TruthTable, TellsEachReasonOnceWithItsTests) {
   std::vector<TableRow> rows{row(), row()};
   rows[1].number = 4;
   EXPECT_NE(format_table(rows).find("–  no kinetic in test 3, 4: too few cycles\n"), std::string::npos);

@@ -1,4 +1,4 @@
-#include "daemon/page/report_desk.hpp"
+#include "daemon/page/report_jobs.hpp"
 
 #include <fcntl.h>
 
@@ -54,7 +54,7 @@ std::string program_beside_this() {
   return (own.parent_path() / "stickslip").string();
 }
 
-struct ReportDesk::Job {
+struct ReportJobs::Job {
   io::ChildProcess child;
   boost::asio::posix::stream_descriptor end;
   boost::asio::steady_timer patience;
@@ -62,11 +62,11 @@ struct ReportDesk::Job {
   bool took_too_long = false;
 };
 
-ReportDesk::ReportDesk(Parts parts) : parts_(std::move(parts)) {}
+ReportJobs::ReportJobs(Parts parts) : parts_(std::move(parts)) {}
 
-ReportDesk::~ReportDesk() = default;
+ReportJobs::~ReportJobs() = default;
 
-void ReportDesk::make(std::span<const daemon::ReportedBatch> batches, daemon::ReportForm form,
+void ReportJobs::make(std::span<const daemon::ReportedBatch> batches, daemon::ReportForm form,
                       Answer answer) {
   STICKSLIP_EXPECTS(batches.size() == 1 || batches.size() == 2);
   if (job_) {
@@ -103,7 +103,7 @@ void ReportDesk::make(std::span<const daemon::ReportedBatch> batches, daemon::Re
   });
 }
 
-void ReportDesk::ended() {
+void ReportJobs::ended() {
   const std::unique_ptr<Job> job = std::move(job_);
   base::Result<io::ChildAnswer> made = job->child.wait();
   if (!made) return job->answer(tl::unexpected(made.error()));

@@ -18,9 +18,9 @@
 namespace stickslip::daemon {
 
 /// Receiver of events. Thread-safe: all threads but the acquisition thread call it.
-class Facts {
+class EventReceiver {
  public:
-  virtual ~Facts() = default;
+  virtual ~EventReceiver() = default;
 
   virtual void board_started(const daq::BoardInfo& /*board*/, std::string_view /*scheduling*/) {}
   /// Before a session: whether the scan rate suffices for the tester.

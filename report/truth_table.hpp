@@ -1,5 +1,5 @@
 /// \file
-/// The table of tests for people: each measured number with the truth below it, where known.
+/// The table of tests for people: each measured number with the truth below it, if known.
 ///
 ///     test            regime      static  kinetic        S        K      S-K      Hz …
 ///        1  measured  stick-slip  0.3824   0.3012   0.3500   0.3000   0.0500  19.314 …  FILE

@@ -8,7 +8,7 @@
 
 #include "io/config.hpp"
 
-#include "daemon/runtime/calibration_desk.hpp"
+#include "daemon/runtime/calibration_service.hpp"
 #include "daemon/runtime/session.hpp"
 #include "daemon/storage/storage.hpp"
 #include "daemon/types/bench.hpp"
@@ -16,20 +16,20 @@
 
 namespace stickslip::runtime {
 
-class BenchDesk final : public daemon::Bench {
+class CommandService final : public daemon::Bench {
  public:
   struct Parts {
     io::DaemonConfig& config;  ///< Holds plan and tare; the next session begins with them.
     const daemon::TestLog& tests;
     storage::Storage& storage;
-    CalibrationDesk& calibrations;
+    CalibrationService& calibrations;
     std::function<daemon::Status()> status;
     std::function<Session*()> session;                   ///< Returns null while there is no session.
     std::function<void(std::function<void()>)> on_main;  ///< Runs a function on the main thread. Any thread.
     daemon::Batches* batches;
     daemon::Reports* reports;
   };
-  explicit BenchDesk(Parts parts) : parts_(std::move(parts)), configured_method_(parts_.config.method) {}
+  explicit CommandService(Parts parts) : parts_(std::move(parts)), configured_method_(parts_.config.method) {}
 
   [[nodiscard]] daemon::Status status() const override { return parts_.status(); }
   [[nodiscard]] std::vector<daemon::TestSummary> tests() const override { return parts_.tests.tests(); }

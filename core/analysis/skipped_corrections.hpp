@@ -3,7 +3,7 @@
 /// of [Penner 1995, Experimental]: spikes, drift, and a first slip that is not representative.
 ///
 ///     AnalysisSettings settings;
-///     settings.kept = *kept_from_text("spikes,drift");
+///     settings.skipped = *skipped_from_text("spikes,drift");
 #pragma once
 
 #include <array>
@@ -15,31 +15,34 @@
 namespace stickslip::analysis {
 
 /// Each flag that is true switches one correction off.
-struct Kept {
+struct SkippedCorrections {
   bool spikes = false;  ///< Spikes stay in the trace; otherwise they are replaced, and fits leave them out.
   bool drift = false;   ///< Drift stays; otherwise a significant drift is subtracted before the fits.
   bool first_slip = false;  ///< Means include the first slip; otherwise only if it is the only one.
 
-  bool operator==(const Kept&) const = default;
-  [[nodiscard]] bool nothing() const { return *this == Kept{}; }
+  bool operator==(const SkippedCorrections&) const = default;
+  [[nodiscard]] bool none() const { return *this == SkippedCorrections{}; }
 };
 
-struct KeptName {
+struct CorrectionName {
   std::string_view name;
-  bool Kept::*flag;
+  bool SkippedCorrections::*flag;
 };
 
 /// Names in records and for `stickslip analyze --keep`.
-inline constexpr std::array<KeptName, 3> kKeptNames{
-    {{"spikes", &Kept::spikes}, {"drift", &Kept::drift}, {"first-slip", &Kept::first_slip}}};
+inline constexpr std::array<CorrectionName, 3> kCorrectionNames{
+    {{"spikes", &SkippedCorrections::spikes},
+     {"drift", &SkippedCorrections::drift},
+     {"first-slip", &SkippedCorrections::first_slip}}};
 
 /// Union: each flag set in either.
-[[nodiscard]] Kept either(const Kept& one, const Kept& other) noexcept;
+[[nodiscard]] SkippedCorrections either(const SkippedCorrections& one,
+                                        const SkippedCorrections& other) noexcept;
 
-/// Names of the set flags, separated by commas, in the order of kKeptNames; empty if no flag is set.
-[[nodiscard]] std::string text_of(const Kept& kept);
+/// Names of the set flags, separated by commas, in the order of kCorrectionNames; empty if no flag is set.
+[[nodiscard]] std::string text_of(const SkippedCorrections& skipped);
 
 /// Inverse of text_of(), for names in any order; nullopt if a name is unknown.
-[[nodiscard]] std::optional<Kept> kept_from_text(std::string_view text);
+[[nodiscard]] std::optional<SkippedCorrections> skipped_from_text(std::string_view text);
 
 }  // namespace stickslip::analysis

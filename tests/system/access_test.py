@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What others of the machine can do to a running daemon: idle connections, a second daemon, stray signals.
 
-doors_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
+access_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
 """
 
 import http.client
@@ -19,7 +19,7 @@ BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
 
 
-class Doors(unittest.TestCase):
+class Access(unittest.TestCase):
     def daemon(self, config=""):
         return RunningDaemon(self, BUILD, SOURCE, config)
 

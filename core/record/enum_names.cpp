@@ -1,4 +1,4 @@
-#include "core/record/words.hpp"
+#include "core/record/enum_names.hpp"
 
 #include <cstdint>
 #include <limits>

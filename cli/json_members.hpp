@@ -1,5 +1,5 @@
 /// \file
-/// Members of a daemon's answer as words for people.
+/// Members of a daemon's answer as text for people.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-#include "daemon/control/gate.hpp"
+#include "daemon/control/access.hpp"
 
 #include <algorithm>
 
@@ -18,11 +18,11 @@ bool same_secret(std::string_view a, std::string_view b) noexcept {
   return difference == 0;
 }
 
-bool has_token(const Knock& knock, const std::string& token) {
+bool has_token(const AccessRequest& request, const std::string& token) {
   constexpr std::string_view kBearer = "Bearer ";
-  if (knock.authorization.starts_with(kBearer))
-    return same_secret(knock.authorization.substr(kBearer.size()), token);
-  for (std::string_view rest = knock.protocols; !rest.empty();) {
+  if (request.authorization.starts_with(kBearer))
+    return same_secret(request.authorization.substr(kBearer.size()), token);
+  for (std::string_view rest = request.protocols; !rest.empty();) {
     const std::size_t comma = rest.find(',');
     std::string_view one = rest.substr(0, comma);
     rest = comma == std::string_view::npos ? std::string_view{} : rest.substr(comma + 1);
@@ -36,19 +36,19 @@ bool has_token(const Knock& knock, const std::string& token) {
 
 bool is_page(std::string_view path) noexcept { return path == "/" || path.starts_with("/page/"); }
 
-std::optional<daemon::HttpReply> refuse_at(const Door& door, const Knock& knock) {
-  if (door.open) return std::nullopt;
-  const auto ours = [&door](std::string_view host) {
-    return std::find(door.hosts.begin(), door.hosts.end(), host) != door.hosts.end();
+std::optional<daemon::HttpReply> access_refusal(const AccessPolicy& policy, const AccessRequest& request) {
+  if (policy.open) return std::nullopt;
+  const auto ours = [&policy](std::string_view host) {
+    return std::find(policy.hosts.begin(), policy.hosts.end(), host) != policy.hosts.end();
   };
-  if (!ours(knock.host)) return daemon::refusal(403, "the Host of this request is not this daemon's");
+  if (!ours(request.host)) return daemon::refusal(403, "the Host of this request is not this daemon's");
   constexpr std::string_view kScheme = "http://";
-  if (!knock.origin.empty() &&
-      !(knock.origin.starts_with(kScheme) && ours(knock.origin.substr(kScheme.size())))) {
+  if (!request.origin.empty() &&
+      !(request.origin.starts_with(kScheme) && ours(request.origin.substr(kScheme.size())))) {
     return daemon::refusal(403, "the Origin of this request is another site");
   }
-  if (is_page(knock.path)) return std::nullopt;
-  if (door.token.empty() || !has_token(knock, door.token)) {
+  if (is_page(request.path)) return std::nullopt;
+  if (policy.token.empty() || !has_token(request, policy.token)) {
     return daemon::refusal(
         401, "the token is missing or wrong: Authorization: Bearer TOKEN, from the daemon's token file");
   }

@@ -16,11 +16,11 @@ inline constexpr daq::ScanIndex kLastScan = std::int64_t{1} << 53;
 
 /// Returns its argument, or throws std::invalid_argument naming the value and the limits.
 /// \{
-daq::ScanIndex possible(daq::ScanIndex scan);
+daq::ScanIndex range_checked(daq::ScanIndex scan);
 /// Checks first and last scan.
-daq::Gap possible(const daq::Gap& gap);
+daq::Gap range_checked(const daq::Gap& gap);
 /// Checks the scan, and that both clocks are ≥ 0: Linux cannot set them below.
-daq::ClockAnchor possible(const daq::ClockAnchor& anchor);
+daq::ClockAnchor range_checked(const daq::ClockAnchor& anchor);
 /// \}
 
 }  // namespace stickslip::record

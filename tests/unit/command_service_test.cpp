@@ -1,7 +1,7 @@
 // Commands between the control interface and the bench: what is refused before the bench is asked, and what
 // had been done already.
 
-#include "daemon/runtime/bench_desk.hpp"
+#include "daemon/runtime/command_service.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ namespace {
 using Kind = Command::Kind;
 
 /// Waits for the storage to say that it is short.
-class HeardOfRoom final : public Facts {
+class HeardOfRoom final : public EventReceiver {
  public:
   void storage_short(std::string_view) override {
     const std::lock_guard lock{mutex_};
@@ -39,11 +39,11 @@ class HeardOfRoom final : public Facts {
   bool short_ = false;
 };
 
-class BenchDeskTest : public testing::Test {
+class CommandServiceTest : public testing::Test {
  protected:
   Outcome ask(const Command& command) {
     std::optional<Outcome> got;
-    desk_.command(command, [&got](const Outcome& outcome) { got = outcome; });
+    commands_.command(command, [&got](const Outcome& outcome) { got = outcome; });
     EXPECT_TRUE(got) << "without a session it is answered at once";
     return got.value_or(Outcome{});
   }
@@ -59,33 +59,33 @@ class BenchDeskTest : public testing::Test {
                             },
                             tests_,
                             heard_};
-  runtime::CalibrationDesk calibrations_{{.config = config_,
-                                          .storage = storage_,
-                                          .session = [] { return nullptr; },
-                                          .on_main = [](const std::function<void()>&) {},
-                                          .date_ns = [] { return 0; },
-                                          .now_ns = [] { return 0; }}};
+  runtime::CalibrationService calibrations_{{.config = config_,
+                                             .storage = storage_,
+                                             .session = [] { return nullptr; },
+                                             .on_main = [](const std::function<void()>&) {},
+                                             .date_ns = [] { return 0; },
+                                             .now_ns = [] { return 0; }}};
   PaperBatches batches_;
   PaperReports reports_;
-  runtime::BenchDesk desk_{{.config = config_,
-                            .tests = tests_,
-                            .storage = storage_,
-                            .calibrations = calibrations_,
-                            .status = [] { return Status{}; },
-                            .session = [] { return nullptr; },
-                            .on_main = [](const std::function<void()>&) {},
-                            .batches = &batches_,
-                            .reports = &reports_}};
+  runtime::CommandService commands_{{.config = config_,
+                                     .tests = tests_,
+                                     .storage = storage_,
+                                     .calibrations = calibrations_,
+                                     .status = [] { return Status{}; },
+                                     .session = [] { return nullptr; },
+                                     .on_main = [](const std::function<void()>&) {},
+                                     .batches = &batches_,
+                                     .reports = &reports_}};
 };
 
-TEST_F(BenchDeskTest, WithoutABoardCommandsAreRefused) {
+TEST_F(CommandServiceTest, WithoutABoardCommandsAreRefused) {
   for (const Kind kind : {Kind::kArm, Kind::kStart, Kind::kStop, Kind::kMark, Kind::kTare}) {
     EXPECT_EQ(ask({kind, "ada", "x", {}}).report.refusal,
               "no scans come from the board; stickslip status says why");
   }
 }
 
-TEST_F(BenchDeskTest, WithoutABoardNoCalibrationBegins) {
+TEST_F(CommandServiceTest, WithoutABoardNoCalibrationBegins) {
   std::string refusal;
   const auto told = [&refusal](const std::string& why) { refusal = why; };
   calibrations_.begin("ada", {}, told);
@@ -100,7 +100,7 @@ TEST_F(BenchDeskTest, WithoutABoardNoCalibrationBegins) {
   EXPECT_THAT(calibrations_.give_up(), testing::HasSubstr("begin one first"));
 }
 
-TEST_F(BenchDeskTest, AShortDiskRefusesTestsThatSomebodyAsksForAndNothingElse) {
+TEST_F(CommandServiceTest, AShortDiskRefusesTestsThatSomebodyAsksForAndNothingElse) {
   disk_.set_room(1'000'000);
   storage_.use(test::sample_header(), nullptr);
   heard_.wait_until_short();
@@ -109,12 +109,12 @@ TEST_F(BenchDeskTest, AShortDiskRefusesTestsThatSomebodyAsksForAndNothingElse) {
   EXPECT_THAT(ask({Kind::kStop, "ada", {}, {}}).report.refusal, testing::HasSubstr("no scans"));
 }
 
-TEST_F(BenchDeskTest, ThePlanIsKeptForTheNextSession) {
+TEST_F(CommandServiceTest, ThePlanIsKeptForTheNextSession) {
   Plan plan;
   plan.sample.name = "liner";
   plan.pull_speed_m_per_s = 0.01;
-  desk_.set_plan(plan);
-  EXPECT_EQ(desk_.plan(), plan);
+  commands_.set_plan(plan);
+  EXPECT_EQ(commands_.plan(), plan);
   EXPECT_EQ(config_.sample.name, "liner");
 }
 

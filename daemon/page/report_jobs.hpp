@@ -21,7 +21,7 @@ namespace stickslip::page {
 [[nodiscard]] std::string program_beside_this();
 
 /// Main thread.
-class ReportDesk final : public daemon::Reports {
+class ReportJobs final : public daemon::Reports {
  public:
   struct Parts {
     boost::asio::io_context& io;                                   ///< Outlives this object.
@@ -30,11 +30,11 @@ class ReportDesk final : public daemon::Reports {
     std::chrono::milliseconds longest = std::chrono::seconds{60};  ///< Time after which the child is killed.
     std::size_t largest = std::size_t{64} << 20U;  ///< Most bytes of a report, which is held in memory.
   };
-  explicit ReportDesk(Parts parts);
+  explicit ReportJobs(Parts parts);
   /// Kills the child; the answer is not called.
-  ~ReportDesk() override;
-  ReportDesk(const ReportDesk&) = delete;
-  ReportDesk& operator=(const ReportDesk&) = delete;
+  ~ReportJobs() override;
+  ReportJobs(const ReportJobs&) = delete;
+  ReportJobs& operator=(const ReportJobs&) = delete;
 
   void make(std::span<const daemon::ReportedBatch> batches, daemon::ReportForm form, Answer answer) override;
 

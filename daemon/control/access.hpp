@@ -15,14 +15,14 @@
 namespace stickslip::control {
 
 /// Access rules of a listener.
-struct Door {
+struct AccessPolicy {
   bool open = true;                ///< True: every connection is permitted, as on the Unix socket.
   std::vector<std::string> hosts;  ///< Permitted values of Host: "127.0.0.1:8037" …
   std::string token;               ///< The token; not empty unless open.
 };
 
 /// Path and headers of a request that decide about access; empty if absent.
-struct Knock {
+struct AccessRequest {
   std::string_view path;
   std::string_view host;
   std::string_view origin;
@@ -41,6 +41,7 @@ inline constexpr std::string_view kLiveProtocol = "stickslip.v1";
 
 /// The refusal of a request, or nothing if it is permitted: 403 for a foreign Host or Origin, 401 without the
 /// token.
-[[nodiscard]] std::optional<daemon::HttpReply> refuse_at(const Door& door, const Knock& knock);
+[[nodiscard]] std::optional<daemon::HttpReply> access_refusal(const AccessPolicy& policy,
+                                                              const AccessRequest& request);
 
 }  // namespace stickslip::control

@@ -1,6 +1,6 @@
 // The three practical problems of [Penner 1995, Experimental], spikes, downward drift and a first peak that
-// is not representative: each kept alone moves the numbers by as much as theory says, and taken care of it
-// does not.
+// is not representative: each left uncorrected alone moves the numbers by as much as theory says, and
+// corrected it does not.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -32,14 +32,14 @@ constexpr double kDeltaMu = 0.05;
 std::vector<double> pulled(double delta_mu, const std::string& effects) {
   // A newton a volt over m g: a volt is the coefficient.
   const std::string text = fmt::format(
-      "description = \"kept\"\nscan_rate = \"{} Hz\"\n[tester]\nsled_mass = \"2.331 kg\"\n"
+      "description = \"corrections\"\nscan_rate = \"{} Hz\"\n[tester]\nsled_mass = \"2.331 kg\"\n"
       "gravity = \"9.80665 m/s^2\"\nfrequency = \"20 Hz\"\nload_cell_gain = \"22.85930115 N/V\"\n"
       "[paper]\nmu_s = {}\nmu_k = {}\n[effects.damping]\ngamma_over_2omega = 0.022\n"
       "[effects.constant_speed]\nidle = \"{} s\"\npull_speed = \"12 in/min\"\npull = \"{} s\"\n"
       "stop = \"0 s\"\nreturn_speed = \"12 in/min\"\nreturn = \"0.01 s\"\nrest = \"0 s\"\n"
       "[effects.white_noise]\nsd = {}\n{}",
       kRate_Hz, kK + delta_mu, kK, kIdle_s, kPull_s, kNoise, effects);
-  const auto scene = sim::parse_scene(text, "kept_test.cpp");
+  const auto scene = sim::parse_scene(text, "skipped_corrections_test.cpp");
   if (!scene) throw std::runtime_error(scene.error().message);
   sim::SceneRun run{*scene, scene->scan_rate_Hz};
   run.restart(3);
@@ -70,11 +70,11 @@ std::pair<double, double> mean_delta_mu(const std::vector<Cycle>& cycles, std::s
   return {sum / n, n};
 }
 
-Found analysed(const std::vector<double>& values, const analysis::Kept& kept,
+Found analysed(const std::vector<double>& values, const analysis::SkippedCorrections& skipped,
                EstimatorTier tier = EstimatorTier::kFit) {
   analysis::AnalysisSettings settings;
   settings.scan_rate_Hz = kRate_Hz;
-  settings.kept = kept;
+  settings.skipped = skipped;
   settings.estimator = tier;
   analysis::TestAnalysis analysis{settings};
   for (std::size_t k = 0; k < values.size(); ++k) {
@@ -93,135 +93,137 @@ std::size_t highest_scan(const std::vector<double>& values, const Cycle& cycle) 
   return static_cast<std::size_t>(std::max_element(peak - 2, peak + 3) - values.begin());
 }
 
-TEST(Kept, NamesReadBack) {
-  EXPECT_TRUE(analysis::kept_from_text("")->nothing());
+TEST(SkippedCorrections, NamesReadBack) {
+  EXPECT_TRUE(analysis::skipped_from_text("")->none());
   for (const char* text : {"spikes", "drift", "first-slip", "spikes,drift", "spikes,drift,first-slip"})
-    EXPECT_EQ(analysis::text_of(*analysis::kept_from_text(text)), text);
-  EXPECT_EQ(analysis::text_of(*analysis::kept_from_text("drift,spikes")), "spikes,drift");
-  EXPECT_FALSE(analysis::kept_from_text("hum"));
-  EXPECT_FALSE(analysis::kept_from_text("spikes drift"));
+    EXPECT_EQ(analysis::text_of(*analysis::skipped_from_text(text)), text);
+  EXPECT_EQ(analysis::text_of(*analysis::skipped_from_text("drift,spikes")), "spikes,drift");
+  EXPECT_FALSE(analysis::skipped_from_text("hum"));
+  EXPECT_FALSE(analysis::skipped_from_text("spikes drift"));
   EXPECT_EQ(analysis::text_of(analysis::either({.drift = true}, {.spikes = true})), "spikes,drift");
 }
 
 // A spike on the first peak is the static coefficient of the tradition, to its full height.
-TEST(Kept, SpikeOnTheFirstPeakIsTheStaticCoefficient) {
+TEST(SkippedCorrections, SpikeOnTheFirstPeakIsTheStaticCoefficient) {
   constexpr double kSpike = 0.1;
   std::vector<double> values = pulled(kDeltaMu, "");
   const Found clean = analysed(values, {});
   const std::size_t peak = highest_scan(values, clean.cycles.front());
   const double without = values[peak];
   values[peak] += kSpike;
-  const Found kept = analysed(values, {.spikes = true});
-  EXPECT_EQ(*kept.results.static_coefficient.value, without + kSpike);
-  EXPECT_FALSE(kept.results.spike_count.value);
-  const Found handled = analysed(values, {});
-  EXPECT_EQ(*handled.results.spike_count.value, *clean.results.spike_count.value + 1.0);
+  const Found uncorrected = analysed(values, {.spikes = true});
+  EXPECT_EQ(*uncorrected.results.static_coefficient.value, without + kSpike);
+  EXPECT_FALSE(uncorrected.results.spike_count.value);
+  const Found corrected = analysed(values, {});
+  EXPECT_EQ(*corrected.results.spike_count.value, *clean.results.spike_count.value + 1.0);
   // The neighbours of a peak lie lower by half the amplitude, 0.08, times (ω dt)², 0.36², at most.
-  EXPECT_NEAR(*handled.results.static_coefficient.value, without, 0.5 * 0.08 * 0.36 * 0.36 + 4.0 * kNoise);
+  EXPECT_NEAR(*corrected.results.static_coefficient.value, without, 0.5 * 0.08 * 0.36 * 0.36 + 4.0 * kNoise);
 }
 
 // By the tradition, S of a cycle is its largest scan: a spike on one of n peaks raises their mean by an nth.
-TEST(Kept, SpikeOnAPeakRaisesTheMeanOfPeaksByItsShare) {
+TEST(SkippedCorrections, SpikeOnAPeakRaisesTheMeanOfPeaksByItsShare) {
   constexpr double kSpike = 0.1;
   std::vector<double> values = pulled(kDeltaMu, "");
   const Found clean = analysed(values, {}, EstimatorTier::kPeak);
   const double n = mean_delta_mu(clean.live, 1).second;
   ASSERT_GT(n, 10.0);
   values[highest_scan(values, clean.cycles[5])] += kSpike;
-  const Found kept = analysed(values, {.spikes = true}, EstimatorTier::kPeak);
-  EXPECT_NEAR(*kept.results.mu_s.value - *clean.results.mu_s.value, kSpike / n, 1e-12);
-  const Found handled = analysed(values, {}, EstimatorTier::kPeak);
+  const Found uncorrected = analysed(values, {.spikes = true}, EstimatorTier::kPeak);
+  EXPECT_NEAR(*uncorrected.results.mu_s.value - *clean.results.mu_s.value, kSpike / n, 1e-12);
+  const Found corrected = analysed(values, {}, EstimatorTier::kPeak);
   // Without that scan the largest is a neighbour: as above, and an nth of it.
-  EXPECT_NEAR(*handled.results.mu_s.value, *clean.results.mu_s.value, (0.0052 + 4.0 * kNoise) / n);
+  EXPECT_NEAR(*corrected.results.mu_s.value, *clean.results.mu_s.value, (0.0052 + 4.0 * kNoise) / n);
 }
 
-// A ring-down has one K. It is that at the onset; with the drift kept, that in the middle of all its scans.
-TEST(Kept, DriftMovesKOfARingDownToTheMiddleOfThePull) {
+// A ring-down has one K. It is that at the onset; with the drift left in, that in the middle of all its
+// scans.
+TEST(SkippedCorrections, DriftMovesKOfARingDownToTheMiddleOfThePull) {
   constexpr double kDrift_per_s = -0.004;
   const std::vector<double> values = pulled(
       0.025,
       fmt::format("[effects.kinetic_drift]\nchange = {}\nover = \"{} s\"\n", kDrift_per_s * 5.0 / kK, 5.0));
-  const Found handled = analysed(values, {});
-  const Found kept = analysed(values, {.drift = true});
-  ASSERT_EQ(handled.results.regime, model::Regime::kRingDown);
-  ASSERT_EQ(kept.results.regime, model::Regime::kRingDown);
-  ASSERT_TRUE(kept.results.mu_k.value) << kept.results.mu_k.reason;
+  const Found corrected = analysed(values, {});
+  const Found uncorrected = analysed(values, {.drift = true});
+  ASSERT_EQ(corrected.results.regime, model::Regime::kRingDown);
+  ASSERT_EQ(uncorrected.results.regime, model::Regime::kRingDown);
+  ASSERT_TRUE(uncorrected.results.mu_k.value) << uncorrected.results.mu_k.reason;
   // The fit goes from the onset to one and a half oscillations after the last trough that stands out.
-  const double onset_s = handled.cycles.front().onset_time_s;
-  const double half_s = 0.5 * (handled.cycles.back().peak_time_s + 2.0 / 20.0 - onset_s);
-  const double drift_per_s = *handled.results.drift_rate.value;
-  const double drift_error_per_s = *handled.results.drift_rate.standard_error;
+  const double onset_s = corrected.cycles.front().onset_time_s;
+  const double half_s = 0.5 * (corrected.cycles.back().peak_time_s + 2.0 / 20.0 - onset_s);
+  const double drift_per_s = *corrected.results.drift_rate.value;
+  const double drift_error_per_s = *corrected.results.drift_rate.standard_error;
   EXPECT_NEAR(drift_per_s, kDrift_per_s, 4.0 * drift_error_per_s);
-  EXPECT_NEAR(*handled.results.mu_k.value, kK + kDrift_per_s * onset_s,
-              4.0 * drift_error_per_s * half_s + 4.0 * *handled.results.mu_k.standard_error);
+  EXPECT_NEAR(*corrected.results.mu_k.value, kK + kDrift_per_s * onset_s,
+              4.0 * drift_error_per_s * half_s + 4.0 * *corrected.results.mu_k.standard_error);
   // The oscillation that dies away weighs its part of the scans otherwise than the rest.
-  EXPECT_NEAR(*kept.results.mu_k.value - *handled.results.mu_k.value, drift_per_s * half_s,
+  EXPECT_NEAR(*uncorrected.results.mu_k.value - *corrected.results.mu_k.value, drift_per_s * half_s,
               0.05 * std::abs(drift_per_s * half_s));
 }
 
 // Stick-slip has a K for each slip. n of them in a line, a period apart, scatter by β P √(n (n + 1)/12), of
-// which their mean has the nth root: the drift kept looks like uncertainty.
-TEST(Kept, DriftLooksLikeScatterOfK) {
+// which their mean has the nth root: the drift left in looks like uncertainty.
+TEST(SkippedCorrections, DriftLooksLikeScatterOfK) {
   constexpr double kDrift_per_s = -0.03;
   const std::vector<double> values = pulled(
       kDeltaMu,
       fmt::format("[effects.kinetic_drift]\nchange = {}\nover = \"{} s\"\n", kDrift_per_s * 5.0 / kK, 5.0));
-  const Found handled = analysed(values, {});
-  const Found kept = analysed(values, {.drift = true});
-  ASSERT_EQ(kept.results.regime, model::Regime::kStickSlip);
-  const double n = static_cast<double>(kept.cycles.size()) - 1.0;
+  const Found corrected = analysed(values, {});
+  const Found uncorrected = analysed(values, {.drift = true});
+  ASSERT_EQ(uncorrected.results.regime, model::Regime::kStickSlip);
+  const double n = static_cast<double>(uncorrected.cycles.size()) - 1.0;
   const double expected =
-      std::abs(kDrift_per_s) * *kept.results.period_median.value * std::sqrt((n + 1.0) / 12.0);
+      std::abs(kDrift_per_s) * *uncorrected.results.period_median.value * std::sqrt((n + 1.0) / 12.0);
   // The last slip may not count, where the pull ended in it: one of n is 1.5 of n in the sum of squares.
-  EXPECT_NEAR(*kept.results.mu_k.standard_error, expected,
-              1.5 / n * expected + *handled.results.mu_k.standard_error);
-  EXPECT_LT(*handled.results.mu_k.standard_error, 0.2 * expected);
+  EXPECT_NEAR(*uncorrected.results.mu_k.standard_error, expected,
+              1.5 / n * expected + *corrected.results.mu_k.standard_error);
+  EXPECT_LT(*corrected.results.mu_k.standard_error, 0.2 * expected);
 }
 
-class KeptFirstSlip : public testing::TestWithParam<EstimatorTier> {};
+class FirstSlipCounted : public testing::TestWithParam<EstimatorTier> {};
 
 // S of the first slip is higher by δ: n slips have a mean that is higher by δ/n.
-TEST_P(KeptFirstSlip, RaisesTheMeanByItsShare) {
+TEST_P(FirstSlipCounted, RaisesTheMeanByItsShare) {
   constexpr double kChange = 0.03;
   const std::vector<double> values =
       pulled(kDeltaMu, fmt::format("[effects.first_peak]\nchange = {}\n", kChange));
-  const Found handled = analysed(values, {}, GetParam());
-  const Found kept = analysed(values, {.first_slip = true}, GetParam());
-  ASSERT_TRUE(handled.results.delta_mu.value);
-  ASSERT_TRUE(kept.results.delta_mu.value);
+  const Found corrected = analysed(values, {}, GetParam());
+  const Found uncorrected = analysed(values, {.first_slip = true}, GetParam());
+  ASSERT_TRUE(corrected.results.delta_mu.value);
+  ASSERT_TRUE(uncorrected.results.delta_mu.value);
   const bool fitted = GetParam() == EstimatorTier::kFit;
-  const std::vector<Cycle>& cycles = fitted ? kept.cycles : kept.live;
+  const std::vector<Cycle>& cycles = fitted ? uncorrected.cycles : uncorrected.live;
   const Cycle& first = cycles.front();
   const auto [others, n] = mean_delta_mu(cycles, 1);
   if (fitted) {
     // Slips that agree are fitted as one without the first, and each with its own S and K with it.
-    EXPECT_NEAR(*handled.results.delta_mu.value, kDeltaMu, 4.0 * *handled.results.delta_mu.standard_error);
+    EXPECT_NEAR(*corrected.results.delta_mu.value, kDeltaMu,
+                4.0 * *corrected.results.delta_mu.standard_error);
     EXPECT_NEAR(first.delta_mu, kDeltaMu + kChange, 4.0 * first.delta_mu_standard_error);
   } else {
-    EXPECT_NEAR(*handled.results.delta_mu.value, others, 1e-12);
+    EXPECT_NEAR(*corrected.results.delta_mu.value, others, 1e-12);
   }
-  EXPECT_NEAR(*kept.results.delta_mu.value, mean_delta_mu(cycles, 0).first, 1e-12);
-  EXPECT_NEAR(*kept.results.delta_mu.value - others, (first.delta_mu - others) / (n + 1.0), 1e-12);
+  EXPECT_NEAR(*uncorrected.results.delta_mu.value, mean_delta_mu(cycles, 0).first, 1e-12);
+  EXPECT_NEAR(*uncorrected.results.delta_mu.value - others, (first.delta_mu - others) / (n + 1.0), 1e-12);
   // By the tradition peaks grow by less than S does, and estimators of turning points by about as much.
   EXPECT_GT(first.delta_mu - others, 0.5 * kChange);
   EXPECT_LT(first.delta_mu - others, 1.2 * kChange);
 }
 
-INSTANTIATE_TEST_SUITE_P(OfEachEstimator, KeptFirstSlip,
+INSTANTIATE_TEST_SUITE_P(OfEachEstimator, FirstSlipCounted,
                          testing::Values(EstimatorTier::kPeak, EstimatorTier::kInterpolated,
                                          EstimatorTier::kFit),
                          [](const auto& tier) { return std::string{name(tier.param)}; });
 
 // Where the first slip is like the others it may as well count: it is one more, in the fit of all as one too.
-TEST(Kept, FirstSlipLikeTheOthersChangesNothingButTheNumber) {
+TEST(SkippedCorrections, FirstSlipLikeTheOthersChangesNothingButTheNumber) {
   const std::vector<double> values = pulled(kDeltaMu, "");
-  const Found handled = analysed(values, {});
-  const Found kept = analysed(values, {.first_slip = true});
-  EXPECT_NEAR(*kept.results.delta_mu.value, *handled.results.delta_mu.value,
-              *handled.results.delta_mu.standard_error);
-  EXPECT_LE(*kept.results.delta_mu.standard_error, *handled.results.delta_mu.standard_error);
-  EXPECT_TRUE(kept.results.delta_mu_from_amplitude.value);
-  EXPECT_NE(kept.results.delta_mu_from_amplitude, handled.results.delta_mu_from_amplitude);
+  const Found corrected = analysed(values, {});
+  const Found uncorrected = analysed(values, {.first_slip = true});
+  EXPECT_NEAR(*uncorrected.results.delta_mu.value, *corrected.results.delta_mu.value,
+              *corrected.results.delta_mu.standard_error);
+  EXPECT_LE(*uncorrected.results.delta_mu.standard_error, *corrected.results.delta_mu.standard_error);
+  EXPECT_TRUE(uncorrected.results.delta_mu_from_amplitude.value);
+  EXPECT_NE(uncorrected.results.delta_mu_from_amplitude, corrected.results.delta_mu_from_amplitude);
 }
 
 }  // namespace

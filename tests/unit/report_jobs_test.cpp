@@ -1,6 +1,6 @@
 // Reports by a program of its own: here a shell's script stands for it.
 
-#include "daemon/page/report_desk.hpp"
+#include "daemon/page/report_jobs.hpp"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -28,10 +28,10 @@ using namespace std::chrono_literals;
 const ReportedBatch kLiner{"20261122T180301Z", "liner (20261122T180301Z)"};
 const ReportedBatch kFluting{"20261122T180302Z", "--fluting (20261122T180302Z)"};
 
-class ReportDeskTest : public testing::Test {
+class ReportJobsTest : public testing::Test {
  protected:
   // As the daemon does.
-  ReportDeskTest() { static_cast<void>(std::signal(SIGXFSZ, SIG_IGN)); }
+  ReportJobsTest() { static_cast<void>(std::signal(SIGXFSZ, SIG_IGN)); }
 
   std::string script(const std::string& text) {
     const std::filesystem::path file = folder_.path() / "program";
@@ -39,21 +39,21 @@ class ReportDeskTest : public testing::Test {
     ::chmod(file.c_str(), S_IRWXU);
     return file.string();
   }
-  page::ReportDesk::Parts parts(const std::string& program) {
+  page::ReportJobs::Parts parts(const std::string& program) {
     return {.io = io_, .folder = "/records", .program = program};
   }
   /// Runs until all is answered.
-  base::Result<std::string> made(page::ReportDesk& desk, std::span<const ReportedBatch> batches,
+  base::Result<std::string> made(page::ReportJobs& jobs, std::span<const ReportedBatch> batches,
                                  ReportForm form) {
     std::optional<base::Result<std::string>> got;
-    desk.make(batches, form, [&got](base::Result<std::string> text) { got = std::move(text); });
+    jobs.make(batches, form, [&got](base::Result<std::string> text) { got = std::move(text); });
     io_.restart();
     io_.run();
     return got.value_or(base::failure("no answer"));
   }
-  std::string refused(page::ReportDesk::Parts parts) {
-    page::ReportDesk desk{std::move(parts)};
-    const auto text = made(desk, {&kLiner, 1}, ReportForm::kPage);
+  std::string refused(page::ReportJobs::Parts parts) {
+    page::ReportJobs jobs{std::move(parts)};
+    const auto text = made(jobs, {&kLiner, 1}, ReportForm::kPage);
     return text ? "made" : text.error().message;
   }
 
@@ -61,33 +61,33 @@ class ReportDeskTest : public testing::Test {
   boost::asio::io_context io_;
 };
 
-TEST_F(ReportDeskTest, AsksForIdentifiersInTheFolderOfTheRecordsAndForNothingElse) {
-  page::ReportDesk desk{parts(script(R"(for word; do echo "$word"; done)"))};
+TEST_F(ReportJobsTest, AsksForIdentifiersInTheFolderOfTheRecordsAndForNothingElse) {
+  page::ReportJobs jobs{parts(script(R"(for word; do echo "$word"; done)"))};
   const std::array both{kLiner, kFluting};
-  EXPECT_EQ(made(desk, {&kLiner, 1}, ReportForm::kPage).value_or(""),
+  EXPECT_EQ(made(jobs, {&kLiner, 1}, ReportForm::kPage).value_or(""),
             "report\n--batch=20261122T180301Z\n--output=-\n/records\n");
-  EXPECT_EQ(made(desk, {&kLiner, 1}, ReportForm::kCsv).value_or(""),
+  EXPECT_EQ(made(jobs, {&kLiner, 1}, ReportForm::kCsv).value_or(""),
             "report\n--batch=20261122T180301Z\n--csv=-\n/records\n");
-  EXPECT_EQ(made(desk, both, ReportForm::kJson).value_or(""),
+  EXPECT_EQ(made(jobs, both, ReportForm::kJson).value_or(""),
             "compare\n--batch-a=20261122T180301Z\n--label-a=liner (20261122T180301Z)\n"
             "--batch-b=20261122T180302Z\n--label-b=--fluting (20261122T180302Z)\n--json\n/records\n");
 }
 
-TEST_F(ReportDeskTest, OneIsMadeAtATimeAndItsEndLetsTheNextBegin) {
+TEST_F(ReportJobsTest, OneIsMadeAtATimeAndItsEndLetsTheNextBegin) {
   const std::filesystem::path pipe = folder_.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), S_IRWXU), 0);
-  page::ReportDesk desk{parts(script("exec /bin/cat " + pipe.string()))};
+  page::ReportJobs jobs{parts(script("exec /bin/cat " + pipe.string()))};
   std::string first;
-  desk.make({&kLiner, 1}, ReportForm::kPage,
+  jobs.make({&kLiner, 1}, ReportForm::kPage,
             [&first](base::Result<std::string> text) { first = text.value_or("none"); });
   std::optional<base::ErrorKind> second;
-  desk.make({&kLiner, 1}, ReportForm::kPage,
+  jobs.make({&kLiner, 1}, ReportForm::kPage,
             [&second](const base::Result<std::string>& text) { second = text.error().kind; });
   EXPECT_EQ(second, base::ErrorKind::kBusy);
   std::ofstream{pipe} << "whole";  // Returns when the child has opened it.
   io_.run();
   EXPECT_EQ(first, "whole");
-  desk.make({&kLiner, 1}, ReportForm::kPage,
+  jobs.make({&kLiner, 1}, ReportForm::kPage,
             [&first](base::Result<std::string> text) { first = text.value_or("none"); });
   std::ofstream{pipe} << "again";
   io_.restart();
@@ -95,19 +95,19 @@ TEST_F(ReportDeskTest, OneIsMadeAtATimeAndItsEndLetsTheNextBegin) {
   EXPECT_EQ(first, "again");
 }
 
-TEST_F(ReportDeskTest, WhatTakesTooLongIsEnded) {
-  page::ReportDesk::Parts hasty = parts(script("exec /bin/sleep 100000"));
+TEST_F(ReportJobsTest, WhatTakesTooLongIsEnded) {
+  page::ReportJobs::Parts hasty = parts(script("exec /bin/sleep 100000"));
   hasty.longest = 50ms;
   EXPECT_THAT(refused(std::move(hasty)), HasSubstr("took longer than 0.05 s"));
 }
 
-TEST_F(ReportDeskTest, WhatIsTooLargeIsEnded) {
-  page::ReportDesk::Parts narrow = parts(script("exec /usr/bin/head -c 2000000 /dev/zero"));
+TEST_F(ReportJobsTest, WhatIsTooLargeIsEnded) {
+  page::ReportJobs::Parts narrow = parts(script("exec /usr/bin/head -c 2000000 /dev/zero"));
   narrow.largest = 1U << 20U;
   EXPECT_THAT(refused(std::move(narrow)), HasSubstr("larger than 1 MiB"));
 }
 
-TEST_F(ReportDeskTest, TellsWhyThereIsNone) {
+TEST_F(ReportJobsTest, TellsWhyThereIsNone) {
   EXPECT_EQ(refused(parts(script("echo 'stickslip: batch x has no test yet' >&2; exit 2"))),
             "there is no report: batch x has no test yet");
   EXPECT_EQ(refused(parts(script("kill -9 $$"))), "signal 9 ended the program that makes the report");
@@ -115,15 +115,15 @@ TEST_F(ReportDeskTest, TellsWhyThereIsNone) {
               HasSubstr("/no/such/stickslip: there is no such program"));
 }
 
-TEST_F(ReportDeskTest, ItsEndEndsWhatIsBeingMade) {
+TEST_F(ReportJobsTest, ItsEndEndsWhatIsBeingMade) {
   const std::filesystem::path pipe = folder_.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), S_IRWXU), 0);
-  auto desk = std::make_optional<page::ReportDesk>(parts(script("exec /bin/cat " + pipe.string())));
-  desk->make({&kLiner, 1}, ReportForm::kPage, [](const base::Result<std::string>&) { FAIL(); });
+  auto jobs = std::make_optional<page::ReportJobs>(parts(script("exec /bin/cat " + pipe.string())));
+  jobs->make({&kLiner, 1}, ReportForm::kPage, [](const base::Result<std::string>&) { FAIL(); });
   // Returns when the child reads; while this is open it goes on.
   const record::Descriptor writer{::open(pipe.c_str(), O_WRONLY | O_CLOEXEC)};
   ASSERT_TRUE(writer.open());
-  desk.reset();
+  jobs.reset();
   // Nobody reads any more.
   EXPECT_EQ(::open(pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC), -1);
   EXPECT_EQ(errno, ENXIO);

@@ -1,4 +1,4 @@
-#include "report/table.hpp"
+#include "report/truth_table.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "core/record/possible.hpp"
+#include "core/record/range_check.hpp"
 
 #include <fmt/format.h>
 
@@ -6,14 +6,14 @@
 
 namespace stickslip::record {
 
-daq::ScanIndex possible(daq::ScanIndex scan) {
+daq::ScanIndex range_checked(daq::ScanIndex scan) {
   if (scan < 0 || scan > kLastScan)
     throw std::invalid_argument(fmt::format("scan {} lies outside of 0 to {}", scan, kLastScan));
   return scan;
 }
 
-daq::Gap possible(const daq::Gap& gap) {
-  possible(gap.first);
+daq::Gap range_checked(const daq::Gap& gap) {
+  range_checked(gap.first);
   if (gap.count < 0 || gap.count > kLastScan - gap.first) {
     throw std::invalid_argument(fmt::format("a gap of {} scans from scan {} ends outside of 0 to {}",
                                             gap.count, gap.first, kLastScan));
@@ -21,8 +21,8 @@ daq::Gap possible(const daq::Gap& gap) {
   return gap;
 }
 
-daq::ClockAnchor possible(const daq::ClockAnchor& anchor) {
-  possible(anchor.scan);
+daq::ClockAnchor range_checked(const daq::ClockAnchor& anchor) {
+  range_checked(anchor.scan);
   if (anchor.monotonic_ns < 0 || anchor.realtime_ns < 0) {
     throw std::invalid_argument(
         fmt::format("no clock shows {} ns and {} ns: below zero", anchor.monotonic_ns, anchor.realtime_ns));

@@ -1,4 +1,4 @@
-#include "daemon/runtime/calibration_desk.hpp"
+#include "daemon/runtime/calibration_service.hpp"
 
 #include <fmt/format.h>
 
@@ -37,24 +37,24 @@ std::string refusal_of(const pipeline::Processor& processor) {
 
 }  // namespace
 
-void CalibrationDesk::session_began(const SessionSettings& settings) {
+void CalibrationService::session_began(const SessionSettings& settings) {
   session_load_cell_ = settings.load_cell;
   session_facts_ = settings.calibration;
   gravity_m_per_s2_ = settings.processor.analysis.tester.gravity_m_per_s2;
 }
 
-void CalibrationDesk::session_ended() {
+void CalibrationService::session_ended() {
   if (!open_) return;
   open_.reset();
   lost_why_ = "the board was lost, and what was read with it; begin again";
 }
 
-std::optional<std::string> CalibrationDesk::why_no_test() const {
+std::optional<std::string> CalibrationService::why_no_test() const {
   if (!open_) return std::nullopt;
   return fmt::format("{} calibrates the load cell; finish that or give it up first", open_->who);
 }
 
-void CalibrationDesk::block(const daq::ScanBlock& block) {
+void CalibrationService::block(const daq::ScanBlock& block) {
   if (!scans_) return;
   if (scans_->next && *scans_->next != block.first) {
     end_reading(base::failure("scans are missing: read this weight again"));
@@ -69,24 +69,24 @@ void CalibrationDesk::block(const daq::ScanBlock& block) {
   }
 }
 
-void CalibrationDesk::blocks_ended() {
+void CalibrationService::blocks_ended() {
   if (scans_) end_reading(base::failure(kNoScans));
 }
 
-void CalibrationDesk::end_reading(const Reading& reading) {
+void CalibrationService::end_reading(const Reading& reading) {
   const auto done = std::move(scans_->done);
   scans_.reset();
   done(reading);
 }
 
-daq::WeighedCalibration CalibrationDesk::weighed() const {
+daq::WeighedCalibration CalibrationService::weighed() const {
   const Session* const session = parts_.session();
   double span_V = 0.0;
   if (session != nullptr) span_V = session->board_info().range_max_V - session->board_info().range_min_V;
   return daq::weigh(open_->readings, gravity_m_per_s2_, span_V);
 }
 
-daemon::CalibrationView CalibrationDesk::view() const {
+daemon::CalibrationView CalibrationService::view() const {
   daemon::CalibrationView view;
   const io::BenchConfig& bench = parts_.config.bench;
   view.load_cell = bench.load_cell(session_load_cell_);
@@ -98,7 +98,7 @@ daemon::CalibrationView CalibrationDesk::view() const {
   return view;
 }
 
-void CalibrationDesk::begin(const std::string& who, const daq::WeighingTimes& times, Answer answer) {
+void CalibrationService::begin(const std::string& who, const daq::WeighingTimes& times, Answer answer) {
   if (auto why_not = why_no_test()) return answer(*std::move(why_not));
   if (parts_.config.bench.calibration_folder.empty()) {
     return answer(
@@ -123,7 +123,7 @@ void CalibrationDesk::begin(const std::string& who, const daq::WeighingTimes& ti
   answer(kNoScans);
 }
 
-std::string CalibrationDesk::not_ready() const {
+std::string CalibrationService::not_ready() const {
   if (!open_ || !open_->granted) {
     return lost_why_.empty() ? "no calibration is under way; begin one first"
                              : fmt::format("no calibration is under way: {}", lost_why_);
@@ -132,7 +132,7 @@ std::string CalibrationDesk::not_ready() const {
   return {};
 }
 
-void CalibrationDesk::weigh(double mass_kg, Answer answer) {
+void CalibrationService::weigh(double mass_kg, Answer answer) {
   if (std::string why_not = not_ready(); !why_not.empty()) return answer(std::move(why_not));
   if (open_->readings.empty() && mass_kg != 0.0)
     return answer("the first reading is the tare: take everything off, hook and pan stay, and give mass 0");
@@ -156,7 +156,7 @@ void CalibrationDesk::weigh(double mass_kg, Answer answer) {
   answer(kNoScans);
 }
 
-void CalibrationDesk::was_read(const Reading& reading, const Answer& answer) {
+void CalibrationService::was_read(const Reading& reading, const Answer& answer) {
   open_->being_read_kg.reset();
   if (!reading) return answer(reading.error().message);
   open_->readings.push_back(*reading);
@@ -168,14 +168,14 @@ void CalibrationDesk::was_read(const Reading& reading, const Answer& answer) {
   answer(why_not.empty() ? std::string{} : "the tare does not count: " + why_not);
 }
 
-std::string CalibrationDesk::undo() {
+std::string CalibrationService::undo() {
   if (std::string why_not = not_ready(); !why_not.empty()) return why_not;
   if (open_->readings.empty()) return "nothing has been read yet";
   open_->readings.pop_back();
   return {};
 }
 
-std::string CalibrationDesk::give_up() {
+std::string CalibrationService::give_up() {
   if (!open_ || !open_->granted) return not_ready();
   open_.reset();
   lost_why_.clear();
@@ -189,7 +189,7 @@ std::string CalibrationDesk::give_up() {
   return {};
 }
 
-void CalibrationDesk::finish(const std::string& who, const io::CalibrationPaper& paper, Answer answer) {
+void CalibrationService::finish(const std::string& who, const io::CalibrationPaper& paper, Answer answer) {
   if (std::string why_not = not_ready(); !why_not.empty()) return answer(std::move(why_not));
   const daq::WeighedCalibration result = weighed();
   if (!result.fit.load_cell) return answer("not yet: " + result.fit.reason);
@@ -201,8 +201,8 @@ void CalibrationDesk::finish(const std::string& who, const io::CalibrationPaper&
   use(kept->stored.facts, kept->stored.load_cell, who, answer);
 }
 
-void CalibrationDesk::use(const record::CalibrationFacts& facts, const daq::LoadCell& cell,
-                          const std::string& who, const Answer& answer) {
+void CalibrationService::use(const record::CalibrationFacts& facts, const daq::LoadCell& cell,
+                             const std::string& who, const Answer& answer) {
   io::BenchConfig& bench = parts_.config.bench;
   bench.load_cell_gain_N_per_V = cell.gain_N_per_V;
   bench.load_cell_zero_V = cell.zero_V;

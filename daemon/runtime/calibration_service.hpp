@@ -19,7 +19,7 @@
 namespace stickslip::runtime {
 
 /// Main thread, unless marked otherwise.
-class CalibrationDesk final : public daemon::Calibrator {
+class CalibrationService final : public daemon::Calibrator {
  public:
   struct Parts {
     io::DaemonConfig& config;  ///< Holds the calibration in use; the next session begins with it.
@@ -31,7 +31,7 @@ class CalibrationDesk final : public daemon::Calibrator {
     /// Time that decides whether one has expired: the clock of the scans, ns since 1970.
     std::function<std::int64_t()> now_ns;
   };
-  explicit CalibrationDesk(Parts parts) : parts_(std::move(parts)) {}
+  explicit CalibrationService(Parts parts) : parts_(std::move(parts)) {}
 
   /// Call it before the first scan of a session.
   void session_began(const SessionSettings& settings);

@@ -28,9 +28,9 @@ namespace stickslip::fuzz {
 
 class RawClient {
  public:
-  explicit RawClient(control::Door door) {
+  explicit RawClient(control::AccessPolicy policy) {
     service_ = std::make_shared<control::Service>(
-        control::Service{std::move(door),
+        control::Service{std::move(policy),
                          page::make_site(control::make_api(bench_, clock_), report::ChartLibrary{}),
                          &hub_,
                          {}});
@@ -81,6 +81,8 @@ class RawClient {
 };
 
 /// What a TCP port asks for.
-inline control::Door tcp_door() { return {false, {"localhost:80"}, "0123456789abcdef0123456789abcdef"}; }
+inline control::AccessPolicy tcp_policy() {
+  return {false, {"localhost:80"}, "0123456789abcdef0123456789abcdef"};
+}
 
 }  // namespace stickslip::fuzz
