@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <utility>
 
 #include "core/base/wording.hpp"
 
@@ -309,11 +310,14 @@ base::Result<Dialect> recognise(const std::string& path, const DialectOptions& o
         "--separator, --decimal, --skip",
         path, head->lines.size());
   }
-  const std::size_t fewest =
-      std::min_element(readings.begin(), readings.end(), [](const Reading& a, const Reading& b) {
-        return a.texts < b.texts;
-      })->texts;
-  std::erase_if(readings, [fewest](const Reading& reading) { return reading.texts > fewest; });
+  // A reading that leaves less of the file unread is the better one.
+  const auto unread = [](const Reading& reading) {
+    return std::pair{reading.texts, reading.dialect.first_row_line};
+  };
+  const auto least = unread(
+      *std::min_element(readings.begin(), readings.end(),
+                        [&unread](const Reading& a, const Reading& b) { return unread(a) < unread(b); }));
+  std::erase_if(readings, [&](const Reading& reading) { return unread(reading) > least; });
   for (const Reading& reading : readings) {
     if (readings.size() > 1 && heading_says_commas(reading, *head)) return reading.dialect;
   }

@@ -70,6 +70,32 @@ def write_trace(file, rate_hz=2000, duration_s=2):
             out.write(f"{scan / rate_hz:.4f},{0.25 + 0.1 * (phase - math.floor(phase)):.5f}\n")
 
 
+def write_foreign_traces(folder, rate_hz=350, duration_s=4):
+    """A pull of a sled of 2331 g as other programs export it, for docs/importing.md: rest, loading, sawtooth, rest."""
+    def force(scan):
+        time_s = scan / rate_hz
+        if not 0.5 <= time_s < duration_s - 0.5:
+            return 0.002 * math.sin(scan)
+        phase = (time_s - 0.5) * 10
+        return min(phase * 4, 6.9 + 1.1 * (phase - math.floor(phase))) + 0.01 * math.sin(7 * scan)
+
+    scans = [(scan / rate_hz, force(scan)) for scan in range(rate_hz * duration_s)]
+    comma = lambda text: text.replace(".", ",")  # noqa: E731
+    files = {
+        "bluehill.csv": ("utf-8", '"Specimen","1"\n"Time","Load"\n"(s)","(N)"\n' + "".join(f'"{t:.5f}","{f:.4f}"\n' for t, f in scans)),
+        "testxpert.txt": ("utf-16", '"Prüfzeit"\t"Standardkraft"\n"s"\t"N"\n' + "".join(comma(f"{t:.5f}\t{f:.4f}\n") for t, f in scans)),
+        "labview.lvm": ("utf-8", "LabVIEW Measurement\nSeparator\tTab\n***End_of_Header***\n\nX_Value\tForce\tComment\n"
+                        + "".join(f"{t:.6f}\t{f:.6f}\t\n" for t, f in scans)),
+        "pasco.csv": ("utf-8", "Time (s) Run #1,Force (N) Run #1,Time (s) Run #2,Force (N) Run #2\n"
+                      + "".join(f"{t:.4f},{f:.3f},{t:.4f},{f:.3f}\n" for t, f in scans)),
+        "tribometer.txt": ("latin-1", "Time [s]\tDistance [m]\tµ []\r\n" + "".join(f"{t:.4f}\t{t * 0.005:.6f}\t{f / 22.86:.5f}\r\n" for t, f in scans)),
+        "labjack.dat": ("utf-8", "Time\tv0\ty0\n" + "".join(f"{t:.6f}\t{f / 2:.6f}\t0\n" for t, f in scans)),
+        "hx711.log": ("utf-8", "HX711 tare done\nReady\n" + "".join(f"{t * 1e6:.0f},{f / 0.00980665:.2f}\n" for t, f in scans)),
+    }
+    for name, (encoding, text) in files.items():
+        (folder / name).write_bytes(text.encode(encoding))
+
+
 def run(command, folder, path):
     environment = dict(os.environ, PATH=f"{path}:{os.environ['PATH']}")
     return subprocess.run(["bash", "-euo", "pipefail", "-c", command], cwd=folder, env=environment,
@@ -137,6 +163,7 @@ class Documents(unittest.TestCase):
             folder = pathlib.Path(name)
             shutil.copytree(SOURCE / "config", folder / "config")
             write_trace(folder / "trace.csv")
+            write_foreign_traces(folder)
             for remark, text in blocks(document, "sh"):
                 if NOT_RUN.match(remark):
                     continue

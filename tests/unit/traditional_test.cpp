@@ -56,6 +56,17 @@ TEST(Traditional, StaticIsTheLargestScanOfTheFirstPeak) {
   EXPECT_EQ(found.static_coefficient.value, 0.37);
 }
 
+TEST(Traditional, TraceThatBeginsWhileTheSledSlidesIsKnown) {
+  EXPECT_TRUE(begins_under_load(oscillation(400)));
+  std::vector<double> values(5, 0.0);
+  values.resize(100, 0.3);
+  EXPECT_FALSE(begins_under_load(trace_of(values)));
+  values[0] = values[4] = 0.5;  // Spikes.
+  EXPECT_FALSE(begins_under_load(trace_of(values)));
+  values[2] = 0.5;
+  EXPECT_TRUE(begins_under_load(trace_of(values)));
+}
+
 TEST(Traditional, KineticIsTheMeanOfTenWholeCycles) {
   // A sampled cosine over whole cycles has mean 0 up to 200 roundings of 0.35 (6e-17 each, averaged).
   const TraditionalCoefficients found =
