@@ -126,8 +126,10 @@ base::Result<Grid> grid_of(const std::vector<double>& all_times, const GridOptio
   }
   const auto [low, high] = std::minmax_element(all_times.begin(), all_times.end());
   if (*low == *high || time.size() < 2) {
-    return base::usage_error("{}: the time column does not advance: give --time-column none and --rate HZ",
-                             place(0));
+    return base::usage_error(
+        "{}: the time column does not advance: give --time-column none and --rate HZ, or the name of "
+        "another column of times",
+        place(0));
   }
   const std::vector<double> steps = steps_of(time);
   const auto backwards = static_cast<std::size_t>(

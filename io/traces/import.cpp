@@ -69,6 +69,16 @@ Result<Columns> columns_of(const ImportRequest& request, const Dialect& dialect)
   return columns;
 }
 
+/// Of a heading, which may show a force as a mass or its unit as a word.
+Result<QuantityUnit> heading_unit(const std::string& unit) {
+  if (auto exact = quantity_unit(unit)) return exact;
+  const std::string word = folded(unit);
+  if (word.starts_with("newton")) return quantity_unit("N");
+  if (word.starts_with("volt")) return quantity_unit("V");
+  if (word.starts_with("gram")) return quantity_unit("gf");
+  return quantity_unit(unit + "f");
+}
+
 /// The unit of the values, stated, of the cells or of the heading.
 Result<std::string> unit_of(const ImportRequest& request, const ColumnName& column,
                             const std::string& cell_unit) {
@@ -80,12 +90,17 @@ Result<std::string> unit_of(const ImportRequest& request, const ColumnName& colu
         request.path, base::one_line(column.text, 40));
   }
   const auto stated = quantity_unit(request.unit);
-  const auto found = quantity_unit(own);
+  const auto found = heading_unit(own);
+  if (!own.empty() && stated && !found && is_unit(own)) {
+    return base::usage_error("{}: column \"{}\" is in {}, which --unit {} is not: choose another column",
+                             request.path, base::one_line(column.text, 40), base::one_line(own, 20),
+                             request.unit);
+  }
   if (!own.empty() && stated && found &&
       (stated->quantity != found->quantity || stated->scale != found->scale)) {
     return base::usage_error("{}: column \"{}\" is in {}, --unit says {}: give --unit {}", request.path,
                              base::one_line(column.text, 40), base::one_line(own, 20), request.unit,
-                             base::one_line(own, 20));
+                             quantity_unit(own) ? base::one_line(own, 20) : folded(own).substr(0, 1) + "f");
   }
   return request.unit;
 }
