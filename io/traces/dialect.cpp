@@ -107,6 +107,7 @@ bool find_columns(Reading& reading) {
                             })->first;
   dialect.columns.resize(width);
   dialect.numeric.assign(width, false);
+  dialect.empty.assign(width, true);
   std::vector<const Row*> alike;
   for (const Row& row : reading.rows) {
     if (row.fields.size() == width && has_number(row.fields, dialect.decimal)) alike.push_back(&row);
@@ -124,14 +125,19 @@ bool find_columns(Reading& reading) {
     std::size_t texts = 0;
     std::size_t times = 0;
     std::size_t zeros = 0;
-    for (const Row* row : alike) {
+    for (std::size_t i = 0; i < alike.size(); ++i) {
+      const Row* const row = alike[i];
       const std::string_view text = dialect.content(c, row->fields[c]);
       const CellKind kind = read_cell(text, dialect.decimal).kind;
       numbers += kind == CellKind::kNumber ? 1U : 0U;
-      texts += kind == CellKind::kText ? 1U : 0U;
-      times += kind == CellKind::kText && read_time_cell(text, dialect.decimal) ? 1U : 0U;
+      // Rows of the same width may stand before the table: its second half alone tells its text.
+      const bool is_text = kind == CellKind::kText && i >= alike.size() / 2;
+      texts += is_text ? 1U : 0U;
+      times += is_text && read_time_cell(text, dialect.decimal) ? 1U : 0U;
       zeros += text.size() > 1 && text.front() == '0' && text.find_first_not_of("0123456789") == text.npos;
-      if (kind != CellKind::kEmpty) used = c + 1;
+      if (kind == CellKind::kEmpty) continue;
+      dialect.empty[c] = dialect.empty[c] && i < alike.size() / 2;
+      used = c + 1;
     }
     dialect.numeric[c] = numbers > 0 && static_cast<double>(texts) <=
                                             (1.0 - kNumericShare) * static_cast<double>(alike.size());
@@ -145,6 +151,7 @@ bool find_columns(Reading& reading) {
   // A separator at the end of each row has no column behind it.
   dialect.columns.resize(used);
   dialect.numeric.resize(used);
+  dialect.empty.resize(used);
   return any;
 }
 
@@ -402,9 +409,9 @@ base::Result<Dialect> recognise(const std::string& path, const DialectOptions& o
         return a.good < b.good;
       })->good;
   std::erase_if(readings, [most](const Reading& reading) { return reading.good + kFewerRows <= most; });
-  for (const Reading& reading : readings) {
-    if (readings.size() > 1 && heading_says_commas(reading, *head)) return reading.dialect;
-  }
+  if (std::any_of(readings.begin(), readings.end(),
+                  [&](const Reading& reading) { return heading_says_commas(reading, *head); }))
+    std::erase_if(readings, [](const Reading& reading) { return reading.dialect.separator != ','; });
   if (readings.size() > 1) {
     const Reading& one = readings[0];
     const Reading& other = readings[1];

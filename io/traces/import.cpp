@@ -117,7 +117,11 @@ std::string stated_time_unit(const ImportRequest& request, const ColumnName& col
   const std::string name = folded(column.name);
   if (name.starts_with("milli")) return "ms";
   if (name.starts_with("micros")) return "us";
-  return column.unit == "sec" ? "s" : column.unit;
+  const std::string unit = folded(column.unit);
+  if (unit == "s" || unit.starts_with("sec")) return "s";
+  if (unit == "msec" || unit.starts_with("millisec")) return "ms";
+  if (unit == "usec" || unit.starts_with("microsec")) return "us";
+  return unit.starts_with("min") ? "min" : column.unit;
 }
 
 Result<TimeUnit> time_unit_of(const ImportRequest& request, const ColumnName& column,

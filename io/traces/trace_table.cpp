@@ -31,7 +31,7 @@ std::optional<std::size_t> best_before(const Dialect& dialect, std::size_t colum
   std::optional<std::size_t> best;
   int best_rank = 0;
   for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
-    const int own = c == column ? 0 : rank(dialect.columns[c]);
+    const int own = c == column || dialect.empty[c] ? 0 : rank(dialect.columns[c]);
     if (own == 0 || own < best_rank) continue;
     if (own == best_rank && c > column) continue;
     best = c;
@@ -39,6 +39,9 @@ std::optional<std::size_t> best_before(const Dialect& dialect, std::size_t colum
   }
   return best;
 }
+
+/// Lines at the end that are no scans, unless they are few beside the scans.
+constexpr std::size_t kLongestFooter = 100;
 
 class TableReader {
  public:
@@ -68,6 +71,11 @@ class TableReader {
     if (table_.value.empty() && strange_rows_ > 0) {
       return base::usage_error("{}:{}: {}: no number and no time; choose another column", path_,
                                strange_line_, strange_what_);
+    }
+    if (strange_rows_ > kLongestFooter && strange_rows_ > table_.value.size() / 10) {
+      return base::usage_error(
+          "{}:{}: {}, and the {} lines from there to the end are like it: correct them or remove them", path_,
+          strange_line_, strange_what_, strange_rows_);
     }
     tell_left_out();
     table_.sha256 = file->sha256();
