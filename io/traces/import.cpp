@@ -26,7 +26,7 @@ namespace {
 using base::Result;
 using daq::RawQuantity;
 
-/// A time column without a unit is read in the one of s, ms and µs that gives a rate and a length between
+/// A time column without a unit is read in the one of s, ms, µs and ns that gives a rate and a length between
 /// these; friction tests are neither slower, faster, shorter nor longer.
 constexpr double kSlowest_Hz = 5.0;
 constexpr double kFastest_Hz = 20'000.0;
@@ -130,15 +130,15 @@ Result<TimeUnit> time_unit_of(const ImportRequest& request, const ColumnName& co
   if (const std::string stated = stated_time_unit(request, column); !stated.empty()) {
     const auto seconds = base::parse_quantity("1 " + stated, base::Dimension::kTime);
     if (seconds) return TimeUnit{stated, *seconds};
-    return base::usage_error("{}: the unit of the time is \"{}\": give --time-unit s, ms, us, min or h",
+    return base::usage_error("{}: the unit of the time is \"{}\": give --time-unit s, ms, us, ns, min or h",
                              request.path, base::one_line(stated, 20));
   }
   const auto [low, high] = std::minmax_element(table.time.begin(), table.time.end());
   const double length = *high - *low;
   const double count = static_cast<double>(table.time.size() - 1);
   std::vector<TimeUnit> possible;
-  for (const TimeUnit& unit :
-       {TimeUnit{"s", 1.0, true}, TimeUnit{"ms", 1e-3, true}, TimeUnit{"us", 1e-6, true}}) {
+  for (const TimeUnit& unit : {TimeUnit{"s", 1.0, true}, TimeUnit{"ms", 1e-3, true},
+                               TimeUnit{"us", 1e-6, true}, TimeUnit{"ns", 1e-9, true}}) {
     const double rate_Hz = count / (length * unit.seconds);
     const bool fits = request.rate_Hz
                           ? std::abs(std::log2(rate_Hz / *request.rate_Hz)) < 1.0
@@ -150,10 +150,11 @@ Result<TimeUnit> time_unit_of(const ImportRequest& request, const ColumnName& co
   // A column that does not advance, and a rate that fits no unit, have messages of their own.
   if (!(length > 0.0) || request.rate_Hz) return TimeUnit{"s", 1.0, true};
   return base::usage_error(
-      "{}: column \"{}\" does not say its unit; it runs at {:.4g} Hz in s, {:.4g} Hz in ms, {:.4g} Hz in us: "
+      "{}: column \"{}\" does not say its unit; it runs at {:.4g} Hz in s, {:.4g} Hz in ms, {:.4g} Hz in us, "
+      "{:.4g} Hz in ns: "
       "give --time-unit",
       request.path, base::one_line(column.text, 40), count / length, 1e3 * count / length,
-      1e6 * count / length);
+      1e6 * count / length, 1e9 * count / length);
 }
 
 /// Start of the first row since 1970, where the times tell.

@@ -1,11 +1,14 @@
 // The layout of the table is recognised, or both readings are shown.
 
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
 #include "tests/unit/traces_sample.hpp"
 
 namespace stickslip::traces {
 namespace {
-
-using testing::HasSubstr;
 
 class TraceDialect : public Traces {
  protected:

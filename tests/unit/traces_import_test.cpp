@@ -1,6 +1,11 @@
 // A record from a foreign trace: values, unit, sign, rate, holes and what was left out; else one line that
 // says what is missing.
 
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
 #include "tests/unit/traces_sample.hpp"
 
 namespace stickslip::traces {
@@ -100,13 +105,15 @@ TEST_F(TraceImport, NegativeForceNeedsInvert) {
 
 TEST_F(TraceImport, UnitOfTheTimeIsItsHeadingsOrFoundByInspection) {
   std::string content = "millis,F\n";
+  std::string since_1970 = "timestamp,F\n";
   std::string minutes = "Time (Min),F\n";
   for (int i = 0; i < 200; ++i) {
     content += fmt::format("{},{}\n", 10 * i, 1);
+    since_1970 += fmt::format("17000000{:02}{:02}0000000,1\n", i / 100, i % 100);
     minutes += fmt::format("{:.8f},{}\n", 0.01 * i / 60.0, 1);
   }
   for (const std::string& text :
-       {content, "time" + content.substr(6), "Time (mSec)" + content.substr(6), minutes}) {
+       {content, "time" + content.substr(6), "Time (mSec)" + content.substr(6), minutes, since_1970}) {
     const auto imported = import(text);
     ASSERT_TRUE(imported) << imported.error().message;
     EXPECT_NEAR(imported->records[0].header.board.scan_rate_granted_Hz, 100.0, 0.01);
