@@ -218,8 +218,8 @@ void add_import(CLI::App& app, Chosen& chosen) {
        "scans per second; else the time column tells it, which is checked against it", "HZ");
   text("--time-column", options->time_column,
        "heading or number of the time; else by its name; none: do not read it", "NAME");
-  text("--time-unit", options->time_unit, "s, ms, us, min or h; else that of the heading, else by inspection",
-       "UNIT");
+  text("--time-unit", options->time_unit,
+       "s, ms, us, ns, min or h; else that of the heading, else by inspection", "UNIT");
   text("--speed", options->speed, "pull speed, m/s or with unit", "V");
   text("--stiffness", options->stiffness, "of the coupling, N/m or with unit", "K");
   text("--load-cell-gain", options->load_cell_gain, "N/V or with unit; needed for V", "GAIN");

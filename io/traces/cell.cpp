@@ -17,15 +17,21 @@ constexpr std::size_t kLongestNumber = 40;
 constexpr std::size_t kLongestUnit = 8;
 
 /// In lower case. Instruments write them for overload, no reading and no channel.
-constexpr std::array<std::string_view, 17> kHoles{"nan",  "na",  "n/a",  "#n/a",     "#na",    "null",
-                                                  "none", "-",   "--",   "---",      "ovld",   "ovl",
-                                                  "ol",   "inf", "-inf", "overload", "1.#qnan"};
+constexpr std::array<std::string_view, 22> kHoles{
+    "nan", "-nan", "na",  "n/a",  "null", "none", "-",    "--",   "---",       "ovld",     "ovl",
+    "ol",  "+ol",  "-ol", "over", "****", "inf",  "+inf", "-inf", "-nan(ind)", "nan(ind)", "overload"};
+constexpr std::size_t kLongestHole = 9;
+/// Between groups of three digits, in any language.
+constexpr std::array<std::string_view, 6> kThousands{" ", kNoBreakSpace, kNarrowSpace, "\xE2\x80\x89",
+                                                     "'", "\xE2\x80\x99"};
 
 bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
 bool is_hole(std::string_view text) {
-  if (text.size() > 8) return false;
-  std::array<char, 8> lower{};
+  if (text.size() > kLongestHole) return false;
+  // Errors of spreadsheets, "#DIV/0!", and of an old C library, "-1.#IND".
+  if (text.starts_with('#') || text.find("1.#") != std::string_view::npos) return true;
+  std::array<char, kLongestHole> lower{};
   std::transform(text.begin(), text.end(), lower.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return std::find(kHoles.begin(), kHoles.end(), std::string_view{lower.data(), text.size()}) != kHoles.end();
@@ -60,7 +66,8 @@ bool zero_first(const Digits& digits) noexcept {
 }
 
 Digits digits_in(std::string_view text, char decimal) {
-  const char thousands = decimal == '.' ? ',' : '.';
+  const std::string_view other = decimal == '.' ? "," : ".";
+  std::string_view thousands;  // The mark, once there is one.
   Digits digits;
   const auto add = [&digits](char c) {
     digits.whole = digits.whole && digits.size < kLongestNumber;
@@ -77,6 +84,15 @@ Digits digits_in(std::string_view text, char decimal) {
   bool point = false;
   bool grouped = false;
   std::size_t group = 0;  // Digits since the last mark of thousands or the sign.
+  const auto mark_at = [&](std::size_t place) -> std::string_view {
+    const std::string_view rest = text.substr(place);
+    if (!thousands.empty()) return rest.starts_with(thousands) ? thousands : std::string_view{};
+    if (rest.starts_with(other)) return other;
+    for (const std::string_view mark : kThousands) {
+      if (rest.starts_with(mark)) return mark;
+    }
+    return {};
+  };
   for (; at < text.size(); ++at) {
     const char c = text[at];
     if (is_digit(c)) {
@@ -85,12 +101,15 @@ Digits digits_in(std::string_view text, char decimal) {
     } else if (c == decimal && !point && (!grouped || group == 3)) {
       add('.');
       point = true;
-    } else if (c == thousands && !point && group > 0 && group <= 3 &&
-               (grouped ? group == 3 : !zero_first(digits)) && text.size() >= at + 4 &&
-               std::all_of(text.begin() + static_cast<std::ptrdiff_t>(at) + 1,
-                           text.begin() + static_cast<std::ptrdiff_t>(at) + 4, is_digit)) {
+    } else if (const std::string_view mark = mark_at(at);
+               !mark.empty() && !point && group > 0 && group <= 3 &&
+               (grouped ? group == 3 : !zero_first(digits)) && text.size() >= at + mark.size() + 3 &&
+               std::all_of(text.begin() + static_cast<std::ptrdiff_t>(at + mark.size()),
+                           text.begin() + static_cast<std::ptrdiff_t>(at + mark.size()) + 3, is_digit)) {
+      thousands = mark;
       grouped = true;
       group = 0;
+      at += mark.size() - 1;
     } else {
       break;
     }
@@ -145,7 +164,8 @@ Cell read_cell(std::string_view text, char decimal) {
   }
   const std::string_view rest = trimmed(text.substr(digits.taken));
   if (rest.size() > kLongestUnit || std::any_of(rest.begin(), rest.end(), is_digit) ||
-      rest.find_first_of(",.;:-") != std::string_view::npos) {
+      rest.find_first_of(",.;:-") != std::string_view::npos ||
+      std::any_of(rest.begin(), rest.end(), [](unsigned char c) { return c < ' '; })) {
     return cell;
   }
   cell.kind = CellKind::kNumber;

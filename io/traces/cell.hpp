@@ -10,7 +10,7 @@ namespace stickslip::traces {
 enum class CellKind {
   kEmpty,
   kNumber,
-  kHole,  ///< A word for a missing value: NaN, #N/A, ---, OVLD …
+  kHole,  ///< A word for a missing value: NaN, #N/A, #DIV/0!, ---, OVLD …
   kText,
 };
 
@@ -22,7 +22,8 @@ struct Cell {
 };
 
 /// Reads a cell. Blanks at the ends, a plus sign, the minus sign of Unicode (U+2212) and marks of thousands
-/// (the one of '.' and ',' that is not the decimal mark, in groups of three digits) are understood.
+/// (the one of '.' and ',' that is not the decimal mark, a blank or an apostrophe, in groups of three digits)
+/// are understood.
 /// \param decimal  the decimal mark, '.' or ','.
 [[nodiscard]] Cell read_cell(std::string_view text, char decimal);
 

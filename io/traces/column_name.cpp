@@ -19,10 +19,15 @@ constexpr std::array<std::string_view, 44> kUnits{
     "m", "mm", "cm", "um",   "µm",     "in",     "inch",   "m/s", "Hz",  "%",       "1",
     "-", "°C", "C",  "mm/s", "mm/min", "in/min", "counts", "MPa", "kPa", "percent", "coefficient"};
 /// In folded form.
-constexpr std::array<std::string_view, 22> kTimes{
-    "time",     "zeit",    "prüfzeit", "testzeit", "messzeit", "timestamp", "millis",  "micros",
-    "elapsed",  "x_value", "temps",    "tempo",    "tiempo",   "datetime",  "seconds", "sekunden",
-    "laufzeit", "tid",     "aika",     "uhrzeit",  "runtime",  "время"};
+constexpr std::array<std::string_view, 28> kTimes{
+    "time",    "zeit",        "prüfzeit",   "testzeit", "messzeit", "timestamp", "millis",
+    "micros",  "elapsed",     "x_value",    "temps",    "tempo",    "tiempo",    "datetime",
+    "seconds", "sekunden",    "laufzeit",   "tid",      "aika",     "uhrzeit",   "runtime",
+    "время",   "zeitstempel", "horodatage", "heure",    "hora",     "date/time", "zeitpunkt"};
+/// Units in folded form that are written as words in any case.
+constexpr std::array<std::string_view, 13> kUnitWords{"msec",    "usec",   "sec",     "secs", "second",
+                                                      "seconds", "newton", "newtons", "gram", "grams",
+                                                      "volt",    "volts",  "min"};
 constexpr std::array<std::string_view, 9> kCounters{"scan", "sample", "samples", "point", "no",
                                                     "no.",  "nr",     "index",   "n"};
 
@@ -69,7 +74,7 @@ std::string folded(std::string_view text) {
 
 bool is_unit(std::string_view text) {
   const std::string_view bare = without_brackets(text);
-  return has(kUnits, bare) || (bare.empty() && !trimmed(text).empty());
+  return has(kUnits, bare) || has(kUnitWords, folded(bare)) || (bare.empty() && !trimmed(text).empty());
 }
 
 ColumnName column_name(std::string_view heading, std::string_view units_cell) {

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <utility>
+
+#include "io/traces/trace_time.hpp"
 
 #include "core/base/wording.hpp"
 
@@ -19,6 +20,10 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 18U;
 constexpr double kNumericShare = 0.9;
 /// A reading is possible where so many of the lines after its first row are rows.
 constexpr double kRowShare = 0.8;
+/// A table is short where one so many times as long follows it.
+constexpr std::size_t kShortTable = 10;
+/// A reading that takes so many lines fewer as rows than another is not the right one.
+constexpr std::size_t kFewerRows = 3;
 
 struct Head {
   std::vector<std::string> lines;
@@ -35,7 +40,8 @@ struct Reading {
   Dialect dialect;
   std::vector<Row> rows;
   std::size_t first = 0;  ///< Of the table, in rows.
-  std::size_t texts = 0;  ///< Columns of text.
+  std::size_t texts = 0;  ///< Two for a column of text, one for a column of digits with zeros in front.
+  std::size_t good = 0;   ///< Rows that are rows of the table.
 };
 
 base::Result<Head> read_head(const std::string& path, const DialectOptions& options) {
@@ -101,6 +107,7 @@ bool find_columns(Reading& reading) {
                             })->first;
   dialect.columns.resize(width);
   dialect.numeric.assign(width, false);
+  dialect.empty.assign(width, true);
   std::vector<const Row*> alike;
   for (const Row& row : reading.rows) {
     if (row.fields.size() == width && has_number(row.fields, dialect.decimal)) alike.push_back(&row);
@@ -112,20 +119,71 @@ bool find_columns(Reading& reading) {
     dialect.labels.clear();
   }
   bool any = false;
+  std::size_t used = 0;  // Columns up to the last one that is not empty.
   for (std::size_t c = 0; c < width; ++c) {
     std::size_t numbers = 0;
     std::size_t texts = 0;
-    for (const Row* row : alike) {
-      const CellKind kind = read_cell(dialect.content(c, row->fields[c]), dialect.decimal).kind;
+    std::size_t times = 0;
+    std::size_t zeros = 0;
+    for (std::size_t i = 0; i < alike.size(); ++i) {
+      const Row* const row = alike[i];
+      const std::string_view text = dialect.content(c, row->fields[c]);
+      const CellKind kind = read_cell(text, dialect.decimal).kind;
       numbers += kind == CellKind::kNumber ? 1U : 0U;
-      texts += kind == CellKind::kText ? 1U : 0U;
+      // Rows of the same width may stand before the table: its second half alone tells its text.
+      const bool is_text = kind == CellKind::kText && i >= alike.size() / 2;
+      texts += is_text ? 1U : 0U;
+      times += is_text && read_time_cell(text, dialect.decimal) ? 1U : 0U;
+      zeros += text.size() > 1 && text.front() == '0' && text.find_first_not_of("0123456789") == text.npos;
+      if (kind == CellKind::kEmpty) continue;
+      dialect.empty[c] = dialect.empty[c] && i < alike.size() / 2;
+      used = c + 1;
     }
     dialect.numeric[c] = numbers > 0 && static_cast<double>(texts) <=
                                             (1.0 - kNumericShare) * static_cast<double>(alike.size());
     any = any || dialect.numeric[c];
-    reading.texts += !dialect.numeric[c] && texts > 0 ? 1U : 0U;
+    const auto most = [&alike](std::size_t count) {
+      return static_cast<double>(count) > (1.0 - kNumericShare) * static_cast<double>(alike.size());
+    };
+    reading.texts += !dialect.numeric[c] && texts > 0 && !most(times) ? 2U : 0U;
+    reading.texts += dialect.numeric[c] && most(zeros) ? 1U : 0U;
   }
+  // A separator at the end of each row has no column behind it.
+  dialect.columns.resize(used);
+  dialect.numeric.resize(used);
+  dialect.empty.resize(used);
   return any;
+}
+
+bool is_units_row(const Row& row) {
+  return std::all_of(row.fields.begin(), row.fields.end(),
+                     [](const std::string& field) { return trimmed(field).empty() || is_unit(field); });
+}
+
+bool is_heading(const Row& row, const Dialect& dialect);
+
+/// Statistics may stand before the scans, as a short table with a heading of its own.
+std::size_t after_short_tables(const Reading& reading, std::size_t first) {
+  const auto& rows = reading.rows;
+  const auto is_row = [&](std::size_t i) { return reading.dialect.is_row(views(rows[i].fields)); };
+  const auto end_of = [&](std::size_t begin) {
+    while (begin < rows.size() && is_row(begin)) ++begin;
+    return begin;
+  };
+  std::size_t end = end_of(first);
+  for (std::size_t next = end; next < rows.size(); next = end_of(next) + 1) {
+    const std::size_t size = end_of(next) - next;
+    if (size < kShortTable * (end - first) || next <= end) continue;
+    std::size_t heading = next - 1;
+    if (heading > end && is_units_row(rows[heading])) --heading;
+    const bool repeated = std::any_of(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(heading),
+                                      [&](const Row& row) { return row.fields == rows[heading].fields; });
+    if (is_heading(rows[heading], reading.dialect) && !repeated) {
+      first = next;
+      end = end_of(next);
+    }
+  }
+  return first;
 }
 
 /// The first row that is followed by rows. \return whether the lines after it are rows as well.
@@ -140,9 +198,10 @@ bool find_first_row(Reading& reading) {
     first = static_cast<std::size_t>(std::find_if(rows.begin(), rows.end(), is_row) - rows.begin());
     if (first == rows.size()) return false;
   }
-  reading.first = first;
+  reading.first = first = after_short_tables(reading, first);
   reading.dialect.first_row_line = rows[first].line;
   const auto good = std::count_if(rows.begin() + static_cast<std::ptrdiff_t>(first), rows.end(), is_row);
+  reading.good = static_cast<std::size_t>(good);
   return static_cast<double>(good) >=
              kRowShare * static_cast<double>(std::min<std::size_t>(rows.size() - first, 5)) &&
          2 * static_cast<std::size_t>(good) >= rows.size() - first;
@@ -161,9 +220,18 @@ bool is_heading(const Row& row, const Dialect& dialect) {
   return texts > 0;
 }
 
-bool is_units_row(const Row& row) {
-  return std::all_of(row.fields.begin(), row.fields.end(),
-                     [](const std::string& field) { return trimmed(field).empty() || is_unit(field); });
+/// Names of a heading, each with the unit in brackets behind it, without the mark of a comment in front.
+std::vector<std::string> names_between_blanks(const std::vector<std::string>& words) {
+  std::vector<std::string> names;
+  for (const std::string& word : words) {
+    if (names.empty() && (word == "#" || word == "%" || word == "//")) continue;
+    if (!names.empty() && (word.starts_with('(') || word.starts_with('['))) {
+      names.back() += " " + word;
+    } else {
+      names.push_back(word);
+    }
+  }
+  return names;
 }
 
 void find_heading(Reading& reading) {
@@ -180,10 +248,14 @@ void find_heading(Reading& reading) {
   if (is_units_row(rows[heading]) && heading > 0 && is_heading(rows[heading - 1], dialect))
     units = &rows[heading--];
   if (!is_heading(rows[heading], dialect)) return;
+  const std::vector<std::string> names =
+      dialect.separator == kBlanks ? names_between_blanks(rows[heading].fields) : rows[heading].fields;
+  // A name with a blank in it shifts those behind it: no name is better than a wrong one.
+  if (dialect.separator == kBlanks && names.size() != dialect.columns.size()) return;
   dialect.header_line = rows[heading].line;
   dialect.units_line = units == nullptr ? 0 : units->line;
   for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
-    std::string_view text = rows[heading].fields[c];
+    std::string_view text = names[c];
     while (c == 0 && text.starts_with('#')) text.remove_prefix(1);
     dialect.columns[c] =
         column_name(text, units != nullptr && c < units->fields.size() ? units->fields[c] : std::string{});
@@ -214,14 +286,26 @@ std::string shown(const Reading& reading) {
   return text;
 }
 
+/// The cells of a row that are not empty.
+std::vector<Cell> cells_of(const Row& row, char decimal) {
+  std::vector<Cell> cells;
+  for (const std::string& field : row.fields) {
+    const Cell cell = read_cell(field, decimal);
+    if (cell.kind != CellKind::kEmpty) cells.push_back(cell);
+  }
+  return cells;
+}
+
+/// Whether both give the same values; columns that are empty do not count.
 bool equal(const Reading& a, const Reading& b) {
-  if (a.dialect.columns.size() != b.dialect.columns.size() || a.first != b.first) return false;
-  for (std::size_t i = a.first; i < std::min(a.rows.size(), b.rows.size()); ++i) {
-    for (std::size_t c = 0; c < std::min(a.rows[i].fields.size(), b.rows[i].fields.size()); ++c) {
-      const Cell one = read_cell(a.rows[i].fields[c], a.dialect.decimal);
-      const Cell other = read_cell(b.rows[i].fields[c], b.dialect.decimal);
-      if (one.kind != other.kind || one.value != other.value) return false;
-    }
+  if (a.rows[a.first].line != b.rows[b.first].line || a.rows.size() - a.first != b.rows.size() - b.first)
+    return false;
+  for (std::size_t i = 0; a.first + i < a.rows.size(); ++i) {
+    const auto one = cells_of(a.rows[a.first + i], a.dialect.decimal);
+    const auto other = cells_of(b.rows[b.first + i], b.dialect.decimal);
+    if (!std::equal(one.begin(), one.end(), other.begin(), other.end(),
+                    [](const Cell& x, const Cell& y) { return x.kind == y.kind && x.value == y.value; }))
+      return false;
   }
   return true;
 }
@@ -229,7 +313,7 @@ bool equal(const Reading& a, const Reading& b) {
 /// A heading of several names with commas and no blank behind one is no name with a decimal comma below it.
 bool heading_says_commas(const Reading& commas, const Head& head) {
   const std::int64_t line = commas.dialect.header_line;
-  if (commas.dialect.separator != ',' || line == 0) return false;
+  if (commas.dialect.separator != ',' || line == 0 || commas.dialect.columns.size() < 2) return false;
   return head.lines[static_cast<std::size_t>(line) - 1].find(", ") == std::string::npos;
 }
 
@@ -249,8 +333,9 @@ std::string_view Dialect::content(std::size_t column, std::string_view field) co
 }
 
 bool Dialect::is_row(const std::vector<std::string_view>& fields) const {
+  // A comment may stand behind the numbers.
   for (std::size_t c = columns.size(); c < fields.size(); ++c) {
-    if (!trimmed(fields[c]).empty()) return false;
+    if (read_cell(fields[c], decimal).kind == CellKind::kNumber) return false;
   }
   bool any = false;
   for (std::size_t c = 0; c < columns.size() && c < fields.size(); ++c) {
@@ -291,9 +376,13 @@ base::Result<Dialect> recognise(const std::string& path, const DialectOptions& o
     stated.skip = std::max<std::int64_t>(stated.skip, 1);
   }
   std::vector<Reading> readings;
+  // Numbers in quotes may have the separator as their decimal mark.
+  const bool quoted = std::any_of(head->lines.begin(), head->lines.end(), [](const std::string& line) {
+    return line.find('"') != std::string::npos;
+  });
   for (const char separator : {'\t', ';', ',', kNoSeparator, kBlanks}) {
     for (const char decimal : {'.', ','}) {
-      if (separator == decimal || (stated.separator && *stated.separator != separator) ||
+      if ((separator == decimal && !quoted) || (stated.separator && *stated.separator != separator) ||
           (stated.decimal && *stated.decimal != decimal))
         continue;
       auto reading = read_as(*head, separator, decimal, stated.skip);
@@ -310,17 +399,19 @@ base::Result<Dialect> recognise(const std::string& path, const DialectOptions& o
         "--separator, --decimal, --skip",
         path, head->lines.size());
   }
-  // A reading that leaves less of the file unread is the better one.
-  const auto unread = [](const Reading& reading) {
-    return std::pair{reading.texts, reading.dialect.first_row_line};
-  };
-  const auto least = unread(
-      *std::min_element(readings.begin(), readings.end(),
-                        [&unread](const Reading& a, const Reading& b) { return unread(a) < unread(b); }));
-  std::erase_if(readings, [&](const Reading& reading) { return unread(reading) > least; });
-  for (const Reading& reading : readings) {
-    if (readings.size() > 1 && heading_says_commas(reading, *head)) return reading.dialect;
-  }
+  const std::size_t fewest =
+      std::min_element(readings.begin(), readings.end(), [](const Reading& a, const Reading& b) {
+        return a.texts < b.texts;
+      })->texts;
+  std::erase_if(readings, [fewest](const Reading& reading) { return reading.texts > fewest; });
+  const std::size_t most =
+      std::max_element(readings.begin(), readings.end(), [](const Reading& a, const Reading& b) {
+        return a.good < b.good;
+      })->good;
+  std::erase_if(readings, [most](const Reading& reading) { return reading.good + kFewerRows <= most; });
+  if (std::any_of(readings.begin(), readings.end(),
+                  [&](const Reading& reading) { return heading_says_commas(reading, *head); }))
+    std::erase_if(readings, [](const Reading& reading) { return reading.dialect.separator != ','; });
   if (readings.size() > 1) {
     const Reading& one = readings[0];
     const Reading& other = readings[1];

@@ -33,6 +33,7 @@ struct Dialect {
   std::int64_t first_row_line = 0;
   std::vector<ColumnName> columns;  ///< As many as a row has fields; texts are empty without a heading.
   std::vector<bool> numeric;        ///< Columns that hold numbers alone; others may hold any text.
+  std::vector<bool> empty;          ///< Columns in which no row has anything.
   std::vector<std::string> labels;  ///< "Force" where each cell reads "Force:0.12"; else empty.
 
   /// The field as a cell holds it: without its label.

@@ -27,17 +27,25 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Mean of the steps that are single intervals, those rounded to a coarse digit too.
-double interval_of(const std::vector<double>& steps, double digit_s) {
+struct Interval {
+  double mean = 0.0;     ///< Of the steps that are single intervals, those rounded to a coarse digit too.
+  bool unequal = false;  ///< They differ by a digit or more.
+};
+
+Interval interval_of(const std::vector<double>& steps, double digit_s) {
   const double middle = median(steps);
   double sum = 0.0;
   std::size_t count = 0;
+  double shortest = middle;
+  double longest = middle;
   for (const double step : steps) {
     if (step < kShortestStep * middle - digit_s || step > kLongestStep * middle + digit_s) continue;
     sum += step;
     ++count;
+    shortest = std::min(shortest, step);
+    longest = std::max(longest, step);
   }
-  return count == 0 ? middle : sum / static_cast<double>(count);
+  return {count == 0 ? middle : sum / static_cast<double>(count), longest - shortest > 0.5 * digit_s};
 }
 
 struct Line {
@@ -126,8 +134,10 @@ base::Result<Grid> grid_of(const std::vector<double>& all_times, const GridOptio
   }
   const auto [low, high] = std::minmax_element(all_times.begin(), all_times.end());
   if (*low == *high || time.size() < 2) {
-    return base::usage_error("{}: the time column does not advance: give --time-column none and --rate HZ",
-                             place(0));
+    return base::usage_error(
+        "{}: the time column does not advance: give --time-column none and --rate HZ, or the name of "
+        "another column of times",
+        place(0));
   }
   const std::vector<double> steps = steps_of(time);
   const auto backwards = static_cast<std::size_t>(
@@ -146,7 +156,7 @@ base::Result<Grid> grid_of(const std::vector<double>& all_times, const GridOptio
         place(row[i + 1]), -*at);
   }
   const auto standing = static_cast<std::size_t>(std::count(steps.begin(), steps.end(), 0.0));
-  const double interval = interval_of(steps, options.digit_s);
+  const auto [interval, unequal] = interval_of(steps, options.digit_s);
   const bool coarse = 4 * standing > steps.size() || !(interval > 0.0);
   if (coarse) {
     if (!options.rate_Hz) {
@@ -169,7 +179,21 @@ base::Result<Grid> grid_of(const std::vector<double>& all_times, const GridOptio
         place(row[i + 1]), standing);
   }
 
-  const std::vector<std::int64_t> index = indices(steps, interval);
+  std::vector<std::int64_t> index = indices(steps, interval);
+  // A step of two coarse digits is one long interval or a missing row; only without gaps is it surely the
+  // first.
+  if (unequal && options.digit_s >= kCoarsest * interval &&
+      index.back() + 1 != static_cast<std::int64_t>(time.size())) {
+    if (!options.rate_Hz) {
+      return base::usage_error(
+          "{}: the time column has a step of {:.6g} s, too coarse to tell missing rows from the scan rate: "
+          "give "
+          "--rate HZ",
+          place(0), options.digit_s);
+    }
+    index = indices(steps, 1.0 / *options.rate_Hz);
+    grid.rate_checked = false;
+  }
   const Line line = line_through(index, time);
   grid.rate_Hz = 1.0 / line.slope;
   double largest = 0.0;

@@ -26,7 +26,7 @@ namespace {
 using base::Result;
 using daq::RawQuantity;
 
-/// A time column without a unit is read in the one of s, ms and µs that gives a rate and a length between
+/// A time column without a unit is read in the one of s, ms, µs and ns that gives a rate and a length between
 /// these; friction tests are neither slower, faster, shorter nor longer.
 constexpr double kSlowest_Hz = 5.0;
 constexpr double kFastest_Hz = 20'000.0;
@@ -69,6 +69,16 @@ Result<Columns> columns_of(const ImportRequest& request, const Dialect& dialect)
   return columns;
 }
 
+/// Of a heading, which may show a force as a mass or its unit as a word.
+Result<QuantityUnit> heading_unit(const std::string& unit) {
+  if (auto exact = quantity_unit(unit)) return exact;
+  const std::string word = folded(unit);
+  if (word.starts_with("newton")) return quantity_unit("N");
+  if (word.starts_with("volt")) return quantity_unit("V");
+  if (word.starts_with("gram")) return quantity_unit("gf");
+  return quantity_unit(unit + "f");
+}
+
 /// The unit of the values, stated, of the cells or of the heading.
 Result<std::string> unit_of(const ImportRequest& request, const ColumnName& column,
                             const std::string& cell_unit) {
@@ -80,12 +90,17 @@ Result<std::string> unit_of(const ImportRequest& request, const ColumnName& colu
         request.path, base::one_line(column.text, 40));
   }
   const auto stated = quantity_unit(request.unit);
-  const auto found = quantity_unit(own);
+  const auto found = heading_unit(own);
+  if (!own.empty() && stated && !found && is_unit(own)) {
+    return base::usage_error("{}: column \"{}\" is in {}, which --unit {} is not: choose another column",
+                             request.path, base::one_line(column.text, 40), base::one_line(own, 20),
+                             request.unit);
+  }
   if (!own.empty() && stated && found &&
       (stated->quantity != found->quantity || stated->scale != found->scale)) {
     return base::usage_error("{}: column \"{}\" is in {}, --unit says {}: give --unit {}", request.path,
                              base::one_line(column.text, 40), base::one_line(own, 20), request.unit,
-                             base::one_line(own, 20));
+                             quantity_unit(own) ? base::one_line(own, 20) : folded(own).substr(0, 1) + "f");
   }
   return request.unit;
 }
@@ -102,7 +117,11 @@ std::string stated_time_unit(const ImportRequest& request, const ColumnName& col
   const std::string name = folded(column.name);
   if (name.starts_with("milli")) return "ms";
   if (name.starts_with("micros")) return "us";
-  return column.unit == "sec" ? "s" : column.unit;
+  const std::string unit = folded(column.unit);
+  if (unit == "s" || unit.starts_with("sec")) return "s";
+  if (unit == "msec" || unit.starts_with("millisec")) return "ms";
+  if (unit == "usec" || unit.starts_with("microsec")) return "us";
+  return unit.starts_with("min") ? "min" : column.unit;
 }
 
 Result<TimeUnit> time_unit_of(const ImportRequest& request, const ColumnName& column,
@@ -111,15 +130,15 @@ Result<TimeUnit> time_unit_of(const ImportRequest& request, const ColumnName& co
   if (const std::string stated = stated_time_unit(request, column); !stated.empty()) {
     const auto seconds = base::parse_quantity("1 " + stated, base::Dimension::kTime);
     if (seconds) return TimeUnit{stated, *seconds};
-    return base::usage_error("{}: the unit of the time is \"{}\": give --time-unit s, ms, us, min or h",
+    return base::usage_error("{}: the unit of the time is \"{}\": give --time-unit s, ms, us, ns, min or h",
                              request.path, base::one_line(stated, 20));
   }
   const auto [low, high] = std::minmax_element(table.time.begin(), table.time.end());
   const double length = *high - *low;
   const double count = static_cast<double>(table.time.size() - 1);
   std::vector<TimeUnit> possible;
-  for (const TimeUnit& unit :
-       {TimeUnit{"s", 1.0, true}, TimeUnit{"ms", 1e-3, true}, TimeUnit{"us", 1e-6, true}}) {
+  for (const TimeUnit& unit : {TimeUnit{"s", 1.0, true}, TimeUnit{"ms", 1e-3, true},
+                               TimeUnit{"us", 1e-6, true}, TimeUnit{"ns", 1e-9, true}}) {
     const double rate_Hz = count / (length * unit.seconds);
     const bool fits = request.rate_Hz
                           ? std::abs(std::log2(rate_Hz / *request.rate_Hz)) < 1.0
@@ -131,10 +150,11 @@ Result<TimeUnit> time_unit_of(const ImportRequest& request, const ColumnName& co
   // A column that does not advance, and a rate that fits no unit, have messages of their own.
   if (!(length > 0.0) || request.rate_Hz) return TimeUnit{"s", 1.0, true};
   return base::usage_error(
-      "{}: column \"{}\" does not say its unit; it runs at {:.4g} Hz in s, {:.4g} Hz in ms, {:.4g} Hz in us: "
+      "{}: column \"{}\" does not say its unit; it runs at {:.4g} Hz in s, {:.4g} Hz in ms, {:.4g} Hz in us, "
+      "{:.4g} Hz in ns: "
       "give --time-unit",
       request.path, base::one_line(column.text, 40), count / length, 1e3 * count / length,
-      1e6 * count / length);
+      1e6 * count / length, 1e9 * count / length);
 }
 
 /// Start of the first row since 1970, where the times tell.

@@ -20,7 +20,7 @@ struct ImportRequest {
   std::string column;       ///< Heading or number of the values.
   std::string unit;         ///< Of the values; empty: of the heading or of the cells.
   std::string time_column;  ///< Heading or number; empty: by its name; "none": no column is a time.
-  std::string time_unit;    ///< s, ms, us, min or h; empty: of the heading, else by inspection.
+  std::string time_unit;    ///< s, ms, us, ns, min or h; empty: of the heading, else by inspection.
   std::optional<double> rate_Hz;
   bool invert = false;        ///< The force is negative while sliding.
   bool reverse = false;       ///< Rows from the last to the first.

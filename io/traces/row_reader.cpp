@@ -1,5 +1,6 @@
 #include "io/traces/row_reader.hpp"
 
+#include <algorithm>
 #include <new>
 
 #include "io/traces/cell.hpp"
@@ -9,6 +10,7 @@ namespace {
 
 /// In no text file.
 constexpr char kUnused = '\x1F';
+constexpr std::string_view kArrow = "->";
 
 void close_parser(csv_parser* parser) {
   csv_free(parser);
@@ -46,12 +48,15 @@ bool RowReader::add(std::string_view line) {
   }
   line_.clear();
   if (separator_ == kBlanks) {
-    for (const char c : trimmed(line)) {
-      if (c != ' ' && c != '\t') {
-        line_ += c;
-      } else if (line_.back() != kUnused) {
-        line_ += kUnused;
-      }
+    std::string_view rest = trimmed(line);
+    while (!rest.empty()) {
+      const std::size_t size = std::min(rest.find_first_of(" \t"), rest.size());
+      const std::string_view word = rest.substr(0, size);
+      rest = trimmed(rest.substr(size));
+      // Loggers write "12:00:01.123 -> 0.34".
+      if (word == kArrow) continue;
+      if (!line_.empty()) line_ += kUnused;
+      line_ += word;
     }
   } else {
     line_ = line;

@@ -31,7 +31,7 @@ std::optional<std::size_t> best_before(const Dialect& dialect, std::size_t colum
   std::optional<std::size_t> best;
   int best_rank = 0;
   for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
-    const int own = c == column ? 0 : rank(dialect.columns[c]);
+    const int own = c == column || dialect.empty[c] ? 0 : rank(dialect.columns[c]);
     if (own == 0 || own < best_rank) continue;
     if (own == best_rank && c > column) continue;
     best = c;
@@ -39,6 +39,9 @@ std::optional<std::size_t> best_before(const Dialect& dialect, std::size_t colum
   }
   return best;
 }
+
+/// Lines at the end that are no scans, unless they are few beside the scans.
+constexpr std::size_t kLongestFooter = 100;
 
 class TableReader {
  public:
@@ -65,10 +68,16 @@ class TableReader {
     }
     if (open) strange(row_line, "a quote that does not end");
     if (!file->line_was_ended()) leave_out_cut_line(file->line_number());
-    if (strange_rows_ > 0) {
-      table_.notes.push_back(fmt::format("{} line{} from line {} on left out: no scans", strange_rows_,
-                                         strange_rows_ == 1 ? "" : "s", strange_line_));
+    if (table_.value.empty() && strange_rows_ > 0) {
+      return base::usage_error("{}:{}: {}: no number and no time; choose another column", path_,
+                               strange_line_, strange_what_);
     }
+    if (strange_rows_ > kLongestFooter && strange_rows_ > table_.value.size() / 10) {
+      return base::usage_error(
+          "{}:{}: {}, and the {} lines from there to the end are like it: correct them or remove them", path_,
+          strange_line_, strange_what_, strange_rows_);
+    }
+    tell_left_out();
     table_.sha256 = file->sha256();
     table_.size = file->bytes_read();
     return std::move(table_);
@@ -85,13 +94,42 @@ class TableReader {
     strange_what_ = std::move(what);
   }
 
+  void tell_left_out() {
+    if (strange_rows_ == 0) return;
+    table_.notes.push_back(fmt::format("{} line{} from line {} on left out: no scans", strange_rows_,
+                                       strange_rows_ == 1 ? "" : "s", strange_line_));
+    strange_rows_ = 0;
+  }
+
   [[nodiscard]] std::string column_shown(std::size_t column) const {
     const std::string& text = dialect_.columns[column].text;
     return text.empty() ? fmt::format("column {}", column + 1)
                         : fmt::format("column '{}'", base::one_line(text, kLongestShown));
   }
 
+  /// Whether this is the heading again, or the row of units.
+  [[nodiscard]] bool is_heading_again(const std::vector<std::string_view>& fields) const {
+    if (dialect_.header_line == 0) return false;
+    bool same = true;
+    bool units = dialect_.units_line > 0;
+    for (std::size_t c = 0; c < dialect_.columns.size(); ++c) {
+      const std::string_view text = field(fields, c);
+      same = same && column_name(text).text == dialect_.columns[c].text;
+      units = units && (text.empty() || is_unit(text));
+    }
+    return same || units;
+  }
+
   base::Result<void> take(const std::vector<std::string_view>& fields, std::int64_t line) {
+    if (std::all_of(fields.begin(), fields.end(),
+                    [](std::string_view text) { return trimmed(text).empty(); }))
+      return {};
+    if (is_heading_again(fields)) {
+      // Another table of the same kind begins; what stands between the two is no scan.
+      tell_left_out();
+      table_.notes.push_back(fmt::format("line {} left out: the heading or its units again", line));
+      return {};
+    }
     const std::string_view value_text = dialect_.content(value_column_, field(fields, value_column_));
     const Cell value = read_cell(value_text, dialect_.decimal);
     std::optional<TimeCell> time;
@@ -124,12 +162,13 @@ class TableReader {
           path_, line, column_shown(*time_column_), value.value);
     }
     if (!hole) {
-      if (!table_.cell_unit.empty() && value.unit != table_.cell_unit) {
+      if (any_value_ && value.unit != table_.cell_unit) {
         return base::usage_error("{}:{}: {} is '{}', the rows before are in {}: correct the line", path_,
                                  line, column_shown(value_column_), base::one_line(value_text, kLongestShown),
-                                 table_.cell_unit);
+                                 table_.cell_unit.empty() ? "no unit" : base::one_line(table_.cell_unit, 20));
       }
       table_.cell_unit = value.unit;
+      any_value_ = true;
     }
     add(hole ? base::kNaN : value.value, time, line);
     // The last number of the line, which would be cut first.
@@ -152,8 +191,13 @@ class TableReader {
         table_.date_s = time->date_s;
         table_.time_in_seconds = time->in_seconds;
       }
+      constexpr double kDay_s = 86'400.0;
+      // A clock without a date that goes back by more than half a day has passed midnight.
+      if (time->in_seconds && !time->date_s && last_clock_s_ - time->value > 0.5 * kDay_s)
+        midnights_s_ += kDay_s;
+      last_clock_s_ = time->in_seconds ? time->value : 0.0;
       const std::int64_t days = time->date_s && table_.date_s ? *time->date_s - *table_.date_s : 0;
-      table_.time.push_back(time->value - table_.first_time + static_cast<double>(days));
+      table_.time.push_back(time->value - table_.first_time + static_cast<double>(days) + midnights_s_);
       table_.time_decimals = std::max(table_.time_decimals, time->decimals);
     }
     const std::size_t row = table_.value.size();
@@ -179,6 +223,9 @@ class TableReader {
   std::size_t strange_rows_ = 0;  ///< That are no scans, since the last scan.
   std::int64_t strange_line_ = 0;
   std::string strange_what_;
+  bool any_value_ = false;
+  double last_clock_s_ = 0.0;
+  double midnights_s_ = 0.0;
   std::size_t file_rows_ = 0;
   int last_decimals_ = 0;
   int previous_decimals_ = 0;

@@ -1,6 +1,7 @@
 #include "io/traces/trace_time.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <chrono>
 #include <vector>
@@ -30,8 +31,18 @@ std::vector<std::string_view> split(std::string_view text, char mark) {
   }
 }
 
-/// "12:00:01.5", "00:01.5"
+/// Takes "AM" or "PM" from the end. \return the letter; 0 if there is none.
+char take_half(std::string_view& clock) {
+  if (clock.size() < 2 || std::toupper(static_cast<unsigned char>(clock.back())) != 'M') return '\0';
+  const auto half = static_cast<char>(std::toupper(static_cast<unsigned char>(clock[clock.size() - 2])));
+  if (half != 'A' && half != 'P') return '\0';
+  clock = trimmed(clock.substr(0, clock.size() - 2));
+  return half;
+}
+
+/// "12:00:01.5", "00:01.5", "01:00:01.5 PM"
 std::optional<TimeCell> read_clock(std::string_view text, char decimal) {
+  const char half = take_half(text);
   const auto parts = split(text, ':');
   if (parts.size() < 2 || parts.size() > 3) return std::nullopt;
   TimeCell time;
@@ -50,13 +61,20 @@ std::optional<TimeCell> read_clock(std::string_view text, char decimal) {
       seconds.value >= 61.0)
     return std::nullopt;
   time.value += seconds.value;
+  if (half != '\0') {
+    constexpr double kHalf_s = 12.0 * 3600.0;
+    if (parts.size() != 3 || time.value < 3600.0 || time.value >= kHalf_s + 3600.0) return std::nullopt;
+    time.value += (time.value >= kHalf_s ? -kHalf_s : 0.0) + (half == 'P' ? kHalf_s : 0.0);
+  }
   time.decimals = seconds.decimals;
   return time;
 }
 
-/// "2026-11-25"
+/// "2026-11-25", "25.11.2026"
 std::optional<std::int64_t> read_date(std::string_view text) {
-  const auto parts = split(text, text.find('/') != std::string_view::npos ? '/' : '-');
+  const bool points = text.find('.') != std::string_view::npos;
+  auto parts = split(text, points ? '.' : text.find('/') != std::string_view::npos ? '/' : '-');
+  if (points && parts.size() == 3) std::swap(parts[0], parts[2]);
   if (parts.size() != 3 || parts[0].size() != 4) return std::nullopt;
   const auto year = whole(parts[0]);
   const auto month = whole(parts[1]);
@@ -68,6 +86,12 @@ std::optional<std::int64_t> read_date(std::string_view text) {
   if (!date.ok()) return std::nullopt;
   return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::sys_days{date}.time_since_epoch())
       .count();
+}
+
+/// "11/25/2026" or "25/11/2026": nobody can tell which part is the month.
+bool is_slash_date(std::string_view text) {
+  const auto parts = split(text, '/');
+  return parts.size() == 3 && parts[2].size() == 4 && whole(parts[0]) && whole(parts[1]) && whole(parts[2]);
 }
 
 /// Takes "Z", "+01:00" or nothing from the end. \return the offset in s; nothing if it is no offset.
@@ -93,6 +117,8 @@ std::optional<TimeCell> read_moment(std::string_view text, char decimal) {
   const std::size_t between = text.find_first_of("T ");
   if (between == std::string_view::npos) return std::nullopt;
   const auto date = read_date(text.substr(0, between));
+  if (!date && is_slash_date(text.substr(0, between)))
+    return read_clock(trimmed(text.substr(between + 1)), decimal);
   std::string_view clock = trimmed(text.substr(between + 1));
   const auto offset = take_offset(clock);
   if (!date || !offset) return std::nullopt;

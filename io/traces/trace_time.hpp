@@ -18,8 +18,9 @@ struct TimeCell {
   bool in_seconds = false;  ///< "00:01:02.5" and dates have their unit in them.
 };
 
-/// A number, "hh:mm:ss.fff", "mm:ss.f", or a date and time of ISO 8601 ("2026-11-25T12:00:00.5Z"). \return
-/// nothing for other text.
+/// A number, "hh:mm:ss.fff", "mm:ss.f", "hh:mm:ss PM", or a date and time of ISO 8601
+/// ("2026-11-25T12:00:00.5Z") or with points ("25.11.2026 12:00:00"). Of a date with slashes that has its
+/// year last, the clock alone counts: its day and month cannot be told apart. \return nothing for other text.
 [[nodiscard]] std::optional<TimeCell> read_time_cell(std::string_view text, char decimal);
 
 }  // namespace stickslip::traces

@@ -1,0 +1,106 @@
+// The layout of the table is recognised, or both readings are shown.
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/unit/traces_sample.hpp"
+
+namespace stickslip::traces {
+namespace {
+
+class TraceDialect : public Traces {
+ protected:
+  TraceDialect() { request_.rate_Hz = 100.0; }
+};
+
+TEST_F(TraceDialect, ReadsWhatSpreadsheetsWrite) {
+  expect_values("\xEF\xBB\xBF\"t\",\"F\",\"note, long\"\r\n0,0.5,\"a \"\"b\"\"\nsecond line\"\r\n0.01,1,\r\n",
+                {0.5, 1.0});
+  expect_values("sep=;\nt;F\n0;0,25\n0,01;0,5\n", {0.25, 0.5});
+  expect_values("\"t\",\"F\"\n\"0,00\",\"0,25\"\n\"0,01\",\"0,5\"\n", {0.25, 0.5});
+  expect_values("t\tF\n0.00\t1,000.5\n0.01\t1,001.5\n", {1000.5, 1001.5});
+  expect_values("t;F\n0,00;1 000,5\n0,01;1 001,5\n", {1000.5, 1001.5});
+}
+
+TEST_F(TraceDialect, ReadsEveryEncodingAndLineEnd) {
+  const std::string wide = "t\tF\n0.00\t1\n0.01\t2\n";
+  std::string utf16;
+  for (const char c : wide) utf16 += {c, '\0'};
+  expect_values(utf16, {1.0, 2.0});
+  expect_values("t;F;\xB5\n0;1;1\n0,01;2;1\n", {1.0, 2.0});
+  expect_values("t,F\r0.00,1\r0.01,2\r", {1.0, 2.0});
+  expect_values("t,F\r\n0.00,1\n0.01,2", {1.0, 2.0});
+}
+
+TEST_F(TraceDialect, PreambleUnitsAndShortTablesStandBeforeTheScans) {
+  std::string results = ",\"Peak\"\n,\"(N)\"\n1,8.7\n2,8.6\n\nt,F\n(s),(1)\n";
+  std::vector<double> values;
+  for (int i = 0; i < 40; ++i) {
+    results += fmt::format("{:.2f},{}\n", 0.01 * i, i);
+    values.push_back(i);
+  }
+  expect_values(results, values);
+  std::string preamble = "Operator: x, 2024\n";
+  for (int i = 0; i < 20; ++i) preamble += fmt::format("Key {},{}\n", i, 2 * i);
+  expect_values(preamble + results.substr(results.find("t,F")), values);
+}
+
+// A number that was destroyed near the beginning is no preamble.
+TEST_F(TraceDialect, BadRowNearTheBeginningIsRefused) {
+  std::string content = "t,F\n0.00,1\n0.01,1\n0.02,x\n";
+  for (int i = 3; i < 60; ++i) content += fmt::format("{:.2f},{}\n", 0.01 * i, i);
+  expect_refused(content, ":4: column 'F' is 'x'");
+}
+
+TEST_F(TraceDialect, SeparatorsAtTheEndAreNoColumns) {
+  expect_values("t,F\n0.00,1,\n0.01,2,\n", {1.0, 2.0});
+  expect_values("t\tF\n0,00\t0,5\t\n0,01\t0,6\t\n", {0.5, 0.6});
+}
+
+TEST_F(TraceDialect, CommentsMayStandBehindRows) {
+  expect_values("X_Value\tF\tComment\n0.00\t1\tbegin\n0.01\t2\n0.02\t3\n", {1.0, 2.0, 3.0});
+}
+
+TEST_F(TraceDialect, NamesBetweenBlanksBelongToTheirColumns) {
+  expect_values("  t (s)    F (1)\n 0.00   1\n 0.01   2\n", {1.0, 2.0});
+  expect_values("# t F\n0.00 1\n0.01 2\n", {1.0, 2.0});
+  // A name of two words would shift the names behind it.
+  expect_refused("t Peak F\n0.00 1\n0.01 2\n", "has no heading");
+}
+
+TEST_F(TraceDialect, LabelsAndArrowsOfLoggersAreUnderstood) {
+  expect_values("t:0.00,F:1\nt:0.01,F:2\n", {1.0, 2.0});
+  request_.column = "2";
+  request_.time_column = "1";
+  expect_values("12:00:00.000 -> 0.5\n12:00:00.010 -> 0.6\n", {0.5, 0.6});
+}
+
+TEST_F(TraceDialect, MoreRowsDecideWhichMarkIsTheDecimalOne) {
+  expect_values("t;F\n0.000;0.010\n0.010;0.500\n0.020;1.250\n0.030;1.500\n", {0.01, 0.5, 1.25, 1.5});
+  expect_values("F\n0,104578\n0,003050\n0,012000\n", {0.104578, 0.00305, 0.012});
+}
+
+TEST_F(TraceDialect, TwoReadingsAreShownWithTheOptionsThatDecide) {
+  const std::string content = "t;F\n1,000;1,250\n1,010;2,500\n";
+  expect_refused(content, "has two readings");
+  request_.dialect.decimal = ',';
+  expect_values(content, {1.25, 2.5});
+}
+
+// A heading with commas tells the separator, not what "1.000" means.
+TEST_F(TraceDialect, QuotedThousandsOrDecimalsAreTwoReadings) {
+  expect_refused("Time,F\n\"0\",\"1.250\"\n\"10\",\"2.500\"\n", "has two readings: 0 and 1.25");
+}
+
+TEST_F(TraceDialect, RefusesWhatIsNoTable) {
+  expect_refused("", "is empty");
+  expect_refused("F\n", "no table of numbers");
+  expect_refused("a,b\n1,2\n2,3\n", ":1: there is no column \"F\"; there are 1 \"a\", 2 \"b\"");
+  expect_refused("F,F\n1,2\n2,3\n", "columns 1 and 2 are both called \"F\"");
+  expect_refused("PK\x03\x04", "Excel");
+}
+
+}  // namespace
+}  // namespace stickslip::traces

@@ -1,0 +1,129 @@
+// The scan index of each row: from the times, and never against them.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <vector>
+
+#include "io/traces/grid.hpp"
+
+namespace stickslip::traces {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::vector<double> times(std::size_t count, double rate_Hz, double digit_s) {
+  std::vector<double> time;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double t = static_cast<double>(i) / rate_Hz;
+    time.push_back(digit_s > 0.0 ? std::round(t / digit_s) * digit_s : t);
+  }
+  return time;
+}
+
+base::Result<Grid> grid(const std::vector<double>& time, GridOptions options = {}) {
+  return grid_of(time, options, [](std::size_t row) { return fmt::format("row {}", row); });
+}
+
+std::string refusal(const std::vector<double>& time, const GridOptions& options = {}) {
+  const auto found = grid(time, options);
+  return found ? fmt::format("no refusal: {} Hz", found->rate_Hz) : found.error().message;
+}
+
+TEST(TraceGrid, MissingRowsAreJumpsOfTheIndex) {
+  auto time = times(100, 50.0, 0.0);
+  time.erase(time.begin() + 10, time.begin() + 15);
+  const auto found = grid(time);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->index[9], 9);
+  EXPECT_EQ(found->index[10], 15);
+  EXPECT_NEAR(found->rate_Hz, 50.0, 1e-9);
+}
+
+TEST(TraceGrid, TimesRoundedToWholeMillisecondsGiveTheRate) {
+  GridOptions options;
+  options.digit_s = 0.001;
+  const auto found = grid(times(2800, 350.0, 0.001), options);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->rate_Hz, 350.0, 0.01);
+  EXPECT_EQ(found->index.back(), 2799);
+}
+
+TEST(TraceGrid, JitterBeyondTheLimitIsRefusedWithRowAndRemedy) {
+  auto time = times(100, 50.0, 0.0);
+  time[40] += 0.11 / 50.0;
+  EXPECT_THAT(refusal(time), testing::AllOf(HasSubstr("row 40"), HasSubstr("give --resample")));
+  GridOptions options;
+  options.resample = true;
+  const auto found = grid(time, options);
+  ASSERT_TRUE(found);
+  EXPECT_FALSE(found->uniform);
+  time[40] -= 0.02 / 50.0;
+  EXPECT_TRUE(grid(time));
+}
+
+TEST(TraceGrid, DoubledRowsAreLeftOutOnRequestAlone) {
+  auto time = times(100, 50.0, 0.0);
+  time.insert(time.begin() + 5, time[5]);
+  EXPECT_THAT(refusal(time), testing::AllOf(HasSubstr("row 6"), HasSubstr("give --skip-doubled")));
+  GridOptions options;
+  options.skip_doubled = true;
+  const auto found = grid(time, options);
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->doubled[6]);
+  EXPECT_EQ(found->index[7], 6);
+}
+
+TEST(TraceGrid, TimesThatDoNotRiseAreRefused) {
+  EXPECT_THAT(refusal({1.0, 1.0, 1.0}), HasSubstr("does not advance"));
+  EXPECT_THAT(refusal({3.0, 2.0, 1.0}), HasSubstr("give --reverse"));
+  auto time = times(100, 50.0, 0.0);
+  time[60] = time[58];
+  EXPECT_THAT(refusal(time), HasSubstr("row 60: time goes back"));
+}
+
+TEST(TraceGrid, StatedRateIsComparedWithTheTimes) {
+  GridOptions options;
+  options.rate_Hz = 300.0;
+  EXPECT_THAT(refusal(times(100, 350.0, 0.0), options), HasSubstr("runs at 350 Hz, --rate says 300 Hz"));
+  options.rate_Hz = 350.0 * 1000.0;
+  options.time_unit = "s";
+  EXPECT_THAT(refusal(times(100, 350.0, 0.0), options), HasSubstr("give --time-unit ms"));
+}
+
+TEST(TraceGrid, CoarseTimesCannotCheckARate) {
+  GridOptions options;
+  options.digit_s = 1.0;
+  const auto time = times(1000, 340.0, 1.0);
+  EXPECT_THAT(refusal(time, options), HasSubstr("too coarse"));
+  options.rate_Hz = 350.0;
+  const auto found = grid(time, options);
+  ASSERT_TRUE(found);
+  EXPECT_FALSE(found->rate_checked);
+}
+
+// At 100 Hz printed to 0.01 s, rows that are lost here and there look like a lower rate.
+TEST(TraceGrid, CoarseTimesWithLostRowsNeedTheRate) {
+  auto time = times(1000, 100.0, 0.01);
+  for (const std::ptrdiff_t lost : {900, 210, 207, 203, 202, 200, 150, 148, 147, 140})
+    time.erase(time.begin() + lost);
+  GridOptions options;
+  options.digit_s = 0.01;
+  EXPECT_THAT(refusal(time, options), HasSubstr("give --rate HZ"));
+  options.rate_Hz = 100.0;
+  const auto found = grid(time, options);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->index.back(), 999);
+  EXPECT_FALSE(found->rate_checked);
+}
+
+TEST(TraceGrid, ClockThatStartsAgainBeginsARun) {
+  EXPECT_THAT(runs_in({0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0}), ElementsAre(0U, 4U));
+  EXPECT_THAT(runs_in({3.0, 2.0, 1.0, 0.0}), ElementsAre(0U));
+  EXPECT_THAT(runs_in({0.0, 1.0, 2.0, 1.9, 3.0}), ElementsAre(0U));
+}
+
+}  // namespace
+}  // namespace stickslip::traces

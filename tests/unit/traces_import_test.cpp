@@ -1,0 +1,137 @@
+// A record from a foreign trace: values, unit, sign, rate, holes and what was left out; else one line that
+// says what is missing.
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/unit/traces_sample.hpp"
+
+namespace stickslip::traces {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+using TraceImport = Traces;
+
+/// Rows from..to of time and value, at 100 Hz.
+std::string rows(int from, int to) {
+  std::string text;
+  for (int i = from; i < to; ++i) text += fmt::format("{:.2f},{}\n", 0.01 * i, 1 + i);
+  return text;
+}
+
+std::vector<double> values(int count) {
+  std::vector<double> result;
+  for (int i = 0; i < count; ++i) result.push_back(1 + i);
+  return result;
+}
+
+TEST_F(TraceImport, TakesTheValuesOfTheNamedColumn) {
+  const auto record = expect_values("t_s,F\n0.000,0.25\n0.001,-1e-3\n0.002,+3\n", {0.25, -0.001, 3.0});
+  EXPECT_THAT(record.scan, ElementsAre(0, 1, 2));
+  EXPECT_NEAR(record.header.board.scan_rate_granted_Hz, 1000.0, 1e-6);
+  EXPECT_EQ(record.header.title, "trace");
+}
+
+TEST_F(TraceImport, HolesAndMissingRowsAreGaps) {
+  const auto record = expect_values("t (s),F\n0.000,1\n0.010,\n0.020,3\n0.040,5\n0.050,6\n0.060,7\n",
+                                    {1.0, 3.0, 5.0, 6.0, 7.0});
+  EXPECT_THAT(record.scan, ElementsAre(0, 2, 4, 5, 6));
+  EXPECT_EQ(record.gaps.size(), 2U);
+}
+
+TEST_F(TraceImport, LastLineNeedsNoEndButIsLeftOutIfItWasCut) {
+  expect_values("t (s),F\n0.00,1.5\n0.01,2.5\n0.02,3.5", {1.5, 2.5, 3.5});
+  expect_values("t (s),F\n0.00,1.5\n0.01,2.5\n0.02,3.", {1.5, 2.5});
+  EXPECT_THAT(report_, HasSubstr("line 4 left out"));
+}
+
+TEST_F(TraceImport, FootersAndRepeatedHeadingsAreLeftOut) {
+  expect_values("t (s),F\n" + rows(0, 5) + "\nMean,2\nEnd\n", values(5));
+  EXPECT_THAT(report_, HasSubstr("left out: no scans"));
+  expect_values("t,F\ns,1\n" + rows(0, 25) + "t,F\ns,1\n" + rows(25, 29) + ",\n" + rows(29, 40), values(40));
+  EXPECT_THAT(report_, HasSubstr("heading or its units again"));
+}
+
+TEST_F(TraceImport, TextBetweenScansIsRefused) {
+  expect_refused("t (s),F\n" + rows(0, 5) + "0.05,abc\n" + rows(6, 9),
+                 ":7: column 'F' is 'abc', and scans follow in line 8");
+}
+
+// As where a program changed its decimal mark.
+TEST_F(TraceImport, HalfATraceIsNoFooter) {
+  std::string content = "t (s);F\n";
+  for (int i = 0; i < 400; ++i) content += fmt::format("{:.4f};1{}25\n", 0.01 * i, i < 200 ? '.' : ',');
+  expect_refused(content, ":202: column 'F' is '1,25', and the 200 lines from there to the end are like it");
+}
+
+TEST_F(TraceImport, ClockThatStartsAgainIsAnotherRecord) {
+  const auto imported = import("t (s),F\n" + rows(0, 50) + "Run 2\nt (s),F\n" + rows(0, 50));
+  ASSERT_TRUE(imported) << imported.error().message;
+  ASSERT_EQ(imported->records.size(), 2U);
+  EXPECT_EQ(imported->records[1].raw, values(50));
+}
+
+TEST_F(TraceImport, ClockMayPassMidnight) {
+  const auto record = expect_values("Time,F\n23:59:59.98,1\n23:59:59.99,2\n00:00:00.00,3\n00:00:00.01,4\n",
+                                    {1.0, 2.0, 3.0, 4.0});
+  EXPECT_THAT(record.scan, ElementsAre(0, 1, 2, 3));
+}
+
+TEST_F(TraceImport, UnitOfTheHeadingIsComparedWithTheStatedOne) {
+  request_.unit = "N";
+  expect_refused("t (s),F (cN)\n" + rows(0, 5), "is in cN, --unit says N: give --unit cN");
+  expect_refused("t (s),F (g)\n" + rows(0, 5), "is in g, --unit says N: give --unit gf");
+  expect_refused("t (s),F (mm)\n" + rows(0, 5), "is in mm, which --unit N is not");
+  expect_values("t (s),F (Newton)\n" + rows(0, 5), values(5));
+}
+
+TEST_F(TraceImport, UnitThatChangesBetweenCellsIsRefused) {
+  request_.unit = "N";
+  expect_refused("t (s),F\n0.00,1\n0.01,2\n0.02,3000 mN\n0.03,4000 mN\n",
+                 ":4: column 'F' is '3000 mN', the rows before are in no unit");
+}
+
+TEST_F(TraceImport, NegativeForceNeedsInvert) {
+  const std::string content = "t (s),F\n0.00,-1\n0.01,-2\n0.02,-2\n";
+  expect_refused(content, "give --invert");
+  request_.invert = true;
+  const auto imported = import(content);
+  EXPECT_TRUE(imported) << imported.error().message;
+}
+
+TEST_F(TraceImport, UnitOfTheTimeIsItsHeadingsOrFoundByInspection) {
+  std::string content = "millis,F\n";
+  std::string since_1970 = "timestamp,F\n";
+  std::string minutes = "Time (Min),F\n";
+  for (int i = 0; i < 200; ++i) {
+    content += fmt::format("{},{}\n", 10 * i, 1);
+    since_1970 += fmt::format("17000000{:02}{:02}0000000,1\n", i / 100, i % 100);
+    minutes += fmt::format("{:.8f},{}\n", 0.01 * i / 60.0, 1);
+  }
+  for (const std::string& text :
+       {content, "time" + content.substr(6), "Time (mSec)" + content.substr(6), minutes, since_1970}) {
+    const auto imported = import(text);
+    ASSERT_TRUE(imported) << imported.error().message;
+    EXPECT_NEAR(imported->records[0].header.board.scan_rate_granted_Hz, 100.0, 0.01);
+  }
+}
+
+TEST_F(TraceImport, WithoutTimesTheRateIsNeeded) {
+  expect_refused("F\n1\n2\n", "--rate HZ");
+  // A column for times in which nothing stands.
+  request_.rate_Hz = 100.0;
+  expect_values("X_Value\tF\n\t1.5\n\t2.5\n", {1.5, 2.5});
+}
+
+TEST_F(TraceImport, MissingFileIsAUsageError) {
+  const auto imported = import_trace(request_);
+  ASSERT_FALSE(imported);
+  EXPECT_EQ(imported.error().exit_status(), 2);
+}
+
+}  // namespace
+}  // namespace stickslip::traces
