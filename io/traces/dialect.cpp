@@ -44,8 +44,8 @@ struct Reading {
   std::size_t good = 0;   ///< Rows that are rows of the table.
 };
 
-base::Result<Head> read_head(const std::string& path, const DialectOptions& options) {
-  auto file = TextFile::open(path, options.encoding);
+base::Result<Head> read_head(const Source& source, const DialectOptions& options) {
+  auto file = TextFile::open(source, options.encoding);
   if (!file) return tl::unexpected(file.error());
   Head head;
   head.encoding = file->encoding();
@@ -366,8 +366,9 @@ bool is_no_row(std::string_view line) {
   return text.empty() || text.front() == '#' || text.front() == '%' || text.starts_with("//");
 }
 
-base::Result<Dialect> recognise(const std::string& path, const DialectOptions& options) {
-  auto head = read_head(path, options);
+base::Result<Dialect> recognise(const Source& source, const DialectOptions& options) {
+  const std::string& path = source.path;
+  auto head = read_head(source, options);
   if (!head) return tl::unexpected(head.error());
   if (head->lines.empty()) return base::usage_error("{}: is empty: a table of numbers is needed", path);
   DialectOptions stated = options;

@@ -50,6 +50,6 @@ struct Dialect {
 
 /// Errors: as TextFile; kUsage if there is no table, or if two readings are possible: both are shown with the
 /// option that decides.
-[[nodiscard]] base::Result<Dialect> recognise(const std::string& path, const DialectOptions& options);
+[[nodiscard]] base::Result<Dialect> recognise(const Source& source, const DialectOptions& options);
 
 }  // namespace stickslip::traces

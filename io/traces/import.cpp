@@ -225,13 +225,14 @@ double sliding_level(const std::vector<double>& coefficient) {
 
 class Importer {
  public:
-  Importer(const ImportRequest& request, Dialect dialect) : request_(request), dialect_(std::move(dialect)) {}
+  Importer(const ImportRequest& request, const Source& source, Dialect dialect)
+      : request_(request), source_(source), dialect_(std::move(dialect)) {}
 
   Result<Imported> import() {
     const auto columns = columns_of(request_, dialect_);
     if (!columns) return tl::unexpected(columns.error());
     columns_ = *columns;
-    auto table = read_table(request_.path, dialect_, columns_.value, columns_.time);
+    auto table = read_table(source_, dialect_, columns_.value, columns_.time);
     if (!table) return tl::unexpected(table.error());
     table_ = std::move(*table);
     imported_.report = dialect_.text();
@@ -430,6 +431,7 @@ class Importer {
   }
 
   const ImportRequest& request_;
+  const Source& source_;
   Dialect dialect_;
   Columns columns_;
   TraceTable table_;
@@ -448,9 +450,11 @@ class Importer {
 }  // namespace
 
 Result<Imported> import_trace(const ImportRequest& request) {
-  auto dialect = recognise(request.path, request.dialect);
+  const auto source = Source::of(request.path);
+  if (!source) return tl::unexpected(source.error());
+  auto dialect = recognise(*source, request.dialect);
   if (!dialect) return tl::unexpected(dialect.error());
-  return Importer{request, std::move(*dialect)}.import();
+  return Importer{request, *source, std::move(*dialect)}.import();
 }
 
 }  // namespace stickslip::traces

@@ -58,7 +58,9 @@ std::string command(const ImportRequest& request, const Dialect& dialect, const 
 }  // namespace
 
 Result<std::string> inspect(const ImportRequest& request) {
-  const auto dialect = recognise(request.path, request.dialect);
+  const auto source = Source::of(request.path);
+  if (!source) return tl::unexpected(source.error());
+  const auto dialect = recognise(*source, request.dialect);
   if (!dialect) return tl::unexpected(dialect.error());
   using Column = io::Table::Column;
   constexpr auto kLeft = io::Table::Align::kLeft;
@@ -73,7 +75,7 @@ Result<std::string> inspect(const ImportRequest& request) {
     double high = -low;
     std::string unit = dialect->columns[c].unit;
     if (dialect->numeric[c]) {
-      const auto table = read_table(request.path, *dialect, c, std::nullopt);
+      const auto table = read_table(*source, *dialect, c, std::nullopt);
       if (!table) return tl::unexpected(table.error());
       for (std::size_t i = 0; i < table->value.size(); ++i) {
         if (i < kFirstValues) first += fmt::format("{}{:.6g}", i == 0 ? "" : ", ", table->value[i]);

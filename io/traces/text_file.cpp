@@ -2,16 +2,19 @@
 
 #include <fcntl.h>
 #include <iconv.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <filesystem>
 #include <span>
 
 #include "core/base/regular_file.hpp"
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
+#include "core/record/file.hpp"
 
 namespace stickslip::traces {
 namespace {
@@ -114,8 +117,24 @@ std::optional<Encoding> encoding_from_name(std::string_view text) noexcept {
   return std::nullopt;
 }
 
-base::Result<TextFile> TextFile::open(const std::string& path, std::optional<Encoding> encoding) {
-  auto opened = base::open_text(path);
+base::Result<Source> Source::of(const std::string& path) {
+  Source source{path, path, base::Descriptor{}};
+  std::error_code unknown;
+  if (!std::filesystem::is_fifo(path, unknown) && !std::filesystem::is_socket(path, unknown)) return source;
+  const auto text = base::read_text(path);
+  if (!text) return tl::unexpected(text.error());
+  source.copy = base::Descriptor{::memfd_create("trace", MFD_CLOEXEC)};
+  if (source.copy.get() < 0 || record::write_all(source.copy.get(), std::as_bytes(std::span{*text}),
+                                                 record::system_calls()) != text->size()) {
+    return base::failure("{}: cannot be copied: {}", path, base::system_message(errno));
+  }
+  source.opened = fmt::format("/proc/self/fd/{}", source.copy.get());
+  return source;
+}
+
+base::Result<TextFile> TextFile::open(const Source& source, std::optional<Encoding> encoding) {
+  const std::string& path = source.path;
+  auto opened = base::open_text(source.opened);
   if (!opened) return tl::unexpected(opened.error());
   TextFile file;
   file.path_ = path;

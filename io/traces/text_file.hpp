@@ -20,13 +20,23 @@ enum class Encoding { kUtf8, kUtf16LittleEndian, kUtf16BigEndian, kWindows1252 }
 [[nodiscard]] std::string_view name(Encoding encoding) noexcept;
 [[nodiscard]] std::optional<Encoding> encoding_from_name(std::string_view text) noexcept;
 
+/// A file that can be read twice: a pipe is copied into memory.
+struct Source {
+  std::string path;       ///< As the user gave it, for messages.
+  std::string opened;     ///< What is opened in its place.
+  base::Descriptor copy;  ///< Of a pipe.
+
+  /// Errors: base::open_text().
+  [[nodiscard]] static base::Result<Source> of(const std::string& path);
+};
+
 /// Reads from front to back; a line ends with LF, CR LF or CR. Memory: one block and one line.
 class TextFile {
  public:
   /// \param encoding  stated by the user; else a byte order mark decides, else the zero bytes of UTF-16, else
   ///        whether the first block is UTF-8.
   /// Errors: base::open_text(); kUsage for a file that is no text, with what it is and how to convert it.
-  [[nodiscard]] static base::Result<TextFile> open(const std::string& path, std::optional<Encoding> encoding);
+  [[nodiscard]] static base::Result<TextFile> open(const Source& source, std::optional<Encoding> encoding);
 
   /// The next line without its end. \return false at the end of the file. Errors: kFailure if the file cannot
   /// be read, kUsage for a line longer than 1 MiB.

@@ -45,12 +45,16 @@ constexpr std::size_t kLongestFooter = 100;
 
 class TableReader {
  public:
-  TableReader(std::string path, const Dialect& dialect, std::size_t value_column,
+  TableReader(const Source& source, const Dialect& dialect, std::size_t value_column,
               std::optional<std::size_t> time_column)
-      : path_(std::move(path)), dialect_(dialect), value_column_(value_column), time_column_(time_column) {}
+      : source_(source),
+        path_(source.path),
+        dialect_(dialect),
+        value_column_(value_column),
+        time_column_(time_column) {}
 
   base::Result<TraceTable> read() {
-    auto file = TextFile::open(path_, dialect_.encoding);
+    auto file = TextFile::open(source_, dialect_.encoding);
     if (!file) return tl::unexpected(file.error());
     RowReader reader{dialect_.separator};
     std::string line;
@@ -215,6 +219,7 @@ class TableReader {
         "line {} left out: it is the last one, has no line end, and is shorter than the others", line));
   }
 
+  const Source& source_;
   std::string path_;
   const Dialect& dialect_;
   std::size_t value_column_;
@@ -293,9 +298,9 @@ std::int64_t TraceTable::line(std::size_t row) const {
   return line + static_cast<std::int64_t>(row - first);
 }
 
-base::Result<TraceTable> read_table(const std::string& path, const Dialect& dialect, std::size_t value_column,
+base::Result<TraceTable> read_table(const Source& source, const Dialect& dialect, std::size_t value_column,
                                     std::optional<std::size_t> time_column) {
-  return TableReader{path, dialect, value_column, time_column}.read();
+  return TableReader{source, dialect, value_column, time_column}.read();
 }
 
 }  // namespace stickslip::traces

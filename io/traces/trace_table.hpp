@@ -47,7 +47,7 @@ struct TraceTable {
 /// Reads all rows. A row with a hole in both columns is none. Rows that hold text where numbers were are left
 /// out at the end of the file, and an error before it. Errors: as TextFile; kUsage naming file:line, value
 /// and remedy.
-[[nodiscard]] base::Result<TraceTable> read_table(const std::string& path, const Dialect& dialect,
+[[nodiscard]] base::Result<TraceTable> read_table(const Source& source, const Dialect& dialect,
                                                   std::size_t value_column,
                                                   std::optional<std::size_t> time_column);
 
