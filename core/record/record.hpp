@@ -120,9 +120,9 @@ struct ProcessFacts {
   std::string realtime;    ///< Scheduling and memory locking that were granted.
   std::string simulation;  ///< Method, accuracy, extent and time of a simulation without a clock.
   // Of an imported trace.
-  std::string source_file;  ///< Name of the file without its folder.
+  std::string source_file;                  ///< Name of the file without its folder.
   std::optional<std::int64_t> source_size;  ///< Bytes.
-  std::string source_sha256;   ///< Of all its bytes, hexadecimal.
+  std::string source_sha256;                ///< Of all its bytes, hexadecimal.
   std::string source_reading;  ///< What was recognised in it and left out of it: lines for people.
   std::string source_command;  ///< Command line of the import.
 

@@ -1,4 +1,5 @@
-// Any file becomes records or is refused in one line; a record has as many scans as values, and its indices rise.
+// Any file becomes records or is refused in one line; a record has as many scans as values, and its indices
+// rise.
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -7,8 +8,9 @@
 #include <functional>
 #include <string>
 
-#include "core/base/contract.hpp"
 #include "io/traces/import.hpp"
+
+#include "core/base/contract.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace stickslip;
