@@ -44,10 +44,11 @@ Result<std::string> run_compare(const CompareOptions& options) {
     return batches ? report::read_batch(label, batch, options.a.front(), with_traces)
                    : report::read_material(label, files, with_traces);
   };
-  const Result<report::Material> a = side(options.label_a, options.batch_a, options.a);
+  Result<report::Material> a = side(options.label_a, options.batch_a, options.a);
   if (!a) return tl::unexpected(a.error());
-  const Result<report::Material> b = side(options.label_b, options.batch_b, options.b);
+  Result<report::Material> b = side(options.label_b, options.batch_b, options.b);
   if (!b) return tl::unexpected(b.error());
+  report::note_repeated_scans({&*a, &*b});
   const report::MaterialComparison comparison = report::compare_materials(*a, *b);
   return deliver(options, report::comparison_csv(*a, *b, comparison),
                  with_traces ? report::comparison_page(*a, *b, comparison, *charts) : "",

@@ -30,10 +30,11 @@ Result<std::string> run_report(const ReportOptions& options) {
   const Result<report::ChartLibrary> charts =
       with_traces ? report::read_chart_library() : report::ChartLibrary{};
   if (!charts) return tl::unexpected(charts.error());
-  const Result<report::Material> material =
+  Result<report::Material> material =
       options.batch.empty() ? report::read_material("", options.files, with_traces)
                             : report::read_batch("", options.batch, options.files.front(), with_traces);
   if (!material) return tl::unexpected(material.error());
+  report::note_repeated_scans({&*material});
   return deliver(options, report::report_csv(*material),
                  with_traces ? report::report_page(*material, *charts) : "", report::report_json(*material),
                  report::report_text(*material));

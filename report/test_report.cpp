@@ -67,6 +67,7 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
     test.file = file;
     test.title = record->header.title;
     test.method = record->header.process.method;
+    test.scans_sha256 = record->sha256;
     if (!record->header.process.estimator.empty()) test.estimator = record->header.process.estimator;
     // A method in another form is shown as it stands; nothing can be compared with it.
     if (const base::Result<model::Method> method = record::method_from_text(test.method)) {
@@ -113,6 +114,19 @@ base::Result<Material> read_batch(std::string label, const std::string& id_or_na
   for (const auto& [quantity, limits] : batch->plan.limits)
     material->limits.push_back(daemon::judged(quantity, limits, material->measured));
   return material;
+}
+
+void note_repeated_scans(std::initializer_list<Material*> materials) {
+  std::map<std::string, std::string> files;
+  for (Material* const material : materials) {
+    for (std::size_t i = 0; i < material->tests.size(); ++i) {
+      const ReportedTest& test = material->tests[i];
+      const auto [earlier, is_new] = files.try_emplace(test.scans_sha256, test.file);
+      if (is_new) continue;
+      material->measured[i].results.findings.push_back(fmt::format(
+          "has the same scans as {}: the trace was imported twice, or the record copied", earlier->second));
+    }
+  }
 }
 
 namespace {

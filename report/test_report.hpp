@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,6 +26,7 @@ struct ReportedTest {
   std::string method;                   ///< Text of the test method, as in the record.
   std::string estimator = "fit";        ///< As in the record, if that names one.
   std::vector<std::string> departures;  ///< Departures from the method, one line each.
+  std::string scans_sha256;             ///< Of the raw values.
   std::optional<model::TestTruth> truth;
   std::string trace;  ///< trace_json() as text, for the page; empty unless requested.
 };
@@ -69,6 +71,10 @@ struct RegimeComparison {
   RegimeCounts b;
   std::optional<double> p;  ///< p value of Fisher's exact test; absent if a material has no counted test.
 };
+
+/// Adds a finding to each test whose scans an earlier test has too: a trace that was imported twice, or a
+/// copy of a record.
+void note_repeated_scans(std::initializer_list<Material*> materials);
 
 /// All comparisons of two materials, in the order of pair_speeds() and report::quantities().
 struct MaterialComparison {

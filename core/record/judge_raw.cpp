@@ -67,11 +67,11 @@ void judge_columns(hid_t raw, const std::string& name, const Record& record, Ver
   const DatasetHandle values = open_dataset(raw, name);
   const DatasetHandle flags = open_dataset(raw, "flags");
   std::optional<DatasetHandle> forces;
-  std::optional<daq::Calibration> calibration;
-  if (counts && record.header.load_cell) {
-    constexpr double kAnyLoad_N = 1.0;  // Force does not depend on it.
-    calibration.emplace(board, *record.header.load_cell, kAnyLoad_N);
-    if (row_count(raw, "force") != size) throw HdfError("force has another length than counts");
+  const std::optional<daq::Calibration> calibration = force_column(record.header);
+  // Imported records of 0.1 have none.
+  if (calibration && (counts || has(raw, "force"))) {
+    if (row_count(raw, "force") != size)
+      throw HdfError(fmt::format("force has another length than {}", name));
     forces.emplace(open_dataset(raw, "force"));
   }
   Once once{verdict};
@@ -110,7 +110,7 @@ void judge_columns(hid_t raw, const std::string& name, const Record& record, Ver
       if (!std::isfinite(reading) || (counts && reading > maxdata))
         once.damage(name.c_str(), at, "is no reading of this board");
       if (forces && force_N[i] != static_cast<float>(calibration->force_N(reading)))
-        once.damage("force", at, "the force does not follow from the counts");
+        once.damage("force", at, "the force does not follow from the raw values");
       const bool saturated = counts && (reading <= 0.0 || reading >= maxdata);
       if (((flag[i] & kSaturated) != 0) != saturated)
         once.damage("flags", at, "saturation does not follow from the counts");

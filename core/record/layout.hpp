@@ -3,6 +3,10 @@
 /// docs/record-file.md. All functions throw HdfError.
 #pragma once
 
+#include <optional>
+#include <string>
+
+#include "core/daq/calibration.hpp"
 #include "core/record/hdf.hpp"
 #include "core/record/record.hpp"
 #include "core/record/scan_source.hpp"
@@ -20,6 +24,10 @@ enum ScanFlag : std::uint8_t {
 
 void write_identity(hid_t entry, const Record& record, const ScanSource& scans);  ///< Title, uuid, times.
 void read_identity(hid_t entry, Record& record);
+
+/// Calibration of the column `force` beside the raw values; nothing where they are forces, or a force cannot
+/// be computed: voltage without a load cell, coefficient without a sled mass.
+[[nodiscard]] std::optional<daq::Calibration> force_column(const RecordHeader& header);
 
 /// \return SHA-256 of the raw values as the file stores them (u16, u32 or f64, little-endian), hexadecimal.
 [[nodiscard]] std::string write_raw(hid_t entry, const Record& record, const ScanSource& scans);

@@ -73,12 +73,10 @@ std::string write_columns(TableWriter& table, const Record& record, const ScanSo
   auto indices =
       table.add_empty<std::int64_t>(FieldName{"scan", "1", "scan index of the acquisition [1]"}, size);
   auto value_column = table.add_empty<Stored>(value_name, size);
+  if (counts) write_number_attribute(value_column.dataset().get(), "maxdata", board.maxdata);
   std::optional<ColumnWriter<float>> forces;
-  std::optional<daq::Calibration> calibration;
-  if (counts) {
-    write_number_attribute(value_column.dataset().get(), "maxdata", board.maxdata);
-    constexpr double kAnyLoad_N = 1.0;  // Force does not depend on it.
-    calibration.emplace(board, *record.header.load_cell, kAnyLoad_N);
+  const std::optional<daq::Calibration> calibration = force_column(record.header);
+  if (calibration) {
     forces.emplace(table.add_empty<float>(FieldName{"force", "N", "force [N]"}, size));
   }
   auto flag_column =
@@ -138,6 +136,23 @@ void verify_columns(hid_t raw, const std::string& name, const ScanSource& scans)
 }
 
 }  // namespace
+
+std::optional<daq::Calibration> force_column(const RecordHeader& header) {
+  constexpr double kAnyLoad_N = 1.0;  // A force by a load cell does not depend on it.
+  switch (header.board.quantity) {
+    case daq::RawQuantity::kCounts:
+    case daq::RawQuantity::kVolts:
+      if (header.load_cell) return daq::Calibration{header.board, *header.load_cell, kAnyLoad_N};
+      break;
+    case daq::RawQuantity::kCoefficient:
+      if (header.tester.sled_mass_kg)
+        return daq::Calibration{header.board, {}, header.tester.tester().normal_load_N()};
+      break;
+    case daq::RawQuantity::kForce_N:
+      break;
+  }
+  return std::nullopt;
+}
 
 std::string write_raw(hid_t entry, const Record& record, const ScanSource& scans) {
   const daq::BoardInfo& board = record.header.board;

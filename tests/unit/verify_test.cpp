@@ -200,7 +200,7 @@ TEST(Verify, ColumnsThatDoNotFollowFromTheCountsAreFound) {
     H5Dclose(dataset);
   });
   EXPECT_THAT(findings_of(verdict),
-              HasSubstr("entry/raw/force row 7: the force does not follow from the counts"));
+              HasSubstr("entry/raw/force row 7: the force does not follow from the raw values"));
 }
 
 /// Sets the last of the whole numbers of a column.

@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""`stickslip import` of traces with troubles in their times: each refusal names a remedy, and the remedy works.
+
+import_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
+"""
+
+import json
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+
+CLI = pathlib.Path(sys.argv[1]).resolve() / "bin" / "stickslip"
+SOURCE = pathlib.Path(sys.argv[2]).resolve()
+RATE_Hz = 350
+# "give --resample to …", "give --time-column none and --rate HZ"
+REMEDY = re.compile(r"--(?:time-column none|rate HZ|time-unit (?:s|ms|us|min|h)\b|invert|reverse|resample|skip-doubled|unit \w+|decimal \",\")")
+
+
+class Import(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory(prefix="stickslip-import-")
+        cls.addClassCleanup(cls.temporary.cleanup)
+        cls.folder = pathlib.Path(cls.temporary.name)
+        scene = SOURCE / "config" / "scenes" / "stick-slip-at-12-in-per-min.toml"
+        cls.call("simulate", scene, "-o", cls.folder / "pull.h5")
+        with h5py.File(cls.folder / "pull.h5") as record:
+            cls.force = list(map(float, record["entry/raw/force"][:]))
+            cls.delta_mu = float(record["entry/results/delta_mu"][()])
+
+    @staticmethod
+    def call(*words, status=0):
+        done = subprocess.run([CLI, *map(str, words)], capture_output=True, text=True, check=False)
+        if done.returncode != status:
+            raise AssertionError(f"{words}: {done.returncode}: {done.stderr}{done.stdout}")
+        return done.stdout if status == 0 else done.stderr
+
+    def write(self, name, rows, heading="time,force"):
+        file = self.folder / name
+        file.write_text("\n".join([heading, *(",".join(row) for row in rows)]) + "\n", encoding="utf-8")
+        return file
+
+    def arguments(self, file, *options):
+        for old in self.folder.glob("x*.h5"):
+            old.unlink()
+        return ["import", file, "--column", "force", "--unit", "N", "--sled-mass", "2331 g", "-o", self.folder / "x.h5", *options]
+
+    def follow(self, file, what, *options, steps=3):
+        """The import is refused for `what`; the remedies in its messages lead to the record of the pull."""
+        message = self.call(*self.arguments(file, *options), status=2)
+        self.assertIn(what, message)
+        given = list(options)
+        for _ in range(steps):
+            remedies = REMEDY.findall(message)
+            self.assertTrue(remedies, message)
+            for remedy in remedies:
+                words = shlex.split(remedy.replace("HZ", f'"{RATE_Hz} Hz"'))
+                if words[0] not in given:
+                    given += words
+            done = subprocess.run([CLI, *map(str, self.arguments(file, *given))], capture_output=True, text=True, check=False)
+            if done.returncode == 0:
+                break
+            message = done.stderr
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with h5py.File(self.folder / "x.h5") as record:
+            self.assertAlmostEqual(record["entry/timing/scan_rate_granted"][()], RATE_Hz, delta=0.5)
+            self.assertAlmostEqual(record["entry/results/delta_mu"][()], self.delta_mu, delta=0.001)
+
+    def rows(self, times=None, decimals=6):
+        times = times or [scan / RATE_Hz for scan in range(len(self.force))]
+        return [[f"{time:.{decimals}f}", f"{force:.5f}"] for time, force in zip(times, self.force, strict=True)]
+
+    def test_each_remedy_works_when_it_is_followed(self):
+        even = [scan / RATE_Hz for scan in range(len(self.force))]
+        doubled = self.rows()
+        doubled.insert(500, doubled[499])
+        set_back = [time - (0.05 if scan >= 1000 else 0) for scan, time in enumerate(even)]
+        uneven = [time + (0.4 / RATE_Hz if scan % 7 == 3 else 0) for scan, time in enumerate(even)]
+        for name, rows, what in (("doubled.csv", doubled, "the time of the row before"),
+                                 ("set_back.csv", self.rows(set_back), "time goes back by"),
+                                 ("uneven.csv", self.rows(uneven), "displaced by"),
+                                 ("reversed.csv", self.rows()[::-1], "time runs backwards"),
+                                 ("coarse.csv", self.rows(decimals=0), "too coarse"),
+                                 ("still.csv", [["5", row[1]] for row in self.rows()], "does not advance"),
+                                 ("negative.csv", [[row[0], f"{-float(row[1]):.5f}"] for row in self.rows()], "negative while sliding")):
+            with self.subTest(name):
+                self.follow(self.write(name, rows), what)
+        with self.subTest("no time"):
+            self.follow(self.write("no_time.csv", [[row[1]] for row in self.rows()], heading="force"), "no column is a time")
+        with self.subTest("milliseconds"):
+            thousand = [[f"{1e3 * time:.3f}", f"{force:.5f}"] for time, force in zip(even, self.force, strict=True)]
+            self.follow(self.write("ms.csv", thousand, heading="time (s),force"), "Hz", "--rate", "350 Hz")
+
+    def test_a_clock_that_starts_again_gives_a_record_for_each_run(self):
+        stdout = self.call(*self.arguments(self.write("twice.csv", self.rows() + self.rows())))
+        self.assertIn("the clock starts again in line", stdout)
+        for name in ("x-1.h5", "x-2.h5"):
+            with h5py.File(self.folder / name) as record:
+                self.assertAlmostEqual(record["entry/results/delta_mu"][()], self.delta_mu, delta=0.001)
+        # The same scans in two records of one report are told.
+        report = json.loads(self.call("report", self.folder / "x-1.h5", self.folder / "x-2.h5", "--json"))
+        self.assertEqual(report["tests"][0]["findings"], [])
+        self.assertRegex(report["tests"][1]["findings"][0], r"^has the same scans as .*x-1\.h5: the trace was imported twice")
+
+    def test_a_record_keeps_its_source_and_its_force(self):
+        file = self.write("source.csv", self.rows())
+        self.call(*self.arguments(file, "--sample", "liner 42", "--grade", "kraft", "--operator", "Ada", "--replicate", 3))
+        with h5py.File(self.folder / "x.h5") as record:
+            process, sample = record["entry/process"], record["entry/sample"]
+            self.assertEqual(process["source_file"].asstr()[()], "source.csv")
+            self.assertEqual(process["source_size"][()], file.stat().st_size)
+            self.assertEqual(process["source_sha256"].asstr()[()], subprocess.run(["sha256sum", file], capture_output=True, text=True, check=True).stdout.split()[0])
+            self.assertIn("separator comma", process["source_reading"].asstr()[()])
+            self.assertIn("--sample 'liner 42'", process["source_command"].asstr()[()])
+            self.assertEqual((sample["name"].asstr()[()], sample["replicate"][()]), ("liner 42", 3))
+        coefficient = [[row[0], f"{float(row[1]) / (2.331 * 9.80665):.6f}"] for row in self.rows()]
+        self.call("import", self.write("mu.csv", coefficient, heading="time,mu"), "--column", "mu", "--unit", "coefficient", "--sled-mass", "2331 g",
+                  "-o", self.folder / "mu.h5")
+        with h5py.File(self.folder / "mu.h5") as record:
+            for measured, true in zip(record["entry/raw/force"][:], self.force, strict=True):
+                self.assertAlmostEqual(measured, true, delta=2e-5)
+        self.call("verify", self.folder / "mu.h5")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
