@@ -41,18 +41,20 @@ std::size_t likely_column(const Dialect& dialect) {
   return last;
 }
 
+/// Words in capitals stand for what the file does not say: nothing is guessed that changes a number.
 std::string command(const ImportRequest& request, const Dialect& dialect, const std::string& cell_unit) {
   const std::size_t column = likely_column(dialect);
   const ColumnName& name = dialect.columns[column];
   const std::string& own = cell_unit.empty() ? name.unit : cell_unit;
   std::string text = fmt::format("stickslip import {} --column {}", shell_quoted(request.path),
                                  name.text.empty() ? std::to_string(column + 1) : shell_quoted(name.text));
-  if (own.empty() || !quantity_unit(own)) text += " --unit N";
+  const auto unit = quantity_unit(own);
+  if (own.empty() || !unit) text += " --unit UNIT";
   if (!time_column_of(dialect, column)) {
-    text += dialect.header_line == 0 && column != 0 ? " --time-column 1 --time-unit s" : " --rate '350 Hz'";
+    text += dialect.header_line == 0 && column != 0 ? " --time-column 1 --time-unit UNIT" : " --rate HZ";
   }
-  return text + " --sled-mass '2331 g' -o " +
-         shell_quoted(request.path.substr(0, request.path.rfind('.')) + ".h5");
+  if (!unit || unit->quantity != daq::RawQuantity::kCoefficient) text += " --sled-mass MASS";
+  return text + " -o " + shell_quoted(request.path.substr(0, request.path.rfind('.')) + ".h5");
 }
 
 }  // namespace

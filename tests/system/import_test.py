@@ -97,6 +97,20 @@ class Import(unittest.TestCase):
             thousand = [[f"{1e3 * time:.3f}", f"{force:.5f}"] for time, force in zip(even, self.force, strict=True)]
             self.follow(self.write("ms.csv", thousand, heading="time (s),force"), "Hz", "--rate", "350 Hz")
 
+    def test_inspection_prints_a_command_that_imports(self):
+        file = self.write("inspect.csv", self.rows(), heading="Time (s),Force (N)")
+        printed = self.call("import", file, "--inspect")
+        self.assertFalse(list(self.folder.glob("inspect.h5")))
+        [command] = re.findall(r"^to import: stickslip (.*)$", printed, re.MULTILINE)
+        self.assertIn("--sled-mass MASS", command)
+        self.call(*(word.replace("MASS", "2331 g") for word in shlex.split(command)))
+        with h5py.File(self.folder / "inspect.h5") as record:
+            self.assertAlmostEqual(record["entry/results/delta_mu"][()], self.delta_mu, delta=0.001)
+        # What the file does not say is not made up.
+        unknown = self.call("import", self.write("unknown.csv", [[row[1]] for row in self.rows()], heading="F"), "--inspect")
+        for word in ("--unit UNIT", "--rate HZ", "--sled-mass MASS"):
+            self.assertIn(word, unknown)
+
     def test_a_clock_that_starts_again_gives_a_record_for_each_run(self):
         stdout = self.call(*self.arguments(self.write("twice.csv", self.rows() + self.rows())))
         self.assertIn("the clock starts again in line", stdout)
