@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "cli/options.hpp"
 #include "cli/subcommands.hpp"
 #include "io/print_text.hpp"
 #include <CLI/CLI.hpp>
 
+#include "core/base/shell_word.hpp"
 #include "core/base/version.hpp"
 #include "core/record/read_apart.hpp"
 
@@ -62,7 +62,7 @@ std::vector<std::string> words(int count, char** arguments) {
 /// The command as a shell would take it again.
 std::string command_line(int count, char** arguments) {
   std::string line = "stickslip";
-  for (int i = 1; i < count; ++i) line += " " + shell_word(arguments[i]);
+  for (int i = 1; i < count; ++i) line += " " + base::shell_word(arguments[i]);
   return line;
 }
 

@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "core/base/quantity.hpp"
 #include "core/base/result.hpp"
@@ -15,8 +14,5 @@ namespace stickslip::cli {
 /// Usage error that names the option.
 [[nodiscard]] base::Result<std::optional<double>> number_of(const char* option, const std::string& text,
                                                             base::Dimension dimension, bool must_be_positive);
-
-/// An argument as a shell would take it again.
-[[nodiscard]] std::string shell_word(std::string_view argument);
 
 }  // namespace stickslip::cli

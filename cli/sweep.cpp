@@ -26,6 +26,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/clock.hpp"
+#include "core/base/shell_word.hpp"
 #include "core/base/version.hpp"
 #include "core/record/finaliser.hpp"
 #include "core/record/method_text.hpp"
@@ -86,9 +87,9 @@ struct Sweep {
 
 /// What decides the numbers, as one command.
 std::string command_of(const SweepOptions& options) {
-  std::string line = "stickslip sweep " + shell_word(options.scene);
+  std::string line = "stickslip sweep " + base::shell_word(options.scene);
   const auto add = [&line](const char* option, const std::string& value) {
-    line += fmt::format(" {} {}", option, shell_word(value));
+    line += fmt::format(" {} {}", option, base::shell_word(value));
   };
   for (const std::string& effect : options.without) add("--without", effect);
   for (const std::string& setting : options.set) add("--set", setting);

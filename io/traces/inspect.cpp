@@ -9,6 +9,7 @@
 #include "io/traces/quantity_unit.hpp"
 #include "io/traces/trace_table.hpp"
 
+#include "core/base/shell_word.hpp"
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
 
@@ -18,13 +19,6 @@ namespace {
 using base::Result;
 
 constexpr std::size_t kFirstValues = 3;
-
-/// What a shell takes as one word.
-std::string shell_quoted(std::string_view text) {
-  std::string word{"'"};
-  for (const char c : text) word += c == '\'' ? std::string{"'\\''"} : std::string{c};
-  return word + "'";
-}
 
 /// The column that is a force by its unit or its name, else the last one with numbers.
 std::size_t likely_column(const Dialect& dialect) {
@@ -46,15 +40,16 @@ std::string command(const ImportRequest& request, const Dialect& dialect, const 
   const std::size_t column = likely_column(dialect);
   const ColumnName& name = dialect.columns[column];
   const std::string& own = cell_unit.empty() ? name.unit : cell_unit;
-  std::string text = fmt::format("stickslip import {} --column {}", shell_quoted(request.path),
-                                 name.text.empty() ? std::to_string(column + 1) : shell_quoted(name.text));
+  std::string text =
+      fmt::format("stickslip import {} --column {}", base::shell_word(request.path),
+                  name.text.empty() ? std::to_string(column + 1) : base::shell_word(name.text));
   const auto unit = quantity_unit(own);
   if (own.empty() || !unit) text += " --unit UNIT";
   if (!time_column_of(dialect, column)) {
     text += dialect.header_line == 0 && column != 0 ? " --time-column 1 --time-unit UNIT" : " --rate HZ";
   }
   if (!unit || unit->quantity != daq::RawQuantity::kCoefficient) text += " --sled-mass MASS";
-  return text + " -o " + shell_quoted(request.path.substr(0, request.path.rfind('.')) + ".h5");
+  return text + " -o " + base::shell_word(request.path.substr(0, request.path.rfind('.')) + ".h5");
 }
 
 }  // namespace
