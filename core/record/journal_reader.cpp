@@ -255,7 +255,11 @@ base::Result<RecordHeader> find_header(const std::filesystem::path& path, const 
                           : entries->torn_end()       ? entries->torn_end()->why
                           : entries->file_size() == 0 ? "it is empty"
                                                       : "no entry is a header";
-  if (others == 0) return base::usage_error("{}: is no journal of this program: {}", path.string(), why);
+  if (others == 0) {
+    return base::usage_error(
+        "{}: is no journal of this program: {}; no scan can be read from its {} bytes: move it away",
+        path.string(), why, entries->file_size());
+  }
   return base::failure(
       "{}: its header, at byte 0, is damaged ({}): what board and load cell the {} whole entries behind it "
       "belong "

@@ -19,6 +19,7 @@
 #include "core/record/finaliser.hpp"
 #include "core/record/journal.hpp"
 #include "core/record/journal_care.hpp"
+#include "core/record/journal_entries.hpp"
 #include "core/record/patient_journal.hpp"
 #include "core/record/reader.hpp"
 #include "core/record/verdict.hpp"
@@ -90,15 +91,23 @@ std::vector<Promise> write_test(const CrashDisk& disk, const fs::path& journal, 
   return promises;
 }
 
-/// What the next start does, and what it has then.
-std::size_t recover(const fs::path& folder, const fs::path& journal, const fs::path& file,
-                    const record::FileCalls& calls, std::size_t moment) {
+bool has_complete_entry(const fs::path& journal) {
+  auto entries = record::JournalEntries::open(journal);
+  return entries && entries->next().has_value();
+}
+
+/// What the next start does. \return the scans in a row that it has then.
+std::size_t recover(const fs::path& journal, const fs::path& file, const record::FileCalls& calls,
+                    std::size_t moment) {
   if (fs::exists(journal)) {
     const auto removed = record::remove_if_empty(journal);
     EXPECT_TRUE(removed) << moment;
     if (removed && !*removed) {
+      // A header of which only some pages were written cannot be told from a damaged one: it stays.
+      const bool stays = !has_complete_entry(journal);
       const auto finished = record::finalise(journal, {}, calls);
-      EXPECT_TRUE(finished) << moment << ": " << (finished ? "" : finished.error().message);
+      EXPECT_EQ(finished.has_value(), !stays) << moment << ": " << (finished ? "" : finished.error().message);
+      if (stays) return 0;
     }
   }
   EXPECT_FALSE(fs::exists(journal)) << moment;
@@ -117,7 +126,6 @@ std::size_t recover(const fs::path& folder, const fs::path& journal, const fs::p
     EXPECT_EQ(read->raw[i], 1000.0 + static_cast<double>(scan - scan % kScansInEntry)) << moment;
     in_a_row += scan == i ? 1 : 0;
   }
-  static_cast<void>(folder);
   return in_a_row;
 }
 
@@ -147,8 +155,7 @@ int cut_everywhere(const CrashDisk& disk, const std::vector<Promise>& promises, 
       if (due.finished) {
         EXPECT_TRUE(fs::exists(folder / "a.h5")) << cut;
       }
-      const std::size_t scans =
-          recover(folder.path(), folder / "a.journal", folder / "a.h5", HastyCalls{}, cut);
+      const std::size_t scans = recover(folder / "a.journal", folder / "a.h5", HastyCalls{}, cut);
       EXPECT_GE(scans, due.scans) << "after " << cut << " of " << disk.size() << " changes";
       if (testing::Test::HasFailure()) return tried;
       ++tried;
@@ -186,7 +193,7 @@ TEST(PowerCut, WhereARenameCannotRefuseToReplace) {
       for (int state = 0; state < 3; ++state) {
         const TemporaryFolder restored;
         disk.restore(cut, random, restored.path());
-        EXPECT_EQ(recover(restored.path(), restored / "a.journal", restored / "a.h5", HastyCalls{}, cut),
+        EXPECT_EQ(recover(restored / "a.journal", restored / "a.h5", HastyCalls{}, cut),
                   promises.back().scans);
       }
     }
