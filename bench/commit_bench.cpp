@@ -48,7 +48,7 @@ const Pull& pull() {
     const drivers::OpenedBoard board = scene.open();
     Pull result{bench::record_header(board), {}};
     pipeline::Processor processor{
-        bench::session_settings(board, detect::EstimatorTier::kPeak).processor,
+        bench::session_settings(board, detect::EstimatorTier::kTurningPoints).processor,
         daq::Calibration{board.board->info(), *board.load_cell, board.tester->normal_load_N()},
         {&result.walk}};
     for (const daq::ScanBlock& block : bench::all_blocks(*board.board))

@@ -162,14 +162,11 @@ void peer_scipy_chain_live(benchmark::State& state, double scan_rate_Hz) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  for (const auto tier :
-       {detect::EstimatorTier::kPeak, detect::EstimatorTier::kInterpolated, detect::EstimatorTier::kFit}) {
+  for (const auto tier : {detect::EstimatorTier::kTurningPoints, detect::EstimatorTier::kFit}) {
     const std::string tier_name{name(tier)};
     for (const double rate_Hz : {100.0, 350.0, 1000.0, 10'000.0, 100'000.0}) {
       const std::string at = tier_name + "/" + std::to_string(static_cast<int>(rate_Hz));
       for (const Tester tester : {Tester::kCharacterised, Tester::kUnknown}) {
-        // The others ask the scans of each slip with either.
-        if (tester == Tester::kUnknown && tier != detect::EstimatorTier::kPeak) continue;
         for (const int slips : {kShortTest, kPromisedTest, kLongTest}) {
           if (rate_Hz > 10'000.0 && slips > kShortTest) continue;
           std::string row = tester == Tester::kCharacterised ? "follow/" : "follow_unknown_tester/";

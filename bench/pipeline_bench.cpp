@@ -234,7 +234,7 @@ bench::Walk walk_of(std::int64_t scan_rate_Hz) {
   const drivers::OpenedBoard board = pull.open();
   bench::Walk walk;
   pipeline::Processor processor{
-      bench::session_settings(board, detect::EstimatorTier::kPeak).processor,
+      bench::session_settings(board, detect::EstimatorTier::kTurningPoints).processor,
       daq::Calibration{board.board->info(), *board.load_cell, board.tester->normal_load_N()},
       {&walk}};
   for (const daq::ScanBlock& block : bench::all_blocks(*board.board))
@@ -322,8 +322,7 @@ void register_all() {
           ->Arg(rate_Hz)
           ->Unit(benchmark::kMillisecond);
     };
-    for (const auto tier :
-         {detect::EstimatorTier::kPeak, detect::EstimatorTier::kInterpolated, detect::EstimatorTier::kFit}) {
+    for (const auto tier : {detect::EstimatorTier::kTurningPoints, detect::EstimatorTier::kFit}) {
       const std::string name{detect::name(tier)};
       add("whole/" + name, [=](benchmark::State& state) {
         whole(state, tier, one_test_s(rate_Hz));
@@ -336,7 +335,7 @@ void register_all() {
     }
     // A rate that holds for ten million scans is no matter of caches and queues.
     add("sustained/interpolated",
-        [=](benchmark::State& state) { whole(state, detect::EstimatorTier::kInterpolated, 1e7 / rate_Hz); })
+        [=](benchmark::State& state) { whole(state, detect::EstimatorTier::kTurningPoints, 1e7 / rate_Hz); })
         ->UseManualTime()
         ->Iterations(1);
     add("stage/simulator", stage_simulator);

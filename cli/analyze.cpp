@@ -9,6 +9,7 @@
 #include "cli/effects.hpp"
 #include "cli/method_option.hpp"
 #include "cli/subcommands.hpp"
+#include "io/print_text.hpp"
 #include "io/json_text.hpp"
 #include "io/results_json.hpp"
 #include "report/truth_table.hpp"
@@ -31,7 +32,7 @@ struct AnalyzeOptions {
   std::vector<std::string> files;
   std::string method;     ///< As chosen_method() takes it; empty: that of each record.
   std::string tester;     ///< File of a characterisation; empty: none.
-  std::string estimator;  ///< "peak", "interpolated" or "fit"; empty: that of each record.
+  std::string estimator;  ///< "turning-points" or "fit"; empty: that of each record.
   /// Of analysis::kCorrectionNames, or "nothing" alone; empty: as each record says.
   std::vector<std::string> keep;
   bool effects = false;  ///< What each of them does, beside the results.
@@ -78,8 +79,14 @@ base::Result<std::string> run_analyze(const AnalyzeOptions& options) {
   if (!options.estimator.empty()) {
     estimator = detect::estimator_tier_from_name(options.estimator);
     if (!estimator) {
-      return base::usage_error("--estimator {}: must be \"peak\", \"interpolated\" or \"fit\"",
+      return base::usage_error("--estimator {}: must be \"turning-points\" or \"fit\"",
                                base::one_line(options.estimator, 100));
+    }
+    if (detect::is_former_estimator(options.estimator)) {
+      io::print_error("stickslip",
+                      fmt::format("--estimator {}: this estimator is no more; \"turning-points\" "
+                                  "takes its place: write that, or \"fit\"",
+                                  options.estimator));
     }
   }
   const base::Result<std::optional<analysis::SkippedCorrections>> skipped = chosen_corrections(options.keep);
@@ -155,12 +162,10 @@ void add_analyze(CLI::App& app, Chosen& chosen) {
           "what `stickslip characterise` wrote: S and K become surer, and what speaks against it is told")
       ->type_name("FILE.toml");
   command
-      ->add_option(
-          "--estimator", options->estimator,
-          "where S and K come from: \"peak\" (largest scan and mean of each cycle), \"interpolated\" "
-          "(turning points), \"fit\" (all scans, and with them omega, gamma and what needs them); default: "
-          "as the "
-          "record says")
+      ->add_option("--estimator", options->estimator,
+                   "where S and K come from: \"turning-points\" (peak and trough of each slip) or \"fit\" "
+                   "(all scans, and "
+                   "with them omega, gamma and what needs them); default: as the record says")
       ->type_name("NAME");
   command
       ->add_option("--keep", options->keep,

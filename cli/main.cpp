@@ -31,7 +31,7 @@ constexpr const char* kExamples = R"(Examples:
   stickslip accuracy threshold-oscillation -o a.html   error against time, for each way to solve it
   stickslip analyze records/*.h5                       a table, with the truth where it is known
   stickslip analyze trace.h5 --method iso-8295         stickslip methods lists the shipped ones
-  stickslip analyze trace.h5 --estimator peak          S and K as the tradition has them, for comparison
+  stickslip analyze trace.h5 --estimator turning-points   S and K from peaks and troughs, without a fit
   stickslip analyze trace.h5 --json                    {"tests": [{"file": …, results …, "details": …}]}
   stickslip characterise ring-down.h5 -o tester.toml   omega and gamma of the tester, for --tester
   stickslip report records/*.h5 -o report.html         replicates, coefficient against speed, traces

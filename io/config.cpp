@@ -46,9 +46,8 @@ constexpr std::array<std::pair<std::string_view, LogLevel>, 4> kLogLevels{{{"deb
                                                                            {"warning", LogLevel::kWarning},
                                                                            {"error", LogLevel::kError}}};
 
-constexpr std::array<std::pair<std::string_view, detect::EstimatorTier>, 3> kEstimators{
-    {{detect::name(detect::EstimatorTier::kPeak), detect::EstimatorTier::kPeak},
-     {detect::name(detect::EstimatorTier::kInterpolated), detect::EstimatorTier::kInterpolated},
+constexpr std::array<std::pair<std::string_view, detect::EstimatorTier>, 2> kEstimators{
+    {{detect::name(detect::EstimatorTier::kTurningPoints), detect::EstimatorTier::kTurningPoints},
      {detect::name(detect::EstimatorTier::kFit), detect::EstimatorTier::kFit}}};
 
 constexpr std::array<std::pair<std::string_view, DatedFolders>, 3> kDatedFolders{
@@ -304,6 +303,20 @@ void read_method(Settings table, const std::filesystem::path& folder, model::Met
       static_cast<int>(table.integer("kinetic_cycles", 1, kMostKineticCycles, method.kinetic_cycles));
 }
 
+/// "peak" and "interpolated" of version 0.1 are accepted, with a warning.
+void read_estimator(Settings table, DaemonConfig& config) {
+  if (!table.has("estimator")) return;
+  if (const std::string text = table.text("estimator", ""); detect::is_former_estimator(text)) {
+    config.estimator = detect::EstimatorTier::kTurningPoints;
+    config.warnings.push_back(fmt::format(
+        "analysis.estimator = \"{}\": this estimator is no more; \"turning-points\" takes its place: write "
+        "that, or \"fit\"",
+        text));
+    return;
+  }
+  config.estimator = table.choice<detect::EstimatorTier>("estimator", kEstimators);
+}
+
 DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
   DaemonConfig config;
   read_board(settings.table("board"), folder, config);
@@ -313,9 +326,7 @@ DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
   read_method(settings.table("method"), folder, config.method);
   config.board.simulated.method = config.method;
   Settings analysis = settings.table("analysis");
-  const auto estimator =
-      analysis.choice<detect::EstimatorTier>("estimator", kEstimators, detect::EstimatorTier::kFit);
-  if (analysis.has("estimator")) config.estimator = estimator;
+  read_estimator(analysis, config);
   config.skipped = {.spikes = analysis.boolean("keep_spikes", false),
                     .drift = analysis.boolean("keep_drift", false),
                     .first_slip = analysis.boolean("keep_first_slip", false)};

@@ -73,7 +73,8 @@ struct DaemonConfig {
   std::optional<FleetSettings> fleet;  ///< Absent: no broker.
   LogLevel log_level = LogLevel::kInfo;
   bool report_table = false;
-  std::string text;  ///< The file's text, stored in each record.
+  std::string text;                   ///< The file's text, stored in each record.
+  std::vector<std::string> warnings;  ///< Outdated words in the file, each with the word to write.
 };
 
 /// Reads and checks a configuration file. Paths of scenes and records in it are relative to its folder; those

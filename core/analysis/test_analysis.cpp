@@ -80,6 +80,11 @@ std::optional<std::string> sampling_finding(double scan_rate_Hz, const TestResul
       frequency_Hz, std::ceil(estimate::kFewScansACycle * frequency_Hz));
 }
 
+detect::LiveSettings live_settings(const AnalysisSettings& settings) {
+  return {settings.scan_rate_Hz, settings.step_coefficient, settings.estimator, settings.prior,
+          !settings.skipped.spikes};
+}
+
 /// A stub of a test: without the noise there is no telling what is a slip.
 void too_short(std::size_t scan_count, TestResults& results) {
   results.regime_reason =
@@ -100,8 +105,7 @@ TestAnalysis::TestAnalysis(const AnalysisSettings& settings)
       coefficients_(settings.scratch_folder),
       saturated_(settings.scratch_folder),
       speeds_m_per_s_(settings.scratch_folder),
-      live_({settings.scan_rate_Hz, settings.step_coefficient, settings.estimator, settings.prior,
-             !settings.skipped.spikes}),
+      live_(live_settings(settings)),
       live_cycles_(settings.scratch_folder) {
   constexpr std::size_t kRoom = 100;
   new_cycles_.reserve(kRoom);
@@ -205,8 +209,16 @@ TestResults TestAnalysis::finish() {
     }
     no_model_results("no slip", results);
   } else {
-    const TestEstimates estimates =
-        fits_whole_test() ? estimate(trace, slips, sigma) : estimate_without_fit(trace, slips);
+    TestEstimates estimates =
+        fits_whole_test()
+            ? estimate(trace, slips, sigma)
+            : by_turning_points(
+                  trace, slips, live_cycles_,
+                  fmt::format(
+                      "the estimator \"{}\" does not fit the whole test; \"fit\" does, also afterwards",
+                      detect::name(settings_.estimator)));
+    if (!estimates.results.delta_mu.value && fits_whole_test())
+      results.findings.push_back(fall_back(trace, slips, estimates));
     const detect::RegimeVerdict verdict =
         detect::judge_regime(slips.size(), estimates.log_likelihood_ratios, estimates.model_describes);
     results.regime = verdict.regime;
@@ -272,14 +284,52 @@ Estimate TestAnalysis::transition_time(const estimate::Trace& trace, const TestE
   return Estimate::of(onset_s, estimates.onset_errors_s[slip]);
 }
 
-TestEstimates TestAnalysis::estimate_without_fit(const estimate::Trace& trace,
-                                                 const base::LongColumn<detect::Fall>& slips) const {
+TestEstimates TestAnalysis::by_turning_points(const estimate::Trace& trace,
+                                              const base::LongColumn<detect::Fall>& slips,
+                                              const base::LongColumn<detect::LiveCycle>& cycles,
+                                              std::string reason) const {
   LiveSettlement settlement;
   settlement.first_counts = settings_.skipped.first_slip;
-  settlement.reason =
-      fmt::format("the estimator \"{}\" does not fit the whole test; \"fit\" does, also afterwards",
-                  detect::name(settings_.estimator));
-  return estimates_from_live(trace, slips, live_cycles_, settlement, settings_.scratch_folder);
+  settlement.reason = std::move(reason);
+  return estimates_from_live(trace, slips, cycles, settlement, settings_.scratch_folder);
+}
+
+base::LongColumn<detect::LiveCycle> TestAnalysis::cycles_by_turning_points() const {
+  detect::LiveSettings settings = live_settings(settings_);
+  settings.estimator = detect::EstimatorTier::kTurningPoints;
+  detect::LiveDetector detector{settings};
+  base::LongColumn<detect::LiveCycle> cycles{settings_.scratch_folder};
+  auto gap = gaps_.begin();
+  for (std::size_t k = 0; k < indices_.size(); ++k) {
+    for (; gap != gaps_.end() && gap->first <= indices_[k]; ++gap) detector.gap(gap->count);
+    if (const auto cycle = detector.add(coefficients_[k], saturated_[k] != 0)) cycles.push_back(*cycle);
+  }
+  for (; gap != gaps_.end(); ++gap) detector.gap(gap->count);
+  if (const auto cycle = detector.end()) cycles.push_back(*cycle);
+  return cycles;
+}
+
+std::string TestAnalysis::fall_back(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
+                                    TestEstimates& estimates) const {
+  TestResults& results = estimates.results;
+  std::string why = results.delta_mu.reason;
+  const TestEstimates points = by_turning_points(trace, slips, cycles_by_turning_points(), why);
+  results.mu_s = points.results.mu_s;
+  results.mu_k = points.results.mu_k;
+  results.delta_mu = points.results.delta_mu;
+  results.delta_mu_scatter = points.results.delta_mu_scatter;
+  for (std::size_t i = 0; i < slips.size(); ++i) {
+    const detect::Cycle seen = std::as_const(points.cycles)[i];
+    detect::Cycle& row = estimates.cycles[i];
+    row.onset_time_s = seen.onset_time_s;
+    row.stick_time_s = seen.stick_time_s;
+    row.delta_mu = seen.delta_mu;
+    row.slip_speed_ratio = seen.slip_speed_ratio;
+    if ((row.flags & seen.flags & detect::kCycleCaptured) == 0) continue;
+    row.capture_time_s = seen.capture_time_s;
+    row.slip_time_s = seen.slip_time_s;
+  }
+  return fmt::format("S and K are by turning points, as {}", why);
 }
 
 TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
@@ -321,7 +371,8 @@ void TestAnalysis::speed_results(const estimate::Trace& trace, const TestEstimat
         trace.drift.rate_per_s * settings_.tester.gravity_m_per_s2 / omega0_squared;
   }
   if (tester_check_) {
-    results.findings = tester_check_->findings;
+    const std::vector<std::string>& findings = tester_check_->findings;
+    results.findings.insert(results.findings.end(), findings.begin(), findings.end());
   } else if (auto finding = speed_finding(results.pull_speed_measured, settings_.tester)) {
     results.findings.push_back(*std::move(finding));
   }

@@ -123,9 +123,17 @@ class TestAnalysis {
   /// tester_ and tester_check_.
   [[nodiscard]] TestEstimates estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                        double sigma);
-  /// Estimates from the live cycles, for the tiers without a whole-test fit.
-  [[nodiscard]] TestEstimates estimate_without_fit(const estimate::Trace& trace,
-                                                   const base::LongColumn<detect::Fall>& slips) const;
+  /// Estimates from cycles with turning points. \param reason  why no results of a fit are there.
+  [[nodiscard]] TestEstimates by_turning_points(const estimate::Trace& trace,
+                                                const base::LongColumn<detect::Fall>& slips,
+                                                const base::LongColumn<detect::LiveCycle>& cycles,
+                                                std::string reason) const;
+  /// Gives S, K and S − K to estimates of a fit that has none, by turning points. \return the finding.
+  [[nodiscard]] std::string fall_back(const estimate::Trace& trace,
+                                      const base::LongColumn<detect::Fall>& slips,
+                                      TestEstimates& estimates) const;
+  /// The cycles of all scans, seen once more by turning points.
+  [[nodiscard]] base::LongColumn<detect::LiveCycle> cycles_by_turning_points() const;
   [[nodiscard]] bool fits_whole_test() const noexcept {
     return settings_.estimator == detect::EstimatorTier::kFit;
   }

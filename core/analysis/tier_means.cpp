@@ -6,10 +6,12 @@ namespace stickslip::analysis {
 
 namespace {
 
-Estimate estimate_of(const signal::RunningVariance& values) {
-  if (values.count < 1.0) return Estimate::none("no cycle with an estimate of its own");
-  if (values.count < 2.0) return Estimate::of(values.mean);
-  return Estimate::of(values.mean, values.error_of_mean());
+Estimate estimate_of(const signal::WanderingMean& values, double systematic_uncertainty) {
+  if (values.count() < 1.0) return Estimate::none("no cycle with an estimate of its own");
+  Estimate estimate = values.count() < 2.0 ? Estimate::of(values.mean())
+                                           : Estimate::of(values.mean(), values.error_of_mean());
+  estimate.systematic_uncertainty = systematic_uncertainty;
+  return estimate;
 }
 
 }  // namespace
@@ -18,21 +20,26 @@ void TierMeans::add(const detect::LiveCycle& cycle) noexcept {
   if (!std::isfinite(cycle.S) || !std::isfinite(cycle.K)) return;
   if (leaves_out_first_ && (cycle.cycle.flags & detect::kCycleIsFirst) == 0 && only_first_) {
     S_ = K_ = delta_mu_ = {};
+    S_correction_ = K_correction_ = {};
     only_first_ = false;
   }
   S_.add(cycle.S);
   K_.add(cycle.K);
   delta_mu_.add(cycle.S - cycle.K);
+  S_correction_.add(cycle.S - cycle.cycle.peak);
+  K_correction_.add(cycle.K - 0.5 * (cycle.cycle.peak + cycle.cycle.trough));
 }
 
 void TierMeans::fill(TestResults& results) const {
-  results.mu_s = estimate_of(S_);
-  results.mu_k = estimate_of(K_);
-  results.delta_mu = estimate_of(delta_mu_);
-  if (delta_mu_.count >= 3.0) {
+  const double of_S = std::abs(S_correction_.mean);
+  const double of_K = std::abs(K_correction_.mean);
+  results.mu_s = estimate_of(S_, of_S);
+  results.mu_k = estimate_of(K_, of_K);
+  results.delta_mu = estimate_of(delta_mu_, of_S + of_K);
+  if (delta_mu_.count() >= 3.0) {
     const double variance = delta_mu_.variance();
     results.delta_mu_scatter =
-        Estimate::of(std::sqrt(variance), std::sqrt(variance / (2.0 * (delta_mu_.count - 1.0))));
+        Estimate::of(std::sqrt(variance), std::sqrt(variance / (2.0 * (delta_mu_.count() - 1.0))));
   } else {
     results.delta_mu_scatter = Estimate::none("fewer than three slips to compare");
   }

@@ -1,10 +1,10 @@
 /// \file
-/// S, K and S − K of a test as means over its cycles, for the estimator tiers without a whole-test fit.
+/// S, K and S − K of a test as means over its cycles, by turning points.
 #pragma once
 
 #include "core/analysis/results.hpp"
 #include "core/detect/live_cycle.hpp"
-#include "core/signal/statistics.hpp"
+#include "core/signal/wandering_mean.hpp"
 
 namespace stickslip::analysis {
 
@@ -14,13 +14,18 @@ class TierMeans {
  public:
   explicit TierMeans(bool first_counts = false) noexcept : leaves_out_first_(!first_counts) {}
   void add(const detect::LiveCycle& cycle) noexcept;
-  /// mu_s, mu_k, delta_mu with standard errors from the scatter, and delta_mu_scatter.
+  /// mu_s, mu_k, delta_mu and delta_mu_scatter. Standard errors follow from the scatter of the cycles, of
+  /// which neighbours are correlated. The systematic uncertainty is the whole correction for belt and
+  /// damping: no fit has shown that the closed forms hold.
   void fill(TestResults& results) const;
 
  private:
-  signal::RunningVariance S_;
-  signal::RunningVariance K_;
-  signal::RunningVariance delta_mu_;
+  signal::WanderingMean S_;
+  signal::WanderingMean K_;
+  signal::WanderingMean delta_mu_;
+  // What S and K owe to belt and damping beside the peak and the middle of the fall.
+  signal::RunningMean S_correction_;
+  signal::RunningMean K_correction_;
   bool leaves_out_first_;
   bool only_first_ = true;
 };

@@ -17,16 +17,19 @@ namespace stickslip::detect {
 
 /// Estimator of S and K of a cycle, in the order of rising computing time (docs/accuracy.md).
 enum class EstimatorTier {
-  kPeak,          ///< Largest scan and mean: the traditional estimate.
-  kInterpolated,  ///< Peak and trough between the scans, and the closed forms of the turning points.
-  kFit,           ///< Maximum likelihood of the closed form on all scans.
+  kTurningPoints,  ///< Peak and trough between the scans, and the closed forms of the turning points.
+  kFit,            ///< Maximum likelihood of the closed form on all scans.
 };
 
-inline constexpr std::array<std::pair<EstimatorTier, std::string_view>, 3> kEstimatorTierNames{{
-    {EstimatorTier::kPeak, "peak"},
-    {EstimatorTier::kInterpolated, "interpolated"},
+inline constexpr std::array<std::pair<EstimatorTier, std::string_view>, 2> kEstimatorTierNames{{
+    {EstimatorTier::kTurningPoints, "turning-points"},
     {EstimatorTier::kFit, "fit"},
 }};
+
+/// Whether version 0.1 had an estimator of this name; both mean "turning-points" now.
+[[nodiscard]] constexpr bool is_former_estimator(std::string_view text) noexcept {
+  return text == "peak" || text == "interpolated";
+}
 
 [[nodiscard]] constexpr std::string_view name(EstimatorTier tier) noexcept {
   for (const auto& [value, text] : kEstimatorTierNames) {
@@ -35,8 +38,10 @@ inline constexpr std::array<std::pair<EstimatorTier, std::string_view>, 3> kEsti
   return "fit";
 }
 
+/// Of a name, present or former.
 [[nodiscard]] constexpr std::optional<EstimatorTier> estimator_tier_from_name(
     std::string_view text) noexcept {
+  if (is_former_estimator(text)) return EstimatorTier::kTurningPoints;
   for (const auto& [value, known] : kEstimatorTierNames) {
     if (known == text) return value;
   }

@@ -37,28 +37,21 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
   if (saturated) flags_after_ |= kCycleIsSaturated;
   if (scan.value > highest_) {
     highest_ = scan.value;
-    sum_at_highest_ = sum_;
-    count_at_highest_ = count_;
     flags_to_highest_ |= flags_after_;
     flags_after_ = 0;
   }
-  sum_ += scan.value;
-  count_ += 1.0;
   const bool usable = !scan.spike && !saturated;
-  follower_.add(scan.value, usable);
-  if (follower_.keeps_scans()) {
-    if (usable) {
-      follower_.keep(time_of(position), scan.value);
-      usable_noise_.add(scan.value);
-    } else {
-      usable_noise_.gap();
-    }
+  if (usable) {
+    follower_.add(time_of(position), scan.value);
+    usable_noise_.add(scan.value);
+  } else {
+    usable_noise_.gap();
   }
   const auto amplitude = watch_.add(scan.value, usable);
 
   const bool was_falling = finder_.falling();
   const auto fall = finder_.add(scan.value, SlipRule::kHysteresisSigmas * sigma);
-  if (finder_.falling() && follower_.keeps_scans()) {
+  if (finder_.falling()) {
     follower_.falls(time_of(static_cast<double>(finder_.high_at())),
                     time_of(static_cast<double>(finder_.low_at())));
   }
@@ -94,28 +87,19 @@ void LiveDetector::watch_phase(double value, double sigma) noexcept {
 }
 
 std::optional<LiveCycle> LiveDetector::slip(const Fall& fall, double now_s) noexcept {
-  if (follower_.is_open() && follower_.force(now_s, usable_sigma(), &fall)) take_decision();
+  if (follower_.is_open() && follower_.force(now_s, usable_sigma(), true)) take_decision();
   // The cycle before reaches from its peak to this one.
   const double peak_s = time_of(fall.peak_at);
   if (follower_.is_open()) {
     cycle_flags_ |= flags_to_highest_;
     LiveCycle& before = follower_.slip();
     before.cycle.period_s = peak_s - before.cycle.peak_time_s;
-    if (settings_.estimator == EstimatorTier::kPeak) {
-      before.K = (sum_at_highest_ - sum_at_peak_) / (count_at_highest_ - count_at_peak_);
-      before.S = cycle_S_;
-      before.cycle.peak = cycle_S_;
-      before.cycle.delta_mu = before.S - before.K;
-    }
   }
   std::optional<LiveCycle> closed = close();
   const bool begins_from_stick = state_.regime != model::Regime::kRingDown;
-  follower_.open(fall, peak_s, time_of(fall.trough_at), now_s, begins_from_stick, usable_sigma());
+  follower_.open(fall, peak_s, time_of(fall.trough_at), begins_from_stick, usable_sigma());
   if (state_.phase < Phase::kFirstSlip) state_.phase = Phase::kFirstSlip;
   ++state_.slip_count;
-  cycle_S_ = highest_;
-  sum_at_peak_ = sum_at_highest_;
-  count_at_peak_ = count_at_highest_;
   cycle_flags_ = flags_after_;
   flags_to_highest_ = flags_after_ = 0;
   highest_ = -kInfinity;
@@ -158,7 +142,7 @@ std::optional<LiveCycle> LiveDetector::close() noexcept {
 
 void LiveDetector::follow_gap() noexcept {
   const double last_s = time_of(static_cast<double>(position_ - 1));
-  if (follower_.gap(last_s, usable_sigma())) take_decision();
+  follower_.gap(last_s);
   usable_noise_.gap();
   if (watch_.running())
     watch_.start(follower_.shared().omega, follower_.shared().gamma, settings_.scan_rate_Hz);
@@ -182,7 +166,7 @@ void LiveDetector::gap(std::int64_t count) noexcept {
 
 std::optional<LiveCycle> LiveDetector::end() noexcept {
   const double now_s = time_of(static_cast<double>(position_));
-  if (follower_.is_open() && follower_.force(now_s, usable_sigma(), nullptr)) take_decision();
+  if (follower_.is_open() && follower_.force(now_s, usable_sigma(), false)) take_decision();
   cycle_flags_ |= flags_to_highest_ | flags_after_;
   state_.phase = Phase::kEnd;
   return close();

@@ -103,18 +103,10 @@ class LiveDetector {
   int above_ = 0;        ///< Scans in a row that are up from there.
   double loading_at_;    ///< Position at which the loading was seen to begin.
 
-  // The highest scan since the last slip, and the sums up to it, for the tradition.
-  double highest_;
-  double sum_ = 0.0;
-  double count_ = 0.0;
-  double sum_at_highest_ = 0.0;
-  double count_at_highest_ = 0.0;
-  double sum_at_peak_ = 0.0;
-  double count_at_peak_ = 0.0;
+  double highest_;  ///< Scan since the last slip.
   std::uint8_t flags_to_highest_ = 0;
   std::uint8_t flags_after_ = 0;
   std::uint8_t cycle_flags_ = 0;
-  double cycle_S_ = 0.0;
 };
 
 // Each scan goes through these: in the caller's loop.

@@ -7,6 +7,7 @@
 
 #include "core/base/nan.hpp"
 #include "core/detect/regime_rule.hpp"
+#include "core/detect/slip_rule.hpp"
 #include "core/detect/turning_points.hpp"
 #include "core/estimate/sampling.hpp"
 #include "core/model/capture.hpp"
@@ -25,9 +26,6 @@ constexpr double kFirstAsked = 0.6;
 constexpr double kEarlier = 2.0 / 32.0;
 constexpr double kLastFirstAsked = 1.0;
 constexpr double kMostPeriods = 2.5;
-/// Periods after the peak whose scans decide nearly every late evaluation: by then a free oscillation has
-/// returned, and a captured sled still sticks or slips again. Later scans add less than they cost.
-constexpr double kLateAsked = 1.1;
 /// Part of the time from the onset to the peak whose scans are used; the onset is only estimated.
 constexpr double kSurelySlipping = 0.6;
 /// Number of blocks from peak to trough of a slip under way.
@@ -40,9 +38,6 @@ constexpr double kLeastReachScans = 1.6;
 /// to those of the prior matters.
 constexpr double kTurningPointSpread = 0.02;
 constexpr double kSlopeSpread = 0.05;
-/// After FallHeights::kMemory slips only every kMatureTaughtBy-th slip updates ω and r: a single slip then
-/// hardly changes them, and quantities derived from them need not be recomputed.
-constexpr std::int64_t kMatureTaughtBy = 4;
 /// Number of slips from which on a single deviating rise does not replace the stick rate.
 constexpr double kKnownSlips = 2.0;
 /// Duration of a rise, relative to that of the fall, above which the middle of the rise is stick.
@@ -51,6 +46,17 @@ constexpr double kMostlyStick = 3.0;
 constexpr double kTypicalMemory = 16.0;
 /// Smallest typical S − K, relative to the height of the peak above K.
 constexpr double kLeastTypical = 0.1;
+
+/// Error of a drop by peaks between scans, relative to the drop.
+constexpr double kPeakError = 0.02;
+
+/// \return whether a drop exceeds the one that a free oscillation would have by more than noise and sampling
+/// explain, so that the sled has stuck in between.
+bool is_more_than(double drop, double freely, double sigma) noexcept {
+  // Noise of both ends as far as it makes no turning point.
+  const double noise = std::numbers::sqrt2 * SlipRule::kHysteresisSigmas * sigma;
+  return drop > freely + noise + kPeakError * drop;
+}
 
 /// Approximate S − K of a slip from the height of its peak above K, by the undamped (2).
 double rough_delta_mu(double peak_above_K, const model::SharedParameters& shared) noexcept {
@@ -69,33 +75,29 @@ void SlipFollower::falls(double peak_s, double lowest_s) noexcept {
   buffer_.keep_fine(peak_s - half_s, peak_s + 2.0 * half_s, half_s / kBlocksPerFall);
 }
 
-bool SlipFollower::gap(double now_s, double sigma) noexcept {
-  const bool asks =
-      !keeps_scans() && task_ == Task::kJudge && period_s() >= estimate::kFewScansACycle * scan_s_;
-  const bool decides = asks && judge(now_s, sigma, false);
+void SlipFollower::gap(double now_s) noexcept {
   buffer_.clear();
-  quick_junction_.gap();
   gap_s_ = now_s + scan_s_;
   whole_ = false;
   if (rise_slope_ == 0.0) rise_slope_ = base::kNaN;
   if (open_ && !decided_) task_ = Task::kNone;
-  return decides;
 }
 
-void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, double now_s,
-                        bool begins_from_stick, double sigma) noexcept {
+double SlipFollower::freely_next_drop() const noexcept {
+  return fall_.drop() * std::exp(-2.0 * std::numbers::pi * shared_.oscillator().gamma_over_2omega());
+}
+
+void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool begins_from_stick,
+                        double sigma) noexcept {
   // A free oscillation only shrinks: what falls by more than that was stuck in between, and the belt has
   // another speed than was thought.
-  const bool contradicted =
-      !begins_from_stick && FallHeights::is_more_than(fall.drop(), freely_next_drop(), sigma);
+  const bool contradicted = !begins_from_stick && is_more_than(fall.drop(), freely_next_drop(), sigma);
   if (contradicted) begins_from_stick = true;
   open_ = true;
   ++slip_number_;
   decided_ = false;
   begins_from_stick_ = begins_from_stick;
   whole_ = !(peak_s <= gap_s_);
-  opened_s_ = now_s;
-  scans_since_open_ = 0;
   fall_ = fall;
   peak_s_ = peak_s;
   trough_s_ = trough_s;
@@ -104,7 +106,7 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, double
   if (!begins_from_stick) last_capture_s_ = base::kNaN;
 
   const double half_s = std::max(trough_s - peak_s, scan_s_);
-  if (keeps_scans() && begins_from_stick && std::isnan(last_capture_s_)) {
+  if (begins_from_stick && std::isnan(last_capture_s_)) {
     // Nothing says where the stick began.
     window_from_s_ = rise().line_from_s(buffer_.points(), window_from_s_);
   }
@@ -113,11 +115,8 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, double
   started_whole_ = started_whole_ || whole_;
   if (contradicted) knowledge_.forget_stick_rate(rise_slope(sigma));
   shared_ = knowledge_.best();
-  quick_junction_.fit_rows(shared_.omega);
 
-  if (keeps_scans() && !(typical_delta_mu_ > 0.0))
-    typical_delta_mu_ = rough_delta_mu(0.5 * fall.drop(), shared_);
-  if (keeps_scans()) open_question();
+  if (!(typical_delta_mu_ > 0.0)) typical_delta_mu_ = rough_delta_mu(0.5 * fall.drop(), shared_);
   slip_ = {};
   Cycle& cycle = slip_.cycle;
   cycle.peak_time_s = peak_s;
@@ -138,27 +137,15 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, double
   }
 }
 
-void SlipFollower::open_question() noexcept {
-  quick_junction_.open(last_scan_s(), peak_s_, 0.5 * (fall_.peak + fall_.trough), shared_);
-}
-
 Rise SlipFollower::rise() const noexcept {
   return {fall_.rise_from, fall_.peak, peak_s_ - std::max(fall_.rise_duration, 1.0) * scan_s_, peak_s_};
 }
 
 double SlipFollower::rise_slope(double sigma) noexcept {
   if (rise_slope_ == 0.0) {
-    look_back_to(rise().begin_s);
     rise_slope_ = rise().slope(buffer_.points(), window_from_s_, sigma);
   }
   return rise_slope_;
-}
-
-void SlipFollower::look_back_to(double time_s) noexcept {
-  if (keeps_scans()) return;
-  buffer_.clear();
-  quick_junction_.rows().for_each_since(time_s, last_scan_s(),
-                                        [&](const estimate::CyclePoint& point) { buffer_.add(point); });
 }
 
 bool SlipFollower::do_task(double now_s, double sigma) noexcept {
@@ -180,42 +167,14 @@ bool SlipFollower::do_task(double now_s, double sigma) noexcept {
   return false;
 }
 
-bool SlipFollower::force(double now_s, double sigma, const Fall* next) noexcept {
+bool SlipFollower::force(double now_s, double sigma, bool has_next) noexcept {
   if (!open_) return false;
   const bool was_decided = decided_;
-  if (!keeps_scans()) {
-    force_by_heights(now_s, sigma, next);
-  } else {
-    if (task_ == Task::kFirstFit) task_ = Task::kJudge;
-    if (task_ == Task::kJudge) (void)judge(now_s, sigma, next != nullptr);
-    if (task_ == Task::kFit || (!decided_ && begins_from_stick_)) estimate(now_s, sigma);
-  }
+  if (task_ == Task::kFirstFit) task_ = Task::kJudge;
+  if (task_ == Task::kJudge) (void)judge(now_s, sigma, has_next);
+  if (task_ == Task::kFit || (!decided_ && begins_from_stick_)) estimate(now_s, sigma);
   task_ = Task::kNone;
   return decided_ && !was_decided;
-}
-
-void SlipFollower::force_by_heights(double now_s, double sigma, const Fall* next) noexcept {
-  const bool has_next = next != nullptr && whole_;
-  const double heights = has_next ? heights_.evidence(fall_.drop(), next->drop(), freely_next_drop(),
-                                                      knowledge_.characterised(), sigma)
-                                  : 0.0;
-  if (!decided_) {
-    // Where heights leave a doubt, the scans are asked; and where these are gone or few, heights have to do.
-    const bool few = period_s() < estimate::kFewScansACycle * scan_s_;
-    if (heights > kDecisive) {
-      decide(heights, now_s);
-    } else if (task_ == Task::kJudge && !few) {
-      (void)judge(now_s, sigma, next != nullptr);
-    }
-    const double told = std::log(kDecisiveLikelihoodRatio);
-    const bool scans_tell = evidence_.known && std::abs(evidence_.log_likelihood_ratio) > told;
-    if (heights <= kDecisive && !scans_tell && std::abs(heights) > told) {
-      slip_.cycle.flags &= static_cast<std::uint8_t>(~kCycleCaptured);
-      slip_.cycle.capture_time_s = base::kNaN;
-      decide(heights, now_s);
-    }
-  }
-  if (has_next && decided_ && captured()) heights_.learn();
 }
 
 void SlipFollower::first_fit(double sigma) noexcept {
@@ -225,7 +184,6 @@ void SlipFollower::first_fit(double sigma) noexcept {
                           first_guess(), knowledge_, sigma);
   if (fit.converged) shared_ = fit.shared;
   question_from_s_ = base::kNaN;
-  open_question();
 }
 
 double SlipFollower::slipping_before_peak_s() const noexcept {
@@ -235,57 +193,12 @@ double SlipFollower::slipping_before_peak_s() const noexcept {
 
 void SlipFollower::first_ask() noexcept {
   const double period = period_s();
-  if (!keeps_scans()) {
-    // The heights of the next fall tell most ends for less. What sticks for long has none so soon.
-    next_task_s_ = peak_s_ + kMostPeriods * period;
-    wait_scans_ = static_cast<std::int64_t>((next_task_s_ - opened_s_) / scan_s_);
-    return;
-  }
   const double usual_s = std::min(usual_wait_s_ - kEarlier * period, kLastFirstAsked * period);
   next_task_s_ = peak_s_ + std::max(kFirstAsked * period, usual_s);
 }
 
-void SlipFollower::open_late_question(double sigma) noexcept {
-  const bool mature = heights_.count() >= FallHeights::kMemory && slip_number_ % kMatureTaughtBy != 0;
-  if (late_number_ != slip_number_ && !mature)
-    learn_turning_points(std::max(trough_s_ - peak_s_, scan_s_), sigma);
-  late_number_ = slip_number_;
-  shared_ = knowledge_.best();
-  const model::Oscillator oscillator = shared_.oscillator();
-  const double drop = heights_.usual_drop(fall_.drop());
-  // The height of the peak to the first order of γ/2ω: what is missed is a tenth of what slips differ by.
-  const double above_K = 0.5 * drop * (1.0 + 0.5 * std::numbers::pi * oscillator.gamma_over_2omega());
-  typical_delta_mu_ = rough_delta_mu(above_K, shared_);
-  open_question();
-}
-
-QuickJunction::Answer SlipFollower::ask_quickly(double sigma) noexcept {
-  if (!keeps_scans()) {
-    open_late_question(sigma);
-    const QuickJunction::Answer early =
-        quick_junction_.ask(sigma, typical_delta_mu_, kDecisive, peak_s_ + kLateAsked * period_s());
-    if (early == QuickJunction::Answer::kCaptured || early == QuickJunction::Answer::kFree) return early;
-  }
-  return quick_junction_.ask(sigma, typical_delta_mu_, kDecisive);
-}
-
 bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
-  switch (ask_quickly(sigma)) {
-    case QuickJunction::Answer::kCaptured:
-    case QuickJunction::Answer::kFree:
-      evidence_ = quick_junction_.evidence();
-      break;
-    case QuickJunction::Answer::kNotYet:
-      if (!last) {
-        ask_again(now_s);
-        return false;
-      }
-      [[fallthrough]];
-    case QuickJunction::Answer::kDoubt:
-      ask_in_full(sigma, last ? 0.0 : kDecisive);
-      if (!keeps_scans() && !knowledge_.characterised()) learn_and_ask_again(sigma);
-      break;
-  }
+  ask(sigma, last ? 0.0 : kDecisive);
   slip_.evidence = evidence_.known ? evidence_.log_likelihood_ratio : base::kNaN;
   // What neither course describes may be neither: an escape then takes more to be believed.
   const double doubt = std::max(evidence_.residual_sigmas / kMisfitSigmas, 1.0);
@@ -295,7 +208,7 @@ bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
     ask_again(now_s);
     return false;
   }
-  task_ = begins_from_stick_ && keeps_scans() ? Task::kFit : Task::kNone;
+  task_ = begins_from_stick_ ? Task::kFit : Task::kNone;
   // At the next slip the sign decides; a sled that sticks goes on sticking as long as the scans tell nothing.
   if (!evidence_.known) return false;
   const double told = std::log(kDecisiveLikelihoodRatio);
@@ -306,41 +219,31 @@ bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
   if (!captured()) return true;
   wait_count_ = std::min(wait_count_ + 1.0, kTypicalMemory);
   usual_wait_s_ += (now_s - peak_s_ - usual_wait_s_) / wait_count_;
-  if (!begins_from_stick_ || !keeps_scans())
+  if (!begins_from_stick_)
     slip_.cycle.capture_time_s = last_capture_s_ = window_from_s_ = evidence_.capture_s;
   return true;
 }
 
-void SlipFollower::ask_in_full(double sigma, double decisive) noexcept {
+void SlipFollower::ask(double sigma, double decisive) noexcept {
   if (std::isnan(question_from_s_)) question_from_s_ = peak_s_ - slipping_before_peak_s();
-  look_back_to(question_from_s_);
   const auto points = buffer_.since(question_from_s_);
-  // Both courses begin where the question does.
-  const double latest_s = question_from_s_ + 2.0 * quick_junction_.rows().row_s();
-  if (!keeps_scans() && (points.empty() || points.front().first_s > latest_s)) {
-    evidence_ = {};
-    return;
-  }
   evidence_ = junction_.ask(points, shared_, sigma, typical_delta_mu_, decisive);
   if (!evidence_.known || !(evidence_.residual_sigmas > kMisfitSigmas)) return;
   // Neither course fits: perhaps the belt has another speed now, which the rise before this slip tells.
   model::SharedParameters other = shared_;
   other.r = rise_slope(sigma);
   if (!(std::abs(std::log(other.r / shared_.r)) > kStickRateChange)) return;
-  look_back_to(question_from_s_);
-  const JunctionEvidence with_other =
-      junction_.ask(buffer_.since(question_from_s_), other, sigma, typical_delta_mu_);
+  const JunctionEvidence with_other = junction_.ask(points, other, sigma, typical_delta_mu_);
   if (!belt_changed(with_other.residual_sigmas, evidence_.residual_sigmas)) return;
   evidence_ = with_other;
   shared_ = other;
   question_from_s_ = base::kNaN;
-  open_question();
 }
 
 bool SlipFollower::belt_changed(double residual_sigmas, double before_sigmas) noexcept {
   if (!BeltChange::explains(residual_sigmas, before_sigmas)) return false;
   const bool seen_before = belt_change_.seen(slip_number_, rise_slope_);
-  return seen_before || (keeps_scans() ? typical_count_ : heights_.count()) < kKnownSlips;
+  return seen_before || typical_count_ < kKnownSlips;
 }
 
 void SlipFollower::decide(double evidence, double now_s) noexcept {
@@ -426,25 +329,6 @@ void SlipFollower::estimate_by_fit(double end_s, double sigma) noexcept {
   slip_.cycle.delta_mu_standard_error = std::sqrt(std::max(fit.delta_mu_variance(), 0.0));
   learn_typical(fit.delta_mu());
   if (fit.residual_sigmas < kMisfitSigmas) knowledge_.learn(fit.evidence);
-}
-
-void SlipFollower::learn_and_ask_again(double sigma) noexcept {
-  // Of a slip with another stick rate than the one known, that is all there is to learn.
-  if (!evidence_.known || !begins_from_stick_ || shared_.r == rise_slope_) return;
-  const bool is_captured = evidence_.log_likelihood_ratio > kDecisive;
-  double end_s = trough_s_;  // Whatever comes of it, it slips up to there.
-  if (is_captured) end_s = 0.5 * (evidence_.capture_s + evidence_.next_onset_s);
-  if (evidence_.log_likelihood_ratio < -kDecisive) end_s = last_scan_s();
-  look_back_to(rise().begin_s);
-  const double from_s = rise().line_from_s(buffer_.points(), std::max(rise().begin_s, window_from_s_));
-  const estimate::CycleFit fit = estimate::fit_cycle(estimate::between(buffer_.points(), from_s, end_s),
-                                                     is_captured, first_guess(), knowledge_, sigma);
-  if (!fit.converged || !(fit.residual_sigmas < kMisfitSigmas)) return;
-  knowledge_.learn(fit.evidence);
-  if (std::abs(evidence_.log_likelihood_ratio) > kDecisive) return;
-  const QuickJunction::Answer anew = ask_quickly(sigma);
-  if (anew == QuickJunction::Answer::kCaptured || anew == QuickJunction::Answer::kFree)
-    evidence_ = quick_junction_.evidence();
 }
 
 void SlipFollower::learn_turning_points(double fall_s, double sigma) noexcept {

@@ -8,59 +8,43 @@
 
 #include "core/detect/belt_change.hpp"
 #include "core/detect/fall_finder.hpp"
-#include "core/detect/fall_heights.hpp"
 #include "core/detect/live_cycle.hpp"
 #include "core/detect/live_junction.hpp"
-#include "core/detect/quick_junction.hpp"
 #include "core/detect/rise.hpp"
 #include "core/estimate/cycle_fit.hpp"
 
 namespace stickslip::detect {
 
-/// Follows one slip at a time. Fits of up to 256 points are done one per scan, so that no scan waits for two;
-/// only without stored scans (tier kPeak) a full evaluation is done within one scan. Fixed memory, 70 kB;
-/// never allocates.
+/// Follows one slip at a time. Fits of up to 256 points are done one per scan, so that no scan waits for two.
+/// Fixed memory; never allocates.
 class SlipFollower {
  public:
   /// \param scan_rate_Hz > 0.
   SlipFollower(EstimatorTier tier, double scan_rate_Hz, estimate::SharedPrior prior)
-      : tier_(tier), scan_s_(1.0 / scan_rate_Hz), knowledge_(std::move(prior)), quick_junction_(scan_s_) {}
+      : tier_(tier), scan_s_(1.0 / scan_rate_Hz), knowledge_(std::move(prior)) {}
 
-  /// The next scan. \param usable  it is no spike and not saturated.
-  void add(double value, bool usable) noexcept {
-    quick_junction_.add(value, usable);
-    ++scans_since_open_;
-  }
-  /// Stores the scan for the fits; call after add() if the scan is usable and keeps_scans().
-  void keep(double time_s, double value) noexcept { buffer_.add(time_s, value); }
-  /// Whether the scans of the last one or two cycles are stored, for S and K. The tier kPeak stores none; it
-  /// has only the rows of QuickJunction.
-  [[nodiscard]] bool keeps_scans() const noexcept { return tier_ != EstimatorTier::kPeak; }
+  /// The next scan that is usable: it is no spike and not saturated.
+  void add(double time_s, double value) noexcept { buffer_.add(time_s, value); }
   /// Reports a fall under way: times of its peak and of its lowest point so far.
   void falls(double peak_s, double lowest_s) noexcept;
-  /// Scans are missing after the last one; later scans are not connected with earlier ones. Without stored
-  /// scans, the slip under way is evaluated now.
-  /// \return true if this decided how the slip ends.
-  [[nodiscard]] bool gap(double now_s, double sigma) noexcept;
+  /// Scans are missing after the last one; later scans are not connected with earlier ones.
+  void gap(double now_s) noexcept;
 
   /// Begins a confirmed slip and ends the one before; call force() and read slip() first.
-  /// \param peak_s,trough_s  times of the fall's turning points. \param now_s  of the last scan.
+  /// \param peak_s,trough_s  times of the fall's turning points.
   /// \param begins_from_stick  the slip before was captured. A slip too large for a free oscillation is taken
   ///        to begin from sticking in any case.
-  void open(const Fall& fall, double peak_s, double trough_s, double now_s, bool begins_from_stick,
-            double sigma) noexcept;
+  void open(const Fall& fall, double peak_s, double trough_s, bool begins_from_stick, double sigma) noexcept;
   /// Whether a task is due.
-  [[nodiscard]] bool has_task() const noexcept {
-    return task_ != Task::kNone && scans_since_open_ >= wait_scans_;
-  }
+  [[nodiscard]] bool has_task() const noexcept { return task_ != Task::kNone; }
   /// Does at most one task. \return true if it decided how the slip ends.
   [[nodiscard]] bool step(double now_s, double sigma) noexcept {
     return task_ != Task::kNone && !(now_s < next_task_s_) && do_task(now_s, sigma);
   }
   /// Does all remaining tasks with the available scans.
-  /// \param next  the slip that follows; nullptr if there is none.
+  /// \param has_next  a slip follows.
   /// \return true if this decided how the slip ends.
-  [[nodiscard]] bool force(double now_s, double sigma, const Fall* next) noexcept;
+  [[nodiscard]] bool force(double now_s, double sigma, bool has_next) noexcept;
   void close() noexcept { task_ = Task::kNone, open_ = false; }
 
   [[nodiscard]] bool is_open() const noexcept { return open_; }
@@ -85,34 +69,14 @@ class SlipFollower {
   [[nodiscard]] bool do_task(double now_s, double sigma) noexcept;
   void first_fit(double sigma) noexcept;
   void first_ask() noexcept;
-  /// Unless a scan is missing since the slip was opened.
-  [[nodiscard]] double last_scan_s() const noexcept {
-    return opened_s_ + static_cast<double>(scans_since_open_) * scan_s_;
-  }
-  /// With what is known by now.
-  void open_question() noexcept;
-  /// The same for a slip that was not asked about from its begin on.
-  void open_late_question(double sigma) noexcept;
-  /// force() where scans are not kept.
-  void force_by_heights(double now_s, double sigma, const Fall* next) noexcept;
-  /// By a few sums: at once, or of the first rows where they tell.
-  [[nodiscard]] QuickJunction::Answer ask_quickly(double sigma) noexcept;
   [[nodiscard]] bool judge(double now_s, double sigma, bool last) noexcept;
   /// The next drop if it goes on freely.
-  [[nodiscard]] double freely_next_drop() const noexcept {
-    return FallHeights::freely_next(fall_.drop(), shared_.oscillator().gamma_over_2omega());
-  }
+  [[nodiscard]] double freely_next_drop() const noexcept;
   /// \param residual_sigmas  what this slip's scans leave with the slope of the rise before it as stick rate.
   /// \param before_sigmas  with the one known.
   [[nodiscard]] bool belt_changed(double residual_sigmas, double before_sigmas) noexcept;
-  /// Where scans are not kept, the buffer has what rows there are, from then on.
-  void look_back_to(double time_s) noexcept;
-  /// evidence_ by all means, at far more cost. \param decisive  0: whatever comes of it.
-  void ask_in_full(double sigma, double decisive) noexcept;
-  /// Where scans are not kept and nobody characterised the tester, a slip from sticking that had to be asked
-  /// in full is fitted: it tells of ω, γ and r what turning points cannot, so that the next ones fit. If it
-  /// left a doubt, that may be gone now.
-  void learn_and_ask_again(double sigma) noexcept;
+  /// Sets evidence_. \param decisive  as in LiveJunction.
+  void ask(double sigma, double decisive) noexcept;
   void decide(double evidence, double now_s) noexcept;
   void ask_again(double now_s) noexcept { next_task_s_ = now_s + period_s() / kAskedPerPeriod; }
   void estimate(double now_s, double sigma) noexcept;
@@ -133,7 +97,6 @@ class SlipFollower {
   estimate::SharedKnowledge knowledge_;
   estimate::CycleBuffer buffer_;
   LiveJunction junction_;
-  QuickJunction quick_junction_;
 
   // The slip under way.
   bool open_ = false;
@@ -142,15 +105,11 @@ class SlipFollower {
   bool whole_ = false;  ///< No scan is missing since its peak.
   Task task_ = Task::kNone;
   double next_task_s_ = 0.0;
-  double opened_s_ = 0.0;              ///< Time of the last scan before it was opened,
-  std::int64_t scans_since_open_ = 0;  ///< and scans since then;
-  std::int64_t wait_scans_ = 0;        ///< so many before the first task.
   LiveCycle slip_;
   Fall fall_;
   double peak_s_ = 0.0;
   double trough_s_ = 0.0;
-  double rise_slope_ = 0.0;       ///< 0: not worked out; NaN: its scans are gone.
-  std::int64_t late_number_ = 0;  ///< Slip of the last late question.
+  double rise_slope_ = 0.0;  ///< 0: not worked out; NaN: its scans are gone.
   BeltChange belt_change_;
   std::int64_t slip_number_ = 0;
   double gap_s_ =
@@ -164,7 +123,6 @@ class SlipFollower {
   double last_capture_s_ = std::numeric_limits<double>::quiet_NaN();  ///< NaN if unknown.
   double typical_delta_mu_ = 0.0;
   double typical_count_ = 0.0;  ///< Slips behind it.
-  FallHeights heights_;         ///< In its place where scans are not kept.
   double usual_wait_s_ = 0.0;   ///< From a peak until captures were decided; 0 if none was.
   double wait_count_ = 0.0;     ///< Slips behind it.
 };

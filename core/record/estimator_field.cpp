@@ -11,7 +11,7 @@ base::Result<detect::EstimatorTier> estimator_of(const ProcessFacts& process) {
   if (process.estimator.empty()) return detect::EstimatorTier::kFit;
   const std::optional<detect::EstimatorTier> tier = detect::estimator_tier_from_name(process.estimator);
   if (!tier) {
-    return base::usage_error("process/estimator \"{}\" is not \"peak\", \"interpolated\" or \"fit\"",
+    return base::usage_error("process/estimator \"{}\" is not \"turning-points\" or \"fit\"",
                              base::one_line(process.estimator, 100));
   }
   return *tier;

@@ -125,6 +125,9 @@ class Log final : public daemon::EventReceiver {
           .message = fmt::format("test {} begins with room on the disk for {:.0f} s", test, room_s),
           .test = test});
   }
+  void config_outdated(std::string_view what) override {
+    tell({.level = io::LogLevel::kWarning, .event = "config-outdated", .message = std::string{what}});
+  }
   void record_folder_lacks(std::string_view what) override {
     tell({.level = io::LogLevel::kWarning, .event = "record-folder-lacks", .message = std::string{what}});
   }

@@ -45,7 +45,10 @@ base::Result<io::DaemonConfig> good_config(const std::string& file) {
 }
 
 int check_config(const std::string& file) {
-  if (const auto config = good_config(file); !config) return refused(config.error());
+  const auto config = good_config(file);
+  if (!config) return refused(config.error());
+  for (const std::string& warning : config->warnings)
+    fmt::print("{}: {}\n", base::printable(file), base::printable(warning));
   fmt::print("{}: good\n", base::printable(file));
   return 0;
 }
@@ -114,6 +117,7 @@ int run(const std::string& file) {
     const bool table = next->report_table;
     const bool terminal = table && ::isatty(STDOUT_FILENO) != 0;
     const std::unique_ptr<daemon::EventReceiver> log = make_log(next->log_level);
+    for (const std::string& warning : next->warnings) log->config_outdated(warning);
 
     base::Result<runtime::RecordFolder> folder = runtime::prepare_record_folder(next->record_folder);
     if (!folder) return refused(folder.error());

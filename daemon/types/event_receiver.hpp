@@ -52,6 +52,8 @@ class EventReceiver {
   virtual void storage_has_room() {}
   /// A test begins although the disk has room for `room_s` seconds only.
   virtual void little_room(std::int64_t /*test*/, double /*room_s*/) {}
+  /// At the start, once for each outdated word of the configuration, with the word to write.
+  virtual void config_outdated(std::string_view /*what*/) {}
   /// At the start, once for each feature that the file system of the records lacks, with the consequence.
   virtual void record_folder_lacks(std::string_view /*what*/) {}
   /// A record was made from a journal that could not be read completely.

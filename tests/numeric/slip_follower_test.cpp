@@ -1,5 +1,4 @@
-// How slips end with the tradition, which keeps no scans: by heights, by rows that are asked late, and by
-// what a slip that had to be asked in full teaches of the tester.
+// How slips end, at any scan rate and around gaps, where nothing is known of the tester.
 
 #include "core/detect/slip_follower.hpp"
 
@@ -27,33 +26,36 @@ struct Ended {
   LiveCycle slip;
 };
 
-/// Falls found and followed as core/detect/live_detector does it with the tradition.
+/// Falls found and followed as core/detect/live_detector does it.
 class Followed {
  public:
   Followed(const LiveScene& scene, estimate::SharedPrior prior, double sigma)
       : scan_s_(1.0 / scene.scan_rate_Hz),
         sigma_(sigma),
-        follower_(EstimatorTier::kPeak, scene.scan_rate_Hz, std::move(prior)) {}
+        follower_(EstimatorTier::kTurningPoints, scene.scan_rate_Hz, std::move(prior)) {}
 
-  void add(double value, bool usable = true) {
+  void add(double value) {
     const double now_s = time_s(position_);
     position_ += 1.0;
-    follower_.add(value, usable);
+    follower_.add(now_s, value);
     const auto fall = finder_.add(value, SlipRule::kHysteresisSigmas * sigma_);
+    if (finder_.falling())
+      follower_.falls(time_s(static_cast<double>(finder_.high_at())),
+                      time_s(static_cast<double>(finder_.low_at())));
     if (fall && rule_.is_slip(*fall, sigma_)) {
-      force(&*fall);
-      follower_.open(*fall, time_s(fall->peak_at), time_s(fall->trough_at), now_s, sticks_, sigma_);
+      force(true);
+      follower_.open(*fall, time_s(fall->peak_at), time_s(fall->trough_at), sticks_, sigma_);
       return;
     }
-    if (follower_.has_task()) (void)follower_.step(now_s, sigma_);
+    if (follower_.has_task() && follower_.step(now_s, sigma_)) sticks_ = follower_.captured();
   }
   /// So many scans are missing.
   void gap(double count) {
-    if (follower_.gap(time_s(position_ - 1.0), sigma_)) sticks_ = follower_.captured();
+    follower_.gap(time_s(position_ - 1.0));
     gap_at_ = position_;
     lost_ = count;
   }
-  void end() { force(nullptr); }
+  void end() { force(false); }
 
   [[nodiscard]] const std::vector<Ended>& slips() const { return slips_; }
   [[nodiscard]] const model::SharedParameters& shared() const { return follower_.shared(); }
@@ -62,9 +64,9 @@ class Followed {
   [[nodiscard]] double time_s(double position) const {
     return (position < gap_at_ ? position : position + lost_) * scan_s_;
   }
-  void force(const Fall* next) {
+  void force(bool has_next) {
     if (!follower_.is_open()) return;
-    (void)follower_.force(time_s(position_ - 1.0), sigma_, next);
+    (void)follower_.force(time_s(position_ - 1.0), sigma_, has_next);
     if (follower_.decided()) sticks_ = follower_.captured();
     slips_.push_back({follower_.decided(), follower_.captured(), follower_.slip()});
     follower_.close();
@@ -109,44 +111,6 @@ TEST(SlipFollower, TellsCapturesFromAnEscapeWhateverTheRate) {
       EXPECT_EQ(slip.captured, i < captures) << scan_rate_Hz << ", " << frequency_Hz << ": slip " << i;
     }
   }
-}
-
-// Many scans do not fit what is guessed of a tester. The first slip is then fitted, which tells ω to a few
-// thousandths and γ/2ω to a third or so; turning points would leave γ/2ω at the paper's 0.022 for ever.
-TEST(SlipFollower, LearnsTheTesterWhereScansDoNotFitIt) {
-  for (const double gamma_over_2omega : {0.01, 0.05, 0.08}) {
-    LiveScene scene;
-    scene.scan_rate_Hz = 10'000.0;
-    scene.gamma_over_2omega = gamma_over_2omega;
-    scene.Q = 1.0;
-    const Followed followed = follow(scene, {});
-    // The scans from onset to capture tell γ/2ω to 0.003 in one slip; two of these.
-    EXPECT_NEAR(followed.shared().oscillator().gamma_over_2omega(), gamma_over_2omega, 0.006);
-    EXPECT_NEAR(followed.shared().omega, scene.omega(), 0.01 * scene.omega());
-  }
-}
-
-// Nothing but the heights: a spike sits in every row of a slip, but in no turning point. They say captured by
-// more than 20 to 1 and less than 10⁴ to 1.
-TEST(SlipFollower, HeightsDecideWhereNoScanTells) {
-  LiveScene scene;
-  scene.sigma = 0.0;
-  LiveTrial trial{scene};
-  constexpr std::size_t kBlind = 5;
-  const double from_s = trial.slips()[kBlind].onset_s;
-  const double to_s = trial.slips()[kBlind + 1].onset_s + 0.05;
-  Followed followed{scene, scene.characterised(), 0.0035};
-  for (std::int64_t scan = 0; scan < trial.scan_count(); ++scan) {
-    const double time_s = trial.time_s(scan);
-    followed.add(trial.next(), time_s < from_s || time_s > to_s);
-  }
-  ASSERT_GT(followed.slips().size(), kBlind + 1);
-  const Ended& blind = followed.slips()[kBlind];
-  EXPECT_TRUE(blind.decided);
-  EXPECT_TRUE(blind.captured);
-  EXPECT_GT(blind.slip.evidence, std::log(20.0));
-  EXPECT_LT(blind.slip.evidence, std::log(1e4));
-  EXPECT_TRUE(std::isnan(blind.slip.cycle.capture_time_s));
 }
 
 // Scans are missing, from any moment of a cycle on: that costs the ends of the slips whose scans they were,

@@ -80,8 +80,8 @@ RC_GTEST_PROP(LiveProperty, BlocksDoNotMatter, ()) {
   const std::vector<double> scans = any_scans(scene);
   ProcessorSettings settings;
   settings.segmenter.scan_rate_Hz = settings.analysis.scan_rate_Hz = scene.scan_rate_Hz;
-  settings.analysis.estimator = *rc::gen::element(
-      detect::EstimatorTier::kPeak, detect::EstimatorTier::kInterpolated, detect::EstimatorTier::kFit);
+  settings.analysis.estimator =
+      *rc::gen::element(detect::EstimatorTier::kTurningPoints, detect::EstimatorTier::kFit);
   const auto sizes = *rc::gen::nonEmpty(rc::gen::container<std::vector<std::size_t>>(
       rc::gen::inRange<std::size_t>(1, daq::ScanBlock{}.raw.size() + 1)));
   const daq::ScanIndex lost = *rc::gen::element<daq::ScanIndex>(0, 1, 40);
@@ -93,8 +93,7 @@ RC_GTEST_PROP(LiveProperty, BlocksDoNotMatter, ()) {
 // Whatever comes in, phases follow one another, and numbers are numbers or NaN with their sizes positive.
 RC_GTEST_PROP(LiveProperty, AnySignalIsFollowed, ()) {
   detect::LiveSettings settings;
-  settings.estimator = *rc::gen::element(detect::EstimatorTier::kPeak, detect::EstimatorTier::kInterpolated,
-                                         detect::EstimatorTier::kFit);
+  settings.estimator = *rc::gen::element(detect::EstimatorTier::kTurningPoints, detect::EstimatorTier::kFit);
   detect::LiveDetector detector{settings};
   const int period = *rc::gen::inRange(2, 60);
   const double scale = std::pow(10.0, *rc::gen::inRange(-6, 7));

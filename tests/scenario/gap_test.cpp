@@ -114,8 +114,7 @@ constexpr std::size_t kFirstSlipEnds = static_cast<std::size_t>((0.5 + 0.043 + 0
 class GapInARingDown : public testing::TestWithParam<detect::EstimatorTier> {};
 
 INSTANTIATE_TEST_SUITE_P(OfEachEstimator, GapInARingDown,
-                         testing::Values(detect::EstimatorTier::kPeak, detect::EstimatorTier::kInterpolated,
-                                         detect::EstimatorTier::kFit),
+                         testing::Values(detect::EstimatorTier::kTurningPoints, detect::EstimatorTier::kFit),
                          [](const auto& tier) { return std::string{name(tier.param)}; });
 
 TEST_P(GapInARingDown, NeverMakesSticking) {

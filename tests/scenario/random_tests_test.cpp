@@ -82,7 +82,7 @@ void expect_as_documented(detect::EstimatorTier estimator, const std::array<Clas
 TEST(RandomTests, AreCalledWhatTheyAre) { expect_as_documented(detect::EstimatorTier::kFit, kDocumented); }
 
 TEST(RandomTests, AreCalledSoLessOftenWithoutAFit) {
-  expect_as_documented(detect::EstimatorTier::kInterpolated, kDocumentedWithoutFit);
+  expect_as_documented(detect::EstimatorTier::kTurningPoints, kDocumentedWithoutFit);
 }
 
 // When the sled escaped: the onset of that slip by its fit, with the standard error that it says.

@@ -120,21 +120,6 @@ TEST(SkippedCorrections, SpikeOnTheFirstPeakIsTheStaticCoefficient) {
   EXPECT_NEAR(*corrected.results.static_coefficient.value, without, 0.5 * 0.08 * 0.36 * 0.36 + 4.0 * kNoise);
 }
 
-// By the tradition, S of a cycle is its largest scan: a spike on one of n peaks raises their mean by an nth.
-TEST(SkippedCorrections, SpikeOnAPeakRaisesTheMeanOfPeaksByItsShare) {
-  constexpr double kSpike = 0.1;
-  std::vector<double> values = pulled(kDeltaMu, "");
-  const Found clean = analysed(values, {}, EstimatorTier::kPeak);
-  const double n = mean_delta_mu(clean.live, 1).second;
-  ASSERT_GT(n, 10.0);
-  values[highest_scan(values, clean.cycles[5])] += kSpike;
-  const Found uncorrected = analysed(values, {.spikes = true}, EstimatorTier::kPeak);
-  EXPECT_NEAR(*uncorrected.results.mu_s.value - *clean.results.mu_s.value, kSpike / n, 1e-12);
-  const Found corrected = analysed(values, {}, EstimatorTier::kPeak);
-  // Without that scan the largest is a neighbour: as above, and an nth of it.
-  EXPECT_NEAR(*corrected.results.mu_s.value, *clean.results.mu_s.value, (0.0052 + 4.0 * kNoise) / n);
-}
-
 // A ring-down has one K. It is that at the onset; with the drift left in, that in the middle of all its
 // scans.
 TEST(SkippedCorrections, DriftMovesKOfARingDownToTheMiddleOfThePull) {
@@ -204,14 +189,12 @@ TEST_P(FirstSlipCounted, RaisesTheMeanByItsShare) {
   }
   EXPECT_NEAR(*uncorrected.results.delta_mu.value, mean_delta_mu(cycles, 0).first, 1e-12);
   EXPECT_NEAR(*uncorrected.results.delta_mu.value - others, (first.delta_mu - others) / (n + 1.0), 1e-12);
-  // By the tradition peaks grow by less than S does, and estimators of turning points by about as much.
   EXPECT_GT(first.delta_mu - others, 0.5 * kChange);
   EXPECT_LT(first.delta_mu - others, 1.2 * kChange);
 }
 
 INSTANTIATE_TEST_SUITE_P(OfEachEstimator, FirstSlipCounted,
-                         testing::Values(EstimatorTier::kPeak, EstimatorTier::kInterpolated,
-                                         EstimatorTier::kFit),
+                         testing::Values(EstimatorTier::kTurningPoints, EstimatorTier::kFit),
                          [](const auto& tier) { return std::string{name(tier.param)}; });
 
 // Where the first slip is like the others it may as well count: it is one more, in the fit of all as one too.

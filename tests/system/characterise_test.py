@@ -98,7 +98,7 @@ class Characterise(unittest.TestCase):
         (self.folder / "daemon.toml").write_text(
             '[board]\ndriver = "simulated"\nclock_speed = 100\n[board.simulated]\n'
             f'scenes = ["{SOURCE}/config/scenes/ring-down-at-12-in-per-min.toml"]\nrepeats = 1\n'
-            '[analysis]\nestimator = "interpolated"\n[record]\nfolder = "cheap"\n', encoding="utf-8")
+            '[analysis]\nestimator = "turning-points"\n[record]\nfolder = "cheap"\n', encoding="utf-8")
         done = run(BUILD / "bin" / "stickslipd", "--config", "daemon.toml", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         [file] = (self.folder / "cheap").glob("*.h5")

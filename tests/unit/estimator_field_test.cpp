@@ -31,13 +31,15 @@ ProcessFacts facts(std::string method, std::string estimator) {
 
 TEST(EstimatorField, IsAWordAndTheFitWhereItIsEmpty) {
   EXPECT_EQ(record::estimator_of({}), EstimatorTier::kFit);
-  for (const EstimatorTier tier : {EstimatorTier::kPeak, EstimatorTier::kInterpolated, EstimatorTier::kFit}) {
+  for (const EstimatorTier tier : {EstimatorTier::kTurningPoints, EstimatorTier::kFit}) {
     EXPECT_EQ(record::estimator_of(facts("", std::string{detect::name(tier)})), tier);
   }
+  for (const char* former : {"peak", "interpolated"})
+    EXPECT_EQ(record::estimator_of(facts("", former)), EstimatorTier::kTurningPoints);
   const auto refused = record::estimator_of(facts("", "closed form"));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().message,
-            "process/estimator \"closed form\" is not \"peak\", \"interpolated\" or \"fit\"");
+            "process/estimator \"closed form\" is not \"turning-points\" or \"fit\"");
   EXPECT_EQ(refused.error().exit_status(), 2);
 }
 
@@ -98,8 +100,9 @@ ProcessFacts written(const std::string& recorded, std::optional<EstimatorTier> c
 
 TEST(EstimatorField, IsThatOfTheConfigurationElseOfTheReplayedRecord) {
   EXPECT_EQ(written("", {}).estimator, "fit");
-  EXPECT_EQ(written("peak", {}).estimator, "peak");
-  EXPECT_EQ(written("peak", EstimatorTier::kInterpolated).estimator, "interpolated");
+  // A record of version 0.1: its scans are evaluated by what there is now.
+  EXPECT_EQ(written("peak", {}).estimator, "turning-points");
+  EXPECT_EQ(written("fit", EstimatorTier::kTurningPoints).estimator, "turning-points");
   EXPECT_EQ(written("peak", EstimatorTier::kFit).estimator, "fit");
   EXPECT_EQ(written("closed form", {}).estimator, "fit");
 }

@@ -55,17 +55,11 @@ Analysed analysed(const test::LiveScene& scene, EstimatorTier tier) {
   return found;
 }
 
-class EstimatorWithoutFit : public testing::TestWithParam<EstimatorTier> {};
-
-INSTANTIATE_TEST_SUITE_P(Tiers, EstimatorWithoutFit,
-                         testing::Values(EstimatorTier::kPeak, EstimatorTier::kInterpolated),
-                         [](const auto& tier) { return std::string{name(tier.param)}; });
-
-// What needs no model is the same whatever the estimator; what the fit alone knows is not told without it.
-TEST_P(EstimatorWithoutFit, TellsNothingThatItDoesNotKnow) {
+// What needs no model is the same with either estimator; what the fit alone knows is not told without it.
+TEST(TurningPoints, TellsNothingThatItDoesNotKnow) {
   const test::LiveScene scene;
   const analysis::TestResults fit = analysed(scene, EstimatorTier::kFit).results;
-  const analysis::TestResults other = analysed(scene, GetParam()).results;
+  const analysis::TestResults other = analysed(scene, EstimatorTier::kTurningPoints).results;
   EXPECT_EQ(other.regime, model::Regime::kStickSlip);
   EXPECT_EQ(other.period_median, fit.period_median);
   EXPECT_EQ(other.static_coefficient, fit.static_coefficient);
@@ -75,21 +69,19 @@ TEST_P(EstimatorWithoutFit, TellsNothingThatItDoesNotKnow) {
        {&other.omega, &other.gamma_over_2omega, &other.Q, &other.threshold_speed, &other.delta_mu_combined,
         &other.pull_speed_measured}) {
     EXPECT_FALSE(unknown->value);
-    EXPECT_NE(unknown->reason.find(name(GetParam())), std::string::npos) << unknown->reason;
+    EXPECT_NE(unknown->reason.find(name(EstimatorTier::kTurningPoints)), std::string::npos)
+        << unknown->reason;
     EXPECT_NE(unknown->reason.find("\"fit\""), std::string::npos) << unknown->reason;
   }
   ASSERT_TRUE(other.delta_mu.value) << other.delta_mu.reason;
   EXPECT_NE(other.delta_mu, fit.delta_mu);
   EXPECT_NEAR(*other.mu_s.value - *other.mu_k.value, *other.delta_mu.value, 1e-12);
-  // Peaks stand out by the amplitude, up to √(1 + Q²) = 1.65 of S − K; turning points know better.
-  const double over = *other.delta_mu.value / (scene.S - scene.K);
-  EXPECT_GT(over, GetParam() == EstimatorTier::kPeak ? 1.4 : 0.9);
-  EXPECT_LT(over, GetParam() == EstimatorTier::kPeak ? 1.65 : 1.1);
+  EXPECT_NEAR(*other.delta_mu.value / (scene.S - scene.K), 1.0, 0.1);
 }
 
 // The rows of the record are those that were seen live, each slip's how it ended with them.
-TEST_P(EstimatorWithoutFit, KeepsTheCyclesAsTheyWereSeen) {
-  const Analysed found = analysed(test::LiveScene{}, GetParam());
+TEST(TurningPoints, KeepsTheCyclesAsTheyWereSeen) {
+  const Analysed found = analysed(test::LiveScene{}, EstimatorTier::kTurningPoints);
   ASSERT_GT(found.cycles.size(), 5U);
   ASSERT_EQ(found.cycles.size(), found.live.size());
   for (std::size_t i = 0; i < found.cycles.size(); ++i) {
@@ -129,10 +121,10 @@ TEST(TestAnalysis, EachRowHasWhatWasSeenOfItsOwnSlip) {
 }
 
 // A test that escapes: its slips say so while it runs, and with them the whole.
-TEST_P(EstimatorWithoutFit, SeesAnEscape) {
+TEST(TurningPoints, SeesAnEscape) {
   test::LiveScene scene;
   scene.escape_Q = 3.0;
-  const Analysed found = analysed(scene, GetParam());
+  const Analysed found = analysed(scene, EstimatorTier::kTurningPoints);
   EXPECT_EQ(found.results.regime, model::Regime::kMixed) << found.results.regime_reason;
   ASSERT_TRUE(found.results.transition_time.value) << found.results.transition_time.reason;
   EXPECT_FALSE(found.results.transition_time.standard_error);

@@ -5,7 +5,7 @@ modprobe comedi_test period=50000 amplitude=1000000
 use stream
 # Scans are what is proven here. To fit the model to 12000 slips takes the translated processor minutes, and that it
 # gives the same bits as elsewhere is what tester.sh shows.
-load_cell_zero="-5 V" configure '[analysis]' 'estimator = "interpolated"'
+load_cell_zero="-5 V" configure '[analysis]' 'estimator = "turning-points"'
 start_daemon
 await state '"acquiring"'
 say "acquiring"
