@@ -305,7 +305,6 @@ void read_method(Settings table, const std::filesystem::path& folder, model::Met
 
 /// "peak" and "interpolated" of version 0.1 are accepted, with a warning.
 void read_estimator(Settings table, DaemonConfig& config) {
-  if (!table.has("estimator")) return;
   if (const std::string text = table.text("estimator", ""); detect::is_former_estimator(text)) {
     config.estimator = detect::EstimatorTier::kTurningPoints;
     config.warnings.push_back(fmt::format(
@@ -314,7 +313,9 @@ void read_estimator(Settings table, DaemonConfig& config) {
         text));
     return;
   }
-  config.estimator = table.choice<detect::EstimatorTier>("estimator", kEstimators);
+  const auto estimator =
+      table.choice<detect::EstimatorTier>("estimator", kEstimators, detect::EstimatorTier::kFit);
+  if (table.has("estimator")) config.estimator = estimator;
 }
 
 DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {

@@ -115,7 +115,10 @@ class GapInARingDown : public testing::TestWithParam<detect::EstimatorTier> {};
 
 INSTANTIATE_TEST_SUITE_P(OfEachEstimator, GapInARingDown,
                          testing::Values(detect::EstimatorTier::kTurningPoints, detect::EstimatorTier::kFit),
-                         [](const auto& tier) { return std::string{name(tier.param)}; });
+                         [](const auto& tier) {
+                           return std::string{tier.param == detect::EstimatorTier::kFit ? "Fit"
+                                                                                        : "TurningPoints"};
+                         });
 
 TEST_P(GapInARingDown, NeverMakesSticking) {
   const Played test{"ring-down-at-12-in-per-min.toml"};

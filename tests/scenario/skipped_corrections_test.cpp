@@ -195,7 +195,9 @@ TEST_P(FirstSlipCounted, RaisesTheMeanByItsShare) {
 
 INSTANTIATE_TEST_SUITE_P(OfEachEstimator, FirstSlipCounted,
                          testing::Values(EstimatorTier::kTurningPoints, EstimatorTier::kFit),
-                         [](const auto& tier) { return std::string{name(tier.param)}; });
+                         [](const auto& tier) {
+                           return std::string{tier.param == EstimatorTier::kFit ? "Fit" : "TurningPoints"};
+                         });
 
 // Where the first slip is like the others it may as well count: it is one more, in the fit of all as one too.
 TEST(SkippedCorrections, FirstSlipLikeTheOthersChangesNothingButTheNumber) {

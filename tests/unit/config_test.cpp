@@ -93,6 +93,23 @@ TEST(Config, ShippedFileShowsTheDefaults) {
   EXPECT_EQ(written->skipped, plain.skipped);
 }
 
+TEST(Config, EstimatorsOfVersion01MeanTurningPointsWithAWarning) {
+  for (const std::string former : {"peak", "interpolated"}) {
+    const auto config = read(kGood + "[analysis]\nestimator = \"" + former + "\"\n");
+    ASSERT_TRUE(config) << config.error().message;
+    EXPECT_EQ(config->estimator, detect::EstimatorTier::kTurningPoints);
+    ASSERT_EQ(config->warnings.size(), 1U);
+    EXPECT_EQ(config->warnings.front(),
+              "analysis.estimator = \"" + former +
+                  "\": this estimator is no more; \"turning-points\" takes its place: "
+                  "write that, or \"fit\"");
+  }
+  const auto config = read(std::string{kGood} + "[analysis]\nestimator = \"turning-points\"\n");
+  EXPECT_EQ(config->estimator, detect::EstimatorTier::kTurningPoints);
+  EXPECT_TRUE(config->warnings.empty());
+  EXPECT_FALSE(read(std::string{kGood} + "[analysis]\nestimator = \"best\"\n"));
+}
+
 TEST(Config, KeepsWhatItIsTold) {
   EXPECT_TRUE(read(kGood)->skipped.none());
   const DaemonConfig config = *read(kGood + "[analysis]\nkeep_spikes = true\nkeep_first_slip = true\n");
