@@ -318,17 +318,21 @@ std::string TestAnalysis::fall_back(const estimate::Trace& trace, const base::Lo
   results.mu_k = points.results.mu_k;
   results.delta_mu = points.results.delta_mu;
   results.delta_mu_scatter = points.results.delta_mu_scatter;
+  base::LongColumn<detect::Cycle> rows{settings_.scratch_folder};
   for (std::size_t i = 0; i < slips.size(); ++i) {
-    const detect::Cycle seen = std::as_const(points.cycles)[i];
-    detect::Cycle& row = estimates.cycles[i];
+    const detect::Cycle& seen = std::as_const(points.cycles)[i];
+    detect::Cycle row = std::as_const(estimates.cycles)[i];
     row.onset_time_s = seen.onset_time_s;
     row.stick_time_s = seen.stick_time_s;
     row.delta_mu = seen.delta_mu;
     row.slip_speed_ratio = seen.slip_speed_ratio;
-    if ((row.flags & seen.flags & detect::kCycleCaptured) == 0) continue;
-    row.capture_time_s = seen.capture_time_s;
-    row.slip_time_s = seen.slip_time_s;
+    if ((row.flags & seen.flags & detect::kCycleCaptured) != 0) {
+      row.capture_time_s = seen.capture_time_s;
+      row.slip_time_s = seen.slip_time_s;
+    }
+    rows.push_back(row);
   }
+  estimates.cycles = std::move(rows);
   return fmt::format("S and K are by turning points, as {}", why);
 }
 

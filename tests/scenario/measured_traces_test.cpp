@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/analysis/test_analysis.hpp"
+#include "tests/support/record_samples.hpp"
 
 namespace stickslip::analysis {
 namespace {
@@ -26,6 +27,8 @@ class MeasuredTraces : public testing::Test {
     }
     AnalysisSettings settings;
     settings.scan_rate_Hz = test::kMeasuredScanRate_Hz;
+    const test::TemporaryFolder scratch;
+    settings.scratch_folder = scratch.path();
     TestAnalysis analysis{settings};
     base::ScanIndex index = 0;
     for (const double value : values) analysis.add(index++, value, false);
