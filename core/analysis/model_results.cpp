@@ -171,6 +171,47 @@ bool is_overdamped(const SlipEstimates& estimates) noexcept {
   return gamma + kSigmasOfDamping * error > 2.0 * estimates.fit.shared.omega;
 }
 
+/// A slip whose end contradicts its own numbers: the sled sticks again exactly where Q is below the threshold
+/// [22], and without damping always. S − K, γ and the threshold may each be off by kSure standard errors, and
+/// Q by kMargin more, for what the model leaves out. \return what contradicts; empty if nothing does.
+std::string contradiction(const SlipEstimates& estimates) {
+  constexpr double kSure = 3.0;
+  constexpr double kMargin = 1.2;
+  const double omega = estimates.fit.shared.omega;
+  const auto [gamma, error] = damping_of(estimates);
+  const auto threshold = [omega = omega](double damping) {
+    return model::Q_threshold(std::clamp(damping / (2.0 * omega), 0.0, model::kLargestGammaOver2Omega));
+  };
+  const double lowest = threshold(gamma + kSure * error);
+  const double highest = threshold(gamma - kSure * error);
+  for (std::size_t i = 0; i < estimates.ends.size(); ++i) {
+    const bool begins_from_stick = i == 0 || estimates.window_of_slip[i] != estimates.window_of_slip[i - 1];
+    if (estimates.ends[i] == SlipEnd::kUnknown || !begins_from_stick || !estimates.has_window(i)) continue;
+    const estimate::SlipWindow& window = estimates.windows[estimates.window_of_slip[i]];
+    const double D = window.slip.S - window.slip.K;
+    const double D_error = kSure * estimates.fit.delta_mu_error(window);
+    const double r = estimates.belt.stick_rate(estimates.fit.shared.r, window.slip.onset_s);
+    const auto Q = [&](double delta_mu) {
+      return model::dimensionless_speed(r, omega, std::max(delta_mu, 0.0));
+    };
+    if (estimates.ends[i] == SlipEnd::kFree && kMargin * Q(D - D_error) < lowest) {
+      return fmt::format(
+          "slip {} went on freely at Q = {:.3g}, below the threshold {:.3g} of the damping found: it would "
+          "have "
+          "to stick again",
+          i + 1, Q(D), threshold(gamma));
+    }
+    if (estimates.ends[i] == SlipEnd::kCaptured && Q(D + D_error) > kMargin * highest) {
+      return fmt::format(
+          "slip {} stuck again at Q = {:.3g}, above the threshold {:.3g} of the damping found: it would have "
+          "to go "
+          "on",
+          i + 1, Q(D), threshold(gamma));
+    }
+  }
+  return {};
+}
+
 /// Why model_describes() says no.
 std::string why_not(const SlipEstimates& estimates, double sigma) {
   const estimate::SlipFit& fit = estimates.fit;
@@ -185,6 +226,7 @@ std::string why_not(const SlipEstimates& estimates, double sigma) {
         "overdamped: gamma/2omega {:.2g} +- {:.1g}, the scans show no oscillation of the model",
         gamma / (2.0 * fit.shared.omega), error / (2.0 * fit.shared.omega));
   }
+  if (!feeds_the_oscillation(estimates)) return contradiction(estimates);
   return fmt::format(
       "the model does not describe this friction: its damping, {:.2g} +- {:.1g} 1/s, would be negative",
       gamma, error);
@@ -192,9 +234,9 @@ std::string why_not(const SlipEstimates& estimates, double sigma) {
 
 }  // namespace
 
-bool model_describes(const SlipEstimates& estimates, double sigma) noexcept {
+bool model_describes(const SlipEstimates& estimates, double sigma) {
   return estimates.fit.converged && estimates.fit.residual_sigma <= kLargestResidualSigmas * sigma &&
-         !feeds_the_oscillation(estimates) && !is_overdamped(estimates);
+         !feeds_the_oscillation(estimates) && !is_overdamped(estimates) && contradiction(estimates).empty();
 }
 
 void no_model_results(const std::string& reason, TestResults& results) {

@@ -85,6 +85,13 @@ detect::LiveSettings live_settings(const AnalysisSettings& settings) {
           !settings.skipped.spikes};
 }
 
+/// \param why  the fit has no results.
+std::string turning_points_finding(const Estimate& delta_mu, const std::string& why) {
+  const double error =
+      std::hypot(delta_mu.standard_error.value_or(0.0), delta_mu.systematic_uncertainty.value_or(0.0));
+  return fmt::format("S and K are by turning points, S - K uncertain by {:.2g}, as {}", error, why);
+}
+
 /// A stub of a test: without the noise there is no telling what is a slip.
 void too_short(std::size_t scan_count, TestResults& results) {
   results.regime_reason =
@@ -217,8 +224,12 @@ TestResults TestAnalysis::finish() {
                   fmt::format(
                       "the estimator \"{}\" does not fit the whole test; \"fit\" does, also afterwards",
                       detect::name(settings_.estimator)));
-    if (!estimates.results.delta_mu.value && fits_whole_test())
-      results.findings.push_back(fall_back(trace, slips, estimates));
+    if (!estimates.model_describes) {
+      const std::string why = estimates.results.delta_mu.reason;
+      estimates = by_turning_points(trace, slips, cycles_by_turning_points(), why);
+      estimates.model_describes = false;
+      results.findings.push_back(turning_points_finding(estimates.results.delta_mu, why));
+    }
     const detect::RegimeVerdict verdict =
         detect::judge_regime(slips.size(), estimates.log_likelihood_ratios, estimates.model_describes);
     results.regime = verdict.regime;
@@ -307,33 +318,6 @@ base::LongColumn<detect::LiveCycle> TestAnalysis::cycles_by_turning_points() con
   for (; gap != gaps_.end(); ++gap) detector.gap(gap->count);
   if (const auto cycle = detector.end()) cycles.push_back(*cycle);
   return cycles;
-}
-
-std::string TestAnalysis::fall_back(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
-                                    TestEstimates& estimates) const {
-  TestResults& results = estimates.results;
-  std::string why = results.delta_mu.reason;
-  const TestEstimates points = by_turning_points(trace, slips, cycles_by_turning_points(), why);
-  results.mu_s = points.results.mu_s;
-  results.mu_k = points.results.mu_k;
-  results.delta_mu = points.results.delta_mu;
-  results.delta_mu_scatter = points.results.delta_mu_scatter;
-  base::LongColumn<detect::Cycle> rows{settings_.scratch_folder};
-  for (std::size_t i = 0; i < slips.size(); ++i) {
-    const detect::Cycle& seen = std::as_const(points.cycles)[i];
-    detect::Cycle row = std::as_const(estimates.cycles)[i];
-    row.onset_time_s = seen.onset_time_s;
-    row.stick_time_s = seen.stick_time_s;
-    row.delta_mu = seen.delta_mu;
-    row.slip_speed_ratio = seen.slip_speed_ratio;
-    if ((row.flags & seen.flags & detect::kCycleCaptured) != 0) {
-      row.capture_time_s = seen.capture_time_s;
-      row.slip_time_s = seen.slip_time_s;
-    }
-    rows.push_back(row);
-  }
-  estimates.cycles = std::move(rows);
-  return fmt::format("S and K are by turning points, as {}", why);
 }
 
 TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,

@@ -128,10 +128,6 @@ class TestAnalysis {
                                                 const base::LongColumn<detect::Fall>& slips,
                                                 const base::LongColumn<detect::LiveCycle>& cycles,
                                                 std::string reason) const;
-  /// Gives S, K and S − K to estimates of a fit that has none, by turning points. \return the finding.
-  [[nodiscard]] std::string fall_back(const estimate::Trace& trace,
-                                      const base::LongColumn<detect::Fall>& slips,
-                                      TestEstimates& estimates) const;
   /// The cycles of all scans, seen once more by turning points.
   [[nodiscard]] base::LongColumn<detect::LiveCycle> cycles_by_turning_points() const;
   [[nodiscard]] bool fits_whole_test() const noexcept {

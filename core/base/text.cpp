@@ -99,7 +99,8 @@ std::string printable_lines(std::string_view text, bool colours_stay) {
 std::string csv_cell(std::string_view text) {
   std::string cell = printable(text);
   if (begins_a_formula(cell)) cell.insert(0, 1, '\'');
-  if (cell.find_first_of(",;\"") == cell.npos) return cell;
+  // A line that begins with # would be one of comment.
+  if (cell.find_first_of(",;\"") == cell.npos && !cell.starts_with('#')) return cell;
   std::string quoted = "\"";
   for (const char c : cell) quoted += c == '"' ? std::string{"\"\""} : std::string{c};
   return quoted + '"';
