@@ -14,6 +14,7 @@ find_package(SUNDIALS REQUIRED
 find_package(tomlplusplus REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(tl-expected REQUIRED)
 pkg_check_modules(comedi REQUIRED IMPORTED_TARGET comedilib)
 pkg_check_modules(matio REQUIRED IMPORTED_TARGET matio)

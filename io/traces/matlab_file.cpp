@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <matio.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -69,6 +70,31 @@ bool has_name4(std::string_view bytes, std::uint32_t size) {
                                             [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
 }
 
+/// The next `size` bytes are one stream of zlib, whose checksum libmatio does not compare.
+bool is_sound_stream(std::ifstream& file, std::uint64_t size) {
+  constexpr std::size_t kBlock = std::size_t{1} << 16U;
+  std::vector<char> packed(kBlock);
+  std::vector<Bytef> unpacked(4 * kBlock);
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) return false;
+  const std::unique_ptr<z_stream, int (*)(z_stream*)> owner{&stream, inflateEnd};
+  int status = Z_OK;
+  while (status == Z_OK && size > 0) {
+    const std::uint64_t next = std::min<std::uint64_t>(size, kBlock);
+    if (!file.read(packed.data(), static_cast<std::streamsize>(next))) return false;
+    size -= next;
+    stream.next_in = reinterpret_cast<Bytef*>(packed.data());
+    stream.avail_in = static_cast<uInt>(next);
+    do {
+      stream.next_out = unpacked.data();
+      stream.avail_out = static_cast<uInt>(unpacked.size());
+      status = inflate(&stream, Z_NO_FLUSH);
+    } while (status == Z_OK && stream.avail_out == 0);
+    if (status == Z_BUF_ERROR) status = Z_OK;  // It waits for the next block.
+  }
+  return status == Z_STREAM_END;
+}
+
 /// libmatio gives what stands before the cut, without a word: the sizes in the file are compared with its
 /// own.
 bool is_whole(const std::string& path, mat_ft version) {
@@ -96,7 +122,10 @@ bool is_whole(const std::string& path, mat_ft version) {
     constexpr std::size_t kTag = 8;
     file.seekg(static_cast<std::streamoff>(at));
     if (!file.read(bytes.data(), kTag)) return false;
-    at += kTag + word(head, 4, big_endian);
+    const std::uint64_t length = word(head, 4, big_endian);
+    if (length > size - at - kTag) return false;
+    if (word(head, 0, big_endian) == MAT_T_COMPRESSED && !is_sound_stream(file, length)) return false;
+    at += kTag + length;
   }
   return at == size;
 }

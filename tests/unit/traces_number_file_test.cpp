@@ -16,6 +16,7 @@
 
 #include "core/base/regular_file.hpp"
 #include "core/record/finaliser.hpp"
+#include "core/record/hdf.hpp"
 #include "tests/support/bit_flips.hpp"
 #include "tests/unit/traces_sample.hpp"
 
@@ -24,7 +25,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr std::size_t kRows = 40;
+constexpr std::size_t kRows = 200;  // 2 s: no other unit of time is possible.
 constexpr double kRate_Hz = 100.0;
 
 /// Small whole numbers, which each type holds.
@@ -91,7 +92,10 @@ std::vector<double> joined(std::vector<double> first, const std::vector<double>&
 
 class NumberFiles : public Traces {
  protected:
-  NumberFiles() { request_.path = folder_ / "trace.mat"; }
+  NumberFiles() {
+    record::prepare_hdf5();  // Before libmatio and these tests use it.
+    request_.path = folder_ / "trace.mat";
+  }
 
   void write(mat_ft version, const std::vector<matvar_t*>& variables,
              matio_compression compression = MAT_COMPRESSION_NONE) const {
@@ -137,7 +141,7 @@ TEST_F(NumberFiles, VectorsOfEachVersionOfMatlabAreColumns) {
              column("single", as<float>(forces())), column("int16", as<std::int16_t>(forces())),
              column("byte", as<std::uint8_t>(forces())), matrix("M", joined(times(), forces()), kRows)},
             compression);
-      for (const char* variable : {"F", "across", "single", "int16", "byte", "M(:,2)", "2"})
+      for (const char* variable : {"F", "across", "single", "int16", "byte", "M(:,2)"})
         expect(variable, forces());
       expect("F", forces());
       EXPECT_THAT(report_, HasSubstr(fmt::format("recognised: {}, variable F\n", name)));
@@ -187,25 +191,25 @@ TEST_F(NumberFiles, WhatIsNoVectorOfNumbersIsNamed) {
     std::array<std::size_t, 2> letters{1, 1};
     char unit = 'N';
     matvar_t* text = Mat_VarCreate("units", MAT_C_CHAR, MAT_T_UTF8, 2, letters.data(), &unit, 0);
-    write(version, {column("F", forces()), column("t", times()), complex, cell, text,
-                    column("rate", std::vector<double>{kRate_Hz}), column("short", forces(3))});
+    write(version, {column("F", forces()), cell, column("rate", std::vector<double>{kRate_Hz}),
+                    column("short", forces(3)), column("t", times()), text, complex});
     expect("F", forces());
-    expect_error("z", "\"z\" is complex; vectors of numbers are 1 \"F\", 2 \"t\", 3 \"short\"");
+    expect_error("z", "\"z\" is complex; vectors of numbers are 1 \"F\", 2 \"short\", 3 \"t\"");
     expect_error("c", "\"c\" is a cell array");
     expect_error("units", "\"units\" is text");
     expect_error("rate", "\"rate\" is one number");
     expect_error("none", "there is no column \"none\"; vectors of numbers are 1 \"F\"");
-    expect_error("", "give --column NAME; there are 1 \"F\", 2 \"t\", 3 \"short\": stickslip import ");
+    expect_error("", "give --column NAME; there are 1 \"F\", 2 \"short\", 3 \"t\": stickslip import ");
     // Nobody reads a time of another length.
     expect_error("short", "no column is a time by its name");
     request_.time_column = "t";
-    expect_error("short", "\"t\" has 40 values, \"short\" 3: choose columns of one length");
+    expect_error("short", "\"t\" has 200 values, \"short\" 3: choose columns of one length");
     request_.time_column.clear();
     const auto inspected = inspect(request_);
     ASSERT_TRUE(inspected) << inspected.error().message;
-    EXPECT_THAT(*inspected, HasSubstr("of another length, no table with F (40): short (3)\n"));
+    EXPECT_THAT(*inspected, HasSubstr("of another length, no table with F (200): short (3)\n"));
     EXPECT_THAT(*inspected,
-                HasSubstr("no columns: z is complex, c is a cell array, units is text, rate is one"));
+                HasSubstr("no columns: c is a cell array, rate is one number, units is text, z is"));
     request_.dialect.skip = 1;
     expect_error("F", "leave out --encoding, --separator, --decimal and --skip");
     request_.dialect.skip = 0;
@@ -327,8 +331,6 @@ TEST_F(NumberFiles, DatasetsOfHdf5AreColumns) {
     expect(name, forces());
   EXPECT_THAT(report_, HasSubstr("recognised: HDF5, dataset /run2/table.force\n"));
   request_.time_column = "/run2/matrix(:,1)";
-  expect_error("/run1/force", "does not say its unit");
-  request_.time_unit = "s";
   expect("/run1/force", forces());
   expect_error("/cube", "\"/cube\" has 3 dimensions");
   expect_error("/elsewhere", "\"/elsewhere\" lies in another file");
@@ -373,10 +375,23 @@ TEST_F(NumberFiles, OfAFileThatIsCutShortNoValueIsTaken) {
   }
 }
 
+TEST_F(NumberFiles, ABitTheOtherWayInACompressedVariableIsAnError) {
+  write(MAT_FT_MAT5, {column("t", times()), column("F", forces())}, MAT_COMPRESSION_ZLIB);
+  const std::string whole = base::read_text(request_.path).value();
+  // Nothing but the streams stands behind the header and the first tag.
+  constexpr std::size_t kBefore = 128 + 8;
+  request_.column = "F";
+  for (std::size_t byte = kBefore; byte < whole.size(); byte += 7) {
+    test::write_flipped(request_.path, whole, 8 * byte + byte % 8);
+    EXPECT_FALSE(import_trace(request_)) << byte;
+  }
+}
+
 TEST_F(NumberFiles, ABitTheOtherWayIsAnErrorOrAResultAndHarmsNobody) {
   for (const auto version : {MAT_FT_MAT4, MAT_FT_MAT5, MAT_FT_MAT73}) {
-    write(version, {column("t", times()), structure("run", {column("F", forces())}), column("F", forces())},
-          MAT_COMPRESSION_ZLIB);
+    std::vector<matvar_t*> variables{column("t", times()), column("F", forces())};
+    if (version != MAT_FT_MAT4) variables.push_back(structure("run", {column("F", forces())}));
+    write(version, variables, MAT_COMPRESSION_ZLIB);
     const std::string whole = base::read_text(request_.path).value();
     std::uint64_t state = 1;  // Of a linear congruence [Knuth].
     for (int i = 0; i < 150; ++i) {
@@ -389,7 +404,6 @@ TEST_F(NumberFiles, ABitTheOtherWayIsAnErrorOrAResultAndHarmsNobody) {
         continue;
       }
       EXPECT_LE(imported->records.front().raw.size(), kRows);
-      RecordProperty("taken", std::to_string(version));
     }
   }
 }
