@@ -375,16 +375,21 @@ TEST_F(NumberFiles, OfAFileThatIsCutShortNoValueIsTaken) {
   }
 }
 
-TEST_F(NumberFiles, ABitTheOtherWayInACompressedVariableIsAnError) {
+TEST_F(NumberFiles, ABitTheOtherWayInACompressedVariableChangesNoValue) {
   write(MAT_FT_MAT5, {column("t", times()), column("F", forces())}, MAT_COMPRESSION_ZLIB);
   const std::string whole = base::read_text(request_.path).value();
   // Nothing but the streams stands behind the header and the first tag.
   constexpr std::size_t kBefore = 128 + 8;
   request_.column = "F";
+  int refused = 0;
   for (std::size_t byte = kBefore; byte < whole.size(); byte += 7) {
     test::write_flipped(request_.path, whole, 8 * byte + byte % 8);
-    EXPECT_FALSE(import_trace(request_)) << byte;
+    // A few bits fill the last byte of a stream, before its checksum.
+    const auto imported = import_trace(request_);
+    EXPECT_TRUE(!imported || imported->records.front().raw == forces()) << byte;
+    refused += imported ? 0 : 1;
   }
+  EXPECT_GT(refused, 50);
 }
 
 TEST_F(NumberFiles, ABitTheOtherWayIsAnErrorOrAResultAndHarmsNobody) {
