@@ -200,7 +200,9 @@ class Import(unittest.TestCase):
         self.call(*(word.replace("MASS", "2331 g") for word in shlex.split(command)))
         # What is a record already needs no import, and the error says what to do with it.
         record = self.folder / "other-record.h5"
-        [command] = re.findall(r"needs no import: stickslip (.*)$", self.call("import", record, "--dataset", "/entry/raw/force", status=2))
+        message = self.call("import", record, "--dataset", "/entry/raw/force", "-o", "y.h5", status=2)
+        self.assertIn("needs no import", message)
+        [command] = re.findall(r"needs no import: stickslip (.*)$", message)
         self.call(*shlex.split(command))
 
 
