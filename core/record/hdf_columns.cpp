@@ -178,7 +178,8 @@ base::Result<HdfColumns> HdfColumns::open(const std::filesystem::path& path) {
   auto given = open_shared(path);
   if (!given) return tl::unexpected(given.error());
   try {
-    FileHandle file = open_hdf5(*given, path);
+    // The descriptor is read. HDF5 resolves the name, which a pipe's copy in memory has none of.
+    FileHandle file = open_hdf5(*given, "/dev/null");
     std::vector<std::string> paths;
     if (H5Ovisit(file.get(), H5_INDEX_NAME, H5_ITER_INC, note_dataset, &paths) < 0)
       throw HdfError("the names of its datasets cannot be read");

@@ -107,8 +107,13 @@ Result<std::string> inspect(const ImportRequest& request) {
     double high = -low;
     std::string unit = dialect->columns[c].unit;
     if (dialect->numeric[c]) {
-      const auto table = read_table(*source, *dialect, c, std::nullopt);
-      if (!table) return tl::unexpected(table.error());
+      auto table = read_table(*source, *dialect, c, std::nullopt);
+      if (!table) {
+        if (!dialect->numbers) return tl::unexpected(table.error());
+        // A damaged variable hides no other.
+        first = "cannot be read";
+        table.emplace();
+      }
       for (std::size_t i = 0; i < table->value.size(); ++i) {
         if (i < kFirstValues) first += fmt::format("{}{:.6g}", i == 0 ? "" : ", ", table->value[i]);
         if (!std::isfinite(table->value[i])) continue;

@@ -192,7 +192,12 @@ base::Result<std::unique_ptr<NumberFile>> NumberFile::open(const Source& source)
   const auto head = base::read_text(source.opened, kBeginning);
   if (!head) return tl::unexpected(head.error());
   const bool matlab = is_matlab(*head);
-  if (!matlab && !traces::is_hdf5(*head)) return nullptr;
+  const bool hdf5 = traces::is_hdf5(*head);
+  if (!matlab && !hdf5) return nullptr;
+  if (matlab && hdf5 && source.copy.open()) {
+    return base::usage_error("{}: is a file of MATLAB 7.3, which cannot be read from a pipe: give its name",
+                             source.path);
+  }
   auto facts = size_and_sha256(source);
   if (!facts) return tl::unexpected(facts.error());
   std::unique_ptr<NumberFile> file{new NumberFile{source, !matlab}};

@@ -190,6 +190,11 @@ class Import(unittest.TestCase):
             other.create_dataset("trap", shape=(10**12,), chunks=(1000,), dtype="f8")
         self.assertIn("recognised: HDF5, dataset /run1/force\n", self.expect_force(file, "--dataset", "/run1/force"))
         self.expect_force(file, "--dataset", "/run1/force", "--time-dataset", "/run1/time")
+        # One dataset that cannot be read hides no other; a pipe is as good as a file.
+        with file.open("rb") as content:
+            shown = subprocess.run(f'cat | "{CLI}" import /dev/stdin --inspect', shell=True, stdin=content, capture_output=True, text=True, check=True).stdout
+        self.assertRegex(shown, r"3  /trap +1000000000000  cannot be read")
+        self.assertIn("to import: stickslip import /dev/stdin --dataset /run1/force", shown)
         self.expect_force(file, "--dataset", "/run1/force", "--time-dataset", "none", "--rate", RATE_Hz)
         self.assertRegex(self.call("import", file, "--dataset", "/trap", "--rate", RATE_Hz, "--unit", "N", "--sled-mass", "1 kg", "-o", "y.h5", status=2),
                          r"cannot be read in \d+ MB of memory, which is the limit for its size: .*take it from a backup")
