@@ -36,8 +36,9 @@ std::optional<std::string> any_text(hid_t object, const char* name) {
     const std::unique_ptr<char, herr_t (*)(void*)> owner{value, H5free_memory};
     return value == nullptr ? std::string{} : std::string{value}.substr(0, kLongestUnit);
   }
-  std::string value(H5Tget_size(type.get()), '\0');
-  if (value.size() > kLongestUnit) return std::nullopt;
+  const std::size_t size = H5Tget_size(type.get());
+  if (size > kLongestUnit) return std::nullopt;
+  std::string value(size, '\0');
   check(H5Aread(attribute.get(), type.get(), value.data()), "reading an attribute");
   value.resize(std::min(value.size(), value.find('\0')));
   return value;

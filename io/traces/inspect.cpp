@@ -65,7 +65,7 @@ std::string left_out(const Dialect& dialect) {
   const NumberFile& file = *dialect.numbers;
   std::string text;
   if (const std::string others = file.of_other_size(likely_column(dialect)); !others.empty())
-    text += "of another length, no table with " + others + "\n";
+    text += "of another length than " + others + "\n";
   if (const std::string refused = file.refused(); !refused.empty())
     text += fmt::format("no columns: {}\n", refused);
   return text;

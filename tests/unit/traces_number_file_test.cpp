@@ -207,7 +207,7 @@ TEST_F(NumberFiles, WhatIsNoVectorOfNumbersIsNamed) {
     request_.time_column.clear();
     const auto inspected = inspect(request_);
     ASSERT_TRUE(inspected) << inspected.error().message;
-    EXPECT_THAT(*inspected, HasSubstr("of another length, no table with F (200): short (3)\n"));
+    EXPECT_THAT(*inspected, HasSubstr("of another length than F (200): short (3)\n"));
     EXPECT_THAT(*inspected,
                 HasSubstr("no columns: c is a cell array, rate is one number, units is text, z is"));
     request_.dialect.skip = 1;
