@@ -159,10 +159,8 @@ Result<std::string> run_import(const ImportOptions& options, const std::string& 
   Result<traces::ImportRequest> request = request_of(options);
   if (!request) return tl::unexpected(request.error());
   if (options.inspect) return traces::inspect(*request);
-  if (options.column.empty() || options.output.empty()) {
-    return base::usage_error(
-        "--column and --output are needed; --inspect shows the columns and a command that has them");
-  }
+  if (!options.column.empty() && options.output.empty())
+    return base::usage_error("--output is needed: the record to make, such as -o pull.h5");
   Result<traces::Imported> imported = traces::import_trace(*request);
   if (!imported) return tl::unexpected(imported.error());
   std::string text = std::move(imported->report);
@@ -199,12 +197,16 @@ Result<std::string> run_import(const ImportOptions& options, const std::string& 
 
 void add_import(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<ImportOptions>();
-  CLI::App* command = app.add_subcommand("import", "make records from a measured trace in a file of text");
+  CLI::App* command =
+      app.add_subcommand("import", "make records from a measured trace in a file of another program");
   const auto text = [command](const char* name, std::string& value, const char* what, const char* type) {
     return command->add_option(name, value, what)->type_name(type);
   };
-  text("file", options->file, "table of numbers, as another program exported it", "FILE.csv")->required();
-  text("--column", options->column, "heading or number of the column with the values", "NAME");
+  text("file", options->file, "table of numbers: text as another program exported it, .mat of MATLAB, HDF5",
+       "FILE.csv")
+      ->required();
+  text("--column,--dataset", options->column,
+       "heading or number of the column with the values; variable of MATLAB, dataset of HDF5", "NAME");
   text("-o,--output", options->output,
        "record to make, must not exist; x.h5 becomes x-1.h5, x-2.h5 … where the trace has several tests",
        "FILE.h5");
@@ -216,7 +218,7 @@ void add_import(CLI::App& app, Chosen& chosen) {
   text("--sled-mass", options->sled_mass, "kg or with unit; needed for a force or a voltage", "M");
   text("--rate", options->rate,
        "scans per second; else the time column tells it, which is checked against it", "HZ");
-  text("--time-column", options->time_column,
+  text("--time-column,--time-dataset", options->time_column,
        "heading or number of the time; else by its name; none: do not read it", "NAME");
   text("--time-unit", options->time_unit,
        "s, ms, us, ns, min or h; else that of the heading, else by inspection", "UNIT");

@@ -6,6 +6,7 @@
 #include <array>
 #include <map>
 
+#include "io/traces/number_file.hpp"
 #include "io/traces/trace_time.hpp"
 
 #include "core/base/wording.hpp"
@@ -323,6 +324,21 @@ std::string option_of(const Reading& reading, const Reading& other) {
   return fmt::format("--separator {}", separator_name(reading.dialect.separator));
 }
 
+base::Result<Dialect> dialect_of_numbers(std::shared_ptr<NumberFile> numbers, const std::string& path,
+                                         const DialectOptions& options) {
+  if (options.encoding || options.separator || options.decimal || options.skip > 0) {
+    return base::usage_error(
+        "{}: is a file of {}: leave out --encoding, --separator, --decimal and --skip, which are for text",
+        path, numbers->format());
+  }
+  Dialect dialect;
+  for (std::size_t c = 0; c < numbers->count(); ++c) dialect.columns.push_back(numbers->column_name(c));
+  dialect.numeric.assign(numbers->count(), true);
+  dialect.empty.assign(numbers->count(), false);
+  dialect.numbers = std::move(numbers);
+  return dialect;
+}
+
 }  // namespace
 
 std::string_view Dialect::content(std::size_t column, std::string_view field) const {
@@ -347,7 +363,11 @@ bool Dialect::is_row(const std::vector<std::string_view>& fields) const {
   return any;
 }
 
-std::string Dialect::text() const {
+std::string Dialect::text(std::optional<std::size_t> value) const {
+  if (numbers) {
+    return fmt::format("recognised: {}{}\ncolumns: {}\n", numbers->format(),
+                       value ? ", " + numbers->called(*value) : "", numbers->listed());
+  }
   std::string names;
   for (std::size_t c = 0; c < columns.size(); ++c) {
     if (c > 0) names += ", ";
@@ -368,6 +388,9 @@ bool is_no_row(std::string_view line) {
 
 base::Result<Dialect> recognise(const Source& source, const DialectOptions& options) {
   const std::string& path = source.path;
+  auto numbers = NumberFile::open(source);
+  if (!numbers) return tl::unexpected(numbers.error());
+  if (*numbers) return dialect_of_numbers(*std::move(numbers), path, options);
   auto head = read_head(source, options);
   if (!head) return tl::unexpected(head.error());
   if (head->lines.empty()) return base::usage_error("{}: is empty: a table of numbers is needed", path);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,8 @@
 #include "core/base/result.hpp"
 
 namespace stickslip::traces {
+
+class NumberFile;
 
 /// What the user states; the rest is recognised.
 struct DialectOptions {
@@ -31,18 +34,19 @@ struct Dialect {
   std::int64_t header_line = 0;  ///< From 1; 0: the file has no heading.
   std::int64_t units_line = 0;   ///< Of a row of units below it; 0: none.
   std::int64_t first_row_line = 0;
-  std::vector<ColumnName> columns;  ///< As many as a row has fields; texts are empty without a heading.
-  std::vector<bool> numeric;        ///< Columns that hold numbers alone; others may hold any text.
-  std::vector<bool> empty;          ///< Columns in which no row has anything.
-  std::vector<std::string> labels;  ///< "Force" where each cell reads "Force:0.12"; else empty.
+  std::vector<ColumnName> columns;      ///< As many as a row has fields; texts are empty without a heading.
+  std::vector<bool> numeric;            ///< Columns that hold numbers alone; others may hold any text.
+  std::vector<bool> empty;              ///< Columns in which no row has anything.
+  std::vector<std::string> labels;      ///< "Force" where each cell reads "Force:0.12"; else empty.
+  std::shared_ptr<NumberFile> numbers;  ///< Of a file that is no text, instead of all but columns; else null.
 
   /// The field as a cell holds it: without its label.
   [[nodiscard]] std::string_view content(std::size_t column, std::string_view field) const;
   /// Whether these fields are one row of scans: a number or a hole in each numeric column, one number at
   /// least.
   [[nodiscard]] bool is_row(const std::vector<std::string_view>& fields) const;
-  /// Two lines: what was recognised.
-  [[nodiscard]] std::string text() const;
+  /// Two lines: what was recognised. \param value  the column that is read, where one is.
+  [[nodiscard]] std::string text(std::optional<std::size_t> value = std::nullopt) const;
 };
 
 /// Whether a line is a comment or blank, and no part of the table.

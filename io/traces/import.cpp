@@ -11,6 +11,7 @@
 
 #include "io/traces/cut.hpp"
 #include "io/traces/grid.hpp"
+#include "io/traces/inspect.hpp"
 #include "io/traces/quantity_unit.hpp"
 #include "io/traces/trace_table.hpp"
 
@@ -235,7 +236,7 @@ class Importer {
     auto table = read_table(source_, dialect_, columns_.value, columns_.time);
     if (!table) return tl::unexpected(table.error());
     table_ = std::move(*table);
-    imported_.report = dialect_.text();
+    imported_.report = dialect_.text(columns_.value);
     if (table_.value.size() < 2) {
       return base::usage_error("{}: there {} of scans; two at least are needed", request_.path,
                                table_.value.empty() ? "are no rows" : "is one row");
@@ -255,7 +256,7 @@ class Importer {
     for (double& value : table_.value) value *= scale_;
     const std::vector<std::size_t> runs = time_s_.empty() ? std::vector<std::size_t>{0} : runs_in(time_s_);
     if (runs.size() > 1)
-      note("{} runs: the clock starts again in line {}", runs.size(), table_.line(runs[1]));
+      note("{} runs: the clock starts again in {} {}", runs.size(), row_word(), table_.line(runs[1]));
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const std::size_t end = i + 1 < runs.size() ? runs[i + 1] : table_.value.size();
       if (auto added = add_run(runs[i], end); !added) return tl::unexpected(added.error());
@@ -270,6 +271,9 @@ class Importer {
     notes_ += fmt::format("{}: {}\n", base::printable(request_.path),
                           fmt::format(format, std::forward<Args>(args)...));
   }
+
+  /// What TraceTable::line() counts.
+  [[nodiscard]] const char* row_word() const { return dialect_.numbers ? "row" : "line"; }
 
   Result<void> find_quantity() {
     const auto unit = unit_of(request_, dialect_.columns[columns_.value], table_.cell_unit);
@@ -366,8 +370,8 @@ class Importer {
           fmt::format("scan rate {:.6g} Hz is not checked: the time column is too coarse", grid.rate_Hz));
       return;
     }
-    note("{:.7g} scans a second by the time column, largest jitter {:.2g} % of the interval, in line {}",
-         grid.rate_Hz, 100.0 * grid.largest_jitter, table_.line(begin + grid.largest_row));
+    note("{:.7g} scans a second by the time column, largest jitter {:.2g} % of the interval, in {} {}",
+         grid.rate_Hz, 100.0 * grid.largest_jitter, row_word(), table_.line(begin + grid.largest_row));
     if (!grid.uniform) note("scans interpolated at equal intervals of {:.6g} s", 1.0 / grid.rate_Hz);
     if (const auto doubled = std::count(grid.doubled.begin(), grid.doubled.end(), true); doubled > 0)
       note("{} rows with the time of the row before left out", doubled);
@@ -454,6 +458,7 @@ Result<Imported> import_trace(const ImportRequest& request) {
   if (!source) return tl::unexpected(source.error());
   auto dialect = recognise(*source, request.dialect);
   if (!dialect) return tl::unexpected(dialect.error());
+  if (request.column.empty()) return tl::unexpected(no_column_chosen(request, *source, *dialect));
   return Importer{request, *source, std::move(*dialect)}.import();
 }
 

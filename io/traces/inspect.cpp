@@ -1,3 +1,5 @@
+#include "io/traces/inspect.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -5,7 +7,7 @@
 #include <limits>
 
 #include "io/table.hpp"
-#include "io/traces/import.hpp"
+#include "io/traces/number_file.hpp"
 #include "io/traces/quantity_unit.hpp"
 #include "io/traces/trace_table.hpp"
 
@@ -30,6 +32,7 @@ std::size_t likely_column(const Dialect& dialect) {
     const bool by_name = name.starts_with("force") || name.starts_with("kraft") || name.starts_with("load") ||
                          name.starts_with("friction") || name.starts_with("reibkraft") || name == "f";
     if (by_name || (unit && unit->quantity == daq::RawQuantity::kForce_N)) return c;
+    if (dialect.numbers && dialect.numbers->size(c) < dialect.numbers->size(last)) continue;
     last = c;
   }
   return last;
@@ -41,18 +44,46 @@ std::string command(const ImportRequest& request, const Dialect& dialect, const 
   const ColumnName& name = dialect.columns[column];
   const std::string& own = cell_unit.empty() ? name.unit : cell_unit;
   std::string text =
-      fmt::format("stickslip import {} --column {}", base::shell_word(request.path),
+      fmt::format("stickslip import {} {} {}", base::shell_word(request.path),
+                  dialect.numbers ? dialect.numbers->option() : "--column",
                   name.text.empty() ? std::to_string(column + 1) : base::shell_word(name.text));
   const auto unit = quantity_unit(own);
   if (own.empty() || !unit) text += " --unit UNIT";
   if (!time_column_of(dialect, column)) {
-    text += dialect.header_line == 0 && column != 0 ? " --time-column 1 --time-unit UNIT" : " --rate HZ";
+    text += !dialect.numbers && dialect.header_line == 0 && column != 0 ? " --time-column 1 --time-unit UNIT"
+                                                                        : " --rate HZ";
   }
   if (!unit || unit->quantity != daq::RawQuantity::kCoefficient) text += " --sled-mass MASS";
-  return text + " -o " + base::shell_word(request.path.substr(0, request.path.rfind('.')) + ".h5");
+  const std::string stem = request.path.substr(0, request.path.rfind('.'));
+  const std::string output = stem + ".h5";
+  return text + " -o " + base::shell_word(output == request.path ? stem + "-record.h5" : output);
+}
+
+/// What a file that is no text has beside the likely column and those that can be read with it.
+std::string left_out(const Dialect& dialect) {
+  if (!dialect.numbers) return {};
+  const NumberFile& file = *dialect.numbers;
+  std::string text;
+  if (const std::string others = file.of_other_size(likely_column(dialect)); !others.empty())
+    text += "of another length than " + others + "\n";
+  if (const std::string refused = file.refused(); !refused.empty())
+    text += fmt::format("no columns: {}\n", refused);
+  return text;
 }
 
 }  // namespace
+
+base::Error no_column_chosen(const ImportRequest& request, const Source& source, const Dialect& dialect) {
+  const std::size_t column = likely_column(dialect);
+  std::string unit = dialect.columns[column].unit;
+  if (const auto table = read_table(source, dialect, column, std::nullopt);
+      table && !table->cell_unit.empty())
+    unit = table->cell_unit;
+  return {base::ErrorKind::kUsage,
+          fmt::format("{}: give {} NAME; there are {}: {}", request.path,
+                      dialect.numbers ? dialect.numbers->option() : "--column", listed(dialect),
+                      base::printable(command(request, dialect, unit)))};
+}
 
 Result<std::string> inspect(const ImportRequest& request) {
   const auto source = Source::of(request.path);
@@ -61,10 +92,14 @@ Result<std::string> inspect(const ImportRequest& request) {
   if (!dialect) return tl::unexpected(dialect.error());
   using Column = io::Table::Column;
   constexpr auto kLeft = io::Table::Align::kLeft;
-  io::Table columns{
-      {Column{.heading = "column"}, Column{.heading = "name", .align = kLeft},
-       Column{.heading = "unit", .align = kLeft}, Column{.heading = "first values", .align = kLeft},
-       Column{.heading = "smallest", .format = ".6g"}, Column{.heading = "largest", .format = ".6g"}}};
+  std::vector<Column> headings{Column{.heading = "column"},
+                               Column{.heading = "name", .align = kLeft},
+                               Column{.heading = "unit", .align = kLeft},
+                               Column{.heading = "first values", .align = kLeft},
+                               Column{.heading = "smallest", .format = ".6g"},
+                               Column{.heading = "largest", .format = ".6g"}};
+  if (dialect->numbers) headings.insert(headings.begin() + 3, Column{.heading = "values"});
+  io::Table columns{headings};
   std::string likely_unit;
   for (std::size_t c = 0; c < dialect->columns.size(); ++c) {
     std::string first;
@@ -72,8 +107,13 @@ Result<std::string> inspect(const ImportRequest& request) {
     double high = -low;
     std::string unit = dialect->columns[c].unit;
     if (dialect->numeric[c]) {
-      const auto table = read_table(*source, *dialect, c, std::nullopt);
-      if (!table) return tl::unexpected(table.error());
+      auto table = read_table(*source, *dialect, c, std::nullopt);
+      if (!table) {
+        if (!dialect->numbers) return tl::unexpected(table.error());
+        // A damaged variable hides no other.
+        first = "cannot be read";
+        table.emplace();
+      }
       for (std::size_t i = 0; i < table->value.size(); ++i) {
         if (i < kFirstValues) first += fmt::format("{}{:.6g}", i == 0 ? "" : ", ", table->value[i]);
         if (!std::isfinite(table->value[i])) continue;
@@ -85,10 +125,16 @@ Result<std::string> inspect(const ImportRequest& request) {
       first = "no numbers";
     }
     if (c == likely_column(*dialect)) likely_unit = unit;
-    columns.add({io::cell(c + 1), base::one_line(dialect->columns[c].text, 30), base::one_line(unit, 12),
-                 first, low, high});
+    std::vector<io::Table::Cell> cells{io::cell(c + 1),
+                                       base::one_line(dialect->columns[c].text, dialect->numbers ? 60 : 30),
+                                       base::one_line(unit, 12),
+                                       first,
+                                       low,
+                                       high};
+    if (dialect->numbers) cells.insert(cells.begin() + 3, io::cell(dialect->numbers->size(c)));
+    columns.add(cells);
   }
-  return dialect->text() + columns.text() +
+  return dialect->text() + columns.text() + left_out(*dialect) +
          "to import: " + base::printable(command(request, *dialect, likely_unit)) + "\n";
 }
 

@@ -37,25 +37,13 @@ struct Binary {
   std::string_view what;
   std::string_view conversion;
 };
-constexpr std::string_view kMatlab =
-    "import scipy.io, pandas; d = scipy.io.loadmat(\"{0}\", squeeze_me=True); "
-    "pandas.DataFrame({{k: d[k] for k in (\"t\", \"F\")}}).to_csv(\"{0}.csv\", index=False)";
 constexpr std::array kBinaries{
     Binary{"PK\x03\x04", "a workbook of Excel or another zip archive",
            "import pandas; pandas.read_excel(\"{0}\").to_csv(\"{0}.csv\", index=False)"},
     Binary{"\xD0\xCF\x11\xE0", "a workbook of an old Excel",
            "import pandas; pandas.read_excel(\"{0}\").to_csv(\"{0}.csv\", index=False)"},
     Binary{"TDSm", "a TDMS file of LabVIEW",
-           "import nptdms; nptdms.TdmsFile(\"{0}\").as_dataframe().to_csv(\"{0}.csv\", index=False)"},
-    Binary{"MATLAB 5.0 MAT-file", "a file of MATLAB", kMatlab},
-    Binary{"MATLAB 7.3 MAT-file", "a file of MATLAB 7.3, which is HDF5",
-           "import h5py, pandas; f = h5py.File(\"{0}\"); pandas.DataFrame({{k: f[k][()].ravel() for k in "
-           "(\"t\", "
-           "\"F\")}}).to_csv(\"{0}.csv\", index=False)"},
-    Binary{"\x89HDF\r\n\x1A\n", "an HDF5 file",
-           "import h5py, pandas; f = h5py.File(\"{0}\"); pandas.DataFrame({{k: f[k][()].ravel() for k in "
-           "(\"t\", "
-           "\"F\")}}).to_csv(\"{0}.csv\", index=False)"}};
+           "import nptdms; nptdms.TdmsFile(\"{0}\").as_dataframe().to_csv(\"{0}.csv\", index=False)"}};
 
 base::Result<void> refuse_binary(const std::string& path, std::string_view head) {
   for (const Binary& binary : kBinaries) {

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <limits>
 
+#include "io/traces/number_file.hpp"
 #include "io/traces/trace_time.hpp"
 
 #include "core/base/nan.hpp"
@@ -16,22 +17,19 @@ namespace {
 
 constexpr std::size_t kLongestShown = 40;
 
-std::string listed(const Dialect& dialect) {
-  std::string text;
-  for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
-    text += fmt::format("{}{} \"{}\"", c == 0 ? "" : ", ", c + 1,
-                        base::one_line(dialect.columns[c].text, kLongestShown));
-  }
-  return text;
-}
-
 /// The best of the columns by `rank`, and of equal ones the nearest before `column`, else the first after it.
 template <typename Rank>
 std::optional<std::size_t> best_before(const Dialect& dialect, std::size_t column, Rank rank) {
   std::optional<std::size_t> best;
   int best_rank = 0;
   for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
-    const int own = c == column || dialect.empty[c] ? 0 : rank(dialect.columns[c]);
+    int own = c == column || dialect.empty[c] ? 0 : rank(dialect.columns[c]);
+    if (own > 0 && dialect.numbers) {
+      // The group counts more than the name.
+      constexpr int kRanks = 10;
+      const auto nearness = dialect.numbers->nearness(c, column);
+      own = nearness ? own + kRanks * *nearness : 0;
+    }
     if (own == 0 || own < best_rank) continue;
     if (own == best_rank && c > column) continue;
     best = c;
@@ -242,6 +240,16 @@ class TableReader {
 
 }  // namespace
 
+std::string listed(const Dialect& dialect) {
+  if (dialect.numbers) return dialect.numbers->listed();
+  std::string text;
+  for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
+    text += fmt::format("{}{} \"{}\"", c == 0 ? "" : ", ", c + 1,
+                        base::one_line(dialect.columns[c].text, kLongestShown));
+  }
+  return text;
+}
+
 base::Result<std::size_t> find_column(const Dialect& dialect, const std::string& path,
                                       const std::string& wanted) {
   const std::string form = folded(wanted);
@@ -257,7 +265,9 @@ base::Result<std::size_t> find_column(const Dialect& dialect, const std::string&
     }
     return found;
   };
-  auto found = find([&](const ColumnName& column) { return column.text == wanted; });
+  // The path of a dataset may lack its first slash.
+  auto found =
+      find([&](const ColumnName& column) { return column.text == wanted || column.text == "/" + wanted; });
   if (found && !*found) found = find([&](const ColumnName& column) { return folded(column.text) == form; });
   if (found && !*found) {
     const std::string bare = folded(column_name(wanted).name);
@@ -272,6 +282,7 @@ base::Result<std::size_t> find_column(const Dialect& dialect, const std::string&
       number <= dialect.columns.size()) {
     return number - 1;
   }
+  if (dialect.numbers) return tl::unexpected(dialect.numbers->no_column(wanted));
   if (dialect.header_line == 0 && dialect.labels.empty()) {
     return base::usage_error("{}: the file has no heading, so no column \"{}\": give the number, 1 … {}",
                              path, base::one_line(wanted, kLongestShown), dialect.columns.size());
@@ -300,6 +311,7 @@ std::int64_t TraceTable::line(std::size_t row) const {
 
 base::Result<TraceTable> read_table(const Source& source, const Dialect& dialect, std::size_t value_column,
                                     std::optional<std::size_t> time_column) {
+  if (dialect.numbers) return dialect.numbers->table(value_column, time_column);
   return TableReader{source, dialect, value_column, time_column}.read();
 }
 

@@ -14,6 +14,9 @@
 
 namespace stickslip::traces {
 
+/// Numbers and headings of all columns, for messages.
+[[nodiscard]] std::string listed(const Dialect& dialect);
+
 /// Place of a column in Dialect::columns, by its heading or its number from 1. Errors: kUsage listing the
 /// columns.
 [[nodiscard]] base::Result<std::size_t> find_column(const Dialect& dialect, const std::string& path,

@@ -27,6 +27,10 @@ import tempfile
 import time
 import unittest
 
+import h5py
+import numpy
+import scipy.io
+
 from broker import MOSQUITTO, Broker
 from running_daemon import RunningDaemon
 
@@ -94,6 +98,13 @@ def write_foreign_traces(folder, rate_hz=350, duration_s=4):
     }
     for name, (encoding, text) in files.items():
         (folder / name).write_bytes(text.encode(encoding))
+    table = numpy.array(scans)
+    scipy.io.savemat(folder / "run.mat", {"run": {"Time": table[:, 0], "Data": table[:, 1]}, "unit": "N"})
+    with h5py.File(folder / "daq.h5", "w") as daq:
+        daq["run1/force"] = table[:, 1]
+        daq["run1/force"].attrs["units"] = "N"
+        daq["run1/time"] = table[:, 0]
+        daq["scan"] = table
 
 
 def run(command, folder, path):

@@ -4,6 +4,7 @@
 import_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
 """
 
+import hashlib
 import json
 import pathlib
 import re
@@ -14,6 +15,8 @@ import tempfile
 import unittest
 
 import h5py
+import numpy
+import scipy.io
 
 CLI = pathlib.Path(sys.argv[1]).resolve() / "bin" / "stickslip"
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
@@ -140,6 +143,72 @@ class Import(unittest.TestCase):
             for measured, true in zip(record["entry/raw/force"][:], self.force, strict=True):
                 self.assertAlmostEqual(measured, true, delta=2e-5)
         self.call("verify", self.folder / "mu.h5")
+
+    def expect_force(self, file, *options):
+        """Imports the pull into x.h5. \return what was printed."""
+        for old in self.folder.glob("x*.h5"):
+            old.unlink()
+        printed = self.call("import", file, "--unit", "N", "--sled-mass", "2331 g", "-o", self.folder / "x.h5", *options)
+        with h5py.File(self.folder / "x.h5") as record:
+            self.assertAlmostEqual(record["entry/timing/scan_rate_granted"][()], RATE_Hz, delta=0.5)
+            numpy.testing.assert_allclose(record["entry/raw/force"][:], self.force, rtol=1e-6)
+            process = record["entry/process"]
+            self.assertEqual(process["source_file"].asstr()[()], file.name)
+            self.assertEqual(process["source_size"][()], file.stat().st_size)
+            self.assertEqual(process["source_sha256"].asstr()[()], hashlib.sha256(file.read_bytes()).hexdigest())
+            self.assertEqual(process["source_reading"].asstr()[()].splitlines()[0], printed.splitlines()[0])
+        return printed
+
+    def columns(self):
+        return {"t": numpy.arange(len(self.force)) / RATE_Hz, "F": numpy.array(self.force)}
+
+    def test_files_of_matlab_give_the_force_of_their_variable(self):
+        pair = numpy.column_stack(list(self.columns().values()))
+        for name, format_read, options in (("v4.mat", "MATLAB 4", {"format": "4"}), ("v5.mat", "MATLAB 5", {}), ("v7.mat", "MATLAB 5", {"do_compression": True}),
+                                           ("column.mat", "MATLAB 5", {"oned_as": "column"})):
+            file = self.folder / name
+            scipy.io.savemat(file, self.columns() | {"M": pair}, **options)
+            self.assertIn(f"recognised: {format_read}, variable F\n", self.expect_force(file, "--column", "F"))
+            self.expect_force(file, "--column", "M(:,2)", "--time-column", "M(:,1)", "--time-unit", "s")
+            with self.subTest("by a pipe"), file.open("rb") as content:
+                done = subprocess.run(f'cat | "{CLI}" import /dev/stdin --column F --inspect', shell=True, stdin=content, capture_output=True, text=True, check=True)
+                self.assertIn(format_read, done.stdout)
+        file = self.folder / "run.mat"
+        scipy.io.savemat(file, {"run": {"Time": self.columns()["t"], "Data": self.columns()["F"]}, "z": pair * 1j})
+        self.assertIn("variable run.Data\n", self.expect_force(file, "--column", "run.Data"))
+        self.assertIn("no columns: z is complex\n", self.call("import", file, "--inspect"))
+        file.write_bytes(file.read_bytes()[:-1000])
+        self.assertIn("cut short or damaged", self.call(*self.arguments(file), status=2))
+
+    def test_hdf5_files_give_the_force_of_their_dataset(self):
+        file = self.folder / "other.h5"
+        with h5py.File(file, "w") as other:
+            other["run1/force"] = self.columns()["F"]
+            other["run1/force"].attrs["units"] = "N"
+            other["run1/time"] = self.columns()["t"]
+            # Nobody has so many: a trap for those who make room first.
+            other.create_dataset("trap", shape=(10**12,), chunks=(1000,), dtype="f8")
+        self.assertIn("recognised: HDF5, dataset /run1/force\n", self.expect_force(file, "--dataset", "/run1/force"))
+        self.expect_force(file, "--dataset", "/run1/force", "--time-dataset", "/run1/time")
+        # One dataset that cannot be read hides no other; a pipe is as good as a file.
+        with file.open("rb") as content:
+            shown = subprocess.run(f'cat | "{CLI}" import /dev/stdin --inspect', shell=True, stdin=content, capture_output=True, text=True, check=True).stdout
+        self.assertRegex(shown, r"3  /trap +1000000000000  cannot be read")
+        self.assertIn("to import: stickslip import /dev/stdin --dataset /run1/force", shown)
+        self.expect_force(file, "--dataset", "/run1/force", "--time-dataset", "none", "--rate", RATE_Hz)
+        self.assertRegex(self.call("import", file, "--dataset", "/trap", "--rate", RATE_Hz, "--unit", "N", "--sled-mass", "1 kg", "-o", "y.h5", status=2),
+                         r"cannot be read in \d+ MB of memory, which is the limit for its size: .*take it from a backup")
+        # The command of the error imports, but for what nobody knows.
+        message = self.call("import", file, status=2)
+        self.assertIn('give --dataset NAME; there are 1 "/run1/force"', message)
+        [command] = re.findall(r": stickslip (import .*)$", message)
+        self.call(*(word.replace("MASS", "2331 g") for word in shlex.split(command)))
+        # What is a record already needs no import, and the error says what to do with it.
+        record = self.folder / "other-record.h5"
+        message = self.call("import", record, "--dataset", "/entry/raw/force", "-o", "y.h5", status=2)
+        self.assertIn("needs no import", message)
+        [command] = re.findall(r"needs no import: stickslip (.*)$", message)
+        self.call(*shlex.split(command))
 
 
 if __name__ == "__main__":
