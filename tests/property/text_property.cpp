@@ -58,6 +58,7 @@ RC_GTEST_PROP(TextProperty, ACellIsNoFormulaAndReadsBack, ()) {
   const std::string text = *hostile();
   const std::string cell = base::csv_cell(text);
   expect_safe(cell);
+  RC_ASSERT(!cell.starts_with('#'));
   std::string read = cell;
   if (cell.starts_with('"')) {
     RC_ASSERT(cell.size() >= 2 && cell.ends_with('"'));
