@@ -1,5 +1,5 @@
 /// \file
-/// Results of a test from the cycles of the live detector, for the estimator tiers without a whole-test fit.
+/// Results of a test from the cycles of the live detector, by turning points.
 /// They give no ω and no γ, and each slip's end is that decided live. The scans are not used again.
 #pragma once
 

@@ -1,0 +1,55 @@
+// Scenes that the model does not describe: friction that falls with speed, a converter that cuts the peaks
+// off. No test is blank, and none is confident and wrong.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "tests/support/scene_tests.hpp"
+
+namespace stickslip {
+namespace {
+
+using analysis::Estimate;
+using model::Regime;
+
+class Misfit : public testing::TestWithParam<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Misfit, testing::Values("velocity-weakening", "coarse-converter"),
+                         [](const auto& scene) {
+                           std::string name{scene.param};
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+// Each slip is captured. A free end, where the damping found is none, contradicts itself: the sled would have
+// to stick again.
+TEST_P(Misfit, EachTestHasNumbersThatCoverTheTruthAndNoneIsMixed) {
+  constexpr int kRepeats = 100;
+  const auto file =
+      std::filesystem::path(STICKSLIP_SOURCE_DIR) / "config/scenes" / (std::string{GetParam()} + ".toml");
+  const auto tests = test::analyse_scene(file, kRepeats);
+  ASSERT_EQ(tests.size(), static_cast<std::size_t>(kRepeats));
+  int by_turning_points = 0;
+  for (const test::AnalysedTest& test : tests) {
+    const analysis::TestResults& results = test.results;
+    EXPECT_NE(results.regime, Regime::kMixed) << results.regime_reason;
+    EXPECT_NE(results.regime, Regime::kRingDown) << results.regime_reason;
+    ASSERT_TRUE(results.mu_s.value && results.mu_k.value && results.delta_mu.value)
+        << results.delta_mu.reason;
+    if (results.omega.value) continue;  // By the fit.
+    ++by_turning_points;
+    ASSERT_FALSE(results.findings.empty());
+    EXPECT_NE(results.findings.front().find("by turning points"), std::string::npos);
+    const double truth = test.truth->mu_s - test.truth->mu_k;
+    constexpr double kSigmas = 2.0;
+    EXPECT_NEAR(*results.delta_mu.value, truth,
+                *results.delta_mu.systematic_uncertainty + kSigmas * *results.delta_mu.standard_error);
+  }
+  EXPECT_GT(by_turning_points, kRepeats / 4);
+}
+
+}  // namespace
+}  // namespace stickslip
