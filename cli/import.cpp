@@ -159,10 +159,12 @@ Result<std::string> run_import(const ImportOptions& options, const std::string& 
   Result<traces::ImportRequest> request = request_of(options);
   if (!request) return tl::unexpected(request.error());
   if (options.inspect) return traces::inspect(*request);
-  if (options.column.empty() || options.output.empty()) {
+  if (options.output.empty()) {
     return base::usage_error(
         "--column and --output are needed; --inspect shows the columns and a command that has them");
   }
+  // An exported record keeps its method unless another one is asked for.
+  if (options.column.empty() && options.method.empty()) request->process.method.clear();
   Result<traces::Imported> imported = traces::import_trace(*request);
   if (!imported) return tl::unexpected(imported.error());
   std::string text = std::move(imported->report);
@@ -173,7 +175,7 @@ Result<std::string> run_import(const ImportOptions& options, const std::string& 
     if (!end) return tl::unexpected(end.error());
     const std::vector<std::string> findings = std::move(record.end->results.findings);
     end->results.findings.insert(end->results.findings.end(), findings.begin(), findings.end());
-    end->reasons.clear();
+    if (imported->is_own) end->spikes = record.spikes;
     record::set_end(record, std::move(*end));
   }
   for (std::size_t i = 0; i < records.size(); ++i) {
@@ -204,7 +206,8 @@ void add_import(CLI::App& app, Chosen& chosen) {
     return command->add_option(name, value, what)->type_name(type);
   };
   text("file", options->file, "table of numbers, as another program exported it", "FILE.csv")->required();
-  text("--column", options->column, "heading or number of the column with the values", "NAME");
+  text("--column", options->column,
+       "heading or number of the column with the values; none for a table of stickslip export", "NAME");
   text("-o,--output", options->output,
        "record to make, must not exist; x.h5 becomes x-1.h5, x-2.h5 … where the trace has several tests",
        "FILE.h5");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <numeric>
@@ -10,6 +11,7 @@
 
 #include "io/traces/cut.hpp"
 #include "io/traces/grid.hpp"
+#include "io/traces/own_table.hpp"
 #include "io/traces/quantity_unit.hpp"
 #include "io/traces/time_unit.hpp"
 #include "io/traces/trace_table.hpp"
@@ -376,11 +378,62 @@ class Importer {
   Imported imported_;
 };
 
+/// The first option that says what a table of stickslip export says itself; nullptr if there is none.
+const char* needless_option(const ImportRequest& request) {
+  const std::array stated{std::pair{"--unit", !request.unit.empty()},
+                          std::pair{"--time-column", !request.time_column.empty()},
+                          std::pair{"--time-unit", !request.time_unit.empty()},
+                          std::pair{"--rate", request.rate_Hz.has_value()},
+                          std::pair{"--invert", request.invert},
+                          std::pair{"--reverse", request.reverse},
+                          std::pair{"--resample", request.resample},
+                          std::pair{"--skip-doubled", request.skip_doubled},
+                          std::pair{"--sled-mass", request.tester.sled_mass_kg.has_value()},
+                          std::pair{"--speed", request.tester.pull_speed_m_per_s.has_value()},
+                          std::pair{"--stiffness", request.tester.stiffness_N_per_m.has_value()},
+                          std::pair{"--load-cell-gain", request.load_cell.has_value()},
+                          std::pair{"--sample", !request.sample.name.empty()},
+                          std::pair{"--grade", !request.sample.grade.empty()},
+                          std::pair{"--operator", !request.sample.operator_name.empty()},
+                          std::pair{"--replicate", request.sample.replicate.has_value()},
+                          std::pair{"--encoding", request.dialect.encoding.has_value()},
+                          std::pair{"--separator", request.dialect.separator.has_value()},
+                          std::pair{"--decimal", request.dialect.decimal.has_value()},
+                          std::pair{"--skip", request.dialect.skip > 0}};
+  const auto* const found =
+      std::find_if(stated.begin(), stated.end(), [](const auto& option) { return option.second; });
+  return found == stated.end() ? nullptr : found->first;
+}
+
+Result<Imported> import_own(const ImportRequest& request, const Source& source) {
+  if (const char* const option = needless_option(request)) {
+    return base::usage_error(
+        "{}: is a table of stickslip export, which states all facts of its record: leave out {}, or give "
+        "--column NAME to read it as one of another program",
+        request.path, option);
+  }
+  auto record = read_own_table(source);
+  if (!record) return tl::unexpected(record.error());
+  if (!request.process.method.empty()) record->header.process.method = request.process.method;
+  Imported imported;
+  imported.is_own = true;
+  imported.report = record->header.process.source_reading;
+  imported.records.push_back(std::move(*record));
+  return imported;
+}
+
 }  // namespace
 
 Result<Imported> import_trace(const ImportRequest& request) {
   const auto source = Source::of(request.path);
   if (!source) return tl::unexpected(source.error());
+  if (request.column.empty()) {
+    const auto is_own = is_own_table(*source);
+    if (!is_own) return tl::unexpected(is_own.error());
+    if (*is_own) return import_own(request, *source);
+    return base::usage_error("{}: --column is needed; --inspect shows the columns and a command that has one",
+                             request.path);
+  }
   auto dialect = recognise(*source, request.dialect);
   if (!dialect) return tl::unexpected(dialect.error());
   return Importer{request, *source, std::move(*dialect)}.import();

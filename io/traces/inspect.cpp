@@ -6,6 +6,7 @@
 
 #include "io/table.hpp"
 #include "io/traces/import.hpp"
+#include "io/traces/own_table.hpp"
 #include "io/traces/quantity_unit.hpp"
 #include "io/traces/trace_table.hpp"
 
@@ -35,6 +36,16 @@ std::size_t likely_column(const Dialect& dialect) {
   return last;
 }
 
+/// As the file is called, so is the record.
+std::string output_option(const std::string& path) {
+  return " -o " + base::shell_word(path.substr(0, path.rfind('.')) + ".h5");
+}
+
+/// A table of stickslip export says all itself.
+std::string own_command(const std::string& path) {
+  return "stickslip import " + base::shell_word(path) + output_option(path);
+}
+
 /// Words in capitals stand for what the file does not say: nothing is guessed that changes a number.
 std::string command(const ImportRequest& request, const Dialect& dialect, const std::string& cell_unit) {
   const std::size_t column = likely_column(dialect);
@@ -49,7 +60,7 @@ std::string command(const ImportRequest& request, const Dialect& dialect, const 
     text += dialect.header_line == 0 && column != 0 ? " --time-column 1 --time-unit UNIT" : " --rate HZ";
   }
   if (!unit || unit->quantity != daq::RawQuantity::kCoefficient) text += " --sled-mass MASS";
-  return text + " -o " + base::shell_word(request.path.substr(0, request.path.rfind('.')) + ".h5");
+  return text + output_option(request.path);
 }
 
 }  // namespace
@@ -57,6 +68,8 @@ std::string command(const ImportRequest& request, const Dialect& dialect, const 
 Result<std::string> inspect(const ImportRequest& request) {
   const auto source = Source::of(request.path);
   if (!source) return tl::unexpected(source.error());
+  const auto is_own = is_own_table(*source);
+  if (!is_own) return tl::unexpected(is_own.error());
   const auto dialect = recognise(*source, request.dialect);
   if (!dialect) return tl::unexpected(dialect.error());
   using Column = io::Table::Column;
@@ -88,8 +101,8 @@ Result<std::string> inspect(const ImportRequest& request) {
     columns.add({io::cell(c + 1), base::one_line(dialect->columns[c].text, 30), base::one_line(unit, 12),
                  first, low, high});
   }
-  return dialect->text() + columns.text() +
-         "to import: " + base::printable(command(request, *dialect, likely_unit)) + "\n";
+  const std::string import = *is_own ? own_command(request.path) : command(request, *dialect, likely_unit);
+  return dialect->text() + columns.text() + "to import: " + base::printable(import) + "\n";
 }
 
 }  // namespace stickslip::traces
