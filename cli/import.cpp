@@ -18,6 +18,7 @@
 #include "core/base/version.hpp"
 #include "core/evaluation/analyse.hpp"
 #include "core/record/finaliser.hpp"
+#include "core/record/metadata.hpp"
 #include "core/record/method_text.hpp"
 
 namespace stickslip::cli {
@@ -52,7 +53,8 @@ struct ImportOptions {
   std::string grade;
   std::string person;
   std::int64_t replicate = 0;
-  std::string method;  ///< As chosen_method() takes it.
+  std::vector<std::string> metadata;  ///< "key=value"
+  std::string method;                 ///< As chosen_method() takes it.
   std::string output;
 };
 
@@ -137,6 +139,10 @@ Result<traces::ImportRequest> request_of(const ImportOptions& options) {
   request.sample.grade = options.grade;
   request.sample.operator_name = options.person;
   if (options.replicate > 0) request.sample.replicate = options.replicate;
+  for (const std::string& pair : options.metadata) {
+    if (const auto added = record::add_metadata(request.metadata, pair, "--set-meta"); !added)
+      return tl::unexpected(added.error());
+  }
   request.process.program = "stickslip import";
   request.process.version = base::kVersion;
   request.process.commit = base::kCommit;
@@ -246,6 +252,12 @@ void add_import(CLI::App& app, Chosen& chosen) {
   command->add_option("--replicate", options->replicate, "number of the replicate, from 1")
       ->type_name("COUNT")
       ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--set-meta", options->metadata,
+                   "a fact of your own, such as \"humidity=52 %\"; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   add_method_option(*command, options->method);
   choose(*command, chosen, [options, &chosen] { return run_import(*options, chosen.line); });
 }

@@ -317,6 +317,7 @@ class Importer {
     header.tester = request_.tester;
     header.sample = request_.sample;
     header.process = request_.process;
+    header.metadata = request_.metadata;
     header.start_realtime_ns = start_ns_;
     const daq::Calibration calibration{header.board, load_cell_.value_or(daq::LoadCell{}),
                                        header.tester.tester().normal_load_N()};
@@ -414,6 +415,12 @@ Result<Imported> import_own(const ImportRequest& request, const Source& source) 
   }
   auto record = read_own_table(source);
   if (!record) return tl::unexpected(record.error());
+  record::Metadata& metadata = record->header.metadata;
+  for (const auto& [key, value] : request.metadata) {
+    if (const auto added = record::add_metadata(metadata, fmt::format("{}={}", key, value), "--set-meta");
+        !added)
+      return tl::unexpected(added.error());
+  }
   if (!request.process.method.empty()) record->header.process.method = request.process.method;
   Imported imported;
   imported.is_own = true;

@@ -31,6 +31,7 @@ struct ImportRequest {
   std::optional<daq::LoadCell> load_cell;  ///< For V.
   record::SampleFacts sample;
   record::ProcessFacts process;
+  record::Metadata metadata;
 };
 
 struct Imported {

@@ -141,6 +141,29 @@ class Import(unittest.TestCase):
                 self.assertAlmostEqual(measured, true, delta=2e-5)
         self.call("verify", self.folder / "mu.h5")
 
+    def test_a_record_keeps_the_facts_that_its_user_states(self):
+        file = self.write("meta.csv", self.rows())
+        self.call(*self.arguments(file, "--set-meta", "humidity=52 %", "--set-meta", "room.temperature=23.1 °C = ok"))
+        with h5py.File(self.folder / "x.h5") as record:
+            stated = {key: value.asstr()[()] for key, value in record["entry/metadata"].items()}
+        self.assertEqual(stated, {"humidity": "52 %", "room.temperature": "23.1 °C = ok"})
+        self.call("verify", self.folder / "x.h5")
+        self.assertIn("   test 1: humidity: 52 %\n", self.call("report", self.folder / "x.h5"))
+        self.assertEqual(json.loads(self.call("report", self.folder / "x.h5", "--json"))["tests"][0]["metadata"], stated)
+        # Through a table and back, with one more.
+        table = self.folder / "meta-out.csv"
+        self.call("export", self.folder / "x.h5", "--csv", "-o", table)
+        self.call("import", table, "--set-meta", "note=again", "-o", self.folder / "x-again.h5")
+        with h5py.File(self.folder / "x-again.h5") as record:
+            self.assertEqual({key: value.asstr()[()] for key, value in record["entry/metadata"].items()}, {**stated, "note": "again"})
+        for pairs, said in ((["note"], "has no '='"), (["=x"], 'key ""'), (["a/b=x"], 'key "a/b"'), (["1a=x"], "a letter"), (["k" * 65 + "=x"], "at most 64"),
+                            (["a="], "a: the value is empty"), (["a=" + "x" * 201], "is 201 bytes long, at most 200 are allowed"),
+                            (["a=1\n2"], "holds the control character"), (["a=1", "a=2"], 'a is "1" already, and "2" comes too')):
+            options = [word for pair in pairs for word in ("--set-meta", pair)]
+            message = self.call(*self.arguments(file, *options), status=2)
+            self.assertIn(said, message)
+            self.assertIn("--set-meta", message)
+
 
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
