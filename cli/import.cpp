@@ -40,6 +40,8 @@ struct ImportOptions {
   std::string stiffness;
   std::string load_cell_gain;
   std::string load_cell_zero;
+  std::string count_range;
+  std::string volts_per_count;
   std::string encoding;
   std::string separator;
   std::string decimal;
@@ -126,6 +128,19 @@ Result<traces::ImportRequest> request_of(const ImportOptions& options) {
   if (*gain && **gain != 0.0) request.load_cell = daq::LoadCell{**gain, zero->value_or(0.0)};
   if ((*gain && **gain == 0.0) || (*zero && !*gain)) {
     return base::usage_error("--load-cell-zero needs --load-cell-gain, not 0, such as \"2 N/V\"");
+  }
+
+  const auto step = number_of("--volts-per-count", options.volts_per_count, Dimension::kVoltage, true);
+  if (!step) return tl::unexpected(step.error());
+  if (options.count_range.empty() != options.volts_per_count.empty()) {
+    return base::usage_error("{0} needs {1}: give --count-range, such as 0..65535, and --volts-per-count",
+                             options.count_range.empty() ? "--volts-per-count" : "--count-range",
+                             options.count_range.empty() ? "--count-range" : "--volts-per-count");
+  }
+  if (*step) {
+    const auto counts = traces::count_scale(options.count_range, **step);
+    if (!counts) return tl::unexpected(counts.error());
+    request.counts = *counts;
   }
 
   for (const auto& [name, text] :
@@ -220,7 +235,8 @@ void add_import(CLI::App& app, Chosen& chosen) {
   command->add_flag("--inspect", options->inspect,
                     "show the columns and a command that imports them; import nothing");
   text("--unit", options->unit,
-       "of the values: N, mN, kN, gf, kgf, lbf, ozf, V, mV, coefficient, percent; else that of the heading",
+       "of the values: N, mN, kN, gf, kgf, lbf, ozf, V, mV, counts, coefficient, percent; else that of the "
+       "heading",
        "UNIT");
   text("--sled-mass", options->sled_mass, "kg or with unit; needed for a force or a voltage", "M");
   text("--rate", options->rate,
@@ -231,8 +247,11 @@ void add_import(CLI::App& app, Chosen& chosen) {
        "s, ms, us, ns, min or h; else that of the heading, else by inspection", "UNIT");
   text("--speed", options->speed, "pull speed, m/s or with unit", "V");
   text("--stiffness", options->stiffness, "of the coupling, N/m or with unit", "K");
-  text("--load-cell-gain", options->load_cell_gain, "N/V or with unit; needed for V", "GAIN");
-  text("--load-cell-zero", options->load_cell_zero, "V or with unit; for V, default 0 V", "ZERO");
+  text("--load-cell-gain", options->load_cell_gain, "N/V or with unit; needed for V and counts", "GAIN");
+  text("--load-cell-zero", options->load_cell_zero, "V or with unit; for V and counts, default 0 V", "ZERO");
+  text("--count-range", options->count_range, "codes at both rails of the converter; for counts",
+       "LOWEST..HIGHEST");
+  text("--volts-per-count", options->volts_per_count, "V or with unit, 0 V at code 0; for counts", "VOLTS");
   command->add_flag("--invert", options->invert, "the force is negative while the sled slides");
   command->add_flag("--reverse", options->reverse, "read the rows from the last to the first");
   command->add_flag("--resample", options->resample,

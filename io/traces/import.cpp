@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <numeric>
 #include <utility>
@@ -178,6 +179,7 @@ class Importer {
           request_.path);
     }
     if (auto ok = find_quantity(); !ok) return tl::unexpected(ok.error());
+    if (auto ok = take_counts(); !ok) return tl::unexpected(ok.error());
     if (auto ok = find_times(); !ok) return tl::unexpected(ok.error());
     if (request_.reverse) {
       std::reverse(table_.value.begin(), table_.value.end());
@@ -211,12 +213,32 @@ class Importer {
     quantity_ = known->quantity;
     scale_ = known->scale;
     load_cell_ = request_.load_cell;
-    if (quantity_ == RawQuantity::kVolts && !load_cell_) {
+    const bool counts = quantity_ == RawQuantity::kCounts;
+    const bool voltage = counts || quantity_ == RawQuantity::kVolts;
+    if (counts && !request_.counts) {
+      return base::usage_error(
+          "{}: --unit counts needs --count-range and --volts-per-count, such as --count-range 0..65535 "
+          "--volts-per-count \"0.3 mV\"",
+          request_.path);
+    }
+    if (!counts && request_.counts)
+      return base::usage_error(
+          "{}: --count-range and --volts-per-count are for --unit counts, the unit is {}", request_.path,
+          unit_);
+    if (counts && request_.resample) {
+      return base::usage_error(
+          "{}: --resample makes numbers between the counts: leave it out, or convert the counts to volts and "
+          "give "
+          "--unit V",
+          request_.path);
+    }
+    if (voltage && !load_cell_) {
       return base::usage_error("{}: --unit {} needs --load-cell-gain, such as \"2 N/V\"", request_.path,
                                unit_);
     }
-    if (quantity_ != RawQuantity::kVolts && load_cell_) {
-      return base::usage_error("--load-cell-gain and --load-cell-zero are for --unit V and mV only");
+    if (!voltage && load_cell_) {
+      return base::usage_error(
+          "--load-cell-gain and --load-cell-zero are for --unit V, mV and counts only: leave them out");
     }
     if (quantity_ != RawQuantity::kCoefficient && !request_.tester.sled_mass_kg) {
       return base::usage_error(
@@ -231,6 +253,37 @@ class Importer {
       }
     }
     return {};
+  }
+
+  /// Codes from 0 at the lower rail, as a board counts them.
+  Result<void> take_counts() {
+    if (quantity_ != RawQuantity::kCounts) return {};
+    const auto lowest = static_cast<double>(request_.counts->lowest);
+    const auto highest = static_cast<double>(request_.counts->highest);
+    for (std::size_t row = 0; row < table_.value.size(); ++row) {
+      double& value = table_.value[row];
+      if (std::isnan(value)) continue;
+      if (value != std::floor(value) || value < lowest || value > highest) {
+        return base::usage_error(
+            "{}:{}: column \"{}\" is {}, and counts are whole numbers of {} … {}: correct {}", request_.path,
+            table_.line(row), base::one_line(dialect_.columns[columns_.value].text, 40), value,
+            request_.counts->lowest, request_.counts->highest,
+            value == std::floor(value) ? "--count-range" : "--unit, or choose another column");
+      }
+      value -= lowest;
+    }
+    return {};
+  }
+
+  void set_board(daq::BoardInfo& board) const {
+    board.quantity = quantity_;
+    if (quantity_ != RawQuantity::kCounts) return;
+    const CountScale& counts = *request_.counts;
+    board.maxdata = static_cast<std::uint32_t>(counts.highest - counts.lowest);
+    board.range_min_V = static_cast<double>(counts.lowest) * counts.volts_per_count;
+    board.range_max_V = static_cast<double>(counts.highest) * counts.volts_per_count;
+    board.polynomial = {0.0, counts.volts_per_count};
+    board.expansion_origin = static_cast<double>(-counts.lowest);
   }
 
   Result<void> find_times() {
@@ -310,7 +363,7 @@ class Importer {
     header.title = std::filesystem::path{request_.path}.stem().string();
     header.board.driver = "import";
     header.board.device = std::filesystem::path{request_.path}.filename().string();
-    header.board.quantity = quantity_;
+    set_board(header.board);
     header.board.scan_rate_requested_Hz = request_.rate_Hz.value_or(run.rate_Hz);
     header.board.scan_rate_granted_Hz = run.rate_Hz;
     header.load_cell = load_cell_;
@@ -392,6 +445,7 @@ const char* needless_option(const ImportRequest& request) {
                           std::pair{"--sled-mass", request.tester.sled_mass_kg.has_value()},
                           std::pair{"--speed", request.tester.pull_speed_m_per_s.has_value()},
                           std::pair{"--stiffness", request.tester.stiffness_N_per_m.has_value()},
+                          std::pair{"--count-range", request.counts.has_value()},
                           std::pair{"--load-cell-gain", request.load_cell.has_value()},
                           std::pair{"--sample", !request.sample.name.empty()},
                           std::pair{"--grade", !request.sample.grade.empty()},

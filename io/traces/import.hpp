@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/traces/dialect.hpp"
+#include "io/traces/quantity_unit.hpp"
 
 #include "core/base/result.hpp"
 #include "core/record/record.hpp"
@@ -28,7 +29,8 @@ struct ImportRequest {
   bool resample = false;      ///< Scans at equal intervals by linear interpolation.
   bool skip_doubled = false;  ///< Leave out a row with the time of the row before it.
   record::TesterFacts tester;
-  std::optional<daq::LoadCell> load_cell;  ///< For V.
+  std::optional<daq::LoadCell> load_cell;  ///< For V and counts.
+  std::optional<CountScale> counts;        ///< For counts.
   record::SampleFacts sample;
   record::ProcessFacts process;
   record::Metadata metadata;

@@ -59,6 +59,9 @@ std::string command(const ImportRequest& request, const Dialect& dialect, const 
   if (!time_column_of(dialect, column)) {
     text += dialect.header_line == 0 && column != 0 ? " --time-column 1 --time-unit UNIT" : " --rate HZ";
   }
+  const bool counts = unit && unit->quantity == daq::RawQuantity::kCounts;
+  if (counts) text += " --count-range LOWEST..HIGHEST --volts-per-count VOLTS";
+  if (counts || (unit && unit->quantity == daq::RawQuantity::kVolts)) text += " --load-cell-gain GAIN";
   if (!unit || unit->quantity != daq::RawQuantity::kCoefficient) text += " --sled-mass MASS";
   return text + output_option(request.path);
 }

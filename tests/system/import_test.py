@@ -141,6 +141,21 @@ class Import(unittest.TestCase):
                 self.assertAlmostEqual(measured, true, delta=2e-5)
         self.call("verify", self.folder / "mu.h5")
 
+    def test_counts_become_a_record_like_that_of_a_board(self):
+        counts = [[row[0], str(round(float(row[1]) / 2 / 0.5e-3))] for row in self.rows()]
+        file = self.write("counts.csv", counts, heading="time,code")
+        words = ["import", file, "--column", "code", "--unit", "counts", "--sled-mass", "2331 g", "-o", self.folder / "counts.h5"]
+        self.assertIn("--count-range 0..65535", self.call(*words, status=2))
+        words += ["--count-range", "-32768..32767"]
+        self.assertIn("--volts-per-count", self.call(*words, status=2))
+        words += ["--volts-per-count", "0.5 mV"]
+        self.assertIn("--load-cell-gain", self.call(*words, status=2))
+        self.call(*words, "--load-cell-gain", "2 N/V")
+        with h5py.File(self.folder / "counts.h5") as record:
+            self.assertEqual(list(record["entry/raw/counts"][:]), [int(row[1]) + 32768 for row in counts])
+            self.assertAlmostEqual(record["entry/results/delta_mu"][()], self.delta_mu, delta=0.001)
+        self.call("verify", self.folder / "counts.h5")
+
     def test_a_record_keeps_the_facts_that_its_user_states(self):
         file = self.write("meta.csv", self.rows())
         self.call(*self.arguments(file, "--set-meta", "humidity=52 %", "--set-meta", "room.temperature=23.1 °C = ok"))

@@ -103,6 +103,55 @@ TEST_F(TraceImport, NegativeForceNeedsInvert) {
   EXPECT_TRUE(imported) << imported.error().message;
 }
 
+TEST_F(TraceImport, CountsKeepTheirCodesAndTheirScale) {
+  request_.unit = "counts";
+  request_.load_cell = daq::LoadCell{2.0, 0.0};
+  request_.counts = count_scale("-32768..32767", 0.5e-3).value();
+  const auto imported = import("t (s),F\n0.00,-32768\n0.01,0\n0.02,32767\n0.03,2000\n");
+  ASSERT_TRUE(imported) << imported.error().message;
+  const record::Record& record = imported->records.front();
+  const daq::BoardInfo& board = record.header.board;
+  EXPECT_EQ(board.quantity, daq::RawQuantity::kCounts);
+  EXPECT_EQ(board.maxdata, 65535U);
+  EXPECT_DOUBLE_EQ(board.range_min_V, -16.384);
+  EXPECT_DOUBLE_EQ(board.range_max_V, 16.3835);
+  EXPECT_THAT(record.raw, ElementsAre(0.0, 32768.0, 65535.0, 34768.0));
+  const daq::Calibration calibration{board, *record.header.load_cell, 1.0};
+  EXPECT_DOUBLE_EQ(calibration.volts(record.raw[3]), 1.0);
+  EXPECT_DOUBLE_EQ(calibration.force_N(record.raw[3]), 2.0);
+  EXPECT_TRUE(calibration.saturated(record.raw[0]));
+  EXPECT_FALSE(calibration.saturated(record.raw[1]));
+}
+
+TEST_F(TraceImport, CountsThatCannotBeAreRefusedWithTheirRow) {
+  request_.unit = "counts";
+  const std::string content = "t (s),F\n" + rows(0, 5);
+  expect_refused(content, "--unit counts needs --count-range and --volts-per-count");
+  request_.counts = count_scale("0..4", 1e-3).value();
+  expect_refused(content, "--unit counts needs --load-cell-gain");
+  request_.load_cell = daq::LoadCell{2.0, 0.0};
+  expect_refused(content,
+                 ":6: column \"F\" is 5, and counts are whole numbers of 0 … 4: correct --count-range");
+  request_.counts = count_scale("0..255", 1e-3).value();
+  expect_refused("t (s),F\n0.00,1\n0.01,1.5\n",
+                 ":3: column \"F\" is 1.5, and counts are whole numbers of 0 … 255: correct --unit");
+  request_.resample = true;
+  expect_refused(content, "--resample makes numbers between the counts");
+  request_.resample = false;
+  request_.unit = "V";
+  expect_refused(content, "are for --unit counts, the unit is V");
+}
+
+TEST(CountScale, IsARangeOfCodes) {
+  EXPECT_EQ(count_scale("0..4294967295", 1.0)->highest, 4294967295);
+  for (const char* wrong : {"", "..", "0", "0..", "..5", "5..5", "5..0", "0..4294967296", "0...5", "0..5.5",
+                            "a..b", "0..9999999999999"}) {
+    const auto scale = count_scale(wrong, 1.0);
+    ASSERT_FALSE(scale) << wrong;
+    EXPECT_THAT(scale.error().message, HasSubstr("--count-range: "));
+  }
+}
+
 TEST_F(TraceImport, UnitOfTheTimeIsItsHeadingsOrFoundByInspection) {
   std::string content = "millis,F\n";
   std::string since_1970 = "timestamp,F\n";
