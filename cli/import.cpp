@@ -76,14 +76,17 @@ Result<traces::DialectOptions> dialect_of(const ImportOptions& options) {
                                    std::pair{"semicolon", ';'},
                                    std::pair{";", ';'},
                                    std::pair{"tab", '\t'},
+                                   std::pair{"bar", '|'},
+                                   std::pair{"|", '|'},
                                    std::pair{"blanks", traces::kBlanks},
                                    std::pair{"none", traces::kNoSeparator}};
   for (const auto& [name, separator] : kSeparators) {
     if (options.separator == name) dialect.separator = separator;
   }
   if (!options.separator.empty() && !dialect.separator) {
-    return base::usage_error("--separator: \"{}\" is unknown; allowed: comma, semicolon, tab, blanks, none",
-                             base::printable(options.separator));
+    return base::usage_error(
+        "--separator: \"{}\" is unknown; allowed: comma, semicolon, tab, bar, blanks, none",
+        base::printable(options.separator));
   }
   if (options.decimal == "." || options.decimal == "point") dialect.decimal = '.';
   if (options.decimal == "," || options.decimal == "comma") dialect.decimal = ',';
@@ -260,7 +263,8 @@ void add_import(CLI::App& app, Chosen& chosen) {
                     "leave out rows with the time of the row before");
   text("--encoding", options->encoding, "UTF-8, UTF-16LE, UTF-16BE, Windows-1252, Latin-1; else recognised",
        "NAME");
-  text("--separator", options->separator, "comma, semicolon, tab, blanks or none; else recognised", "WORD");
+  text("--separator", options->separator, "comma, semicolon, tab, bar, blanks or none; else recognised",
+       "WORD");
   text("--decimal", options->decimal, "point or comma; else recognised", "WORD");
   command->add_option("--skip", options->skip, "lines at the beginning that are no part of the table")
       ->type_name("LINES")

@@ -187,8 +187,7 @@ class Importer {
     }
     for (double& value : table_.value) value *= scale_;
     const std::vector<std::size_t> runs = time_s_.empty() ? std::vector<std::size_t>{0} : runs_in(time_s_);
-    if (runs.size() > 1)
-      note("{} runs: the clock starts again in line {}", runs.size(), table_.line(runs[1]));
+    if (runs.size() > 1) note("{} runs: the clock starts again in line {}", runs.size(), line(runs[1]));
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const std::size_t end = i + 1 < runs.size() ? runs[i + 1] : table_.value.size();
       if (auto added = add_run(runs[i], end); !added) return tl::unexpected(added.error());
@@ -198,6 +197,11 @@ class Importer {
   }
 
  private:
+  /// In the file, of a row of the trace.
+  [[nodiscard]] std::int64_t line(std::size_t row) const {
+    return table_.line(request_.reverse ? table_.value.size() - 1 - row : row);
+  }
+
   template <typename... Args>
   void note(fmt::format_string<Args...> format, Args&&... args) {
     notes_ += fmt::format("{}: {}\n", base::printable(request_.path),
@@ -328,7 +332,7 @@ class Importer {
     } else {
       const std::vector<double> time{time_s_.begin() + first, time_s_.begin() + last};
       const auto grid = grid_of(time, grid_options_, [this, begin](std::size_t row) {
-        return fmt::format("{}:{}", request_.path, table_.line(begin + row));
+        return fmt::format("{}:{}", request_.path, line(begin + row));
       });
       if (!grid) return tl::unexpected(grid.error());
       run = run_of(*grid, time, value);
@@ -351,7 +355,7 @@ class Importer {
       return;
     }
     note("{:.7g} scans a second by the time column, largest jitter {:.2g} % of the interval, in line {}",
-         grid.rate_Hz, 100.0 * grid.largest_jitter, table_.line(begin + grid.largest_row));
+         grid.rate_Hz, 100.0 * grid.largest_jitter, line(begin + grid.largest_row));
     if (!grid.uniform) note("scans interpolated at equal intervals of {:.6g} s", 1.0 / grid.rate_Hz);
     if (const auto doubled = std::count(grid.doubled.begin(), grid.doubled.end(), true); doubled > 0)
       note("{} rows with the time of the row before left out", doubled);

@@ -8,11 +8,13 @@
 #include "io/traces/import.hpp"
 #include "io/traces/own_table.hpp"
 #include "io/traces/quantity_unit.hpp"
+#include "io/traces/time_unit.hpp"
 #include "io/traces/trace_table.hpp"
 
 #include "core/base/shell_word.hpp"
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
+#include "core/record/iso_time.hpp"
 
 namespace stickslip::traces {
 namespace {
@@ -36,6 +38,26 @@ std::size_t likely_column(const Dialect& dialect) {
   return last;
 }
 
+/// "12:00:00.01", of seconds in a day; with the date where there is one.
+std::string moment(const TraceTable& table, double since_first_s) {
+  const double time_s = table.first_time + since_first_s;
+  if (const double epoch_s = static_cast<double>(table.date_s.value_or(0)) + time_s;
+      table.date_s && std::abs(epoch_s) < kFarthestEpoch_s)
+    return record::iso_time(*table.date_s * 1'000'000'000 + std::llround(1e9 * time_s));
+  constexpr double kDay_s = 86'400.0;
+  const double of_day_s = std::fmod(time_s, kDay_s);
+  const auto minutes = static_cast<int>(of_day_s / 60.0);
+  return fmt::format("{:02}:{:02}:{:0{}.{}f}", minutes / 60, minutes % 60, of_day_s - 60.0 * minutes,
+                     table.time_decimals > 0 ? table.time_decimals + 3 : 2, std::max(table.time_decimals, 0));
+}
+
+/// First and last of a column of clock times.
+std::string clock_range(const Source& source, const Dialect& dialect, std::size_t column) {
+  const auto table = read_table(source, dialect, likely_column(dialect), column);
+  if (!table || table->time.empty()) return "no numbers";
+  return fmt::format("{} … {}", moment(*table, 0.0), moment(*table, table->time.back()));
+}
+
 /// As the file is called, so is the record.
 std::string output_option(const std::string& path) {
   return " -o " + base::shell_word(path.substr(0, path.rfind('.')) + ".h5");
@@ -44,6 +66,17 @@ std::string output_option(const std::string& path) {
 /// A table of stickslip export says all itself.
 std::string own_command(const std::string& path) {
   return "stickslip import " + base::shell_word(path) + output_option(path);
+}
+
+/// What tells the times where no column is one by its name.
+std::string time_options(const Dialect& dialect, std::size_t column) {
+  if (time_column_of(dialect, column)) return {};
+  const auto clock = std::find(dialect.clock.begin(), dialect.clock.end(), true);
+  if (clock == dialect.clock.end())
+    return dialect.header_line == 0 && column != 0 ? "--time-column 1 --time-unit UNIT" : "--rate HZ";
+  const auto at = static_cast<std::size_t>(clock - dialect.clock.begin());
+  const std::string& heading = dialect.columns[at].text;
+  return "--time-column " + (heading.empty() ? std::to_string(at + 1) : base::shell_word(heading));
 }
 
 /// Words in capitals stand for what the file does not say: nothing is guessed that changes a number.
@@ -56,9 +89,7 @@ std::string command(const ImportRequest& request, const Dialect& dialect, const 
                   name.text.empty() ? std::to_string(column + 1) : base::shell_word(name.text));
   const auto unit = quantity_unit(own);
   if (own.empty() || !unit) text += " --unit UNIT";
-  if (!time_column_of(dialect, column)) {
-    text += dialect.header_line == 0 && column != 0 ? " --time-column 1 --time-unit UNIT" : " --rate HZ";
-  }
+  if (const std::string time = time_options(dialect, column); !time.empty()) text += " " + time;
   const bool counts = unit && unit->quantity == daq::RawQuantity::kCounts;
   if (counts) text += " --count-range LOWEST..HIGHEST --volts-per-count VOLTS";
   if (counts || (unit && unit->quantity == daq::RawQuantity::kVolts)) text += " --load-cell-gain GAIN";
@@ -98,7 +129,7 @@ Result<std::string> inspect(const ImportRequest& request) {
       }
       if (!table->cell_unit.empty()) unit = table->cell_unit;
     } else {
-      first = "no numbers";
+      first = dialect->clock[c] ? clock_range(*source, *dialect, c) : "no numbers";
     }
     if (c == likely_column(*dialect)) likely_unit = unit;
     columns.add({io::cell(c + 1), base::one_line(dialect->columns[c].text, 30), base::one_line(unit, 12),

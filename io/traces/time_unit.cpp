@@ -70,6 +70,8 @@ Result<TimeUnit> time_unit_of(const ImportRequest& request, const ColumnName& co
 
 std::optional<std::int64_t> start_of(const TraceTable& table, double unit_s) {
   constexpr double kNanosecond = 1e-9;
+  if (table.date_s && std::abs(static_cast<double>(*table.date_s) + table.first_time) > kFarthestEpoch_s)
+    return std::nullopt;
   if (table.date_s) return *table.date_s * 1'000'000'000 + std::llround(table.first_time / kNanosecond);
   const double since = table.first_time * unit_s;
   if (since < kEarliestEpoch_s || since > kLatestEpoch_s) return std::nullopt;

@@ -24,7 +24,10 @@ struct TimeUnit {
 [[nodiscard]] base::Result<TimeUnit> time_unit_of(const ImportRequest& request, const ColumnName& column,
                                                   const TraceTable& table);
 
-/// Start of the first row since 1970, ns, where the times tell.
+/// Times since 1970 farther away than this have no 64 bits of ns: of the years 1684 to 2255.
+inline constexpr double kFarthestEpoch_s = 9e9;
+
+/// Start of the first row since 1970, ns, where the times tell; none beyond kFarthestEpoch_s.
 [[nodiscard]] std::optional<std::int64_t> start_of(const TraceTable& table, double unit_s);
 
 }  // namespace stickslip::traces
