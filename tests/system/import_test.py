@@ -165,6 +165,11 @@ class Import(unittest.TestCase):
         self.call("verify", self.folder / "x.h5")
         self.assertIn("   test 1: humidity: 52 %\n", self.call("report", self.folder / "x.h5"))
         self.assertEqual(json.loads(self.call("report", self.folder / "x.h5", "--json"))["tests"][0]["metadata"], stated)
+        shown = self.call("show", self.folder / "x.h5")
+        self.assertRegex(shown, r"(?m)^  metadata\.humidity +52 %$")
+        self.assertRegex(shown, r"(?m)^  delta_mu +0\.05")
+        self.assertEqual(json.loads(self.call("show", self.folder / "x.h5", "--json"))["metadata"], stated)
+        self.assertIn("no-such.h5", self.call("show", self.folder / "no-such.h5", status=2))
         # Through a table and back, with one more.
         table = self.folder / "meta-out.csv"
         self.call("export", self.folder / "x.h5", "--csv", "-o", table)
