@@ -73,7 +73,10 @@ Json facts_of(const record::RecordHeader& header) {
 
 base::Result<std::string> show_record(const ShowOptions& options) {
   const base::Result<record::Record> record = record::read_record_apart(options.test);
-  if (!record) return tl::unexpected(record.error());
+  if (!record) {
+    return tl::unexpected(base::Error{
+        record.error().kind, record.error().message + "; a test of the daemon is named by its number"});
+  }
   const record::RecordHeader& header = record->header;
   const Json facts = facts_of(header);
   const Json results = io::results_json(record->end->results, true);
@@ -89,9 +92,10 @@ base::Result<std::string> show_record(const ShowOptions& options) {
     known.add({"  " + name, value.is_string() ? base::printable(value.get<std::string>()) : value.dump()});
   for (const auto& [key, value] : header.metadata)
     known.add({"  metadata." + base::printable(key), base::printable(value)});
-  return fmt::format("{}: {}, ended: {}\n{}\n{}", base::printable(options.test), word(results, "regime"),
-                     record->end->cause.empty() ? io::kAbsent : base::printable(record->end->cause),
-                     known.text(), results_text(results));
+  return fmt::format(
+      "{}: {}, ended: {}\n{}\n{}", base::printable(options.test), word(results, "regime"),
+      record->end->cause.empty() ? std::string{io::kAbsent} : base::printable(record->end->cause),
+      known.text(), results_text(results));
 }
 
 base::Result<std::string> run_show(const ShowOptions& options) {
