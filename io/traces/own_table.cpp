@@ -50,18 +50,20 @@ std::optional<Number> number_in(std::string_view text) {
   return number;
 }
 
-std::vector<std::string_view> split(std::string_view text, char mark) {
-  std::vector<std::string_view> parts;
+/// What stands between the marks, in the vector's own memory: there is a row for each scan.
+void part_at(char mark, std::string_view text, std::vector<std::string_view>& parts) {
+  parts.clear();
   while (true) {
     const std::size_t at = text.find(mark);
     parts.push_back(text.substr(0, at));
-    if (at == std::string_view::npos) return parts;
+    if (at == std::string_view::npos) return;
     text.remove_prefix(at + 1);
   }
 }
 
 record::ClockAnchor anchor_from(std::string_view text) {
-  const auto parts = split(text, ' ');
+  std::vector<std::string_view> parts;
+  part_at(' ', text, parts);
   std::vector<std::int64_t> numbers;
   for (const std::string_view part : parts) {
     if (const auto number = number_in<std::int64_t>(part)) numbers.push_back(*number);
@@ -144,9 +146,9 @@ class OwnReader {
   }
 
   Result<void> take_heading(std::string_view line) {
-    const auto names = split(line, ',');
-    columns_ = names.size();
-    const auto find = [&names](std::string_view name) -> std::optional<std::size_t> {
+    part_at(',', line, fields_);
+    columns_ = fields_.size();
+    const auto find = [&names = fields_](std::string_view name) -> std::optional<std::size_t> {
       const auto at = std::find(names.begin(), names.end(), name);
       if (at == names.end()) return std::nullopt;
       return static_cast<std::size_t>(at - names.begin());
@@ -179,7 +181,7 @@ class OwnReader {
   }
 
   Result<void> take_row(std::string_view line) {
-    fields_ = split(line, ',');
+    part_at(',', line, fields_);
     if (fields_.size() != columns_) {
       return base::usage_error("{}:{}: the row has {} fields, the heading {}; {}", path_, line_,
                                fields_.size(), columns_, kRemedy);

@@ -31,15 +31,15 @@ base::Result<QuantityUnit> quantity_unit(std::string_view unit) {
 
 base::Result<CountScale> count_scale(std::string_view range, double volts_per_count) {
   constexpr std::string_view kTo = "..";
-  const auto whole = [](std::string_view text) -> std::optional<std::int64_t> {
+  const auto code = [](std::string_view text) -> std::optional<std::int64_t> {
     std::int64_t number = 0;
     const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
     const bool all = status == std::errc{} && end == text.data() + text.size();
     return all ? std::optional{number} : std::nullopt;
   };
   const std::size_t at = range.find(kTo);
-  const auto lowest = whole(range.substr(0, at));
-  const auto highest = at == std::string_view::npos ? std::nullopt : whole(range.substr(at + kTo.size()));
+  const auto lowest = code(range.substr(0, at));
+  const auto highest = at == std::string_view::npos ? std::nullopt : code(range.substr(at + kTo.size()));
   constexpr std::int64_t kFarthest = std::int64_t{1} << 32;
   if (!lowest || !highest || *lowest >= *highest || *lowest < -kFarthest || *highest > kFarthest ||
       *highest - *lowest >= kFarthest) {
