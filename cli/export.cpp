@@ -38,10 +38,11 @@ base::Result<std::string> run_export(const ExportOptions& options) {
 
 constexpr const char* kExportExamples =
     R"(Scans (or cycles) of a record as a table for spreadsheets. Lines that begin with # tell the facts; names end in
-their units; numbers have all their digits, so that `stickslip import` gives them back to the last one.
+their units; numbers have all their digits, so that `stickslip import` makes the same record of it again.
 
 Examples:
   stickslip export pull.h5 --csv > pull.csv
+  stickslip import pull.csv -o again.h5
   stickslip export pull.h5 --csv --cycles -o cycles.csv)";
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "core/base/version.hpp"
 #include "core/evaluation/analyse.hpp"
 #include "core/record/finaliser.hpp"
+#include "core/record/metadata.hpp"
 #include "core/record/method_text.hpp"
 
 namespace stickslip::cli {
@@ -39,6 +40,8 @@ struct ImportOptions {
   std::string stiffness;
   std::string load_cell_gain;
   std::string load_cell_zero;
+  std::string count_range;
+  std::string volts_per_count;
   std::string encoding;
   std::string separator;
   std::string decimal;
@@ -52,7 +55,8 @@ struct ImportOptions {
   std::string grade;
   std::string person;
   std::int64_t replicate = 0;
-  std::string method;  ///< As chosen_method() takes it.
+  std::vector<std::string> metadata;  ///< "key=value"
+  std::string method;                 ///< As chosen_method() takes it.
   std::string output;
 };
 
@@ -72,14 +76,17 @@ Result<traces::DialectOptions> dialect_of(const ImportOptions& options) {
                                    std::pair{"semicolon", ';'},
                                    std::pair{";", ';'},
                                    std::pair{"tab", '\t'},
+                                   std::pair{"bar", '|'},
+                                   std::pair{"|", '|'},
                                    std::pair{"blanks", traces::kBlanks},
                                    std::pair{"none", traces::kNoSeparator}};
   for (const auto& [name, separator] : kSeparators) {
     if (options.separator == name) dialect.separator = separator;
   }
   if (!options.separator.empty() && !dialect.separator) {
-    return base::usage_error("--separator: \"{}\" is unknown; allowed: comma, semicolon, tab, blanks, none",
-                             base::printable(options.separator));
+    return base::usage_error(
+        "--separator: \"{}\" is unknown; allowed: comma, semicolon, tab, bar, blanks, none",
+        base::printable(options.separator));
   }
   if (options.decimal == "." || options.decimal == "point") dialect.decimal = '.';
   if (options.decimal == "," || options.decimal == "comma") dialect.decimal = ',';
@@ -126,6 +133,19 @@ Result<traces::ImportRequest> request_of(const ImportOptions& options) {
     return base::usage_error("--load-cell-zero needs --load-cell-gain, not 0, such as \"2 N/V\"");
   }
 
+  const auto step = number_of("--volts-per-count", options.volts_per_count, Dimension::kVoltage, true);
+  if (!step) return tl::unexpected(step.error());
+  if (options.count_range.empty() != options.volts_per_count.empty()) {
+    return base::usage_error("{0} needs {1}: give --count-range, such as 0..65535, and --volts-per-count",
+                             options.count_range.empty() ? "--volts-per-count" : "--count-range",
+                             options.count_range.empty() ? "--count-range" : "--volts-per-count");
+  }
+  if (*step) {
+    const auto counts = traces::count_scale(options.count_range, **step);
+    if (!counts) return tl::unexpected(counts.error());
+    request.counts = *counts;
+  }
+
   for (const auto& [name, text] :
        {std::pair{"--sample", &options.sample}, std::pair{"--grade", &options.grade},
         std::pair{"--operator", &options.person}}) {
@@ -137,6 +157,10 @@ Result<traces::ImportRequest> request_of(const ImportOptions& options) {
   request.sample.grade = options.grade;
   request.sample.operator_name = options.person;
   if (options.replicate > 0) request.sample.replicate = options.replicate;
+  for (const std::string& pair : options.metadata) {
+    if (const auto added = record::add_metadata(request.metadata, pair, "--set-meta"); !added)
+      return tl::unexpected(added.error());
+  }
   request.process.program = "stickslip import";
   request.process.version = base::kVersion;
   request.process.commit = base::kCommit;
@@ -159,8 +183,10 @@ Result<std::string> run_import(const ImportOptions& options, const std::string& 
   Result<traces::ImportRequest> request = request_of(options);
   if (!request) return tl::unexpected(request.error());
   if (options.inspect) return traces::inspect(*request);
-  if (!options.column.empty() && options.output.empty())
+  if (options.output.empty())
     return base::usage_error("--output is needed: the record to make, such as -o pull.h5");
+  // An exported record keeps its method unless another one is asked for.
+  if (options.column.empty() && options.method.empty()) request->process.method.clear();
   Result<traces::Imported> imported = traces::import_trace(*request);
   if (!imported) return tl::unexpected(imported.error());
   std::string text = std::move(imported->report);
@@ -171,7 +197,7 @@ Result<std::string> run_import(const ImportOptions& options, const std::string& 
     if (!end) return tl::unexpected(end.error());
     const std::vector<std::string> findings = std::move(record.end->results.findings);
     end->results.findings.insert(end->results.findings.end(), findings.begin(), findings.end());
-    end->reasons.clear();
+    if (imported->is_own) end->spikes = record.spikes;
     record::set_end(record, std::move(*end));
   }
   for (std::size_t i = 0; i < records.size(); ++i) {
@@ -206,14 +232,18 @@ void add_import(CLI::App& app, Chosen& chosen) {
        "FILE.csv")
       ->required();
   text("--column,--dataset", options->column,
-       "heading or number of the column with the values; variable of MATLAB, dataset of HDF5", "NAME");
+       "heading or number of the column with the values; variable of MATLAB, dataset of HDF5; none for a "
+       "table "
+       "of stickslip export",
+       "NAME");
   text("-o,--output", options->output,
        "record to make, must not exist; x.h5 becomes x-1.h5, x-2.h5 … where the trace has several tests",
        "FILE.h5");
   command->add_flag("--inspect", options->inspect,
                     "show the columns and a command that imports them; import nothing");
   text("--unit", options->unit,
-       "of the values: N, mN, kN, gf, kgf, lbf, ozf, V, mV, coefficient, percent; else that of the heading",
+       "of the values: N, mN, kN, gf, kgf, lbf, ozf, V, mV, counts, coefficient, percent; else that of the "
+       "heading",
        "UNIT");
   text("--sled-mass", options->sled_mass, "kg or with unit; needed for a force or a voltage", "M");
   text("--rate", options->rate,
@@ -224,8 +254,11 @@ void add_import(CLI::App& app, Chosen& chosen) {
        "s, ms, us, ns, min or h; else that of the heading, else by inspection", "UNIT");
   text("--speed", options->speed, "pull speed, m/s or with unit", "V");
   text("--stiffness", options->stiffness, "of the coupling, N/m or with unit", "K");
-  text("--load-cell-gain", options->load_cell_gain, "N/V or with unit; needed for V", "GAIN");
-  text("--load-cell-zero", options->load_cell_zero, "V or with unit; for V, default 0 V", "ZERO");
+  text("--load-cell-gain", options->load_cell_gain, "N/V or with unit; needed for V and counts", "GAIN");
+  text("--load-cell-zero", options->load_cell_zero, "V or with unit; for V and counts, default 0 V", "ZERO");
+  text("--count-range", options->count_range, "codes at both rails of the converter; for counts",
+       "LOWEST..HIGHEST");
+  text("--volts-per-count", options->volts_per_count, "V or with unit, 0 V at code 0; for counts", "VOLTS");
   command->add_flag("--invert", options->invert, "the force is negative while the sled slides");
   command->add_flag("--reverse", options->reverse, "read the rows from the last to the first");
   command->add_flag("--resample", options->resample,
@@ -234,7 +267,8 @@ void add_import(CLI::App& app, Chosen& chosen) {
                     "leave out rows with the time of the row before");
   text("--encoding", options->encoding, "UTF-8, UTF-16LE, UTF-16BE, Windows-1252, Latin-1; else recognised",
        "NAME");
-  text("--separator", options->separator, "comma, semicolon, tab, blanks or none; else recognised", "WORD");
+  text("--separator", options->separator, "comma, semicolon, tab, bar, blanks or none; else recognised",
+       "WORD");
   text("--decimal", options->decimal, "point or comma; else recognised", "WORD");
   command->add_option("--skip", options->skip, "lines at the beginning that are no part of the table")
       ->type_name("LINES")
@@ -245,6 +279,12 @@ void add_import(CLI::App& app, Chosen& chosen) {
   command->add_option("--replicate", options->replicate, "number of the replicate, from 1")
       ->type_name("COUNT")
       ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--set-meta", options->metadata,
+                   "a fact of your own, such as \"humidity=52 %\"; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   add_method_option(*command, options->method);
   choose(*command, chosen, [options, &chosen] { return run_import(*options, chosen.line); });
 }

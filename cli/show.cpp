@@ -1,14 +1,19 @@
 #include <fmt/format.h>
 
-#include <cstdint>
 #include <memory>
 #include <string>
 
 #include "cli/ask.hpp"
 #include "cli/json_members.hpp"
 #include "cli/subcommands.hpp"
+#include "io/json_text.hpp"
+#include "io/results_json.hpp"
 #include "io/table.hpp"
 #include <nlohmann/json.hpp>
+
+#include "core/base/text.hpp"
+#include "core/record/iso_time.hpp"
+#include "core/record/read_apart.hpp"
 
 namespace stickslip::cli {
 namespace {
@@ -16,19 +21,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct ShowOptions : BenchOptions {
-  std::int64_t test = 0;  ///< Its number.
+  std::string test;  ///< Number of a test of the daemon, or path of a record.
 };
 
-base::Result<std::string> run_show(const ShowOptions& options) {
-  const base::Result<Json> test =
-      ask(options, {"GET", fmt::format("/v1/tests/{}", options.test), {}, {}, {}});
-  if (!test) return tl::unexpected(test.error());
-  if (options.json) return test->dump(2) + "\n";
-  const std::string text =
-      fmt::format("test {}: {}, ended: {}\nfile: {}\n", (*test)["number"].dump(),
-                  word((*test)["results"], "regime"), word(*test, "cause"), word(*test, "file"));
+/// "  mu_s  0.3517 ± 0.0004", one line for each result.
+std::string results_text(const Json& results) {
   io::Table list = io::Table::list({0, 0});
-  for (const auto& [name, detail] : (*test)["results"]["details"].items()) {
+  for (const auto& [name, detail] : results["details"].items()) {
     if (!detail.contains("value")) continue;
     const Json& value = detail["value"];
     const std::string error = detail.contains("standard_error")
@@ -39,16 +38,80 @@ base::Result<std::string> run_show(const ShowOptions& options) {
                                            : fmt::format("{:.6g}{}{}", value.get<double>(), error,
                                                          unit == "1" ? "" : " " + unit)});
   }
-  return text + list.text();
+  return list.text();
+}
+
+base::Result<std::string> show_test(const ShowOptions& options) {
+  const base::Result<Json> test = ask(options, {"GET", "/v1/tests/" + options.test, {}, {}, {}});
+  if (!test) return tl::unexpected(test.error());
+  if (options.json) return test->dump(2) + "\n";
+  const std::string text =
+      fmt::format("test {}: {}, ended: {}\nfile: {}\n", (*test)["number"].dump(),
+                  word((*test)["results"], "regime"), word(*test, "cause"), word(*test, "file"));
+  return text + results_text((*test)["results"]);
+}
+
+/// What is known of the sample, and what the user of an import stated.
+Json facts_of(const record::RecordHeader& header) {
+  Json facts = Json::object();
+  const auto put = [&facts](const char* name, const std::string& value) {
+    if (!value.empty()) facts[name] = value;
+  };
+  put("title", header.title);
+  put("uuid", header.uuid);
+  if (header.start_realtime_ns) put("start_time", record::iso_time(*header.start_realtime_ns));
+  put("sample", header.sample.name);
+  put("grade", header.sample.grade);
+  put("direction", header.sample.direction);
+  put("side", header.sample.side);
+  if (header.sample.replicate) facts["replicate"] = *header.sample.replicate;
+  put("operator", header.sample.operator_name);
+  put("method", header.process.method);
+  put("source_file", header.process.source_file);
+  return facts;
+}
+
+base::Result<std::string> show_record(const ShowOptions& options) {
+  const base::Result<record::Record> record = record::read_record_apart(options.test);
+  if (!record) {
+    return tl::unexpected(base::Error{
+        record.error().kind, record.error().message + "; a test of the daemon is named by its number"});
+  }
+  const record::RecordHeader& header = record->header;
+  const Json facts = facts_of(header);
+  const Json results = io::results_json(record->end->results, true);
+  if (options.json) {
+    return io::json_document(Json{{"file", options.test},
+                                  {"cause", record->end->cause},
+                                  {"facts", facts},
+                                  {"metadata", header.metadata},
+                                  {"results", results}});
+  }
+  io::Table known = io::Table::list({0, 0});
+  for (const auto& [name, value] : facts.items())
+    known.add({"  " + name, value.is_string() ? base::printable(value.get<std::string>()) : value.dump()});
+  for (const auto& [key, value] : header.metadata)
+    known.add({"  metadata." + base::printable(key), base::printable(value)});
+  return fmt::format(
+      "{}: {}, ended: {}\n{}\n{}", base::printable(options.test), word(results, "regime"),
+      record->end->cause.empty() ? std::string{io::kAbsent} : base::printable(record->end->cause),
+      known.text(), results_text(results));
+}
+
+base::Result<std::string> run_show(const ShowOptions& options) {
+  const bool is_number =
+      !options.test.empty() && options.test.find_first_not_of("0123456789") == std::string::npos;
+  return is_number ? show_test(options) : show_record(options);
 }
 
 }  // namespace
 
 void add_show(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<ShowOptions>();
-  CLI::App* command = app.add_subcommand("show", "one test of the running daemon, with all results");
+  CLI::App* command =
+      app.add_subcommand("show", "one test of the running daemon, or a record, with all results");
   add_bench_options(*command, *options, false);
-  command->add_option("test", options->test, "its number")->required()->type_name("N");
+  command->add_option("test", options->test, "its number, or a record")->required()->type_name("N|FILE.h5");
   choose(*command, chosen, [options] { return run_show(*options); });
 }
 

@@ -3,10 +3,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <iterator>
 #include <optional>
 #include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/fact_line.hpp"
 
 #include "core/analysis/results.hpp"
 #include "core/base/text.hpp"
@@ -15,6 +20,7 @@
 #include "core/record/enum_names.hpp"
 #include "core/record/fields.hpp"
 #include "core/record/iso_time.hpp"
+#include "core/record/json_codec.hpp"
 
 namespace stickslip::io {
 namespace {
@@ -82,6 +88,7 @@ std::string facts_text(const record::Record& record) {
     add_fact(text, name, *value);
   }
   line(FieldName{"replicate", "1", ""}, header.sample.replicate);
+  for (const auto& [key, value] : header.metadata) add_fact(text, "metadata." + key, value);
   add_fact(text, "method", header.process.method);
   add_fact(text, "estimator", header.process.estimator);
   if (!record.end) return text;
@@ -128,6 +135,40 @@ void add_second(std::string& text, const daq::SecondChannel& channel, std::int32
   text += "," + field_text(channel.value(code));
 }
 
+/// The whole header in one line. The idle scans of the self-check are too many for a line.
+std::string header_line(record::RecordHeader header) {
+  if (header.self_check) header.self_check->raw.clear();
+  return fact_line(kHeaderFact, record::header_to_json(header));
+}
+
+/// The facts that are no scans. A record without an end is that of an interrupted test.
+std::string lines_below(const record::Record& record) {
+  std::string text;
+  for (const daq::Gap& gap : record.gaps) text += fact_line(kGapFact, record::gap_to_json(gap));
+  for (const record::Event& event : record.events)
+    text += fact_line(kEventFact, record::event_to_json(event));
+  for (const record::ClockAnchor& anchor : record.anchors)
+    text +=
+        fmt::format("# {}: {} {} {}\n", kAnchorFact, anchor.scan, anchor.monotonic_ns, anchor.realtime_ns);
+  record::EndRecord end;
+  if (record.end) {
+    end.status = record.end->status;
+    end.reasons = record.end->reasons;
+    end.cause = record.end->cause;
+    end.end_realtime_ns = record.end->end_realtime_ns;
+    end.read_latency = record.end->read_latency;
+    end.unloaded_level = record.end->unloaded_level;
+  } else {
+    end.status = record::Status::kInterrupted;
+    end.reasons.emplace_back(record::kInterruptedWhy);
+    end.cause = record::kProgramDied;
+  }
+  std::vector<std::byte> bytes;
+  record::append_end_bytes(end, bytes);
+  // No table follows the JSON: there are no cycles and no truth.
+  return text + fact_line(kEndFact, {reinterpret_cast<const char*>(bytes.data()), bytes.size() - 1});
+}
+
 }  // namespace
 
 std::string scans_csv(const record::Record& record) {
@@ -143,7 +184,7 @@ std::string scans_csv(const record::Record& record) {
   const bool coefficient = quantity == daq::RawQuantity::kCoefficient || (force && weight_known);
   const daq::Calibration calibration{board, record.header.load_cell.value_or(daq::LoadCell{}),
                                      record.header.tester.tester().normal_load_N()};
-  std::string text = facts_text(record);
+  std::string text = facts_text(record) + header_line(record.header);
   text += "time_s,scan";
   if (counts) text += ",counts";
   if (volts) text += ",voltage_V";
@@ -166,7 +207,7 @@ std::string scans_csv(const record::Record& record) {
     const bool is_spike = spike != record.spikes.end() && *spike == record.scan[i];
     fmt::format_to(out, ",{:d},{:d}\n", is_spike, calibration.saturated(raw));
   }
-  return text;
+  return text + lines_below(record);
 }
 
 std::string cycles_csv(const record::Record& record) {

@@ -30,6 +30,7 @@ Json test_json(const ReportedTest& test, const analysis::MeasuredTest& measured)
             {"departures", test.departures},
             {"pull_speed", io::or_null(measured.pull_speed_m_per_s)}};
   json.update(io::results_json(measured.results, true));
+  if (!test.metadata.empty()) json["metadata"] = test.metadata;
   if (std::string ramp = ramp_text(measured.results); !ramp.empty()) json["ramp"] = std::move(ramp);
   return json;
 }

@@ -67,6 +67,7 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
     test.file = file;
     test.title = record->header.title;
     test.method = record->header.process.method;
+    test.metadata = record->header.metadata;
     test.scans_sha256 = record->sha256;
     if (!record->header.process.estimator.empty()) test.estimator = record->header.process.estimator;
     // A method in another form is shown as it stands; nothing can be compared with it.

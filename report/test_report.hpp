@@ -26,6 +26,7 @@ struct ReportedTest {
   std::string method;                   ///< Text of the test method, as in the record.
   std::string estimator = "fit";        ///< As in the record, if that names one.
   std::vector<std::string> departures;  ///< Departures from the method, one line each.
+  record::Metadata metadata;            ///< As in the record.
   std::string scans_sha256;             ///< Of the raw values.
   std::optional<model::TestTruth> truth;
   std::string trace;  ///< trace_json() as text, for the page; empty unless requested.

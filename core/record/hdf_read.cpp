@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <utility>
 
 namespace stickslip::record {
 namespace {
@@ -90,6 +91,27 @@ std::vector<T> numbers_of(hid_t parent, const std::string& name, int dimensions,
 }  // namespace
 
 bool has(hid_t parent, const std::string& name) { return H5Lexists(parent, name.c_str(), H5P_DEFAULT) > 0; }
+
+std::vector<std::string> names_in(hid_t group, const std::string& group_name, std::size_t most) {
+  H5G_info_t info{};
+  check(H5Gget_info(group, &info), "links of " + group_name);
+  if (info.nlinks > most) {
+    refuse(group_name, fmt::format("has {} names, at most {} are read", info.nlinks, most));
+  }
+  std::vector<std::string> names;
+  for (hsize_t i = 0; i < info.nlinks; ++i) {
+    const auto name_of = [&](char* text, std::size_t size) {
+      return H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, text, size, H5P_DEFAULT);
+    };
+    const ssize_t size = name_of(nullptr, 0);
+    if (size < 0) throw_refused("links of " + group_name);
+    std::string name(static_cast<std::size_t>(size) + 1, '\0');
+    if (name_of(name.data(), name.size()) < 0) throw_refused("links of " + group_name);
+    name.pop_back();
+    names.push_back(std::move(name));
+  }
+  return names;
+}
 
 GroupHandle open_group(hid_t parent, const std::string& name) {
   if (!has(parent, name)) refuse("group " + name, "is missing");

@@ -16,6 +16,9 @@ namespace stickslip::record {
 /// Whether a link of that name exists in the group.
 [[nodiscard]] bool has(hid_t parent, const std::string& name);
 
+/// Names of all links of a group, rising. \param group_name  for messages. \param most  more are refused.
+[[nodiscard]] std::vector<std::string> names_in(hid_t group, const std::string& group_name, std::size_t most);
+
 [[nodiscard]] GroupHandle open_group(hid_t parent, const std::string& name);
 
 [[nodiscard]] std::string read_attribute(hid_t object, const std::string& name);

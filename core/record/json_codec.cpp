@@ -9,6 +9,20 @@
 #include "core/record/range_check.hpp"
 
 namespace stickslip::record {
+namespace {
+
+Metadata metadata_from(const Json& object) {
+  auto metadata = object.get<Metadata>();
+  if (metadata.size() > kMostMetadata)
+    throw std::invalid_argument(fmt::format("metadata: {} keys, at most {}", metadata.size(), kMostMetadata));
+  for (const auto& [key, value] : metadata) {
+    if (const std::string refusal = metadata_refusal(key, value); !refusal.empty())
+      throw std::invalid_argument("metadata: " + refusal);
+  }
+  return metadata;
+}
+
+}  // namespace
 
 std::string header_to_json(const RecordHeader& header) {
   Json board = Json::object();
@@ -34,6 +48,7 @@ std::string header_to_json(const RecordHeader& header) {
   put(object, "trigger_scan", header.trigger_scan);
   put(object, "start_realtime_ns", header.start_realtime_ns);
   put(object, "operator", header.sample.operator_name);
+  if (!header.metadata.empty()) object["metadata"] = header.metadata;
   if (header.load_cell) object["load_cell"] = fields_to_json(*header.load_cell);
   if (const Json plan = fields_to_json(header.plan); !plan.empty()) object["plan"] = plan;
   if (header.self_check) {
@@ -77,6 +92,7 @@ RecordHeader header_from_json(std::string_view text) {
   take(object, "trigger_scan", header.trigger_scan);
   take(object, "start_realtime_ns", header.start_realtime_ns);
   take(object, "operator", header.sample.operator_name);
+  if (object.contains("metadata")) header.metadata = metadata_from(object.at("metadata"));
   if (object.contains("load_cell")) {
     for_each_field(header.load_cell.emplace(), taker(object.at("load_cell")));
   }

@@ -22,7 +22,8 @@ enum ScanFlag : std::uint8_t {
 
 // Each takes the group /entry. The readers expect the raw data to be read first.
 
-void write_identity(hid_t entry, const Record& record, const ScanSource& scans);  ///< Title, uuid, times.
+void write_identity(hid_t entry, const Record& record,
+                    const ScanSource& scans);  ///< Title, uuid, times, metadata.
 void read_identity(hid_t entry, Record& record);
 
 /// Calibration of the column `force` beside the raw values; nothing where they are forces, or a force cannot

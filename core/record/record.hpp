@@ -20,6 +20,7 @@
 #include "core/detect/cycle.hpp"
 #include "core/model/tester.hpp"
 #include "core/model/truth.hpp"
+#include "core/record/metadata.hpp"
 
 namespace stickslip::record {
 
@@ -142,6 +143,7 @@ struct RecordHeader {
   TesterFacts tester;
   SampleFacts sample;
   ProcessFacts process;
+  Metadata metadata;  ///< Of an imported trace: what its user stated.
   PlanFacts plan;
   std::optional<daq::SelfCheck> self_check;  ///< Absent without idle scans before the test.
 };

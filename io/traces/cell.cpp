@@ -56,8 +56,9 @@ int decimals_of(std::string_view number) {
 struct Digits {
   std::array<char, kLongestNumber> text{};
   std::size_t size = 0;
-  std::size_t taken = 0;  ///< Bytes of the cell.
-  bool whole = true;      ///< It fits.
+  std::size_t taken = 0;   ///< Bytes of the cell.
+  bool whole = true;       ///< It fits.
+  bool one_group = false;  ///< As Cell.
 };
 
 /// "0,005" has no mark of thousands: a group in front of one never begins with 0.
@@ -83,6 +84,7 @@ Digits digits_in(std::string_view text, char decimal) {
   }
   bool point = false;
   bool grouped = false;
+  int marks = 0;          // Of thousands.
   std::size_t group = 0;  // Digits since the last mark of thousands or the sign.
   const auto mark_at = [&](std::size_t place) -> std::string_view {
     const std::string_view rest = text.substr(place);
@@ -108,6 +110,7 @@ Digits digits_in(std::string_view text, char decimal) {
                            text.begin() + static_cast<std::ptrdiff_t>(at + mark.size()) + 3, is_digit)) {
       thousands = mark;
       grouped = true;
+      ++marks;
       group = 0;
       at += mark.size() - 1;
     } else {
@@ -125,6 +128,7 @@ Digits digits_in(std::string_view text, char decimal) {
     }
   }
   digits.taken = at;
+  digits.one_group = marks == 1 && !point && thousands == other;
   digits.whole = digits.whole && (!grouped || point || group == 3);
   return digits;
 }
@@ -172,6 +176,7 @@ Cell read_cell(std::string_view text, char decimal) {
   cell.value = value;
   cell.decimals = decimals_of({begin, digits.size});
   cell.unit = rest;
+  cell.one_group = digits.one_group;
   return cell;
 }
 

@@ -16,8 +16,11 @@ enum class CellKind {
 
 struct Cell {
   CellKind kind = CellKind::kEmpty;
-  double value = 0.0;     ///< Of a number, finite.
-  int decimals = 0;       ///< Printed digits behind the decimal mark, less the exponent.
+  double value = 0.0;  ///< Of a number, finite.
+  int decimals = 0;    ///< Printed digits behind the decimal mark, less the exponent.
+  /// "6,944": one mark that is not the decimal one, three digits behind it and no decimals, so that it may be
+  /// a decimal mark all the same.
+  bool one_group = false;
   std::string_view unit;  ///< What stands behind the number, such as "N"; a part of the text.
 };
 

@@ -109,6 +109,8 @@ bool find_columns(Reading& reading) {
   dialect.columns.resize(width);
   dialect.numeric.assign(width, false);
   dialect.empty.assign(width, true);
+  dialect.clock.assign(width, false);
+  dialect.sparse.assign(width, false);
   std::vector<const Row*> alike;
   for (const Row& row : reading.rows) {
     if (row.fields.size() == width && has_number(row.fields, dialect.decimal)) alike.push_back(&row);
@@ -126,6 +128,7 @@ bool find_columns(Reading& reading) {
     std::size_t texts = 0;
     std::size_t times = 0;
     std::size_t zeros = 0;
+    std::size_t filled = 0;
     for (std::size_t i = 0; i < alike.size(); ++i) {
       const Row* const row = alike[i];
       const std::string_view text = dialect.content(c, row->fields[c]);
@@ -137,6 +140,7 @@ bool find_columns(Reading& reading) {
       times += is_text && read_time_cell(text, dialect.decimal) ? 1U : 0U;
       zeros += text.size() > 1 && text.front() == '0' && text.find_first_not_of("0123456789") == text.npos;
       if (kind == CellKind::kEmpty) continue;
+      ++filled;
       dialect.empty[c] = dialect.empty[c] && i < alike.size() / 2;
       used = c + 1;
     }
@@ -146,6 +150,8 @@ bool find_columns(Reading& reading) {
     const auto most = [&alike](std::size_t count) {
       return static_cast<double>(count) > (1.0 - kNumericShare) * static_cast<double>(alike.size());
     };
+    dialect.clock[c] = !dialect.numeric[c] && 2 * times > texts;
+    dialect.sparse[c] = !dialect.numeric[c] && 2 * filled < alike.size();
     reading.texts += !dialect.numeric[c] && texts > 0 && !most(times) ? 2U : 0U;
     reading.texts += dialect.numeric[c] && most(zeros) ? 1U : 0U;
   }
@@ -153,6 +159,8 @@ bool find_columns(Reading& reading) {
   dialect.columns.resize(used);
   dialect.numeric.resize(used);
   dialect.empty.resize(used);
+  dialect.clock.resize(used);
+  dialect.sparse.resize(used);
   return any;
 }
 
@@ -235,7 +243,32 @@ std::vector<std::string> names_between_blanks(const std::vector<std::string>& wo
   return names;
 }
 
-void find_heading(Reading& reading) {
+/// Names between two blanks or more, or tabs: "Time (s)   Normal Force (N)".
+std::vector<std::string> names_between_wide_blanks(std::string_view line) {
+  std::vector<std::string> names;
+  line = trimmed(line);
+  while (!line.empty()) {
+    const std::size_t size = std::min({line.find("  "), line.find('\t'), line.size()});
+    names.emplace_back(trimmed(line.substr(0, size)));
+    line = trimmed(line.substr(size));
+  }
+  return names;
+}
+
+/// "-----+-----" between heading and scans.
+bool is_rule(const Row& row) {
+  return std::all_of(row.fields.begin(), row.fields.end(), [](const std::string& field) {
+    return field.find_first_not_of("-+=:_ ") == std::string::npos;
+  });
+}
+
+/// Vernier's text format has three rows above the scans: names, symbols, units.
+bool is_vernier(const Head& head, const Reading& reading) {
+  return head.lines.front().starts_with("Vernier Format") && reading.first >= 3 &&
+         is_heading(reading.rows[reading.first - 3], reading.dialect);
+}
+
+void find_heading(Reading& reading, const Head& head) {
   Dialect& dialect = reading.dialect;
   if (!dialect.labels.empty()) {
     for (std::size_t c = 0; c < dialect.columns.size(); ++c)
@@ -246,13 +279,23 @@ void find_heading(Reading& reading) {
   const auto& rows = reading.rows;
   std::size_t heading = reading.first - 1;
   const Row* units = nullptr;
-  if (is_units_row(rows[heading]) && heading > 0 && is_heading(rows[heading - 1], dialect))
+  while (heading > 0 && is_rule(rows[heading])) --heading;
+  if (is_vernier(head, reading)) {
+    units = &rows[reading.first - 1];
+    heading = reading.first - 3;
+  } else if (is_units_row(rows[heading]) && heading > 0 && is_heading(rows[heading - 1], dialect)) {
     units = &rows[heading--];
+  }
   if (!is_heading(rows[heading], dialect)) return;
-  const std::vector<std::string> names =
-      dialect.separator == kBlanks ? names_between_blanks(rows[heading].fields) : rows[heading].fields;
+  const bool blanks = dialect.separator == kBlanks;
+  std::vector<std::string> names = blanks ? names_between_blanks(rows[heading].fields) : rows[heading].fields;
+  if (blanks && names.size() != dialect.columns.size())
+    names = names_between_wide_blanks(head.lines[static_cast<std::size_t>(rows[heading].line) - 1]);
   // A name with a blank in it shifts those behind it: no name is better than a wrong one.
-  if (dialect.separator == kBlanks && names.size() != dialect.columns.size()) return;
+  if (blanks && names.size() != dialect.columns.size()) {
+    dialect.unclear_heading_line = rows[heading].line;
+    return;
+  }
   dialect.header_line = rows[heading].line;
   dialect.units_line = units == nullptr ? 0 : units->line;
   for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
@@ -270,7 +313,7 @@ std::optional<Reading> read_as(const Head& head, char separator, char decimal, s
   reading.dialect.decimal = decimal;
   reading.rows = rows_of(head, separator, skip);
   if (!find_columns(reading) || !find_first_row(reading)) return std::nullopt;
-  find_heading(reading);
+  find_heading(reading, head);
   return reading;
 }
 
@@ -334,6 +377,8 @@ base::Result<Dialect> dialect_of_numbers(std::shared_ptr<NumberFile> numbers, co
   Dialect dialect;
   for (std::size_t c = 0; c < numbers->count(); ++c) dialect.columns.push_back(numbers->column_name(c));
   dialect.numeric.assign(numbers->count(), true);
+  dialect.clock.assign(numbers->count(), false);
+  dialect.sparse.assign(numbers->count(), false);
   dialect.empty.assign(numbers->count(), false);
   dialect.numbers = std::move(numbers);
   return dialect;
@@ -361,6 +406,16 @@ bool Dialect::is_row(const std::vector<std::string_view>& fields) const {
     any = any || kind == CellKind::kNumber;
   }
   return any;
+}
+
+bool Dialect::has_label(const std::vector<std::string_view>& fields) const {
+  for (std::size_t c = 0; c < columns.size() && c < fields.size() && !numeric[c]; ++c) {
+    if (!clock[c] && !sparse[c]) continue;
+    const std::string_view text = trimmed(fields[c]);
+    if (read_cell(text, decimal).kind == CellKind::kText && !(clock[c] && read_time_cell(text, decimal)))
+      return true;
+  }
+  return false;
 }
 
 std::string Dialect::text(std::optional<std::size_t> value) const {
@@ -404,7 +459,7 @@ base::Result<Dialect> recognise(const Source& source, const DialectOptions& opti
   const bool quoted = std::any_of(head->lines.begin(), head->lines.end(), [](const std::string& line) {
     return line.find('"') != std::string::npos;
   });
-  for (const char separator : {'\t', ';', ',', kNoSeparator, kBlanks}) {
+  for (const char separator : {'\t', ';', ',', '|', kNoSeparator, kBlanks}) {
     for (const char decimal : {'.', ','}) {
       if ((separator == decimal && !quoted) || (stated.separator && *stated.separator != separator) ||
           (stated.decimal && *stated.decimal != decimal))
@@ -445,6 +500,7 @@ base::Result<Dialect> recognise(const Source& source, const DialectOptions& opti
         base::one_line(head->lines[static_cast<std::size_t>(one.dialect.first_row_line) - 1], 40), shown(one),
         option_of(one, other), shown(other), option_of(other, one));
   }
+  readings.front().dialect.decimal_is_stated = options.decimal.has_value();
   return readings.front().dialect;
 }
 

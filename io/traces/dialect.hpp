@@ -34,10 +34,14 @@ struct Dialect {
   std::int64_t header_line = 0;  ///< From 1; 0: the file has no heading.
   std::int64_t units_line = 0;   ///< Of a row of units below it; 0: none.
   std::int64_t first_row_line = 0;
-  std::vector<ColumnName> columns;      ///< As many as a row has fields; texts are empty without a heading.
-  std::vector<bool> numeric;            ///< Columns that hold numbers alone; others may hold any text.
-  std::vector<bool> empty;              ///< Columns in which no row has anything.
-  std::vector<std::string> labels;      ///< "Force" where each cell reads "Force:0.12"; else empty.
+  std::int64_t unclear_heading_line = 0;  ///< Of a heading whose names cannot be told apart; 0: none.
+  bool decimal_is_stated = false;         ///< By the user.
+  std::vector<ColumnName> columns;        ///< As many as a row has fields; texts are empty without a heading.
+  std::vector<bool> numeric;              ///< Columns that hold numbers alone; others may hold any text.
+  std::vector<bool> empty;                ///< Columns in which no row has anything.
+  std::vector<bool> clock;                ///< Columns of clock times and dates, which are not numeric.
+  std::vector<bool> sparse;               ///< Columns of text in which fewer than half of the rows have any.
+  std::vector<std::string> labels;        ///< "Force" where each cell reads "Force:0.12"; else empty.
   std::shared_ptr<NumberFile> numbers;  ///< Of a file that is no text, instead of all but columns; else null.
 
   /// The field as a cell holds it: without its label.
@@ -45,6 +49,9 @@ struct Dialect {
   /// Whether these fields are one row of scans: a number or a hole in each numeric column, one number at
   /// least.
   [[nodiscard]] bool is_row(const std::vector<std::string_view>& fields) const;
+  /// Whether a row of scans begins with a word where the others have nothing or a clock time: at the end of
+  /// the table it is one of statistics, "Mean;0.50;2.41".
+  [[nodiscard]] bool has_label(const std::vector<std::string_view>& fields) const;
   /// Two lines: what was recognised. \param value  the column that is read, where one is.
   [[nodiscard]] std::string text(std::optional<std::size_t> value = std::nullopt) const;
 };

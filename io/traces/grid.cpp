@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace stickslip::traces {
 namespace {
@@ -67,6 +68,30 @@ Line line_through(const std::vector<std::int64_t>& index, const std::vector<doub
   }
   const double slope = xy / xx;
   return {mean_y - slope * mean_x, slope};
+}
+
+/// Equal intervals through the times.
+struct Fit {
+  Line line;
+  double jitter =
+      0.0;  ///< Largest displacement of a time, of an interval, beyond the rounding of the digits.
+  std::size_t largest = 0;  ///< Of which time.
+};
+
+Fit fit_of(const std::vector<std::int64_t>& index, const std::vector<double>& time, double digit_s) {
+  Fit fit;
+  fit.line = line_through(index, time);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    const double on_line = fit.line.origin + fit.line.slope * static_cast<double>(index[i]);
+    const double off = std::abs(time[i] - on_line) - 0.5 * digit_s;
+    if (off > largest) {
+      largest = off;
+      fit.largest = i;
+    }
+  }
+  fit.jitter = largest / fit.line.slope;
+  return fit;
 }
 
 /// Cumulative, so that a slow drift of the clock moves no row.
@@ -194,18 +219,18 @@ base::Result<Grid> grid_of(const std::vector<double>& all_times, const GridOptio
     index = indices(steps, 1.0 / *options.rate_Hz);
     grid.rate_checked = false;
   }
-  const Line line = line_through(index, time);
-  grid.rate_Hz = 1.0 / line.slope;
-  double largest = 0.0;
-  for (std::size_t i = 0; i < time.size(); ++i) {
-    const double off =
-        std::abs(time[i] - line.origin - line.slope * static_cast<double>(index[i])) - 0.5 * options.digit_s;
-    if (off > largest) {
-      largest = off;
-      grid.largest_row = row[i];
+  Fit fit = fit_of(index, time, options.digit_s);
+  if (unequal && options.digit_s >= kCoarsest * interval && fit.jitter > kLargestJitter) {
+    // Long intervals do not fit: the long steps are missing rows.
+    std::vector<std::int64_t> with_gaps = indices(steps, median(steps));
+    if (const Fit other = fit_of(with_gaps, time, options.digit_s); other.jitter <= kLargestJitter) {
+      index = std::move(with_gaps);
+      fit = other;
     }
   }
-  grid.largest_jitter = largest / line.slope;
+  grid.rate_Hz = 1.0 / fit.line.slope;
+  grid.largest_row = row[fit.largest];
+  grid.largest_jitter = fit.jitter;
   if (const auto rate = check_rate(options, grid.rate_Hz, place(0)); !rate)
     return tl::unexpected(rate.error());
   if (grid.largest_jitter > kLargestJitter) {
@@ -214,7 +239,7 @@ base::Result<Grid> grid_of(const std::vector<double>& all_times, const GridOptio
           "{}: this row is displaced by {:.0f} % of the scan interval ({:.6g} s at {:.6g} Hz), more than the "
           "{:.0f} % of jitter: "
           "give --resample to interpolate the scans at equal intervals",
-          place(grid.largest_row), 100.0 * grid.largest_jitter, line.slope, grid.rate_Hz,
+          place(grid.largest_row), 100.0 * grid.largest_jitter, fit.line.slope, grid.rate_Hz,
           100.0 * kLargestJitter);
     }
     grid.uniform = false;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <numeric>
 #include <utility>
@@ -12,11 +13,12 @@
 #include "io/traces/cut.hpp"
 #include "io/traces/grid.hpp"
 #include "io/traces/inspect.hpp"
+#include "io/traces/own_table.hpp"
 #include "io/traces/quantity_unit.hpp"
+#include "io/traces/time_unit.hpp"
 #include "io/traces/trace_table.hpp"
 
 #include "core/base/nan.hpp"
-#include "core/base/quantity.hpp"
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
 #include "core/daq/calibration.hpp"
@@ -27,15 +29,6 @@ namespace {
 using base::Result;
 using daq::RawQuantity;
 
-/// A time column without a unit is read in the one of s, ms, µs and ns that gives a rate and a length between
-/// these; friction tests are neither slower, faster, shorter nor longer.
-constexpr double kSlowest_Hz = 5.0;
-constexpr double kFastest_Hz = 20'000.0;
-constexpr double kShortest_s = 1.0;
-constexpr double kLongest_s = 3.0 * 3600.0;
-/// Times since 1970 of the years 2001 to 2096.
-constexpr double kEarliestEpoch_s = 1e9;
-constexpr double kLatestEpoch_s = 4e9;
 /// More holes than this part of the scans are refused: it is another column that has the force.
 constexpr double kMostHoles = 0.5;
 /// The force counts as that of sliding above this part of its largest value.
@@ -104,67 +97,6 @@ Result<std::string> unit_of(const ImportRequest& request, const ColumnName& colu
                              quantity_unit(own) ? base::one_line(own, 20) : folded(own).substr(0, 1) + "f");
   }
   return request.unit;
-}
-
-struct TimeUnit {
-  std::string name;
-  double seconds = 1.0;
-  bool inspected = false;  ///< Nothing states it.
-};
-
-/// What the heading says, or its name: "millis".
-std::string stated_time_unit(const ImportRequest& request, const ColumnName& column) {
-  if (!request.time_unit.empty()) return request.time_unit;
-  const std::string name = folded(column.name);
-  if (name.starts_with("milli")) return "ms";
-  if (name.starts_with("micros")) return "us";
-  const std::string unit = folded(column.unit);
-  if (unit == "s" || unit.starts_with("sec")) return "s";
-  if (unit == "msec" || unit.starts_with("millisec")) return "ms";
-  if (unit == "usec" || unit.starts_with("microsec")) return "us";
-  return unit.starts_with("min") ? "min" : column.unit;
-}
-
-Result<TimeUnit> time_unit_of(const ImportRequest& request, const ColumnName& column,
-                              const TraceTable& table) {
-  if (table.time_in_seconds) return TimeUnit{"s"};
-  if (const std::string stated = stated_time_unit(request, column); !stated.empty()) {
-    const auto seconds = base::parse_quantity("1 " + stated, base::Dimension::kTime);
-    if (seconds) return TimeUnit{stated, *seconds};
-    return base::usage_error("{}: the unit of the time is \"{}\": give --time-unit s, ms, us, ns, min or h",
-                             request.path, base::one_line(stated, 20));
-  }
-  const auto [low, high] = std::minmax_element(table.time.begin(), table.time.end());
-  const double length = *high - *low;
-  const double count = static_cast<double>(table.time.size() - 1);
-  std::vector<TimeUnit> possible;
-  for (const TimeUnit& unit : {TimeUnit{"s", 1.0, true}, TimeUnit{"ms", 1e-3, true},
-                               TimeUnit{"us", 1e-6, true}, TimeUnit{"ns", 1e-9, true}}) {
-    const double rate_Hz = count / (length * unit.seconds);
-    const bool fits = request.rate_Hz
-                          ? std::abs(std::log2(rate_Hz / *request.rate_Hz)) < 1.0
-                          : rate_Hz >= kSlowest_Hz && rate_Hz <= kFastest_Hz &&
-                                length * unit.seconds >= kShortest_s && length * unit.seconds <= kLongest_s;
-    if (fits) possible.push_back(unit);
-  }
-  if (possible.size() == 1) return possible.front();
-  // A column that does not advance, and a rate that fits no unit, have messages of their own.
-  if (!(length > 0.0) || request.rate_Hz) return TimeUnit{"s", 1.0, true};
-  return base::usage_error(
-      "{}: column \"{}\" does not say its unit; it runs at {:.4g} Hz in s, {:.4g} Hz in ms, {:.4g} Hz in us, "
-      "{:.4g} Hz in ns: "
-      "give --time-unit",
-      request.path, base::one_line(column.text, 40), count / length, 1e3 * count / length,
-      1e6 * count / length, 1e9 * count / length);
-}
-
-/// Start of the first row since 1970, where the times tell.
-std::optional<std::int64_t> start_of(const TraceTable& table, double unit_s) {
-  constexpr double kNanosecond = 1e-9;
-  if (table.date_s) return *table.date_s * 1'000'000'000 + std::llround(table.first_time / kNanosecond);
-  const double since = table.first_time * unit_s;
-  if (since < kEarliestEpoch_s || since > kLatestEpoch_s) return std::nullopt;
-  return std::llround(since / kNanosecond);
 }
 
 /// Scans of one run on equal intervals.
@@ -248,6 +180,7 @@ class Importer {
           request_.path);
     }
     if (auto ok = find_quantity(); !ok) return tl::unexpected(ok.error());
+    if (auto ok = take_counts(); !ok) return tl::unexpected(ok.error());
     if (auto ok = find_times(); !ok) return tl::unexpected(ok.error());
     if (request_.reverse) {
       std::reverse(table_.value.begin(), table_.value.end());
@@ -256,7 +189,7 @@ class Importer {
     for (double& value : table_.value) value *= scale_;
     const std::vector<std::size_t> runs = time_s_.empty() ? std::vector<std::size_t>{0} : runs_in(time_s_);
     if (runs.size() > 1)
-      note("{} runs: the clock starts again in {} {}", runs.size(), row_word(), table_.line(runs[1]));
+      note("{} runs: the clock starts again in {} {}", runs.size(), row_word(), line(runs[1]));
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const std::size_t end = i + 1 < runs.size() ? runs[i + 1] : table_.value.size();
       if (auto added = add_run(runs[i], end); !added) return tl::unexpected(added.error());
@@ -266,6 +199,11 @@ class Importer {
   }
 
  private:
+  /// In the file, of a row of the trace.
+  [[nodiscard]] std::int64_t line(std::size_t row) const {
+    return table_.line(request_.reverse ? table_.value.size() - 1 - row : row);
+  }
+
   template <typename... Args>
   void note(fmt::format_string<Args...> format, Args&&... args) {
     notes_ += fmt::format("{}: {}\n", base::printable(request_.path),
@@ -284,12 +222,32 @@ class Importer {
     quantity_ = known->quantity;
     scale_ = known->scale;
     load_cell_ = request_.load_cell;
-    if (quantity_ == RawQuantity::kVolts && !load_cell_) {
+    const bool counts = quantity_ == RawQuantity::kCounts;
+    const bool voltage = counts || quantity_ == RawQuantity::kVolts;
+    if (counts && !request_.counts) {
+      return base::usage_error(
+          "{}: --unit counts needs --count-range and --volts-per-count, such as --count-range 0..65535 "
+          "--volts-per-count \"0.3 mV\"",
+          request_.path);
+    }
+    if (!counts && request_.counts)
+      return base::usage_error(
+          "{}: --count-range and --volts-per-count are for --unit counts, the unit is {}", request_.path,
+          unit_);
+    if (counts && request_.resample) {
+      return base::usage_error(
+          "{}: --resample makes numbers between the counts: leave it out, or convert the counts to volts and "
+          "give "
+          "--unit V",
+          request_.path);
+    }
+    if (voltage && !load_cell_) {
       return base::usage_error("{}: --unit {} needs --load-cell-gain, such as \"2 N/V\"", request_.path,
                                unit_);
     }
-    if (quantity_ != RawQuantity::kVolts && load_cell_) {
-      return base::usage_error("--load-cell-gain and --load-cell-zero are for --unit V and mV only");
+    if (!voltage && load_cell_) {
+      return base::usage_error(
+          "--load-cell-gain and --load-cell-zero are for --unit V, mV and counts only: leave them out");
     }
     if (quantity_ != RawQuantity::kCoefficient && !request_.tester.sled_mass_kg) {
       return base::usage_error(
@@ -304,6 +262,37 @@ class Importer {
       }
     }
     return {};
+  }
+
+  /// Codes from 0 at the lower rail, as a board counts them.
+  Result<void> take_counts() {
+    if (quantity_ != RawQuantity::kCounts) return {};
+    const auto lowest = static_cast<double>(request_.counts->lowest);
+    const auto highest = static_cast<double>(request_.counts->highest);
+    for (std::size_t row = 0; row < table_.value.size(); ++row) {
+      double& value = table_.value[row];
+      if (std::isnan(value)) continue;
+      if (value != std::floor(value) || value < lowest || value > highest) {
+        return base::usage_error(
+            "{}:{}: column \"{}\" is {}, and counts are whole numbers of {} … {}: correct {}", request_.path,
+            table_.line(row), base::one_line(dialect_.columns[columns_.value].text, 40), value,
+            request_.counts->lowest, request_.counts->highest,
+            value == std::floor(value) ? "--count-range" : "--unit, or choose another column");
+      }
+      value -= lowest;
+    }
+    return {};
+  }
+
+  void set_board(daq::BoardInfo& board) const {
+    board.quantity = quantity_;
+    if (quantity_ != RawQuantity::kCounts) return;
+    const CountScale& counts = *request_.counts;
+    board.maxdata = static_cast<std::uint32_t>(counts.highest - counts.lowest);
+    board.range_min_V = static_cast<double>(counts.lowest) * counts.volts_per_count;
+    board.range_max_V = static_cast<double>(counts.highest) * counts.volts_per_count;
+    board.polynomial = {0.0, counts.volts_per_count};
+    board.expansion_origin = static_cast<double>(-counts.lowest);
   }
 
   Result<void> find_times() {
@@ -348,7 +337,7 @@ class Importer {
     } else {
       const std::vector<double> time{time_s_.begin() + first, time_s_.begin() + last};
       const auto grid = grid_of(time, grid_options_, [this, begin](std::size_t row) {
-        return fmt::format("{}:{}", request_.path, table_.line(begin + row));
+        return fmt::format("{}:{}", request_.path, line(begin + row));
       });
       if (!grid) return tl::unexpected(grid.error());
       run = run_of(*grid, time, value);
@@ -371,7 +360,7 @@ class Importer {
       return;
     }
     note("{:.7g} scans a second by the time column, largest jitter {:.2g} % of the interval, in {} {}",
-         grid.rate_Hz, 100.0 * grid.largest_jitter, row_word(), table_.line(begin + grid.largest_row));
+         grid.rate_Hz, 100.0 * grid.largest_jitter, row_word(), line(begin + grid.largest_row));
     if (!grid.uniform) note("scans interpolated at equal intervals of {:.6g} s", 1.0 / grid.rate_Hz);
     if (const auto doubled = std::count(grid.doubled.begin(), grid.doubled.end(), true); doubled > 0)
       note("{} rows with the time of the row before left out", doubled);
@@ -383,13 +372,14 @@ class Importer {
     header.title = std::filesystem::path{request_.path}.stem().string();
     header.board.driver = "import";
     header.board.device = std::filesystem::path{request_.path}.filename().string();
-    header.board.quantity = quantity_;
+    set_board(header.board);
     header.board.scan_rate_requested_Hz = request_.rate_Hz.value_or(run.rate_Hz);
     header.board.scan_rate_granted_Hz = run.rate_Hz;
     header.load_cell = load_cell_;
     header.tester = request_.tester;
     header.sample = request_.sample;
     header.process = request_.process;
+    header.metadata = request_.metadata;
     header.start_realtime_ns = start_ns_;
     const daq::Calibration calibration{header.board, load_cell_.value_or(daq::LoadCell{}),
                                        header.tester.tester().normal_load_N()};
@@ -451,11 +441,67 @@ class Importer {
   Imported imported_;
 };
 
+/// The first option that says what a table of stickslip export says itself; nullptr if there is none.
+const char* needless_option(const ImportRequest& request) {
+  const std::array stated{std::pair{"--unit", !request.unit.empty()},
+                          std::pair{"--time-column", !request.time_column.empty()},
+                          std::pair{"--time-unit", !request.time_unit.empty()},
+                          std::pair{"--rate", request.rate_Hz.has_value()},
+                          std::pair{"--invert", request.invert},
+                          std::pair{"--reverse", request.reverse},
+                          std::pair{"--resample", request.resample},
+                          std::pair{"--skip-doubled", request.skip_doubled},
+                          std::pair{"--sled-mass", request.tester.sled_mass_kg.has_value()},
+                          std::pair{"--speed", request.tester.pull_speed_m_per_s.has_value()},
+                          std::pair{"--stiffness", request.tester.stiffness_N_per_m.has_value()},
+                          std::pair{"--count-range", request.counts.has_value()},
+                          std::pair{"--load-cell-gain", request.load_cell.has_value()},
+                          std::pair{"--sample", !request.sample.name.empty()},
+                          std::pair{"--grade", !request.sample.grade.empty()},
+                          std::pair{"--operator", !request.sample.operator_name.empty()},
+                          std::pair{"--replicate", request.sample.replicate.has_value()},
+                          std::pair{"--encoding", request.dialect.encoding.has_value()},
+                          std::pair{"--separator", request.dialect.separator.has_value()},
+                          std::pair{"--decimal", request.dialect.decimal.has_value()},
+                          std::pair{"--skip", request.dialect.skip > 0}};
+  const auto* const found =
+      std::find_if(stated.begin(), stated.end(), [](const auto& option) { return option.second; });
+  return found == stated.end() ? nullptr : found->first;
+}
+
+Result<Imported> import_own(const ImportRequest& request, const Source& source) {
+  if (const char* const option = needless_option(request)) {
+    return base::usage_error(
+        "{}: is a table of stickslip export, which states all facts of its record: leave out {}, or give "
+        "--column NAME to read it as one of another program",
+        request.path, option);
+  }
+  auto record = read_own_table(source);
+  if (!record) return tl::unexpected(record.error());
+  record::Metadata& metadata = record->header.metadata;
+  for (const auto& [key, value] : request.metadata) {
+    if (const auto added = record::add_metadata(metadata, fmt::format("{}={}", key, value), "--set-meta");
+        !added)
+      return tl::unexpected(added.error());
+  }
+  if (!request.process.method.empty()) record->header.process.method = request.process.method;
+  Imported imported;
+  imported.is_own = true;
+  imported.report = record->header.process.source_reading;
+  imported.records.push_back(std::move(*record));
+  return imported;
+}
+
 }  // namespace
 
 Result<Imported> import_trace(const ImportRequest& request) {
   const auto source = Source::of(request.path);
   if (!source) return tl::unexpected(source.error());
+  if (request.column.empty()) {
+    // What is no text is told below.
+    const auto is_own = is_own_table(*source);
+    if (is_own && *is_own) return import_own(request, *source);
+  }
   auto dialect = recognise(*source, request.dialect);
   if (!dialect) return tl::unexpected(dialect.error());
   if (request.column.empty()) return tl::unexpected(no_column_chosen(request, *source, *dialect));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/traces/dialect.hpp"
+#include "io/traces/quantity_unit.hpp"
 
 #include "core/base/result.hpp"
 #include "core/record/record.hpp"
@@ -17,7 +18,8 @@ namespace stickslip::traces {
 struct ImportRequest {
   std::string path;
   DialectOptions dialect;
-  std::string column;       ///< Heading or number of the values.
+  /// Heading or number of the values; empty: the file is a table of `stickslip export` (own_table.hpp).
+  std::string column;
   std::string unit;         ///< Of the values; empty: of the heading or of the cells.
   std::string time_column;  ///< Heading or number; empty: by its name; "none": no column is a time.
   std::string time_unit;    ///< s, ms, us, ns, min or h; empty: of the heading, else by inspection.
@@ -27,14 +29,18 @@ struct ImportRequest {
   bool resample = false;      ///< Scans at equal intervals by linear interpolation.
   bool skip_doubled = false;  ///< Leave out a row with the time of the row before it.
   record::TesterFacts tester;
-  std::optional<daq::LoadCell> load_cell;  ///< For V.
+  std::optional<daq::LoadCell> load_cell;  ///< For V and counts.
+  std::optional<CountScale> counts;        ///< For counts.
   record::SampleFacts sample;
   record::ProcessFacts process;
+  record::Metadata metadata;
 };
 
 struct Imported {
   std::vector<record::Record> records;  ///< One for each test of the trace, without results.
   std::string report;                   ///< What was recognised and left out: lines for people.
+  /// The record came back from an export: it has spikes, and an end with status and reasons.
+  bool is_own = false;
 };
 
 /// The columns, with unit, first values, smallest and largest, and the command that imports them.
@@ -43,6 +49,8 @@ struct Imported {
 /// Reads the file and makes records that are not analysed yet. Scans are at equal intervals; missing rows and
 /// holes are gaps. A trace of several tests is cut where the force has returned to zero between them. Errors:
 /// kUsage with place, value and a remedy; kFailure if the file cannot be read.
+/// \param request  of a table of `stickslip export`: path and dialect alone, and process.method if it is
+/// another one; the record's other facts are those that the table states.
 [[nodiscard]] base::Result<Imported> import_trace(const ImportRequest& request);
 
 }  // namespace stickslip::traces

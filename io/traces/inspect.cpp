@@ -8,12 +8,15 @@
 
 #include "io/table.hpp"
 #include "io/traces/number_file.hpp"
+#include "io/traces/own_table.hpp"
 #include "io/traces/quantity_unit.hpp"
+#include "io/traces/time_unit.hpp"
 #include "io/traces/trace_table.hpp"
 
 #include "core/base/shell_word.hpp"
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
+#include "core/record/iso_time.hpp"
 
 namespace stickslip::traces {
 namespace {
@@ -38,6 +41,50 @@ std::size_t likely_column(const Dialect& dialect) {
   return last;
 }
 
+/// "12:00:00.01", of seconds in a day; with the date where there is one.
+std::string moment(const TraceTable& table, double since_first_s) {
+  const double time_s = table.first_time + since_first_s;
+  if (const double epoch_s = static_cast<double>(table.date_s.value_or(0)) + time_s;
+      table.date_s && std::abs(epoch_s) < kFarthestEpoch_s)
+    return record::iso_time(*table.date_s * 1'000'000'000 + std::llround(1e9 * time_s));
+  constexpr double kDay_s = 86'400.0;
+  const double of_day_s = std::fmod(time_s, kDay_s);
+  const auto minutes = static_cast<int>(of_day_s / 60.0);
+  return fmt::format("{:02}:{:02}:{:0{}.{}f}", minutes / 60, minutes % 60, of_day_s - 60.0 * minutes,
+                     table.time_decimals > 0 ? table.time_decimals + 3 : 2, std::max(table.time_decimals, 0));
+}
+
+/// First and last of a column of clock times.
+std::string clock_range(const Source& source, const Dialect& dialect, std::size_t column) {
+  const auto table = read_table(source, dialect, likely_column(dialect), column);
+  if (!table || table->time.empty()) return "no numbers";
+  return fmt::format("{} … {}", moment(*table, 0.0), moment(*table, table->time.back()));
+}
+
+/// As the file is called, so is the record.
+std::string output_option(const std::string& path) {
+  const std::string stem = path.substr(0, path.rfind('.'));
+  const std::string output = stem + ".h5";
+  return " -o " + base::shell_word(output == path ? stem + "-record.h5" : output);
+}
+
+/// A table of stickslip export says all itself.
+std::string own_command(const std::string& path) {
+  return "stickslip import " + base::shell_word(path) + output_option(path);
+}
+
+/// What tells the times where no column is one by its name.
+std::string time_options(const Dialect& dialect, std::size_t column) {
+  if (time_column_of(dialect, column)) return {};
+  const auto clock = std::find(dialect.clock.begin(), dialect.clock.end(), true);
+  if (clock == dialect.clock.end())
+    return !dialect.numbers && dialect.header_line == 0 && column != 0 ? "--time-column 1 --time-unit UNIT"
+                                                                       : "--rate HZ";
+  const auto at = static_cast<std::size_t>(clock - dialect.clock.begin());
+  const std::string& heading = dialect.columns[at].text;
+  return "--time-column " + (heading.empty() ? std::to_string(at + 1) : base::shell_word(heading));
+}
+
 /// Words in capitals stand for what the file does not say: nothing is guessed that changes a number.
 std::string command(const ImportRequest& request, const Dialect& dialect, const std::string& cell_unit) {
   const std::size_t column = likely_column(dialect);
@@ -49,14 +96,12 @@ std::string command(const ImportRequest& request, const Dialect& dialect, const 
                   name.text.empty() ? std::to_string(column + 1) : base::shell_word(name.text));
   const auto unit = quantity_unit(own);
   if (own.empty() || !unit) text += " --unit UNIT";
-  if (!time_column_of(dialect, column)) {
-    text += !dialect.numbers && dialect.header_line == 0 && column != 0 ? " --time-column 1 --time-unit UNIT"
-                                                                        : " --rate HZ";
-  }
+  if (const std::string time = time_options(dialect, column); !time.empty()) text += " " + time;
+  const bool counts = unit && unit->quantity == daq::RawQuantity::kCounts;
+  if (counts) text += " --count-range LOWEST..HIGHEST --volts-per-count VOLTS";
+  if (counts || (unit && unit->quantity == daq::RawQuantity::kVolts)) text += " --load-cell-gain GAIN";
   if (!unit || unit->quantity != daq::RawQuantity::kCoefficient) text += " --sled-mass MASS";
-  const std::string stem = request.path.substr(0, request.path.rfind('.'));
-  const std::string output = stem + ".h5";
-  return text + " -o " + base::shell_word(output == request.path ? stem + "-record.h5" : output);
+  return text + output_option(request.path);
 }
 
 /// What a file that is no text has beside the likely column and those that can be read with it.
@@ -88,6 +133,8 @@ base::Error no_column_chosen(const ImportRequest& request, const Source& source,
 Result<std::string> inspect(const ImportRequest& request) {
   const auto source = Source::of(request.path);
   if (!source) return tl::unexpected(source.error());
+  const auto is_own = is_own_table(*source);  // What is no text is told below.
+  const bool own = is_own && *is_own;
   const auto dialect = recognise(*source, request.dialect);
   if (!dialect) return tl::unexpected(dialect.error());
   using Column = io::Table::Column;
@@ -122,7 +169,7 @@ Result<std::string> inspect(const ImportRequest& request) {
       }
       if (!table->cell_unit.empty()) unit = table->cell_unit;
     } else {
-      first = "no numbers";
+      first = dialect->clock[c] ? clock_range(*source, *dialect, c) : "no numbers";
     }
     if (c == likely_column(*dialect)) likely_unit = unit;
     std::vector<io::Table::Cell> cells{io::cell(c + 1),
@@ -134,8 +181,9 @@ Result<std::string> inspect(const ImportRequest& request) {
     if (dialect->numbers) cells.insert(cells.begin() + 3, io::cell(dialect->numbers->size(c)));
     columns.add(cells);
   }
-  return dialect->text() + columns.text() + left_out(*dialect) +
-         "to import: " + base::printable(command(request, *dialect, likely_unit)) + "\n";
+  const std::string import = own ? own_command(request.path) : command(request, *dialect, likely_unit);
+  return dialect->text() + columns.text() + left_out(*dialect) + "to import: " + base::printable(import) +
+         "\n";
 }
 
 }  // namespace stickslip::traces

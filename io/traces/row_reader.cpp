@@ -27,6 +27,8 @@ std::string_view separator_name(char separator) noexcept {
       return "semicolon";
     case '\t':
       return "tab";
+    case '|':
+      return "bar";
     case kBlanks:
       return "blanks";
     default:

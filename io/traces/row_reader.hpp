@@ -12,7 +12,7 @@
 
 namespace stickslip::traces {
 
-/// Separators: ',', ';', '\t', kBlanks, kNoSeparator.
+/// Separators: ',', ';', '\t', '|', kBlanks, kNoSeparator.
 inline constexpr char kBlanks = ' ';        ///< Runs of blanks and tabs, with an arrow "->" in them or not.
 inline constexpr char kNoSeparator = '\0';  ///< The whole line is one field.
 

@@ -68,6 +68,7 @@ class TableReader {
       if (open) continue;
       if (auto taken = take(reader.fields(), row_line); !taken) return tl::unexpected(taken.error());
     }
+    leave_out_labelled();
     if (open) strange(row_line, "a quote that does not end");
     if (!file->line_was_ended()) leave_out_cut_line(file->line_number());
     if (table_.value.empty() && strange_rows_ > 0) {
@@ -164,6 +165,7 @@ class TableReader {
           path_, line, column_shown(*time_column_), value.value);
     }
     if (!hole) {
+      if (auto clear = check_mark(value, value_text, line); !clear) return clear;
       if (any_value_ && value.unit != table_.cell_unit) {
         return base::usage_error("{}:{}: {} is '{}', the rows before are in {}: correct the line", path_,
                                  line, column_shown(value_column_), base::one_line(value_text, kLongestShown),
@@ -172,6 +174,7 @@ class TableReader {
       table_.cell_unit = value.unit;
       any_value_ = true;
     }
+    labelled_ = dialect_.has_label(fields) ? labelled_ + 1 : 0;
     add(hole ? base::kNaN : value.value, time, line);
     // The last number of the line, which would be cut first.
     const Cell last = read_cell(dialect_.content(fields.size() - 1, fields.back()), dialect_.decimal);
@@ -184,6 +187,24 @@ class TableReader {
     previous_decimals_ = last_decimals_;
     previous_fields_ = last_fields_;
     return {};
+  }
+
+  /// "0.123" above "6,944" in one column: 6944 or 6.944, nobody can tell.
+  base::Result<void> check_mark(const Cell& value, std::string_view text, std::int64_t line) {
+    if (dialect_.decimal_is_stated || (!value.one_group && value.decimals <= 0)) return {};
+    MarkPlace& own = value.one_group ? grouped_ : decimal_;
+    if (own.line == 0) own = {line, std::string{text}};
+    if (grouped_.line == 0 || decimal_.line == 0) return {};
+    std::string other = grouped_.text;
+    std::replace(other.begin(), other.end(), dialect_.decimal == '.' ? ',' : '.', dialect_.decimal);
+    return base::usage_error(
+        "{}:{}: {} is '{}', and '{}' in line {}: {} or {}. Give --decimal \"{}\" if it is {}, else write one "
+        "mark of "
+        "decimals in the whole column",
+        path_, grouped_.line, column_shown(value_column_), base::one_line(grouped_.text, kLongestShown),
+        base::one_line(decimal_.text, kLongestShown), decimal_.line,
+        read_cell(grouped_.text, dialect_.decimal).value, read_cell(other, dialect_.decimal).value,
+        dialect_.decimal, read_cell(grouped_.text, dialect_.decimal).value);
   }
 
   void add(double value, const std::optional<TimeCell>& time, std::int64_t line) {
@@ -207,6 +228,17 @@ class TableReader {
     if (table_.places.empty() || table_.line(row) != line) table_.places.emplace_back(row, line);
   }
 
+  /// Statistics below the scans.
+  void leave_out_labelled() {
+    const std::size_t rows = table_.value.size();
+    if (labelled_ == 0 || labelled_ > kLongestFooter || labelled_ >= rows) return;
+    const std::int64_t first = table_.line(rows - labelled_);
+    table_.value.resize(rows - labelled_);
+    if (!table_.time.empty()) table_.time.resize(rows - labelled_);
+    table_.notes.push_back(fmt::format("{} line{} from line {} on left out: a word stands before the numbers",
+                                       labelled_, labelled_ == 1 ? "" : "s", first));
+  }
+
   /// A file that was cut by a full disk ends in the middle of a number.
   void leave_out_cut_line(std::int64_t line) {
     if (file_rows_ < 2 || table_.line(table_.value.size() - 1) != line) return;
@@ -227,6 +259,13 @@ class TableReader {
   std::int64_t strange_line_ = 0;
   std::string strange_what_;
   bool any_value_ = false;
+  struct MarkPlace {
+    std::int64_t line = 0;
+    std::string text;
+  };
+  MarkPlace grouped_;         ///< First value with Cell::one_group.
+  MarkPlace decimal_;         ///< First value with decimals.
+  std::size_t labelled_ = 0;  ///< Rows with a label since the last one without.
   double last_clock_s_ = 0.0;
   double midnights_s_ = 0.0;
   std::size_t file_rows_ = 0;
@@ -283,6 +322,14 @@ base::Result<std::size_t> find_column(const Dialect& dialect, const std::string&
     return number - 1;
   }
   if (dialect.numbers) return tl::unexpected(dialect.numbers->no_column(wanted));
+  if (dialect.unclear_heading_line > 0) {
+    return base::usage_error(
+        "{}:{}: the names of the {} columns have blanks in them and cannot be told apart, so there is no "
+        "column "
+        "\"{}\": give the number, 1 … {}",
+        path, dialect.unclear_heading_line, dialect.columns.size(), base::one_line(wanted, kLongestShown),
+        dialect.columns.size());
+  }
   if (dialect.header_line == 0 && dialect.labels.empty()) {
     return base::usage_error("{}: the file has no heading, so no column \"{}\": give the number, 1 … {}",
                              path, base::one_line(wanted, kLongestShown), dialect.columns.size());

@@ -94,6 +94,7 @@ def write_foreign_traces(folder, rate_hz=350, duration_s=4):
                       + "".join(f"{t:.4f},{f:.3f},{t:.4f},{f:.3f}\n" for t, f in scans)),
         "tribometer.txt": ("latin-1", "Time [s]\tDistance [m]\tµ []\r\n" + "".join(f"{t:.4f}\t{t * 0.005:.6f}\t{f / 22.86:.5f}\r\n" for t, f in scans)),
         "labjack.dat": ("utf-8", "Time\tv0\ty0\n" + "".join(f"{t:.6f}\t{f / 2:.6f}\t0\n" for t, f in scans)),
+        "codes.csv": ("utf-8", "Time (s),Code\n" + "".join(f"{t:.6f},{f / 2 / 0.5e-3:.0f}\n" for t, f in scans)),
         "hx711.log": ("utf-8", "HX711 tare done\nReady\n" + "".join(f"{t * 1e6:.0f},{f / 0.00980665:.2f}\n" for t, f in scans)),
     }
     for name, (encoding, text) in files.items():

@@ -9,6 +9,7 @@ import csv
 import math
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -118,6 +119,45 @@ class Export(unittest.TestCase):
             # Forces in volts and in newtons go through other roundings.
             for name in ("kinetic_coefficient", "mu_s", "mu_k"):
                 self.assertAlmostEqual(after["entry/results"][name][()], before["entry/results"][name][()], delta=1e-6)
+
+    def test_an_exported_record_comes_back_without_an_option(self):
+        self.run_stickslip("simulate", "clock-and-missing-scans", "-o", "whole.h5", "--folder",
+                           str(SOURCE / "config" / "scenes"), "--duration", "4")
+        for name in ("pull", "whole"):
+            self.run_stickslip("export", f"{name}.h5", "--csv", "-o", f"{name}-out.csv")
+            [command] = [line for line in self.run_stickslip("import", f"{name}-out.csv", "--inspect").stdout.splitlines()
+                         if line.startswith("to import: ")]
+            self.assertEqual(command, f"to import: stickslip import {name}-out.csv -o {name}-out.h5")
+            self.run_stickslip("import", f"{name}-out.csv", "-o", f"{name}-out.h5")
+            with h5py.File(self.folder / f"{name}.h5") as before, h5py.File(self.folder / f"{name}-out.h5") as after:
+                same = []
+                before["entry"].visititems(lambda path, item: same.append(path) if isinstance(item, h5py.Dataset) else None)
+                # The truth is not in the table; the source is new; the evaluation takes its own time.
+                same = [path for path in same if not re.match(r"truth/|process/(source_|compute_time|file_sha256)|self_check/counts", path)]
+                self.assertGreater(len(same), 80)
+                for path in same:
+                    numpy.testing.assert_array_equal(after["entry"][path][()], before["entry"][path][()], path)
+                self.assertEqual(after["entry/process/source_file"].asstr()[()], f"{name}-out.csv")
+            # Missing scans count.
+            self.run_stickslip("verify", f"{name}-out.h5", status=0 if name == "pull" else 1)
+
+    def test_a_table_that_was_changed_is_refused_with_its_line(self):
+        text = self.run_stickslip("export", "pull.h5", "--csv").stdout
+        heading = text.splitlines().index("time_s,scan,counts,voltage_V,force_N,coefficient,spike,saturated")
+        rows = text.splitlines()[heading + 1:heading + 4]
+        for wrong, said in ((text.replace(rows[1], rows[1].replace(",1,", ",1.5,", 1)), f":{heading + 3}: column \"scan\" is '1.5'"),
+                            (text.replace(rows[1], rows[1] + ",0"), f":{heading + 3}: the row has 9 fields, the heading 8"),
+                            (text.replace(rows[2] + "\n", rows[1] + "\n"), f":{heading + 4}: column \"scan\" is '1'"),
+                            (text[:text.index("# end: ")], "the table is cut"),
+                            (text.replace("# header: {", "# header: {{"), f":{heading}: the line \"# header: …\" cannot be read")):
+            (self.folder / "wrong.csv").write_text(wrong, encoding="utf-8")
+            message = self.run_stickslip("import", "wrong.csv", "-o", "wrong.h5", status=2).stderr
+            self.assertIn(said, message)
+            self.assertIn("give --column NAME", message)
+        self.run_stickslip("import", "wrong.csv", "--column", "force_N", "--sled-mass", "2331 g", "-o", "wrong.h5")
+        (self.folder / "right.csv").write_text(text, encoding="utf-8")
+        self.assertIn("leave out --sled-mass",
+                      self.run_stickslip("import", "right.csv", "-o", "x.h5", "--sled-mass", "2331 g", status=2).stderr)
 
     def test_refusals(self):
         self.assertIn("--csv", self.run_stickslip("export", "pull.h5", status=2).stderr)

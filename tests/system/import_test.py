@@ -209,6 +209,48 @@ class Import(unittest.TestCase):
         self.assertIn("needs no import", message)
         [command] = re.findall(r"needs no import: stickslip (.*)$", message)
         self.call(*shlex.split(command))
+    def test_counts_become_a_record_like_that_of_a_board(self):
+        counts = [[row[0], str(round(float(row[1]) / 2 / 0.5e-3))] for row in self.rows()]
+        file = self.write("counts.csv", counts, heading="time,code")
+        words = ["import", file, "--column", "code", "--unit", "counts", "--sled-mass", "2331 g", "-o", self.folder / "counts.h5"]
+        self.assertIn("--count-range 0..65535", self.call(*words, status=2))
+        words += ["--count-range", "-32768..32767"]
+        self.assertIn("--volts-per-count", self.call(*words, status=2))
+        words += ["--volts-per-count", "0.5 mV"]
+        self.assertIn("--load-cell-gain", self.call(*words, status=2))
+        self.call(*words, "--load-cell-gain", "2 N/V")
+        with h5py.File(self.folder / "counts.h5") as record:
+            self.assertEqual(list(record["entry/raw/counts"][:]), [int(row[1]) + 32768 for row in counts])
+            self.assertAlmostEqual(record["entry/results/delta_mu"][()], self.delta_mu, delta=0.001)
+        self.call("verify", self.folder / "counts.h5")
+
+    def test_a_record_keeps_the_facts_that_its_user_states(self):
+        file = self.write("meta.csv", self.rows())
+        self.call(*self.arguments(file, "--set-meta", "humidity=52 %", "--set-meta", "room.temperature=23.1 °C = ok"))
+        with h5py.File(self.folder / "x.h5") as record:
+            stated = {key: value.asstr()[()] for key, value in record["entry/metadata"].items()}
+        self.assertEqual(stated, {"humidity": "52 %", "room.temperature": "23.1 °C = ok"})
+        self.call("verify", self.folder / "x.h5")
+        self.assertIn("   test 1: humidity: 52 %\n", self.call("report", self.folder / "x.h5"))
+        self.assertEqual(json.loads(self.call("report", self.folder / "x.h5", "--json"))["tests"][0]["metadata"], stated)
+        shown = self.call("show", self.folder / "x.h5")
+        self.assertRegex(shown, r"(?m)^  metadata\.humidity +52 %$")
+        self.assertRegex(shown, r"(?m)^  delta_mu +0\.0[45]")
+        self.assertEqual(json.loads(self.call("show", self.folder / "x.h5", "--json"))["metadata"], stated)
+        self.assertRegex(self.call("show", self.folder / "no-such.h5", status=2), r"no-such\.h5: .*a test of the daemon is named by its number")
+        # Through a table and back, with one more.
+        table = self.folder / "meta-out.csv"
+        self.call("export", self.folder / "x.h5", "--csv", "-o", table)
+        self.call("import", table, "--set-meta", "note=again", "-o", self.folder / "x-again.h5")
+        with h5py.File(self.folder / "x-again.h5") as record:
+            self.assertEqual({key: value.asstr()[()] for key, value in record["entry/metadata"].items()}, {**stated, "note": "again"})
+        for pairs, said in ((["note"], "has no '='"), (["=x"], 'key ""'), (["a/b=x"], 'key "a/b"'), (["1a=x"], "a letter"), (["k" * 65 + "=x"], "at most 64"),
+                            (["a="], "a: the value is empty"), (["a=" + "x" * 201], "is 201 bytes long, at most 200 are allowed"),
+                            (["a=1\n2"], "holds the control character"), (["a=1", "a=2"], 'a is "1" already, and "2" comes too')):
+            options = [word for pair in pairs for word in ("--set-meta", pair)]
+            message = self.call(*self.arguments(file, *options), status=2)
+            self.assertIn(said, message)
+            self.assertIn("--set-meta", message)
 
 
 if __name__ == "__main__":

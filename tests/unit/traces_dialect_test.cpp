@@ -66,8 +66,65 @@ TEST_F(TraceDialect, CommentsMayStandBehindRows) {
 TEST_F(TraceDialect, NamesBetweenBlanksBelongToTheirColumns) {
   expect_values("  t (s)    F (1)\n 0.00   1\n 0.01   2\n", {1.0, 2.0});
   expect_values("# t F\n0.00 1\n0.01 2\n", {1.0, 2.0});
-  // A name of two words would shift the names behind it.
-  expect_refused("t Peak F\n0.00 1\n0.01 2\n", "has no heading");
+  // Names of two words have wider blanks between them.
+  expect_values("t (s)   Peak Speed   F (1)\n0.00   5   1\n0.01   5   2\n", {1.0, 2.0});
+  expect_values("t (s)\tPeak Speed\tF\n0.00 5 1\n0.01 5 2\n", {1.0, 2.0});
+  // Else a name of two words would shift the names behind it.
+  expect_refused(
+      "t Peak F\n0.00 1\n0.01 2\n",
+      ":1: the names of the 2 columns have blanks in them and cannot be told apart, so there is no column "
+      "\"F\": give the number, 1 … 2");
+  request_.column = "2";
+  request_.time_column = "1";
+  request_.time_unit = "s";
+  expect_values("t Peak F\n0.00 1\n0.01 2\n", {1.0, 2.0});
+}
+
+TEST_F(TraceDialect, BarsSeparateColumns) {
+  expect_values("t|F\n0.00|1.5\n0.01|2.5\n", {1.5, 2.5});
+  expect_values("t|F\n0,00|1,5\n0,01|2,5\n", {1.5, 2.5});
+  expect_values("| t (s) | F |\n|---|---|\n| 0.00 | 1.5 |\n| 0.01 | 2.5 |\n", {1.5, 2.5});
+  expect_values(" t    | F\n------+-----\n 0.00 | 1.5\n 0.01 | 2.5\n 0.02 | 3.5\n 0.03 | 4.5\n(4 rows)\n",
+                {1.5, 2.5, 3.5, 4.5});
+}
+
+TEST_F(TraceDialect, VernierHasARowOfSymbolsBetweenNamesAndUnits) {
+  request_.unit.clear();
+  request_.column = "Force";
+  const auto record = expect_values(
+      "Vernier Format 2\nslide.txt 11/25/2026 12:00:00 .\nRun "
+      "1\nTime\tAcceleration\tForce\nt\ta\tF\ns\tm/s²\tN\n\n"
+      "0.00\t0.1\t1.5\n0.01\t0.2\t2.5\n0.02\t0.2\t3.5\n",
+      {1.5, 2.5, 3.5});
+  EXPECT_EQ(record.header.board.quantity, daq::RawQuantity::kForce_N);
+}
+
+// Of a file in which somebody replaced commas by points, but not all.
+TEST_F(TraceDialect, TwoDecimalMarksInOneColumnAreRefused) {
+  const std::string content = "t;F\n0.00;0.123\n0.01;0.250\n0.02;6,944\n0.03;0.5\n";
+  expect_refused(
+      content,
+      ":4: column 'F' is '6,944', and '0.123' in line 2: 6944 or 6.944. Give --decimal \".\" if it is 6944");
+  expect_refused("t;F\n0,00;0,123\n0,01;0,250\n0,02;6.944\n",
+                 "6944 or 6.944. Give --decimal \",\" if it is 6944");
+  request_.dialect.decimal = '.';
+  expect_values(content, {0.123, 0.25, 6944.0, 0.5});
+  request_.dialect.decimal.reset();
+  // Marks of thousands beside the same decimals are clear.
+  expect_values("t\tF\n0.00\t0.123\n0.01\t6,944.000\n", {0.123, 6944.0});
+}
+
+TEST_F(TraceDialect, InspectionShowsClockTimes) {
+  test::write_content(request_.path, "Clock,F\n12:00:00.00,1\n12:00:00.01,2\n12:01:02.50,3\n");
+  auto text = inspect(request_);
+  ASSERT_TRUE(text) << text.error().message;
+  EXPECT_THAT(*text, testing::HasSubstr("12:00:00.00 … 12:01:02.50"));
+  EXPECT_THAT(*text, testing::HasSubstr(" --time-column Clock "));
+  test::write_content(request_.path, "Clock,F\n2026-11-25T12:00:00Z,1\n2026-11-25T12:00:01Z,2\n");
+  text = inspect(request_);
+  ASSERT_TRUE(text) << text.error().message;
+  EXPECT_THAT(*text, testing::HasSubstr("2026-11-25T12:00:00"));
+  EXPECT_THAT(*text, testing::HasSubstr("2026-11-25T12:00:01"));
 }
 
 TEST_F(TraceDialect, LabelsAndArrowsOfLoggersAreUnderstood) {

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "io/traces/grid.hpp"
@@ -49,6 +51,21 @@ TEST(TraceGrid, TimesRoundedToWholeMillisecondsGiveTheRate) {
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->rate_Hz, 350.0, 0.01);
   EXPECT_EQ(found->index.back(), 2799);
+}
+
+// At 1 kHz in whole milliseconds: equal intervals without a gap do not fit.
+TEST(TraceGrid, MissingRowBeforeTheLastOneOfWholeMillisecondsIsAJump) {
+  GridOptions options;
+  options.digit_s = 0.001;
+  for (const std::size_t count : {37U, 201U}) {
+    auto time = times(count, 1000.0, 0.001);
+    time.erase(time.end() - 2);
+    const auto found = grid(time, options);
+    ASSERT_TRUE(found) << count << ": " << found.error().message;
+    EXPECT_NEAR(found->rate_Hz, 1000.0, 1e-6);
+    EXPECT_EQ(found->index[count - 3], static_cast<std::int64_t>(count) - 3);
+    EXPECT_EQ(found->index.back(), static_cast<std::int64_t>(count) - 1);
+  }
 }
 
 TEST(TraceGrid, JitterBeyondTheLimitIsRefusedWithRowAndRemedy) {

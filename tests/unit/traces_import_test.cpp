@@ -56,6 +56,27 @@ TEST_F(TraceImport, FootersAndRepeatedHeadingsAreLeftOut) {
   EXPECT_THAT(report_, HasSubstr("heading or its units again"));
 }
 
+// A row of statistics may have a time that could be one.
+TEST_F(TraceImport, StatisticsWithAPlausibleTimeAreLeftOut) {
+  std::string blank = "Note,t (s),F\n";
+  std::string clock = "Clock,t (s),F\n";
+  std::string counted = "Point,t (s),F\n";
+  for (int i = 0; i < 20; ++i) {
+    blank += fmt::format(",{:.2f},{}\n", 0.01 * i, 1 + i);
+    clock += fmt::format("12:00:00.{:02},{:.2f},{}\n", i, 0.01 * i, 1 + i);
+    counted += fmt::format("{},{:.2f},{}\n", i, 0.01 * i, 1 + i);
+  }
+  request_.time_column = "t (s)";
+  for (const std::string& content : {blank, clock}) {
+    expect_values(content + "Last,0.20,7\nMean,0.21,10.5\n", values(20));
+    EXPECT_THAT(report_, HasSubstr("2 lines from line 22 on left out: a word stands before the numbers"));
+  }
+  expect_values(counted + "Last,0.20,7\nMean,0.21,10.5\n", values(20));
+  EXPECT_THAT(report_, HasSubstr("2 lines from line 22 on left out"));
+  // A word at the first row of each run is none.
+  expect_values("Run,t (s),F\nA,0.00,1\n,0.01,2\n,0.02,3\nB,0.03,4\n,0.04,5\n", values(5));
+}
+
 TEST_F(TraceImport, TextBetweenScansIsRefused) {
   expect_refused("t (s),F\n" + rows(0, 5) + "0.05,abc\n" + rows(6, 9),
                  ":7: column 'F' is 'abc', and scans follow in line 8");
@@ -81,12 +102,30 @@ TEST_F(TraceImport, ClockMayPassMidnight) {
   EXPECT_THAT(record.scan, ElementsAre(0, 1, 2, 3));
 }
 
+TEST_F(TraceImport, DatesBeyondNanosecondsGiveNoStart) {
+  const auto far =
+      expect_values("Time,F\n9999-01-01T00:00:00.00Z,1\n9999-01-01T00:00:00.01Z,2\n", {1.0, 2.0});
+  EXPECT_FALSE(far.header.start_realtime_ns);
+  const auto near =
+      expect_values("Time,F\n2026-01-01T00:00:00.00Z,1\n2026-01-01T00:00:00.01Z,2\n", {1.0, 2.0});
+  EXPECT_EQ(near.header.start_realtime_ns, 1'767'225'600'000'000'000);
+}
+
 TEST_F(TraceImport, UnitOfTheHeadingIsComparedWithTheStatedOne) {
   request_.unit = "N";
   expect_refused("t (s),F (cN)\n" + rows(0, 5), "is in cN, --unit says N: give --unit cN");
   expect_refused("t (s),F (g)\n" + rows(0, 5), "is in g, --unit says N: give --unit gf");
   expect_refused("t (s),F (mm)\n" + rows(0, 5), "is in mm, which --unit N is not");
   expect_values("t (s),F (Newton)\n" + rows(0, 5), values(5));
+}
+
+// What is said of a row names its line in the file, though the rows are read from the last to the first.
+TEST_F(TraceImport, ReversedRowsKeepTheirLines) {
+  request_.reverse = true;
+  const std::string content = "t (s),F\n0.0500,6\n0.0400,5\n0.0300,4\n0.0300,4\n0.0100,2\n0.0000,1\n";
+  expect_refused(content, "trace.csv:4: ");
+  request_.skip_doubled = true;
+  expect_values(content, {1.0, 2.0, 4.0, 5.0, 6.0});
 }
 
 TEST_F(TraceImport, UnitThatChangesBetweenCellsIsRefused) {
@@ -101,6 +140,55 @@ TEST_F(TraceImport, NegativeForceNeedsInvert) {
   request_.invert = true;
   const auto imported = import(content);
   EXPECT_TRUE(imported) << imported.error().message;
+}
+
+TEST_F(TraceImport, CountsKeepTheirCodesAndTheirScale) {
+  request_.unit = "counts";
+  request_.load_cell = daq::LoadCell{2.0, 0.0};
+  request_.counts = count_scale("-32768..32767", 0.5e-3).value();
+  const auto imported = import("t (s),F\n0.00,-32768\n0.01,0\n0.02,32767\n0.03,2000\n");
+  ASSERT_TRUE(imported) << imported.error().message;
+  const record::Record& record = imported->records.front();
+  const daq::BoardInfo& board = record.header.board;
+  EXPECT_EQ(board.quantity, daq::RawQuantity::kCounts);
+  EXPECT_EQ(board.maxdata, 65535U);
+  EXPECT_DOUBLE_EQ(board.range_min_V, -16.384);
+  EXPECT_DOUBLE_EQ(board.range_max_V, 16.3835);
+  EXPECT_THAT(record.raw, ElementsAre(0.0, 32768.0, 65535.0, 34768.0));
+  const daq::Calibration calibration{board, *record.header.load_cell, 1.0};
+  EXPECT_DOUBLE_EQ(calibration.volts(record.raw[3]), 1.0);
+  EXPECT_DOUBLE_EQ(calibration.force_N(record.raw[3]), 2.0);
+  EXPECT_TRUE(calibration.saturated(record.raw[0]));
+  EXPECT_FALSE(calibration.saturated(record.raw[1]));
+}
+
+TEST_F(TraceImport, CountsThatCannotBeAreRefusedWithTheirRow) {
+  request_.unit = "counts";
+  const std::string content = "t (s),F\n" + rows(0, 5);
+  expect_refused(content, "--unit counts needs --count-range and --volts-per-count");
+  request_.counts = count_scale("0..4", 1e-3).value();
+  expect_refused(content, "--unit counts needs --load-cell-gain");
+  request_.load_cell = daq::LoadCell{2.0, 0.0};
+  expect_refused(content,
+                 ":6: column \"F\" is 5, and counts are whole numbers of 0 … 4: correct --count-range");
+  request_.counts = count_scale("0..255", 1e-3).value();
+  expect_refused("t (s),F\n0.00,1\n0.01,1.5\n",
+                 ":3: column \"F\" is 1.5, and counts are whole numbers of 0 … 255: correct --unit");
+  request_.resample = true;
+  expect_refused(content, "--resample makes numbers between the counts");
+  request_.resample = false;
+  request_.unit = "V";
+  expect_refused(content, "are for --unit counts, the unit is V");
+}
+
+TEST(CountScale, IsARangeOfCodes) {
+  EXPECT_EQ(count_scale("0..4294967295", 1.0)->highest, 4294967295);
+  for (const char* wrong : {"", "..", "0", "0..", "..5", "5..5", "5..0", "0..4294967296", "0...5", "0..5.5",
+                            "a..b", "0..9999999999999"}) {
+    const auto scale = count_scale(wrong, 1.0);
+    ASSERT_FALSE(scale) << wrong;
+    EXPECT_THAT(scale.error().message, HasSubstr("--count-range: "));
+  }
 }
 
 TEST_F(TraceImport, UnitOfTheTimeIsItsHeadingsOrFoundByInspection) {

@@ -1,0 +1,24 @@
+/// \file
+/// Records from tables that `stickslip export --csv` wrote (io/export_csv.hpp).
+#pragma once
+
+#include <string>
+
+#include "io/traces/text_file.hpp"
+
+#include "core/base/result.hpp"
+#include "core/record/record.hpp"
+
+namespace stickslip::traces {
+
+/// Whether the lines above the table hold the header of a record. Errors: as TextFile.
+[[nodiscard]] base::Result<bool> is_own_table(const Source& source);
+
+/// The record to the last bit, as far as the table has it: header, scans, raw values, codes of the second
+/// channel, spikes, gaps, events, clock readings and the end, without results, cycles, truth and the idle
+/// scans of the self-check. Its source is the file. Columns that follow from others are not read. Errors: as
+/// TextFile; kUsage with place, value and a remedy if a line is not as it was exported, or if lines are
+/// missing at the end.
+[[nodiscard]] base::Result<record::Record> read_own_table(const Source& source);
+
+}  // namespace stickslip::traces

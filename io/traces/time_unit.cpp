@@ -1,0 +1,81 @@
+#include "io/traces/time_unit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/quantity.hpp"
+#include "core/base/wording.hpp"
+
+namespace stickslip::traces {
+namespace {
+
+using base::Result;
+
+/// A time column without a unit is read in the one of s, ms, µs and ns that gives a rate and a length between
+/// these; friction tests are neither slower, faster, shorter nor longer.
+constexpr double kSlowest_Hz = 5.0;
+constexpr double kFastest_Hz = 20'000.0;
+constexpr double kShortest_s = 1.0;
+constexpr double kLongest_s = 3.0 * 3600.0;
+/// Times since 1970 of the years 2001 to 2096.
+constexpr double kEarliestEpoch_s = 1e9;
+constexpr double kLatestEpoch_s = 4e9;
+/// What the heading says, or its name: "millis".
+std::string stated_time_unit(const ImportRequest& request, const ColumnName& column) {
+  if (!request.time_unit.empty()) return request.time_unit;
+  const std::string name = folded(column.name);
+  if (name.starts_with("milli")) return "ms";
+  if (name.starts_with("micros")) return "us";
+  const std::string unit = folded(column.unit);
+  if (unit == "s" || unit.starts_with("sec")) return "s";
+  if (unit == "msec" || unit.starts_with("millisec")) return "ms";
+  if (unit == "usec" || unit.starts_with("microsec")) return "us";
+  return unit.starts_with("min") ? "min" : column.unit;
+}
+
+}  // namespace
+
+Result<TimeUnit> time_unit_of(const ImportRequest& request, const ColumnName& column,
+                              const TraceTable& table) {
+  if (table.time_in_seconds) return TimeUnit{"s"};
+  if (const std::string stated = stated_time_unit(request, column); !stated.empty()) {
+    const auto seconds = base::parse_quantity("1 " + stated, base::Dimension::kTime);
+    if (seconds) return TimeUnit{stated, *seconds};
+    return base::usage_error("{}: the unit of the time is \"{}\": give --time-unit s, ms, us, ns, min or h",
+                             request.path, base::one_line(stated, 20));
+  }
+  const auto [low, high] = std::minmax_element(table.time.begin(), table.time.end());
+  const double length = *high - *low;
+  const double count = static_cast<double>(table.time.size() - 1);
+  std::vector<TimeUnit> possible;
+  for (const TimeUnit& unit : {TimeUnit{"s", 1.0, true}, TimeUnit{"ms", 1e-3, true},
+                               TimeUnit{"us", 1e-6, true}, TimeUnit{"ns", 1e-9, true}}) {
+    const double rate_Hz = count / (length * unit.seconds);
+    const bool fits = request.rate_Hz
+                          ? std::abs(std::log2(rate_Hz / *request.rate_Hz)) < 1.0
+                          : rate_Hz >= kSlowest_Hz && rate_Hz <= kFastest_Hz &&
+                                length * unit.seconds >= kShortest_s && length * unit.seconds <= kLongest_s;
+    if (fits) possible.push_back(unit);
+  }
+  if (possible.size() == 1) return possible.front();
+  // A column that does not advance, and a rate that fits no unit, have messages of their own.
+  if (!(length > 0.0) || request.rate_Hz) return TimeUnit{"s", 1.0, true};
+  return base::usage_error(
+      "{}: column \"{}\" does not say its unit; it runs at {:.4g} Hz in s, {:.4g} Hz in ms, {:.4g} Hz in us, "
+      "{:.4g} Hz in ns: "
+      "give --time-unit",
+      request.path, base::one_line(column.text, 40), count / length, 1e3 * count / length,
+      1e6 * count / length, 1e9 * count / length);
+}
+
+std::optional<std::int64_t> start_of(const TraceTable& table, double unit_s) {
+  constexpr double kNanosecond = 1e-9;
+  if (table.date_s && std::abs(static_cast<double>(*table.date_s) + table.first_time) > kFarthestEpoch_s)
+    return std::nullopt;
+  if (table.date_s) return *table.date_s * 1'000'000'000 + std::llround(table.first_time / kNanosecond);
+  const double since = table.first_time * unit_s;
+  if (since < kEarliestEpoch_s || since > kLatestEpoch_s) return std::nullopt;
+  return std::llround(since / kNanosecond);
+}
+
+}  // namespace stickslip::traces
