@@ -74,7 +74,7 @@ S - K. Changes apply in this order: --without, --set, --rate, --duration.
 Examples:
   stickslip accuracy stick-slip-at-12-in-per-min
   stickslip accuracy threshold-oscillation -o accuracy.html
-  stickslip accuracy my-scene.toml -o accuracy.svg --set paper.mu_s=0.34 --duration 20
+  stickslip accuracy my-scene.toml -o accuracy.svg --set paper.mu_s=0.34 --duration "20 s"
   stickslip accuracy ring-down-at-12-in-per-min --json)";
 
 }  // namespace

@@ -5,9 +5,11 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdio>
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/wording.hpp"
 #include "daemon/client/client.hpp"
 
 namespace stickslip::cli {
@@ -16,6 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::chrono::milliseconds kTimeout{5000};
+constexpr std::size_t kLongestWarning = 1000;
 
 }  // namespace
 
@@ -44,6 +47,8 @@ base::Result<Json> ask(const BenchOptions& options, daemon::HttpRequest request)
   request.controller = options.who.empty() ? user_name() : options.who;
   const base::Result<daemon::HttpReply> reply = client::request(options.socket, request, kTimeout);
   if (!reply) return tl::unexpected(reply.error());
+  if (!reply->warning.empty())
+    fmt::print(stderr, "warning: {}\n", base::one_line(reply->warning, kLongestWarning));
   Json json = Json::parse(reply->body, nullptr, false);
   if (json.is_discarded()) return base::failure("{}: the answer is no JSON", options.socket);
   if (reply->status == 200) return json;

@@ -40,7 +40,7 @@ std::optional<double> number_in(std::string_view text) {
   return value;
 }
 
-/// "mu_k=0.2:0.4" into the plan's limits.
+/// "mu_k=0.2:0.4", "period_median=1 s:2 s" into the plan's limits. Text with a unit is left to the daemon.
 base::Result<void> add_limit(Json& limits, const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::size_t colon = text.find(':', equals == std::string::npos ? 0 : equals);
@@ -54,8 +54,8 @@ base::Result<void> add_limit(Json& limits, const std::string& text) {
                                     {"highest", text.substr(colon + 1)}}) {
     if (typed.empty()) continue;
     const auto value = number_in(typed);
-    if (!value) return wrong();
-    limit[side] = *value;
+    if (!value && typed.find_first_of("0123456789") == std::string::npos) return wrong();
+    limit[side] = value ? Json(*value) : Json(typed);
   }
   limits[text.substr(0, equals)] = std::move(limit);
   return {};
@@ -90,7 +90,9 @@ void add_batch_begin(CLI::App& batch, Chosen& chosen) {
       ->type_name("SPEED");
   command->add_option("--replicates", options->replicates, "sheets at each speed")->type_name("N");
   command->add_option("--slides", options->slides, "pulls of each sheet")->type_name("N");
-  command->add_option("--limit", options->limits, "what a result may be, as mu_k=0.2:0.4; may be repeated")
+  command
+      ->add_option("--limit", options->limits,
+                   "what a result may be, as mu_k=0.2:0.4 or \"period_median=1 s:2 s\"; may be repeated")
       ->type_name("RESULT=LOWEST:HIGHEST");
   choose(*command, chosen, [options] { return begin_batch(*options); });
 }

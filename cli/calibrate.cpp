@@ -19,6 +19,7 @@
 
 #include "core/base/settings.hpp"
 #include "core/base/text.hpp"
+#include "core/daq/gain_change.hpp"
 #include "daemon/types/calibration_json.hpp"
 
 namespace stickslip::cli {
@@ -38,6 +39,7 @@ struct CalibrateOptions {
   std::string valid_days = "365";  ///< 0: for ever.
   std::string settle = "1 s";
   std::string reading = "2 s";
+  bool confirm = false;  ///< A daq::GainChange is meant.
   bool json = false;
 };
 
@@ -90,11 +92,17 @@ std::string readings_table(const std::vector<daq::WeighedPoint>& points) {
 /// What a technician says at the prompt.
 enum class Answer { kRead, kUndo, kDone, kQuit, kNoMass };
 
-/// \param mass_kg  of kRead.
-Answer answer_of(std::string text, bool tare, double& mass_kg) {
+/// Without blanks around it.
+std::string trimmed(std::string text) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
   while (!text.empty() && blank(text.back())) text.pop_back();
   while (!text.empty() && blank(text.front())) text.erase(text.begin());
+  return text;
+}
+
+/// \param mass_kg  of kRead. \param why  of kNoMass.
+Answer answer_of(const std::string& typed, bool tare, double& mass_kg, std::string& why) {
+  const std::string text = trimmed(typed);
   if (text == "q" || text == "quit") return Answer::kQuit;
   if (tare) {
     mass_kg = 0.0;
@@ -102,10 +110,17 @@ Answer answer_of(std::string text, bool tare, double& mass_kg) {
   }
   if (text == "done" || text.empty()) return Answer::kDone;
   if (text == "undo") return Answer::kUndo;
-  const auto mass = number_of("mass", text, Dimension::kMass, false);
-  if (!mass || !*mass || !(**mass >= 0.0) || !(**mass <= daq::kHeaviestWeight_kg)) return Answer::kNoMass;
-  mass_kg = **mass;
-  return Answer::kRead;
+  // Weights are marked in g as well as in kg: a number alone would be a guess.
+  const auto mass = base::enter_quantity(text, Dimension::kMass, base::BareNumber::kOnlyZero);
+  if (!mass) {
+    why = mass.error().message;
+  } else if (!(mass->value >= 0.0 && mass->value <= daq::kHeaviestWeight_kg)) {
+    why = fmt::format("{} kg; must be 0 to {} kg", mass->value, daq::kHeaviestWeight_kg);
+  } else {
+    mass_kg = mass->value;
+    return Answer::kRead;
+  }
+  return Answer::kNoMass;
 }
 
 constexpr const char* kNextWeight =
@@ -130,14 +145,15 @@ Result<Weighed> ask(Weighing& weighing, double gravity_m_per_s2, const daq::Weig
     std::string line;
     if (!std::getline(answers, line)) line = tare ? "q" : "done";
     double mass_kg = 0.0;
-    switch (answer_of(line, tare, mass_kg)) {
+    std::string no_mass;
+    switch (answer_of(line, tare, mass_kg, no_mass)) {
       case Answer::kQuit:
         return base::failure("given up: no calibration was made");
       case Answer::kUndo:
         weighed.readings.pop_back();
         continue;
       case Answer::kNoMass:
-        prompts << "  that is no mass: type it as 500 g or 0.5 kg\n";
+        fmt::print(prompts, "  that is no mass: {}\n", base::printable(no_mass));
         continue;
       case Answer::kDone: {
         const std::string why = weighed.result().fit.reason;
@@ -159,8 +175,9 @@ Result<Weighed> ask(Weighing& weighing, double gravity_m_per_s2, const daq::Weig
   }
 }
 
-std::string text_of(const daq::WeighedCalibration& result, const io::StoredCalibration& stored,
-                    const std::string& file, const std::optional<io::StoredCalibration>& before) {
+std::string text_of(const daq::WeighedCalibration& result, const io::KeptCalibration& kept,
+                    const std::optional<daq::GainChange>& confirmed) {
+  const io::StoredCalibration& stored = kept.stored;
   std::string text = readings_table(result.points);
   const daq::LoadCellFit& fit = result.fit;
   text += fmt::format("gain {:.8g} +- {:.2g} N/V, zero {:.6g} +- {:.2g} V, of {} readings\n",
@@ -169,19 +186,23 @@ std::string text_of(const daq::WeighedCalibration& result, const io::StoredCalib
   text += fmt::format("off the line {:.2g} V, hysteresis {:+.2g} V\n", fit.residual_V.value_or(std::nan("")),
                       fit.hysteresis_V.value_or(std::nan("")));
   for (const std::string& finding : result.findings) text += "look: " + finding + "\n";
-  if (before) {
+  if (confirmed) text += fmt::format("look: {}; confirmed\n", daq::to_text(*confirmed));
+  if (kept.before) {
     text += fmt::format("gain {:+.3g} % against that of {}\n",
-                        100.0 * (stored.load_cell.gain_N_per_V / before->load_cell.gain_N_per_V - 1.0),
-                        before->facts.date);
+                        100.0 * (stored.load_cell.gain_N_per_V / kept.before->load_cell.gain_N_per_V - 1.0),
+                        kept.before->facts.date);
   }
   const std::string& expires = stored.facts.expires;
-  return text + fmt::format("kept in {}, {}\n", file,
+  return text + fmt::format("kept in {}, {}\n", kept.file.string(),
                             expires.empty() ? std::string{"valid for ever"} : "valid until " + expires);
 }
 
-std::string json_of(const daq::WeighedCalibration& result, const io::StoredCalibration& stored,
-                    const std::string& file) {
-  const Json all{{"file", file},
+std::string json_of(const daq::WeighedCalibration& result, const io::KeptCalibration& kept,
+                    const std::optional<daq::GainChange>& confirmed) {
+  const io::StoredCalibration& stored = kept.stored;
+  std::vector<std::string> findings = result.findings;
+  if (confirmed) findings.push_back(daq::to_text(*confirmed));
+  const Json all{{"file", kept.file.string()},
                  {"date", stored.facts.date},
                  {"expires", stored.facts.expires},
                  {"certificate", stored.facts.certificate},
@@ -191,7 +212,8 @@ std::string json_of(const daq::WeighedCalibration& result, const io::StoredCalib
                  {"zero_standard_error", daemon::known_json(stored.facts.zero_standard_error_V)},
                  {"residual", daemon::known_json(stored.facts.residual_V)},
                  {"hysteresis", daemon::known_json(stored.facts.hysteresis_V)},
-                 {"findings", result.findings},
+                 {"findings", findings},
+                 {"gain_change", daemon::gain_change_json(confirmed)},
                  {"points", daemon::points_json(result)}};
   return io::json_document(all);
 }
@@ -207,6 +229,33 @@ Result<Weighed> weigh_by(const CalibrateOptions& options, const std::optional<We
   if (!weighing) return tl::unexpected(weighing.error());
   return ask(*weighing, place->gravity_m_per_s2, {settle_s->value_or(0.0), reading_s->value_or(0.0)}, answers,
              prompts);
+}
+
+/// The gain that the daemon has now: of the latest calibration in `folder`, else by the configuration;
+/// nothing if neither names one. Errors: as io::load_calibration().
+Result<std::optional<double>> gain_in_use(const std::filesystem::path& folder,
+                                          const std::optional<WeighingPlace>& place) {
+  for (const std::filesystem::path& calibrations : {folder, place ? place->folder : folder}) {
+    std::error_code error;
+    const bool one = std::filesystem::is_regular_file(calibrations, error);
+    if (!one && !io::holds_calibration(calibrations)) continue;
+    const Result<io::StoredCalibration> latest = io::load_calibration(calibrations);
+    if (!latest) return tl::unexpected(latest.error());
+    return std::optional<double>{latest->load_cell.gain_N_per_V};
+  }
+  return place ? place->load_cell_gain_N_per_V : std::nullopt;
+}
+
+/// Whether a change of the gain is meant: by --confirm, or by the technician at the board.
+bool confirmed_by(const CalibrateOptions& options, const daq::GainChange& change, std::istream& answers,
+                  std::ostream& prompts) {
+  if (options.confirm) return true;
+  if (options.config.empty()) return false;
+  fmt::print(prompts, "Look: {}.\nType yes to keep it all the same; anything else keeps nothing.\n> ",
+             daq::to_text(change));
+  prompts << std::flush;
+  std::string line;
+  return std::getline(answers, line) && trimmed(line) == "yes";
 }
 
 /// \param answers  what the technician types. \param prompts  what is said in between.
@@ -239,11 +288,18 @@ Result<std::string> run_calibrate(const CalibrateOptions& options, std::istream&
     prompts << readings_table(result.points);
     return base::failure("no calibration: {}", result.fit.reason);
   }
-  const auto kept =
-      io::keep_result(result, {options.certificate, *days}, folder, base::make_system_clock()->realtime_ns());
+  const auto in_use = gain_in_use(folder, place);
+  if (!in_use) return tl::unexpected(in_use.error());
+  const auto change = daq::gain_change(result.fit.load_cell->gain_N_per_V, *in_use);
+  if (change && !confirmed_by(options, *change, answers, prompts)) {
+    prompts << readings_table(result.points);
+    return base::failure("{}: {}; nothing was kept; if the change is meant, repeat with --confirm",
+                         daq::kGainChangeCode, daq::to_text(*change));
+  }
+  const auto kept = io::keep_result(result, {options.certificate, *days, change.has_value()}, folder,
+                                    base::make_system_clock()->realtime_ns(), change);
   if (!kept) return tl::unexpected(kept.error());
-  return options.json ? json_of(result, kept->stored, kept->file.string())
-                      : text_of(result, kept->stored, kept->file.string(), kept->before);
+  return options.json ? json_of(result, *kept, change) : text_of(result, *kept, change);
 }
 
 constexpr const char* kCalibrateExamples =
@@ -251,7 +307,8 @@ constexpr const char* kCalibrateExamples =
 A straight line by least squares gives gain and zero with their standard errors. A reading that cannot count
 (saturated, unstable, no change from the tare, less than 1 % of the range) is named with the reason. Each
 calibration is a file of its own, named by its date, and stays as it is; [tester] calibration in the daemon's
-configuration names the folder, and the latest goes into each record.
+configuration names the folder, and the latest goes into each record. A gain that differs from the one in use by
+more than 20 % is kept only if somebody confirms it: by yes at the prompt, or with --confirm.
 
 Examples:
   stickslip calibrate --config /etc/stickslip/stickslipd.toml --certificate "DKD-1234"
@@ -275,12 +332,14 @@ void add_calibrate(CLI::App& app, Chosen& chosen) {
   command->add_option("--valid-days", options->valid_days, "until a new one is due; 0: for ever")
       ->capture_default_str()
       ->type_name("N");
-  command->add_option("--settle", options->settle, "left for a weight to come to rest")
+  command->add_option("--settle", options->settle, "left for a weight to come to rest, with unit")
       ->capture_default_str()
       ->type_name("T");
-  command->add_option("--reading", options->reading, "for which each weight is read")
+  command->add_option("--reading", options->reading, "for which each weight is read, with unit")
       ->capture_default_str()
       ->type_name("T");
+  command->add_flag("--confirm", options->confirm,
+                    "keep a gain that differs from the one in use by more than 20 %");
   command->add_flag("--json", options->json, "JSON instead of text");
   choose(*command, chosen, [options] { return run_calibrate(*options, std::cin, std::cerr); });
 }

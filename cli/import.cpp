@@ -245,20 +245,23 @@ void add_import(CLI::App& app, Chosen& chosen) {
        "of the values: N, mN, kN, gf, kgf, lbf, ozf, V, mV, counts, coefficient, percent; else that of the "
        "heading",
        "UNIT");
-  text("--sled-mass", options->sled_mass, "kg or with unit; needed for a force or a voltage", "M");
+  text("--sled-mass", options->sled_mass, "with unit: \"200 g\"; needed for a force or a voltage", "M");
   text("--rate", options->rate,
-       "scans per second; else the time column tells it, which is checked against it", "HZ");
+       "scan rate, with unit: \"350 Hz\"; else the time column tells it, which is checked against it",
+       "RATE");
   text("--time-column,--time-dataset", options->time_column,
        "heading or number of the time; else by its name; none: do not read it", "NAME");
   text("--time-unit", options->time_unit,
        "s, ms, us, ns, min or h; else that of the heading, else by inspection", "UNIT");
-  text("--speed", options->speed, "pull speed, m/s or with unit", "V");
-  text("--stiffness", options->stiffness, "of the coupling, N/m or with unit", "K");
-  text("--load-cell-gain", options->load_cell_gain, "N/V or with unit; needed for V and counts", "GAIN");
-  text("--load-cell-zero", options->load_cell_zero, "V or with unit; for V and counts, default 0 V", "ZERO");
+  text("--speed", options->speed, "pull speed, with unit: \"12 in/min\"", "V");
+  text("--stiffness", options->stiffness, "of the coupling, with unit: \"920 N/m\"", "K");
+  text("--load-cell-gain", options->load_cell_gain, "with unit: \"2 N/V\"; needed for V and counts", "GAIN");
+  text("--load-cell-zero", options->load_cell_zero, "with unit: \"12 mV\"; for V and counts, default 0 V",
+       "ZERO");
   text("--count-range", options->count_range, "codes at both rails of the converter; for counts",
        "LOWEST..HIGHEST");
-  text("--volts-per-count", options->volts_per_count, "V or with unit, 0 V at code 0; for counts", "VOLTS");
+  text("--volts-per-count", options->volts_per_count, "with unit: \"0.31 mV\", 0 V at code 0; for counts",
+       "VOLTS");
   command->add_flag("--invert", options->invert, "the force is negative while the sled slides");
   command->add_flag("--reverse", options->reverse, "read the rows from the last to the first");
   command->add_flag("--resample", options->resample,

@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kExamples = R"(Examples:
   stickslip demo                                       ten simulated tests, without a board
-  stickslip import pull.csv --column force --rate 350 --unit N --sled-mass "2331 g" -o pull.h5
+  stickslip import pull.csv --column force --rate "350 Hz" --unit N --sled-mass "2331 g" -o pull.h5
   stickslip import trace.csv --column mu --rate "2 kHz" --unit coefficient --speed "12 in/min" -o trace.h5
   stickslip scenes                                     the shipped scenes, one line each
   stickslip simulate stick-slip-at-12-in-per-min -o pull.h5 --seed 7

@@ -1,17 +1,22 @@
 #include "cli/options.hpp"
 
+#include <fmt/format.h>
+
+#include <cstdio>
+
 namespace stickslip::cli {
 
 base::Result<std::optional<double>> number_of(const char* option, const std::string& text,
-                                              base::Dimension dimension, bool must_be_positive) {
+                                              base::Dimension dimension, bool must_be_positive,
+                                              base::BareNumber bare) {
   if (text.empty()) return std::optional<double>{};
-  base::Result<double> value = base::parse_number(text);
-  if (!value) value = base::parse_quantity(text, dimension);
-  if (!value) return base::usage_error("{}: {}", option, value.error().message);
-  if (must_be_positive && !(*value > 0.0)) {
+  const base::Result<base::EnteredQuantity> entered = base::enter_quantity(text, dimension, bare);
+  if (!entered) return base::usage_error("{}: {}", option, entered.error().message);
+  if (must_be_positive && !(entered->value > 0.0)) {
     return base::usage_error("{}: \"{}\" must be above 0 {}", option, text, base::si_unit(dimension));
   }
-  return std::optional<double>{*value};
+  if (!entered->warning.empty()) fmt::print(stderr, "warning: {}: {}\n", option, entered->warning);
+  return std::optional<double>{entered->value};
 }
 
 }  // namespace stickslip::cli

@@ -10,9 +10,11 @@
 
 namespace stickslip::cli {
 
-/// The option's number in SI units, typed with a unit or without; nothing if it was not given.
-/// Usage error that names the option.
-[[nodiscard]] base::Result<std::optional<double>> number_of(const char* option, const std::string& text,
-                                                            base::Dimension dimension, bool must_be_positive);
+/// Reads the quantity of an option, in SI units; nothing if the option was not given. A number without a unit
+/// is read in SI units with a warning on stderr, unless `bare` says otherwise. Errors: kUsage, naming the
+/// option.
+[[nodiscard]] base::Result<std::optional<double>> number_of(
+    const char* option, const std::string& text, base::Dimension dimension, bool must_be_positive,
+    base::BareNumber bare = base::BareNumber::kSiWithWarning);
 
 }  // namespace stickslip::cli

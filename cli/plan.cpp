@@ -7,6 +7,7 @@
 
 #include "cli/ask.hpp"
 #include "cli/json_members.hpp"
+#include "cli/options.hpp"
 #include "cli/plan_keys.hpp"
 #include "cli/subcommands.hpp"
 #include "io/table.hpp"
@@ -28,9 +29,14 @@ struct PlanOptions : BenchOptions {
                                {"pull_speed", "with unit: \"12 in/min\""}}};
 };
 
-/// A bare number stays one: a speed is in m/s then, as in all of the command line.
-Json plan_value(std::string_view key, const std::string& typed) {
-  if (key != "replicate" && key != "pull_speed") return typed;
+/// A speed is sent as text with its unit.
+base::Result<Json> plan_value(std::string_view key, const std::string& typed) {
+  if (key == "pull_speed") {
+    const auto speed = number_of("--pull-speed", typed, base::Dimension::kSpeed, true);
+    if (!speed) return tl::unexpected(speed.error());
+    return Json(base::format_quantity(speed->value_or(0.0), base::Dimension::kSpeed));
+  }
+  if (key != "replicate") return Json(typed);
   Json parsed = Json::parse(typed, nullptr, false);
   return parsed.is_discarded() ? Json(typed) : parsed;
 }
@@ -42,10 +48,15 @@ base::Result<std::string> run_plan(const PlanOptions& options) {
   bool changed = options.clear;
   for (const PlanKey& key : options.keys) {
     if (key.typed.empty()) continue;
-    (*plan)[key.key] = plan_value(key.key, key.typed);
+    base::Result<Json> value = plan_value(key.key, key.typed);
+    if (!value) return tl::unexpected(value.error());
+    (*plan)[key.key] = *std::move(value);
     changed = true;
   }
   if (changed) {
+    // What the daemon has is sent back with its unit.
+    if (const auto speed = plan->find("pull_speed"); speed != plan->end() && speed->is_number())
+      *speed = base::format_quantity(speed->get<double>(), base::Dimension::kSpeed);
     const base::Result<std::string> said = body_of(*plan);
     if (!said) return tl::unexpected(said.error());
     plan = ask(options, {"PUT", "/v1/plan", *said, {}, {}});

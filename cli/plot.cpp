@@ -40,9 +40,9 @@ struct PlotOptions {
 
 Result<report::RecordView> view_of(const PlotOptions& options) {
   report::RecordView view;
-  const auto from = number_of("--from", options.from, Dimension::kTime, false);
+  const auto from = number_of("--from", options.from, Dimension::kTime, false, base::BareNumber::kSi);
   if (!from) return tl::unexpected(from.error());
-  const auto to = number_of("--to", options.to, Dimension::kTime, false);
+  const auto to = number_of("--to", options.to, Dimension::kTime, false, base::BareNumber::kSi);
   if (!to) return tl::unexpected(to.error());
   view.from_s = *from;
   view.to_s = *to;

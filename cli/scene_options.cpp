@@ -26,9 +26,11 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
       ->allow_extra_args(false)
       ->type_name("EFFECT");
   command
-      .add_option("--duration", options.duration, "of the whole scene, s or with unit: the pull is fitted")
+      .add_option("--duration", options.duration,
+                  "of the whole scene, with unit: \"20 s\"; the pull is fitted")
       ->type_name("T");
-  command.add_option("--rate", options.rate, "scans per second; else that of the scene")->type_name("HZ");
+  command.add_option("--rate", options.rate, "scan rate, with unit: \"2 kHz\"; else that of the scene")
+      ->type_name("HZ");
   command.add_option("--folder", options.folder, "of the scenes that have names")->type_name("DIR");
 }
 

@@ -87,7 +87,7 @@ Examples:
   stickslip simulate stick-slip-at-12-in-per-min -o pull.h5
   stickslip simulate my-scene.toml -o pull.h5 --seed 7 --json
   stickslip simulate threshold-oscillation -o above.h5 --set paper.mu_s=0.34 --set effects.white_noise.sd=0.002
-  stickslip simulate stick-slip-at-12-in-per-min -o hour.h5 --duration 3600
+  stickslip simulate stick-slip-at-12-in-per-min -o hour.h5 --duration "1 h"
   stickslip simulate stick-slip-at-12-in-per-min -o fast.h5 --rate "2 kHz" --without white_noise
   stickslip simulate ring-down-at-12-in-per-min -o slow.h5 --set "effects.constant_speed.pull_speed=6 in/min")";
 

@@ -276,7 +276,7 @@ Examples:
   stickslip sweep threshold-oscillation --vary paper.mu_s=0.31:0.35:9 --repeat 20 -o threshold.h5
   stickslip sweep stick-slip-at-12-in-per-min -o map.h5 --repeat 10 \
     --vary "effects.constant_speed.pull_speed=3 in/min:30 in/min:10" --vary paper.mu_s=0.31:0.36:6
-  stickslip sweep scattered-paper --repeat 1000 --duration 10 -o scatter.h5 --json)";
+  stickslip sweep scattered-paper --repeat 1000 --duration "10 s" -o scatter.h5 --json)";
 
 }  // namespace
 

@@ -27,6 +27,8 @@ base::Result<WeighingPlace> load_weighing_place(const std::filesystem::path& con
       return tl::unexpected(removed.error());
     }
   }
+  place.load_cell_gain_N_per_V =
+      tester.quantity_if_given("load_cell_gain", base::Dimension::kForcePerVoltage, base::Limits::any());
   if (auto set = settings->set("tester.load_cell_gain", "\"1 N/V\"", "calibrate"); !set) {
     return tl::unexpected(set.error());
   }

@@ -5,6 +5,7 @@
 #include <deque>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/base/clock.hpp"
@@ -20,7 +21,8 @@ struct WeighingPlace {
   drivers::BoardConfig board;
   double clock_speed = 1.0;
   double gravity_m_per_s2 = 0.0;
-  std::filesystem::path folder;  ///< [tester] calibration; empty: not said.
+  std::filesystem::path folder;                  ///< [tester] calibration; empty: not said.
+  std::optional<double> load_cell_gain_N_per_V;  ///< [tester] load_cell_gain.
 };
 
 /// Errors: kUsage as load_config().

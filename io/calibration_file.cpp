@@ -59,6 +59,8 @@ base::Result<StoredCalibration> calibration_of(base::Settings settings) {
   facts.zero_standard_error_V = volts("zero_standard_error", Limits::at_least(0.0));
   facts.residual_V = volts("residual", Limits::at_least(0.0));
   facts.hysteresis_V = volts("hysteresis", Limits::any());
+  facts.replaced_gain_N_per_V =
+      table.quantity_if_given("replaced_gain", Dimension::kForcePerVoltage, Limits::any());
   for (base::Settings& weight : settings.tables("weight")) {
     const auto voltage = [&weight](const char* key) {
       return weight.quantity_if_given(key, Dimension::kVoltage, Limits::any()).value_or(std::nan(""));
@@ -138,6 +140,8 @@ std::string calibration_text(const StoredCalibration& calibration) {
   text += line("zero_standard_error", facts.zero_standard_error_V, "V", "by least squares");
   text += line("residual", facts.residual_V, "V", "standard deviation about the line");
   text += line("hysteresis", facts.hysteresis_V, "V", "falling less rising, about the line");
+  text +=
+      line("replaced_gain", facts.replaced_gain_N_per_V, "N/V", "in use before; the change was confirmed");
   for (std::size_t i = 0; i < facts.mass_kg.size(); ++i) {
     const auto known = [](double value) {
       return std::isfinite(value) ? std::optional<double>{value} : std::nullopt;
@@ -200,7 +204,8 @@ base::Result<std::filesystem::path> keep_calibration(const std::filesystem::path
 
 base::Result<KeptCalibration> keep_result(const daq::WeighedCalibration& result,
                                           const CalibrationPaper& paper, const std::filesystem::path& folder,
-                                          std::int64_t now_ns) {
+                                          std::int64_t now_ns,
+                                          const std::optional<daq::GainChange>& confirmed) {
   constexpr double kNanosecondsPerDay = 86'400e9;
   const auto valid_ns = static_cast<std::int64_t>(paper.valid_days * kNanosecondsPerDay);
   KeptCalibration kept{stored_calibration(result, record::iso_time(now_ns),
@@ -208,6 +213,7 @@ base::Result<KeptCalibration> keep_result(const daq::WeighedCalibration& result,
                                           paper.certificate),
                        {},
                        std::nullopt};
+  if (confirmed) kept.stored.facts.replaced_gain_N_per_V = confirmed->in_use_N_per_V;
   std::error_code error;
   if (std::filesystem::is_directory(folder, error) && !std::filesystem::is_empty(folder, error)) {
     auto before = load_calibration(folder);

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core/base/result.hpp"
+#include "core/daq/gain_change.hpp"
 #include "core/daq/weighed_calibration.hpp"
 #include "core/record/record.hpp"
 
@@ -17,8 +18,9 @@ namespace stickslip::io {
 
 /// What the user states about a calibration, beside the readings.
 struct CalibrationPaper {
-  std::string certificate;    ///< Of the weights, as free text; may be empty.
-  double valid_days = 365.0;  ///< From its date until it expires; 0: it never does.
+  std::string certificate;     ///< Of the weights, as free text; may be empty.
+  double valid_days = 365.0;   ///< From its date until it expires; 0: it never does.
+  bool confirms_gain = false;  ///< A daq::GainChange is meant.
 };
 /// Largest CalibrationPaper::valid_days that is accepted.
 inline constexpr double kLongestValid_days = 36'500.0;
@@ -59,11 +61,13 @@ struct KeptCalibration {
 };
 
 /// Stores a new calibration, dated `now_ns`, in a folder. \param result  must have a load cell (contract).
-/// \param now_ns  nanoseconds since 1970, UTC. Errors: as load_calibration() and keep_calibration().
+/// \param now_ns  nanoseconds since 1970, UTC. \param confirmed  a change of the gain that was confirmed; the
+/// file says so. Errors: as load_calibration() and keep_calibration().
 [[nodiscard]] base::Result<KeptCalibration> keep_result(const daq::WeighedCalibration& result,
                                                         const CalibrationPaper& paper,
                                                         const std::filesystem::path& folder,
-                                                        std::int64_t now_ns);
+                                                        std::int64_t now_ns,
+                                                        const std::optional<daq::GainChange>& confirmed);
 
 /// True if the calibration has expired at `now`. \param now  ISO 8601, as record::iso_time() writes it.
 [[nodiscard]] bool expired(const record::CalibrationFacts& facts, std::string_view now);

@@ -67,7 +67,7 @@ own_scene() {
 # Force as another program writes it: a saw-tooth of 2 Hz, sampled 500 times a second.
 own_trace() {
   awk 'BEGIN { print "time,mu"; for (i = 0; i < 5000; ++i) { p = (i % 250) / 250; print i / 500 "," 0.3 + (p < 0.95 ? 0.1 * p : 0.1 * (1 - p) * 19) } }' >"$work/trace.csv"
-  stickslip import "$work/trace.csv" --column mu --rate 500 --unit coefficient -o "$work/trace.h5"
+  stickslip import "$work/trace.csv" --column mu --rate "500 Hz" --unit coefficient -o "$work/trace.h5"
   stickslip analyze "$work/trace.h5"
 }
 

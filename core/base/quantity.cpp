@@ -123,6 +123,59 @@ std::span<const Unit> units_of(Dimension dimension) noexcept {
   return kDimensionlessUnits;
 }
 
+/// A dimension in words, and two of its units that people confuse.
+struct Words {
+  std::string_view name;
+  std::string_view one_unit;
+  std::string_view other_unit;
+};
+
+Words words_of(Dimension dimension) noexcept {
+  switch (dimension) {
+    case Dimension::kDimensionless:
+      return {"a ratio", "1", "%"};
+    case Dimension::kTime:
+      return {"a time", "s", "ms"};
+    case Dimension::kFrequency:
+      return {"a frequency", "Hz", "kHz"};
+    case Dimension::kAngularFrequency:
+      return {"an angular frequency", "rad/s", "deg/s"};
+    case Dimension::kPerTime:
+      return {"a rate", "1/s", "1/min"};
+    case Dimension::kLength:
+      return {"a length", "mm", "m"};
+    case Dimension::kArea:
+      return {"an area", "cm^2", "m^2"};
+    case Dimension::kSpeed:
+      return {"a speed", "mm/min", "m/s"};
+    case Dimension::kAcceleration:
+      return {"an acceleration", "mm/s^2", "m/s^2"};
+    case Dimension::kJerk:
+      return {"a jerk", "mm/s^3", "m/s^3"};
+    case Dimension::kMass:
+      return {"a mass", "g", "kg"};
+    case Dimension::kForce:
+      return {"a force", "N", "gf"};
+    case Dimension::kVoltage:
+      return {"a voltage", "V", "mV"};
+    case Dimension::kStiffness:
+      return {"a stiffness", "N/m", "N/mm"};
+    case Dimension::kForcePerVoltage:
+      return {"a force per voltage", "N/V", "kgf/V"};
+    case Dimension::kVoltagePerForce:
+      return {"a voltage per force", "V/N", "mV/N"};
+    case Dimension::kSpeedPerVoltage:
+      return {"a speed per voltage", "m/s/V", "mm/min/V"};
+    case Dimension::kLengthPerVoltage:
+      return {"a length per voltage", "m/V", "mm/V"};
+    case Dimension::kTimePerLength:
+      return {"a time per length", "s/m", "s/mm"};
+    case Dimension::kAngle:
+      return {"an angle", "rad", "deg"};
+  }
+  return {"a quantity", "1", "%"};
+}
+
 std::string allowed_units(Dimension dimension) {
   std::string list = dimension == Dimension::kDimensionless ? "no unit" : "";
   for (const Unit& unit : units_of(dimension)) {
@@ -192,7 +245,7 @@ Result<double> parse_quantity(std::string_view text, Dimension dimension) {
   const std::string symbol = plain_symbol(trimmed(number.rest));
   if (symbol.empty()) {
     if (dimension == Dimension::kDimensionless) return number.value;
-    return usage_error("\"{}\" has no unit; allowed: {}", text, allowed_units(dimension));
+    return usage_error("\"{}\": {}", text, unit_needed(trimmed(text), dimension));
   }
   for (const Unit& unit : units_of(dimension)) {
     if (unit.symbol != symbol) continue;
@@ -202,6 +255,36 @@ Result<double> parse_quantity(std::string_view text, Dimension dimension) {
   }
   return usage_error("\"{}\" has the unit \"{}\"; allowed: {}", text, one_line(symbol),
                      allowed_units(dimension));
+}
+
+Result<EnteredQuantity> enter_quantity(std::string_view text, Dimension dimension, BareNumber bare) {
+  const std::string_view number = trimmed(text);
+  const Result<double> value = parse_number(number);
+  const bool accepted = bare == BareNumber::kSi || bare == BareNumber::kSiWithWarning ||
+                        (bare == BareNumber::kOnlyZero && value && *value == 0.0);
+  if (!value || !accepted || dimension == Dimension::kDimensionless) {
+    const Result<double> parsed = parse_quantity(text, dimension);
+    if (!parsed) return tl::unexpected(parsed.error());
+    return EnteredQuantity{*parsed, {}};
+  }
+  if (bare != BareNumber::kSiWithWarning) return EnteredQuantity{*value, {}};
+  return EnteredQuantity{*value, fmt::format("\"{0}\": {1} needs its unit; it is read as \"{0} {2}\": write "
+                                             "that, as the next version refuses a number alone",
+                                             number, words_of(dimension).name, si_unit(dimension))};
+}
+
+std::string unit_needed(std::string_view number, Dimension dimension) {
+  const auto [name, one_unit, other_unit] = words_of(dimension);
+  return fmt::format("{0} needs its unit, such as \"{1} {2}\" or \"{1} {3}\"", name, number, one_unit,
+                     other_unit);
+}
+
+Dimension dimension_of_unit(std::string_view unit) noexcept {
+  for (int i = 0; i <= static_cast<int>(kLastDimension); ++i) {
+    const auto dimension = static_cast<Dimension>(i);
+    if (si_unit(dimension) == unit) return dimension;
+  }
+  return Dimension::kDimensionless;
 }
 
 std::string_view si_unit(Dimension dimension) noexcept { return units_of(dimension).front().symbol; }

@@ -3,7 +3,7 @@
 ///
 ///     parse_quantity("12 in/min", Dimension::kSpeed)   → 0.00508 (m/s)
 ///     parse_quantity("2331 g", Dimension::kMass)       → 2.331 (kg)
-///     parse_quantity("12", Dimension::kSpeed)          → error: "12" has no unit; allowed: m/s, …
+///     parse_quantity("12", Dimension::kSpeed)          → error: "12": a speed needs its unit, such as …
 ///
 /// Factors: 1 in = 0.0254 m and 1 lb = 0.45359237 kg exactly [International yard and pound
 /// agreement, 1959]; 1 kgf = 9.80665 N exactly [3rd CGPM, 1901]; the rest is SI [SI Brochure,
@@ -40,6 +40,7 @@ enum class Dimension {
   kTimePerLength,     ///< s/m
   kAngle,             ///< rad
 };
+inline constexpr Dimension kLastDimension = Dimension::kAngle;
 
 /// The whole text as one finite decimal number: no blanks, no plus sign, no hexadecimal, no
 /// inf or nan, no number outside the range of double.
@@ -50,6 +51,30 @@ enum class Dimension {
 /// \return the value, or an error that names the text and the allowed units, without a place: the caller
 /// prefixes file and key.
 [[nodiscard]] Result<double> parse_quantity(std::string_view text, Dimension dimension);
+
+/// What an entry (an option, a field of a request) does with a number that has no unit though its dimension
+/// has some. A dimensionless number needs none.
+enum class BareNumber {
+  kRefused,        ///< As in the configuration.
+  kOnlyZero,       ///< Refused but for 0, which is the same in all units.
+  kSiWithWarning,  ///< Read in the SI unit, as version 0.1 did; EnteredQuantity::warning says so.
+  kSi,             ///< Read in the SI unit, as the entry's help says.
+};
+
+struct EnteredQuantity {
+  double value = 0.0;   ///< In SI units.
+  std::string warning;  ///< For the user; empty: none.
+};
+
+/// parse_quantity(), with the rule for numbers without a unit. Errors: as there.
+[[nodiscard]] Result<EnteredQuantity> enter_quantity(std::string_view text, Dimension dimension,
+                                                     BareNumber bare);
+
+/// "a mass needs its unit, such as "500 g" or "500 kg"". \param number  as typed, without a unit.
+[[nodiscard]] std::string unit_needed(std::string_view number, Dimension dimension);
+
+/// The dimension whose SI unit that is; kDimensionless for "1" and for units of none.
+[[nodiscard]] Dimension dimension_of_unit(std::string_view si_unit) noexcept;
 
 /// Unit in which parse_quantity() returns; "1" if dimensionless.
 [[nodiscard]] std::string_view si_unit(Dimension dimension) noexcept;

@@ -26,8 +26,9 @@ std::string presentable(const toml::node& node) {
 
 /// parse_quantity() names the text first; the place has named it already.
 std::string_view without_value(std::string_view message, std::string_view text) {
-  message.remove_prefix(std::min(message.size(), text.size() + std::string_view{"\"\" "}.size()));
-  return message;
+  message.remove_prefix(std::min(message.size(), text.size() + std::string_view{"\"\""}.size()));
+  const std::size_t rest = message.find_first_not_of(": ");
+  return rest == std::string_view::npos ? std::string_view{} : message.substr(rest);
 }
 
 std::string allowed_range(const Limits& limits, Dimension dimension) {
@@ -196,8 +197,7 @@ std::optional<double> Settings::quantity_if_given(std::string_view key, Dimensio
   } else if (node->is_number()) {
     if (dimension != Dimension::kDimensionless) {
       document_->wrong(*node_, key, *node,
-                       fmt::format("{}: needs a unit; write it as a string such as \"{} {}\"", place,
-                                   presentable(*node), si_unit(dimension)));
+                       fmt::format("{}: {}", place, unit_needed(presentable(*node), dimension)));
       return std::nullopt;
     }
     value = node->value<double>().value_or(0.0);

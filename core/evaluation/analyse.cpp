@@ -80,6 +80,10 @@ base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& he
     RecordAnalysis analysis{std::move(calibration), std::move(speed), settings, std::move(gaps)};
     analysis.gain_uncertainty_ =
         pipeline::relative_gain_uncertainty(header.load_cell, header.calibration.gain_standard_error_N_per_V);
+    if (header.load_cell) {
+      analysis.gain_change_ =
+          daq::gain_change(header.load_cell->gain_N_per_V, header.calibration.replaced_gain_N_per_V);
+    }
     analysis.unloaded_level_ = header.plan.unloaded_level;
     analysis.sled_mass_kg_ = header.tester.tester().sled_mass_kg;
     return analysis;
@@ -114,7 +118,7 @@ void RecordAnalysis::finish(record::EndRecord& end, std::span<const daq::ClockAn
   pipeline::add_true_rate(end.results, anchors, gaps, scan_rate_granted_Hz_);
   pipeline::add_gain_uncertainty(end.results, gain_uncertainty_);
   pipeline::add_zero_offset(end.results, unloaded_level_, end.unloaded_level);
-  pipeline::add_plausibility(end.results, sled_mass_kg_);
+  pipeline::add_plausibility(end.results, sled_mass_kg_, gain_change_);
   end.cycles = analysis_.take_cycles();
   end.spikes = analysis_.spikes();
 }

@@ -9,6 +9,7 @@
 #include "core/analysis/test_analysis.hpp"
 #include "core/base/result.hpp"
 #include "core/daq/calibration.hpp"
+#include "core/daq/gain_change.hpp"
 #include "core/record/record.hpp"
 
 namespace stickslip::evaluation {
@@ -55,6 +56,7 @@ class RecordAnalysis {
   std::optional<double> gain_uncertainty_;  ///< Relative.
   std::optional<double> unloaded_level_;    ///< As a coefficient.
   double sled_mass_kg_ = 0.0;
+  std::optional<daq::GainChange> gain_change_;
   analysis::TestAnalysis analysis_;
   std::vector<daq::Gap> gaps_;
   std::optional<daq::ScanIndex> next_;

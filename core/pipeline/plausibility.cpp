@@ -7,7 +7,14 @@
 
 namespace stickslip::pipeline {
 
-void add_plausibility(analysis::TestResults& results, double sled_mass_kg) {
+std::string sled_finding(double sled_mass_kg) {
+  if (sled_mass_kg >= kLightestSled_kg && sled_mass_kg <= kHeaviestSled_kg) return {};
+  return fmt::format("the sled mass is {:.4g} kg, outside {} … {} kg: check its unit", sled_mass_kg,
+                     kLightestSled_kg, kHeaviestSled_kg);
+}
+
+void add_plausibility(analysis::TestResults& results, double sled_mass_kg,
+                      const std::optional<daq::GainChange>& gain_change) {
   for (const auto& [name, estimate] :
        {std::pair{std::string_view{"static"}, &results.static_coefficient},
         std::pair{std::string_view{"kinetic"}, &results.kinetic_coefficient}}) {
@@ -19,10 +26,9 @@ void add_plausibility(analysis::TestResults& results, double sled_mass_kg) {
                     "cell gain and sled mass",
                     name, *estimate->value, kLowestCoefficient, kHighestCoefficient));
   }
-  if (sled_mass_kg < kLightestSled_kg || sled_mass_kg > kHeaviestSled_kg) {
-    results.findings.push_back(fmt::format("the sled mass is {:.4g} kg, outside {} … {} kg: check its unit",
-                                           sled_mass_kg, kLightestSled_kg, kHeaviestSled_kg));
-  }
+  if (std::string finding = sled_finding(sled_mass_kg); !finding.empty())
+    results.findings.push_back(std::move(finding));
+  if (gain_change) results.findings.push_back(daq::to_text(*gain_change));
 }
 
 }  // namespace stickslip::pipeline

@@ -242,7 +242,7 @@ void Processor::end(daq::ScanIndex end, EndCause cause) {
   add_gain_uncertainty(ended.results, settings_.gain_uncertainty);
   if (cause == EndCause::kUnloaded) ended.unloaded_level = segmenter_.level_after();
   add_zero_offset(ended.results, unloaded_level_, ended.unloaded_level);
-  add_plausibility(ended.results, settings_.analysis.tester.sled_mass_kg);
+  add_plausibility(ended.results, settings_.analysis.tester.sled_mass_kg, settings_.gain_change);
   ended.cycles = analysis_->cycles();
   ended.spikes = analysis_->spikes();
   ended.spike_coefficients = analysis_->spike_coefficients();

@@ -24,6 +24,7 @@
 #include "core/analysis/test_analysis.hpp"
 #include "core/daq/calibration.hpp"
 #include "core/daq/clock_watch.hpp"
+#include "core/daq/gain_change.hpp"
 #include "core/daq/gap.hpp"
 #include "core/daq/rate_meter.hpp"
 #include "core/daq/recorded_facts.hpp"
@@ -52,6 +53,8 @@ struct ProcessorSettings {
   bool clock_is_real = true;
   /// Of the load cell's gain, relative to it: what every coefficient shares; absent where not known.
   std::optional<double> gain_uncertainty;
+  /// The calibration changed the gain so much that it had to be confirmed; a finding of each test.
+  std::optional<daq::GainChange> gain_change;
 };
 
 /// Thread-bound: the processing thread.
@@ -83,9 +86,11 @@ class Processor {
   /// What the load cell shows now is its zero from here on.
   [[nodiscard]] TareReport tare(const std::string& who);
   /// Readings mean this from here on. Only on an idle bench, whose next test begins after all of this.
-  /// \param calibration  of the same board. \param gain_uncertainty  as in the settings.
+  /// \param calibration  of the same board. \param gain_uncertainty,gain_change  as in the settings.
   [[nodiscard]] CommandReport recalibrate(daq::Calibration calibration,
-                                          std::optional<double> gain_uncertainty, const std::string& who);
+                                          std::optional<double> gain_uncertainty,
+                                          const std::optional<daq::GainChange>& gain_change,
+                                          const std::string& who);
   /// Of the tests that begin from here on.
   void plan_pull_speed(std::optional<double> speed_m_per_s) {
     settings_.analysis.tester.pull_speed_m_per_s = speed_m_per_s;

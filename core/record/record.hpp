@@ -68,6 +68,8 @@ struct CalibrationFacts {
   std::optional<double> residual_V;    ///< Standard deviation of the weights' readings about the line.
   std::optional<double> hysteresis_V;  ///< As daq::LoadCellFit.
   std::string expires;                 ///< ISO 8601; date of expiry.
+  /// Gain in use before, if this one differs from it so much that it had to be confirmed (daq::GainChange).
+  std::optional<double> replaced_gain_N_per_V;
   // One element for each weight, in the order of hanging; all empty if unknown.
   std::vector<double> mass_kg;
   std::vector<double> force_N;

@@ -90,6 +90,7 @@ App::App(io::DaemonConfig config, AppWorld world)
       calibrations_(
           {.config = config_,
            .storage = storage_,
+           .events = *world_.events,
            .session = [this] { return session_.get(); },
            .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
            .date_ns = [this] { return wall_->realtime_ns(); },
@@ -251,6 +252,7 @@ base::Result<void> App::open_session() {
     return started;
   }
   calibrations_.session_began(settings);
+  sled_mass_kg_ = settings.processor.analysis.tester.sled_mass_kg;
   watcher_.use(truth_.get(), settings.processor.analysis.skipped.first_slip);
   live_.feed().use(settings.processor.analysis.scan_rate_Hz, config_.clock_speed);
   storage_.use(runtime::record_header(config_, settings, session_->board_info(), realtime_facts()),

@@ -158,6 +158,7 @@ class App {
   std::int64_t issued_before_ = 0;  ///< Scan indices issued in earlier sessions.
   runtime::SessionClocks clocks_;   ///< Timing of the latest session.
   std::optional<std::int64_t> current_test_;
+  std::optional<double> sled_mass_kg_;  ///< Of the latest session.
 };
 
 }  // namespace stickslip::app

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "core/base/version.hpp"
+#include "core/pipeline/plausibility.hpp"
 #include "daemon/app/app.hpp"
 
 namespace stickslip::app {
@@ -140,6 +141,7 @@ daemon::Status App::status() const {
   const daemon::CalibrationView calibration = calibrations_.view();
   status.calibration = {calibration.facts.date, calibration.facts.expires, calibration.expired,
                         calibration.session ? calibration.session->who : std::string{}};
+  if (sled_mass_kg_) status.sled_finding = pipeline::sled_finding(*sled_mass_kg_);
   status.page = page_;
   if (fleet_) status.fleet = fleet_->state();
   status.live_client_count = static_cast<std::int64_t>(live_.hub().client_count());

@@ -22,6 +22,14 @@ class Log final : public daemon::EventReceiver {
     if (board.notes.empty()) return;
     tell({.event = "board-notes", .message = fmt::format("board {}: {}", board.device, board.notes)});
   }
+  void load_cell_calibrated(const std::filesystem::path& file, double gain_N_per_V, std::string_view who,
+                            const std::optional<daq::GainChange>& confirmed) override {
+    tell({.level = confirmed ? io::LogLevel::kWarning : io::LogLevel::kInfo,
+          .event = "load-cell-calibrated",
+          .message = fmt::format("load cell calibrated by {}: {:.8g} N/V, kept in {}{}", who, gain_N_per_V,
+                                 base::printable(file.string()),
+                                 confirmed ? "; confirmed: " + daq::to_text(*confirmed) : std::string{})});
+  }
   void calibration_expired(std::string_view expires) override {
     tell({.level = io::LogLevel::kWarning,
           .event = "calibration-expired",

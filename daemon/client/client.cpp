@@ -44,10 +44,13 @@ base::Result<daemon::HttpReply> request(const std::filesystem::path& socket,
   });
   io.run();
   if (error) return base::failure("{}: no whole answer: {}", socket.string(), error.message());
-  return daemon::HttpReply{static_cast<int>(response.result_int()), response.body(),
+  return daemon::HttpReply{static_cast<int>(response.result_int()),
+                           response.body(),
                            std::string{response[http::field::allow]},
                            std::string{response[http::field::content_type]},
-                           response.find("Idempotency-Replayed") != response.end()};
+                           response.find("Idempotency-Replayed") != response.end(),
+                           {},
+                           std::string{response["Stickslip-Warning"]}};
 }
 
 }  // namespace stickslip::client

@@ -211,6 +211,16 @@ class Api {
 
   // Commands.
 
+  /// The answer with the warnings of its request.
+  [[nodiscard]] static daemon::HttpAnswer warned(daemon::HttpAnswer answer,
+                                                 const daemon::Warnings& warnings) {
+    if (warnings.empty()) return answer;
+    return [answer = std::move(answer), text = daemon::text_of(warnings)](daemon::HttpReply reply) {
+      reply.warning = text;
+      answer(std::move(reply));
+    };
+  }
+
   void take_control(const daemon::HttpRequest& request, const std::string&,
                     const daemon::HttpAnswer& answer) {
     const auto body = object_of(request.body, {"seconds"});
@@ -232,7 +242,8 @@ class Api {
   void set_plan(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
     const auto body = object_of(request.body, {});
     if (!body) return answer(daemon::refusal(400, body.error().message));
-    base::Result<daemon::Plan> plan = daemon::plan_of(*body);
+    daemon::Warnings warnings;
+    base::Result<daemon::Plan> plan = daemon::plan_of(*body, &warnings);
     if (!plan) return answer(daemon::refusal(400, plan.error().message));
     if (const auto progress = batches_.progress(); progress && progress->next) {
       return answer(
@@ -241,7 +252,7 @@ class Api {
     }
     if (!take(request, Lease::kCommand_s, answer)) return;
     bench_.set_plan(*std::move(plan));
-    answer(daemon::reply_of(daemon::plan_json(bench_.plan())));
+    warned(answer, warnings)(daemon::reply_of(daemon::plan_json(bench_.plan())));
   }
 
   void batch(const daemon::HttpRequest&, const std::string&, const daemon::HttpAnswer& answer) {
@@ -251,10 +262,12 @@ class Api {
   void begin_batch(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
     const auto body = object_of(request.body, {});
     if (!body) return answer(daemon::refusal(400, body.error().message));
-    base::Result<daemon::BatchPlan> plan = daemon::batch_plan_of(*body);
+    daemon::Warnings warnings;
+    base::Result<daemon::BatchPlan> plan = daemon::batch_plan_of(*body, &warnings);
     if (!plan) return answer(daemon::refusal(400, plan.error().message));
     if (!take(request, Lease::kCommand_s, answer)) return;
-    batches_.begin(*std::move(plan), request.controller, reply_with_batch(batches_, answer));
+    batches_.begin(*std::move(plan), request.controller,
+                   reply_with_batch(batches_, warned(answer, warnings)));
   }
 
   void end_batch(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
@@ -361,14 +374,22 @@ class Api {
     answer(daemon::reply_of(daemon::calibration_json(bench_.calibrator().view())));
   }
   void calibrate(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
-    const base::Result<CalibrationStep> step = calibration_step(request);
+    daemon::Warnings warnings;
+    const base::Result<CalibrationStep> step = calibration_step(request, warnings);
     if (!step) return answer(daemon::refusal(400, step.error().message));
     if (!take(request, Lease::kCalibration_s, answer)) return;
     daemon::Calibrator& calibrator = bench_.calibrator();
-    (*step)(calibrator, [&calibrator, answer](const std::string& why_not) {
-      answer(why_not.empty() ? daemon::reply_of(daemon::calibration_json(calibrator.view()))
-                             : daemon::refusal(409, why_not));
-    });
+    (*step)(calibrator,
+            [&calibrator, answer = warned(answer, warnings)](const daemon::CalibrationRefusal& refusal) {
+              if (refusal.why.empty())
+                return answer(daemon::reply_of(daemon::calibration_json(calibrator.view())));
+              Json json{{"error", refusal.why}};
+              if (refusal.gain_change) {
+                json["code"] = daq::kGainChangeCode;
+                json["gain_change"] = daemon::gain_change_json(refusal.gain_change);
+              }
+              answer({409, io::json_text(json), {}});
+            });
   }
 
   daemon::Bench& bench_;

@@ -13,10 +13,10 @@ namespace {
 
 using Answer = daemon::Calibrator::Answer;
 
-base::Result<CalibrationStep> begin(const daemon::HttpRequest& request) {
-  const auto body = object_of(request.body, {"settle", "reading"});
+base::Result<CalibrationStep> begin(const daemon::HttpRequest& request, daemon::Warnings& warnings) {
+  const auto body = object_of(request.body, {"settle", "reading", "settle_s", "reading_s"});
   if (!body) return tl::unexpected(body.error());
-  const auto times = daemon::weighing_times_of(*body);
+  const auto times = daemon::weighing_times_of(*body, &warnings);
   if (!times) return tl::unexpected(times.error());
   return [who = request.controller, times = *times](daemon::Calibrator& calibrator, Answer answer) {
     calibrator.begin(who, times, std::move(answer));
@@ -24,7 +24,7 @@ base::Result<CalibrationStep> begin(const daemon::HttpRequest& request) {
 }
 
 base::Result<CalibrationStep> weigh(const daemon::HttpRequest& request) {
-  const auto body = object_of(request.body, {"mass"});
+  const auto body = object_of(request.body, {"mass", "mass_kg"});
   if (!body) return tl::unexpected(body.error());
   const auto mass_kg = daemon::mass_of(*body);
   if (!mass_kg) return tl::unexpected(mass_kg.error());
@@ -34,7 +34,7 @@ base::Result<CalibrationStep> weigh(const daemon::HttpRequest& request) {
 }
 
 base::Result<CalibrationStep> finish(const daemon::HttpRequest& request) {
-  const auto body = object_of(request.body, {"certificate", "valid_days"});
+  const auto body = object_of(request.body, {"certificate", "valid_days", "confirm"});
   if (!body) return tl::unexpected(body.error());
   const auto paper = daemon::paper_of(*body);
   if (!paper) return tl::unexpected(paper.error());
@@ -45,7 +45,8 @@ base::Result<CalibrationStep> finish(const daemon::HttpRequest& request) {
 
 }  // namespace
 
-base::Result<CalibrationStep> calibration_step(const daemon::HttpRequest& request) {
+base::Result<CalibrationStep> calibration_step(const daemon::HttpRequest& request,
+                                               daemon::Warnings& warnings) {
   const std::string path = request.target.substr(0, request.target.find('?'));
   if (path.ends_with("/weight")) return weigh(request);
   if (path.ends_with("/finish")) return finish(request);
@@ -53,7 +54,7 @@ base::Result<CalibrationStep> calibration_step(const daemon::HttpRequest& reques
     return [](daemon::Calibrator& calibrator, const Answer& answer) { answer(calibrator.undo()); };
   if (request.method == "DELETE")
     return [](daemon::Calibrator& calibrator, const Answer& answer) { answer(calibrator.give_up()); };
-  return begin(request);
+  return begin(request, warnings);
 }
 
 }  // namespace stickslip::control

@@ -216,6 +216,7 @@ class Connection : public Newcomer, public std::enable_shared_from_this<Connecti
     response_.set("Referrer-Policy", "no-referrer");
     if (!reply.allow.empty()) response_.set(http::field::allow, reply.allow);
     if (reply.status == 401) response_.set(http::field::www_authenticate, "Bearer");
+    if (!reply.warning.empty()) response_.set("Stickslip-Warning", reply.warning);
     if (reply.replayed) response_.set("Idempotency-Replayed", "true");
     response_.body() = reply.body;
     response_.prepare_payload();

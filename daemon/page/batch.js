@@ -4,6 +4,7 @@
 const Batch = (() => {
   const part = id => document.getElementById(id);
   const plan = part("batch-begin");
+  const kWithUnit = "oscillation_frequency";  // The one result of the table that has a dimension.
   let ask = null, say = null, changed = null;
   let told = null;    // What the health said of the batch, as text.
   let done = 0;       // Tests of the batch that count.
@@ -77,8 +78,8 @@ const Batch = (() => {
     legend.textContent = label;
     box.append(legend, ...["lowest", "highest"].map(side => {
       const said = document.createElement("label"), field = document.createElement("input");
-      said.textContent = side;
-      field.type = "number";
+      said.textContent = name === kWithUnit ? `${side}, with unit` : side;
+      if (name === kWithUnit) field.placeholder = "1 Hz"; else field.type = "number";
       field.step = "any";
       field.name = `${name}.${side}`;
       said.append(field);
@@ -94,7 +95,7 @@ const Batch = (() => {
       const text = field.value.trim(), [quantity, side] = field.name.split(".");
       if (text === "") continue;
       if (side) {
-        ((values.limits ??= {})[quantity] ??= {})[side] = Number(text);
+        ((values.limits ??= {})[quantity] ??= {})[side] = quantity === kWithUnit ? text : Number(text);
         continue;
       }
       values[field.name] = field.type === "number" ? Number(text) : field.name === "pull_speeds" ? text.split(",").map(speed => speed.trim()).filter(speed => speed !== "") : text;
@@ -105,6 +106,7 @@ const Batch = (() => {
   part("batch-close").addEventListener("click", () => part("batch-dialog").close());
   plan.addEventListener("submit", async event => {
     event.preventDefault();
+    if (!await Tables.sledMeant("Begin the batch")) return;
     try {
       const {batch} = await ask("POST", "/v1/batch", asked());
       show(batch);

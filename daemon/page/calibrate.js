@@ -54,11 +54,7 @@ const Calibrate = (() => {
   function answer(weighing) {
     const parts = [["gain", plusMinus(weighing.gain, 8, weighing.gain_standard_error, "N/V")], ["zero", plusMinus(weighing.zero, 6, weighing.zero_standard_error, "V")],
       ["off the line", withUnit(precise(1000 * weighing.residual, 3), "mV")], ["hysteresis", withUnit(precise(1000 * weighing.hysteresis, 3), "mV")]];
-    return parts.flatMap(([name, value]) => {
-      const dt = document.createElement("dt"), dd = document.createElement("dd");
-      dt.textContent = name; dd.textContent = value;
-      return [dt, dd];
-    });
+    return Tables.terms(parts);
   }
 
   function render() {
@@ -103,12 +99,21 @@ const Calibrate = (() => {
     if (!dialog.open || doing != null) return;
     try { take(await ask("GET", "/v1/calibration")); } catch (error) { say(error.message); }
   }
-  /// A bare number is kg; else text with a unit, which the daemon reads.
-  const number = text => (text.trim() !== "" && Number.isFinite(Number(text)) ? Number(text) : text);
+  const kUnits_kg = {kg: 1, g: 1e-3, mg: 1e-6, lb: 0.45359237};
+  /// What the daemon will read, before it is sent; that decides.
+  function understood() {
+    const text = part("mass").value.trim(), [, number, unit] = /^(-?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(.*)$/.exec(text) ?? [];
+    const kg = Number(number) * (Number(number) === 0 && unit === "" ? 1 : kUnits_kg[unit] ?? NaN);
+    // The gravity of this tester, by a weight that was read before.
+    const known = told?.weighing?.points.find(point => point.mass > 0), g = known ? known.force / known.mass : 9.80665;
+    part("understood").textContent = text === "" ? "" : Number.isFinite(kg) ? `${text} = ${kg.toFixed(4)} kg = ${(kg * g).toPrecision(4)} N` :
+      number != null && unit === "" ? `${text}: a mass needs its unit, such as "${number} g" or "${number} kg"` : `${text}: write a number and kg, g, mg or lb`;
+  }
+  part("mass").addEventListener("input", understood);
 
   part("begin").addEventListener("submit", event => {
     event.preventDefault();
-    act("Beginning …", "POST", "", {settle: number(part("settle").value), reading: number(part("reading").value)}, () => part("read").focus());
+    act("Beginning …", "POST", "", {settle: part("settle").value, reading: part("reading").value}, () => part("read").focus());
   });
   part("disarm").addEventListener("click", async () => {
     try { bench = (await ask("POST", "/v1/stop", {})).bench; say("the bench is idle; arm it again after the calibration", true); } catch (error) { say(error.message); }
@@ -117,19 +122,23 @@ const Calibrate = (() => {
   });
   part("weigh").addEventListener("submit", event => {
     event.preventDefault();
-    const tare = told.weighing.points.length === 0, mass = tare ? 0 : number(part("mass").value);
+    const tare = told.weighing.points.length === 0, mass = tare ? 0 : part("mass").value;
     act(readingOf(mass, tare), "POST", "/weight", {mass}, json => {
       const last = json.weighing.points[json.weighing.points.length - 1];
       say(last.refused === "" ? `${last.mass} kg reads ${precise(last.voltage, 8)} V` : `does not count: ${last.refused}`, last.refused === "");
       part("mass").value = "";
+      understood();
       part("mass").focus();
     });
   });
   part("undo").addEventListener("click", () => act("Forgetting the latest …", "POST", "/undo", undefined, () => (part("mass-field").hidden ? part("read") : part("mass")).focus()));
   part("give-up").addEventListener("click", () => act("Giving up …", "DELETE", "", undefined, () => { say("given up; nothing was kept", true); part("start").focus(); }));
-  part("save").addEventListener("submit", event => {
+  part("save").addEventListener("submit", async event => {
     event.preventDefault();
-    act("Saving …", "POST", "/finish", {certificate: part("certificate").value, valid_days: Number(part("days").value)}, json => {
+    const change = told.weighing.gain_change;
+    if (change != null && !await Tables.confirm("The gain has changed", `Look: ${change.text}.`, [["gain in use", `${precise(change.gain_in_use, 8)} N/V`],
+      ["gain by these weights", `${precise(change.gain, 8)} N/V`], ["ratio", precise(change.ratio, 4)]], "Save the new gain")) return;
+    act("Saving …", "POST", "/finish", {certificate: part("certificate").value, valid_days: Number(part("days").value), confirm: change != null}, json => {
       say(`kept in ${json.file} and in use from here on; turn the cell back, tare, and arm the bench`, true);
       part("close").focus();
     });

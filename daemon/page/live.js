@@ -70,7 +70,10 @@
       await refresh();
     });
   }
-  for (const button of document.querySelectorAll("[data-command]")) button.addEventListener("click", () => command(button.dataset.command));
+  for (const button of document.querySelectorAll("[data-command]")) button.addEventListener("click", async () => {
+    const verb = button.dataset.command;
+    if (verb === "stop" || await Tables.sledMeant(button.textContent)) command(verb);
+  });
   document.getElementById("mark").addEventListener("submit", event => {
     event.preventDefault();
     const field = document.getElementById("mark-text");

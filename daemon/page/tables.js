@@ -8,6 +8,12 @@ const Tables = (() => {
   const cell = (text, kind) => { const td = document.createElement(kind === "th" ? "th" : "td"); td.textContent = text; if (kind && kind !== "th") td.className = kind; return td; };
   const row = cells => { const tr = document.createElement("tr"); tr.append(...cells); return tr; };
 
+  const terms = facts => facts.flatMap(([name, value]) => {
+    const dt = document.createElement("dt"), dd = document.createElement("dd");
+    dt.textContent = name; dd.textContent = value;
+    return [dt, dd];
+  });
+
   const speed = value => `${Number((value * 1000).toPrecision(6))} mm/s`;
 
   // A word, a shape and a colour: any one of them tells.
@@ -96,6 +102,7 @@ const Tables = (() => {
     if (["board missing", "board busy", "no permission"].includes(status.state)) found.push(status.detail);
     if (status.bench_trouble != null) found.push(`bench ${status.bench}: ${status.bench_trouble}`);
     if (status.storage.why != null) found.push(`storage ${status.storage.state}: ${status.storage.why}; ${status.storage.to_do}`);
+    if (status.sled_finding != null) found.push(status.sled_finding);
     if (status.calibration.expired) found.push(`the calibration of the load cell expired on ${day(status.calibration.expires)}: calibrate`);
     return found.join(" · ");
   }
@@ -117,16 +124,30 @@ const Tables = (() => {
       ["worst read", `${(1000 * latency.largest).toFixed(2)} ms`], ["worst commit", `${(1000 * status.commit_time.largest).toFixed(1)} ms`],
       ["ring", status.ring ? `${(100 * status.ring.high_water_block_count / status.ring.capacity_block_count).toFixed(1)} % at most` : "–"], ["tests", String(status.test_count)],
       ["readers", `${status.live_clients.count}, ${status.live_clients.dropped_frame_count} dropped`]];
-    document.getElementById("health").replaceChildren(...facts.flatMap(([name, value]) => {
-      const dt = document.createElement("dt"), dd = document.createElement("dd");
-      dt.textContent = name; dd.textContent = value;
-      return [dt, dd];
-    }));
+    document.getElementById("health").replaceChildren(...terms(facts));
+    sled = status.sled_finding;
   }
 
   function cycle(frame) {
     document.getElementById("cycle").textContent = `cycle ${frame.number}: peak ${fixed(frame.peak, 4)}, S − K ${fixed(frame.delta_mu, 4)}`;
   }
 
-  return {cell, row, speed, bench, regime, trouble, tests, lacks: () => lacking, health, cycle, columns};
+  /// Asks before something is done that is rarely meant. \param facts  [name, value] each. \return true: do it.
+  function confirm(title, text, facts, yes) {
+    const part = id => document.getElementById(`confirm-${id}`), box = part("dialog");
+    part("title").textContent = title;
+    part("text").textContent = text;
+    part("yes").textContent = yes;
+    part("facts").replaceChildren(...terms(facts));
+    box.returnValue = "";
+    box.showModal();
+    part("no").focus();
+    return new Promise(done => box.addEventListener("close", () => done(box.returnValue === "yes"), {once: true}));
+  }
+  for (const answer of ["no", "yes"]) document.getElementById(`confirm-${answer}`).addEventListener("click", () => document.getElementById("confirm-dialog").close(answer));
+  let sled = null;
+  /// Asks where the sled of the bench is outside what a tester has.
+  const sledMeant = async doing => sled == null || confirm("Is this the sled?", `${sled}. Every coefficient is divided by its weight. Correct sled_mass under [tester] in the configuration, or go on.`, [], doing);
+
+  return {confirm, sledMeant, terms, cell, row, speed, bench, regime, trouble, tests, lacks: () => lacking, health, cycle, columns};
 })();

@@ -86,6 +86,12 @@ daq::WeighedCalibration CalibrationService::weighed() const {
   return daq::weigh(open_->readings, gravity_m_per_s2_, span_V);
 }
 
+std::optional<daq::GainChange> CalibrationService::change_of(const daq::WeighedCalibration& result) const {
+  if (!result.fit.load_cell) return std::nullopt;
+  return daq::gain_change(result.fit.load_cell->gain_N_per_V,
+                          parts_.config.bench.load_cell(session_load_cell_).gain_N_per_V);
+}
+
 daemon::CalibrationView CalibrationService::view() const {
   daemon::CalibrationView view;
   const io::BenchConfig& bench = parts_.config.bench;
@@ -94,7 +100,10 @@ daemon::CalibrationView CalibrationService::view() const {
   view.expired = io::expired(view.facts, record::iso_time(parts_.now_ns()));
   view.folder = bench.calibration_folder.string();
   view.file = file_.string();
-  if (open_ && open_->granted) view.session = {open_->who, open_->times, open_->being_read_kg, weighed()};
+  if (open_ && open_->granted) {
+    view.session = {open_->who, open_->times, open_->being_read_kg, weighed(), {}};
+    view.session->gain_change = change_of(view.session->weighed);
+  }
   return view;
 }
 
@@ -193,8 +202,17 @@ void CalibrationService::finish(const std::string& who, const io::CalibrationPap
   if (std::string why_not = not_ready(); !why_not.empty()) return answer(std::move(why_not));
   const daq::WeighedCalibration result = weighed();
   if (!result.fit.load_cell) return answer("not yet: " + result.fit.reason);
-  const auto kept = io::keep_result(result, paper, parts_.config.bench.calibration_folder, parts_.date_ns());
+  const std::optional<daq::GainChange> change = change_of(result);
+  if (change && !paper.confirms_gain) {
+    daemon::CalibrationRefusal refusal{
+        daq::to_text(*change) + "; nothing was kept; if the change is meant, finish with \"confirm\": true"};
+    refusal.gain_change = change;
+    return answer(std::move(refusal));
+  }
+  const auto kept =
+      io::keep_result(result, paper, parts_.config.bench.calibration_folder, parts_.date_ns(), change);
   if (!kept) return answer(kept.error().message);
+  parts_.events.load_cell_calibrated(kept->file, result.fit.load_cell->gain_N_per_V, who, change);
   file_ = kept->file;
   open_.reset();
   lost_why_.clear();
@@ -213,9 +231,10 @@ void CalibrationService::use(const record::CalibrationFacts& facts, const daq::L
   const bool posted = session != nullptr && session->post([this, session, facts, cell, who,
                                                            answer](pipeline::Processor& processor) {
     const double load_N = processor.calibration().normal_load_N();
-    const auto report = processor.recalibrate(
-        {session->board_info(), cell, load_N},
-        pipeline::relative_gain_uncertainty(cell, facts.gain_standard_error_N_per_V), who);
+    const auto report =
+        processor.recalibrate({session->board_info(), cell, load_N},
+                              pipeline::relative_gain_uncertainty(cell, facts.gain_standard_error_N_per_V),
+                              daq::gain_change(cell.gain_N_per_V, facts.replaced_gain_N_per_V), who);
     if (report.refusal.empty()) {
       parts_.storage.amend([&](record::RecordHeader& header) {
         header.load_cell = cell;

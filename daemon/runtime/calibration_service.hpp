@@ -15,6 +15,7 @@
 #include "daemon/runtime/session.hpp"
 #include "daemon/storage/storage.hpp"
 #include "daemon/types/calibrator.hpp"
+#include "daemon/types/event_receiver.hpp"
 
 namespace stickslip::runtime {
 
@@ -24,6 +25,7 @@ class CalibrationService final : public daemon::Calibrator {
   struct Parts {
     io::DaemonConfig& config;  ///< Holds the calibration in use; the next session begins with it.
     storage::Storage& storage;
+    daemon::EventReceiver& events;
     std::function<Session*()> session;                   ///< Returns null while there is no session.
     std::function<void(std::function<void()>)> on_main;  ///< Runs a function on the main thread. Any thread.
     /// Date of a new calibration: wall time, ns since 1970.
@@ -70,6 +72,8 @@ class CalibrationService final : public daemon::Calibrator {
   };
 
   [[nodiscard]] daq::WeighedCalibration weighed() const;
+  /// Of that fit against the gain in use.
+  [[nodiscard]] std::optional<daq::GainChange> change_of(const daq::WeighedCalibration& result) const;
   /// Why no step of a calibration can be taken now; empty: one can.
   [[nodiscard]] std::string not_ready() const;
   void was_read(const Reading& reading, const Answer& answer);

@@ -52,6 +52,8 @@ base::Result<SessionSettings> session_settings(const io::DaemonConfig& config,
   }
   settings.processor.gain_uncertainty = pipeline::relative_gain_uncertainty(
       settings.load_cell, settings.calibration.gain_standard_error_N_per_V);
+  settings.processor.gain_change =
+      daq::gain_change(settings.load_cell.gain_N_per_V, settings.calibration.replaced_gain_N_per_V);
   settings.processor.automatic = config.begins_by_force;
   settings.processor.clock_is_real = config.clock_speed == 1.0;
   // A bench that runs faster than the wall must not lose what this machine cannot follow.

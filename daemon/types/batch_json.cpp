@@ -37,11 +37,12 @@ base::Result<model::Method> method_of(const std::string& text) {
   return read->method;
 }
 
-bool is_result(std::string_view name) {
-  bool found = false;
+/// Dimension of a result; nullopt: there is no such result.
+std::optional<base::Dimension> dimension_of(std::string_view name) {
+  std::optional<base::Dimension> found;
   const analysis::TestResults any;
   analysis::for_each_result(any, [&](const analysis::ResultName& own, const analysis::Estimate&) {
-    found = found || own.name == name;
+    if (own.name == name) found = base::dimension_of_unit(own.unit);
   });
   return found;
 }
@@ -52,29 +53,36 @@ base::Result<std::int64_t> count_of(const char* key, const Json& value) {
   return value.get<std::int64_t>();
 }
 
-base::Result<std::vector<double>> speeds_of(const Json& value) {
+/// \param key  kSpeeds, or that with the unit, whose numbers need none.
+base::Result<std::vector<double>> speeds_of(const std::string& key, const Json& value, Warnings* warnings) {
+  const bool with_unit = key != kSpeeds;
   if (!value.is_array() || value.size() > kMostSpeeds) {
-    return base::usage_error("{}: must be a list of at most {} speeds, such as [\"12 in/min\"]", kSpeeds,
-                             kMostSpeeds);
+    return base::usage_error("{}: must be a list of at most {} speeds, such as [{}]", key, kMostSpeeds,
+                             with_unit ? "0.00508" : "\"12 in/min\"");
   }
   std::vector<double> speeds;
   for (const Json& one : value) {
-    const base::Result<double> speed = pull_speed_of(kSpeeds, one);
+    if (with_unit && !one.is_number()) return base::usage_error("{}: must be numbers", key);
+    const base::Result<double> speed =
+        quantity_of(key, one, base::Dimension::kSpeed,
+                    with_unit ? base::BareNumber::kSi : base::BareNumber::kSiWithWarning, warnings);
     if (!speed) return tl::unexpected(speed.error());
+    if (const auto checked = check_pull_speed(key, *speed); !checked) return tl::unexpected(checked.error());
     if (std::find(speeds.begin(), speeds.end(), *speed) != speeds.end())
-      return base::usage_error("{}: {} m/s stands there twice; replicates say how often", kSpeeds, *speed);
+      return base::usage_error("{}: {} m/s stands there twice; replicates say how often", key, *speed);
     speeds.push_back(*speed);
   }
   return speeds;
 }
 
-base::Result<std::map<std::string, ResultLimits>> limits_of(const Json& value) {
+base::Result<std::map<std::string, ResultLimits>> limits_of(const Json& value, Warnings* warnings) {
   if (!value.is_object())
     return base::usage_error("{}: must be an object such as {{\"mu_k\": {{\"highest\": 0.4}}}}", kLimits);
   std::map<std::string, ResultLimits> all;
   for (const auto& [name, pair] : value.items()) {
     const std::string shown = base::one_line(name, 60);
-    if (!is_result(name)) return base::usage_error("{}: there is no result called \"{}\"", kLimits, shown);
+    const auto dimension = dimension_of(name);
+    if (!dimension) return base::usage_error("{}: there is no result called \"{}\"", kLimits, shown);
     if (!pair.is_object()) return base::usage_error("{}: {} must have lowest or highest", kLimits, shown);
     ResultLimits limits;
     for (const auto& [side, number] : pair.items()) {
@@ -82,8 +90,12 @@ base::Result<std::map<std::string, ResultLimits>> limits_of(const Json& value) {
         return base::usage_error("{}: {} has lowest and highest, no \"{}\"", kLimits, shown,
                                  base::one_line(side, 60));
       if (number.is_null()) continue;
-      if (!number.is_number()) return base::usage_error("{}: {}, {} must be a number", kLimits, shown, side);
-      (side == "lowest" ? limits.lowest : limits.highest) = number.get<double>();
+      if (*dimension == base::Dimension::kDimensionless && !number.is_number())
+        return base::usage_error("{}: {}, {} must be a number", kLimits, shown, side);
+      const auto limit = quantity_of(fmt::format("{}: {}, {}", kLimits, shown, side), number, *dimension,
+                                     base::BareNumber::kSiWithWarning, warnings);
+      if (!limit) return tl::unexpected(limit.error());
+      (side == "lowest" ? limits.lowest : limits.highest) = *limit;
     }
     if (limits.lowest && limits.highest && *limits.lowest > *limits.highest) {
       return base::usage_error("{}: {}, lowest {} is above highest {}", kLimits, shown, *limits.lowest,
@@ -119,7 +131,7 @@ Json batch_plan_json(const BatchPlan& plan) {
   return json;
 }
 
-base::Result<BatchPlan> batch_plan_of(const Json& json) {
+base::Result<BatchPlan> batch_plan_of(const Json& json, Warnings* warnings) {
   BatchPlan plan;
   Json sample = Json::object();
   std::optional<model::Method> method;
@@ -133,8 +145,9 @@ base::Result<BatchPlan> batch_plan_of(const Json& json) {
       if (!known) return base::usage_error("{}: {}", kMethod, known.error().message);
       method = *std::move(known);
       plan.method = record::method_text(*method);
-    } else if (key == kSpeeds) {
-      auto speeds = speeds_of(value);
+    } else if (key == kSpeeds || key == key_with_unit(kSpeeds, base::Dimension::kSpeed)) {
+      if (has_speeds) return base::usage_error("{}: the speeds are given twice", key);
+      auto speeds = speeds_of(key, value, warnings);
       if (!speeds) return tl::unexpected(speeds.error());
       plan.pull_speeds_m_per_s = *std::move(speeds);
       has_speeds = true;
@@ -144,7 +157,7 @@ base::Result<BatchPlan> batch_plan_of(const Json& json) {
       (key == kSlides ? plan.slides : plan.replicates) = *count;
       has_replicates = has_replicates || key == kReplicates;
     } else if (key == kLimits) {
-      auto limits = limits_of(value);
+      auto limits = limits_of(value, warnings);
       if (!limits) return tl::unexpected(limits.error());
       plan.limits = *std::move(limits);
     } else if (key == "name" || key == "grade" || key == "direction" || key == "side" || key == "operator") {
@@ -152,8 +165,7 @@ base::Result<BatchPlan> batch_plan_of(const Json& json) {
     } else {
       return base::usage_error(
           "\"{}\": there is no such key; there are name, grade, direction, side, operator, method, "
-          "pull_speeds, "
-          "replicates, slides, limits",
+          "pull_speeds, pull_speeds_m_per_s, replicates, slides, limits",
           base::one_line(key, 60));
     }
   }

@@ -8,6 +8,7 @@
 
 #include "core/base/result.hpp"
 #include "daemon/types/batch.hpp"
+#include "daemon/types/quantity_json.hpp"
 
 namespace stickslip::daemon {
 
@@ -18,9 +19,11 @@ namespace stickslip::daemon {
 
 /// Reads a plan. "name" is required. An absent or null pull_speeds or replicates uses the method's value, if
 /// it has one; other absent keys use their defaults. "method" is the name of a shipped method, or the text of
-/// a record's process/method. A speed is a number in m/s or text with a unit. Errors (kUsage) name the key,
-/// the value and what is allowed.
-[[nodiscard]] base::Result<BatchPlan> batch_plan_of(const nlohmann::ordered_json& json);
+/// a record's process/method. "pull_speeds" and limits with a dimension
+/// are text with a unit, "pull_speeds_m_per_s" numbers; a number elsewhere is SI, with a warning. Errors
+/// (kUsage) name the key, the value and what is allowed.
+[[nodiscard]] base::Result<BatchPlan> batch_plan_of(const nlohmann::ordered_json& json,
+                                                    Warnings* warnings = nullptr);
 
 /// {"pull_speed": 0.00508, "replicate": 1, "slide": 1}
 [[nodiscard]] nlohmann::ordered_json step_json(const BatchStep& step);

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
-#include "core/base/quantity.hpp"
 #include "core/base/text.hpp"
 #include "daemon/types/plan_json.hpp"
 
@@ -45,6 +45,7 @@ Json in_use_json(const CalibrationView& view) {
           {"expires", said(facts.expires)},
           {"expired", view.expired},
           {"certificate", said(facts.certificate)},
+          {"replaced_gain", known_json(facts.replaced_gain_N_per_V)},
           {"points", std::move(points)}};
 }
 
@@ -55,6 +56,8 @@ Json session_json(const CalibrationSession& session) {
   const auto if_fit = [&fit](std::optional<double> value) {
     return fit.load_cell ? known_json(value) : Json(nullptr);
   };
+  std::vector<std::string> findings = session.weighed.findings;
+  if (session.gain_change) findings.push_back(daq::to_text(*session.gain_change));
   return {{"controller", session.who},
           {"settle", session.times.settle_s},
           {"reading", session.times.reading_s},
@@ -66,43 +69,36 @@ Json session_json(const CalibrationSession& session) {
           {"zero_standard_error", if_fit(fit.zero_standard_error_V)},
           {"residual", if_fit(fit.residual_V)},
           {"hysteresis", if_fit(fit.hysteresis_V)},
-          {"findings", session.weighed.findings},
+          {"findings", std::move(findings)},
+          {"gain_change", gain_change_json(session.gain_change)},
           {"missing", said(fit.reason)}};
-}
-
-/// Reads a quantity: a number, or text with a unit.
-base::Result<double> quantity_of(const char* key, const Json& value, base::Dimension dimension,
-                                 const char* example) {
-  if (value.is_number()) return value.get<double>();
-  if (!value.is_string())
-    return base::usage_error("{}: must be a number, or text such as \"{}\"", key, example);
-  auto quantity = base::parse_quantity(value.get<std::string>(), dimension);
-  if (!quantity) return base::usage_error("{}: {}", key, quantity.error().message);
-  return quantity;
 }
 
 }  // namespace
 
-base::Result<daq::WeighingTimes> weighing_times_of(const Json& json) {
+base::Result<daq::WeighingTimes> weighing_times_of(const Json& json, Warnings* warnings) {
   daq::WeighingTimes times;
   for (const auto& [key, time_s] : {std::pair{"settle", &times.settle_s}, {"reading", &times.reading_s}}) {
-    if (!json.contains(key)) continue;
-    const auto value = quantity_of(key, json.at(key), base::Dimension::kTime, "2 s");
+    const auto value =
+        quantity_at(json, key, base::Dimension::kTime, base::BareNumber::kSiWithWarning, warnings);
     if (!value) return tl::unexpected(value.error());
-    if (!(*value >= 0.0 && *value <= kLongestWeighing_s))
-      return base::usage_error("{}: {} s; must be 0 to {} s", key, *value, kLongestWeighing_s);
-    *time_s = *value;
+    if (!*value) continue;
+    if (!(**value >= 0.0 && **value <= kLongestWeighing_s))
+      return base::usage_error("{}: {} s; must be 0 to {} s", key, **value, kLongestWeighing_s);
+    *time_s = **value;
   }
   return times;
 }
 
 base::Result<double> mass_of(const Json& json) {
-  if (!json.contains("mass")) return base::usage_error("mass: is missing: what hangs? 0 for nothing");
-  auto mass_kg = quantity_of("mass", json.at("mass"), base::Dimension::kMass, "500 g");
-  if (!mass_kg) return mass_kg;
-  if (!(*mass_kg >= 0.0 && *mass_kg <= daq::kHeaviestWeight_kg))
-    return base::usage_error("mass: {} kg; must be 0 to {} kg", *mass_kg, daq::kHeaviestWeight_kg);
-  return mass_kg;
+  // A number alone was kg, and a technician who reads "500" on a weight means g.
+  const auto mass_kg =
+      quantity_at(json, "mass", base::Dimension::kMass, base::BareNumber::kOnlyZero, nullptr);
+  if (!mass_kg) return tl::unexpected(mass_kg.error());
+  if (!*mass_kg) return base::usage_error("mass: is missing: what hangs? \"500 g\", or 0 for nothing");
+  if (!(**mass_kg >= 0.0 && **mass_kg <= daq::kHeaviestWeight_kg))
+    return base::usage_error("mass: {} kg; must be 0 to {} kg", **mass_kg, daq::kHeaviestWeight_kg);
+  return **mass_kg;
 }
 
 base::Result<io::CalibrationPaper> paper_of(const Json& json) {
@@ -120,11 +116,22 @@ base::Result<io::CalibrationPaper> paper_of(const Json& json) {
       return base::usage_error("valid_days: must be 0 (for ever) to {}", io::kLongestValid_days);
     paper.valid_days = days.get<double>();
   }
+  if (json.contains("confirm")) {
+    if (!json.at("confirm").is_boolean()) return base::usage_error("confirm: must be true or false");
+    paper.confirms_gain = json.at("confirm").get<bool>();
+  }
   return paper;
 }
 
 Json known_json(std::optional<double> value) {
   return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+Json gain_change_json(const std::optional<daq::GainChange>& change) {
+  if (!change) return nullptr;
+  return {{"code", daq::kGainChangeCode}, {"text", daq::to_text(*change)},
+          {"gain", change->gain_N_per_V}, {"gain_in_use", change->in_use_N_per_V},
+          {"ratio", change->ratio()},     {"limit", daq::kLargestGainChange}};
 }
 
 Json points_json(const daq::WeighedCalibration& weighed) {

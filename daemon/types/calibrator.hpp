@@ -5,10 +5,12 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "io/calibration_file.hpp"
 
 #include "core/daq/calibration.hpp"
+#include "core/daq/gain_change.hpp"
 #include "core/daq/weighed_calibration.hpp"
 #include "core/daq/weight_scans.hpp"
 #include "core/record/record.hpp"
@@ -22,6 +24,18 @@ struct CalibrationSession {
   /// Mass of the weight that is being read; absent: none.
   std::optional<double> being_read_kg;
   daq::WeighedCalibration weighed;  ///< Fit of the readings so far.
+  /// Change of the gain by that fit that finish() does only if it is confirmed.
+  std::optional<daq::GainChange> gain_change;
+};
+
+/// Why a step was not done. An empty text: it was done.
+struct CalibrationRefusal {
+  CalibrationRefusal() = default;
+  CalibrationRefusal(std::string text) : why(std::move(text)) {}  // NOLINT: a text is a refusal.
+  CalibrationRefusal(const char* text) : why(text) {}             // NOLINT: as above.
+
+  std::string why;
+  std::optional<daq::GainChange> gain_change;  ///< The change that finish() wants confirmed.
 };
 
 struct CalibrationView {
@@ -40,7 +54,7 @@ class Calibrator {
  public:
   virtual ~Calibrator() = default;
   /// Called once on the main thread, at once or later. \param refusal  empty: done.
-  using Answer = std::function<void(std::string refusal)>;
+  using Answer = std::function<void(CalibrationRefusal refusal)>;
 
   [[nodiscard]] virtual CalibrationView view() const = 0;
   /// Begins a calibration; the bench must be idle. Tests and tares are refused until finish() or give_up().
@@ -50,7 +64,8 @@ class Calibrator {
   virtual void weigh(double mass_kg, Answer answer) = 0;
   /// Removes the latest reading. \return why not; empty: done.
   [[nodiscard]] virtual std::string undo() = 0;
-  /// Stores the calibration in a new file and uses it from now on.
+  /// Stores the calibration in a new file and uses it from now on. A gain far from the one in use
+  /// (daq::GainChange) is refused unless the paper confirms it; the readings stay.
   virtual void finish(const std::string& who, const io::CalibrationPaper& paper, Answer answer) = 0;
   /// Ends the calibration without a result. \return why not; empty: done.
   [[nodiscard]] virtual std::string give_up() = 0;

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/daq/board.hpp"
+#include "core/daq/gain_change.hpp"
 #include "core/daq/gap.hpp"
 #include "core/daq/note.hpp"
 #include "core/estimate/sampling.hpp"
@@ -25,6 +26,10 @@ class EventReceiver {
   virtual void board_started(const daq::BoardInfo& /*board*/, std::string_view /*scheduling*/) {}
   /// Before a session: whether the scan rate suffices for the tester.
   virtual void sampling_checked(const estimate::SamplingVerdict& /*verdict*/) {}
+  /// A new calibration is in use. \param confirmed  a change of the gain that `who` confirmed.
+  virtual void load_cell_calibrated(const std::filesystem::path& /*file*/, double /*gain_N_per_V*/,
+                                    std::string_view /*who*/,
+                                    const std::optional<daq::GainChange>& /*confirmed*/) {}
   /// Before a session: the calibration of the load cell has expired.
   virtual void calibration_expired(std::string_view /*expires*/) {}
   /// \param state  of the daemon: "board missing", "board busy" or "no permission".

@@ -26,6 +26,8 @@ struct HttpReply {
   bool replayed = false;
   /// Header Content-Security-Policy; empty: the default, which allows the daemon's own files only.
   std::string content_policy = {};
+  /// Header Stickslip-Warning: what the next version will refuse in such a request; empty: nothing.
+  std::string warning = {};
 };
 
 using HttpAnswer = std::function<void(HttpReply)>;

@@ -34,21 +34,10 @@ constexpr const char* kSpeed = "pull_speed";
 
 }  // namespace
 
-base::Result<double> pull_speed_of(std::string_view key, const Json& value) {
-  base::Result<double> speed = 0.0;
-  if (value.is_number()) {
-    speed = value.get<double>();
-  } else if (value.is_string()) {
-    speed = base::parse_quantity(value.get<std::string>(), base::Dimension::kSpeed);
-    if (!speed) return base::usage_error("{}: {}", key, speed.error().message);
-  } else {
-    return base::usage_error("{}: must be a number in m/s, or text such as \"12 in/min\"", key);
-  }
-  if (!(*speed > 0.0 && *speed <= model::kFastestPull_m_per_s)) {
-    return base::usage_error("{}: {} m/s; must be above 0 and at most {} m/s", key, *speed,
-                             model::kFastestPull_m_per_s);
-  }
-  return speed;
+base::Result<void> check_pull_speed(std::string_view key, double speed_m_per_s) {
+  if (speed_m_per_s > 0.0 && speed_m_per_s <= model::kFastestPull_m_per_s) return {};
+  return base::usage_error("{}: {} m/s; must be above 0 and at most {} m/s", key, speed_m_per_s,
+                           model::kFastestPull_m_per_s);
 }
 
 Json plan_json(const Plan& plan) {
@@ -62,7 +51,7 @@ Json plan_json(const Plan& plan) {
   return json;
 }
 
-base::Result<Plan> plan_of(const Json& json) {
+base::Result<Plan> plan_of(const Json& json, Warnings* warnings) {
   Plan plan;
   for (const auto& [key, value] : json.items()) {
     if (value.is_null()) continue;
@@ -80,14 +69,17 @@ base::Result<Plan> plan_of(const Json& json) {
         return base::usage_error("{}: must be a whole number from 1 to {}", key, kMostReplicates);
       }
       plan.sample.replicate = value.get<std::int64_t>();
-    } else if (key == kSpeed) {
-      const base::Result<double> speed = pull_speed_of(kSpeed, value);
+    } else if (key == kSpeed || key == key_with_unit(kSpeed, base::Dimension::kSpeed)) {
+      const auto speed =
+          quantity_at(json, kSpeed, base::Dimension::kSpeed, base::BareNumber::kSiWithWarning, warnings);
       if (!speed) return tl::unexpected(speed.error());
+      if (const auto checked = check_pull_speed(key, speed->value()); !checked)
+        return tl::unexpected(checked.error());
       plan.pull_speed_m_per_s = *speed;
     } else {
       return base::usage_error(
           "\"{}\": there is no such key; there are name, grade, direction, side, operator, replicate, "
-          "pull_speed",
+          "pull_speed, pull_speed_m_per_s",
           base::one_line(key));
     }
   }

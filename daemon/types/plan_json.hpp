@@ -9,16 +9,17 @@
 
 #include "core/base/result.hpp"
 #include "daemon/types/bench.hpp"
+#include "daemon/types/quantity_json.hpp"
 
 namespace stickslip::daemon {
 
 [[nodiscard]] nlohmann::ordered_json plan_json(const Plan& plan);
-/// Reads a plan. Absent or null keys stay unset. "pull_speed" is a number in m/s, or text with a unit. Errors
-/// (kUsage) name the key.
-[[nodiscard]] base::Result<Plan> plan_of(const nlohmann::ordered_json& json);
+/// Reads a plan. Absent or null keys stay unset. "pull_speed" is text with a unit, "pull_speed_m_per_s" a
+/// number; a number as "pull_speed" is m/s, with a warning. Errors (kUsage) name the key.
+[[nodiscard]] base::Result<Plan> plan_of(const nlohmann::ordered_json& json, Warnings* warnings = nullptr);
 
-/// Reads a speed above 0: a number in m/s, or text with a unit. \param key  named in the error. Errors:
-/// kUsage.
-[[nodiscard]] base::Result<double> pull_speed_of(std::string_view key, const nlohmann::ordered_json& value);
+/// Checks that a pull speed is above 0 and at most kFastestPull_m_per_s. \param key  named in the error.
+/// Errors: kUsage.
+[[nodiscard]] base::Result<void> check_pull_speed(std::string_view key, double speed_m_per_s);
 
 }  // namespace stickslip::daemon

@@ -180,6 +180,7 @@ Json status_json(const Status& status) {
   json["storage_stall_count"] = status.storage_stall_count;
   json["storage"] = to_json(status.storage);
   json["calibration"] = to_json(status.calibration);
+  json["sled_finding"] = or_nothing(status.sled_finding);
   json["live_clients"] = {{"count", status.live_client_count},
                           {"dropped_frame_count", status.live_dropped_count}};
   json["page"] = to_json(status.page);

@@ -58,6 +58,7 @@ struct Status {
     bool expired = false;
     std::string under_way_by;  ///< Controller of the calibration under way; empty: none.
   } calibration;
+  std::string sled_finding;  ///< The sled of the bench is outside pipeline::kLightestSled_kg …; empty: none.
   std::optional<BatchProgress> batch;  ///< The current batch; absent: none.
   std::optional<FleetState> fleet;     ///< Absent: no broker is configured.
   /// The live page over TCP.

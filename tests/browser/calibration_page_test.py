@@ -34,11 +34,11 @@ expires = "2021-01-01T00:00:00.000000000+00:00"
 gain = "2.01 N/V"
 zero = "0.01 V"
 """
-UP_AND_DOWN = ["500 g", "1", "1.5", "1 kg", "0.5", "0"]
+UP_AND_DOWN = ["500 g", "1 kg", "1.5kg", "1 kg", "0.5 kg", "0"]
 
 
 def kg(typed):
-    number, _, unit = typed.partition(" ")
+    number, unit = re.match(r"([0-9.]+) ?(\w*)", typed).groups()
     return float(number) / (1000 if unit == "g" else 1)
 
 
@@ -83,7 +83,7 @@ class CalibrationPage(unittest.TestCase):
         self.page.until("document.getElementById('calibrate-dialog').getAttribute('aria-busy') === 'false'")
 
     def begin(self):
-        self.type("settle", "0.5")
+        self.type("settle", "0.5 s")
         self.type("reading", "0.5 s")
         self.page.press("Enter")
         self.page.until("!document.getElementById('calibrate-weigh').hidden")
@@ -118,8 +118,8 @@ class CalibrationPage(unittest.TestCase):
         self.assertEqual(self.text("read"), "Read")
         self.assertIn("up: hang a weight heavier than 0 kg", self.text("step"))
         # What cannot count is told with its reason, stays in the list, and can be forgotten.
-        for typed, hung, swing, why in (("1", 0, 0, NOTHING_HANGS), ("0.03", None, 0, "less than 1 %"), ("30", None, 0, "saturated"),
-                                        ("1", None, 0.05, "unstable")):
+        for typed, hung, swing, why in (("1 kg", 0, 0, NOTHING_HANGS), ("30 g", None, 0, "less than 1 %"), ("30 kg", None, 0, "saturated"),
+                                        ("1 kg", None, 0.05, "unstable")):
             self.assertRegex(self.read(typed, hung, swing), f"^✗ .*({why})")
             self.assertRegex(self.text("message"), why)
             rows = len(self.rows())
@@ -175,6 +175,45 @@ class CalibrationPage(unittest.TestCase):
         self.page.until(f"document.getElementById('health').textContent.includes('calibrated {kept['calibration']['date'][:10]}, until {kept['calibration']['expires'][:10]}')")
         self.assertEqual(self.page.complaints(), [])
 
+    def test_a_mass_is_shown_as_understood_before_it_is_sent_and_needs_its_unit(self):
+        self.open()
+        self.begin()
+        self.read("0")
+        for typed, shown in (("500 g", "500 g = 0.5000 kg = 4.903 N"), ("500", '500: a mass needs its unit, such as "500 g" or "500 kg"'),
+                             ("1 lb", "1 lb = 0.4536 kg = 4.448 N"), ("5 st", "5 st: write a number and kg, g, mg or lb"), ("0", "0 = 0.0000 kg = 0.000 N")):
+            self.type("mass", typed)
+            self.assertEqual(self.text("understood"), shown)
+        self.type("mass", "500")
+        self.page.press("Enter")
+        self.page.until("document.getElementById('calibrate-message').textContent.includes('a mass needs its unit')")
+        self.assertEqual(len(self.rows()), 1)
+
+    def test_a_gain_far_from_the_one_in_use_is_saved_only_if_the_dialog_is_confirmed(self):
+        self.open()
+        self.begin()
+        self.read("0")
+        for mass in (0.5, 1, 1.5, 1, 0.5, 0):
+            self.read(f"{1000 * mass:g} kg", hung=mass)
+        self.assertRegex(self.text("findings"), "the load cell gain .* times the 1.9 N/V in use before, a change of more than 20 %")
+        for answer, text in (("no", ""), ("yes", "kept in")):
+            self.type("certificate", "DKD-7")
+            self.page.press("Enter")
+            self.page.until("document.getElementById('confirm-dialog').matches(':modal')")
+            self.assertEqual(self.page.value("document.activeElement.id"), "confirm-no")
+            facts = self.page.value("[...document.querySelectorAll('#confirm-facts dd')].map(dd => dd.textContent)")
+            self.shows(facts[0], 1.9, 8)
+            self.assertLess(abs(float(facts[1].split()[0]) - 1000 * Hanging.GAIN), 1)
+            self.assertLess(abs(float(facts[2]) - 1000 * Hanging.GAIN / 1.9), 1)
+            self.page.value(f"document.getElementById('confirm-{answer}').focus()")
+            self.page.press("Enter")
+            self.page.until("!document.getElementById('confirm-dialog').open")
+            self.page.until(f"document.getElementById('calibrate-message').textContent.startsWith('{text}')")
+            self.settled()
+            self.assertEqual((self.daemon.folder / "calibrations").exists(), answer == "yes")
+        [file] = (self.daemon.folder / "calibrations").iterdir()
+        self.assertEqual(tomllib.loads(file.read_text(encoding="utf-8"))["calibration"]["replaced_gain"], "1.9 N/V")
+        self.assertEqual(self.page.complaints(), [])
+
     def test_an_armed_bench_is_disarmed_first_and_who_gives_up_leaves_nothing(self):
         self.open(begins="force")
         self.hanging.hang(0)
@@ -218,7 +257,7 @@ class CalibrationPage(unittest.TestCase):
         for dark in (False, True):
             self.open(dark=dark)
             self.begin()
-            for typed, hung in (("0", 0), ("1", 0), ("0.5", None), ("1", None), ("1.5", None), ("1", None), ("0.5", None), ("0", None)):
+            for typed, hung in (("0", 0), ("1 kg", 0), ("0.5 kg", None), ("1 kg", None), ("1.5 kg", None), ("1 kg", None), ("0.5 kg", None), ("0", None)):
                 self.read(typed, hung)
             self.assertEqual(self.page.value("[...document.querySelectorAll('dialog button, dialog input')].filter(e => e.tabIndex < 0).length"), 0)
             self.assertEqual(self.page.value("[...document.querySelectorAll('dialog input')].filter(e => !e.labels.length).length"), 0)

@@ -552,6 +552,25 @@ class LivePage(unittest.TestCase):
             page.press("Escape")
             page.until(f"!document.querySelector('dialog:modal') && document.activeElement.id === '{opener}'")
 
+    def test_a_sled_that_no_tester_has_is_asked_about_before_a_test(self):
+        daemon = self.daemon('[tester]\nsled_mass = "100 kg"\n[test]\nbegins = "command"\n')
+        page = self.page()
+        self.assertEqual(daemon.ask("GET", "/v1/status")[1]["sled_finding"], "the sled mass is 100 kg, outside 0.005 … 20 kg: check its unit")
+        page.until("document.getElementById('trouble').textContent.includes('the sled mass is 100 kg')")
+        for answer in ("no", "yes"):
+            page.value("document.querySelector('[data-command=start]').focus()")
+            page.press("Enter")
+            page.until("document.getElementById('confirm-dialog').matches(':modal')")
+            self.assertEqual(page.value("document.activeElement.id"), "confirm-no")
+            self.assertIn("the sled mass is 100 kg", page.value("document.getElementById('confirm-text').textContent"))
+            page.value(f"document.getElementById('confirm-{answer}').focus()")
+            page.press("Enter")
+            page.until("!document.getElementById('confirm-dialog').open")
+            if answer == "no":
+                self.assertIsNone(daemon.ask("GET", "/v1/status")[1]["current_test"])
+        page.until("document.getElementById('message').textContent.startsWith('start: test 1')")
+        self.assertEqual(page.complaints(), [])
+
     def test_fingers_meet_its_controls_on_a_tablet(self):
         daemon = self.daemon('[test]\nbegins = "command"\n', speed=2, times=PATIENT)
         page = self.page(touch=True)

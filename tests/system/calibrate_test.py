@@ -100,20 +100,20 @@ class Calibrate(unittest.TestCase):
     def calibrate(self, *arguments, answers=""):
         return self.run_program(STICKSLIP, "calibrate", *arguments, answers=answers)
 
-    def weigh(self, masses, answers, *arguments):
+    def weigh(self, masses, answers, *arguments, gain=None):
         write_stairs(self.folder / "stairs.csv", masses)
-        made = self.run_program(STICKSLIP, "import", "stairs.csv", "--column", "v", "--rate", str(RATE_HZ), "--unit",
-                                "V", "--sled-mass", "1", "--load-cell-gain", "1", "-o", "stairs.h5")
+        made = self.run_program(STICKSLIP, "import", "stairs.csv", "--column", "v", "--rate", f"{RATE_HZ} Hz", "--unit",
+                                "V", "--sled-mass", "1 kg", "--load-cell-gain", "1 N/V", "-o", "stairs.h5")
         self.assertEqual(made.returncode, 0, made.stderr)
         (self.folder / "bench.toml").write_text(
             '[board]\ndriver = "replay"\nclock_speed = 1000\n[board.replay]\nfile = "stairs.h5"\n'
-            '[tester]\ncalibration = "calibrations"\n', encoding="utf-8")
+            '[tester]\ncalibration = "calibrations"\n' + (f'load_cell_gain = "{gain}"\n' if gain else ""), encoding="utf-8")
         return self.calibrate("--config", "bench.toml", "--settle", "0.5 s", "--reading", "0.5 s", *arguments,
                               answers=answers)
 
     def test_a_technician_hangs_weights(self):
         masses = [0, 0.5, 1, 2, 3, 2, 1, 0.5, 0]
-        answers = "\n" + "\n".join(["500 g", "1 kg", "2", "3", "2", "1", "0.5", "0"]) + "\ndone\n"
+        answers = "\n" + "\n".join(["500 g", "1 kg", "2 kg", "3kg", "2 kg", "1 kg", "0.5 kg", "0"]) + "\ndone\n"
         done = self.weigh(masses, answers, "--certificate", "DKD-1", "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
         result = json.loads(done.stdout)
@@ -129,16 +129,17 @@ class Calibrate(unittest.TestCase):
 
     def test_a_weight_typed_but_not_hung_is_told_at_once(self):
         masses = [0, 0, 0.5, 1, 2, 1, 0.5, 0]
-        answers = "\n1 kg\nten\n0.5\n1\n2\n1\ndone\n0.5\n0\ndone\n"
+        answers = "\n1 kg\nten\n500\n500 g\n1 kg\n2 kg\n1 kg\ndone\n0.5 kg\n0\ndone\n"
         done = self.weigh(masses, answers)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("reads like no load", done.stderr)
-        self.assertIn("that is no mass", done.stderr)
+        self.assertIn('that is no mass: "ten" does not begin with a decimal number', done.stderr)
+        self.assertIn('that is no mass: "500": a mass needs its unit, such as "500 g" or "500 kg"', done.stderr)
         self.assertIn("not yet: 1 readings count on the way down", done.stderr)
         self.assertIn("kept in", done.stdout)
 
     def test_too_few_weights_or_no_answers_leave_nothing_behind(self):
-        done = self.weigh([0, 1, 2, 1, 0], "\n1\n2\n1\n0\ndone\n")
+        done = self.weigh([0, 1, 2, 1, 0], "\n1 kg\n2 kg\n1 kg\n0 g\ndone\n")
         self.assertEqual(done.returncode, 1)
         self.assertIn("2 different weights count on the way up; at least 3 are needed", done.stderr)
         (self.folder / "stairs.h5").unlink()
@@ -219,6 +220,43 @@ class Calibrate(unittest.TestCase):
         with h5py.File(path) as record:
             texts = [text.decode() for text in record["entry/events/text"]]
             self.assertTrue(any("expired on 2025-01-01" in text for text in texts), texts)
+
+    def wrong_readings(self):
+        """Masses in grams that are called kilograms."""
+        (self.folder / "wrong.toml").write_text(READINGS.replace('500 g"', '500 kg"').replace('"1 kg"', '"1000 kg"').replace('"2 kg"', '"2000 kg"'), encoding="utf-8")
+        return "--points", "wrong.toml"
+
+    def test_a_gain_far_from_the_one_in_use_needs_a_confirmation(self):
+        (self.folder / "readings.toml").write_text(READINGS, encoding="utf-8")
+        made = self.calibrate("--points", "readings.toml", "--folder", "calibrations", "--json")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertIsNone(json.loads(made.stdout)["gain_change"])
+        [file] = (self.folder / "calibrations").iterdir()
+        old = file.with_name("20200101T000000Z.toml")
+        text = file.read_text(encoding="utf-8")
+        old.write_text(text.replace('date = "20', 'date = "19', 1), encoding="utf-8")
+        file.unlink()
+        refused = self.calibrate(*self.wrong_readings(), "--folder", "calibrations")
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("gain-change: the load cell gain 2000 N/V is 1000 times the 2 N/V in use before, a change of more than 20 %: check the unit of each mass", refused.stderr)
+        self.assertIn("nothing was kept; if the change is meant, repeat with --confirm", refused.stderr)
+        self.assertEqual(list((self.folder / "calibrations").iterdir()), [old])
+        done = self.calibrate(*self.wrong_readings(), "--folder", "calibrations", "--confirm", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        result = json.loads(done.stdout)
+        self.assertAlmostEqual(result["gain_change"]["ratio"], 1000, delta=0.01)
+        self.assertEqual(result["findings"][-1], result["gain_change"]["text"])
+        self.assertIn('replaced_gain = "2', pathlib.Path(self.folder / result["file"]).read_text(encoding="utf-8"))
+
+    def test_a_technician_confirms_a_gain_far_from_the_nominal_one(self):
+        masses = [0, 0.5, 1, 2, 1, 0.5, 0]
+        answers = "\n500 kg\n1000 kg\n2000 kg\n1000 kg\n500 kg\n0\ndone\n"
+        for answer, code in (("no\n", 1), ("", 1), ("yes\n", 0)):
+            (self.folder / "stairs.h5").unlink(missing_ok=True)
+            done = self.weigh(masses, answers + answer, gain="2 N/V")
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn("Type yes to keep it", done.stderr)
+            self.assertEqual((self.folder / "calibrations").exists(), code == 0)
 
     def test_contradictions_are_refused(self):
         for arguments in ([], ["--points", "a.toml", "--config", "b.toml"], ["--points", "missing.toml"]):

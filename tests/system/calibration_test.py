@@ -25,7 +25,7 @@ BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
 CLI = BUILD / "bin" / "stickslip"
 
-TIMES = {"settle": "0.5 s", "reading": 0.5}
+TIMES = {"settle": "0.5 s", "reading_s": 0.5}
 UP_AND_DOWN = [0, 0.5, 1, 1.5, 1, 0.5, 0]
 
 
@@ -40,7 +40,8 @@ class Calibration(unittest.TestCase):
 
     def hang(self, mass, swing=0, said=None):
         self.hanging.hang(mass, swing)
-        return self.post("/v1/calibration/weight", {"mass": mass if said is None else said})
+        said = mass if said is None else said
+        return self.post("/v1/calibration/weight", {"mass": said if isinstance(said, str) else f"{said} kg"})
 
     def refused(self, answer, why, status=409):
         self.assertEqual(answer[0], status, answer[1])
@@ -123,6 +124,54 @@ class Calibration(unittest.TestCase):
         self.assertEqual({key: in_use[key] for key in used}, used)
         brief = second.ask("GET", "/v1/status")[1]["calibration"]
         self.assertEqual(brief, {"date": used["date"], "expires": used["expires"], "expired": False, "under_way_by": None})
+
+    def test_a_gain_far_from_the_one_in_use_is_kept_only_if_somebody_confirms_it(self):
+        """Weights in grams that are called kilograms: the gain is 1000 times too large."""
+        daemon = self.start(weighing_board(self, SOURCE, speed=10))
+        self.assertEqual(self.post("/v1/calibration", TIMES)[0], 200)
+        self.refused(self.post("/v1/calibration/weight", {"mass": 500}), '"500": a mass needs its unit, such as "500 g" or "500 kg"', 400)
+        for mass in UP_AND_DOWN:
+            status, told = self.hang(mass, said=f"{1000 * mass} kg")
+            self.assertEqual(status, 200, told)
+        change = told["weighing"]["gain_change"]
+        self.assertEqual(change["code"], "gain-change")
+        self.assertEqual(change["gain_in_use"], 1.9)
+        self.assertAlmostEqual(change["ratio"], 1000 * self.hanging.GAIN / 1.9, delta=1)
+        self.assertIn(change["text"], told["weighing"]["findings"])
+        for body in ({}, {"confirm": False}):
+            status, why = self.post("/v1/calibration/finish", body)
+            self.assertEqual(status, 409, why)
+            self.assertEqual(why["code"], "gain-change")
+            self.assertEqual(why["gain_change"], change)
+            self.assertRegex(why["error"], "times the 1.9 N/V in use before, .*check the unit of each mass.*nothing was kept")
+            self.assertFalse((daemon.folder / "calibrations").exists())
+        # The readings have stayed: what the message says works.
+        status, done = self.post("/v1/calibration/finish", {"confirm": True})
+        self.assertEqual(status, 200, done)
+        self.assertEqual(done["in_use"]["replaced_gain"], 1.9)
+        kept = tomllib.loads((daemon.folder / done["file"]).read_text(encoding="utf-8"))
+        self.assertEqual(kept["calibration"]["replaced_gain"], "1.9 N/V")
+
+        # Each test that follows says so, and so does its record, analysed again.
+        self.hanging.nothing()
+        process, frames = daemon.watch()
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        next(frames)  # It listens.
+        self.assertEqual(self.post("/v1/start")[0], 200)
+        wait_for(frames, lambda frame: frame["type"] == "test-began")
+        self.assertEqual(self.post("/v1/stop")[0], 200)
+        wait_for(frames, lambda frame: frame["type"] == "test-ended")
+        record_file = daemon.record(1)
+        found = self.daemon.ask("GET", "/v1/tests/1")[1]["results"]["findings"]
+        self.assertEqual([finding for finding in found if "gain" in finding][-1], change["text"])
+        again = subprocess.run([CLI, "analyze", record_file], capture_output=True, text=True, check=True)
+        self.assertIn(change["text"], again.stdout)
+        with h5py.File(record_file) as record:
+            self.assertEqual(record["entry/instrument/calibration/replaced_gain"][()], 1.9)
+        code, log = daemon.end()[:2]
+        self.assertEqual(code, 0)
+        self.assertIn("confirmed: the load cell gain", log)
 
     def test_readings_that_cannot_count_are_told_with_their_reason(self):
         self.start()

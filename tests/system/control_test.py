@@ -361,14 +361,14 @@ class Description(unittest.TestCase):
     def calibrate(self, frames):
         def weigh(mass):
             self.hanging.hang(mass)
-            return self.check("POST", "/v1/calibration/weight", {"mass": mass})
+            return self.check("POST", "/v1/calibration/weight", {"mass": f"{mass} kg"})
         self.hanging.hang(0)
         wait_for(frames, lambda frame: frame["type"] == "health" and frame["status"]["bench"] == "idle")
         for wrong in ({"settle": -1}, {"reading": "2 kg"}, {"reading": 61}, {"x": 1}):
             self.assertEqual(self.check("POST", "/v1/calibration", wrong)[0], 400, wrong)
-        self.assertEqual(self.check("POST", "/v1/calibration", {"settle": 0.5, "reading": "0.5 s"})[0], 200)
+        self.assertEqual(self.check("POST", "/v1/calibration", {"settle_s": 0.5, "reading": "0.5 s"})[0], 200)
         self.assertEqual(self.check("POST", "/v1/calibration/undo")[0], 409)
-        for wrong in ({}, {"mass": -1}, {"mass": "1 V"}, {"mass": 1e5}, {"mass": None}):
+        for wrong in ({}, {"mass": -1}, {"mass": "1 V"}, {"mass": "1e5 kg"}, {"mass": 0.5}, {"mass": "500"}, {"mass": None}):
             self.assertEqual(self.check("POST", "/v1/calibration/weight", wrong)[0], 400, wrong)
         for mass in (0, 0.5, 1, 1.5, 1, 0.5, 0):
             self.assertEqual(weigh(mass)[0], 200)

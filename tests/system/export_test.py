@@ -42,7 +42,7 @@ class Export(unittest.TestCase):
         cls.addClassCleanup(cls.place.cleanup)
         cls.folder = pathlib.Path(cls.place.name)
         cls.run_stickslip("simulate", "drift-hum-and-spikes", "-o", "pull.h5", "--folder",
-                          str(SOURCE / "config" / "scenes"), "--duration", "6")
+                          str(SOURCE / "config" / "scenes"), "--duration", "6 s")
 
     @classmethod
     def run_stickslip(cls, *arguments, status=0):
@@ -80,8 +80,8 @@ class Export(unittest.TestCase):
 
         for column, unit, values in (("force_N", "N", force), ("coefficient", "coefficient", force / weight)):
             name = f"{column}.h5"
-            self.run_stickslip("import", "pull.csv", "--column", column, "--time-column", "time_s", "--rate", "350",
-                               "--unit", unit, "--sled-mass", repr(mass), "-o", name)
+            self.run_stickslip("import", "pull.csv", "--column", column, "--time-column", "time_s", "--rate", "350 Hz",
+                               "--unit", unit, "--sled-mass", f"{mass!r} kg", "-o", name)
             with h5py.File(self.folder / name) as record:
                 raw = record["entry/raw"]
                 self.assertTrue(numpy.array_equal(raw[raw.attrs["signal"]][:], values))
@@ -105,7 +105,7 @@ class Export(unittest.TestCase):
 
     def test_gaps_come_back_from_an_export(self):
         self.run_stickslip("simulate", "clock-and-missing-scans", "-o", "gaps.h5", "--folder",
-                           str(SOURCE / "config" / "scenes"), "--duration", "4")
+                           str(SOURCE / "config" / "scenes"), "--duration", "4 s")
         self.run_stickslip("export", "gaps.h5", "--csv", "-o", "gaps.csv")
         _, rows = parts((self.folder / "gaps.csv").read_text(encoding="utf-8"))
         scans = [int(row["scan"]) for row in rows]

@@ -95,7 +95,7 @@ class Plot(Folder):
     def test_a_measured_trace_has_no_truth_to_show(self):
         (self.folder / "trace.csv").write_text(
             "t,mu\n" + "".join(f"{i / 100},{0.3 + 0.05 * (i % 10)}\n" for i in range(300)), encoding="ascii")
-        done = run(CLI, "import", "trace.csv", "--column", "mu", "--rate", "100", "--unit", "coefficient", "-o",
+        done = run(CLI, "import", "trace.csv", "--column", "mu", "--rate", "100 Hz", "--unit", "coefficient", "-o",
                    "trace.h5", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         shown = texts(self.plot("trace.h5", "--derivative"))
@@ -112,7 +112,7 @@ class Plot(Folder):
 
     def test_a_long_record_gives_a_small_picture(self):
         # 105 000 scans, 5 700 slips; a line in a picture 900 wide has at most two points for each column.
-        self.simulate("--duration", "300")
+        self.simulate("--duration", "300 s")
         shown = texts(self.plot("x.h5"))
         self.assertIn("modes change too often to be shaded here: show a part of the record", shown)
         self.assertLess((self.folder / "x.svg").stat().st_size, 3 * LARGEST_PICTURE)

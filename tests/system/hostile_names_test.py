@@ -25,7 +25,7 @@ class HostileNames(unittest.TestCase):
         temporary = tempfile.TemporaryDirectory(prefix="stickslip-")
         cls.addClassCleanup(temporary.cleanup)
         cls.folder = pathlib.Path(temporary.name)
-        cls.run_plainly("simulate", "stick-slip-at-12-in-per-min", "-o", "a.h5", "--duration", "5")
+        cls.run_plainly("simulate", "stick-slip-at-12-in-per-min", "-o", "a.h5", "--duration", "5 s")
         shutil.copy(cls.folder / "a.h5", cls.folder / f"{NAME}.h5")
         (cls.folder / f"{NAME}.journal").write_bytes(b"SSJ1")
 
@@ -47,8 +47,8 @@ class HostileNames(unittest.TestCase):
             ["verify", record], ["verify", "--json", record], ["analyze", record], ["analyze", record, "--json"], ["report", record],
             ["report", record, "--json", "-"], ["report", record, "--csv", "-"], ["report", record, "-o", "-"], ["compare", record, "a.h5", "--", "a.h5"],
             ["export", record, "--csv"], ["export", record, "--cycles", "--csv"], ["plot", record, "-o", f"{NAME}.svg"], ["recover", "."],
-            ["characterise", record], ["import", record, "--column", "a", "--rate", "1", "--unit", "N", "-o", "q.h5"],
-            ["simulate", record, "-o", "z.h5"], ["simulate", "stick-slip-at-12-in-per-min", "--duration", "5", "-o", f"{NAME}.simulated.h5"],
+            ["characterise", record], ["import", record, "--column", "a", "--rate", "1 Hz", "--unit", "N", "-o", "q.h5"],
+            ["simulate", record, "-o", "z.h5"], ["simulate", "stick-slip-at-12-in-per-min", "--duration", "5 s", "-o", f"{NAME}.simulated.h5"],
             ["sweep", record, "-o", "s.h5"], ["calibrate", "--points", record, "--folder", NAME], ["doctor", "--config", record],
             ["status", "--socket", NAME], ["list", "--socket", NAME], ["mark", NAME, "--socket", NAME], ["methods", NAME], ["scenes", NAME],
             ["void", record, "--reason", NAME, "--socket", NAME],

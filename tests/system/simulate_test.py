@@ -214,7 +214,7 @@ folder = "records"
         self.assertAlmostEqual(idle, 0.002, delta=5 * 0.05 * 0.002)
 
     def test_the_record_alone_repeats_itself(self):
-        record, _ = self.simulate("--set", "paper.mu_s=0.34", "--duration", "6", "--rate", "2 kHz", "--seed", 9)
+        record, _ = self.simulate("--set", "paper.mu_s=0.34", "--duration", "6 s", "--rate", "2 kHz", "--seed", 9)
         scene = self.folder / "again.toml"
         scene.write_text(text(record, "entry/truth/scene_text"), encoding="utf-8")
         self.assertEqual(self.sha256("--seed", record["entry/truth/seed"][()], scene=scene),
@@ -298,9 +298,9 @@ class Refusals(Folder):
             ("--set effects.whit_noise.sd=1: ", "--set", "effects.whit_noise.sd=1"),
             ("--set scan_rate=350: ", "--set", "scan_rate=350"),
             ("--without noise: ", "--without", "noise"),
-            ("--duration 3: ", "--duration", "3"),
+            ("--duration 3 s: ", "--duration", "3 s"),
             ("--duration: ", "--duration", "long"),
-            ("--rate: ", "--rate", "0"),
+            ("--rate: ", "--rate", "0 Hz"),
             ("--rate 2 MHz: ", "--rate", "2 MHz"),
             ("--seed -1: ", "--seed", "-1"),
             ("--seed 1.5: ", "--seed", "1.5"),
@@ -310,6 +310,19 @@ class Refusals(Folder):
         done = run(CLI, "simulate", SCENE, "-o", self.folder / "x.h5", "--set", "paper.mu_k=0.5")
         self.assertEqual(done.returncode, 2)
         self.assertIn("(with --set paper.mu_k=0.5)", done.stderr)
+
+    def test_a_number_alone_is_read_in_the_unit_of_before_with_a_warning(self):
+        """Version 0.1 took a duration in s and a rate in Hz."""
+        told = []
+        for options in (("--duration", "5", "--rate", "500"), ("--duration", "5 s", "--rate", "500 Hz")):
+            done = run(CLI, "simulate", SCENE, "-o", self.folder / f"alone{len(told)}.h5", "--json", *options)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            told.append((done.stderr, json.loads(done.stdout)))
+        self.assertIn('warning: --duration: "5": a time needs its unit; it is read as "5 s"', told[0][0])
+        self.assertIn('warning: --rate: "500": a frequency needs its unit; it is read as "500 Hz"', told[0][0])
+        self.assertNotIn("warning", told[1][0])
+        with h5py.File(self.folder / "alone0.h5") as one, h5py.File(self.folder / "alone1.h5") as other:
+            self.assertTrue((one["entry/raw/force"][()] == other["entry/raw/force"][()]).all())
 
     def test_wrong_scenes_and_files_are_named(self):
         self.refused(2, "stick-slip-at-12-in-per-mi: is neither a file nor a scene in", scene=SCENE[:-1])

@@ -452,10 +452,10 @@ class Refusals(Folder):
         csv = self.folder / "x.csv"
         csv.write_text("t_s,mu\n0,0.1\n0.5,nan\n")
         out = self.folder / "x.h5"
-        for arguments in (["--column", "force", "--rate", "2", "--unit", "coefficient"],
-                          ["--column", "mu", "--rate", "0", "--unit", "coefficient"],
-                          ["--column", "mu", "--rate", "2", "--unit", "kg"],
-                          ["--column", "mu", "--rate", "2", "--unit", "coefficient"]):
+        for arguments in (["--column", "force", "--rate", "2 Hz", "--unit", "coefficient"],
+                          ["--column", "mu", "--rate", "0 Hz", "--unit", "coefficient"],
+                          ["--column", "mu", "--rate", "2 Hz", "--unit", "kg"],
+                          ["--column", "mu", "--rate", "2 Hz", "--unit", "coefficient"]):
             with self.subTest(arguments):
                 self.refused(2, CLI, "import", csv, *arguments, "-o", out)
                 self.assertEqual(list(self.folder.iterdir()), [csv])

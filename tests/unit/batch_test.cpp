@@ -90,6 +90,32 @@ TEST(BatchPlan, RefusesWhatItCannotLeadThroughAndSaysWhy) {
   }
 }
 
+TEST(BatchPlan, TakesQuantitiesWithTheirUnit) {
+  Warnings warnings;
+  const auto plan = batch_plan_of(Json::parse(R"({"name": "x", "pull_speeds": ["10 mm/s", "12 in/min"],
+                      "limits": {"period_median": {"lowest": "500 ms", "highest": "2 s"}, "mu_k": {"highest": 0.4}}})"),
+                                  &warnings);
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_THAT(plan->pull_speeds_m_per_s, ElementsAre(0.01, 12 * 0.0254 / 60));
+  EXPECT_EQ(plan->limits.at("period_median"), (ResultLimits{0.5, 2.0}));
+  EXPECT_THAT(warnings, IsEmpty());
+  const auto numbers =
+      batch_plan_of(Json::parse(R"({"name": "x", "pull_speeds_m_per_s": [0.01]})"), &warnings);
+  EXPECT_THAT(numbers.value().pull_speeds_m_per_s, ElementsAre(0.01));
+  EXPECT_THAT(warnings, IsEmpty());
+}
+
+TEST(BatchPlan, WarnsOfNumbersWithoutAUnit) {
+  Warnings warnings;
+  const auto plan = batch_plan_of(
+      Json::parse(R"({"name": "x", "pull_speeds": [0.01], "limits": {"period_median": {"highest": 2}}})"),
+      &warnings);
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_THAT(warnings,
+              ElementsAre(HasSubstr("pull_speeds: \"0.01\": a speed needs its unit"),
+                          HasSubstr("limits: period_median, highest: \"2\": a time needs its unit")));
+}
+
 TEST(ResultLimits, HoldTheirEnds) {
   const ResultLimits limits{0.2, 0.4};
   EXPECT_TRUE(limits.holds(0.2) && limits.holds(0.4));

@@ -38,10 +38,17 @@ class ControlApi : public testing::Test {
   HttpHandler api_ = control::make_api(bench_, clock_);
 };
 
-TEST_F(ControlApi, ACalibrationIsAskedForInNumbersOrWithUnits) {
-  EXPECT_EQ(command("/v1/calibration", "ada", R"({"settle": "500 ms", "reading": 3})").status, 200);
+TEST_F(ControlApi, ACalibrationIsAskedForWithUnits) {
+  const HttpReply begun = command("/v1/calibration", "ada", R"({"settle": "500 ms", "reading": 3})");
+  EXPECT_EQ(begun.status, 200);
+  EXPECT_THAT(begun.warning,
+              testing::HasSubstr(R"(reading: "3": a time needs its unit; it is read as "3 s")"));
   EXPECT_EQ(command("/v1/calibration/weight", "ada", R"({"mass": "500 g"})").status, 200);
-  EXPECT_EQ(command("/v1/calibration/weight", "ada", R"({"mass": 2})").status, 200);
+  EXPECT_EQ(command("/v1/calibration/weight", "ada", R"({"mass_kg": 2})").status, 200);
+  const HttpReply refused = command("/v1/calibration/weight", "ada", R"({"mass": 500})");
+  EXPECT_EQ(refused.status, 400);
+  EXPECT_THAT(error(refused),
+              testing::HasSubstr(R"("500": a mass needs its unit, such as "500 g" or "500 kg")"));
   EXPECT_EQ(error(command("/v1/calibration/undo", "ada")), "nothing has been read yet");
   EXPECT_EQ(command("/v1/calibration/finish", "ada", R"({"certificate": "DKD", "valid_days": 0})").status,
             200);
@@ -53,6 +60,20 @@ TEST_F(ControlApi, ACalibrationIsAskedForInNumbersOrWithUnits) {
   const json told = json::parse(ask({"GET", "/v1/calibration", "", "", ""}).body);
   EXPECT_EQ(told["in_use"]["gain"], 2.0);
   EXPECT_EQ(told["in_use"]["date"], nullptr);
+}
+
+TEST_F(ControlApi, AChangedGainIsKeptOnceItIsConfirmed) {
+  bench_.calibrations.gain_change = daq::gain_change(2000.0, 2.0);
+  const HttpReply refused = command("/v1/calibration/finish", "ada", R"({"certificate": "DKD"})");
+  EXPECT_EQ(refused.status, 409);
+  const json why = json::parse(refused.body);
+  EXPECT_EQ(why["code"], "gain-change");
+  EXPECT_EQ(why["gain_change"]["ratio"], 1000.0);
+  EXPECT_EQ(why["gain_change"]["gain_in_use"], 2.0);
+  EXPECT_EQ(command("/v1/calibration/finish", "ada", R"({"confirm": 1})").status, 400);
+  EXPECT_EQ(command("/v1/calibration/finish", "ada", R"({"certificate": "DKD", "confirm": true})").status,
+            200);
+  EXPECT_THAT(bench_.calibrations.asked, testing::ElementsAre("ada finishes DKD 365 confirmed"));
 }
 
 TEST_F(ControlApi, LeadsABatchWhichPeopleMayNotPlanAgainst) {
@@ -365,7 +386,10 @@ TEST_F(ControlApi, ThePlanIsReplacedAsAWhole) {
   EXPECT_EQ(bench_.plan().sample.replicate, 3);
   EXPECT_DOUBLE_EQ(*bench_.plan().pull_speed_m_per_s, 0.00508);
   EXPECT_EQ(ask({"GET", "/v1/plan", "", "", ""}).body, set.body);
-  EXPECT_EQ(ask({"PUT", "/v1/plan", R"({"side": "wire", "pull_speed": 0.01})", "ada", ""}).status, 200);
+  EXPECT_EQ(set.warning, "");
+  const HttpReply bare = ask({"PUT", "/v1/plan", R"({"side": "wire", "pull_speed": 0.01})", "ada", ""});
+  EXPECT_EQ(bare.status, 200);
+  EXPECT_THAT(bare.warning, testing::HasSubstr(R"("0.01 m/s")"));
   EXPECT_EQ(bench_.plan().sample.name, "");
   EXPECT_EQ(bench_.plan().pull_speed_m_per_s, 0.01);
   for (const char* body :

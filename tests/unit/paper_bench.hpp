@@ -54,11 +54,18 @@ class PaperCalibrator final : public Calibrator {
   }
   [[nodiscard]] std::string undo() override { return "nothing has been read yet"; }
   void finish(const std::string& who, const io::CalibrationPaper& paper, Answer answer) override {
-    asked.push_back(fmt::format("{} finishes {} {}", who, paper.certificate, paper.valid_days));
+    if (gain_change && !paper.confirms_gain) {
+      CalibrationRefusal refusal{"the gain has changed"};
+      refusal.gain_change = gain_change;
+      return answer(std::move(refusal));
+    }
+    asked.push_back(fmt::format("{} finishes {} {}{}", who, paper.certificate, paper.valid_days,
+                                paper.confirms_gain ? " confirmed" : ""));
     answer({});
   }
   [[nodiscard]] std::string give_up() override { return {}; }
 
+  std::optional<daq::GainChange> gain_change;  ///< That of finish().
   std::vector<std::string> asked;
 };
 

@@ -56,7 +56,7 @@ TEST_P(QuantityIsRefused, NamingTheValueAndWhatIsAllowed) {
 INSTANTIATE_TEST_SUITE_P(
     Mistakes, QuantityIsRefused,
     testing::Values(
-        Bad{"12", Dimension::kMass, "\"12\" has no unit; allowed: kg, g, mg, lb"},
+        Bad{"12", Dimension::kMass, "\"12\": a mass needs its unit, such as \"12 g\" or \"12 kg\""},
         Bad{"12 Kg", Dimension::kMass, "\"12 Kg\" has the unit \"Kg\"; allowed: kg, g, mg, lb"},
         Bad{"12 in/min", Dimension::kMass, "\"12 in/min\" has the unit \"in/min\"; allowed: kg, g, mg, lb"},
         Bad{"3 V", Dimension::kDimensionless, "\"3 V\" has the unit \"V\"; allowed: no unit, %, ppm"},
@@ -74,6 +74,51 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"1,5 V", Dimension::kVoltage, "\"1,5 V\" has the unit \",5 V\"; allowed: V, mV, uV"},
         Bad{"1e999 V", Dimension::kVoltage, "\"1e999 V\" is outside the range of numbers"},
         Bad{"1e308 MHz", Dimension::kFrequency, "\"1e308 MHz\" is outside the range of numbers"}));
+
+TEST(EnteredQuantity, TakesANumberAloneByTheRuleOfThePlace) {
+  for (const BareNumber rule : {BareNumber::kRefused, BareNumber::kOnlyZero}) {
+    const auto entered = enter_quantity(" 500 ", Dimension::kMass, rule);
+    ASSERT_FALSE(entered);
+    EXPECT_EQ(entered.error().message, "\" 500 \": a mass needs its unit, such as \"500 g\" or \"500 kg\"");
+  }
+  EXPECT_FALSE(enter_quantity("0", Dimension::kMass, BareNumber::kRefused));
+  EXPECT_EQ(enter_quantity("0", Dimension::kMass, BareNumber::kOnlyZero).value().value, 0.0);
+  const auto silent = enter_quantity("1.5", Dimension::kTime, BareNumber::kSi).value();
+  EXPECT_EQ(silent.value, 1.5);
+  EXPECT_EQ(silent.warning, "");
+  const auto warned = enter_quantity("350", Dimension::kFrequency, BareNumber::kSiWithWarning).value();
+  EXPECT_EQ(warned.value, 350.0);
+  EXPECT_EQ(warned.warning,
+            "\"350\": a frequency needs its unit; it is read as \"350 Hz\": write that, as the next version "
+            "refuses a number alone");
+}
+
+TEST(EnteredQuantity, NeedsNoUnitWhereThereIsNone) {
+  for (const BareNumber rule :
+       {BareNumber::kRefused, BareNumber::kOnlyZero, BareNumber::kSiWithWarning, BareNumber::kSi}) {
+    const auto entered = enter_quantity("0.3", Dimension::kDimensionless, rule).value();
+    EXPECT_EQ(entered.value, 0.3);
+    EXPECT_EQ(entered.warning, "");
+  }
+}
+
+// Whoever follows the message is understood.
+TEST(UnitNeeded, NamesTwoSpellingsThatAreAccepted) {
+  for (int i = 1; i <= static_cast<int>(kLastDimension); ++i) {
+    const auto dimension = static_cast<Dimension>(i);
+    EXPECT_EQ(dimension_of_unit(si_unit(dimension)), dimension);
+    const std::string message = unit_needed("500", dimension);
+    const std::size_t first = message.find('"');
+    const std::size_t between = message.find("\" or \"");
+    ASSERT_NE(between, std::string::npos) << message;
+    const std::string one = message.substr(first + 1, between - first - 1);
+    const std::string other = message.substr(between + 6, message.size() - between - 7);
+    EXPECT_TRUE(parse_quantity(one, dimension)) << message;
+    EXPECT_TRUE(parse_quantity(other, dimension)) << message;
+    EXPECT_NE(one, other);
+  }
+  EXPECT_EQ(dimension_of_unit("1"), Dimension::kDimensionless);
+}
 
 TEST(Number, IsWholeAndDecimal) {
   EXPECT_EQ(parse_number("-1.5e3").value(), -1500.0);

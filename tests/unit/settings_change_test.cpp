@@ -141,10 +141,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{{{"effects.nois.sd", "1"}},
                 "--set effects.nois.sd=1: [effects.nois]: unknown table; did you mean noise? Known here: "
                 "noise, pull"},
-        Refused{
-            {{"effects.pull", "{ speed = 5 }"}},
-            "--set effects.pull={ speed = 5 }: effects.pull.speed = 5: needs a unit; write it as a string "
-            "such as \"5 m/s\""},
+        Refused{{{"effects.pull", "{ speed = 5 }"}},
+                "--set effects.pull={ speed = 5 }: effects.pull.speed = 5: a speed needs its unit, such "
+                "as \"5 mm/min\" or \"5 m/s\""},
         Refused{{{"effects.pull", "{}"}},
                 "--set effects.pull={}: effects.pull.speed is missing; it must be above 0 m/s, written as a "
                 "string with its unit"},
