@@ -247,8 +247,7 @@ void add_import(CLI::App& app, Chosen& chosen) {
        "UNIT");
   text("--sled-mass", options->sled_mass, "with unit: \"200 g\"; needed for a force or a voltage", "M");
   text("--rate", options->rate,
-       "scan rate, with unit: \"350 Hz\"; else the time column tells it, which is checked against it",
-       "RATE");
+       "scan rate, with unit: \"350 Hz\"; else the time column tells it, which is checked against it", "HZ");
   text("--time-column,--time-dataset", options->time_column,
        "heading or number of the time; else by its name; none: do not read it", "NAME");
   text("--time-unit", options->time_unit,
