@@ -132,10 +132,8 @@ def others(bench):
     yield Figure("hand-over of 64 scans", "time", here, row("hand-over", time))
     yield Figure("its peer", "time", peer, row("hand-over", skip, time))
     yield Figure("peer over here", "ratio", peer / here, row("hand-over", skip, skip, ratio))
-    detector = benchmarks(bench / "bench_detector", "^follow/(peak|fit)/350/1000|^follow_unknown_tester/peak/350/1000|^follow/interpolated/350$|^peer_scipy_chain/350/(30|1000)|^peer_scipy_chain_live/350")
-    for first, here, peer in (("live detector", "follow/peak/350/1000", "peer_scipy_chain/350/1000"),
-                              ("the same, a tester", "follow_unknown_tester/peak/350/1000", "peer_scipy_chain/350/1000"),
-                              ("the same, `interpolated`", "follow/interpolated/350", "peer_scipy_chain/350/30"),
+    detector = benchmarks(bench / "bench_detector", "^follow/(turning-points|fit)/350/1000|^peer_scipy_chain_live/350")
+    for first, here, peer in (("live detector", "follow/turning-points/350/1000", "peer_scipy_chain_live/350"),
                               ("the same, `fit`", "follow/fit/350/1000", "peer_scipy_chain_live/350")):
         here, peer = (detector[name]["per_scan"] for name in (here, peer))
         yield Figure(f"{first}, a scan", "time", here, row(first, time))
@@ -143,9 +141,9 @@ def others(bench):
         yield Figure("SciPy over here", "ratio", peer / here, row(first, skip, skip, ratio))
     analysis = benchmarks(bench / "bench_analysis", "whole_test_fit")["analysis_with_whole_test_fit"]
     yield Figure("all results of a test", "time", 1e-9 * analysis["cpu_time"], row("all results", time))
-    pipeline = benchmarks(bench / "bench_pipeline", "^sustained/interpolated")
+    pipeline = benchmarks(bench / "bench_pipeline", "^sustained/turning-points")
     for rate_Hz, said in ((10_000, row("the whole pipeline", r" ([\d.]+) (million); ")), (350, row("the whole pipeline", r"[^|]*; ([\d.]+) (million) \|"))):
-        yield Figure(f"scans a second at {rate_Hz} Hz", "time", pipeline[f"sustained/interpolated/{rate_Hz}"]["all_scans_per_s"], said)
+        yield Figure(f"scans a second at {rate_Hz} Hz", "time", pipeline[f"sustained/turning-points/{rate_Hz}"]["all_scans_per_s"], said)
 
 
 def daemon(release):

@@ -27,11 +27,11 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Misfit, testing::Values("velocity-weakening", "
 // Each slip is captured. A free end, where the damping found is none, contradicts itself: the sled would have
 // to stick again.
 TEST_P(Misfit, EachTestHasNumbersThatCoverTheTruthAndNoneIsMixed) {
-  constexpr int kRepeats = 100;
+  constexpr int kTests = 100;
   const auto file =
       std::filesystem::path(STICKSLIP_SOURCE_DIR) / "config/scenes" / (std::string{GetParam()} + ".toml");
-  const auto tests = test::analyse_scene(file, kRepeats);
-  ASSERT_EQ(tests.size(), static_cast<std::size_t>(kRepeats));
+  const auto tests = test::analyse_scene(file, kTests);
+  ASSERT_EQ(tests.size(), static_cast<std::size_t>(kTests));
   int by_turning_points = 0;
   for (const test::AnalysedTest& test : tests) {
     const analysis::TestResults& results = test.results;
@@ -48,7 +48,7 @@ TEST_P(Misfit, EachTestHasNumbersThatCoverTheTruthAndNoneIsMixed) {
     EXPECT_NEAR(*results.delta_mu.value, truth,
                 *results.delta_mu.systematic_uncertainty + kSigmas * *results.delta_mu.standard_error);
   }
-  EXPECT_GT(by_turning_points, kRepeats / 4);
+  EXPECT_GT(by_turning_points, kTests / 4);
 }
 
 }  // namespace

@@ -61,6 +61,7 @@ class CommandServiceTest : public testing::Test {
                             heard_};
   runtime::CalibrationService calibrations_{{.config = config_,
                                              .storage = storage_,
+                                             .events = heard_,
                                              .session = [] { return nullptr; },
                                              .on_main = [](const std::function<void()>&) {},
                                              .date_ns = [] { return 0; },
@@ -87,7 +88,7 @@ TEST_F(CommandServiceTest, WithoutABoardCommandsAreRefused) {
 
 TEST_F(CommandServiceTest, WithoutABoardNoCalibrationBegins) {
   std::string refusal;
-  const auto told = [&refusal](const std::string& why) { refusal = why; };
+  const auto told = [&refusal](const CalibrationRefusal& refused) { refusal = refused.why; };
   calibrations_.begin("ada", {}, told);
   EXPECT_THAT(refusal, testing::HasSubstr("names no folder"));
   config_.bench.calibration_folder = folder_.path();
