@@ -183,12 +183,15 @@ Result<std::string> run_import(const ImportOptions& options, const std::string& 
   Result<traces::ImportRequest> request = request_of(options);
   if (!request) return tl::unexpected(request.error());
   if (options.inspect) return traces::inspect(*request);
-  if (options.output.empty())
+  const auto no_output = [] {
     return base::usage_error("--output is needed: the record to make, such as -o pull.h5");
+  };
+  if (!options.column.empty() && options.output.empty()) return no_output();
   // An exported record keeps its method unless another one is asked for.
   if (options.column.empty() && options.method.empty()) request->process.method.clear();
   Result<traces::Imported> imported = traces::import_trace(*request);
   if (!imported) return tl::unexpected(imported.error());
+  if (options.output.empty()) return no_output();
   std::string text = std::move(imported->report);
   std::vector<record::Record>& records = imported->records;
   for (record::Record& record : records) {
