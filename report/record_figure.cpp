@@ -68,13 +68,19 @@ void add_peaks(plot::Panel& panel, const base::LongColumn<detect::Cycle>& cycles
                      .colour = plot::Colour::kVermilion};
   plot::Curve slides{
       .label = "peak found, slides on", .style = plot::CurveStyle::kPoints, .colour = plot::Colour::kBlack};
+  plot::Curve unseen{.label = "peak found, end not seen",
+                     .style = plot::CurveStyle::kPoints,
+                     .colour = plot::Colour::kOrange};
   for (const detect::Cycle& cycle : cycles) {
-    plot::Curve& peaks = (cycle.flags & detect::kCycleCaptured) != 0 ? sticks : slides;
+    plot::Curve& peaks = (cycle.flags & detect::kCycleCaptured) != 0 ? sticks
+                         : std::isnan(cycle.capture_evidence)        ? unseen
+                                                                     : slides;
     peaks.x.push_back(cycle.peak_time_s);
     peaks.y.push_back(cycle.peak);
   }
   if (!sticks.x.empty()) panel.curves.push_back(std::move(sticks));
   if (!slides.x.empty()) panel.curves.push_back(std::move(slides));
+  if (!unseen.x.empty()) panel.curves.push_back(std::move(unseen));
 }
 
 plot::Panel force_panel(const record::Record& record, const RecordTrace& trace, const plot::AxisRange& part) {

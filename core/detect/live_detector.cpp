@@ -61,7 +61,7 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
     fall_begun_ = {static_cast<base::ScanIndex>(finder_.high_at()), finder_.high(), come_ - 1};
   if (fall && rule_.is_slip(*fall, sigma) && fall->peak_at >= loading_at_)
     return slip(*fall, time_of(position));
-  if (follower_.has_task() && follower_.step(time_of(position), usable_sigma())) take_decision();
+  if (follower_.step(time_of(position), usable_sigma())) take_decision();
   if (amplitude && amplitude->is_over()) {
     watch_.stop();
     state_.regime = model::Regime::kSteadySliding;

@@ -9,7 +9,6 @@
 #include "core/detect/regime_rule.hpp"
 #include "core/detect/slip_rule.hpp"
 #include "core/detect/turning_points.hpp"
-#include "core/estimate/sampling.hpp"
 #include "core/model/capture.hpp"
 
 namespace stickslip::detect {

@@ -35,9 +35,7 @@ class SlipFollower {
   /// \param begins_from_stick  the slip before was captured. A slip too large for a free oscillation is taken
   ///        to begin from sticking in any case.
   void open(const Fall& fall, double peak_s, double trough_s, bool begins_from_stick, double sigma) noexcept;
-  /// Whether a task is due.
-  [[nodiscard]] bool has_task() const noexcept { return task_ != Task::kNone; }
-  /// Does at most one task. \return true if it decided how the slip ends.
+  /// Does the task that is due, if there is one. \return true if it decided how the slip ends.
   [[nodiscard]] bool step(double now_s, double sigma) noexcept {
     return task_ != Task::kNone && !(now_s < next_task_s_) && do_task(now_s, sigma);
   }

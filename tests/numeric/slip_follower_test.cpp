@@ -47,7 +47,7 @@ class Followed {
       follower_.open(*fall, time_s(fall->peak_at), time_s(fall->trough_at), sticks_, sigma_);
       return;
     }
-    if (follower_.has_task() && follower_.step(now_s, sigma_)) sticks_ = follower_.captured();
+    if (follower_.step(now_s, sigma_)) sticks_ = follower_.captured();
   }
   /// So many scans are missing.
   void gap(double count) {

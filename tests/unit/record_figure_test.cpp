@@ -155,10 +155,15 @@ TEST(RecordFigure, PeaksAreMarkedByWhatCameAfterThem) {
   record.cycles = {cycle};
   cycle.peak_time_s = 2.0;
   cycle.flags = 0;
+  cycle.capture_evidence = -20.0;
+  record.cycles.push_back(cycle);
+  cycle.peak_time_s = 3.0;
+  cycle.capture_evidence = std::numeric_limits<double>::quiet_NaN();  // Scans are missing, or the pull ended.
   record.cycles.push_back(cycle);
   const plot::Figure figure = *record_figure(record, {});
   EXPECT_THAT(curve(figure.panels[0], "peak found, sticks again").x, ElementsAre(1.0));
   EXPECT_THAT(curve(figure.panels[0], "peak found, slides on").x, ElementsAre(2.0));
+  EXPECT_THAT(curve(figure.panels[0], "peak found, end not seen").x, ElementsAre(3.0));
 }
 
 TEST(RecordFigure, PartsThatAreNotThereAreRefused) {
