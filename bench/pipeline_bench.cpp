@@ -334,7 +334,7 @@ void register_all() {
       add("stage/processing/" + name, [tier](benchmark::State& state) { stage_processing(state, tier); });
     }
     // A rate that holds for ten million scans is no matter of caches and queues.
-    add("sustained/interpolated",
+    add("sustained/turning-points",
         [=](benchmark::State& state) { whole(state, detect::EstimatorTier::kTurningPoints, 1e7 / rate_Hz); })
         ->UseManualTime()
         ->Iterations(1);

@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
   const std::uint64_t seed = argc > 2 ? number(argv[2]) : 1;
   const auto estimator = argc > 3 ? detect::estimator_tier_from_name(argv[3]) : detect::EstimatorTier::kFit;
   if (!estimator) {
-    fmt::print(stderr, "regime_limits: '{}' is none of peak, interpolated and fit\n", argv[3]);
+    fmt::print(stderr, "regime_limits: '{}' is neither turning-points nor fit\n", argv[3]);
     return 2;
   }
   const auto base = sim::load_scene(std::filesystem::path{STICKSLIP_SOURCE_DIR} /

@@ -9,8 +9,8 @@
 #include "cli/effects.hpp"
 #include "cli/method_option.hpp"
 #include "cli/subcommands.hpp"
-#include "io/print_text.hpp"
 #include "io/json_text.hpp"
+#include "io/print_text.hpp"
 #include "io/results_json.hpp"
 #include "report/truth_table.hpp"
 #include <nlohmann/json.hpp>
@@ -83,10 +83,10 @@ base::Result<std::string> run_analyze(const AnalyzeOptions& options) {
                                base::one_line(options.estimator, 100));
     }
     if (detect::is_former_estimator(options.estimator)) {
-      io::print_error("stickslip",
-                      fmt::format("--estimator {}: this estimator is no more; \"turning-points\" "
-                                  "takes its place: write that, or \"fit\"",
-                                  options.estimator));
+      io::print_error(
+          "stickslip",
+          fmt::format("--estimator {}: this estimator was removed; write \"turning-points\" or \"fit\"",
+                      options.estimator));
     }
   }
   const base::Result<std::optional<analysis::SkippedCorrections>> skipped = chosen_corrections(options.keep);

@@ -308,8 +308,7 @@ void read_estimator(Settings table, DaemonConfig& config) {
   if (const std::string text = table.text("estimator", ""); detect::is_former_estimator(text)) {
     config.estimator = detect::EstimatorTier::kTurningPoints;
     config.warnings.push_back(fmt::format(
-        "analysis.estimator = \"{}\": this estimator is no more; \"turning-points\" takes its place: write "
-        "that, or \"fit\"",
+        "analysis.estimator = \"{}\": this estimator was removed; write \"turning-points\" or \"fit\"",
         text));
     return;
   }

@@ -38,7 +38,7 @@ class LiveCycles {
 /// Settings of estimates_from_live().
 struct LiveSettlement {
   bool first_counts = false;  ///< Means include the first slip.
-  std::string reason;         ///< Reason given for all results that these tiers do not determine.
+  std::string reason;         ///< Reason given for all results that turning points do not determine.
 };
 
 /// Replaces estimate_in_sections(). Values are given to S, K and S − K (means over the live cycles), the

@@ -15,6 +15,7 @@
 #include "core/analysis/cycle_features.hpp"
 #include "core/analysis/escape.hpp"
 #include "core/base/nan.hpp"
+#include "core/detect/regime_rule.hpp"
 #include "core/model/closed_forms.hpp"
 #include "core/model/threshold.hpp"
 #include "core/signal/statistics.hpp"
@@ -172,51 +173,60 @@ bool is_overdamped(const SlipEstimates& estimates) noexcept {
 }
 
 /// A slip whose end contradicts its own numbers: the sled sticks again exactly where Q is below the threshold
-/// [22], and without damping always. S − K, γ and the threshold may each be off by kSure standard errors, and
-/// Q by kMargin more, for what the model leaves out. \return what contradicts; empty if nothing does.
+/// [22], and without damping always. Asked of slips whose end is decided, where the belt is constant: an
+/// acceleration shifts the threshold (docs/ramp.md). S − K, γ and r may each be off by kSure standard errors,
+/// and Q by kMargin more, for what the model leaves out.
+/// \return what contradicts; empty if nothing does.
 std::string contradiction(const SlipEstimates& estimates) {
-  constexpr double kSure = 3.0;
+  constexpr double kSure = 4.0;
   constexpr double kMargin = 1.2;
+  if (!estimates.belt.is_constant()) return {};
   const double omega = estimates.fit.shared.omega;
-  const auto [gamma, error] = damping_of(estimates);
-  const auto threshold = [omega = omega](double damping) {
+  const double r = estimates.fit.shared.r;
+  const double r_error = kSure * std::sqrt(estimates.fit.shared_covariance(2, 2));
+  const auto [gamma, gamma_error] = damping_of(estimates);
+  const auto threshold = [omega](double damping) {
     return model::Q_threshold(std::clamp(damping / (2.0 * omega), 0.0, model::kLargestGammaOver2Omega));
   };
-  const double lowest = threshold(gamma + kSure * error);
-  const double highest = threshold(gamma - kSure * error);
-  for (std::size_t i = 0; i < estimates.ends.size(); ++i) {
+  const double lowest = threshold(gamma + kSure * gamma_error);
+  const double highest = threshold(gamma - kSure * gamma_error);
+  for (std::size_t i = 0; i < estimates.log_likelihood_ratios.size(); ++i) {
+    const double ratio = estimates.log_likelihood_ratios[i];
     const bool begins_from_stick = i == 0 || estimates.window_of_slip[i] != estimates.window_of_slip[i - 1];
-    if (estimates.ends[i] == SlipEnd::kUnknown || !begins_from_stick || !estimates.has_window(i)) continue;
+    if (std::abs(ratio) < std::log(detect::kDecisiveLikelihoodRatio) || !begins_from_stick ||
+        !estimates.has_window(i)) {
+      continue;
+    }
     const estimate::SlipWindow& window = estimates.windows[estimates.window_of_slip[i]];
     const double D = window.slip.S - window.slip.K;
     const double D_error = kSure * estimates.fit.delta_mu_error(window);
-    const double r = estimates.belt.stick_rate(estimates.fit.shared.r, window.slip.onset_s);
-    const auto Q = [&](double delta_mu) {
-      return model::dimensionless_speed(r, omega, std::max(delta_mu, 0.0));
+    const auto Q = [omega](double rate, double delta_mu) {
+      return model::dimensionless_speed(std::max(rate, 0.0), omega, std::max(delta_mu, 0.0));
     };
-    if (estimates.ends[i] == SlipEnd::kFree && kMargin * Q(D - D_error) < lowest) {
+    const bool is_free = ratio < 0.0 && estimates.ends[i] == SlipEnd::kFree;
+    if (is_free && kMargin * Q(r + r_error, D - D_error) < lowest) {
       return fmt::format(
-          "slip {} went on freely at Q = {:.3g}, below the threshold {:.3g} of the damping found: it would "
-          "have "
-          "to stick again",
-          i + 1, Q(D), threshold(gamma));
+          "the slip at {:.3f} s went on freely at Q = {:.3g}, where the damping found, gamma/2omega = "
+          "{:.2g}, "
+          "lets it stick again",
+          window.slip.onset_s, Q(r, D), gamma / (2.0 * omega));
     }
-    if (estimates.ends[i] == SlipEnd::kCaptured && Q(D + D_error) > kMargin * highest) {
+    const bool is_captured = ratio > 0.0 && estimates.ends[i] == SlipEnd::kCaptured;
+    if (is_captured && Q(r - r_error, D + D_error) > kMargin * highest) {
       return fmt::format(
-          "slip {} stuck again at Q = {:.3g}, above the threshold {:.3g} of the damping found: it would have "
-          "to go "
-          "on",
-          i + 1, Q(D), threshold(gamma));
+          "the slip at {:.3f} s stuck again at Q = {:.3g}, where the damping found, gamma/2omega = {:.2g}, "
+          "lets it go on",
+          window.slip.onset_s, Q(r, D), gamma / (2.0 * omega));
     }
   }
   return {};
 }
 
-/// Why model_describes() says no.
+/// Why the model does not describe the test; empty if it does.
 std::string why_not(const SlipEstimates& estimates, double sigma) {
   const estimate::SlipFit& fit = estimates.fit;
   if (!fit.converged) return "the fit of the model did not converge";
-  if (fit.residual_sigma > kLargestResidualSigmas * sigma) {
+  if (!(fit.residual_sigma <= kLargestResidualSigmas * sigma)) {
     return fmt::format("the model leaves residuals of {:.1f} times the scan noise, {:.0f} are allowed",
                        fit.residual_sigma / sigma, kLargestResidualSigmas);
   }
@@ -226,17 +236,18 @@ std::string why_not(const SlipEstimates& estimates, double sigma) {
         "overdamped: gamma/2omega {:.2g} +- {:.1g}, the scans show no oscillation of the model",
         gamma / (2.0 * fit.shared.omega), error / (2.0 * fit.shared.omega));
   }
-  if (!feeds_the_oscillation(estimates)) return contradiction(estimates);
-  return fmt::format(
-      "the model does not describe this friction: its damping, {:.2g} +- {:.1g} 1/s, would be negative",
-      gamma, error);
+  if (feeds_the_oscillation(estimates)) {
+    return fmt::format(
+        "the model does not describe this friction: its damping, {:.2g} +- {:.1g} 1/s, would be negative",
+        gamma, error);
+  }
+  return contradiction(estimates);
 }
 
 }  // namespace
 
 bool model_describes(const SlipEstimates& estimates, double sigma) {
-  return estimates.fit.converged && estimates.fit.residual_sigma <= kLargestResidualSigmas * sigma &&
-         !feeds_the_oscillation(estimates) && !is_overdamped(estimates) && contradiction(estimates).empty();
+  return why_not(estimates, sigma).empty();
 }
 
 void no_model_results(const std::string& reason, TestResults& results) {
@@ -265,8 +276,8 @@ void escape_results(const SlipEstimates& estimates, TestResults& results) {
 
 void model_results(std::span<const detect::Fall> slips, const SlipEstimates& estimates,
                    const model::Tester& tester, double sigma, TestResults& results) {
-  if (!model_describes(estimates, sigma)) {
-    no_model_results(why_not(estimates, sigma), results);
+  if (const std::string why = why_not(estimates, sigma); !why.empty()) {
+    no_model_results(why, results);
     // The traditional amplitude needs no model.
     signal::RunningVariance amplitude;
     for (const detect::Fall& slip : slips) amplitude.add(0.5 * slip.drop());

@@ -15,8 +15,8 @@ namespace stickslip::analysis {
 /// Largest residual in units of the scan noise up to which the model counts as describing the trace.
 inline constexpr double kLargestResidualSigmas = 5.0;
 
-/// Whether the fit converged, its residuals agree with the noise of the scans, its damping is not
-/// significantly negative, and no slip ended otherwise than its numbers say.
+/// Whether the fit converged, its residuals agree with the noise of the scans, its damping is neither
+/// significantly negative nor overdamped, and no slip ended otherwise than its numbers say.
 [[nodiscard]] bool model_describes(const SlipEstimates& estimates, double sigma);
 
 /// Fills mu_s, mu_k, delta_mu, omega, gamma_over_2omega, Q, Q_threshold, threshold_speed,

@@ -87,6 +87,7 @@ detect::LiveSettings live_settings(const AnalysisSettings& settings) {
 
 /// \param why  the fit has no results.
 std::string turning_points_finding(const Estimate& delta_mu, const std::string& why) {
+  if (!delta_mu.value) return fmt::format("S and K have no value, as {}; nor by turning points", why);
   const double error =
       std::hypot(delta_mu.standard_error.value_or(0.0), delta_mu.systematic_uncertainty.value_or(0.0));
   return fmt::format("S and K are by turning points, S - K uncertain by {:.2g}, as {}", error, why);
@@ -335,7 +336,7 @@ TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongCol
   TestEstimates with = estimates(settings_.prior);
   if (!settings_.prior.coupling || !tester_ || !with.tester) return with;
   tester_check_ = check_tester(*tester_, *with.tester, *settings_.prior.coupling, settings_.tester);
-  return tester_check_->used() ? std::move(with) : std::move(alone);
+  return tester_check_->used() && with.model_describes ? std::move(with) : std::move(alone);
 }
 
 void TestAnalysis::speed_results(const estimate::Trace& trace, const TestEstimates& estimates,
@@ -374,6 +375,7 @@ void TestAnalysis::keep_cycles(const estimate::Trace& trace, const TestEstimates
   const base::LongColumn<std::uint8_t>& saturated = saturated_;
   cycles_ = base::LongColumn<detect::Cycle>{settings_.scratch_folder};
   LiveCycles live{trace, live_cycles_};
+  const bool by_fit = fits_whole_test() && estimates.model_describes;
   for (std::size_t i = 0; i < cycles.size(); ++i) {
     detect::Cycle cycle = cycles[i];
     const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
@@ -396,7 +398,7 @@ void TestAnalysis::keep_cycles(const estimate::Trace& trace, const TestEstimates
     if (measured_speed_ && std::isnan(cycle.pull_speed_m_per_s)) {
       // Without a fit the peak, which is near it, stands for the onset.
       const double at_s =
-          fits_whole_test() || std::isfinite(cycle.onset_time_s) ? cycle.onset_time_s : cycle.peak_time_s;
+          by_fit || std::isfinite(cycle.onset_time_s) ? cycle.onset_time_s : cycle.peak_time_s;
       if (std::isfinite(at_s)) cycle.pull_speed_m_per_s = measured_speed_->speed_m_per_s(at_s);
     }
     if (fits_whole_test()) {

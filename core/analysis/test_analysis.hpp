@@ -38,8 +38,8 @@ struct AnalysisSettings {
   model::Tester tester;
   model::Method method;
   /// Estimator of S, K and S − K, of each cycle and of the test. Only kFit fits the whole test at its end.
-  /// The other tiers use the cycles and the regime as detected live, and give no ω, no γ and no result that
-  /// needs them.
+  /// With the other, and where the fit does not describe the test, results come from cycles by turning
+  /// points: no ω, no γ and no result that needs them.
   detect::EstimatorTier estimator = detect::EstimatorTier::kFit;
   estimate::SharedPrior prior;  ///< Of the tester's parameters; may be empty.
   SkippedCorrections skipped;   ///< Corrections to leave out, to show their effect.

@@ -10,7 +10,7 @@ Estimate estimate_of(const signal::WanderingMean& values, double systematic_unce
   if (values.count() < 1.0) return Estimate::none("no cycle with an estimate of its own");
   Estimate estimate = values.count() < 2.0 ? Estimate::of(values.mean())
                                            : Estimate::of(values.mean(), values.error_of_mean());
-  estimate.systematic_uncertainty = systematic_uncertainty;
+  if (estimate.value) estimate.systematic_uncertainty = systematic_uncertainty;
   return estimate;
 }
 

@@ -6,7 +6,7 @@
 ///     if (const auto last = detector.end()) use(*last);
 ///
 /// Results depend on the scans only, not on their division into blocks. O(1) for a scan. The fits of a
-/// closing cycle have bounded size and, except for `peak`, are distributed over scans. Allocates only in the
+/// closing cycle have bounded size and are distributed over scans. Allocates only in the
 /// constructor.
 ///
 /// A fall is reported kFallDelayScans after the scan at which the median of three scans has fallen below its

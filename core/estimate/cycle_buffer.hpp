@@ -36,7 +36,6 @@ class CycleBuffer {
 
   /// \param time_s  rises from call to call. Leave out unusable scans.
   void add(double time_s, double value) noexcept { add({time_s, value, 0.0, 1.0, time_s, time_s}); }
-  void add(const CyclePoint& point) noexcept;
   /// Limits the length of blocks in [from_s, to_s] to longest_s. Replaces the limit of an earlier call.
   void keep_fine(double from_s, double to_s, double longest_s) noexcept;
   /// Removes the points that end before time_s.
@@ -48,6 +47,7 @@ class CycleBuffer {
   [[nodiscard]] std::span<const CyclePoint> since(double time_s) const noexcept;
 
  private:
+  void add(const CyclePoint& point) noexcept;
   /// Merges neighbours whose block is at most its age over `resolution` long. \return points left.
   [[nodiscard]] std::size_t merged_count(double resolution) const noexcept;
   void merge(double resolution) noexcept;

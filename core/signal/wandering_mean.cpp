@@ -46,10 +46,6 @@ void WanderingMean::add(double value) noexcept {
   for (std::size_t i = 0; i < block_count_; ++i) blocks_[i] = 0.5 * (blocks_[2 * i] + blocks_[2 * i + 1]);
 }
 
-double WanderingMean::correlation_length() const noexcept {
-  return static_cast<double>(block_size_) * correlation_length_of(std::span{blocks_}.first(block_count_));
-}
-
 double WanderingMean::error_of_mean() const noexcept {
   if (values_.count < 2.0) return 0.0;
   const std::span blocks = std::span{blocks_}.first(block_count_);

@@ -25,9 +25,6 @@ class WanderingMean {
   [[nodiscard]] double mean() const noexcept { return values_.mean; }
   /// Of the values; divisor n − 1.
   [[nodiscard]] double variance() const noexcept { return values_.variance(); }
-  /// Values that one independent value is worth, 1 … a half of those there are: the integrated
-  /// autocorrelation time. 1 for fewer than eight values.
-  [[nodiscard]] double correlation_length() const noexcept;
   /// Standard error of mean(). Requires at least one value.
   [[nodiscard]] double error_of_mean() const noexcept;
 

@@ -92,8 +92,7 @@ Followed follow(const LiveScene& scene, estimate::SharedPrior prior) {
   return followed;
 }
 
-// Rates with one scan a row and with many, oscillations for which the first rows were far too long; nothing
-// known of the tester.
+// Few and many scans a cycle, slow and quick oscillations; nothing is known of the tester.
 TEST(SlipFollower, TellsCapturesFromAnEscapeWhateverTheRate) {
   const std::vector<std::pair<double, double>> rates{{100.0, 5.0},   {350.0, 20.0},    {1000.0, 10.0},
                                                      {1000.0, 40.0}, {10'000.0, 20.0}, {100'000.0, 20.0}};

@@ -50,7 +50,7 @@ constexpr double kOtherSlip = 3.0 / 1113.0;
 constexpr double kTransitionVariance = 1.294;
 constexpr double kTransitionRms_s = 0.161e-3;
 
-/// The same by the estimator `interpolated`, which has each slip as it was decided while the test ran.
+/// The same by the estimator `turning-points`, which has each slip as it was decided while the test ran.
 constexpr std::array<ClassRates, 4> kDocumentedWithoutFit{{
     {"stick-slip", model::Regime::kStickSlip, 1500, 40, 25},
     {"ring-down", model::Regime::kRingDown, 7383, 136, 368},

@@ -176,10 +176,12 @@ inline base::Result<PromiseResult> measure_promise(const sim::Scene& base, const
       traditional = *test.static_coefficient.value - *test.kinetic_coefficient.value;
     }
     result.all.traditional.add(traditional);
-    result.all.delta_mu.add(test.delta_mu.value);
+    // Of the fit, not of what stands in for it.
+    const std::optional<double> delta_mu = test.omega.value ? test.delta_mu.value : std::nullopt;
+    result.all.delta_mu.add(delta_mu);
     if (test.stick_cycle_count.value.value_or(0.0) >= 1.0) {
       result.stuck.traditional.add(traditional);
-      result.stuck.delta_mu.add(test.delta_mu.value);
+      result.stuck.delta_mu.add(delta_mu);
     }
     result.cycle_count += test.cycle_count.value.value_or(0.0) / static_cast<double>(count);
   }

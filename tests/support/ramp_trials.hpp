@@ -113,7 +113,7 @@ struct RampTrials {
  private:
   void take(const analysis::TestResults& results, const base::LongColumn<detect::Cycle>& cycles) {
     ++tests;
-    if (!results.delta_mu.value) {
+    if (!results.omega.value) {
       ++without_delta_mu;
       return;
     }

@@ -63,7 +63,9 @@ struct ScatterTrials {
       }
       results.push_back(analysis.finish());
       cycles.emplace_back(analysis.cycles().begin(), analysis.cycles().end());
-      delta_mu.push_back(results.back().delta_mu);
+      // Of the fit, not of what stands in for it.
+      const analysis::TestResults& found = results.back();
+      delta_mu.push_back(found.omega.value ? found.delta_mu : analysis::Estimate::none(found.omega.reason));
       keep_escapes(sim::scene_truth(scene, scene.scan_rate_Hz, static_cast<std::uint64_t>(seed)));
     }
   }

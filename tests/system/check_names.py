@@ -86,6 +86,8 @@ def main():
         def visit(name, item):
             if not isinstance(item, h5py.Dataset):
                 return
+            # A user chooses the keys.
+            name = re.sub(r"^metadata/.+", "metadata/KEY", name)
             seen.add(name)
             kind = kind_of(item)
             unit = item.attrs.get("units", "")

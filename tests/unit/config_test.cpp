@@ -101,8 +101,7 @@ TEST(Config, EstimatorsOfVersion01MeanTurningPointsWithAWarning) {
     ASSERT_EQ(config->warnings.size(), 1U);
     EXPECT_EQ(config->warnings.front(),
               "analysis.estimator = \"" + former +
-                  "\": this estimator is no more; \"turning-points\" takes its place: "
-                  "write that, or \"fit\"");
+                  "\": this estimator was removed; write \"turning-points\" or \"fit\"");
   }
   const auto config = read(std::string{kGood} + "[analysis]\nestimator = \"turning-points\"\n");
   EXPECT_EQ(config->estimator, detect::EstimatorTier::kTurningPoints);

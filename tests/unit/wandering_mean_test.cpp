@@ -85,7 +85,6 @@ TEST(WanderingMean, OfFewValues) {
   EXPECT_EQ(mean.error_of_mean(), 0.0);
   mean.add(4.0);
   EXPECT_EQ(mean.error_of_mean(), 1.0);
-  EXPECT_EQ(mean.correlation_length(), 1.0);
   const std::uint64_t before = test::allocation_count();
   for (int i = 0; i < 2000; ++i) mean.add(3.0);
   EXPECT_EQ(test::allocation_count(), before);
