@@ -123,6 +123,8 @@ class OwnReader {
     try {
       if (const auto header = header_fact(line)) {
         name = io::kHeaderFact;
+        if (has_header_ || columns_ > 0) throw std::invalid_argument("it stands once, above the table");
+        has_header_ = true;
         record_.header = record::header_from_json(io::fact_json(*header));
         const double rate_Hz = record_.header.board.scan_rate_granted_Hz;
         if (!(rate_Hz > 0.0) || !std::isfinite(rate_Hz))
@@ -264,6 +266,7 @@ class OwnReader {
   std::vector<Jump> jumps_;
   std::optional<std::size_t> row_count_;  ///< As the table states it; older ones do not.
   std::int64_t line_ = 0;
+  bool has_header_ = false;
   std::size_t columns_ = 0;  ///< 0: the heading has not come yet.
   std::size_t scan_ = 0;
   std::size_t raw_ = 0;

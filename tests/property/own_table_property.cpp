@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -150,6 +151,23 @@ RC_GTEST_PROP(OwnTableProperty, ATableThatLacksARowIsRefused, ()) {
   test::write_content(request.path, text);
   RC_ASSERT(import_trace(request).has_value() ==
             (record.scan.size() > 1 && (row == 0 || row + 1 == record.scan.size())));
+}
+
+RC_GTEST_PROP(OwnTableProperty, ASecondHeaderIsRefusedWhereverItStands, ()) {
+  std::string text = io::scans_csv(any_record());
+  const std::size_t header = text.find("\n# header: {") + 1;
+  const std::string line = text.substr(header, text.find('\n', header) + 1 - header);
+  auto lines = *rc::gen::inRange<std::size_t>(0, static_cast<std::size_t>(std::ranges::count(text, '\n')));
+  std::size_t at = 0;
+  for (; lines > 0; --lines) at = text.find('\n', at) + 1;
+  text.insert(at, line);
+  const test::TemporaryFolder folder;
+  ImportRequest request;
+  request.path = folder / "trace.csv";
+  test::write_content(request.path, text);
+  const auto imported = import_trace(request);
+  RC_ASSERT(!imported.has_value());
+  RC_ASSERT(imported.error().message.find("it stands once, above the table") != std::string::npos);
 }
 
 RC_GTEST_PROP(OwnTableProperty, AGapThatOverlapsARowIsRefused, ()) {
