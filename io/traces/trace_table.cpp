@@ -309,7 +309,8 @@ base::Result<std::size_t> find_column(const Dialect& dialect, const std::string&
       find([&](const ColumnName& column) { return column.text == wanted || column.text == "/" + wanted; });
   if (found && !*found) found = find([&](const ColumnName& column) { return folded(column.text) == form; });
   if (found && !*found) {
-    const std::string bare = folded(column_name(wanted).name);
+    // Brackets hold a unit in a heading; behind a variable they choose one of its columns.
+    const std::string bare = dialect.numbers ? form : folded(column_name(wanted).name);
     found = find(
         [&](const ColumnName& column) { return folded(column.name) == form || folded(column.name) == bare; });
   }
