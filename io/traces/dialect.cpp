@@ -408,14 +408,14 @@ bool Dialect::is_row(const std::vector<std::string_view>& fields) const {
   return any;
 }
 
-bool Dialect::has_label(const std::vector<std::string_view>& fields) const {
+std::optional<std::size_t> Dialect::label_column(const std::vector<std::string_view>& fields) const {
   for (std::size_t c = 0; c < columns.size() && c < fields.size() && !numeric[c]; ++c) {
     if (!clock[c] && !sparse[c]) continue;
     const std::string_view text = trimmed(fields[c]);
     if (read_cell(text, decimal).kind == CellKind::kText && !(clock[c] && read_time_cell(text, decimal)))
-      return true;
+      return c;
   }
-  return false;
+  return std::nullopt;
 }
 
 std::string Dialect::text(std::optional<std::size_t> value) const {

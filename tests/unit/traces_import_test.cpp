@@ -77,6 +77,16 @@ TEST_F(TraceImport, StatisticsWithAPlausibleTimeAreLeftOut) {
   expect_values("Run,t (s),F\nA,0.00,1\n,0.01,2\n,0.02,3\nB,0.03,4\n,0.04,5\n", values(5));
 }
 
+// Words in the last rows of a column that has words above are events.
+TEST_F(TraceImport, EventsInTheLastRowsAreScans) {
+  std::string content = "Event,t (s),F\n";
+  for (int i = 0; i < 20; ++i) {
+    const char* const event = i == 4 ? "peak" : i == 18 ? "stop" : i == 19 ? "end" : "";
+    content += fmt::format("{},{:.2f},{}\n", event, 0.01 * i, 1 + i);
+  }
+  expect_values(content, values(20));
+}
+
 TEST_F(TraceImport, TextBetweenScansIsRefused) {
   expect_refused("t (s),F\n" + rows(0, 5) + "0.05,abc\n" + rows(6, 9),
                  ":7: column 'F' is 'abc', and scans follow in line 8");
