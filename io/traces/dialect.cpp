@@ -436,6 +436,15 @@ std::string Dialect::text(std::optional<std::size_t> value) const {
                      first_row_line, names);
 }
 
+std::string options_text(const DialectOptions& options) {
+  std::string text;
+  if (options.encoding) text += fmt::format(" --encoding {}", name(*options.encoding));
+  if (options.separator) text += fmt::format(" --separator {}", separator_name(*options.separator));
+  if (options.decimal) text += fmt::format(" --decimal {}", *options.decimal == '.' ? "point" : "comma");
+  if (options.skip > 0) text += fmt::format(" --skip {}", options.skip);
+  return text;
+}
+
 bool is_no_row(std::string_view line) {
   const std::string_view text = trimmed(line);
   return text.empty() || text.front() == '#' || text.front() == '%' || text.starts_with("//");

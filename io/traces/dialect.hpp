@@ -27,6 +27,9 @@ struct DialectOptions {
   std::int64_t skip = 0;        ///< Lines at the beginning that are no part of the table.
 };
 
+/// The same as options of `stickslip import`, each with a blank in front.
+[[nodiscard]] std::string options_text(const DialectOptions& options);
+
 struct Dialect {
   Encoding encoding = Encoding::kUtf8;
   char separator = ',';

@@ -101,7 +101,7 @@ std::string command(const ImportRequest& request, const Dialect& dialect, const 
   if (counts) text += " --count-range LOWEST..HIGHEST --volts-per-count VOLTS";
   if (counts || (unit && unit->quantity == daq::RawQuantity::kVolts)) text += " --load-cell-gain GAIN";
   if (!unit || unit->quantity != daq::RawQuantity::kCoefficient) text += " --sled-mass MASS";
-  return text + output_option(request.path);
+  return text + options_text(request.dialect) + output_option(request.path);
 }
 
 /// What a file that is no text has beside the likely column and those that can be read with it.

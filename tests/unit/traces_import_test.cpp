@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "io/traces/inspect.hpp"
+
 #include "tests/unit/traces_sample.hpp"
 
 namespace stickslip::traces {
@@ -223,6 +225,20 @@ TEST_F(TraceImport, WithoutTimesTheRateIsNeeded) {
   // A column for times in which nothing stands.
   request_.rate_Hz = 100.0;
   expect_values("X_Value\tF\n\t1.5\n\t2.5\n", {1.5, 2.5});
+}
+
+// The command that is printed reads the file as it was inspected.
+TEST_F(TraceImport, PrintedCommandKeepsWhatWasStated) {
+  test::write_content(request_.path, "1;2\nt (s);F (N)\n0,00;1,5\n0,01;2,5\n0,02;3,5\n");
+  request_.column.clear();
+  request_.dialect = {Encoding::kWindows1252, ';', ',', 1};
+  const std::string stated = " --encoding Windows-1252 --separator semicolon --decimal comma --skip 1 -o ";
+  const auto text = inspect(request_);
+  ASSERT_TRUE(text) << text.error().message;
+  EXPECT_THAT(*text, HasSubstr(stated));
+  const auto imported = import_trace(request_);
+  ASSERT_FALSE(imported);
+  EXPECT_THAT(imported.error().message, HasSubstr(stated));
 }
 
 TEST_F(TraceImport, MissingFileIsAUsageError) {
