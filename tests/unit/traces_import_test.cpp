@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/traces/inspect.hpp"
@@ -239,6 +241,19 @@ TEST_F(TraceImport, PrintedCommandKeepsWhatWasStated) {
   const auto imported = import_trace(request_);
   ASSERT_FALSE(imported);
   EXPECT_THAT(imported.error().message, HasSubstr(stated));
+}
+
+TEST_F(TraceImport, PrintedCommandNamesTheRecordAfterTheFile) {
+  for (const auto& [file, record] :
+       {std::pair{"a.b/nodot", "a.b/nodot.h5"}, std::pair{"a.b/x.csv", "a.b/x.h5"},
+        std::pair{"a.b/x.h5", "a.b/x-record.h5"}, std::pair{"a.b/.csv", "a.b/.csv.h5"}}) {
+    request_.path = folder_ / file;
+    std::filesystem::create_directories(std::filesystem::path{request_.path}.parent_path());
+    test::write_content(request_.path, "t (s),F (N)\n0.00,1\n0.01,2\n0.02,3\n");
+    const auto text = inspect(request_);
+    ASSERT_TRUE(text) << text.error().message;
+    EXPECT_THAT(*text, HasSubstr(" -o " + (folder_ / record).string() + "\n"));
+  }
 }
 
 TEST_F(TraceImport, MissingFileIsAUsageError) {
