@@ -185,6 +185,7 @@ class Importer {
     if (request_.reverse) {
       std::reverse(table_.value.begin(), table_.value.end());
       std::reverse(time_s_.begin(), time_s_.end());
+      move_start();
     }
     for (double& value : table_.value) value *= scale_;
     const std::vector<std::size_t> runs = time_s_.empty() ? std::vector<std::size_t>{0} : runs_in(time_s_);
@@ -321,6 +322,18 @@ class Importer {
     for (double& time : time_s_) time *= unit_s;
     grid_options_.digit_s = std::pow(10.0, -table_.time_decimals) * unit_s;
     return {};
+  }
+
+  /// From the first row of the file to the first scan.
+  void move_start() {
+    if (!start_ns_ || time_s_.empty()) return;
+    const double offset_s = time_s_.front();
+    if (std::abs(1e-9 * static_cast<double>(*start_ns_) + offset_s) < kFarthestEpoch_s &&
+        std::abs(offset_s) < kFarthestEpoch_s) {
+      *start_ns_ += std::llround(1e9 * offset_s);
+    } else {
+      start_ns_.reset();
+    }
   }
 
   Result<void> add_run(std::size_t begin, std::size_t end) {

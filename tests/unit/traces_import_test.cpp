@@ -142,6 +142,14 @@ TEST_F(TraceImport, ReversedRowsKeepTheirLines) {
   expect_values(content, {1.0, 2.0, 4.0, 5.0, 6.0});
 }
 
+TEST_F(TraceImport, ReversedRowsStartWithTheFirstScan) {
+  request_.reverse = true;
+  const auto record = expect_values(
+      "Time,F\n2026-01-01T00:00:01.00Z,3\n2026-01-01T00:00:00.50Z,2\n2026-01-01T00:00:00.00Z,1\n",
+      {1.0, 2.0, 3.0});
+  EXPECT_EQ(record.header.start_realtime_ns, 1'767'225'600'000'000'000);
+}
+
 TEST_F(TraceImport, UnitThatChangesBetweenCellsIsRefused) {
   request_.unit = "N";
   expect_refused("t (s),F\n0.00,1\n0.01,2\n0.02,3000 mN\n0.03,4000 mN\n",
