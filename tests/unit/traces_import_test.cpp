@@ -129,6 +129,8 @@ TEST_F(TraceImport, UnitOfTheHeadingIsComparedWithTheStatedOne) {
   request_.unit = "N";
   expect_refused("t (s),F (cN)\n" + rows(0, 5), "is in cN, --unit says N: give --unit cN");
   expect_refused("t (s),F (g)\n" + rows(0, 5), "is in g, --unit says N: give --unit gf");
+  expect_refused("t (s),F (kg)\n" + rows(0, 5), "is in kg, --unit says N: give --unit kgf");
+  expect_refused("t (s),F (Volt)\n" + rows(0, 5), "give --unit V");
   expect_refused("t (s),F (mm)\n" + rows(0, 5), "is in mm, which --unit N is not");
   expect_values("t (s),F (Newton)\n" + rows(0, 5), values(5));
 }
