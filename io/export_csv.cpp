@@ -165,6 +165,7 @@ std::string lines_below(const record::Record& record) {
   }
   std::vector<std::byte> bytes;
   record::append_end_bytes(end, bytes);
+  text += fmt::format("# {}: {}\n", kScansFact, record.scan.size());
   // No table follows the JSON: there are no cycles and no truth.
   return text + fact_line(kEndFact, {reinterpret_cast<const char*>(bytes.data()), bytes.size() - 1});
 }

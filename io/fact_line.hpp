@@ -16,6 +16,7 @@ inline constexpr std::string_view kHeaderFact = "header";  ///< record::header_t
 inline constexpr std::string_view kGapFact = "gap";      ///< record::gap_to_json(), one line each, below it.
 inline constexpr std::string_view kEventFact = "event";  ///< record::event_to_json()
 inline constexpr std::string_view kAnchorFact = "anchor";  ///< Scan, monotonic and real time, blanks between.
+inline constexpr std::string_view kScansFact = "scans";    ///< How many rows the table has.
 inline constexpr std::string_view kEndFact = "end";        ///< The end without results: the last line.
 
 /// Stands for the comma of JSON between values.

@@ -408,14 +408,14 @@ bool Dialect::is_row(const std::vector<std::string_view>& fields) const {
   return any;
 }
 
-bool Dialect::has_label(const std::vector<std::string_view>& fields) const {
+std::optional<std::size_t> Dialect::label_column(const std::vector<std::string_view>& fields) const {
   for (std::size_t c = 0; c < columns.size() && c < fields.size() && !numeric[c]; ++c) {
     if (!clock[c] && !sparse[c]) continue;
     const std::string_view text = trimmed(fields[c]);
     if (read_cell(text, decimal).kind == CellKind::kText && !(clock[c] && read_time_cell(text, decimal)))
-      return true;
+      return c;
   }
-  return false;
+  return std::nullopt;
 }
 
 std::string Dialect::text(std::optional<std::size_t> value) const {
@@ -434,6 +434,15 @@ std::string Dialect::text(std::optional<std::size_t> value) const {
                      : !labels.empty() ? std::string{"a label in each cell"}
                                        : std::string{"no heading"},
                      first_row_line, names);
+}
+
+std::string options_text(const DialectOptions& options) {
+  std::string text;
+  if (options.encoding) text += fmt::format(" --encoding {}", name(*options.encoding));
+  if (options.separator) text += fmt::format(" --separator {}", separator_name(*options.separator));
+  if (options.decimal) text += fmt::format(" --decimal {}", *options.decimal == '.' ? "point" : "comma");
+  if (options.skip > 0) text += fmt::format(" --skip {}", options.skip);
+  return text;
 }
 
 bool is_no_row(std::string_view line) {

@@ -27,6 +27,9 @@ struct DialectOptions {
   std::int64_t skip = 0;        ///< Lines at the beginning that are no part of the table.
 };
 
+/// The same as options of `stickslip import`, each with a blank in front.
+[[nodiscard]] std::string options_text(const DialectOptions& options);
+
 struct Dialect {
   Encoding encoding = Encoding::kUtf8;
   char separator = ',';
@@ -49,9 +52,9 @@ struct Dialect {
   /// Whether these fields are one row of scans: a number or a hole in each numeric column, one number at
   /// least.
   [[nodiscard]] bool is_row(const std::vector<std::string_view>& fields) const;
-  /// Whether a row of scans begins with a word where the others have nothing or a clock time: at the end of
-  /// the table it is one of statistics, "Mean;0.50;2.41".
-  [[nodiscard]] bool has_label(const std::vector<std::string_view>& fields) const;
+  /// The column in which a row of scans begins with a word where most have nothing or a clock time: at the
+  /// end of the table, below none that has a word there, it is one of statistics, "Mean;0.50;2.41".
+  [[nodiscard]] std::optional<std::size_t> label_column(const std::vector<std::string_view>& fields) const;
   /// Two lines: what was recognised. \param value  the column that is read, where one is.
   [[nodiscard]] std::string text(std::optional<std::size_t> value = std::nullopt) const;
 };

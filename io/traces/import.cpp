@@ -63,14 +63,14 @@ Result<Columns> columns_of(const ImportRequest& request, const Dialect& dialect)
   return columns;
 }
 
-/// Of a heading, which may show a force as a mass or its unit as a word.
-Result<QuantityUnit> heading_unit(const std::string& unit) {
-  if (auto exact = quantity_unit(unit)) return exact;
+/// As --unit takes it, of a heading, which may show a force as a mass or its unit as a word.
+std::string heading_unit(const std::string& unit) {
+  if (quantity_unit(unit)) return unit;
   const std::string word = folded(unit);
-  if (word.starts_with("newton")) return quantity_unit("N");
-  if (word.starts_with("volt")) return quantity_unit("V");
-  if (word.starts_with("gram")) return quantity_unit("gf");
-  return quantity_unit(unit + "f");
+  if (word.starts_with("newton")) return "N";
+  if (word.starts_with("volt")) return "V";
+  if (word.starts_with("gram")) return "gf";
+  return unit + "f";
 }
 
 /// The unit of the values, stated, of the cells or of the heading.
@@ -84,7 +84,7 @@ Result<std::string> unit_of(const ImportRequest& request, const ColumnName& colu
         request.path, base::one_line(column.text, 40));
   }
   const auto stated = quantity_unit(request.unit);
-  const auto found = heading_unit(own);
+  const auto found = quantity_unit(heading_unit(own));
   if (!own.empty() && stated && !found && is_unit(own)) {
     return base::usage_error("{}: column \"{}\" is in {}, which --unit {} is not: choose another column",
                              request.path, base::one_line(column.text, 40), base::one_line(own, 20),
@@ -94,7 +94,7 @@ Result<std::string> unit_of(const ImportRequest& request, const ColumnName& colu
       (stated->quantity != found->quantity || stated->scale != found->scale)) {
     return base::usage_error("{}: column \"{}\" is in {}, --unit says {}: give --unit {}", request.path,
                              base::one_line(column.text, 40), base::one_line(own, 20), request.unit,
-                             quantity_unit(own) ? base::one_line(own, 20) : folded(own).substr(0, 1) + "f");
+                             base::one_line(heading_unit(own), 20));
   }
   return request.unit;
 }
@@ -185,6 +185,7 @@ class Importer {
     if (request_.reverse) {
       std::reverse(table_.value.begin(), table_.value.end());
       std::reverse(time_s_.begin(), time_s_.end());
+      move_start();
     }
     for (double& value : table_.value) value *= scale_;
     const std::vector<std::size_t> runs = time_s_.empty() ? std::vector<std::size_t>{0} : runs_in(time_s_);
@@ -321,6 +322,18 @@ class Importer {
     for (double& time : time_s_) time *= unit_s;
     grid_options_.digit_s = std::pow(10.0, -table_.time_decimals) * unit_s;
     return {};
+  }
+
+  /// From the first row of the file to the first scan.
+  void move_start() {
+    if (!start_ns_ || time_s_.empty()) return;
+    const double offset_s = time_s_.front();
+    if (std::abs(1e-9 * static_cast<double>(*start_ns_) + offset_s) < kFarthestEpoch_s &&
+        std::abs(offset_s) < kFarthestEpoch_s) {
+      *start_ns_ += std::llround(1e9 * offset_s);
+    } else {
+      start_ns_.reset();
+    }
   }
 
   Result<void> add_run(std::size_t begin, std::size_t end) {

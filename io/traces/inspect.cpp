@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "io/table.hpp"
@@ -63,9 +64,10 @@ std::string clock_range(const Source& source, const Dialect& dialect, std::size_
 
 /// As the file is called, so is the record.
 std::string output_option(const std::string& path) {
-  const std::string stem = path.substr(0, path.rfind('.'));
-  const std::string output = stem + ".h5";
-  return " -o " + base::shell_word(output == path ? stem + "-record.h5" : output);
+  std::filesystem::path output{path};
+  output.replace_extension(".h5");
+  if (output == path) output.replace_filename(output.stem().string() + "-record.h5");
+  return " -o " + base::shell_word(output.string());
 }
 
 /// A table of stickslip export says all itself.
@@ -101,7 +103,7 @@ std::string command(const ImportRequest& request, const Dialect& dialect, const 
   if (counts) text += " --count-range LOWEST..HIGHEST --volts-per-count VOLTS";
   if (counts || (unit && unit->quantity == daq::RawQuantity::kVolts)) text += " --load-cell-gain GAIN";
   if (!unit || unit->quantity != daq::RawQuantity::kCoefficient) text += " --sled-mass MASS";
-  return text + output_option(request.path);
+  return text + options_text(request.dialect) + output_option(request.path);
 }
 
 /// What a file that is no text has beside the likely column and those that can be read with it.

@@ -107,6 +107,7 @@ class OwnReader {
       return base::usage_error("{}:{}: the table is cut: its last line begins with \"# {}:\"; {}", path_,
                                line_, io::kEndFact, kRemedy);
     }
+    if (const auto whole = check_rows(); !whole) return tl::unexpected(whole.error());
     record::ProcessFacts& process = record_.header.process;
     process.source_file = std::filesystem::path{path_}.filename().string();
     process.source_size = static_cast<std::int64_t>(file.bytes_read());
@@ -122,6 +123,8 @@ class OwnReader {
     try {
       if (const auto header = header_fact(line)) {
         name = io::kHeaderFact;
+        if (has_header_ || columns_ > 0) throw std::invalid_argument("it stands once, above the table");
+        has_header_ = true;
         record_.header = record::header_from_json(io::fact_json(*header));
         const double rate_Hz = record_.header.board.scan_rate_granted_Hz;
         if (!(rate_Hz > 0.0) || !std::isfinite(rate_Hz))
@@ -130,10 +133,14 @@ class OwnReader {
         return {};  // The other facts above the table are for people.
       } else if (const auto gap = fact(line, name = io::kGapFact)) {
         record_.gaps.push_back(record::gap_from_json(io::fact_json(*gap)));
+        gap_lines_.emplace_back(record_.gaps.back(), line_);
       } else if (const auto event = fact(line, name = io::kEventFact)) {
         record_.events.push_back(record::event_from_json(io::fact_json(*event)));
       } else if (const auto anchor = fact(line, name = io::kAnchorFact)) {
         record_.anchors.push_back(anchor_from(*anchor));
+      } else if (const auto scans = fact(line, name = io::kScansFact)) {
+        row_count_ = number_in<std::size_t>(*scans);
+        if (!row_count_) throw std::invalid_argument("a whole number is needed");
       } else if (const auto end = fact(line, name = io::kEndFact)) {
         const std::string json = io::fact_json(*end);
         record_.end = record::end_from_bytes(std::as_bytes(std::span{json}));
@@ -181,6 +188,10 @@ class OwnReader {
   }
 
   Result<void> take_row(std::string_view line) {
+    if (record_.end) {
+      return base::usage_error("{}:{}: a row stands below the line \"# {}: …\", which is the last one; {}",
+                               path_, line_, io::kEndFact, kRemedy);
+    }
     part_at(',', line, fields_);
     if (fields_.size() != columns_) {
       return base::usage_error("{}:{}: the row has {} fields, the heading {}; {}", path_, line_,
@@ -207,15 +218,55 @@ class OwnReader {
       }
       record_.second.push_back(*code);
     }
+    if (!record_.scan.empty() && *scan > first) jumps_.push_back({first, *scan, line_});
     record_.scan.push_back(*scan);
     record_.raw.push_back(*raw);
     if (fields_[spike_] == "1") record_.spikes.push_back(*scan);
     return {};
   }
 
+  /// Refuses a table that lacks rows: each scan between two rows is in a gap, and no row is.
+  Result<void> check_rows() {
+    const auto& scans = record_.scan;
+    std::ranges::stable_sort(gap_lines_, {}, [](const auto& gap) { return gap.first.first; });
+    for (const auto& [gap, line] : gap_lines_) {
+      const auto row = std::ranges::lower_bound(scans, gap.first);
+      if (row == scans.end() || *row - gap.first >= gap.count) continue;
+      return base::usage_error("{}:{}: scan {} is missing by this line, and the table has a row of it; {}",
+                               path_, line, *row, kRemedy);
+    }
+    auto gap = gap_lines_.begin();
+    for (const Jump& jump : jumps_) {
+      daq::ScanIndex known = jump.first;  // The scans before are in gaps.
+      for (; gap != gap_lines_.end() && gap->first.first < jump.end; ++gap) {
+        if (gap->first.first <= known) known = std::max(known, gap->first.first + gap->first.count);
+      }
+      if (known >= jump.end) continue;
+      return base::usage_error(
+          "{}:{}: the rows of scans {} … {} are missing, and no line \"# {}: …\" says so; {}", path_,
+          jump.line, known, jump.end - 1, io::kGapFact, kRemedy);
+    }
+    if (row_count_ ? scans.size() != *row_count_ : scans.empty()) {
+      return base::usage_error("{}: rows are missing: the table has {}{}; {}", path_, scans.size(),
+                               row_count_ ? fmt::format(" of {}", *row_count_) : "", kRemedy);
+    }
+    return {};
+  }
+
+  /// Scans [first, end) have no row.
+  struct Jump {
+    daq::ScanIndex first = 0;
+    daq::ScanIndex end = 0;
+    std::int64_t line = 0;  ///< Of the row after them.
+  };
+
   std::string path_;
   record::Record record_;
+  std::vector<std::pair<daq::Gap, std::int64_t>> gap_lines_;  ///< Gaps with their lines.
+  std::vector<Jump> jumps_;
+  std::optional<std::size_t> row_count_;  ///< As the table states it; older ones do not.
   std::int64_t line_ = 0;
+  bool has_header_ = false;
   std::size_t columns_ = 0;  ///< 0: the heading has not come yet.
   std::size_t scan_ = 0;
   std::size_t raw_ = 0;

@@ -18,7 +18,7 @@ namespace stickslip::traces {
 /// channel, spikes, gaps, events, clock readings and the end, without results, cycles, truth and the idle
 /// scans of the self-check. Its source is the file. Columns that follow from others are not read. Errors: as
 /// TextFile; kUsage with place, value and a remedy if a line is not as it was exported, or if lines are
-/// missing at the end.
+/// missing.
 [[nodiscard]] base::Result<record::Record> read_own_table(const Source& source);
 
 }  // namespace stickslip::traces

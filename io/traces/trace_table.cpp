@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
+#include <set>
 
 #include "io/traces/number_file.hpp"
 #include "io/traces/trace_time.hpp"
@@ -174,7 +175,7 @@ class TableReader {
       table_.cell_unit = value.unit;
       any_value_ = true;
     }
-    labelled_ = dialect_.has_label(fields) ? labelled_ + 1 : 0;
+    note_label(fields);
     add(hole ? base::kNaN : value.value, time, line);
     // The last number of the line, which would be cut first.
     const Cell last = read_cell(dialect_.content(fields.size() - 1, fields.back()), dialect_.decimal);
@@ -228,6 +229,21 @@ class TableReader {
     if (table_.places.empty() || table_.line(row) != line) table_.places.emplace_back(row, line);
   }
 
+  /// A word in a column that has words above as well is an event, and this row a scan.
+  void note_label(const std::vector<std::string_view>& fields) {
+    const auto column = dialect_.label_column(fields);
+    if (column) {
+      label_columns_.push_back(*column);
+      if (!event_columns_.contains(*column)) {
+        ++labelled_;
+        return;
+      }
+    }
+    labelled_ = 0;
+    event_columns_.insert(label_columns_.begin(), label_columns_.end());
+    label_columns_.clear();
+  }
+
   /// Statistics below the scans.
   void leave_out_labelled() {
     const std::size_t rows = table_.value.size();
@@ -263,9 +279,11 @@ class TableReader {
     std::int64_t line = 0;
     std::string text;
   };
-  MarkPlace grouped_;         ///< First value with Cell::one_group.
-  MarkPlace decimal_;         ///< First value with decimals.
-  std::size_t labelled_ = 0;  ///< Rows with a label since the last one without.
+  MarkPlace grouped_;                       ///< First value with Cell::one_group.
+  MarkPlace decimal_;                       ///< First value with decimals.
+  std::size_t labelled_ = 0;                ///< Rows with a label since the last one without.
+  std::vector<std::size_t> label_columns_;  ///< Their columns.
+  std::set<std::size_t> event_columns_;     ///< That have words above those rows.
   double last_clock_s_ = 0.0;
   double midnights_s_ = 0.0;
   std::size_t file_rows_ = 0;
@@ -309,7 +327,8 @@ base::Result<std::size_t> find_column(const Dialect& dialect, const std::string&
       find([&](const ColumnName& column) { return column.text == wanted || column.text == "/" + wanted; });
   if (found && !*found) found = find([&](const ColumnName& column) { return folded(column.text) == form; });
   if (found && !*found) {
-    const std::string bare = folded(column_name(wanted).name);
+    // Brackets hold a unit in a heading; behind a variable they choose one of its columns.
+    const std::string bare = dialect.numbers ? form : folded(column_name(wanted).name);
     found = find(
         [&](const ColumnName& column) { return folded(column.name) == form || folded(column.name) == bare; });
   }

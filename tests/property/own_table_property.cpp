@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -123,6 +124,63 @@ RC_GTEST_PROP(OwnTableProperty, ATableThatWasCutIsRefused, ()) {
   RC_ASSERT(!imported.has_value());
   RC_ASSERT(imported.error().exit_status() == 2);
   RC_ASSERT(imported.error().message.find('\n') == std::string::npos);
+}
+
+RC_GTEST_PROP(OwnTableProperty, ATableThatLacksARowIsRefused, ()) {
+  const record::Record record = any_record();
+  RC_PRE(!record.scan.empty());
+  std::string text = io::scans_csv(record);
+  std::size_t at = text.find("\ntime_s,scan") + 1;
+  const auto row = *rc::gen::inRange<std::size_t>(0, record.scan.size());
+  for (std::size_t i = 0; i <= row; ++i) at = text.find('\n', at) + 1;
+  const std::string line = text.substr(at, text.find('\n', at) + 1 - at);
+  text.erase(at, line.size());
+  const test::TemporaryFolder folder;
+  ImportRequest request;
+  request.path = folder / "trace.csv";
+  test::write_content(request.path, text);
+  const auto imported = import_trace(request);
+  RC_ASSERT(!imported.has_value());
+  RC_ASSERT(imported.error().message.find("missing") != std::string::npos);
+  // Nor does it stand below the end.
+  test::write_content(request.path, text + line);
+  RC_ASSERT(!import_trace(request).has_value());
+  // Of older versions, which did not write the number of rows, gaps tell the rows between others.
+  const std::size_t count = text.rfind("# scans: ");
+  text.erase(count, text.find('\n', count) + 1 - count);
+  test::write_content(request.path, text);
+  RC_ASSERT(import_trace(request).has_value() ==
+            (record.scan.size() > 1 && (row == 0 || row + 1 == record.scan.size())));
+}
+
+RC_GTEST_PROP(OwnTableProperty, ASecondHeaderIsRefusedWhereverItStands, ()) {
+  std::string text = io::scans_csv(any_record());
+  const std::size_t header = text.find("\n# header: {") + 1;
+  const std::string line = text.substr(header, text.find('\n', header) + 1 - header);
+  auto lines = *rc::gen::inRange<std::size_t>(0, static_cast<std::size_t>(std::ranges::count(text, '\n')));
+  std::size_t at = 0;
+  for (; lines > 0; --lines) at = text.find('\n', at) + 1;
+  text.insert(at, line);
+  const test::TemporaryFolder folder;
+  ImportRequest request;
+  request.path = folder / "trace.csv";
+  test::write_content(request.path, text);
+  const auto imported = import_trace(request);
+  RC_ASSERT(!imported.has_value());
+  RC_ASSERT(imported.error().message.find("it stands once, above the table") != std::string::npos);
+}
+
+RC_GTEST_PROP(OwnTableProperty, AGapThatOverlapsARowIsRefused, ()) {
+  record::Record record = any_record();
+  RC_PRE(!record.scan.empty());
+  record.gaps.push_back({*rc::gen::elementOf(record.scan), 1, true, daq::GapCause::kUnknown});
+  const test::TemporaryFolder folder;
+  ImportRequest request;
+  request.path = folder / "trace.csv";
+  test::write_content(request.path, io::scans_csv(record));
+  const auto imported = import_trace(request);
+  RC_ASSERT(!imported.has_value());
+  RC_ASSERT(imported.error().message.find("has a row of it") != std::string::npos);
 }
 
 }  // namespace

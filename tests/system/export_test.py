@@ -148,6 +148,9 @@ class Export(unittest.TestCase):
         for wrong, said in ((text.replace(rows[1], rows[1].replace(",1,", ",1.5,", 1)), f":{heading + 3}: column \"scan\" is '1.5'"),
                             (text.replace(rows[1], rows[1] + ",0"), f":{heading + 3}: the row has 9 fields, the heading 8"),
                             (text.replace(rows[2] + "\n", rows[1] + "\n"), f":{heading + 4}: column \"scan\" is '1'"),
+                            (text.replace(rows[1] + "\n", ""), f":{heading + 3}: the rows of scans 1 … 1 are missing"),
+                            (text.replace(rows[0] + "\n", ""), "rows are missing: the table has "),
+                            (text + rows[2] + "\n", "a row stands below the line \"# end: …\""),
                             (text[:text.index("# end: ")], "the table is cut"),
                             (text.replace("# header: {", "# header: {{"), f":{heading}: the line \"# header: …\" cannot be read")):
             (self.folder / "wrong.csv").write_text(wrong, encoding="utf-8")

@@ -3,8 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "io/traces/inspect.hpp"
 
 #include "tests/unit/traces_sample.hpp"
 
@@ -77,6 +81,16 @@ TEST_F(TraceImport, StatisticsWithAPlausibleTimeAreLeftOut) {
   expect_values("Run,t (s),F\nA,0.00,1\n,0.01,2\n,0.02,3\nB,0.03,4\n,0.04,5\n", values(5));
 }
 
+// Words in the last rows of a column that has words above are events.
+TEST_F(TraceImport, EventsInTheLastRowsAreScans) {
+  std::string content = "Event,t (s),F\n";
+  for (int i = 0; i < 20; ++i) {
+    const char* const event = i == 4 ? "peak" : i == 18 ? "stop" : i == 19 ? "end" : "";
+    content += fmt::format("{},{:.2f},{}\n", event, 0.01 * i, 1 + i);
+  }
+  expect_values(content, values(20));
+}
+
 TEST_F(TraceImport, TextBetweenScansIsRefused) {
   expect_refused("t (s),F\n" + rows(0, 5) + "0.05,abc\n" + rows(6, 9),
                  ":7: column 'F' is 'abc', and scans follow in line 8");
@@ -115,6 +129,8 @@ TEST_F(TraceImport, UnitOfTheHeadingIsComparedWithTheStatedOne) {
   request_.unit = "N";
   expect_refused("t (s),F (cN)\n" + rows(0, 5), "is in cN, --unit says N: give --unit cN");
   expect_refused("t (s),F (g)\n" + rows(0, 5), "is in g, --unit says N: give --unit gf");
+  expect_refused("t (s),F (kg)\n" + rows(0, 5), "is in kg, --unit says N: give --unit kgf");
+  expect_refused("t (s),F (Volt)\n" + rows(0, 5), "give --unit V");
   expect_refused("t (s),F (mm)\n" + rows(0, 5), "is in mm, which --unit N is not");
   expect_values("t (s),F (Newton)\n" + rows(0, 5), values(5));
 }
@@ -126,6 +142,14 @@ TEST_F(TraceImport, ReversedRowsKeepTheirLines) {
   expect_refused(content, "trace.csv:4: ");
   request_.skip_doubled = true;
   expect_values(content, {1.0, 2.0, 4.0, 5.0, 6.0});
+}
+
+TEST_F(TraceImport, ReversedRowsStartWithTheFirstScan) {
+  request_.reverse = true;
+  const auto record = expect_values(
+      "Time,F\n2026-01-01T00:00:01.00Z,3\n2026-01-01T00:00:00.50Z,2\n2026-01-01T00:00:00.00Z,1\n",
+      {1.0, 2.0, 3.0});
+  EXPECT_EQ(record.header.start_realtime_ns, 1'767'225'600'000'000'000);
 }
 
 TEST_F(TraceImport, UnitThatChangesBetweenCellsIsRefused) {
@@ -213,6 +237,33 @@ TEST_F(TraceImport, WithoutTimesTheRateIsNeeded) {
   // A column for times in which nothing stands.
   request_.rate_Hz = 100.0;
   expect_values("X_Value\tF\n\t1.5\n\t2.5\n", {1.5, 2.5});
+}
+
+// The command that is printed reads the file as it was inspected.
+TEST_F(TraceImport, PrintedCommandKeepsWhatWasStated) {
+  test::write_content(request_.path, "1;2\nt (s);F (N)\n0,00;1,5\n0,01;2,5\n0,02;3,5\n");
+  request_.column.clear();
+  request_.dialect = {Encoding::kWindows1252, ';', ',', 1};
+  const std::string stated = " --encoding Windows-1252 --separator semicolon --decimal comma --skip 1 -o ";
+  const auto text = inspect(request_);
+  ASSERT_TRUE(text) << text.error().message;
+  EXPECT_THAT(*text, HasSubstr(stated));
+  const auto imported = import_trace(request_);
+  ASSERT_FALSE(imported);
+  EXPECT_THAT(imported.error().message, HasSubstr(stated));
+}
+
+TEST_F(TraceImport, PrintedCommandNamesTheRecordAfterTheFile) {
+  for (const auto& [file, record] :
+       {std::pair{"a.b/nodot", "a.b/nodot.h5"}, std::pair{"a.b/x.csv", "a.b/x.h5"},
+        std::pair{"a.b/x.h5", "a.b/x-record.h5"}, std::pair{"a.b/.csv", "a.b/.csv.h5"}}) {
+    request_.path = folder_ / file;
+    std::filesystem::create_directories(std::filesystem::path{request_.path}.parent_path());
+    test::write_content(request_.path, "t (s),F (N)\n0.00,1\n0.01,2\n0.02,3\n");
+    const auto text = inspect(request_);
+    ASSERT_TRUE(text) << text.error().message;
+    EXPECT_THAT(*text, HasSubstr(" -o " + (folder_ / record).string() + "\n"));
+  }
 }
 
 TEST_F(TraceImport, MissingFileIsAUsageError) {

@@ -142,6 +142,7 @@ TEST_F(NumberFiles, VectorsOfEachVersionOfMatlabAreColumns) {
             compression);
       for (const char* variable : {"F", "across", "single", "int16", "byte", "M(:,2)"})
         expect(variable, forces());
+      expect_error("F(:,2)", "no column \"F(:,2)\"");
       expect("F", forces());
       EXPECT_THAT(report_, HasSubstr(fmt::format("recognised: {}, variable F\n", name)));
       request_.time_column = "M(:,1)";
