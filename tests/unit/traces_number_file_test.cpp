@@ -336,6 +336,18 @@ TEST_F(NumberFiles, DatasetsOfHdf5AreColumns) {
   expect_error("", "give --dataset NAME; there are 1 \"/run1/force\"");
 }
 
+TEST_F(NumberFiles, AMemberIsReadFromItsCompoundWhateverElseHasItsName) {
+  request_.path = folder_ / "trace.h5";
+  {
+    const Hdf5File file{request_.path};
+    file.write_table("/table");
+    file.write_elsewhere("/table.force");
+    file.write("/time.force", times(), H5T_NATIVE_DOUBLE);
+  }
+  request_.time_column = "/table.time";
+  expect("/table.force", forces());
+}
+
 TEST_F(NumberFiles, TheUnitOfADatasetIsThatOfItsAttribute) {
   request_.path = folder_ / "trace.h5";
   {
