@@ -213,7 +213,8 @@ base::Result<std::string> NumberFile::ask(const std::string& question) {
       return tl::unexpected(
           base::Error{answer.error().kind, fmt::format("{}: {}", path_, answer.error().message)});
     return base::usage_error(
-        "{}: {}: the file is damaged or made to deceive; take it from a backup, or export the trace as text",
+        "{}: {}: the file is damaged or was made to do harm; restore it from a backup, or export the trace "
+        "as text",
         path_, answer.error().message);
   }
   if (answer->empty() || answer->front() != kRead) {
@@ -327,7 +328,7 @@ base::Result<std::vector<double>> NumberFile::read(std::size_t column) {
   std::ifstream file{child_.memory_file(), std::ios::binary};
   if (!file.read(reinterpret_cast<char*>(values.data()),
                  static_cast<std::streamsize>(values.size() * sizeof(double))))
-    return base::failure("{}: what its reader says cannot be read", path_);
+    return base::failure("{}: the values that the reading process hands over cannot be read", path_);
   return values;
 }
 
