@@ -56,6 +56,14 @@ bool is_elsewhere(hid_t dataset) {
   return H5Pget_external_count(creation.get()) > 0 || H5Pget_layout(creation.get()) == H5D_VIRTUAL;
 }
 
+/// By the attributes of netCDF: what stands in the dataset is not in its unit.
+std::string scaled_by(hid_t dataset) {
+  for (const char* name : {"scale_factor", "add_offset"}) {
+    if (H5Aexists(dataset, name) > 0) return std::string{"is scaled by "} + name;
+  }
+  return {};
+}
+
 /// What keeps numbers of this type from being a column; `single` for those of few digits.
 void judge_type(hid_t type, NumberColumn& column) {
   switch (H5Tget_class(type)) {
@@ -111,7 +119,7 @@ void add_dataset(hid_t file, const std::string& path, std::vector<NumberColumn>&
     const TypeHandle type{H5Dget_type(dataset.get()), path};
     const std::vector<std::uint64_t> axes = axes_of(dataset.get());
     column.unit = unit_of(dataset.get());
-    if (is_elsewhere(dataset.get())) column.why = "lies in another file";
+    column.why = is_elsewhere(dataset.get()) ? "lies in another file" : scaled_by(dataset.get());
     if (column.why.empty() && H5Tget_class(type.get()) == H5T_COMPOUND) {
       if (!is_complex(type.get())) {
         const int count = H5Tget_nmembers(type.get());
