@@ -313,8 +313,9 @@ std::string NumberFile::of_other_size(std::size_t column) const {
 }
 
 base::Error NumberFile::no_column(const std::string& wanted) const {
-  const auto found = std::find_if(refused_.begin(), refused_.end(),
-                                  [&](const NumberColumn& column) { return column.path == wanted; });
+  const auto found = std::find_if(refused_.begin(), refused_.end(), [&](const NumberColumn& column) {
+    return column.path == wanted || column.path == "/" + wanted;
+  });
   const std::string shown = base::one_line(wanted, kLongestColumn);
   const std::string what = found == refused_.end() ? fmt::format("there is no column \"{}\"", shown)
                                                    : fmt::format("\"{}\" {}", shown, found->why);
