@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "io/calibration_file.hpp"
 #include "io/json_text.hpp"
 #include "io/table.hpp"
+#include "io/traces/cell.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/base/settings.hpp"
@@ -92,17 +94,9 @@ std::string readings_table(const std::vector<daq::WeighedPoint>& points) {
 /// What a technician says at the prompt.
 enum class Answer { kRead, kUndo, kDone, kQuit, kNoMass };
 
-/// Without blanks around it.
-std::string trimmed(std::string text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.back())) text.pop_back();
-  while (!text.empty() && blank(text.front())) text.erase(text.begin());
-  return text;
-}
-
 /// \param mass_kg  of kRead. \param why  of kNoMass.
 Answer answer_of(const std::string& typed, bool tare, double& mass_kg, std::string& why) {
-  const std::string text = trimmed(typed);
+  const std::string_view text = traces::trimmed(typed);
   if (text == "q" || text == "quit") return Answer::kQuit;
   if (tare) {
     mass_kg = 0.0;
@@ -255,7 +249,7 @@ bool confirmed_by(const CalibrateOptions& options, const daq::GainChange& change
              daq::to_text(change));
   prompts << std::flush;
   std::string line;
-  return std::getline(answers, line) && trimmed(line) == "yes";
+  return std::getline(answers, line) && traces::trimmed(line) == "yes";
 }
 
 /// \param answers  what the technician types. \param prompts  what is said in between.
@@ -290,13 +284,14 @@ Result<std::string> run_calibrate(const CalibrateOptions& options, std::istream&
   }
   const auto in_use = gain_in_use(folder, place);
   if (!in_use) return tl::unexpected(in_use.error());
+  if (!*in_use) prompts << "No gain in use is known: the new one is not compared.\n";
   const auto change = daq::gain_change(result.fit.load_cell->gain_N_per_V, *in_use);
   if (change && !confirmed_by(options, *change, answers, prompts)) {
     prompts << readings_table(result.points);
     return base::failure("{}: {}; nothing was kept; if the change is meant, repeat with --confirm",
                          daq::kGainChangeCode, daq::to_text(*change));
   }
-  const auto kept = io::keep_result(result, {options.certificate, *days, change.has_value()}, folder,
+  const auto kept = io::keep_result(result, {options.certificate, *days}, folder,
                                     base::make_system_clock()->realtime_ns(), change);
   if (!kept) return tl::unexpected(kept.error());
   return options.json ? json_of(result, *kept, change) : text_of(result, *kept, change);

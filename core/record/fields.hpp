@@ -52,7 +52,8 @@ void for_each_field(Fields& fields, Visitor&& visit) {
   visit(FieldName{"hysteresis", "V", "reading under falling less that under rising loads [V]"},
         fields.hysteresis_V);
   visit(FieldName{"expires", "", ""}, fields.expires);
-  visit(FieldName{"replaced_gain", "N/V", "gain in use before, by far another one [N/V]"},
+  visit(FieldName{"replaced_gain", "N/V",
+                  "gain in use before this calibration, if the change was confirmed [N/V]"},
         fields.replaced_gain_N_per_V);
   visit(FieldName{"weight_mass", "kg", "mass of each weight hung [kg]"}, fields.mass_kg);
   visit(FieldName{"weight_force", "N", "force of each weight hung [N]"}, fields.force_N);

@@ -56,6 +56,14 @@ bool is_elsewhere(hid_t dataset) {
   return H5Pget_external_count(creation.get()) > 0 || H5Pget_layout(creation.get()) == H5D_VIRTUAL;
 }
 
+/// By the attributes of netCDF: what stands in the dataset is not in its unit.
+std::string scaled_by(hid_t dataset) {
+  for (const char* name : {"scale_factor", "add_offset"}) {
+    if (H5Aexists(dataset, name) > 0) return std::string{"is scaled by "} + name;
+  }
+  return {};
+}
+
 /// What keeps numbers of this type from being a column; `single` for those of few digits.
 void judge_type(hid_t type, NumberColumn& column) {
   switch (H5Tget_class(type)) {
@@ -111,13 +119,14 @@ void add_dataset(hid_t file, const std::string& path, std::vector<NumberColumn>&
     const TypeHandle type{H5Dget_type(dataset.get()), path};
     const std::vector<std::uint64_t> axes = axes_of(dataset.get());
     column.unit = unit_of(dataset.get());
-    if (is_elsewhere(dataset.get())) column.why = "lies in another file";
+    column.why = is_elsewhere(dataset.get()) ? "lies in another file" : scaled_by(dataset.get());
     if (column.why.empty() && H5Tget_class(type.get()) == H5T_COMPOUND) {
       if (!is_complex(type.get())) {
         const int count = H5Tget_nmembers(type.get());
         for (int i = 0; i < count; ++i) {
           NumberColumn member;
           const auto index = static_cast<unsigned>(i);
+          member.dataset = path;
           member.path = path + "." + member_name(type.get(), index);
           const TypeHandle own{H5Tget_member_type(type.get(), index), member.path};
           judge_type(own.get(), member);
@@ -196,15 +205,10 @@ base::Result<HdfColumns> HdfColumns::open(const std::filesystem::path& path) {
 
 base::Result<std::vector<double>> HdfColumns::read(const NumberColumn& column) const {
   try {
-    std::string path = column.path;
-    std::string member;
-    // A dataset may have points in its name: the longest name that is one is it.
-    while (H5Lexists(opened_->file.get(), path.c_str(), H5P_DEFAULT) <= 0) {
-      const std::size_t point = path.rfind('.');
-      if (point == std::string::npos || point == 0) throw HdfError("no dataset " + column.path);
-      path.resize(point);
-      member = column.path.substr(point + 1);
-    }
+    // No other dataset may be opened than the one that add_dataset() judged; its name may have points.
+    const bool is_member = !column.dataset.empty();
+    const std::string& path = is_member ? column.dataset : column.path;
+    const std::string member = is_member ? column.path.substr(path.size() + 1) : std::string{};
     const DatasetHandle dataset{H5Dopen2(opened_->file.get(), path.c_str(), H5P_DEFAULT), path};
     const TypeHandle type{H5Dget_type(dataset.get()), path};
     const TypeHandle memory = memory_type(type.get(), member);

@@ -11,6 +11,9 @@ namespace stickslip::record {
 
 struct NumberColumn {
   std::string path;  ///< "/run1/force", "/run1/table.force", "run.force".
+  /// Of a member of a compound: the dataset, "/run1/table"; its name follows in `path` behind a point. Else
+  /// empty.
+  std::string dataset;
   std::string part;  ///< "(:,2)" and "(2,:)" of a matrix; empty for a vector.
   std::string unit;  ///< Stated beside the numbers; empty if there is none.
   std::string why;   ///< It cannot be read, "is complex"; empty if it can.

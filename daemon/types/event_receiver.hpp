@@ -26,7 +26,7 @@ class EventReceiver {
   virtual void board_started(const daq::BoardInfo& /*board*/, std::string_view /*scheduling*/) {}
   /// Before a session: whether the scan rate suffices for the tester.
   virtual void sampling_checked(const estimate::SamplingVerdict& /*verdict*/) {}
-  /// A new calibration is in use. \param confirmed  a change of the gain that `who` confirmed.
+  /// A new calibration is kept. \param confirmed  a change of the gain that `who` confirmed.
   virtual void load_cell_calibrated(const std::filesystem::path& /*file*/, double /*gain_N_per_V*/,
                                     std::string_view /*who*/,
                                     const std::optional<daq::GainChange>& /*confirmed*/) {}

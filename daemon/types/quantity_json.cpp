@@ -1,7 +1,8 @@
 #include "daemon/types/quantity_json.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include <boost/algorithm/string/replace.hpp>
 #include <nlohmann/json.hpp>
@@ -12,9 +13,20 @@ namespace {
 using base::BareNumber;
 using Json = nlohmann::ordered_json;
 
+constexpr std::size_t kLongestWarning = 2000;
+
 }  // namespace
 
-std::string text_of(const Warnings& warnings) { return fmt::format("{}", fmt::join(warnings, "; ")); }
+std::string text_of(const Warnings& warnings) {
+  std::string text;
+  for (std::size_t i = 0; i < warnings.size(); ++i) {
+    if (i > 0 && text.size() + warnings[i].size() > kLongestWarning)
+      return text + fmt::format("; and {} more", warnings.size() - i);
+    if (i > 0) text += "; ";
+    text += warnings[i];
+  }
+  return text;
+}
 
 std::string key_with_unit(std::string_view key, base::Dimension dimension) {
   std::string unit{base::si_unit(dimension)};
@@ -40,8 +52,12 @@ base::Result<double> quantity_of(std::string_view key, const Json& value, base::
                                                  entered.error().message, key_with_unit(key, dimension))
                              : base::usage_error("{}: {}", key, entered.error().message);
   }
-  if (!entered->warning.empty() && warnings != nullptr)
-    warnings->push_back(fmt::format("{}: {}", key, entered->warning));
+  if (!entered->warning.empty() && warnings != nullptr) {
+    const std::string begin = fmt::format("{}: ", key);
+    if (std::none_of(warnings->begin(), warnings->end(),
+                     [&](const std::string& warning) { return warning.starts_with(begin); }))
+      warnings->push_back(begin + entered->warning);
+  }
   return entered->value;
 }
 

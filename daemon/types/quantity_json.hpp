@@ -18,14 +18,16 @@ namespace stickslip::daemon {
 /// Warnings to the client, for HttpReply::warning.
 using Warnings = std::vector<std::string>;
 
-/// Joins them with "; ".
+/// Joins them with "; ". Those that would make the text longer than 2000 bytes are counted: parsers of
+/// replies refuse long headers.
 [[nodiscard]] std::string text_of(const Warnings& warnings);
 
 /// "mass_kg", "pull_speed_m_per_s": the key under which a number alone is legal.
 [[nodiscard]] std::string key_with_unit(std::string_view key, base::Dimension dimension);
 
 /// Reads one value. \param bare  how a number under a key without the unit is taken; in text it is refused
-/// unless it may be 0. \param warnings  may be null: nobody is warned, as for files that the daemon wrote.
+/// unless it may be 0. \param warnings  takes one for each key; may be null: nobody is warned, as for files
+/// that the daemon wrote.
 /// Errors (kUsage) name the key.
 [[nodiscard]] base::Result<double> quantity_of(std::string_view key, const nlohmann::ordered_json& value,
                                                base::Dimension dimension, base::BareNumber bare,

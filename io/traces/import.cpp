@@ -511,7 +511,7 @@ Result<Imported> import_trace(const ImportRequest& request) {
   const auto source = Source::of(request.path);
   if (!source) return tl::unexpected(source.error());
   if (request.column.empty()) {
-    // What is no text is told below.
+    // recognise() reports files that are not text.
     const auto is_own = is_own_table(*source);
     if (is_own && *is_own) return import_own(request, *source);
   }

@@ -1,5 +1,5 @@
 /// \file
-/// Records from a trace that another program exported as text.
+/// Records from a trace that another program wrote: text, MATLAB or HDF5.
 #pragma once
 
 #include <optional>

@@ -135,7 +135,7 @@ base::Error no_column_chosen(const ImportRequest& request, const Source& source,
 Result<std::string> inspect(const ImportRequest& request) {
   const auto source = Source::of(request.path);
   if (!source) return tl::unexpected(source.error());
-  const auto is_own = is_own_table(*source);  // What is no text is told below.
+  const auto is_own = is_own_table(*source);  // recognise() reports files that are not text.
   const bool own = is_own && *is_own;
   const auto dialect = recognise(*source, request.dialect);
   if (!dialect) return tl::unexpected(dialect.error());

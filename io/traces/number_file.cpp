@@ -76,7 +76,7 @@ class Reader {
     if (question.empty()) {
       std::string text = kRead + (matlab != nullptr ? matlab->format() : std::string{"HDF5"}) + kEnd;
       for (const NumberColumn& column : columns) {
-        for (const std::string& part : {column.path, column.part, column.unit, column.why}) {
+        for (const std::string& part : {column.path, column.dataset, column.part, column.unit, column.why}) {
           text += part;
           text += kEnd;
         }
@@ -145,10 +145,20 @@ base::Result<std::pair<std::uint64_t, std::string>> size_and_sha256(const Source
   }
 }
 
-/// The group that holds a column: all before the last point or slash.
-std::string_view group_of(std::string_view path) {
-  const std::size_t mark = path.find_last_of("./");
-  return mark == std::string_view::npos ? std::string_view{} : path.substr(0, mark);
+/// What holds a column in HDF5, where names of datasets may have points, or else in MATLAB.
+constexpr const char* kMarks = "/";
+constexpr const char* kMatlabMarks = "./";
+
+/// Where the column's own name begins, less 1; npos: nothing holds it.
+std::size_t mark_of(const NumberColumn& column, bool is_hdf5) {
+  if (!column.dataset.empty()) return column.dataset.size();
+  return column.path.find_last_of(is_hdf5 ? kMarks : kMatlabMarks);
+}
+
+/// The group, compound or struct that holds a column.
+std::string_view group_of(const NumberColumn& column, bool is_hdf5) {
+  const std::size_t mark = mark_of(column, is_hdf5);
+  return mark == std::string::npos ? std::string_view{} : std::string_view{column.path}.substr(0, mark);
 }
 
 /// Some of many, in one line.
@@ -213,7 +223,8 @@ base::Result<std::string> NumberFile::ask(const std::string& question) {
       return tl::unexpected(
           base::Error{answer.error().kind, fmt::format("{}: {}", path_, answer.error().message)});
     return base::usage_error(
-        "{}: {}: the file is damaged or made to deceive; take it from a backup, or export the trace as text",
+        "{}: {}: the file is damaged or was made to do harm; restore it from a backup, or export the trace "
+        "as text",
         path_, answer.error().message);
   }
   if (answer->empty() || answer->front() != kRead) {
@@ -238,6 +249,7 @@ base::Result<void> NumberFile::list() {
   for (std::size_t place = 0; !rest.empty(); ++place) {
     NumberColumn column;
     column.path = next();
+    column.dataset = next();
     column.part = next();
     column.unit = next();
     column.why = next();
@@ -269,9 +281,8 @@ std::string NumberFile::called(std::size_t column) const {
 
 ColumnName NumberFile::column_name(std::size_t column) const {
   const NumberColumn& own = columns_[column];
-  const std::size_t mark = own.path.find_last_of("./");
-  ColumnName result =
-      traces::column_name(own.path.substr(mark == std::string::npos ? 0 : mark + 1), own.unit);
+  // Of npos, 0.
+  ColumnName result = traces::column_name(own.path.substr(mark_of(own, is_hdf5_) + 1), own.unit);
   result.text = name(column);
   result.name += own.part;
   return result;
@@ -279,10 +290,12 @@ ColumnName NumberFile::column_name(std::size_t column) const {
 
 std::optional<int> NumberFile::nearness(std::size_t column, std::size_t other) const {
   if (columns_[column].size != columns_[other].size) return std::nullopt;
-  const std::string_view group = group_of(columns_[column].path);
-  const std::string_view others = columns_[other].path;
+  const std::string_view group = group_of(columns_[column], is_hdf5_);
+  const std::string_view others = group_of(columns_[other], is_hdf5_);
   if (!others.starts_with(group)) return std::nullopt;
-  if (!group.empty() && others[group.size()] != '.' && others[group.size()] != '/') return std::nullopt;
+  const std::string_view marks = is_hdf5_ ? kMarks : kMatlabMarks;
+  if (!group.empty() && others != group && marks.find(others[group.size()]) == std::string_view::npos)
+    return std::nullopt;
   return static_cast<int>(group.size());
 }
 
@@ -312,8 +325,9 @@ std::string NumberFile::of_other_size(std::size_t column) const {
 }
 
 base::Error NumberFile::no_column(const std::string& wanted) const {
-  const auto found = std::find_if(refused_.begin(), refused_.end(),
-                                  [&](const NumberColumn& column) { return column.path == wanted; });
+  const auto found = std::find_if(refused_.begin(), refused_.end(), [&](const NumberColumn& column) {
+    return column.path == wanted || column.path == "/" + wanted;
+  });
   const std::string shown = base::one_line(wanted, kLongestColumn);
   const std::string what = found == refused_.end() ? fmt::format("there is no column \"{}\"", shown)
                                                    : fmt::format("\"{}\" {}", shown, found->why);
@@ -327,7 +341,7 @@ base::Result<std::vector<double>> NumberFile::read(std::size_t column) {
   std::ifstream file{child_.memory_file(), std::ios::binary};
   if (!file.read(reinterpret_cast<char*>(values.data()),
                  static_cast<std::streamsize>(values.size() * sizeof(double))))
-    return base::failure("{}: what its reader says cannot be read", path_);
+    return base::failure("{}: the values that the reading process hands over cannot be read", path_);
   return values;
 }
 

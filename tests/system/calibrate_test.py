@@ -151,6 +151,7 @@ class Calibrate(unittest.TestCase):
         (self.folder / "readings.toml").write_text(READINGS, encoding="utf-8")
         first = self.calibrate("--points", "readings.toml", "--folder", "calibrations", "--json")
         self.assertEqual(first.returncode, 0, first.stderr)
+        self.assertIn("No gain in use is known: the new one is not compared.", first.stderr)
         [file] = (self.folder / "calibrations").iterdir()
         old = file.read_text(encoding="utf-8")
         # The same second: no file is ever written over.
@@ -161,6 +162,7 @@ class Calibrate(unittest.TestCase):
         (self.folder / "readings.toml").write_text(READINGS.replace("9.81895", "9.82895"), encoding="utf-8")
         second = self.calibrate("--points", "readings.toml", "--folder", "calibrations", "--certificate", "DKD-2")
         self.assertEqual(second.returncode, 0, second.stderr)
+        self.assertNotIn("No gain in use", second.stderr)
         self.assertIn("% against that of 19", second.stdout)
         self.assertEqual(file.read_text(encoding="utf-8"), kept)
         self.assertEqual(len(list((self.folder / "calibrations").iterdir())), 2)

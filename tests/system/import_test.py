@@ -197,7 +197,7 @@ class Import(unittest.TestCase):
         self.assertIn("to import: stickslip import /dev/stdin --dataset /run1/force", shown)
         self.expect_force(file, "--dataset", "/run1/force", "--time-dataset", "none", "--rate", RATE_Hz)
         self.assertRegex(self.call("import", file, "--dataset", "/trap", "--rate", RATE_Hz, "--unit", "N", "--sled-mass", "1 kg", "-o", "y.h5", status=2),
-                         r"cannot be read in \d+ MB of memory, which is the limit for its size: .*take it from a backup")
+                         r"cannot be read in \d+ MB of memory, which is the limit for its size: .*restore it from a backup")
         # The command of the error imports, but for what nobody knows.
         message = self.call("import", file, status=2)
         self.assertIn('give --dataset NAME; there are 1 "/run1/force"', message)

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/types/batch_json.hpp"
 #include "daemon/types/calibration_json.hpp"
 #include "daemon/types/plan_json.hpp"
 
@@ -13,6 +14,7 @@ namespace {
 using base::BareNumber;
 using base::Dimension;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using Json = nlohmann::ordered_json;
@@ -55,6 +57,18 @@ TEST(QuantityJson, WarnsOfANumberThatTheNextVersionRefuses) {
   warnings.clear();
   EXPECT_EQ(mass_at(R"({"mass_kg": 2.5})", BareNumber::kSiWithWarning, &warnings).value(), 2.5);
   EXPECT_THAT(warnings, IsEmpty());
+}
+
+TEST(QuantityJson, WarnsOncePerKeyInAHeaderThatParsersTake) {
+  Json batch = Json::parse(R"({"name": "a"})");
+  for (int i = 1; i <= 100; ++i) batch["pull_speeds"].push_back(0.001 * i);
+  Warnings warnings;
+  ASSERT_TRUE(batch_plan_of(batch, &warnings));
+  EXPECT_THAT(warnings, ElementsAre(HasSubstr(R"(pull_speeds: "0.001")")));
+  EXPECT_EQ(text_of(warnings), warnings.front());
+  const std::string text = text_of(Warnings(100, std::string(130, 'w')));
+  EXPECT_LT(text.size(), 2100U);
+  EXPECT_THAT(text, EndsWith("w; and 85 more"));
 }
 
 TEST(QuantityJson, WeightOfACalibrationNeedsItsUnitUnlessNothingHangs) {

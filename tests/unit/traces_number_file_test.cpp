@@ -277,6 +277,29 @@ class Hdf5File {
     H5Sclose(space);
   }
 
+  /// An attribute of a dataset, 0.001.
+  void attach(const char* name, const char* attribute) const {
+    const double value = 0.001;
+    const hid_t one = H5Screate(H5S_SCALAR);
+    const hid_t own = H5Acreate_by_name(file_, name, attribute, H5T_NATIVE_DOUBLE, one, H5P_DEFAULT,
+                                        H5P_DEFAULT, H5P_DEFAULT);
+    H5Awrite(own, H5T_NATIVE_DOUBLE, &value);
+    H5Aclose(own);
+    H5Sclose(one);
+  }
+
+  /// Complex numbers as h5py writes them.
+  void write_complex(const char* name) const {
+    const hid_t type = H5Tcreate(H5T_COMPOUND, 2 * sizeof(double));
+    H5Tinsert(type, "r", 0, H5T_NATIVE_DOUBLE);
+    H5Tinsert(type, "i", sizeof(double), H5T_NATIVE_DOUBLE);
+    const hsize_t count = kRows;
+    const hid_t space = H5Screate_simple(1, &count, nullptr);
+    H5Dclose(H5Dcreate2(file_, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    H5Sclose(space);
+    H5Tclose(type);
+  }
+
   /// Members time and force.
   void write_table(const char* name) const {
     const hid_t type = H5Tcreate(H5T_COMPOUND, 2 * sizeof(double));
@@ -337,6 +360,18 @@ TEST_F(NumberFiles, DatasetsOfHdf5AreColumns) {
   expect_error("", "give --dataset NAME; there are 1 \"/run1/force\"");
 }
 
+TEST_F(NumberFiles, AMemberIsReadFromItsCompoundWhateverElseHasItsName) {
+  request_.path = folder_ / "trace.h5";
+  {
+    const Hdf5File file{request_.path};
+    file.write_table("/table");
+    file.write_elsewhere("/table.force");
+    file.write("/time.force", times(), H5T_NATIVE_DOUBLE);
+  }
+  request_.time_column = "/table.time";
+  expect("/table.force", forces());
+}
+
 TEST_F(NumberFiles, TheUnitOfADatasetIsThatOfItsAttribute) {
   request_.path = folder_ / "trace.h5";
   {
@@ -350,6 +385,36 @@ TEST_F(NumberFiles, TheUnitOfADatasetIsThatOfItsAttribute) {
   std::vector<double> newtons = forces();
   for (double& force : newtons) force *= 1e-3;
   expect("/force", newtons);
+}
+
+TEST_F(NumberFiles, ScaledAndComplexDatasetsAreRefusedWithTheReason) {
+  request_.path = folder_ / "trace.h5";
+  {
+    const Hdf5File file{request_.path};
+    file.write("/packed", forces(), H5T_STD_I16LE, {}, "N");
+    file.attach("/packed", "scale_factor");
+    file.write("/shifted", forces(), H5T_STD_I16LE, {}, "N");
+    file.attach("/shifted", "add_offset");
+    file.write_complex("/z");
+    file.write("/time", times(), H5T_NATIVE_DOUBLE);
+  }
+  expect_error("/packed", "\"/packed\" is scaled by scale_factor");
+  expect_error("/shifted", "\"/shifted\" is scaled by add_offset");
+  for (const std::string name : {"/z", "z"}) expect_error(name, "\"" + name + "\" is complex");
+}
+
+TEST_F(NumberFiles, PointsInANameOfHdf5AreNoGroups) {
+  request_.path = folder_ / "trace.h5";
+  {
+    const Hdf5File file{request_.path};
+    for (const char* group : {"/run1", "/run2"}) file.group(group);
+    file.write("/run1/time", times(kRate_Hz / 2.0), H5T_NATIVE_DOUBLE);
+    file.write("/run1/force.raw", forces(), H5T_NATIVE_DOUBLE);
+    file.write("/run2/time", times(), H5T_NATIVE_DOUBLE);
+    file.write("/run2/force.raw", forces(), H5T_NATIVE_DOUBLE);
+  }
+  expect("/run2/force.raw", forces());
+  EXPECT_THAT(report_, HasSubstr("/run2/time"));
 }
 
 TEST_F(NumberFiles, ARecordNeedsNoImport) {
