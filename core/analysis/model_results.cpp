@@ -173,17 +173,18 @@ bool is_overdamped(const SlipEstimates& estimates) noexcept {
 }
 
 /// A slip whose end contradicts its own numbers: the sled sticks again exactly where Q is below the threshold
-/// [22], and without damping always. Asked of slips whose end is decided, where the belt is constant: an
-/// acceleration shifts the threshold (docs/ramp.md). S − K, γ and r may each be off by kSure standard errors,
-/// and Q by kMargin more, for what the model leaves out.
-/// \return what contradicts; empty if nothing does.
+/// [22], and without damping always. Asked of ends that are decided, and of oscillations that go on over
+/// three slips, where the belt is constant: an acceleration shifts the threshold (docs/ramp.md). γ and Q, by
+/// r and S − K, may each be off by kSure standard errors, and Q by kMargin more, for what the model leaves
+/// out. \return what contradicts; empty if nothing does.
 std::string contradiction(const SlipEstimates& estimates) {
-  constexpr double kSure = 4.0;
+  constexpr double kSure = 3.0;
   constexpr double kMargin = 1.2;
   if (!estimates.belt.is_constant()) return {};
+  const double told = std::log(detect::kDecisiveLikelihoodRatio);
   const double omega = estimates.fit.shared.omega;
   const double r = estimates.fit.shared.r;
-  const double r_error = kSure * std::sqrt(estimates.fit.shared_covariance(2, 2));
+  const double r_error = std::sqrt(estimates.fit.shared_covariance(2, 2));
   const auto [gamma, gamma_error] = damping_of(estimates);
   const auto threshold = [omega](double damping) {
     return model::Q_threshold(std::clamp(damping / (2.0 * omega), 0.0, model::kLargestGammaOver2Omega));
@@ -193,30 +194,26 @@ std::string contradiction(const SlipEstimates& estimates) {
   for (std::size_t i = 0; i < estimates.log_likelihood_ratios.size(); ++i) {
     const double ratio = estimates.log_likelihood_ratios[i];
     const bool begins_from_stick = i == 0 || estimates.window_of_slip[i] != estimates.window_of_slip[i - 1];
-    if (std::abs(ratio) < std::log(detect::kDecisiveLikelihoodRatio) || !begins_from_stick ||
-        !estimates.has_window(i)) {
-      continue;
-    }
+    if (!begins_from_stick || !estimates.has_window(i)) continue;
     const estimate::SlipWindow& window = estimates.windows[estimates.window_of_slip[i]];
     const double D = window.slip.S - window.slip.K;
-    const double D_error = kSure * estimates.fit.delta_mu_error(window);
-    const auto Q = [omega](double rate, double delta_mu) {
-      return model::dimensionless_speed(std::max(rate, 0.0), omega, std::max(delta_mu, 0.0));
-    };
-    const bool is_free = ratio < 0.0 && estimates.ends[i] == SlipEnd::kFree;
-    if (is_free && kMargin * Q(r + r_error, D - D_error) < lowest) {
+    const double Q = model::dimensionless_speed(r, omega, std::max(D, 0.0));
+    const double D_error = estimates.fit.delta_mu_error(window);
+    const double factor = 1.0 + kSure * std::hypot(r_error / r, D_error / D);
+    const bool goes_on =
+        i + 2 < estimates.ends.size() && estimates.window_of_slip[i + 2] == estimates.window_of_slip[i];
+    const bool is_free = estimates.ends[i] == SlipEnd::kFree && (ratio < -told || goes_on);
+    if (is_free && kMargin * factor * Q < lowest) {
       return fmt::format(
-          "the slip at {:.3f} s went on freely at Q = {:.3g}, where the damping found, gamma/2omega = "
-          "{:.2g}, "
-          "lets it stick again",
-          window.slip.onset_s, Q(r, D), gamma / (2.0 * omega));
+          "the slip at {:.3f} s went on freely at Q = {:.3g}; with gamma/2omega = {:.2g} it would stick "
+          "again",
+          window.slip.onset_s, Q, gamma / (2.0 * omega));
     }
-    const bool is_captured = ratio > 0.0 && estimates.ends[i] == SlipEnd::kCaptured;
-    if (is_captured && Q(r - r_error, D + D_error) > kMargin * highest) {
+    const bool is_captured = estimates.ends[i] == SlipEnd::kCaptured && ratio > told;
+    if (is_captured && Q > kMargin * factor * highest) {
       return fmt::format(
-          "the slip at {:.3f} s stuck again at Q = {:.3g}, where the damping found, gamma/2omega = {:.2g}, "
-          "lets it go on",
-          window.slip.onset_s, Q(r, D), gamma / (2.0 * omega));
+          "the slip at {:.3f} s stuck again at Q = {:.3g}; with gamma/2omega = {:.2g} it would go on",
+          window.slip.onset_s, Q, gamma / (2.0 * omega));
     }
   }
   return {};

@@ -29,8 +29,8 @@ inline constexpr std::size_t kLongestName = 200;
 [[nodiscard]] std::string printable_lines(std::string_view text, bool colours_stay = false);
 
 /// A text as one cell of a table in CSV: printable, quoted as RFC 4180 says and where it begins with #, which
-/// readers of tables take for a comment, and with an apostrophe in front where a spreadsheet would take it for
-/// a formula (it begins with = + - @, after blanks too). Not for numbers.
+/// readers of tables take for a comment, and with an apostrophe in front where a spreadsheet would take it
+/// for a formula (it begins with = + - @, after blanks too). Not for numbers.
 [[nodiscard]] std::string csv_cell(std::string_view text);
 
 /// A text for a comment line of a table in CSV, which spreadsheets cut at its separators: each piece is
