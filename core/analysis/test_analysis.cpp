@@ -93,6 +93,19 @@ std::string turning_points_finding(const Estimate& delta_mu, const std::string& 
   return fmt::format("S and K are by turning points, S - K uncertain by {:.2g}, as {}", error, why);
 }
 
+/// Adds to the systematic uncertainty of S and S − K how far the slips' own fits lie from the turning points.
+/// \param fitted  no delta_mu where the fit did not converge.
+void add_spread(const base::LongColumn<detect::Cycle>& fitted, TestResults& results) {
+  signal::RunningMean delta_mu;
+  for (const detect::Cycle& row : fitted) {
+    if (std::isfinite(row.delta_mu)) delta_mu.add(row.delta_mu);
+  }
+  if (delta_mu.count == 0.0 || !results.delta_mu.value) return;
+  const double spread = std::abs(delta_mu.mean - *results.delta_mu.value);
+  for (Estimate* estimate : {&results.mu_s, &results.delta_mu})
+    estimate->systematic_uncertainty = estimate->systematic_uncertainty.value_or(0.0) + spread;
+}
+
 /// A stub of a test: without the noise there is no telling what is a slip.
 void too_short(std::size_t scan_count, TestResults& results) {
   results.regime_reason =
@@ -227,8 +240,10 @@ TestResults TestAnalysis::finish() {
                       detect::name(settings_.estimator)));
     if (!estimates.model_describes) {
       const std::string why = estimates.results.delta_mu.reason;
+      const TestEstimates fitted = std::move(estimates);
       estimates = by_turning_points(trace, slips, cycles_by_turning_points(), why);
       estimates.model_describes = false;
+      add_spread(fitted.cycles, estimates.results);
       results.findings.push_back(turning_points_finding(estimates.results.delta_mu, why));
     }
     const detect::RegimeVerdict verdict =
