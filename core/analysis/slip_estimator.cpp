@@ -4,11 +4,13 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "core/analysis/slip_guess.hpp"
 #include "core/analysis/slip_windows.hpp"
-#include "core/detect/junction.hpp"
+#include "core/detect/capture_test.hpp"
+#include "core/estimate/cycle_buffer.hpp"
 #include "core/estimate/uniform_stage.hpp"
 #include "core/signal/statistics.hpp"
 
@@ -22,13 +24,51 @@ constexpr double kDoubtful = 6.0;
 /// Smallest relative difference of a second guess of the stick rate that is tried.
 constexpr double kOtherRate = 0.1;
 
+/// ln 10⁴ (as the live decision): a first guess that is so much likelier than any free oscillation is not
+/// improved.
+constexpr double kDecisive = 9.210340371976184;
+
+/// Decides how slips of a test ended.
+class SlipEnds {
+ public:
+  SlipEnds(const estimate::Trace& trace, std::span<const detect::Fall> slips,
+           const model::SharedParameters& shared, double sigma)
+      : trace_(trace),
+        slips_(slips),
+        prior_{shared, sigma, typical_delta_mu(trace, slips, shared), std::nullopt, &trace.belt} {}
+
+  /// Log-likelihood ratio of captured over free from the scans up to position end_at; a lower limit where it
+  /// is decisive. 0 with too few scans.
+  [[nodiscard]] double log_likelihood_ratio(std::size_t slip, double end_at) {
+    const std::size_t end = std::min(scan_at(end_at) + 1, trace_.size());
+    const double period_s = 2.0 * std::numbers::pi / prior_.shared.omega;
+    estimate::read_slip(scans_, trace_, scan_at(slips_[slip].peak_at), end, period_s);
+    const model::SlipParameters next = first_guess(trace_, slips_[slip + 1], prior_.shared);
+    if (next.S > next.K) prior_.next_delta_mu = next.S - next.K;
+    const auto ratio = [&](const detect::Budget& budget) {
+      return test_.evaluate(scans_.points(), prior_, budget).log_likelihood_ratio;
+    };
+    if (const double bound = ratio({.decisive = kDecisive, .iterations = 0}); bound > kDecisive) return bound;
+    return ratio({.iterations = kCaptureIterations});
+  }
+
+ private:
+  static constexpr int kCaptureIterations = 40;
+
+  const estimate::Trace& trace_;
+  std::span<const detect::Fall> slips_;
+  detect::CapturePrior prior_;
+  estimate::CycleBuffer scans_;
+  detect::CaptureTest test_;
+};
+
 /// Fills the likelihood ratios.
 std::vector<SlipEnd> judge_ends(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                                 const model::SharedParameters& shared, double sigma,
                                 SlipEstimates& estimates) {
   std::vector<SlipEnd> ends(slips.size(), SlipEnd::kUnknown);
   estimates.log_likelihood_ratios.clear();
-  const double typical = typical_delta_mu(trace, slips, shared);
+  SlipEnds test{trace, slips, shared, sigma};
   const bool cut = pull_ended_in_last_slip(trace, slips, shared);
   for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
     if (pull_of(trace, slips[i]) != pull_of(trace, slips[i + 1]) || follows_a_break(trace, slips, i + 1)) {
@@ -37,10 +77,8 @@ std::vector<SlipEnd> judge_ends(const estimate::Trace& trace, std::span<const de
       continue;
     }
     const bool to_the_peak = cut && i + 2 == slips.size();
-    const double end_at = to_the_peak ? slips[i + 1].peak_at : trough_at(trace, slips[i + 1], shared);
-    const std::size_t end = std::min(scan_at(end_at) + 1, trace.size());
-    double ratio =
-        detect::capture_log_likelihood_ratio(trace, scan_at(slips[i].peak_at), end, shared, sigma, typical);
+    double ratio = test.log_likelihood_ratio(
+        i, to_the_peak ? slips[i + 1].peak_at : trough_at(trace, slips[i + 1], shared));
     // The belt may have stopped before that peak.
     if (to_the_peak && std::abs(ratio) < kDoubtful) ratio = 0.0;
     estimates.log_likelihood_ratios.push_back(ratio);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/detect/live_junction.hpp"
+#include "core/detect/capture_test.hpp"
 
 namespace stickslip::detect {
 

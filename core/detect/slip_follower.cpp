@@ -17,13 +17,13 @@ namespace {
 /// ln 10⁴: then one wrong end in ten thousand slips at most [Wald, Ann. Math. Stat. 16:117–186, 1945,
 /// (3:42)].
 constexpr double kDecisive = 9.210340371976184;
-/// Times of the evaluations, in periods after the peak. The first is at kFirstAsked, when the rise of c′ of a
-/// free oscillation is nearly over (t₃ is at most three quarters of a period after the peak). If captures
-/// took longer so far, it is kEarlier before their usual time, but at kLastFirstAsked at the latest, when a
+/// Times of the evaluations, in periods after the peak. The first is at kFirstTested, when the rise of c′ of
+/// a free oscillation is nearly over (t₃ is at most three quarters of a period after the peak). If captures
+/// took longer so far, it is kEarlier before their usual time, but at kLastFirstTested at the latest, when a
 /// free oscillation is back at its peak. At kMostPeriods the decision is made with the available evidence.
-constexpr double kFirstAsked = 0.6;
+constexpr double kFirstTested = 0.6;
 constexpr double kEarlier = 2.0 / 32.0;
-constexpr double kLastFirstAsked = 1.0;
+constexpr double kLastFirstTested = 1.0;
 constexpr double kMostPeriods = 2.5;
 /// Part of the time from the onset to the peak whose scans are used; the onset is only estimated.
 constexpr double kSurelySlipping = 0.6;
@@ -101,7 +101,7 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
   peak_s_ = peak_s;
   trough_s_ = trough_s;
   evidence_ = {};
-  question_from_s_ = base::kNaN;
+  test_from_s_ = base::kNaN;
   if (!begins_from_stick) last_capture_s_ = base::kNaN;
 
   const double half_s = std::max(trough_s - peak_s, scan_s_);
@@ -132,7 +132,7 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
     task_ = Task::kFirstFit;
   } else {
     task_ = Task::kJudge;
-    first_ask();
+    schedule_first_test();
   }
 }
 
@@ -152,7 +152,7 @@ bool SlipFollower::do_task(double now_s, double sigma) noexcept {
     case Task::kFirstFit:
       first_fit(sigma);
       task_ = Task::kJudge;
-      first_ask();
+      schedule_first_test();
       return false;
     case Task::kJudge:
       return judge(now_s, sigma, !(now_s < peak_s_ + kMostPeriods * period_s()));
@@ -182,7 +182,7 @@ void SlipFollower::first_fit(double sigma) noexcept {
       estimate::fit_cycle(estimate::between(buffer_.points(), window_from_s_, trough_s_), false,
                           first_guess(), knowledge_, sigma);
   if (fit.converged) shared_ = fit.shared;
-  question_from_s_ = base::kNaN;
+  test_from_s_ = base::kNaN;
 }
 
 double SlipFollower::slipping_before_peak_s() const noexcept {
@@ -190,21 +190,21 @@ double SlipFollower::slipping_before_peak_s() const noexcept {
   return kSurelySlipping * std::clamp(peak_s_ - first_guess().onset_s, 0.0, 0.25 * period_s());
 }
 
-void SlipFollower::first_ask() noexcept {
+void SlipFollower::schedule_first_test() noexcept {
   const double period = period_s();
-  const double usual_s = std::min(usual_wait_s_ - kEarlier * period, kLastFirstAsked * period);
-  next_task_s_ = peak_s_ + std::max(kFirstAsked * period, usual_s);
+  const double usual_s = std::min(usual_wait_s_ - kEarlier * period, kLastFirstTested * period);
+  next_task_s_ = peak_s_ + std::max(kFirstTested * period, usual_s);
 }
 
 bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
-  ask(sigma, last ? 0.0 : kDecisive);
+  test_capture(sigma, last ? 0.0 : kDecisive);
   slip_.evidence = evidence_.known ? evidence_.log_likelihood_ratio : base::kNaN;
   // What neither course describes may be neither: an escape then takes more to be believed.
   const double doubt = std::max(evidence_.residual_sigmas / kMisfitSigmas, 1.0);
   const bool clear = evidence_.known && (evidence_.log_likelihood_ratio > kDecisive ||
                                          evidence_.log_likelihood_ratio < -doubt * doubt * kDecisive);
   if (!clear && !last) {
-    ask_again(now_s);
+    schedule_next_test(now_s);
     return false;
   }
   task_ = begins_from_stick_ ? Task::kFit : Task::kNone;
@@ -223,20 +223,20 @@ bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
   return true;
 }
 
-void SlipFollower::ask(double sigma, double decisive) noexcept {
-  if (std::isnan(question_from_s_)) question_from_s_ = peak_s_ - slipping_before_peak_s();
-  const auto points = buffer_.since(question_from_s_);
-  evidence_ = junction_.ask(points, shared_, sigma, typical_delta_mu_, decisive);
+void SlipFollower::test_capture(double sigma, double decisive) noexcept {
+  if (std::isnan(test_from_s_)) test_from_s_ = peak_s_ - slipping_before_peak_s();
+  const auto points = buffer_.since(test_from_s_);
+  CapturePrior prior{shared_, sigma, typical_delta_mu_};
+  evidence_ = capture_test_.evaluate(points, prior, {.decisive = decisive});
   if (!evidence_.known || !(evidence_.residual_sigmas > kMisfitSigmas)) return;
   // Neither course fits: perhaps the belt has another speed now, which the rise before this slip tells.
-  model::SharedParameters other = shared_;
-  other.r = rise_slope(sigma);
-  if (!(std::abs(std::log(other.r / shared_.r)) > kStickRateChange)) return;
-  const JunctionEvidence with_other = junction_.ask(points, other, sigma, typical_delta_mu_);
+  prior.shared.r = rise_slope(sigma);
+  if (!(std::abs(std::log(prior.shared.r / shared_.r)) > kStickRateChange)) return;
+  const CaptureEvidence with_other = capture_test_.evaluate(points, prior, {});
   if (!belt_changed(with_other.residual_sigmas, evidence_.residual_sigmas)) return;
   evidence_ = with_other;
-  shared_ = other;
-  question_from_s_ = base::kNaN;
+  shared_ = prior.shared;
+  test_from_s_ = base::kNaN;
 }
 
 bool SlipFollower::belt_changed(double residual_sigmas, double before_sigmas) noexcept {

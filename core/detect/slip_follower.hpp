@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "core/detect/belt_change.hpp"
+#include "core/detect/capture_test.hpp"
 #include "core/detect/fall_finder.hpp"
 #include "core/detect/live_cycle.hpp"
-#include "core/detect/live_junction.hpp"
 #include "core/detect/rise.hpp"
 #include "core/estimate/cycle_fit.hpp"
 
@@ -55,8 +55,8 @@ class SlipFollower {
   [[nodiscard]] const model::SharedParameters& shared() const noexcept { return shared_; }
 
  private:
-  /// The question is asked so often in a period.
-  static constexpr double kAskedPerPeriod = 32.0;
+  /// Capture tests in a period.
+  static constexpr double kTestsPerPeriod = 32.0;
 
   enum class Task { kNone, kFirstFit, kJudge, kFit };
 
@@ -66,17 +66,17 @@ class SlipFollower {
   [[nodiscard]] double rise_slope(double sigma) noexcept;
   [[nodiscard]] bool do_task(double now_s, double sigma) noexcept;
   void first_fit(double sigma) noexcept;
-  void first_ask() noexcept;
+  void schedule_first_test() noexcept;
   [[nodiscard]] bool judge(double now_s, double sigma, bool last) noexcept;
   /// The next drop if it goes on freely.
   [[nodiscard]] double freely_next_drop() const noexcept;
   /// \param residual_sigmas  what this slip's scans leave with the slope of the rise before it as stick rate.
   /// \param before_sigmas  with the one known.
   [[nodiscard]] bool belt_changed(double residual_sigmas, double before_sigmas) noexcept;
-  /// Sets evidence_. \param decisive  as in LiveJunction.
-  void ask(double sigma, double decisive) noexcept;
+  /// Sets evidence_. \param decisive  as in CaptureTest.
+  void test_capture(double sigma, double decisive) noexcept;
   void decide(double evidence, double now_s) noexcept;
-  void ask_again(double now_s) noexcept { next_task_s_ = now_s + period_s() / kAskedPerPeriod; }
+  void schedule_next_test(double now_s) noexcept { next_task_s_ = now_s + period_s() / kTestsPerPeriod; }
   void estimate(double now_s, double sigma) noexcept;
   void estimate_by_turning_points(double sigma) noexcept;
   /// \param fall_s  from peak to trough.
@@ -94,7 +94,7 @@ class SlipFollower {
   double scan_s_;
   estimate::SharedKnowledge knowledge_;
   estimate::CycleBuffer buffer_;
-  LiveJunction junction_;
+  CaptureTest capture_test_;
 
   // The slip under way.
   bool open_ = false;
@@ -113,9 +113,9 @@ class SlipFollower {
   double gap_s_ =
       -std::numeric_limits<double>::infinity();  ///< Where the last gap begins: a scan is missing.
   bool started_whole_ = false;                   ///< knowledge_, by a fall without a gap.
-  double question_from_s_ = 0.0;                 ///< Scans from here on tell how it ends; NaN until asked.
+  double test_from_s_ = 0.0;                     ///< Scans from here on tell how it ends; NaN until asked.
   model::SharedParameters shared_;
-  JunctionEvidence evidence_;
+  CaptureEvidence evidence_;
 
   double window_from_s_ = 0.0;  ///< Scans before belong to the slip before.
   double last_capture_s_ = std::numeric_limits<double>::quiet_NaN();  ///< NaN if unknown.

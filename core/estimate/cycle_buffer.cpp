@@ -113,4 +113,15 @@ void CycleBuffer::compact() noexcept {
   }
 }
 
+void read_slip(CycleBuffer& buffer, const Trace& trace, std::size_t first, std::size_t end,
+               double period_s) noexcept {
+  constexpr double kBlocksPerPeriod = 40.0;
+  const double first_s = trace.time_s[first];
+  buffer.clear();
+  buffer.keep_fine(first_s, first_s + period_s, period_s / kBlocksPerPeriod);
+  for (std::size_t k = first; k < end; ++k) {
+    if (trace.usable[k] != 0) buffer.add(trace.time_s[k], trace.level(k));
+  }
+}
+
 }  // namespace stickslip::estimate

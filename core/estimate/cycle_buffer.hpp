@@ -10,6 +10,8 @@
 #include <cstddef>
 #include <span>
 
+#include "core/estimate/trace.hpp"
+
 namespace stickslip::estimate {
 
 /// Mean over a block of consecutive scans. Members have no initial values, so that an array of points costs
@@ -65,5 +67,10 @@ class CycleBuffer {
 /// Points of a span whose mean time lies in [from_s, to_s).
 [[nodiscard]] std::span<const CyclePoint> between(std::span<const CyclePoint> points, double from_s,
                                                   double to_s) noexcept;
+
+/// Replaces the contents by the usable scans [first, end) of a trace, of which the first begins a slip: its
+/// period is kept fine. [first, end) must not be empty.
+void read_slip(CycleBuffer& buffer, const Trace& trace, std::size_t first, std::size_t end,
+               double period_s) noexcept;
 
 }  // namespace stickslip::estimate

@@ -1,19 +1,16 @@
-#include "core/detect/live_captured_course.hpp"
+#include "core/detect/captured_trajectory.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/LU>
 
-#include "core/detect/junction.hpp"
 #include "core/estimate/levenberg_marquardt.hpp"
 
 namespace stickslip::detect {
 namespace {
 
-constexpr int kMostLiveIterations = 8;
-
-void add(LiveCapturedCourse::Equations& sum, double residual, const Eigen::Vector4d& by) noexcept {
+void add(CapturedTrajectory::Equations& sum, double residual, const Eigen::Vector4d& by) noexcept {
   sum.cost += 0.5 * residual * residual;
   sum.normal += by * by.transpose();
   sum.gradient -= residual * by;
@@ -21,37 +18,47 @@ void add(LiveCapturedCourse::Equations& sum, double residual, const Eigen::Vecto
 
 }  // namespace
 
-LiveCapturedCourse::LiveCapturedCourse(const Parameters& parameters, const model::SharedParameters& shared,
+CapturedTrajectory::CapturedTrajectory(const Parameters& parameters, const model::SharedParameters& shared,
+                                       const BeltBelow& belt,
                                        std::optional<double> expected_capture_s) noexcept
     : p_(parameters),
       shared_(shared),
+      belt_(belt),
       omega0_squared_(shared.omega * shared.omega + 0.25 * shared.gamma * shared.gamma) {
   const model::SlipWaveform first{p_[0], p_[1], p_[2], shared.oscillator()};
-  auto captured_s =
-      expected_capture_s ? model::capture_time_near_s(first, shared.r, *expected_capture_s) : std::nullopt;
-  if (!captured_s) captured_s = model::capture_time_s(first, shared.r);
+  auto captured_s = expected_capture_s && belt.course->is_constant()
+                        ? model::capture_time_near_s(first, shared.r, *expected_capture_s)
+                        : std::nullopt;
+  if (!captured_s) captured_s = model::capture_time_s(first, *belt.course, shared.r, belt.start_s);
   is_captured_ = captured_s.has_value();
   capture_tau_s_ = captured_s.value_or(first.rise_end_time_s());
   const model::DampedBasis basis = model::damped_basis(first.oscillator, std::max(capture_tau_s_, 0.0));
   by_free_ = {1.0, basis.cosine + 0.5 * shared.gamma * basis.sine, basis.sine};
   rate_by_free_ = {0.0, -omega0_squared_ * basis.sine, basis.cosine - 0.5 * shared.gamma * basis.sine};
   at_capture_ = by_free_.dot(p_.head<3>());
+  rate_at_capture_ = belt.course->stick_rate(shared.r, belt.start_s + capture_tau_s_);
   set_next_S(p_[3]);
 }
 
-void LiveCapturedCourse::set_next_S(double S) noexcept {
+void CapturedTrajectory::set_next_S(double S) noexcept {
   p_[3] = S;
-  onset_tau_s_ = capture_tau_s_ + (std::max(S, at_capture_) - at_capture_) / shared_.r;
+  const model::BeltCourse& belt = *belt_.course;
+  onset_tau_s_ = capture_tau_s_ + belt.climbing_time_s(shared_.r, belt_.start_s + capture_tau_s_,
+                                                       std::max(S, at_capture_) - at_capture_);
+  rate_at_onset_ = belt.stick_rate(shared_.r, belt_.start_s + onset_tau_s_);
+  slope_at_onset_ = shared_.r * belt.slope(belt_.start_s + onset_tau_s_);
 }
 
-LiveCapturedCourse LiveCapturedCourse::with_next_delta_mu(double delta_mu) const noexcept {
-  LiveCapturedCourse other = *this;
+CapturedTrajectory CapturedTrajectory::with_next_delta_mu(double delta_mu) const noexcept {
+  CapturedTrajectory other = *this;
   other.set_next_S(p_[0] + delta_mu);
   return other;
 }
 
-LiveCapturedCourse::Point LiveCapturedCourse::after_onset(const LiveRow& row) const noexcept {
-  const auto& [omega, gamma, r] = shared_;
+CapturedTrajectory::Point CapturedTrajectory::after_onset(const ScanRow& row) const noexcept {
+  const double omega = shared_.omega;
+  const double gamma = shared_.gamma;
+  const double r = rate_at_onset_;
   const double D = std::max(p_[3], at_capture_) - p_[0];
   const double B = (r + 0.5 * gamma * D) / omega;
   const double tau_s = row.tau_s - onset_tau_s_;
@@ -63,20 +70,21 @@ LiveCapturedCourse::Point LiveCapturedCourse::after_onset(const LiveRow& row) co
   const double by_D = cosine + 0.5 * gamma / omega * sine;
   Point point;
   point.value = p_[0] + swing - row.half_spread_s2 * (gamma * rate + omega0_squared_ * swing);
-  // The onset comes later by 1/r for each S, and earlier by what the capture is higher.
-  const double by_capture = rate / r;
+  // The onset comes later by 1/r for each S, and earlier by what the capture is higher; the slip begins with
+  // what the belt's rate is then.
+  const double by_capture = (rate - slope_at_onset_ / omega * sine) / r;
   point.by << by_capture * by_free_[0] + 1.0 - by_D, by_capture * by_free_[1], by_capture * by_free_[2],
       by_D - by_capture;
   return point;
 }
 
-double LiveCapturedCourse::residual(const LiveRow& row) const noexcept {
+double CapturedTrajectory::residual(const ScanRow& row) const noexcept {
   if (row.tau_s <= capture_tau_s_) return row.free_residual(p_.head<3>());
   const double value = row.tau_s <= onset_tau_s_ ? while_stuck(row.tau_s) : after_onset(row).value;
   return (row.value - value) * row.scale;
 }
 
-LiveCapturedCourse::Equations LiveCapturedCourse::unusual(double typical_delta_mu) const noexcept {
+CapturedTrajectory::Equations CapturedTrajectory::unusual(double typical_delta_mu) const noexcept {
   Equations sum;
   const double D = std::max(p_[3], at_capture_) - p_[0];
   const double ratio = D / typical_delta_mu;
@@ -86,21 +94,22 @@ LiveCapturedCourse::Equations LiveCapturedCourse::unusual(double typical_delta_m
   // At a capture c′ is the stick rate but for rounding, which is not a shortfall.
   if (is_captured_) return sum;
   // At the end of its rise c′ is stationary, so that the shift of that moment drops out.
-  const double shortfall = (shared_.r - rate_by_free_.dot(p_.head<3>())) / (kStickRateSpread * shared_.r);
+  const double spread = kStickRateSpread * rate_at_capture_;
+  const double shortfall = (rate_at_capture_ - rate_by_free_.dot(p_.head<3>())) / spread;
   if (shortfall > 0.0) {
     by.setZero();
-    by.head<3>() = -rate_by_free_ / (kStickRateSpread * shared_.r);
+    by.head<3>() = -rate_by_free_ / spread;
     add(sum, shortfall, by);
   }
   return sum;
 }
 
-LiveCapturedCourse::Equations LiveCapturedCourse::equations(std::span<const LiveRow> rows,
+CapturedTrajectory::Equations CapturedTrajectory::equations(std::span<const ScanRow> rows,
                                                             double typical_delta_mu) const noexcept {
   Equations sum = unusual(typical_delta_mu);
   auto row = rows.begin();
-  LiveFreeEquations slipping;
-  const LiveFreeCourse free = p_.head<3>();
+  FreeEquations slipping;
+  const FreeOscillation free = p_.head<3>();
   for (; row != rows.end() && row->tau_s <= capture_tau_s_; ++row) slipping.add(*row, free);
   sum.cost += slipping.cost;
   sum.normal.topLeftCorner<3, 3>() += slipping.normal();
@@ -128,28 +137,28 @@ LiveCapturedCourse::Equations LiveCapturedCourse::equations(std::span<const Live
   return sum;
 }
 
-FittedCapture fit_captured(const FittedCapture& first, std::span<const LiveRow> rows,
-                           const model::SharedParameters& shared, double typical_delta_mu,
-                           double sigma) noexcept {
+FittedCapture fit_captured(const FittedCapture& first, std::span<const ScanRow> rows,
+                           const model::SharedParameters& shared, const BeltBelow& belt,
+                           double typical_delta_mu, double sigma, int most) noexcept {
   FittedCapture best = first;
   double damping = estimate::kFirstDamping;
-  for (int iteration = 0; iteration < kMostLiveIterations; ++iteration) {
-    const LiveCapturedCourse::Equations& now = best.equations;
+  for (int iteration = 0; iteration < most; ++iteration) {
+    const CapturedTrajectory::Equations& now = best.equations;
     // In units of each parameter's own; the diagonal is one then, also for S where no row lies behind its
     // onset.
     const Eigen::Vector4d scale = now.normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     Eigen::Matrix4d scaled = scale.asDiagonal() * now.normal * scale.asDiagonal();
     scaled.diagonal().setConstant(1.0 + damping);
     const Eigen::Vector4d step = scale.cwiseProduct(scaled.inverse() * scale.cwiseProduct(now.gradient));
-    // What the step would gain, were the course linear.
-    if (0.5 * step.dot(now.gradient) < kLiveConverged) break;
-    const LiveCapturedCourse::Parameters trial = best.course.parameters() + step;
+    // What the step would gain, were the trajectory linear.
+    if (0.5 * step.dot(now.gradient) < kCostConverged) break;
+    const CapturedTrajectory::Parameters trial = best.trajectory.parameters() + step;
     if (!step.allFinite() || !(trial[3] - trial[0] > -sigma)) {
       damping *= 10.0;
       continue;
     }
-    FittedCapture next{LiveCapturedCourse{trial, shared, best.course.capture_s()}, {}};
-    next.equations = next.course.equations(rows, typical_delta_mu);
+    FittedCapture next{CapturedTrajectory{trial, shared, belt, best.trajectory.capture_s()}, {}};
+    next.equations = next.trajectory.equations(rows, typical_delta_mu);
     const double fallen = now.cost - next.equations.cost;
     if (fallen >= 0.0) {
       best = next;
@@ -157,7 +166,7 @@ FittedCapture fit_captured(const FittedCapture& first, std::span<const LiveRow> 
     } else {
       damping *= 10.0;
     }
-    if (std::abs(fallen) < kLiveConverged) break;
+    if (std::abs(fallen) < kCostConverged) break;
   }
   return best;
 }

@@ -1,4 +1,4 @@
-#include "core/detect/live_free_course.hpp"
+#include "core/detect/free_oscillation.hpp"
 
 #include <cmath>
 #include <limits>
@@ -9,19 +9,19 @@ namespace stickslip::detect {
 namespace {
 
 /// Limit of the rounds of reweighting; the weights of a linear model converge in two or three.
-constexpr int kLiveRounds = 3;
+constexpr int kReweightings = 3;
 
 }  // namespace
 
-double fit_free(std::span<const LiveRow> rows, LiveFreeCourse& p) noexcept {
+double fit_free(std::span<const ScanRow> rows, FreeOscillation& p) noexcept {
   double before = std::numeric_limits<double>::infinity();
   bool unweighted = true;  // So was the last step: the first, as weights need a course.
   for (int round = 0;; ++round) {
-    LiveFreeEquations sum;
-    for (const LiveRow& row : rows) sum.add(row, p, round > 0);
+    FreeEquations sum;
+    for (const ScanRow& row : rows) sum.add(row, p, round > 0);
     if (round > 0) {
       const bool solved = unweighted && sum.all_within;
-      if (solved || round == kLiveRounds || std::abs(before - sum.cost) < kLiveConverged) return sum.cost;
+      if (solved || round == kReweightings || std::abs(before - sum.cost) < kCostConverged) return sum.cost;
       unweighted = sum.all_within;
       before = sum.cost;
     }

@@ -18,10 +18,10 @@ namespace stickslip::detect {
 
 /// Parameters of a free oscillation, in which it is linear: K, c(0) − K, c′(0), with time from the first
 /// point.
-using LiveFreeCourse = Eigen::Vector3d;
+using FreeOscillation = Eigen::Vector3d;
 
 /// Mean of neighbouring points. Members have no initial values, since an array of rows is only partly used.
-struct LiveRow {
+struct ScanRow {
   double tau_s;  ///< Mean time after the first point.
   double value;  ///< Mean of the points.
   double scale;  ///< √count/σ; 0 for a stray.
@@ -35,21 +35,21 @@ struct LiveRow {
   bool stray;               ///< Outlier, left out of the fits.
 
   /// Residual about a free oscillation, in standard deviations.
-  [[nodiscard]] double free_residual(const LiveFreeCourse& p) const noexcept {
+  [[nodiscard]] double free_residual(const FreeOscillation& p) const noexcept {
     return (value - (p[0] + (by_D * p[1] + by_rate * p[2]))) * scale;
   }
 };
 
 /// Rows of one slip, at most forty a period. Rows of the last evaluation are reused.
-class LiveRows {
+class ScanWindow {
  public:
   /// \return number of leading rows that are unchanged since the last call, with the same ω, γ and noise.
   std::size_t lay_out(std::span<const estimate::CyclePoint> points, const model::SharedParameters& shared,
                       double sigma) noexcept;
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  [[nodiscard]] std::span<const LiveRow> all() const noexcept { return std::span{rows_}.first(size_); }
-  [[nodiscard]] const LiveRow& back() const noexcept { return rows_[size_ - 1]; }
+  [[nodiscard]] std::span<const ScanRow> all() const noexcept { return std::span{rows_}.first(size_); }
+  [[nodiscard]] const ScanRow& back() const noexcept { return rows_[size_ - 1]; }
   [[nodiscard]] double sigma() const noexcept { return sigma_; }
 
   /// Marks the row of [from, to) with the largest residual as an outlier, if it exceeds
@@ -72,11 +72,11 @@ class LiveRows {
   void readmit(std::size_t from, std::size_t to) noexcept;
 
  private:
-  [[nodiscard]] static LiveRow row_of(std::span<const estimate::CyclePoint> together, double first_s,
+  [[nodiscard]] static ScanRow row_of(std::span<const estimate::CyclePoint> together, double first_s,
                                       const model::SharedParameters& shared) noexcept;
   bool leave_out(std::size_t which, std::size_t from, std::size_t to) noexcept;
 
-  std::array<LiveRow, estimate::CycleBuffer::kMostPoints> rows_;
+  std::array<ScanRow, estimate::CycleBuffer::kMostPoints> rows_;
   std::size_t size_ = 0;
   double first_s_ = 0.0;
   model::SharedParameters shared_;

@@ -1,4 +1,4 @@
-#include "core/detect/live_rows.hpp"
+#include "core/detect/scan_window.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -19,10 +19,10 @@ constexpr std::size_t kFreeParameters = 3;
 
 }  // namespace
 
-LiveRow LiveRows::row_of(std::span<const estimate::CyclePoint> together, double first_s,
-                         const model::SharedParameters& shared) noexcept {
+ScanRow ScanWindow::row_of(std::span<const estimate::CyclePoint> together, double first_s,
+                           const model::SharedParameters& shared) noexcept {
   const auto& [omega, gamma, r] = shared;
-  LiveRow row{};
+  ScanRow row{};
   double count = 0.0;
   double squares = 0.0;  // Of times, for the spread of all scans together.
   for (const estimate::CyclePoint& point : together) {
@@ -58,8 +58,8 @@ LiveRow LiveRows::row_of(std::span<const estimate::CyclePoint> together, double 
   return row;
 }
 
-std::size_t LiveRows::lay_out(std::span<const estimate::CyclePoint> points,
-                              const model::SharedParameters& shared, double sigma) noexcept {
+std::size_t ScanWindow::lay_out(std::span<const estimate::CyclePoint> points,
+                                const model::SharedParameters& shared, double sigma) noexcept {
   const double first_s = points.front().time_s;
   const bool same_courses =
       first_s == first_s_ && shared.omega == shared_.omega && shared.gamma == shared_.gamma;
@@ -78,7 +78,7 @@ std::size_t LiveRows::lay_out(std::span<const estimate::CyclePoint> points,
     const auto here = place(points[begin]);
     std::size_t end = begin + 1;
     while (end < points.size() && place(points[end]) == here) ++end;
-    LiveRow& row = rows_[size_];
+    ScanRow& row = rows_[size_];
     if (grown && size_ == last && points[end - 1].time_s == row.end_s) {
       ++kept;
     } else {
@@ -98,16 +98,16 @@ std::size_t LiveRows::lay_out(std::span<const estimate::CyclePoint> points,
   return kept;
 }
 
-void LiveRows::readmit(std::size_t from, std::size_t to) noexcept {
-  for (LiveRow& row : std::span{rows_}.subspan(from, to - from)) {
+void ScanWindow::readmit(std::size_t from, std::size_t to) noexcept {
+  for (ScanRow& row : std::span{rows_}.subspan(from, to - from)) {
     row.stray = false;
     row.scale = row.root_count / sigma_;
   }
 }
 
-bool LiveRows::leave_out(std::size_t which, std::size_t from, std::size_t to) noexcept {
-  const auto strays = [](std::span<const LiveRow> rows) {
-    return static_cast<std::size_t>(std::ranges::count_if(rows, &LiveRow::stray));
+bool ScanWindow::leave_out(std::size_t which, std::size_t from, std::size_t to) noexcept {
+  const auto strays = [](std::span<const ScanRow> rows) {
+    return static_cast<std::size_t>(std::ranges::count_if(rows, &ScanRow::stray));
   };
   const std::size_t left_out = 1 + strays(all());
   if (left_out > kMostStrays || kRowsPerStray * left_out > size_) return false;

@@ -7,19 +7,23 @@
 
 #include <Eigen/Core>
 
-#include "core/detect/junction.hpp"
-#include "core/detect/live_rows.hpp"
+#include "core/detect/scan_window.hpp"
 
 namespace stickslip::detect {
 
+/// Huber's limit for the choice between two trajectories; for estimates it is estimate::kHuberLimit
+/// (core/estimate/huber.hpp). The wrong trajectory has residuals of several standard deviations; the smaller
+/// limit would halve the likelihood ratio (docs/detector.md).
+inline constexpr double kChoiceLimit = 3.0;
+
 /// Change of the cost, in units of log-likelihood, below which the fit has converged.
-inline constexpr double kLiveConverged = 1e-2;
+inline constexpr double kCostConverged = 1e-2;
 
 /// Normal equations of rows about a free oscillation, in scalars, which is faster for three parameters.
-class LiveFreeEquations {
+class FreeEquations {
  public:
   /// \param weighted  with Huber's weights; otherwise all weights are 1.
-  void add(const LiveRow& row, const LiveFreeCourse& p, bool weighted = true) noexcept {
+  void add(const ScanRow& row, const FreeOscillation& p, bool weighted = true) noexcept {
     const double z = row.free_residual(p);
     cost += estimate::huber_cost(z, kChoiceLimit);
     double weight = row.scale;
@@ -64,6 +68,6 @@ class LiveFreeEquations {
 };
 
 /// \param p  first guess; becomes the parameters of least cost. \return that cost.
-double fit_free(std::span<const LiveRow> rows, LiveFreeCourse& p) noexcept;
+double fit_free(std::span<const ScanRow> rows, FreeOscillation& p) noexcept;
 
 }  // namespace stickslip::detect

@@ -1,0 +1,111 @@
+/// \file
+/// Captured/free likelihood-ratio test: did a slip end in sticking, or does the oscillation go on? Used while
+/// the scans of a slip arrive, and again at the end of a test; bounded time, no allocation.
+///
+/// Free: one decaying oscillation about one K (three parameters). Captured: the same until c′ = r (at the end
+/// of the rise of c′ if it does not reach r, with the penalty of kStickRateSpread), stick at rate r to a new
+/// S ≥ K, then a second slip with the same K (four parameters). After a stick the next amplitude is at least
+/// r/ω, and a free oscillation of smaller amplitude cannot reach c′ = r; this decides close to the threshold.
+/// [Penner 1995, (20)–(22)] A capture followed at once by a slip with S hardly above K cannot be told from a
+/// free oscillation; therefore S − K of the next slip has a prior, log-normal about the typical value.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "core/detect/captured_trajectory.hpp"
+#include "core/detect/free_oscillation.hpp"
+
+namespace stickslip::detect {
+
+/// Standard deviation of the residuals, in σ, beyond which neither trajectory describes the scans.
+inline constexpr double kMisfitSigmas = 2.0;
+
+/// Likelihood density of an outlier, relative to the peak density of noise: one scan in twenty is a missed
+/// spike, uniform within the ±6 σ that the despiker lets pass. It limits the log-likelihood ratio of a scan
+/// to ln 101 = 4.6, so that two outliers hardly decide; three rarely occur together.
+inline constexpr double kStrayDensity = 0.01;
+
+/// Effort of one evaluation.
+struct Budget {
+  /// Smallest |log-likelihood ratio| of interest. A ratio that is certainly smaller is not computed, which
+  /// saves most of the time; then only `known` is set. 0: always compute.
+  double decisive = 0.0;
+  /// Limit of the iterations of the captured trajectory's fit. With 0 the ratio is that of the first guess: a
+  /// lower limit, which suffices where it is decisive for "captured".
+  int iterations = 8;
+};
+
+/// What is known of a slip before the test.
+struct CapturePrior {
+  model::SharedParameters shared;  ///< ω, γ and r, held fixed.
+  double sigma = 0.0;              ///< Noise of one scan.
+  double typical_delta_mu = 0.0;   ///< Typical S − K of the test's slips, > 0.
+  /// First guess of S − K of the next slip; the typical one unless the next peak has been seen.
+  std::optional<double> next_delta_mu{};
+  const model::BeltCourse* belt = &model::constant_belt();  ///< Must outlive the test.
+};
+
+struct CaptureEvidence {
+  /// Captured over free; about 0 while the scans do not decide.
+  double log_likelihood_ratio = 0.0;
+  double capture_s = std::numeric_limits<double>::quiet_NaN();     ///< If captured.
+  double next_onset_s = std::numeric_limits<double>::quiet_NaN();  ///< If captured; may be yet to come.
+  double residual_sigmas = 0.0;  ///< Standard deviation of the better trajectory's residuals, in σ.
+  bool known = false;            ///< There were enough scans for an evaluation.
+};
+
+/// Evaluator with memory for the points of one slip.
+class CaptureTest {
+ public:
+  /// \param points  from a maximum of the force on; for "free" at least to the minimum after the next one.
+  [[nodiscard]] CaptureEvidence evaluate(std::span<const estimate::CyclePoint> points,
+                                         const CapturePrior& prior, const Budget& budget) noexcept;
+
+ private:
+  /// Both trajectories, each with its parameters of least cost.
+  struct Trajectories {
+    FreeOscillation free = FreeOscillation::Zero();
+    double free_cost = 0.0;
+    FittedCapture captured;
+  };
+
+  void lay_out(std::span<const estimate::CyclePoint> points, const CapturePrior& prior) noexcept;
+  /// The trajectory that both begin with, unless it is the same as at the last question.
+  void fit_common() noexcept;
+  /// Cost of all rows if the common trajectory goes on freely.
+  [[nodiscard]] double carried_on_cost() const noexcept;
+  [[nodiscard]] bool is_misfit(double cost) const noexcept;
+  /// What a kind of trajectory costs at its best.
+  struct Bounds {
+    double least = 0.0;
+    double most = 0.0;
+  };
+  /// By the last captured trajectory, if it goes on as it is.
+  [[nodiscard]] Bounds last_captured_bounds() const noexcept;
+  /// \param trajectories  its free trajectory is known. \param usual  as it usually goes on.
+  void fit_captured_trajectory(Trajectories& trajectories, const FittedCapture& usual,
+                               const Budget& budget) const noexcept;
+  /// After the common trajectory. \return whether there was one.
+  bool leave_out_a_stray_of_both(const Trajectories& trajectories) noexcept;
+  /// Captured over free, where a spike tells no more than one scan can.
+  [[nodiscard]] double log_likelihood_ratio(const Trajectories& trajectories,
+                                            double residual_sigmas) const noexcept;
+
+  [[nodiscard]] CaptureEvidence evidence_of(const Trajectories& trajectories, double first_s) const noexcept;
+
+  ScanWindow rows_;
+  CapturePrior prior_;
+  BeltBelow belt_;
+  // Of the evaluation before, as far as it still holds.
+  FreeOscillation common_ = FreeOscillation::Zero();
+  std::size_t common_count_ = 0;  ///< Rows of the common trajectory; 0 if there is none.
+  double common_cost_ = 0.0;
+  CapturedTrajectory usual_;     ///< As the common trajectory usually goes on if it is captured.
+  FittedCapture last_captured_;  ///< Of the last answer that was worked out,
+  std::size_t last_count_ = 0;   ///< its rows; 0 if there is none.
+  bool strays_ = false;          ///< It left rows out after the common trajectory.
+};
+
+}  // namespace stickslip::detect
