@@ -74,8 +74,8 @@ std::vector<double> one_test(double scan_rate_Hz, std::uint64_t seed) {
 double bound_of_a_cycle(double scan_rate_Hz) {
   const model::UniformParameters parameters{shared(), {0.0, kS, kK}};
   const double period_s = model::UniformCourse::make(parameters)->period_s();
-  const estimate::CycleCourse course{parameters.shared, parameters.slip, true};
-  const double begin_s = -0.5 * (period_s - course.capture_s());
+  const model::SlipModel slip{parameters.shared, parameters.slip, true};
+  const double begin_s = -0.5 * (period_s - slip.capture_s());
   double variance = 0.0;
   // Over where the onset may lie between two scans.
   constexpr int kPhases = 8;
@@ -83,7 +83,7 @@ double bound_of_a_cycle(double scan_rate_Hz) {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     for (double t = begin_s + phase / (kPhases * scan_rate_Hz); t < begin_s + period_s;
          t += 1.0 / scan_rate_Hz) {
-      const Eigen::Vector3d by = course.at(t).by.head<3>();
+      const Eigen::Vector3d by = slip.at(t).by_slip();
       information += by * by.transpose() / (kSigma * kSigma);
     }
     const Eigen::Matrix3d covariance = information.inverse();

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/LU>
 
-#include "core/estimate/levenberg_marquardt.hpp"
+#include "core/estimate/minimise.hpp"
 
 namespace stickslip::detect {
 namespace {
@@ -137,38 +138,52 @@ CapturedTrajectory::Equations CapturedTrajectory::equations(std::span<const Scan
   return sum;
 }
 
+namespace {
+
+/// For minimise(). The trajectory's equations carry it, as its times are their first guess.
+struct CaptureProblem {
+  using State = CapturedTrajectory::Parameters;
+  struct Equations : CapturedTrajectory::Equations {
+    CapturedTrajectory trajectory;
+  };
+
+  std::span<const ScanRow> rows;
+  const model::SharedParameters& shared;
+  const BeltBelow& belt;
+  double typical_delta_mu;
+  double sigma;
+
+  void assemble(const State& at, Equations& equations) const noexcept {
+    equations.trajectory = CapturedTrajectory{at, shared, belt, equations.trajectory.capture_s()};
+    static_cast<CapturedTrajectory::Equations&>(equations) =
+        equations.trajectory.equations(rows, typical_delta_mu);
+    if (!(at[3] - at[0] > -sigma)) equations.cost = std::numeric_limits<double>::infinity();
+  }
+
+  [[nodiscard]] double step(const State& from, const Equations& equations, double damping,
+                            State& to) const noexcept {
+    // In units of each parameter's own; the diagonal is one then, also for S where no row lies behind its
+    // onset.
+    const Eigen::Vector4d unit = equations.normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    Eigen::Matrix4d scaled = unit.asDiagonal() * equations.normal * unit.asDiagonal();
+    scaled.diagonal().setConstant(1.0 + damping);
+    const Eigen::Vector4d step = unit.cwiseProduct(scaled.inverse() * unit.cwiseProduct(equations.gradient));
+    to = from + step;
+    return 0.5 * step.dot(equations.gradient);
+  }
+};
+
+}  // namespace
+
 FittedCapture fit_captured(const FittedCapture& first, std::span<const ScanRow> rows,
                            const model::SharedParameters& shared, const BeltBelow& belt,
                            double typical_delta_mu, double sigma, int most) noexcept {
-  FittedCapture best = first;
-  double damping = estimate::kFirstDamping;
-  for (int iteration = 0; iteration < most; ++iteration) {
-    const CapturedTrajectory::Equations& now = best.equations;
-    // In units of each parameter's own; the diagonal is one then, also for S where no row lies behind its
-    // onset.
-    const Eigen::Vector4d scale = now.normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    Eigen::Matrix4d scaled = scale.asDiagonal() * now.normal * scale.asDiagonal();
-    scaled.diagonal().setConstant(1.0 + damping);
-    const Eigen::Vector4d step = scale.cwiseProduct(scaled.inverse() * scale.cwiseProduct(now.gradient));
-    // What the step would gain, were the trajectory linear.
-    if (0.5 * step.dot(now.gradient) < kCostConverged) break;
-    const CapturedTrajectory::Parameters trial = best.trajectory.parameters() + step;
-    if (!step.allFinite() || !(trial[3] - trial[0] > -sigma)) {
-      damping *= 10.0;
-      continue;
-    }
-    FittedCapture next{CapturedTrajectory{trial, shared, belt, best.trajectory.capture_s()}, {}};
-    next.equations = next.trajectory.equations(rows, typical_delta_mu);
-    const double fallen = now.cost - next.equations.cost;
-    if (fallen >= 0.0) {
-      best = next;
-      damping *= 0.1;
-    } else {
-      damping *= 10.0;
-    }
-    if (std::abs(fallen) < kCostConverged) break;
-  }
-  return best;
+  const CaptureProblem problem{rows, shared, belt, typical_delta_mu, sigma};
+  CaptureProblem::State state = first.trajectory.parameters();
+  CaptureProblem::Equations equations{first.equations, first.trajectory};
+  static_cast<void>(
+      estimate::minimise(problem, state, equations, {.iterations = most, .absolute = kCostConverged}));
+  return {equations.trajectory, equations};
 }
 
 }  // namespace stickslip::detect

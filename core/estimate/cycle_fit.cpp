@@ -8,14 +8,13 @@
 #include <Eigen/LU>
 
 #include "core/estimate/huber.hpp"
-#include "core/estimate/levenberg_marquardt.hpp"
-#include "core/model/capture.hpp"
+#include "core/estimate/minimise.hpp"
 
 namespace stickslip::estimate {
 namespace {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
-using Vector6d = CycleCourse::Row;
+using Vector6d = model::SlipModelPoint::Derivatives;
 
 /// Limit of the iterations, over up to 256 points each. It bounds the processing time of the scan that closes
 /// a cycle.
@@ -23,9 +22,6 @@ constexpr int kMostCycleIterations = 12;
 /// Change of the cost, in units of log-likelihood, below which the fit has converged: a parameter then moves
 /// by √(2 · this) of its standard error.
 constexpr double kCycleConverged = 1e-5;
-/// Factors of the damping after a step that lowers the cost and one that does not.
-constexpr double kCycleEasier = 0.1;
-constexpr double kCycleHarder = 10.0;
 /// Lowest S − K in σ that a step may reach, as in fit_slips(): noise may bring S slightly below K.
 constexpr double kLowestSigmas = 6.0;
 constexpr std::size_t kFewestCyclePoints = 4;
@@ -41,46 +37,75 @@ struct CycleEquations {
   PriorTerms known;
   HuberSums sums;
   double cost = 0.0;
+  double capture_s = 0.0;  ///< After the onset; infinity if not captured.
 };
 
-CycleEquations assemble(std::span<const CyclePoint> points, bool captured, const model::SlipParameters& slip,
-                        const model::SharedParameters& shared, const SharedKnowledge& knowledge,
-                        double sigma) noexcept {
-  CycleEquations equations;
-  const CycleCourse course{shared, slip, captured};
-  for (const CyclePoint& point : points) {
-    const CycleCourse::Point at = course.mean_over(point);
-    const double scale = std::sqrt(point.count) / sigma;
-    const double z = (point.value - at.value) * scale;
-    const double weight = equations.sums.add(z);
-    const Vector6d row = at.by * scale;
-    equations.scans.noalias() += (weight * row) * row.transpose();
-    equations.gradient += weight * z * row;
+struct CycleState {
+  model::SlipParameters slip;
+  model::SharedParameters shared;
+};
+
+/// Unit of each parameter: onsets are milliseconds, ω hundreds.
+Vector6d units_of(const Matrix6d& normal) noexcept {
+  return normal.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
+}
+
+/// Scans of one slip and what is known of the tester. For minimise().
+struct CycleProblem {
+  using State = CycleState;
+  using Equations = CycleEquations;
+
+  std::span<const CyclePoint> points;
+  bool captured;
+  const SharedKnowledge& knowledge;
+  double sigma;
+
+  [[nodiscard]] bool admissible(const State& at) const noexcept {
+    const auto& [slip, shared] = at;
+    return std::isfinite(slip.onset_s) && std::isfinite(slip.S) && std::isfinite(slip.K) &&
+           shared.omega > 0.0 && shared.r > 0.0 && std::abs(shared.gamma) < 2.0 * shared.omega &&
+           std::isfinite(shared.omega) && std::isfinite(shared.r) &&
+           slip.S - slip.K >= -kLowestSigmas * sigma;
   }
-  equations.known = knowledge.at(shared);
-  equations.cost = equations.sums.cost() + equations.known.cost;
-  return equations;
-}
 
-bool admissible(const model::SlipParameters& slip, const model::SharedParameters& shared,
-                double sigma) noexcept {
-  return std::isfinite(slip.onset_s) && std::isfinite(slip.S) && std::isfinite(slip.K) &&
-         shared.omega > 0.0 && shared.r > 0.0 && std::abs(shared.gamma) < 2.0 * shared.omega &&
-         std::isfinite(shared.omega) && std::isfinite(shared.r) && slip.S - slip.K >= -kLowestSigmas * sigma;
-}
+  void assemble(const State& at, Equations& equations) const noexcept {
+    equations = {};
+    equations.cost = std::numeric_limits<double>::infinity();
+    if (!admissible(at)) return;
+    const model::SlipModel model{at.shared, at.slip, captured};
+    model::TurnedBasis basis{model.waveform().oscillator};
+    for (const CyclePoint& point : points) {
+      // The mean over a point's scans: the value at their mean time, and half the curvature times the
+      // variance of their times. The derivatives' own curvature affects only the steps.
+      const model::SlipModelPoint mean = model.at(point.time_s, basis);
+      const double value = mean.value + 0.5 * point.spread_s2 * mean.curvature;
+      const double scale = std::sqrt(point.count) / sigma;
+      const double z = (point.value - value) * scale;
+      const double weight = equations.sums.add(z);
+      const Vector6d row = mean.by * scale;
+      equations.scans.noalias() += (weight * row) * row.transpose();
+      equations.gradient += weight * z * row;
+    }
+    equations.known = knowledge.at(at.shared);
+    equations.cost = equations.sums.cost() + equations.known.cost;
+    equations.capture_s = model.capture_s();
+  }
 
-/// Solves with each parameter in a unit of its own: onsets are milliseconds, ω hundreds.
-Vector6d step_of(const CycleEquations& equations, double damping) noexcept {
-  Matrix6d normal = equations.scans;
-  normal.diagonal() *= 1.0 + damping;
-  normal.bottomRightCorner<3, 3>() += equations.known.information;
-  Vector6d down = equations.gradient;
-  down.tail<3>() += equations.known.gradient;
-  const Vector6d scale =
-      normal.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
-  const Matrix6d scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-  return scale.cwiseProduct(scaled.ldlt().solve(scale.cwiseProduct(down)));
-}
+  [[nodiscard]] double step(const State& from, const Equations& equations, double damping,
+                            State& to) const noexcept {
+    Matrix6d normal = equations.scans;
+    normal.diagonal() *= 1.0 + damping;
+    normal.bottomRightCorner<3, 3>() += equations.known.information;
+    Vector6d down = equations.gradient;
+    down.tail<3>() += equations.known.gradient;
+    const Vector6d unit = units_of(normal);
+    const Matrix6d scaled = unit.asDiagonal() * normal * unit.asDiagonal();
+    const Vector6d step = unit.cwiseProduct(scaled.ldlt().solve(unit.cwiseProduct(down)));
+    to.slip = {from.slip.onset_s + step[0], from.slip.S + step[1], from.slip.K + step[2]};
+    to.shared = {from.shared.omega + step[3], from.shared.gamma + step[4], from.shared.r + step[5]};
+    return 0.5 * step.dot(down);
+  }
+};
 
 /// What the scans alone say about (ω, γ, r): their equations without the slip's own parameters.
 SharedEvidence evidence_of(const CycleEquations& equations, const model::SharedParameters& shared) noexcept {
@@ -99,8 +124,7 @@ void finish(CycleFit& fit, const CycleEquations& equations) noexcept {
   constexpr double kOwnParameters = 3.0;
   Matrix6d normal = equations.scans;
   normal.bottomRightCorner<3, 3>() += equations.known.information;
-  const Vector6d scale =
-      normal.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
+  const Vector6d scale = units_of(normal);
   const Matrix6d scaled = scale.asDiagonal() * normal * scale.asDiagonal();
   const Matrix6d inverse = scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
   fit.residual_sigmas = equations.sums.residual_sigma(kOwnParameters);
@@ -114,98 +138,28 @@ void finish(CycleFit& fit, const CycleEquations& equations) noexcept {
   fit.evidence = evidence_of(equations, fit.shared);
   fit.evidence.information /= variance;
   fit.evidence.weighted /= variance;
-  fit.capture_s = std::numeric_limits<double>::infinity();
+  fit.capture_s = equations.capture_s;
   fit.converged = fit.converged && fit.covariance.allFinite() && fit.covariance.diagonal().minCoeff() >= 0.0;
 }
 
 }  // namespace
 
-CycleCourse::CycleCourse(const model::SharedParameters& shared, const model::SlipParameters& slip,
-                         bool captured) noexcept
-    : shared_(shared),
-      slip_(slip),
-      waveform_{slip.K, slip.S - slip.K, shared.r, shared.oscillator()},
-      capture_s_(captured ? model::capture_time_s(waveform_, shared.r).value_or(waveform_.rise_end_time_s())
-                          : std::numeric_limits<double>::infinity()) {
-  if (captured) at_capture_ = slipping(capture_s_);
-}
-
-CycleCourse::Point CycleCourse::slipping(double tau_s) const noexcept {
-  // As SlipModel, with what c, c′ and c″ share worked out once.
-  const auto& [omega, gamma, r] = shared_;
-  const double D = slip_.S - slip_.K;
-  const double B = (r + 0.5 * gamma * D) / omega;
-  const double decay = std::exp(-0.5 * gamma * tau_s);
-  const double cosine = decay * std::cos(omega * tau_s);
-  const double sine = decay * std::sin(omega * tau_s);
-  const double swing = D * cosine + B * sine;
-  const double by_D = cosine + 0.5 * gamma / omega * sine;
-  const double rate = r * cosine - (0.5 * gamma * B + omega * D) * sine;
-  Point point;
-  point.value = slip_.K + swing;
-  point.curvature = -gamma * rate - (omega * omega + 0.25 * gamma * gamma) * swing;
-  point.by << -rate, by_D, 1.0 - by_D, tau_s * (B * cosine - D * sine) - B / omega * sine,
-      -0.5 * tau_s * swing + 0.5 * D / omega * sine, sine / omega;
-  return point;
-}
-
-CycleCourse::Point CycleCourse::at(double time_s) const noexcept {
-  const double tau_s = time_s - slip_.onset_s;
-  if (tau_s < 0.0) {
-    Point point;
-    point.value = slip_.S + shared_.r * tau_s;
-    point.by << -shared_.r, 1.0, 0.0, 0.0, 0.0, tau_s;
-    return point;
-  }
-  if (tau_s <= capture_s_) return slipping(tau_s);
-  Point point = at_capture_;
-  const double since_s = tau_s - capture_s_;
-  point.value += shared_.r * since_s;
-  point.curvature = 0.0;
-  point.by[0] = -shared_.r;
-  point.by[5] += since_s;
-  return point;
-}
-
-CycleCourse::Point CycleCourse::mean_over(const CyclePoint& point) const noexcept {
-  Point mean = at(point.time_s);
-  mean.value += 0.5 * point.spread_s2 * mean.curvature;
-  return mean;
-}
-
 CycleFit fit_cycle(std::span<const CyclePoint> points, bool captured, const model::SlipParameters& start,
                    const SharedKnowledge& knowledge, double sigma) noexcept {
   CycleFit fit;
+  const CycleProblem problem{points, captured, knowledge, sigma};
+  CycleState state{start, knowledge.best()};
   fit.slip = start;
-  fit.shared = knowledge.best();
-  if (points.size() < kFewestCyclePoints || !admissible(start, fit.shared, sigma)) return fit;
-  CycleEquations equations = assemble(points, captured, fit.slip, fit.shared, knowledge, sigma);
-  double damping = kFirstDamping;
-  while (!fit.converged && fit.iterations < kMostCycleIterations) {
-    ++fit.iterations;
-    const Vector6d step = step_of(equations, damping);
-    const model::SlipParameters slip{fit.slip.onset_s + step[0], fit.slip.S + step[1], fit.slip.K + step[2]};
-    const model::SharedParameters shared{fit.shared.omega + step[3], fit.shared.gamma + step[4],
-                                         fit.shared.r + step[5]};
-    if (!step.allFinite() || !admissible(slip, shared, sigma)) {
-      damping *= kCycleHarder;
-      continue;
-    }
-    const CycleEquations trial = assemble(points, captured, slip, shared, knowledge, sigma);
-    const double fallen = equations.cost - trial.cost;
-    // At the optimum the cost cannot fall, and rounding decides its sign.
-    fit.converged = std::abs(fallen) <= kCycleConverged;
-    if (fallen >= 0.0) {
-      fit.slip = slip;
-      fit.shared = shared;
-      equations = trial;
-      damping *= kCycleEasier;
-    } else {
-      damping *= kCycleHarder;
-    }
-  }
+  fit.shared = state.shared;
+  if (points.size() < kFewestCyclePoints) return fit;
+  CycleEquations equations;
+  problem.assemble(state, equations);
+  if (!std::isfinite(equations.cost)) return fit;
+  fit.converged =
+      minimise(problem, state, equations, {.iterations = kMostCycleIterations, .absolute = kCycleConverged});
+  fit.slip = state.slip;
+  fit.shared = state.shared;
   finish(fit, equations);
-  if (captured) fit.capture_s = CycleCourse{fit.shared, fit.slip, true}.capture_s();
   return fit;
 }
 

@@ -3,8 +3,8 @@
 ///
 ///     const CycleFit fit = fit_cycle(buffer.points(), true, first_guess, knowledge, sigma);
 ///
-/// Levenberg–Marquardt on six parameters with analytic derivatives and Huber's weights, as the fit of the
-/// whole test (core/estimate/slip_fit); the present knowledge of ω, γ and r (SharedKnowledge) enters as a
+/// Six parameters with analytic derivatives and Huber's weights, as the fit of the whole test
+/// (core/estimate/slip_fit); the present knowledge of ω, γ and r (SharedKnowledge) enters as a
 /// Gaussian prior. All matrices have fixed sizes; nothing is allocated.
 #pragma once
 
@@ -18,41 +18,6 @@
 
 namespace stickslip::estimate {
 
-/// Trajectory of one slip with its curvature and derivatives, evaluated from one exponential, one sine and
-/// one cosine.
-class CycleCourse {
- public:
-  using Row = Eigen::Matrix<double, 6, 1>;  ///< Derivatives by (onset, S, K, ω, γ, r).
-
-  struct Point {
-    double value = 0.0;
-    double curvature = 0.0;  ///< c″, 1/s²
-    Row by = Row::Zero();
-  };
-
-  /// As SlipModel: stick before the onset, and after the capture if `captured`.
-  CycleCourse(const model::SharedParameters& shared, const model::SlipParameters& slip,
-              bool captured) noexcept;
-
-  [[nodiscard]] Point at(double time_s) const noexcept;
-  /// Mean of the trajectory over the scans of a point: the value at their mean time plus half the curvature
-  /// times the variance of their times. `by` is that at the mean time; its error is as small, and affects
-  /// only the steps of the fit.
-  [[nodiscard]] Point mean_over(const CyclePoint& point) const noexcept;
-  /// Capture time, seconds after the onset; infinity if not captured.
-  [[nodiscard]] double capture_s() const noexcept { return capture_s_; }
-  [[nodiscard]] const model::SlipWaveform& waveform() const noexcept { return waveform_; }
-
- private:
-  [[nodiscard]] Point slipping(double tau_s) const noexcept;
-
-  model::SharedParameters shared_;
-  model::SlipParameters slip_;
-  model::SlipWaveform waveform_;
-  double capture_s_;
-  Point at_capture_;
-};
-
 /// Result of fit_cycle().
 struct CycleFit {
   bool converged = false;
@@ -63,7 +28,6 @@ struct CycleFit {
   SharedEvidence evidence;      ///< Information about ω, γ and r from these scans alone, without the prior.
   double capture_s = 0.0;       ///< After the onset; infinity if not captured.
   double residual_sigmas = 0.0;  ///< Standard deviation of the residuals, in σ.
-  int iterations = 0;
 
   [[nodiscard]] double delta_mu() const noexcept { return slip.S - slip.K; }
   [[nodiscard]] double delta_mu_variance() const noexcept {

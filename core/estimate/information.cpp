@@ -35,7 +35,7 @@ Eigen::Matrix2d ring_down_bound(const model::SharedParameters& shared, const mod
   P::Matrix information = P::Matrix::Zero();
   for (const double time_s : times_s) {
     const model::SlipModelPoint point = model.at(time_s);
-    const P::Vector by = (P::Vector{} << point.by_slip, point.by_shared).finished() / sigma;
+    const P::Vector by = point.by / sigma;
     information += by * by.transpose();
   }
   const Eigen::Matrix2d coupling = P::Matrix{information.inverse()}.block<2, 2>(P::kOmega, P::kOmega);

@@ -9,7 +9,7 @@
 #include <Eigen/LU>
 
 #include "core/estimate/huber.hpp"
-#include "core/estimate/levenberg_marquardt.hpp"
+#include "core/estimate/minimise.hpp"
 
 namespace stickslip::estimate {
 namespace {
@@ -24,15 +24,16 @@ constexpr int kMostFitIterations = 60;
 constexpr int kMostFitIterationsWithPrior = 200;
 /// Relative change of the cost below which the fit has converged.
 constexpr double kFitConverged = 1e-10;
-/// Factors of the damping after a step that lowers the cost and one that does not.
-constexpr double kFitEasier = 0.2;
-constexpr double kFitHarder = 5.0;
+/// Change of the cost below which it has converged whatever its size: a parameter moves by 4e-5 of its
+/// standard error. An exact trace has a cost of rounding errors, which no step lowers.
+constexpr double kFitSettled = 1e-9;
 
-/// Normal equations of one slip.
+/// Normal equations of one slip; their capture is the first guess of the next.
 struct SlipBlock {
   Matrix3d own = Matrix3d::Zero();
   Matrix3d mixed = Matrix3d::Zero();  ///< own × shared
   Vector3d gradient = Vector3d::Zero();
+  double capture_s = 0.0;  ///< After the onset; infinity if not captured.
 };
 
 struct NormalEquations {
@@ -43,32 +44,6 @@ struct NormalEquations {
   double cost = 0.0;  ///< Of scans and prior.
   PriorTerms prior;
 };
-
-NormalEquations assemble(const Trace& trace, const std::vector<SlipWindow>& windows,
-                         const model::SharedParameters& shared, double sigma, const SharedPrior& prior) {
-  NormalEquations equations;
-  equations.slips.resize(windows.size());
-  for (std::size_t i = 0; i < windows.size(); ++i) {
-    const model::SlipModel model{shared, windows[i].slip, windows[i].captured, trace.belt};
-    SlipBlock& block = equations.slips[i];
-    for (std::size_t k = windows[i].first; k < windows[i].end; ++k) {
-      if (trace.usable[k] == 0) continue;
-      const model::SlipModelPoint point = model.at(trace.time_s[k]);
-      const double residual = trace.level(k) - point.value;
-      const double weight = equations.sums.add(residual / sigma);
-      block.own += weight * point.by_slip * point.by_slip.transpose();
-      block.mixed += weight * point.by_slip * point.by_shared.transpose();
-      block.gradient += weight * residual * point.by_slip;
-      equations.shared += weight * point.by_shared * point.by_shared.transpose();
-      equations.gradient += weight * residual * point.by_shared;
-    }
-  }
-  equations.prior = prior.at(shared);
-  // The equations of the scans are in units of σ².
-  equations.gradient += sigma * sigma * equations.prior.gradient;
-  equations.cost = equations.sums.cost() + equations.prior.cost;
-  return equations;
-}
 
 Matrix3d damped(const Matrix3d& matrix, double damping) {
   Matrix3d result = matrix;
@@ -85,40 +60,102 @@ bool admissible(const model::SharedParameters& shared) {
 /// Whether each S − K is at least −6σ, as noise allows. The cost has a second minimum with S far below K,
 /// which a step could reach: there the free oscillation meets the line of the stick half a period before the
 /// onset.
-bool admissible(const std::vector<SlipWindow>& windows, double sigma) {
+bool admissible(const std::vector<model::SlipParameters>& slips, double sigma) {
   constexpr double kLowestFitSigmas = 6.0;  // Half of detect::SlipRule::kSignificantSigmas.
-  return std::all_of(windows.begin(), windows.end(), [&](const SlipWindow& window) {
-    return window.slip.S - window.slip.K >= -kLowestFitSigmas * sigma;
+  return std::all_of(slips.begin(), slips.end(), [&](const model::SlipParameters& slip) {
+    return slip.S - slip.K >= -kLowestFitSigmas * sigma;
   });
 }
 
-struct Step {
-  Vector3d shared;
-  std::vector<Vector3d> slips;
-  bool solved = false;
+struct FitState {
+  model::SharedParameters shared;
+  std::vector<model::SlipParameters> slips;
 };
 
-Step solve(const NormalEquations& equations, double sigma, double damping) {
-  Step step;
-  // Only what the scans say is damped: a step along what the prior holds fixed must stay easy.
-  Matrix3d reduced = damped(equations.shared, damping) + sigma * sigma * equations.prior.information;
-  Vector3d right = equations.gradient;
-  std::vector<Matrix3d> inverses;
-  inverses.reserve(equations.slips.size());
-  for (const SlipBlock& block : equations.slips) {
-    inverses.emplace_back(damped(block.own, damping).inverse());
-    reduced -= block.mixed.transpose() * inverses.back() * block.mixed;
-    right -= block.mixed.transpose() * inverses.back() * block.gradient;
+/// Scans of all slips. For minimise().
+class SlipsProblem {
+ public:
+  using State = FitState;
+  using Equations = NormalEquations;
+
+  SlipsProblem(const Trace& trace, const std::vector<SlipWindow>& windows, double sigma,
+               const SharedPrior& prior)
+      : trace_(trace), windows_(windows), sigma_(sigma), prior_(prior) {}
+
+  void assemble(const State& at, Equations& equations) const {
+    equations.cost = std::numeric_limits<double>::infinity();
+    if (!admissible(at.shared) || !admissible(at.slips, sigma_)) return;
+    const bool first = equations.slips.empty();
+    equations.slips.resize(windows_.size());
+    equations.shared.setZero();
+    equations.gradient.setZero();
+    equations.sums = {};
+    model::TurnedBasis basis{at.shared.oscillator()};
+    for (std::size_t i = 0; i < windows_.size(); ++i) {
+      SlipBlock& block = equations.slips[i];
+      const auto expected = first ? std::nullopt : std::optional{block.capture_s};
+      const model::SlipModel model{at.shared, at.slips[i], windows_[i].captured, trace_.belt, expected};
+      add_scans(windows_[i], model, basis, block, equations);
+    }
+    equations.prior = prior_.at(at.shared);
+    // The equations of the scans are in units of σ².
+    equations.gradient += sigma_ * sigma_ * equations.prior.gradient;
+    equations.cost = equations.sums.cost() + equations.prior.cost;
   }
-  step.shared = reduced.ldlt().solve(right);
-  step.solved = step.shared.allFinite();
-  for (std::size_t i = 0; i < equations.slips.size() && step.solved; ++i) {
-    const SlipBlock& block = equations.slips[i];
-    step.slips.emplace_back(inverses[i] * (block.gradient - block.mixed * step.shared));
-    step.solved = step.slips.back().allFinite();
+
+  /// Each slip's 3 × 3 block is eliminated first (Schur complement).
+  [[nodiscard]] double step(const State& from, const Equations& equations, double damping, State& to) const {
+    // Only what the scans say is damped: a step along what the prior holds fixed must stay easy.
+    Matrix3d reduced = damped(equations.shared, damping) + sigma_ * sigma_ * equations.prior.information;
+    Vector3d right = equations.gradient;
+    inverses_.clear();
+    for (const SlipBlock& block : equations.slips) {
+      inverses_.emplace_back(damped(block.own, damping).inverse());
+      const Matrix3d eliminated = block.mixed.transpose() * inverses_.back();
+      reduced -= eliminated * block.mixed;
+      right -= eliminated * block.gradient;
+    }
+    const Vector3d shared = reduced.ldlt().solve(right);
+    to.shared = {from.shared.omega + shared[0], from.shared.gamma + shared[1], from.shared.r + shared[2]};
+    to.slips.resize(from.slips.size());
+    double gain = shared.dot(equations.gradient);
+    for (std::size_t i = 0; i < from.slips.size(); ++i) {
+      const SlipBlock& block = equations.slips[i];
+      const Vector3d own = inverses_[i] * (block.gradient - block.mixed * shared);
+      gain += own.dot(block.gradient);
+      const model::SlipParameters& slip = from.slips[i];
+      to.slips[i] = {slip.onset_s + own[0], slip.S + own[1], slip.K + own[2]};
+    }
+    return 0.5 * gain / (sigma_ * sigma_);
   }
-  return step;
-}
+
+ private:
+  void add_scans(const SlipWindow& window, const model::SlipModel& model, model::TurnedBasis& basis,
+                 SlipBlock& block, Equations& equations) const {
+    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+    model::SlipModelPoint::Derivatives gradient = model::SlipModelPoint::Derivatives::Zero();
+    for (std::size_t k = window.first; k < window.end; ++k) {
+      if (trace_.usable[k] == 0) continue;
+      const model::SlipModelPoint point = model.at(trace_.time_s[k], basis);
+      const double residual = trace_.level(k) - point.value;
+      const double weight = equations.sums.add(residual / sigma_);
+      normal.noalias() += (weight * point.by) * point.by.transpose();
+      gradient += (weight * residual) * point.by;
+    }
+    block.own = normal.topLeftCorner<3, 3>();
+    block.mixed = normal.topRightCorner<3, 3>();
+    block.gradient = gradient.head<3>();
+    block.capture_s = model.capture_s();
+    equations.shared += normal.bottomRightCorner<3, 3>();
+    equations.gradient += gradient.tail<3>();
+  }
+
+  const Trace& trace_;
+  const std::vector<SlipWindow>& windows_;
+  double sigma_;
+  const SharedPrior& prior_;
+  mutable std::vector<Matrix3d> inverses_;  ///< Memory of step().
+};
 
 /// Covariances at the optimum, in terms of the residuals found.
 void finish(SlipFit& fit, std::vector<SlipWindow>& windows, const NormalEquations& equations, double sigma) {
@@ -152,43 +189,19 @@ SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows, const mo
                   double sigma, const SharedPrior& prior) {
   SlipFit fit;
   fit.shared = shared;
-  if (windows.empty() || !admissible(shared)) return fit;
-  NormalEquations equations = assemble(trace, windows, fit.shared, sigma, prior);
-  double damping = kFirstDamping;
+  if (windows.empty()) return fit;
+  const SlipsProblem problem{trace, windows, sigma, prior};
+  FitState state{shared, {}};
+  state.slips.reserve(windows.size());
+  for (const SlipWindow& window : windows) state.slips.push_back(window.slip);
+  NormalEquations equations;
+  problem.assemble(state, equations);
+  if (!std::isfinite(equations.cost)) return fit;
   const int most = prior.empty() ? kMostFitIterations : kMostFitIterationsWithPrior;
-  for (int iteration = 0; iteration < most && !fit.converged && damping < kHopeless; ++iteration) {
-    const Step step = solve(equations, sigma, damping);
-    model::SharedParameters trial = fit.shared;
-    std::vector<model::SlipParameters> before;
-    before.reserve(windows.size());
-    for (const SlipWindow& window : windows) before.push_back(window.slip);
-    NormalEquations there;
-    there.cost = std::numeric_limits<double>::infinity();
-    if (step.solved) {
-      trial.omega += step.shared[0];
-      trial.gamma += step.shared[1];
-      trial.r += step.shared[2];
-      for (std::size_t i = 0; i < windows.size(); ++i) {
-        windows[i].slip.onset_s += step.slips[i][0];
-        windows[i].slip.S += step.slips[i][1];
-        windows[i].slip.K += step.slips[i][2];
-      }
-      if (admissible(trial) && admissible(windows, sigma)) {
-        there = assemble(trace, windows, trial, sigma, prior);
-      }
-    }
-    if (there.cost <= equations.cost) {
-      fit.converged = equations.cost - there.cost <= kFitConverged * equations.cost;
-      fit.shared = trial;
-      equations = std::move(there);
-      damping = std::max(damping * kFitEasier, kSmallestDamping);
-    } else {
-      // At the optimum the cost cannot fall, and rounding decides its sign.
-      fit.converged = there.cost - equations.cost <= kFitConverged * equations.cost;
-      for (std::size_t i = 0; i < windows.size(); ++i) windows[i].slip = before[i];
-      damping *= kFitHarder;
-    }
-  }
+  fit.converged = minimise(problem, state, equations,
+                           {.iterations = most, .absolute = kFitSettled, .relative = kFitConverged});
+  fit.shared = state.shared;
+  for (std::size_t i = 0; i < windows.size(); ++i) windows[i].slip = state.slips[i];
   finish(fit, windows, equations, sigma);
   return fit;
 }

@@ -6,10 +6,9 @@
 ///     SharedParameters shared = …;
 ///     const SlipFit fit = fit_slips(trace, windows, shared, sigma);
 ///
-/// Levenberg–Marquardt [Marquardt, J. SIAM 11(2):431–441, 1963] on the normal equations, of which
-/// each slip's 3 × 3 block is eliminated first (Schur complement), so that the cost grows with the
-/// number of scans only. Robust by Huber's weights with k = 1.345, which keep 95 % efficiency for
-/// Gaussian noise [Huber, Ann. Math. Stat. 35:73–101, 1964].
+/// The normal equations' 3 × 3 block of each slip is eliminated first (Schur complement), so that the time
+/// grows with the number of scans only. Robust by Huber's weights with k = 1.345, which keep 95 % efficiency
+/// for Gaussian noise [Huber, Ann. Math. Stat. 35:73–101, 1964].
 #pragma once
 
 #include <cstddef>

@@ -9,7 +9,7 @@
 #include <Eigen/LU>
 
 #include "core/estimate/huber.hpp"
-#include "core/estimate/levenberg_marquardt.hpp"
+#include "core/estimate/minimise.hpp"
 
 namespace stickslip::estimate {
 namespace {
@@ -19,9 +19,9 @@ using P = model::UniformParameters;
 constexpr int kMostUniformIterations = 60;
 /// Decrease of the cost relative to it below which the fit has converged.
 constexpr double kUniformConverged = 1e-10;
-/// Factors of the damping after a step that lowers the cost and one that does not.
-constexpr double kUniformEasier = 0.1;
-constexpr double kUniformHarder = 5.0;
+/// Change of the cost below which it has converged whatever its size: a parameter moves by 4e-5 of its
+/// standard error. An exact trace has a cost of rounding errors, which no step lowers.
+constexpr double kUniformSettled = 1e-9;
 
 /// In units of σ.
 struct UniformEquations {
@@ -31,28 +31,6 @@ struct UniformEquations {
   HuberSums sums;
   double cost = std::numeric_limits<double>::infinity();
 };
-
-UniformEquations assemble(const Trace& trace, std::size_t first, std::size_t end, const P& parameters,
-                          double sigma, const SharedPrior& prior) {
-  UniformEquations equations;
-  const auto course = model::UniformCourse::make(parameters);
-  if (!course) return equations;
-  for (std::size_t k = first; k < end; ++k) {
-    if (trace.usable[k] == 0) continue;
-    const model::UniformPoint point = course->at(trace.time_s[k]);
-    const double z = (trace.level(k) - point.value) / sigma;
-    const double weight = equations.sums.add(z);
-    const P::Vector by = point.by / sigma;
-    equations.normal.selfadjointView<Eigen::Lower>().rankUpdate(by, weight);
-    equations.gradient += weight * z * by;
-  }
-  equations.normal = P::Matrix{equations.normal.selfadjointView<Eigen::Lower>()};
-  const PriorTerms known = prior.at(parameters.shared);
-  equations.prior.bottomRightCorner<3, 3>() = known.information;
-  equations.gradient.tail<3>() += known.gradient;
-  equations.cost = equations.sums.cost() + known.cost;
-  return equations;
-}
 
 /// Times and coefficients differ by orders of magnitude, and a prior may be very certain: rows and columns
 /// are scaled to a unit diagonal first.
@@ -68,35 +46,59 @@ P::Matrix inverse(const P::Matrix& matrix) {
   return scale.asDiagonal() * P::Matrix{scaled.fullPivLu().inverse()} * scale.asDiagonal();
 }
 
+/// Scans of a pull. For minimise().
+struct UniformProblem {
+  using State = P;
+  using Equations = UniformEquations;
+
+  const Trace& trace;
+  std::size_t first;
+  std::size_t end;
+  double sigma;
+  const SharedPrior& prior;
+
+  void assemble(const P& parameters, UniformEquations& equations) const {
+    equations = {};
+    const auto course = model::UniformCourse::make(parameters);
+    if (!course) return;
+    model::TurnedBasis basis = course->turned_basis();
+    for (std::size_t k = first; k < end; ++k) {
+      if (trace.usable[k] == 0) continue;
+      const model::UniformPoint point = course->at(trace.time_s[k], basis);
+      const double z = (trace.level(k) - point.value) / sigma;
+      const double weight = equations.sums.add(z);
+      const P::Vector by = point.by / sigma;
+      equations.normal.noalias() += (weight * by) * by.transpose();
+      equations.gradient += weight * z * by;
+    }
+    const PriorTerms known = prior.at(parameters.shared);
+    equations.prior.bottomRightCorner<3, 3>() = known.information;
+    equations.gradient.tail<3>() += known.gradient;
+    equations.cost = equations.sums.cost() + known.cost;
+  }
+
+  [[nodiscard]] double step(const P& from, const UniformEquations& equations, double damping, P& to) const {
+    // Only what the scans say is damped: a step along what the prior holds fixed must stay easy.
+    P::Matrix damped = equations.normal + equations.prior;
+    damped.diagonal() += damping * equations.normal.diagonal();
+    const P::Vector step = solve(damped, equations.gradient);
+    to = P::from(from.vector() + step);
+    return 0.5 * step.dot(equations.gradient);
+  }
+};
+
 }  // namespace
 
 UniformFit fit_uniform(const Trace& trace, std::size_t first, std::size_t end, const P& guess, double sigma,
                        const SharedPrior& prior) {
   UniformFit fit;
   fit.parameters = guess;
-  UniformEquations equations = assemble(trace, first, end, guess, sigma, prior);
-  double damping = kFirstDamping;
-  for (int iteration = 0; iteration < kMostUniformIterations && !fit.converged && damping < kHopeless &&
-                          std::isfinite(equations.cost);
-       ++iteration) {
-    // Only what the scans say is damped: a step along what the prior holds fixed must stay easy.
-    P::Matrix damped = equations.normal + equations.prior;
-    damped.diagonal() += damping * equations.normal.diagonal();
-    const P::Vector step = solve(damped, equations.gradient);
-    if (!step.allFinite()) break;
-    const P trial = P::from(fit.parameters.vector() + step);
-    UniformEquations there = assemble(trace, first, end, trial, sigma, prior);
-    if (there.cost <= equations.cost) {
-      fit.converged = equations.cost - there.cost <= kUniformConverged * equations.cost;
-      fit.parameters = trial;
-      equations = there;
-      damping = std::max(damping * kUniformEasier, kSmallestDamping);
-    } else {
-      // At the optimum the cost cannot fall, and rounding decides its sign.
-      fit.converged = there.cost - equations.cost <= kUniformConverged * equations.cost;
-      damping *= kUniformHarder;
-    }
-  }
+  const UniformProblem problem{trace, first, end, sigma, prior};
+  UniformEquations equations;
+  problem.assemble(guess, equations);
+  fit.converged = minimise(
+      problem, fit.parameters, equations,
+      {.iterations = kMostUniformIterations, .absolute = kUniformSettled, .relative = kUniformConverged});
   const auto count = static_cast<double>(P::Vector::RowsAtCompileTime);
   fit.cost = equations.cost;
   fit.scan_count = equations.sums.count();

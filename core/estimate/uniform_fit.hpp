@@ -23,7 +23,7 @@ struct UniformFit {
   double scan_count = 0.0;      ///< Usable scans.
 };
 
-/// Levenberg–Marquardt with Huber's weights, as fit_slips().
+/// Least cost with Huber's weights, as fit_slips().
 /// \param first,end  scans of the pull. \param guess first guess; UniformCourse::make() must accept it.
 /// \param sigma  noise of one scan, > 0.
 [[nodiscard]] UniformFit fit_uniform(const Trace& trace, std::size_t first, std::size_t end,

@@ -23,21 +23,17 @@ UniformCourse::UniformCourse(const UniformParameters& parameters)
   const SlipModelPoint capture = slip_.at(onset_s_ + slip_.capture_s());
   const double stick_s = (parameters.slip.S - capture.value) / r;
   period_s_ = slip_.capture_s() + stick_s;
-  period_by_ << 0.0, 1.0 - capture.by_slip[1], -capture.by_slip[2], -capture.by_shared;
+  period_by_ << 0.0, 1.0 - capture.by[1], -capture.by[2], -capture.by_shared();
   period_by_[UniformParameters::kR] -= stick_s;
   period_by_ /= r;
 }
 
-UniformPoint UniformCourse::at(double time_s) const noexcept {
+UniformPoint UniformCourse::at(double time_s, TurnedBasis& basis) const noexcept {
   // A cycle reaches from the capture before its onset to its own capture: both formulas agree there.
   const double stick_s = period_s_ - slip_.capture_s();
   const double cycle = std::max(std::floor((time_s - onset_s_ + stick_s) / period_s_), 0.0);
-  const SlipModelPoint point = slip_.at(time_s - cycle * period_s_);
-  UniformPoint result;
-  result.value = point.value;
-  result.by << point.by_slip, point.by_shared;
-  result.by += point.by_slip[0] * cycle * period_by_;
-  return result;
+  const SlipModelPoint point = slip_.at(time_s - cycle * period_s_, basis);
+  return {point.value, point.by + point.by[0] * cycle * period_by_};
 }
 
 }  // namespace stickslip::model

@@ -49,7 +49,13 @@ class UniformCourse {
   [[nodiscard]] static std::optional<UniformCourse> make(const UniformParameters& parameters);
 
   /// Force at any time; before the first onset the sled sticks.
-  [[nodiscard]] UniformPoint at(double time_s) const noexcept;
+  /// \param basis  turned_basis(): faster for many times in a row.
+  [[nodiscard]] UniformPoint at(double time_s, TurnedBasis& basis) const noexcept;
+  [[nodiscard]] UniformPoint at(double time_s) const noexcept {
+    TurnedBasis basis = turned_basis();
+    return at(time_s, basis);
+  }
+  [[nodiscard]] TurnedBasis turned_basis() const noexcept { return TurnedBasis{slip_.waveform().oscillator}; }
 
   /// From onset to onset: ω t_slip plus the stick that brings c from the capture back to S.
   [[nodiscard]] double period_s() const noexcept { return period_s_; }

@@ -72,28 +72,6 @@ Errors errors_of(LiveScene scene, EstimatorTier tier, bool characterised, int tr
   return errors;
 }
 
-TEST(CycleCourse, IsTheSlipModelWithItsCurvature) {
-  const LiveScene scene;
-  const model::SharedParameters shared = scene.shared();
-  const model::SlipParameters slip{0.1, 0.35, 0.30};
-  for (const bool captured : {true, false}) {
-    const model::SlipModel model{shared, slip, captured};
-    const estimate::CycleCourse course{shared, slip, captured};
-    for (double t = 0.08; t < 0.2; t += 0.0007) {
-      const model::SlipModelPoint expected = model.at(t);
-      const estimate::CycleCourse::Point point = course.at(t);
-      // A few roundings of numbers up to 1, and of derivatives up to r.
-      EXPECT_NEAR(point.value, expected.value, 1e-14);
-      EXPECT_NEAR((point.by.head<3>() - expected.by_slip).norm(), 0.0, 1e-12);
-      EXPECT_NEAR((point.by.tail<3>() - expected.by_shared).norm(), 0.0, 1e-13);
-      const double tau = t - slip.onset_s;
-      const double curvature =
-          tau < 0.0 || tau > model.capture_s() ? 0.0 : model.waveform().acceleration(tau);
-      EXPECT_NEAR(point.curvature, curvature, 1e-9);
-    }
-  }
-}
-
 // What the fit says it is uncertain by is what it is wrong by; its bias is below that of a cycle.
 TEST(LiveDetector, FitOfACycleIsAsGoodAsItSaysAtAnyScanRate) {
   struct Case {

@@ -47,8 +47,7 @@ void expect_derivatives_agree(const SharedParameters& shared, bool captured,
   for (const double time_s : times_s) {
     const SlipModelPoint point = model.at(time_s);
     for (std::size_t i = 0; i < 6; ++i) {
-      const auto row = static_cast<Eigen::Index>(i % 3);
-      const double analytic = i < 3 ? point.by_slip[row] : point.by_shared[row];
+      const double analytic = point.by[static_cast<Eigen::Index>(i)];
       // Truncation (h/scale)⁴ = 1e-12 times the phase ωτ ≤ 20 to the fourth at worst: 1e-7 of
       // the swing over the scale; rounding ε·c/h = 1e-12 of it.
       const double scale = (level + shared.r / shared.omega) / (h[i] * 1e3);
@@ -86,9 +85,9 @@ TEST(SlipModel, ForceAndItsRateAreContinuousAtOnsetAndCapture) {
     const SlipModelPoint after = model.at(at_s + eps_s);
     EXPECT_NEAR(after.value - before.value, 2.0 * shared.r * eps_s, 1e-3 * shared.r * eps_s);
     // −∂c/∂onset is c′: r at both ends of the slip.
-    EXPECT_NEAR(-before.by_slip[0], shared.r, 1e-6 * shared.r);
-    EXPECT_NEAR(-after.by_slip[0], shared.r, 1e-6 * shared.r);
-    EXPECT_LT((after.by_slip.tail<2>() - before.by_slip.tail<2>()).norm(), 1e-6);
+    EXPECT_NEAR(-before.by[0], shared.r, 1e-6 * shared.r);
+    EXPECT_NEAR(-after.by[0], shared.r, 1e-6 * shared.r);
+    EXPECT_LT((after.by_slip().tail<2>() - before.by_slip().tail<2>()).norm(), 1e-6);
   }
 }
 
