@@ -10,9 +10,6 @@
 namespace stickslip::detect {
 namespace {
 
-/// Number of scans in a row that must exceed the lowest value by the drop of a slip, for the loading to be
-/// detected.
-constexpr int kLoadedScans = 3;
 /// As for the whole test: a trace without noise still has rounding.
 constexpr double kSmallestNoise = 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -24,25 +21,19 @@ LiveDetector::LiveDetector(const LiveSettings& settings)
       noise_(std::max(signal::kRoundingSigma * settings.step_coefficient, kSmallestNoise)),
       usable_noise_(noise_),
       follower_(settings.estimator, settings.scan_rate_Hz, settings.prior),
-      lowest_(kInfinity),
-      loading_at_(kInfinity),
-      highest_(-kInfinity) {}
+      positions_(settings.scan_rate_Hz) {}
 
 std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, bool saturated) {
   const double sigma = noise_.known() ? noise_.sigma() : kInfinity;
   // The despiker still held scans from before the gap when it was told.
-  if (position_ == gap_at_ && is_gap_to_come()) follow_gap();
-  const auto position = static_cast<double>(position_++);
-  if (scan.spike) flags_after_ |= kCycleHasSpike;
-  if (saturated) flags_after_ |= kCycleIsSaturated;
-  if (scan.value > highest_) {
-    highest_ = scan.value;
-    flags_to_highest_ |= flags_after_;
-    flags_after_ = 0;
-  }
+  if (positions_.is_at_gap()) follow_gap();
+  const auto position = static_cast<double>(positions_.follow());
+  if (scan.spike) flags_.mark(kCycleHasSpike);
+  if (saturated) flags_.mark(kCycleIsSaturated);
+  flags_.add(scan.value);
   const bool usable = !scan.spike && !saturated;
   if (usable) {
-    follower_.add(time_of(position), scan.value);
+    follower_.add(positions_.time_s(position), scan.value);
     usable_noise_.add(scan.value);
   } else {
     usable_noise_.gap();
@@ -52,16 +43,17 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
   const bool was_falling = finder_.falling();
   const auto fall = finder_.add(scan.value, SlipRule::kHysteresisSigmas * sigma);
   if (finder_.falling()) {
-    follower_.falls(time_of(static_cast<double>(finder_.high_at())),
-                    time_of(static_cast<double>(finder_.low_at())));
+    follower_.falls(positions_.time_s(static_cast<double>(finder_.high_at())),
+                    positions_.time_s(static_cast<double>(finder_.low_at())));
   }
   if (state_.phase < Phase::kCycles && usable) watch_phase(scan.value, sigma);
   // What falls before anything was loaded are spikes that follow each other.
-  if (!was_falling && finder_.falling() && static_cast<double>(finder_.high_at()) >= loading_at_)
-    fall_begun_ = {static_cast<base::ScanIndex>(finder_.high_at()), finder_.high(), come_ - 1};
-  if (fall && rule_.is_slip(*fall, sigma) && fall->peak_at >= loading_at_)
-    return slip(*fall, time_of(position));
-  if (follower_.step(time_of(position), usable_sigma())) take_decision();
+  if (!was_falling && finder_.falling() && loading_.is_behind_begin(static_cast<double>(finder_.high_at())))
+    fall_begun_ = {static_cast<base::ScanIndex>(finder_.high_at()), finder_.high(),
+                   positions_.count_come() - 1};
+  if (fall && rule_.is_slip(*fall, sigma) && loading_.is_behind_begin(fall->peak_at))
+    return slip(*fall, positions_.time_s(position));
+  if (follower_.step(positions_.time_s(position), usable_sigma())) take_decision();
   if (amplitude && amplitude->is_over()) {
     watch_.stop();
     state_.regime = model::Regime::kSteadySliding;
@@ -73,11 +65,7 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
 
 void LiveDetector::watch_phase(double value, double sigma) noexcept {
   if (state_.phase == Phase::kIdle) {
-    lowest_ = std::min(lowest_, value);
-    above_ = value - lowest_ > SlipRule::kSignificantSigmas * sigma ? above_ + 1 : 0;
-    if (above_ < kLoadedScans) return;
-    state_.phase = Phase::kLoading;
-    loading_at_ = static_cast<double>(position_ - kLoadedScans);
+    if (loading_.add(value, sigma, positions_.count_followed())) state_.phase = Phase::kLoading;
     return;
   }
   if (state_.phase == Phase::kLoading && finder_.falling()) state_.phase = Phase::kFirstSlip;
@@ -89,20 +77,18 @@ void LiveDetector::watch_phase(double value, double sigma) noexcept {
 std::optional<LiveCycle> LiveDetector::slip(const Fall& fall, double now_s) noexcept {
   if (follower_.is_open() && follower_.force(now_s, usable_sigma(), true)) take_decision();
   // The cycle before reaches from its peak to this one.
-  const double peak_s = time_of(fall.peak_at);
+  const double peak_s = positions_.time_s(fall.peak_at);
   if (follower_.is_open()) {
-    cycle_flags_ |= flags_to_highest_;
+    flags_.end_cycle_at_peak();
     LiveCycle& before = follower_.slip();
     before.cycle.period_s = peak_s - before.cycle.peak_time_s;
   }
   std::optional<LiveCycle> closed = close();
   const bool begins_from_stick = state_.regime != model::Regime::kRingDown;
-  follower_.open(fall, peak_s, time_of(fall.trough_at), begins_from_stick, usable_sigma());
+  follower_.open(fall, peak_s, positions_.time_s(fall.trough_at), begins_from_stick, usable_sigma());
   if (state_.phase < Phase::kFirstSlip) state_.phase = Phase::kFirstSlip;
   ++state_.slip_count;
-  cycle_flags_ = flags_after_;
-  flags_to_highest_ = flags_after_ = 0;
-  highest_ = -kInfinity;
+  flags_.begin_cycle();
   return closed;
 }
 
@@ -127,7 +113,7 @@ std::optional<LiveCycle> LiveDetector::close() noexcept {
   if (!follower_.is_open()) return std::nullopt;
   std::optional<LiveCycle> closed{follower_.slip()};
   Cycle& cycle = closed->cycle;
-  cycle.flags |= cycle_flags_;
+  cycle.flags |= flags_.of_cycle();
   cycle.number = state_.slip_count - 1;
   if (cycle.number == 0) cycle.flags |= kCycleIsFirst;
   // The scan's number in the acquisition is the caller's to add.
@@ -141,7 +127,7 @@ std::optional<LiveCycle> LiveDetector::close() noexcept {
 }
 
 void LiveDetector::follow_gap() noexcept {
-  const double last_s = time_of(static_cast<double>(position_ - 1));
+  const double last_s = positions_.time_s(static_cast<double>(positions_.count_followed() - 1));
   follower_.gap(last_s);
   usable_noise_.gap();
   if (watch_.running())
@@ -150,24 +136,16 @@ void LiveDetector::follow_gap() noexcept {
 
 void LiveDetector::gap(std::int64_t count) noexcept {
   noise_.gap();
-  flags_after_ |= kCycleHasGap;
-  const bool waits = is_gap_to_come();
-  if (waits && come_ == gap_at_) {
-    // One gap that is told in two parts.
-    lost_ += count;
-    return;
-  }
+  flags_.mark(kCycleHasGap);
   // Of two gaps with so few scans in between that the despiker holds them all, the first is not waited for.
-  if (waits) follow_gap();
-  lost_before_ = lost_;
-  lost_ += count;
-  gap_at_ = come_;
+  if (positions_.is_gap_to_come() && !positions_.continues_gap()) follow_gap();
+  positions_.add_gap(count);
 }
 
 std::optional<LiveCycle> LiveDetector::end() noexcept {
-  const double now_s = time_of(static_cast<double>(position_));
+  const double now_s = positions_.time_s(static_cast<double>(positions_.count_followed()));
   if (follower_.is_open() && follower_.force(now_s, usable_sigma(), false)) take_decision();
-  cycle_flags_ |= flags_to_highest_ | flags_after_;
+  flags_.end_test();
   state_.phase = Phase::kEnd;
   return close();
 }

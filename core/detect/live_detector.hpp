@@ -18,9 +18,12 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/detect/cycle_flags.hpp"
 #include "core/detect/fall_finder.hpp"
 #include "core/detect/live_cycle.hpp"
+#include "core/detect/loading.hpp"
 #include "core/detect/ring_down_watch.hpp"
+#include "core/detect/scan_positions.hpp"
 #include "core/detect/slip_follower.hpp"
 #include "core/detect/slip_rule.hpp"
 #include "core/estimate/shared_prior.hpp"
@@ -68,13 +71,10 @@ class LiveDetector {
 
   std::optional<LiveCycle> follow(const signal::DespikedScan& scan, bool saturated);
   std::optional<LiveCycle> slip(const Fall& fall, double now_s) noexcept;
-  /// The follower has not been told of the last gap: the despiker still holds scans from before it.
-  [[nodiscard]] bool is_gap_to_come() const noexcept { return position_ <= gap_at_ && lost_ > lost_before_; }
   void follow_gap() noexcept;
   void take_decision() noexcept;
   void watch_phase(double value, double sigma) noexcept;
   std::optional<LiveCycle> close() noexcept;
-  [[nodiscard]] double time_of(double position) const noexcept;
   /// Noise of the scans that tell how a slip ends. Spikes would add to it: 20 a second lie in a quarter of
   /// the fourth differences of 350 scans/s, whose median is 40 % larger then.
   [[nodiscard]] double usable_sigma() const noexcept {
@@ -92,38 +92,22 @@ class LiveDetector {
   RingDownWatch watch_;
   LiveState state_;
   std::optional<FallBegun> fall_begun_;
-
-  std::int64_t come_ = 0;         ///< Scans that came.
-  std::int64_t position_ = 0;     ///< Scans followed, as the finder counts them.
-  std::int64_t lost_ = 0;         ///< Before the scan that comes next.
-  std::int64_t lost_before_ = 0;  ///< Before the last gap.
-  std::int64_t gap_at_ = 0;       ///< Position of the first scan after the last gap.
-
-  double lowest_ = 0.0;  ///< While idle.
-  int above_ = 0;        ///< Scans in a row that are up from there.
-  double loading_at_;    ///< Position at which the loading was seen to begin.
-
-  double highest_;  ///< Scan since the last slip.
-  std::uint8_t flags_to_highest_ = 0;
-  std::uint8_t flags_after_ = 0;
-  std::uint8_t cycle_flags_ = 0;
+  ScanPositions positions_;
+  Loading loading_;
+  CycleFlags flags_;
 };
 
 // Each scan goes through these: in the caller's loop.
 
 inline std::optional<LiveCycle> LiveDetector::add(double coefficient, bool saturated) {
   noise_.add(coefficient);
-  saturated_[static_cast<std::size_t>(come_++) % saturated_.size()] = saturated;
+  const std::int64_t before = positions_.come();
+  saturated_[static_cast<std::size_t>(before) % saturated_.size()] = saturated;
   fall_begun_.reset();
   if (!settings_.despike) return follow({coefficient, false}, saturated);
   const auto scan = despiker_.add(coefficient, noise_.sigma());
   if (!scan) return std::nullopt;
-  return follow(*scan, saturated_[static_cast<std::size_t>(come_ - 1 - kHeldBack) % saturated_.size()]);
-}
-
-inline double LiveDetector::time_of(double position) const noexcept {
-  const std::int64_t lost = position < static_cast<double>(gap_at_) ? lost_before_ : lost_;
-  return (position + static_cast<double>(lost)) / settings_.scan_rate_Hz;
+  return follow(*scan, saturated_[static_cast<std::size_t>(before - kHeldBack) % saturated_.size()]);
 }
 
 }  // namespace stickslip::detect

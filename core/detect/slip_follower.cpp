@@ -66,7 +66,7 @@ double rough_delta_mu(double peak_above_K, const model::SharedParameters& shared
 
 }  // namespace
 
-double SlipFollower::period_s() const noexcept { return 2.0 * std::numbers::pi / shared_.omega; }
+double SlipFollower::period_s() const noexcept { return 2.0 * std::numbers::pi / now_.shared.omega; }
 
 void SlipFollower::falls(double peak_s, double lowest_s) noexcept {
   const double half_s = std::max(lowest_s - peak_s, scan_s_);
@@ -77,13 +77,13 @@ void SlipFollower::falls(double peak_s, double lowest_s) noexcept {
 void SlipFollower::gap(double now_s) noexcept {
   buffer_.clear();
   gap_s_ = now_s + scan_s_;
-  whole_ = false;
-  if (rise_slope_ == 0.0) rise_slope_ = base::kNaN;
-  if (open_ && !decided_) task_ = Task::kNone;
+  now_.whole = false;
+  if (now_.rise_slope == 0.0) now_.rise_slope = base::kNaN;
+  if (!now_.decided) on(Event::kScansEnd);
 }
 
 double SlipFollower::freely_next_drop() const noexcept {
-  return fall_.drop() * std::exp(-2.0 * std::numbers::pi * shared_.oscillator().gamma_over_2omega());
+  return now_.fall.drop() * std::exp(-2.0 * std::numbers::pi * now_.shared.oscillator().gamma_over_2omega());
 }
 
 void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool begins_from_stick,
@@ -92,16 +92,13 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
   // another speed than was thought.
   const bool contradicted = !begins_from_stick && is_more_than(fall.drop(), freely_next_drop(), sigma);
   if (contradicted) begins_from_stick = true;
-  open_ = true;
   ++slip_number_;
-  decided_ = false;
-  begins_from_stick_ = begins_from_stick;
-  whole_ = !(peak_s <= gap_s_);
-  fall_ = fall;
-  peak_s_ = peak_s;
-  trough_s_ = trough_s;
-  evidence_ = {};
-  test_from_s_ = base::kNaN;
+  now_ = {};
+  now_.begins_from_stick = begins_from_stick;
+  now_.whole = !(peak_s <= gap_s_);
+  now_.fall = fall;
+  now_.peak_s = peak_s;
+  now_.trough_s = trough_s;
   if (!begins_from_stick) last_capture_s_ = base::kNaN;
 
   const double half_s = std::max(trough_s - peak_s, scan_s_);
@@ -109,13 +106,12 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
     // Nothing says where the stick began.
     window_from_s_ = rise().line_from_s(buffer_.points(), window_from_s_);
   }
-  rise_slope_ = 0.0;
   if (!started_whole_) knowledge_.start(std::numbers::pi / half_s, rise_slope(sigma));
-  started_whole_ = started_whole_ || whole_;
+  started_whole_ = started_whole_ || now_.whole;
   if (contradicted) knowledge_.forget_stick_rate(rise_slope(sigma));
-  shared_ = knowledge_.best();
+  now_.shared = knowledge_.best();
 
-  if (!(typical_delta_mu_ > 0.0)) typical_delta_mu_ = rough_delta_mu(0.5 * fall.drop(), shared_);
+  if (!(usual_.delta_mu > 0.0)) usual_.delta_mu = rough_delta_mu(0.5 * fall.drop(), now_.shared);
   slip_ = {};
   Cycle& cycle = slip_.cycle;
   cycle.peak_time_s = peak_s;
@@ -127,146 +123,156 @@ void SlipFollower::open(const Fall& fall, double peak_s, double trough_s, bool b
         &cycle.delta_mu, &cycle.delta_mu_standard_error, &cycle.slip_speed_ratio}) {
     *unknown = base::kNaN;
   }
-  next_task_s_ = -std::numeric_limits<double>::infinity();
-  if (tier_ == EstimatorTier::kFit && begins_from_stick && !knowledge_.characterised()) {
-    task_ = Task::kFirstFit;
-  } else {
-    task_ = Task::kJudge;
-    schedule_first_test();
+  on(Event::kClosed);
+  const bool is_unknown = tier_ == EstimatorTier::kFit && begins_from_stick && !knowledge_.characterised();
+  on(is_unknown ? Event::kOpenedUnknown : Event::kOpened);
+  if (!is_unknown) schedule_first_test();
+}
+
+void SlipFollower::on(Event event) noexcept {
+  const auto found = std::ranges::find_if(
+      kTransitions, [&](const Transition& at) { return at.state == state_ && at.event == event; });
+  if (event == Event::kClosed) {
+    state_ = State::kClosed;
+  } else if (found != kTransitions.end()) {
+    state_ = found->next;
   }
 }
 
 Rise SlipFollower::rise() const noexcept {
-  return {fall_.rise_from, fall_.peak, peak_s_ - std::max(fall_.rise_duration, 1.0) * scan_s_, peak_s_};
+  return {now_.fall.rise_from, now_.fall.peak, now_.peak_s - std::max(now_.fall.rise_duration, 1.0) * scan_s_,
+          now_.peak_s};
 }
 
 double SlipFollower::rise_slope(double sigma) noexcept {
-  if (rise_slope_ == 0.0) {
-    rise_slope_ = rise().slope(buffer_.points(), window_from_s_, sigma);
+  if (now_.rise_slope == 0.0) {
+    now_.rise_slope = rise().slope(buffer_.points(), window_from_s_, sigma);
   }
-  return rise_slope_;
+  return now_.rise_slope;
 }
 
 bool SlipFollower::do_task(double now_s, double sigma) noexcept {
-  switch (task_) {
-    case Task::kFirstFit:
+  switch (state_) {
+    case State::kFirstFit:
       first_fit(sigma);
-      task_ = Task::kJudge;
+      on(Event::kFirstFitted);
       schedule_first_test();
       return false;
-    case Task::kJudge:
-      return judge(now_s, sigma, !(now_s < peak_s_ + kMostPeriods * period_s()));
-    case Task::kFit:
-      task_ = Task::kNone;
+    case State::kTesting:
+      return judge(now_s, sigma, !(now_s < now_.peak_s + kMostPeriods * period_s()));
+    case State::kFitting:
       estimate(now_s, sigma);
+      on(Event::kEstimated);
       return false;
-    case Task::kNone:
+    case State::kClosed:
+    case State::kDone:
       break;
   }
   return false;
 }
 
 bool SlipFollower::force(double now_s, double sigma, bool has_next) noexcept {
-  if (!open_) return false;
-  const bool was_decided = decided_;
-  if (task_ == Task::kFirstFit) task_ = Task::kJudge;
-  if (task_ == Task::kJudge) (void)judge(now_s, sigma, has_next);
-  if (task_ == Task::kFit || (!decided_ && begins_from_stick_)) estimate(now_s, sigma);
-  task_ = Task::kNone;
-  return decided_ && !was_decided;
+  if (!is_open()) return false;
+  const bool was_decided = now_.decided;
+  on(Event::kFirstFitted);
+  if (state_ == State::kTesting) (void)judge(now_s, sigma, has_next);
+  if (state_ == State::kFitting || (!now_.decided && now_.begins_from_stick)) estimate(now_s, sigma);
+  on(Event::kScansEnd);
+  return now_.decided && !was_decided;
 }
 
 void SlipFollower::first_fit(double sigma) noexcept {
   // Up to the trough, before which a capture cannot come.
   const estimate::CycleFit fit =
-      estimate::fit_cycle(estimate::between(buffer_.points(), window_from_s_, trough_s_), false,
+      estimate::fit_cycle(estimate::between(buffer_.points(), window_from_s_, now_.trough_s), false,
                           first_guess(), knowledge_, sigma);
-  if (fit.converged) shared_ = fit.shared;
-  test_from_s_ = base::kNaN;
+  if (fit.converged) now_.shared = fit.shared;
+  now_.test_from_s = base::kNaN;
 }
 
 double SlipFollower::slipping_before_peak_s() const noexcept {
-  if (!begins_from_stick_) return 0.0;
-  return kSurelySlipping * std::clamp(peak_s_ - first_guess().onset_s, 0.0, 0.25 * period_s());
+  if (!now_.begins_from_stick) return 0.0;
+  return kSurelySlipping * std::clamp(now_.peak_s - first_guess().onset_s, 0.0, 0.25 * period_s());
 }
 
 void SlipFollower::schedule_first_test() noexcept {
   const double period = period_s();
-  const double usual_s = std::min(usual_wait_s_ - kEarlier * period, kLastFirstTested * period);
-  next_task_s_ = peak_s_ + std::max(kFirstTested * period, usual_s);
+  const double usual_s = std::min(usual_.wait_s - kEarlier * period, kLastFirstTested * period);
+  now_.next_task_s = now_.peak_s + std::max(kFirstTested * period, usual_s);
 }
 
 bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
   test_capture(sigma, last ? 0.0 : kDecisive);
-  slip_.evidence = evidence_.known ? evidence_.log_likelihood_ratio : base::kNaN;
+  slip_.evidence = now_.evidence.known ? now_.evidence.log_likelihood_ratio : base::kNaN;
   // What neither course describes may be neither: an escape then takes more to be believed.
-  const double doubt = std::max(evidence_.residual_sigmas / kMisfitSigmas, 1.0);
-  const bool clear = evidence_.known && (evidence_.log_likelihood_ratio > kDecisive ||
-                                         evidence_.log_likelihood_ratio < -doubt * doubt * kDecisive);
+  const double doubt = std::max(now_.evidence.residual_sigmas / kMisfitSigmas, 1.0);
+  const bool clear = now_.evidence.known && (now_.evidence.log_likelihood_ratio > kDecisive ||
+                                             now_.evidence.log_likelihood_ratio < -doubt * doubt * kDecisive);
   if (!clear && !last) {
     schedule_next_test(now_s);
     return false;
   }
-  task_ = begins_from_stick_ ? Task::kFit : Task::kNone;
+  on(now_.begins_from_stick ? Event::kTold : Event::kToldOfFree);
   // At the next slip the sign decides; a sled that sticks goes on sticking as long as the scans tell nothing.
-  if (!evidence_.known) return false;
+  if (!now_.evidence.known) return false;
   const double told = std::log(kDecisiveLikelihoodRatio);
-  if (evidence_.log_likelihood_ratio < 0.0 && evidence_.log_likelihood_ratio > -told) return false;
-  decide(evidence_.log_likelihood_ratio, now_s);
-  if (std::abs(std::log(shared_.r / knowledge_.best().r)) > kStickRateChange && shared_.r == rise_slope_)
-    knowledge_.forget_stick_rate(rise_slope_);
+  if (now_.evidence.log_likelihood_ratio < 0.0 && now_.evidence.log_likelihood_ratio > -told) return false;
+  decide(now_.evidence.log_likelihood_ratio, now_s);
+  if (std::abs(std::log(now_.shared.r / knowledge_.best().r)) > kStickRateChange &&
+      now_.shared.r == now_.rise_slope)
+    knowledge_.forget_stick_rate(now_.rise_slope);
   if (!captured()) return true;
-  wait_count_ = std::min(wait_count_ + 1.0, kTypicalMemory);
-  usual_wait_s_ += (now_s - peak_s_ - usual_wait_s_) / wait_count_;
-  if (!begins_from_stick_)
-    slip_.cycle.capture_time_s = last_capture_s_ = window_from_s_ = evidence_.capture_s;
+  usual_.wait_count = std::min(usual_.wait_count + 1.0, kTypicalMemory);
+  usual_.wait_s += (now_s - now_.peak_s - usual_.wait_s) / usual_.wait_count;
+  if (!now_.begins_from_stick)
+    slip_.cycle.capture_time_s = last_capture_s_ = window_from_s_ = now_.evidence.capture_s;
   return true;
 }
 
 void SlipFollower::test_capture(double sigma, double decisive) noexcept {
-  if (std::isnan(test_from_s_)) test_from_s_ = peak_s_ - slipping_before_peak_s();
-  const auto points = buffer_.since(test_from_s_);
-  CapturePrior prior{shared_, sigma, typical_delta_mu_};
-  evidence_ = capture_test_.evaluate(points, prior, {.decisive = decisive});
-  if (!evidence_.known || !(evidence_.residual_sigmas > kMisfitSigmas)) return;
+  if (std::isnan(now_.test_from_s)) now_.test_from_s = now_.peak_s - slipping_before_peak_s();
+  const auto points = buffer_.since(now_.test_from_s);
+  CapturePrior prior{now_.shared, sigma, usual_.delta_mu};
+  now_.evidence = capture_test_.evaluate(points, prior, {.decisive = decisive});
+  if (!now_.evidence.known || !(now_.evidence.residual_sigmas > kMisfitSigmas)) return;
   // Neither course fits: perhaps the belt has another speed now, which the rise before this slip tells.
   prior.shared.r = rise_slope(sigma);
-  if (!(std::abs(std::log(prior.shared.r / shared_.r)) > kStickRateChange)) return;
+  if (!(std::abs(std::log(prior.shared.r / now_.shared.r)) > kStickRateChange)) return;
   const CaptureEvidence with_other = capture_test_.evaluate(points, prior, {});
-  if (!belt_changed(with_other.residual_sigmas, evidence_.residual_sigmas)) return;
-  evidence_ = with_other;
-  shared_ = prior.shared;
-  test_from_s_ = base::kNaN;
+  if (!belt_changed(with_other.residual_sigmas, now_.evidence.residual_sigmas)) return;
+  now_.evidence = with_other;
+  now_.shared = prior.shared;
+  now_.test_from_s = base::kNaN;
 }
 
 bool SlipFollower::belt_changed(double residual_sigmas, double before_sigmas) noexcept {
   if (!BeltChange::explains(residual_sigmas, before_sigmas)) return false;
-  const bool seen_before = belt_change_.seen(slip_number_, rise_slope_);
-  return seen_before || typical_count_ < kKnownSlips;
+  const bool seen_before = belt_change_.seen(slip_number_, now_.rise_slope);
+  return seen_before || usual_.count < kKnownSlips;
 }
 
 void SlipFollower::decide(double evidence, double now_s) noexcept {
-  decided_ = true;
+  now_.decided = true;
   slip_.evidence = evidence;
   slip_.decided_time_s = now_s;
   if (evidence > 0.0) slip_.cycle.flags |= kCycleCaptured;
 }
 
 model::SlipParameters SlipFollower::first_guess() const noexcept {
-  const model::Oscillator oscillator = shared_.oscillator();
+  const model::Oscillator oscillator = now_.shared.oscillator();
   model::SlipParameters guess;
-  guess.K = K_of_turning_points(fall_.peak, fall_.trough, oscillator);
-  const double above = fall_.peak - guess.K;
-  const double D = std::max(slip_of_peak(above, shared_.r, oscillator).delta_mu, 0.1 * above);
+  guess.K = K_of_turning_points(now_.fall.peak, now_.fall.trough, oscillator);
+  const double above = now_.fall.peak - guess.K;
+  const double D = std::max(slip_of_peak(above, now_.shared.r, oscillator).delta_mu, 0.1 * above);
   guess.S = guess.K + D;
-  guess.onset_s = peak_s_ - model::SlipWaveform{guess.K, D, shared_.r, oscillator}.peak_time_s();
+  guess.onset_s = now_.peak_s - model::SlipWaveform{guess.K, D, now_.shared.r, oscillator}.peak_time_s();
   return guess;
 }
 
 void SlipFollower::learn_typical(double delta_mu) noexcept {
   if (!(delta_mu > 0.0)) return;
-  typical_count_ = std::min(typical_count_ + 1.0, kTypicalMemory);
-  typical_delta_mu_ += (delta_mu - typical_delta_mu_) / typical_count_;
+  usual_.count = std::min(usual_.count + 1.0, kTypicalMemory);
+  usual_.delta_mu += (delta_mu - usual_.delta_mu) / usual_.count;
 }
 
 void SlipFollower::take_course(const model::SlipParameters& slip, double slip_speed_ratio,
@@ -287,11 +293,11 @@ void SlipFollower::take_course(const model::SlipParameters& slip, double slip_sp
 void SlipFollower::estimate(double now_s, double sigma) noexcept {
   // Scans up to the middle of the stick belong to this slip, the others to the next.
   double end_s = now_s;
-  if (decided_ && captured()) {
-    end_s =
-        0.5 * (evidence_.capture_s + std::min(std::max(now_s, evidence_.capture_s), evidence_.next_onset_s));
-  } else if (!decided_) {
-    end_s = trough_s_;
+  if (now_.decided && captured()) {
+    end_s = 0.5 * (now_.evidence.capture_s +
+                   std::min(std::max(now_s, now_.evidence.capture_s), now_.evidence.next_onset_s));
+  } else if (!now_.decided) {
+    end_s = now_.trough_s;
   }
   if (tier_ == EstimatorTier::kFit) {
     estimate_by_fit(end_s, sigma);
@@ -299,17 +305,17 @@ void SlipFollower::estimate(double now_s, double sigma) noexcept {
     estimate_by_turning_points(sigma);
   }
   window_from_s_ = end_s;
-  buffer_.forget_before(std::min(end_s, peak_s_ + period_s()));
+  buffer_.forget_before(std::min(end_s, now_.peak_s + period_s()));
 }
 
 void SlipFollower::estimate_by_fit(double end_s, double sigma) noexcept {
-  const bool is_captured = decided_ && captured();
+  const bool is_captured = now_.decided && captured();
   const auto points = estimate::between(buffer_.points(), window_from_s_, end_s);
   estimate::CycleFit fit = estimate::fit_cycle(points, is_captured, first_guess(), knowledge_, sigma);
   if (fit.converged && fit.residual_sigmas > kMisfitSigmas && rise_slope(sigma) > 0.0 &&
-      std::abs(std::log(rise_slope_ / knowledge_.best().r)) > kStickRateChange) {
+      std::abs(std::log(now_.rise_slope / knowledge_.best().r)) > kStickRateChange) {
     estimate::SharedKnowledge anew = knowledge_;
-    anew.forget_stick_rate(rise_slope_);
+    anew.forget_stick_rate(now_.rise_slope);
     const estimate::CycleFit other = estimate::fit_cycle(points, is_captured, first_guess(), anew, sigma);
     if (other.converged && belt_changed(other.residual_sigmas, fit.residual_sigmas)) {
       knowledge_ = anew;
@@ -331,8 +337,8 @@ void SlipFollower::estimate_by_fit(double end_s, double sigma) noexcept {
 }
 
 void SlipFollower::learn_turning_points(double fall_s, double sigma) noexcept {
-  if (!whole_) return;
-  const bool mostly_stick = fall_.rise_duration * scan_s_ > kMostlyStick * fall_s;
+  if (!now_.whole) return;
+  const bool mostly_stick = now_.fall.rise_duration * scan_s_ > kMostlyStick * fall_s;
   // Beside a characterisation ω of two turning points counts nothing.
   if (knowledge_.characterised() && !mostly_stick) return;
   estimate::SharedEvidence evidence;
@@ -348,10 +354,10 @@ void SlipFollower::learn_turning_points(double fall_s, double sigma) noexcept {
 
 void SlipFollower::estimate_by_turning_points(double sigma) noexcept {
   const double reach_s = std::max(kReachPerPeriod * period_s(), kLeastReachScans * scan_s_);
-  const TurningPoint peak =
-      parabola_vertex(buffer_.points(), peak_s_, reach_s, 1.0).value_or(TurningPoint{peak_s_, fall_.peak});
-  const TurningPoint trough = parabola_vertex(buffer_.points(), trough_s_, reach_s, -1.0)
-                                  .value_or(TurningPoint{trough_s_, fall_.trough});
+  const TurningPoint peak = parabola_vertex(buffer_.points(), now_.peak_s, reach_s, 1.0)
+                                .value_or(TurningPoint{now_.peak_s, now_.fall.peak});
+  const TurningPoint trough = parabola_vertex(buffer_.points(), now_.trough_s, reach_s, -1.0)
+                                  .value_or(TurningPoint{now_.trough_s, now_.fall.trough});
   slip_.cycle.peak_time_s = peak.time_s;
   slip_.cycle.peak = peak.value;
   slip_.cycle.trough = trough.value;
@@ -364,7 +370,7 @@ void SlipFollower::estimate_by_turning_points(double sigma) noexcept {
   const SlipOfPeak found = slip_of_peak(peak.value - slip.K, shared.r, oscillator);
   slip.S = slip.K + found.delta_mu;
   slip.onset_s = peak.time_s - found.peak_time_s;
-  take_course(slip, found.slip_speed_ratio, evidence_.capture_s);
+  take_course(slip, found.slip_speed_ratio, now_.evidence.capture_s);
   learn_typical(found.delta_mu);
 }
 

@@ -2,6 +2,7 @@
 /// Follows a slip from its fall on: decides how it ends, and estimates S and K.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -37,28 +38,81 @@ class SlipFollower {
   void open(const Fall& fall, double peak_s, double trough_s, bool begins_from_stick, double sigma) noexcept;
   /// Does the task that is due, if there is one. \return true if it decided how the slip ends.
   [[nodiscard]] bool step(double now_s, double sigma) noexcept {
-    return task_ != Task::kNone && !(now_s < next_task_s_) && do_task(now_s, sigma);
+    return state_ > State::kDone && !(now_s < now_.next_task_s) && do_task(now_s, sigma);
   }
   /// Does all remaining tasks with the available scans.
   /// \param has_next  a slip follows.
   /// \return true if this decided how the slip ends.
   [[nodiscard]] bool force(double now_s, double sigma, bool has_next) noexcept;
-  void close() noexcept { task_ = Task::kNone, open_ = false; }
+  void close() noexcept { on(Event::kClosed); }
 
-  [[nodiscard]] bool is_open() const noexcept { return open_; }
-  [[nodiscard]] bool decided() const noexcept { return decided_; }
+  [[nodiscard]] bool is_open() const noexcept { return state_ != State::kClosed; }
+  [[nodiscard]] bool decided() const noexcept { return now_.decided; }
   [[nodiscard]] bool captured() const noexcept { return (slip_.cycle.flags & kCycleCaptured) != 0; }
   [[nodiscard]] const LiveCycle& slip() const noexcept { return slip_; }
   /// Mutable, so that the caller can set values that it knows better.
   [[nodiscard]] LiveCycle& slip() noexcept { return slip_; }
   /// Present estimates of ω, γ and r.
-  [[nodiscard]] const model::SharedParameters& shared() const noexcept { return shared_; }
+  [[nodiscard]] const model::SharedParameters& shared() const noexcept { return now_.shared; }
 
  private:
   /// Capture tests in a period.
   static constexpr double kTestsPerPeriod = 32.0;
 
-  enum class Task { kNone, kFirstFit, kJudge, kFit };
+  /// Those with a task that is due at a time come last.
+  enum class State { kClosed, kDone, kFirstFit, kTesting, kFitting };
+  enum class Event {
+    kOpened,         ///< A slip has begun.
+    kOpenedUnknown,  ///< From sticking, and only its own scans tell ω, γ and r: they are fitted first.
+    kFirstFitted,
+    kTold,        ///< How it ended is decided, or will not be; it began from sticking.
+    kToldOfFree,  ///< So, but it began from no stick: its S and K are not its own.
+    kScansEnd,    ///< No further scan belongs to it: a gap, the next slip or the end of the test.
+    kEstimated,
+    kClosed,
+  };
+  struct Transition {
+    State state;
+    Event event;
+    State next;
+  };
+  static constexpr std::array<Transition, 9> kTransitions{{
+      {State::kClosed, Event::kOpened, State::kTesting},
+      {State::kClosed, Event::kOpenedUnknown, State::kFirstFit},
+      {State::kFirstFit, Event::kFirstFitted, State::kTesting},
+      {State::kFirstFit, Event::kScansEnd, State::kDone},
+      {State::kTesting, Event::kTold, State::kFitting},
+      {State::kTesting, Event::kToldOfFree, State::kDone},
+      {State::kTesting, Event::kScansEnd, State::kDone},
+      {State::kFitting, Event::kEstimated, State::kDone},
+      {State::kFitting, Event::kScansEnd, State::kDone},
+  }};
+  /// kClosed leads from any state to kClosed. An event that the table does not hold changes nothing.
+  void on(Event event) noexcept;
+
+  /// The slip under way.
+  struct UnderWay {
+    bool decided = false;
+    bool begins_from_stick = false;
+    bool whole = false;  ///< No scan is missing since its peak.
+    double next_task_s = -std::numeric_limits<double>::infinity();
+    Fall fall;
+    double peak_s = 0.0;
+    double trough_s = 0.0;
+    double rise_slope = 0.0;  ///< 0: not worked out; NaN: its scans are gone.
+    /// Scans from here on tell how it ends; NaN until tested.
+    double test_from_s = std::numeric_limits<double>::quiet_NaN();
+    model::SharedParameters shared;
+    CaptureEvidence evidence;
+  };
+
+  /// What the slips before have in common.
+  struct Usual {
+    double delta_mu = 0.0;
+    double count = 0.0;       ///< Slips behind it.
+    double wait_s = 0.0;      ///< From a peak until captures were decided; 0 if none was.
+    double wait_count = 0.0;  ///< Slips behind it.
+  };
 
   /// Before the peak.
   [[nodiscard]] Rise rise() const noexcept;
@@ -76,7 +130,7 @@ class SlipFollower {
   /// Sets evidence_. \param decisive  as in CaptureTest.
   void test_capture(double sigma, double decisive) noexcept;
   void decide(double evidence, double now_s) noexcept;
-  void schedule_next_test(double now_s) noexcept { next_task_s_ = now_s + period_s() / kTestsPerPeriod; }
+  void schedule_next_test(double now_s) noexcept { now_.next_task_s = now_s + period_s() / kTestsPerPeriod; }
   void estimate(double now_s, double sigma) noexcept;
   void estimate_by_turning_points(double sigma) noexcept;
   /// \param fall_s  from peak to trough.
@@ -93,36 +147,20 @@ class SlipFollower {
   EstimatorTier tier_;
   double scan_s_;
   estimate::SharedKnowledge knowledge_;
+  bool started_whole_ = false;  ///< knowledge_, by a fall without a gap.
   estimate::CycleBuffer buffer_;
   CaptureTest capture_test_;
-
-  // The slip under way.
-  bool open_ = false;
-  bool decided_ = false;
-  bool begins_from_stick_ = false;
-  bool whole_ = false;  ///< No scan is missing since its peak.
-  Task task_ = Task::kNone;
-  double next_task_s_ = 0.0;
-  LiveCycle slip_;
-  Fall fall_;
-  double peak_s_ = 0.0;
-  double trough_s_ = 0.0;
-  double rise_slope_ = 0.0;  ///< 0: not worked out; NaN: its scans are gone.
   BeltChange belt_change_;
-  std::int64_t slip_number_ = 0;
-  double gap_s_ =
-      -std::numeric_limits<double>::infinity();  ///< Where the last gap begins: a scan is missing.
-  bool started_whole_ = false;                   ///< knowledge_, by a fall without a gap.
-  double test_from_s_ = 0.0;                     ///< Scans from here on tell how it ends; NaN until asked.
-  model::SharedParameters shared_;
-  CaptureEvidence evidence_;
 
+  State state_ = State::kClosed;
+  UnderWay now_;
+  LiveCycle slip_;
+  Usual usual_;
+  std::int64_t slip_number_ = 0;
+  /// Where the last gap begins: a scan is missing.
+  double gap_s_ = -std::numeric_limits<double>::infinity();
   double window_from_s_ = 0.0;  ///< Scans before belong to the slip before.
   double last_capture_s_ = std::numeric_limits<double>::quiet_NaN();  ///< NaN if unknown.
-  double typical_delta_mu_ = 0.0;
-  double typical_count_ = 0.0;  ///< Slips behind it.
-  double usual_wait_s_ = 0.0;   ///< From a peak until captures were decided; 0 if none was.
-  double wait_count_ = 0.0;     ///< Slips behind it.
 };
 
 }  // namespace stickslip::detect

@@ -1,0 +1,35 @@
+/// \file
+/// When a test is loaded: before that nothing that falls is a slip.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include "core/detect/slip_rule.hpp"
+
+namespace stickslip::detect {
+
+/// The loading has begun when some scans in a row exceed the lowest one by the drop of a slip.
+class Loading {
+ public:
+  /// \param count  scans followed, with this one. \return whether the loading is seen at this scan.
+  bool add(double value, double sigma, std::int64_t count) noexcept {
+    lowest_ = std::min(lowest_, value);
+    above_ = value - lowest_ > SlipRule::kSignificantSigmas * sigma ? above_ + 1 : 0;
+    if (above_ < kLoadedScans) return false;
+    began_at_ = static_cast<double>(count - kLoadedScans);
+    return true;
+  }
+  /// Whether a position lies behind the begin of the loading.
+  [[nodiscard]] bool is_behind_begin(double position) const noexcept { return position >= began_at_; }
+
+ private:
+  static constexpr int kLoadedScans = 3;
+
+  double lowest_ = std::numeric_limits<double>::infinity();
+  int above_ = 0;  ///< Scans in a row.
+  double began_at_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace stickslip::detect

@@ -1,0 +1,51 @@
+/// \file
+/// Positions of scans in time, with gaps, behind a despiker that holds scans back.
+#pragma once
+
+#include <cstdint>
+
+namespace stickslip::detect {
+
+/// Scans come, and are followed later. A gap is known when it comes; the scans followed until then lie before
+/// it.
+class ScanPositions {
+ public:
+  explicit ScanPositions(double scan_rate_Hz) noexcept : scan_rate_Hz_(scan_rate_Hz) {}
+
+  /// \return how many came before it.
+  std::int64_t come() noexcept { return come_++; }
+  /// \return its position.
+  std::int64_t follow() noexcept { return followed_++; }
+  [[nodiscard]] std::int64_t count_come() const noexcept { return come_; }
+  [[nodiscard]] std::int64_t count_followed() const noexcept { return followed_; }
+
+  /// The last gap still lies ahead of the scans followed.
+  [[nodiscard]] bool is_gap_to_come() const noexcept { return followed_ <= gap_at_ && lost_ > lost_before_; }
+  /// The scan to be followed next is the first behind the last gap.
+  [[nodiscard]] bool is_at_gap() const noexcept { return followed_ == gap_at_ && is_gap_to_come(); }
+  /// Whether a gap told now continues the last one: no scan came in between.
+  [[nodiscard]] bool continues_gap() const noexcept { return is_gap_to_come() && come_ == gap_at_; }
+  void add_gap(std::int64_t count) noexcept {
+    if (!continues_gap()) {
+      lost_before_ = lost_;
+      gap_at_ = come_;
+    }
+    lost_ += count;
+  }
+
+  /// \param position  of a scan followed; may lie between two.
+  [[nodiscard]] double time_s(double position) const noexcept {
+    const std::int64_t lost = position < static_cast<double>(gap_at_) ? lost_before_ : lost_;
+    return (position + static_cast<double>(lost)) / scan_rate_Hz_;
+  }
+
+ private:
+  double scan_rate_Hz_;
+  std::int64_t come_ = 0;
+  std::int64_t followed_ = 0;
+  std::int64_t lost_ = 0;         ///< Before the scan that comes next.
+  std::int64_t lost_before_ = 0;  ///< Before the last gap.
+  std::int64_t gap_at_ = 0;       ///< Position of the first scan after the last gap.
+};
+
+}  // namespace stickslip::detect
