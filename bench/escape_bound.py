@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How soon can an escape be told from a capture at all? The bound beside bench/live_limits (docs/detector.md).
+"""How soon can an escape be told from a capture at all? The bound beside bench/live_limits (docs/detector-limits.md).
 
     python3 bench/escape_bound.py                  # a table by Q/Q_th
     python3 bench/escape_bound.py escapes.csv      # the mean over the escapes that bench/escape_limits listed

@@ -1,5 +1,5 @@
 // How soon the live detector declares an escape in random tests, with the tester characterised, and how often
-// it takes a captured slip for one: the table of docs/detector.md.
+// it takes a captured slip for one: the table of docs/detector-limits.md.
 //
 //     escape_limits [TESTS [SEED [FILE [SPIKES_PER_S]]]]      # 10000 tests, seed 1, 20 spikes a second
 //

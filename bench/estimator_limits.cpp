@@ -2,7 +2,7 @@
 //
 //     estimator_limits [SEEDS [FIRST]]      # 4000 seeds from 1 on
 //
-// The table of docs/detector.md.
+// The table of docs/detector-limits.md.
 
 #include "tests/support/estimator_limits.hpp"
 

@@ -1,5 +1,5 @@
 // How soon the live detector declares an escape, and how often it takes a captured slip for one, with the
-// tester characterised: the tables of docs/detector.md.
+// tester characterised: the tables of docs/detector-limits.md.
 //
 //     live_limits [SLIPS [ESCAPES]]     of each row; 10000 and 2000 unless told
 

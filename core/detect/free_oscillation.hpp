@@ -13,7 +13,7 @@ namespace stickslip::detect {
 
 /// Huber's limit for the choice between two trajectories; for estimates it is estimate::kHuberLimit
 /// (core/estimate/huber.hpp). The wrong trajectory has residuals of several standard deviations; the smaller
-/// limit would halve the likelihood ratio (docs/detector.md).
+/// limit would halve the likelihood ratio (docs/detector-limits.md).
 inline constexpr double kChoiceLimit = 3.0;
 
 /// Change of the cost, in units of log-likelihood, below which the fit has converged.

@@ -25,7 +25,7 @@ constexpr double kLargestDrift_per_s = kLargestZero / 60.0;
 constexpr double kLargestNoise = 0.005;
 /// As the noise: what is left of it after 17 scans a cycle is a ripple on the peaks.
 constexpr double kLargestHum = 0.0025;
-/// Rate of spikes at which the detector is tested (docs/detector.md).
+/// Rate of spikes at which the detector is tested (docs/detector-limits.md).
 constexpr double kMostSpikes_per_s = 20.0;
 /// Ten times the error of an aged quartz.
 constexpr double kLargestRateError = 1e-3;

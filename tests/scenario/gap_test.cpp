@@ -143,7 +143,7 @@ TEST_P(GapInARingDown, NeverMakesSticking) {
   }
   std::printf("%d gaps, %d left it undecided, %d made it sticking\n", tried, undecided, sticking);
   // While the test runs little is known of ω and γ behind a gap. Of random ring-downs with spikes the other
-  // estimators call 1.8 % something else (docs/detector.md).
+  // estimators call 1.8 % something else (docs/detector-limits.md).
   constexpr double kCalledOtherwise = 0.018;
   EXPECT_LE(sticking, test::highest_count(tried, kCalledOtherwise));
 }

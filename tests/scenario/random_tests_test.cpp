@@ -28,7 +28,7 @@ base::Result<sim::Scene> base_scene() {
 /// What so many tests have shown, and one more: of none in a thousand nobody knows that it never happens.
 double one_more(int count, int of) { return static_cast<double>(count + 1) / static_cast<double>(of); }
 
-/// Counts behind the table of docs/detector.md, noise 0.02 (S − K).
+/// Counts behind the table of docs/detector-limits.md, noise 0.02 (S − K).
 struct ClassRates {
   const char* name;
   std::optional<model::Regime> regime;  ///< Nothing: tests with one to three captures.
@@ -120,7 +120,7 @@ TEST(RandomTests, EscapesAreDeclaredSoonAndCapturesAreNotTakenForThem) {
   EXPECT_GT(captured, 1000);
   EXPECT_GT(escapes, 100);
   // Of 302 222 captured slips 26 were taken for escapes; of 12 409 escapes 12.2 % took longer than 1.5
-  // periods, where 10.1 % could not be told sooner, and 0.06 % longer than 3 (docs/detector.md).
+  // periods, where 10.1 % could not be told sooner, and 0.06 % longer than 3 (docs/detector-limits.md).
   EXPECT_LE(false_escapes, test::highest_count(captured, 8.6e-5));
   EXPECT_LE(not_soon, test::highest_count(escapes, 0.122));
   EXPECT_LE(not_in_three, test::highest_count(escapes, 0.0006));

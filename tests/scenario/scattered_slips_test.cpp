@@ -60,7 +60,7 @@ TEST(ScatteredSlips, TheOneThatEscapesCounts) {
   EXPECT_LE(escaped, test::highest_count(slips, 0.116));
   EXPECT_GE(escaped, test::lowest_count(slips, 0.116));
   EXPECT_NEAR(*pooled.mean.value, test::ScatterTrials::kDeltaMu, allowed_bias(pooled));
-  // Its own S − K, found like that of the others (docs/detector.md: rms error 2.2 % of the mean).
+  // Its own S − K, found like that of the others (docs/detector-limits.md: rms error 2.2 % of the mean).
   const test::ScatterTrials::Escapes escapes = trials.escapes();
   const double own_rms = escapes.rms / test::ScatterTrials::kDeltaMu;
   const auto n = static_cast<double>(escapes.count);

@@ -11,7 +11,7 @@
 namespace stickslip::test {
 
 /// ω and γ/2ω as one ring-down of 1.5 s tells them: each off by a normal number of its own standard error,
-/// 0.013 % and 0.51 % (docs/detector.md), other ones for each seed. \param omega  rad/s, true.
+/// 0.013 % and 0.51 % (docs/detector-limits.md), other ones for each seed. \param omega  rad/s, true.
 /// \param gamma_over_2omega  true.
 inline estimate::SharedPrior characterised(double omega, double gamma_over_2omega, std::uint64_t seed) {
   constexpr double kOmegaPart = 1.3e-4;

@@ -1,7 +1,7 @@
 /// \file
 /// How close the estimators come to the least error that any could have: tests of the paper's scene, of
 /// which only the noise differs, through the whole analysis. Shared by the numeric test and by the program
-/// that prints the table of docs/detector.md.
+/// that prints the table of docs/detector-limits.md.
 #pragma once
 
 #include <algorithm>
