@@ -136,16 +136,15 @@
       const own = node("div", {}, node("h3", {}, `${two ? nameOf(m) + ", " : ""}${speed(group.pull_speed)}, ${plural(group.tests.length, "test")}`),
         node("p", {id: `by-cycle-${m}-${g}`}, node("b", {}, `S−K by cycle ${pooledText(group.delta_mu_by_cycle)}`),
           `: ${group.delta_mu_by_cycle.reason || pooledFacts(group.delta_mu_by_cycle)}`),
-        table(`replicates-${m}-${g}`, ["", "n", "mean", "s_r", "r = 2.8 s_r", "95 % of the mean", ...(hasSystematic(group) ? ["± syst."] : [])], data.quantities.map(q => {
+        table(`replicates-${m}-${g}`, ["", "n", "mean", ...(hasSystematic(group) ? ["± syst."] : []), "s_r", "r = 2.8 s_r", "95 % of the mean"], data.quantities.map(q => {
           const own = group.quantities[q.name];
           if (own.outlier) {
             notes.push(node("li", {}, node("b", {}, `${q.title} of ${own.outlier.file} stands out`),
               `: Grubbs ${fixed(own.outlier.statistic, 2)} above ${fixed(own.outlier.critical, 2)} (5 %). It is not left out.`));
           }
           for (const absence of own.absent) notes.push(node("li", {}, node("b", {}, `no ${q.title} in ${absence.file}`), `: ${absence.reason}`));
-          return row(title(q), String(own.count), fixed(own.mean, q.decimals), fixed(own.standard_deviation, q.decimals + 1),
-            fixed(own.repeatability, q.decimals + 1), range(own.confidence_interval, q.decimals),
-            ...(hasSystematic(group) ? [fixed(own.systematic_uncertainty, q.decimals + 1)] : []));
+          return row(title(q), String(own.count), fixed(own.mean, q.decimals), ...(hasSystematic(group) ? [fixed(own.systematic_uncertainty, q.decimals)] : []),
+            fixed(own.standard_deviation, q.decimals + 1), fixed(own.repeatability, q.decimals + 1), range(own.confidence_interval, q.decimals));
         })));
       if (notes.length > 0) own.append(node("ul", {class: "notes"}, ...notes));
       grid.append(own);

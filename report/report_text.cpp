@@ -120,14 +120,14 @@ std::string title_of(const Quantity& quantity) {
 std::string replicates_table(const Material& material, const SpeedGroup& group) {
   std::vector<io::Table::Column> columns{{.heading = "", .align = io::Table::Align::kLeft, .width = 13},
                                          {.heading = "n", .width = 4},
-                                         {.heading = "mean", .width = 9},
-                                         {.heading = "s_r", .width = 9},
-                                         {.heading = "r = 2.8 s_r"},
-                                         {.heading = "95 % of the mean", .width = 20}};
+                                         {.heading = "mean", .width = 9}};
   const bool has_systematic =
       std::any_of(group.quantities.begin(), group.quantities.end(),
                   [](const GroupQuantity& own) { return own.systematic_uncertainty.has_value(); });
   if (has_systematic) columns.push_back({.heading = "± syst."});
+  columns.insert(columns.end(), {{.heading = "s_r", .width = 9},
+                                 {.heading = "r = 2.8 s_r"},
+                                 {.heading = "95 % of the mean", .width = 20}});
   io::Table table{std::move(columns)};
   std::string notes;
   for (std::size_t q = 0; q < analysis::kQuantityCount; ++q) {
@@ -136,13 +136,12 @@ std::string replicates_table(const Material& material, const SpeedGroup& group) 
     const Replicates none;
     const Replicates& values = own.replicates ? *own.replicates : none;
     std::vector<io::Table::Cell> cells{
-        title_of(quantity),
-        io::cell(values.count),
-        number(own.replicates ? std::optional{values.mean} : std::nullopt, quantity.decimals),
-        number(values.standard_deviation, quantity.decimals + 1),
-        number(values.repeatability, quantity.decimals + 1),
-        interval(values.mean_interval, quantity.decimals)};
-    if (has_systematic) cells.emplace_back(number(own.systematic_uncertainty, quantity.decimals + 1));
+        title_of(quantity), io::cell(values.count),
+        number(own.replicates ? std::optional{values.mean} : std::nullopt, quantity.decimals)};
+    if (has_systematic) cells.emplace_back(number(own.systematic_uncertainty, quantity.decimals));
+    cells.insert(cells.end(), {number(values.standard_deviation, quantity.decimals + 1),
+                               number(values.repeatability, quantity.decimals + 1),
+                               interval(values.mean_interval, quantity.decimals)});
     table.add(std::move(cells));
     if (values.outlier) {
       const std::size_t test = own.tests[values.outlier->index];

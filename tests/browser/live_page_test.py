@@ -51,6 +51,12 @@ def student_t(freedom):
     return low
 
 
+def shown_in(record, name, digits):
+    """Text of a cell of the table of tests."""
+    value = float(record[f"entry/results/{name}"][()])
+    return uncertain.of(record, name, digits) if name in WITH_ERRORS else uncertain.text(value, decimals=digits)
+
+
 def until_ended(frames, test):
     """Frames until a test has ended."""
     for frame in frames:
@@ -108,8 +114,7 @@ class LivePage(unittest.TestCase):
                 self.assertEqual(row[1], record["entry/results/regime"].asstr()[()])
                 for cell, (name, digits) in zip(row[2:], COLUMNS):
                     value = float(record[f"entry/results/{name}"][()])
-                    self.assertEqual(cell, uncertain.of(record, name, digits) if name in WITH_ERRORS else
-                                     "–" if numpy.isnan(value) else f"{value:.{digits}f}", name)
+                    self.assertEqual(cell, shown_in(record, name, digits), name)
                     if not numpy.isnan(value):
                         values[name].append(value)
                         compared += 1
@@ -129,6 +134,24 @@ class LivePage(unittest.TestCase):
         self.assertTrue(all(url.startswith(self.address) or url.startswith(("data:", "ws:")) for url in page.requests()), page.requests())
         if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
             page.screenshot(pathlib.Path(folder) / "live.png")
+
+    def test_both_errors_are_shown_and_the_table_is_no_wider_than_the_window(self):
+        # By turning points S - K, S and K have a systematic part.
+        daemon = self.daemon('[analysis]\nestimator = "turning-points"\n')
+        page = self.page()
+        page.resize(1280, 720)
+        page.until("document.querySelector('#tests tbody td:last-child a')")
+        row = page.value("[...document.querySelector('#tests tbody td:last-child a').closest('tr').cells].map(c => c.textContent)")
+        with h5py.File(daemon.folder / "records" / row[-1]) as record:
+            for cell, name in zip(row[2:5], ("delta_mu", "mu_s", "mu_k")):
+                self.assertIn("systematic_uncertainty", record[f"entry/results/{name}"].attrs)
+                self.assertEqual(cell, uncertain.of(record, name), name)
+        self.assertEqual(page.value("document.getElementById('errors').textContent"), "± standard error ± systematic part (calibration, corrections)")
+        wide = page.value("[document.documentElement.scrollWidth, innerWidth, ...(t => [t.scrollWidth, t.clientWidth])(document.querySelector('#results .table'))]")
+        self.assertLessEqual(wide[0], wide[1])
+        self.assertLessEqual(wide[2], wide[3])
+        if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
+            page.screenshot(pathlib.Path(folder) / "live-errors.png")
 
     def test_the_scope_shows_the_scans_of_the_record(self):
         daemon = self.daemon()
@@ -349,9 +372,8 @@ class LivePage(unittest.TestCase):
         self.assertEqual(rows[1], before["table"][0])
         cycles = [frame for frame in until_ended(frames, 2) if frame["type"] == "cycle" and frame["test"] == 2]
         with h5py.File(daemon.record(2)) as record:
-            for cell, (name, digits) in zip(rows[0][2:], COLUMNS):
-                value = float(record[f"entry/results/{name}"][()])
-                self.assertEqual(cell, "–" if numpy.isnan(value) else f"{value:.{digits}f}", name)
+            for cell, column in zip(rows[0][2:], COLUMNS):
+                self.assertEqual(cell, shown_in(record, *column), column)
             self.check_cycles(page.value(self.SHOWN), record, cycles)
             scans, force = record["entry/raw/scan"][()], record["entry/raw/force"][()]
             weight = record["entry/instrument/tester/sled_mass"][()] * record["entry/instrument/tester/gravity"][()]

@@ -139,10 +139,14 @@ class Pages(unittest.TestCase):
                 own, digits = group["quantities"][quantity["name"]], quantity["decimals"]
                 low, high = own["confidence_interval"]
                 self.assertEqual(row[1:], [str(own["count"]), f"{own['mean']:.{digits}f}",
+                                           "–" if own["systematic_uncertainty"] is None else f"{own['systematic_uncertainty']:.{digits}f}",
                                            f"{own['standard_deviation']:.{digits + 1}f}", f"{own['repeatability']:.{digits + 1}f}",
                                            f"{low:.{digits}f} … {high:.{digits}f}"])
+            # All columns are in sight.
+            wide = page.value(f"(t => [t.scrollWidth, t.clientWidth])(document.getElementById('replicates-0-{index}').parentNode)")
+            self.assertLessEqual(wide[0], wide[1])
             pooled = group["delta_mu_by_cycle"]
-            self.assertIn(f"S−K by cycle {uncertain.text(pooled['value'], pooled['standard_error'])}: {pooled['slips']} slips",
+            self.assertIn(f"S−K by cycle {uncertain.text(pooled['value'], pooled['standard_error'], pooled['systematic_uncertainty'])}: {pooled['slips']} slips",
                           page.value(f"document.getElementById('by-cycle-0-{index}').textContent"))
         rows = self.rows(page, "tests-0")
         self.assertEqual([row[1] for row in rows], self.a)
@@ -190,7 +194,7 @@ class Pages(unittest.TestCase):
         pooled = report["groups"][0]["delta_mu_by_cycle"]
         self.assertIn(f"S−K by cycle {uncertain.text(pooled['value'], None, 0.06)}: ", page.value("document.getElementById('by-cycle-0-0').textContent"))
         replicates = self.rows(page, "replicates-0-0")
-        self.assertEqual([cells[-1] for cells in replicates[:5]], ["0.00300", "–", "0.00400", "–", "0.06000"])
+        self.assertEqual([cells[3] for cells in replicates[:5]], ["0.0030", "–", "0.0040", "–", "0.0600"])
         if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
             page.screenshot(pathlib.Path(folder) / "report-errors.png")
 
