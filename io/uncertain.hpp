@@ -21,7 +21,7 @@ inline constexpr std::string_view kErrorsLegend =
 inline constexpr std::string_view kStandardErrorLegend = "± standard error";
 inline constexpr std::string_view kNotSignificantLegend = "?  not significant, its errors together exceed it";
 
-/// Parts of a number with its errors, all with equally many decimals.
+/// Parts of a number with its errors.
 struct Uncertain {
   std::string value;           ///< With "?" behind it if not significant; kAbsent without a value.
   std::string standard_error;  ///< Empty if unknown.
@@ -32,8 +32,9 @@ struct Uncertain {
   [[nodiscard]] std::string text() const;
 };
 
-/// The decimals show two significant digits of the larger error. An error that is not zero but rounds to it
-/// is given as a bound ("<0.0001"), an infinite one as "∞"; NaN is an unknown error.
+/// The decimals show two significant digits of the larger error. A smaller one that would round to zero has
+/// one significant digit ("0.0494 ± 0.00003 ± 0.0028"), or is given as a bound ("<0.000001") beyond the most
+/// decimals. An infinite error is "∞"; NaN is an unknown error.
 /// \param decimals  of a value without errors; with errors at most two more. nullopt: of any scale: six
 /// significant digits without errors, up to twelve decimals with errors.
 [[nodiscard]] Uncertain uncertain(const analysis::Estimate& estimate, std::optional<int> decimals);

@@ -4,10 +4,15 @@
 const Uncertain = (() => {
   const known = error => error != null && !Number.isNaN(error);
   const finite = error => (Number.isFinite(error) ? error : 0);
-  function errorText(error, decimals) {
+  // Decimals that show so many significant digits of a positive number, once it is rounded to them.
+  const decimalsOf = (number, digits) => digits - 1 - Number(number.toExponential(digits - 1).split("e")[1]);
+  // An error that would round to zero has one digit, or is a bound beyond the most decimals.
+  function errorText(error, decimals, most) {
     if (error === Infinity) return "∞";
     const text = error.toFixed(decimals);
-    return error > 0 && !/[1-9]/.test(text) ? `<${(10 ** -decimals).toFixed(decimals)}` : text;
+    if (!(error > 0) || /[1-9]/.test(text)) return text;
+    const own = decimalsOf(error, 1);
+    return own <= most ? error.toFixed(own) : `<${(10 ** -most).toFixed(most)}`;
   }
 
   /// \param errors  {standard_error, systematic_uncertainty}, both optional, or undefined.
@@ -17,12 +22,12 @@ const Uncertain = (() => {
     if (!Number.isFinite(value)) return {value: "–", errors: [], significant: true};
     const random = errors?.standard_error, systematic = errors?.systematic_uncertainty;
     const largest = Math.max(finite(random), finite(systematic));
-    const exponent = largest > 0 ? Number(largest.toExponential(1).split("e")[1]) : 1 - plain;
-    const decimals = Math.min(Math.max(1 - exponent, 0), plain + 2);
+    const most = plain + 2;
+    const decimals = largest > 0 ? Math.min(Math.max(decimalsOf(largest, 2), 0), most) : plain;
     const significant = !(Math.hypot(known(random) ? random : 0, known(systematic) ? systematic : 0) > Math.abs(value));
     const said = [];
-    if (known(random)) said.push(`± ${errorText(random, decimals)}`);
-    if (known(systematic)) said.push(`± ${errorText(systematic, decimals)}`, ...(known(random) ? [] : ["(syst.)"]));
+    if (known(random)) said.push(`± ${errorText(random, decimals, most)}`);
+    if (known(systematic)) said.push(`± ${errorText(systematic, decimals, most)}`, ...(known(random) ? [] : ["(syst.)"]));
     return {value: value.toFixed(decimals) + (significant ? "" : "?"), errors: said, significant};
   }
 

@@ -205,7 +205,7 @@ class Pages(unittest.TestCase):
         cases = [(0.04698, 0.00271, 0.00188), (0.04698, 0.00188, 0.0271), (0.05, 0.0003, None), (0.05, 0.00996, None), (-0.05, 0.0012, None),
                  (0.05, None, None), (0.3822, None, 0.003), (0.047, 0.27, None), (-0.047, 0.27, None), (0.005, 0.004, 0.004), (0.005, 0.003, 0.004),
                  (0.0, 0.0012, None), (3.2, 120.0, 0.3), (0.05, nan, nan), (0.05, nan, 0.003), (0.05, infinite, None), (0.05, 0.0012, infinite),
-                 (0.05, 0.0, None), (0.0, 0.0, 0.0), (0.3, 0.00001, 0.003), (0.3, 1e-12, None), (None, 0.1, None), (nan, 0.1, None), (infinite, 0.1, None)]
+                 (0.05, 0.0, None), (0.0, 0.0, 0.0), (0.3, 0.00001, 0.003), (0.3, 0.0028, 0.0000096), (0.3, 1e-8, 0.003), (0.3, 1e-12, None), (None, 0.1, None), (nan, 0.1, None), (infinite, 0.1, None)]
         def script(number):
             return "null" if number is None else {"inf": "Infinity", "nan": "NaN"}.get(str(number), repr(number))
         for value, random, constant in cases:

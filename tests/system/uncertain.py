@@ -10,11 +10,14 @@ def parts(value, standard_error=None, systematic=None, decimals=4):
     if value is None or not math.isfinite(value):
         return "–", None, None
     largest = max([error for error in errors if error is not None and math.isfinite(error)], default=0.0)
-    shown = decimals
-    if largest > 0:
-        # Rounded to two digits first: 0.0996 has the exponent of 0.10.
-        rounded = decimal.Context(prec=2).create_decimal(decimal.Decimal(largest))
-        shown = min(max(1 - rounded.adjusted(), 0), decimals + 2)
+    most = decimals + 2
+
+    def decimals_of(number, digits):
+        # Rounded to so many digits first: 0.0996 has the exponent of 0.10.
+        rounded = decimal.Context(prec=digits).create_decimal(decimal.Decimal(number))
+        return digits - 1 - rounded.adjusted()
+
+    shown = min(max(decimals_of(largest, 2), 0), most) if largest > 0 else decimals
 
     def error_text(error):
         if error is None:
@@ -22,7 +25,10 @@ def parts(value, standard_error=None, systematic=None, decimals=4):
         if math.isinf(error):
             return "∞"
         text = f"{error:.{shown}f}"
-        return f"<{10.0 ** -shown:.{shown}f}" if error > 0 and float(text) == 0 else text
+        if error == 0 or float(text) > 0:
+            return text
+        own = decimals_of(error, 1)
+        return f"{error:.{own}f}" if own <= most else f"<{10.0 ** -most:.{most}f}"
 
     significant = math.hypot(*(error or 0.0 for error in errors)) <= abs(value)
     return f"{value:.{shown}f}" + ("" if significant else "?"), *map(error_text, errors)

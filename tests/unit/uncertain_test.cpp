@@ -46,7 +46,7 @@ TEST(Uncertain, MarksANumberThatItsErrorsTogetherExceed) {
   EXPECT_EQ(text(0.005, 0.004, 0.004), "0.0050? ± 0.0040 ± 0.0040") << "in quadrature 0.0057";
   EXPECT_EQ(text(0.005, 0.003, 0.004), "0.0050 ± 0.0030 ± 0.0040") << "as large as the number";
   EXPECT_EQ(text(0.0, 0.0012, {}), "0.0000? ± 0.0012");
-  EXPECT_EQ(text(3.2, 120.0, 0.3), "3? ± 120 ± <1");
+  EXPECT_EQ(text(3.2, 120.0, 0.3), "3? ± 120 ± 0.3");
   EXPECT_FALSE(uncertain(estimate(0.047, 0.27, {}), 4).significant);
   EXPECT_TRUE(uncertain(estimate(0.047, 0.001, {}), 4).significant);
 }
@@ -58,10 +58,15 @@ TEST(Uncertain, TakesNanForUnknownAndInfinityForInfinity) {
   EXPECT_EQ(text(0.05, 0.0012, kInfinite), "0.0500? ± 0.0012 ± ∞");
 }
 
-TEST(Uncertain, ShowsAnErrorOfZeroAndBoundsOneThatRoundsToZero) {
+TEST(Uncertain, HasOneDigitOfAnErrorThatRoundsToZero) {
+  EXPECT_EQ(text(0.0494, 0.000032, 0.0028), "0.0494 ± 0.00003 ± 0.0028");
+  EXPECT_EQ(text(0.0494, 0.0028, 0.0000096), "0.0494 ± 0.0028 ± 0.00001");
+}
+
+TEST(Uncertain, ShowsAnErrorOfZeroAndBoundsOneBeyondTheMostDecimals) {
   EXPECT_EQ(text(0.05, 0.0, {}), "0.0500 ± 0.0000");
   EXPECT_EQ(text(0.0, 0.0, 0.0), "0.0000 ± 0.0000 ± 0.0000");
-  EXPECT_EQ(text(0.3, 0.00001, 0.003), "0.3000 ± <0.0001 ± 0.0030");
+  EXPECT_EQ(text(0.3, 1e-8, 0.003), "0.3000 ± <0.000001 ± 0.0030");
   EXPECT_EQ(text(0.3, 1e-12, {}), "0.300000 ± <0.000001");
   EXPECT_EQ(uncertain(estimate(2.34e-7, 1.2e-8, {}), {}).text(), "0.000000234 ± 0.000000012");
 }
@@ -72,7 +77,7 @@ TEST(Uncertain, IsADashWithoutANumber) {
   EXPECT_EQ(text(kInfinite, 0.1, {}), "–");
 }
 
-TEST(Uncertain, PartsHaveEquallyManyDecimals) {
+TEST(Uncertain, PartsAreThoseOfTheText) {
   const Uncertain parts = uncertain(estimate(0.04698, 0.00271, 0.00188), 4);
   EXPECT_EQ(parts.value, "0.0470");
   EXPECT_EQ(parts.standard_error, "0.0027");
