@@ -8,6 +8,7 @@
 
 #include "io/or_null.hpp"
 #include "io/table.hpp"
+#include "io/uncertain.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/evaluation/analyse.hpp"
@@ -23,13 +24,6 @@ constexpr std::array<std::pair<std::string_view, const Estimate TestResults::*>,
      {"mu_k", &TestResults::mu_k},
      {"delta_mu", &TestResults::delta_mu},
      {"static_coefficient", &TestResults::static_coefficient}}};
-
-/// "0.05002 ± 0.00031"; "–" without a value.
-std::string shown(const Estimate& estimate) {
-  if (!estimate.value) return std::string{io::kAbsent};
-  if (!estimate.standard_error) return fmt::format("{:.5f}", *estimate.value);
-  return fmt::format("{:.5f} ± {:.5f}", *estimate.value, *estimate.standard_error);
-}
 
 std::string label(const analysis::SkippedCorrections& skipped) {
   return skipped.none() ? "all taken care of" : analysis::text_of(skipped) + " kept";
@@ -55,19 +49,20 @@ base::Result<std::vector<Effect>> effects_of(record::Record record, const estima
 std::string effects_text(std::span<const Effect> effects) {
   using enum io::Table::Align;
   io::Table table{{{.heading = "", .align = kLeft},
-                   {.heading = "S"},
-                   {.heading = "K"},
                    {.heading = "S−K"},
                    {.heading = "change", .format = "+.5f"},
-                   {.heading = "static", .format = ".4f"},
+                   {.heading = "S"},
+                   {.heading = "K"},
+                   {.heading = "static"},
                    {.heading = "regime", .align = kLeft}}};
+  const auto shown = [](const Estimate& estimate) { return io::uncertain(estimate, 4).text(); };
   for (const Effect& effect : effects) {
     const Estimate& own = effect.results.delta_mu;
     const Estimate& all = effects.front().results.delta_mu;
     io::Table::Cell change = "";
     if (&effect != &effects.front() && own.value && all.value) change = *own.value - *all.value;
-    table.add({label(effect.skipped), shown(effect.results.mu_s), shown(effect.results.mu_k), shown(own),
-               change, io::cell(effect.results.static_coefficient.value),
+    table.add({label(effect.skipped), shown(own), change, shown(effect.results.mu_s),
+               shown(effect.results.mu_k), shown(effect.results.static_coefficient),
                io::cell(model::name(effect.results.regime))});
     if (!own.value) table.add({fmt::format("{}  no S−K: {}", io::kAbsent, own.reason)});
   }
@@ -82,6 +77,8 @@ nlohmann::ordered_json effects_json(std::span<const Effect> effects) {
     for (const auto& [name, estimate] : kShown) {
       own[std::string{name}] = io::or_null((effect.results.*estimate).value);
       own[std::string{name} + "_standard_error"] = io::or_null((effect.results.*estimate).standard_error);
+      own[std::string{name} + "_systematic_uncertainty"] =
+          io::or_null((effect.results.*estimate).systematic_uncertainty);
     }
     json.push_back(std::move(own));
   }

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "io/results_json.hpp"
+#include "io/uncertain.hpp"
+
 #include "core/base/text.hpp"
 
 namespace stickslip::cli {
@@ -26,6 +29,11 @@ std::string number(const nlohmann::ordered_json& json, const char* key, int deci
   const auto found = json.find(key);
   return found != json.end() && found->is_number() ? fmt::format("{:.{}f}", found->get<double>(), decimals)
                                                    : "–";
+}
+
+std::string coefficient(const nlohmann::ordered_json& results, const char* name) {
+  constexpr int kDecimals = 4;
+  return io::uncertain(io::estimate_in(results, name), kDecimals).text();
 }
 
 }  // namespace stickslip::cli

@@ -19,4 +19,7 @@ namespace stickslip::cli {
 /// A number of the object; a dash if it has none of that name.
 [[nodiscard]] std::string number(const nlohmann::ordered_json& json, const char* key, int decimals);
 
+/// A coefficient of results_json() with its errors: "0.0470 ± 0.0027 ± 0.0019"; a dash if there is none.
+[[nodiscard]] std::string coefficient(const nlohmann::ordered_json& results, const char* name);
+
 }  // namespace stickslip::cli

@@ -20,16 +20,16 @@ base::Result<std::string> run_list(const BenchOptions& options) {
   using enum io::Table::Align;
   io::Table table{{{.heading = "test"},
                    {.heading = "regime", .align = kLeft},
+                   {.heading = "S - K"},
                    {.heading = "S"},
                    {.heading = "K"},
-                   {.heading = "S - K"},
                    {.heading = "cycles"},
                    {.heading = "ended", .align = kLeft},
                    {.heading = "file", .align = kLeft}}};
   for (const Json& test : (*list)["tests"]) {
     const Json& results = test["results"];
-    table.add({test["number"].get<std::int64_t>(), word(results, "regime"), number(results, "mu_s", 4),
-               number(results, "mu_k", 4), number(results, "delta_mu", 4), number(results, "cycle_count", 0),
+    table.add({test["number"].get<std::int64_t>(), word(results, "regime"), coefficient(results, "delta_mu"),
+               coefficient(results, "mu_s"), coefficient(results, "mu_k"), number(results, "cycle_count", 0),
                word(test, "cause"), word(test, "file")});
   }
   return table.text();

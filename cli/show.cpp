@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "cli/ask.hpp"
@@ -9,6 +10,7 @@
 #include "io/json_text.hpp"
 #include "io/results_json.hpp"
 #include "io/table.hpp"
+#include "io/uncertain.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/base/text.hpp"
@@ -24,21 +26,31 @@ struct ShowOptions : BenchOptions {
   std::string test;  ///< Number of a test of the daemon, or path of a record.
 };
 
-/// "  mu_s  0.3517 ± 0.0004", one line for each result.
+/// "  mu_s  0.3517 ± 0.0004 ± 0.0021", one line for each result; below them, what the errors mean.
 std::string results_text(const Json& results) {
   io::Table list = io::Table::list({0, 0});
+  bool has_error = false;
+  bool has_systematic = false;
+  bool all_significant = true;
   for (const auto& [name, detail] : results["details"].items()) {
     if (!detail.contains("value")) continue;
-    const Json& value = detail["value"];
-    const std::string error = detail.contains("standard_error")
-                                  ? fmt::format(" ± {:.2g}", detail["standard_error"].get<double>())
-                                  : "";
+    const analysis::Estimate estimate = io::estimate_in(results, name);
+    if (!estimate.value) {
+      list.add({"  " + name, fmt::format("{} {}", io::kAbsent, word(detail, "reason"))});
+      continue;
+    }
+    const io::Uncertain number = io::uncertain(estimate, std::nullopt);
+    has_error |= !number.standard_error.empty();
+    has_systematic |= !number.systematic.empty();
+    all_significant &= number.significant;
     const std::string unit = word(detail, "unit");
-    list.add({"  " + name, value.is_null() ? fmt::format("{} {}", io::kAbsent, word(detail, "reason"))
-                                           : fmt::format("{:.6g}{}{}", value.get<double>(), error,
-                                                         unit == "1" ? "" : " " + unit)});
+    list.add({"  " + name, number.text() + (unit == "1" ? "" : " " + unit)});
   }
-  return list.text();
+  std::string text = list.text();
+  if (has_error || has_systematic)
+    text += fmt::format("{}\n", has_systematic ? io::kErrorsLegend : io::kStandardErrorLegend);
+  if (!all_significant) text += fmt::format("{}\n", io::kNotSignificantLegend);
+  return text;
 }
 
 base::Result<std::string> show_test(const ShowOptions& options) {

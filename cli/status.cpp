@@ -93,9 +93,9 @@ void tests(Lines& lines, const Json& status) {
   const Json results = part(latest, "results");
   const std::string regime = word(results, "regime");
   lines.line("latest",
-             fmt::format("test {}: {}, S {}, K {}, S - K {}, {} cycles; {}", count(latest, "number"),
-                         lines.paint(of_regime(regime), regime), number(results, "mu_s", 4),
-                         number(results, "mu_k", 4), number(results, "delta_mu", 4),
+             fmt::format("test {}: {}, S - K {}, S {}, K {}, {} cycles; {}", count(latest, "number"),
+                         lines.paint(of_regime(regime), regime), coefficient(results, "delta_mu"),
+                         coefficient(results, "mu_s"), coefficient(results, "mu_k"),
                          number(results, "cycle_count", 0), word(latest, "file")));
 }
 

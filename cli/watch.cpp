@@ -43,9 +43,9 @@ std::string line_of_frame(const Json& frame) {
   if (type == "note") return fmt::format("{}\n", word(frame, "text"));
   if (type == "test-ended") {
     const Json& results = frame["results"];
-    return fmt::format("test {} ended: {}; {}, S {}, K {}, S - K {}\n", frame["test"].dump(),
-                       word(frame, "cause"), word(results, "regime"), number(results, "mu_s", 4),
-                       number(results, "mu_k", 4), number(results, "delta_mu", 4));
+    return fmt::format("test {} ended: {}; {}, S - K {}, S {}, K {}\n", frame["test"].dump(),
+                       word(frame, "cause"), word(results, "regime"), coefficient(results, "delta_mu"),
+                       coefficient(results, "mu_s"), coefficient(results, "mu_k"));
   }
   if (type == "dropped")
     return fmt::format("({} frames left out: this is too slow)\n", frame["frame_count"].dump());

@@ -10,12 +10,13 @@
 
 namespace stickslip::io {
 
-/// {"value", "standard_error", "confidence_interval", "tests", "slips", "escaped", "scatter",
-///  "captured_alone", "reason" (only if "value" is null)}
+/// {"value", "standard_error", "systematic_uncertainty", "confidence_interval", "tests", "slips", "escaped",
+///  "scatter", "captured_alone", "reason" (only if "value" is null)}
 [[nodiscard]] inline nlohmann::ordered_json pooled_json(const analysis::PooledDeltaMu& pooled) {
   const std::optional<analysis::Interval> interval = analysis::mean_interval(pooled);
   nlohmann::ordered_json json{{"value", or_null(pooled.mean.value)},
                               {"standard_error", or_null(pooled.mean.standard_error)},
+                              {"systematic_uncertainty", or_null(pooled.mean.systematic_uncertainty)},
                               {"confidence_interval", nullptr},
                               {"tests", pooled.test_count},
                               {"slips", pooled.slip_count},

@@ -4,11 +4,17 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
+#include "core/analysis/quantities.hpp"
+
 namespace stickslip::io {
 namespace {
+
+constexpr const char* kStandardError = "standard_error";
+constexpr const char* kSystematic = "systematic_uncertainty";
 
 /// The value as JSON. A result whose name ends in _count becomes an integer.
 nlohmann::ordered_json number(const std::string& name, const analysis::Estimate& estimate) {
@@ -16,6 +22,20 @@ nlohmann::ordered_json number(const std::string& name, const analysis::Estimate&
   if (!estimate.value) return nullptr;
   if (name.ends_with(kCount)) return std::llround(*estimate.value);
   return *estimate.value;
+}
+
+/// {"delta_mu": {"standard_error": …, "systematic_uncertainty": …}, …}, of the quantities that have errors.
+nlohmann::ordered_json uncertainties_json(const analysis::TestResults& results) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const analysis::Quantity& quantity : analysis::quantities()) {
+    const analysis::Estimate& estimate = results.*quantity.estimate;
+    if (!estimate.value) continue;
+    for (const auto& [name, error] : {std::pair{kStandardError, &estimate.standard_error},
+                                      std::pair{kSystematic, &estimate.systematic_uncertainty}}) {
+      if (*error) json[std::string{quantity.name}][name] = **error;
+    }
+  }
+  return json;
 }
 
 }  // namespace
@@ -33,14 +53,34 @@ nlohmann::ordered_json results_json(const analysis::TestResults& results, bool w
                               nlohmann::ordered_json& detail = details[key];
                               detail["value"] = json[key];
                               detail["unit"] = name.unit;
-                              if (estimate.standard_error)
-                                detail["standard_error"] = *estimate.standard_error;
+                              if (estimate.standard_error) detail[kStandardError] = *estimate.standard_error;
                               if (estimate.systematic_uncertainty)
-                                detail["systematic_uncertainty"] = *estimate.systematic_uncertainty;
+                                detail[kSystematic] = *estimate.systematic_uncertainty;
                               if (!estimate.value) detail["reason"] = estimate.reason;
                             });
-  if (with_details) json["details"] = std::move(details);
+  if (with_details) {
+    json["details"] = std::move(details);
+  } else {
+    json["uncertainties"] = uncertainties_json(results);
+  }
   return json;
+}
+
+analysis::Estimate estimate_in(const nlohmann::ordered_json& results, const std::string& name) {
+  const auto member = [](const nlohmann::ordered_json& json, const std::string& key) {
+    const auto found = json.find(key);
+    return found == json.end() ? nlohmann::ordered_json{} : *found;
+  };
+  const auto as_number = [](const nlohmann::ordered_json& json) {
+    return json.is_number() ? std::optional{json.get<double>()} : std::nullopt;
+  };
+  nlohmann::ordered_json errors = member(member(results, "details"), name);
+  if (!errors.is_object()) errors = member(member(results, "uncertainties"), name);
+  analysis::Estimate estimate;
+  estimate.value = as_number(member(results, name));
+  estimate.standard_error = as_number(member(errors, kStandardError));
+  estimate.systematic_uncertainty = as_number(member(errors, kSystematic));
+  return estimate;
 }
 
 analysis::TestResults results_from_json(const nlohmann::ordered_json& json) {
@@ -56,8 +96,8 @@ analysis::TestResults results_from_json(const nlohmann::ordered_json& json) {
       if (detail.contains(key) && !detail.at(key).is_null()) into = detail.at(key).get<double>();
     };
     take("value", estimate.value);
-    take("standard_error", estimate.standard_error);
-    take("systematic_uncertainty", estimate.systematic_uncertainty);
+    take(kStandardError, estimate.standard_error);
+    take(kSystematic, estimate.systematic_uncertainty);
     if (!estimate.value) detail.at("reason").get_to(estimate.reason);
   });
   return results;

@@ -7,6 +7,8 @@
 ///                  "gamma_over_2omega": {"value": null, "unit": "1", "reason": "…"}}}
 #pragma once
 
+#include <string>
+
 #include <nlohmann/json_fwd.hpp>
 
 #include "core/analysis/results.hpp"
@@ -15,10 +17,14 @@ namespace stickslip::io {
 
 /// All results, in the order of the record. An absent result is null.
 /// \param with_details  adds "details": value, unit and, where known, standard_error, systematic_uncertainty
-/// and the reason for an absent value.
+/// and the reason for an absent value. Else adds "uncertainties": those two of the quantities that have them.
 [[nodiscard]] nlohmann::ordered_json results_json(const analysis::TestResults& results, bool with_details);
 
 /// Reads what results_json(results, true) made. \throws nlohmann::json::exception for other JSON.
 [[nodiscard]] analysis::TestResults results_from_json(const nlohmann::ordered_json& json);
+
+/// One result of such JSON, with its errors from "details" or "uncertainties"; of other JSON without a value.
+/// The reason is left empty. \param results  may lack the result, as that of another version.
+[[nodiscard]] analysis::Estimate estimate_in(const nlohmann::ordered_json& results, const std::string& name);
 
 }  // namespace stickslip::io

@@ -28,7 +28,7 @@
   const half = own => (own.confidence_interval ? own.confidence_interval[1] - own.mean : null);
   const meanText = (own, decimals) =>
     own.mean == null ? "–" : fixed(own.mean, decimals) + (half(own) == null ? "" : ` ± ${fixed(half(own), decimals)}`);
-  const pooledText = own => (own.value == null ? "–" : fixed(own.value, 4) + (own.standard_error == null ? "" : ` (s.e. ${fixed(own.standard_error, 5)})`));
+  const pooledText = own => Uncertain.text(own.value, own, 4);
   const pooledFacts = own => `${plural(own.slips, "slip")} of ${plural(own.tests, "test")}, ${own.escaped} escaped` +
     (own.confidence_interval == null ? "" : `; 95 % ${range(own.confidence_interval, 4)}`) + (own.scatter == null ? "" : `; scatter from slip to slip ${fixed(own.scatter, 5)}`);
   const nameOf = index => (two ? `${sides[index]}: ${data.materials[index].label}` : "");
@@ -74,7 +74,8 @@
     section("against-speed", "Coefficient against speed",
       node("p", {class: "note"}, "Means with their 95 % intervals; small dots are single tests. Static and kinetic are the traditional numbers, " +
         "S and K those of the two-parameter model, from which the effect of speed is taken out (Penner 1995, Fig. 1). S−K by cycle counts each slip of all tests once, " +
-        "also one that escaped, with its standard error; a mean of tests is too low where slips escape."),
+        "also one that escaped; a mean of tests is too low where slips escape. " +
+        Uncertain.legend(rows.map(({group}) => [group.delta_mu_by_cycle.value, group.delta_mu_by_cycle]))),
       figureBox,
       table("speeds", ["speed", ...(two ? ["material"] : []), "tests", "S−K by cycle", ...shown.map(title)], rows.map(({m, group}) => row(
         speed(group.pull_speed), ...(two ? [node("td", {class: "text"}, nameOf(m))] : []), String(group.tests.length),
@@ -123,9 +124,11 @@
   }
 
   // ---- Replicates --------------------------------------------------------------------------------------
+  const hasSystematic = group => data.quantities.some(q => group.quantities[q.name].systematic_uncertainty != null);
   function writeReplicates() {
     const made = section("replicates", "Replicates", node("p", {class: "note"},
-      "Two single tests of one material differ by less than r = 2.8 s_r, 95 times of 100 (ISO 5725-6)."));
+      "Two single tests of one material differ by less than r = 2.8 s_r, 95 times of 100 (ISO 5725-6)." +
+      (data.materials.some(material => material.groups.some(hasSystematic)) ? " ± syst.: the systematic part of the mean (calibration, corrections), which more tests do not make smaller." : "")));
     const grid = node("div", {class: "grid"});
     made.append(grid);
     data.materials.forEach((material, m) => material.groups.forEach((group, g) => {
@@ -133,15 +136,15 @@
       const own = node("div", {}, node("h3", {}, `${two ? nameOf(m) + ", " : ""}${speed(group.pull_speed)}, ${plural(group.tests.length, "test")}`),
         node("p", {id: `by-cycle-${m}-${g}`}, node("b", {}, `S−K by cycle ${pooledText(group.delta_mu_by_cycle)}`),
           `: ${group.delta_mu_by_cycle.reason || pooledFacts(group.delta_mu_by_cycle)}`),
-        table(`replicates-${m}-${g}`, ["", "n", "mean", "s_r", "r = 2.8 s_r", "95 % of the mean"], data.quantities.map(q => {
+        table(`replicates-${m}-${g}`, ["", "n", "mean", ...(hasSystematic(group) ? ["± syst."] : []), "s_r", "r = 2.8 s_r", "95 % of the mean"], data.quantities.map(q => {
           const own = group.quantities[q.name];
           if (own.outlier) {
             notes.push(node("li", {}, node("b", {}, `${q.title} of ${own.outlier.file} stands out`),
               `: Grubbs ${fixed(own.outlier.statistic, 2)} above ${fixed(own.outlier.critical, 2)} (5 %). It is not left out.`));
           }
           for (const absence of own.absent) notes.push(node("li", {}, node("b", {}, `no ${q.title} in ${absence.file}`), `: ${absence.reason}`));
-          return row(title(q), String(own.count), fixed(own.mean, q.decimals), fixed(own.standard_deviation, q.decimals + 1),
-            fixed(own.repeatability, q.decimals + 1), range(own.confidence_interval, q.decimals));
+          return row(title(q), String(own.count), fixed(own.mean, q.decimals), ...(hasSystematic(group) ? [fixed(own.systematic_uncertainty, q.decimals)] : []),
+            fixed(own.standard_deviation, q.decimals + 1), fixed(own.repeatability, q.decimals + 1), range(own.confidence_interval, q.decimals));
         })));
       if (notes.length > 0) own.append(node("ul", {class: "notes"}, ...notes));
       grid.append(own);
@@ -206,16 +209,20 @@
     if (lines.length > 0) section("ramps", "Ramp tests", node("ul", {class: "notes"}, ...lines));
   }
 
+  // S − K first, then what it is made of.
+  const leading = ["delta_mu", "mu_s", "mu_k"];
+  const inTests = [...leading.map(name => data.quantities.find(q => q.name === name)), ...data.quantities.filter(q => !leading.includes(q.name))];
   function writeTests(m) {
     const material = data.materials[m];
     const show = i => { viewers[m].show(i); document.getElementById(`traces-${m}`).scrollIntoView({block: "start"}); };
     const notes = material.tests.flatMap((t, i) => [...t.departures, ...t.findings].map(d => node("li", {}, node("b", {}, `test ${i + 1}`), `: ${d}`)));
     section(`all-tests-${m}`, two ? `Tests of ${nameOf(m)}` : "Tests",
       node("p", {class: "note"}, "Method: " + [...new Set(material.tests.map(t => (t.method || "not known") + (t.estimator === "fit" ? "" : ", estimator " + t.estimator)))].join("; ")),
-      table(`tests-${m}`, ["test", "file", "speed", "regime", ...data.quantities.map(title)], material.tests.map((t, i) => row(
+      node("p", {class: "note", id: `errors-${m}`}, Uncertain.legend(material.tests.flatMap(t => inTests.map(q => [t[q.name], t.details[q.name]])))),
+      table(`tests-${m}`, ["test", "file", "speed", "regime", ...inTests.map(title)], material.tests.map((t, i) => row(
         node("td", {}, node("button", {type: "button", class: "link", onclick: () => show(i)}, String(i + 1))),
         node("td", {class: "text"}, t.file), speed(t.pull_speed), node("td", {class: "text", title: t.details.regime ? t.details.regime.reason : ""}, t.regime),
-        ...data.quantities.map(q => (t[q.name] == null ? absentCell(t.details[q.name].reason) : fixed(t[q.name], q.decimals)))))),
+        ...inTests.map(q => (t[q.name] == null ? absentCell(t.details[q.name].reason) : node("td", {}, ...Uncertain.lines(t[q.name], t.details[q.name], q.decimals))))))),
       ...(notes.length > 0 ? [node("ul", {class: "notes"}, ...notes)] : []));
   }
 

@@ -70,6 +70,13 @@ std::string report_csv(const Material& material) {
                            "at_speed_slips", "at_speed_escaped", "absent", "voided"}) {
     names.emplace_back(name);
   }
+  const std::size_t voided_column = names.size() - 1;
+  // Behind all others: a reader that counts columns finds them where they were.
+  for (const analysis::Quantity& quantity : analysis::quantities()) {
+    names.push_back(fmt::format("{}_standard_error", quantity.name));
+    names.push_back(fmt::format("{}_systematic_uncertainty", quantity.name));
+  }
+  names.emplace_back("at_speed_delta_mu_by_cycle_systematic_uncertainty");
   io::Table table = table_of(names);
   std::vector<const analysis::PooledDeltaMu*> by_cycle(material.tests.size());
   for (const analysis::SpeedGroup& group : material.groups) {
@@ -91,14 +98,19 @@ std::string report_csv(const Material& material) {
         });
     const analysis::PooledDeltaMu& pooled = *by_cycle[i];
     add(cells, pooled.mean.value, pooled.mean.standard_error, pooled.slip_count, pooled.escaped_count,
-        reasons);
+        reasons, "");
+    for (const analysis::Quantity& quantity : analysis::quantities()) {
+      const analysis::Estimate& estimate = measured.results.*quantity.estimate;
+      add(cells, estimate.standard_error, estimate.systematic_uncertainty);
+    }
+    add(cells, pooled.mean.systematic_uncertainty);
     table.add(std::move(cells));
   }
   // No numbers, so that nobody averages them.
   for (const VoidedTest& test : material.voided) {
     Cells cells(names.size());
     cells.front() = test.file;
-    cells.back() = test.voiding.reason;
+    cells[voided_column] = test.voiding.reason;
     table.add(std::move(cells));
   }
   return table.csv();

@@ -54,6 +54,7 @@ Json quantity_json(const Material& material, const GroupQuantity& group, const a
       json[key] = nullptr;
     }
   }
+  json["systematic_uncertainty"] = io::or_null(group.systematic_uncertainty);
   json["absent"] = Json::array();
   for (const analysis::Absence& absence : group.absences) {
     json["absent"].push_back({{"file", material.tests[absence.test].file}, {"reason", absence.reason}});

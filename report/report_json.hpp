@@ -15,7 +15,8 @@ namespace stickslip::report {
 /// "details"}],
 ///  "groups": [{"pull_speed", "tests": [index …], "delta_mu_by_cycle": pooled_json(), "quantities": {NAME:
 ///  {"unit", "count", "mean",
-///    "standard_deviation", "repeatability", "confidence_interval", "outlier", "absent"}}}],
+///    "standard_deviation", "repeatability", "confidence_interval", "outlier", "systematic_uncertainty",
+///    "absent"}}}],
 ///  "pooled_standard_deviation": {NAME: …}}
 [[nodiscard]] nlohmann::ordered_json report_json(const Material& material);
 

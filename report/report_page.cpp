@@ -40,12 +40,13 @@ Json material_json(const Material& material, Json report) {
 /// Replaces each mark in the template once, in order.
 std::string page_of(const Json& data, const ChartLibrary& charts) {
   const std::string text = json_for_script(data);
-  const std::array<std::pair<std::string_view, std::string_view>, 7> parts{{
+  const std::array<std::pair<std::string_view, std::string_view>, 8> parts{{
       {"@LICENSE@", charts.license},
       {"@UPLOT_CSS@", charts.style},
       {"@REPORT_CSS@", report_css()},
       {"@DATA@", text},
       {"@UPLOT_JS@", charts.script},
+      {"@UNCERTAIN_JS@", uncertain_js()},
       {"@CHARTS_JS@", charts_js()},
       {"@REPORT_JS@", report_js()},
   }};

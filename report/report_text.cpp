@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "io/table.hpp"
+#include "io/uncertain.hpp"
 #include "report/millimetres.hpp"
 #include "report/truth_table.hpp"
 
@@ -75,15 +77,11 @@ void add_to_figure(io::Table& table, const std::string& speed, const std::string
 
 constexpr int kDeltaMuDecimals = 4;
 
-/// Of all slips of the tests of a group, before the means of the tests.
+/// Of all slips of the tests of a group, before the means of the tests; with its errors.
 std::string by_cycle_line(const analysis::PooledDeltaMu& pooled) {
   if (!pooled.mean.value)
     return fmt::format("S−K by cycle   {}  {}\n", io::kAbsent, base::printable(pooled.mean.reason));
-  const auto error = [](const std::optional<double>& value) {
-    return value ? fmt::format(" ± {:.{}f} (standard error)", *value, kDeltaMuDecimals + 1) : std::string{};
-  };
-  std::string text = fmt::format("S−K by cycle   {:.{}f}{}", *pooled.mean.value, kDeltaMuDecimals + 1,
-                                 error(pooled.mean.standard_error));
+  std::string text = "S−K by cycle   " + io::uncertain(pooled.mean, kDeltaMuDecimals).text();
   if (const auto of_mean = analysis::mean_interval(pooled))
     text += fmt::format(", 95 % {}", interval(of_mean, kDeltaMuDecimals));
   text += fmt::format(": {} slip{} of {}, {} escaped", pooled.slip_count, pooled.slip_count == 1 ? "" : "s",
@@ -93,29 +91,58 @@ std::string by_cycle_line(const analysis::PooledDeltaMu& pooled) {
   return text + "\n";
 }
 
+/// What the errors of those lines mean; empty if no line has errors.
+std::string by_cycle_legend(std::initializer_list<const Material*> materials) {
+  bool has_error = false;
+  bool has_systematic = false;
+  bool all_significant = true;
+  for (const Material* const material : materials) {
+    for (const SpeedGroup& group : material->groups) {
+      const analysis::Estimate& mean = group.by_cycle.mean;
+      has_error |= mean.standard_error.has_value();
+      has_systematic |= mean.systematic_uncertainty.has_value();
+      all_significant &= io::uncertain(mean, kDeltaMuDecimals).significant;
+    }
+  }
+  std::string text;
+  if (has_error || has_systematic) {
+    text = fmt::format("\nS−K by cycle: {}\n", has_systematic ? io::kErrorsLegend : io::kStandardErrorLegend);
+  }
+  if (!all_significant) text += fmt::format("{}\n", io::kNotSignificantLegend);
+  return text;
+}
+
 std::string title_of(const Quantity& quantity) {
   return quantity.unit == "1" ? std::string{quantity.title}
                               : fmt::format("{} ({})", quantity.title, quantity.unit);
 }
 
 std::string replicates_table(const Material& material, const SpeedGroup& group) {
-  io::Table table{{{.heading = "", .align = io::Table::Align::kLeft, .width = 13},
-                   {.heading = "n", .width = 4},
-                   {.heading = "mean", .width = 9},
-                   {.heading = "s_r", .width = 9},
-                   {.heading = "r = 2.8 s_r"},
-                   {.heading = "95 % of the mean", .width = 20}}};
+  std::vector<io::Table::Column> columns{{.heading = "", .align = io::Table::Align::kLeft, .width = 13},
+                                         {.heading = "n", .width = 4},
+                                         {.heading = "mean", .width = 9}};
+  const bool has_systematic =
+      std::any_of(group.quantities.begin(), group.quantities.end(),
+                  [](const GroupQuantity& own) { return own.systematic_uncertainty.has_value(); });
+  if (has_systematic) columns.push_back({.heading = "± syst."});
+  columns.insert(columns.end(), {{.heading = "s_r", .width = 9},
+                                 {.heading = "r = 2.8 s_r"},
+                                 {.heading = "95 % of the mean", .width = 20}});
+  io::Table table{std::move(columns)};
   std::string notes;
   for (std::size_t q = 0; q < analysis::kQuantityCount; ++q) {
     const Quantity& quantity = analysis::quantities()[q];
     const GroupQuantity& own = group.quantities[q];
     const Replicates none;
     const Replicates& values = own.replicates ? *own.replicates : none;
-    table.add({title_of(quantity), io::cell(values.count),
-               number(own.replicates ? std::optional{values.mean} : std::nullopt, quantity.decimals),
-               number(values.standard_deviation, quantity.decimals + 1),
-               number(values.repeatability, quantity.decimals + 1),
-               interval(values.mean_interval, quantity.decimals)});
+    std::vector<io::Table::Cell> cells{
+        title_of(quantity), io::cell(values.count),
+        number(own.replicates ? std::optional{values.mean} : std::nullopt, quantity.decimals)};
+    if (has_systematic) cells.emplace_back(number(own.systematic_uncertainty, quantity.decimals));
+    cells.insert(cells.end(), {number(values.standard_deviation, quantity.decimals + 1),
+                               number(values.repeatability, quantity.decimals + 1),
+                               interval(values.mean_interval, quantity.decimals)});
+    table.add(std::move(cells));
     if (values.outlier) {
       const std::size_t test = own.tests[values.outlier->index];
       notes += fmt::format("!  {} of {} stands out (Grubbs {:.2f} above {:.2f}, 5 %); it is not left out\n",
@@ -265,7 +292,7 @@ std::string report_text(const Material& material) {
         fmt::format("\n{}, {}\n", speed_text(group.pull_speed_m_per_s), count_of_tests(group.tests.size()));
     text += by_cycle_line(group.by_cycle) + replicates_table(material, group);
   }
-  return text + limits_lines(material);
+  return text + by_cycle_legend({&material}) + limits_lines(material);
 }
 
 std::string comparison_text(const Material& a, const Material& b, const MaterialComparison& comparison) {
@@ -296,7 +323,7 @@ std::string comparison_text(const Material& a, const Material& b, const Material
                             p_text(comparison.combined[q]->p));
   }
   if (!combined.empty()) text += "\nall speeds together, p (Fisher): " + combined + "\n";
-  return text;
+  return text + by_cycle_legend({&a, &b});
 }
 
 }  // namespace stickslip::report

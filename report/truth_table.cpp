@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <string_view>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "io/table.hpp"
+#include "io/uncertain.hpp"
 #include "report/ramp_text.hpp"
 
 #include "core/base/text.hpp"
@@ -22,39 +24,124 @@ using model::TestTruth;
 
 struct Column {
   std::string_view title;
-  std::size_t width;
-  std::string_view format;
   const Estimate TestResults::*measured;
   std::optional<double> (*truth)(const TestTruth&);
 };
 
-constexpr std::array<Column, 8> kColumns{{
-    {"static", 7, ".4f", &TestResults::static_coefficient,
-     [](const TestTruth& t) { return t.static_coefficient; }},
-    {"kinetic", 7, ".4f", &TestResults::kinetic_coefficient,
-     [](const TestTruth& t) { return t.kinetic_coefficient; }},
-    {"S", 7, ".4f", &TestResults::mu_s, [](const TestTruth& t) -> std::optional<double> { return t.mu_s; }},
-    {"K", 7, ".4f", &TestResults::mu_k, [](const TestTruth& t) -> std::optional<double> { return t.mu_k; }},
-    {"S−K", 7, ".4f", &TestResults::delta_mu,
+/// With the errors below them they fit a terminal of 80 columns; `stickslip show` has all results.
+constexpr std::array<Column, 5> kColumns{{
+    {"S−K", &TestResults::delta_mu,
      [](const TestTruth& t) -> std::optional<double> { return t.mu_s - t.mu_k; }},
-    {"f (Hz)", 7, ".3f", &TestResults::oscillation_frequency,
-     [](const TestTruth& t) { return t.oscillation_frequency_Hz; }},
-    {"amplitude", 9, ".4f", &TestResults::amplitude, [](const TestTruth& t) { return t.amplitude; }},
-    {"γ/2ω", 7, ".5f", &TestResults::gamma_over_2omega,
-     [](const TestTruth& t) -> std::optional<double> { return t.gamma_over_2omega; }},
+    {"S", &TestResults::mu_s, [](const TestTruth& t) -> std::optional<double> { return t.mu_s; }},
+    {"K", &TestResults::mu_k, [](const TestTruth& t) -> std::optional<double> { return t.mu_k; }},
+    {"static", &TestResults::static_coefficient, [](const TestTruth& t) { return t.static_coefficient; }},
+    {"kinetic", &TestResults::kinetic_coefficient, [](const TestTruth& t) { return t.kinetic_coefficient; }},
 }};
+constexpr int kDecimals = 4;
 
-io::Table table_without_rows() {
+constexpr std::string_view kStandardErrorRow = "± stat.";
+constexpr std::string_view kSystematicRow = "± syst.";
+
+/// One line of the table before it is padded.
+struct Line {
+  io::Table::Cell number;
+  std::string label;
+  std::array<std::string, kColumns.size()> numbers;
+  std::string where;
+};
+
+using Part = std::string io::Uncertain::*;
+using Numbers = std::array<io::Uncertain, kColumns.size()>;
+
+bool any(const Numbers& numbers, Part part) {
+  return std::any_of(numbers.begin(), numbers.end(),
+                     [part](const io::Uncertain& number) { return !(number.*part).empty(); });
+}
+
+Line line_of(const Numbers& numbers, Part part, io::Table::Cell number, std::string_view label,
+             std::string where) {
+  Line line{std::move(number), std::string{label}, {}, std::move(where)};
+  for (std::size_t c = 0; c < kColumns.size(); ++c) line.numbers[c] = numbers[c].*part;
+  return line;
+}
+
+Numbers measured_numbers(const TestResults& results) {
+  Numbers numbers;
+  for (std::size_t c = 0; c < kColumns.size(); ++c)
+    numbers[c] = io::uncertain(results.*kColumns[c].measured, kDecimals);
+  return numbers;
+}
+
+Numbers true_numbers(const TestTruth& truth) {
+  Numbers numbers;
+  for (std::size_t c = 0; c < kColumns.size(); ++c) {
+    const std::optional<double> value = kColumns[c].truth(truth);
+    numbers[c] = io::uncertain(value ? Estimate::of(*value) : Estimate{}, kDecimals);
+  }
+  return numbers;
+}
+
+/// Blanks behind the numbers of a column put their decimal points one below the other.
+void align_points(std::vector<Line>& lines, std::size_t column) {
+  const auto behind = [column](const Line& line) {
+    const std::string& text = line.numbers[column];
+    const std::size_t point = text.find('.');
+    return point == std::string::npos ? std::size_t{0} : text.size() - point;
+  };
+  std::size_t most = 0;
+  for (const Line& line : lines) most = std::max(most, behind(line));
+  for (Line& line : lines) {
+    std::string& text = line.numbers[column];
+    if (!text.empty() && text != io::kAbsent) text.append(most - behind(line), ' ');
+  }
+}
+
+std::string table_text(std::vector<Line> lines) {
   using enum io::Table::Align;
-  std::vector<io::Table::Column> columns{{.heading = "test"},
-                                         {.heading = "", .align = kLeft, .width = 8},
-                                         {.heading = "regime", .align = kLeft, .width = 14}};
-  for (const Column& column : kColumns) {
-    columns.push_back(
-        {.heading = std::string{column.title}, .format = std::string{column.format}, .width = column.width});
+  std::vector<io::Table::Column> columns{{.heading = "test"}, {.heading = "regime", .align = kLeft}};
+  for (std::size_t c = 0; c < kColumns.size(); ++c) {
+    align_points(lines, c);
+    columns.push_back({.heading = std::string{kColumns[c].title}});
   }
   columns.push_back({.heading = "file, scene", .align = kLeft});
-  return io::Table{std::move(columns)};
+  io::Table table{std::move(columns)};
+  for (Line& line : lines) {
+    std::vector<io::Table::Cell> cells{std::move(line.number), std::move(line.label)};
+    for (std::string& number : line.numbers) cells.emplace_back(std::move(number));
+    cells.emplace_back(std::move(line.where));
+    table.add(std::move(cells));
+  }
+  return table.text();
+}
+
+/// What the rows of errors mean.
+std::string legend(const std::vector<Line>& lines) {
+  const auto has = [&lines](std::string_view label) {
+    return std::any_of(lines.begin(), lines.end(), [label](const Line& line) { return line.label == label; });
+  };
+  std::string text;
+  if (has(kStandardErrorRow))
+    text += fmt::format("{}  standard error: less with more slips or more tests\n", kStandardErrorRow);
+  if (has(kSystematicRow)) {
+    text +=
+        fmt::format("{}  systematic part (calibration, corrections): the same each time\n", kSystematicRow);
+  }
+  return text;
+}
+
+/// Which numbers are not significant: "S−K in test 3, 4; K in test 4".
+std::string not_significant(std::span<const TableRow> rows) {
+  std::string which;
+  for (const Column& column : kColumns) {
+    std::string tests;
+    for (const TableRow& row : rows) {
+      if (io::uncertain(row.results.*column.measured, kDecimals).significant) continue;
+      tests += fmt::format("{}{}", tests.empty() ? "" : ", ", row.number);
+    }
+    if (!tests.empty())
+      which += fmt::format("{}{} in test {}", which.empty() ? "" : "; ", column.title, tests);
+  }
+  return which.empty() ? which : fmt::format("{}: {}\n", io::kNotSignificantLegend, which);
 }
 
 /// Why numbers are absent, each reason once with the tests it concerns.
@@ -79,20 +166,21 @@ std::string footnotes(std::span<const TableRow> rows) {
 }  // namespace
 
 std::string format_table(std::span<const TableRow> rows) {
-  io::Table table = table_without_rows();
+  std::vector<Line> lines;
   for (const TableRow& row : rows) {
-    std::vector<io::Table::Cell> cells{row.number, row.truth ? "measured" : "",
-                                       io::cell(model::name(row.results.regime))};
-    for (const Column& column : kColumns) cells.push_back(io::cell((row.results.*column.measured).value));
-    cells.emplace_back(row.where);
-    table.add(std::move(cells));
-    if (!row.truth) continue;
-    cells = {"", "truth", io::cell(model::name(row.truth->regime))};
-    for (const Column& column : kColumns) cells.push_back(io::cell(column.truth(*row.truth)));
-    cells.emplace_back(row.truth->scene_name);
-    table.add(std::move(cells));
+    const Numbers measured = measured_numbers(row.results);
+    lines.push_back(
+        line_of(measured, &io::Uncertain::value, row.number, model::name(row.results.regime), row.where));
+    for (const auto& [part, label] : {std::pair{&io::Uncertain::standard_error, kStandardErrorRow},
+                                      std::pair{&io::Uncertain::systematic, kSystematicRow}}) {
+      if (any(measured, part)) lines.push_back(line_of(measured, part, "", label, ""));
+    }
+    if (row.truth) {
+      lines.push_back(line_of(true_numbers(*row.truth), &io::Uncertain::value, "truth",
+                              model::name(row.truth->regime), row.truth->scene_name));
+    }
   }
-  std::string text = table.text();
+  std::string text = table_text(lines) + legend(lines);
   std::string findings;
   for (const TableRow& row : rows) {
     for (const std::string& finding : row.results.findings) {
@@ -101,7 +189,7 @@ std::string format_table(std::span<const TableRow> rows) {
     if (const std::string ramp = ramp_text(row.results); !ramp.empty())
       text += fmt::format("ramp, test {}: {}\n", row.number, ramp);
   }
-  return text + footnotes(rows) + findings;
+  return text + not_significant(rows) + footnotes(rows) + findings;
 }
 
 }  // namespace stickslip::report

@@ -1,9 +1,11 @@
 /// \file
-/// The table of tests for people: each measured number with the truth below it, if known.
+/// The table of tests for people: below each measured number its errors and the truth, if known.
 ///
-///     test            regime      static  kinetic        S        K      S-K      Hz …
-///        1  measured  stick-slip  0.3824   0.3012   0.3500   0.3000   0.0500  19.314 …  FILE
-///           truth     stick-slip       –        –   0.3500   0.3000   0.0500  19.314 …  SCENE
+///      test  regime         S−K       S       K  static  kinetic  file, scene
+///         1  stick-slip  0.04985  0.3499  0.3001  0.3822   0.3020  FILE
+///            ± stat.     0.00035  0.0004  0.0001
+///            ± syst.     0.00021  0.0020  0.0030  0.0030   0.0030
+///     truth  stick-slip  0.0500   0.3500  0.3000  0.3813   0.3019  SCENE
 #pragma once
 
 #include <cstdint>
@@ -23,7 +25,8 @@ struct TableRow {
   std::string where;  ///< File, or why there is none.
 };
 
-/// The whole table in UTF-8, one or two lines per row; then, why numbers are absent ("–").
+/// The whole table in UTF-8, one to four lines per row; then, what the rows of errors mean, which numbers are
+/// not significant ("?"), and why numbers are absent ("–").
 [[nodiscard]] std::string format_table(std::span<const TableRow> rows);
 
 }  // namespace stickslip::report

@@ -52,7 +52,7 @@ def demo(release, readme):
     """The rows of its table that README shows, for README to hold as they are."""
     with tempfile.TemporaryDirectory(prefix="stickslip-table-") as folder:
         rows = [line.split() for line in printed(release / "bin/stickslip", "demo", "--folder", folder).splitlines()]
-    shown = [line.split() for line in readme.splitlines() if re.match(r"^ +\d+  measured|^ +truth ", line)]
+    shown = [line.split() for line in readme.splitlines() if re.match(r"^ +(\d+  [a-z-]+ |truth  |± s\w+\. )", line)]
     found = sum(any(row[:len(line)] == line for row in rows) for line in shown)
     yield Figure("rows of the demo's table that README shows", "count", found, r"()()", value_said=len(shown))
 

@@ -21,20 +21,46 @@ GroupQuantity summary(std::span<const MeasuredTest> tests, const SpeedGroup& gro
                       const Quantity& quantity) {
   GroupQuantity result;
   std::vector<double> values;
+  std::vector<const Estimate*> estimates;
   for (const std::size_t test : group.tests) {
     const Estimate& estimate = tests[test].results.*quantity.estimate;
     if (estimate.value) {
       values.push_back(*estimate.value);
+      estimates.push_back(&estimate);
       result.tests.push_back(test);
     } else {
       result.absences.push_back({test, estimate.reason});
     }
   }
   if (!values.empty()) result.replicates = describe_replicates(values);
+  result.systematic_uncertainty = mean_systematic(estimates);
   return result;
 }
 
 }  // namespace
+
+std::optional<double> mean_systematic(std::span<const Estimate* const> estimates) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const Estimate* const estimate : estimates) {
+    if (!estimate->systematic_uncertainty) continue;
+    sum += *estimate->systematic_uncertainty;
+    count += 1.0;
+  }
+  return count > 0.0 ? std::optional{sum / count} : std::nullopt;
+}
+
+PooledDeltaMu pool_tests(std::span<const MeasuredTest* const> tests) {
+  std::vector<SlipSums> slips;
+  std::vector<const Estimate*> estimates;
+  for (const MeasuredTest* const test : tests) {
+    slips.push_back(test->slips);
+    if (test->slips.count > 0.0) estimates.push_back(&test->results.delta_mu);
+  }
+  PooledDeltaMu pooled = pool_slips(slips);
+  pooled.mean.systematic_uncertainty = mean_systematic(estimates);
+  return pooled;
+}
 
 std::vector<SpeedGroup> group_by_speed(std::span<const MeasuredTest> tests) {
   std::vector<SpeedGroup> groups;
@@ -53,9 +79,9 @@ std::vector<SpeedGroup> group_by_speed(std::span<const MeasuredTest> tests) {
     return slower(one.pull_speed_m_per_s, other.pull_speed_m_per_s);
   });
   for (SpeedGroup& group : groups) {
-    std::vector<SlipSums> slips;
-    for (const std::size_t test : group.tests) slips.push_back(tests[test].slips);
-    group.by_cycle = pool_slips(slips);
+    std::vector<const MeasuredTest*> own;
+    for (const std::size_t test : group.tests) own.push_back(&tests[test]);
+    group.by_cycle = pool_tests(own);
     for (std::size_t q = 0; q < kQuantityCount; ++q)
       group.quantities[q] = summary(tests, group, quantities()[q]);
   }

@@ -40,7 +40,15 @@ struct GroupQuantity {
   std::optional<Replicates> replicates;  ///< Nullopt if no test has a value.
   std::vector<std::size_t> tests;  ///< Indices of the tests with a value; Outlier::index refers to this list.
   std::vector<Absence> absences;
+  std::optional<double> systematic_uncertainty;  ///< Of the mean; nullopt if no test has one.
 };
+
+/// Systematic uncertainty of a mean over estimates: the mean of theirs, since replicates do not decrease it.
+/// Estimates without one are left out: an unknown part is not zero. nullopt if none has one.
+[[nodiscard]] std::optional<double> mean_systematic(std::span<const Estimate* const> estimates);
+
+/// pool_slips() of the tests, with the systematic uncertainty of those that have such slips.
+[[nodiscard]] PooledDeltaMu pool_tests(std::span<const MeasuredTest* const> tests);
 
 /// Tests at one pull speed.
 struct SpeedGroup {

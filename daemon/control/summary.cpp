@@ -93,8 +93,8 @@ Json summary_json(std::span<const daemon::TestSummary> tests, const daemon::Batc
   Json quantities = Json::array();
   for (const analysis::Quantity& quantity : analysis::quantities())
     quantities.push_back(quantity_json(quantity, those));
-  std::vector<analysis::SlipSums> slips;
-  for (const analysis::MeasuredTest& test : those.tests) slips.push_back(test.slips);
+  std::vector<const analysis::MeasuredTest*> measured;
+  for (const analysis::MeasuredTest& test : those.tests) measured.push_back(&test);
   Json limits = Json::array();
   if (batch != nullptr) {
     for (const auto& [quantity, own] : batch->plan.limits)
@@ -102,7 +102,7 @@ Json summary_json(std::span<const daemon::TestSummary> tests, const daemon::Batc
   }
   return {{"batch", batch == nullptr ? Json(nullptr) : Json(batch->id)},
           {"tests", those.numbers},
-          {"delta_mu_by_cycle", io::pooled_json(analysis::pool_slips(slips))},
+          {"delta_mu_by_cycle", io::pooled_json(analysis::pool_tests(measured))},
           {"quantities", std::move(quantities)},
           {"limits", std::move(limits)}};
 }

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "report/assets.hpp"
+
 #include "daemon/page/live_assets.hpp"
 #include "daemon/types/reply.hpp"
 
@@ -36,6 +38,7 @@ std::vector<Asset> assets_with(const report::ChartLibrary& charts) {
       {"/page/uplot.css", kStyle, charts.style},
       {"/page/live.js", kScript, text(live_js())},
       {"/page/scope.js", kScript, text(scope_js())},
+      {"/page/uncertain.js", kScript, text(report::uncertain_js())},
       {"/page/tables.js", kScript, text(tables_js())},
       {"/page/tare.js", kScript, text(tare_js())},
       {"/page/calibrate.js", kScript, text(calibrate_js())},

@@ -2,10 +2,12 @@
 "use strict";
 
 const Tables = (() => {
-  const columns = [["mu_s", "S", 4], ["mu_k", "K", 4], ["delta_mu", "S − K", 4], ["static_coefficient", "static", 4],
+  const columns = [["delta_mu", "S − K", 4], ["mu_s", "S", 4], ["mu_k", "K", 4], ["static_coefficient", "static", 4],
     ["kinetic_coefficient", "kinetic", 4], ["amplitude", "amplitude", 4], ["oscillation_frequency", "Hz", 3], ["cycle_count", "cycles", 0]];
+  const withErrors = new Set(["delta_mu", "mu_s", "mu_k", "static_coefficient", "kinetic_coefficient"]);
   const fixed = (value, decimals) => (value == null ? "–" : value.toFixed(decimals));
-  const cell = (text, kind) => { const td = document.createElement(kind === "th" ? "th" : "td"); td.textContent = text; if (kind && kind !== "th") td.className = kind; return td; };
+  /// \param text  or several children of the cell.
+  const cell = (text, kind) => { const td = document.createElement(kind === "th" ? "th" : "td"); td.append(...(Array.isArray(text) ? text : [text])); if (kind && kind !== "th") td.className = kind; return td; };
   const row = cells => { const tr = document.createElement("tr"); tr.append(...cells); return tr; };
 
   const terms = facts => facts.flatMap(([name, value]) => {
@@ -53,9 +55,11 @@ const Tables = (() => {
     table.tHead.replaceChildren(row(head));
     const of = new Map(summary.quantities.map(quantity => [quantity.name, quantity]));
     const limits = new Map(summary.limits.map(limit => [limit.quantity, limit]));
+    const errorsOf = (test, name) => (withErrors.has(name) ? test.results.uncertainties?.[name] : undefined);
     const value = (test, [name, , digits]) => {
       const missed = limits.get(name)?.outside.includes(test.number), far = of.get(name)?.outlier_test === test.number;
-      return cell(`${fixed(test.results[name], digits)}${missed ? " ✗" : ""}${far ? " !" : ""}`, missed ? "outside" : far ? "far" : undefined);
+      const marks = `${missed ? " ✗" : ""}${far ? " !" : ""}`, own = test.results[name];
+      return cell(Uncertain.lines(own, errorsOf(test, name), digits, marks), missed ? "outside" : far ? "far" : undefined);
     };
     const focused = document.activeElement?.id;
     table.tBodies[0].replaceChildren(...list.slice(-200).reverse().map(test => {
@@ -68,8 +72,7 @@ const Tables = (() => {
     const foot = (label, pick) => row([cell(label), cell("", "text"), ...columns.map(([name, , digits]) => cell(of.has(name) ? pick(of.get(name), digits, name) : "")), cell("", "text"), cell(""), cell("", "text")]);
     const number = key => (quantity, digits) => fixed(quantity[key], digits);
     const pooled = summary.delta_mu_by_cycle;
-    const byCycle = (quantity, digits, name) => (name !== "delta_mu" || pooled.value == null ? "" :
-      `${fixed(pooled.value, digits)}${pooled.standard_error == null ? "" : ` ± ${fixed(pooled.standard_error, digits + 1)}`}`);
+    const byCycle = (quantity, digits, name) => (name !== "delta_mu" || pooled.value == null ? "" : Uncertain.lines(pooled.value, pooled, digits));
     const rows = summary.tests.length < 2 ? [] : [foot("by cycle", byCycle), foot("mean", number("mean")), foot("r = 2.8 s", number("repeatability")), foot("95 % from", number("mean_low")),
       foot("95 % to", number("mean_high")), foot("lowest", number("lowest")), foot("highest", number("highest"))];
     if (summary.limits.length > 0 && summary.tests.length > 0) {
@@ -83,6 +86,8 @@ const Tables = (() => {
     lacking = known < made;
     const ofBatch = lacking ? `${known} of the ${made} tests made of batch ${summary.batch}: the records of the others have not been read` :
       `batch ${summary.batch}`;
+    document.getElementById("errors").textContent = Uncertain.legend([[pooled.value, pooled],
+      ...list.slice(-200).flatMap(test => [...withErrors].map(name => [test.results[name], errorsOf(test, name)]))]);
     document.getElementById("counted").textContent = [summary.batch == null ? "" : `mean and limits of ${ofBatch}`,
       far ? "! stands out (Grubbs' test, 5 %) and counts all the same" : ""].filter(text => text !== "").join(" · ");
   }

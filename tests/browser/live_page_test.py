@@ -26,14 +26,16 @@ from contrast import CONTROLS, MARK, TARGETS, TARGET_PX, TEXT, TEXTS, colours, c
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "system"))
 from running_daemon import PATIENT, RunningDaemon  # noqa: E402
 from service_manager import TIMEOUT_S  # noqa: E402
+import uncertain  # noqa: E402
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 CHROMIUM = shutil.which(sys.argv[2])
 SOURCE = pathlib.Path(sys.argv[3]).resolve()
 
 # Of the table of tests, after number and regime.
-COLUMNS = [("mu_s", 4), ("mu_k", 4), ("delta_mu", 4), ("static_coefficient", 4), ("kinetic_coefficient", 4), ("amplitude", 4),
+COLUMNS = [("delta_mu", 4), ("mu_s", 4), ("mu_k", 4), ("static_coefficient", 4), ("kinetic_coefficient", 4), ("amplitude", 4),
            ("oscillation_frequency", 3), ("cycle_count", 0)]
+WITH_ERRORS = {"delta_mu", "mu_s", "mu_k", "static_coefficient", "kinetic_coefficient"}
 
 
 @functools.lru_cache
@@ -47,6 +49,12 @@ def student_t(freedom):
         inside = 2 * t * numpy.mean(scale * (1 + (t * middles) ** 2 / freedom) ** (-(freedom + 1) / 2))
         low, high = (t, high) if inside < 0.95 else (low, t)
     return low
+
+
+def shown_in(record, name, digits):
+    """Text of a cell of the table of tests."""
+    value = float(record[f"entry/results/{name}"][()])
+    return uncertain.of(record, name, digits) if name in WITH_ERRORS else uncertain.text(value, decimals=digits)
 
 
 def until_ended(frames, test):
@@ -106,7 +114,7 @@ class LivePage(unittest.TestCase):
                 self.assertEqual(row[1], record["entry/results/regime"].asstr()[()])
                 for cell, (name, digits) in zip(row[2:], COLUMNS):
                     value = float(record[f"entry/results/{name}"][()])
-                    self.assertEqual(cell, "–" if numpy.isnan(value) else f"{value:.{digits}f}", name)
+                    self.assertEqual(cell, shown_in(record, name, digits), name)
                     if not numpy.isnan(value):
                         values[name].append(value)
                         compared += 1
@@ -117,7 +125,7 @@ class LivePage(unittest.TestCase):
         self.assertEqual([row[0] for row in foot], ["by cycle", "mean", "r = 2.8 s", "95 % from", "95 % to", "lowest", "highest"])
         pooled = summary["delta_mu_by_cycle"]
         at = 2 + [name for name, _ in COLUMNS].index("delta_mu")
-        self.assertEqual(foot[0][at], f"{pooled['value']:.4f} ± {pooled['standard_error']:.5f}")
+        self.assertEqual(foot[0][at], uncertain.text(pooled["value"], pooled["standard_error"], pooled["systematic_uncertainty"]))
         for row, of in zip(foot[1:], (numpy.mean, lambda v: 2.8 * numpy.std(v, ddof=1), lambda v: numpy.mean(v) - half_width(v),
                                   lambda v: numpy.mean(v) + half_width(v), numpy.min, numpy.max), strict=True):
             for cell, (name, digits) in zip(row[2:], COLUMNS[:-1]):
@@ -126,6 +134,24 @@ class LivePage(unittest.TestCase):
         self.assertTrue(all(url.startswith(self.address) or url.startswith(("data:", "ws:")) for url in page.requests()), page.requests())
         if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
             page.screenshot(pathlib.Path(folder) / "live.png")
+
+    def test_both_errors_are_shown_and_the_table_is_no_wider_than_the_window(self):
+        # By turning points S - K, S and K have a systematic part.
+        daemon = self.daemon('[analysis]\nestimator = "turning-points"\n')
+        page = self.page()
+        page.resize(1280, 720)
+        page.until("document.querySelector('#tests tbody td:last-child a')")
+        row = page.value("[...document.querySelector('#tests tbody td:last-child a').closest('tr').cells].map(c => c.textContent)")
+        with h5py.File(daemon.folder / "records" / row[-1]) as record:
+            for cell, name in zip(row[2:5], ("delta_mu", "mu_s", "mu_k")):
+                self.assertIn("systematic_uncertainty", record[f"entry/results/{name}"].attrs)
+                self.assertEqual(cell, uncertain.of(record, name), name)
+        self.assertEqual(page.value("document.getElementById('errors').textContent"), "± standard error ± systematic part (calibration, corrections)")
+        wide = page.value("[document.documentElement.scrollWidth, innerWidth, ...(t => [t.scrollWidth, t.clientWidth])(document.querySelector('#results .table'))]")
+        self.assertLessEqual(wide[0], wide[1])
+        self.assertLessEqual(wide[2], wide[3])
+        if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
+            page.screenshot(pathlib.Path(folder) / "live-errors.png")
 
     def test_the_scope_shows_the_scans_of_the_record(self):
         daemon = self.daemon()
@@ -346,9 +372,8 @@ class LivePage(unittest.TestCase):
         self.assertEqual(rows[1], before["table"][0])
         cycles = [frame for frame in until_ended(frames, 2) if frame["type"] == "cycle" and frame["test"] == 2]
         with h5py.File(daemon.record(2)) as record:
-            for cell, (name, digits) in zip(rows[0][2:], COLUMNS):
-                value = float(record[f"entry/results/{name}"][()])
-                self.assertEqual(cell, "–" if numpy.isnan(value) else f"{value:.{digits}f}", name)
+            for cell, column in zip(rows[0][2:], COLUMNS):
+                self.assertEqual(cell, shown_in(record, *column), column)
             self.check_cycles(page.value(self.SHOWN), record, cycles)
             scans, force = record["entry/raw/scan"][()], record["entry/raw/force"][()]
             weight = record["entry/instrument/tester/sled_mass"][()] * record["entry/instrument/tester/gravity"][()]
@@ -422,7 +447,7 @@ class LivePage(unittest.TestCase):
         summary = daemon.ask("GET", "/v1/tests")[1]["summary"]
         self.assertEqual(summary["batch"], batch)
         missed = page.value(f"[...document.querySelectorAll('#tests tbody tr')].filter(r => {summary['tests'][:1]}.includes(Number(r.cells[0].textContent))).map(r => r.cells[{names.index('mu_k')}].textContent)")
-        self.assertRegex(missed[0], r"^0\.\d{4} ✗$")
+        self.assertRegex(missed[0], r"^0\.\d{4,6} ✗( ± |$)")
         # What is void does not count, and says why.
         number = summary["tests"][0]
         self.assertEqual(daemon.ask("POST", "/v1/void", {"test": number, "reason": "paper torn"})[0], 200)

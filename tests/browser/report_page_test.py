@@ -7,6 +7,7 @@ With STICKSLIP_SCREENSHOTS=FOLDER in the environment pictures of the pages are l
 """
 
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -20,6 +21,9 @@ import numpy
 
 from chromium import Chromium
 from contrast import CONTROLS, MARK, TARGETS, TARGET_PX, TEXT, TEXTS, colours, contrast, rgb
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "system"))
+import uncertain  # noqa: E402
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 CHROMIUM = shutil.which(sys.argv[2])
@@ -135,17 +139,22 @@ class Pages(unittest.TestCase):
                 own, digits = group["quantities"][quantity["name"]], quantity["decimals"]
                 low, high = own["confidence_interval"]
                 self.assertEqual(row[1:], [str(own["count"]), f"{own['mean']:.{digits}f}",
+                                           "–" if own["systematic_uncertainty"] is None else f"{own['systematic_uncertainty']:.{digits}f}",
                                            f"{own['standard_deviation']:.{digits + 1}f}", f"{own['repeatability']:.{digits + 1}f}",
                                            f"{low:.{digits}f} … {high:.{digits}f}"])
+            # All columns are in sight.
+            wide = page.value(f"(t => [t.scrollWidth, t.clientWidth])(document.getElementById('replicates-0-{index}').parentNode)")
+            self.assertLessEqual(wide[0], wide[1])
             pooled = group["delta_mu_by_cycle"]
-            self.assertIn(f"S−K by cycle {pooled['value']:.4f} (s.e. {pooled['standard_error']:.5f}): {pooled['slips']} slips",
+            self.assertIn(f"S−K by cycle {uncertain.text(pooled['value'], pooled['standard_error'], pooled['systematic_uncertainty'])}: {pooled['slips']} slips",
                           page.value(f"document.getElementById('by-cycle-0-{index}').textContent"))
         rows = self.rows(page, "tests-0")
         self.assertEqual([row[1] for row in rows], self.a)
         for row, test in zip(rows, self.report["tests"]):
             self.assertEqual(row[3], test["regime"])
-            for cell, quantity in zip(row[4:], quantities):
-                self.assertEqual(cell, f"{test[quantity['name']]:.{quantity['decimals']}f}")
+            for cell, quantity in zip(row[4:], self.in_tests(quantities), strict=True):
+                own = test["details"][quantity["name"]]
+                self.assertEqual(cell, uncertain.text(own["value"], own.get("standard_error"), own.get("systematic_uncertainty"), quantity["decimals"]))
 
         page = self.page("compare.html")
         compared = self.comparison["comparisons"]
@@ -162,6 +171,47 @@ class Pages(unittest.TestCase):
             self.assertEqual(row[4], f"{own['hedges_g']:.2f}")
             self.assertEqual(row[6:], ["> 10000" if own[key] is None else str(own[key])
                                        for key in ("tests_needed_80", "tests_needed_90")])
+
+    @staticmethod
+    def in_tests(quantities):
+        """S - K first, then what it is made of."""
+        leading = ["delta_mu", "mu_s", "mu_k"]
+        return sorted(quantities, key=lambda quantity: leading.index(quantity["name"]) if quantity["name"] in leading else len(leading))
+
+    def test_both_errors_and_what_is_not_significant_are_shown(self):
+        (self.folder / "both.h5").write_bytes((self.folder / self.a[0]).read_bytes())
+        with h5py.File(self.folder / "both.h5", "r+") as record:
+            for name, systematic in (("delta_mu", 0.06), ("mu_s", 0.004), ("static_coefficient", 0.003)):
+                record[f"entry/results/{name}"].attrs["systematic_uncertainty"] = systematic
+            expected = {name: uncertain.of(record, name) for name in ("delta_mu", "mu_s", "mu_k", "static_coefficient")}
+        self.assertRegex(expected["delta_mu"], r"^0\.05\d\? ± (<?0\.\d+) ± 0\.060$")
+        report = self.json_of("report", "both.h5", "-o", "both.html")
+        page = self.page("both.html")
+        [row] = self.rows(page, "tests-0")
+        self.assertEqual(row[4:8], [expected[name] for name in ("delta_mu", "mu_s", "mu_k")] + [expected["static_coefficient"]])
+        self.assertEqual(page.value("document.getElementById('errors-0').textContent"),
+                         "± standard error ± systematic part (calibration, corrections) · ? not significant, its errors together exceed it")
+        pooled = report["groups"][0]["delta_mu_by_cycle"]
+        self.assertIn(f"S−K by cycle {uncertain.text(pooled['value'], None, 0.06)}: ", page.value("document.getElementById('by-cycle-0-0').textContent"))
+        replicates = self.rows(page, "replicates-0-0")
+        self.assertEqual([cells[3] for cells in replicates[:5]], ["0.0030", "–", "0.0040", "–", "0.0600"])
+        if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
+            page.screenshot(pathlib.Path(folder) / "report-errors.png")
+
+    # As tests/unit/uncertain_test.cpp has them; null is what JSON has for NaN and infinity.
+    def test_numbers_are_formatted_as_at_the_terminal(self):
+        page = self.page()
+        infinite, nan = math.inf, math.nan
+        cases = [(0.04698, 0.00271, 0.00188), (0.04698, 0.00188, 0.0271), (0.05, 0.0003, None), (0.05, 0.00996, None), (-0.05, 0.0012, None),
+                 (0.05, None, None), (0.3822, None, 0.003), (0.047, 0.27, None), (-0.047, 0.27, None), (0.005, 0.004, 0.004), (0.005, 0.003, 0.004),
+                 (0.0, 0.0012, None), (3.2, 120.0, 0.3), (0.05, nan, nan), (0.05, nan, 0.003), (0.05, infinite, None), (0.05, 0.0012, infinite),
+                 (0.05, 0.0, None), (0.0, 0.0, 0.0), (0.3, 0.00001, 0.003), (0.3, 0.0028, 0.0000096), (0.3, 1e-8, 0.003), (0.3, 1e-12, None), (None, 0.1, None), (nan, 0.1, None), (infinite, 0.1, None)]
+        def script(number):
+            return "null" if number is None else {"inf": "Infinity", "nan": "NaN"}.get(str(number), repr(number))
+        for value, random, constant in cases:
+            shown = page.value(f"Uncertain.text({script(value)}, {{standard_error: {script(random)}, systematic_uncertainty: {script(constant)}}}, 4)")
+            self.assertEqual(shown, uncertain.text(value, random, constant), (value, random, constant))
+        self.assertEqual(page.value("Uncertain.text(0.05, undefined, 4)"), "0.0500")
 
     def test_a_measured_pull_speed_has_a_chart_of_its_own(self):
         scene = pathlib.Path(__file__).resolve().parents[2] / "config" / "scenes" / "stick-slip-at-12-in-per-min.toml"

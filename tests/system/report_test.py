@@ -5,9 +5,11 @@ report_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
 """
 
 import csv
+import io
 import json
 import math
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -15,6 +17,8 @@ import unittest
 
 import h5py
 import numpy
+
+import uncertain
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
@@ -158,11 +162,62 @@ class Reports(Folder):
             self.assertEqual((pooled["tests"], pooled["slips"], pooled["escaped"]), (n, len(slips), 0))
             numpy.testing.assert_allclose([pooled["value"], pooled["standard_error"], *pooled["confidence_interval"], pooled["scatter"]],
                                           [mean, error, mean - t * error, mean + t * error, numpy.std(slips, ddof=1)], rtol=1e-9)
-            self.assertIn(f"S−K by cycle   {mean:.5f} ± {error:.5f} (standard error), 95 %", text)
+            self.assertIn(f"S−K by cycle   {uncertain.text(mean, error, pooled['systematic_uncertainty'])}, 95 %", text)
         # B never stuck again: only its first slips have an S − K.
         compared = json.loads(self.good("compare", *self.a, "--against", *self.b, "--json"))
         self.assertIsNone(compared["comparisons"][1]["delta_mu_by_cycle"]["p"])
         self.assertIn("in B no slip after the first", compared["comparisons"][1]["delta_mu_by_cycle"]["reason"])
+
+    LEADING = ("delta_mu", "mu_s", "mu_k", "static_coefficient", "kinetic_coefficient")
+
+    def check_table(self, text, details):
+        """The table of one test: each number, and below it its errors and the truth."""
+        shown = [uncertain.parts(details[name]["value"], details[name].get("standard_error"), details[name].get("systematic_uncertainty"))
+                 for name in self.LEADING]
+        lines = text.splitlines()
+        self.assertEqual(lines[0].split()[:7], ["test", "regime", "S−K", "S", "K", "static", "kinetic"])
+        self.assertEqual(lines[1].split()[2:7], [parts[0] for parts in shown])
+        self.assertEqual([line.split()[:2] for line in lines[2:5]], [["±", "stat."], ["±", "syst."], ["truth", "stick-slip"]])
+        for line, part in ((lines[2], 1), (lines[3], 2)):
+            self.assertEqual(line.split()[2:], [parts[part] for parts in shown if parts[part] is not None])
+        self.assertLessEqual(max(len(line) for line in lines[:4]), 80)
+        for legend in ("± stat.  standard error", "± syst.  systematic part"):
+            self.assertEqual(sum(line.startswith(legend) for line in lines), 1)
+
+    def test_people_are_shown_both_errors_of_the_main_results(self):
+        self.simulate("both.h5", STICKS, "12 in/min", 21)
+        # By turning points S - K has a systematic part: the whole correction for belt and damping.
+        again = ("analyze", "both.h5", "--estimator", "turning-points")
+        [test] = json.loads(self.good(*again, "--json"))["tests"]
+        self.assertGreater(test["details"]["delta_mu"]["standard_error"], 0.0)
+        self.assertGreater(test["details"]["delta_mu"]["systematic_uncertainty"], 0.0)
+        self.check_table(self.good(*again), test["details"])
+
+        # A report is about the numbers in the file: there 1 % of each coefficient is systematic.
+        with h5py.File(self.folder / "both.h5", "r+") as record:
+            for name in self.LEADING:
+                result = record[f"entry/results/{name}"]
+                result.attrs["systematic_uncertainty"] = 0.01 * result[()]
+        told = json.loads(self.good("report", "both.h5", "--json"))
+        details, [group] = told["tests"][0]["details"], told["groups"]
+        text = self.good("report", "both.h5")
+        self.check_table(text, details)
+        listed = self.good("show", "both.h5")
+        for name in self.LEADING:
+            own = details[name]
+            self.assertEqual(own["systematic_uncertainty"], 0.01 * own["value"])
+            errors = own.get("standard_error"), own["systematic_uncertainty"]
+            self.assertIn(f"{uncertain.text(own['value'], *errors)}\n", re.sub(rf"^  {name} +", "", listed[listed.index(f"\n  {name} ") + 1:]))
+        [row] = csv.DictReader(io.StringIO(self.good("report", "both.h5", "--csv", "-")))
+        for name in QUANTITIES:
+            for key in ("standard_error", "systematic_uncertainty"):
+                in_csv = row[f"{name}_{key}"]
+                self.assertEqual(None if in_csv == "" else float(in_csv), details[name].get(key), name)
+            self.assertEqual(group["quantities"][name]["systematic_uncertainty"], details[name].get("systematic_uncertainty"))
+        pooled, systematic = group["delta_mu_by_cycle"], details["delta_mu"]["systematic_uncertainty"]
+        self.assertEqual(pooled["systematic_uncertainty"], systematic)
+        self.assertEqual(float(row["at_speed_delta_mu_by_cycle_systematic_uncertainty"]), systematic)
+        self.assertIn(f"S−K by cycle   {uncertain.text(pooled['value'], None, systematic)}: ", text)
 
     def test_what_is_kept_is_said_and_shown_side_by_side(self):
         shown = json.loads(self.good("analyze", self.a[0], "--effects", "--json"))["tests"][0]

@@ -8,6 +8,7 @@ Nothing here sleeps: each step waits for an event (a notification, the end of a 
 
 import json
 import pathlib
+import re
 import signal
 import stat
 import subprocess
@@ -99,11 +100,16 @@ class Demo(Folder):
         leftovers = [f for f in (self.folder / "records" / "demo").iterdir() if f.suffix != ".h5"]
         self.assertEqual(leftovers, [])
         lines = done.stdout.splitlines()
-        self.assertEqual(sum(" measured " in line for line in lines), 10)
-        self.assertEqual(sum(" truth " in line for line in lines), 10)
-        for measured, truth in zip(lines[1::2], lines[2::2]):
-            # The regime found is the true one: "1 measured stick-slip …" above "truth stick-slip …".
-            self.assertEqual(measured.split()[2], truth.split()[1])
+        measured = [line for line in lines if re.match(r" *\d+  [a-z]", line)]
+        truths = [line for line in lines if line.startswith("truth  ")]
+        self.assertEqual((len(measured), len(truths)), (10, 10))
+        for found, truth in zip(measured, truths):
+            # The regime found is the true one: "1 stick-slip …", and below its errors "truth stick-slip …".
+            self.assertEqual(found.split()[1], truth.split()[1])
+            # S - K has a standard error and a systematic part.
+            own = lines.index(found)
+            self.assertEqual([line.split()[:2] for line in lines[own + 1:own + 3]], [["±", "stat."], ["±", "syst."]])
+            self.assertEqual(lines[own + 3], truth)
         for record in records:
             self.assertIn(str(record.relative_to(self.folder)), done.stdout)
 

@@ -43,6 +43,28 @@ TEST(RecordResult, ResultsComeBackAsTheyWere) {
       << "without details there are no reasons";
 }
 
+TEST(RecordResult, HasTheErrorsOfTheMainResultsWithAndWithoutDetails) {
+  analysis::TestResults results;
+  results.delta_mu = {0.047, 0.0027, 0.0019, ""};
+  results.static_coefficient = {0.38, {}, 0.003, ""};
+  results.mu_s = analysis::Estimate::of(0.35);
+  results.mu_k = analysis::Estimate::none("no slip");
+  const nlohmann::ordered_json brief = results_json(results, false);
+  EXPECT_EQ(brief.at("uncertainties").dump(),
+            R"({"static_coefficient":{"systematic_uncertainty":0.003},)"
+            R"("delta_mu":{"standard_error":0.0027,"systematic_uncertainty":0.0019}})");
+  for (const nlohmann::ordered_json& json : {brief, results_json(results, true)}) {
+    EXPECT_EQ(estimate_in(json, "delta_mu"), results.delta_mu);
+    EXPECT_EQ(estimate_in(json, "static_coefficient"), results.static_coefficient);
+    EXPECT_EQ(estimate_in(json, "mu_s"), results.mu_s);
+    EXPECT_FALSE(estimate_in(json, "mu_k").value);
+  }
+  EXPECT_EQ(estimate_in({{"delta_mu", 0.05}}, "delta_mu"), analysis::Estimate::of(0.05))
+      << "of a version before";
+  EXPECT_FALSE(estimate_in({{"delta_mu", "0.05"}, {"uncertainties", 3}}, "delta_mu").value);
+  EXPECT_FALSE(estimate_in(nullptr, "delta_mu").value);
+}
+
 TEST(RecordResult, SumsOverSlipsComeBackAsTheyWere) {
   const analysis::SlipSums sums{.count = 9,
                                 .sum = 0.45 / 3.0,

@@ -54,6 +54,26 @@ TEST(Grouping, KeepsTheReasonOfEachAbsentNumber) {
   EXPECT_EQ(group.quantities[kDeltaMu].absences.size(), 2U);
 }
 
+// The systematic part of a mean is not smaller than those of its tests, and an unknown one is not zero.
+TEST(Grouping, MeansHaveTheMeanSystematicPartOfTheirTests) {
+  std::vector<MeasuredTest> tests{test_at(1.0, 0.1), test_at(1.0, 0.2), test_at(1.0, 0.3), test_at(2.0, 0.4)};
+  for (MeasuredTest& test : tests) {
+    test.results.delta_mu = Estimate::of(0.05, 0.001);
+    test.slips = {.count = 2.0, .sum = 0.1};
+  }
+  tests[0].results.static_coefficient.systematic_uncertainty = 0.002;
+  tests[1].results.static_coefficient.systematic_uncertainty = 0.004;
+  tests[0].results.delta_mu.systematic_uncertainty = 0.01;
+  tests[1].results.delta_mu.systematic_uncertainty = 0.02;
+  tests[1].slips = {};  // None after the first: it is not in the mean by cycle.
+  const std::vector<SpeedGroup> groups = group_by_speed(tests);
+  EXPECT_DOUBLE_EQ(groups[0].quantities[kStatic].systematic_uncertainty.value(), 0.003);
+  EXPECT_DOUBLE_EQ(groups[0].quantities[kDeltaMu].systematic_uncertainty.value(), 0.015);
+  EXPECT_DOUBLE_EQ(groups[0].by_cycle.mean.systematic_uncertainty.value(), 0.01);
+  EXPECT_FALSE(groups[1].quantities[kStatic].systematic_uncertainty);
+  EXPECT_FALSE(groups[1].by_cycle.mean.systematic_uncertainty);
+}
+
 TEST(Grouping, PoolsTheScatterAboutEachSpeedsOwnMean) {
   // s = 0.1/√2 at both speeds, however far apart the means.
   const std::vector<SpeedGroup> groups =

@@ -42,7 +42,7 @@ class Package(unittest.TestCase):
         self.assertEqual(self.status("installed")["state"], "board missing")
 
     def test_the_demo_needs_no_privilege(self):
-        self.assertEqual((self.results / "demo.txt").read_text().count("  truth  "), 10)
+        self.assertEqual((self.results / "demo.txt").read_text().count("truth  "), 10)
 
     def test_it_acquires_from_the_board_of_the_kernel(self):
         self.assertEqual(self.status("test-board")["state"], "acquiring")
