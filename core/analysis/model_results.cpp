@@ -16,6 +16,7 @@
 #include "core/analysis/escape.hpp"
 #include "core/base/nan.hpp"
 #include "core/detect/regime_rule.hpp"
+#include "core/estimate/huber.hpp"
 #include "core/model/closed_forms.hpp"
 #include "core/model/threshold.hpp"
 #include "core/signal/statistics.hpp"
@@ -245,6 +246,17 @@ std::string why_not(const SlipEstimates& estimates, double sigma) {
 
 bool model_describes(const SlipEstimates& estimates, double sigma) {
   return why_not(estimates, sigma).empty();
+}
+
+Misfit misfit_of(const SlipEstimates& estimates, double sigma) {
+  // Relative standard error of signal::scan_noise() times √n, by simulation of white noise; n from 600 on.
+  constexpr double kNoiseError = 2.0;
+  const estimate::SlipFit& fit = estimates.fit;
+  Misfit misfit{fit.residual_sigma / (estimate::kHuberResidualOfNoise * sigma), 0.0};
+  const double excess = misfit.residual_sigmas * misfit.residual_sigmas - 1.0;
+  const double of_noise = 2.0 * kNoiseError;  // Of σ².
+  misfit.z = excess / std::sqrt((2.0 + of_noise * of_noise) / std::max(fit.freedom, 1.0));
+  return misfit;
 }
 
 void no_model_results(const std::string& reason, TestResults& results) {

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/analysis/characterisation.hpp"
+#include "core/analysis/model_results.hpp"
 #include "core/analysis/results.hpp"
 #include "core/base/long_column.hpp"
 #include "core/detect/cycle.hpp"
@@ -34,6 +35,7 @@ struct TestEstimates {
   base::LongColumn<double> onset_errors_s;         ///< Standard error of each onset; NaN if unknown.
   std::int64_t captured = 0;                       ///< Slips that ended in sticking.
   bool model_describes = true;                     ///< model_describes() holds for each section.
+  Misfit misfit;                                   ///< Of the section with the largest z.
   /// Estimate of the tester's parameters; nullopt if the fit of a section did not converge.
   std::optional<TesterEstimate> tester;
 };

@@ -85,12 +85,9 @@ detect::LiveSettings live_settings(const AnalysisSettings& settings) {
           !settings.skipped.spikes};
 }
 
-/// \param why  the fit has no results.
-std::string turning_points_finding(const Estimate& delta_mu, const std::string& why) {
-  if (!delta_mu.value) return fmt::format("S and K have no value, as {}; nor by turning points", why);
-  const double error =
-      std::hypot(delta_mu.standard_error.value_or(0.0), delta_mu.systematic_uncertainty.value_or(0.0));
-  return fmt::format("S and K are by turning points, S - K uncertain by {:.2g}, as {}", error, why);
+void add_systematic(double uncertainty, Estimate& estimate) {
+  if (estimate.value)
+    estimate.systematic_uncertainty = estimate.systematic_uncertainty.value_or(0.0) + uncertainty;
 }
 
 /// Adds to the systematic uncertainty of S and S − K how far the slips' own fits lie from the turning points.
@@ -102,8 +99,36 @@ void add_spread(const base::LongColumn<detect::Cycle>& fitted, TestResults& resu
   }
   if (delta_mu.count == 0.0 || !results.delta_mu.value) return;
   const double spread = std::abs(delta_mu.mean - *results.delta_mu.value);
-  for (Estimate* estimate : {&results.mu_s, &results.delta_mu})
-    estimate->systematic_uncertainty = estimate->systematic_uncertainty.value_or(0.0) + spread;
+  add_systematic(spread, results.mu_s);
+  add_systematic(spread, results.delta_mu);
+}
+
+/// Adds to the systematic uncertainties how far a fit that leaves more than noise lies from turning points.
+void add_spread(const TestResults& turning_points, TestResults& results) {
+  const auto add = [](const Estimate& other, Estimate& estimate) {
+    if (other.value && estimate.value) add_systematic(std::abs(*other.value - *estimate.value), estimate);
+  };
+  add(turning_points.mu_s, results.mu_s);
+  add(turning_points.mu_k, results.mu_k);
+  add(turning_points.delta_mu, results.delta_mu);
+}
+
+double total_error(const Estimate& estimate) {
+  return std::hypot(estimate.standard_error.value_or(0.0), estimate.systematic_uncertainty.value_or(0.0));
+}
+
+/// \param why  the fit has no results.
+std::string turning_points_finding(const Estimate& delta_mu, const std::string& why) {
+  if (!delta_mu.value) return fmt::format("S and K have no value, as {}; nor by turning points", why);
+  return fmt::format("S and K are by turning points, S - K uncertain by {:.2g}, as {}", total_error(delta_mu),
+                     why);
+}
+
+std::string misfit_finding(const Misfit& misfit, const Estimate& delta_mu) {
+  return fmt::format(
+      "the fit leaves residuals of {:.2f} times the scan noise: friction or transducer differ from the "
+      "model; S - K uncertain by {:.2g}, with the distance to turning points",
+      misfit.residual_sigmas, total_error(delta_mu));
 }
 
 /// A stub of a test: without the noise there is no telling what is a slip.
@@ -245,6 +270,11 @@ TestResults TestAnalysis::finish() {
       estimates.model_describes = false;
       add_spread(fitted.cycles, estimates.results);
       results.findings.push_back(turning_points_finding(estimates.results.delta_mu, why));
+    }
+    if (fits_whole_test() && estimates.model_describes && estimates.misfit.is_significant()) {
+      add_spread(by_turning_points(trace, slips, cycles_by_turning_points(), {}).results, estimates.results);
+      if (estimates.misfit.is_certain())
+        results.findings.push_back(misfit_finding(estimates.misfit, estimates.results.delta_mu));
     }
     const detect::RegimeVerdict verdict =
         detect::judge_regime(slips.size(), estimates.log_likelihood_ratios, estimates.model_describes);

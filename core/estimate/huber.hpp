@@ -11,6 +11,10 @@ namespace stickslip::estimate {
 /// Huber's limit k for estimates, in standard deviations: 95 % efficiency for Gaussian noise.
 inline constexpr double kHuberLimit = 1.345;
 
+/// HuberSums::residual_sigma() of Gaussian noise: √(E ψ(z) z/E w(z)) with E ψ(z) z = P(|z| ≤ k) = 0.8214 and
+/// E w(z) = 0.8214 + k E₁(k²/2)/√(2π) = 0.9601.
+inline constexpr double kHuberResidualOfNoise = 0.925;
+
 /// Residual, in standard deviations, beyond which a scan is a missed spike: Gaussian noise exceeds it once in
 /// two million scans.
 inline constexpr double kStraySigmas = 5.0;
