@@ -143,5 +143,27 @@ TEST(ModelDescribes, DampingIsNeitherNegativeNorOverdamped) {
   EXPECT_FALSE(describes(with_gamma(2.0 * kOmega - 1.9 * kError_per_s)));
 }
 
+// Means leave out the first of three slips and more, and a slip whose S − K is less certain than the typical
+// S − K is large.
+TEST(ModelResults, SlipsThatTellNothingDoNotCountInTheMeans) {
+  const auto kinetic = [](double relative_error, bool first_counts) {
+    SlipEstimates estimates =
+        estimates_of(0.5, {kSurelyCaptured, kSurelyCaptured, kSurelyCaptured, kSurelyCaptured, kLast});
+    const std::vector<double> levels{0.9, 0.3, 0.3, 0.3, 0.7};
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      estimates.windows[i].slip.S = levels[i] + kS_minus_K;
+      estimates.windows[i].slip.K = levels[i];
+    }
+    estimates.windows.back().inverse_curvature(1, 1) = std::pow(relative_error * kS_minus_K, 2);
+    estimates.first_counts = first_counts;
+    TestResults results;
+    model_results({}, estimates, {}, kScanSigma, results);
+    return results.mu_k.value.value_or(std::nan(""));
+  };
+  EXPECT_NEAR(kinetic(0.99, false), 0.4, 1e-12);
+  EXPECT_NEAR(kinetic(1.01, false), 0.3, 1e-12);
+  EXPECT_NEAR(kinetic(0.99, true), 0.5, 1e-12);
+}
+
 }  // namespace
 }  // namespace stickslip::analysis
