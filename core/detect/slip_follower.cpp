@@ -322,7 +322,11 @@ void SlipFollower::estimate_by_fit(double end_s, double sigma) noexcept {
       fit = other;
     }
   }
-  if (!fit.converged) return;
+  if (!fit.converged) {
+    // The next stick begins where this slip was captured, not where one before it was.
+    last_capture_s_ = is_captured ? evidence_.capture_s : base::kNaN;
+    return;
+  }
   const model::SlipWaveform waveform{fit.slip.K, fit.slip.S - fit.slip.K, fit.shared.r,
                                      fit.shared.oscillator()};
   double capture_s = base::kNaN;

@@ -192,7 +192,7 @@ bool Segmenter::lies_unloaded() {
   if (!quiet || !UnloadedLevel::fits_after(*quiet, largest_, level_.value_or(0.0))) return false;
   level_ = *quiet;
   // What was counted before it is in no record to come.
-  above_ = below_ = 0;
+  above_ = 0;
   return true;
 }
 
@@ -201,7 +201,7 @@ bool Segmenter::tared(std::span<const double> kept) {
   level_ = 0.0;
   level_is_given_ = false;
   quiet_scans_.clear();
-  above_ = below_ = 0;
+  above_ = 0;
   waiting_.assign(kept.begin(), kept.end());
   const bool was_there = was_above();
   if (was_there) waiting_.clear();
@@ -217,7 +217,7 @@ void Segmenter::begin() {
   state_ = State::kRunning;
   was_loaded_ = !start_now_;
   // What the force did before the record began may not count: a replay cannot see it.
-  if (std::exchange(start_now_, false)) above_ = below_ = 0;
+  if (std::exchange(start_now_, false)) above_ = 0;
   level_is_given_ = false;
   // As a replay: from the first scan of the record.
   quiet_scans_.clear();
@@ -246,6 +246,7 @@ void Segmenter::follow(double coefficient) {
   if (const auto fall = falls_.add(scan->value, SlipRule::kHysteresisSigmas * sigma);
       fall && fall->robust_drop >= SlipRule::kSignificantSigmas * sigma) {
     ++fall_count_;
+    flat_scans_ = 0;  // The smoothed force of a small oscillation is flat, too.
     last_drop_ = fall->robust_drop;
     largest_drop_ = std::max(largest_drop_, last_drop_);
     last_period_ = fall->peak_at - last_peak_at_;

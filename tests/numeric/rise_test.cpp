@@ -76,6 +76,54 @@ TEST(Rise, FewScansOfAFastLoadingAreAskedForMore) {
   EXPECT_NEAR(rise.slope(points, 0.0, kScanSigma), 10.0, 1e-9);
 }
 
+/// A straight rise by 1 within 0.1 s, in so many scans, whose slope is another below and above two levels: by
+/// little against a large noise, so that no scan is a stray.
+constexpr double kLargeSigma = 0.1;
+const detect::Rise kFastRise{0.0, 1.0, 0.0, 0.1};
+std::vector<CyclePoint> bent_outside_of(double low, double high, int scan_count) {
+  std::vector<CyclePoint> points;
+  for (int k = 0; k <= scan_count; ++k) {
+    const double time_s = 0.1 * k / scan_count;
+    const double line = 10.0 * time_s;
+    const double value = line < low    ? low - 0.8 * (low - line)
+                         : line > high ? high + 0.8 * (line - high)
+                                       : line;
+    points.push_back({time_s, value, 0.0, 1.0, time_s, time_s});
+  }
+  return points;
+}
+double slope_of(const std::vector<CyclePoint>& points) { return kFastRise.slope(points, 0.0, kLargeSigma); }
+
+TEST(Rise, SlopeIsThatOfItsMiddle) {
+  EXPECT_NEAR(slope_of(bent_outside_of(0.3, 0.7, 100)), 10.0, 1e-9);
+  EXPECT_LT(slope_of(bent_outside_of(0.32, 0.7, 100)), 10.0 - 1e-3);
+  EXPECT_LT(slope_of(bent_outside_of(0.3, 0.68, 100)), 10.0 - 1e-3);
+}
+
+TEST(Rise, SlopeOfFewScansIsThatOfMoreOfIt) {
+  EXPECT_NEAR(slope_of(bent_outside_of(0.1, 0.8, 10)), 10.0, 1e-9);
+  EXPECT_LT(slope_of(bent_outside_of(0.2001, 0.8, 10)), 10.0 - 1e-3);
+  EXPECT_LT(slope_of(bent_outside_of(0.1, 0.6999, 10)), 10.0 - 1e-3);
+}
+
+// Scans at 1/19, 2/19 … of the rise: eight of them, 6/19 to 13/19, lie in its middle. At 1/17, 2/17 … six do.
+TEST(Rise, EightScansOfItsMiddleAreEnough) {
+  EXPECT_NEAR(slope_of(bent_outside_of(0.3, 0.7, 19)), 10.0, 1e-9);
+  EXPECT_LT(slope_of(bent_outside_of(0.3, 0.7, 17)), 10.0 - 1e-3);
+}
+
+// The fall before the rise passes the same levels.
+TEST(Rise, SlopeIsOfScansBehindTheTurningPoint) {
+  std::vector<CyclePoint> points;
+  for (int k = 30; k > 0; --k) {
+    const double time_s = -0.1 / 30.0 * k;
+    points.push_back({time_s, -10.0 * time_s, 0.0, 1.0, time_s, time_s});
+  }
+  const std::vector<CyclePoint> rise = bent_outside_of(0.0, 1.0, 100);
+  points.insert(points.end(), rise.begin(), rise.end());
+  EXPECT_NEAR(kFastRise.slope(points, -1.0, kLargeSigma), 10.0, 1e-9);
+}
+
 TEST(Rise, SlopeOfTheWholeWhereScansTellNothing) {
   EXPECT_NEAR(kRise.slope({}, 0.0, kScanSigma), course(kPeak_s) / 1.6, 1e-12);
 }

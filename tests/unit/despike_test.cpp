@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/signal/noise.hpp"
@@ -114,6 +115,31 @@ TEST(Despike, SpikeAtTheFirstOrTheLastScan) {
     EXPECT_EQ(spikes_in(scans), std::vector<std::size_t>{at});
     // The window is what there is: its median is at most three steps away.
     EXPECT_NEAR(scans[at].value, slope(20)[at], 3.0 * kSlope * (1.0 + 1e-12));
+  }
+}
+
+TEST(Despike, SpikeExceedsFiveStandardDeviationsOfTheNoise) {
+  // On a flat trace the neighbours do not deviate: the noise alone sets the limit, in the middle as at the
+  // ends. (The cubic takes part from 5 √(3/2) = 6.1 σ on.)
+  for (const std::size_t at : {0U, 1U, 2U, 10U, 17U, 18U, 19U}) {
+    for (const auto& [sigmas, is_spike] : {std::pair{4.9, false}, {5.1, true}, {-4.9, false}, {-5.1, true}}) {
+      std::vector<double> values(20, 0.3);
+      values[at] += sigmas * kSigma;
+      EXPECT_EQ(despiked(values, kSigma)[at].spike, is_spike) << at << ", " << sigmas;
+    }
+  }
+}
+
+TEST(Despike, SpikeExceedsThreeScaledDeviationsOfItsNeighbours) {
+  // The third scan stands h above a slope of s a scan: the median of the five is s above the slope, and the
+  // median of their deviations, 0, s, 2 s, 3 s and h − s, is 2 s. The limit is h − s = 3 · 1.4826 · 2 s.
+  const double limit = kSlope * (1.0 + 3.0 * 1.4826 * 2.0);
+  for (const double sign : {1.0, -1.0}) {
+    for (const auto& [part, is_spike] : {std::pair{0.99, false}, std::pair{1.01, true}}) {
+      std::vector<double> values = slope(20);
+      values[2] += sign * part * limit;
+      EXPECT_EQ(despiked(values, kSigma)[2].spike, is_spike) << sign << ", " << part;
+    }
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "tests/support/sample_limits.hpp"
@@ -72,6 +73,38 @@ TEST(LoadCellFit, HysteresisIsWhatFallingLoadsReadMore) {
   // The line takes part of the difference where rising loads are heavier in the mean: 10 N against 6 N.
   EXPECT_NEAR(*fit.hysteresis_V, 0.01, 0.002);
   EXPECT_LT(*fit.residual_V, 0.01);
+}
+
+TEST(LoadCellFit, LoadThatIsReadTwiceNeitherRisesNorFalls) {
+  // Only the second reading of 8 N is off, by 0.1 V: the line passes between the two. The rising load reads
+  // 0.05 V less than the line, the falling one is on it, and the second reading belongs to neither.
+  std::vector<LoadPoint> points{exact(0.0), exact(8.0), exact(8.0), exact(0.0)};
+  points[2].voltage_V += 0.1;
+  const LoadCellFit fit = fit_load_cell(points);
+  ASSERT_TRUE(fit.load_cell) << fit.reason;
+  EXPECT_NEAR(*fit.hysteresis_V, 0.05, 1e-14);
+}
+
+TEST(LoadCellFit, HysteresisNeedsLoadsThatFall) {
+  for (const double sign : {1.0, -1.0}) {
+    const LoadCellFit fit =
+        fit_load_cell(std::vector<LoadPoint>{exact(sign * -8.0), exact(0.0), exact(sign * 8.0)});
+    ASSERT_TRUE(fit.load_cell) << fit.reason;
+    EXPECT_FALSE(fit.hysteresis_V);
+  }
+}
+
+TEST(LoadCellFit, CellIsWhatFollowsTheLoadByThreeStandardErrors) {
+  // Residuals of d, −2d, d about a line through three loads 8 N apart: variance 6 d² with one degree of
+  // freedom, Σ (N − N̄)² = 2 · 8² N², so the sensitivity has the standard error √3 d / 8 N.
+  for (const auto& [standard_errors, is_cell] : {std::pair{3.1, true}, std::pair{2.9, false}}) {
+    const double d = 8.0 / kGain_N_per_V / (standard_errors * std::sqrt(3.0));
+    std::vector<LoadPoint> points{exact(0.0), exact(8.0), exact(16.0)};
+    points[0].voltage_V += d;
+    points[1].voltage_V -= 2.0 * d;
+    points[2].voltage_V += d;
+    EXPECT_EQ(fit_load_cell(points).load_cell.has_value(), is_cell) << standard_errors;
+  }
 }
 
 TEST(LoadCellFit, SaturatedPointsDoNotCount) {

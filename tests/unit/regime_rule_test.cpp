@@ -1,5 +1,6 @@
 #include "core/detect/regime_rule.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +21,7 @@ TEST(RegimeRule, NoSlipIsSteadySliding) {
 TEST(RegimeRule, OneSlipDoesNotTell) {
   const detect::RegimeVerdict verdict = detect::judge_regime(1, {}, true);
   EXPECT_EQ(verdict.regime, Regime::kUndecided);
-  EXPECT_FALSE(verdict.reason.empty());
+  EXPECT_THAT(verdict.reason, testing::HasSubstr("one slip"));
 }
 
 TEST(RegimeRule, AllCapturedIsStickSlipAndNoneIsRingDown) {
@@ -76,7 +77,7 @@ TEST(RegimeRule, SlipsThatTellNothingDoNotVote) {
 TEST(RegimeRule, NothingKnownIsUndecidedWithAReason) {
   const detect::RegimeVerdict verdict = detect::judge_regime(4, std::vector{0.0, 0.0, 0.0}, true);
   EXPECT_EQ(verdict.regime, Regime::kUndecided);
-  EXPECT_FALSE(verdict.reason.empty());
+  EXPECT_THAT(verdict.reason, testing::HasSubstr("no slip tells"));
 }
 
 }  // namespace

@@ -54,11 +54,10 @@ class Course {
     return *this;
   }
   /// The middle of the oscillation is 0.3. \param decay  per cycle.
-  Course& oscillate(double amplitude, int cycles, double decay = 1.0) {
-    constexpr double kScansPerCycle = 17.5;
-    const int scans = static_cast<int>(cycles * kScansPerCycle);
+  Course& oscillate(double amplitude, int cycles, double decay = 1.0, double scans_per_cycle = 17.5) {
+    const int scans = static_cast<int>(cycles * scans_per_cycle);
     for (int k = 0; k < scans; ++k) {
-      const double cycle = k / kScansPerCycle;
+      const double cycle = k / scans_per_cycle;
       push(0.3 + amplitude * std::pow(decay, cycle) * std::sin(2.0 * pi * cycle));
     }
     return *this;
@@ -173,6 +172,71 @@ TEST(Segmenter, RingDownIntoSteadySlidingDoesNotEndTheTest) {
   }
 }
 
+// The smoothed force of a small oscillation may stay within six standard deviations; its falls show that the
+// belt moves.
+TEST(Segmenter, SmallOscillationDoesNotEndTheTest) {
+  for (const double scans_per_cycle : {10.0, 17.5}) {
+    for (const double drop_sigmas : {18.0, 28.0, 40.0}) {
+      Course course;
+      course.level(0.0, 200).load(0.3, 20).oscillate(0.5 * drop_sigmas * kSigma, 200, 1.0, scans_per_cycle);
+      EXPECT_EQ(events_in(course.values()).size(), 1U) << drop_sigmas << ", " << scans_per_cycle;
+    }
+  }
+}
+
+// The last fall of twelve standard deviations is more than half of the first, of 20: nevertheless the
+// oscillation has decayed, not stopped.
+TEST(Segmenter, SmallRingDownIntoSteadySlidingDoesNotEndTheTest) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Course course{seed};
+    course.level(0.0, 200).load(0.3, 20).oscillate(10.0 * kSigma, 60, 0.9).level(0.3, 1000);
+    EXPECT_EQ(events_in(course.values()).size(), 1U) << seed;
+  }
+}
+
+TEST(Segmenter, StaticPeakBeforeSteadySlidingDoesNotEndTheTest) {
+  // A single fall that the force recovers from, then the flat force of a sled that slides: no oscillation
+  // has been there that could have stopped.
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Course course{seed};
+    course.level(0.0, 200).load(0.4, 27).level(0.27, 10).level(0.3, 1000);
+    EXPECT_EQ(events_in(course.values()).size(), 1U) << seed;
+  }
+}
+
+TEST(Segmenter, PauseOfThreePeriodsDoesNotEndTheTest) {
+  // Slow stick-slip of 100 scans a cycle: the dwell of 175 scans is over, the four periods are not.
+  constexpr int kPeriod = 100;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Course course{seed};
+    course.level(0.0, 200).load(0.3, 20).oscillate(0.05, 10, 1.0, kPeriod).level(0.3, 3 * kPeriod);
+    course.oscillate(0.05, 3, 1.0, kPeriod);
+    EXPECT_EQ(events_in(course.values()).size(), 1U) << seed;
+    // The belt stops; the fall before was up to one period ago, and smoothing takes 47 scans.
+    const base::ScanIndex stop = course.size();
+    course.level(0.3, 6 * kPeriod);
+    const std::vector<Seen> seen = events_in(course.values());
+    ASSERT_EQ(seen.size(), 2U) << seed;
+    EXPECT_GE(seen[1].scan, stop + 3 * kPeriod);
+    EXPECT_LE(seen[1].scan, stop + 4 * kPeriod + 47 + 3);
+  }
+}
+
+TEST(Segmenter, FallsOfTheTestBeforeDoNotCount) {
+  // Its large swings do not make those of the next test small …
+  Course small;
+  small.level(0.0, 200).load(0.3, 20).oscillate(0.2, 20).level(0.0, 200);
+  small.load(0.3, 20).oscillate(0.05, 20).level(0.34, 700);
+  const std::vector<Seen> seen = events_in(small.values());
+  ASSERT_EQ(seen.size(), 4U);
+  EXPECT_EQ(seen[3].event, Event::kNoRelativeMotion);
+  // … and its number of falls does not make an oscillation of a single one.
+  Course single;
+  single.level(0.0, 200).load(0.3, 20).oscillate(0.05, 20).level(0.0, 200);
+  single.load(0.4, 27).level(0.27, 10).level(0.3, 1000);
+  EXPECT_EQ(events_in(single.values()).size(), 3U);
+}
+
 TEST(Segmenter, SteadySlidingDoesNotEndTheTest) {
   Course course;
   course.level(0.0, 200).load(0.3, 20).level(0.3, 5000);
@@ -210,6 +274,51 @@ TEST(Segmenter, JumpOfTheIndexDoesNotFillTheDwell) {
     EXPECT_EQ(segmenter.observe(k, 0.3), Event::kNone);
   }
   EXPECT_EQ(segmenter.observe(100 + kStartDwell - 1, 0.3), Event::kTestStarts);
+}
+
+TEST(Segmenter, QuietStretchHasNoGap) {
+  // A stretch of four quarters, 43 scans each, gives the level; scans from before a gap are none of it.
+  constexpr base::ScanIndex kQuarter = 43;
+  Segmenter segmenter{SegmenterSettings{}};
+  base::ScanIndex scan = 0;
+  for (; scan < 3 * kQuarter; ++scan) (void)segmenter.observe(scan, 0.03);
+  const base::ScanIndex behind = scan + 1000;
+  for (scan = behind; scan < behind + 4 * kQuarter; ++scan) {
+    EXPECT_FALSE(segmenter.unloaded_level()) << scan;
+    (void)segmenter.observe(scan, 0.03);
+  }
+  EXPECT_EQ(segmenter.unloaded_level(), 0.03);
+}
+
+TEST(Segmenter, TestByCommandIsLoadedAtTheTriggerThoughNoLevelIsKnown) {
+  // 0.07 may be a zero that is off where a force is to begin a test; a command has begun this one.
+  Segmenter segmenter{SegmenterSettings{}};
+  segmenter.start();
+  std::vector<double> values(20, 0.0);
+  values.insert(values.end(), 100, 0.07);
+  const auto end = static_cast<base::ScanIndex>(values.size());
+  values.insert(values.end(), 100, 0.0);
+  std::vector<Seen> seen;
+  for (base::ScanIndex scan = 0; scan < static_cast<base::ScanIndex>(values.size()); ++scan) {
+    if (const Event event = segmenter.observe(scan, values[static_cast<std::size_t>(scan)]);
+        event != Event::kNone)
+      seen.push_back({scan, event});
+  }
+  EXPECT_EQ(seen, (std::vector<Seen>{{0, Event::kTestStarts}, {end + kUnloadDwell - 1, Event::kUnloaded}}));
+}
+
+TEST(Segmenter, TestThatIsStoppedBeforeItsLoadLeavesTheCellUnloaded) {
+  // The force has been below the end threshold for the dwell, whatever part of that was before the test.
+  for (const int rest : {static_cast<int>(kUnloadDwell), 20}) {
+    Segmenter segmenter{SegmenterSettings{}};
+    base::ScanIndex scan = 0;
+    while (scan < rest - 10) (void)segmenter.observe(scan++, 0.0);
+    segmenter.start();
+    while (scan < rest) (void)segmenter.observe(scan++, 0.0);
+    ASSERT_TRUE(segmenter.running());
+    segmenter.stop();
+    EXPECT_EQ(segmenter.ready(), rest >= kUnloadDwell) << rest;
+  }
 }
 
 TEST(Segmenter, RecordAloneStartsAndEndsAtTheSameScans) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <random>
 #include <vector>
@@ -170,6 +171,62 @@ TEST(UnloadedLevel, TheLevelAfterATestIsThatOfItsLastQuietScans) {
     ASSERT_TRUE(segmenter.level_after()) << after;
     EXPECT_NEAR(*segmenter.level_after(), after, 0.001);
   }
+}
+
+/// A stretch at 350 Hz: four quarters of 43 scans.
+constexpr int kLevelQuarter = 43;
+
+/// Share of many stretches that are quiet. \param force  of the scan within the stretch.
+template <typename Course>
+double quiet_share(const Course& course, double noise, double step = 0.0) {
+  constexpr int kStretches = 200;
+  std::mt19937_64 engine{11};
+  std::normal_distribution<double> normal;
+  int quiet = 0;
+  for (int i = 0; i < kStretches; ++i) {
+    UnloadedLevel level{kLevelRate_Hz, UnloadedLevel::kQuiet_s, step};
+    for (int k = 0; k < 4 * kLevelQuarter; ++k) level.add(course(k) + noise * normal(engine));
+    quiet += level.quiet() ? 1 : 0;
+  }
+  return static_cast<double>(quiet) / kStretches;
+}
+
+TEST(UnloadedLevel, MediansOfAQuietForceDifferBySixStandardErrorsAtMost) {
+  // Of 43 scans a median has √(π/2/43) σ. The range of four is 2 of these by noise; steps of 3 and of 1 a
+  // quarter make it 9 ± 1.4 and 3.6 ± 1.
+  const double error = kLevelNoise * std::sqrt(0.5 * std::numbers::pi / kLevelQuarter);
+  const auto stairs = [error](double height) {
+    return [=](int k) { return height * error * (k / kLevelQuarter); };
+  };
+  EXPECT_LT(quiet_share(stairs(3.0), kLevelNoise), 0.1);
+  EXPECT_GT(quiet_share(stairs(1.0), kLevelNoise), 0.9);
+}
+
+TEST(UnloadedLevel, OneScanInTwentyMayLieBeyondFourStandardDeviations) {
+  // Every tenth or every thirtieth scan is off by so many standard deviations.
+  const auto spikes = [](int every, double sigmas) {
+    return [=](int k) { return k % every == 0 ? sigmas * kLevelNoise : 0.0; };
+  };
+  EXPECT_LT(quiet_share(spikes(10, 6.5), kLevelNoise), 0.1);
+  EXPECT_LT(quiet_share(spikes(10, 50.0), kLevelNoise), 0.1);
+  EXPECT_GT(quiet_share(spikes(30, 50.0), kLevelNoise), 0.9);
+  EXPECT_GT(quiet_share(spikes(10, 1.5), kLevelNoise), 0.9);
+}
+
+TEST(UnloadedLevel, LevelBetweenTwoCodesIsQuiet) {
+  // Each quarter is read as the one code or as the other, without noise; two codes apart is a change.
+  constexpr double kStep = 0.002;
+  const auto codes = [](double steps) {
+    return [=](int k) { return k / kLevelQuarter % 2 == 0 ? 0.0 : steps * kStep; };
+  };
+  EXPECT_EQ(quiet_share(codes(1.0), 0.0, kStep), 1.0);
+  EXPECT_EQ(quiet_share(codes(2.0), 0.0, kStep), 0.0);
+}
+
+TEST(UnloadedLevel, TenthOfTheSelfChecksLimitIsQuietWithoutNoise) {
+  const auto stairs = [](double range) { return [=](int k) { return range * (k / kLevelQuarter) / 3.0; }; };
+  EXPECT_EQ(quiet_share(stairs(0.99 * 0.1 * UnloadedLevel::kNearest), 0.0), 1.0);
+  EXPECT_EQ(quiet_share(stairs(1.01 * 0.1 * UnloadedLevel::kNearest), 0.0), 0.0);
 }
 
 TEST(UnloadedLevel, ExcursionsThatFillLessThanHalfAreNotQuiet) {
