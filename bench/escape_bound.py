@@ -6,7 +6,7 @@
 
 The scans of a slip that just escapes, without noise, are fitted by the nearest captured course: [11]-[13] up to
 the capture, stick at rate r, a second slip; free are the onset, S - K, K and S - K of the second slip, which is
-expected to be log-normal about the first with 0.5545 (core/detect/junction). omega, gamma and r are known. With
+expected to be log-normal about the first with 0.5545 (core/detect/captured_trajectory). omega, gamma and r are known. With
 d^2 the sum of squares left over the noise, the log likelihood ratio of scans with white noise is normal with variance
 d^2 and mean d^2/2 if the sled escaped, -d^2/2 if it took that course. By Neyman and Pearson (1933) no rule tells more
 escapes than the one that asks for a limit of this ratio; where it takes one in 10^4 of those captured courses for an

@@ -1,5 +1,5 @@
-// How well S − K is known of paper whose slips differ by 30 % (docs/detector-limits.md, "Slips that differ"): single
-// tests, the slip that escapes, and replicates pooled by cycle, at three speeds.
+// How well S − K is known of paper whose slips differ by 30 % (docs/detector-limits.md, "Slips that
+// differ"): single tests, the slip that escapes, and replicates pooled by cycle, at three speeds.
 //
 //     scatter_limits [PULLS [FIRST]]      # 1000 pulls of 2 s at each speed, seeds from 1 on
 

@@ -248,15 +248,24 @@ bool model_describes(const SlipEstimates& estimates, double sigma) {
   return why_not(estimates, sigma).empty();
 }
 
-Misfit misfit_of(const SlipEstimates& estimates, double sigma) {
-  // Relative standard error of signal::scan_noise() times √n, by simulation of white noise; n from 600 on.
-  constexpr double kNoiseError = 2.0;
+void Misfit::add(const SlipEstimates& estimates, double sigma) noexcept {
   const estimate::SlipFit& fit = estimates.fit;
-  Misfit misfit{fit.residual_sigma / (estimate::kHuberResidualOfNoise * sigma), 0.0};
-  const double excess = misfit.residual_sigmas * misfit.residual_sigmas - 1.0;
-  const double of_noise = 2.0 * kNoiseError;  // Of σ².
-  misfit.z = excess / std::sqrt((2.0 + of_noise * of_noise) / std::max(fit.freedom, 1.0));
-  return misfit;
+  if (!fit.converged) return;
+  const double residual = fit.residual_sigma / (estimate::kHuberResidualOfNoise * sigma);
+  squares_ += residual * residual * fit.freedom;
+  freedom_ += fit.freedom;
+}
+
+double Misfit::residual_sigmas() const noexcept {
+  return freedom_ > 0.0 ? std::sqrt(squares_ / freedom_) : 0.0;
+}
+
+double Misfit::z() const noexcept {
+  // Relative standard error of signal::scan_noise() times √n, by simulation of white noise, n from 600 on; of
+  // σ² twice that.
+  constexpr double kErrorOfVariance = 2.0 * 2.0;
+  const double excess = residual_sigmas() * residual_sigmas() - 1.0;
+  return excess / std::sqrt((2.0 + kErrorOfVariance * kErrorOfVariance) / std::max(freedom_, 1.0));
 }
 
 void no_model_results(const std::string& reason, TestResults& results) {

@@ -19,19 +19,25 @@ inline constexpr double kLargestResidualSigmas = 5.0;
 /// significantly negative nor overdamped, and no slip ended otherwise than its numbers say.
 [[nodiscard]] bool model_describes(const SlipEstimates& estimates, double sigma);
 
-/// How much more than the noise of the scans the fit leaves.
-struct Misfit {
-  double residual_sigmas = 0.0;  ///< Standard deviation of the residuals, in σ; 1 for noise alone.
-  /// Deviation of its square from 1, in standard errors of residuals and of σ, which is itself estimated.
-  double z = 0.0;
+/// Residuals of a test's fits compared with the noise of a scan.
+class Misfit {
+ public:
+  /// Adds the fit of a section. \param sigma  noise of one scan.
+  void add(const SlipEstimates& estimates, double sigma) noexcept;
 
+  /// Standard deviation of the residuals, in σ; 1 for noise alone.
+  [[nodiscard]] double residual_sigmas() const noexcept;
+  /// Deviation of its square from 1, in standard errors of residuals and of σ, which is itself estimated.
+  [[nodiscard]] double z() const noexcept;
   /// Chance exceeds it in 1 % of the tests.
-  [[nodiscard]] bool is_significant() const noexcept { return z > 2.326; }
+  [[nodiscard]] bool is_significant() const noexcept { return z() > 2.326; }
   /// Chance exceeds it in 3 of 10⁵ tests.
-  [[nodiscard]] bool is_certain() const noexcept { return z > 4.0; }
+  [[nodiscard]] bool is_certain() const noexcept { return z() > 4.0; }
+
+ private:
+  double squares_ = 0.0;  ///< In σ², times the degrees of freedom.
+  double freedom_ = 0.0;
 };
-/// \param estimates  converged.
-[[nodiscard]] Misfit misfit_of(const SlipEstimates& estimates, double sigma);
 
 /// Fills mu_s, mu_k, delta_mu, omega, gamma_over_2omega, Q, Q_threshold, threshold_speed,
 /// slip_speed_ratio_threshold, amplitude

@@ -35,7 +35,7 @@ struct TestEstimates {
   base::LongColumn<double> onset_errors_s;         ///< Standard error of each onset; NaN if unknown.
   std::int64_t captured = 0;                       ///< Slips that ended in sticking.
   bool model_describes = true;                     ///< model_describes() holds for each section.
-  Misfit misfit;                                   ///< Of the section with the largest z.
+  Misfit misfit;                                   ///< Of all sections.
   /// Estimate of the tester's parameters; nullopt if the fit of a section did not converge.
   std::optional<TesterEstimate> tester;
 };

@@ -44,7 +44,7 @@ class SlipEnds {
     const double period_s = 2.0 * std::numbers::pi / prior_.shared.omega;
     estimate::read_slip(scans_, trace_, scan_at(slips_[slip].peak_at), end, period_s);
     const model::SlipParameters next = first_guess(trace_, slips_[slip + 1], prior_.shared);
-    if (next.S > next.K) prior_.next_delta_mu = next.S - next.K;
+    prior_.next_delta_mu = next.S > next.K ? std::optional{next.S - next.K} : std::nullopt;
     const auto ratio = [&](const detect::Budget& budget) {
       return test_.evaluate(scans_.points(), prior_, budget).log_likelihood_ratio;
     };

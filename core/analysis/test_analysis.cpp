@@ -126,9 +126,9 @@ std::string turning_points_finding(const Estimate& delta_mu, const std::string& 
 
 std::string misfit_finding(const Misfit& misfit, const Estimate& delta_mu) {
   return fmt::format(
-      "the fit leaves residuals of {:.2f} times the scan noise: friction or transducer differ from the "
-      "model; S - K uncertain by {:.2g}, with the distance to turning points",
-      misfit.residual_sigmas, total_error(delta_mu));
+      "the fit leaves residuals of {:.2f} times the scan noise: friction, transducer, hum or missed "
+      "spikes; S - K uncertain by {:.2g}, with the distance to turning points",
+      misfit.residual_sigmas(), total_error(delta_mu));
 }
 
 /// A stub of a test: without the noise there is no telling what is a slip.
@@ -271,13 +271,15 @@ TestResults TestAnalysis::finish() {
       add_spread(fitted.cycles, estimates.results);
       results.findings.push_back(turning_points_finding(estimates.results.delta_mu, why));
     }
-    if (fits_whole_test() && estimates.model_describes && estimates.misfit.is_significant()) {
+    if (fits_whole_test() && estimates.model_describes && estimates.misfit.is_significant() &&
+        trace.belt.is_constant()) {
       add_spread(by_turning_points(trace, slips, cycles_by_turning_points(), {}).results, estimates.results);
       if (estimates.misfit.is_certain())
         results.findings.push_back(misfit_finding(estimates.misfit, estimates.results.delta_mu));
     }
+    const bool model_describes = estimates.model_describes && !estimates.misfit.is_certain();
     const detect::RegimeVerdict verdict =
-        detect::judge_regime(slips.size(), estimates.log_likelihood_ratios, estimates.model_describes);
+        detect::judge_regime(slips.size(), estimates.log_likelihood_ratios, model_describes);
     results.regime = verdict.regime;
     results.regime_reason = verdict.reason;
     results.stick_cycle_count = verdict.regime == model::Regime::kUndecided

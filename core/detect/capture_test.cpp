@@ -210,7 +210,7 @@ CaptureEvidence CaptureTest::evaluate(std::span<const estimate::CyclePoint> poin
     fit_captured_trajectory(trajectories, usual_now(), budget);
   }
   last_captured_ = trajectories.captured;
-  last_count_ = strays_ ? 0 : rows_.size();
+  last_count_ = strays_ || budget.iterations == 0 ? 0 : rows_.size();
   return evidence_of(trajectories, points.front().time_s);
 }
 

@@ -59,7 +59,9 @@ struct CaptureEvidence {
 /// Evaluator with memory for the points of one slip.
 class CaptureTest {
  public:
-  /// \param points  from a maximum of the force on; for "free" at least to the minimum after the next one.
+  /// \param points  of a slip from its force maximum on. A free oscillation can be told only if they reach
+  /// the
+  ///        minimum after the next maximum.
   [[nodiscard]] CaptureEvidence evaluate(std::span<const estimate::CyclePoint> points,
                                          const CapturePrior& prior, const Budget& budget) noexcept;
 
@@ -72,7 +74,7 @@ class CaptureTest {
   };
 
   void lay_out(std::span<const estimate::CyclePoint> points, const CapturePrior& prior) noexcept;
-  /// The trajectory that both begin with, unless it is the same as at the last question.
+  /// The trajectory that both begin with, unless it is the same as in the last evaluation.
   void fit_common() noexcept;
   /// Cost of all rows if the common trajectory goes on freely.
   [[nodiscard]] double carried_on_cost() const noexcept;

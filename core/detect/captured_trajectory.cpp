@@ -71,8 +71,8 @@ CapturedTrajectory::Point CapturedTrajectory::after_onset(const ScanRow& row) co
   const double by_D = cosine + 0.5 * gamma / omega * sine;
   Point point;
   point.value = p_[0] + swing - row.half_spread_s2 * (gamma * rate + omega0_squared_ * swing);
-  // The onset comes later by 1/r for each S, and earlier by what the capture is higher; the slip begins with
-  // what the belt's rate is then.
+  // A larger S delays the onset by 1/r; a higher capture advances it by 1/r. The slip begins with the belt's
+  // rate at that time.
   const double by_capture = (rate - slope_at_onset_ / omega * sine) / r;
   point.by << by_capture * by_free_[0] + 1.0 - by_D, by_capture * by_free_[1], by_capture * by_free_[2],
       by_D - by_capture;

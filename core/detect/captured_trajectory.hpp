@@ -75,6 +75,7 @@ class CapturedTrajectory {
   };
   void set_next_S(double S) noexcept;
   [[nodiscard]] Point after_onset(const ScanRow& row) const noexcept;
+  /// At the mean time of a row: on a changing belt the mean over it differs by less than a tenth of σ.
   [[nodiscard]] double while_stuck(double tau_s) const noexcept {
     return at_capture_ +
            belt_.course->climb(shared_.r, belt_.start_s + capture_tau_s_, tau_s - capture_tau_s_);

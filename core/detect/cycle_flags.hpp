@@ -7,8 +7,8 @@
 
 namespace stickslip::detect {
 
-/// A flag of a scan before the highest since the last slip belongs to the cycle under way, one behind it to
-/// the next: that scan may be the next peak.
+/// The highest scan since the last slip may be the next peak. A flag of a scan up to it belongs to the cycle
+/// under way, one of a scan after it to the next.
 class CycleFlags {
  public:
   /// A scan or a gap before it has these flags (detect/cycle.hpp).

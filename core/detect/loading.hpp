@@ -1,5 +1,5 @@
 /// \file
-/// When a test is loaded: before that nothing that falls is a slip.
+/// Detects the loading. A fall before it is no slip.
 #pragma once
 
 #include <algorithm>

@@ -6,8 +6,8 @@
 
 namespace stickslip::detect {
 
-/// Scans come, and are followed later. A gap is known when it comes; the scans followed until then lie before
-/// it.
+/// Scans come and are followed a few scans later. A gap is known when it comes; scans that are followed
+/// before its position lie before it.
 class ScanPositions {
  public:
   explicit ScanPositions(double scan_rate_Hz) noexcept : scan_rate_Hz_(scan_rate_Hz) {}

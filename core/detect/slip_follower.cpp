@@ -176,7 +176,9 @@ bool SlipFollower::force(double now_s, double sigma, bool has_next) noexcept {
   const bool was_decided = now_.decided;
   on(Event::kFirstFitted);
   if (state_ == State::kTesting) (void)judge(now_s, sigma, has_next);
-  if (state_ == State::kFitting || (!now_.decided && now_.begins_from_stick)) estimate(now_s, sigma);
+  if (state_ == State::kFitting || (!now_.decided && now_.begins_from_stick && !now_.estimated)) {
+    estimate(now_s, sigma);
+  }
   on(Event::kScansEnd);
   return now_.decided && !was_decided;
 }
@@ -204,7 +206,7 @@ void SlipFollower::schedule_first_test() noexcept {
 bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
   test_capture(sigma, last ? 0.0 : kDecisive);
   slip_.evidence = now_.evidence.known ? now_.evidence.log_likelihood_ratio : base::kNaN;
-  // What neither course describes may be neither: an escape then takes more to be believed.
+  // What neither trajectory describes may be neither: an escape then takes more to be believed.
   const double doubt = std::max(now_.evidence.residual_sigmas / kMisfitSigmas, 1.0);
   const bool clear = now_.evidence.known && (now_.evidence.log_likelihood_ratio > kDecisive ||
                                              now_.evidence.log_likelihood_ratio < -doubt * doubt * kDecisive);
@@ -235,7 +237,7 @@ void SlipFollower::test_capture(double sigma, double decisive) noexcept {
   CapturePrior prior{now_.shared, sigma, usual_.delta_mu};
   now_.evidence = capture_test_.evaluate(points, prior, {.decisive = decisive});
   if (!now_.evidence.known || !(now_.evidence.residual_sigmas > kMisfitSigmas)) return;
-  // Neither course fits: perhaps the belt has another speed now, which the rise before this slip tells.
+  // Neither trajectory fits: perhaps the belt has another speed now, which the rise before this slip tells.
   prior.shared.r = rise_slope(sigma);
   if (!(std::abs(std::log(prior.shared.r / now_.shared.r)) > kStickRateChange)) return;
   const CaptureEvidence with_other = capture_test_.evaluate(points, prior, {});
@@ -291,6 +293,7 @@ void SlipFollower::take_course(const model::SlipParameters& slip, double slip_sp
 }
 
 void SlipFollower::estimate(double now_s, double sigma) noexcept {
+  now_.estimated = true;
   // Scans up to the middle of the stick belong to this slip, the others to the next.
   double end_s = now_s;
   if (now_.decided && captured()) {
@@ -324,7 +327,7 @@ void SlipFollower::estimate_by_fit(double end_s, double sigma) noexcept {
   }
   if (!fit.converged) {
     // The next stick begins where this slip was captured, not where one before it was.
-    last_capture_s_ = is_captured ? evidence_.capture_s : base::kNaN;
+    last_capture_s_ = is_captured ? now_.evidence.capture_s : base::kNaN;
     return;
   }
   const model::SlipWaveform waveform{fit.slip.K, fit.slip.S - fit.slip.K, fit.shared.r,

@@ -59,14 +59,14 @@ class SlipFollower {
   /// Capture tests in a period.
   static constexpr double kTestsPerPeriod = 32.0;
 
-  /// Those with a task that is due at a time come last.
+  /// step() has work only in the states after kDone.
   enum class State { kClosed, kDone, kFirstFit, kTesting, kFitting };
   enum class Event {
     kOpened,         ///< A slip has begun.
     kOpenedUnknown,  ///< From sticking, and only its own scans tell ω, γ and r: they are fitted first.
     kFirstFitted,
     kTold,        ///< How it ended is decided, or will not be; it began from sticking.
-    kToldOfFree,  ///< So, but it began from no stick: its S and K are not its own.
+    kToldOfFree,  ///< As kTold, for a slip that began from a free oscillation. It gets no fit.
     kScansEnd,    ///< No further scan belongs to it: a gap, the next slip or the end of the test.
     kEstimated,
     kClosed,
@@ -94,7 +94,8 @@ class SlipFollower {
   struct UnderWay {
     bool decided = false;
     bool begins_from_stick = false;
-    bool whole = false;  ///< No scan is missing since its peak.
+    bool whole = false;      ///< No scan is missing since its peak.
+    bool estimated = false;  ///< Its S and K, as far as its scans tell them.
     double next_task_s = -std::numeric_limits<double>::infinity();
     Fall fall;
     double peak_s = 0.0;
@@ -127,7 +128,7 @@ class SlipFollower {
   /// \param residual_sigmas  what this slip's scans leave with the slope of the rise before it as stick rate.
   /// \param before_sigmas  with the one known.
   [[nodiscard]] bool belt_changed(double residual_sigmas, double before_sigmas) noexcept;
-  /// Sets evidence_. \param decisive  as in CaptureTest.
+  /// Sets now_.evidence. \param decisive  as Budget::decisive.
   void test_capture(double sigma, double decisive) noexcept;
   void decide(double evidence, double now_s) noexcept;
   void schedule_next_test(double now_s) noexcept { now_.next_task_s = now_s + period_s() / kTestsPerPeriod; }

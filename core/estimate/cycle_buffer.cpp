@@ -113,8 +113,7 @@ void CycleBuffer::compact() noexcept {
   }
 }
 
-void read_slip(CycleBuffer& buffer, const Trace& trace, std::size_t first, std::size_t end,
-               double period_s) noexcept {
+void read_slip(CycleBuffer& buffer, const Trace& trace, std::size_t first, std::size_t end, double period_s) {
   constexpr double kBlocksPerPeriod = 40.0;
   const double first_s = trace.time_s[first];
   buffer.clear();

@@ -70,7 +70,6 @@ class CycleBuffer {
 
 /// Replaces the contents by the usable scans [first, end) of a trace, of which the first begins a slip: its
 /// period is kept fine. [first, end) must not be empty.
-void read_slip(CycleBuffer& buffer, const Trace& trace, std::size_t first, std::size_t end,
-               double period_s) noexcept;
+void read_slip(CycleBuffer& buffer, const Trace& trace, std::size_t first, std::size_t end, double period_s);
 
 }  // namespace stickslip::estimate

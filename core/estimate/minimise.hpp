@@ -3,7 +3,8 @@
 /// the one minimiser of all fits.
 ///
 ///     MyProblem::State state = first_guess;
-///     MyProblem::Equations equations = problem.equations(state);
+///     MyProblem::Equations equations;
+///     problem.assemble(state, equations);
 ///     const bool converged = minimise(problem, state, equations, {.iterations = 60, .relative = 1e-10});
 #pragma once
 
@@ -47,12 +48,13 @@ bool minimise(const Problem& problem, typename Problem::State& state, typename P
   for (int iteration = 0; iteration < limits.iterations && damping < kHopeless; ++iteration) {
     const double converged = limits.absolute + limits.relative * equations.cost;
     const double predicted = problem.step(state, equations, damping, trial);
-    // A strongly damped step gains little anywhere.
-    if (predicted <= kSurely * converged && damping < 1.0) return true;
-    if (!std::isfinite(predicted)) {
+    // Rounding may make the equations indefinite: such a step leads up.
+    if (!(predicted >= 0.0) || !std::isfinite(predicted)) {
       damping *= kHarder;
       continue;
     }
+    // A strongly damped step gains little anywhere.
+    if (predicted <= kSurely * converged && damping < 1.0) return true;
     problem.assemble(trial, there);
     const double fallen = equations.cost - there.cost;
     if (fallen >= 0.0) {
@@ -62,7 +64,7 @@ bool minimise(const Problem& problem, typename Problem::State& state, typename P
     } else {
       damping *= kHarder;
     }
-    // At the optimum the cost cannot fall, and rounding decides its sign.
+    // At the optimum the cost cannot fall, and rounding decides its sign, at any damping.
     if (std::abs(fallen) <= converged) return true;
   }
   return false;

@@ -39,7 +39,7 @@ struct Trace {
   double lost_s = 0.0;  ///< Time without scans, over all gaps.
 
   /// The coefficient without the drift.
-  [[nodiscard]] double level(std::size_t scan) const noexcept { return value[scan] - drift.at(time_s[scan]); }
+  [[nodiscard]] double level(std::size_t scan) const { return value[scan] - drift.at(time_s[scan]); }
   [[nodiscard]] std::size_t size() const noexcept { return value.size(); }
 };
 

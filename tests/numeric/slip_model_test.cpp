@@ -113,5 +113,37 @@ TEST(SlipModel, SaidToBeCapturedAboveTheThresholdItSticksAtTheEndOfTheRise) {
   EXPECT_EQ(model.capture_s(), model.waveform().rise_end_time_s());
 }
 
+TEST(SlipModel, CurvatureIsTheSecondDerivativeOfTheForce) {
+  const SharedParameters shared = ModelCourse::tester_at(1.3);
+  const SlipModel model{shared, kSlip, true};
+  for (const double part : {0.1, 0.5, 0.9}) {
+    const double tau_s = part * model.capture_s();
+    const double expected = model.waveform().acceleration(tau_s);
+    // Both are a few roundings of numbers up to ω₀² D.
+    EXPECT_NEAR(model.at(kSlip.onset_s + tau_s).curvature, expected,
+                1e-13 * shared.oscillator().omega0_squared());
+  }
+  EXPECT_EQ(model.at(kSlip.onset_s - 0.01).curvature, 0.0);
+  EXPECT_EQ(model.at(kSlip.onset_s + model.capture_s() + 0.01).curvature, 0.0);
+}
+
+TEST(TurnedBasis, IsTheDampedBasisAtEqualOtherAndFallingSteps) {
+  const Oscillator oscillator = Oscillator::from_omega(125.0, 0.022);
+  TurnedBasis basis{oscillator};
+  double tau_s = 0.001;
+  const auto expect_equal = [&] {
+    const DampedBasis turned = basis.at(tau_s);
+    const DampedBasis computed = damped_basis(oscillator, tau_s);
+    // Each of 200 turns adds ε; times are rounded to 1e-16 of ω τ < 100.
+    EXPECT_NEAR(turned.cosine, computed.cosine, 1e-12) << tau_s;
+    EXPECT_NEAR(125.0 * turned.sine, 125.0 * computed.sine, 1e-12) << tau_s;
+  };
+  for (int scan = 0; scan < 200; ++scan, tau_s += 1.0 / 350.0) expect_equal();
+  tau_s += 3.0 / 350.0;  // Scans that are left out.
+  for (int scan = 0; scan < 20; ++scan, tau_s += 1.0 / 350.0) expect_equal();
+  tau_s = 0.0003;  // The next slip.
+  for (int scan = 0; scan < 20; ++scan, tau_s += 1.0 / 350.0) expect_equal();
+}
+
 }  // namespace
 }  // namespace stickslip::model

@@ -45,7 +45,7 @@ TEST(RegimeRule, TransitionBelongsToMixedOnly) {
 }
 
 TEST(RegimeRule, TwentyTimesAsLikelyDecides) {
-  // One junction: captured against free differ by the ratio itself (mixed needs two junctions and
+  // One slip: captured against free differ by the ratio itself (mixed needs two slips and
   // gives it up, so it stands where the loser stands).
   const double decisive = std::log(detect::kDecisiveLikelihoodRatio);
   EXPECT_EQ(regime_of({decisive + 1e-9}), Regime::kStickSlip);
@@ -54,7 +54,7 @@ TEST(RegimeRule, TwentyTimesAsLikelyDecides) {
   EXPECT_EQ(regime_of({-decisive + 1e-9}), Regime::kUndecided);
 }
 
-TEST(RegimeRule, WeakestJunctionDecidesBetweenPureAndMixed) {
+TEST(RegimeRule, WeakestSlipDecidesBetweenPureAndMixed) {
   // Three times captured, once in doubt: pure against mixed differ by that one.
   EXPECT_EQ(regime_of({50.0, 50.0, 50.0, 1.0}), Regime::kUndecided);
   EXPECT_EQ(regime_of({50.0, 50.0, 50.0, 4.0}), Regime::kStickSlip);

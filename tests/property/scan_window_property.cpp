@@ -1,4 +1,4 @@
-// What the question while a slip is under way keeps from one scan to the next is what it would make anew.
+// What is kept from one evaluation of the capture test to the next is what would be made anew.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "core/detect/live_rows.hpp"
+#include "core/detect/scan_window.hpp"
 #include "core/model/capture.hpp"
 #include "core/model/threshold.hpp"
 
@@ -53,7 +53,7 @@ RC_GTEST_PROP(LiveCapture, IsNotFoundNearAPlaceWhereThereIsNone, ()) {
   RC_ASSERT(!capture_time_near_s(slip, r, slip.rise_end_time_s() + some(-0.2, 0.2) / omega));
 }
 
-RC_GTEST_PROP(LiveRows, LaidOutScanByScanAreThoseOfAllScansAtOnce, (std::uint64_t seed)) {
+RC_GTEST_PROP(ScanWindow, LaidOutScanByScanAreThoseOfAllScansAtOnce, (std::uint64_t seed)) {
   const double scan_s = 1.0 / *rc::gen::element(50.0, 350.0, 2000.0, 20'000.0);
   SharedParameters shared;
   shared.omega = some(60.0, 200.0);
@@ -64,25 +64,25 @@ RC_GTEST_PROP(LiveRows, LaidOutScanByScanAreThoseOfAllScansAtOnce, (std::uint64_
   std::normal_distribution<double> noise{0.3, 0.01};
   std::bernoulli_distribution is_spike{0.05};
   estimate::CycleBuffer buffer;
-  detect::LiveRows step_by_step;
+  detect::ScanWindow step_by_step;
   const auto scans = static_cast<int>(0.4 / scan_s);
-  std::uniform_int_distribution<int> question{0, 2 + scans / 100};
+  std::uniform_int_distribution<int> evaluation{0, 2 + scans / 100};
   for (int i = 0; i < scans; ++i) {
     if (is_spike(random)) continue;
     buffer.add(i * scan_s, noise(random));
     const auto points = buffer.since(from_s);
-    // Questions do not come with each scan, and noise is measured anew now and then.
-    if (points.empty() || question(random) > 2) continue;
+    // Evaluations do not come with each scan, and noise is measured anew now and then.
+    if (points.empty() || evaluation(random) > 2) continue;
     const double sigma = i < scans / 2 ? 0.01 : 0.011;
-    const auto before = std::vector<detect::LiveRow>(step_by_step.all().begin(), step_by_step.all().end());
+    const auto before = std::vector<detect::ScanRow>(step_by_step.all().begin(), step_by_step.all().end());
     const std::size_t kept = step_by_step.lay_out(points, shared, sigma);
-    detect::LiveRows at_once;
+    detect::ScanWindow at_once;
     RC_ASSERT(at_once.lay_out(points, shared, sigma) == 0U);
     RC_ASSERT(step_by_step.size() == at_once.size());
     RC_ASSERT(kept <= std::min(before.size(), at_once.size()));
     for (std::size_t row = 0; row < at_once.size(); ++row) {
-      const detect::LiveRow& one = step_by_step.all()[row];
-      const detect::LiveRow& other = at_once.all()[row];
+      const detect::ScanRow& one = step_by_step.all()[row];
+      const detect::ScanRow& other = at_once.all()[row];
       RC_ASSERT(one.tau_s == other.tau_s && one.value == other.value && one.scale == other.scale);
       RC_ASSERT(one.by_D == other.by_D && one.by_rate == other.by_rate);
       RC_ASSERT(one.half_spread_s2 == other.half_spread_s2 && one.stray == other.stray);
