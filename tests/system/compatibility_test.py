@@ -32,6 +32,9 @@ VERSIONS = sorted(folder.name for folder in GOLDEN.glob("v*.*"))
 NOBODY_KNOWS = "--nobody-knows-this"
 # As above all numbers of results, whose last bits another processor's mathematics may change.
 CLOSE = 1e-9
+# A fit may stop elsewhere within its convergence: estimates agree within this part of their standard errors.
+ESTIMATE = 0.01
+ERRORS = ("standard_error", "systematic_uncertainty")
 
 
 def kept(version, name):
@@ -41,9 +44,14 @@ def kept(version, name):
 def config_keys(text):
     return set(re.findall(r"(?m)^(?:# )?([a-z_]+) = ", text))
 
-
 def same(then, now):
     if isinstance(then, dict) and isinstance(now, dict):
+        error = then.get("standard_error")
+        if isinstance(error, float) and isinstance(then.get("value"), float):
+            if not abs(then["value"] - now.get("value", math.nan)) <= ESTIMATE * error:
+                return False
+            return all(math.isclose(value, now.get(key, math.nan), rel_tol=ESTIMATE) if key in ERRORS else key == "value" or same(value, now.get(key))
+                       for key, value in then.items())
         return all(key in now and same(value, now[key]) for key, value in then.items())
     if isinstance(then, list) and isinstance(now, list):
         return len(then) == len(now) and all(map(same, then, now))
