@@ -277,9 +277,8 @@ TestResults TestAnalysis::finish() {
       if (estimates.misfit.is_certain())
         results.findings.push_back(misfit_finding(estimates.misfit, estimates.results.delta_mu));
     }
-    const bool model_describes = estimates.model_describes && !estimates.misfit.is_certain();
     const detect::RegimeVerdict verdict =
-        detect::judge_regime(slips.size(), estimates.log_likelihood_ratios, model_describes);
+        detect::judge_regime(slips.size(), estimates.log_likelihood_ratios, estimates.model_describes);
     results.regime = verdict.regime;
     results.regime_reason = verdict.reason;
     results.stick_cycle_count = verdict.regime == model::Regime::kUndecided
