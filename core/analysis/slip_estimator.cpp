@@ -24,10 +24,6 @@ constexpr double kDoubtful = 6.0;
 /// Smallest relative difference of a second guess of the stick rate that is tried.
 constexpr double kOtherRate = 0.1;
 
-/// ln 10⁴ (as the live decision): a first guess that is so much likelier than any free oscillation is not
-/// improved.
-constexpr double kDecisive = 9.210340371976184;
-
 /// Decides how slips of a test ended.
 class SlipEnds {
  public:
@@ -48,7 +44,9 @@ class SlipEnds {
     const auto ratio = [&](const detect::Budget& budget) {
       return test_.evaluate(scans_.points(), prior_, budget).log_likelihood_ratio;
     };
-    if (const double bound = ratio({.decisive = kDecisive, .iterations = 0}); bound > kDecisive) return bound;
+    // A first guess that is so much likelier than any free oscillation is not improved.
+    const double bound = ratio({.decisive = detect::kDecisive, .iterations = 0});
+    if (bound > detect::kDecisive) return bound;
     return ratio({.iterations = kCaptureIterations});
   }
 

@@ -126,8 +126,9 @@ std::string turning_points_finding(const Estimate& delta_mu, const std::string& 
 
 std::string misfit_finding(const Misfit& misfit, const Estimate& delta_mu) {
   return fmt::format(
-      "the fit leaves residuals of {:.2f} times the scan noise: friction, transducer, hum or missed "
-      "spikes; S - K uncertain by {:.2g}, with the distance to turning points",
+      "the fit leaves residuals of {:.2f} times the scan noise; friction, transducer, hum or missed spikes "
+      "may "
+      "cause them; S - K is uncertain by {:.2g}, its distance to turning points included",
       misfit.residual_sigmas(), total_error(delta_mu));
 }
 

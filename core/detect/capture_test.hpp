@@ -27,6 +27,10 @@ inline constexpr double kMisfitSigmas = 2.0;
 /// to ln 101 = 4.6, so that two outliers hardly decide; three rarely occur together.
 inline constexpr double kStrayDensity = 0.01;
 
+/// ln 10⁴, the log-likelihood ratio that decides: then one wrong end in ten thousand slips at most [Wald,
+/// Ann. Math. Stat. 16:117–186, 1945, (3:42)].
+inline constexpr double kDecisive = 9.210340371976184;
+
 /// Effort of one evaluation.
 struct Budget {
   /// Smallest |log-likelihood ratio| of interest. A ratio that is certainly smaller is not computed, which
@@ -59,9 +63,8 @@ struct CaptureEvidence {
 /// Evaluator with memory for the points of one slip.
 class CaptureTest {
  public:
-  /// \param points  of a slip from its force maximum on. A free oscillation can be told only if they reach
-  /// the
-  ///        minimum after the next maximum.
+  /// \param points  of a slip from its force maximum on. A free oscillation can be told only if they
+  ///        reach the minimum after the next maximum.
   [[nodiscard]] CaptureEvidence evaluate(std::span<const estimate::CyclePoint> points,
                                          const CapturePrior& prior, const Budget& budget) noexcept;
 

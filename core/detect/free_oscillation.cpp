@@ -15,7 +15,7 @@ constexpr int kReweightings = 3;
 
 double fit_free(std::span<const ScanRow> rows, FreeOscillation& p) noexcept {
   double before = std::numeric_limits<double>::infinity();
-  bool unweighted = true;  // So was the last step: the first, as weights need a course.
+  bool unweighted = true;  // So was the last step: the first, as weights need a trajectory.
   for (int round = 0;; ++round) {
     FreeEquations sum;
     for (const ScanRow& row : rows) sum.add(row, p, round > 0);

@@ -61,7 +61,7 @@ ScanRow ScanWindow::row_of(std::span<const estimate::CyclePoint> together, doubl
 std::size_t ScanWindow::lay_out(std::span<const estimate::CyclePoint> points,
                                 const model::SharedParameters& shared, double sigma) noexcept {
   const double first_s = points.front().time_s;
-  const bool same_courses =
+  const bool same_trajectories =
       first_s == first_s_ && shared.omega == shared_.omega && shared.gamma == shared_.gamma;
   const double rows_per_s = kRowsPerPeriod * shared.omega / (2.0 * std::numbers::pi);
   const auto place = [&](const estimate::CyclePoint& point) {
@@ -69,7 +69,7 @@ std::size_t ScanWindow::lay_out(std::span<const estimate::CyclePoint> points,
   };
   // Points only come at the end, and are joined: while the last row begins at the point where it began, no
   // point before was joined, and no row before it is another. It itself may have got more of them.
-  const bool grown = same_courses && size_ > 0 && back().first_point < points.size() &&
+  const bool grown = same_trajectories && size_ > 0 && back().first_point < points.size() &&
                      points[back().first_point].time_s == back().begin_s;
   const std::size_t last = size_ - 1;
   std::size_t kept = grown ? last : 0;

@@ -14,9 +14,6 @@
 namespace stickslip::detect {
 namespace {
 
-/// ln 10⁴: then one wrong end in ten thousand slips at most [Wald, Ann. Math. Stat. 16:117–186, 1945,
-/// (3:42)].
-constexpr double kDecisive = 9.210340371976184;
 /// Times of the evaluations, in periods after the peak. The first is at kFirstTested, when the rise of c′ of
 /// a free oscillation is nearly over (t₃ is at most three quarters of a period after the peak). If captures
 /// took longer so far, it is kEarlier before their usual time, but at kLastFirstTested at the latest, when a
@@ -29,8 +26,8 @@ constexpr double kMostPeriods = 2.5;
 constexpr double kSurelySlipping = 0.6;
 /// Number of blocks from peak to trough of a slip under way.
 constexpr double kBlocksPerFall = 16.0;
-/// Reach of the parabola through a turning point: a sixteenth of a period, where the course differs from its
-/// parabola by (π/8)⁴/24 = 0.1 % of the amplitude; at least the scan on each side.
+/// Reach of the parabola through a turning point: a sixteenth of a period, where the trajectory differs from
+/// its parabola by (π/8)⁴/24 = 0.1 % of the amplitude; at least the scan on each side.
 constexpr double kReachPerPeriod = 1.0 / 16.0;
 constexpr double kLeastReachScans = 1.6;
 /// Relative standard deviations of ω from turning points and of r from the slope of a rise; only their ratio

@@ -71,11 +71,15 @@ TEST(MisfitOfTheFit, IsToldAndWidensTheIntervals) {
   };
   for (const test::AnalysedTest& test : test::analyse_scene(scene("drift-hum-and-spikes"), kTests)) {
     EXPECT_TRUE(tells(test.results));
-    EXPECT_GT(*test.results.delta_mu.systematic_uncertainty, *test.results.delta_mu.standard_error);
+    // K has no other systematic part.
+    EXPECT_GT(test.results.mu_k.systematic_uncertainty.value_or(0.0), 0.0);
   }
-  // Above four standard errors in 3 of 10⁵ tests: none of 20.
-  for (const test::AnalysedTest& test : test::analyse_scene(scene("stick-slip-at-12-in-per-min"), kTests))
-    EXPECT_FALSE(tells(test.results));
+  int widened = 0;
+  for (const test::AnalysedTest& test : test::analyse_scene(scene("stick-slip-at-12-in-per-min"), kTests)) {
+    EXPECT_FALSE(tells(test.results));  // Above four standard errors in 3 of 10⁵ tests: none of 20.
+    widened += test.results.mu_k.systematic_uncertainty ? 1 : 0;
+  }
+  EXPECT_LE(widened, 3);  // At a level of 1 % more are seen once in 20 000 sets.
 }
 
 }  // namespace
