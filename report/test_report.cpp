@@ -142,6 +142,7 @@ RegimeCounts regime_counts(const Material& material, const std::optional<std::si
         ++counts.sticking;
         break;
       case model::Regime::kRingDown:
+      case model::Regime::kInertialOscillation:
       case model::Regime::kSteadySliding:
         ++counts.sliding;
         break;

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/analysis/rung.hpp"
 #include "core/model/regime.hpp"
 
 namespace stickslip::analysis {
@@ -39,6 +40,7 @@ struct ResultName {
   std::string_view name;
   std::string_view unit;       ///< SI, "1" for a ratio or a count.
   std::string_view long_name;  ///< For axes and tables.
+  bool is_diagnostic = false;  ///< Another way to a quantity that has a result of its own.
 };
 
 /// Reason for the absence of Q on a ramp, where each slip has its own.
@@ -48,6 +50,10 @@ inline constexpr std::string_view kSpeedChanges = "the pull speed changes";
 struct TestResults {
   model::Regime regime = model::Regime::kUndecided;
   std::string regime_reason;  ///< What decided the regime; text for the user.
+  Rung rung = Rung::kNone;    ///< Where S, K and S − K come from.
+  std::string rung_reason;    ///< Why not a higher rung; empty on the highest. Text for the user.
+  std::string
+      misfit_place;  ///< Part of the slip with the largest misfit: rise, peak, fall or trough; or empty.
 
   Estimate transition_time;        ///< s after the record's first scan, onset of the escape; only for mixed.
   Estimate cycle_count;            ///< Falls that are slips.
@@ -84,6 +90,12 @@ struct TestResults {
   Estimate mu_s_from_amplitude;         ///< S: mu_k_from_mean + delta_mu_from_amplitude.
   Estimate pull_speed_measured;         ///< m/s, from the stick rate and ω₀.
   Estimate slip_speed_ratio_threshold;  ///< Smallest ratio [18] of a slip that ends in sticking.
+
+  Estimate mu_slope;  ///< s/m, μ′ = ∂μ_k/∂v, relative to the paper of the tester's characterisation.
+  /// Systematic residual of the fit, in standard deviations of the scan noise: √(residual² − 1), 0 for noise
+  /// alone.
+  Estimate misfit;
+  Estimate smallest_slip;  ///< Drop of the force from which on a slip would have been counted.
 
   /// Warnings for the user, such as: the tester disagrees with its characterisation, the pull speed is not
   /// the planned one.
@@ -133,21 +145,26 @@ void for_each_result(Results& results, Visitor&& visit) {
   visit(ResultName{"escape_speed_corrected", "m/s",
                    "escape speed, corrected for being the first of many cycles"},
         results.escape_speed_corrected);
-  visit(ResultName{"delta_mu_from_amplitude", "1", "S - K from the amplitude"},
+  visit(ResultName{"delta_mu_from_amplitude", "1", "S - K from the amplitude", true},
         results.delta_mu_from_amplitude);
-  visit(ResultName{"delta_mu_from_timing", "1", "S - K from the period"}, results.delta_mu_from_timing);
-  visit(ResultName{"delta_mu_from_slip_speed", "1", "S - K from the largest slip speed"},
+  visit(ResultName{"delta_mu_from_timing", "1", "S - K from the period", true}, results.delta_mu_from_timing);
+  visit(ResultName{"delta_mu_from_slip_speed", "1", "S - K from the largest slip speed", true},
         results.delta_mu_from_slip_speed);
-  visit(ResultName{"delta_mu_combined", "1", "S - K from amplitude, period and slip speed"},
+  visit(ResultName{"delta_mu_combined", "1", "S - K from amplitude, period and slip speed", true},
         results.delta_mu_combined);
-  visit(ResultName{"mu_k_from_mean", "1", "K from the mean, without the bias of the damping"},
+  visit(ResultName{"mu_k_from_mean", "1", "K from the mean, without the bias of the damping", true},
         results.mu_k_from_mean);
-  visit(ResultName{"mu_s_from_amplitude", "1", "S from mean and amplitude"}, results.mu_s_from_amplitude);
+  visit(ResultName{"mu_s_from_amplitude", "1", "S from mean and amplitude", true},
+        results.mu_s_from_amplitude);
   visit(ResultName{"pull_speed_measured", "m/s", "pull speed from the slope of the sticks"},
         results.pull_speed_measured);
   visit(ResultName{"slip_speed_ratio_threshold", "1",
                    "largest slip speed over drive speed from which on a slip ends in sticking"},
         results.slip_speed_ratio_threshold);
+  visit(ResultName{"mu_slope", "s/m", "slope of the kinetic coefficient with speed, mu'"}, results.mu_slope);
+  visit(ResultName{"misfit", "1", "systematic residual of the fit over the scan noise"}, results.misfit);
+  visit(ResultName{"smallest_slip", "1", "smallest drop of the force that would have been counted"},
+        results.smallest_slip);
 }
 
 }  // namespace stickslip::analysis

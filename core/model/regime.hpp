@@ -1,5 +1,6 @@
 /// \file
-/// Regime of a pull: stick-slip, ring-down, mixed, steady sliding, undecided. Definitions: docs/glossary.md.
+/// Regime of a pull: stick-slip, ring-down, mixed, inertial oscillation, steady sliding, undecided.
+/// Definitions: docs/glossary.md.
 #pragma once
 
 #include <array>
@@ -10,17 +11,20 @@
 namespace stickslip::model {
 
 enum class Regime {
-  kStickSlip,      ///< Every slip of the pull ended in sticking.
-  kRingDown,       ///< No slip ended in sticking: one decaying oscillation.
-  kMixed,          ///< At least one of each.
-  kSteadySliding,  ///< No oscillation.
-  kUndecided,      ///< The data do not tell.
+  kStickSlip,            ///< Every slip of the pull ended in sticking.
+  kRingDown,             ///< No slip ended in sticking: one decaying oscillation.
+  kMixed,                ///< At least one of each.
+  kInertialOscillation,  ///< No slip ended in sticking, and the oscillation does not decay: friction feeds
+                         ///< it.
+  kSteadySliding,        ///< No oscillation.
+  kUndecided,            ///< The data do not tell.
 };
 
-inline constexpr std::array<std::pair<Regime, std::string_view>, 5> kRegimeNames{{
+inline constexpr std::array<std::pair<Regime, std::string_view>, 6> kRegimeNames{{
     {Regime::kStickSlip, "stick-slip"},
     {Regime::kRingDown, "ring-down"},
     {Regime::kMixed, "mixed"},
+    {Regime::kInertialOscillation, "inertial-oscillation"},
     {Regime::kSteadySliding, "steady-sliding"},
     {Regime::kUndecided, "undecided"},
 }};
