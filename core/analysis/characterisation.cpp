@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/LU>
 #include <boost/math/distributions/chi_squared.hpp>
@@ -75,6 +76,32 @@ Estimate pull_speed_of(const TesterEstimate& estimate, double gravity_m_per_s2) 
                       std::sqrt(estimate.covariance(2, 2)) * gravity_m_per_s2);
 }
 
+Estimate slope_of_friction(const TesterEstimate& found, const estimate::SharedPrior::Coupling& known,
+                           double gravity_m_per_s2) {
+  const auto damping = [](double omega, double gamma_over_2omega, const Eigen::Matrix2d& covariance) {
+    const Eigen::Vector2d gradient{2.0 * gamma_over_2omega, 2.0 * omega};
+    return std::pair{2.0 * omega * gamma_over_2omega, gradient.dot(covariance * gradient)};
+  };
+  const auto [here, of_here] =
+      damping(found.omega, found.gamma_over_2omega, found.covariance.topLeftCorner<2, 2>());
+  const auto [there, of_there] = damping(known.omega, known.gamma_over_2omega, known.covariance);
+  return Estimate::of((here - there) / gravity_m_per_s2, std::sqrt(of_here + of_there) / gravity_m_per_s2);
+}
+
+double probability_of_agreement(std::span<const Estimate> estimates) {
+  double weight = 0.0;
+  double mean = 0.0;
+  for (const Estimate& estimate : estimates) {
+    const double own = 1.0 / (*estimate.standard_error * *estimate.standard_error);
+    weight += own;
+    mean += own / weight * (*estimate.value - mean);
+  }
+  double chi_squared = 0.0;
+  for (const Estimate& estimate : estimates)
+    chi_squared += std::pow((*estimate.value - mean) / *estimate.standard_error, 2);
+  return probability_of(chi_squared, static_cast<double>(estimates.size() - 1));
+}
+
 std::optional<std::string> speed_finding(const Estimate& measured_m_per_s, const model::Tester& tester) {
   if (!tester.pull_speed_m_per_s || !measured_m_per_s.value || !measured_m_per_s.standard_error) {
     return std::nullopt;
@@ -96,11 +123,12 @@ TesterCheck check_tester(const TesterEstimate& alone, const TesterEstimate& with
   check.chi_squared = off.dot(spread.inverse() * off);
   check.probability = std::isfinite(check.chi_squared) ? probability_of(check.chi_squared, 2.0) : 0.0;
   if (!check.agrees()) {
-    check.findings.push_back(fmt::format(
-        "the tester disagrees with its characterisation: chi-squared {:.1f} for 2 (omega {:.3f} rad/s here, "
-        "{:.3f} there; gamma/2omega {:.5f} here, {:.5f} there), so that it was {}",
-        check.chi_squared, alone.omega, known.omega, alone.gamma_over_2omega, known.gamma_over_2omega,
-        check.used() ? "used with doubt" : "not used"));
+    check.findings.push_back(
+        fmt::format("tester or paper have changed since the characterisation: chi-squared {:.1f} for 2 "
+                    "(omega {:.3f} rad/s here, "
+                    "{:.3f} there; gamma/2omega {:.5f} here, {:.5f} there), so that it was {}",
+                    check.chi_squared, alone.omega, known.omega, alone.gamma_over_2omega,
+                    known.gamma_over_2omega, check.used() ? "used with doubt" : "not used"));
   }
   const TesterEstimate& best = check.used() ? with : alone;
   check.pull_speed = pull_speed_of(best, tester.gravity_m_per_s2);

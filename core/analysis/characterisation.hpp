@@ -77,6 +77,17 @@ struct TesterCheck {
 [[nodiscard]] std::optional<std::string> speed_finding(const Estimate& measured_m_per_s,
                                                        const model::Tester& tester);
 
+/// μ′ = (γ − γ_known)/g, s/m, with its standard error: the slope of the kinetic coefficient with speed, over
+/// that of the paper on which the tester was characterised. A slope leaves S, K and S − K at the pull speed
+/// as they are and adds g μ′ to the damping.
+[[nodiscard]] Estimate slope_of_friction(const TesterEstimate& found,
+                                         const estimate::SharedPrior::Coupling& known,
+                                         double gravity_m_per_s2);
+
+/// Probability of a χ² at least this large if independent estimates of one number have only their standard
+/// errors. Each needs a value and an error.
+[[nodiscard]] double probability_of_agreement(std::span<const Estimate> estimates);
+
 /// Compares ω and γ/2ω of the test alone with the characterisation, and the pull speed with the plan. The
 /// speed is that of `with` if the characterisation is used for this test (TesterCheck::used), else of
 /// `alone`. \param alone  estimate without the characterisation. \param with  estimate with it. \param known

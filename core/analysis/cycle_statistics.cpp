@@ -80,6 +80,33 @@ estimate::Drift significant_drift(const estimate::Trace& trace, const base::Long
   return {*slope.value, mean_s};
 }
 
+detect::CycleShape cycle_shape(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips) {
+  std::vector<double> ratios;
+  signal::RunningVariance times;
+  signal::RunningVariance sizes;
+  double s_ts = 0.0;
+  for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
+    const detect::Fall slip = slips[i];
+    const detect::Fall next = slips[i + 1];
+    if (estimate::is_broken(trace, slip.peak_at, next.peak_at) || !(slip.drop() > 0.0)) continue;
+    ratios.push_back((next.peak_at - slip.trough_at) / (slip.trough_at - slip.peak_at));
+    const double time_s = estimate::time_at(trace, slip.peak_at);
+    const double off_s = time_s - times.mean;
+    const double size = std::log(slip.drop());
+    times.add(time_s);
+    sizes.add(size);
+    s_ts += off_s * (size - sizes.mean);
+  }
+  detect::CycleShape shape{ratios.size(), 0.0, 0.0};
+  if (ratios.size() <= 2) return shape;
+  shape.rise_over_fall = signal::median(ratios);
+  const double slope = s_ts / times.square_sum;
+  const double left = std::max(sizes.square_sum - slope * s_ts, 0.0);
+  const double variance = left / (static_cast<double>(ratios.size() - 2) * times.square_sum);
+  shape.decay_sigmas = variance > 0.0 ? -slope / std::sqrt(variance) : 0.0;
+  return shape;
+}
+
 void period_results(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                     TestResults& results) {
   if (slips.size() < 2) {

@@ -5,6 +5,7 @@
 #include "core/analysis/results.hpp"
 #include "core/base/long_column.hpp"
 #include "core/detect/fall_finder.hpp"
+#include "core/detect/regime_rule.hpp"
 #include "core/estimate/trace.hpp"
 
 namespace stickslip::analysis {
@@ -15,6 +16,10 @@ namespace stickslip::analysis {
 /// Drift to subtract before the model is fitted; zero unless drift_of() is significant.
 [[nodiscard]] estimate::Drift significant_drift(const estimate::Trace& trace,
                                                 const base::LongColumn<detect::Fall>& slips);
+
+/// Shape of the cycles, of which each has a fall and the rise to the next.
+[[nodiscard]] detect::CycleShape cycle_shape(const estimate::Trace& trace,
+                                             const base::LongColumn<detect::Fall>& slips);
 
 /// Fills period_median and oscillation_frequency. A ring-down's frequency is that of the fitted
 /// oscillator (results.omega), else it is cycles over time.

@@ -99,6 +99,7 @@ TestEstimates estimates_from_live(const estimate::Trace& trace, const base::Long
     if (before) keep(is_next ? row.peak_time_s - before->peak_time_s : base::kNaN);
     before = row;
     is_next = has_next;
+    means.add_level(slip.peak, slip.trough);
     amplitude.add(0.5 * slip.drop());
   }
   keep(base::kNaN);

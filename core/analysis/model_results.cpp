@@ -19,7 +19,9 @@
 #include "core/estimate/huber.hpp"
 #include "core/model/closed_forms.hpp"
 #include "core/model/threshold.hpp"
+#include "core/model/turned_basis.hpp"
 #include "core/signal/statistics.hpp"
+#include "core/signal/wandering_mean.hpp"
 
 namespace stickslip::analysis {
 namespace {
@@ -31,7 +33,7 @@ constexpr std::size_t kEnoughToLeaveOutTheFirst = 3;
 struct Fitted {
   Eigen::Matrix<double, 5, 1> value;
   Eigen::Matrix<double, 5, 5> covariance;
-  signal::RunningVariance D;
+  signal::WanderingMean D;
   signal::RunningVariance amplitude;
   double drift = 0.0;           ///< Of S and K, where the slips begin in the mean.
   double relative_speed = 1.0;  ///< Mean over the slips, of the speed at which r is given.
@@ -77,14 +79,16 @@ Fitted gather(const SlipEstimates& estimates) {
   const std::vector<estimate::SlipWindow> windows = slips_that_count(estimates);
 
   Fitted fitted;
-  signal::RunningVariance S;
-  signal::RunningVariance K;
+  signal::WanderingMean S;
+  signal::WanderingMean K;
   Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d coupling = Eigen::Matrix3d::Zero();
   if (!estimates.belt.is_constant()) fitted.relative_speed = 0.0;
   for (const estimate::SlipWindow& window : windows) {
-    S.add(estimates.static_coefficient(window));
-    K.add(window.slip.K);
+    // With the drift, which wanders, too: over another stretch of track it would be another one.
+    const double drift = estimates.drift.at(window.slip.onset_s);
+    S.add(estimates.static_coefficient(window) + drift);
+    K.add(window.slip.K + drift);
     fitted.D.add(estimates.static_coefficient(window) - window.slip.K);
     const model::SlipModel model{fit.shared, window.slip, window.captured, estimates.belt};
     fitted.amplitude.add(half_range(model.waveform()));
@@ -94,7 +98,7 @@ Fitted gather(const SlipEstimates& estimates) {
     }
     own += window.inverse_curvature;
     coupling += window.coupling;
-    fitted.drift += estimates.drift.at(window.slip.onset_s) / static_cast<double>(windows.size());
+    fitted.drift += drift / static_cast<double>(windows.size());
   }
   if (estimates.uniform) {
     take(*estimates.uniform, fitted);
@@ -104,16 +108,20 @@ Fitted gather(const SlipEstimates& estimates) {
   coupling /= n;
   Eigen::Matrix2d own_mean = own.bottomRightCorner<2, 2>() / (n * n);
   if (windows.size() > 1) {
-    // The scatter from slip to slip holds the noise of each and what the paper adds to it.
-    Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
-    for (const estimate::SlipWindow& window : windows) {
-      const Eigen::Vector2d off{estimates.static_coefficient(window) - S.mean, window.slip.K - K.mean};
-      scatter += off * off.transpose();
-    }
-    own_mean = scatter / (n * (n - 1.0));
+    // The scatter from slip to slip holds the noise of each and what the paper adds to it. S − K wanders less
+    // than S and K, so that its variance tells their covariance.
+    const auto variance = [](const signal::WanderingMean& values) {
+      return std::pow(values.error_of_mean(), 2);
+    };
+    const double of_S = variance(S);
+    const double of_K = variance(K);
+    const double most = std::sqrt(of_S * of_K);
+    const double both = std::clamp(0.5 * (of_S + of_K - variance(fitted.D)), -most, most);
+    own_mean << of_S, both, both, of_K;
   }
   const Eigen::Matrix<double, 2, 3> pull = coupling.bottomRows<2>();
-  fitted.value << fit.shared.omega, fit.shared.gamma, fit.shared.r, S.mean, K.mean;
+  fitted.value << fit.shared.omega, fit.shared.gamma, fit.shared.r, S.mean() - fitted.drift,
+      K.mean() - fitted.drift;
   fitted.covariance.topLeftCorner<3, 3>() = fit.shared_covariance;
   fitted.covariance.bottomLeftCorner<2, 3>() = -pull * fit.shared_covariance;
   fitted.covariance.topRightCorner<3, 2>() = fitted.covariance.bottomLeftCorner<2, 3>().transpose();
@@ -220,10 +228,34 @@ std::string contradiction(const SlipEstimates& estimates) {
   return {};
 }
 
+/// What in the friction or the trace keeps the fit from an end, by where it stopped.
+std::string why_not_converged(const SlipEstimates& estimates, double sigma) {
+  const estimate::SlipFit& fit = estimates.fit;
+  constexpr double kRanAway = 0.02;  // γ/2ω below zero, and about as much as a tester has above it.
+  constexpr double kFlat = 0.5;
+  const double damping = fit.shared.gamma / (2.0 * fit.shared.omega);
+  if (fit.scan_count == 0) return "the slips have too few scans for a fit";
+  if (fit.shared.r < kFlat * estimates.guess.r) {
+    return fmt::format(
+        "the force rises on no straight line between the slips, as of a sled that hardly rests: the fit's "
+        "stick rate ran to {:.2g} of the rises' slope",
+        fit.shared.r / estimates.guess.r);
+  }
+  if (damping < -kRanAway) {
+    return fmt::format(
+        "the slips begin gradually, or friction falls while the sled slides: the fit's damping ran to "
+        "gamma/2omega = {:.2g}",
+        damping);
+  }
+  return fmt::format(
+      "the slips have another shape than that of constant S and K: residuals of {:.1f} times the scan noise",
+      fit.residual_sigma / sigma);
+}
+
 /// Why the model does not describe the test; empty if it does.
 std::string why_not(const SlipEstimates& estimates, double sigma) {
   const estimate::SlipFit& fit = estimates.fit;
-  if (!fit.converged) return "the fit of the model did not converge";
+  if (!fit.converged) return why_not_converged(estimates, sigma);
   if (!(fit.residual_sigma <= kLargestResidualSigmas * sigma)) {
     return fmt::format("the model leaves residuals of {:.1f} times the scan noise, {:.0f} are allowed",
                        fit.residual_sigma / sigma, kLargestResidualSigmas);
@@ -248,24 +280,73 @@ bool model_describes(const SlipEstimates& estimates, double sigma) {
   return why_not(estimates, sigma).empty();
 }
 
-void Misfit::add(const SlipEstimates& estimates, double sigma) noexcept {
-  const estimate::SlipFit& fit = estimates.fit;
-  if (!fit.converged) return;
-  const double residual = fit.residual_sigma / (estimate::kHuberResidualOfNoise * sigma);
-  squares_ += residual * residual * fit.freedom;
-  freedom_ += fit.freedom;
+void Misfit::Sum::add(double residual_sigma, double of_freedom) noexcept {
+  const double residual = residual_sigma / estimate::kHuberResidualOfNoise;
+  squares += residual * residual * of_freedom;
+  freedom += of_freedom;
 }
 
-double Misfit::residual_sigmas() const noexcept {
-  return freedom_ > 0.0 ? std::sqrt(squares_ / freedom_) : 0.0;
+double Misfit::residual_of(const Sum& sum) noexcept {
+  return sum.freedom > 0.0 ? std::sqrt(sum.squares / sum.freedom) : 0.0;
 }
 
-double Misfit::z() const noexcept {
+double Misfit::error_of_square(const Sum& sum) noexcept {
   // Relative standard error of signal::scan_noise() times √n, by simulation of white noise, n from 600 on; of
   // σ² twice that.
   constexpr double kErrorOfVariance = 2.0 * 2.0;
-  const double excess = residual_sigmas() * residual_sigmas() - 1.0;
-  return excess / std::sqrt((2.0 + kErrorOfVariance * kErrorOfVariance) / std::max(freedom_, 1.0));
+  return std::sqrt((2.0 + kErrorOfVariance * kErrorOfVariance) / std::max(sum.freedom, 1.0));
+}
+
+double Misfit::z_of(const Sum& sum) noexcept {
+  return (residual_of(sum) * residual_of(sum) - 1.0) / error_of_square(sum);
+}
+
+void Misfit::add(const estimate::Trace& trace, const SlipEstimates& estimates, double sigma) {
+  const estimate::SlipFit& fit = estimates.fit;
+  if (!fit.converged) return;
+  Sum section;
+  section.add(fit.residual_sigma / sigma, fit.freedom);
+  whole_.add(fit.residual_sigma / sigma, fit.freedom);
+  if (!(z_of(section) > kSignificant)) return;  // Chance has no place.
+  std::array<estimate::HuberSums, kSlipPartNames.size()> sums;
+  model::TurnedBasis basis{fit.shared.oscillator()};
+  for (const estimate::SlipWindow& window : estimates.windows) {
+    const model::SlipModel model{fit.shared, window.slip, window.captured, estimates.belt};
+    const model::SlipWaveform& waveform = model.waveform();
+    const double trough_s = waveform.trough_time_s();
+    const double trough = waveform.value(trough_s);
+    const double drop = waveform.value(waveform.peak_time_s()) - trough;
+    const auto part_of = [&](double tau_s, double value) {
+      constexpr double kHigh = 0.9;
+      constexpr double kLow = 0.1;
+      if (tau_s < 0.0 || tau_s > model.capture_s()) return SlipPart::kRise;
+      const double height = (value - trough) / drop;
+      if (height < kLow) return SlipPart::kTrough;
+      if (tau_s > trough_s) return SlipPart::kRise;  // Of a sled that slides on.
+      return height > kHigh ? SlipPart::kPeak : SlipPart::kFall;
+    };
+    for (std::size_t k = window.first; k < window.end; ++k) {
+      if (trace.usable[k] == 0) continue;
+      const double value = model.at(trace.time_s[k], basis).value;
+      const SlipPart part = part_of(trace.time_s[k] - window.slip.onset_s, value);
+      sums[static_cast<std::size_t>(part)].add((trace.level(k) - value) / sigma);
+    }
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) parts_[i].add(sums[i].residual_sigma(0.0), sums[i].count());
+}
+
+std::optional<SlipPart> Misfit::place() const noexcept {
+  if (!is_significant()) return std::nullopt;
+  const auto largest = std::ranges::max_element(parts_, {}, [](const Sum& sum) { return residual_of(sum); });
+  return static_cast<SlipPart>(largest - parts_.begin());
+}
+
+Estimate Misfit::systematic() const {
+  if (whole_.freedom <= 0.0) return Estimate::none("no fit of the model converged");
+  const double excess = std::max(residual_sigmas() * residual_sigmas() - 1.0, 0.0);
+  const double error = error_of_square(whole_);
+  // Of the root of a square that may be zero.
+  return Estimate::of(std::sqrt(excess), error / (2.0 * std::sqrt(std::max(excess, 0.25 * error))));
 }
 
 void no_model_results(const std::string& reason, TestResults& results) {

@@ -2,7 +2,10 @@
 /// Results with standard errors, and the table of cycles, from the fitted slips.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/analysis/results.hpp"
@@ -19,29 +22,54 @@ inline constexpr double kLargestResidualSigmas = 5.0;
 /// significantly negative nor overdamped, and no slip ended otherwise than its numbers say.
 [[nodiscard]] bool model_describes(const SlipEstimates& estimates, double sigma);
 
+/// Parts of a slip and the stick before it, in the order of time.
+enum class SlipPart { kRise, kPeak, kFall, kTrough };
+inline constexpr std::array<std::string_view, 4> kSlipPartNames{"rise", "peak", "fall", "trough"};
+
 /// Residuals of a test's fits compared with the noise of a scan.
 class Misfit {
  public:
   /// Adds the fit of a section. \param sigma  noise of one scan.
-  void add(const SlipEstimates& estimates, double sigma) noexcept;
+  void add(const estimate::Trace& trace, const SlipEstimates& estimates, double sigma);
 
   /// Standard deviation of the residuals, in σ; 1 for noise alone.
-  [[nodiscard]] double residual_sigmas() const noexcept;
-  /// Deviation of its square from 1, in standard errors of residuals and of σ, which is itself estimated.
-  [[nodiscard]] double z() const noexcept;
+  [[nodiscard]] double residual_sigmas() const noexcept { return residual_of(whole_); }
+  /// The same over one part of the slips; 0 unless the misfit of a section is significant. The fall is from
+  /// 90 to 10 % of the drop.
+  [[nodiscard]] double residual_sigmas(SlipPart part) const noexcept {
+    return residual_of(parts_[static_cast<std::size_t>(part)]);
+  }
+  /// Part with the largest residuals; nullopt unless the misfit is significant.
+  [[nodiscard]] std::optional<SlipPart> place() const noexcept;
+  /// Systematic residual √(residual² − 1), in σ, with its standard error.
+  [[nodiscard]] Estimate systematic() const;
+  /// Deviation of the residuals' square from 1, in standard errors of residuals and of σ, which is itself
+  /// estimated.
+  [[nodiscard]] double z() const noexcept { return z_of(whole_); }
   /// Chance exceeds it in 1 % of the tests.
-  [[nodiscard]] bool is_significant() const noexcept { return z() > 2.326; }
+  [[nodiscard]] bool is_significant() const noexcept { return z() > kSignificant; }
   /// Chance exceeds it in 3 of 10⁵ tests.
   [[nodiscard]] bool is_certain() const noexcept { return z() > 4.0; }
 
  private:
-  double squares_ = 0.0;  ///< In σ², times the degrees of freedom.
-  double freedom_ = 0.0;
+  struct Sum {
+    double squares = 0.0;  ///< In σ², times the degrees of freedom.
+    double freedom = 0.0;
+    void add(double residual_sigma, double of_freedom) noexcept;
+  };
+  static constexpr double kSignificant = 2.326;
+  [[nodiscard]] static double residual_of(const Sum& sum) noexcept;
+  [[nodiscard]] static double error_of_square(const Sum& sum) noexcept;
+  [[nodiscard]] static double z_of(const Sum& sum) noexcept;
+
+  Sum whole_;
+  std::array<Sum, kSlipPartNames.size()> parts_;
 };
 
 /// Fills mu_s, mu_k, delta_mu, omega, gamma_over_2omega, Q, Q_threshold, threshold_speed,
 /// slip_speed_ratio_threshold, amplitude
-/// and delta_mu_scatter, each with its standard error, or the reason why it is absent. The systematic
+/// and delta_mu_scatter, each with its standard error, or the reason why it is absent. Where neighbouring
+/// slips are correlated the standard errors of S, K and S − K are those of means that wander. The systematic
 /// uncertainty of S and S − K is γ v/g: whether the damper's force counts at the slip onset is a convention
 /// that no trace can decide (here: spring only, [Penner 1995, (13)]).
 /// \param sigma  noise of one scan.

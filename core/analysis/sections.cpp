@@ -158,7 +158,7 @@ TestEstimates estimate_in_sections(const estimate::Trace& trace, const base::Lon
     // The first slip of a later section also was the last of the section before.
     const SlipEstimates estimates = estimate_slips(trace, section, sigma, prior, first_counts && first == 0);
     whole.model_describes = whole.model_describes && model_describes(estimates, sigma);
-    whole.misfit.add(estimates, sigma);
+    whole.misfit.add(trace, estimates, sigma);
     testers.add(estimates);
     TestResults own;
     model_results(section, estimates, tester, sigma, own);

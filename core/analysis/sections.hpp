@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "core/analysis/characterisation.hpp"
 #include "core/analysis/model_results.hpp"
@@ -35,7 +36,9 @@ struct TestEstimates {
   base::LongColumn<double> onset_errors_s;         ///< Standard error of each onset; NaN if unknown.
   std::int64_t captured = 0;                       ///< Slips that ended in sticking.
   bool model_describes = true;                     ///< model_describes() holds for each section.
-  Misfit misfit;                                   ///< Of all sections.
+  Rung rung = Rung::kLawWithSlope;
+  std::string rung_reason;  ///< Why not a higher rung.
+  Misfit misfit;            ///< Of all sections.
   /// Estimate of the tester's parameters; nullopt if the fit of a section did not converge.
   std::optional<TesterEstimate> tester;
 };

@@ -12,6 +12,7 @@
 #include "core/detect/capture_test.hpp"
 #include "core/estimate/cycle_buffer.hpp"
 #include "core/estimate/uniform_stage.hpp"
+#include "core/model/tester.hpp"
 #include "core/signal/statistics.hpp"
 
 namespace stickslip::analysis {
@@ -269,6 +270,22 @@ double SlipEstimates::static_coefficient(const estimate::SlipWindow& window) con
          belt.acceleration_share(fit.shared.r, fit.shared.oscillator().omega0_squared(), window.slip.onset_s);
 }
 
+estimate::SharedPrior held_damping(const estimate::Trace& trace,
+                                   const base::LongColumn<detect::Fall>& slips) {
+  constexpr double kErrorOfOmega = 0.5;     // Of itself: the half periods of falls with pauses are longer.
+  constexpr double kErrorOfDamping = 1e-3;  // Small, so that γ does not move.
+  const double half_s = signal::median_of(slips.size(), [&](std::size_t i) {
+    const detect::Fall slip = slips[i];
+    return estimate::time_at(trace, slip.trough_at) - estimate::time_at(trace, slip.peak_at);
+  });
+  const double omega = std::numbers::pi / half_s;
+  estimate::SharedPrior prior;
+  prior.coupling = {
+      omega, model::kTypicalGammaOver2Omega,
+      Eigen::Vector2d{std::pow(kErrorOfOmega * omega, 2), std::pow(kErrorOfDamping, 2)}.asDiagonal()};
+  return prior;
+}
+
 SlipEstimates estimate_slips(const estimate::Trace& trace, std::span<const detect::Fall> slips, double sigma,
                              const estimate::SharedPrior& prior, bool first_counts) {
   const model::SharedParameters guess = first_guess(trace, slips);
@@ -306,6 +323,7 @@ SlipEstimates estimate_slips(const estimate::Trace& trace, std::span<const detec
     SlipEstimates other = rounds(trace, slips, sigma, prior, estimates.fit.shared, std::move(first_captured));
     if (first_stuck_after_all(estimates, other, sigma)) estimates = std::move(other);
   }
+  estimates.guess = guess;
   estimates.drift = trace.drift;
   estimates.belt = trace.belt;
   estimates.first_counts = first_counts;

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "core/analysis/characterisation.hpp"
+#include "core/base/long_column.hpp"
 #include "core/detect/fall_finder.hpp"
+#include "core/estimate/shared_prior.hpp"
 #include "core/estimate/slip_fit.hpp"
 #include "core/estimate/trace.hpp"
 #include "core/estimate/uniform_fit.hpp"
@@ -34,6 +36,7 @@ struct SlipEstimates {
   std::vector<estimate::SlipWindow> windows;  ///< One for each onset from sticking.
   std::vector<std::size_t> window_of_slip;    ///< Index into `windows` for each slip, or kNoWindow.
   estimate::SlipFit fit;
+  model::SharedParameters guess;  ///< By turning points and slopes: where the fit began.
   /// Fit of one S and one K to all slips but the first; nullopt if the slips differ by more than noise.
   std::optional<estimate::UniformFit> uniform;
   model::BeltCourse belt;     ///< Belt speed over the time of the trace.
@@ -46,6 +49,10 @@ struct SlipEstimates {
   /// S of a slip: c at its onset plus a/g, the friction that accelerates the sled with the belt.
   [[nodiscard]] double static_coefficient(const estimate::SlipWindow& window) const;
 };
+
+/// Prior that holds γ/2ω at the typical value and leaves ω free: for slips whose shape tells no γ.
+[[nodiscard]] estimate::SharedPrior held_damping(const estimate::Trace& trace,
+                                                 const base::LongColumn<detect::Fall>& slips);
 
 /// \param slips  falls that are slips, in the order of time, not empty.
 /// \param sigma  noise of one scan, > 0.

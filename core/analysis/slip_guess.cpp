@@ -5,13 +5,11 @@
 #include <numbers>
 #include <vector>
 
+#include "core/model/tester.hpp"
 #include "core/signal/statistics.hpp"
 
 namespace stickslip::analysis {
 namespace {
-
-/// First guess of γ/2ω: the paper's tester, (19).
-constexpr double kFirstGammaOver2Omega = 0.022;
 
 /// A rise that starts below this part of its peak is the loading of a test from rest.
 constexpr double kLoadingStartsBelow = 0.5;
@@ -110,7 +108,7 @@ model::SharedParameters first_guess(const estimate::Trace& trace, std::span<cons
   }
   model::SharedParameters shared;
   shared.omega = std::numbers::pi / signal::median(half_periods);
-  shared.gamma = 2.0 * kFirstGammaOver2Omega * shared.omega;
+  shared.gamma = 2.0 * model::kTypicalGammaOver2Omega * shared.omega;
   const detect::Fall& first = slips.front();
   const bool from_loading = trace.belt.is_constant() && scan_at(first.peak_at) > 0 &&
                             level_before(trace, first) < kLoadingStartsBelow * first.peak;

@@ -35,6 +35,10 @@ double noise_floor(const base::LongColumn<double>& values, double step_coefficie
       {signal::kRoundingSigma * step, kSmallestRelativeNoise * largest, std::numeric_limits<double>::min()});
 }
 
+/// Probability of the agreement of a test alone with the tester's characterisation below which the difference
+/// of both rungs is in the systematic uncertainties: 1 in 20 tests on paper without a slope has it, too.
+constexpr double kSlopeLevel = 0.05;
+
 /// Turning points must not follow noise before the noise is known.
 double hysteresis(double sigma) { return detect::SlipRule::kHysteresisSigmas * sigma; }
 
@@ -113,6 +117,29 @@ void add_spread(const TestResults& turning_points, TestResults& results) {
   add(turning_points.delta_mu, results.delta_mu);
 }
 
+/// Takes away what the damping tells, as it is held and not found, and adds to the systematic uncertainties
+/// of K and S − K what a typical γ leaves open: γ/2ω between 0 and twice that. Peak and trough hold; K =
+/// (trough + e peak)/(1 + e) with e = exp(−πγ/2ω) moves by π/2 of the amplitude for each unit of γ/2ω.
+void hold_damping(TestResults& results) {
+  const double shift =
+      0.5 * std::numbers::pi * model::kTypicalGammaOver2Omega * results.amplitude.value.value_or(0.0);
+  add_systematic(shift, results.mu_k);
+  add_systematic(shift, results.delta_mu);
+  const Estimate none =
+      Estimate::none(fmt::format("the damping is held at gamma/2omega = {}, typical of a sled on a spring",
+                                 model::kTypicalGammaOver2Omega));
+  for (Estimate* estimate : {&results.gamma_over_2omega, &results.Q_threshold, &results.threshold_speed,
+                             &results.slip_speed_ratio_threshold})
+    *estimate = none;
+}
+
+/// Fills misfit, misfit_place.
+void take_misfit(const Misfit& misfit, TestResults& results) {
+  results.misfit = misfit.systematic();
+  if (const auto place = misfit.place())
+    results.misfit_place = kSlipPartNames[static_cast<std::size_t>(*place)];
+}
+
 double total_error(const Estimate& estimate) {
   return std::hypot(estimate.standard_error.value_or(0.0), estimate.systematic_uncertainty.value_or(0.0));
 }
@@ -124,12 +151,29 @@ std::string turning_points_finding(const Estimate& delta_mu, const std::string& 
                      why);
 }
 
+/// What makes residuals in each part of the slip.
+std::string_view likely_cause(SlipPart part) {
+  switch (part) {
+    case SlipPart::kRise:
+      return "hum, missed spikes or creep before the slips";
+    case SlipPart::kPeak:
+      return "slips that begin gradually, or a slow transducer";
+    case SlipPart::kFall:
+      return "friction that changes with speed, or a slow transducer";
+    case SlipPart::kTrough:
+      return "a slow transducer, or friction that changes as the sled comes to rest";
+  }
+  return "friction";
+}
+
 std::string misfit_finding(const Misfit& misfit, const Estimate& delta_mu) {
+  const SlipPart part = misfit.place().value_or(SlipPart::kFall);
   return fmt::format(
-      "the fit leaves residuals of {:.2f} times the scan noise; friction, transducer, hum or missed spikes "
-      "may "
-      "cause them; S - K is uncertain by {:.2g}, its distance to turning points included",
-      misfit.residual_sigmas(), total_error(delta_mu));
+      "the fit leaves residuals of {:.2f} times the scan noise, {:.2f} in the {} of the slips; a likely "
+      "cause is {}; "
+      "S - K is uncertain by {:.2g}, its distance to turning points included",
+      misfit.residual_sigmas(), misfit.residual_sigmas(part), kSlipPartNames[static_cast<std::size_t>(part)],
+      likely_cause(part), total_error(delta_mu));
 }
 
 /// A stub of a test: without the noise there is no telling what is a slip.
@@ -137,9 +181,11 @@ void too_short(std::size_t scan_count, TestResults& results) {
   results.regime_reason =
       fmt::format("{} scans, {} are needed to know their noise", scan_count, signal::kFewestScansForNoise);
   no_model_results(results.regime_reason, results);
-  for (Estimate* estimate : {&results.cycle_count, &results.stick_cycle_count, &results.period_median,
-                             &results.oscillation_frequency, &results.static_coefficient,
-                             &results.kinetic_coefficient, &results.drift_rate}) {
+  results.rung_reason = results.regime_reason;
+  for (Estimate* estimate :
+       {&results.cycle_count, &results.stick_cycle_count, &results.period_median,
+        &results.oscillation_frequency, &results.static_coefficient, &results.kinetic_coefficient,
+        &results.drift_rate, &results.smallest_slip, &results.misfit, &results.mu_slope}) {
     *estimate = Estimate::none(results.regime_reason);
   }
 }
@@ -237,6 +283,7 @@ TestResults TestAnalysis::finish() {
   read_speeds(trace);
   if (!slips.empty()) follow_speed(trace, slips);
   results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
+  results.smallest_slip = Estimate::of(detect::SlipRule::kSignificantSigmas * sigma);
   const TraditionalCoefficients traditional =
       traditional_coefficients(trace, slips, settings_.method, settings_.tester.pull_speed_m_per_s);
   results.static_coefficient =
@@ -255,6 +302,8 @@ TestResults TestAnalysis::finish() {
       results.cycle_count = results.stick_cycle_count = Estimate::none(kHiddenOscillation);
     }
     no_model_results("no slip", results);
+    results.rung_reason = "no slip";
+    results.misfit = results.mu_slope = Estimate::none("no slip");
   } else {
     TestEstimates estimates =
         fits_whole_test()
@@ -269,23 +318,32 @@ TestResults TestAnalysis::finish() {
       const TestEstimates fitted = std::move(estimates);
       estimates = by_turning_points(trace, slips, cycles_by_turning_points(), why);
       estimates.model_describes = false;
+      estimates.misfit = fitted.misfit;
       add_spread(fitted.cycles, estimates.results);
       results.findings.push_back(turning_points_finding(estimates.results.delta_mu, why));
     }
+    if (fits_whole_test()) take_misfit(estimates.misfit, results);
     if (fits_whole_test() && estimates.model_describes && estimates.misfit.is_significant() &&
         trace.belt.is_constant()) {
       add_spread(by_turning_points(trace, slips, cycles_by_turning_points(), {}).results, estimates.results);
       if (estimates.misfit.is_certain())
         results.findings.push_back(misfit_finding(estimates.misfit, estimates.results.delta_mu));
     }
-    const detect::RegimeVerdict verdict =
+    results.rung = estimates.rung;
+    results.rung_reason = estimates.rung_reason;
+    detect::RegimeVerdict verdict =
         detect::judge_regime(slips.size(), estimates.log_likelihood_ratios, estimates.model_describes);
+    if ((!estimates.model_describes || estimates.misfit.is_certain()) && trace.belt.is_constant()) {
+      verdict =
+          detect::judge_by_shape(cycle_shape(trace, slips), std::move(verdict), estimates.model_describes);
+    }
     results.regime = verdict.regime;
     results.regime_reason = verdict.reason;
     results.stick_cycle_count = verdict.regime == model::Regime::kUndecided
                                     ? Estimate::none("undecided: " + verdict.reason)
                                     : Estimate::of(static_cast<double>(estimates.captured));
     take_model_results(estimates.results, results);
+    results.mu_slope = mu_slope(trace, slips, sigma, estimates);
     if (fits_whole_test() && estimates.model_describes) speed_results(trace, estimates, results);
     if (verdict.transition_slip) {
       results.transition_time = transition_time(trace, estimates, slips, *verdict.transition_slip);
@@ -350,7 +408,10 @@ TestEstimates TestAnalysis::by_turning_points(const estimate::Trace& trace,
   LiveSettlement settlement;
   settlement.first_counts = settings_.skipped.first_slip;
   settlement.reason = std::move(reason);
-  return estimates_from_live(trace, slips, cycles, settlement, settings_.scratch_folder);
+  TestEstimates estimates = estimates_from_live(trace, slips, cycles, settlement, settings_.scratch_folder);
+  estimates.rung = Rung::kTurningPoints;
+  estimates.rung_reason = settlement.reason;
+  return estimates;
 }
 
 base::LongColumn<detect::LiveCycle> TestAnalysis::cycles_by_turning_points() const {
@@ -379,11 +440,73 @@ TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongCol
   };
   TestEstimates alone = estimates({});
   if (alone.model_describes) tester_ = alone.tester;
-  if (settings_.prior.empty()) return alone;
-  TestEstimates with = estimates(settings_.prior);
-  if (!settings_.prior.coupling || !tester_ || !with.tester) return with;
+  const auto held = [&](const estimate::SharedPrior& prior) {
+    TestEstimates with = estimates(prior);
+    with.rung = Rung::kTwoParameterLaw;
+    with.rung_reason = alone.results.delta_mu.reason;
+    return with;
+  };
+  if (!settings_.prior.coupling) {
+    if (!alone.model_describes && trace.belt.is_constant()) {
+      TestEstimates typical = held(held_damping(trace, slips));
+      if (typical.model_describes) {
+        hold_damping(typical.results);
+        return typical;
+      }
+    }
+    return settings_.prior.empty() ? std::move(alone) : estimates(settings_.prior);
+  }
+  TestEstimates with = held(settings_.prior);
+  if (!tester_ || !with.tester) return with;
+  with.rung_reason = "the tester is characterised, and the damping found agrees with it";
   tester_check_ = check_tester(*tester_, *with.tester, *settings_.prior.coupling, settings_.tester);
-  return tester_check_->used() && with.model_describes ? std::move(with) : std::move(alone);
+  if (!tester_check_->used() || !with.model_describes) return alone;
+  if (tester_check_->probability < kSlopeLevel) add_spread(alone.results, with.results);
+  return with;
+}
+
+Estimate TestAnalysis::mu_slope(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
+                                double sigma, const TestEstimates& estimates) const {
+  if (!fits_whole_test()) return Estimate::none("turning points tell no damping");
+  if (!tester_)
+    return Estimate::none(estimates.results.delta_mu.reason.empty() ? estimates.rung_reason
+                                                                    : estimates.results.delta_mu.reason);
+  if (!settings_.prior.coupling) {
+    return Estimate::none(
+        "the tester is not characterised: its damping and the paper's slope are one number, gamma");
+  }
+  const auto slope = [&](const TesterEstimate& found) {
+    return slope_of_friction(found, *settings_.prior.coupling, settings_.tester.gravity_m_per_s2);
+  };
+  Estimate whole = slope(*tester_);
+  if (!estimates.misfit.is_significant()) return whole;
+  // What the law leaves out moves γ from one part of a test to the next.
+  constexpr std::size_t kParts = 3;
+  constexpr std::size_t kFewestSlips = 4;
+  constexpr double kLeastAgreement = 0.01;
+  const std::size_t size = slips.size() / kParts;
+  if (size < kFewestSlips) {
+    return Estimate::none(fmt::format("the fit leaves misfit, and {} slips make no {} parts that could agree",
+                                      slips.size(), kParts));
+  }
+  std::vector<Estimate> parts;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    base::LongColumn<detect::Fall> own{settings_.scratch_folder};
+    for (std::size_t i = part * size; i < (part + 1) * size; ++i) own.push_back(slips[i]);
+    const TestEstimates found =
+        estimate_in_sections(trace, own, sigma, {}, settings_.tester, settings_.scratch_folder,
+                             kMostSlipsTogether, settings_.skipped.first_slip);
+    if (!found.model_describes || !found.tester) {
+      return Estimate::none(fmt::format("part {} of {} of the test has none: {}", part + 1, kParts,
+                                        found.results.delta_mu.reason));
+    }
+    parts.push_back(slope(*found.tester));
+  }
+  const double probability = probability_of_agreement(parts);
+  if (probability >= kLeastAgreement) return whole;
+  return Estimate::none(
+      fmt::format("the {} parts of the test differ: {:.2g}, {:.2g} and {:.2g} s/m, probability {:.1g}",
+                  kParts, *parts[0].value, *parts[1].value, *parts[2].value, probability));
 }
 
 void TestAnalysis::speed_results(const estimate::Trace& trace, const TestEstimates& estimates,
@@ -393,7 +516,7 @@ void TestAnalysis::speed_results(const estimate::Trace& trace, const TestEstimat
     return;
   }
   if (!estimates.tester) {
-    results.pull_speed_measured = Estimate::none("the fit of the model did not converge");
+    results.pull_speed_measured = Estimate::none(estimates.rung_reason);
     return;
   }
   const TesterEstimate& found = *estimates.tester;

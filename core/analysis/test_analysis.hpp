@@ -116,11 +116,15 @@ class TestAnalysis {
   /// Into cycles_, with their flags.
   void keep_cycles(const estimate::Trace& trace, const TestEstimates& estimates,
                    const base::LongColumn<detect::Fall>& slips);
+  /// μ′ of the paper over that of the characterisation, from the damping that the test alone has.
+  [[nodiscard]] Estimate mu_slope(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
+                                  double sigma, const TestEstimates& estimates) const;
   /// Fills pull_speed_measured and the findings.
   void speed_results(const estimate::Trace& trace, const TestEstimates& estimates,
                      TestResults& results) const;
-  /// By the fit, after taking off the drift; with the prior, unless the test alone contradicts it. Fills
-  /// tester_ and tester_check_.
+  /// From the highest rung of the fit that describes the test, after taking off the drift; if the test is not
+  /// described, what its fit left. With a characterised tester γ is the tester's, unless the test alone
+  /// contradicts it. Fills tester_ and tester_check_.
   [[nodiscard]] TestEstimates estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                        double sigma);
   /// Estimates from cycles with turning points. \param reason  why no results of a fit are there.

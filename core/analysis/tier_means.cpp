@@ -1,15 +1,20 @@
 #include "core/analysis/tier_means.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace stickslip::analysis {
 
 namespace {
 
-Estimate estimate_of(const signal::WanderingMean& values, double systematic_uncertainty) {
+/// \param level  peak or middle of the same cycles: the mean is at least as uncertain as theirs.
+Estimate estimate_of(const signal::WanderingMean& values, const signal::WanderingMean& level,
+                     double systematic_uncertainty) {
   if (values.count() < 1.0) return Estimate::none("no cycle with an estimate of its own");
-  Estimate estimate = values.count() < 2.0 ? Estimate::of(values.mean())
-                                           : Estimate::of(values.mean(), values.error_of_mean());
+  Estimate estimate =
+      values.count() < 2.0
+          ? Estimate::of(values.mean())
+          : Estimate::of(values.mean(), std::max(values.error_of_mean(), level.error_of_mean()));
   if (estimate.value) estimate.systematic_uncertainty = systematic_uncertainty;
   return estimate;
 }
@@ -30,12 +35,18 @@ void TierMeans::add(const detect::LiveCycle& cycle) noexcept {
   K_correction_.add(cycle.K - 0.5 * (cycle.cycle.peak + cycle.cycle.trough));
 }
 
+void TierMeans::add_level(double peak, double trough) noexcept {
+  if (levels_++ == 1 && leaves_out_first_) peak_ = middle_ = {};
+  peak_.add(peak);
+  middle_.add(0.5 * (peak + trough));
+}
+
 void TierMeans::fill(TestResults& results) const {
   const double of_S = std::abs(S_correction_.mean);
   const double of_K = std::abs(K_correction_.mean);
-  results.mu_s = estimate_of(S_, of_S);
-  results.mu_k = estimate_of(K_, of_K);
-  results.delta_mu = estimate_of(delta_mu_, of_S + of_K);
+  results.mu_s = estimate_of(S_, peak_, of_S);
+  results.mu_k = estimate_of(K_, middle_, of_K);
+  results.delta_mu = estimate_of(delta_mu_, delta_mu_, of_S + of_K);
   if (delta_mu_.count() >= 3.0) {
     const double variance = delta_mu_.variance();
     results.delta_mu_scatter =

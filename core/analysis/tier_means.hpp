@@ -14,6 +14,8 @@ class TierMeans {
  public:
   explicit TierMeans(bool first_counts = false) noexcept : leaves_out_first_(!first_counts) {}
   void add(const detect::LiveCycle& cycle) noexcept;
+  /// Peak and trough of the next slip, with an estimate of its own or without.
+  void add_level(double peak, double trough) noexcept;
   /// mu_s, mu_k, delta_mu and delta_mu_scatter. Standard errors follow from the scatter of the cycles, of
   /// which neighbours are correlated. The systematic uncertainty is the whole correction for belt and
   /// damping: no fit has shown that the closed forms hold.
@@ -23,11 +25,15 @@ class TierMeans {
   signal::WanderingMean S_;
   signal::WanderingMean K_;
   signal::WanderingMean delta_mu_;
+  // What wanders along the track is seen best in all slips, without corrections that scatter.
+  signal::WanderingMean peak_;
+  signal::WanderingMean middle_;
   // What S and K owe to belt and damping beside the peak and the middle of the fall.
   signal::RunningMean S_correction_;
   signal::RunningMean K_correction_;
   bool leaves_out_first_;
   bool only_first_ = true;
+  int levels_ = 0;
 };
 
 }  // namespace stickslip::analysis

@@ -9,44 +9,77 @@
 
 namespace stickslip::detect {
 
+namespace {
+
+/// Log-likelihood of a course of slip ends over "all free", and the first slip that ends otherwise than the
+/// one before.
+struct Course {
+  double log_likelihood = -std::numeric_limits<double>::infinity();
+  std::size_t changed_at = 0;
+
+  [[nodiscard]] Course plus(double ratio) const noexcept { return {log_likelihood + ratio, changed_at}; }
+};
+
+const Course& likelier(const Course& a, const Course& b) noexcept {
+  return b.log_likelihood > a.log_likelihood ? b : a;
+}
+
+/// The likeliest courses without and with changes, up to a slip [Viterbi, IEEE Trans. Inf. Theory 13:260–269,
+/// 1967].
+struct Courses {
+  double all_captured = 0.0;
+  double all_free = 0.0;
+  Course mixed_captured;  ///< Mixed, the latest slip captured.
+  Course mixed_free;
+
+  void add(std::size_t slip, bool is_first, double ratio, double change) noexcept {
+    const Course captured = mixed_captured;
+    const Course free = mixed_free;
+    if (!is_first) {
+      mixed_captured =
+          likelier({all_free - change, slip}, likelier(captured, free.plus(-change))).plus(ratio);
+      mixed_free = likelier({all_captured - change, slip}, likelier(free, captured.plus(-change)));
+    }
+    all_captured += ratio;
+  }
+  [[nodiscard]] const Course& mixed() const noexcept { return likelier(mixed_captured, mixed_free); }
+};
+
+/// Of a trace that the model does not describe: a slip's ratio counts up to 20 to 1, and slips change their
+/// behaviour once in a hundred.
+constexpr double kLargestDoubtfulRatio = 2.995732273553991;  // ln 20
+constexpr double kChange = 4.605170185988091;                // ln 100
+
+}  // namespace
+
 RegimeVerdict judge_regime(std::size_t slip_count, const base::LongColumn<double>& log_likelihood_ratios,
                            bool model_describes) {
   if (slip_count == 0) return {model::Regime::kSteadySliding, "no fall of the force is a slip", {}};
   if (log_likelihood_ratios.empty()) {
     return {model::Regime::kUndecided, "one slip: nothing after it tells how it ended", {}};
   }
-  // Log-likelihoods of the classes over "all free". Mixed takes the best for each slip, but must
-  // hold at least one of each kind, so it gives up the weakest where all agree.
-  double all_captured = 0.0;
-  double best_of_each = 0.0;
-  double weakest = std::numeric_limits<double>::infinity();
+  const double largest = model_describes ? std::numeric_limits<double>::infinity() : kLargestDoubtfulRatio;
+  Courses courses;
   std::ptrdiff_t captured = 0;
   std::ptrdiff_t count = 0;
+  std::size_t slip = 0;
   for (const double ratio : log_likelihood_ratios) {
-    if (ratio == 0.0) continue;  // Says nothing.
-    ++count;
-    if (ratio > 0.0) ++captured;
-    all_captured += ratio;
-    best_of_each += std::max(ratio, 0.0);
-    weakest = std::min(weakest, std::abs(ratio));
+    if (ratio != 0.0) {  // Else it says nothing.
+      courses.add(slip, count == 0, std::clamp(ratio, -largest, largest), model_describes ? 0.0 : kChange);
+      ++count;
+      if (ratio > 0.0) ++captured;
+    }
+    ++slip;
   }
   if (count == 0) return {model::Regime::kUndecided, "no slip tells how it ended", {}};
-  const bool unanimous = captured == 0 || captured == count;
-  if (!unanimous && !model_describes) {
-    return {
-        model::Regime::kUndecided,
-        fmt::format("{} of {} slips look captured, but the model does not describe them", captured, count),
-        {}};
-  }
-  const double mixed = unanimous ? best_of_each - weakest : best_of_each;
 
   struct Class {
     model::Regime regime;
     double log_likelihood;
   };
-  std::array<Class, 3> classes{{{model::Regime::kStickSlip, all_captured},
-                                {model::Regime::kRingDown, 0.0},
-                                {model::Regime::kMixed, mixed}}};
+  std::array<Class, 3> classes{{{model::Regime::kStickSlip, courses.all_captured},
+                                {model::Regime::kRingDown, courses.all_free},
+                                {model::Regime::kMixed, courses.mixed().log_likelihood}}};
   std::sort(classes.begin(), classes.end(),
             [](const Class& a, const Class& b) { return a.log_likelihood > b.log_likelihood; });
   const double lead = classes[0].log_likelihood - classes[1].log_likelihood;
@@ -60,15 +93,27 @@ RegimeVerdict judge_regime(std::size_t slip_count, const base::LongColumn<double
   RegimeVerdict verdict;
   verdict.regime = classes[0].regime;
   verdict.reason = fmt::format("{} of {} slips ended in sticking", captured, count);
-  if (verdict.regime == model::Regime::kMixed) {
-    const auto tells = [](double ratio) { return ratio != 0.0; };
-    const auto first = std::find_if(log_likelihood_ratios.begin(), log_likelihood_ratios.end(), tells);
-    const auto changed = std::find_if(first, log_likelihood_ratios.end(), [&](double ratio) {
-      return tells(ratio) && (ratio > 0.0) != (*first > 0.0);
-    });
-    verdict.transition_slip = static_cast<std::size_t>(changed - log_likelihood_ratios.begin());
-  }
+  if (verdict.regime == model::Regime::kMixed) verdict.transition_slip = courses.mixed().changed_at;
   return verdict;
+}
+
+RegimeVerdict judge_by_shape(const CycleShape& shape, RegimeVerdict by_ends, bool model_describes) {
+  constexpr std::size_t kFewestCycles = 8;
+  constexpr double kDecays = 3.0;
+  // A stick shorter than a twentieth of the oscillation cannot be told from none by turning points.
+  constexpr double kNoRest = 1.1;
+  if (shape.count < kFewestCycles || shape.decay_sigmas > kDecays) return by_ends;
+  const std::string shape_text =
+      fmt::format("the oscillation does not decay, and its rises last {:.2f} times as long as its falls",
+                  shape.rise_over_fall);
+  const bool rests = shape.rise_over_fall > kNoRest;
+  if (!model_describes && !rests)
+    return {model::Regime::kInertialOscillation, shape_text + ": the sled never rests", {}};
+  const bool doubtful = by_ends.regime == model::Regime::kUndecided ||
+                        (by_ends.regime == model::Regime::kRingDown && !model_describes);
+  if (doubtful && rests)
+    return {model::Regime::kStickSlip, shape_text + ": the sled rests between the slips", {}};
+  return by_ends;
 }
 
 }  // namespace stickslip::detect

@@ -22,10 +22,27 @@ inline constexpr double kDecisiveLikelihoodRatio = 20.0;
 
 /// \param slip_count  slips of the test.
 /// \param log_likelihood_ratios  captured over free, one for each slip but the last.
-/// \param model_describes  the ratios rest on a model that fits the trace; if it does not, only a
-///        unanimous vote counts.
+/// \param model_describes  the ratios rest on a model that fits the trace. If it does not, each counts for
+/// little,
+///        and slips that end otherwise than their neighbours must outweigh the changes of behaviour they
+///        need.
 [[nodiscard]] RegimeVerdict judge_regime(std::size_t slip_count,
                                          const base::LongColumn<double>& log_likelihood_ratios,
                                          bool model_describes);
+
+/// What the cycles of a test look like, without any model.
+struct CycleShape {
+  std::size_t count = 0;        ///< Cycles with a rise after the fall.
+  double rise_over_fall = 0.0;  ///< Median: time from trough to next peak over time from peak to trough.
+  double decay_sigmas = 0.0;    ///< Decrease of the logarithm of the drop with time, in standard errors.
+};
+
+/// Regime of a test that no friction law describes, or only with misfit. The rises of a sled that never rests
+/// take as long as its falls, those of one that rests longer; only a free oscillation decays.
+///
+/// \param by_ends  from judge_regime(); stays for decaying and for few cycles, and where it agrees.
+/// \param model_describes  by_ends stays, too, unless it is undecided and the sled rests.
+[[nodiscard]] RegimeVerdict judge_by_shape(const CycleShape& shape, RegimeVerdict by_ends,
+                                           bool model_describes);
 
 }  // namespace stickslip::detect

@@ -4,13 +4,13 @@
 
 #include <Eigen/LU>
 
+#include "core/model/tester.hpp"
+
 namespace stickslip::estimate {
 namespace {
 
-/// Initial γ/2ω of a tester without characterisation, that of the paper [Penner 1995, (19)], and its standard
-/// deviation, which covers 0 to three times the value. A dozen cycles determine it ten times better
-/// (docs/detector.md).
-constexpr double kUsualGammaOver2Omega = 0.022;
+/// Standard deviation of the initial γ/2ω of a tester without characterisation; it covers 0 to three times
+/// the typical value. A dozen cycles determine it ten times better (docs/detector.md).
 constexpr double kGammaOver2OmegaSpread = 0.05;
 /// Relative standard deviations of the initial ω, from turning points, and of the initial stick rate, from
 /// the slope of a rise; they cover the worst case, three scans from peak to trough.
@@ -36,7 +36,7 @@ Eigen::Vector3d vector_of(const model::SharedParameters& shared) noexcept {
 }  // namespace
 
 void SharedKnowledge::start(double omega, double stick_rate_per_s) {
-  best_ = {omega, 2.0 * kUsualGammaOver2Omega * omega, stick_rate_per_s};
+  best_ = {omega, 2.0 * model::kTypicalGammaOver2Omega * omega, stick_rate_per_s};
   learnt_ = {};
   if (prior_.coupling) {
     best_.omega = prior_.coupling->omega;

@@ -11,6 +11,9 @@ namespace stickslip::model {
 /// Standard acceleration of gravity, m/s² [3rd CGPM, 1901].
 inline constexpr double kStandardGravity_m_per_s2 = 9.80665;
 
+/// γ/2ω of a sled on a spring where it is not known: that of the paper's tester. [Penner 1995, (19)]
+inline constexpr double kTypicalGammaOver2Omega = 0.022;
+
 /// The sled and its drive.
 struct Tester {
   double sled_mass_kg = 2.331;  ///< [Penner 1995]

@@ -13,9 +13,12 @@
 
 namespace stickslip::signal {
 
-/// The error follows from the long-run variance, by the initial positive sequence of autocovariances [Geyer,
-/// Stat. Sci. 7(4):473–483, 1992, section 3.3]. It is never below that of independent values. From kMost
-/// values on, neighbours are averaged, so that memory and time are bounded. Never allocates.
+/// The values are white noise, or wander as an Ornstein–Uhlenbeck process with white noise: covariance of
+/// values i and j V = (1 − w) e^(−|i−j|/τ) + w δ_ij, in units of the variance. The error is the average over
+/// w and τ, weighted by their posterior probabilities [Gelman et al., Bayesian Data Analysis, 3rd ed., 2013,
+/// section 7.6]; white noise has four fifths of the prior, so that independent values have the error of
+/// textbooks but for a few per cent. It is never below that. From kMost values on, neighbours are averaged,
+/// so that memory and time are bounded. Never allocates.
 class WanderingMean {
  public:
   static constexpr std::size_t kMost = 512;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -62,10 +63,48 @@ TEST(RegimeRule, WeakestSlipDecidesBetweenPureAndMixed) {
   EXPECT_EQ(regime_of({50.0, 50.0, 50.0, -4.0}), Regime::kMixed);
 }
 
-TEST(RegimeRule, WithoutAModelOnlyAUnanimousVoteCounts) {
+TEST(RegimeRule, WithoutAModelAFewSlipsAmongManyDoNotMakeATestMixed) {
   EXPECT_EQ(regime_of({50.0, 50.0, 50.0}, false), Regime::kStickSlip);
   EXPECT_EQ(regime_of({-50.0, -50.0, -50.0}, false), Regime::kRingDown);
-  EXPECT_EQ(regime_of({50.0, 50.0, -50.0}, false), Regime::kUndecided);
+  // Single slips that seem to go on, each among many that stick: double events of rough paper.
+  std::vector<double> ratios(100, 50.0);
+  ratios[20] = ratios[50] = ratios[80] = -50.0;
+  EXPECT_EQ(regime_of(ratios, false), Regime::kStickSlip);
+  EXPECT_EQ(regime_of(ratios, true), Regime::kMixed);
+}
+
+TEST(RegimeRule, WithoutAModelOneChangeOfBehaviourIsMixed) {
+  std::vector<double> ratios(20, 50.0);
+  std::fill(ratios.begin() + 12, ratios.end(), -50.0);
+  const detect::RegimeVerdict verdict = detect::judge_regime(21, ratios, false);
+  EXPECT_EQ(verdict.regime, Regime::kMixed);
+  EXPECT_EQ(verdict.transition_slip, 12U);
+}
+
+detect::RegimeVerdict by_shape(const detect::CycleShape& shape, Regime by_ends, bool model_describes) {
+  return detect::judge_by_shape(shape, {by_ends, "by ends", {}}, model_describes);
+}
+
+TEST(RegimeRule, RisesAsLongAsFallsAreASledThatNeverRests) {
+  const detect::CycleShape even{20, 1.02, 0.0};
+  for (const Regime by_ends : {Regime::kStickSlip, Regime::kRingDown, Regime::kMixed, Regime::kUndecided}) {
+    EXPECT_EQ(by_shape(even, by_ends, false).regime, Regime::kInertialOscillation);
+    EXPECT_EQ(by_shape(even, by_ends, true).regime, by_ends);
+  }
+}
+
+TEST(RegimeRule, RisesLongerThanFallsAreASledThatRests) {
+  const detect::CycleShape saw{20, 3.0, 0.0};
+  EXPECT_EQ(by_shape(saw, Regime::kRingDown, false).regime, Regime::kStickSlip);
+  EXPECT_EQ(by_shape(saw, Regime::kRingDown, true).regime, Regime::kRingDown);
+  EXPECT_EQ(by_shape(saw, Regime::kMixed, false).regime, Regime::kMixed);
+  for (const bool describes : {false, true})
+    EXPECT_EQ(by_shape(saw, Regime::kUndecided, describes).regime, Regime::kStickSlip);
+}
+
+TEST(RegimeRule, DecayAndFewCyclesLeaveTheVerdictToTheEnds) {
+  for (const detect::CycleShape& shape : {detect::CycleShape{20, 1.02, 5.0}, detect::CycleShape{7, 3.0, 0.0}})
+    EXPECT_EQ(by_shape(shape, Regime::kRingDown, false).regime, Regime::kRingDown);
 }
 
 TEST(RegimeRule, SlipsThatTellNothingDoNotVote) {
