@@ -123,12 +123,12 @@ TesterCheck check_tester(const TesterEstimate& alone, const TesterEstimate& with
   check.chi_squared = off.dot(spread.inverse() * off);
   check.probability = std::isfinite(check.chi_squared) ? probability_of(check.chi_squared, 2.0) : 0.0;
   if (!check.agrees()) {
-    check.findings.push_back(
-        fmt::format("tester or paper have changed since the characterisation: chi-squared {:.1f} for 2 "
-                    "(omega {:.3f} rad/s here, "
-                    "{:.3f} there; gamma/2omega {:.5f} here, {:.5f} there), so that it was {}",
-                    check.chi_squared, alone.omega, known.omega, alone.gamma_over_2omega,
-                    known.gamma_over_2omega, check.used() ? "used with doubt" : "not used"));
+    check.findings.push_back(fmt::format(
+        "the tester or the paper has changed since the characterisation: chi-squared {:.1f} for 2 "
+        "(omega {:.3f} rad/s here, "
+        "{:.3f} there; gamma/2omega {:.5f} here, {:.5f} there), so that it was {}",
+        check.chi_squared, alone.omega, known.omega, alone.gamma_over_2omega, known.gamma_over_2omega,
+        check.used() ? "used with doubt" : "not used"));
   }
   const TesterEstimate& best = check.used() ? with : alone;
   check.pull_speed = pull_speed_of(best, tester.gravity_m_per_s2);

@@ -1,15 +1,19 @@
 #include "core/analysis/cycle_statistics.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <boost/math/distributions/students_t.hpp>
 
 #include "core/analysis/slip_estimator.hpp"
 #include "core/signal/statistics.hpp"
+#include "core/signal/wandering_mean.hpp"
 
 namespace stickslip::analysis {
 
@@ -78,6 +82,29 @@ estimate::Drift significant_drift(const estimate::Trace& trace, const base::Long
     mean_s += estimate::time_at(trace, slips[i].peak_at) / static_cast<double>(slips.size() - 1);
   }
   return {*slope.value, mean_s};
+}
+
+std::optional<std::string> level_finding(const base::LongColumn<detect::Fall>& slips) {
+  constexpr std::size_t kFewestSlips = 24;  // Eight in a third: fewer tell nothing of how they wander.
+  constexpr double kSure = 3.0;
+  if (slips.size() < kFewestSlips) return std::nullopt;
+  const std::size_t third = slips.size() / 3;
+  const auto mean_from = [&](std::size_t first) {
+    signal::WanderingMean mean;
+    for (std::size_t i = first; i < first + third; ++i) {
+      const detect::Fall slip = slips[i];
+      mean.add(0.5 * (slip.peak + slip.trough));
+    }
+    return std::pair{mean.mean(), mean.error_of_mean()};
+  };
+  const auto [first, first_error] = mean_from(0);
+  const auto [last, last_error] = mean_from(slips.size() - third);
+  if (!(std::abs(last - first) > kSure * std::hypot(first_error, last_error))) return std::nullopt;
+  return fmt::format(
+      "the level drifts along the track, from {:.4f} in the first third of the slips to {:.4f} in the last: "
+      "S and K are "
+      "means over this stretch",
+      first, last);
 }
 
 detect::CycleShape cycle_shape(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips) {

@@ -2,6 +2,9 @@
 /// Statistics from peak to peak, without the model: periods, and the drift of the mean.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "core/analysis/results.hpp"
 #include "core/base/long_column.hpp"
 #include "core/detect/fall_finder.hpp"
@@ -16,6 +19,10 @@ namespace stickslip::analysis {
 /// Drift to subtract before the model is fitted; zero unless drift_of() is significant.
 [[nodiscard]] estimate::Drift significant_drift(const estimate::Trace& trace,
                                                 const base::LongColumn<detect::Fall>& slips);
+
+/// Text of the finding if the means of peak and trough differ between the first and the last third of the
+/// slips by more than they wander in between: S and K then hold for this stretch of the track alone.
+[[nodiscard]] std::optional<std::string> level_finding(const base::LongColumn<detect::Fall>& slips);
 
 /// Shape of the cycles, of which each has a fall and the rise to the next.
 [[nodiscard]] detect::CycleShape cycle_shape(const estimate::Trace& trace,

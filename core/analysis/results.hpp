@@ -97,8 +97,8 @@ struct TestResults {
   Estimate misfit;
   Estimate smallest_slip;  ///< Drop of the force from which on a slip would have been counted.
 
-  /// Warnings for the user, such as: the tester disagrees with its characterisation, the pull speed is not
-  /// the planned one.
+  /// Warnings for the user, such as: the tester or the paper has changed since the characterisation, the pull
+  /// speed is not the planned one.
   std::vector<std::string> findings;
 
   bool operator==(const TestResults&) const = default;

@@ -353,6 +353,7 @@ TestResults TestAnalysis::finish() {
   period_results(trace, slips, results);
   if (auto finding = sampling_finding(settings_.scan_rate_Hz, results))
     results.findings.push_back(*std::move(finding));
+  if (auto finding = level_finding(slips)) results.findings.push_back(*std::move(finding));
   results.drift_rate = drift_of(trace, slips);
   return results;
 }

@@ -34,8 +34,10 @@ struct AnalysedTest {
 /// \param speed_gain_m_per_s_per_V  of a speed channel, which then takes the place of the plan; absent: the
 /// plan
 ///        is known.
+/// \param prior  of the tester's parameters.
 inline std::vector<AnalysedTest> analyse_scene(const std::filesystem::path& scene, int repeats,
-                                               std::optional<double> speed_gain_m_per_s_per_V = {}) {
+                                               std::optional<double> speed_gain_m_per_s_per_V = {},
+                                               const estimate::SharedPrior& prior = {}) {
   using Event = pipeline::Segmenter::Event;
   ManualClock clock;
   auto tester = drivers::make_simulated_tester({.scenes = {scene},
@@ -51,6 +53,7 @@ inline std::vector<AnalysedTest> analyse_scene(const std::filesystem::path& scen
   analysis_settings.scan_rate_Hz = board.info().scan_rate_granted_Hz;
   analysis_settings.step_coefficient = calibration.step_coefficient();
   analysis_settings.tester = tester->tester;
+  analysis_settings.prior = prior;
   const std::optional<daq::SecondChannel> channel = board.info().second;
   if (channel) {
     analysis_settings.tester.speed_course.reset();

@@ -79,7 +79,7 @@ class Characterise(unittest.TestCase):
     def test_another_spring_is_a_finding(self):
         done = run(CLI, "analyze", self.changed, "--tester", self.tester)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("the tester disagrees with its characterisation", done.stdout)
+        self.assertIn("the tester or the paper has changed since the characterisation", done.stdout)
         check = json.loads(run(CLI, "analyze", self.changed, "--tester", self.tester, "--json").stdout)
         self.assertFalse(check["tests"][0]["tester_check"]["agrees"])
 
