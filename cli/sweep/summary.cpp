@@ -20,7 +20,7 @@ namespace {
 constexpr std::int64_t kMostLines = 40;
 constexpr std::size_t kMostColumns = 60;
 /// Of model::kRegimeNames, in the map.
-constexpr std::string_view kLetters = "SRMGU";
+constexpr std::string_view kLetters = "SRMIGU";
 static_assert(kLetters.size() == model::kRegimeNames.size());
 /// Of kJudgedResults, those in the table.
 constexpr std::array<std::pair<std::size_t, std::string_view>, 3> kShownErrors{

@@ -484,10 +484,13 @@ class LivePage(unittest.TestCase):
                 self.assertGreaterEqual(contrast(rgb(front), rgb(back)), TEXT, f"{name} {front} on {back}, dark {dark}")
             for name, front, back in page.value("[...document.querySelectorAll('input[placeholder]')].map(e => [e.id || e.name, getComputedStyle(e, '::placeholder').color, getComputedStyle(e).backgroundColor])"):
                 self.assertGreaterEqual(contrast(rgb(front), rgb(back)), TEXT, f"what may be typed into {name}, dark {dark}")
+            regimes = ("stick-slip", "ring-down", "mixed", "inertial-oscillation", "steady-sliding", "undecided")
+            shapes = {page.value(f"(() => {{ Tables.regime('{word}'); return document.getElementById('regime-shape').getAttribute('d'); }})()") for word in regimes}
+            self.assertEqual(len(shapes), len(regimes))
             # Each state of the bench and each regime as well, on the paper.
             paper = rgb(page.value("getComputedStyle(document.body).backgroundColor"))
             for kind, words in (("bench", ("idle", "armed", "loading", "running", "finishing", "degraded", "not connected")),
-                                ("regime", ("stick-slip", "ring-down", "mixed", "steady-sliding", "undecided"))):
+                                ("regime", regimes)):
                 for word in words:
                     colour, back = page.value(f"(() => {{ Tables.{kind}('{word}'); const s = getComputedStyle(document.getElementById('{kind}')); return [s.color, s.backgroundColor]; }})()")
                     self.assertEqual(back, "rgba(0, 0, 0, 0)")
