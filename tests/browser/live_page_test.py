@@ -100,18 +100,20 @@ class LivePage(unittest.TestCase):
         page.until("[...document.querySelectorAll('#tests tbody td:last-child')].filter(c => c.textContent.endsWith('.h5')).length >= 3")
         # The tester goes on meanwhile: what the page shows is compared with the daemon's answer about the same tests.
         for _ in range(200):
-            rows, foot = page.value("[['#tests tbody tr', '#tests tfoot tr'].map(s => [...document.querySelectorAll(s)].map(r => [...r.cells].map(c => c.textContent)))][0]")
+            rows, foot, titles = page.value("[...['#tests tbody tr', '#tests tfoot tr'].map(s => [...document.querySelectorAll(s)].map(r => [...r.cells].map(c => c.textContent))), "
+                                            "[...document.querySelectorAll('#tests tbody tr')].map(r => r.cells[1].title)]")
             summary = daemon.ask("GET", "/v1/tests")[1]["summary"]
             if sorted(summary["tests"]) == sorted(int(row[0]) for row in rows):
                 break
         else:
             self.fail(f"the page never showed the tests that the daemon had: {summary['tests']}")
         compared, values = 0, {name: [] for name, _ in COLUMNS}
-        for row in rows:
+        for row, title in zip(rows, titles):
             test = next(t for t in daemon.ask("GET", "/v1/tests")[1]["tests"] if t["number"] == int(row[0]))
             file = daemon.record(int(row[0])) if not row[-1].endswith(".h5") else daemon.folder / test["file"]
             with h5py.File(file) as record:
                 self.assertEqual(row[1], record["entry/results/regime"].asstr()[()])
+                self.assertEqual(title, f"rung: {record['entry/results/rung'].asstr()[()]}")
                 for cell, (name, digits) in zip(row[2:], COLUMNS):
                     value = float(record[f"entry/results/{name}"][()])
                     self.assertEqual(cell, shown_in(record, name, digits), name)
