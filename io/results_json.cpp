@@ -126,7 +126,7 @@ analysis::TestResults results_from_json(const nlohmann::ordered_json& json) {
     results.rung_reason = record::kNoSuchResultThen;
   }
   json.at("findings").get_to(results.findings);
-  // Version 0.1 before the rung had the diagnostics among the other results.
+  // Documents without this member have the diagnostics among the other results.
   const nlohmann::ordered_json& diagnostics = json.contains(kDiagnostics) ? json.at(kDiagnostics) : details;
   analysis::for_each_result(results, [&](const analysis::ResultName& name, analysis::Estimate& estimate) {
     const nlohmann::ordered_json& among = name.is_diagnostic ? diagnostics : details;
