@@ -26,6 +26,13 @@ struct ShowOptions : BenchOptions {
   std::string test;  ///< Number of a test of the daemon, or path of a record.
 };
 
+/// "rung: two-parameter-law, the slope of K is not significant"
+std::string rung_text(const Json& results) {
+  const Json& details = results["details"];
+  const std::string reason = details.contains("rung") ? word(details["rung"], "reason") : std::string{};
+  return fmt::format("rung: {}{}{}\n", word(results, "rung"), reason.empty() ? "" : ", ", reason);
+}
+
 /// "  mu_s  0.3517 ± 0.0004 ± 0.0021", one line for each result; below them, what the errors mean.
 std::string results_text(const Json& results) {
   io::Table list = io::Table::list({0, 0});
@@ -44,7 +51,8 @@ std::string results_text(const Json& results) {
     has_systematic |= !number.systematic.empty();
     all_significant &= number.significant;
     const std::string unit = word(detail, "unit");
-    list.add({"  " + name, number.text() + (unit == "1" ? "" : " " + unit)});
+    const std::string place = detail.contains("place") ? ", most at the " + word(detail, "place") : "";
+    list.add({"  " + name, number.text() + (unit == "1" ? "" : " " + unit) + place});
   }
   std::string text = list.text();
   if (has_error || has_systematic)
@@ -60,7 +68,7 @@ base::Result<std::string> show_test(const ShowOptions& options) {
   const std::string text =
       fmt::format("test {}: {}, ended: {}\nfile: {}\n", (*test)["number"].dump(),
                   word((*test)["results"], "regime"), word(*test, "cause"), word(*test, "file"));
-  return text + results_text((*test)["results"]);
+  return text + rung_text((*test)["results"]) + results_text((*test)["results"]);
 }
 
 /// What is known of the sample, and what the user of an import stated.
@@ -105,9 +113,9 @@ base::Result<std::string> show_record(const ShowOptions& options) {
   for (const auto& [key, value] : header.metadata)
     known.add({"  metadata." + base::printable(key), base::printable(value)});
   return fmt::format(
-      "{}: {}, ended: {}\n{}\n{}", base::printable(options.test), word(results, "regime"),
+      "{}: {}, ended: {}\n{}\n{}{}", base::printable(options.test), word(results, "regime"),
       record->end->cause.empty() ? std::string{io::kAbsent} : base::printable(record->end->cause),
-      known.text(), results_text(results));
+      known.text(), rung_text(results), results_text(results));
 }
 
 base::Result<std::string> run_show(const ShowOptions& options) {

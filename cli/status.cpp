@@ -51,7 +51,7 @@ Ink of_bench(const std::string& bench) {
 /// As the page has them: each by word first, colour helps.
 Ink of_regime(const std::string& regime) {
   if (regime == "stick-slip") return Ink::kBlue;
-  if (regime == "ring-down") return Ink::kYellow;
+  if (regime == "ring-down" || regime == "inertial-oscillation") return Ink::kYellow;
   return regime == "steady-sliding" ? Ink::kGreen : Ink::kNone;
 }
 

@@ -95,9 +95,10 @@ std::string facts_text(const record::Record& record) {
   add_fact(text, "status", record::name(record.end->status));
   const analysis::TestResults& results = record.end->results;
   add_fact(text, "regime", model::name(results.regime));
+  add_fact(text, "rung", analysis::name(results.rung));
   analysis::for_each_result(
       results, [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
-        if (!estimate.value) return;
+        if (!estimate.value || name.is_diagnostic) return;
         add_fact(text, name.name,
                  estimate.standard_error ? fmt::format("{} +- {}", *estimate.value, *estimate.standard_error)
                                          : fmt::format("{}", *estimate.value),

@@ -9,12 +9,16 @@
 #include <nlohmann/json.hpp>
 
 #include "core/analysis/quantities.hpp"
+#include "core/record/record.hpp"
 
 namespace stickslip::io {
 namespace {
 
 constexpr const char* kStandardError = "standard_error";
 constexpr const char* kSystematic = "systematic_uncertainty";
+constexpr const char* kDiagnostics = "diagnostics";
+constexpr const char* kReason = "reason";
+constexpr const char* kPlace = "place";
 
 /// The value as JSON. A result whose name ends in _count becomes an integer.
 nlohmann::ordered_json number(const std::string& name, const analysis::Estimate& estimate) {
@@ -22,6 +26,29 @@ nlohmann::ordered_json number(const std::string& name, const analysis::Estimate&
   if (!estimate.value) return nullptr;
   if (name.ends_with(kCount)) return std::llround(*estimate.value);
   return *estimate.value;
+}
+
+/// {"value": …, "unit": …, "standard_error": …, …}
+nlohmann::ordered_json detail_json(const analysis::ResultName& name, const analysis::Estimate& estimate) {
+  nlohmann::ordered_json detail;
+  detail["value"] = number(std::string{name.name}, estimate);
+  detail["unit"] = name.unit;
+  if (estimate.standard_error) detail[kStandardError] = *estimate.standard_error;
+  if (estimate.systematic_uncertainty) detail[kSystematic] = *estimate.systematic_uncertainty;
+  if (!estimate.value) detail[kReason] = estimate.reason;
+  return detail;
+}
+
+analysis::Estimate estimate_of(const nlohmann::ordered_json& detail) {
+  analysis::Estimate estimate;
+  const auto take = [&detail](const char* key, std::optional<double>& into) {
+    if (detail.contains(key) && !detail.at(key).is_null()) into = detail.at(key).get<double>();
+  };
+  take("value", estimate.value);
+  take(kStandardError, estimate.standard_error);
+  take(kSystematic, estimate.systematic_uncertainty);
+  if (!estimate.value) detail.at(kReason).get_to(estimate.reason);
+  return estimate;
 }
 
 /// {"delta_mu": {"standard_error": …, "systematic_uncertainty": …}, …}, of the quantities that have errors.
@@ -44,20 +71,20 @@ nlohmann::ordered_json results_json(const analysis::TestResults& results, bool w
   nlohmann::ordered_json json;
   nlohmann::ordered_json details;
   json["regime"] = model::name(results.regime);
-  if (!results.regime_reason.empty()) details["regime"]["reason"] = results.regime_reason;
+  if (!results.regime_reason.empty()) details["regime"][kReason] = results.regime_reason;
+  json["rung"] = analysis::name(results.rung);
+  if (!results.rung_reason.empty()) details["rung"][kReason] = results.rung_reason;
   json["findings"] = results.findings;
+  nlohmann::ordered_json diagnostics;
   analysis::for_each_result(results,
                             [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
                               const std::string key{name.name};
-                              json[key] = number(key, estimate);
-                              nlohmann::ordered_json& detail = details[key];
-                              detail["value"] = json[key];
-                              detail["unit"] = name.unit;
-                              if (estimate.standard_error) detail[kStandardError] = *estimate.standard_error;
-                              if (estimate.systematic_uncertainty)
-                                detail[kSystematic] = *estimate.systematic_uncertainty;
-                              if (!estimate.value) detail["reason"] = estimate.reason;
+                              nlohmann::ordered_json detail = detail_json(name, estimate);
+                              if (!name.is_diagnostic) json[key] = detail.at("value");
+                              (name.is_diagnostic ? diagnostics : details)[key] = std::move(detail);
                             });
+  if (!results.misfit_place.empty()) details["misfit"][kPlace] = results.misfit_place;
+  json[kDiagnostics] = std::move(diagnostics);
   if (with_details) {
     json["details"] = std::move(details);
   } else {
@@ -88,18 +115,27 @@ analysis::TestResults results_from_json(const nlohmann::ordered_json& json) {
   const nlohmann::ordered_json& details = json.at("details");
   results.regime =
       model::regime_from_name(json.at("regime").get<std::string>()).value_or(model::Regime::kUndecided);
-  if (details.contains("regime")) details.at("regime").at("reason").get_to(results.regime_reason);
+  if (details.contains("regime")) details.at("regime").at(kReason).get_to(results.regime_reason);
+  const bool has_rung = json.contains("rung");
+  if (has_rung)
+    results.rung =
+        analysis::rung_from_name(json.at("rung").get<std::string>()).value_or(analysis::Rung::kNone);
+  if (details.contains("rung")) {
+    details.at("rung").at(kReason).get_to(results.rung_reason);
+  } else if (!has_rung) {
+    results.rung_reason = record::kNoSuchResultThen;
+  }
   json.at("findings").get_to(results.findings);
+  // Documents without this member have the diagnostics among the other results.
+  const nlohmann::ordered_json& diagnostics = json.contains(kDiagnostics) ? json.at(kDiagnostics) : details;
   analysis::for_each_result(results, [&](const analysis::ResultName& name, analysis::Estimate& estimate) {
-    const nlohmann::ordered_json& detail = details.at(std::string{name.name});
-    const auto take = [&detail](const char* key, std::optional<double>& into) {
-      if (detail.contains(key) && !detail.at(key).is_null()) into = detail.at(key).get<double>();
-    };
-    take("value", estimate.value);
-    take(kStandardError, estimate.standard_error);
-    take(kSystematic, estimate.systematic_uncertainty);
-    if (!estimate.value) detail.at("reason").get_to(estimate.reason);
+    const nlohmann::ordered_json& among = name.is_diagnostic ? diagnostics : details;
+    const auto detail = among.find(std::string{name.name});
+    estimate = detail == among.end() ? analysis::Estimate::none(std::string{record::kNoSuchResultThen})
+                                     : estimate_of(*detail);
   });
+  if (details.contains("misfit") && details.at("misfit").contains(kPlace))
+    details.at("misfit").at(kPlace).get_to(results.misfit_place);
   return results;
 }
 

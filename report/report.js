@@ -170,7 +170,7 @@
         const test = material.tests[i];
         const trace = test.trace;
         trace.key = `${m}`;
-        facts.textContent = [test.title, test.regime, plural(trace.scan_count, "scan") + ` at ${Number(trace.rate.toPrecision(6))} Hz`,
+        facts.textContent = [test.title, test.regime, `rung: ${test.rung}${test.details.rung ? `, ${test.details.rung.reason}` : ""}`, plural(trace.scan_count, "scan") + ` at ${Number(trace.rate.toPrecision(6))} Hz`,
           speed(test.pull_speed), trace.thinned ? "lowest and highest scan of each part shown" : ""].filter(Boolean).join(" · ");
         if (viewer.chart) viewer.chart.destroy();
         viewer.chart = Charts.traces(box, trace, strokes[m], n => {

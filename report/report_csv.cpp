@@ -61,10 +61,10 @@ void welch_cells(Cells& cells, const std::optional<analysis::Welch>& welch) {
 }  // namespace
 
 std::string report_csv(const Material& material) {
-  std::vector<std::string> names{"file", "title", "method", "estimator", "pull_speed", "regime"};
+  std::vector<std::string> names{"file", "title", "method", "estimator", "pull_speed", "regime", "rung"};
   const analysis::TestResults none;
   analysis::for_each_result(none, [&](const analysis::ResultName& name, const analysis::Estimate&) {
-    names.emplace_back(name.name);
+    if (!name.is_diagnostic) names.emplace_back(name.name);
   });
   for (const char* name : {"at_speed_delta_mu_by_cycle", "at_speed_delta_mu_by_cycle_standard_error",
                            "at_speed_slips", "at_speed_escaped", "absent", "voided"}) {
@@ -87,10 +87,11 @@ std::string report_csv(const Material& material) {
     const ReportedTest& test = material.tests[i];
     Cells cells;
     add(cells, test.file, test.title, test.method, test.estimator, measured.pull_speed_m_per_s,
-        model::name(measured.results.regime));
+        model::name(measured.results.regime), analysis::name(measured.results.rung));
     std::string reasons;
     analysis::for_each_result(
         measured.results, [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
+          if (name.is_diagnostic) return;
           add(cells, estimate.value);
           if (!estimate.value) {
             reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", name.name, estimate.reason);

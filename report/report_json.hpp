@@ -11,8 +11,8 @@
 
 namespace stickslip::report {
 
-/// {"tests": [{"file", "title", "method", "estimator", "departures", "pull_speed", "regime", results …,
-/// "details"}],
+/// {"tests": [{"file", "title", "method", "estimator", "departures", "pull_speed", "regime", "rung", results
+/// …, "diagnostics", "details"}],
 ///  "groups": [{"pull_speed", "tests": [index …], "delta_mu_by_cycle": pooled_json(), "quantities": {NAME:
 ///  {"unit", "count", "mean",
 ///    "standard_deviation", "repeatability", "confidence_interval", "outlier", "systematic_uncertainty",

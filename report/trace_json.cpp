@@ -133,7 +133,8 @@ base::Result<Json> trace_json(const record::Record& record) {
   json["cycles"] = cycles_json(record.cycles);
   // In a stick-slip test the end of the pull interrupted the last slip, so its end is unknown.
   const model::Regime regime = record.end->results.regime;
-  const bool last_slides = regime == model::Regime::kRingDown || regime == model::Regime::kMixed;
+  const bool last_slides = regime == model::Regime::kRingDown || regime == model::Regime::kMixed ||
+                           regime == model::Regime::kInertialOscillation;
   json["modes"] = modes_json(record.cycles, end_s, last_slides);
   const analysis::Estimate& transition = record.end->results.transition_time;
   json["transition"] = transition.value ? Json(*transition.value) : Json(nullptr);

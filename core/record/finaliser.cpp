@@ -30,9 +30,10 @@ void write_numbers(hid_t file, hid_t entry) {
   for (const char* table : {"raw", "cycles"}) link(entry, table, numbers.get());
   const GroupHandle from = open_group(entry, "results");
   const GroupHandle to = make_group(numbers.get(), "results", "NXcollection");
+  link(from.get(), kDiagnostics, to.get());
   const analysis::TestResults names;
   analysis::for_each_result(names, [&](const analysis::ResultName& name, const auto&) {
-    link(from.get(), std::string{name.name}.c_str(), to.get());
+    if (!name.is_diagnostic) link(from.get(), std::string{name.name}.c_str(), to.get());
   });
 }
 

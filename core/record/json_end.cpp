@@ -14,9 +14,9 @@ namespace stickslip::record {
 namespace {
 
 Json results_to_json(const analysis::TestResults& results) {
-  Json object{{"regime", model::name(results.regime)},
-              {"regime_reason", results.regime_reason},
-              {"findings", results.findings}};
+  Json object{{"regime", model::name(results.regime)}, {"regime_reason", results.regime_reason},
+              {"rung", analysis::name(results.rung)},  {"rung_reason", results.rung_reason},
+              {"misfit_place", results.misfit_place},  {"findings", results.findings}};
   analysis::for_each_result(results,
                             [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
                               Json entry = Json::object();
@@ -42,6 +42,14 @@ analysis::TestResults results_from_json(const Json& object) {
   const auto regime = object.at("regime").get<std::string>();
   results.regime = word(regime, model::regime_from_name(regime));
   object.at("regime_reason").get_to(results.regime_reason);
+  if (object.contains("rung")) {
+    const auto rung = object.at("rung").get<std::string>();
+    results.rung = word(rung, analysis::rung_from_name(rung));
+    object.at("rung_reason").get_to(results.rung_reason);
+    object.at("misfit_place").get_to(results.misfit_place);
+  } else {
+    results.rung_reason = kNoSuchResultThen;
+  }
   results.findings = object.value("findings", std::vector<std::string>{});
   analysis::for_each_result(results, [&](const analysis::ResultName& name, analysis::Estimate& estimate) {
     const Json entry = object.value(std::string{name.name}, Json{{"reason", kNoSuchResultThen}});

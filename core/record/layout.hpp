@@ -51,6 +51,9 @@ void read_tables(hid_t entry, Record& record);
 /// Throws unless they could be read.
 void check_tables(hid_t entry);
 
+/// Group of the results that are diagnostics, within the results.
+inline constexpr const char* kDiagnostics = "diagnostics";
+
 void write_results(hid_t entry, const analysis::TestResults& results);
 [[nodiscard]] analysis::TestResults read_results(hid_t entry);
 

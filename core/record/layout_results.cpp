@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -12,9 +13,48 @@ namespace stickslip::record {
 namespace {
 
 constexpr const char* kReason = "reason";
+constexpr const char* kRung = "rung";
+constexpr const char* kMisfit = "misfit";
+constexpr const char* kPlace = "place";
 constexpr const char* kFindings = "findings";
 /// The last result in the oldest records; later results were added by newer versions.
 constexpr std::string_view kLastOfTheFirst = "scan_rate_measured";
+
+void write_estimate(hid_t group, const analysis::ResultName& name, const analysis::Estimate& estimate) {
+  const std::string long_name = fmt::format("{} [{}]", name.long_name, name.unit);
+  const DatasetHandle value = write_scalar(group, FieldName{name.name, name.unit, long_name},
+                                           estimate.value.value_or(std::numeric_limits<double>::quiet_NaN()));
+  if (estimate.standard_error) write_number_attribute(value.get(), kStandardError, *estimate.standard_error);
+  if (estimate.systematic_uncertainty)
+    write_number_attribute(value.get(), kSystematic, *estimate.systematic_uncertainty);
+  if (!estimate.value) write_attribute(value.get(), kReason, estimate.reason);
+}
+
+analysis::Estimate read_estimate(hid_t group, const std::string& key) {
+  const DatasetHandle dataset = open_dataset(group, key);
+  analysis::Estimate estimate;
+  if (auto reason = find_attribute(dataset.get(), kReason)) {
+    estimate = analysis::Estimate::none(*std::move(reason));
+  } else {
+    estimate.value = read_scalar<double>(group, key);
+  }
+  estimate.standard_error = find_number_attribute<double>(dataset.get(), kStandardError);
+  estimate.systematic_uncertainty = find_number_attribute<double>(dataset.get(), kSystematic);
+  return estimate;
+}
+
+/// Records before version 3 have no rung.
+void read_rung(hid_t group, analysis::TestResults& results) {
+  if (!has(group, kRung)) {
+    results.rung_reason = kNoSuchResultThen;
+    return;
+  }
+  const std::string rung = read_text(group, kRung);
+  const auto known = analysis::rung_from_name(rung);
+  if (!known) throw HdfError(fmt::format("results/rung '{}' is unknown", rung));
+  results.rung = *known;
+  results.rung_reason = read_attribute(open_dataset(group, kRung).get(), kReason);
+}
 
 }  // namespace
 
@@ -22,19 +62,15 @@ void write_results(hid_t entry, const analysis::TestResults& results) {
   const GroupHandle group = make_group(entry, "results", "NXcollection");
   const DatasetHandle regime = write_text(group.get(), "regime", model::name(results.regime));
   write_attribute(regime.get(), kReason, results.regime_reason);
+  const DatasetHandle rung = write_text(group.get(), kRung, analysis::name(results.rung));
+  write_attribute(rung.get(), kReason, results.rung_reason);
+  const GroupHandle diagnostics = make_group(group.get(), kDiagnostics, "NXcollection");
   analysis::for_each_result(
       results, [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
-        const std::string long_name = fmt::format("{} [{}]", name.long_name, name.unit);
-        const DatasetHandle value =
-            write_scalar(group.get(), FieldName{name.name, name.unit, long_name},
-                         estimate.value.value_or(std::numeric_limits<double>::quiet_NaN()));
-        if (estimate.standard_error)
-          write_number_attribute(value.get(), kStandardError, *estimate.standard_error);
-        if (estimate.systematic_uncertainty) {
-          write_number_attribute(value.get(), kSystematic, *estimate.systematic_uncertainty);
-        }
-        if (!estimate.value) write_attribute(value.get(), kReason, estimate.reason);
+        write_estimate(name.is_diagnostic ? diagnostics.get() : group.get(), name, estimate);
       });
+  if (!results.misfit_place.empty())
+    write_attribute(open_dataset(group.get(), kMisfit).get(), kPlace, results.misfit_place);
   write_texts(group.get(), kFindings, results.findings);
 }
 
@@ -47,23 +83,22 @@ analysis::TestResults read_results(hid_t entry) {
   if (!known) throw HdfError(fmt::format("results/regime '{}' is unknown", regime));
   results.regime = *known;
   results.regime_reason = read_attribute(open_dataset(group.get(), "regime").get(), kReason);
+  read_rung(group.get(), results);
+  // Versions 1 and 2 have the diagnostics among the other results.
+  std::optional<GroupHandle> diagnostics;
+  if (has(group.get(), kDiagnostics)) diagnostics.emplace(open_group(group.get(), kDiagnostics));
   bool may_be_missing = false;
   analysis::for_each_result(results, [&](const analysis::ResultName& name, analysis::Estimate& estimate) {
     const std::string key{name.name};
     const bool came_later = std::exchange(may_be_missing, may_be_missing || name.name == kLastOfTheFirst);
-    if (came_later && !has(group.get(), key)) {
-      estimate = analysis::Estimate::none(std::string{kNoSuchResultThen});
-      return;
-    }
-    const DatasetHandle dataset = open_dataset(group.get(), key);
-    if (auto reason = find_attribute(dataset.get(), kReason)) {
-      estimate = analysis::Estimate::none(*std::move(reason));
-    } else {
-      estimate.value = read_scalar<double>(group.get(), key);
-    }
-    estimate.standard_error = find_number_attribute<double>(dataset.get(), kStandardError);
-    estimate.systematic_uncertainty = find_number_attribute<double>(dataset.get(), kSystematic);
+    const hid_t parent = name.is_diagnostic && diagnostics ? diagnostics->get() : group.get();
+    estimate = came_later && !has(parent, key) ? analysis::Estimate::none(std::string{kNoSuchResultThen})
+                                               : read_estimate(parent, key);
   });
+  if (has(group.get(), kMisfit)) {
+    results.misfit_place =
+        find_attribute(open_dataset(group.get(), kMisfit).get(), kPlace).value_or(std::string{});
+  }
   if (has(group.get(), kFindings)) results.findings = read_texts(group.get(), kFindings);
   return results;
 }

@@ -74,6 +74,7 @@ std::optional<std::int64_t> realtime_at(const RecordHeader& header, daq::ScanInd
 analysis::TestResults absent_results(const std::string& reason) {
   analysis::TestResults results;
   results.regime_reason = reason;
+  results.rung_reason = reason;
   analysis::for_each_result(results, [&](const analysis::ResultName&, analysis::Estimate& estimate) {
     estimate = analysis::Estimate::none(reason);
   });

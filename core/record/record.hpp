@@ -25,7 +25,7 @@
 namespace stickslip::record {
 
 inline constexpr std::string_view kFormat = "stickslip-record";
-inline constexpr std::int64_t kFormatVersion = 2;
+inline constexpr std::int64_t kFormatVersion = 3;
 inline constexpr std::int64_t kOldestFormatVersion = 1;  ///< Oldest version that can be read.
 
 /// Reason why a file of this version cannot be read, without the file's name; empty if it can.

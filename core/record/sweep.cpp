@@ -12,10 +12,11 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-std::uint8_t index_of(model::Regime regime) {
-  const auto* const found = std::find_if(model::kRegimeNames.begin(), model::kRegimeNames.end(),
-                                         [&](const auto& known) { return known.first == regime; });
-  return static_cast<std::uint8_t>(found - model::kRegimeNames.begin());
+/// \param names  model::kRegimeNames or analysis::kRungNames.
+std::uint8_t index_in(const auto& names, auto value) {
+  const auto* const found =
+      std::find_if(names.begin(), names.end(), [&](const auto& known) { return known.first == value; });
+  return static_cast<std::uint8_t>(found - names.begin());
 }
 
 /// Called with each number of a truth; NaN if there is none.
@@ -79,6 +80,7 @@ SweepTable::SweepTable(std::int64_t run_count) {
   });
   regime_.resize(count);
   true_regime_.resize(count);
+  rung_.resize(count);
   seed_.resize(count);
 }
 
@@ -96,8 +98,9 @@ void SweepTable::set(const SweepRun& run) {
       });
   auto truth = truths_.begin();
   for_each_truth(run, [&](const FieldName&, double value) { (truth++)->value[at] = value; });
-  regime_[at] = index_of(run.results.regime);
-  true_regime_[at] = index_of(run.truth.regime);
+  regime_[at] = index_in(model::kRegimeNames, run.results.regime);
+  true_regime_[at] = index_in(model::kRegimeNames, run.truth.regime);
+  rung_[at] = index_in(analysis::kRungNames, run.results.rung);
   seed_[at] = run.truth.seed;
 }
 

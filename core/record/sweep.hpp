@@ -84,6 +84,8 @@ class SweepTable {
   /// Indices of model::kRegimeNames.
   [[nodiscard]] const std::vector<std::uint8_t>& regime() const noexcept { return regime_; }
   [[nodiscard]] const std::vector<std::uint8_t>& true_regime() const noexcept { return true_regime_; }
+  /// Indices of analysis::kRungNames.
+  [[nodiscard]] const std::vector<std::uint8_t>& rung() const noexcept { return rung_; }
   [[nodiscard]] const std::vector<std::uint64_t>& seed() const noexcept { return seed_; }
 
  private:
@@ -95,6 +97,7 @@ class SweepTable {
   std::map<std::string, std::uint32_t, std::less<>> reason_index_{{"", 0}};
   std::vector<std::uint8_t> regime_;
   std::vector<std::uint8_t> true_regime_;
+  std::vector<std::uint8_t> rung_;
   std::vector<std::uint64_t> seed_;
 };
 

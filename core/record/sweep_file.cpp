@@ -26,10 +26,11 @@ void link(hid_t from, const std::string& name, hid_t to, const std::string& new_
         "link " + new_name);
 }
 
-std::vector<std::string> regime_words() {
+/// \param names  model::kRegimeNames or analysis::kRungNames.
+std::vector<std::string> words_of(const auto& names) {
   std::vector<std::string> words;
-  words.reserve(std::size(model::kRegimeNames));
-  for (const auto& [regime, word] : model::kRegimeNames) words.emplace_back(word);
+  words.reserve(std::size(names));
+  for (const auto& [value, word] : names) words.emplace_back(word);
   return words;
 }
 
@@ -54,8 +55,12 @@ class SweepWriter {
     const GroupHandle regime = make_data_group("regime");
     const FieldName name{kValue, "1", "regime of the sled's motion, named in the attribute words [1]"};
     const DatasetHandle value = write_array<std::uint8_t>(regime.get(), name, shape_, table_.regime());
-    write_attribute(value.get(), "words", regime_words());
+    write_attribute(value.get(), "words", words_of(model::kRegimeNames));
     link_truth(regime.get(), "regime");
+    const GroupHandle rung = make_data_group("rung");
+    const FieldName rung_name{kValue, "1", "rung of S and K, named in the attribute words [1]"};
+    const DatasetHandle rungs = write_array<std::uint8_t>(rung.get(), rung_name, shape_, table_.rung());
+    write_attribute(rungs.get(), "words", words_of(analysis::kRungNames));
   }
 
  private:
@@ -92,7 +97,7 @@ class SweepWriter {
     const DatasetHandle regime = write_array<std::uint8_t>(
         group.get(), {"regime", "1", "true regime, named in the attribute words [1]"}, shape_,
         table_.true_regime());
-    write_attribute(regime.get(), "words", regime_words());
+    write_attribute(regime.get(), "words", words_of(model::kRegimeNames));
     write_array<std::uint64_t>(group.get(), {"seed", "1", "seed of the run [1]"}, shape_, table_.seed());
   }
 

@@ -20,9 +20,9 @@ const Tables = (() => {
 
   // A word, a shape and a colour: any one of them tells.
   const shapes = {circle: "M10 2a8 8 0 1 0 .01 0z", ring: "M10 2a8 8 0 1 0 .01 0zM10 6a4 4 0 1 1-.01 0z", triangle: "M10 2 19 18H1z", square: "M2 2h16v16H2z",
-    bars: "M3 2h5v16H3zM12 2h5v16h-5z", cross: "M4 1l6 6 6-6 3 3-6 6 6 6-3 3-6-6-6 6-3-3 6-6-6-6z", diamond: "M10 1l9 9-9 9-9-9z", wave: "M1 12 6 3l5 12 4-8 4 6v5l-4-5-5 8L6 8l-5 9z"};
+    bars: "M3 2h5v16H3zM12 2h5v16h-5z", cross: "M4 1l6 6 6-6 3 3-6 6 6 6-3 3-6-6-6 6-3-3 6-6-6-6z", diamond: "M10 1l9 9-9 9-9-9z", lozenge: "M10 1l9 9-9 9-9-9zM10 6l-4 4 4 4 4-4z", wave: "M1 12 6 3l5 12 4-8 4 6v5l-4-5-5 8L6 8l-5 9z"};
   const benches = {idle: "ring", armed: "triangle", loading: "bars", running: "circle", finishing: "square", degraded: "cross"};
-  const regimes = {"stick-slip": ["wave", "--running"], "ring-down": ["diamond", "--armed"], mixed: ["triangle", "--finishing"], "steady-sliding": ["bars", "--loading"]};
+  const regimes = {"stick-slip": ["wave", "--running"], "ring-down": ["diamond", "--armed"], "inertial-oscillation": ["lozenge", "--armed"], mixed: ["triangle", "--finishing"], "steady-sliding": ["bars", "--loading"]};
   function badge(id, word, shape, colour) {
     document.getElementById(`${id}-word`).textContent = word;
     document.getElementById(`${id}-shape`).setAttribute("d", shapes[shape]);
@@ -66,6 +66,7 @@ const Tables = (() => {
       const tr = row([cell(String(test.number)), cell(test.results.regime, "text"), ...columns.map(column => value(test, column)),
         cell(test.voided ? `void: ${test.voided.reason}` : test.cause, "text"),
         test.file ? voidCell(`void-${test.number}`, {test: test.number}, `test ${test.number}`, test.voided) : cell(""), recordCell(test, download)]);
+      tr.cells[1].title = `rung: ${test.results.rung}`;
       if (test.voided) tr.className = "void";
       return tr;
     }));

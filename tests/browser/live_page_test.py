@@ -100,18 +100,20 @@ class LivePage(unittest.TestCase):
         page.until("[...document.querySelectorAll('#tests tbody td:last-child')].filter(c => c.textContent.endsWith('.h5')).length >= 3")
         # The tester goes on meanwhile: what the page shows is compared with the daemon's answer about the same tests.
         for _ in range(200):
-            rows, foot = page.value("[['#tests tbody tr', '#tests tfoot tr'].map(s => [...document.querySelectorAll(s)].map(r => [...r.cells].map(c => c.textContent)))][0]")
+            rows, foot, titles = page.value("[...['#tests tbody tr', '#tests tfoot tr'].map(s => [...document.querySelectorAll(s)].map(r => [...r.cells].map(c => c.textContent))), "
+                                            "[...document.querySelectorAll('#tests tbody tr')].map(r => r.cells[1].title)]")
             summary = daemon.ask("GET", "/v1/tests")[1]["summary"]
             if sorted(summary["tests"]) == sorted(int(row[0]) for row in rows):
                 break
         else:
             self.fail(f"the page never showed the tests that the daemon had: {summary['tests']}")
         compared, values = 0, {name: [] for name, _ in COLUMNS}
-        for row in rows:
+        for row, title in zip(rows, titles):
             test = next(t for t in daemon.ask("GET", "/v1/tests")[1]["tests"] if t["number"] == int(row[0]))
             file = daemon.record(int(row[0])) if not row[-1].endswith(".h5") else daemon.folder / test["file"]
             with h5py.File(file) as record:
                 self.assertEqual(row[1], record["entry/results/regime"].asstr()[()])
+                self.assertEqual(title, f"rung: {record['entry/results/rung'].asstr()[()]}")
                 for cell, (name, digits) in zip(row[2:], COLUMNS):
                     value = float(record[f"entry/results/{name}"][()])
                     self.assertEqual(cell, shown_in(record, name, digits), name)
@@ -484,10 +486,13 @@ class LivePage(unittest.TestCase):
                 self.assertGreaterEqual(contrast(rgb(front), rgb(back)), TEXT, f"{name} {front} on {back}, dark {dark}")
             for name, front, back in page.value("[...document.querySelectorAll('input[placeholder]')].map(e => [e.id || e.name, getComputedStyle(e, '::placeholder').color, getComputedStyle(e).backgroundColor])"):
                 self.assertGreaterEqual(contrast(rgb(front), rgb(back)), TEXT, f"what may be typed into {name}, dark {dark}")
+            regimes = ("stick-slip", "ring-down", "mixed", "inertial-oscillation", "steady-sliding", "undecided")
+            shapes = {page.value(f"(() => {{ Tables.regime('{word}'); return document.getElementById('regime-shape').getAttribute('d'); }})()") for word in regimes}
+            self.assertEqual(len(shapes), len(regimes))
             # Each state of the bench and each regime as well, on the paper.
             paper = rgb(page.value("getComputedStyle(document.body).backgroundColor"))
             for kind, words in (("bench", ("idle", "armed", "loading", "running", "finishing", "degraded", "not connected")),
-                                ("regime", ("stick-slip", "ring-down", "mixed", "steady-sliding", "undecided"))):
+                                ("regime", regimes)):
                 for word in words:
                     colour, back = page.value(f"(() => {{ Tables.{kind}('{word}'); const s = getComputedStyle(document.getElementById('{kind}')); return [s.color, s.backgroundColor]; }})()")
                     self.assertEqual(back, "rgba(0, 0, 0, 0)")

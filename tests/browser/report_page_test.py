@@ -150,6 +150,8 @@ class Pages(unittest.TestCase):
                           page.value(f"document.getElementById('by-cycle-0-{index}').textContent"))
         rows = self.rows(page, "tests-0")
         self.assertEqual([row[1] for row in rows], self.a)
+        [first, *_] = self.report["tests"]
+        self.assertIn(f" · rung: {first['rung']}", page.value("document.querySelector('p.facts').textContent"))
         for row, test in zip(rows, self.report["tests"]):
             self.assertEqual(row[3], test["regime"])
             for cell, quantity in zip(row[4:], self.in_tests(quantities), strict=True):

@@ -14,7 +14,7 @@ import sys
 
 import h5py
 
-ATTRIBUTES = ("units", "reason", "standard_error", "systematic_uncertainty", "maxdata", "meaning")
+ATTRIBUTES = ("units", "reason", "standard_error", "systematic_uncertainty", "maxdata", "meaning", "place")
 
 
 def plain(value):

@@ -51,6 +51,7 @@ void compare_identity(RecordListing& listing, const record::Record& record) {
   time("start_time", record.header.start_realtime_ns);
   time("end_time", record.end->end_realtime_ns);
   const double extent = static_cast<double>(record.scan.back() - record.scan.front() + 1);
+  for (const auto& [key, text] : record.header.metadata) listing.expect_text("entry/metadata/" + key, text);
   listing.expect_number("entry/collection_time", "s", extent / record.header.board.scan_rate_granted_Hz);
 }
 
@@ -80,6 +81,32 @@ void compare_raw(RecordListing& listing, const record::Record& record) {
     const record::QuantityName quantity = record::name(board.quantity);
     listing.expect_column("entry/raw/" + std::string{quantity.name}, quantity.unit, record.raw);
   }
+}
+
+void compare_second(RecordListing& listing, const record::Record& record) {
+  if (!record.header.board.second) return;
+  const daq::SecondChannel& channel = *record.header.board.second;
+  const std::string name{daq::name(channel.quantity)};
+  listing.expect_text("entry/instrument/second/quantity", name);
+  record::for_each_field(channel, ListedFields{listing, "entry/instrument/second"});
+  if (record.second.empty()) return;
+  std::vector<float> values;
+  for (const std::int32_t code : record.second) values.push_back(static_cast<float>(channel.value(code)));
+  listing.expect_column("entry/raw/" + name,
+                        channel.quantity == daq::SecondQuantity::kPullSpeed ? "m/s" : "m", values);
+  listing.expect_column("entry/raw/" + name + "_counts", "1", record.second);
+}
+
+void compare_latency(RecordListing& listing, const record::EndRecord& end) {
+  if (!end.read_latency) return;
+  const std::string group = "entry/timing/read_latency/";
+  std::vector<double> limits_s;
+  for (std::size_t bin = 0; bin < daq::LatencyHistogram::kBins; ++bin)
+    limits_s.push_back(daq::LatencyHistogram::limit_s(bin));
+  const auto& counts = end.read_latency->counts();
+  listing.expect_column(group + "below", "s", limits_s);
+  listing.expect_column(group + "read_count", "1", std::vector<std::uint64_t>(counts.begin(), counts.end()));
+  listing.expect_number(group + "largest", "s", end.read_latency->largest_s());
 }
 
 void compare_tables(RecordListing& listing, const record::Record& record) {
@@ -141,6 +168,7 @@ void compare_process(RecordListing& listing, const record::Record& record) {
   listing.expect_texts("entry/process/reasons", end.reasons);
   listing.expect_text("entry/process/end_cause", end.cause);
   ListedFields{listing, "entry/process"}(FieldName{"compute_time", "s", ""}, end.compute_time_s);
+  ListedFields{listing, "entry/process"}(FieldName{"unloaded_level", "1", ""}, end.unloaded_level);
   listing.expect_text("entry/process/sha256", record.sha256);
   // The seal belongs to the file as it lies there, and is checked with it.
   if (!listing.has("entry/process/file_sha256")) return;
@@ -153,12 +181,23 @@ void compare_results(RecordListing& listing, const analysis::TestResults& result
   listing.expect_text(group + "regime", std::string{model::name(results.regime)});
   listing.expect_attribute(group + "regime", "reason", results.regime_reason);
   listing.expect_texts(group + "findings", results.findings);
+  if (results.rung_reason == record::kNoSuchResultThen) {
+    listing.expect_absent(group + "rung");
+  } else {
+    listing.expect_text(group + "rung", std::string{analysis::name(results.rung)});
+    listing.expect_attribute(group + "rung", "reason", results.rung_reason);
+    listing.expect_attribute(
+        group + "misfit", "place",
+        results.misfit_place.empty() ? nlohmann::json{} : nlohmann::json(results.misfit_place));
+  }
+  const bool has_diagnostics = listing.version() >= 3;
   const auto known = [](std::optional<double> number) {
     return number ? nlohmann::json{*number}[0] : nlohmann::json{};
   };
   analysis::for_each_result(
       results, [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
-        const std::string path = group + std::string{name.name};
+        const std::string path = fmt::format(
+            "{}{}{}", group, name.is_diagnostic && has_diagnostics ? "diagnostics/" : "", name.name);
         if (estimate.reason == record::kNoSuchResultThen) return listing.expect_absent(path);
         listing.expect_number(path, name.unit, estimate.value.value_or(std::nan("")));
         listing.expect_attribute(path, "standard_error", known(estimate.standard_error));
@@ -204,6 +243,8 @@ TEST_P(OldRecords, AreReadInFull) {
 
   compare_identity(listing, *read);
   compare_raw(listing, *read);
+  compare_second(listing, *read);
+  compare_latency(listing, *read->end);
   compare_tables(listing, *read);
   compare_instrument(listing, *read);
   compare_process(listing, *read);
@@ -212,6 +253,7 @@ TEST_P(OldRecords, AreReadInFull) {
   EXPECT_THAT(listing.not_looked_at(), testing::IsEmpty());
 }
 
+INSTANTIATE_TEST_SUITE_P(Version3, OldRecords, testing::Values("3/every-field.h5"));
 INSTANTIATE_TEST_SUITE_P(Version2, OldRecords, testing::Values("2/daemon.h5", "2/every-field.h5"));
 INSTANTIATE_TEST_SUITE_P(Version1, OldRecords,
                          testing::Values("1/daemon.h5", "1/simulated.h5", "1/imported.h5",
@@ -219,7 +261,7 @@ INSTANTIATE_TEST_SUITE_P(Version1, OldRecords,
 
 // A program that was killed leaves a journal, and the next start may be that of a newer program.
 TEST(OldJournal, BecomesTheRecordThatItWouldHaveBecomeThen) {
-  for (const char* version : {"1", "2"}) {
+  for (const char* version : {"1", "2", "3"}) {
     SCOPED_TRACE(version);
     const test::TemporaryFolder folder;
     fs::copy_file(kRecords / version / "every-field.journal", folder / "a.journal");

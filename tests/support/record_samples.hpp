@@ -114,6 +114,9 @@ inline analysis::TestResults sample_results() {
   analysis::TestResults results;
   results.regime = model::Regime::kMixed;
   results.regime_reason = "3 of 5 slips captured";
+  results.rung = analysis::Rung::kTwoParameterLaw;
+  results.rung_reason = "the slope of K is not significant";
+  results.misfit_place = "peak";
   results.findings = {"the pull speed was 6.00 +- 0.02 in/min, the plan says 12.00", "another"};
   double number = 0.1;
   analysis::for_each_result(results, [&](const analysis::ResultName& name, analysis::Estimate& estimate) {

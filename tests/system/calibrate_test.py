@@ -16,6 +16,8 @@ import sys
 import tempfile
 import unittest
 
+from stored import stored as stored_in
+
 try:
     import h5py
 except ImportError:
@@ -195,10 +197,10 @@ class Calibrate(unittest.TestCase):
         again = self.run_program(STICKSLIP, "analyze", str(path), "--json")
         [test] = json.loads(again.stdout)["tests"]
         with h5py.File(path) as record:
-            for name, detail in test["details"].items():
-                if name in ("regime", "findings"):
+            for name, detail in (test["details"] | test["diagnostics"]).items():
+                if name in ("regime", "rung"):
                     continue
-                stored = record["entry/results"][name]
+                stored = stored_in(record)[name]
                 if detail["value"] is not None:
                     self.assertEqual(detail["value"], stored[()], name)
                 for key in ("standard_error", "systematic_uncertainty"):

@@ -20,6 +20,7 @@ import numpy
 
 from hanging import NOTHING_HANGS, Hanging, standard_errors_allowed, weighing_board
 from running_daemon import PATIENT, RunningDaemon, wait_for
+from stored import stored as stored_in
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
@@ -109,13 +110,14 @@ class Calibration(unittest.TestCase):
             self.assertTrue(any(text.startswith("bench: load cell calibrated: ") and text.endswith(", by ada") for text in texts), texts)
             mu_s = record["entry/results/mu_s"]
             self.assertGreaterEqual(mu_s.attrs["systematic_uncertainty"], used["gain_standard_error"] / used["gain"] * mu_s[()] * (1 - 1e-12))
-            results = {name: stored[()] for name, stored in record["entry/results"].items() if name != "regime"}
+            results = {name: stored[()] for name, stored in stored_in(record).items() if name not in ("regime", "rung")}
         self.assertEqual(subprocess.run([CLI, "verify", record_file], check=False, capture_output=True).returncode, 0)
         again = subprocess.run([CLI, "analyze", record_file, "--json"], capture_output=True, text=True, check=True)
         [test] = json.loads(again.stdout)["tests"]
+        details = test["details"] | test["diagnostics"]
         for name, value in results.items():
-            if name in test["details"] and test["details"][name]["value"] is not None:
-                numpy.testing.assert_array_equal(value, test["details"][name]["value"], err_msg=name)
+            if name in details and details[name]["value"] is not None:
+                numpy.testing.assert_array_equal(value, details[name]["value"], err_msg=name)
         self.assertEqual(daemon.end()[0], 0)
 
         # The next start finds it, whatever gain the configuration began with.

@@ -65,8 +65,9 @@ def documented(path):
                     names = names_of(name_cell)
                     kind = "text" if "column of texts" in name_cell else "f64"
                     add(section, names, [kind] * len(names), [unit] * len(names))
-    # The only text among the results stands in the sentence before the table.
-    found["results/regime"] = {("text", "")}
+    # The words among the results stand in the sentences before the table.
+    for name in ("regime", "rung"):
+        found[f"results/{name}"] = {("text", "")}
     return found
 
 

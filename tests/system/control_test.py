@@ -26,6 +26,7 @@ import numpy
 from hanging import Hanging, weighing_board
 from running_daemon import PATIENT, TIMEOUT_S, RunningDaemon, UnixConnection, wait_for
 from schema import complaints
+from stored import stored as stored_in
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
@@ -110,8 +111,8 @@ class Commands(unittest.TestCase):
         [copy] = (again.folder / "records").glob("*.h5")
         with h5py.File(file) as a, h5py.File(copy) as b:
             numpy.testing.assert_array_equal(a["entry/raw/counts"][()], b["entry/raw/counts"][()])
-            for name, stored in a["entry/results"].items():
-                numpy.testing.assert_array_equal(stored[()], b["entry/results"][name][()], err_msg=name)
+            for name, stored in stored_in(a).items():
+                numpy.testing.assert_array_equal(stored[()], stored_in(b)[name][()], err_msg=name)
             self.assertEqual([event[1] for event in events], [text.decode() for text in b["entry/events/text"][()]])
             self.assertEqual([event[0] for event in events], [int(scan) for scan in b["entry/events/scan"][()]])
 
@@ -139,7 +140,9 @@ class Commands(unittest.TestCase):
         wait_for(frames, lambda frame: frame["type"] == "test-ended")
         self.assertRegex(daemon.run("list").stdout, r"\n +1 .* command ")
         self.assertEqual(len(json.loads(daemon.run("list", "--json").stdout)["tests"]), 1)
-        self.assertRegex(daemon.run("show", "1").stdout, r"(?m)^  mu_s +0\.\d+ ± ")
+        shown = daemon.run("show", "1").stdout
+        self.assertRegex(shown, r"(?m)^  mu_s +0\.\d+ ± ")
+        self.assertRegex(shown, r"(?m)^rung: [a-z]")
         self.assertEqual(daemon.run("show", "2").returncode, 2)
 
     def test_the_status_says_where_the_page_is_and_tells_nobody_its_token(self):

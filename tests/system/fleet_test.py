@@ -18,6 +18,8 @@ import h5py
 
 from broker import MOSQUITTO, TIMEOUT_S, Broker, Listener
 from running_daemon import RunningDaemon
+from stored import stored as stored_in
+from stored import told
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
@@ -95,17 +97,17 @@ class Messages(Case):
                 self.assertEqual(result["start_time"], entry["start_time"][()].decode())
                 self.assertEqual(result["end_time"], entry["end_time"][()].decode())
                 self.assertEqual(result["status"], entry["process/status"][()].decode())
-                names = set(entry["results"]) - {"findings"}
-                self.assertEqual(set(result["results"]) - {"findings", "details"}, names)
+                values = told(result["results"])
+                names = set(stored_in(record)) - {"findings"}
+                self.assertEqual(set(values) - {"findings", "details", "diagnostics"}, names)
                 for name in names:
-                    stored = entry["results"][name][()]
-                    told = result["results"][name]
+                    stored = stored_in(record)[name][()]
                     if isinstance(stored, bytes):
-                        self.assertEqual(told, stored.decode(), name)
-                    elif told is None:
+                        self.assertEqual(values[name], stored.decode(), name)
+                    elif values[name] is None:
                         self.assertNotEqual(stored, stored, name)
                     else:
-                        self.assertEqual(told, stored, name)
+                        self.assertEqual(values[name], stored, name)
             # Read from the record it is the same message, but for whom it is from.
             read = subprocess.run([str(BUILD / "bin" / "stickslipd"), "--result", result["file"]], cwd=daemon.folder, capture_output=True, text=True,
                                   timeout=TIMEOUT_S, check=True)

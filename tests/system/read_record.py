@@ -10,6 +10,7 @@ except ImportError as error:
     sys.exit(77)
 
 import hdf5_1_8
+from stored import stored
 
 path, signal, rows = sys.argv[1], sys.argv[2], int(sys.argv[3])
 
@@ -52,7 +53,7 @@ objects, messages, indexes = hdf5_1_8.check(path)
 assert objects > 60 and messages > 5 * objects and indexes > 0, (objects, messages, indexes)
 
 with h5py.File(path) as record:
-    assert record.attrs["format"] == "stickslip-record" and record.attrs["format_version"] == 2
+    assert record.attrs["format"] == "stickslip-record" and record.attrs["format_version"] == 3
     names = []
     record.visit(names.append)
     assert len(names) > 60, names
@@ -80,8 +81,8 @@ with h5py.File(path) as record:
         force = (volts - cell["zero"][()]) * cell["gain"][()]
         assert numpy.allclose(force, values, rtol=1e-6, atol=1e-6)  # f32: 6e-8 of about 50 N.
 
-    for name, result in record["entry/results"].items():
-        if name not in ("regime", "findings"):
+    for name, result in stored(record).items():
+        if name not in ("regime", "rung", "findings"):
             assert numpy.isnan(result[()]) == ("reason" in result.attrs), name
 
 try:

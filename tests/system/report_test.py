@@ -198,11 +198,19 @@ class Reports(Folder):
             for name in self.LEADING:
                 result = record[f"entry/results/{name}"]
                 result.attrs["systematic_uncertainty"] = 0.01 * result[()]
+            misfit = record["entry/results/misfit"]
+            misfit[()] = 3.25
+            misfit.attrs.pop("reason", None)
+            misfit.attrs["place"] = "peak"
+            record["entry/results/rung"].attrs["reason"] = "the slope is not significant"
+            rung = record["entry/results/rung"].asstr()[()]
         told = json.loads(self.good("report", "both.h5", "--json"))
         details, [group] = told["tests"][0]["details"], told["groups"]
         text = self.good("report", "both.h5")
         self.check_table(text, details)
         listed = self.good("show", "both.h5")
+        self.assertRegex(listed, rf"(?m)^rung: {rung}, the slope is not significant$")
+        self.assertRegex(listed, r"(?m)^  misfit +3\.25.*, most at the peak$")
         for name in self.LEADING:
             own = details[name]
             self.assertEqual(own["systematic_uncertainty"], 0.01 * own["value"])

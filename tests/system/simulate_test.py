@@ -14,6 +14,8 @@ import unittest
 import h5py
 import numpy
 
+from stored import stored as stored_in
+from stored import told
 from terminal import run_at_a_terminal
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
@@ -63,12 +65,12 @@ class Folder(unittest.TestCase):
 class Simulate(Folder):
     def test_record_printed_results_and_later_analysis_have_the_same_bits(self):
         record, printed = self.simulate("--json")
-        printed = json.loads(printed)
+        printed = told(json.loads(printed))
         analysed = run(CLI, "analyze", "--json", record.filename)
         self.assertEqual(analysed.returncode, 0, analysed.stderr)
-        [again] = json.loads(analysed.stdout)["tests"]
+        again = told(json.loads(analysed.stdout)["tests"][0])
         compared = 0
-        for name, stored in record["entry/results"].items():
+        for name, stored in stored_in(record).items():
             if name not in again or not hasattr(stored, "shape") or stored.dtype.kind != "f":
                 continue
             self.assertEqual(printed[name], again[name], name)

@@ -17,6 +17,8 @@ import tempfile
 import unittest
 
 from service_manager import TIMEOUT_S, Manager
+from stored import stored as stored_in
+from stored import told
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
@@ -121,9 +123,9 @@ class Demo(Folder):
         analysed = run(CLI, "analyze", "--json", *self.records())
         self.assertEqual(analysed.returncode, 0, analysed.stderr)
         compared = 0
-        for test in json.loads(analysed.stdout)["tests"]:
+        for test in map(told, json.loads(analysed.stdout)["tests"]):
             with h5py.File(test["file"]) as record:
-                for name, stored in record["entry/results"].items():
+                for name, stored in stored_in(record).items():
                     if name not in test or not hasattr(stored, "shape") or stored.dtype.kind != "f":
                         continue
                     again = test[name]
@@ -181,9 +183,9 @@ folder = "replayed"
         [copy] = sorted((self.folder / "replayed").glob("*.h5"))
         with h5py.File(original) as a, h5py.File(copy) as b:
             numpy.testing.assert_array_equal(a["entry/raw/counts"][()], b["entry/raw/counts"][()])
-            self.assertEqual(set(a["entry/results"]), set(b["entry/results"]))
-            for name, stored in a["entry/results"].items():
-                numpy.testing.assert_array_equal(stored[()], b["entry/results"][name][()], err_msg=name)
+            self.assertEqual(set(stored_in(a)), set(stored_in(b)))
+            for name, stored in stored_in(a).items():
+                numpy.testing.assert_array_equal(stored[()], stored_in(b)[name][()], err_msg=name)
             for name, stored in a["entry/cycles"].items():
                 numpy.testing.assert_array_equal(stored[()], b["entry/cycles"][name][()], err_msg=name)
 

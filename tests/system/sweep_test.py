@@ -16,6 +16,7 @@ import unittest
 import h5py
 import numpy
 
+from stored import stored as stored_in
 from terminal import run_at_a_terminal
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
@@ -100,8 +101,11 @@ class Sweep(Folder):
                        sweep["entry/truth/seed"][point, 1])
             self.assertEqual(done.returncode, 0, done.stderr)
             with h5py.File(record) as simulated:
-                for name, stored in simulated["entry/results"].items():
-                    if name not in ("regime", "findings"):
+                for name, stored in stored_in(simulated).items():
+                    if name == "rung":
+                        rung = sweep["entry/rung/value"]
+                        self.assertEqual(rung.attrs["words"][rung[point, 1]], stored.asstr()[()])
+                    elif name not in ("regime", "findings"):
                         numpy.testing.assert_array_equal(stored[()], sweep[f"entry/{name}/value"][point, 1], name)
 
     def test_any_number_of_threads_gives_the_same_file(self):

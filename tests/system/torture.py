@@ -36,6 +36,9 @@ import time
 import h5py
 import numpy
 
+from stored import stored as stored_in
+from stored import told
+
 TIMEOUT_S = 240
 SCAN_RATE_HZ = 350
 SPEED = 25
@@ -255,9 +258,9 @@ level = "warning"
         done = subprocess.run([str(self.cli), "analyze", "--json", str(file)], capture_output=True, text=True,
                               timeout=TIMEOUT_S, check=False)
         expect(done.returncode == 0, f"{file}: {done.stderr}")
-        [again] = json.loads(done.stdout)["tests"]
+        again = told(json.loads(done.stdout)["tests"][0])
         with h5py.File(file) as record:
-            for name, stored in record["entry/results"].items():
+            for name, stored in stored_in(record).items():
                 if name in again and stored.dtype.kind == "f" and stored.shape == ():
                     if again[name] is None:
                         expect("reason" in stored.attrs, f"{file}: {name} has no value and no reason")

@@ -17,6 +17,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 std::vector<std::string> fields_of(const std::string& line) {
   std::vector<std::string> fields;
@@ -51,6 +52,13 @@ TEST(ExportCsv, HasTheSecondChannelWhereTheRecordHasOne) {
   EXPECT_EQ(rows[8][6], "");
   EXPECT_EQ(rows[8][7], "");
   EXPECT_EQ(rows[8].size(), rows[0].size());
+}
+
+TEST(ExportCsv, HasTheRungAndNoDiagnosticsAmongItsFacts) {
+  const std::string csv = scans_csv(test::sample_record());
+  EXPECT_THAT(csv, HasSubstr("\n# rung: two-parameter-law\n"));
+  EXPECT_THAT(csv, HasSubstr("\n# mu_slope: "));
+  EXPECT_THAT(csv, Not(HasSubstr("\n# delta_mu_combined: ")));
 }
 
 TEST(ExportCsv, NamesAPositionInMetres) {

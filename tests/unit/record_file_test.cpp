@@ -35,6 +35,34 @@ std::vector<std::string> names_in(const fs::path& folder) {
   return names;
 }
 
+TEST(RecordFile, WithoutAnalysisSaysWhyItHasNoRung) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(publish_record(test::sample_imported(), folder / "a.h5"));
+  const auto read = read_record(folder / "a.h5");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->end->results.rung, analysis::Rung::kNone);
+  EXPECT_EQ(read->end->results.rung_reason, "not analysed");
+}
+
+TEST(RecordFile, HasTheDiagnosticsApartFromTheOtherResults) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(publish_record(test::sample_record(), folder / "a.h5"));
+  const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  ASSERT_GE(file, 0);
+  const auto is_there = [file](const std::string& path) {
+    return H5Lexists(file, path.c_str(), H5P_DEFAULT) > 0;
+  };
+  for (const std::string group : {"entry/results/", "numbers/results/"}) {
+    analysis::TestResults names;
+    analysis::for_each_result(names, [&](const analysis::ResultName& name, analysis::Estimate&) {
+      const std::string own{name.name};
+      EXPECT_EQ(is_there(group + own), !name.is_diagnostic) << group << own;
+      EXPECT_EQ(is_there(group + "diagnostics/" + own), name.is_diagnostic) << group << own;
+    });
+  }
+  H5Fclose(file);
+}
+
 TEST(RecordFile, GivesBackEveryFieldOfATest) {
   const TemporaryFolder folder;
   const record::Record written = test::sample_record();
@@ -475,6 +503,13 @@ TEST(HostileFile, WithOtherTypesOrShapes) {
       "has 1125899906842624 rows, at most");
   expect_refused(altered(folder, [](hid_t f) { H5Ldelete(f, "entry/results/mu_s", H5P_DEFAULT); }),
                  "data set mu_s is missing");
+  expect_refused(altered(folder,
+                         [](hid_t f) {
+                           H5Ldelete(f, "entry/results/rung", H5P_DEFAULT);
+                           H5Lcreate_hard(f, "entry/results/regime", f, "entry/results/rung", H5P_DEFAULT,
+                                          H5P_DEFAULT);
+                         }),
+                 "results/rung 'mixed' is unknown");
 }
 
 TEST(HostileFile, WithAlteredValues) {

@@ -12,10 +12,14 @@
 namespace stickslip::io {
 namespace {
 
-TEST(RecordResult, ResultsComeBackAsTheyWere) {
+/// Every kind of result.
+analysis::TestResults all_results() {
   analysis::TestResults results;
   results.regime = model::Regime::kMixed;
   results.regime_reason = "7 of 9 slips ended in sticking";
+  results.rung = analysis::Rung::kTurningPoints;
+  results.rung_reason = "the fit does not describe the test";
+  results.misfit_place = "rise";
   results.findings = {"the pull was slower than planned"};
   int n = 0;
   analysis::for_each_result(results, [&n](const analysis::ResultName& name, analysis::Estimate& estimate) {
@@ -36,11 +40,67 @@ TEST(RecordResult, ResultsComeBackAsTheyWere) {
         estimate = analysis::Estimate::none("too few cycles");
     }
   });
+  return results;
+}
+
+TEST(RecordResult, ResultsComeBackAsTheyWere) {
+  const analysis::TestResults results = all_results();
   const auto text = results_json(results, true).dump();
   EXPECT_EQ(results_from_json(nlohmann::ordered_json::parse(text)), results);
   EXPECT_THROW(static_cast<void>(results_from_json(results_json(results, false))),
                nlohmann::ordered_json::exception)
       << "without details there are no reasons";
+}
+
+TEST(RecordResult, OnTheHighestRungComeBackWithoutAReason) {
+  analysis::TestResults results = all_results();
+  results.rung = analysis::Rung::kLawWithSlope;
+  results.rung_reason.clear();
+  results.misfit_place.clear();
+  const nlohmann::ordered_json json = results_json(results, true);
+  EXPECT_FALSE(json.at("details").contains("rung"));
+  EXPECT_EQ(results_from_json(json), results);
+}
+
+TEST(RecordResult, HasTheDiagnosticsApartWithAndWithoutDetails) {
+  const analysis::TestResults results = all_results();
+  for (const bool with_details : {false, true}) {
+    const nlohmann::ordered_json json = results_json(results, with_details);
+    EXPECT_EQ(json.at("rung"), "turning-points");
+    analysis::for_each_result(results, [&](const analysis::ResultName& name, const analysis::Estimate&) {
+      const std::string own{name.name};
+      EXPECT_EQ(json.contains(own), !name.is_diagnostic) << own;
+      EXPECT_EQ(json.at("diagnostics").contains(own), name.is_diagnostic) << own;
+      if (with_details) {
+        EXPECT_EQ(json.at("details").contains(own), !name.is_diagnostic) << own;
+      }
+      if (name.is_diagnostic) {
+        EXPECT_EQ(json.at("diagnostics").at(own).at("unit"), name.unit) << own;
+      }
+    });
+  }
+  const nlohmann::ordered_json details = results_json(results, true).at("details");
+  EXPECT_EQ(details.at("rung").at("reason"), "the fit does not describe the test");
+  EXPECT_EQ(details.at("misfit").at("place"), "rise");
+}
+
+TEST(RecordResult, OfBeforeTheRungAreRead) {
+  analysis::TestResults results = all_results();
+  nlohmann::ordered_json old = results_json(results, true);
+  for (const auto& [name, detail] : old.at("diagnostics").items()) {
+    old[name] = detail.at("value");
+    old["details"][name] = detail;
+  }
+  for (const char* later : {"rung", "diagnostics", "mu_slope", "misfit", "smallest_slip"}) {
+    old.erase(later);
+    old["details"].erase(later);
+  }
+  results.rung = analysis::Rung::kNone;
+  results.misfit_place.clear();
+  results.rung_reason = record::kNoSuchResultThen;
+  for (analysis::Estimate* later : {&results.mu_slope, &results.misfit, &results.smallest_slip})
+    *later = analysis::Estimate::none(std::string{record::kNoSuchResultThen});
+  EXPECT_EQ(results_from_json(old), results);
 }
 
 TEST(RecordResult, HasTheErrorsOfTheMainResultsWithAndWithoutDetails) {

@@ -19,6 +19,7 @@ namespace stickslip::report {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Json = nlohmann::ordered_json;
 
 detect::Cycle cycle_at(double onset_s, double capture_s) {
@@ -79,6 +80,8 @@ TEST(TraceJson, ModesGoFromSlipToStickToSlip) {
   const Json mixed = trace_json(record).value()["modes"];
   ASSERT_EQ(mixed.size(), 4U);
   EXPECT_EQ(mixed[3], Json::array({0.006, 0.0095, "slide"}));
+  record.end->results.regime = model::Regime::kInertialOscillation;
+  EXPECT_EQ(trace_json(record).value()["modes"], mixed);
 }
 
 TEST(TraceJson, RecordWithoutLoadCellIsRefused) {
@@ -102,6 +105,16 @@ TEST(ReportText, ShowsMeansReasonsAndDepartures) {
   EXPECT_THAT(text, HasSubstr("–  no static in test 3: not asked\n"));
   EXPECT_THAT(text, HasSubstr("!  test 3: pull speed is other\n"));
   EXPECT_THAT(text, HasSubstr("method: own kinetic_cycles=3\n"));
+}
+
+TEST(ReportCsv, HasTheRungAndNoDiagnostics) {
+  Material material = test::sample_material();
+  material.measured[0].results.rung = analysis::Rung::kLawWithSlope;
+  const std::string csv = report_csv(material);
+  EXPECT_THAT(csv, HasSubstr(",regime,rung,transition_time,"));
+  EXPECT_THAT(csv, HasSubstr(",undecided,law-with-slope,"));
+  EXPECT_THAT(csv, HasSubstr(",mu_slope,misfit,smallest_slip,"));
+  EXPECT_THAT(csv, Not(HasSubstr("delta_mu_combined")));
 }
 
 TEST(ReportPage, HoldsEachPartOnceAndNoMark) {
