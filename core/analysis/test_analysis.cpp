@@ -322,7 +322,11 @@ TestResults TestAnalysis::finish() {
       add_spread(fitted.cycles, estimates.results);
       results.findings.push_back(turning_points_finding(estimates.results.delta_mu, why));
     }
-    if (fits_whole_test()) take_misfit(estimates.misfit, results);
+    if (fits_whole_test()) {
+      take_misfit(estimates.misfit, results);
+    } else {
+      results.misfit = Estimate::none(estimates.rung_reason);
+    }
     if (fits_whole_test() && estimates.model_describes && estimates.misfit.is_significant() &&
         trace.belt.is_constant()) {
       add_spread(by_turning_points(trace, slips, cycles_by_turning_points(), {}).results, estimates.results);

@@ -64,7 +64,8 @@ TEST(WanderingMean, ErrorOfCorrelatedValues) {
     const double found = mean_square(0.8, values, kTrials);
     // Of 100 values, eleven are independent: Student's t of so few has a variance of 1.2 and more.
     EXPECT_LT(found, (values > 100 ? 1.2 : 1.8) * test::highest_mean_square(kTrials)) << values;
-    EXPECT_GT(found, 0.6) << values;
+    // A hundred values cannot exclude that the level wanders more slowly still.
+    EXPECT_GT(found, values > 100 ? 0.6 : 0.3) << values;
   }
 }
 
