@@ -39,6 +39,11 @@ double noise_floor(const base::LongColumn<double>& values, double step_coefficie
 /// of both rungs is in the systematic uncertainties: 1 in 20 tests on paper without a slope has it, too.
 constexpr double kSlopeLevel = 0.05;
 
+/// Q = r/(ω (S − K)) below which the belt's part of the amplitude, √((S − K)² + (r/ω)²), is less than 2 %:
+/// then S − K is half the drop whatever the damping, which may be held. Near the threshold a wrong damping
+/// would be taken for S − K.
+constexpr double kSlow = 0.2;
+
 /// Turning points must not follow noise before the noise is known.
 double hysteresis(double sigma) { return detect::SlipRule::kHysteresisSigmas * sigma; }
 
@@ -454,7 +459,7 @@ TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongCol
   if (!settings_.prior.coupling) {
     if (!alone.model_describes && trace.belt.is_constant()) {
       TestEstimates typical = held(held_damping(trace, slips));
-      if (typical.model_describes) {
+      if (typical.model_describes && typical.results.Q.value.value_or(kSlow) < kSlow) {
         hold_damping(typical.results);
         return typical;
       }
