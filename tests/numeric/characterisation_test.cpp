@@ -117,7 +117,8 @@ TEST_F(TesterChecked, AnotherSpringIsAFindingAndIsNotUsed) {
   const TestAnalysis analysis = analysed(other, 12.0, 1);
   ASSERT_TRUE(analysis.tester_check());
   EXPECT_FALSE(analysis.tester_check()->used());
-  EXPECT_NE(analysis.tester_check()->findings.front().find("has changed since the characterisation"), std::string::npos);
+  EXPECT_NE(analysis.tester_check()->findings.front().find("has changed since the characterisation"),
+            std::string::npos);
   // As without it: γ is as uncertain as the test alone leaves it, S − K within four standard errors.
   EXPECT_GT(*results_.gamma_over_2omega.standard_error, 0.05 * 0.022);
   EXPECT_NEAR(*results_.delta_mu.value, 0.05, 4.0 * *results_.delta_mu.standard_error);
