@@ -65,24 +65,15 @@ class MeasuredTraces : public testing::Test {
   }
 };
 
-TEST_F(MeasuredTraces, CyclesAreThoseSeenByEyeAtEachScanRate) {
+TEST_F(MeasuredTraces, CyclesAndRegimeAreThoseSeenByEyeAtEachScanRate) {
   for (const Seen& trace : kSeen) {
     for (const std::size_t stride : kStrides) {
       SCOPED_TRACE(std::string{trace.name} + ", every scan of " + std::to_string(stride));
       const TestResults results = analyse(trace.name, stride);
       EXPECT_NEAR(results.cycle_count.value.value(), trace.cycles, (stride <= 2 ? 0.1 : 0.15) * trace.cycles);
+      EXPECT_EQ(results.regime, trace.regime) << model::name(results.regime) << ": " << results.regime_reason;
       // A slip of half the mean amplitude would have been seen.
       EXPECT_LT(results.smallest_slip.value.value(), 2.0 * results.amplitude.value.value());
-    }
-  }
-}
-
-TEST_F(MeasuredTraces, RegimeIsThatSeenByEyeAtEachScanRate) {
-  for (const Seen& trace : kSeen) {
-    for (const std::size_t stride : kStrides) {
-      SCOPED_TRACE(std::string{trace.name} + ", every scan of " + std::to_string(stride));
-      const TestResults results = analyse(trace.name, stride);
-      EXPECT_EQ(results.regime, trace.regime) << model::name(results.regime) << ": " << results.regime_reason;
     }
   }
 }
