@@ -26,7 +26,7 @@ struct ShowOptions : BenchOptions {
   std::string test;  ///< Number of a test of the daemon, or path of a record.
 };
 
-/// "rung: two-parameter-law, the slope of K is not significant"
+/// "rung: two-parameter-law, the slips begin gradually …"
 std::string rung_text(const Json& results) {
   const Json& details = results["details"];
   const std::string reason = details.contains("rung") ? word(details["rung"], "reason") : std::string{};

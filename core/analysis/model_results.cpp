@@ -303,11 +303,12 @@ double Misfit::z_of(const Sum& sum) noexcept {
 
 void Misfit::add(const estimate::Trace& trace, const SlipEstimates& estimates, double sigma) {
   const estimate::SlipFit& fit = estimates.fit;
-  if (!fit.converged) return;
+  if (!(fit.freedom > 0.0)) return;
   Sum section;
   section.add(fit.residual_sigma / sigma, fit.freedom);
   whole_.add(fit.residual_sigma / sigma, fit.freedom);
-  if (!(z_of(section) > kSignificant)) return;  // Chance has no place.
+  converged_ = converged_ && fit.converged;
+  if (!fit.converged || !(z_of(section) > kSignificant)) return;  // Chance has no place.
   std::array<estimate::HuberSums, kSlipPartNames.size()> sums;
   model::TurnedBasis basis{fit.shared.oscillator()};
   for (const estimate::SlipWindow& window : estimates.windows) {
@@ -336,13 +337,13 @@ void Misfit::add(const estimate::Trace& trace, const SlipEstimates& estimates, d
 }
 
 std::optional<SlipPart> Misfit::place() const noexcept {
-  if (!is_significant()) return std::nullopt;
+  if (!converged_ || !is_significant()) return std::nullopt;
   const auto largest = std::ranges::max_element(parts_, {}, [](const Sum& sum) { return residual_of(sum); });
   return static_cast<SlipPart>(largest - parts_.begin());
 }
 
 Estimate Misfit::systematic() const {
-  if (whole_.freedom <= 0.0) return Estimate::none("no fit of the model converged");
+  if (!converged_ || whole_.freedom <= 0.0) return Estimate::none("no fit of the model converged");
   const double excess = std::max(residual_sigmas() * residual_sigmas() - 1.0, 0.0);
   const double error = error_of_square(whole_);
   // Of the root of a square that may be zero.

@@ -29,7 +29,7 @@ inline constexpr std::array<std::string_view, 4> kSlipPartNames{"rise", "peak", 
 /// Residuals of a test's fits compared with the noise of a scan.
 class Misfit {
  public:
-  /// Adds the fit of a section. \param sigma  noise of one scan.
+  /// Adds the fit of a section, or where it stopped. \param sigma  noise of one scan.
   void add(const estimate::Trace& trace, const SlipEstimates& estimates, double sigma);
 
   /// Standard deviation of the residuals, in σ; 1 for noise alone.
@@ -62,6 +62,7 @@ class Misfit {
   [[nodiscard]] static double error_of_square(const Sum& sum) noexcept;
   [[nodiscard]] static double z_of(const Sum& sum) noexcept;
 
+  bool converged_ = true;
   Sum whole_;
   std::array<Sum, kSlipPartNames.size()> parts_;
 };

@@ -297,7 +297,7 @@ TestResults TestAnalysis::finish() {
           : traditional.static_coefficient;
   results.kinetic_coefficient = traditional.kinetic_coefficient;
   if (slips.empty()) {
-    const detect::RegimeVerdict verdict = detect::judge_regime(0, {}, true);
+    const detect::RegimeVerdict verdict = detect::judge_regime(0, {}, detect::Description::kFits);
     results.regime = verdict.regime;
     results.regime_reason = verdict.reason;
     results.stick_cycle_count = Estimate::of(0.0);
@@ -340,9 +340,13 @@ TestResults TestAnalysis::finish() {
     }
     results.rung = estimates.rung;
     results.rung_reason = estimates.rung_reason;
+    const bool refuted = estimates.misfit.is_certain();
+    const auto description = estimates.model_describes ? detect::Description::kFits
+                             : refuted                 ? detect::Description::kRefuted
+                                                       : detect::Description::kDoubtful;
     detect::RegimeVerdict verdict =
-        detect::judge_regime(slips.size(), estimates.log_likelihood_ratios, estimates.model_describes);
-    if ((!estimates.model_describes || estimates.misfit.is_certain()) && trace.belt.is_constant()) {
+        detect::judge_regime(slips.size(), estimates.log_likelihood_ratios, description);
+    if (refuted && trace.belt.is_constant()) {
       verdict =
           detect::judge_by_shape(cycle_shape(trace, slips), std::move(verdict), estimates.model_describes);
     }

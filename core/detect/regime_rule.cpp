@@ -53,25 +53,32 @@ constexpr double kChange = 4.605170185988091;                // ln 100
 }  // namespace
 
 RegimeVerdict judge_regime(std::size_t slip_count, const base::LongColumn<double>& log_likelihood_ratios,
-                           bool model_describes) {
+                           Description description) {
   if (slip_count == 0) return {model::Regime::kSteadySliding, "no fall of the force is a slip", {}};
   if (log_likelihood_ratios.empty()) {
     return {model::Regime::kUndecided, "one slip: nothing after it tells how it ended", {}};
   }
-  const double largest = model_describes ? std::numeric_limits<double>::infinity() : kLargestDoubtfulRatio;
+  const bool refuted = description == Description::kRefuted;
+  const double largest = refuted ? kLargestDoubtfulRatio : std::numeric_limits<double>::infinity();
   Courses courses;
   std::ptrdiff_t captured = 0;
   std::ptrdiff_t count = 0;
   std::size_t slip = 0;
   for (const double ratio : log_likelihood_ratios) {
     if (ratio != 0.0) {  // Else it says nothing.
-      courses.add(slip, count == 0, std::clamp(ratio, -largest, largest), model_describes ? 0.0 : kChange);
+      courses.add(slip, count == 0, std::clamp(ratio, -largest, largest), refuted ? kChange : 0.0);
       ++count;
       if (ratio > 0.0) ++captured;
     }
     ++slip;
   }
   if (count == 0) return {model::Regime::kUndecided, "no slip tells how it ended", {}};
+  if (description == Description::kDoubtful && captured != 0 && captured != count) {
+    return {
+        model::Regime::kUndecided,
+        fmt::format("{} of {} slips look captured, and no fit of the test tells which are", captured, count),
+        {}};
+  }
 
   struct Class {
     model::Regime regime;

@@ -20,15 +20,21 @@ struct RegimeVerdict {
 /// Likelihood ratio of the best two regimes below which the result is undecided.
 inline constexpr double kDecisiveLikelihoodRatio = 20.0;
 
+/// How well the model describes a test.
+enum class Description {
+  kFits,
+  kDoubtful,  ///< No fit describes it, but its residuals are noise: only slips that agree tell a regime.
+  kRefuted,   ///< The residuals are certainly more than noise: another friction.
+};
+
 /// \param slip_count  slips of the test.
 /// \param log_likelihood_ratios  captured over free, one for each slip but the last.
-/// \param model_describes  the ratios rest on a model that fits the trace. If it does not, each counts for
-/// little,
-///        and slips that end otherwise than their neighbours must outweigh the changes of behaviour they
-///        need.
+/// \param description  of the trace by the model on which the ratios rest. If it is refuted each ratio counts
+/// for
+///        little, and slips that end otherwise than their neighbours must outweigh the changes of behaviour.
 [[nodiscard]] RegimeVerdict judge_regime(std::size_t slip_count,
                                          const base::LongColumn<double>& log_likelihood_ratios,
-                                         bool model_describes);
+                                         Description description);
 
 /// What the cycles of a test look like, without any model.
 struct CycleShape {

@@ -10,17 +10,19 @@
 namespace stickslip::model {
 namespace {
 
-Regime regime_of(const std::vector<double>& ratios, bool model_describes = true) {
-  return detect::judge_regime(ratios.size() + 1, ratios, model_describes).regime;
+using detect::Description;
+
+Regime regime_of(const std::vector<double>& ratios, Description description = Description::kFits) {
+  return detect::judge_regime(ratios.size() + 1, ratios, description).regime;
 }
 
 TEST(RegimeRule, NoSlipIsSteadySliding) {
-  EXPECT_EQ(detect::judge_regime(0, {}, true).regime, Regime::kSteadySliding);
-  EXPECT_EQ(detect::judge_regime(0, {}, false).regime, Regime::kSteadySliding);
+  EXPECT_EQ(detect::judge_regime(0, {}, Description::kFits).regime, Regime::kSteadySliding);
+  EXPECT_EQ(detect::judge_regime(0, {}, Description::kRefuted).regime, Regime::kSteadySliding);
 }
 
 TEST(RegimeRule, OneSlipDoesNotTell) {
-  const detect::RegimeVerdict verdict = detect::judge_regime(1, {}, true);
+  const detect::RegimeVerdict verdict = detect::judge_regime(1, {}, Description::kFits);
   EXPECT_EQ(verdict.regime, Regime::kUndecided);
   EXPECT_THAT(verdict.reason, testing::HasSubstr("one slip"));
 }
@@ -31,18 +33,20 @@ TEST(RegimeRule, AllCapturedIsStickSlipAndNoneIsRingDown) {
 }
 
 TEST(RegimeRule, OneOfEachKindIsMixedFromTheFirstChangeOn) {
-  const detect::RegimeVerdict dies = detect::judge_regime(5, std::vector{50.0, 40.0, -30.0, -20.0}, true);
+  const detect::RegimeVerdict dies =
+      detect::judge_regime(5, std::vector{50.0, 40.0, -30.0, -20.0}, Description::kFits);
   EXPECT_EQ(dies.regime, Regime::kMixed);
   EXPECT_EQ(dies.transition_slip, std::optional<std::size_t>{2});
-  const detect::RegimeVerdict begins = detect::judge_regime(5, std::vector{-50.0, 40.0, 30.0, 20.0}, true);
+  const detect::RegimeVerdict begins =
+      detect::judge_regime(5, std::vector{-50.0, 40.0, 30.0, 20.0}, Description::kFits);
   EXPECT_EQ(begins.regime, Regime::kMixed);
   EXPECT_EQ(begins.transition_slip, std::optional<std::size_t>{1});
 }
 
 TEST(RegimeRule, TransitionBelongsToMixedOnly) {
-  EXPECT_FALSE(detect::judge_regime(3, std::vector{50.0, 50.0}, true).transition_slip);
-  EXPECT_FALSE(detect::judge_regime(3, std::vector{-50.0, -50.0}, true).transition_slip);
-  EXPECT_FALSE(detect::judge_regime(3, std::vector{-50.0, 0.1}, true).transition_slip);
+  EXPECT_FALSE(detect::judge_regime(3, std::vector{50.0, 50.0}, Description::kFits).transition_slip);
+  EXPECT_FALSE(detect::judge_regime(3, std::vector{-50.0, -50.0}, Description::kFits).transition_slip);
+  EXPECT_FALSE(detect::judge_regime(3, std::vector{-50.0, 0.1}, Description::kFits).transition_slip);
 }
 
 TEST(RegimeRule, TwentyTimesAsLikelyDecides) {
@@ -64,19 +68,25 @@ TEST(RegimeRule, WeakestSlipDecidesBetweenPureAndMixed) {
 }
 
 TEST(RegimeRule, WithoutAModelAFewSlipsAmongManyDoNotMakeATestMixed) {
-  EXPECT_EQ(regime_of({50.0, 50.0, 50.0}, false), Regime::kStickSlip);
-  EXPECT_EQ(regime_of({-50.0, -50.0, -50.0}, false), Regime::kRingDown);
+  EXPECT_EQ(regime_of({50.0, 50.0, 50.0}, Description::kRefuted), Regime::kStickSlip);
+  EXPECT_EQ(regime_of({-50.0, -50.0, -50.0}, Description::kRefuted), Regime::kRingDown);
   // Single slips that seem to go on, each among many that stick: double events of rough paper.
   std::vector<double> ratios(100, 50.0);
   ratios[20] = ratios[50] = ratios[80] = -50.0;
-  EXPECT_EQ(regime_of(ratios, false), Regime::kStickSlip);
-  EXPECT_EQ(regime_of(ratios, true), Regime::kMixed);
+  EXPECT_EQ(regime_of(ratios, Description::kRefuted), Regime::kStickSlip);
+  EXPECT_EQ(regime_of(ratios, Description::kFits), Regime::kMixed);
+}
+
+TEST(RegimeRule, WhereTheResidualsAreNoiseOnlyAUnanimousVoteCounts) {
+  EXPECT_EQ(regime_of({50.0, 50.0, 50.0}, Description::kDoubtful), Regime::kStickSlip);
+  EXPECT_EQ(regime_of({-50.0, -50.0, -50.0}, Description::kDoubtful), Regime::kRingDown);
+  EXPECT_EQ(regime_of({50.0, 50.0, -50.0}, Description::kDoubtful), Regime::kUndecided);
 }
 
 TEST(RegimeRule, WithoutAModelOneChangeOfBehaviourIsMixed) {
   std::vector<double> ratios(20, 50.0);
   std::fill(ratios.begin() + 12, ratios.end(), -50.0);
-  const detect::RegimeVerdict verdict = detect::judge_regime(21, ratios, false);
+  const detect::RegimeVerdict verdict = detect::judge_regime(21, ratios, Description::kRefuted);
   EXPECT_EQ(verdict.regime, Regime::kMixed);
   EXPECT_EQ(verdict.transition_slip, 12U);
 }
@@ -110,11 +120,13 @@ TEST(RegimeRule, DecayAndFewCyclesLeaveTheVerdictToTheEnds) {
 TEST(RegimeRule, SlipsThatTellNothingDoNotVote) {
   EXPECT_EQ(regime_of({50.0, 0.0, 50.0}), Regime::kStickSlip);
   EXPECT_EQ(regime_of({-50.0, 0.0, -50.0}), Regime::kRingDown);
-  EXPECT_EQ(detect::judge_regime(5, std::vector{0.0, 50.0, 0.0, -50.0}, true).transition_slip, 3U);
+  EXPECT_EQ(detect::judge_regime(5, std::vector{0.0, 50.0, 0.0, -50.0}, Description::kFits).transition_slip,
+            3U);
 }
 
 TEST(RegimeRule, NothingKnownIsUndecidedWithAReason) {
-  const detect::RegimeVerdict verdict = detect::judge_regime(4, std::vector{0.0, 0.0, 0.0}, true);
+  const detect::RegimeVerdict verdict =
+      detect::judge_regime(4, std::vector{0.0, 0.0, 0.0}, Description::kFits);
   EXPECT_EQ(verdict.regime, Regime::kUndecided);
   EXPECT_THAT(verdict.reason, testing::HasSubstr("no slip tells"));
 }
