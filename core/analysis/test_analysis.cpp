@@ -467,6 +467,8 @@ TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongCol
         hold_damping(typical.results);
         return typical;
       }
+      // Where a fit stopped far from the best one, its residuals say nothing about the law.
+      if (typical.misfit.residual_sigmas() < alone.misfit.residual_sigmas()) alone.misfit = typical.misfit;
     }
     return settings_.prior.empty() ? std::move(alone) : estimates(settings_.prior);
   }
