@@ -43,13 +43,16 @@ template <typename Function>
     }
     value = std::fmin(value, 0.0);
     double step = 0.0;
-    for (const double to : {longest_s, std::fmin(t + stretch_s, longest_s)}) {
+    // The last one is for a function that leaves zero with a high power of t: only near zero is its bend
+    // small.
+    for (const double to : {longest_s, std::fmin(t + stretch_s, longest_s), std::fmin(2.0 * t, longest_s)}) {
+      if (to <= t) continue;
       const double safe = safe_step(t, value, slope, to);
       if (t + safe > longest_s && to == longest_s) return std::nullopt;
       step = std::fmax(step, std::fmin(safe, to - t));
     }
     if (!(t < longest_s)) return std::nullopt;
-    if (step <= kEpsilon * t) return t;
+    if (t > 0.0 && step <= kEpsilon * t) return t;
     if (step == 0.0) step = kEpsilon * stretch_s;  // Zero, level and bent: on to where it shows how.
     if (step >= stretch_s) stretch_s *= 2.0;
     t += step;

@@ -127,6 +127,20 @@ TEST(NumericSolverLaws, StickingFollowsTheTravelOfTheBelt) {
   }
 }
 
+// A one-way coupling that is just taut when the belt starts with a jerk: neither its force nor the slope of
+// the force nor its curvature tells yet that it does not go slack.
+TEST(NumericSolverLaws, AJerkFromRestKeepsAOneWayCouplingTaut) {
+  sim::Motion motion = motion_at(1.0, 0.022);
+  motion.one_way_coupling = true;
+  motion.belt = {{.duration_s = 0.01}, {.duration_s = 1.0, .jerk_m_per_s3 = 0.5}};
+  const double factor = motion.oscillator.omega0_squared() / kGravity;
+  const std::vector<double> started = numeric_trace(motion, 30);
+  for (std::size_t i = 0; i < started.size(); ++i) {
+    const double t = std::max(static_cast<double>(i) / kRate_Hz - 0.01, 0.0);
+    ASSERT_NEAR(started[i], factor * 0.5 * t * t * t / 6.0, 1e-14);
+  }
+}
+
 // Friction has to supply the acceleration of the sled too: it gives way when c + a/g = S.
 TEST(NumericSolverLaws, AnAcceleratingBeltLosesTheSledSooner) {
   sim::Motion motion = motion_at(1.0, 0.022);
