@@ -328,7 +328,7 @@ void Misfit::add(const estimate::Trace& trace, const SlipEstimates& estimates, d
     };
     for (std::size_t k = window.first; k < window.end; ++k) {
       if (trace.usable[k] == 0) continue;
-      const double value = model.at(trace.time_s[k], basis).value;
+      const double value = model.place(trace.time_s[k], basis).value;
       const SlipPart part = part_of(trace.time_s[k] - window.slip.onset_s, value);
       sums[static_cast<std::size_t>(part)].add((trace.level(k) - value) / sigma);
     }

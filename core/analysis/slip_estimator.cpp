@@ -61,12 +61,28 @@ class SlipEnds {
   detect::CaptureTest test_;
 };
 
+/// Whether ends that are told decisively with parameters `a` are told alike with `b`: over the scans of a
+/// test, one and a half oscillations and a stick, the trajectories differ so little that a log-likelihood
+/// ratio moves by less than half of what is decisive.
+bool tell_alike(const estimate::Trace& trace, const model::SharedParameters& a,
+                const model::SharedParameters& b, double delta_mu, double sigma) {
+  constexpr double kPhase_rad = 3.0 * std::numbers::pi;
+  constexpr double kRise = 2.0;  // A stick rises by twice the amplitude.
+  const double difference =
+      delta_mu * (kPhase_rad * (std::abs(a.omega - b.omega) + 0.5 * std::abs(a.gamma - b.gamma)) / a.omega +
+                  kRise * std::abs(a.r - b.r) / a.r);
+  // It grows from nothing at the peak: half its mean square is a sixth of that at the end.
+  const double scans = kPhase_rad / a.omega * scans_per_s(trace);
+  return scans * difference * difference / 6.0 < 0.5 * detect::kDecisive * sigma * sigma;
+}
+
 /// Fills the likelihood ratios.
+/// \param decisive_stay  Ratios that are decisive already are not computed again.
 std::vector<SlipEnd> judge_ends(const estimate::Trace& trace, std::span<const detect::Fall> slips,
-                                const model::SharedParameters& shared, double sigma,
+                                const model::SharedParameters& shared, double sigma, bool decisive_stay,
                                 SlipEstimates& estimates) {
   std::vector<SlipEnd> ends(slips.size(), SlipEnd::kUnknown);
-  estimates.log_likelihood_ratios.clear();
+  const std::vector<double> before = std::exchange(estimates.log_likelihood_ratios, {});
   SlipEnds test{trace, slips, shared, sigma};
   const bool cut = pull_ended_in_last_slip(trace, slips, shared);
   for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
@@ -76,8 +92,10 @@ std::vector<SlipEnd> judge_ends(const estimate::Trace& trace, std::span<const de
       continue;
     }
     const bool to_the_peak = cut && i + 2 == slips.size();
-    double ratio = test.log_likelihood_ratio(
-        i, to_the_peak ? slips[i + 1].peak_at : trough_at(trace, slips[i + 1], shared));
+    const bool stays = decisive_stay && std::abs(before[i]) > detect::kDecisive;
+    double ratio = stays ? before[i]
+                         : test.log_likelihood_ratio(i, to_the_peak ? slips[i + 1].peak_at
+                                                                    : trough_at(trace, slips[i + 1], shared));
     // The belt may have stopped before that peak.
     if (to_the_peak && std::abs(ratio) < kDoubtful) ratio = 0.0;
     estimates.log_likelihood_ratios.push_back(ratio);
@@ -174,9 +192,15 @@ SlipEstimates rounds(const estimate::Trace& trace, std::span<const detect::Fall>
                         : estimate::SlipFit{};
   };
   std::vector<double> weighed;  // The ratios after the latest weighing.
+  model::SharedParameters asked_with;
   for (int round = 0; round < kDecisionRounds; ++round) {
     const SlipEstimates before = estimates;
-    if (round > 0 || found.empty()) found = judge_ends(trace, slips, shared, sigma, estimates);
+    if (round > 0 || found.empty()) {
+      const bool stay = !estimates.log_likelihood_ratios.empty() &&
+                        tell_alike(trace, asked_with, shared, typical_delta_mu(trace, slips, shared), sigma);
+      found = judge_ends(trace, slips, shared, sigma, stay, estimates);
+      if (!stay) asked_with = shared;
+    }
     if (round > 0 && found == before.ends) {
       for (std::size_t i = 0; i < weighed.size(); ++i) {
         if (std::abs(weighed[i]) == kUnsure) estimates.log_likelihood_ratios[i] = weighed[i];

@@ -59,9 +59,10 @@ bool CaptureTest::leave_out_a_stray_of_both(const Trajectories& trajectories) no
   // One stray alone costs as much: below that there is none.
   const double least = estimate::huber_cost(estimate::kStraySigmas, kChoiceLimit);
   if (trajectories.free_cost < least || trajectories.captured.equations.cost < least) return false;
+  model::TurnedBasis basis = trajectories.captured.trajectory.turned_basis();
   return rows_.leave_out_a_stray(common_count_, rows_.size(), [&](const ScanRow& row) {
     return std::min(std::abs(row.free_residual(trajectories.free)),
-                    std::abs(trajectories.captured.trajectory.residual(row)));
+                    std::abs(trajectories.captured.trajectory.residual(row, basis)));
   });
 }
 
@@ -99,8 +100,9 @@ bool CaptureTest::is_misfit(double cost) const noexcept {
 CaptureTest::Bounds CaptureTest::last_captured_bounds() const noexcept {
   if (last_count_ == 0) return {common_cost_, std::numeric_limits<double>::infinity()};
   Bounds bounds{last_captured_.equations.cost, last_captured_.equations.cost};
+  model::TurnedBasis basis = last_captured_.trajectory.turned_basis();
   for (const ScanRow& row : rows_.all().subspan(last_count_))
-    bounds.most += estimate::huber_cost(last_captured_.trajectory.residual(row), kChoiceLimit);
+    bounds.most += estimate::huber_cost(last_captured_.trajectory.residual(row, basis), kChoiceLimit);
   return bounds;
 }
 
@@ -108,8 +110,9 @@ double CaptureTest::log_likelihood_ratio(const Trajectories& trajectories,
                                          double residual_sigmas) const noexcept {
   const double per_sigma = 1.0 / std::max(residual_sigmas, 1.0);
   LogOfProduct rows;
+  model::TurnedBasis basis = trajectories.captured.trajectory.turned_basis();
   for (const ScanRow& row : rows_.all()) {
-    rows.multiply(mixture(trajectories.captured.trajectory.residual(row) * per_sigma) /
+    rows.multiply(mixture(trajectories.captured.trajectory.residual(row, basis) * per_sigma) /
                   mixture(row.free_residual(trajectories.free) * per_sigma));
   }
   const double unusual = trajectories.captured.trajectory.unusual(prior_.typical_delta_mu).cost;
@@ -123,6 +126,7 @@ void CaptureTest::fit_captured_trajectory(Trajectories& trajectories, const Fitt
                         budget.iterations);
   };
   trajectories.captured = fit(usual);
+  if (budget.iterations == 0) return;  // A lower limit is enough.
   // No second fit is needed if the next slip has not begun and the free trajectory is no better, or if the
   // result is decisive already.
   const double cost = trajectories.captured.equations.cost;
@@ -204,7 +208,7 @@ CaptureEvidence CaptureTest::evaluate(std::span<const estimate::CyclePoint> poin
     if (tells && evidence.residual_sigmas <= kMisfitSigmas) return evidence;
   }
   fit_captured_trajectory(trajectories, usual ? *usual : usual_now(), budget);
-  while (leave_out_a_stray_of_both(trajectories)) {
+  while (budget.iterations > 0 && leave_out_a_stray_of_both(trajectories)) {
     strays_ = true;
     trajectories.free_cost = fit_free(rows_.all(), trajectories.free);
     fit_captured_trajectory(trajectories, usual_now(), budget);

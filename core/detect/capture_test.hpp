@@ -36,8 +36,8 @@ struct Budget {
   /// Smallest |log-likelihood ratio| of interest. A ratio that is certainly smaller is not computed, which
   /// saves most of the time; then only `known` is set. 0: always compute.
   double decisive = 0.0;
-  /// Limit of the iterations of the captured trajectory's fit. With 0 the ratio is that of the first guess: a
-  /// lower limit, which suffices where it is decisive for "captured".
+  /// Limit of the iterations of the captured trajectory's fit. With 0 the ratio is that of the first guess,
+  /// without a look for strays: a lower limit, which suffices where it is decisive for "captured".
   int iterations = 8;
 };
 

@@ -56,32 +56,29 @@ CapturedTrajectory CapturedTrajectory::with_next_delta_mu(double delta_mu) const
   return other;
 }
 
-CapturedTrajectory::Point CapturedTrajectory::after_onset(const ScanRow& row) const noexcept {
-  const double omega = shared_.omega;
+CapturedTrajectory::Point CapturedTrajectory::after_onset(const ScanRow& row,
+                                                          model::TurnedBasis& basis) const noexcept {
   const double gamma = shared_.gamma;
   const double r = rate_at_onset_;
   const double D = std::max(p_[3], at_capture_) - p_[0];
-  const double B = (r + 0.5 * gamma * D) / omega;
-  const double tau_s = row.tau_s - onset_tau_s_;
-  const double decay = std::exp(-0.5 * gamma * tau_s);
-  const double cosine = decay * std::cos(omega * tau_s);
-  const double sine = decay * std::sin(omega * tau_s);
-  const double swing = D * cosine + B * sine;
-  const double rate = r * cosine - (0.5 * gamma * B + omega * D) * sine;
-  const double by_D = cosine + 0.5 * gamma / omega * sine;
-  Point point;
-  point.value = p_[0] + swing - row.half_spread_s2 * (gamma * rate + omega0_squared_ * swing);
-  // A larger S delays the onset by 1/r; a higher capture advances it by 1/r. The slip begins with the belt's
-  // rate at that time.
-  const double by_capture = (rate - slope_at_onset_ / omega * sine) / r;
-  point.by << by_capture * by_free_[0] + 1.0 - by_D, by_capture * by_free_[1], by_capture * by_free_[2],
-      by_D - by_capture;
-  return point;
+  const auto [cosine, sine] = basis.at(row.tau_s - onset_tau_s_);
+  const double swing = D * cosine + (r + 0.5 * gamma * D) * sine;
+  const double rate = r * cosine - (0.5 * gamma * r + omega0_squared_ * D) * sine;
+  return {p_[0] + swing - row.half_spread_s2 * (gamma * rate + omega0_squared_ * swing), rate,
+          cosine + 0.5 * gamma * sine, sine};
 }
 
-double CapturedTrajectory::residual(const ScanRow& row) const noexcept {
+CapturedTrajectory::Parameters CapturedTrajectory::derivatives(const Point& at) const noexcept {
+  // A larger S delays the onset by 1/r; a higher capture advances it by 1/r. The slip begins with the belt's
+  // rate at that time.
+  const double by_capture = (at.rate - slope_at_onset_ * at.sine) / rate_at_onset_;
+  return {by_capture * by_free_[0] + 1.0 - at.by_D, by_capture * by_free_[1], by_capture * by_free_[2],
+          at.by_D - by_capture};
+}
+
+double CapturedTrajectory::residual(const ScanRow& row, model::TurnedBasis& basis) const noexcept {
   if (row.tau_s <= capture_tau_s_) return row.free_residual(p_.head<3>());
-  const double value = row.tau_s <= onset_tau_s_ ? while_stuck(row.tau_s) : after_onset(row).value;
+  const double value = row.tau_s <= onset_tau_s_ ? while_stuck(row.tau_s) : after_onset(row, basis).value;
   return (row.value - value) * row.scale;
 }
 
@@ -127,13 +124,15 @@ CapturedTrajectory::Equations CapturedTrajectory::equations(std::span<const Scan
   }
   sum.normal.topLeftCorner<3, 3>() += (weights * by_free_) * by_free_.transpose();
   sum.gradient.head<3>() += stuck_gradient * by_free_;
+  model::TurnedBasis basis = turned_basis();
   for (; row != rows.end(); ++row) {
-    const Point point = after_onset(*row);
+    const Point point = after_onset(*row, basis);
     const double z = (row->value - point.value) * row->scale;
     sum.cost += estimate::huber_cost(z, kChoiceLimit);
     const double weight = estimate::huber_weight(z, kChoiceLimit) * row->scale;
-    sum.normal += (weight * row->scale * point.by) * point.by.transpose();
-    sum.gradient += weight * z * point.by;
+    const Parameters by = derivatives(point);
+    sum.normal += (weight * row->scale * by) * by.transpose();
+    sum.gradient += weight * z * by;
   }
   return sum;
 }

@@ -53,8 +53,12 @@ class CapturedTrajectory {
     return is_captured_ ? std::optional{capture_tau_s_} : std::nullopt;
   }
   [[nodiscard]] double onset_tau_s() const noexcept { return onset_tau_s_; }  ///< Of the next slip.
+  /// For the rows after the onset, in the order of time.
+  [[nodiscard]] model::TurnedBasis turned_basis() const noexcept {
+    return model::TurnedBasis{shared_.oscillator()};
+  }
   /// Residual of a row, in standard deviations.
-  [[nodiscard]] double residual(const ScanRow& row) const noexcept;
+  [[nodiscard]] double residual(const ScanRow& row, model::TurnedBasis& basis) const noexcept;
 
   /// Normal equations of the residuals.
   struct Equations {
@@ -68,13 +72,16 @@ class CapturedTrajectory {
   [[nodiscard]] Equations equations(std::span<const ScanRow> rows, double typical_delta_mu) const noexcept;
 
  private:
-  /// Value, and derivatives.
+  /// Mean over a row of the next slip, and what its derivatives are made of.
   struct Point {
     double value = 0.0;
-    Parameters by = Parameters::Zero();
+    double rate = 0.0;
+    double by_D = 0.0;
+    double sine = 0.0;
   };
   void set_next_S(double S) noexcept;
-  [[nodiscard]] Point after_onset(const ScanRow& row) const noexcept;
+  [[nodiscard]] Point after_onset(const ScanRow& row, model::TurnedBasis& basis) const noexcept;
+  [[nodiscard]] Parameters derivatives(const Point& at) const noexcept;
   /// At the mean time of a row: on a changing belt the mean over it differs by less than a tenth of σ.
   [[nodiscard]] double while_stuck(double tau_s) const noexcept {
     return at_capture_ +

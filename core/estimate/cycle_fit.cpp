@@ -9,6 +9,7 @@
 
 #include "core/estimate/huber.hpp"
 #include "core/estimate/minimise.hpp"
+#include "core/estimate/slip_sums.hpp"
 
 namespace stickslip::estimate {
 namespace {
@@ -74,18 +75,19 @@ struct CycleProblem {
     if (!admissible(at)) return;
     const model::SlipModel model{at.shared, at.slip, captured};
     model::TurnedBasis basis{model.waveform().oscillator};
+    SlipSums sums;
+    const double per_sigma = 1.0 / sigma;
     for (const CyclePoint& point : points) {
       // The mean over a point's scans: the value at their mean time, and half the curvature times the
       // variance of their times. The derivatives' own curvature affects only the steps.
-      const model::SlipModelPoint mean = model.at(point.time_s, basis);
-      const double value = mean.value + 0.5 * point.spread_s2 * mean.curvature;
-      const double scale = std::sqrt(point.count) / sigma;
-      const double z = (point.value - value) * scale;
-      const double weight = equations.sums.add(z);
-      const Vector6d row = mean.by * scale;
-      equations.scans.noalias() += (weight * row) * row.transpose();
-      equations.gradient += weight * z * row;
+      const model::SlipPlace place = model.place(point.time_s, basis);
+      const double value = place.value + 0.5 * point.spread_s2 * model.curvature(place);
+      const double scale = (point.count == 1.0 ? 1.0 : std::sqrt(point.count)) * per_sigma;
+      const double residual = point.value - value;
+      sums.add(place, equations.sums.add(residual * scale) * scale * scale, residual);
     }
+    equations.scans = sums.normal(model);
+    equations.gradient = sums.gradient(model);
     equations.known = knowledge.at(at.shared);
     equations.cost = equations.sums.cost() + equations.known.cost;
     equations.capture_s = model.capture_s();

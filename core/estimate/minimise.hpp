@@ -38,7 +38,7 @@ bool minimise(const Problem& problem, typename Problem::State& state, typename P
   constexpr double kFirstDamping = 1e-3;      // Nearly a Gauss–Newton step.
   constexpr double kSmallestDamping = 1e-12;  // Negligible beside the curvature.
   constexpr double kHopeless = 1e8;
-  constexpr double kEasier = 0.1;
+  constexpr double kEasier = 0.01;
   constexpr double kHarder = 5.0;
   constexpr double kSurely = 0.01;  // So little is left that the step is not worth its evaluation.
   if (!std::isfinite(equations.cost)) return false;

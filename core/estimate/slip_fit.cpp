@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -10,6 +11,7 @@
 
 #include "core/estimate/huber.hpp"
 #include "core/estimate/minimise.hpp"
+#include "core/estimate/slip_sums.hpp"
 
 namespace stickslip::estimate {
 namespace {
@@ -24,9 +26,6 @@ constexpr int kMostFitIterations = 60;
 constexpr int kMostFitIterationsWithPrior = 200;
 /// Relative change of the cost below which the fit has converged.
 constexpr double kFitConverged = 1e-10;
-/// Change of the cost below which it has converged whatever its size: a parameter moves by 4e-5 of its
-/// standard error. An exact trace has a cost of rounding errors, which no step lowers.
-constexpr double kFitSettled = 1e-9;
 
 /// Normal equations of one slip; their capture is the first guess of the next.
 struct SlipBlock {
@@ -80,7 +79,12 @@ class SlipsProblem {
 
   SlipsProblem(const Trace& trace, const std::vector<SlipWindow>& windows, double sigma,
                const SharedPrior& prior)
-      : trace_(trace), windows_(windows), sigma_(sigma), prior_(prior) {}
+      : belt_(trace.belt), windows_(windows), sigma_(sigma), prior_(prior) {
+    for (const SlipWindow& window : windows) {
+      append_usable(trace, window.first, window.end, scans_);
+      ends_.push_back(scans_.size());
+    }
+  }
 
   void assemble(const State& at, Equations& equations) const {
     equations.cost = std::numeric_limits<double>::infinity();
@@ -91,11 +95,11 @@ class SlipsProblem {
     equations.gradient.setZero();
     equations.sums = {};
     model::TurnedBasis basis{at.shared.oscillator()};
-    for (std::size_t i = 0; i < windows_.size(); ++i) {
+    for (std::size_t i = 0, begin = 0; i < windows_.size(); begin = ends_[i++]) {
       SlipBlock& block = equations.slips[i];
       const auto expected = first ? std::nullopt : std::optional{block.capture_s};
-      const model::SlipModel model{at.shared, at.slips[i], windows_[i].captured, trace_.belt, expected};
-      add_scans(windows_[i], model, basis, block, equations);
+      const model::SlipModel model{at.shared, at.slips[i], windows_[i].captured, belt_, expected};
+      add_scans(std::span{scans_}.subspan(begin, ends_[i] - begin), model, basis, block, equations);
     }
     equations.prior = prior_.at(at.shared);
     // The equations of the scans are in units of σ².
@@ -130,18 +134,17 @@ class SlipsProblem {
   }
 
  private:
-  void add_scans(const SlipWindow& window, const model::SlipModel& model, model::TurnedBasis& basis,
+  void add_scans(std::span<const TraceScan> scans, const model::SlipModel& model, model::TurnedBasis& basis,
                  SlipBlock& block, Equations& equations) const {
-    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
-    model::SlipModelPoint::Derivatives gradient = model::SlipModelPoint::Derivatives::Zero();
-    for (std::size_t k = window.first; k < window.end; ++k) {
-      if (trace_.usable[k] == 0) continue;
-      const model::SlipModelPoint point = model.at(trace_.time_s[k], basis);
-      const double residual = trace_.level(k) - point.value;
-      const double weight = equations.sums.add(residual / sigma_);
-      normal.noalias() += (weight * point.by) * point.by.transpose();
-      gradient += (weight * residual) * point.by;
+    SlipSums sums;
+    const double per_sigma = 1.0 / sigma_;
+    for (const TraceScan& scan : scans) {
+      const model::SlipPlace at = model.place(scan.time_s, basis);
+      const double residual = scan.level - at.value;
+      sums.add(at, equations.sums.add(residual * per_sigma), residual);
     }
+    const SlipSums::Matrix normal = sums.normal(model);
+    const SlipSums::Vector gradient = sums.gradient(model);
     block.own = normal.topLeftCorner<3, 3>();
     block.mixed = normal.topRightCorner<3, 3>();
     block.gradient = gradient.head<3>();
@@ -150,8 +153,10 @@ class SlipsProblem {
     equations.gradient += gradient.tail<3>();
   }
 
-  const Trace& trace_;
+  const model::BeltCourse& belt_;
   const std::vector<SlipWindow>& windows_;
+  std::vector<TraceScan> scans_;   ///< Of all windows,
+  std::vector<std::size_t> ends_;  ///< and where those of each window end.
   double sigma_;
   const SharedPrior& prior_;
   mutable std::vector<Matrix3d> inverses_;  ///< Memory of step().
@@ -186,7 +191,7 @@ void finish(SlipFit& fit, std::vector<SlipWindow>& windows, const NormalEquation
 }  // namespace
 
 SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows, const model::SharedParameters& shared,
-                  double sigma, const SharedPrior& prior) {
+                  double sigma, const SharedPrior& prior, double settled) {
   SlipFit fit;
   fit.shared = shared;
   if (windows.empty()) return fit;
@@ -199,7 +204,7 @@ SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows, const mo
   if (!std::isfinite(equations.cost)) return fit;
   const int most = prior.empty() ? kMostFitIterations : kMostFitIterationsWithPrior;
   fit.converged = minimise(problem, state, equations,
-                           {.iterations = most, .absolute = kFitSettled, .relative = kFitConverged});
+                           {.iterations = most, .absolute = settled, .relative = kFitConverged});
   fit.shared = state.shared;
   for (std::size_t i = 0; i < windows.size(); ++i) windows[i].slip = state.slips[i];
   finish(fit, windows, equations, sigma);

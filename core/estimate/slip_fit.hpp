@@ -56,13 +56,19 @@ struct SlipFit {
   [[nodiscard]] double delta_mu_error(const SlipWindow& window) const;
 };
 
+/// Change of the cost, in units of log-likelihood, below which a fit of a test has settled: all parameters
+/// together then move by 4.5e-3 of a standard error. An exact trace has a cost of rounding errors, which no
+/// step lowers.
+inline constexpr double kFitSettled = 1e-5;
+
 /// \param sigma  noise of one scan, > 0; scales Huber's limit.
 /// \param windows,shared  first guess; `windows` receives the estimate. Each window needs at least four
 ///        usable scans.
 /// \param prior  of the shared parameters.
+/// \param settled  change of the cost below which the fit has converged whatever the cost's size.
 /// \return converged = false if no step lowers the cost or the equations are singular.
 [[nodiscard]] SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows,
                                 const model::SharedParameters& shared, double sigma,
-                                const SharedPrior& prior = {});
+                                const SharedPrior& prior = {}, double settled = kFitSettled);
 
 }  // namespace stickslip::estimate

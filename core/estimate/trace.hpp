@@ -43,6 +43,21 @@ struct Trace {
   [[nodiscard]] std::size_t size() const noexcept { return value.size(); }
 };
 
+/// A usable scan without the drift.
+struct TraceScan {
+  double time_s;
+  double level;
+};
+
+/// Appends the usable scans of [first, end): fits read a scan many times, a column of a file only here.
+inline void append_usable(const Trace& trace, std::size_t first, std::size_t end,
+                          std::vector<TraceScan>& scans) {
+  for (std::size_t k = first; k < end; ++k) {
+    const double time_s = trace.time_s[k];
+    if (trace.usable[k] != 0) scans.push_back({time_s, trace.value[k] - trace.drift.at(time_s)});
+  }
+}
+
 /// Whether a break lies between two positions, in scans.
 [[nodiscard]] inline bool is_broken(const Trace& trace, double from, double to) noexcept {
   const auto at = [](std::size_t scan) { return static_cast<double>(scan) - 0.5; };

@@ -4,12 +4,15 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include "core/estimate/huber.hpp"
 #include "core/estimate/minimise.hpp"
+#include "core/estimate/slip_fit.hpp"
+#include "core/estimate/slip_sums.hpp"
 
 namespace stickslip::estimate {
 namespace {
@@ -19,10 +22,6 @@ using P = model::UniformParameters;
 constexpr int kMostUniformIterations = 60;
 /// Decrease of the cost relative to it below which the fit has converged.
 constexpr double kUniformConverged = 1e-10;
-/// Change of the cost below which it has converged whatever its size: a parameter moves by 4e-5 of its
-/// standard error. An exact trace has a cost of rounding errors, which no step lowers.
-constexpr double kUniformSettled = 1e-9;
-
 /// In units of σ.
 struct UniformEquations {
   P::Matrix normal = P::Matrix::Zero();
@@ -51,9 +50,7 @@ struct UniformProblem {
   using State = P;
   using Equations = UniformEquations;
 
-  const Trace& trace;
-  std::size_t first;
-  std::size_t end;
+  std::vector<TraceScan> scans;
   double sigma;
   const SharedPrior& prior;
 
@@ -61,16 +58,27 @@ struct UniformProblem {
     equations = {};
     const auto course = model::UniformCourse::make(parameters);
     if (!course) return;
-    model::TurnedBasis basis = course->turned_basis();
-    for (std::size_t k = first; k < end; ++k) {
-      if (trace.usable[k] == 0) continue;
-      const model::UniformPoint point = course->at(trace.time_s[k], basis);
-      const double z = (trace.level(k) - point.value) / sigma;
-      const double weight = equations.sums.add(z);
-      const P::Vector by = point.by / sigma;
-      equations.normal.noalias() += (weight * by) * by.transpose();
-      equations.gradient += weight * z * by;
+    model::TurnedBasis basis{parameters.shared.oscillator()};
+    const double per_sigma = 1.0 / sigma;
+    for (auto scan = scans.begin(); scan != scans.end();) {
+      const model::UniformCourse::Cycle cycle = course->cycle_at(scan->time_s);
+      SlipSums sums;
+      for (; scan != scans.end() && scan->time_s < cycle.end_s; ++scan) {
+        const model::SlipPlace at = course->slip().place(scan->time_s - cycle.after_first_s, basis);
+        const double z = (scan->level - at.value) * per_sigma;
+        sums.add(at, equations.sums.add(z), z);
+      }
+      // The derivatives of a cycle: those of the first, by, and by[onset] times those of its delay.
+      const P::Matrix own = sums.normal(course->slip());
+      const P::Vector gradient = sums.gradient(course->slip());
+      const P::Vector by_delay = cycle.number * course->period_slope();
+      const P::Matrix delayed = by_delay * own.row(P::kOnset);
+      equations.normal += own + delayed + delayed.transpose();
+      equations.normal.noalias() += (own(P::kOnset, P::kOnset) * by_delay) * by_delay.transpose();
+      equations.gradient += gradient + gradient[P::kOnset] * by_delay;
     }
+    equations.normal *= per_sigma * per_sigma;
+    equations.gradient *= per_sigma;
     const PriorTerms known = prior.at(parameters.shared);
     equations.prior.bottomRightCorner<3, 3>() = known.information;
     equations.gradient.tail<3>() += known.gradient;
@@ -93,12 +101,13 @@ UniformFit fit_uniform(const Trace& trace, std::size_t first, std::size_t end, c
                        const SharedPrior& prior) {
   UniformFit fit;
   fit.parameters = guess;
-  const UniformProblem problem{trace, first, end, sigma, prior};
+  UniformProblem problem{{}, sigma, prior};
+  append_usable(trace, first, end, problem.scans);
   UniformEquations equations;
   problem.assemble(guess, equations);
   fit.converged = minimise(
       problem, fit.parameters, equations,
-      {.iterations = kMostUniformIterations, .absolute = kUniformSettled, .relative = kUniformConverged});
+      {.iterations = kMostUniformIterations, .absolute = kFitSettled, .relative = kUniformConverged});
   const auto count = static_cast<double>(P::Vector::RowsAtCompileTime);
   fit.cost = equations.cost;
   fit.scan_count = equations.sums.count();

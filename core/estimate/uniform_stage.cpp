@@ -12,6 +12,9 @@ using P = model::UniformParameters;
 
 /// Fewest slips for the comparison.
 constexpr std::size_t kFewestSlips = 3;
+/// Change of the cost, in units of log-likelihood, at which the slips' own fit is good enough for a
+/// comparison of costs: it moves F by less than 1 % of its standard deviation.
+constexpr double kEnough = 0.01;
 /// Newton steps of the first guess by its period; few suffice, since the period is nearly linear over the
 /// standard errors of the parameters.
 constexpr int kPeriodSteps = 4;
@@ -97,7 +100,7 @@ std::optional<UniformFit> uniform_if_slips_agree(const Trace& trace, const std::
       std::all_of(windows.begin(), windows.end(), [](const SlipWindow& w) { return w.captured; });
   if (!regular) return std::nullopt;
   std::vector<SlipWindow> slips{windows.begin() + (first_counts ? 0 : 1), windows.end()};
-  const SlipFit each = fit_slips(trace, slips, shared, sigma, prior);
+  const SlipFit each = fit_slips(trace, slips, shared, sigma, prior, kEnough);
   if (!each.converged || !(each.freedom > 0.0)) return std::nullopt;
   const std::optional<P> guess = first_guess(slips, each);
   if (!guess) return std::nullopt;

@@ -43,6 +43,18 @@ struct SlipModelPoint {
   [[nodiscard]] auto by_shared() const noexcept { return by.tail<3>(); }  ///< ∂/∂(ω, γ, r)
 };
 
+enum class SlipPhase { kBefore, kSlip, kAfter };  ///< Stick, slip, stick again.
+
+/// One time of a trajectory: its value, and of what its derivatives are linear combinations, with
+/// coefficients that are the same for all times of a phase.
+struct SlipPlace {
+  SlipPhase phase = SlipPhase::kBefore;
+  double value = 0.0;
+  double way_s = 0.0;           ///< Of a stick: BeltCourse::way_s() from the onset or the capture.
+  double tau_s = 0.0;           ///< Of the slip: time since the onset,
+  DampedBasis basis{1.0, 0.0};  ///< and the basis at it.
+};
+
 /// One slip with fixed parameters, ready to be evaluated at many times.
 class SlipModel {
  public:
@@ -54,11 +66,29 @@ class SlipModel {
             const BeltCourse& belt = constant_belt(), std::optional<double> expected_capture_s = {}) noexcept;
 
   [[nodiscard]] SlipModelPoint at(double time_s) const noexcept {
-    return with_basis(time_s, [this](double tau_s) { return damped_basis(waveform_.oscillator, tau_s); });
+    return point_at(
+        place_at(time_s, [this](double tau_s) { return damped_basis(waveform_.oscillator, tau_s); }));
   }
-  /// \param basis  of the same ω and γ. Faster for many times in a row.
-  [[nodiscard]] SlipModelPoint at(double time_s, TurnedBasis& basis) const noexcept {
-    return with_basis(time_s, [&basis](double tau_s) { return basis.at(tau_s); });
+  /// The value alone, and what the derivatives are made of: for sums over many times in a row.
+  /// \param basis  of the same ω and γ.
+  [[nodiscard]] SlipPlace place(double time_s, TurnedBasis& basis) const noexcept {
+    return place_at(time_s, [&basis](double tau_s) { return basis.at(tau_s); });
+  }
+  /// c″ of the slip, 1/s²; 0 in a stick.
+  [[nodiscard]] double curvature(const SlipPlace& at) const noexcept {
+    if (at.phase != SlipPhase::kSlip) return 0.0;
+    return -shared_.gamma * waveform_.rate(at.basis) -
+           waveform_.oscillator.omega0_squared() * (at.value - slip_.K);
+  }
+  /// ∂/∂(onset, S, K, ω, γ, r) of the slip is this matrix times slip_terms().
+  using SlipCoefficients = Eigen::Matrix<double, 6, 5>;
+  [[nodiscard]] const SlipCoefficients& slip_coefficients() const noexcept { return by_slip_terms_; }
+  [[nodiscard]] static Eigen::Matrix<double, 5, 1> slip_terms(const SlipPlace& at) noexcept {
+    return {1.0, at.basis.cosine, at.basis.sine, at.tau_s * at.basis.cosine, at.tau_s * at.basis.sine};
+  }
+  /// ∂/∂(onset, S, K, ω, γ, r) of a stick is this vector, and by r way_s more.
+  [[nodiscard]] const SlipModelPoint::Derivatives& stick_begin(SlipPhase phase) const noexcept {
+    return phase == SlipPhase::kBefore ? before_ : after_;
   }
   [[nodiscard]] const SlipWaveform& waveform() const noexcept { return waveform_; }
   /// Seconds from onset to sticking; infinity if not captured.
@@ -66,21 +96,39 @@ class SlipModel {
 
  private:
   template <typename BasisOf>
-  [[nodiscard]] SlipModelPoint with_basis(double time_s, const BasisOf& basis_of) const noexcept {
+  [[nodiscard]] SlipPlace place_at(double time_s, const BasisOf& basis_of) const noexcept {
     const double tau_s = time_s - slip_.onset_s;
-    if (tau_s < 0.0 || tau_s > capture_s_) return sticking(tau_s);
-    return slipping(tau_s, basis_of(tau_s));
+    if (tau_s < 0.0) {
+      return {SlipPhase::kBefore, slip_.S + belt_->climb(shared_.r, slip_.onset_s, tau_s),
+              belt_->way_s(slip_.onset_s, tau_s)};
+    }
+    if (tau_s > capture_s_) {
+      const double since_s = tau_s - capture_s_;
+      const double capture_at_s = slip_.onset_s + capture_s_;
+      return {SlipPhase::kAfter, at_capture_ + belt_->climb(shared_.r, capture_at_s, since_s),
+              belt_->way_s(capture_at_s, since_s)};
+    }
+    return slip_place(tau_s, basis_of(tau_s));
+  }
+  [[nodiscard]] SlipPlace slip_place(double tau_s, const DampedBasis& basis) const noexcept {
+    // c = K + e^(−γτ/2) [D cos ωτ + B sin ωτ], B = (r + γD/2)/ω: (11) without a division by D.
+    return {SlipPhase::kSlip, slip_.K + (waveform_.D * basis.cosine + omega_B_ * basis.sine), 0.0, tau_s,
+            basis};
   }
   [[nodiscard]] double capture_time(std::optional<double> expected_s) const noexcept;
-  [[nodiscard]] SlipModelPoint slipping(double tau_s, const DampedBasis& basis) const noexcept;
-  [[nodiscard]] SlipModelPoint sticking(double tau_s) const noexcept;
+  [[nodiscard]] SlipModelPoint point_at(const SlipPlace& place) const noexcept;
+  void set_slip_coefficients() noexcept;
 
   SharedParameters shared_;
   SlipParameters slip_;
   const BeltCourse* belt_;
   SlipWaveform waveform_;
+  double omega_B_;
   double capture_s_;
-  SlipModelPoint at_capture_;  ///< If captured; ∂/∂onset without the stick's part.
+  double at_capture_ = 0.0;  ///< If captured.
+  SlipCoefficients by_slip_terms_ = SlipCoefficients::Zero();
+  SlipModelPoint::Derivatives before_;
+  SlipModelPoint::Derivatives after_ = SlipModelPoint::Derivatives::Zero();
 };
 
 }  // namespace stickslip::model

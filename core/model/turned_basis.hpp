@@ -22,6 +22,7 @@ class TurnedBasis {
   explicit TurnedBasis(const Oscillator& oscillator) noexcept
       : oscillator_(oscillator), omega_squared_(oscillator.omega_squared) {}
 
+  [[nodiscard]] const Oscillator& oscillator() const noexcept { return oscillator_; }
   [[nodiscard]] DampedBasis at(double tau_s) noexcept {
     const double step_s = tau_s - tau_s_;
     tau_s_ = tau_s;

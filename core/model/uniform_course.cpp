@@ -28,12 +28,19 @@ UniformCourse::UniformCourse(const UniformParameters& parameters)
   period_by_ /= r;
 }
 
-UniformPoint UniformCourse::at(double time_s, TurnedBasis& basis) const noexcept {
+UniformCourse::Cycle UniformCourse::cycle_at(double time_s) const noexcept {
   // A cycle reaches from the capture before its onset to its own capture: both formulas agree there.
-  const double stick_s = period_s_ - slip_.capture_s();
-  const double cycle = std::max(std::floor((time_s - onset_s_ + stick_s) / period_s_), 0.0);
-  const SlipModelPoint point = slip_.at(time_s - cycle * period_s_, basis);
-  return {point.value, point.by + point.by[0] * cycle * period_by_};
+  const double first_end_s = onset_s_ + slip_.capture_s();
+  const double number = std::max(std::floor((time_s - first_end_s) / period_s_) + 1.0, 0.0);
+  // Rounding must not end it before this time.
+  const double end_s = std::max(first_end_s + number * period_s_, std::nextafter(time_s, kForEver));
+  return {number, number * period_s_, end_s};
+}
+
+UniformPoint UniformCourse::at(double time_s) const noexcept {
+  const Cycle cycle = cycle_at(time_s);
+  const SlipModelPoint point = slip_.at(time_s - cycle.after_first_s);
+  return {point.value, point.by + point.by[0] * cycle.number * period_by_};
 }
 
 }  // namespace stickslip::model

@@ -49,13 +49,17 @@ class UniformCourse {
   [[nodiscard]] static std::optional<UniformCourse> make(const UniformParameters& parameters);
 
   /// Force at any time; before the first onset the sled sticks.
-  /// \param basis  turned_basis(): faster for many times in a row.
-  [[nodiscard]] UniformPoint at(double time_s, TurnedBasis& basis) const noexcept;
-  [[nodiscard]] UniformPoint at(double time_s) const noexcept {
-    TurnedBasis basis = turned_basis();
-    return at(time_s, basis);
-  }
-  [[nodiscard]] TurnedBasis turned_basis() const noexcept { return TurnedBasis{slip_.waveform().oscillator}; }
+  [[nodiscard]] UniformPoint at(double time_s) const noexcept;
+
+  /// The first cycle, which all repeat.
+  [[nodiscard]] const SlipModel& slip() const noexcept { return slip_; }
+  /// From a capture to the next; the first begins before its onset.
+  struct Cycle {
+    double number = 0.0;
+    double after_first_s = 0.0;
+    double end_s = 0.0;
+  };
+  [[nodiscard]] Cycle cycle_at(double time_s) const noexcept;
 
   /// From onset to onset: ω t_slip plus the stick that brings c from the capture back to S.
   [[nodiscard]] double period_s() const noexcept { return period_s_; }
