@@ -585,7 +585,7 @@ class LivePage(unittest.TestCase):
     def test_a_sled_that_no_tester_has_is_asked_about_before_a_test(self):
         daemon = self.daemon('[tester]\nsled_mass = "100 kg"\n[test]\nbegins = "command"\n')
         page = self.page()
-        self.assertEqual(daemon.ask("GET", "/v1/status")[1]["sled_finding"], "the sled mass is 100 kg, outside 0.005 … 20 kg: check its unit")
+        self.assertEqual(daemon.ask("GET", "/v1/status")[1]["findings"], ["the sled mass is 100 kg, outside 0.005 … 20 kg: check its unit"])
         page.until("document.getElementById('trouble').textContent.includes('the sled mass is 100 kg')")
         for answer in ("no", "yes"):
             page.value("document.querySelector('[data-command=start]').focus()")
