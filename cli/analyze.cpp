@@ -20,6 +20,7 @@
 #include "core/base/wording.hpp"
 #include "core/evaluation/analyse.hpp"
 #include "core/record/estimator_field.hpp"
+#include "core/record/finding_json.hpp"
 #include "core/record/method_text.hpp"
 #include "core/record/read_apart.hpp"
 #include "core/record/tester_file.hpp"
@@ -42,15 +43,16 @@ struct AnalyzeOptions {
 /// The test against the characterisation, or why it could not be asked.
 nlohmann::ordered_json json_of(const std::optional<analysis::TesterCheck>& check) {
   if (!check) return nullptr;
-  return {
+  nlohmann::ordered_json json{
       {"chi_squared", check->chi_squared},
       {"probability", check->probability},
       {"agrees", check->agrees()},
       {"pull_speed", check->pull_speed.value ? nlohmann::ordered_json(*check->pull_speed.value) : nullptr},
       {"pull_speed_standard_error", check->pull_speed.standard_error
                                         ? nlohmann::ordered_json(*check->pull_speed.standard_error)
-                                        : nullptr},
-      {"findings", check->findings}};
+                                        : nullptr}};
+  record::put_findings(check->findings, json);
+  return json;
 }
 
 /// Nothing if nothing was given.

@@ -14,6 +14,7 @@
 #include "cli/subcommands.hpp"
 #include "cli/weighing.hpp"
 #include "io/calibration_file.hpp"
+#include "io/findings_text.hpp"
 #include "io/json_text.hpp"
 #include "io/table.hpp"
 #include "io/traces/cell.hpp"
@@ -22,6 +23,7 @@
 #include "core/base/settings.hpp"
 #include "core/base/text.hpp"
 #include "core/daq/gain_change.hpp"
+#include "core/record/finding_json.hpp"
 #include "daemon/types/calibration_json.hpp"
 
 namespace stickslip::cli {
@@ -179,7 +181,7 @@ std::string text_of(const daq::WeighedCalibration& result, const io::KeptCalibra
                       stored.load_cell.zero_V, fit.zero_standard_error_V.value_or(std::nan("")), fit.used);
   text += fmt::format("off the line {:.2g} V, hysteresis {:+.2g} V\n", fit.residual_V.value_or(std::nan("")),
                       fit.hysteresis_V.value_or(std::nan("")));
-  for (const std::string& finding : result.findings) text += "look: " + finding + "\n";
+  for (const base::Finding& finding : result.findings) text += io::finding_text(finding, "look: ");
   if (confirmed) text += fmt::format("look: {}; confirmed\n", daq::to_text(*confirmed));
   if (kept.before) {
     text += fmt::format("gain {:+.3g} % against that of {}\n",
@@ -194,21 +196,21 @@ std::string text_of(const daq::WeighedCalibration& result, const io::KeptCalibra
 std::string json_of(const daq::WeighedCalibration& result, const io::KeptCalibration& kept,
                     const std::optional<daq::GainChange>& confirmed) {
   const io::StoredCalibration& stored = kept.stored;
-  std::vector<std::string> findings = result.findings;
-  if (confirmed) findings.push_back(daq::to_text(*confirmed));
-  const Json all{{"file", kept.file.string()},
-                 {"date", stored.facts.date},
-                 {"expires", stored.facts.expires},
-                 {"certificate", stored.facts.certificate},
-                 {"gain", stored.load_cell.gain_N_per_V},
-                 {"gain_standard_error", daemon::known_json(stored.facts.gain_standard_error_N_per_V)},
-                 {"zero", stored.load_cell.zero_V},
-                 {"zero_standard_error", daemon::known_json(stored.facts.zero_standard_error_V)},
-                 {"residual", daemon::known_json(stored.facts.residual_V)},
-                 {"hysteresis", daemon::known_json(stored.facts.hysteresis_V)},
-                 {"findings", findings},
-                 {"gain_change", daemon::gain_change_json(confirmed)},
-                 {"points", daemon::points_json(result)}};
+  std::vector<base::Finding> findings = result.findings;
+  if (confirmed) base::add(findings, daq::finding(*confirmed));
+  Json all{{"file", kept.file.string()},
+           {"date", stored.facts.date},
+           {"expires", stored.facts.expires},
+           {"certificate", stored.facts.certificate},
+           {"gain", stored.load_cell.gain_N_per_V},
+           {"gain_standard_error", daemon::known_json(stored.facts.gain_standard_error_N_per_V)},
+           {"zero", stored.load_cell.zero_V},
+           {"zero_standard_error", daemon::known_json(stored.facts.zero_standard_error_V)},
+           {"residual", daemon::known_json(stored.facts.residual_V)},
+           {"hysteresis", daemon::known_json(stored.facts.hysteresis_V)},
+           {"gain_change", daemon::gain_change_json(confirmed)},
+           {"points", daemon::points_json(result)}};
+  record::put_findings(findings, all);
   return io::json_document(all);
 }
 

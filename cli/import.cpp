@@ -13,6 +13,7 @@
 #include "cli/method_option.hpp"
 #include "cli/options.hpp"
 #include "cli/subcommands.hpp"
+#include "io/findings_text.hpp"
 
 #include "core/base/text.hpp"
 #include "core/base/version.hpp"
@@ -198,8 +199,8 @@ Result<std::string> run_import(const ImportOptions& options, const std::string& 
     record.header.process.source_command = command_line;
     Result<record::EndRecord> end = evaluation::analyse(record);
     if (!end) return tl::unexpected(end.error());
-    const std::vector<std::string> findings = std::move(record.end->results.findings);
-    end->results.findings.insert(end->results.findings.end(), findings.begin(), findings.end());
+    for (base::Finding& finding : record.end->results.findings)
+      base::add(end->results.findings, std::move(finding));
     if (imported->is_own) end->spikes = record.spikes;
     record::set_end(record, std::move(*end));
   }
@@ -216,8 +217,8 @@ Result<std::string> run_import(const ImportOptions& options, const std::string& 
       text += fmt::format(", {} missing in {} gap{}", missing, record.gaps.size(),
                           record.gaps.size() == 1 ? "" : "s");
     text += "\n";
-    for (const std::string& finding : record.end->results.findings)
-      text += fmt::format("  finding: {}\n", base::printable(finding));
+    for (const base::Finding& finding : record.end->results.findings)
+      text += io::finding_text(finding, "  finding: ");
   }
   return text;
 }

@@ -1,12 +1,16 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "cli/ask.hpp"
 #include "cli/json_members.hpp"
 #include "cli/subcommands.hpp"
+#include "io/findings_text.hpp"
 #include "io/table.hpp"
 #include <nlohmann/json.hpp>
+
+#include "core/record/finding_json.hpp"
 
 namespace stickslip::cli {
 namespace {
@@ -26,13 +30,18 @@ base::Result<std::string> run_list(const BenchOptions& options) {
                    {.heading = "cycles"},
                    {.heading = "ended", .align = kLeft},
                    {.heading = "file", .align = kLeft}}};
+  std::vector<std::vector<base::Finding>> findings;
   for (const Json& test : (*list)["tests"]) {
     const Json& results = test["results"];
     table.add({test["number"].get<std::int64_t>(), word(results, "regime"), coefficient(results, "delta_mu"),
                coefficient(results, "mu_s"), coefficient(results, "mu_k"), number(results, "cycle_count", 0),
                word(test, "cause"), word(test, "file")});
+    findings.push_back(record::findings_in(results));
   }
-  return table.text();
+  std::vector<io::TestFindings> told;
+  for (std::size_t i = 0; i < findings.size(); ++i)
+    told.push_back({(*list)["tests"][i]["number"].get<std::int64_t>(), findings[i]});
+  return table.text() + io::findings_text(told);
 }
 
 }  // namespace

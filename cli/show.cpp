@@ -7,6 +7,7 @@
 #include "cli/ask.hpp"
 #include "cli/json_members.hpp"
 #include "cli/subcommands.hpp"
+#include "io/findings_text.hpp"
 #include "io/json_text.hpp"
 #include "io/results_json.hpp"
 #include "io/table.hpp"
@@ -14,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/text.hpp"
+#include "core/record/finding_json.hpp"
 #include "core/record/iso_time.hpp"
 #include "core/record/read_apart.hpp"
 
@@ -31,6 +33,13 @@ std::string rung_text(const Json& results) {
   const Json& details = results["details"];
   const std::string reason = details.contains("rung") ? word(details["rung"], "reason") : std::string{};
   return fmt::format("rung: {}{}{}\n", word(results, "rung"), reason.empty() ? "" : ", ", reason);
+}
+
+/// Two lines for each finding.
+std::string findings_of(const Json& results) {
+  std::string text;
+  for (const base::Finding& finding : record::findings_in(results)) text += io::finding_text(finding);
+  return text;
 }
 
 /// "  mu_s  0.3517 ± 0.0004 ± 0.0021", one line for each result; below them, what the errors mean.
@@ -68,7 +77,8 @@ base::Result<std::string> show_test(const ShowOptions& options) {
   const std::string text =
       fmt::format("test {}: {}, ended: {}\nfile: {}\n", (*test)["number"].dump(),
                   word((*test)["results"], "regime"), word(*test, "cause"), word(*test, "file"));
-  return text + rung_text((*test)["results"]) + results_text((*test)["results"]);
+  return text + findings_of((*test)["results"]) + rung_text((*test)["results"]) +
+         results_text((*test)["results"]);
 }
 
 /// What is known of the sample, and what the user of an import stated.
@@ -113,9 +123,9 @@ base::Result<std::string> show_record(const ShowOptions& options) {
   for (const auto& [key, value] : header.metadata)
     known.add({"  metadata." + base::printable(key), base::printable(value)});
   return fmt::format(
-      "{}: {}, ended: {}\n{}\n{}{}", base::printable(options.test), word(results, "regime"),
+      "{}: {}, ended: {}\n{}{}\n{}{}", base::printable(options.test), word(results, "regime"),
       record->end->cause.empty() ? std::string{io::kAbsent} : base::printable(record->end->cause),
-      known.text(), rung_text(results), results_text(results));
+      findings_of(results), known.text(), rung_text(results), results_text(results));
 }
 
 base::Result<std::string> run_show(const ShowOptions& options) {

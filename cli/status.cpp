@@ -8,11 +8,13 @@
 #include "cli/json_members.hpp"
 #include "cli/paint.hpp"
 #include "cli/subcommands.hpp"
+#include "io/findings_text.hpp"
 #include "io/json_text.hpp"
 #include "io/table.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/base/text.hpp"
+#include "core/record/finding_json.hpp"
 #include "daemon/client/client.hpp"
 
 namespace stickslip::cli {
@@ -99,6 +101,15 @@ void tests(Lines& lines, const Json& status) {
                          number(results, "cycle_count", 0), word(latest, "file")));
 }
 
+/// \param of  the status, or the results of a test.
+void findings(Lines& lines, const Json& of) {
+  for (const base::Finding& finding : record::findings_in(of)) {
+    lines.line("finding", base::printable(finding.text),
+               finding.severity == base::Severity::kFault ? Ink::kRed : Ink::kYellow);
+    lines.line("", "→ " + io::action_text(finding));
+  }
+}
+
 std::string text_of(const Json& status) {
   Lines lines;
   const std::string state = word(status, "state");
@@ -130,6 +141,8 @@ std::string text_of(const Json& status) {
     for (const Json& lack : *lacks)
       lines.line("lacks", lack.is_string() ? base::printable(lack.get<std::string>()) : "");
   }
+  findings(lines, status);
+  findings(lines, part(part(status, "latest_test"), "results"));
   if (const Json fleet = part(status, "fleet"); !fleet.empty()) {
     const bool connected = word(fleet, "state") == "connected";
     lines.line(

@@ -9,9 +9,11 @@
 #include "cli/ask.hpp"
 #include "cli/json_members.hpp"
 #include "cli/subcommands.hpp"
+#include "io/findings_text.hpp"
 #include "io/print_text.hpp"
 #include <nlohmann/json.hpp>
 
+#include "core/record/finding_json.hpp"
 #include "daemon/client/live_client.hpp"
 
 namespace stickslip::cli {
@@ -23,7 +25,7 @@ struct WatchOptions : BenchOptions {
   std::int64_t tests = 0;  ///< To wait for the end of; 0: for ever.
 };
 
-/// One line for people; empty for frames that are for pictures.
+/// One line for people, and two for each finding; empty for frames that are for pictures.
 std::string line_of_frame(const Json& frame) {
   const std::string type = word(frame, "type");
   if (type == "bench") {
@@ -43,9 +45,12 @@ std::string line_of_frame(const Json& frame) {
   if (type == "note") return fmt::format("{}\n", word(frame, "text"));
   if (type == "test-ended") {
     const Json& results = frame["results"];
-    return fmt::format("test {} ended: {}; {}, S - K {}, S {}, K {}\n", frame["test"].dump(),
-                       word(frame, "cause"), word(results, "regime"), coefficient(results, "delta_mu"),
-                       coefficient(results, "mu_s"), coefficient(results, "mu_k"));
+    std::string text =
+        fmt::format("test {} ended: {}; {}, S - K {}, S {}, K {}\n", frame["test"].dump(),
+                    word(frame, "cause"), word(results, "regime"), coefficient(results, "delta_mu"),
+                    coefficient(results, "mu_s"), coefficient(results, "mu_k"));
+    for (const base::Finding& finding : record::findings_in(results)) text += io::finding_text(finding);
+    return text;
   }
   if (type == "dropped")
     return fmt::format("({} frames left out: this is too slow)\n", frame["frame_count"].dump());

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/analysis/quantities.hpp"
+#include "core/record/finding_json.hpp"
 #include "core/record/record.hpp"
 
 namespace stickslip::io {
@@ -74,7 +75,7 @@ nlohmann::ordered_json results_json(const analysis::TestResults& results, bool w
   if (!results.regime_reason.empty()) details["regime"][kReason] = results.regime_reason;
   json["rung"] = analysis::name(results.rung);
   if (!results.rung_reason.empty()) details["rung"][kReason] = results.rung_reason;
-  json["findings"] = results.findings;
+  record::put_findings(results.findings, json);
   nlohmann::ordered_json diagnostics;
   analysis::for_each_result(results,
                             [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
@@ -125,7 +126,7 @@ analysis::TestResults results_from_json(const nlohmann::ordered_json& json) {
   } else if (!has_rung) {
     results.rung_reason = record::kNoSuchResultThen;
   }
-  json.at("findings").get_to(results.findings);
+  results.findings = record::findings_in(json);
   // Documents without this member have the diagnostics among the other results.
   const nlohmann::ordered_json& diagnostics = json.contains(kDiagnostics) ? json.at(kDiagnostics) : details;
   analysis::for_each_result(results, [&](const analysis::ResultName& name, analysis::Estimate& estimate) {

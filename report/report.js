@@ -215,7 +215,8 @@
   function writeTests(m) {
     const material = data.materials[m];
     const show = i => { viewers[m].show(i); document.getElementById(`traces-${m}`).scrollIntoView({block: "start"}); };
-    const notes = material.tests.flatMap((t, i) => [...t.departures, ...t.findings].map(d => node("li", {}, node("b", {}, `test ${i + 1}`), `: ${d}`)));
+    const notes = material.tests.flatMap((t, i) => [...t.departures, ...t.coded_findings].map(d => node("li", {}, node("b", {}, `test ${i + 1}`), `: ${d.text ?? d}`,
+      ...(d.action ? [node("div", {class: "note"}, `→ ${d.code}, ${d.severity}: ${d.action}`)] : []))));
     section(`all-tests-${m}`, two ? `Tests of ${nameOf(m)}` : "Tests",
       node("p", {class: "note"}, "Method: " + [...new Set(material.tests.map(t => (t.method || "not known") + (t.estimator === "fit" ? "" : ", estimator " + t.estimator)))].join("; ")),
       node("p", {class: "note", id: `errors-${m}`}, Uncertain.legend(material.tests.flatMap(t => inTests.map(q => [t[q.name], t.details[q.name]])))),

@@ -77,6 +77,7 @@ std::string report_csv(const Material& material) {
     names.push_back(fmt::format("{}_systematic_uncertainty", quantity.name));
   }
   names.emplace_back("at_speed_delta_mu_by_cycle_systematic_uncertainty");
+  names.emplace_back("findings");
   io::Table table = table_of(names);
   std::vector<const analysis::PooledDeltaMu*> by_cycle(material.tests.size());
   for (const analysis::SpeedGroup& group : material.groups) {
@@ -104,7 +105,10 @@ std::string report_csv(const Material& material) {
       const analysis::Estimate& estimate = measured.results.*quantity.estimate;
       add(cells, estimate.standard_error, estimate.systematic_uncertainty);
     }
-    add(cells, pooled.mean.systematic_uncertainty);
+    std::string findings;
+    for (const base::Finding& finding : measured.results.findings)
+      findings += fmt::format("{}{}: {}", findings.empty() ? "" : "; ", finding.code, finding.text);
+    add(cells, pooled.mean.systematic_uncertainty, findings);
     table.add(std::move(cells));
   }
   // No numbers, so that nobody averages them.

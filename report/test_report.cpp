@@ -124,8 +124,12 @@ void note_repeated_scans(std::initializer_list<Material*> materials) {
       const ReportedTest& test = material->tests[i];
       const auto [earlier, is_new] = files.try_emplace(test.scans_sha256, test.file);
       if (is_new) continue;
-      material->measured[i].results.findings.push_back(fmt::format(
-          "has the same scans as {}: the trace was imported twice, or the record copied", earlier->second));
+      base::add(
+          material->measured[i].results.findings,
+          base::make_finding(
+              base::FindingCode::kRepeatedScans,
+              fmt::format("has the same scans as {}: the trace was imported twice, or the record copied",
+                          earlier->second)));
     }
   }
 }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/findings_text.hpp"
 #include "io/table.hpp"
 #include "io/uncertain.hpp"
 #include "report/ramp_text.hpp"
@@ -181,15 +182,13 @@ std::string format_table(std::span<const TableRow> rows) {
     }
   }
   std::string text = table_text(lines) + legend(lines);
-  std::string findings;
+  std::vector<io::TestFindings> findings;
   for (const TableRow& row : rows) {
-    for (const std::string& finding : row.results.findings) {
-      findings += fmt::format("!  test {}: {}\n", row.number, base::printable(finding));
-    }
+    findings.push_back({row.number, row.results.findings});
     if (const std::string ramp = ramp_text(row.results); !ramp.empty())
       text += fmt::format("ramp, test {}: {}\n", row.number, ramp);
   }
-  return text + not_significant(rows) + footnotes(rows) + findings;
+  return text + not_significant(rows) + footnotes(rows) + io::findings_text(findings);
 }
 
 }  // namespace stickslip::report

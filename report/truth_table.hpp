@@ -26,7 +26,7 @@ struct TableRow {
 };
 
 /// The whole table in UTF-8, one to four lines per row; then, what the rows of errors mean, which numbers are
-/// not significant ("?"), and why numbers are absent ("–").
+/// not significant ("?"), why numbers are absent ("–"), and the findings ("!").
 [[nodiscard]] std::string format_table(std::span<const TableRow> rows);
 
 }  // namespace stickslip::report

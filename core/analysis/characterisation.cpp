@@ -102,7 +102,7 @@ double probability_of_agreement(std::span<const Estimate> estimates) {
   return probability_of(chi_squared, static_cast<double>(estimates.size() - 1));
 }
 
-std::optional<std::string> speed_finding(const Estimate& measured_m_per_s, const model::Tester& tester) {
+std::optional<base::Finding> speed_finding(const Estimate& measured_m_per_s, const model::Tester& tester) {
   if (!tester.pull_speed_m_per_s || !measured_m_per_s.value || !measured_m_per_s.standard_error) {
     return std::nullopt;
   }
@@ -110,9 +110,13 @@ std::optional<std::string> speed_finding(const Estimate& measured_m_per_s, const
   const double error = *measured_m_per_s.standard_error;
   const double difference = std::abs(*measured_m_per_s.value - plan);
   if (!(difference > kSpeedTolerance * plan && difference > kSpeedSigmas * error)) return std::nullopt;
-  return fmt::format("the pull speed was {:.2f} +- {:.2f} in/min, the plan says {:.2f}",
-                     *measured_m_per_s.value / kInchPerMinute_m_per_s, error / kInchPerMinute_m_per_s,
-                     plan / kInchPerMinute_m_per_s);
+  return base::make_finding(base::FindingCode::kPullSpeed,
+                            fmt::format("the pull speed was {:.2f} +- {:.2f} in/min, the plan says {:.2f}",
+                                        *measured_m_per_s.value / kInchPerMinute_m_per_s,
+                                        error / kInchPerMinute_m_per_s, plan / kInchPerMinute_m_per_s),
+                            {{"pull_speed_measured", *measured_m_per_s.value, "m/s"},
+                             {"standard_error", error, "m/s"},
+                             {"pull_speed", plan, "m/s"}});
 }
 
 TesterCheck check_tester(const TesterEstimate& alone, const TesterEstimate& with,
@@ -123,16 +127,25 @@ TesterCheck check_tester(const TesterEstimate& alone, const TesterEstimate& with
   check.chi_squared = off.dot(spread.inverse() * off);
   check.probability = std::isfinite(check.chi_squared) ? probability_of(check.chi_squared, 2.0) : 0.0;
   if (!check.agrees()) {
-    check.findings.push_back(fmt::format(
-        "the tester or the paper has changed since the characterisation: chi-squared {:.1f} for 2 "
-        "(omega {:.3f} rad/s here, "
-        "{:.3f} there; gamma/2omega {:.5f} here, {:.5f} there), so that it was {}",
-        check.chi_squared, alone.omega, known.omega, alone.gamma_over_2omega, known.gamma_over_2omega,
-        check.used() ? "used with doubt" : "not used"));
+    base::add(
+        check.findings,
+        base::make_finding(
+            base::FindingCode::kTesterChanged,
+            fmt::format(
+                "the tester or the paper has changed since the characterisation: chi-squared {:.1f} for 2 "
+                "(omega {:.3f} rad/s here, "
+                "{:.3f} there; gamma/2omega {:.5f} here, {:.5f} there), so that it was {}",
+                check.chi_squared, alone.omega, known.omega, alone.gamma_over_2omega, known.gamma_over_2omega,
+                check.used() ? "used with doubt" : "not used"),
+            {{"chi_squared", check.chi_squared, "1"},
+             {"omega", alone.omega, "rad/s"},
+             {"omega_characterised", known.omega, "rad/s"},
+             {"gamma_over_2omega", alone.gamma_over_2omega, "1"},
+             {"gamma_over_2omega_characterised", known.gamma_over_2omega, "1"}}));
   }
   const TesterEstimate& best = check.used() ? with : alone;
   check.pull_speed = pull_speed_of(best, tester.gravity_m_per_s2);
-  if (auto finding = speed_finding(check.pull_speed, tester)) check.findings.push_back(*std::move(finding));
+  if (auto finding = speed_finding(check.pull_speed, tester)) base::add(check.findings, *std::move(finding));
   return check;
 }
 

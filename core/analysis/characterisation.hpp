@@ -61,8 +61,8 @@ inline constexpr double kSpeedTolerance = 0.05;
 struct TesterCheck {
   double chi_squared = 0.0;  ///< Of the test alone against the characterisation; 2 degrees of freedom.
   double probability = 1.0;
-  Estimate pull_speed;                ///< m/s, from the stick rate and ω₀.
-  std::vector<std::string> findings;  ///< Text for the user; empty if there is none.
+  Estimate pull_speed;  ///< m/s, from the stick rate and ω₀.
+  std::vector<base::Finding> findings;
 
   [[nodiscard]] bool agrees() const noexcept { return probability >= kDisagreement; }
   /// The characterisation is used for this test.
@@ -72,10 +72,10 @@ struct TesterCheck {
 /// v = (v/g) g, m/s, with its standard error.
 [[nodiscard]] Estimate pull_speed_of(const TesterEstimate& estimate, double gravity_m_per_s2);
 
-/// Text of the finding if the measured speed differs from the planned one by more than kSpeedTolerance and by
+/// The finding if the measured speed differs from the planned one by more than kSpeedTolerance and by
 /// more than three standard errors. Nullopt otherwise, and if either is unknown.
-[[nodiscard]] std::optional<std::string> speed_finding(const Estimate& measured_m_per_s,
-                                                       const model::Tester& tester);
+[[nodiscard]] std::optional<base::Finding> speed_finding(const Estimate& measured_m_per_s,
+                                                         const model::Tester& tester);
 
 /// μ′ = (γ − γ_known)/g, s/m, with its standard error: the slope of the kinetic coefficient with speed, over
 /// that of the paper on which the tester was characterised. A slope leaves S, K and S − K at the pull speed

@@ -84,7 +84,7 @@ estimate::Drift significant_drift(const estimate::Trace& trace, const base::Long
   return {*slope.value, mean_s};
 }
 
-std::optional<std::string> level_finding(const base::LongColumn<detect::Fall>& slips) {
+std::optional<base::Finding> level_finding(const base::LongColumn<detect::Fall>& slips) {
   constexpr std::size_t kFewestSlips = 24;  // Eight in a third: fewer tell nothing of how they wander.
   constexpr double kSure = 3.0;
   if (slips.size() < kFewestSlips) return std::nullopt;
@@ -100,11 +100,13 @@ std::optional<std::string> level_finding(const base::LongColumn<detect::Fall>& s
   const auto [first, first_error] = mean_from(0);
   const auto [last, last_error] = mean_from(slips.size() - third);
   if (!(std::abs(last - first) > kSure * std::hypot(first_error, last_error))) return std::nullopt;
-  return fmt::format(
-      "the level drifts along the track, from {:.4f} in the first third of the slips to {:.4f} in the last: "
-      "S and K are "
-      "means over this stretch",
-      first, last);
+  return base::make_finding(base::FindingCode::kLevelDrift,
+                            fmt::format("the level drifts along the track, from {:.4f} in the first third of "
+                                        "the slips to {:.4f} in the last: "
+                                        "S and K are "
+                                        "means over this stretch",
+                                        first, last),
+                            {{"first_third", first, "1"}, {"last_third", last, "1"}});
 }
 
 detect::CycleShape cycle_shape(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips) {

@@ -20,9 +20,9 @@ namespace stickslip::analysis {
 [[nodiscard]] estimate::Drift significant_drift(const estimate::Trace& trace,
                                                 const base::LongColumn<detect::Fall>& slips);
 
-/// Text of the finding if the means of peak and trough differ between the first and the last third of the
+/// The finding if the means of peak and trough differ between the first and the last third of the
 /// slips by more than they wander in between: S and K then hold for this stretch of the track alone.
-[[nodiscard]] std::optional<std::string> level_finding(const base::LongColumn<detect::Fall>& slips);
+[[nodiscard]] std::optional<base::Finding> level_finding(const base::LongColumn<detect::Fall>& slips);
 
 /// Shape of the cycles, of which each has a fall and the rise to the next.
 [[nodiscard]] detect::CycleShape cycle_shape(const estimate::Trace& trace,

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/analysis/rung.hpp"
+#include "core/base/finding.hpp"
 #include "core/model/regime.hpp"
 
 namespace stickslip::analysis {
@@ -97,9 +98,7 @@ struct TestResults {
   Estimate misfit;
   Estimate smallest_slip;  ///< Drop of the force from which on a slip would have been counted.
 
-  /// Warnings for the user, such as: the tester or the paper has changed since the characterisation, the pull
-  /// speed is not the planned one.
-  std::vector<std::string> findings;
+  std::vector<base::Finding> findings;  ///< The most severe first; filled by base::add().
 
   bool operator==(const TestResults&) const = default;
 };

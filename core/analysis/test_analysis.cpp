@@ -76,7 +76,7 @@ void take_model_results(const TestResults& model, TestResults& results) {
 }
 
 /// Scans too few for the oscillation that was found.
-std::optional<std::string> sampling_finding(double scan_rate_Hz, const TestResults& results) {
+std::optional<base::Finding> sampling_finding(double scan_rate_Hz, const TestResults& results) {
   const Estimate& cycles_Hz = results.oscillation_frequency;
   if (!results.omega.value && !cycles_Hz.value) return std::nullopt;
   // No cycle is shorter than an oscillation; one that the model fits among too few scans may be a slower one.
@@ -84,9 +84,15 @@ std::optional<std::string> sampling_finding(double scan_rate_Hz, const TestResul
       std::max(results.omega.value.value_or(0.0) / (2.0 * std::numbers::pi), cycles_Hz.value.value_or(0.0));
   const double scans = scan_rate_Hz / frequency_Hz;
   if (scans >= estimate::kFewScansACycle) return std::nullopt;
-  return fmt::format(
-      "{:.2g} scans a cycle of {:.3g} Hz: peaks are missed, and perhaps slips; {:.0f} scans/s or more", scans,
-      frequency_Hz, std::ceil(estimate::kFewScansACycle * frequency_Hz));
+  const double needed_Hz = std::ceil(estimate::kFewScansACycle * frequency_Hz);
+  return base::make_finding(
+      base::FindingCode::kFewScans,
+      fmt::format(
+          "{:.2g} scans a cycle of {:.3g} Hz: peaks are missed, and perhaps slips; {:.0f} scans/s or more",
+          scans, frequency_Hz, needed_Hz),
+      {{"scans_in_cycle", scans, "1"},
+       {"frequency", frequency_Hz, "Hz"},
+       {"scan_rate_needed", needed_Hz, "Hz"}});
 }
 
 detect::LiveSettings live_settings(const AnalysisSettings& settings) {
@@ -150,10 +156,14 @@ double total_error(const Estimate& estimate) {
 }
 
 /// \param why  the fit has no results.
-std::string turning_points_finding(const Estimate& delta_mu, const std::string& why) {
-  if (!delta_mu.value) return fmt::format("S and K have no value, as {}; nor by turning points", why);
-  return fmt::format("S and K are by turning points, S - K uncertain by {:.2g}, as {}", total_error(delta_mu),
-                     why);
+base::Finding turning_points_finding(const Estimate& delta_mu, const std::string& why) {
+  constexpr auto kCode = base::FindingCode::kNotFitted;
+  if (!delta_mu.value)
+    return base::make_finding(kCode, fmt::format("S and K have no value, as {}; nor by turning points", why));
+  const double error = total_error(delta_mu);
+  return base::make_finding(
+      kCode, fmt::format("S and K are by turning points, S - K uncertain by {:.2g}, as {}", error, why),
+      {{"delta_mu_uncertainty", error, "1"}});
 }
 
 /// What makes residuals in each part of the slip.
@@ -171,14 +181,19 @@ std::string_view likely_cause(SlipPart part) {
   return "friction";
 }
 
-std::string misfit_finding(const Misfit& misfit, const Estimate& delta_mu) {
+base::Finding misfit_finding(const Misfit& misfit, const Estimate& delta_mu) {
   const SlipPart part = misfit.place().value_or(SlipPart::kFall);
-  return fmt::format(
-      "the fit leaves residuals of {:.2f} times the scan noise, {:.2f} in the {} of the slips; a likely "
-      "cause is {}; "
-      "S - K is uncertain by {:.2g}, its distance to turning points included",
-      misfit.residual_sigmas(), misfit.residual_sigmas(part), kSlipPartNames[static_cast<std::size_t>(part)],
-      likely_cause(part), total_error(delta_mu));
+  return base::make_finding(
+      base::FindingCode::kMisfit,
+      fmt::format(
+          "the fit leaves residuals of {:.2f} times the scan noise, {:.2f} in the {} of the slips; a likely "
+          "cause is {}; "
+          "S - K is uncertain by {:.2g}, its distance to turning points included",
+          misfit.residual_sigmas(), misfit.residual_sigmas(part),
+          kSlipPartNames[static_cast<std::size_t>(part)], likely_cause(part), total_error(delta_mu)),
+      {{"residual", misfit.residual_sigmas(), "1"},
+       {"residual_of_part", misfit.residual_sigmas(part), "1"},
+       {"delta_mu_uncertainty", total_error(delta_mu), "1"}});
 }
 
 /// A stub of a test: without the noise there is no telling what is a slip.
@@ -325,7 +340,7 @@ TestResults TestAnalysis::finish() {
       estimates.model_describes = false;
       estimates.misfit = fitted.misfit;
       add_spread(fitted.cycles, estimates.results);
-      results.findings.push_back(turning_points_finding(estimates.results.delta_mu, why));
+      base::add(results.findings, turning_points_finding(estimates.results.delta_mu, why));
     }
     if (fits_whole_test()) {
       take_misfit(estimates.misfit, results);
@@ -336,7 +351,7 @@ TestResults TestAnalysis::finish() {
         trace.belt.is_constant()) {
       add_spread(by_turning_points(trace, slips, cycles_by_turning_points(), {}).results, estimates.results);
       if (estimates.misfit.is_certain())
-        results.findings.push_back(misfit_finding(estimates.misfit, estimates.results.delta_mu));
+        base::add(results.findings, misfit_finding(estimates.misfit, estimates.results.delta_mu));
     }
     results.rung = estimates.rung;
     results.rung_reason = estimates.rung_reason;
@@ -365,8 +380,8 @@ TestResults TestAnalysis::finish() {
   }
   period_results(trace, slips, results);
   if (auto finding = sampling_finding(settings_.scan_rate_Hz, results))
-    results.findings.push_back(*std::move(finding));
-  if (auto finding = level_finding(slips)) results.findings.push_back(*std::move(finding));
+    base::add(results.findings, *std::move(finding));
+  if (auto finding = level_finding(slips)) base::add(results.findings, *std::move(finding));
   results.drift_rate = drift_of(trace, slips);
   return results;
 }
@@ -546,10 +561,9 @@ void TestAnalysis::speed_results(const estimate::Trace& trace, const TestEstimat
         trace.drift.rate_per_s * settings_.tester.gravity_m_per_s2 / omega0_squared;
   }
   if (tester_check_) {
-    const std::vector<std::string>& findings = tester_check_->findings;
-    results.findings.insert(results.findings.end(), findings.begin(), findings.end());
+    for (const base::Finding& finding : tester_check_->findings) base::add(results.findings, finding);
   } else if (auto finding = speed_finding(results.pull_speed_measured, settings_.tester)) {
-    results.findings.push_back(*std::move(finding));
+    base::add(results.findings, *std::move(finding));
   }
 }
 

@@ -21,4 +21,12 @@ std::string to_text(const GainChange& change) {
       change.gain_N_per_V, change.ratio(), change.in_use_N_per_V, 100.0 * kLargestGainChange);
 }
 
+base::Finding finding(const GainChange& change) {
+  return base::make_finding(base::FindingCode::kGainChange, to_text(change),
+                            {{"gain", change.gain_N_per_V, "N/V"},
+                             {"gain_before", change.in_use_N_per_V, "N/V"},
+                             {"ratio", change.ratio(), "1"},
+                             {"limit", kLargestGainChange, "1"}});
+}
+
 }  // namespace stickslip::daq

@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "core/base/finding.hpp"
+
 namespace stickslip::daq {
 
 /// Largest relative change that needs no confirmation. Load cells and amplifiers drift by less than 1 %;
@@ -27,5 +29,6 @@ struct GainChange {
 
 /// The change with both gains, their ratio, the limit, and what to check.
 [[nodiscard]] std::string to_text(const GainChange& change);
+[[nodiscard]] base::Finding finding(const GainChange& change);
 
 }  // namespace stickslip::daq

@@ -29,7 +29,7 @@ struct SelfCheck {
   /// Scan rate since the acquisition began, by the computer's clock; not computed from `raw`.
   std::optional<double> scan_rate_Hz;
   std::optional<double> scan_rate_standard_error_Hz;
-  std::vector<std::string> findings;  ///< Warnings for the user; empty if there are none.
+  std::vector<std::string> findings;  ///< Sentences of its findings, as the record stores them.
 
   bool operator==(const SelfCheck&) const = default;
 };

@@ -145,14 +145,21 @@ WeighedCalibration weigh(std::span<const WeightReading> readings, double gravity
   }
   const double deviation_V = result.fit.residual_V.value_or(0.0);
   if (deviation_V > kLargestDeviation * largest_change_V) {
-    result.findings.push_back(
-        fmt::format("the readings lie {:.2g} % off the line: a wrong weight, or friction",
-                    100.0 * deviation_V / largest_change_V));
+    base::add(result.findings,
+              base::make_finding(
+                  base::FindingCode::kCalibrationLine,
+                  fmt::format("the readings lie {:.2g} % off the line: a wrong weight, or friction",
+                              100.0 * deviation_V / largest_change_V),
+                  {{"deviation", deviation_V / largest_change_V, "1"}, {"limit", kLargestDeviation, "1"}}));
   }
   const double hysteresis_V = std::abs(result.fit.hysteresis_V.value_or(0.0));
   if (hysteresis_V > kLargestDeviation * largest_change_V) {
-    result.findings.push_back(fmt::format("hysteresis of {:.2g} %: the cell or its mounting gives way",
-                                          100.0 * hysteresis_V / largest_change_V));
+    base::add(result.findings,
+              base::make_finding(
+                  base::FindingCode::kCalibrationHysteresis,
+                  fmt::format("hysteresis of {:.2g} %: the cell or its mounting gives way",
+                              100.0 * hysteresis_V / largest_change_V),
+                  {{"hysteresis", hysteresis_V / largest_change_V, "1"}, {"limit", kLargestDeviation, "1"}}));
   }
   return result;
 }

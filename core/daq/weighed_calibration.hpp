@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/finding.hpp"
 #include "core/daq/load_cell_fit.hpp"
 
 namespace stickslip::daq {
@@ -39,8 +40,8 @@ struct WeighedPoint {
 
 struct WeighedCalibration {
   LoadCellFit fit;  ///< Fit of the accepted readings; its reason also names a breach of the procedure.
-  std::vector<WeighedPoint> points;   ///< In the order of the readings.
-  std::vector<std::string> findings;  ///< Warnings for the user about a valid calibration.
+  std::vector<WeighedPoint> points;     ///< In the order of the readings.
+  std::vector<base::Finding> findings;  ///< About a valid calibration.
 };
 
 /// Largest change during a reading, relative to its difference from the tare: a tenth of 5 % of S − K =

@@ -6,10 +6,9 @@
 
 #include "core/base/wording.hpp"
 #include "core/pipeline/gain_uncertainty.hpp"
-#include "core/pipeline/plausibility.hpp"
-#include "core/pipeline/true_rate.hpp"
-#include "core/pipeline/zero_offset.hpp"
+#include "core/pipeline/self_check.hpp"
 #include "core/record/estimator_field.hpp"
+#include "core/record/iso_time.hpp"
 #include "core/record/method_text.hpp"
 #include "core/record/tester_file.hpp"
 
@@ -32,11 +31,18 @@ analysis::AnalysisSettings settings_of(const record::RecordHeader& header,
 
 }  // namespace
 
+pipeline::CalibrationInUse calibration_in_use(const std::optional<daq::LoadCell>& cell,
+                                              const record::CalibrationFacts& facts) {
+  if (!cell) return {};
+  return {pipeline::relative_gain_uncertainty(cell, facts.gain_standard_error_N_per_V),
+          daq::gain_change(cell->gain_N_per_V, facts.replaced_gain_N_per_V), facts.expires,
+          record::ns_from_iso_time(facts.expires)};
+}
+
 RecordAnalysis::RecordAnalysis(daq::Calibration calibration, std::optional<daq::SecondChannel> speed,
                                const analysis::AnalysisSettings& settings, std::vector<daq::Gap> gaps)
     : calibration_(std::move(calibration)),
       speed_(std::move(speed)),
-      scan_rate_granted_Hz_(settings.scan_rate_Hz),
       analysis_(settings),
       gaps_(std::move(gaps)) {}
 
@@ -78,14 +84,22 @@ base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& he
       settings.speed_step_m_per_s = second->step();
     }
     RecordAnalysis analysis{std::move(calibration), std::move(speed), settings, std::move(gaps)};
-    analysis.gain_uncertainty_ =
-        pipeline::relative_gain_uncertainty(header.load_cell, header.calibration.gain_standard_error_N_per_V);
-    if (header.load_cell) {
-      analysis.gain_change_ =
-          daq::gain_change(header.load_cell->gain_N_per_V, header.calibration.replaced_gain_N_per_V);
+    const daq::Calibration& used = analysis.calibration_;
+    analysis.self_check_ = header.self_check;
+    if (auto& check = analysis.self_check_; check && !check->raw.empty()) {
+      std::optional<daq::RateEstimate> rate;
+      if (check->scan_rate_Hz)
+        rate = {*check->scan_rate_Hz, check->scan_rate_standard_error_Hz.value_or(0.0), {}};
+      check =
+          pipeline::check_idle(check->first_scan, header.self_check->raw, used, settings.scan_rate_Hz, rate);
     }
-    analysis.unloaded_level_ = header.plan.unloaded_level;
-    analysis.sled_mass_kg_ = header.tester.tester().sled_mass_kg;
+    analysis.facts_ = {.scan_rate_Hz = settings.scan_rate_Hz,
+                       .start_realtime_ns = header.start_realtime_ns,
+                       .calibration = calibration_in_use(header.load_cell, header.calibration),
+                       .sled_mass_kg = header.tester.tester().sled_mass_kg,
+                       .normal_load_N = used.normal_load_N(),
+                       .was_cut_out = header.plan.start_coefficient.has_value(),
+                       .level_before = header.plan.unloaded_level};
     return analysis;
   } catch (const std::invalid_argument& refused) {
     return base::usage_error("the record cannot be analysed: {}", refused.what());
@@ -104,7 +118,10 @@ void RecordAnalysis::add(daq::ScanIndex first, std::span<const double> raw,
   }
   for (std::size_t i = 0; i < raw.size(); ++i) {
     if (speed_) analysis_.speed(speed_->value(second.empty() ? daq::SecondChannel::kNoCode : second[i]));
-    analysis_.add(first++, calibration_.coefficient(raw[i]), calibration_.saturated(raw[i]));
+    const bool saturated = calibration_.saturated(raw[i]);
+    ++facts_.scan_count;
+    if (saturated) ++facts_.saturated_count;
+    analysis_.add(first++, calibration_.coefficient(raw[i]), saturated);
   }
   next_ = first;
   // Nobody looks on: the final ones come with the results.
@@ -115,10 +132,11 @@ void RecordAnalysis::add(daq::ScanIndex first, std::span<const double> raw,
 void RecordAnalysis::finish(record::EndRecord& end, std::span<const daq::ClockAnchor> anchors,
                             std::span<const daq::Gap> gaps) {
   end.results = analysis_.finish();
-  pipeline::add_true_rate(end.results, anchors, gaps, scan_rate_granted_Hz_);
-  pipeline::add_gain_uncertainty(end.results, gain_uncertainty_);
-  pipeline::add_zero_offset(end.results, unloaded_level_, end.unloaded_level);
-  pipeline::add_plausibility(end.results, sled_mass_kg_, gain_change_);
+  facts_.anchors = anchors;
+  facts_.gaps = gaps;
+  facts_.self_check = self_check_ ? &*self_check_ : nullptr;
+  facts_.level_after = end.unloaded_level;
+  pipeline::add_facts(facts_, end.results);
   end.cycles = analysis_.take_cycles();
   end.spikes = analysis_.spikes();
 }

@@ -9,10 +9,14 @@
 #include "core/analysis/test_analysis.hpp"
 #include "core/base/result.hpp"
 #include "core/daq/calibration.hpp"
-#include "core/daq/gain_change.hpp"
+#include "core/pipeline/test_facts.hpp"
 #include "core/record/record.hpp"
 
 namespace stickslip::evaluation {
+
+/// What the header of a record says of its calibration, as the analysis needs it.
+[[nodiscard]] pipeline::CalibrationInUse calibration_in_use(const std::optional<daq::LoadCell>& cell,
+                                                            const record::CalibrationFacts& facts);
 
 /// Scans come, results go; the record itself need not be in memory.
 class RecordAnalysis {
@@ -52,11 +56,8 @@ class RecordAnalysis {
 
   daq::Calibration calibration_;
   std::optional<daq::SecondChannel> speed_;  ///< If the second channel measures it.
-  double scan_rate_granted_Hz_;
-  std::optional<double> gain_uncertainty_;  ///< Relative.
-  std::optional<double> unloaded_level_;    ///< As a coefficient.
-  double sled_mass_kg_ = 0.0;
-  std::optional<daq::GainChange> gain_change_;
+  pipeline::TestFacts facts_;
+  std::optional<daq::SelfCheck> self_check_;  ///< Computed again from its scans.
   analysis::TestAnalysis analysis_;
   std::vector<daq::Gap> gaps_;
   std::optional<daq::ScanIndex> next_;

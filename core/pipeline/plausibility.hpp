@@ -3,10 +3,8 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "core/analysis/results.hpp"
-#include "core/daq/gain_change.hpp"
 
 namespace stickslip::pipeline {
 
@@ -17,13 +15,11 @@ inline constexpr double kHighestCoefficient = 5.0;
 inline constexpr double kLightestSled_kg = 0.005;
 inline constexpr double kHeaviestSled_kg = 20.0;
 
-/// The finding for a sled outside these limits; empty: none.
-[[nodiscard]] std::string sled_finding(double sled_mass_kg);
+/// The finding for a sled outside these limits; nullopt if it is within.
+[[nodiscard]] std::optional<base::Finding> sled_finding(double sled_mass_kg);
 
 /// Adds a finding for a static or kinetic coefficient, and for a sled, outside these limits: a wrong unit,
-/// gain or mass looks so. \param gain_change  that of the calibration in use, if it had to be confirmed: one
-/// more finding.
-void add_plausibility(analysis::TestResults& results, double sled_mass_kg,
-                      const std::optional<daq::GainChange>& gain_change);
+/// gain or mass looks so.
+void add_plausibility(analysis::TestResults& results, double sled_mass_kg);
 
 }  // namespace stickslip::pipeline

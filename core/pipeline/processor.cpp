@@ -7,10 +7,6 @@
 #include <utility>
 
 #include "core/base/contract.hpp"
-#include "core/pipeline/gain_uncertainty.hpp"
-#include "core/pipeline/plausibility.hpp"
-#include "core/pipeline/true_rate.hpp"
-#include "core/pipeline/zero_offset.hpp"
 
 namespace stickslip::pipeline {
 namespace {
@@ -193,7 +189,21 @@ void Processor::begin(daq::ScanIndex trigger, daq::ClockStamp stamp) {
   const bool by_command = start_.has_value() || recorded_start_;
   const TestStart start{number_,    waiting_.front().index,     trigger, stamp, self_check(),
                         by_command, segmenter_.unloaded_level()};
-  unloaded_level_ = start.unloaded_level;
+  self_check_ = start.self_check;
+  facts_ = {.scan_rate_Hz = settings_.analysis.scan_rate_Hz,
+            .start_realtime_ns = stamp.realtime_ns,
+            .calibration = settings_.calibration,
+            .sled_mass_kg = settings_.analysis.tester.sled_mass_kg,
+            .normal_load_N = calibration_.normal_load_N(),
+            .was_cut_out = true,
+            .self_check = self_check_.get(),
+            .level_before = start.unloaded_level};
+  if (settings_.recorded) {
+    // The date of the measurement, not that of its replay.
+    facts_.start_realtime_ns.reset();
+    if (!settings_.recorded->anchors.empty())
+      facts_.start_realtime_ns = settings_.recorded->anchors.front().realtime_ns;
+  }
   idle_.clear();
   std::vector<double> raw;
   raw.reserve(waiting_.size());
@@ -226,7 +236,10 @@ std::shared_ptr<const daq::SelfCheck> Processor::self_check() const {
 
 void Processor::analyse(const Scan& scan) {
   if (measures_speed()) analysis_->speed(settings_.second->value(scan.second));
-  analysis_->add(scan.index, scan.coefficient, calibration_.saturated(scan.raw));
+  const bool saturated = calibration_.saturated(scan.raw);
+  ++facts_.scan_count;
+  if (saturated) ++facts_.saturated_count;
+  analysis_->add(scan.index, scan.coefficient, saturated);
 }
 
 void Processor::end(daq::ScanIndex end, EndCause cause) {
@@ -238,11 +251,11 @@ void Processor::end(daq::ScanIndex end, EndCause cause) {
   ended.end = end;
   ended.cause = cause;
   ended.results = analysis_->finish();
-  add_true_rate(ended.results, anchors_, test_gaps_, settings_.analysis.scan_rate_Hz);
-  add_gain_uncertainty(ended.results, settings_.gain_uncertainty);
   if (cause == EndCause::kUnloaded) ended.unloaded_level = segmenter_.level_after();
-  add_zero_offset(ended.results, unloaded_level_, ended.unloaded_level);
-  add_plausibility(ended.results, settings_.analysis.tester.sled_mass_kg, settings_.gain_change);
+  facts_.anchors = anchors_;
+  facts_.gaps = test_gaps_;
+  facts_.level_after = ended.unloaded_level;
+  add_facts(facts_, ended.results);
   ended.cycles = analysis_->cycles();
   ended.spikes = analysis_->spikes();
   ended.spike_coefficients = analysis_->spike_coefficients();

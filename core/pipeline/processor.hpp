@@ -24,7 +24,6 @@
 #include "core/analysis/test_analysis.hpp"
 #include "core/daq/calibration.hpp"
 #include "core/daq/clock_watch.hpp"
-#include "core/daq/gain_change.hpp"
 #include "core/daq/gap.hpp"
 #include "core/daq/rate_meter.hpp"
 #include "core/daq/recorded_facts.hpp"
@@ -35,6 +34,7 @@
 #include "core/pipeline/segmenter.hpp"
 #include "core/pipeline/self_check.hpp"
 #include "core/pipeline/sink.hpp"
+#include "core/pipeline/test_facts.hpp"
 
 namespace stickslip::pipeline {
 
@@ -51,10 +51,7 @@ struct ProcessorSettings {
   std::optional<daq::SecondChannel> second;  ///< That of the board.
   /// The stamps are of the machine's own clock, so that they can measure the scan rate.
   bool clock_is_real = true;
-  /// Of the load cell's gain, relative to it: what every coefficient shares; absent where not known.
-  std::optional<double> gain_uncertainty;
-  /// The calibration changed the gain so much that it had to be confirmed; a finding of each test.
-  std::optional<daq::GainChange> gain_change;
+  CalibrationInUse calibration = {};
 };
 
 /// Thread-bound: the processing thread.
@@ -86,10 +83,8 @@ class Processor {
   /// What the load cell shows now is its zero from here on.
   [[nodiscard]] TareReport tare(const std::string& who);
   /// Readings mean this from here on. Only on an idle bench, whose next test begins after all of this.
-  /// \param calibration  of the same board. \param gain_uncertainty,gain_change  as in the settings.
-  [[nodiscard]] CommandReport recalibrate(daq::Calibration calibration,
-                                          std::optional<double> gain_uncertainty,
-                                          const std::optional<daq::GainChange>& gain_change,
+  /// \param calibration  of the same board. \param in_use  as in the settings.
+  [[nodiscard]] CommandReport recalibrate(daq::Calibration calibration, const CalibrationInUse& in_use,
                                           const std::string& who);
   /// Of the tests that begin from here on.
   void plan_pull_speed(std::optional<double> speed_m_per_s) {
@@ -186,7 +181,8 @@ class Processor {
   // Of the running test.
   daq::AnchorPicker picker_;
   daq::ScanIndex trigger_ = 0;
-  std::optional<double> unloaded_level_;
+  TestFacts facts_;
+  std::shared_ptr<const daq::SelfCheck> self_check_;
   std::vector<daq::ClockAnchor> anchors_;
   std::vector<daq::Gap> test_gaps_;
   std::optional<daq::LatencyHistogram> read_latency_;

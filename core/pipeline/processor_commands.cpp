@@ -115,8 +115,7 @@ TareReport Processor::tare(const std::string& who) {
   return report;
 }
 
-CommandReport Processor::recalibrate(daq::Calibration calibration, std::optional<double> gain_uncertainty,
-                                     const std::optional<daq::GainChange>& gain_change,
+CommandReport Processor::recalibrate(daq::Calibration calibration, const CalibrationInUse& in_use,
                                      const std::string& who) {
   CommandReport report{{}, bench_.state(), number_, next_scan_};
   if (bench_.state() != BenchState::kIdle) {
@@ -127,8 +126,7 @@ CommandReport Processor::recalibrate(daq::Calibration calibration, std::optional
   const double step = calibration_.step_coefficient();
   settings_.analysis.step_coefficient = step;
   settings_.segmenter.step_coefficient = step;
-  settings_.gain_uncertainty = gain_uncertainty;
-  settings_.gain_change = gain_change;
+  settings_.calibration = in_use;
   // What was kept for the next test was weighed otherwise: a replay, which knows one calibration, could not
   // tell.
   segmenter_ = Segmenter{settings_.segmenter};

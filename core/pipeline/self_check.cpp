@@ -98,56 +98,72 @@ IdleFit fit_idle(const std::vector<double>& values, double scan_rate_Hz, bool wi
   return fit;
 }
 
-/// \param load_N  weight of the sled.
-std::vector<std::string> findings_of(const daq::SelfCheck& check, double load_N, double scan_rate_Hz) {
-  std::vector<std::string> findings;
+}  // namespace
+
+std::vector<base::Finding> self_check_findings(const daq::SelfCheck& check, double load_N,
+                                               double scan_rate_Hz) {
+  using base::FindingCode;
+  std::vector<base::Finding> findings;
+  const auto found = [&findings](FindingCode code, std::string text,
+                                 std::vector<base::FindingNumber> numbers) {
+    findings.push_back(base::make_finding(code, std::move(text), std::move(numbers)));
+  };
   const auto above = [load_N](std::optional<double> force_N, double limit, std::optional<double> error_N) {
     return force_N && std::abs(*force_N) > limit * load_N &&
            std::abs(*force_N) > kSignificant * error_N.value_or(0.0);
   };
-  const double duration_s = static_cast<double>(check.raw.size()) / scan_rate_Hz;
+  const auto scans = static_cast<double>(check.raw.size());
+  const double duration_s = scans / scan_rate_Hz;
   if (check.saturated_count.value_or(0) > 0) {
-    findings.push_back(fmt::format("the converter is at a rail with no load, {} of {} scans",
-                                   *check.saturated_count, check.raw.size()));
+    found(
+        FindingCode::kSelfCheckSaturated,
+        fmt::format("the converter is at a rail with no load, {} of {} scans", *check.saturated_count,
+                    check.raw.size()),
+        {{"saturated_count", static_cast<double>(*check.saturated_count), "1"}, {"scan_count", scans, "1"}});
   }
   const auto spikes = static_cast<double>(check.spike_count.value_or(0));
   // Counted events scatter by their square root.
   if (spikes - kSignificant * std::sqrt(spikes) > kMostSpikes_per_s * duration_s) {
-    findings.push_back(
-        fmt::format("{} spikes in {:.2g} s: look for a loose contact", *check.spike_count, duration_s));
+    found(FindingCode::kSelfCheckSpikes,
+          fmt::format("{} spikes in {:.2g} s: look for a loose contact", *check.spike_count, duration_s),
+          {{"spike_count", spikes, "1"}, {"duration", duration_s, "s"}, {"limit", kMostSpikes_per_s, "1/s"}});
   }
   if (above(check.zero_N, kLargestZero, check.zero_standard_error_N)) {
-    findings.push_back(
-        fmt::format("the unloaded cell reads {:.3g} N: calibrate, or set load_cell_zero", *check.zero_N));
+    found(FindingCode::kSelfCheckZero,
+          fmt::format("the unloaded cell reads {:.3g} N: calibrate, or set load_cell_zero", *check.zero_N),
+          {{"zero", *check.zero_N, "N"}, {"limit", kLargestZero * load_N, "N"}});
   }
   if (above(check.drift_N_per_s, kLargestDrift_per_s, check.drift_standard_error_N_per_s)) {
-    findings.push_back(fmt::format("the zero drifts by {:.2g} N in a minute: let the tester warm up",
-                                   60.0 * *check.drift_N_per_s));
+    found(FindingCode::kSelfCheckDrift,
+          fmt::format("the zero drifts by {:.2g} N in a minute: let the tester warm up",
+                      60.0 * *check.drift_N_per_s),
+          {{"drift", *check.drift_N_per_s, "N/s"}, {"limit", kLargestDrift_per_s * load_N, "N/s"}});
   }
   if (above(check.noise_N, kLargestNoise, {})) {
-    findings.push_back(fmt::format("noise of {:.2g} N a scan", *check.noise_N));
+    found(FindingCode::kSelfCheckNoise, fmt::format("noise of {:.2g} N a scan", *check.noise_N),
+          {{"noise", *check.noise_N, "N"}, {"limit", kLargestNoise * load_N, "N"}});
   }
   const std::pair<double, std::optional<double>> hums[] = {{kMains_Hz[0], check.hum_at_50_Hz_N},
                                                            {kMains_Hz[1], check.hum_at_60_Hz_N}};
   for (const auto& [frequency_Hz, hum_N] : hums) {
     if (above(hum_N, kLargestHum, check.hum_standard_error_N)) {
-      findings.push_back(
-          fmt::format("hum of {:.2g} N at {} Hz: look for a ground loop", *hum_N, frequency_Hz));
+      found(FindingCode::kSelfCheckHum,
+            fmt::format("hum of {:.2g} N at {} Hz: look for a ground loop", *hum_N, frequency_Hz),
+            {{"hum", *hum_N, "N"}, {"frequency", frequency_Hz, "Hz"}, {"limit", kLargestHum * load_N, "N"}});
     }
   }
   if (check.scan_rate_Hz) {
     const double error_Hz = std::abs(*check.scan_rate_Hz - scan_rate_Hz);
     if (error_Hz > kLargestRateError * scan_rate_Hz &&
         error_Hz > kSignificant * check.scan_rate_standard_error_Hz.value_or(0.0)) {
-      findings.push_back(
-          fmt::format("the board scans at {:.6g} Hz by the computer's clock, {:.6g} Hz was granted",
-                      *check.scan_rate_Hz, scan_rate_Hz));
+      found(FindingCode::kSelfCheckRate,
+            fmt::format("the board scans at {:.6g} Hz by the computer's clock, {:.6g} Hz was granted",
+                        *check.scan_rate_Hz, scan_rate_Hz),
+            {{"scan_rate", *check.scan_rate_Hz, "Hz"}, {"scan_rate_granted", scan_rate_Hz, "Hz"}});
     }
   }
   return findings;
 }
-
-}  // namespace
 
 daq::SelfCheck check_idle(base::ScanIndex first, std::span<const double> raw,
                           const daq::Calibration& calibration, double scan_rate_Hz,
@@ -182,7 +198,7 @@ daq::SelfCheck check_idle(base::ScanIndex first, std::span<const double> raw,
       check.hum_standard_error_N = fit.hum_error;
     }
   }
-  check.findings = findings_of(check, load_N, scan_rate_Hz);
+  check.findings = base::texts_of(self_check_findings(check, load_N, scan_rate_Hz));
   return check;
 }
 

@@ -3,13 +3,15 @@
 /// scans.
 ///
 ///     const daq::SelfCheck check = check_idle(990, raw, calibration, 350.0);
-///     for (const std::string& finding : check.findings) warn(finding);
+///     for (const base::Finding& finding : self_check_findings(check, 22.9, 350.0)) …
 #pragma once
 
 #include <deque>
 #include <optional>
 #include <span>
+#include <vector>
 
+#include "core/base/finding.hpp"
 #include "core/daq/calibration.hpp"
 #include "core/daq/rate_fit.hpp"
 #include "core/daq/self_check_values.hpp"
@@ -25,6 +27,10 @@ namespace stickslip::pipeline {
 [[nodiscard]] daq::SelfCheck check_idle(base::ScanIndex first, std::span<const double> raw,
                                         const daq::Calibration& calibration, double scan_rate_Hz,
                                         const std::optional<daq::RateEstimate>& rate = {});
+
+/// Findings of a self-check, from its values alone. \param normal_load_N  weight of the sled.
+[[nodiscard]] std::vector<base::Finding> self_check_findings(const daq::SelfCheck& check,
+                                                             double normal_load_N, double scan_rate_Hz);
 
 /// Fewest scans for noise, hum and drift: ten for each of the six parameters, so that a standard error is
 /// known to 10 %.

@@ -34,10 +34,19 @@ void add_true_rate(analysis::TestResults& results, std::span<const daq::ClockAnc
   const bool far = std::abs(factor - 1.0) > kClockTolerance &&
                    std::abs(fit->rate_Hz - granted_Hz) > kSureErrors * fit->standard_error_Hz;
   if (far) {
-    results.findings.push_back(fmt::format(
-        "scan rate: {:.7g} +- {:.2g} Hz by the clock, {:.7g} Hz granted by the board ({:+.0f} ppm); "
-        "the true omega, frequencies and speeds are {:.6f} times those given, times are divided by it",
-        fit->rate_Hz, fit->standard_error_Hz, granted_Hz, 1e6 * (factor - 1.0), factor));
+    base::add(
+        results.findings,
+        base::make_finding(
+            base::FindingCode::kScanRate,
+            fmt::format(
+                "scan rate: {:.7g} +- {:.2g} Hz by the clock, {:.7g} Hz granted by the board ({:+.0f} ppm); "
+                "the true omega, frequencies and speeds are {:.6f} times those given, times are divided by "
+                "it",
+                fit->rate_Hz, fit->standard_error_Hz, granted_Hz, 1e6 * (factor - 1.0), factor),
+            {{"scan_rate", fit->rate_Hz, "Hz"},
+             {"standard_error", fit->standard_error_Hz, "Hz"},
+             {"scan_rate_granted", granted_Hz, "Hz"},
+             {"factor", factor, "1"}}));
   }
 }
 

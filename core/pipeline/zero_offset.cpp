@@ -17,10 +17,14 @@ void add_zero_offset(analysis::TestResults& results, std::optional<double> befor
   const bool worse_after = std::abs(off(after)) > std::abs(off(before));
   const double offset = worse_after ? off(after) : off(before);
   if (offset == 0.0) return;
-  results.findings.push_back(fmt::format(
-      "zero: the unloaded cell read {:+.4f} {} the test, more than {:g}; static, kinetic, S and K "
-      "are off by it, S - K is not; tare before the next test",
-      offset, worse_after ? "after" : "before", UnloadedLevel::kNearest));
+  base::add(
+      results.findings,
+      base::make_finding(
+          base::FindingCode::kZeroOffset,
+          fmt::format("zero: the unloaded cell read {:+.4f} {} the test, more than {:g}; static, kinetic, "
+                      "S and K are off by it, S - K is not; tare before the next test",
+                      offset, worse_after ? "after" : "before", UnloadedLevel::kNearest),
+          {{"offset", offset, "1"}, {"limit", UnloadedLevel::kNearest, "1"}}));
   for (analysis::Estimate* estimate :
        {&results.static_coefficient, &results.kinetic_coefficient, &results.mu_s, &results.mu_k,
         &results.mu_k_from_mean, &results.mu_s_from_amplitude}) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/record/enum_names.hpp"
+#include "core/record/finding_json.hpp"
 #include "core/record/json_codec.hpp"
 #include "core/record/json_fields.hpp"
 
@@ -14,9 +15,12 @@ namespace stickslip::record {
 namespace {
 
 Json results_to_json(const analysis::TestResults& results) {
-  Json object{{"regime", model::name(results.regime)}, {"regime_reason", results.regime_reason},
-              {"rung", analysis::name(results.rung)},  {"rung_reason", results.rung_reason},
-              {"misfit_place", results.misfit_place},  {"findings", results.findings}};
+  Json object{{"regime", model::name(results.regime)},
+              {"regime_reason", results.regime_reason},
+              {"rung", analysis::name(results.rung)},
+              {"rung_reason", results.rung_reason},
+              {"misfit_place", results.misfit_place}};
+  put_findings(results.findings, object);
   analysis::for_each_result(results,
                             [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
                               Json entry = Json::object();
@@ -50,7 +54,7 @@ analysis::TestResults results_from_json(const Json& object) {
   } else {
     results.rung_reason = kNoSuchResultThen;
   }
-  results.findings = object.value("findings", std::vector<std::string>{});
+  results.findings = findings_in(object);
   analysis::for_each_result(results, [&](const analysis::ResultName& name, analysis::Estimate& estimate) {
     const Json entry = object.value(std::string{name.name}, Json{{"reason", kNoSuchResultThen}});
     take(entry, "value", estimate.value);

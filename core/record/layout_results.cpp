@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/record/finding_json.hpp"
 #include "core/record/hdf_read.hpp"
 #include "core/record/hdf_write.hpp"
 #include "core/record/layout.hpp"
@@ -16,7 +17,10 @@ constexpr const char* kReason = "reason";
 constexpr const char* kRung = "rung";
 constexpr const char* kMisfit = "misfit";
 constexpr const char* kPlace = "place";
-constexpr const char* kFindings = "findings";
+constexpr const char* kCode = "code";
+constexpr const char* kSeverity = "severity";
+constexpr const char* kAction = "action";
+constexpr const char* kNumbers = "numbers";
 /// The last result in the oldest records; later results were added by newer versions.
 constexpr std::string_view kLastOfTheFirst = "scan_rate_measured";
 
@@ -56,6 +60,58 @@ void read_rung(hid_t group, analysis::TestResults& results) {
   results.rung_reason = read_attribute(open_dataset(group, kRung).get(), kReason);
 }
 
+/// A row for each sentence in results/findings.
+void write_finding_rows(hid_t entry, const std::vector<base::Finding>& findings) {
+  if (findings.empty()) return;
+  const GroupHandle group = make_group(entry, kFindings, "NXcollection");
+  const auto column = [&](const char* name, auto text_of) {
+    std::vector<std::string> texts;
+    for (const base::Finding& finding : findings) texts.emplace_back(text_of(finding));
+    write_texts(group.get(), name, texts);
+  };
+  column(kCode, [](const base::Finding& finding) { return finding.code; });
+  column(kSeverity, [](const base::Finding& finding) { return base::name(finding.severity); });
+  column(kAction, [](const base::Finding& finding) { return finding.action; });
+  column(kNumbers, [](const base::Finding& finding) {
+    return numbers_json<nlohmann::ordered_json>(finding.numbers)
+        .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  });
+}
+
+/// Records of before have no rows: their sentences are uncoded.
+std::vector<base::Finding> read_findings(hid_t entry, const std::vector<std::string>& texts) {
+  std::vector<base::Finding> findings;
+  for (const std::string& text : texts)
+    findings.push_back(base::make_finding(base::FindingCode::kUncoded, text));
+  if (!has(entry, kFindings)) return findings;
+  const GroupHandle group = open_group(entry, kFindings);
+  const auto column = [&](const char* name) {
+    std::vector<std::string> rows = read_texts(group.get(), name);
+    if (rows.size() != findings.size()) {
+      throw HdfError(fmt::format("findings/{} has {} rows, results/findings has {}", name, rows.size(),
+                                 findings.size()));
+    }
+    return rows;
+  };
+  const std::vector<std::string> codes = column(kCode);
+  const std::vector<std::string> severities = column(kSeverity);
+  const std::vector<std::string> actions = column(kAction);
+  const std::vector<std::string> numbers = column(kNumbers);
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    findings[i].code = codes[i];
+    const auto severity = base::severity_from_name(severities[i]);
+    if (!severity) throw HdfError(fmt::format("findings/severity '{}' is unknown", severities[i]));
+    findings[i].severity = *severity;
+    findings[i].action = actions[i];
+    try {
+      findings[i].numbers = numbers_from_json(nlohmann::ordered_json::parse(numbers[i]));
+    } catch (const nlohmann::json::exception&) {
+      throw HdfError(fmt::format("findings/numbers row {} is no list of numbers in JSON", i + 1));
+    }
+  }
+  return findings;
+}
+
 }  // namespace
 
 void write_results(hid_t entry, const analysis::TestResults& results) {
@@ -71,7 +127,8 @@ void write_results(hid_t entry, const analysis::TestResults& results) {
       });
   if (!results.misfit_place.empty())
     write_attribute(open_dataset(group.get(), kMisfit).get(), kPlace, results.misfit_place);
-  write_texts(group.get(), kFindings, results.findings);
+  write_texts(group.get(), kFindings, base::texts_of(results.findings));
+  write_finding_rows(entry, results.findings);
 }
 
 analysis::TestResults read_results(hid_t entry) {
@@ -99,7 +156,8 @@ analysis::TestResults read_results(hid_t entry) {
     results.misfit_place =
         find_attribute(open_dataset(group.get(), kMisfit).get(), kPlace).value_or(std::string{});
   }
-  if (has(group.get(), kFindings)) results.findings = read_texts(group.get(), kFindings);
+  if (has(group.get(), kFindings))
+    results.findings = read_findings(entry, read_texts(group.get(), kFindings));
   return results;
 }
 

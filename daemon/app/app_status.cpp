@@ -5,6 +5,7 @@
 
 #include "core/base/version.hpp"
 #include "core/pipeline/plausibility.hpp"
+#include "core/pipeline/test_facts.hpp"
 #include "daemon/app/app.hpp"
 
 namespace stickslip::app {
@@ -141,7 +142,12 @@ daemon::Status App::status() const {
   const daemon::CalibrationView calibration = calibrations_.view();
   status.calibration = {calibration.facts.date, calibration.facts.expires, calibration.expired,
                         calibration.session ? calibration.session->who : std::string{}};
-  if (sled_mass_kg_) status.sled_finding = pipeline::sled_finding(*sled_mass_kg_);
+  if (sled_mass_kg_) {
+    if (auto finding = pipeline::sled_finding(*sled_mass_kg_))
+      base::add(status.findings, *std::move(finding));
+  }
+  if (calibration.expired) base::add(status.findings, pipeline::expired_finding(calibration.facts.expires));
+  status.finding_counts = tests_.finding_counts();
   status.page = page_;
   if (fleet_) status.fleet = fleet_->state();
   status.live_client_count = static_cast<std::int64_t>(live_.hub().client_count());

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "io/findings_text.hpp"
+
 #include "core/base/text.hpp"
 
 namespace stickslip::app {
@@ -87,6 +89,14 @@ class Log final : public daemon::EventReceiver {
                           pipeline::name(end.cause), model::name(end.results.regime), end.cycles.size()),
           .test = end.number,
           .cause = pipeline::name(end.cause)});
+    for (const base::Finding& finding : end.results.findings) {
+      tell({.level = finding.severity == base::Severity::kNote ? io::LogLevel::kInfo : io::LogLevel::kWarning,
+            .event = "finding",
+            .message = fmt::format("test {}: {}; {}", end.number, base::printable(finding.text),
+                                   io::action_text(finding)),
+            .test = end.number,
+            .cause = finding.code});
+    }
   }
   void file_published(std::int64_t test, const std::filesystem::path& file) override {
     tell({.event = "record-finished",

@@ -22,7 +22,7 @@ struct LogEntry {
   std::optional<std::int64_t> test{};        ///< Number of the test concerned.
   std::string record{};                      ///< Path of the record or journal concerned; may be empty.
   std::string_view state{};                  ///< New `state` of the status; may be empty.
-  std::string_view cause{};                  ///< Cause of a gap or of the end of a test; may be empty.
+  std::string_view cause{};                  ///< Of a gap or of the end of a test; code of a finding.
   std::optional<std::int64_t> first_scan{};  ///< First missing scan of a gap.
   std::optional<std::int64_t> scan_count{};  ///< Missing in a gap.
 };

@@ -91,6 +91,13 @@ std::string metrics_text(const daemon::Status& status) {
   page.counter("storage_stalls_total", "Times the processing thread waited for the storage thread.",
                status.storage_stall_count);
   page.counter("tests_total", "Tests ended.", status.test_count);
+  page.head("findings_total", "counter", "Tests ended with this finding.");
+  for (const base::FindingKind& kind : base::finding_kinds()) {
+    page.value("findings_total", status.finding_counts[static_cast<std::size_t>(kind.code)],
+               fmt::format("{{code=\"{}\",severity=\"{}\"}}", kind.name, base::name(kind.severity)));
+  }
+  page.gauge("bench_findings", "Findings that the bench has now, as GET /v1/status names them.",
+             status.findings.size());
   if (status.board) {
     page.gauge("scan_rate_hertz", "Scan rate that the board granted.", status.board->scan_rate_granted_Hz);
   }

@@ -44,6 +44,21 @@ const Tables = (() => {
   }
   const limitText = ({lowest, highest}, digits) => (lowest == null ? `≤ ${fixed(highest, digits)}` : highest == null ? `≥ ${fixed(lowest, digits)}` : `${fixed(lowest, digits)} … ${fixed(highest, digits)}`);
 
+  /// Of the latest test, beside its numbers; the most severe first, as they come.
+  function findings(test) {
+    const list = document.getElementById("findings");
+    const items = (test?.results.coded_findings ?? []).map(finding => {
+      const item = document.createElement("li"), strong = document.createElement("strong"), action = document.createElement("span");
+      item.className = finding.severity;
+      strong.textContent = `test ${test.number}, ${finding.severity}: ${finding.text}`;
+      action.textContent = ` → ${finding.action} (${finding.code})`;
+      item.append(strong, action);
+      return item;
+    });
+    list.replaceChildren(...items);
+    list.hidden = items.length === 0;
+  }
+
   let lacking = false;
   /// Numbers of the foot are the daemon's (GET /v1/tests), as stickslip report computes them.
   /// \param made  how many tests of the batch count, by its journal: of those of before the daemon began the table learns by and by.
@@ -61,12 +76,15 @@ const Tables = (() => {
       const marks = `${missed ? " ✗" : ""}${far ? " !" : ""}`, own = test.results[name];
       return cell(Uncertain.lines(own, errorsOf(test, name), digits, marks), missed ? "outside" : far ? "far" : undefined);
     };
+    findings(list.at(-1));
     const focused = document.activeElement?.id;
     table.tBodies[0].replaceChildren(...list.slice(-200).reverse().map(test => {
       const tr = row([cell(String(test.number)), cell(test.results.regime, "text"), ...columns.map(column => value(test, column)),
         cell(test.voided ? `void: ${test.voided.reason}` : test.cause, "text"),
         test.file ? voidCell(`void-${test.number}`, {test: test.number}, `test ${test.number}`, test.voided) : cell(""), recordCell(test, download)]);
-      tr.cells[1].title = `rung: ${test.results.rung}`;
+      const found = test.results.coded_findings;
+      if (found.length > 0) tr.cells[1].append(` · ${found[0].code}${found.length > 1 ? ` + ${found.length - 1}` : ""}`);
+      tr.cells[1].title = [`rung: ${test.results.rung}`, ...found.map(finding => finding.text)].join("\n");
       if (test.voided) tr.className = "void";
       return tr;
     }));
@@ -108,8 +126,7 @@ const Tables = (() => {
     if (["board missing", "board busy", "no permission"].includes(status.state)) found.push(status.detail);
     if (status.bench_trouble != null) found.push(`bench ${status.bench}: ${status.bench_trouble}`);
     if (status.storage.why != null) found.push(`storage ${status.storage.state}: ${status.storage.why}; ${status.storage.to_do}`);
-    if (status.sled_finding != null) found.push(status.sled_finding);
-    if (status.calibration.expired) found.push(`the calibration of the load cell expired on ${day(status.calibration.expires)}: calibrate`);
+    found.push(...status.coded_findings.map(finding => `${finding.text}; ${finding.action}`));
     return found.join(" · ");
   }
   function trouble(text) {
@@ -131,7 +148,7 @@ const Tables = (() => {
       ["ring", status.ring ? `${(100 * status.ring.high_water_block_count / status.ring.capacity_block_count).toFixed(1)} % at most` : "–"], ["tests", String(status.test_count)],
       ["readers", `${status.live_clients.count}, ${status.live_clients.dropped_frame_count} dropped`]];
     document.getElementById("health").replaceChildren(...terms(facts));
-    sled = status.sled_finding;
+    sled = status.coded_findings.find(finding => finding.code === "sled-mass")?.text ?? null;
   }
 
   function cycle(frame) {

@@ -6,7 +6,7 @@
 
 #include "io/calibration_file.hpp"
 
-#include "core/pipeline/gain_uncertainty.hpp"
+#include "core/evaluation/analyse.hpp"
 #include "core/record/iso_time.hpp"
 
 namespace stickslip::runtime {
@@ -231,10 +231,8 @@ void CalibrationService::use(const record::CalibrationFacts& facts, const daq::L
   const bool posted = session != nullptr && session->post([this, session, facts, cell, who,
                                                            answer](pipeline::Processor& processor) {
     const double load_N = processor.calibration().normal_load_N();
-    const auto report =
-        processor.recalibrate({session->board_info(), cell, load_N},
-                              pipeline::relative_gain_uncertainty(cell, facts.gain_standard_error_N_per_V),
-                              daq::gain_change(cell.gain_N_per_V, facts.replaced_gain_N_per_V), who);
+    const auto report = processor.recalibrate({session->board_info(), cell, load_N},
+                                              evaluation::calibration_in_use(cell, facts), who);
     if (report.refusal.empty()) {
       parts_.storage.amend([&](record::RecordHeader& header) {
         header.load_cell = cell;

@@ -5,7 +5,7 @@
 
 #include "core/base/version.hpp"
 #include "core/estimate/sampling.hpp"
-#include "core/pipeline/gain_uncertainty.hpp"
+#include "core/evaluation/analyse.hpp"
 #include "core/record/folder_probe.hpp"
 #include "core/record/method_text.hpp"
 #include "core/record/tester_file.hpp"
@@ -50,10 +50,7 @@ base::Result<SessionSettings> session_settings(const io::DaemonConfig& config,
   } else if (!bench.load_cell_gain_N_per_V && !bench.load_cell_zero_V) {
     settings.calibration = opened.calibration;  // It belongs to the numbers that come with it.
   }
-  settings.processor.gain_uncertainty = pipeline::relative_gain_uncertainty(
-      settings.load_cell, settings.calibration.gain_standard_error_N_per_V);
-  settings.processor.gain_change =
-      daq::gain_change(settings.load_cell.gain_N_per_V, settings.calibration.replaced_gain_N_per_V);
+  settings.processor.calibration = evaluation::calibration_in_use(settings.load_cell, settings.calibration);
   settings.processor.automatic = config.begins_by_force;
   settings.processor.clock_is_real = config.clock_speed == 1.0;
   // A bench that runs faster than the wall must not lose what this machine cannot follow.

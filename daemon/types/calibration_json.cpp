@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/text.hpp"
+#include "core/record/finding_json.hpp"
 #include "daemon/types/plan_json.hpp"
 
 namespace stickslip::daemon {
@@ -56,22 +57,23 @@ Json session_json(const CalibrationSession& session) {
   const auto if_fit = [&fit](std::optional<double> value) {
     return fit.load_cell ? known_json(value) : Json(nullptr);
   };
-  std::vector<std::string> findings = session.weighed.findings;
-  if (session.gain_change) findings.push_back(daq::to_text(*session.gain_change));
-  return {{"controller", session.who},
-          {"settle", session.times.settle_s},
-          {"reading", session.times.reading_s},
-          {"mass_being_read", known_json(session.being_read_kg)},
-          {"points", points_json(session.weighed)},
-          {"gain", of(cell.gain_N_per_V)},
-          {"gain_standard_error", if_fit(fit.gain_standard_error_N_per_V)},
-          {"zero", of(cell.zero_V)},
-          {"zero_standard_error", if_fit(fit.zero_standard_error_V)},
-          {"residual", if_fit(fit.residual_V)},
-          {"hysteresis", if_fit(fit.hysteresis_V)},
-          {"findings", std::move(findings)},
-          {"gain_change", gain_change_json(session.gain_change)},
-          {"missing", said(fit.reason)}};
+  std::vector<base::Finding> findings = session.weighed.findings;
+  if (session.gain_change) base::add(findings, daq::finding(*session.gain_change));
+  Json json{{"controller", session.who},
+            {"settle", session.times.settle_s},
+            {"reading", session.times.reading_s},
+            {"mass_being_read", known_json(session.being_read_kg)},
+            {"points", points_json(session.weighed)},
+            {"gain", of(cell.gain_N_per_V)},
+            {"gain_standard_error", if_fit(fit.gain_standard_error_N_per_V)},
+            {"zero", of(cell.zero_V)},
+            {"zero_standard_error", if_fit(fit.zero_standard_error_V)},
+            {"residual", if_fit(fit.residual_V)},
+            {"hysteresis", if_fit(fit.hysteresis_V)},
+            {"gain_change", gain_change_json(session.gain_change)},
+            {"missing", said(fit.reason)}};
+  record::put_findings(findings, json);
+  return json;
 }
 
 }  // namespace

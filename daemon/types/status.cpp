@@ -7,6 +7,7 @@
 #include "io/results_json.hpp"
 #include <nlohmann/json.hpp>
 
+#include "core/record/finding_json.hpp"
 #include "daemon/types/batch_json.hpp"
 
 namespace stickslip::daemon {
@@ -180,7 +181,13 @@ Json status_json(const Status& status) {
   json["storage_stall_count"] = status.storage_stall_count;
   json["storage"] = to_json(status.storage);
   json["calibration"] = to_json(status.calibration);
-  json["sled_finding"] = or_nothing(status.sled_finding);
+  Json counts = Json::object();
+  record::put_findings(status.findings, json);
+  for (const base::FindingKind& kind : base::finding_kinds()) {
+    if (const auto count = status.finding_counts[static_cast<std::size_t>(kind.code)]; count > 0)
+      counts[std::string{kind.name}] = count;
+  }
+  json["finding_counts"] = std::move(counts);
   json["live_clients"] = {{"count", status.live_client_count},
                           {"dropped_frame_count", status.live_dropped_count}};
   json["page"] = to_json(status.page);

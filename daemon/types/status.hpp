@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -58,9 +59,10 @@ struct Status {
     bool expired = false;
     std::string under_way_by;  ///< Controller of the calibration under way; empty: none.
   } calibration;
-  std::string sled_finding;  ///< The sled of the bench is outside pipeline::kLightestSled_kg …; empty: none.
-  std::optional<BatchProgress> batch;  ///< The current batch; absent: none.
-  std::optional<FleetState> fleet;     ///< Absent: no broker is configured.
+  std::vector<base::Finding> findings;  ///< Of the bench now; those of a test are in its results.
+  FindingCounts finding_counts{};       ///< Over all tests that have ended.
+  std::optional<BatchProgress> batch;   ///< The current batch; absent: none.
+  std::optional<FleetState> fleet;      ///< Absent: no broker is configured.
   /// The live page over TCP.
   struct Page {
     std::string address;     ///< "http://127.0.0.1:8037/"

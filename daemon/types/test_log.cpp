@@ -12,6 +12,11 @@ void TestLog::add(TestSummary summary) {
   }
   const std::lock_guard lock{mutex_};
   ++count_;
+  for (const base::FindingKind& kind : base::finding_kinds()) {
+    const auto& findings = summary.results.findings;
+    if (std::any_of(findings.begin(), findings.end(), [&](const auto& own) { return own.code == kind.name; }))
+      ++finding_counts_[static_cast<std::size_t>(kind.code)];
+  }
   tests_.push_back(std::move(summary));
   if (tests_.size() > kMaxTests) tests_.pop_front();
 }
@@ -52,6 +57,11 @@ std::optional<TestSummary> TestLog::latest() const {
   const std::lock_guard lock{mutex_};
   if (tests_.empty() || tests_.back().earlier) return std::nullopt;
   return tests_.back();
+}
+
+FindingCounts TestLog::finding_counts() const {
+  const std::lock_guard lock{mutex_};
+  return finding_counts_;
 }
 
 std::int64_t TestLog::test_count() const {

@@ -3,6 +3,7 @@
 /// control interface and the final table read.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <mutex>
@@ -33,6 +34,9 @@ struct TestSummary {
   bool earlier = false;
 };
 
+/// Tests with each finding, by FindingCode.
+using FindingCounts = std::array<std::int64_t, base::kFindingCodes>;
+
 /// Thread-safe.
 class TestLog {
  public:
@@ -52,6 +56,8 @@ class TestLog {
   [[nodiscard]] std::optional<TestSummary> latest() const;
   /// Tests added since the start of the program.
   [[nodiscard]] std::int64_t test_count() const;
+  /// Of the same tests.
+  [[nodiscard]] FindingCounts finding_counts() const;
 
  private:
   [[nodiscard]] TestSummary* find(std::int64_t number);
@@ -59,6 +65,7 @@ class TestLog {
   mutable std::mutex mutex_;
   std::deque<TestSummary> tests_;
   std::int64_t count_ = 0;
+  FindingCounts finding_counts_{};
 };
 
 }  // namespace stickslip::daemon

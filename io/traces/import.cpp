@@ -368,8 +368,12 @@ class Importer {
   void tell(const Grid& grid, std::size_t begin) {
     if (!grid.rate_checked) {
       note("the time column is too coarse to check the rate of {:.6g} Hz", grid.rate_Hz);
-      findings_.push_back(
-          fmt::format("scan rate {:.6g} Hz is not checked: the time column is too coarse", grid.rate_Hz));
+      base::add(
+          findings_,
+          base::make_finding(
+              base::FindingCode::kRateUnchecked,
+              fmt::format("scan rate {:.6g} Hz is not checked: the time column is too coarse", grid.rate_Hz),
+              {{"scan_rate", grid.rate_Hz, "Hz"}}));
       return;
     }
     note("{:.7g} scans a second by the time column, largest jitter {:.2g} % of the interval, in {} {}",
@@ -449,7 +453,7 @@ class Importer {
   RawQuantity quantity_ = RawQuantity::kForce_N;
   double scale_ = 1.0;
   std::optional<daq::LoadCell> load_cell_;
-  std::vector<std::string> findings_;
+  std::vector<base::Finding> findings_;
   std::string notes_;
   Imported imported_;
 };

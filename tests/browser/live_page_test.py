@@ -582,10 +582,22 @@ class LivePage(unittest.TestCase):
             page.press("Escape")
             page.until(f"!document.querySelector('dialog:modal') && document.activeElement.id === '{opener}'")
 
+    def test_the_findings_of_the_latest_test_stand_above_the_table_and_in_its_row(self):
+        daemon = self.daemon('[tester]\npull_speed = "6 in/min"\n')
+        page = self.page()
+        page.until("document.querySelectorAll('#findings li').length === 1")
+        shown = page.value("document.querySelector('#findings li').textContent")
+        self.assertRegex(shown, r"^test \d+, warning: the pull speed was 1[12]\.\d\d \+- 0\.0\d in/min, the plan says 6\.00 → correct the tester's speed, or pull_speed of the plan \(pull-speed\)$")
+        self.assertIn(page.value("document.querySelector('#tests tbody tr').cells[1].textContent"), ("stick-slip · pull-speed", "undecided · pull-speed"))
+        [told] = daemon.ask("GET", "/v1/tests/1")[1]["results"]["coded_findings"]
+        self.assertIn(told["text"], page.value("[...document.querySelectorAll('#tests tbody tr')].at(-1).cells[1].title"))
+        front, back = page.value("[...document.querySelectorAll('#findings strong')].map(e => [getComputedStyle(e).color, getComputedStyle(document.getElementById('results')).backgroundColor])[0]")
+        self.assertGreaterEqual(contrast(rgb(front), rgb(back)), 4.5)
+
     def test_a_sled_that_no_tester_has_is_asked_about_before_a_test(self):
         daemon = self.daemon('[tester]\nsled_mass = "100 kg"\n[test]\nbegins = "command"\n')
         page = self.page()
-        self.assertEqual(daemon.ask("GET", "/v1/status")[1]["sled_finding"], "the sled mass is 100 kg, outside 0.005 … 20 kg: check its unit")
+        self.assertEqual(daemon.ask("GET", "/v1/status")[1]["findings"], ["the sled mass is 100 kg, outside 0.005 … 20 kg: check its unit"])
         page.until("document.getElementById('trouble').textContent.includes('the sled mass is 100 kg')")
         for answer in ("no", "yes"):
             page.value("document.querySelector('[data-command=start]').focus()")

@@ -180,7 +180,7 @@ void compare_results(RecordListing& listing, const analysis::TestResults& result
   const std::string group = "entry/results/";
   listing.expect_text(group + "regime", std::string{model::name(results.regime)});
   listing.expect_attribute(group + "regime", "reason", results.regime_reason);
-  listing.expect_texts(group + "findings", results.findings);
+  listing.expect_texts(group + "findings", base::texts_of(results.findings));
   if (results.rung_reason == record::kNoSuchResultThen) {
     listing.expect_absent(group + "rung");
   } else {

@@ -52,7 +52,7 @@ constexpr double kRelative = 1e-9;
 
 void expect_close(const analysis::TestResults& now, const analysis::TestResults& then) {
   EXPECT_EQ(now.regime, then.regime);
-  EXPECT_EQ(now.findings, then.findings);
+  EXPECT_EQ(base::texts_of(now.findings), base::texts_of(then.findings));
   std::vector<analysis::Estimate> stored;
   analysis::for_each_result(then, [&](const analysis::ResultName&, const analysis::Estimate& estimate) {
     stored.push_back(estimate);

@@ -38,6 +38,7 @@ class Collector final : public pipeline::Sink {
     record.header.uuid = record::make_uuid();
     record.header.test_number = start.number;
     record.header.trigger_scan = start.trigger;
+    if (start.self_check) record.header.self_check = *start.self_check;
     records_.push_back(std::move(record));
   }
   void scans(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second,
@@ -81,6 +82,7 @@ std::vector<record::Record> run(drivers::OpenedBoard opened, unsigned seed, int 
   header.load_cell = opened.load_cell;
   header.tester = record::TesterFacts::of(*opened.tester);
   header.process.method = record::method_text({});
+  header.plan.start_coefficient = pipeline::SegmenterSettings{}.start_coefficient;
   header.process.characterisation = characterisation.empty() ? opened.characterisation : characterisation;
   header.process.estimator = estimator.empty() ? opened.estimator : estimator;
   header.process.kept =

@@ -98,7 +98,7 @@ TEST_F(TesterChecked, PullSpeedIsKnownToHalfAPerCentAndAWrongPlanIsCaught) {
     const TestAnalysis right = analysed(known_, 12.0, seed);
     ASSERT_TRUE(right.tester_check());
     const TesterCheck& check = *right.tester_check();
-    EXPECT_TRUE(check.findings.empty()) << seed << ": " << check.findings.front();
+    EXPECT_TRUE(check.findings.empty()) << seed << ": " << check.findings.front().text;
     const double speed = *check.pull_speed.value / kInchPerMinute_m_per_s;
     EXPECT_LT(*check.pull_speed.standard_error / *check.pull_speed.value, 0.005);
     squares +=
@@ -108,7 +108,7 @@ TEST_F(TesterChecked, PullSpeedIsKnownToHalfAPerCentAndAWrongPlanIsCaught) {
   EXPECT_GT(squares / kSeeds, test::lowest_mean_square(kSeeds));
   const TestAnalysis wrong = analysed(known_, 6.0, 1);
   ASSERT_EQ(wrong.tester_check()->findings.size(), 1U);
-  EXPECT_NE(wrong.tester_check()->findings.front().find("the plan says 6.00"), std::string::npos);
+  EXPECT_NE(wrong.tester_check()->findings.front().text.find("the plan says 6.00"), std::string::npos);
 }
 
 TEST_F(TesterChecked, AnotherSpringIsAFindingAndIsNotUsed) {
@@ -117,7 +117,7 @@ TEST_F(TesterChecked, AnotherSpringIsAFindingAndIsNotUsed) {
   const TestAnalysis analysis = analysed(other, 12.0, 1);
   ASSERT_TRUE(analysis.tester_check());
   EXPECT_FALSE(analysis.tester_check()->used());
-  EXPECT_NE(analysis.tester_check()->findings.front().find("has changed since the characterisation"),
+  EXPECT_NE(analysis.tester_check()->findings.front().text.find("has changed since the characterisation"),
             std::string::npos);
   // As without it: γ is as uncertain as the test alone leaves it, S − K within four standard errors.
   EXPECT_GT(*results_.gamma_over_2omega.standard_error, 0.05 * 0.022);

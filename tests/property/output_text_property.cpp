@@ -77,13 +77,18 @@ record::RecordHeader named_header(bool is_hostile) {
   return header;
 }
 
+/// A record of a newer version may have any code and action.
+base::Finding named_finding(bool is_hostile) {
+  return {.code = next(is_hostile), .text = next(is_hostile), .action = next(is_hostile)};
+}
+
 record::Record named_record(bool is_hostile) {
   record::Record record = test::whole_record();
   record.header = named_header(is_hostile);
   record.events[0].text = next(is_hostile);
   record.end->cause = next(is_hostile);
   record.end->reasons = {next(is_hostile)};
-  record.end->results.findings = {next(is_hostile)};
+  record.end->results.findings = {named_finding(is_hostile)};
   record.end->results.regime_reason = next(is_hostile);
   analysis::for_each_result(record.end->results,
                             [&](const analysis::ResultName& /*name*/, analysis::Estimate& estimate) {
@@ -96,7 +101,7 @@ Material named_material(bool is_hostile) {
   Material material = test::sample_material();
   material.label = next(is_hostile);
   for (analysis::MeasuredTest& measured : material.measured) {
-    measured.results.findings = {next(is_hostile)};
+    measured.results.findings = {named_finding(is_hostile)};
     analysis::for_each_result(measured.results,
                               [&](const analysis::ResultName& /*name*/, analysis::Estimate& estimate) {
                                 if (!estimate.value) estimate = analysis::Estimate::none(next(is_hostile));
@@ -127,7 +132,7 @@ daemon::Status named_status(bool is_hostile) {
   daemon::TestSummary& test = status.latest_test.emplace();
   test.file = next(is_hostile);
   test.file_error = next(is_hostile);
-  test.results.findings = {next(is_hostile)};
+  test.results.findings = {named_finding(is_hostile)};
   status.storage.why = next(is_hostile);
   status.storage.to_do = next(is_hostile);
   status.storage.lacks = {next(is_hostile)};

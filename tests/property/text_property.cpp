@@ -79,8 +79,8 @@ RC_GTEST_PROP(TextProperty, TheTableHasItsLinesWhateverTheFileIsCalled, ()) {
   TableRow plain{1, {}, std::nullopt, "a.h5"};
   TableRow named = plain;
   named.where = *hostile();
-  named.results.findings = {*hostile()};
-  plain.results.findings = {"x"};
+  named.results.findings = {{.code = *hostile(), .text = *hostile(), .action = *hostile()}};
+  plain.results.findings = {{.code = "x", .text = "x", .action = "x"}};
   const std::string text = format_table(std::array{named});
   expect_safe(text);
   RC_ASSERT(lines_of(text) == lines_of(format_table(std::array{plain})));

@@ -117,7 +117,11 @@ inline analysis::TestResults sample_results() {
   results.rung = analysis::Rung::kTwoParameterLaw;
   results.rung_reason = "the slope of K is not significant";
   results.misfit_place = "peak";
-  results.findings = {"the pull speed was 6.00 +- 0.02 in/min, the plan says 12.00", "another"};
+  results.findings = {
+      base::make_finding(base::FindingCode::kPullSpeed,
+                         "the pull speed was 6.00 +- 0.02 in/min, the plan says 12.00",
+                         {{"pull_speed_measured", 0.00254, "m/s"}, {"pull_speed", 0.00508, "m/s"}}),
+      base::make_finding(base::FindingCode::kUncoded, "another")};
   double number = 0.1;
   analysis::for_each_result(results, [&](const analysis::ResultName& name, analysis::Estimate& estimate) {
     if (name.name == "Q_threshold") {

@@ -99,7 +99,7 @@ class Messages(Case):
                 self.assertEqual(result["status"], entry["process/status"][()].decode())
                 values = told(result["results"])
                 names = set(stored_in(record)) - {"findings"}
-                self.assertEqual(set(values) - {"findings", "details", "diagnostics"}, names)
+                self.assertEqual(set(values) - {"findings", "coded_findings", "details", "diagnostics"}, names)
                 for name in names:
                     stored = stored_in(record)[name][()]
                     if isinstance(stored, bytes):

@@ -228,7 +228,8 @@ TEST(HardSignals, AnOscillationOfFewScansACycleIsNeverSteadySliding) {
       EXPECT_THAT(coarse.results.regime_reason, testing::HasSubstr("scan more often")) << scans_a_cycle;
       EXPECT_FALSE(coarse.results.cycle_count.value) << scans_a_cycle;
     } else {
-      EXPECT_THAT(coarse.results.findings, testing::Contains(testing::HasSubstr("scans a cycle")))
+      EXPECT_THAT(base::texts_of(coarse.results.findings),
+                  testing::Contains(testing::HasSubstr("scans a cycle")))
           << scans_a_cycle;
     }
   }
@@ -289,7 +290,7 @@ TEST(HardSignals, HumOfHalfTheAmplitudeGivesNoWrongRegime) {
     const analysis::Estimate& found = humming.results.delta_mu;
     EXPECT_NEAR(*found.value, kD, *found.systematic_uncertainty + 2.0 * *found.standard_error) << hum_Hz;
     ASSERT_FALSE(humming.results.findings.empty());
-    EXPECT_NE(humming.results.findings.front().find("by turning points"), std::string::npos);
+    EXPECT_NE(humming.results.findings.front().text.find("by turning points"), std::string::npos);
   }
 }
 

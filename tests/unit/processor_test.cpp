@@ -253,15 +253,15 @@ TEST_F(ProcessorTest, EndsARunningTestWhenToldAndNothingElse) {
 
 TEST_F(ProcessorTest, ANewCalibrationCountsAsIfItHadAlwaysBeen) {
   settings_.automatic = false;
-  settings_.gain_uncertainty = 0.1;
+  settings_.calibration.gain_uncertainty = 0.1;
   board_.quantity = daq::RawQuantity::kVolts;
   const daq::LoadCell cell{2.0, 0.01};
   Processor before{settings_, {board_, {1.5, 0.0}, 1.0}, {&diary_}};
   feed(before, 0, 20);
-  const CommandReport report = before.recalibrate({board_, cell, 1.0}, 0.02, std::nullopt, "ada");
+  const CommandReport report = before.recalibrate({board_, cell, 1.0}, {.gain_uncertainty = 0.02}, "ada");
   EXPECT_EQ(report.refusal, "");
   EXPECT_EQ(report.scan, 20);
-  settings_.gain_uncertainty = 0.02;
+  settings_.calibration.gain_uncertainty = 0.02;
   Diary other;
   Processor always{settings_, {board_, cell, 1.0}, {&other}};
   feed(always, 0, 20);
@@ -340,10 +340,10 @@ TEST_F(ProcessorTest, WhatWaitsIsCalibratedAnewByATare) {
 
 TEST_F(ProcessorTest, ANewCalibrationNeedsAnIdleBench) {
   Processor armed = make();
-  EXPECT_EQ(armed.recalibrate({board_, {}, 2.0}, std::nullopt, std::nullopt, "ada").refusal,
+  EXPECT_EQ(armed.recalibrate({board_, {}, 2.0}, {}, "ada").refusal,
             "the bench is armed; a new calibration needs it idle");
   feed(armed, 0, 200);
-  EXPECT_EQ(armed.recalibrate({board_, {}, 2.0}, std::nullopt, std::nullopt, "ada").refusal,
+  EXPECT_EQ(armed.recalibrate({board_, {}, 2.0}, {}, "ada").refusal,
             "the bench is loading; a new calibration needs it idle");
   EXPECT_EQ(armed.calibration().normal_load_N(), 1.0);
 }

@@ -20,7 +20,7 @@ analysis::TestResults all_results() {
   results.rung = analysis::Rung::kTurningPoints;
   results.rung_reason = "the fit does not describe the test";
   results.misfit_place = "rise";
-  results.findings = {"the pull was slower than planned"};
+  results.findings = {base::make_finding(base::FindingCode::kPullSpeed, "the pull was slower than planned")};
   int n = 0;
   analysis::for_each_result(results, [&n](const analysis::ResultName& name, analysis::Estimate& estimate) {
     // Counts are whole.

@@ -137,13 +137,13 @@ TEST(WeighedCalibration, NeedsThreeWeightsUpAndThreeReadingsDown) {
 TEST(WeighedCalibration, TellsHysteresisAndAWrongWeight) {
   std::vector<WeightReading> lazy = readings();
   for (std::size_t i = 4; i < lazy.size(); ++i) lazy[i].voltage_V += 0.05;
-  EXPECT_THAT(weighed(lazy).findings, testing::Contains(HasSubstr("hysteresis")));
+  EXPECT_THAT(base::texts_of(weighed(lazy).findings), testing::Contains(HasSubstr("hysteresis")));
   EXPECT_GT(*weighed(lazy).fit.hysteresis_V, 0.04);
   std::vector<WeightReading> wrong = readings();
   for (WeightReading& one : wrong) {
     if (one.mass_kg == 1.0) one.mass_kg = 1.05;
   }
-  EXPECT_THAT(weighed(wrong).findings, testing::Contains(HasSubstr("off the line")));
+  EXPECT_THAT(base::texts_of(weighed(wrong).findings), testing::Contains(HasSubstr("off the line")));
 }
 
 TEST(ReadingOf, MeanErrorAndWanderOfTheScans) {

@@ -22,7 +22,7 @@ TEST(ZeroOffset, IsAFindingAndASystematicPartOfLevelsAlone) {
   analysis::TestResults results = some_results();
   add_zero_offset(results, -0.04, 0.01);
   ASSERT_EQ(results.findings.size(), 1U);
-  EXPECT_NE(results.findings[0].find("-0.0400"), std::string::npos) << results.findings[0];
+  EXPECT_NE(results.findings[0].text.find("-0.0400"), std::string::npos) << results.findings[0].text;
   EXPECT_DOUBLE_EQ(results.static_coefficient.systematic_uncertainty.value_or(0.0), 0.04);
   EXPECT_DOUBLE_EQ(results.mu_k.systematic_uncertainty.value_or(0.0), 0.05);
   EXPECT_FALSE(results.delta_mu.systematic_uncertainty);
@@ -33,7 +33,7 @@ TEST(ZeroOffset, TheWorseOfTheTwoCounts) {
   analysis::TestResults results = some_results();
   add_zero_offset(results, 0.004, -0.02);
   ASSERT_EQ(results.findings.size(), 1U);
-  EXPECT_NE(results.findings[0].find("-0.0200 after"), std::string::npos) << results.findings[0];
+  EXPECT_NE(results.findings[0].text.find("-0.0200 after"), std::string::npos) << results.findings[0].text;
   EXPECT_DOUBLE_EQ(results.static_coefficient.systematic_uncertainty.value_or(0.0), 0.02);
 }
 

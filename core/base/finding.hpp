@@ -1,0 +1,102 @@
+/// \file
+/// Findings: what the instrument knows against a test or the bench. One list of codes for all sources.
+///
+///     add(results.findings, make_finding(FindingCode::kPullSpeed, "the pull speed was …", {{"plan", 0.00508,
+///     "m/s"}}));
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stickslip::base {
+
+enum class Severity {
+  kNote,     ///< The numbers stand; something could not be checked.
+  kWarning,  ///< A number is off or less certain than it looks.
+  kFault,    ///< Numbers are wrong until the cause is removed.
+};
+inline constexpr Severity kSeverities[] = {Severity::kFault, Severity::kWarning, Severity::kNote};
+
+/// "note", "warning", "fault".
+[[nodiscard]] std::string_view name(Severity severity) noexcept;
+[[nodiscard]] std::optional<Severity> severity_from_name(std::string_view text) noexcept;
+
+/// In the order of finding_kinds().
+enum class FindingCode : std::uint8_t {
+  kNoSelfCheck,
+  kSelfCheckSaturated,
+  kSelfCheckSpikes,
+  kSelfCheckZero,
+  kSelfCheckDrift,
+  kSelfCheckNoise,
+  kSelfCheckHum,
+  kSelfCheckRate,
+  kScanRate,
+  kFewScans,
+  kSaturated,
+  kZeroOffset,
+  kPullSpeed,
+  kSledMass,
+  kCoefficient,
+  kGainChange,
+  kCalibrationExpired,
+  kCalibrationLine,
+  kCalibrationHysteresis,
+  kRateUnchecked,
+  kNotFitted,
+  kMisfit,
+  kLevelDrift,
+  kTesterChanged,
+  kRepeatedScans,
+  kUncoded,
+};
+inline constexpr std::size_t kFindingCodes = static_cast<std::size_t>(FindingCode::kUncoded) + 1;
+
+/// A row of the table of codes; docs/findings.md holds the same rows.
+struct FindingKind {
+  FindingCode code;
+  std::string_view name;    ///< Stable between versions: "zero-offset".
+  std::string_view source;  ///< What looks: "self-check", "clock", "zero" …
+  Severity severity;
+  std::string_view meaning;  ///< When it is found; one sentence without a full stop.
+  std::string_view action;   ///< What to do; an imperative without a full stop.
+};
+
+[[nodiscard]] std::span<const FindingKind, kFindingCodes> finding_kinds() noexcept;
+[[nodiscard]] const FindingKind& kind_of(FindingCode code) noexcept;
+
+/// A number behind a finding.
+struct FindingNumber {
+  std::string name;
+  double value = 0.0;
+  std::string unit;  ///< SI, "1" for a ratio or a count.
+
+  bool operator==(const FindingNumber&) const = default;
+};
+
+/// A finding carries its code's severity and action with it: a record may be of a newer version.
+struct Finding {
+  std::string code;
+  Severity severity = Severity::kWarning;
+  std::string text;  ///< One sentence.
+  std::string action;
+  std::vector<FindingNumber> numbers = {};
+
+  bool operator==(const Finding&) const = default;
+};
+
+/// \param numbers  those that are not finite are left out.
+[[nodiscard]] Finding make_finding(FindingCode code, std::string text,
+                                   std::vector<FindingNumber> numbers = {});
+
+/// Inserts a finding: the most severe first, else in the order of insertion.
+void add(std::vector<Finding>& list, Finding finding);
+
+/// The sentences.
+[[nodiscard]] std::vector<std::string> texts_of(std::span<const Finding> findings);
+
+}  // namespace stickslip::base
