@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/analysis/results.hpp"
+#include "core/base/finding.hpp"
 
 namespace stickslip::test {
 
@@ -90,9 +91,10 @@ inline std::vector<std::string> contradictions(const analysis::TestResults& resu
   if (planned_speed_m_per_s && results.pull_speed_measured.value) {
     constexpr double kTolerance = 0.05;
     const double speed = *results.pull_speed_measured.value;
-    const bool told = std::any_of(
-        results.findings.begin(), results.findings.end(),
-        [](const std::string& finding) { return finding.find("pull speed") != std::string::npos; });
+    const bool told =
+        std::any_of(results.findings.begin(), results.findings.end(), [](const base::Finding& finding) {
+          return finding.code == base::kind_of(base::FindingCode::kPullSpeed).name;
+        });
     if (!told && std::abs(speed - *planned_speed_m_per_s) >
                      kTolerance * *planned_speed_m_per_s + error(results.pull_speed_measured))
       note("pull speed measured and planned", speed, *planned_speed_m_per_s);
