@@ -20,19 +20,21 @@ constexpr std::size_t kFreeParameters = 3;
 }  // namespace
 
 ScanRow ScanWindow::row_of(std::span<const estimate::CyclePoint> together, double first_s,
-                           model::TurnedBasis& basis) noexcept {
-  const double gamma = basis.oscillator().gamma_per_s;
+                           const model::SharedParameters& shared) noexcept {
+  const auto& [omega, gamma, r] = shared;
   ScanRow row{};
   double count = 0.0;
   double squares = 0.0;  // Of times, for the spread of all scans together.
   for (const estimate::CyclePoint& point : together) {
     const double tau_s = point.time_s - first_s;
-    const auto [cosine, sine] = basis.at(tau_s);
+    const double decay = std::exp(-0.5 * gamma * tau_s);
+    const double cosine = decay * std::cos(omega * tau_s);
+    const double sine = decay * std::sin(omega * tau_s) / omega;
     double by_D = cosine + 0.5 * gamma * sine;
     double by_rate = sine;
     if (point.spread_s2 > 0.0) {
       // Both solve f″ = −γ f′ − ω₀² f; the first has f′ = −ω₀² sine, the second cosine − γ/2 sine.
-      const double omega0_squared = basis.oscillator().omega0_squared();
+      const double omega0_squared = omega * omega + 0.25 * gamma * gamma;
       const double half_s2 = 0.5 * point.spread_s2;
       by_D += half_s2 * omega0_squared * (gamma * sine - by_D);
       by_rate -= half_s2 * (gamma * (cosine - 0.5 * gamma * sine) + omega0_squared * sine);
@@ -72,7 +74,6 @@ std::size_t ScanWindow::lay_out(std::span<const estimate::CyclePoint> points,
   const std::size_t last = size_ - 1;
   std::size_t kept = grown ? last : 0;
   std::size_t begin = grown ? back().first_point : 0;
-  model::TurnedBasis basis{shared.oscillator()};
   for (size_ = kept; begin < points.size(); ++size_) {
     const auto here = place(points[begin]);
     std::size_t end = begin + 1;
@@ -81,7 +82,7 @@ std::size_t ScanWindow::lay_out(std::span<const estimate::CyclePoint> points,
     if (grown && size_ == last && points[end - 1].time_s == row.end_s) {
       ++kept;
     } else {
-      row = row_of(points.subspan(begin, end - begin), first_s, basis);
+      row = row_of(points.subspan(begin, end - begin), first_s, shared);
       row.first_point = begin;
       row.scale = row.root_count / sigma;
     }

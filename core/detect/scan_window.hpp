@@ -73,7 +73,7 @@ class ScanWindow {
 
  private:
   [[nodiscard]] static ScanRow row_of(std::span<const estimate::CyclePoint> together, double first_s,
-                                      model::TurnedBasis& basis) noexcept;
+                                      const model::SharedParameters& shared) noexcept;
   bool leave_out(std::size_t which, std::size_t from, std::size_t to) noexcept;
 
   std::array<ScanRow, estimate::CycleBuffer::kMostPoints> rows_;

@@ -44,9 +44,9 @@ fs::path thinned(const test::TemporaryFolder& folder) {
   return path;
 }
 
-/// A fit ends where its cost, some 700 for 1400 scans, falls by less than 1e-10 of itself: within √(2 ·
-/// 7e-8), less than a thousandth, of the standard errors of its minimum.
-constexpr double kOfStandardError = 1e-3;
+/// A fit ends where its cost falls by less than estimate::kFitSettled = 1e-5: within √(2 · 1e-5) = 0.0045 of
+/// the standard errors of its minimum.
+constexpr double kOfStandardError = 0.0045;
 /// What has no standard error: a number worked out in another order.
 constexpr double kRelative = 1e-9;
 
@@ -72,9 +72,14 @@ void expect_close(const analysis::TestResults& now, const analysis::TestResults&
   });
 }
 
-/// But for the evidence of the cycles, which were stored without.
+/// But for the evidence of the cycles, which were stored without. The times of a cycle are known to about the
+/// part of them that S − K is.
 void expect_close(const base::LongColumn<detect::Cycle>& now, const base::LongColumn<detect::Cycle>& then) {
   ASSERT_EQ(now.size(), then.size());
+  const auto error_of = [](const detect::Cycle& cycle) {
+    const double part = cycle.delta_mu_standard_error / cycle.delta_mu;
+    return std::isfinite(part) ? part : 0.0;
+  };
   record::for_each_cycle_column([&](const record::FieldName& name, auto member) {
     for (std::size_t i = 0; i < now.size(); ++i) {
       const auto a = static_cast<double>(now[i].*member);
@@ -83,7 +88,10 @@ void expect_close(const base::LongColumn<detect::Cycle>& now, const base::LongCo
       if (std::isnan(b)) {
         EXPECT_TRUE(std::isnan(a)) << name.name << " of " << i;
       } else {
-        EXPECT_NEAR(a, b, kRelative * std::max(std::abs(b), 1.0)) << name.name << " of " << i;
+        const bool is_error = name.name.find("standard_error") != std::string_view::npos;
+        const double part = is_error ? 1.0 : error_of(then[i]);
+        EXPECT_NEAR(a, b, kOfStandardError * part * std::abs(b) + kRelative * std::max(std::abs(b), 1.0))
+            << name.name << " of " << i;
       }
     }
   });

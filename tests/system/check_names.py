@@ -14,7 +14,7 @@ except ImportError as error:
 
 TYPES = {"f4": "f32", "f8": "f64", "i4": "i32", "i8": "i64", "u1": "u8", "u2": "u16", "u4": "u32", "u8": "u64"}
 # "### gaps and events", "### instrument ...": their names say the group themselves.
-SECTIONS = ("raw", "cycles", "results", "timing", "plan", "self_check", "process", "truth")
+SECTIONS = ("raw", "cycles", "results", "findings", "timing", "plan", "self_check", "process", "truth")
 
 
 def cells(line):
