@@ -51,12 +51,16 @@ struct Tally {
 int main(int argc, char** argv) {
   const std::uint64_t count = argc > 1 ? number(argv[1]) : 100'000;
   const std::uint64_t seed = argc > 2 ? number(argv[2]) : 1;
-  const std::vector<sim::Scene> bases =
+  const auto bases =
       test::scenes_with_one_pull(std::filesystem::path{STICKSLIP_SOURCE_DIR} / "config/scenes");
+  if (!bases) {
+    fmt::print(stderr, "{}\n", bases.error().message);
+    return 1;
+  }
   sweep::SweepPlan plan;
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::uint64_t own = sim::stream_seed(seed, i);
-    plan.points.push_back(test::random_scene(bases, own));
+    plan.points.push_back(test::random_scene(*bases, own));
     plan.seeds.push_back(own);
   }
   std::vector<std::int64_t> numbers(plan.points.size());

@@ -7,23 +7,23 @@
 #include <cstdint>
 #include <filesystem>
 #include <random>
-#include <stdexcept>
 #include <vector>
 
+#include "core/base/result.hpp"
 #include "core/sim/random_stream.hpp"
 #include "core/sim/scene.hpp"
 
 namespace stickslip::test {
 
-/// Shipped scenes with one pull, by name. \param folder  config/scenes.
-inline std::vector<sim::Scene> scenes_with_one_pull(const std::filesystem::path& folder) {
+/// Shipped scenes with one pull, by name. Errors: those of load_scene(). \param folder  config/scenes.
+inline base::Result<std::vector<sim::Scene>> scenes_with_one_pull(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator{folder}) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   std::vector<sim::Scene> scenes;
   for (const auto& file : files) {
     auto scene = sim::load_scene(file);
-    if (!scene) throw std::runtime_error(scene.error().message);
+    if (!scene) return tl::unexpected(scene.error());
     if (scene->constant_speed) scenes.push_back(*std::move(scene));
   }
   return scenes;
