@@ -66,6 +66,7 @@ void write_finding_rows(hid_t entry, const std::vector<base::Finding>& findings)
   const GroupHandle group = make_group(entry, kFindings, "NXcollection");
   const auto column = [&](const char* name, auto text_of) {
     std::vector<std::string> texts;
+    texts.reserve(findings.size());
     for (const base::Finding& finding : findings) texts.emplace_back(text_of(finding));
     write_texts(group.get(), name, texts);
   };
@@ -81,6 +82,7 @@ void write_finding_rows(hid_t entry, const std::vector<base::Finding>& findings)
 /// Records of before have no rows: their sentences are uncoded.
 std::vector<base::Finding> read_findings(hid_t entry, const std::vector<std::string>& texts) {
   std::vector<base::Finding> findings;
+  findings.reserve(texts.size());
   for (const std::string& text : texts)
     findings.push_back(base::make_finding(base::FindingCode::kUncoded, text));
   if (!has(entry, kFindings)) return findings;
