@@ -57,6 +57,13 @@ mkdir "$results/records"
 cp "${killed%.journal}.h5" "$results/records/killed.h5"
 cp "${running%.journal}.h5" "$results/records/running.h5"
 await test_count '[1-9]' after
+# The short test of each of the three daemons and the two long ones; a test is counted before its record is made.
+left=60
+until [ "$(find "$data/records" -name '*.h5' | wc -l)" -ge 5 ]; do
+  left=$((left - 1))
+  [ "$left" -gt 0 ] || fail "fewer than five records"
+  sleep 1
+done
 find "$data/records" -name '*.h5' -exec stickslip verify --json {} + >"$results/verify.json" || true # Some are interrupted.
 stickslip batch --json --socket "$socket" >"$results/batch-after.json"
 (cd "$data/outbox" && ls) >"$results/outbox-after"
