@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "core/pipeline/gain_uncertainty.hpp"
 #include "core/pipeline/plausibility.hpp"
 #include "core/pipeline/self_check.hpp"
@@ -25,8 +28,15 @@ void add_self_check(const TestFacts& facts, analysis::TestResults& results) {
                                  {{"unloaded_scan_count", static_cast<double>(count), "1"}}));
   }
   if (check == nullptr) return;
-  for (base::Finding& finding : self_check_findings(*check, facts.normal_load_N, facts.scan_rate_Hz))
+  // The zero is one finding: zero-offset has the worse of before and after.
+  const bool zero_is_told =
+      std::any_of(results.findings.begin(), results.findings.end(), [](const base::Finding& finding) {
+        return finding.code == base::kind_of(FindingCode::kZeroOffset).name;
+      });
+  for (base::Finding& finding : self_check_findings(*check, facts.normal_load_N, facts.scan_rate_Hz)) {
+    if (zero_is_told && finding.code == base::kind_of(FindingCode::kSelfCheckZero).name) continue;
     base::add(results.findings, std::move(finding));
+  }
 }
 
 void add_saturation(const TestFacts& facts, analysis::TestResults& results) {

@@ -51,7 +51,7 @@ TEST_P(Misfit, EachTestHasNumbersThatCoverTheTruth) {
     if (results.omega.value) continue;  // By the fit.
     ++by_turning_points;
     ASSERT_FALSE(results.findings.empty());
-    EXPECT_NE(results.findings.front().find("by turning points"), std::string::npos);
+    EXPECT_NE(results.findings.front().text.find("by turning points"), std::string::npos);
   }
   EXPECT_GT(by_turning_points, kTests / 4);
   EXPECT_GE(covered, 0.93 * kTests);
@@ -65,8 +65,8 @@ TEST(MisfitOfTheFit, IsToldAndWidensTheIntervals) {
     return std::filesystem::path(STICKSLIP_SOURCE_DIR) / "config/scenes" / (std::string{name} + ".toml");
   };
   const auto tells = [](const analysis::TestResults& results) {
-    return std::ranges::any_of(results.findings, [](const std::string& finding) {
-      return finding.find("times the scan noise") != std::string::npos;
+    return std::ranges::any_of(results.findings, [](const base::Finding& finding) {
+      return finding.text.find("times the scan noise") != std::string::npos;
     });
   };
   for (const test::AnalysedTest& test : test::analyse_scene(scene("drift-hum-and-spikes"), kTests)) {

@@ -196,7 +196,7 @@ TEST_F(Stalls, RecordsAreWholeAndClaimNoRate) {
       SCOPED_TRACE(fmt::format("test {}", i + 1));
       EXPECT_EQ(outcome.verdicts[i].judgement, quiet().verdicts[i].judgement);
       expect_same(record, quiet().records[i]);
-      EXPECT_THAT(record.end->results.findings, Not(Contains(HasSubstr("scan rate"))));
+      EXPECT_THAT(base::texts_of(record.end->results.findings), Not(Contains(HasSubstr("scan rate"))));
       if (record.header.self_check) {
         EXPECT_THAT(record.header.self_check->findings, Not(Contains(HasSubstr("scans at"))));
       }

@@ -54,6 +54,13 @@ TEST(TestFacts, FindingsOfTheSelfCheckAreFindingsOfTheTest) {
   EXPECT_THAT(off.findings(), ElementsAre(HasSubstr("at a rail with no load"), HasSubstr("reads 0.35 N")));
 }
 
+TEST(TestFacts, TheZeroBeforeTheTestIsOneFinding) {
+  Sound off;
+  off.check.zero_N = 0.35;
+  off.facts.level_before = 0.0153;
+  EXPECT_THAT(off.findings(), ElementsAre(HasSubstr("zero: the unloaded cell read +0.0153 before the test")));
+}
+
 TEST(TestFacts, ScansAtARailAreCounted) {
   Sound railed;
   railed.facts.saturated_count = 7;
