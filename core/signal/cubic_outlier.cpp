@@ -42,6 +42,49 @@ double largest_second_difference(const Eigen::Matrix<double, 7, 1>& values) {
   return largest;
 }
 
+/// Line through some scans by least squares.
+struct Line {
+  double slope = 0.0;
+  double slope_variance = 0.0;  ///< In σ².
+  double rest = 0.0;            ///< Sum of squares.
+};
+
+Line line_through(std::span<const double> values) noexcept {
+  const auto count = static_cast<double>(values.size());
+  double mean = 0.0;
+  for (const double value : values) mean += value / count;
+  double products = 0.0;
+  double squares = 0.0;
+  double all = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double place = static_cast<double>(k) - 0.5 * (count - 1.0);
+    products += place * (values[k] - mean);
+    squares += place * place;
+    all += (values[k] - mean) * (values[k] - mean);
+  }
+  const double slope = products / squares;
+  return {slope, 1.0 / squares, all - slope * products};
+}
+
+/// A level and a steep line, with two scans or more each, explain the window: the tester loads or unloads
+/// there. An outlier of the cubic would explain it nearly as well.
+bool is_corner(std::span<const double, kCubicWindow> window, double sigma) noexcept {
+  constexpr double kLevelErrors = 3.0;   // Standard errors of the slope of what is a level.
+  constexpr double kSteepSigmas = 10.0;  // σ a scan; a cubic leaves no outlier of a corner of less than 14.
+  constexpr double kNoiseLeavesOfLines = 16.27;  // 99.9 % quantile of χ² with three degrees of freedom.
+  for (std::size_t left = 2; left + 2 <= kCubicWindow; ++left) {
+    const Line before = line_through(window.first(left));
+    const Line after = line_through(window.subspan(left));
+    if (before.rest + after.rest > kNoiseLeavesOfLines * sigma * sigma) continue;
+    const auto is_level = [sigma](const Line& line) {
+      return std::abs(line.slope) <= kLevelErrors * std::sqrt(line.slope_variance) * sigma;
+    };
+    const auto is_steep = [sigma](const Line& line) { return std::abs(line.slope) >= kSteepSigmas * sigma; };
+    if ((is_level(before) && is_steep(after)) || (is_steep(before) && is_level(after))) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::optional<double> cubic_outlier(std::span<const double, kCubicWindow> window, double sigma) noexcept {
@@ -83,7 +126,7 @@ std::optional<double> cubic_outlier(std::span<const double, kCubicWindow> window
       outlier = i == kMiddle ? std::optional{height} : std::nullopt;
     }
   }
-  return outlier;
+  return outlier && is_corner(window, sigma) ? std::nullopt : outlier;
 }
 
 }  // namespace stickslip::signal

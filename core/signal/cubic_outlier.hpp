@@ -34,7 +34,8 @@ inline constexpr double kOutlierSigmas = 5.0;
 
 /// Tests whether the middle of seven equidistant values is an outlier of the cubic through the others. The
 /// candidates are the middle, each value after it, and each pair of these, with a penalty of (5 σ)² for each
-/// outlier. Values before the middle must be repaired already.
+/// outlier. The corner of a level and a steep line has none. Values before the middle must be repaired
+/// already.
 /// \param sigma  standard deviation of the noise of one value.
 /// \return height of the outlier, to be subtracted from the middle; nullopt if it is none or if the result is
 /// ambiguous.

@@ -50,6 +50,14 @@ constexpr double kOfStandardError = 0.0045;
 /// What has no standard error: a number worked out in another order.
 constexpr double kRelative = 1e-9;
 
+/// The scan at which the tester unloads; the version that made the record took the corner there for a spike.
+constexpr daq::ScanIndex kUnloads = 1342;
+
+std::vector<daq::ScanIndex> spikes_now(std::vector<daq::ScanIndex> then) {
+  std::erase(then, kUnloads);
+  return then;
+}
+
 void expect_close(const analysis::TestResults& now, const analysis::TestResults& then) {
   EXPECT_EQ(now.regime, then.regime);
   EXPECT_EQ(base::texts_of(now.findings), base::texts_of(then.findings));
@@ -61,6 +69,10 @@ void expect_close(const analysis::TestResults& now, const analysis::TestResults&
   analysis::for_each_result(now, [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
     const analysis::Estimate& old = *next++;
     if (old.reason == record::kNoSuchResultThen) return;
+    if (name.name == "spike_count") {
+      EXPECT_EQ(*estimate.value, *old.value - 1.0);
+      return;
+    }
     EXPECT_EQ(estimate.reason, old.reason) << name.name;
     ASSERT_EQ(estimate.value.has_value(), old.value.has_value()) << name.name;
     ASSERT_EQ(estimate.standard_error.has_value(), old.standard_error.has_value()) << name.name;
@@ -126,7 +138,7 @@ TEST(Recompute, EveryResultCycleAndSpikeFromRawCountsAndFacts) {
   EXPECT_FALSE(whole->gaps.empty());
   expect_close(again->results, stored);
   expect_close(again->cycles, whole->cycles);
-  EXPECT_EQ(again->spikes, whole->spikes);
+  EXPECT_EQ(again->spikes, spikes_now(whole->spikes));
 }
 
 TEST(Recompute, SelfCheckFromItsScans) {
