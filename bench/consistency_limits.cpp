@@ -7,36 +7,25 @@
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <numeric>
 #include <string>
-#include <string_view>
 #include <thread>
 #include <vector>
 
 #include "cli/sweep/runner.hpp"
 
+#include "bench/arguments.hpp"
 #include "tests/support/contradictions.hpp"
 #include "tests/support/random_effects.hpp"
 
 namespace {
 
 using namespace stickslip;
-
-std::uint64_t number(const char* text) {
-  std::uint64_t value = 0;
-  const std::string_view whole{text};
-  const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), value);
-  if (error == std::errc{} && end == whole.data() + whole.size() && value > 0) return value;
-  fmt::print(stderr, "consistency_limits: '{}' is no whole number above 0\n", whole);
-  std::exit(2);
-}
 
 struct Tally {
   std::uint64_t tests = 0;
@@ -49,8 +38,8 @@ struct Tally {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::uint64_t count = argc > 1 ? number(argv[1]) : 100'000;
-  const std::uint64_t seed = argc > 2 ? number(argv[2]) : 1;
+  const auto count = test::argument<std::uint64_t>(argc, argv, 1, 100'000);
+  const auto seed = test::argument<std::uint64_t>(argc, argv, 2, 1);
   const auto bases =
       test::scenes_with_one_pull(std::filesystem::path{STICKSLIP_SOURCE_DIR} / "config/scenes");
   if (!bases) {

@@ -8,12 +8,12 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
 
+#include "bench/arguments.hpp"
 #include "core/sim/scene.hpp"
 #include "tests/support/escape_trials.hpp"
 
@@ -44,8 +44,8 @@ void print_row(const std::string& what, const std::vector<test::EscapeTrial>& tr
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::size_t count = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 10'000;
-  const std::uint64_t seed = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1;
+  const auto count = test::argument<std::size_t>(argc, argv, 1, 10'000);
+  const auto seed = test::argument<std::uint64_t>(argc, argv, 2, 1);
   const auto base = sim::load_scene(std::filesystem::path{STICKSLIP_SOURCE_DIR} /
                                     "config/scenes/ring-down-at-12-in-per-min.toml");
   if (!base) {
@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   test::Disturbance disturbance;
-  if (argc > 4) disturbance.spikes_per_s = std::strtod(argv[4], nullptr);
+  disturbance.spikes_per_s = test::argument(argc, argv, 4, disturbance.spikes_per_s);
   const std::vector<test::EscapeTrial> trials = test::escape_trials(*base, disturbance, count, seed);
   if (argc > 3) {
     std::ofstream list{argv[3]};

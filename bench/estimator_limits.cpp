@@ -9,16 +9,13 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cstdlib>
+
+#include "bench/arguments.hpp"
 
 int main(int argc, char** argv) {
   using namespace stickslip;
-  const int seeds = argc > 1 ? std::atoi(argv[1]) : 4000;
-  const int first = argc > 2 ? std::atoi(argv[2]) : 1;
-  if (seeds < 1 || first < 1) {
-    fmt::print(stderr, "usage: {} [SEEDS [FIRST]], numbers from 1\n", argv[0]);
-    return 2;
-  }
+  const int seeds = test::argument(argc, argv, 1, 4000);
+  const int first = test::argument(argc, argv, 2, 1);
   const test::LimitScene scene;
   fmt::print(
       "{} seeds ({} to {}) a case; S 0.35, K 0.30, 12 in/min, 350 Hz, 0.001 rms white, {} cycles after the "

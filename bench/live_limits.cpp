@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 
+#include "bench/arguments.hpp"
 #include "core/model/threshold.hpp"
 #include "tests/support/live_trials.hpp"
 
@@ -58,8 +58,8 @@ void escapes(double over_threshold, int count) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int slips = argc > 1 ? std::atoi(argv[1]) : 10'000;
-  const int count = argc > 2 ? std::atoi(argv[2]) : 2'000;
+  const int slips = test::argument(argc, argv, 1, 10'000);
+  const int count = test::argument(argc, argv, 2, 2'000);
   fmt::print(
       "350 scans/s, 20 Hz, noise 0.02 (S − K), seeds from 1\n\n| captured slips | of | taken for an escape "
       "|\n"

@@ -7,33 +7,19 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
-#include <string_view>
-#include <type_traits>
 
+#include "bench/arguments.hpp"
 #include "core/sim/scene.hpp"
 #include "tests/support/promise.hpp"
 
 namespace {
 
 using namespace stickslip;
-
-template <typename T>
-T number(const char* text) {
-  T value{};
-  const std::string_view whole{text};
-  const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), value);
-  if (error == std::errc{} && end == whole.data() + whole.size() && value > T{}) return value;
-  fmt::print(stderr, "promise_limits: '{}' is no {}number above 0\n", whole,
-             std::is_integral_v<T> ? "whole " : "");
-  std::exit(2);
-}
 
 void print(const sim::Scene& base, const test::PromiseCell& cell, const test::PromiseResult& result) {
   const auto bias = [](const test::PromiseSample& sample) {
@@ -57,10 +43,10 @@ void print(const sim::Scene& base, const test::PromiseCell& cell, const test::Pr
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::uint64_t count = argc > 1 ? number<std::uint64_t>(argv[1]) : 1000;
-  const std::uint64_t seed = argc > 2 ? number<std::uint64_t>(argv[2]) : 1;
-  const int only_cycles = argc > 3 ? number<int>(argv[3]) : 0;
-  const double only_ratio = argc > 4 ? number<double>(argv[4]) : 0.0;
+  const std::uint64_t count = test::argument<std::uint64_t>(argc, argv, 1, 1000);
+  const std::uint64_t seed = test::argument<std::uint64_t>(argc, argv, 2, 1);
+  const int only_cycles = test::argument(argc, argv, 3, 0);
+  const double only_ratio = test::argument(argc, argv, 4, 0.0);
   const auto base = sim::load_scene(std::filesystem::path{STICKSLIP_SOURCE_DIR} /
                                     "config/scenes/stick-slip-at-12-in-per-min.toml");
   if (!base) {

@@ -6,28 +6,15 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
-#include <string_view>
 
+#include "bench/arguments.hpp"
 #include "tests/support/ramp_trials.hpp"
 
 namespace {
 
 using namespace stickslip;
-
-constexpr std::uint64_t kMost = 1'000'000;
-
-std::uint64_t number(const char* text) {
-  std::uint64_t value = 0;
-  const std::string_view whole{text};
-  const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), value);
-  if (error == std::errc{} && end == whole.data() + whole.size() && value > 0 && value <= kMost) return value;
-  fmt::print(stderr, "ramp_limits: '{}' is no whole number from 1 to {}\n", whole, kMost);
-  std::exit(2);
-}
 
 void print(const test::RampTrials& trials) {
   fmt::print("{:4.1f} {:4.0f} % {:6.0f} | {:+7.3f} +- {:5.3f} {:7.3f} {:7} {:6.2f} | {:6.3f} +- {:5.3f} | ",
@@ -46,8 +33,8 @@ void print(const test::RampTrials& trials) {
 
 // NOLINTNEXTLINE(bugprone-exception-escape): what std::terminate says is enough of a message for a bench.
 int main(int argc, char** argv) {
-  const auto count = static_cast<int>(argc > 1 ? number(argv[1]) : 100);
-  const std::uint64_t seed = argc > 2 ? number(argv[2]) : 1;
+  const auto count = test::argument(argc, argv, 1, 100);
+  const auto seed = test::argument<std::uint64_t>(argc, argv, 2, 1);
   fmt::print(
       "{} ramps a row from 0.3 to 1.5 v_th = {:.3f} mm/s, seeds from {} on; S - K 0.05, noise 0.001, "
       "350 Hz, gamma/2omega 0.022\n",

@@ -5,13 +5,12 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <string_view>
 
+#include "bench/arguments.hpp"
 #include "core/model/regime.hpp"
 #include "core/sim/scene.hpp"
 #include "tests/support/regime_tally.hpp"
@@ -25,20 +24,11 @@ void print(const test::RegimeTally& tally, std::string_view name) {
              percent(tally.undecided));
 }
 
-std::uint64_t number(const char* text) {
-  std::uint64_t value = 0;
-  const std::string_view whole{text};
-  const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), value);
-  if (error == std::errc{} && end == whole.data() + whole.size() && value > 0) return value;
-  fmt::print(stderr, "regime_limits: '{}' is no whole number above 0\n", whole);
-  std::exit(2);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::uint64_t count = argc > 1 ? number(argv[1]) : 10'000;
-  const std::uint64_t seed = argc > 2 ? number(argv[2]) : 1;
+  const auto count = test::argument<std::uint64_t>(argc, argv, 1, 10'000);
+  const auto seed = test::argument<std::uint64_t>(argc, argv, 2, 1);
   const auto estimator = argc > 3 ? detect::estimator_tier_from_name(argv[3]) : detect::EstimatorTier::kFit;
   if (!estimator) {
     fmt::print(stderr, "regime_limits: '{}' is neither turning-points nor fit\n", argv[3]);

@@ -5,28 +5,17 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
-#include <string_view>
 
+#include "bench/arguments.hpp"
 #include "tests/support/scatter_trials.hpp"
 
 namespace {
 
 using namespace stickslip;
 using test::ScatterTrials;
-
-int number(const char* text) {
-  int value = 0;
-  const std::string_view whole{text};
-  const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), value);
-  if (error == std::errc{} && end == whole.data() + whole.size() && value > 0) return value;
-  fmt::print(stderr, "scatter_limits: '{}' is no whole number above 0\n", whole);
-  std::exit(2);
-}
 
 /// A part of the true mean, in per cent.
 double percent(double value) { return 100.0 * value / ScatterTrials::kDeltaMu; }
@@ -53,8 +42,8 @@ void print(double speed_in_per_min, const ScatterTrials& trials) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int pulls = argc > 1 ? number(argv[1]) : 1000;
-  const int first = argc > 2 ? number(argv[2]) : 1;
+  const int pulls = test::argument(argc, argv, 1, 1000);
+  const int first = test::argument(argc, argv, 2, 1);
   fmt::print(
       "{} pulls of {} s a speed, S - K 0.05 with {:.0f} % log-normal scatter, first slips left out; biases "
       "with "
