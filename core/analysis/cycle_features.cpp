@@ -14,6 +14,7 @@
 #include <Eigen/QR>
 
 #include "core/model/inversion.hpp"
+#include "core/model/turned_basis.hpp"
 
 namespace stickslip::analysis {
 namespace {
@@ -54,18 +55,16 @@ struct Local {
 /// A damped sinusoid of known ω and γ about any level, laid by least squares through the scans in [from, to]
 /// and evaluated at a place that does not depend on their noise: linear, so without bias.
 std::optional<Local> local_fit(const estimate::Trace& trace, double from_s, double to_s, double at_s,
-                               const model::SharedParameters& shared, std::size_t near) {
+                               const model::SharedParameters& shared, model::TurnedBasis& basis,
+                               std::size_t near) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   std::size_t count = 0;
-  const auto basis = [&](double tau) {
-    const double decay = std::exp(-0.5 * shared.gamma * tau);
-    return Eigen::Vector3d{1.0, decay * std::cos(shared.omega * tau), decay * std::sin(shared.omega * tau)};
-  };
   for (std::size_t k = estimate::scan_at_or_after(trace, from_s, near);
        k < trace.size() && trace.time_s[k] <= to_s; ++k) {
     if (trace.usable[k] == 0) continue;
-    const Eigen::Vector3d row = basis(trace.time_s[k] - at_s);
+    const model::DampedBasis at = basis.at(trace.time_s[k] - at_s);
+    const Eigen::Vector3d row{1.0, at.cosine, shared.omega * at.sine};
     normal += row * row.transpose();
     right += row * trace.level(k);
     ++count;
@@ -100,13 +99,15 @@ std::optional<double> mean_between(const estimate::Trace& trace, double from_s, 
 
 std::optional<Features> features_of(const estimate::Trace& trace, const model::SlipModel& model,
                                     double onset_s, double next_onset_s,
-                                    const model::SharedParameters& shared, double scan_s, std::size_t near) {
+                                    const model::SharedParameters& shared, model::TurnedBasis& basis,
+                                    double scan_s, std::size_t near) {
   const model::SlipWaveform& slip = model.waveform();
   const double width_s = std::max(kWidth_rad / shared.omega, static_cast<double>(kFewestFitted + 1) * scan_s);
   if (width_s > model.capture_s()) return std::nullopt;
   const auto fit_at = [&](double tau_s) {
     const double begin_s = std::clamp(tau_s - 0.5 * width_s, 0.0, model.capture_s() - width_s);
-    return local_fit(trace, onset_s + begin_s, onset_s + begin_s + width_s, onset_s + tau_s, shared, near);
+    return local_fit(trace, onset_s + begin_s, onset_s + begin_s + width_s, onset_s + tau_s, shared, basis,
+                     near);
   };
   const auto peak = fit_at(slip.peak_time_s());
   const auto steepest = fit_at(slip.fastest_slip_time_s());
@@ -127,6 +128,7 @@ struct Cycles {
 Cycles cycles_of(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                  const SlipEstimates& estimates, const model::SharedParameters& shared) {
   Cycles found;
+  model::TurnedBasis basis{shared.oscillator()};
   const double scan_s = (trace.time_s.back() - trace.time_s.front() - trace.lost_s) /
                         static_cast<double>(std::max<std::size_t>(trace.size(), 2) - 1);
   for (std::size_t i = estimates.first_counts ? 0 : 1; i + 1 < slips.size(); ++i) {
@@ -138,7 +140,7 @@ Cycles cycles_of(const estimate::Trace& trace, std::span<const detect::Fall> sli
     const model::SlipModel model{estimates.fit.shared, window.slip, true};
     const auto near = static_cast<std::size_t>(slips[i].peak_at);
     if (const auto features =
-            features_of(trace, model, window.slip.onset_s, next.slip.onset_s, shared, scan_s, near)) {
+            features_of(trace, model, window.slip.onset_s, next.slip.onset_s, shared, basis, scan_s, near)) {
       found.features.push_back(*features);
       found.drift_sum += trace.drift.at(window.slip.onset_s);
     }
@@ -153,16 +155,18 @@ struct Numbers {
 };
 
 /// \param feature  kAmplitude, kPeriod or kSlipSpeed.
+/// \param near  of another cycle.
 std::optional<model::InvertedSpeed> inverse_of(Eigen::Index feature, double value,
-                                               const model::SharedParameters& shared) {
+                                               const model::SharedParameters& shared,
+                                               const std::optional<model::InvertedSpeed>& near = {}) {
   const double t = shared.gamma / (2.0 * shared.omega);
   switch (feature) {
     case kAmplitude:
-      return model::Q_of_amplitude(value * shared.omega / shared.r, t);
+      return model::Q_of_amplitude(value * shared.omega / shared.r, t, near);
     case kPeriod:
       return model::Q_of_period(shared.omega * value, t);
     default:
-      return model::Q_of_slip_speed_ratio(value, t);
+      return model::Q_of_slip_speed_ratio(value, t, near);
   }
 }
 
@@ -190,8 +194,9 @@ void average_each(const std::vector<Features>& cycles, const model::SharedParame
   const double belt = shared.r / shared.omega;
   for (const Eigen::Index i : {kAmplitude, kSlipSpeed}) {
     double sum = 0.0;
+    const auto first = inverse_of(i, cycles.front()[i], shared);
     for (const Features& cycle : cycles) {
-      const auto speed = inverse_of(i, cycle[i], shared);
+      const auto speed = inverse_of(i, cycle[i], shared, first);
       if (!speed) return;  // Noise, close to the threshold: the mean has to do.
       sum += belt / speed->Q;
     }

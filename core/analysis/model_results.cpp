@@ -90,7 +90,7 @@ Fitted gather(const SlipEstimates& estimates) {
     S.add(estimates.static_coefficient(window) + drift);
     K.add(window.slip.K + drift);
     fitted.D.add(estimates.static_coefficient(window) - window.slip.K);
-    const model::SlipModel model{fit.shared, window.slip, window.captured, estimates.belt};
+    const model::SlipModel model{fit.shared, window.slip, false, estimates.belt};
     fitted.amplitude.add(half_range(model.waveform()));
     if (!estimates.belt.is_constant()) {
       fitted.relative_speed +=

@@ -20,12 +20,27 @@ constexpr double kStrongestDamping = 1.0;
 
 bool in_domain(double t) noexcept { return t >= 0.0 && t <= kStrongestDamping; }
 
-/// \param forward  of Q, positive and falling in [low, high].
+/// Steps of Newton's method from a neighbour, and the step in ln Q after which it has converged: what is left
+/// is smaller by the relative distance of the neighbour.
+constexpr int kNewtonSteps = 8;
+constexpr double kNewtonConverged = 1e-9;
+
+/// \param forward  of Q, positive and falling in [low, high]. \param near  of a value near this one.
 template <typename Forward>
-std::optional<InvertedSpeed> invert(const Forward& forward, double value, double low, double high) noexcept {
+std::optional<InvertedSpeed> invert(const Forward& forward, double value, double low, double high,
+                                    const std::optional<InvertedSpeed>& near = {}) noexcept {
   if (!(value > 0.0) || !std::isfinite(value)) return std::nullopt;
   // In logarithms: both sides are nearly straight lines there.
   const auto excess = [&](double log_Q) { return std::log(forward(std::exp(log_Q))) - std::log(value); };
+  if (near) {
+    double log_Q = std::log(near->Q);
+    for (int i = 0; i < kNewtonSteps; ++i) {
+      const double step = near->condition * excess(log_Q);
+      if (!(std::abs(step) < 1.0)) break;
+      log_Q += step;
+      if (std::abs(step) < kNewtonConverged) return InvertedSpeed{std::exp(log_Q), near->condition};
+    }
+  }
   double log_low = std::log(low);
   double log_high = std::log(high);
   const double at_low = excess(log_low);
@@ -52,15 +67,18 @@ SlipWaveform dimensionless_slip(double Q, double t) noexcept {
 
 }  // namespace
 
-std::optional<InvertedSpeed> Q_of_amplitude(double amplitude_over_belt, double gamma_over_2omega) noexcept {
+std::optional<InvertedSpeed> Q_of_amplitude(double amplitude_over_belt, double gamma_over_2omega,
+                                            const std::optional<InvertedSpeed>& near) noexcept {
   if (!in_domain(gamma_over_2omega)) return std::nullopt;
   return invert([=](double Q) { return amplitude_ratio(Q, gamma_over_2omega) / Q; }, amplitude_over_belt,
-                kSlowest, kFastest);
+                kSlowest, kFastest, near);
 }
 
-std::optional<InvertedSpeed> Q_of_slip_speed_ratio(double ratio, double gamma_over_2omega) noexcept {
+std::optional<InvertedSpeed> Q_of_slip_speed_ratio(double ratio, double gamma_over_2omega,
+                                                   const std::optional<InvertedSpeed>& near) noexcept {
   if (!in_domain(gamma_over_2omega)) return std::nullopt;
-  return invert([=](double Q) { return slip_speed_ratio(Q, gamma_over_2omega); }, ratio, kSlowest, kFastest);
+  return invert([=](double Q) { return slip_speed_ratio(Q, gamma_over_2omega); }, ratio, kSlowest, kFastest,
+                near);
 }
 
 std::optional<InvertedSpeed> Q_of_period(double period_phase, double gamma_over_2omega) noexcept {

@@ -17,15 +17,17 @@ struct InvertedSpeed {
 };
 
 // Domain: γ/2ω from 0 to 1. The inverses return nullopt outside, and if no Q in (1e-6, 1e6) has the feature's
-// value.
+// value. With the speed of a value `near`, whose condition number the answer has too, they take a third of
+// the time.
 
 /// \param amplitude_over_belt  A ω/r: half the range of c over r/ω. Falls as Q grows, [17]/Q.
-[[nodiscard]] std::optional<InvertedSpeed> Q_of_amplitude(double amplitude_over_belt,
-                                                          double gamma_over_2omega) noexcept;
+[[nodiscard]] std::optional<InvertedSpeed> Q_of_amplitude(
+    double amplitude_over_belt, double gamma_over_2omega,
+    const std::optional<InvertedSpeed>& near = {}) noexcept;
 /// \param ratio  largest slip speed over drive speed [18]; decreases towards a limit below 1 as Q grows. Near
 /// 1 it hardly determines Q: the condition number grows as 1/(1 − ratio).
-[[nodiscard]] std::optional<InvertedSpeed> Q_of_slip_speed_ratio(double ratio,
-                                                                 double gamma_over_2omega) noexcept;
+[[nodiscard]] std::optional<InvertedSpeed> Q_of_slip_speed_ratio(
+    double ratio, double gamma_over_2omega, const std::optional<InvertedSpeed>& near = {}) noexcept;
 /// \param period_phase_rad  ω T of a cycle that ends in sticking; decreases as Q grows to the threshold.
 [[nodiscard]] std::optional<InvertedSpeed> Q_of_period(double period_phase_rad,
                                                        double gamma_over_2omega) noexcept;

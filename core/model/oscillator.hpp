@@ -55,7 +55,8 @@ struct DampedBasis {
   double sine;    ///< e^(−γt/2) Sn(ω², t), s
 };
 
-/// \param t_s ≥ 0. Never overflows: the growth of cosh is taken out of the decay first.
+/// \param t_s ≥ 0; any where it oscillates. Never overflows: the growth of cosh is taken out of the decay
+/// first.
 [[nodiscard]] DampedBasis damped_basis(const Oscillator& oscillator, double t_s) noexcept;
 
 }  // namespace stickslip::model

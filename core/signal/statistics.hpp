@@ -23,11 +23,12 @@ inline constexpr double kRoundingSigma = 0.28867513459481287;
   return *middle;
 }
 
-/// Largest number of values that median_of() copies and sorts; for more it bisects, in constant memory.
+/// Largest number of values that median_of() copies and sorts; for more it finds byte by byte, in constant
+/// memory.
 inline constexpr std::size_t kMostSorted = std::size_t{1} << 16U;
 
-/// Upper median of value(0) … value(count − 1). Each is evaluated once, or 64 times if count > kMostSorted.
-/// \param count  > 0. \param value  no NaN.
+/// Upper median of value(0) … value(count − 1). Each is evaluated once, or eight times if count >
+/// kMostSorted. \param count  > 0. \param value  no NaN.
 template <typename Value>
 [[nodiscard]] double median_of(std::size_t count, const Value& value) {
   if (count <= kMostSorted) {
@@ -41,11 +42,18 @@ template <typename Value>
     const auto bits = std::bit_cast<std::uint64_t>(number);
     return (bits & kSign) != 0 ? ~bits : bits | kSign;
   };
-  std::uint64_t answer = 0;  // The largest with no more than count/2 values below it, bit by bit.
-  for (std::uint64_t bit = kSign; bit != 0; bit >>= 1U) {
-    std::size_t below = 0;
-    for (std::size_t i = 0; i < count; ++i) below += rank_of(value(i)) < (answer | bit) ? 1U : 0U;
-    if (below <= count / 2) answer |= bit;
+  std::uint64_t answer = 0;
+  std::size_t place = count / 2;  // Among those that begin with the bytes found.
+  for (unsigned shift = 56;; shift -= 8U) {
+    std::array<std::size_t, 256> counts{};
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint64_t rank = rank_of(value(i));
+      if (((rank ^ answer) >> shift >> 8U) == 0) ++counts[(rank >> shift) & 0xFFU];
+    }
+    std::uint64_t byte = 0;
+    for (; place >= counts[byte]; ++byte) place -= counts[byte];
+    answer |= byte << shift;
+    if (shift == 0) break;
   }
   return std::bit_cast<double>((answer & kSign) != 0 ? answer & ~kSign : ~answer);
 }
