@@ -107,7 +107,7 @@ int run_boards(const BoardsOptions& options) {
         "sudo modprobe comedi_test\n";
   }
   io::print_text(stdout, text);
-  return any_usable && std::fflush(stdout) == 0 ? 0 : 1;
+  return io::flushed("stickslip", any_usable ? 0 : 1);
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ int run_doctor(const DoctorOptions& options) {
       doctor::examine(options.folder.empty() ? options.config : config.string(), doctor::this_world(*clock));
   io::print_text(stdout, options.json ? json_of(findings) : text_of(findings, wants_colours()),
                  wants_colours());
-  return std::fflush(stdout) == 0 ? doctor::exit_status(findings) : 1;
+  return io::flushed("stickslip", doctor::exit_status(findings));
 }
 
 }  // namespace

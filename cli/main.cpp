@@ -1,5 +1,5 @@
-// stickslip: the command line. Exit status 0 done, 1 the world did not allow it, 2 usage or input, 130
-// interrupted.
+// stickslip: the command line. Exit status 0 done, 1 the world did not allow it, 2 usage or input, 74
+// the output cannot be written, 130 interrupted.
 
 #include <fmt/format.h>
 
@@ -107,7 +107,7 @@ int main_of(int count, char** arguments) {
   try {
     app.parse(words(count, arguments));
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
+    if (error.get_exit_code() == 0) return io::flushed("stickslip", app.exit(error));
     io::print_error("stickslip", fmt::format("{}; see stickslip --help", error.what()));
     return 2;
   }

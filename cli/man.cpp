@@ -21,7 +21,8 @@ std::string page(const CLI::App& app, const std::string& name) {
     return manual::command_page(
         app,
         {name, 1, version,
-         "0 done, 1 the world did not allow it, 2 wrong usage or input, 130 interrupted. \\fBverify\\fR and "
+         "0 done, 1 the world did not allow it, 2 wrong usage or input, 74 the output cannot be written, 130 "
+         "interrupted. \\fBverify\\fR and "
          "\\fBdoctor\\fR have more: see there.",
          ".TP\n/run/stickslip/control.sock\nwhere the daemon is asked\n.TP\n"
          "/etc/stickslip/stickslipd.toml\nits configuration",

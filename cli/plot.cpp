@@ -70,7 +70,10 @@ Result<record::Record> record_of(const PlotOptions& options, std::string& title)
   ProgressBar bar{scene->name};
   const std::unique_ptr<base::Clock> clock = base::make_system_clock();
   Result<simulation::Simulation> simulation =
-      simulation::simulate(*scene, scene->seed, *clock, [&bar](double done) { bar.show(done); });
+      simulation::simulate(*scene, scene->seed, *clock, [&bar](double done) {
+        bar.show(done);
+        return true;
+      });
   if (!simulation) return tl::unexpected(simulation.error());
   return std::move(simulation->record);
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cli/subcommands.hpp"
+#include "io/print_text.hpp"
 
 #include "core/base/limited_child.hpp"
 #include "core/base/text.hpp"
@@ -142,7 +143,7 @@ void add_recover(CLI::App& app, Chosen& chosen) {
   command->callback([&chosen, places] {
     chosen.run = [places] {
       const base::Result<int> status = run_recover(*places);
-      return status ? *status : print(tl::unexpected(status.error()));
+      return status ? io::flushed("stickslip", *status) : print(tl::unexpected(status.error()));
     };
   });
 }

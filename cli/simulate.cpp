@@ -9,6 +9,7 @@
 #include "cli/method_option.hpp"
 #include "cli/progress.hpp"
 #include "cli/scene_options.hpp"
+#include "cli/stop_on_signals.hpp"
 #include "cli/subcommands.hpp"
 #include "io/json_text.hpp"
 #include "io/results_json.hpp"
@@ -36,11 +37,13 @@ Result<simulation::Simulation> simulate_and_publish(const sim::Scene& scene, std
                                                     const SimulateOptions& options) {
   ProgressBar bar{scene.name};
   const std::unique_ptr<base::Clock> clock = base::make_system_clock();
+  const StopOnSignals signals;
   bool simulated = false;
   return simulation::simulate_to_file(
       scene, seed, *clock, {options.output, "stickslip simulate", options.line, method}, [&](double done) {
         bar.show(done);
         if (done == 1.0) bar.show(std::exchange(simulated, true) ? "writing" : "analysing");
+        return !StopOnSignals::asked();
       });
 }
 

@@ -14,7 +14,7 @@ int print(const base::Result<std::string>& output) {
     return output.error().exit_status();
   }
   io::print_text(stdout, *output, wants_colours());
-  return std::fflush(stdout) == 0 ? 0 : 1;
+  return io::flushed("stickslip", 0);
 }
 
 void choose(CLI::App& command, Chosen& chosen, std::function<base::Result<std::string>()> run) {

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -15,6 +13,7 @@
 #include "cli/options.hpp"
 #include "cli/progress.hpp"
 #include "cli/scene_options.hpp"
+#include "cli/stop_on_signals.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/sweep/grid.hpp"
 #include "cli/sweep/part_file.hpp"
@@ -42,35 +41,6 @@ using base::Result;
 
 constexpr std::uint64_t kMostThreads = 256;
 constexpr double kNanosecondsPerSecond = 1e9;
-
-std::atomic<bool> stop_asked{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "else no signal handler may touch it");
-
-extern "C" void ask_to_stop(int /*signal*/) { stop_asked.store(true); }
-
-/// While it lives the first SIGINT or SIGTERM asks to stop; the next ends the program as ever.
-class StopOnSignals {
- public:
-  StopOnSignals() {
-    stop_asked.store(false);
-    struct sigaction action {};
-    action.sa_handler = ask_to_stop;
-    action.sa_flags =
-        static_cast<int>(static_cast<unsigned>(SA_RESTART) | static_cast<unsigned>(SA_RESETHAND));
-    ::sigaction(SIGINT, &action, &old_interrupt_);
-    ::sigaction(SIGTERM, &action, &old_terminate_);
-  }
-  ~StopOnSignals() {
-    ::sigaction(SIGINT, &old_interrupt_, nullptr);
-    ::sigaction(SIGTERM, &old_terminate_, nullptr);
-  }
-  StopOnSignals(const StopOnSignals&) = delete;
-  StopOnSignals& operator=(const StopOnSignals&) = delete;
-
- private:
-  struct sigaction old_interrupt_ {};
-  struct sigaction old_terminate_ {};
-};
 
 struct SweepOptions : SceneOptions {
   std::string output;
@@ -181,7 +151,7 @@ Result<Pace> work(const Sweep& sweep, std::int64_t threads, sweep::PartFile& par
         fmt::format("{}/{} runs, {} left", part.done_count(), all, time_text(left / pace.runs_per_second())));
     return {};
   };
-  const Result<void> done = sweep::do_runs(sweep.plan, missing, threads, stop_asked, take);
+  const Result<void> done = sweep::do_runs(sweep.plan, missing, threads, StopOnSignals::asked(), take);
   if (auto synced = part.sync(); !synced) return tl::unexpected(synced.error());
   if (!done) return tl::unexpected(done.error());
   if (part.done_count() < all) {

@@ -44,7 +44,7 @@ void add_verify(CLI::App& app, Chosen& chosen) {
     chosen.run = [options] {
       const io::VerifyOutput output = io::verify_files(options->files, options->json);
       io::print_text(stdout, output.text);
-      return std::fflush(stdout) == 0 ? output.exit_status : 1;
+      return io::flushed("stickslip", output.exit_status);
     };
   });
 }

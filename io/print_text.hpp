@@ -4,8 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <string>
 #include <string_view>
+#include <system_error>
 
 #include "core/base/text.hpp"
 
@@ -14,13 +17,30 @@ namespace stickslip::io {
 /// Prints a text of several lines; characters that could control the terminal are shown by their number. Line
 /// feeds pass: the caller escapes those inside names with base::printable(). \param has_colours  true: colour
 /// sequences of Paint pass too.
+/// What cannot be written is told by flushed().
 inline void print_text(std::FILE* stream, std::string_view text, bool has_colours = false) {
-  fmt::print(stream, "{}", base::printable_lines(text, has_colours));
+  const std::string printable = base::printable_lines(text, has_colours);
+  std::fwrite(printable.data(), 1, printable.size(), stream);
 }
 
 /// Prints one line to stderr: "PROGRAM: WHY".
 inline void print_error(std::string_view program, std::string_view why) {
   fmt::print(stderr, "{}: {}\n", program, base::printable(why));
+}
+
+/// Exit status of a program whose output cannot be written, as on a full disk: EX_IOERR of sysexits.h. No
+/// other status says that.
+inline constexpr int kUnwritableStatus = 74;
+
+/// Writes what stdout still holds. \return `status`; kUnwritableStatus, with a line on stderr, if any of the
+/// output could not be written.
+[[nodiscard]] inline int flushed(std::string_view program, int status) {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  print_error(program,
+              fmt::format("the output cannot be written{}{}: make room there, or write it elsewhere",
+                          errno == 0 ? "" : ": ", errno == 0 ? "" : std::generic_category().message(errno)));
+  return kUnwritableStatus;
 }
 
 }  // namespace stickslip::io

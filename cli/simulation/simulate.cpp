@@ -43,6 +43,10 @@ record::RecordHeader header_of(const sim::Scene& scene, const model::Method& met
   return header;
 }
 
+tl::unexpected<base::Error> interrupted() {
+  return tl::unexpected(base::Error{base::ErrorKind::kInterrupted, "interrupted: no file was made"});
+}
+
 /// Destination of the scans.
 class ScanSink {
  public:
@@ -181,7 +185,8 @@ class Walk {
       analysis_s += seconds_since(start_ns, clock_);
       next = first + static_cast<daq::ScanIndex>(arrived);
       result.scan_count += static_cast<std::int64_t>(arrived);
-      if (progress) progress(static_cast<double>(run_.next_scan()) / static_cast<double>(count));
+      if (progress && !progress(static_cast<double>(run_.next_scan()) / static_cast<double>(count)))
+        return interrupted();
     }
   }
 
@@ -236,7 +241,7 @@ base::Result<Simulation> simulate_to_file(const sim::Scene& scene, std::uint64_t
   result.record.header.process.configuration = file.configuration;
 
   std::filesystem::path journal_path = file.path;
-  journal_path += record::kJournalExtension;
+  journal_path += fmt::format(".{:.8}{}", result.record.header.uuid, record::kJournalExtension);
   base::Result<record::JournalWriter> journal =
       record::JournalWriter::create(journal_path, result.record.header);
   if (!journal) return tl::unexpected(journal.error());
@@ -249,7 +254,7 @@ base::Result<Simulation> simulate_to_file(const sim::Scene& scene, std::uint64_t
   } catch (const std::system_error& error) {  // The scratch files.
     return base::failure("{}", error.what());
   }
-  if (progress) progress(1.0);
+  if (progress && !progress(1.0)) return interrupted();
   if (auto published = record::publish_journal(journal_path, result.record, file.path); !published) {
     return tl::unexpected(published.error());
   }

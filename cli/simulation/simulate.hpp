@@ -31,8 +31,9 @@ struct Simulation {
   [[nodiscard]] std::string summary() const;
 };
 
-/// Called with the simulated part of the scans, 0 … 1; may be empty.
-using SimulationProgress = std::function<void(double done)>;
+/// Called with the simulated part of the scans, 0 … 1; may be empty. \return whether to go on; else the error
+/// is kInterrupted.
+using SimulationProgress = std::function<bool(double done)>;
 
 /// Simulates into memory, for pictures and comparisons of short scenes; blocks.
 /// \param seed   decides the random numbers: equal seeds give equal bits. The seed in a record's truth
@@ -51,7 +52,8 @@ struct SimulationFile {
 };
 
 /// Simulates into a file with bounded memory, except for the fit of the slips (docs/simulate.md); blocks.
-/// Long tables are in nameless files beside FILE, the scans in FILE.journal, which is removed in any case.
+/// Long tables are in nameless files beside FILE, the scans in FILE.XXXXXXXX.journal, which is removed in any
+/// case; one that a kill left behind is in nobody's way.
 /// \param progress  called with 1 before the analysis and again before the file is built. \return the
 /// simulation without scans, raw values, noise-free force and tables of slips and modes. Errors: as
 /// simulate(); kUsage if the file exists, kFailure if it cannot be written.

@@ -165,5 +165,19 @@ class Colours(unittest.TestCase):
         self.assertIn("\033[32m", self.at_a_terminal(daemon, TERM="xterm", NO_COLOR=""))
 
 
+class Unwritable(unittest.TestCase):
+    """On a full disk, which /dev/full is."""
+
+    def test_a_status_of_its_own_and_a_line_say_that_output_cannot_be_written(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pull = pathlib.Path(folder) / "pull.h5"
+            printed(PROGRAMS["stickslip"], "simulate", "stick-slip-at-12-in-per-min", "-o", pull)
+            for words in (["verify", pull], ["analyze", pull], ["show", pull], ["export", pull, "--csv"], ["boards", "--json"], ["scenes"], ["--help"]):
+                with self.subTest(command=words[0]), open("/dev/full", "w", encoding="utf-8") as full:
+                    done = subprocess.run([PROGRAMS["stickslip"], *words], stdout=full, stderr=subprocess.PIPE, text=True, timeout=TIMEOUT_S, check=False)
+                    self.assertEqual(done.returncode, 74)
+                    self.assertEqual(done.stderr, "stickslip: the output cannot be written: No space left on device: make room there, or write it elsewhere\n")
+
+
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

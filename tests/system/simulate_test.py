@@ -6,9 +6,11 @@ simulate_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
 
 import json
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import h5py
@@ -245,6 +247,34 @@ folder = "records"
         self.assertIn(b"100 %", shown)
         self.assertTrue(shown.endswith(b"\r\x1b[K"), shown)
         self.assertNotIn(b"\x1b", output)
+
+
+class Interrupted(Folder):
+    def begun(self, file):
+        """Simulates a day, of which some is in the journal."""
+        process = subprocess.Popen([CLI, "simulate", SCENE, "-o", file, "--duration", "24 h"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        deadline = time.monotonic() + TIMEOUT_S
+        while not any(journal.stat().st_size > 100_000 for journal in self.folder.glob("*.journal")):
+            self.assertIsNone(process.poll())
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.001)
+        return process
+
+    def test_ctrl_c_leaves_nothing(self):
+        process = self.begun(self.folder / "a.h5")
+        process.send_signal(signal.SIGINT)
+        printed, message = process.communicate(timeout=TIMEOUT_S)
+        self.assertEqual((process.returncode, printed, message), (130, "", "stickslip: interrupted: no file was made\n"))
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_what_a_kill_leaves_behind_does_not_block_the_same_command(self):
+        file = self.folder / "a.h5"
+        process = self.begun(file)
+        process.kill()
+        process.communicate(timeout=TIMEOUT_S)
+        done = run(CLI, "simulate", SCENE, "-o", file)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
 
 
 class Terminal(unittest.TestCase):
