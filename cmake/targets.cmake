@@ -22,7 +22,7 @@ function(stickslip_library name)
 endfunction()
 
 # stickslip_test(NAME SOURCES ... LINK ... [LABELS ...] [TIMEOUT seconds] [SHARDS n]): one GoogleTest program, one CTest entry. SHARDS:
-# n entries, NAME_1 to NAME_n, each of which runs every n-th test; for programs that run longer than half a minute, so that they run on all processors.
+# n entries, NAME_1 to NAME_n, each of which runs every n-th test; for what runs long, so that all processors run it.
 # The label "threads" marks what runs under ThreadSanitizer; the target threads_tests builds just that. "statistics" marks
 # what repeats the same code over many random tests, "numeric" what compares it with references of many digits, "pages"
 # what a browser shows, "documents" the commands of the documents: sanitizers would learn nothing new from them, and go without.
