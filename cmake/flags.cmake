@@ -6,7 +6,7 @@ target_compile_options(stickslip_flags INTERFACE
   # Live, replay and batch must give the same bits: the compiler may not fuse a*b+c.
   -ffp-contract=off)
 
-# A hundred test programs are linked; LLVM's linker takes a quarter of the time that GNU's does.
+# Fifty programs are linked; LLVM's linker takes a quarter of the time that GNU's does.
 find_program(STICKSLIP_LLD ld.lld)
 if(STICKSLIP_LLD)
   target_link_options(stickslip_flags INTERFACE -fuse-ld=lld)

@@ -21,13 +21,14 @@ function(stickslip_library name)
   endif()
 endfunction()
 
-# stickslip_test(NAME SOURCES ... LINK ... [LABELS ...]): one GoogleTest program, one CTest entry.
+# stickslip_test(NAME SOURCES ... LINK ... [LABELS ...] [TIMEOUT seconds] [SHARDS n]): one GoogleTest program, one CTest entry. SHARDS:
+# n entries, NAME_1 to NAME_n, each of which runs every n-th test; for what runs long, so that all processors run it.
 # The label "threads" marks what runs under ThreadSanitizer; the target threads_tests builds just that. "statistics" marks
 # what repeats the same code over many random tests, "numeric" what compares it with references of many digits, "pages"
 # what a browser shows, "documents" the commands of the documents: sanitizers would learn nothing new from them, and go without.
 add_custom_target(threads_tests)
 function(stickslip_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "TIMEOUT;SHARDS" "SOURCES;LINK;LABELS" ${ARGN})
   if(STICKSLIP_SANITIZE AND ("statistics" IN_LIST ARG_LABELS OR "numeric" IN_LIST ARG_LABELS))
     return()
   endif()
@@ -36,17 +37,31 @@ function(stickslip_test name)
   stickslip_precompiled(${name} stickslip_test_headers)
   target_compile_definitions(${name} PRIVATE
     STICKSLIP_SOURCE_DIR="${CMAKE_SOURCE_DIR}" STICKSLIP_BINARY_DIR="${CMAKE_BINARY_DIR}")
-  add_test(NAME ${name} COMMAND ${name})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
     if(STICKSLIP_SANITIZE)
       set(ARG_TIMEOUT 600) # Sanitizers take ten times as long, on processors that others use as well.
     endif()
   endif()
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
-  if("statistics" IN_LIST ARG_LABELS)
-    set_tests_properties(${name} PROPERTIES COST 60) # The longest: begun before the others.
+  set(entries ${name})
+  if(ARG_SHARDS)
+    set(entries)
+    foreach(number RANGE 1 ${ARG_SHARDS})
+      list(APPEND entries ${name}_${number})
+    endforeach()
   endif()
+  set(index 0)
+  foreach(entry ${entries})
+    add_test(NAME ${entry} COMMAND ${name})
+    set_tests_properties(${entry} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+    if(ARG_SHARDS)
+      set_tests_properties(${entry} PROPERTIES ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${index}")
+    endif()
+    if(ARG_SHARDS OR "statistics" IN_LIST ARG_LABELS)
+      set_tests_properties(${entry} PROPERTIES COST 60) # The longest: begun before the others.
+    endif()
+    math(EXPR index "${index} + 1")
+  endforeach()
   if("threads" IN_LIST ARG_LABELS)
     add_dependencies(threads_tests ${name})
   endif()

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include <boost/math/distributions/binomial.hpp>
-
 #include "core/model/threshold.hpp"
 #include "tests/support/model_course.hpp"
+#include "tests/support/sample_limits.hpp"
 
 namespace stickslip::estimate {
 namespace {
@@ -65,8 +64,7 @@ TEST(CaptureTest, OscillationThatGoesOnIsCalledFree) {
 /// tests.
 double most_wrong(double mean, int n) {
   const double wrong = 0.5 * std::erfc(std::sqrt(std::abs(mean) / 2.0) / std::numbers::sqrt2);
-  return boost::math::quantile(
-      boost::math::complement(boost::math::binomial{static_cast<double>(n), wrong}, 1e-6));
+  return test::highest_count(static_cast<double>(n), wrong, 1e-6);
 }
 
 TEST(CaptureTest, TellsTheSidesOfTheThresholdApart) {

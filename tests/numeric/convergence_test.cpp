@@ -9,12 +9,11 @@
 
 #include "core/accuracy/comparison.hpp"
 #include "core/accuracy/reference.hpp"
+#include "tests/numeric/constants.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
 namespace stickslip::numeric {
 namespace {
-
-constexpr double kRate_Hz = 350.0;
 
 double error_of(const accuracy::Method& method, const sim::Motion& motion, std::size_t scans) {
   std::vector<double> truth(scans);

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "core/accuracy/oscillation50.hpp"
+#include "tests/numeric/constants.hpp"
 
 namespace stickslip::numeric {
 namespace {
@@ -16,7 +16,6 @@ namespace {
 using accuracy::Real;
 using sim::Course;
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr std::array kTimes_s{0.0, 1e-9, 1e-3, 0.04, 0.7, 3.0};
 
 /// A bit of everything.

@@ -9,19 +9,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "core/accuracy/comparison.hpp"
 #include "core/accuracy/reference.hpp"
 #include "core/model/threshold.hpp"
+#include "tests/numeric/constants.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
 namespace stickslip::numeric {
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kRate_Hz = 350.0;
 
 double fastest_change(const sim::Motion& motion, double r) {
   const double D = motion.mu_s - motion.mu_k;

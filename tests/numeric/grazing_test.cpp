@@ -6,17 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "core/accuracy/reference.hpp"
 #include "core/model/threshold.hpp"
+#include "tests/numeric/constants.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
 namespace stickslip::numeric {
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kRate_Hz = 350.0;
 
 /// Captures within the first seconds after the first onset.
 std::int64_t exact_captures(const sim::Motion& motion, std::int64_t scans) {

@@ -12,13 +12,12 @@
 #include "core/sim/numeric_solver.hpp"
 #include "core/sim/propagator.hpp"
 #include "core/sim/scene.hpp"
+#include "tests/numeric/constants.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
 namespace stickslip::numeric {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kRate_Hz = 350.0;
 constexpr std::size_t kScans = 3500;
 
 /// 4 ε T max|c′| + 8 ε: exact_law_test.cpp; max|c′| of these scenes is below 12/s.

@@ -8,12 +8,12 @@
 
 #include "core/model/threshold.hpp"
 #include "core/sim/numeric_solver.hpp"
+#include "tests/numeric/constants.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
 namespace stickslip::numeric {
 namespace {
 
-constexpr double kRate_Hz = 350.0;
 constexpr double kDamping = 0.022;
 constexpr double kDuration_s = 2.0;
 

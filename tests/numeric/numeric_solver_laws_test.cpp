@@ -6,12 +6,12 @@
 #include "core/model/slip_waveform.hpp"
 #include "core/sim/bounded_rise.hpp"
 #include "core/sim/numeric_solver.hpp"
+#include "tests/numeric/constants.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
 namespace stickslip::numeric {
 namespace {
 
-constexpr double kRate_Hz = 350.0;
 constexpr double kAccuracy = 1e-9;
 
 std::vector<double> numeric_trace(const sim::Motion& motion, std::size_t count, double accuracy = kAccuracy) {

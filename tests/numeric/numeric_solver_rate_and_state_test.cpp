@@ -9,6 +9,7 @@
 #include "core/sim/cvode.hpp"
 #include "core/sim/numeric_solver.hpp"
 #include "core/sim/rate_and_state_system.hpp"
+#include "tests/numeric/constants.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
 namespace stickslip::numeric {
@@ -16,8 +17,6 @@ namespace {
 
 using sim::RateAndState;
 using Law = RateAndState::Law;
-
-constexpr double kRate_Hz = 350.0;
 
 sim::Motion rate_and_state_motion(const RateAndState& law, std::vector<sim::BeltSegment> belt) {
   sim::Motion motion = motion_at(1.0, 0.022);

@@ -4,20 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "core/accuracy/oscillation50.hpp"
 #include "core/model/threshold.hpp"
 #include "core/sim/propagator.hpp"
+#include "tests/numeric/constants.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
 namespace stickslip::numeric {
 namespace {
 
 using accuracy::Real;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// Sticking and slipping for ever in 50 digits: one cycle, from the state (S, r) on.
 class Cycle50 {
@@ -69,7 +67,6 @@ TEST(PropagatorAccuracy, ErrorAfterNCyclesIsNTimesFourEpsilonsOfAPeriod) {
     for (const double damping : {0.001, 0.022, 0.1}) {
       const sim::Motion motion = motion_at(Q, damping);
       if (Q > 0.9 * model::Q_threshold(damping)) continue;  // Away from grazing.
-      constexpr double kRate_Hz = 350.0;
       MotionRecorder recorder{kRate_Hz};
       sim::Propagator sled{motion, kRate_Hz, &recorder};
       sled.skip(350);

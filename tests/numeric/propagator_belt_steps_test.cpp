@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/numeric/constants.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
 namespace stickslip::numeric {
@@ -13,8 +14,7 @@ namespace {
 using sim::BeltSegment;
 using sim::KineticDrift;
 
-constexpr double kSpeed = 0.00508;
-constexpr double kRate_Hz = 500.0;
+constexpr double kScanRate_Hz = 500.0;
 
 double belt_speed_of(const BeltSegment& segment, double t_s) {
   return segment.speed_m_per_s + segment.acceleration_m_per_s2 * t_s +
@@ -99,7 +99,7 @@ constexpr double kTolerance = 5e-4;
 void expect_the_same(const sim::Motion& motion, const char* name) {
   constexpr std::size_t kScans = 600;
   const std::vector<double> reference = stepped(motion, kScans);
-  const std::vector<double> exact = trace(motion, kRate_Hz, kScans);
+  const std::vector<double> exact = trace(motion, kScanRate_Hz, kScans);
   for (std::size_t i = 0; i < kScans; ++i) {
     ASSERT_NEAR(exact[i], reference[i], kTolerance) << name << " scan " << i;
   }

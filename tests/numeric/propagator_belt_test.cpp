@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "core/model/threshold.hpp"
+#include "tests/numeric/constants.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
 namespace stickslip::numeric {
@@ -16,9 +16,6 @@ namespace {
 using model::Mode;
 using sim::BeltSegment;
 using sim::KineticDrift;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kSpeed = 0.00508;
 
 TEST(KineticDrift, HasNoClosedFormInResonance) {
   sim::Motion motion = on_belt({{.duration_s = 2.0, .speed_m_per_s = kSpeed}});

@@ -2,10 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "core/model/closed_forms.hpp"
 #include "core/model/threshold.hpp"
+#include "tests/numeric/constants.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
 namespace stickslip::numeric {
@@ -13,11 +13,8 @@ namespace {
 
 using model::Mode;
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
 /// Captures after the first onset, in the first seconds; −1 if there was no onset.
 int slips_captured(const sim::Motion& motion, double duration_s) {
-  constexpr double kRate_Hz = 350.0;
   MotionRecorder recorder{kRate_Hz};
   sim::Propagator sled{motion, kRate_Hz, &recorder};
   sled.skip(static_cast<std::int64_t>(duration_s * kRate_Hz));
@@ -85,7 +82,6 @@ TEST(PropagatorHardCases, TinyDeltaMuIsNoDivision) {
 TEST(PropagatorHardCases, MillionUndampedCycles) {
   const double Q = 1.3;
   const sim::Motion motion = motion_at(Q, 0.0);
-  constexpr double kRate_Hz = 350.0;
 
   struct Ends final : sim::MotionObserver {
     void mode_began(const sim::ModeStart& start) override {

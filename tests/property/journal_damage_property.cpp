@@ -27,9 +27,9 @@ constexpr std::size_t kPage = 4096;
 constexpr daq::ScanIndex kGap = 1500;
 
 /// A journal of some tens of kilobytes with entries of every type, written once.
-class Sound {
+class SoundJournal {
  public:
-  Sound() {
+  SoundJournal() {
     record = test::whole_record();
     record.scan.clear();
     record.raw.clear();
@@ -58,8 +58,8 @@ class Sound {
   std::vector<std::string> entries;  ///< The header first.
 };
 
-const Sound& sound() {
-  static const Sound sound;
+const SoundJournal& sound_journal() {
+  static const SoundJournal sound;
   return sound;
 }
 
@@ -107,23 +107,23 @@ record::EntryHead head_of(const std::string& entry) {
 /// Which entries still stand somewhere. Without a checksum: byte for byte.
 std::vector<bool> standing(const std::string& content) {
   std::vector<bool> standing;
-  for (const std::string& entry : sound().entries)
+  for (const std::string& entry : sound_journal().entries)
     standing.push_back(content.find(entry) != std::string::npos);
   return standing;
 }
 
 std::size_t size_of(const std::vector<bool>& stands) {
   std::size_t size = 0;
-  for (std::size_t i = 0; i < stands.size(); ++i) size += stands[i] ? sound().entries[i].size() : 0;
+  for (std::size_t i = 0; i < stands.size(); ++i) size += stands[i] ? sound_journal().entries[i].size() : 0;
   return size;
 }
 
 /// Scan → count that have to be in the record.
 std::map<daq::ScanIndex, double> readable(const std::vector<bool>& stands) {
   std::map<daq::ScanIndex, double> scans;
-  const record::Record& whole = sound().record;
+  const record::Record& whole = sound_journal().record;
   for (std::size_t i = 0; i < stands.size(); ++i) {
-    const record::EntryHead head = head_of(sound().entries[i]);
+    const record::EntryHead head = head_of(sound_journal().entries[i]);
     if (!stands[i] || head.type != static_cast<std::uint16_t>(record::EntryType::kScans)) continue;
     const auto row =
         static_cast<std::size_t>(std::ranges::lower_bound(whole.scan, head.first_scan) - whole.scan.begin());
@@ -154,14 +154,15 @@ record::EndRecord evaluate(const record::Record& record) {
 RC_GTEST_PROP(JournalDamage, LosesWhatItHitsAndNothingElse, ()) {
   const test::TemporaryFolder folder;
   const fs::path journal = folder / "a.journal";
-  std::string content = sound().content;
+  std::string content = sound_journal().content;
   for (std::size_t times = 1 + below(3); times > 0 && !content.empty(); --times)
     RC_LOG() << damage(content) << "\n";
   test::write_content(journal, content);
   const std::vector<bool> stands = standing(content);
 
   // As the daemon does, which knows what it wrote, or as somebody does later.
-  const std::optional<std::int64_t> expected = below(2) == 0 ? std::optional{Sound::kScans} : std::nullopt;
+  const std::optional<std::int64_t> expected =
+      below(2) == 0 ? std::optional{SoundJournal::kScans} : std::nullopt;
 
   const auto made = record::finalise(journal, evaluate, record::system_calls(), {}, expected);
 
@@ -189,8 +190,8 @@ RC_GTEST_PROP(JournalDamage, LosesWhatItHitsAndNothingElse, ()) {
     RC_ASSERT(read->end->results == evaluate(*read).results);
   }
   const bool has_fewer = expected && made->scan_count < *expected;
-  const std::string told =
-      fmt::format("{} scans were written to the journal, {} could be read", Sound::kScans, made->scan_count);
+  const std::string told = fmt::format("{} scans were written to the journal, {} could be read",
+                                       SoundJournal::kScans, made->scan_count);
   RC_ASSERT(has_fewer == (std::ranges::find(read->end->reasons, told) != read->end->reasons.end()));
   RC_ASSERT(!has_fewer || read->end->status != record::Status::kRecovered);
   // Nothing but an end that a stop can leave so is ever removed, and that only if no scan is known to be

@@ -25,9 +25,9 @@ using record::Verdict;
 const std::vector<std::string> kRaw{"counts", "scan", "time", "force", "flags"};
 
 /// A sound record with noise in it, made once.
-class Sound {
+class SoundRecord {
  public:
-  Sound() {
+  SoundRecord() {
     record::Record record = test::sample_record();
     record.scan.clear();
     record.raw.clear();
@@ -64,8 +64,8 @@ class Sound {
   test::TemporaryFolder folder_;
 };
 
-const Sound& sound() {
-  static const Sound sound;
+const SoundRecord& sound_record() {
+  static const SoundRecord sound;
   return sound;
 }
 
@@ -76,12 +76,12 @@ bool names(const Verdict& verdict, const std::string& place) {
 }
 
 TEST(RecordFlips, TheRecordIsSoundBefore) {
-  const Verdict verdict = record::judge(sound().path());
+  const Verdict verdict = record::judge(sound_record().path());
   // Incomplete for its gap alone.
   ASSERT_EQ(verdict.findings.size(), 1U) << verdict.findings.back().place << verdict.findings.back().text;
   EXPECT_EQ(verdict.findings.front().place, "gaps");
   EXPECT_EQ(verdict.scans_present, verdict.scans_committed);
-  EXPECT_EQ(sound().chunks.size(), kRaw.size());
+  EXPECT_EQ(sound_record().chunks.size(), kRaw.size());
 }
 
 /// Printed, so that a failure can be had again with STICKSLIP_SEED.
@@ -101,11 +101,11 @@ std::uint64_t below(std::mt19937_64& random, std::uint64_t end) {
 TEST(RecordFlips, InTheRawDataAreFoundAndPlaced) {
   std::mt19937_64 random = seeded();
   for (int flip = 0; flip < kFlips; ++flip) {
-    const test::Extent chunk = sound().chunks[below(random, sound().chunks.size())];
+    const test::Extent chunk = sound_record().chunks[below(random, sound_record().chunks.size())];
     const std::uint64_t bit = 8 * chunk.first + below(random, 8 * chunk.size);
-    test::write_flipped(sound().flipped(), sound().content, bit);
+    test::write_flipped(sound_record().flipped(), sound_record().content, bit);
 
-    const Verdict verdict = record::judge(sound().flipped());
+    const Verdict verdict = record::judge(sound_record().flipped());
 
     ASSERT_EQ(verdict.judgement, Judgement::kDamaged) << "bit " << bit;
     ASSERT_TRUE(names(verdict, "entry/raw/" + chunk.dataset + " rows ")) << "bit " << bit;
@@ -121,8 +121,8 @@ bool found(std::uint64_t bit) {
     const Judgement judgement = record::judge(file).judgement;
     return std::string{judgement == Judgement::kDamaged || judgement == Judgement::kNotJudged ? "y" : "n"};
   }}};
-  test::write_flipped(sound().flipped(), sound().content, bit);
-  const auto answer = reader.ask(sound().flipped().native(), kLimits);
+  test::write_flipped(sound_record().flipped(), sound_record().content, bit);
+  const auto answer = reader.ask(sound_record().flipped().native(), kLimits);
   return answer ? *answer == "y" : answer.error().kind == base::ErrorKind::kUsage;
 }
 
@@ -130,7 +130,7 @@ bool found(std::uint64_t bit) {
 TEST(RecordFlips, AnywhereElseAreFound) {
   std::mt19937_64 random = seeded();
   for (int flip = 0; flip < kFlips; ++flip) {
-    const std::uint64_t bit = below(random, 8 * sound().content.size());
+    const std::uint64_t bit = below(random, 8 * sound_record().content.size());
     ASSERT_TRUE(found(bit)) << "bit " << bit;
   }
 }
@@ -140,12 +140,13 @@ TEST(RecordFlips, EveryBitIsFound) {
   const char* const stride = std::getenv("STICKSLIP_EVERY_BIT");
   if (stride == nullptr) GTEST_SKIP() << "takes long: set STICKSLIP_EVERY_BIT=1 for every bit";
   std::uint64_t tried = 0;
-  for (std::uint64_t bit = 0; bit < 8 * sound().content.size(); bit += std::strtoull(stride, nullptr, 10)) {
+  for (std::uint64_t bit = 0; bit < 8 * sound_record().content.size();
+       bit += std::strtoull(stride, nullptr, 10)) {
     ASSERT_TRUE(found(bit)) << "bit " << bit;
     ++tried;
   }
   std::printf("%llu of %zu bits flipped, each found\n", static_cast<unsigned long long>(tried),
-              8 * sound().content.size());
+              8 * sound_record().content.size());
 }
 
 }  // namespace

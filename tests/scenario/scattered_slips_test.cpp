@@ -14,7 +14,7 @@
 namespace stickslip {
 namespace {
 
-constexpr int kTests = 200;
+constexpr int kScatteredTests = 200;
 
 analysis::PooledDeltaMu pool_and_print(double speed_in_per_min, const test::ScatterTrials& trials) {
   analysis::PooledDeltaMu pooled = analysis::pool_delta_mu(trials.cycles);
@@ -27,7 +27,7 @@ analysis::PooledDeltaMu pool_and_print(double speed_in_per_min, const test::Scat
       "%+.2f %%; %zu slips, %zu escaped, %d tests of %d without an S - K\n",
       speed_in_per_min, trials.rms_over_sampling(), bias(pooled.mean),
       100.0 * *pooled.mean.standard_error / test::ScatterTrials::kDeltaMu, bias(pooled.captured_mean),
-      pooled.slip_count, pooled.escaped_count, trials.without_delta_mu(), kTests);
+      pooled.slip_count, pooled.escaped_count, trials.without_delta_mu(), kScatteredTests);
   return pooled;
 }
 
@@ -40,10 +40,10 @@ double allowed_bias(const analysis::PooledDeltaMu& pooled) {
 
 TEST(ScatteredSlips, TheirMeanIsAsGoodAsTheirNumberAllows) {
   for (const double speed_in_per_min : {3.0, 6.0}) {
-    const test::ScatterTrials trials{speed_in_per_min, kTests};
+    const test::ScatterTrials trials{speed_in_per_min, kScatteredTests};
     const analysis::PooledDeltaMu pooled = pool_and_print(speed_in_per_min, trials);
     EXPECT_EQ(trials.without_delta_mu(), 0);
-    EXPECT_LT(trials.rms_over_sampling(), 1.2 * std::sqrt(test::highest_mean_square(kTests)));
+    EXPECT_LT(trials.rms_over_sampling(), 1.2 * std::sqrt(test::highest_mean_square(kScatteredTests)));
     EXPECT_NEAR(*pooled.mean.value, test::ScatterTrials::kDeltaMu, allowed_bias(pooled));
     // Of n slips a standard deviation scatters by about 1/√(2n), and a log-normal one by some more.
     EXPECT_NEAR(*pooled.scatter.value / test::ScatterTrials::kDeltaMu, test::ScatterTrials::kCv, 0.03);
@@ -51,9 +51,9 @@ TEST(ScatteredSlips, TheirMeanIsAsGoodAsTheirNumberAllows) {
 }
 
 TEST(ScatteredSlips, TheOneThatEscapesCounts) {
-  const test::ScatterTrials trials{12.0, kTests};
+  const test::ScatterTrials trials{12.0, kScatteredTests};
   const analysis::PooledDeltaMu pooled = pool_and_print(12.0, trials);
-  EXPECT_LE(trials.without_delta_mu(), kTests / 100);
+  EXPECT_LE(trials.without_delta_mu(), kScatteredTests / 100);
   // S − K below 0.67 of its mean does not stick again at Q = 1.30: 11.6 % of a log-normal one.
   const auto escaped = static_cast<double>(pooled.escaped_count);
   const auto slips = static_cast<double>(pooled.slip_count);
@@ -78,7 +78,7 @@ TEST(ScatteredSlips, TheOneThatEscapesCounts) {
 
 // What a report of these tests leads with is the true S − K; the mean of the tests, second, is not.
 TEST(ScatteredSlips, ReportLeadsWithTheMeanByCycle) {
-  const test::ScatterTrials trials{12.0, kTests};
+  const test::ScatterTrials trials{12.0, kScatteredTests};
   std::vector<analysis::MeasuredTest> tests;
   for (std::size_t i = 0; i < trials.results.size(); ++i)
     tests.push_back({0.00508, trials.results[i], analysis::slip_sums(trials.cycles[i])});

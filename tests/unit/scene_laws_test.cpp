@@ -19,7 +19,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 
 /// Twenty lines; the next table starts on line 21.
-const std::string kPull = R"(description = "d"
+const std::string kShortPull = R"(description = "d"
 seed = 11
 accuracy = 1e-5
 [tester]
@@ -45,7 +45,7 @@ const std::string kAgeing =
     "reference_speed = \"1 um/s\"\n";
 
 TEST(SceneLaws, VelocityDependenceAndStribeckMakeOneLaw) {
-  const Scene scene = scene_of(kPull +
+  const Scene scene = scene_of(kShortPull +
                                "[effects.velocity_dependence]\nper_speed = \"-0.5 s/m\"\n"
                                "[effects.stribeck]\nrise = 0.02\nspeed = \"1 mm/s\"\nexponent = 1\n");
   const Motion motion = motion_of(scene);
@@ -58,11 +58,11 @@ TEST(SceneLaws, VelocityDependenceAndStribeckMakeOneLaw) {
   EXPECT_THAT(run.effects(), AllOf(Contains("velocity_dependence"), Contains("stribeck")));
   EXPECT_EQ(run.method().name, "SUNDIALS CVODE (Adams)");
   EXPECT_EQ(run.method().accuracy, 1e-5);
-  EXPECT_EQ(SceneRun(scene_of(kPull), 350.0).method().name, "exact closed forms");
+  EXPECT_EQ(SceneRun(scene_of(kShortPull), 350.0).method().name, "exact closed forms");
 }
 
 TEST(SceneLaws, RateAndStateIsReadWithItsUnits) {
-  const Scene scene = scene_of(kPull + kAgeing);
+  const Scene scene = scene_of(kShortPull + kAgeing);
   const Motion motion = motion_of(scene);
   ASSERT_TRUE(motion.rate_and_state);
   EXPECT_EQ(motion.rate_and_state->law, RateAndState::Law::kAgeing);
@@ -73,7 +73,7 @@ TEST(SceneLaws, RateAndStateIsReadWithItsUnits) {
 }
 
 TEST(SceneLaws, RateAndStateHasATruth) {
-  const model::TestTruth truth = scene_truth(scene_of(kPull + kAgeing), 350.0, 1);
+  const model::TestTruth truth = scene_truth(scene_of(kShortPull + kAgeing), 350.0, 1);
   EXPECT_EQ(truth.regime, model::Regime::kStickSlip);
   ASSERT_GT(truth.cycles.size(), 5U);
   for (const model::TrueCycle& cycle : truth.cycles) {
@@ -94,16 +94,16 @@ TEST(SceneLaws, StrengtheningRateAndStateSlidesOnceAndForAll) {
   const std::string law =
       "[effects.rate_and_state]\nlaw = \"slip\"\na = 0.02\nb = 0.01\ncritical_slip = \"1 um\"\n"
       "reference_speed = \"1 um/s\"\n";
-  const model::TestTruth truth = scene_truth(scene_of(kPull + law), 350.0, 1);
+  const model::TestTruth truth = scene_truth(scene_of(kShortPull + law), 350.0, 1);
   EXPECT_EQ(truth.regime, model::Regime::kRingDown);
 }
 
 // The transducers see the same force as the scans: a load cell far above the motion changes little.
 TEST(SceneLaws, TransducersFollowANumericMotion) {
   const std::string law = "[effects.stribeck]\nrise = 0.03\nspeed = \"1 mm/s\"\n";
-  const std::vector<double> bare = readings_of(kPull + law);
+  const std::vector<double> bare = readings_of(kShortPull + law);
   const std::vector<double> seen =
-      readings_of(kPull + law + "[effects.load_cell]\nfrequency = \"20 kHz\"\ndamping_ratio = 0.7\n");
+      readings_of(kShortPull + law + "[effects.load_cell]\nfrequency = \"20 kHz\"\ndamping_ratio = 0.7\n");
   ASSERT_EQ(bare.size(), seen.size());
   const double volts = 2.331 * 9.80665 / 2.0;
   // Behind by 2ζ/ω = 11 µs, at no more than 20/s; and twice the accuracy.
@@ -111,17 +111,17 @@ TEST(SceneLaws, TransducersFollowANumericMotion) {
 }
 
 TEST(SceneLaws, MistakesAreNamed) {
-  EXPECT_EQ(refusal_of(kPull + kAgeing), "");
-  EXPECT_THAT(refusal_of(kPull + "[effects.velocity_dependence]\n"), HasSubstr("per_speed"));
-  EXPECT_THAT(refusal_of(kPull + "[effects.velocity_dependence]\nper_speed = 0.5\n"),
+  EXPECT_EQ(refusal_of(kShortPull + kAgeing), "");
+  EXPECT_THAT(refusal_of(kShortPull + "[effects.velocity_dependence]\n"), HasSubstr("per_speed"));
+  EXPECT_THAT(refusal_of(kShortPull + "[effects.velocity_dependence]\nper_speed = 0.5\n"),
               AllOf(HasSubstr("test.toml:22"), HasSubstr("s/m")));
-  EXPECT_THAT(refusal_of(kPull + "[effects.stribeck]\nrise = 0.06\nspeed = \"1 mm/s\"\n"),
+  EXPECT_THAT(refusal_of(kShortPull + "[effects.stribeck]\nrise = 0.06\nspeed = \"1 mm/s\"\n"),
               AllOf(HasSubstr("test.toml:22"), HasSubstr("0.06"), HasSubstr("mu_s - mu_k")));
-  EXPECT_THAT(refusal_of(kPull + "[effects.stribeck]\nrise = 0.01\nspeed = \"0 m/s\"\n"),
+  EXPECT_THAT(refusal_of(kShortPull + "[effects.stribeck]\nrise = 0.01\nspeed = \"0 m/s\"\n"),
               HasSubstr("test.toml:23"));
-  EXPECT_THAT(refusal_of(kPull + "[effects.rate_and_state]\nlaw = \"ruina\"\n"),
+  EXPECT_THAT(refusal_of(kShortPull + "[effects.rate_and_state]\nlaw = \"ruina\"\n"),
               AllOf(HasSubstr("ageing"), HasSubstr("slip")));
-  EXPECT_THAT(refusal_of(kPull + kAgeing + "mu_0 = -1\n"), HasSubstr("test.toml:27"));
+  EXPECT_THAT(refusal_of(kShortPull + kAgeing + "mu_0 = -1\n"), HasSubstr("test.toml:27"));
 }
 
 TEST(SceneLaws, RateAndStateStandsAlone) {
@@ -131,7 +131,7 @@ TEST(SceneLaws, RateAndStateStandsAlone) {
         "[effects.velocity_dependence]\nper_speed = \"1 s/m\"\n",
         "[effects.stribeck]\nrise = 0.01\nspeed = \"1 mm/s\"\n",
         "[effects.onset_convention]\nforce = \"spring\"\n"}) {
-    EXPECT_THAT(refusal_of(fmt::format("{}{}{}", kPull, kAgeing, other)),
+    EXPECT_THAT(refusal_of(fmt::format("{}{}{}", kShortPull, kAgeing, other)),
                 AllOf(HasSubstr("test.toml:27"), HasSubstr("rate_and_state")))
         << other;
   }

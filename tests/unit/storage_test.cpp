@@ -14,12 +14,14 @@
 #include "daemon/storage/finaliser_process.hpp"
 #include "tests/support/faulty_disk.hpp"
 #include "tests/support/lacking_disk.hpp"
+#include "tests/support/plain_finaliser.hpp"
 #include "tests/support/record_samples.hpp"
 
 namespace stickslip::storage {
 namespace {
 
 using test::FaultyDisk;
+using test::finalise_plainly;
 using test::TemporaryFolder;
 namespace fs = std::filesystem;
 
@@ -77,10 +79,6 @@ class Heard final : public daemon::EventReceiver {
   std::vector<std::string> told_;
   std::map<std::int64_t, fs::path> files_;
 };
-
-base::Result<record::Finalised> finalise_plainly(const fs::path& journal, ExpectedScans expected) {
-  return record::finalise(journal, {}, record::system_calls(), {}, expected);
-}
 
 record::RecordHeader header() {
   record::RecordHeader header = test::sample_header();

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <optional>
 
 #include "cli/sweep/part_file.hpp"
@@ -91,7 +92,7 @@ TEST_F(SweepPartFile, CutAnywhereKeepsEveryWholeRunAndTakesTheOthersAgain) {
     auto part = open();
     for (const std::int64_t number : {3, 1, 5}) ASSERT_TRUE(part->append(run_number(number)));
   }
-  const std::string whole = test::bytes_of(file_);
+  const std::string whole = test::content_of(file_);
   constexpr std::size_t kStep = 101;  // Prime, so that it falls on every kind of place.
   for (std::size_t size = 0; size <= whole.size(); size += kStep) {
     std::ofstream{file_, std::ios::binary} << whole.substr(0, size);
@@ -109,7 +110,7 @@ TEST_F(SweepPartFile, DropsWhatADiskLostInTheMiddle) {
     auto part = open();
     for (const std::int64_t number : {3, 1, 5}) ASSERT_TRUE(part->append(run_number(number)));
   }
-  std::string text = test::bytes_of(file_);
+  std::string text = test::content_of(file_);
   const std::size_t second_run = text.find('\n', text.find('\n') + 1) + 1;
   text.replace(second_run, 20, std::string(20, '\0'));
   std::ofstream{file_, std::ios::binary} << text;
@@ -120,7 +121,7 @@ TEST_F(SweepPartFile, DropsWhatADiskLostInTheMiddle) {
 
 TEST_F(SweepPartFile, OfAnotherSweepIsRefusedWithWhatDiffers) {
   ASSERT_TRUE(open()->append(run_number(0)));
-  const std::string before = test::bytes_of(file_);
+  const std::string before = test::content_of(file_);
   const auto refusal = [&](void (*change)(SweepFacts&)) {
     SweepFacts facts = test::small_facts();
     change(facts);
@@ -128,7 +129,7 @@ TEST_F(SweepPartFile, OfAnotherSweepIsRefusedWithWhatDiffers) {
     if (part) return std::string{};
     EXPECT_EQ(part.error().kind, base::ErrorKind::kUsage);
     EXPECT_THAT(part.error().message, HasSubstr("remove it, or choose another -o"));
-    EXPECT_EQ(test::bytes_of(file_), before);
+    EXPECT_EQ(test::content_of(file_), before);
     return part.error().message;
   };
   EXPECT_THAT(refusal([](SweepFacts& facts) { facts.repeat = 4; }),
@@ -150,7 +151,7 @@ TEST_F(SweepPartFile, AStrangersFileIsRefusedAndLeftAlone) {
     const auto part = open();
     ASSERT_FALSE(part);
     EXPECT_THAT(part.error().message, HasSubstr("it is no part of a sweep"));
-    EXPECT_EQ(test::bytes_of(file_), text);
+    EXPECT_EQ(test::content_of(file_), text);
   }
 }
 
@@ -169,7 +170,7 @@ TEST(SweepFile, NeverReplacesAFile) {
   const auto published = record::publish_sweep(test::small_facts(), record::SweepTable{6}, file);
   ASSERT_FALSE(published);
   EXPECT_EQ(published.error().kind, base::ErrorKind::kUsage);
-  EXPECT_EQ(test::bytes_of(file), "mine");
+  EXPECT_EQ(test::content_of(file), "mine");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator{folder.path()}, {}), 1) << "nothing is left";
 }
 
@@ -184,7 +185,7 @@ TEST(SweepFile, FollowsNoLink) {
   EXPECT_FALSE(PartFile::open(file.string() + ".part", test::small_facts(), *clock));
   ASSERT_TRUE(record::publish_sweep(test::small_facts(), record::SweepTable{6}, file));
   EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::symlink_status(file)));
-  EXPECT_EQ(test::bytes_of(folder.path() / "precious"), "");
+  EXPECT_EQ(test::content_of(folder.path() / "precious"), "");
 }
 
 }  // namespace

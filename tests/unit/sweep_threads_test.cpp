@@ -94,7 +94,7 @@ TEST(SweepRunner, StoppedAndResumedOnOtherThreadsGivesTheSameFile) {
       EXPECT_TRUE(record::publish_sweep(facts, *part->table(), output));
       break;
     }
-    return test::bytes_of(output);
+    return test::content_of(output);
   };
   const std::string whole = file_with("whole.h5", {1}, -1);
   EXPECT_GT(whole.size(), 10'000U);

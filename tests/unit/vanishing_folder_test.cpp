@@ -14,11 +14,13 @@
 #include "daemon/storage/storage.hpp"
 #include "tests/support/faulty_disk.hpp"
 #include "tests/support/moving_disk.hpp"
+#include "tests/support/plain_finaliser.hpp"
 #include "tests/support/record_samples.hpp"
 
 namespace stickslip::storage {
 namespace {
 
+using test::finalise_plainly;
 using test::MovingDisk;
 using test::TemporaryFolder;
 namespace fs = std::filesystem;
@@ -156,12 +158,6 @@ TEST_F(FolderWatched, OneThatCannotBeLookedAtIsAway) {
   fs::remove_all(records_);
   std::ofstream{records_} << "a file";
   EXPECT_TRUE(watch.look());
-}
-
-using ExpectedScans = std::optional<std::int64_t>;
-
-base::Result<record::Finalised> finalise_plainly(const fs::path& journal, ExpectedScans expected) {
-  return record::finalise(journal, {}, record::system_calls(), {}, expected);
 }
 
 // ---- the whole storage --------------------------------------------------------------------
