@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <system_error>
 #include <utility>
 
@@ -220,11 +221,17 @@ class Examination {
       return bad("records", fmt::format("{} is no folder", folder_.string()), "say another [record] folder");
     }
     if (::access(folder_.c_str(), W_OK | X_OK) != 0) {
+      const bool read_only = errno == EROFS;
       const bool others = !status_.empty();  // The daemon has another user's rights.
-      const std::string what = fmt::format("{}: this user may not write there", folder_.string());
-      const std::string to_do = "let the service's user have it: chown stickslip: FOLDER";
-      return others ? good("records", fmt::format("{} (the daemon's)", wanted.string()))
-                    : bad("records", what, to_do);
+      const std::string what = fmt::format(
+          "{}: {}", folder_.string(),
+          read_only ? "its file system is mounted for reading only" : "this user may not write there");
+      const std::string to_do =
+          read_only
+              ? "look into the kernel's log for why, then mount -o remount,rw; or say another [record] folder"
+              : "let the service's user have it: chown stickslip: FOLDER";
+      return others && !read_only ? good("records", fmt::format("{} (the daemon's)", wanted.string()))
+                                  : bad("records", what, to_do);
     }
     const io::FilesFound orphans = status_.empty() ? storage::journals_in(wanted) : io::FilesFound{};
     if (!orphans.unread.empty()) {

@@ -14,6 +14,7 @@ import sys
 import tempfile
 import unittest
 
+import small_disk
 from running_daemon import RunningDaemon
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
@@ -36,12 +37,12 @@ class Doctor(unittest.TestCase):
         self.folder = pathlib.Path(temporary.name)
         self.folder.chmod(0o755)
 
-    def examine(self, text=None, folder=None, user=None):
-        """({check: finding}, exit status)"""
+    def examine(self, text=None, folder=None, user=None, before=()):
+        """({check: finding}, exit status); before: words of a command that runs the one given to it."""
         folder = folder or self.folder
         if text is not None:
             (folder / "d.toml").write_text(text, encoding="utf-8")
-        done = subprocess.run([str(self.program(user)), "doctor", "--config", "d.toml", "--json"], cwd=folder, capture_output=True, text=True,
+        done = subprocess.run([*before, str(self.program(user)), "doctor", "--config", "d.toml", "--json"], cwd=folder, capture_output=True, text=True,
                               timeout=TIMEOUT_S, check=False, **({"user": user, "group": user, "extra_groups": []} if user else {}))
         self.assertEqual(done.stderr, "")
         found = json.loads(done.stdout)
@@ -137,6 +138,15 @@ class Doctor(unittest.TestCase):
         found, status = self.examine(SIMULATED)
         self.assertEqual(status, 1)
         self.expect(found["records"], "bad", "records is no folder", r"\[record\] folder")
+
+    def test_a_disk_for_reading_only(self):
+        if (why := small_disk.why_none()) is not None:
+            self.skipTest(f"no file system may be mounted here: {why}")
+        (self.folder / "records").mkdir()
+        mount = [*small_disk.namespace(), "sh", "-c", 'mount -t tmpfs -o ro tmpfs records && exec "$@"', "sh"]
+        found, status = self.examine(SIMULATED, before=mount)
+        self.assertEqual(status, 1)
+        self.expect(found["records"], "bad", "mounted for reading only", "remount,rw")
 
     def test_a_broker_without_a_secret(self):
         (self.folder / "password").write_text("open sesame\n", encoding="ascii")
