@@ -30,7 +30,11 @@ bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 bool is_hole(std::string_view text) {
   if (text.size() > kLongestHole) return false;
   // Errors of spreadsheets, "#DIV/0!", and of an old C library, "-1.#IND".
-  if (text.starts_with('#') || text.find("1.#") != std::string_view::npos) return true;
+  if (text.starts_with('#') ||
+      (text.find('#') != std::string_view::npos && text.find("1.#") != std::string_view::npos))
+    return true;
+  const std::size_t sign = text.front() == '-' || text.front() == '+' ? 1 : 0;
+  if (text.size() > sign && is_digit(text[sign])) return false;
   std::array<char, kLongestHole> lower{};
   std::transform(text.begin(), text.end(), lower.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -136,6 +140,8 @@ Digits digits_in(std::string_view text, char decimal) {
 }  // namespace
 
 std::string_view trimmed(std::string_view text) noexcept {
+  const auto is_plain = [](char c) { return c > ' ' && c <= '~'; };
+  if (!text.empty() && is_plain(text.front()) && is_plain(text.back())) return text;
   const auto drop = [&text](std::string_view blank, bool front) {
     if (front ? !text.starts_with(blank) : !text.ends_with(blank)) return false;
     front ? text.remove_prefix(blank.size()) : text.remove_suffix(blank.size());

@@ -74,6 +74,8 @@ std::string folded(std::string_view text) {
 
 bool is_unit(std::string_view text) {
   const std::string_view bare = without_brackets(text);
+  const std::size_t digit = bare.find_first_of("0123456789");
+  if (digit == 0 || (digit == 1 && bare.front() == '-')) return bare == "1";  // What a row of numbers has.
   return has(kUnits, bare) || has(kUnitWords, folded(bare)) || (bare.empty() && !trimmed(text).empty());
 }
 

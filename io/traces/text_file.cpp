@@ -194,10 +194,22 @@ void TextFile::decode() {
   if (line_number_ == 0 && before == 0 && decoded_.starts_with(kMark)) decoded_.erase(0, kMark.size());
 }
 
+namespace {
+
+/// Place of the first LF or CR from `at` on; npos if there is none. Two searches for one byte each: one for
+/// either of two looks at each byte by itself.
+std::size_t line_end(const std::string& text, std::size_t at) {
+  const std::size_t feed = text.find('\n', at);
+  const std::size_t carriage = std::string_view{text}.substr(at, feed - at).find('\r');
+  return carriage == std::string_view::npos ? feed : at + carriage;
+}
+
+}  // namespace
+
 base::Result<bool> TextFile::next(std::string& line) {
   line.clear();
   while (true) {
-    const std::size_t end = decoded_.find_first_of("\r\n", at_);
+    const std::size_t end = line_end(decoded_, at_);
     // A CR at the end of what is decoded may belong to a CR LF.
     if (end != std::string::npos && (decoded_[end] == '\n' || end + 1 < decoded_.size())) {
       line.assign(decoded_, at_, end - at_);

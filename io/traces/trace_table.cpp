@@ -116,9 +116,12 @@ class TableReader {
     if (dialect_.header_line == 0) return false;
     bool same = true;
     bool units = dialect_.units_line > 0;
-    for (std::size_t c = 0; c < dialect_.columns.size(); ++c) {
+    for (std::size_t c = 0; c < dialect_.columns.size() && (same || units); ++c) {
       const std::string_view text = field(fields, c);
-      same = same && column_name(text).text == dialect_.columns[c].text;
+      // Nearly every row is told by the first byte.
+      const std::string& heading = dialect_.columns[c].text;
+      same = same && trimmed(text).substr(0, 1) == std::string_view{heading}.substr(0, 1) &&
+             column_name(text).text == heading;
       units = units && (text.empty() || is_unit(text));
     }
     return same || units;
@@ -178,7 +181,9 @@ class TableReader {
     note_label(fields);
     add(hole ? base::kNaN : value.value, time, line);
     // The last number of the line, which would be cut first.
-    const Cell last = read_cell(dialect_.content(fields.size() - 1, fields.back()), dialect_.decimal);
+    const Cell last = fields.size() == value_column_ + 1
+                          ? value
+                          : read_cell(dialect_.content(fields.size() - 1, fields.back()), dialect_.decimal);
     last_decimals_ = last.decimals;
     last_fields_ = fields.size();
     if (file_rows_++ > 0) {
