@@ -13,6 +13,7 @@
 #include "core/analysis/live_estimates.hpp"
 #include "core/analysis/model_results.hpp"
 #include "core/analysis/sections.hpp"
+#include "core/analysis/signal_check.hpp"
 #include "core/analysis/slip_list.hpp"
 #include "core/analysis/traditional.hpp"
 #include "core/detect/regime_rule.hpp"
@@ -291,6 +292,9 @@ TestResults TestAnalysis::finish() {
   results.transition_time = Estimate::none("no transition");
 
   estimate::Trace trace = despiked_trace();
+  const SignalCheck check = check_signal(trace, std::as_const(coefficients_), std::as_const(saturated_),
+                                         settings_.step_coefficient);
+  leave_out(check, trace);
   results.spike_count = settings_.skipped.spikes ? Estimate::none("spikes are kept, and not looked for")
                                                  : Estimate::of(static_cast<double>(spikes_.size()));
   if (trace.size() < signal::kFewestScansForNoise) {
@@ -383,7 +387,28 @@ TestResults TestAnalysis::finish() {
     base::add(results.findings, *std::move(finding));
   if (auto finding = level_finding(slips)) base::add(results.findings, *std::move(finding));
   results.drift_rate = drift_of(trace, slips);
+  void_results(check, results);
+  if (check.held()) {
+    tester_.reset();
+    tester_check_.reset();
+  }
+  add_signal_findings(check, trace.size(), results);
   return results;
+}
+
+void TestAnalysis::leave_out(const SignalCheck& check, estimate::Trace& trace) {
+  const auto held = check.held();
+  if (!held) return;
+  // A column in a file can be read but not changed.
+  base::LongColumn<std::uint8_t> usable{settings_.scratch_folder};
+  base::LongColumn<std::uint8_t> saturated{settings_.scratch_folder};
+  for (std::size_t k = 0; k < trace.size(); ++k) {
+    const bool is_held = std::as_const(trace.usable)[k] != 0 && held->holds(std::as_const(coefficients_)[k]);
+    usable.push_back(is_held ? 0 : std::as_const(trace.usable)[k]);
+    saturated.push_back(is_held ? 1 : std::as_const(saturated_)[k]);
+  }
+  trace.usable = std::move(usable);
+  saturated_ = std::move(saturated);
 }
 
 estimate::Trace TestAnalysis::despiked_trace() {

@@ -17,6 +17,7 @@
 #include "core/analysis/characterisation.hpp"
 #include "core/analysis/results.hpp"
 #include "core/analysis/sections.hpp"
+#include "core/analysis/signal_check.hpp"
 #include "core/analysis/skipped_corrections.hpp"
 #include "core/base/long_column.hpp"
 #include "core/base/scan_index.hpp"
@@ -107,6 +108,8 @@ class TestAnalysis {
   void follow_speed(estimate::Trace& trace, base::LongColumn<detect::Fall>& slips) const;
   /// All scans with the noise of the whole test known; fills spikes_ and spike_coefficients_.
   [[nodiscard]] estimate::Trace despiked_trace();
+  /// Scans that are clipped or frozen are no measurement: as those at a rail of the converter.
+  void leave_out(const SignalCheck& check, estimate::Trace& trace);
   /// Breaks the trace at the gaps that may hide a slip, and forgets the slips that reach into one.
   void break_at_gaps(estimate::Trace& trace, base::LongColumn<detect::Fall>& slips) const;
   /// When the slip began after which the sled behaved otherwise.
