@@ -10,21 +10,20 @@ const Batch = (() => {
   let done = 0;       // Tests of the batch that count.
   let chosen = null;  // The test to be void: {body, what, button}.
 
-  const stepText = step => `${step.pull_speed == null ? "" : `${Tables.speed(step.pull_speed)}, `}sheet ${step.replicate}, slide ${step.slide}`;
   const refusal = (id, error) => { part(id).textContent = error.message; };
 
   function show(batch) {
     const leads = batch != null, complete = leads && batch.next == null && batch.done === batch.planned;
     done = leads ? batch.done : 0;
     part("batch-name").textContent = leads ? `${batch.name}${batch.plan.grade ? `, ${batch.plan.grade}` : ""}: ${batch.done} of ${batch.planned} tests made` : "no batch: tests are as planned below";
-    part("batch-next").textContent = !leads ? "" : batch.next != null ? `Next: ${stepText(batch.next)}` : complete ? "All are made." : "The last is under way.";
+    Answer.batch(batch);
     part("batch-trouble").textContent = leads && batch.trouble != null ? batch.trouble : "";
     part("batch-open").hidden = leads && !complete;
     part("batch-end").hidden = !leads;
     part("batch-tests").hidden = !leads || batch.tests.length === 0;
     const focused = document.activeElement?.id;
     part("batch-rows").replaceChildren(...(leads ? batch.tests : []).map((test, k) => {
-      const tr = Tables.row([Tables.cell(String(k + 1)), Tables.cell(stepText(test), "text"), Tables.cell(test.record, "text"),
+      const tr = Tables.row([Tables.cell(String(k + 1)), Tables.cell(Answer.stepText(test), "text"), Tables.cell(test.record, "text"),
         Tables.cell(test.voided ? `void: ${test.voided.reason}, by ${test.voided.by}` : "counts", "text"), voidCell(`batch-void-${k}`, {record: test.record}, test.record, test.voided)]);
       if (test.voided) tr.className = "void";
       return tr;
@@ -153,6 +152,7 @@ const Batch = (() => {
         say(error.message);
       }
     },
+    load,
     voidCell,
     done: () => done,
   };

@@ -44,10 +44,11 @@ const Tables = (() => {
   }
   const limitText = ({lowest, highest}, digits) => (lowest == null ? `≤ ${fixed(highest, digits)}` : highest == null ? `≥ ${fixed(lowest, digits)}` : `${fixed(lowest, digits)} … ${fixed(highest, digits)}`);
 
-  /// Of the latest test, beside its numbers; the most severe first, as they come.
+  const severities = ["fault", "warning", "note"];
+  /// Of the latest test, below its answer; the most severe first.
   function findings(test) {
-    const list = document.getElementById("findings");
-    const items = (test?.results.coded_findings ?? []).map(finding => {
+    const list = document.getElementById("findings"), rank = finding => severities.indexOf(finding.severity);
+    const items = [...(test?.results.coded_findings ?? [])].sort((a, b) => rank(a) - rank(b)).map(finding => {
       const item = document.createElement("li"), strong = document.createElement("strong"), action = document.createElement("span");
       item.className = finding.severity;
       strong.textContent = `test ${test.number}, ${finding.severity}: ${finding.text}`;
@@ -172,5 +173,5 @@ const Tables = (() => {
   /// Asks where the sled of the bench is outside what a tester has.
   const sledMeant = async doing => sled == null || confirm("Is this the sled?", `${sled}. Every coefficient is divided by its weight. Correct sled_mass under [tester] in the configuration, or go on.`, [], doing);
 
-  return {confirm, sledMeant, terms, cell, row, speed, bench, regime, trouble, tests, lacks: () => lacking, health, cycle, columns};
+  return {confirm, sledMeant, terms, cell, row, speed, badge, bench, regime, trouble, tests, lacks: () => lacking, health, cycle, columns};
 })();

@@ -582,7 +582,7 @@ class LivePage(unittest.TestCase):
             page.press("Escape")
             page.until(f"!document.querySelector('dialog:modal') && document.activeElement.id === '{opener}'")
 
-    def test_the_findings_of_the_latest_test_stand_above_the_table_and_in_its_row(self):
+    def test_the_findings_of_the_latest_test_stand_below_the_answer_and_in_its_row(self):
         daemon = self.daemon('[tester]\npull_speed = "6 in/min"\n')
         page = self.page()
         page.until("document.querySelectorAll('#findings li').length === 1")
@@ -591,7 +591,7 @@ class LivePage(unittest.TestCase):
         self.assertIn(page.value("document.querySelector('#tests tbody tr').cells[1].textContent"), ("stick-slip · pull-speed", "undecided · pull-speed"))
         [told] = daemon.ask("GET", "/v1/tests/1")[1]["results"]["coded_findings"]
         self.assertIn(told["text"], page.value("[...document.querySelectorAll('#tests tbody tr')].at(-1).cells[1].title"))
-        front, back = page.value("[...document.querySelectorAll('#findings strong')].map(e => [getComputedStyle(e).color, getComputedStyle(document.getElementById('results')).backgroundColor])[0]")
+        front, back = page.value("[...document.querySelectorAll('#findings strong')].map(e => [getComputedStyle(e).color, getComputedStyle(document.getElementById('band')).backgroundColor])[0]")
         self.assertGreaterEqual(contrast(rgb(front), rgb(back)), 4.5)
 
     def test_a_sled_that_no_tester_has_is_asked_about_before_a_test(self):
