@@ -7,6 +7,7 @@ const Batch = (() => {
   const kWithUnit = "oscillation_frequency";  // The one result of the table that has a dimension.
   let ask = null, say = null, changed = null;
   let told = null;    // What the health said of the batch, as text.
+  let shown = null;   // The current batch.
   let done = 0;       // Tests of the batch that count.
   let chosen = null;  // The test to be void: {body, what, button}.
 
@@ -16,6 +17,7 @@ const Batch = (() => {
     const leads = batch != null, complete = leads && batch.next == null && batch.done === batch.planned;
     done = leads ? batch.done : 0;
     part("batch-name").textContent = leads ? `${batch.name}${batch.plan.grade ? `, ${batch.plan.grade}` : ""}: ${batch.done} of ${batch.planned} tests made` : "no batch: tests are as planned below";
+    shown = batch;
     Answer.batch(batch);
     part("batch-trouble").textContent = leads && batch.trouble != null ? batch.trouble : "";
     part("batch-open").hidden = leads && !complete;
@@ -155,5 +157,11 @@ const Batch = (() => {
     load,
     voidCell,
     done: () => done,
+    /// The place of a test in the current batch, {name, grade, pull_speed, replicate, slide}; undefined: it has none.
+    place(test) {
+      const file = path => path.split("/").pop();
+      const step = shown?.under_way.find(one => one.test === test.number) ?? (test.file ? shown?.tests.find(one => file(one.record) === file(test.file)) : undefined);
+      return step && {...step, name: shown.name, grade: shown.plan.grade};
+    },
   };
 })();

@@ -59,7 +59,7 @@
     const made = Batch.done();  // First: of a test that ends meanwhile the table may know more, not less.
     const {tests, summary} = await ask("GET", "/v1/tests");
     Answer.tests(tests, summary);
-    Tables.tests(tests, summary, made, (path, name) => attempt(() => download(path, name)), Batch.voidCell);
+    Tables.tests(tests, summary, made, (path, name) => attempt(() => download(path, name)), Batch.voidCell, Batch.place);
     const lease = await ask("GET", "/v1/controller");
     text("holder", lease.controller ? `${lease.controller === sessionStorage.getItem("name") ? "this page" : lease.controller} commands` : "");
   }

@@ -3,6 +3,7 @@
 
 const Scope = (() => {
   const kWindow = 10;  // s
+  const kHeight = 0.18;  // Of the window: the first result stands above the fold.
   const kMostParts = 20000;
   // One pixel of the screen: without a graphics card wider lines are drawn much more slowly.
   const kLine = 1 / devicePixelRatio;
@@ -84,10 +85,10 @@ const Scope = (() => {
 
   const options = (box, part, series, more) => ({width: box.clientWidth || 600, height: height(part), legend: {show: false}, cursor: {show: false},
     scales: {x: {time: false, range: xRange}}, axes: axes(), series: [{}, ...series], ...more});
-  const force = new uPlot(options(forceBox, 0.33, [{stroke: paint("--force"), width: kLine, points: {show: false}},
+  const force = new uPlot(options(forceBox, kHeight, [{stroke: paint("--force"), width: kLine, points: {show: false}},
     {stroke: paint("--force"), width: kLine, points: {show: false}}], {bands: [{series: [2, 1], fill: paint("--band")}], hooks: {drawClear: [shade], draw: [marks]}}), [[], [], []], forceBox);
-  const slope = new uPlot(options(slopeBox, 0.16, [{stroke: paint("--force"), width: kLine, points: {show: false}}]), [[], []], slopeBox);
-  const strip = new uPlot({...options(deltaBox, 0.2, [{stroke: paint("--delta"), width: 0, points: {show: true, size: 6, fill: paint("--delta")}},
+  const slope = new uPlot(options(slopeBox, kHeight, [{stroke: paint("--force"), width: kLine, points: {show: false}}]), [[], []], slopeBox);
+  const strip = new uPlot({...options(deltaBox, kHeight, [{stroke: paint("--delta"), width: 0, points: {show: true, size: 6, fill: paint("--delta")}},
     {stroke: paint("--amplitude"), width: 0, points: {show: true, size: 5, fill: paint("--amplitude")}}]),
     scales: {x: {time: false}, y: {range: (u, low, high) => [0, Math.max(0.01, high * 1.1 || 0)]}}}, [[], [], []], deltaBox);
 
@@ -148,9 +149,9 @@ const Scope = (() => {
     dirty = newCycles = true;
   }
   const resize = () => {
-    force.setSize({width: forceBox.clientWidth, height: height(0.33)});
-    slope.setSize({width: slopeBox.clientWidth, height: height(0.16)});
-    strip.setSize({width: deltaBox.clientWidth, height: height(0.2)});
+    force.setSize({width: forceBox.clientWidth, height: height(kHeight)});
+    slope.setSize({width: slopeBox.clientWidth, height: height(kHeight)});
+    strip.setSize({width: deltaBox.clientWidth, height: height(kHeight)});
   };
   window.addEventListener("resize", resize);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {

@@ -33,6 +33,7 @@ SOURCE = pathlib.Path(sys.argv[3]).resolve()
 
 MESSAGE = "document.getElementById('message').textContent"
 FINISHED = "Now: the batch is finished, all 4 tests are made"
+OF_BATCH = 4  # Columns that the table of tests has more while there is a batch: sample, grade, speed, replicate.
 SCENES = SOURCE / "config" / "scenes"
 
 
@@ -186,9 +187,9 @@ class BatchPage(unittest.TestCase):
         self.assertEqual(records[1].read_bytes(), untouched)
         self.page.until(f"document.getElementById('now').textContent === '{FINISHED}'")
         counted = [records[0], *records[2:]]
-        self.page.until("document.querySelectorAll('#tests tfoot tr').length >= 7")
-        mean = self.page.value("[...document.querySelector('#tests tfoot tr:nth-child(2)').cells].map(c => c.textContent)")
-        for cell, name in zip(mean[2:], ("delta_mu", "mu_s", "mu_k"), strict=False):
+        self.page.until("document.querySelectorAll('#tests tfoot tr').length >= 6")
+        mean = self.page.value("[...document.querySelector('#tests thead tr:nth-child(2)').cells].map(c => c.textContent)")
+        for cell, name in zip(mean[OF_BATCH + 2:], ("delta_mu", "mu_s", "mu_k"), strict=False):
             self.assertAlmostEqual(float(cell), self.results(counted, name).mean(), delta=0.5001e-4, msg=name)
         # The tests of the batch, as the daemon lists them.
         self.page.value("document.getElementById('batch-tests').open = true")
@@ -205,9 +206,9 @@ class BatchPage(unittest.TestCase):
         # The scene has S - K 0.05 and K 0.3.
         self.page.until("document.querySelectorAll('#tests tbody td.outside').length === 2")
         outside = self.page.value("[...document.querySelectorAll('#tests tbody td.outside')].map(c => [c.cellIndex, c.textContent])")
-        self.assertEqual([(column, " ✗" in text) for column, text in outside], [(4, True), (4, True)])
-        limits = self.page.value("[...document.querySelectorAll('#tests tfoot tr')].map(r => [...r.cells].map(c => c.textContent)).find(r => r[0].startsWith('limits'))")
-        self.assertEqual(limits[2:5], ["0.0300 … 0.0700 ✓ kept", "", "≤ 0.2000 ✗ missed"])
+        self.assertEqual([(column, " ✗" in text) for column, text in outside], 2 * [(OF_BATCH + 4, True)])
+        limits = self.page.value("[...document.querySelectorAll('#tests thead tr')].map(r => [...r.cells].map(c => c.textContent)).find(r => r[0].startsWith('limits'))")
+        self.assertEqual(limits[OF_BATCH + 2:OF_BATCH + 5], ["0.0300 … 0.0700 ✓ kept", "", "≤ 0.2000 ✗ missed"])
         self.end()
         self.assertEqual(self.batch(), None)
         self.report(batch["id"], counted, records[1])
@@ -308,7 +309,7 @@ class BatchPage(unittest.TestCase):
         after = self.page.value(shown)
         own = [row for row in after["tests"] if int(row[0]) > 2]
         self.assertEqual(after["tests"][len(own):], before["tests"])
-        self.assertEqual(self.text("counted"), f"mean and limits of batch {batch['id']}")
+        self.assertEqual(self.text("counted"), f"● mean and limits of batch {batch['id']}")
         # It goes on where it was, and ends with the sheets that were planned.
         records += [self.measure(), self.measure()]
         self.assertEqual([self.facts(record)[0] for record in records], 4 * [batch["id"]])
@@ -320,7 +321,7 @@ class BatchPage(unittest.TestCase):
         self.assertEqual([row[2] for row in after["rows"]], [record.name for record in records])
         for row, record in zip(after["tests"], reversed(records), strict=False):
             self.assertEqual(row[-1], record.name)
-            for cell, name in zip(row[2:5], ("delta_mu", "mu_s", "mu_k"), strict=True):
+            for cell, name in zip(row[OF_BATCH + 2:OF_BATCH + 5], ("delta_mu", "mu_s", "mu_k"), strict=True):
                 # Of three tests one may stand out.
                 self.assertEqual(cell.replace(" !", ""), self.with_errors(record, name), name)
         self.end()
@@ -360,6 +361,33 @@ class BatchPage(unittest.TestCase):
         self.assertEqual(told[3], " · ".join(f"{label} {self.with_errors(record, name)}" for name, label in (
             ("mu_s", "S"), ("mu_k", "K"), ("static_coefficient", "static"), ("kinetic_coefficient", "kinetic"))))
         self.assertGreaterEqual(float(self.page.value("getComputedStyle(document.getElementById('answer-value')).fontSize").removesuffix("px")), 48)
+
+    def test_the_batch_is_summed_up_above_its_rows_which_are_marked_and_the_first_is_above_the_fold(self):
+        self.open(config="", speed=10)
+        self.page.until("document.querySelectorAll('#tests tbody tr').length >= 1")
+        self.assertEqual(self.daemon.ask("POST", "/v1/batch", {"name": "liner 42", "grade": "kraft", "pull_speeds": ["12 in/min"], "replicates": 1000,
+                                                               "limits": {"delta_mu": {"lowest": 0.03, "highest": 0.07}}})[0], 200)
+        self.page.until("document.querySelectorAll('#tests tbody tr.own').length >= 3 && document.querySelectorAll('#tests thead tr').length === 3")
+        head, top = self.page.value("[document.getElementById('tests').tHead.getBoundingClientRect(), document.querySelector('#tests tbody tr').getBoundingClientRect()].map(r => [r.top, r.bottom])")
+        self.assertLessEqual(head[1], top[0] + 1)
+        self.assertLessEqual(top[1], 720)
+        shown = self.page.value("[...document.querySelectorAll('#tests tr')].map(r => [r.className, ...[...r.cells].slice(0, 5).map(c => c.textContent)])")
+        self.assertEqual(shown[0][1:], ["test", "sample", "grade", "speed", "replicate"])
+        self.assertRegex(shown[1][1], r"^mean, n = \d+$")
+        self.assertEqual(shown[2][1], "limits")
+        steps = {int(test["record"].split("-")[-1].removesuffix(".h5")): test for test in self.batch()["tests"]}
+        for kind, number, *place in [row for row in shown[3:] if row[1].isdigit() and int(row[1]) in steps]:
+            self.assertEqual((kind, place), ("own", ["liner 42", "kraft", "5.08 mm/s", str(steps[int(number)]["replicate"])]))
+        self.assertEqual([row for row in shown if row[1] == "1"], [["", "1", "–", "–", "–", "–"]])
+        # The summary stays where the rows are scrolled below it.
+        self.page.until("document.querySelectorAll('#tests tbody tr').length > 8")
+        above = self.page.value("(box => { box.scrollTop = 200; const head = document.getElementById('tests').tHead.getBoundingClientRect(); return [box.scrollTop, head.top - box.getBoundingClientRect().top]; })(document.getElementById('tests').parentElement)")
+        self.assertGreater(above[0], 100)
+        self.assertLess(abs(above[1]), 2)
+        self.enter("#only", " ")
+        self.page.until("[...document.querySelectorAll('#tests tbody tr')].every(r => r.classList.contains('own'))")
+        self.enter("#only", " ")
+        self.page.until("[...document.querySelectorAll('#tests tbody tr')].some(r => !r.classList.contains('own'))")
 
     def test_the_regime_of_a_running_test_is_preliminary_and_never_contradicts_the_final_one(self):
         scenes = json.dumps([str(SCENES / "ring-down-at-12-in-per-min.toml")])

@@ -100,7 +100,7 @@ class LivePage(unittest.TestCase):
         page.until("[...document.querySelectorAll('#tests tbody td:last-child')].filter(c => c.textContent.endsWith('.h5')).length >= 3")
         # The tester goes on meanwhile: what the page shows is compared with the daemon's answer about the same tests.
         for _ in range(200):
-            rows, foot, titles = page.value("[...['#tests tbody tr', '#tests tfoot tr'].map(s => [...document.querySelectorAll(s)].map(r => [...r.cells].map(c => c.textContent))), "
+            rows, foot, titles = page.value("[...['#tests tbody tr', '#tests thead tr:not(:first-child), #tests tfoot tr'].map(s => [...document.querySelectorAll(s)].map(r => [...r.cells].map(c => c.textContent))), "
                                             "[...document.querySelectorAll('#tests tbody tr')].map(r => r.cells[1].title)]")
             summary = daemon.ask("GET", "/v1/tests")[1]["summary"]
             if sorted(summary["tests"]) == sorted(int(row[0]) for row in rows):
@@ -124,11 +124,11 @@ class LivePage(unittest.TestCase):
         self.assertGreaterEqual(compared, 3 * (len(COLUMNS) - 1))
         def half_width(v):
             return student_t(len(v) - 1) * numpy.std(v, ddof=1) / numpy.sqrt(len(v))
-        self.assertEqual([row[0] for row in foot], ["by cycle", "mean", "r = 2.8 s", "95 % from", "95 % to", "lowest", "highest"])
+        self.assertEqual([row[0] for row in foot], [f"mean, n = {len(summary['tests'])}", "by cycle", "r = 2.8 s", "95 % from", "95 % to", "lowest", "highest"])
         pooled = summary["delta_mu_by_cycle"]
         at = 2 + [name for name, _ in COLUMNS].index("delta_mu")
-        self.assertEqual(foot[0][at], uncertain.text(pooled["value"], pooled["standard_error"], pooled["systematic_uncertainty"]))
-        for row, of in zip(foot[1:], (numpy.mean, lambda v: 2.8 * numpy.std(v, ddof=1), lambda v: numpy.mean(v) - half_width(v),
+        self.assertEqual(foot[1][at], uncertain.text(pooled["value"], pooled["standard_error"], pooled["systematic_uncertainty"]))
+        for row, of in zip([foot[0], *foot[2:]], (numpy.mean, lambda v: 2.8 * numpy.std(v, ddof=1), lambda v: numpy.mean(v) - half_width(v),
                                   lambda v: numpy.mean(v) + half_width(v), numpy.min, numpy.max), strict=True):
             for cell, (name, digits) in zip(row[2:], COLUMNS[:-1]):
                 self.assertAlmostEqual(float(cell), of(values[name]), delta=0.5001 * 10.0 ** -digits, msg=f"{row[0]} of {name}")
@@ -149,7 +149,7 @@ class LivePage(unittest.TestCase):
                 self.assertIn("systematic_uncertainty", record[f"entry/results/{name}"].attrs)
                 self.assertEqual(cell, uncertain.of(record, name), name)
         self.assertEqual(page.value("document.getElementById('errors').textContent"), "± standard error ± systematic part (calibration, corrections)")
-        wide = page.value("[document.documentElement.scrollWidth, innerWidth, ...(t => [t.scrollWidth, t.clientWidth])(document.querySelector('#results .table'))]")
+        wide = page.value("[document.documentElement.scrollWidth, innerWidth, ...(t => [t.scrollWidth, t.clientWidth])(document.getElementById('tests').parentElement)]")
         self.assertLessEqual(wide[0], wide[1])
         self.assertLessEqual(wide[2], wide[3])
         if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
@@ -438,12 +438,12 @@ class LivePage(unittest.TestCase):
         self.assertEqual(status, 200, begun)
         batch = begun["batch"]["id"]
         page = self.page()
-        foot = "Object.fromEntries([...document.querySelectorAll('#tests tfoot tr')].map(r => [r.cells[0].textContent, [...r.cells].map(c => c.textContent)]))"
+        foot = "Object.fromEntries([...document.querySelectorAll('#tests thead tr:not(:first-child)')].map(r => [r.cells[0].textContent.split(',')[0], [...r.cells].map(c => c.textContent)]))"
         page.until(f"({foot}).limits && ({foot}).mean")
-        self.assertEqual(page.value("document.getElementById('counted').textContent"), f"mean and limits of batch {batch}")
+        self.assertEqual(page.value("document.getElementById('counted').textContent"), f"● mean and limits of batch {batch}")
         # The scene has S − K = 0.05 and K = 0.30: one limit is kept, one missed by each test.
         limits = page.value(foot)["limits"]
-        names = ["test", "regime"] + [name for name, _ in COLUMNS]
+        names = ["test", "sample", "grade", "speed", "replicate", "regime"] + [name for name, _ in COLUMNS]
         self.assertEqual(limits[names.index("delta_mu")], "0.0300 … 0.0700 ✓ kept")
         self.assertEqual(limits[names.index("mu_k")], "≤ 0.2000 ✗ missed")
         summary = daemon.ask("GET", "/v1/tests")[1]["summary"]
@@ -469,7 +469,7 @@ class LivePage(unittest.TestCase):
         self.daemon()
         for dark in (False, True):
             page = self.page(dark=dark)
-            for width, height in ((1280, 720), (820, 1180)):
+            for width, height in ((1280, 720), (820, 1180), (390, 844)):
                 page.resize(width, height)
                 page.settle()
                 self.assertLessEqual(page.value("document.documentElement.scrollWidth"), width)
@@ -628,7 +628,7 @@ class LivePage(unittest.TestCase):
         page.tap("#batch-begin > button")
         page.until("!document.querySelector('dialog:modal')")
         self.assertEqual(daemon.ask("GET", "/v1/batch")[1]["batch"]["name"], "liner")
-        for width, height in ((820, 1180), (1280, 720)):
+        for width, height in ((820, 1180), (390, 844), (1280, 720)):
             page.resize(width, height)
             self.assertLessEqual(page.value("document.documentElement.scrollWidth"), width)
             self.fingers(page, "body", width)
