@@ -114,6 +114,12 @@
     cycle(frame) { Scope.cycle(frame); Tables.cycle(frame); Answer.cycle(frame); },
     gap(frame) { say(`gap: ${frame.scan_count} scans missing: ${frame.cause}`); },
     note() {},
+    /// What the page draws, of before it came.
+    history({frames}) {
+      const drawn = {scans(one) { Scope.scans(one); Answer.scans(one); }, fall: Scope.fall, cycle(one) { Scope.cycle(one); Tables.cycle(one); Answer.cycle(one); },
+        "test-began": Scope.began, "test-ended"(one) { Scope.ended(one); Answer.ended(one); }};
+      for (const one of frames) drawn[one.type]?.(one);
+    },
     dropped(frame) { say(`this browser was too slow for ${frame.frame_count} frames`); },
     "test-ended": frame => { Scope.ended(frame); Answer.ended(frame); attempt(refresh); },
     health(frame) {
@@ -129,7 +135,7 @@
 
   let socket = null;
   function listen() {
-    socket = new WebSocket(`ws://${location.host}/v1/live`, token() ? ["stickslip.v1", `token.${token()}`] : ["stickslip.v1"]);
+    socket = new WebSocket(`ws://${location.host}/v1/live?history=1`, token() ? ["stickslip.v1", `token.${token()}`] : ["stickslip.v1"]);
     Scope.clear();
     Answer.clear();
     socket.addEventListener("message", event => { const frame = JSON.parse(event.data); frames[frame.type]?.(frame); });

@@ -359,12 +359,13 @@ class LivePage(unittest.TestCase):
         table = "[...document.querySelectorAll('#tests tbody tr')].map(r => [...r.cells].map(c => c.textContent))"
         before = page.value(f"({{table: {table}, cycle: Scope.cycles.number.at(-1), scan: Scope.data.scan.at(-1), name: sessionStorage.getItem('name')}})")
         page.reload()
-        # The state and the table at once, the scope and its cycles from here on; without the token in the address.
+        # The state and the table at once, and the scope is full with its first frame; without the token in the address.
         page.until("document.getElementById('bench-word').textContent === 'running' && Scope.data.scan.length > 100 && Scope.cycles.number.length > 15")
         after = page.value(f"({{table: {table}, cycle: Scope.cycles.number[0], scan: Scope.data.scan[0], name: sessionStorage.getItem('name'), holder: document.getElementById('holder').textContent}})")
         self.assertEqual(after["table"], before["table"])
-        self.assertGreater(after["cycle"], before["cycle"])
-        self.assertGreater(after["scan"], before["scan"])
+        self.assertLess(after["cycle"], before["cycle"])
+        self.assertLess(after["scan"], before["scan"] - 350)  # A second and more.
+        self.assertEqual(page.value(f"Scope.data.lowest.filter((low, k) => low === null && Scope.data.scan[k] > {before['scan']}).length"), 0)
         self.assertEqual((after["name"], after["holder"]), (before["name"], "this page commands"))
         self.assertEqual(page.value("document.getElementById('regime-word').textContent"), "stick-slip")
         self.assertEqual(page.value("document.getElementById('message').textContent"), "")
