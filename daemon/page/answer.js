@@ -94,7 +94,11 @@ const Answer = (() => {
 
   return {
     bench(name) { state = name; Tables.bench(name); write(); },
-    health(status) { calibrates = status.calibration.under_way_by; this.bench(status.bench); },
+    health(status) {
+      const cycle = status.live?.latest_cycle;
+      if (cycle) Scope.level({S: cycle.mu_s, K: cycle.mu_k});
+      calibrates = status.calibration.under_way_by; this.bench(status.bench);
+    },
     /// \param told  the current batch as GET /v1/batch says it, or null.
     batch(told) { batch = told; write(); },
     /// \param list, told  of GET /v1/tests.
@@ -107,7 +111,7 @@ const Answer = (() => {
       write();
     },
     cycle(frame) { test(frame.test); running.deltas.push(frame.delta_mu); write(); },
-    ended(frame) { running = null; ended = {number: frame.test, results: frame.results}; write(); },
+    ended(frame) { running = null; ended = {number: frame.test, results: frame.results}; Scope.level({S: frame.results.mu_s, K: frame.results.mu_k}); write(); },
     /// A stream begins, perhaps of a daemon that numbers its tests from 1 again.
     clear() { running = ended = null; write(); },
     stepText,

@@ -234,7 +234,7 @@ class LivePage(unittest.TestCase):
 
     def check_cycles(self, shown, record, frames):
         """The strip, the peaks and the remark under the strip. Peaks and falls are measured once; S − K is estimated again at the end,
-        with what the whole test says of the motion: four of its standard errors."""
+        with what the whole test says of the motion, which the first cycles do not know yet: four standard errors of both."""
         cycles = {name: column[()] for name, column in record["entry/cycles"].items() if hasattr(column, "shape")}
         first = record["entry/raw/scan"][0]
         rate = float(record["entry/timing/scan_rate_granted"][()])
@@ -247,7 +247,7 @@ class LivePage(unittest.TestCase):
             self.assertAlmostEqual(amplitude, cycles["force_drop"][number] / 2, delta=1e-12)
             self.assertEqual(delta, told[number]["delta_mu"])
             if delta is not None:
-                self.assertAlmostEqual(delta, cycles["delta_mu"][number], delta=4 * cycles["delta_mu_standard_error"][number])
+                self.assertAlmostEqual(delta, cycles["delta_mu"][number], delta=4 * math.hypot(cycles["delta_mu_standard_error"][number], told[number]["delta_mu_standard_error"] or 0))
         peaks = [slip for slip in shown["slips"] if first / rate <= slip["peak_time"]]
         self.assertEqual(len(peaks), len(numbers))
         for number, slip in zip(numbers, peaks):
@@ -296,6 +296,42 @@ class LivePage(unittest.TestCase):
             self.assertGreater(len(drawn[kind]), 2, kind)
             alike = [pixel for pixel in drawn[kind] if max(abs(a - b) for a, b in zip(pixel, drawn[colour])) < 60]
             self.assertGreaterEqual(len(alike), 0.8 * len(drawn[kind]), (kind, drawn))  # One may lie on another.
+
+    def test_the_charts_stand_still_while_paused_tell_what_is_under_the_cursor_and_draw_s_and_k(self):
+        daemon = self.daemon(speed=5)
+        page = self.page()
+        page.until("document.querySelectorAll('#tests tbody tr').length >= 1 && Scope.data.scan.length > 1000")
+        ends = "[Scope.force.scales.x.max, Scope.force.data[0].length]"
+        page.click("#pause")
+        self.assertEqual(page.value("document.getElementById('pause').getAttribute('aria-pressed')"), "true")
+        still, scan = page.value(ends), page.value("Scope.data.scan.at(-1)")
+        page.until(f"Scope.data.scan.at(-1) > {scan} + 100")
+        page.settle()
+        self.assertEqual(page.value(ends)[0], still[0])
+        # The part of the middle of the chart, by its own column.
+        page.drag("#force .u-over", 0.5, 0.5)
+        told = page.value("[document.getElementById('force-at').textContent, Scope.force.cursor.idx, Scope.force.data]")
+        time, low, high = (column[told[1]] for column in told[2])
+        self.assertEqual(told[0], f"{time:.2f} s: {low:.4f}{'' if low == high else f' … {high:.4f}'} · ")
+        page.click("#pause")
+        page.until(f"Scope.force.scales.x.max > {still[0]}")
+        # Lines of S and K: those of the last test, once it has ended.
+        results = daemon.ask("GET", "/v1/tests")[1]["tests"]
+        levels = page.value("Scope.levels()")
+        self.assertAlmostEqual(levels["S"], results[-1]["results"]["mu_s"], delta=0.02)
+        self.assertAlmostEqual(levels["K"], results[-1]["results"]["mu_k"], delta=0.02)
+        drawn = page.value("""(() => {
+          const u = Scope.force, probe = document.createElement('canvas').getContext('2d'), {S, K} = Scope.levels();
+          probe.fillStyle = getComputedStyle(document.documentElement).getPropertyValue('--accent'); probe.fillRect(0, 0, 1, 1);
+          const want = [...probe.getImageData(0, 0, 1, 1).data];
+          return [S, K].map(level => {
+            const y = Math.round(u.valToPos(level, 'y', true)), pixels = u.ctx.getImageData(u.bbox.left, y - 1, u.bbox.width, 3).data;
+            let like = 0;
+            for (let k = 0; k < pixels.length; k += 4) like += Math.abs(pixels[k] - want[0]) + Math.abs(pixels[k + 1] - want[1]) + Math.abs(pixels[k + 2] - want[2]) < 60 && pixels[k + 3] > 100;
+            return like / u.bbox.width;
+          });
+        })()""")
+        self.assertTrue(all(part > 0.1 for part in drawn), drawn)
 
     def test_the_health_list_is_the_status_to_the_digits_shown(self):
         # With scans that go missing; in the world's time, by which alone the rate is measured.
