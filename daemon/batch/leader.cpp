@@ -155,6 +155,7 @@ std::optional<daemon::BatchProgress> BatchLeader::progress() const {
   const std::vector<daemon::BatchStep> planned = daemon::steps(batch->plan);
   daemon::BatchProgress progress{batch->id, batch->plan.sample.name, 0, std::ssize(planned), next(),
                                  trouble_};
+  for (const auto& [number, step] : under_way_) progress.under_way.push_back({number, step});
   for (const daemon::BatchStep& step : planned) {
     progress.done +=
         std::any_of(batch->tests.begin(), batch->tests.end(), [&](const daemon::BatchTest& test) {

@@ -12,6 +12,8 @@ namespace websocket = boost::beast::websocket;
 
 /// Longest message accepted from a client, bytes.
 constexpr std::size_t kLongestMessage = 1024;
+/// Asks for the kept frames first.
+constexpr std::string_view kWithHistory = "?history=1";
 
 class LiveConnection final : public daemon::LiveClient, public std::enable_shared_from_this<LiveConnection> {
  public:
@@ -40,6 +42,9 @@ class LiveConnection final : public daemon::LiveClient, public std::enable_share
       if (!self->service_->hub->join(self.get())) return self->say_that_it_is_full();
       self->joined_ = self;
       self->stream_.text(true);
+      const auto target = self->request_.target();
+      if (std::string_view{target.data(), target.size()}.ends_with(kWithHistory))
+        self->offer(self->service_->hub->history());
       self->read();
     });
   }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -22,12 +23,15 @@ class LiveStream {
  public:
   /// Most frames in the queue to the main thread: about six seconds. Further frames are dropped and counted.
   static constexpr int kMostOnTheWay = 128;
+  /// Frames are made for so long after the last client has left: a page that is reloaded finds no gap in the history.
+  static constexpr std::chrono::seconds kLinger{10};
 
   /// \param clock   clock of the board; outlives the stream.
   /// \param health  makes a health frame; called once a second on the main thread while there are clients.
   LiveStream(boost::asio::io_context& io, const base::Clock& clock, std::function<std::string()> health)
       : io_(io),
         timer_(io),
+        linger_(io),
         health_(std::move(health)),
         hub_([this](std::size_t count) { listeners(count); }),
         feed_(clock, [this](std::string frame) { send(std::move(frame)); }) {}
@@ -40,12 +44,21 @@ class LiveStream {
   /// Ends the stream for all clients. Main thread.
   void close() {
     timer_.cancel();
+    linger_.cancel();
     hub_.close();
   }
 
  private:
   void listeners(std::size_t count) {
-    feed_.listeners(count);
+    linger_.cancel();
+    if (count > 0) {
+      feed_.listeners(count);
+    } else {
+      linger_.expires_after(kLinger);
+      linger_.async_wait([this](boost::system::error_code error) {
+        if (!error) feed_.listeners(0);
+      });
+    }
     const bool ticks = std::exchange(ticks_, count > 0);
     if (!ticks && count > 0) tick();
   }
@@ -64,12 +77,13 @@ class LiveStream {
     }
     boost::asio::post(io_, [this, frame = std::make_shared<const std::string>(std::move(frame))] {
       on_the_way_.fetch_sub(1, std::memory_order_relaxed);
-      hub_.publish(frame);
+      hub_.publish_and_keep(frame);
     });
   }
 
   boost::asio::io_context& io_;
   boost::asio::steady_timer timer_;
+  boost::asio::steady_timer linger_;
   std::function<std::string()> health_;
   daemon::LiveHub hub_;
   LiveFeed feed_;

@@ -7,24 +7,25 @@ const Batch = (() => {
   const kWithUnit = "oscillation_frequency";  // The one result of the table that has a dimension.
   let ask = null, say = null, changed = null;
   let told = null;    // What the health said of the batch, as text.
+  let shown = null;   // The current batch.
   let done = 0;       // Tests of the batch that count.
   let chosen = null;  // The test to be void: {body, what, button}.
 
-  const stepText = step => `${step.pull_speed == null ? "" : `${Tables.speed(step.pull_speed)}, `}sheet ${step.replicate}, slide ${step.slide}`;
   const refusal = (id, error) => { part(id).textContent = error.message; };
 
   function show(batch) {
     const leads = batch != null, complete = leads && batch.next == null && batch.done === batch.planned;
     done = leads ? batch.done : 0;
     part("batch-name").textContent = leads ? `${batch.name}${batch.plan.grade ? `, ${batch.plan.grade}` : ""}: ${batch.done} of ${batch.planned} tests made` : "no batch: tests are as planned below";
-    part("batch-next").textContent = !leads ? "" : batch.next != null ? `Next: ${stepText(batch.next)}` : complete ? "All are made." : "The last is under way.";
+    shown = batch;
+    Answer.batch(batch);
     part("batch-trouble").textContent = leads && batch.trouble != null ? batch.trouble : "";
     part("batch-open").hidden = leads && !complete;
     part("batch-end").hidden = !leads;
     part("batch-tests").hidden = !leads || batch.tests.length === 0;
     const focused = document.activeElement?.id;
     part("batch-rows").replaceChildren(...(leads ? batch.tests : []).map((test, k) => {
-      const tr = Tables.row([Tables.cell(String(k + 1)), Tables.cell(stepText(test), "text"), Tables.cell(test.record, "text"),
+      const tr = Tables.row([Tables.cell(String(k + 1)), Tables.cell(Answer.stepText(test), "text"), Tables.cell(test.record, "text"),
         Tables.cell(test.voided ? `void: ${test.voided.reason}, by ${test.voided.by}` : "counts", "text"), voidCell(`batch-void-${k}`, {record: test.record}, test.record, test.voided)]);
       if (test.voided) tr.className = "void";
       return tr;
@@ -153,7 +154,14 @@ const Batch = (() => {
         say(error.message);
       }
     },
+    load,
     voidCell,
     done: () => done,
+    /// The place of a test in the current batch, {name, grade, pull_speed, replicate, slide}; undefined: it has none.
+    place(test) {
+      const file = path => path.split("/").pop();
+      const step = shown?.under_way.find(one => one.test === test.number) ?? (test.file ? shown?.tests.find(one => file(one.record) === file(test.file)) : undefined);
+      return step && {...step, name: shown.name, grade: shown.plan.grade};
+    },
   };
 })();

@@ -58,7 +58,8 @@
   async function show() {
     const made = Batch.done();  // First: of a test that ends meanwhile the table may know more, not less.
     const {tests, summary} = await ask("GET", "/v1/tests");
-    Tables.tests(tests, summary, made, (path, name) => attempt(() => download(path, name)), Batch.voidCell);
+    Answer.tests(tests, summary);
+    Tables.tests(tests, summary, made, (path, name) => attempt(() => download(path, name)), Batch.voidCell, Batch.place);
     const lease = await ask("GET", "/v1/controller");
     text("holder", lease.controller ? `${lease.controller === sessionStorage.getItem("name") ? "this page" : lease.controller} commands` : "");
   }
@@ -66,7 +67,7 @@
     await attempt(async () => {
       const done = await ask("POST", `/v1/${verb}`, body);
       say(`${verb}: test ${done.test}, scan ${done.scan}`, true);
-      Tables.bench(done.bench);
+      Answer.bench(done.bench);
       await refresh();
     });
   }
@@ -106,21 +107,27 @@
   });
 
   const frames = {
-    scans(frame) { Scope.scans(frame); Tare.scans(frame); if (frame.test != null) Tables.regime(frame.regime); },
-    bench(frame) { Tables.bench(frame.bench); Tare.bench(frame.bench); },
-    "test-began": frame => Scope.began(frame),
+    scans(frame) { Scope.scans(frame); Tare.scans(frame); Answer.scans(frame); },
+    bench(frame) { Answer.bench(frame.bench); Tare.bench(frame.bench); },
+    "test-began": frame => { Scope.began(frame); Answer.began(frame); attempt(Batch.load); },
     fall: frame => Scope.fall(frame),
-    cycle(frame) { Scope.cycle(frame); Tables.cycle(frame); },
+    cycle(frame) { Scope.cycle(frame); Tables.cycle(frame); Answer.cycle(frame); },
     gap(frame) { say(`gap: ${frame.scan_count} scans missing: ${frame.cause}`); },
     note() {},
+    /// What the page draws, of before it came.
+    history({frames}) {
+      const drawn = {scans(one) { Scope.scans(one); Answer.scans(one); }, fall: Scope.fall, cycle(one) { Scope.cycle(one); Tables.cycle(one); Answer.cycle(one); },
+        "test-began": Scope.began, "test-ended"(one) { Scope.ended(one); Answer.ended(one); }};
+      for (const one of frames) drawn[one.type]?.(one);
+    },
     dropped(frame) { say(`this browser was too slow for ${frame.frame_count} frames`); },
-    "test-ended": frame => { Scope.ended(frame); Tables.regime(frame.results.regime); attempt(refresh); },
+    "test-ended": frame => { Scope.ended(frame); Answer.ended(frame); attempt(refresh); },
     health(frame) {
       Tables.health(frame.status);
       Tare.health(frame.status);
       Calibrate.health(frame.status);
       Batch.health(frame.status);
-      Tables.bench(frame.status.bench);
+      Answer.health(frame.status);
       // Records appear a moment after their tests, and those of before the daemon began one after the other.
       if ((frame.status.latest_test && document.querySelector("#tests tbody td:last-child")?.textContent === "…") || Tables.lacks()) attempt(refresh);
     },
@@ -128,11 +135,12 @@
 
   let socket = null;
   function listen() {
-    socket = new WebSocket(`ws://${location.host}/v1/live`, token() ? ["stickslip.v1", `token.${token()}`] : ["stickslip.v1"]);
+    socket = new WebSocket(`ws://${location.host}/v1/live?history=1`, token() ? ["stickslip.v1", `token.${token()}`] : ["stickslip.v1"]);
     Scope.clear();
+    Answer.clear();
     socket.addEventListener("message", event => { const frame = JSON.parse(event.data); frames[frame.type]?.(frame); });
     socket.addEventListener("close", () => {
-      Tables.bench("not connected");
+      Answer.bench("not connected");
       Tare.gone();
       Tables.trouble("the daemon does not answer: what is shown is the past");
       setTimeout(connect, kRetry);
@@ -143,14 +151,14 @@
     try {
       const status = await ask("GET", "/v1/status");
       Tables.health(status);
-      Tables.bench(status.bench);
+      Answer.health(status);
       fillPlan(await ask("GET", "/v1/plan"));
       await refresh();
       await Batch.health(status);
       listen();
     } catch (error) {
       if (error instanceof TypeError) Tables.trouble("the daemon does not answer: what is shown is the past"); else say(error.message);
-      Tables.bench("not connected");
+      Answer.bench("not connected");
       if (document.getElementById("access").hidden) setTimeout(connect, kRetry);
     }
   }

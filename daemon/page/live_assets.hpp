@@ -11,6 +11,7 @@ namespace stickslip::page {
 [[nodiscard]] std::string_view live_js() noexcept;
 [[nodiscard]] std::string_view scope_js() noexcept;
 [[nodiscard]] std::string_view tables_js() noexcept;
+[[nodiscard]] std::string_view answer_js() noexcept;
 [[nodiscard]] std::string_view tare_js() noexcept;
 [[nodiscard]] std::string_view calibrate_js() noexcept;
 [[nodiscard]] std::string_view batch_js() noexcept;

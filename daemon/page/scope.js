@@ -3,6 +3,8 @@
 
 const Scope = (() => {
   const kWindow = 10;  // s
+  const kHeight = 0.18;  // Of the window: the first result stands above the fold.
+  const kForceHeight = 0.22;  // Below these there is one line of text, not three.
   const kMostParts = 20000;
   // One pixel of the screen: without a graphics card wider lines are drawn much more slowly.
   const kLine = 1 / devicePixelRatio;
@@ -23,14 +25,16 @@ const Scope = (() => {
   const spikes = [];  // {scan, time, value}
   const cycles = {number: [], delta: [], amplitude: []};
   let falling = null;  // {time, peak} of the latest fall; its ring goes when its cycle closes
+  let levels = null;   // {S, K} of the running or last test, drawn as lines
+  let paused = null;   // The time at the right end while the charts stand still.
   let rate = 0, speed = 1, step = 1, dirty = false, newCycles = true;
 
   const height = part => Math.round(Math.max(90, window.innerHeight * part));
-  const axes = label => [{stroke: paint("--soft"), grid: {stroke: paint("--line")}, ticks: {stroke: paint("--line")}},
+  const axes = label => [{stroke: paint("--soft"), grid: {stroke: paint("--line")}, ticks: {stroke: paint("--line")}, size: 28},
     {stroke: paint("--soft"), grid: {stroke: paint("--line")}, ticks: {stroke: paint("--line")}, size: 58, label, labelSize: 0}];
   const latest = () => (data.time.length ? data.time[data.time.length - 1] : kWindow);
   const window_s = () => kWindow * speed;
-  const xRange = () => [latest() - window_s(), latest()];
+  const xRange = () => { const end = paused ?? latest(); return [end - window_s(), end]; };
 
   function shade(u) {
     const [from, to] = xRange(), ctx = u.ctx;
@@ -71,6 +75,21 @@ const Scope = (() => {
       ctx.strokeStyle = colour("--mark");
       ctx.stroke();
     }
+    ctx.save();
+    ctx.lineWidth = devicePixelRatio;
+    ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
+    ctx.strokeStyle = ctx.fillStyle = colour("--accent");
+    ctx.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
+    ctx.textBaseline = "bottom";
+    for (const [name, level] of Object.entries(levels ?? {})) {
+      if (level == null) continue;
+      const y = u.valToPos(level, "y", true);
+      ctx.beginPath();
+      ctx.moveTo(u.bbox.left, y); ctx.lineTo(u.bbox.left + u.bbox.width, y);
+      ctx.stroke();
+      ctx.fillText(name, u.bbox.left + 2 * devicePixelRatio, y);
+    }
+    ctx.restore();
     ctx.strokeStyle = colour("--spike");
     for (const spike of spikes) {
       if (spike.time < from) continue;
@@ -82,18 +101,22 @@ const Scope = (() => {
     ctx.restore();
   }
 
-  const options = (box, part, series, more) => ({width: box.clientWidth || 600, height: height(part), legend: {show: false}, cursor: {show: false},
+  // What stands under the cursor; empty: it is elsewhere.
+  const at = (id, u, text) => { const k = u.cursor.idx; document.getElementById(id).textContent = k == null || u.cursor.left < 0 || u.data[0][k] == null ? "" : text(k); };
+  const number = (value, decimals) => (value == null ? "–" : value.toFixed(decimals));
+  const range = (low, high) => (low === high ? number(low, 4) : `${number(low, 4)} … ${number(high, 4)}`);
+  const options = (box, part, series, more) => ({width: box.clientWidth || 600, height: height(part), legend: {show: false}, cursor: {y: false, drag: {x: false, y: false}, points: {show: false}},
     scales: {x: {time: false, range: xRange}}, axes: axes(), series: [{}, ...series], ...more});
-  const force = new uPlot(options(forceBox, 0.33, [{stroke: paint("--force"), width: kLine, points: {show: false}},
-    {stroke: paint("--force"), width: kLine, points: {show: false}}], {bands: [{series: [2, 1], fill: paint("--band")}], hooks: {drawClear: [shade], draw: [marks]}}), [[], [], []], forceBox);
-  const slope = new uPlot(options(slopeBox, 0.16, [{stroke: paint("--force"), width: kLine, points: {show: false}}]), [[], []], slopeBox);
-  const strip = new uPlot({...options(deltaBox, 0.2, [{stroke: paint("--delta"), width: 0, points: {show: true, size: 6, fill: paint("--delta")}},
-    {stroke: paint("--amplitude"), width: 0, points: {show: true, size: 5, fill: paint("--amplitude")}}]),
+  const force = new uPlot(options(forceBox, kForceHeight, [{stroke: paint("--force"), width: kLine, points: {show: false}},
+    {stroke: paint("--force"), width: kLine, points: {show: false}}], {bands: [{series: [2, 1], fill: paint("--band")}], hooks: {drawClear: [shade], draw: [marks], setCursor: [u => at("force-at", u, k => `${data.time[k].toFixed(2)} s: ${range(data.lowest[k], data.highest[k])} · `)]}}), [[], [], []], forceBox);
+  const slope = new uPlot(options(slopeBox, kForceHeight, [{stroke: paint("--force"), width: kLine, points: {show: false}}], {hooks: {setCursor: [u => at("slope-at", u, k => `${data.time[k].toFixed(2)} s: ${number(data.slope[k], 2)} 1/s`)]}}), [[], []], slopeBox);
+  const strip = new uPlot({...options(deltaBox, kHeight, [{stroke: paint("--delta"), width: 0, points: {show: true, size: 6, fill: paint("--delta")}},
+    {stroke: paint("--amplitude"), width: 0, points: {show: true, size: 5, fill: paint("--amplitude")}}], {hooks: {setCursor: [u => at("delta-at", u, k => `cycle ${cycles.number[k]}: S − K ${number(cycles.delta[k], 4)}, amplitude ${number(cycles.amplitude[k], 4)}`)]}}),
     scales: {x: {time: false}, y: {range: (u, low, high) => [0, Math.max(0.01, high * 1.1 || 0)]}}}, [[], [], []], deltaBox);
 
   function draw() {
     requestAnimationFrame(draw);
-    if (!dirty) return;
+    if (!dirty || paused != null) return;
     dirty = false;
     // Where each part is one scan, lowest and highest are one line.
     if (force.series[2].show !== step > 1) force.setSeries(2, {show: step > 1});
@@ -148,9 +171,9 @@ const Scope = (() => {
     dirty = newCycles = true;
   }
   const resize = () => {
-    force.setSize({width: forceBox.clientWidth, height: height(0.33)});
-    slope.setSize({width: slopeBox.clientWidth, height: height(0.16)});
-    strip.setSize({width: deltaBox.clientWidth, height: height(0.2)});
+    force.setSize({width: forceBox.clientWidth, height: height(kForceHeight)});
+    slope.setSize({width: slopeBox.clientWidth, height: height(kForceHeight)});
+    strip.setSize({width: deltaBox.clientWidth, height: height(kHeight)});
   };
   window.addEventListener("resize", resize);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
@@ -158,5 +181,18 @@ const Scope = (() => {
     for (const chart of [force, slope, strip]) chart.redraw(false);
   });
 
-  return {scans, began, fall, cycle, ended, clear, data, slips, spikes, cycles, force};
+  /// \param own  {S, K}, or null.
+  function level(own) {
+    if (own?.S === levels?.S && own?.K === levels?.K) return;
+    levels = own;
+    dirty = true;
+  }
+  document.getElementById("pause").addEventListener("click", event => {
+    paused = paused == null ? latest() : null;
+    event.target.setAttribute("aria-pressed", String(paused != null));
+    event.target.textContent = paused == null ? "Pause" : "Go on";
+    dirty = true;
+  });
+
+  return {level, levels: () => levels, scans, began, fall, cycle, ended, clear, data, slips, spikes, cycles, force};
 })();

@@ -40,6 +40,7 @@ std::vector<Asset> assets_with(const report::ChartLibrary& charts) {
       {"/page/scope.js", kScript, text(scope_js())},
       {"/page/uncertain.js", kScript, text(report::uncertain_js())},
       {"/page/tables.js", kScript, text(tables_js())},
+      {"/page/answer.js", kScript, text(answer_js())},
       {"/page/tare.js", kScript, text(tare_js())},
       {"/page/calibrate.js", kScript, text(calibrate_js())},
       {"/page/batch.js", kScript, text(batch_js())},

@@ -44,10 +44,11 @@ const Tables = (() => {
   }
   const limitText = ({lowest, highest}, digits) => (lowest == null ? `≤ ${fixed(highest, digits)}` : highest == null ? `≥ ${fixed(lowest, digits)}` : `${fixed(lowest, digits)} … ${fixed(highest, digits)}`);
 
-  /// Of the latest test, beside its numbers; the most severe first, as they come.
+  const severities = ["fault", "warning", "note"];
+  /// Of the latest test, below its answer; the most severe first.
   function findings(test) {
-    const list = document.getElementById("findings");
-    const items = (test?.results.coded_findings ?? []).map(finding => {
+    const list = document.getElementById("findings"), rank = finding => severities.indexOf(finding.severity);
+    const items = [...(test?.results.coded_findings ?? [])].sort((a, b) => rank(a) - rank(b)).map(finding => {
       const item = document.createElement("li"), strong = document.createElement("strong"), action = document.createElement("span");
       item.className = finding.severity;
       strong.textContent = `test ${test.number}, ${finding.severity}: ${finding.text}`;
@@ -60,14 +61,21 @@ const Tables = (() => {
   }
 
   let lacking = false;
+  let again = () => {};  // Writes the table once more, of the same tests.
+  document.getElementById("only").addEventListener("change", () => again());
   /// Numbers of the foot are the daemon's (GET /v1/tests), as stickslip report computes them.
   /// \param made  how many tests of the batch count, by its journal: of those of before the daemon began the table learns by and by.
   /// \param voidCell  (id, body, what, voided) → a cell with the button of a test.
-  function tests(list, summary, made, download, voidCell) {
+  /// \param placeOf  test → its place in the batch, or undefined.
+  function tests(list, summary, made, download, voidCell, placeOf) {
+    again = () => tests(list, summary, made, download, voidCell, placeOf);
+    const leads = summary.batch != null, only = document.getElementById("only");
+    document.getElementById("only-field").hidden = !leads;
+    const places = leads ? [["sample", place => place.name], ["grade", place => place.grade ?? "–"], ["speed", place => (place.pull_speed == null ? "–" : speed(place.pull_speed))], ["replicate", place => String(place.replicate)]] : [];
+    const kept = (leads && only.checked ? list.filter(placeOf) : list).slice(-200);
     const table = document.getElementById("tests");
-    const head = ["test", "regime", ...columns.map(c => c[1]), "ended", "", "record"].map((text, k) => {
-      const th = cell(text, "th"); th.scope = "col"; if (k === 1 || k > columns.length + 1) th.className = "text"; return th; });
-    table.tHead.replaceChildren(row(head));
+    const head = ["test", ...places.map(([label]) => label), "regime", ...columns.map(c => c[1]), "ended", "", "record"].map((text, k) => {
+      const th = cell(text, "th"); th.scope = "col"; if ((k > 0 && k <= places.length + 1) || k > places.length + columns.length + 1) th.className = "text"; return th; });
     const of = new Map(summary.quantities.map(quantity => [quantity.name, quantity]));
     const limits = new Map(summary.limits.map(limit => [limit.quantity, limit]));
     const errorsOf = (test, name) => (withErrors.has(name) ? test.results.uncertainties?.[name] : undefined);
@@ -78,36 +86,43 @@ const Tables = (() => {
     };
     findings(list.at(-1));
     const focused = document.activeElement?.id;
-    table.tBodies[0].replaceChildren(...list.slice(-200).reverse().map(test => {
-      const tr = row([cell(String(test.number)), cell(test.results.regime, "text"), ...columns.map(column => value(test, column)),
-        cell(test.voided ? `void: ${test.voided.reason}` : test.cause, "text"),
+    table.tBodies[0].replaceChildren(...kept.reverse().map(test => {
+      const place = leads ? placeOf(test) : undefined, regimeCell = cell(test.results.regime, "text");
+      const tr = row([cell(String(test.number)), ...places.map(([, told]) => cell(place ? told(place) : "–", "text")), regimeCell, ...columns.map(column => value(test, column)),
+        cell(test.voided ? `void: ${test.voided.reason}` : test.cause, "text plain"),
         test.file ? voidCell(`void-${test.number}`, {test: test.number}, `test ${test.number}`, test.voided) : cell(""), recordCell(test, download)]);
+      for (const plain of [...tr.cells].slice(-2)) plain.classList.add("plain");
       const found = test.results.coded_findings;
-      if (found.length > 0) tr.cells[1].append(` · ${found[0].code}${found.length > 1 ? ` + ${found.length - 1}` : ""}`);
-      tr.cells[1].title = [`rung: ${test.results.rung}`, ...found.map(finding => finding.text)].join("\n");
-      if (test.voided) tr.className = "void";
+      if (found.length > 0) regimeCell.append(` · ${found[0].code}${found.length > 1 ? ` + ${found.length - 1}` : ""}`);
+      regimeCell.title = [`rung: ${test.results.rung}`, ...found.map(finding => finding.text)].join("\n");
+      if (test.voided) tr.classList.add("void");
+      if (place) tr.classList.add("own");
       return tr;
     }));
-    const foot = (label, pick) => row([cell(label), cell("", "text"), ...columns.map(([name, , digits]) => cell(of.has(name) ? pick(of.get(name), digits, name) : "")), cell("", "text"), cell(""), cell("", "text")]);
+    const foot = (label, pick) => row([cell(label), ...places.map(() => cell("")), cell("", "text"), ...columns.map(([name, , digits]) => cell(of.has(name) ? pick(of.get(name), digits, name) : "")), cell("", "text"), cell(""), cell("", "text")]);
     const number = key => (quantity, digits) => fixed(quantity[key], digits);
     const pooled = summary.delta_mu_by_cycle;
     const byCycle = (quantity, digits, name) => (name !== "delta_mu" || pooled.value == null ? "" : Uncertain.lines(pooled.value, pooled, digits));
-    const rows = summary.tests.length < 2 ? [] : [foot("by cycle", byCycle), foot("mean", number("mean")), foot("r = 2.8 s", number("repeatability")), foot("95 % from", number("mean_low")),
+    const known = summary.tests.length;
+    // Its n where that is another than the number of tests.
+    const mean = (quantity, digits) => { const text = number("mean")(quantity, digits), few = document.createElement("span"); few.className = "errors"; few.textContent = `n = ${quantity.count}`; return quantity.count === known ? text : [`${text} `, few]; };
+    const top = known < 2 ? [] : [foot(`mean, n = ${known}`, mean)];
+    const rows = known < 2 ? [] : [foot("by cycle", byCycle), foot("r = 2.8 s", number("repeatability")), foot("95 % from", number("mean_low")),
       foot("95 % to", number("mean_high")), foot("lowest", number("lowest")), foot("highest", number("highest"))];
     if (summary.limits.length > 0 && summary.tests.length > 0) {
       const verdict = limit => `${limitText(limit, 4)} ${limit.passes ? "✓ kept" : "✗ missed"}`;
-      rows.push(row([cell("limits"), cell("", "text"), ...columns.map(([name]) => cell(limits.has(name) ? verdict(limits.get(name)) : "", limits.get(name)?.passes === false ? "outside" : undefined)), cell("", "text"), cell(""), cell("", "text")]));
+      top.push(row([cell("limits"), ...places.map(() => cell("")), cell("", "text"), ...columns.map(([name]) => cell(limits.has(name) ? verdict(limits.get(name)) : "", limits.get(name)?.passes === false ? "outside" : undefined)), cell("", "text"), cell(""), cell("", "text")]));
     }
+    table.tHead.replaceChildren(row(head), ...top);
     table.tFoot.replaceChildren(...rows);
     if (/^(void|record)-\d+$/.test(focused ?? "")) document.getElementById(focused)?.focus();
     const far = summary.quantities.some(quantity => quantity.outlier_test != null);
-    const known = summary.tests.length;
     lacking = known < made;
     const ofBatch = lacking ? `${known} of the ${made} tests made of batch ${summary.batch}: the records of the others have not been read` :
       `batch ${summary.batch}`;
     document.getElementById("errors").textContent = Uncertain.legend([[pooled.value, pooled],
-      ...list.slice(-200).flatMap(test => [...withErrors].map(name => [test.results[name], errorsOf(test, name)]))]);
-    document.getElementById("counted").textContent = [summary.batch == null ? "" : `mean and limits of ${ofBatch}`,
+      ...kept.flatMap(test => [...withErrors].map(name => [test.results[name], errorsOf(test, name)]))]);
+    document.getElementById("counted").textContent = [leads ? `● mean and limits of ${ofBatch}` : "",
       far ? "! stands out (Grubbs' test, 5 %) and counts all the same" : ""].filter(text => text !== "").join(" · ");
   }
 
@@ -172,5 +187,5 @@ const Tables = (() => {
   /// Asks where the sled of the bench is outside what a tester has.
   const sledMeant = async doing => sled == null || confirm("Is this the sled?", `${sled}. Every coefficient is divided by its weight. Correct sled_mass under [tester] in the configuration, or go on.`, [], doing);
 
-  return {confirm, sledMeant, terms, cell, row, speed, bench, regime, trouble, tests, lacks: () => lacking, health, cycle, columns};
+  return {confirm, sledMeant, terms, cell, row, speed, badge, bench, regime, trouble, tests, lacks: () => lacking, health, cycle, columns};
 })();

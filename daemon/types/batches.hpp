@@ -7,11 +7,18 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/base/result.hpp"
 #include "daemon/types/batch.hpp"
 
 namespace stickslip::daemon {
+
+/// A test of the batch whose record is not published yet: it runs, or its record is being written.
+struct StepUnderWay {
+  std::int64_t test = 0;
+  BatchStep step;
+};
 
 /// Progress of the current batch.
 struct BatchProgress {
@@ -21,6 +28,7 @@ struct BatchProgress {
   std::int64_t planned = 0;
   std::optional<BatchStep> next;  ///< Absent: every step has its test.
   std::string trouble;            ///< Why the journal could not be written or read; empty: all is well.
+  std::vector<StepUnderWay> under_way = {};  ///< By number of the test.
 };
 
 /// Main thread. Changes are written to the journal by another thread; none of the functions waits for it.

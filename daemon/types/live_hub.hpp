@@ -64,6 +64,8 @@ class LiveClient {
 class LiveHub {
  public:
   static constexpr std::size_t kMostClients = 24;
+  /// Frames that are kept: at 20 slips a second 17 s of scans, falls and cycles; the page draws 10 s.
+  static constexpr std::size_t kMostKept = 1024;
 
   /// \param changed  called with the number of clients when it changes.
   explicit LiveHub(std::function<void(std::size_t)> changed = {}) : changed_(std::move(changed)) {}
@@ -82,6 +84,21 @@ class LiveHub {
   void publish(const LiveFrame& frame) {
     for (LiveClient* client : clients_) dropped_ += client->offer(frame);
   }
+  /// Publishes a frame and keeps it for history().
+  void publish_and_keep(const LiveFrame& frame) {
+    if (kept_.size() == kMostKept) kept_.pop_front();
+    kept_.push_back(frame);
+    publish(frame);
+  }
+  /// The kept frames, oldest first, as one: {"type":"history","frames":[…]}.
+  [[nodiscard]] LiveFrame history() const {
+    std::string text = R"({"type":"history","frames":[)";
+    for (const LiveFrame& frame : kept_) {
+      if (text.back() != '[') text += ',';
+      text += *frame;
+    }
+    return std::make_shared<const std::string>(text + "]}");
+  }
   void close() {
     // Clients leave while they are closed, so a copy is iterated.
     for (LiveClient* client : std::set<LiveClient*>{clients_}) client->close();
@@ -92,6 +109,7 @@ class LiveHub {
  private:
   std::function<void(std::size_t)> changed_;
   std::set<LiveClient*> clients_;
+  std::deque<LiveFrame> kept_;
   std::uint64_t dropped_ = 0;
 };
 

@@ -144,12 +144,19 @@ std::string health_frame(const Status& status) {
 
 Json progress_json(const std::optional<BatchProgress>& progress) {
   if (!progress) return nullptr;
+  Json under_way = Json::array();
+  for (const StepUnderWay& one : progress->under_way) {
+    Json json{{"test", one.test}};
+    json.update(step_json(one.step));
+    under_way.push_back(std::move(json));
+  }
   return {{"id", progress->id},
           {"name", progress->name},
           {"done", progress->done},
           {"planned", progress->planned},
           {"next", progress->next ? step_json(*progress->next) : Json(nullptr)},
-          {"trouble", progress->trouble.empty() ? Json(nullptr) : Json(progress->trouble)}};
+          {"trouble", progress->trouble.empty() ? Json(nullptr) : Json(progress->trouble)},
+          {"under_way", std::move(under_way)}};
 }
 
 Json status_json(const Status& status) {

@@ -77,7 +77,8 @@ struct Status {
 [[nodiscard]] nlohmann::ordered_json status_json(const Status& status);
 /// A test as JSON. \param with_details  adds units, uncertainties and reasons of all results.
 [[nodiscard]] nlohmann::ordered_json test_json(const TestSummary& test, bool with_details);
-/// {"id": …, "name": …, "done": 3, "planned": 10, "next": {…}, "trouble": null}, or null.
+/// {"id": …, "name": …, "done": 3, "planned": 10, "next": {…}, "trouble": null,
+/// "under_way": [{"test": 4, …}]}, or null.
 [[nodiscard]] nlohmann::ordered_json progress_json(const std::optional<BatchProgress>& progress);
 /// A frame of the live stream: {"type": "health", "status": …}.
 [[nodiscard]] std::string health_frame(const Status& status);

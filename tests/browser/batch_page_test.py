@@ -32,6 +32,8 @@ CHROMIUM = shutil.which(sys.argv[2])
 SOURCE = pathlib.Path(sys.argv[3]).resolve()
 
 MESSAGE = "document.getElementById('message').textContent"
+FINISHED = "Now: the batch is finished, all 4 tests are made"
+OF_BATCH = 4  # Columns that the table of tests has more while there is a batch: sample, grade, speed, replicate.
 SCENES = SOURCE / "config" / "scenes"
 
 
@@ -156,11 +158,11 @@ class BatchPage(unittest.TestCase):
         asked = [(batch["id"], "liner 42", speed, 1, slide) for speed in (0.00254, 0.00508) for slide in (1, 2)]
         records = []
         for at, wanted in enumerate(asked):
-            self.assertEqual(self.text("batch-next"), f"Next: {self.step(self.batch()['next'])}")
+            self.page.until(f"document.getElementById('next').textContent.includes('{self.step(self.batch()['next'])}')")
             self.assertEqual(self.text("batch-name"), f"liner 42, kraft: {at} of 4 tests made")
             records.append(self.measure())
             self.assertEqual(self.facts(records[-1]), wanted)
-        self.assertEqual(self.text("batch-next"), "All are made.")
+        self.page.until(f"document.getElementById('now').textContent === '{FINISHED}'")
         # Torn: it is struck out, says why, counts in no number, and is asked for again.
         self.enter("#void-2")
         self.page.type("paper torn")
@@ -169,12 +171,12 @@ class BatchPage(unittest.TestCase):
         self.assertIn("void: paper torn", self.row(2))
         self.page.until("document.activeElement.id === 'void-2'")
         self.assertIn("line-through", self.page.value("getComputedStyle(document.querySelector('#tests tr.void td')).textDecorationLine"))
-        self.assertEqual(self.text("batch-next"), "Next: 2.54 mm/s, sheet 1, slide 2")
+        self.assertEqual(self.text("next"), "Next: 2.54 mm/s, sheet 1, slide 2: leave the sheet on, then Arm or Start")
         self.assertIn("3 of 4", self.text("batch-name"))
         # Voided by mistake, and then again.
         self.enter("#void-2")
         self.page.until("!document.querySelector('#tests tr.void')")
-        self.assertEqual(self.text("batch-next"), "All are made.")
+        self.page.until(f"document.getElementById('now').textContent === '{FINISHED}'")
         self.enter("#void-2")
         self.page.type("paper torn")
         self.page.press("Enter")
@@ -183,11 +185,11 @@ class BatchPage(unittest.TestCase):
         records.append(self.measure())
         self.assertEqual(self.facts(records[-1]), asked[1])
         self.assertEqual(records[1].read_bytes(), untouched)
-        self.page.until("document.getElementById('batch-next').textContent === 'All are made.'")
+        self.page.until(f"document.getElementById('now').textContent === '{FINISHED}'")
         counted = [records[0], *records[2:]]
-        self.page.until("document.querySelectorAll('#tests tfoot tr').length >= 7")
-        mean = self.page.value("[...document.querySelector('#tests tfoot tr:nth-child(2)').cells].map(c => c.textContent)")
-        for cell, name in zip(mean[2:], ("delta_mu", "mu_s", "mu_k"), strict=False):
+        self.page.until("document.querySelectorAll('#tests tfoot tr').length >= 6")
+        mean = self.page.value("[...document.querySelector('#tests thead tr:nth-child(2)').cells].map(c => c.textContent)")
+        for cell, name in zip(mean[OF_BATCH + 2:], ("delta_mu", "mu_s", "mu_k"), strict=False):
             self.assertAlmostEqual(float(cell), self.results(counted, name).mean(), delta=0.5001e-4, msg=name)
         # The tests of the batch, as the daemon lists them.
         self.page.value("document.getElementById('batch-tests').open = true")
@@ -204,9 +206,9 @@ class BatchPage(unittest.TestCase):
         # The scene has S - K 0.05 and K 0.3.
         self.page.until("document.querySelectorAll('#tests tbody td.outside').length === 2")
         outside = self.page.value("[...document.querySelectorAll('#tests tbody td.outside')].map(c => [c.cellIndex, c.textContent])")
-        self.assertEqual([(column, " ✗" in text) for column, text in outside], [(4, True), (4, True)])
-        limits = self.page.value("[...document.querySelectorAll('#tests tfoot tr')].map(r => [...r.cells].map(c => c.textContent)).find(r => r[0].startsWith('limits'))")
-        self.assertEqual(limits[2:5], ["0.0300 … 0.0700 ✓ kept", "", "≤ 0.2000 ✗ missed"])
+        self.assertEqual([(column, " ✗" in text) for column, text in outside], 2 * [(OF_BATCH + 4, True)])
+        limits = self.page.value("[...document.querySelectorAll('#tests thead tr')].map(r => [...r.cells].map(c => c.textContent)).find(r => r[0].startsWith('limits'))")
+        self.assertEqual(limits[OF_BATCH + 2:OF_BATCH + 5], ["0.0300 … 0.0700 ✓ kept", "", "≤ 0.2000 ✗ missed"])
         self.end()
         self.assertEqual(self.batch(), None)
         self.report(batch["id"], counted, records[1])
@@ -283,7 +285,8 @@ class BatchPage(unittest.TestCase):
         self.page.type("sled askew")
         self.page.press("Enter")
         self.page.until("document.querySelector('#tests tr.void #void-2') && document.querySelector('#batch-rows tr.void')")
-        shown = """({name: document.getElementById('batch-name').textContent, next: document.getElementById('batch-next').textContent,
+        self.assertEqual(self.text("verdict").strip(), "void: sled askew")
+        shown = """({name: document.getElementById('batch-name').textContent, answer: document.getElementById('answer').textContent,
           rows: [...document.querySelectorAll('#batch-rows tr')].map(r => [...r.cells].map(c => c.textContent)),
           tests: [...document.querySelectorAll('#tests tbody tr')].map(r => [...r.cells].map(c => c.textContent))})"""
         before = self.page.value(shown)
@@ -299,29 +302,107 @@ class BatchPage(unittest.TestCase):
         # The scope begins anew when all else has been asked for.
         self.page.until("document.getElementById('trouble').hidden && document.getElementById('bench-word').textContent === 'idle' && Scope.slips.length === 0 && Scope.data.scan.length > 0")
         after = self.page.value(shown)
-        for name in ("name", "next", "rows"):
+        for name in ("name", "rows"):
             self.assertEqual(after[name], before[name], name)
         # The tests of before are read from their records; mean and limits are of all of them again.
         self.page.until("document.querySelectorAll('#tests tbody tr').length >= 2 && !Tables.lacks()")
         after = self.page.value(shown)
         own = [row for row in after["tests"] if int(row[0]) > 2]
         self.assertEqual(after["tests"][len(own):], before["tests"])
-        self.assertEqual(self.text("counted"), f"mean and limits of batch {batch['id']}")
+        self.assertEqual(self.text("counted"), f"● mean and limits of batch {batch['id']}")
         # It goes on where it was, and ends with the sheets that were planned.
         records += [self.measure(), self.measure()]
         self.assertEqual([self.facts(record)[0] for record in records], 4 * [batch["id"]])
         self.assertEqual([self.facts(record)[3] for record in records], [1, 2, 2, 3])
-        self.page.until("document.getElementById('batch-next').textContent === 'All are made.'")
+        self.page.until("document.getElementById('now').textContent.startsWith('Now: the batch is finished')")
         self.assertEqual(self.text("batch-name"), "liner 44, kraft: 3 of 3 tests made")
         after = self.page.value(shown)
         self.assertEqual(after["rows"][:2], before["rows"])
         self.assertEqual([row[2] for row in after["rows"]], [record.name for record in records])
         for row, record in zip(after["tests"], reversed(records), strict=False):
             self.assertEqual(row[-1], record.name)
-            for cell, name in zip(row[2:5], ("delta_mu", "mu_s", "mu_k"), strict=True):
+            for cell, name in zip(row[OF_BATCH + 2:OF_BATCH + 5], ("delta_mu", "mu_s", "mu_k"), strict=True):
                 # Of three tests one may stand out.
                 self.assertEqual(cell.replace(" !", ""), self.with_errors(record, name), name)
         self.end()
+
+    # Each text of the band, whenever one changes, beside the state of the bench.
+    BAND = """(() => { window.band = []; const texts = () => ['bench-word', 'now', 'next', 'answer-test', 'regime-word', 'verdict', 'answer-value', 'answer-errors', 'answer-more'].map(id => document.getElementById(id).checkVisibility() ? document.getElementById(id).textContent : '');
+      new MutationObserver(() => window.band.push(texts())).observe(document.getElementById('band'), {childList: true, characterData: true, subtree: true, attributes: true}); })()"""
+
+    def test_now_and_next_are_right_at_every_moment_of_a_batch(self):
+        times = {"idle": "6 s", "pull": "5 s", "rest": "1 s"}  # The verdict comes up to a second after a test.
+        self.open(config="", speed=3, times=times)
+        self.page.value(self.BAND)
+        self.begin(name="liner", replicates="3", slides="1", **{"delta_mu.lowest": "0.03", "mu_k.highest": "0.2"})
+        self.page.until("document.getElementById('now').textContent === 'Now: the batch is finished, all 3 tests are made'")
+        tests = [test["record"] for test in self.batch()["tests"]]
+        sheet = {int(record.split("-")[-1].removesuffix(".h5")): at + 1 for at, record in enumerate(tests)}
+        title = f"Test {max(sheet)}:"
+        self.page.until(f"window.band.some(texts => texts[3] === '{title}' && texts[5] !== '' && texts[5].trim() !== 'limits not judged yet')")
+        log = self.page.value("window.band")
+        seen = {(bench, now, following) for bench, now, following, *_ in log}
+        measuring = sorted((test, sheet[test]) for test in sheet)
+        for test, own in measuring:
+            now = f"Now: test {test}, sheet {own}, slide 1: measuring"
+            following = {after for _, said, after in seen if said == now}
+            # Before the daemon has told what comes after this test, nothing is said of it.
+            wanted = f"Next: let it pull to its end, then sheet {own + 1}, slide 1" if own < 3 else "Next: let it pull to its end; it is the last of the batch"
+            self.assertIn(wanted, following, seen)
+            self.assertLessEqual(following, {wanted, "Next: let it pull to its end"}, now)
+            if own > 1:
+                self.assertIn(("armed", "Now: waiting for a pull", f"Next: sheet {own}, slide 1: lay on the sheet and pull"), seen)
+        self.assertIn("Next: show the report, or end the batch", {after for _, said, after in seen if said.startswith("Now: the batch is finished")})
+        # The answer of the last test, in text that can be read from afar, with the daemon's verdict; K is above its limit.
+        record = self.records / tests[-1]
+        told = [texts[5:] for texts in log if texts[0] != "running" and texts[3] == title][-1]
+        self.assertEqual(told[0].strip(), "outside limits: K")
+        self.assertEqual(f"{told[1]} {told[2]}".strip(), self.with_errors(record, "delta_mu"))
+        self.assertEqual(told[3], " · ".join(f"{label} {self.with_errors(record, name)}" for name, label in (
+            ("mu_s", "S"), ("mu_k", "K"), ("static_coefficient", "static"), ("kinetic_coefficient", "kinetic"))))
+        self.assertGreaterEqual(float(self.page.value("getComputedStyle(document.getElementById('answer-value')).fontSize").removesuffix("px")), 48)
+
+    def test_the_batch_is_summed_up_above_its_rows_which_are_marked_and_the_first_is_above_the_fold(self):
+        self.open(config="", speed=10)
+        self.page.until("document.querySelectorAll('#tests tbody tr').length >= 1")
+        self.assertEqual(self.daemon.ask("POST", "/v1/batch", {"name": "liner 42", "grade": "kraft", "pull_speeds": ["12 in/min"], "replicates": 1000,
+                                                               "limits": {"delta_mu": {"lowest": 0.03, "highest": 0.07}}})[0], 200)
+        self.page.until("document.querySelectorAll('#tests tbody tr.own').length >= 3 && document.querySelectorAll('#tests thead tr').length === 3")
+        head, top = self.page.value("[document.getElementById('tests').tHead.getBoundingClientRect(), document.querySelector('#tests tbody tr').getBoundingClientRect()].map(r => [r.top, r.bottom])")
+        self.assertLessEqual(head[1], top[0] + 1)
+        self.assertLessEqual(top[1], 720)
+        shown = self.page.value("[...document.querySelectorAll('#tests tr')].map(r => [r.className, ...[...r.cells].slice(0, 5).map(c => c.textContent)])")
+        self.assertEqual(shown[0][1:], ["test", "sample", "grade", "speed", "replicate"])
+        self.assertRegex(shown[1][1], r"^mean, n = \d+$")
+        self.assertEqual(shown[2][1], "limits")
+        steps = {int(test["record"].split("-")[-1].removesuffix(".h5")): test for test in self.batch()["tests"]}
+        for kind, number, *place in [row for row in shown[3:] if row[1].isdigit() and int(row[1]) in steps]:
+            self.assertEqual((kind, place), ("own", ["liner 42", "kraft", "5.08 mm/s", str(steps[int(number)]["replicate"])]))
+        self.assertEqual([row for row in shown if row[1] == "1"], [["", "1", "–", "–", "–", "–"]])
+        # The summary stays where the rows are scrolled below it.
+        self.page.until("document.querySelectorAll('#tests tbody tr').length > 8")
+        above = self.page.value("(box => { box.scrollTop = 200; const head = document.getElementById('tests').tHead.getBoundingClientRect(); return [box.scrollTop, head.top - box.getBoundingClientRect().top]; })(document.getElementById('tests').parentElement)")
+        self.assertGreater(above[0], 100)
+        self.assertLess(abs(above[1]), 2)
+        self.enter("#only", " ")
+        self.page.until("[...document.querySelectorAll('#tests tbody tr')].every(r => r.classList.contains('own'))")
+        self.enter("#only", " ")
+        self.page.until("[...document.querySelectorAll('#tests tbody tr')].some(r => !r.classList.contains('own'))")
+
+    def test_the_regime_of_a_running_test_is_preliminary_and_never_contradicts_the_final_one(self):
+        scenes = json.dumps([str(SCENES / "ring-down-at-12-in-per-min.toml")])
+        self.open(config="", board=f'[board]\ndriver = "simulated"\nclock_speed = 5\n[board.simulated]\nscenes = {scenes}\nrepeats = 0\n')
+        self.page.value(self.BAND)
+        self.page.until("document.querySelectorAll('#tests tbody tr').length >= 2")
+        regimes = dict(self.page.value("[...document.querySelectorAll('#tests tbody tr')].map(r => [r.cells[0].textContent, r.cells[1].textContent.split(' · ')[0]])"))
+        told = {(title, regime) for _, _, _, title, regime, *_ in self.page.value("window.band")}
+        self.assertEqual(set(regimes.values()), {"ring-down"})
+        self.assertTrue(any("preliminary" in title and regime == "ring-down" for title, regime in told), told)
+        self.assertEqual([one for one in told if one[1] == "steady-sliding"], [])
+        self.assertTrue(any(title.removeprefix("Test ").removesuffix(":") in regimes for title, _ in told))
+        for title, regime in told:
+            if (number := title.removeprefix("Test ").removesuffix(":")) in regimes:
+                self.assertEqual(regime, regimes[number], title)
 
     def test_what_is_refused_is_told_where_it_was_asked(self):
         self.open()

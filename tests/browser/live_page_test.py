@@ -100,7 +100,7 @@ class LivePage(unittest.TestCase):
         page.until("[...document.querySelectorAll('#tests tbody td:last-child')].filter(c => c.textContent.endsWith('.h5')).length >= 3")
         # The tester goes on meanwhile: what the page shows is compared with the daemon's answer about the same tests.
         for _ in range(200):
-            rows, foot, titles = page.value("[...['#tests tbody tr', '#tests tfoot tr'].map(s => [...document.querySelectorAll(s)].map(r => [...r.cells].map(c => c.textContent))), "
+            rows, foot, titles = page.value("[...['#tests tbody tr', '#tests thead tr:not(:first-child), #tests tfoot tr'].map(s => [...document.querySelectorAll(s)].map(r => [...r.cells].map(c => c.textContent))), "
                                             "[...document.querySelectorAll('#tests tbody tr')].map(r => r.cells[1].title)]")
             summary = daemon.ask("GET", "/v1/tests")[1]["summary"]
             if sorted(summary["tests"]) == sorted(int(row[0]) for row in rows):
@@ -124,11 +124,11 @@ class LivePage(unittest.TestCase):
         self.assertGreaterEqual(compared, 3 * (len(COLUMNS) - 1))
         def half_width(v):
             return student_t(len(v) - 1) * numpy.std(v, ddof=1) / numpy.sqrt(len(v))
-        self.assertEqual([row[0] for row in foot], ["by cycle", "mean", "r = 2.8 s", "95 % from", "95 % to", "lowest", "highest"])
+        self.assertEqual([row[0] for row in foot], [f"mean, n = {len(summary['tests'])}", "by cycle", "r = 2.8 s", "95 % from", "95 % to", "lowest", "highest"])
         pooled = summary["delta_mu_by_cycle"]
         at = 2 + [name for name, _ in COLUMNS].index("delta_mu")
-        self.assertEqual(foot[0][at], uncertain.text(pooled["value"], pooled["standard_error"], pooled["systematic_uncertainty"]))
-        for row, of in zip(foot[1:], (numpy.mean, lambda v: 2.8 * numpy.std(v, ddof=1), lambda v: numpy.mean(v) - half_width(v),
+        self.assertEqual(foot[1][at], uncertain.text(pooled["value"], pooled["standard_error"], pooled["systematic_uncertainty"]))
+        for row, of in zip([foot[0], *foot[2:]], (numpy.mean, lambda v: 2.8 * numpy.std(v, ddof=1), lambda v: numpy.mean(v) - half_width(v),
                                   lambda v: numpy.mean(v) + half_width(v), numpy.min, numpy.max), strict=True):
             for cell, (name, digits) in zip(row[2:], COLUMNS[:-1]):
                 self.assertAlmostEqual(float(cell), of(values[name]), delta=0.5001 * 10.0 ** -digits, msg=f"{row[0]} of {name}")
@@ -149,7 +149,7 @@ class LivePage(unittest.TestCase):
                 self.assertIn("systematic_uncertainty", record[f"entry/results/{name}"].attrs)
                 self.assertEqual(cell, uncertain.of(record, name), name)
         self.assertEqual(page.value("document.getElementById('errors').textContent"), "± standard error ± systematic part (calibration, corrections)")
-        wide = page.value("[document.documentElement.scrollWidth, innerWidth, ...(t => [t.scrollWidth, t.clientWidth])(document.querySelector('#results .table'))]")
+        wide = page.value("[document.documentElement.scrollWidth, innerWidth, ...(t => [t.scrollWidth, t.clientWidth])(document.getElementById('tests').parentElement)]")
         self.assertLessEqual(wide[0], wide[1])
         self.assertLessEqual(wide[2], wide[3])
         if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
@@ -234,7 +234,7 @@ class LivePage(unittest.TestCase):
 
     def check_cycles(self, shown, record, frames):
         """The strip, the peaks and the remark under the strip. Peaks and falls are measured once; S − K is estimated again at the end,
-        with what the whole test says of the motion: four of its standard errors."""
+        with what the whole test says of the motion, which the first cycles do not know yet: four standard errors of both."""
         cycles = {name: column[()] for name, column in record["entry/cycles"].items() if hasattr(column, "shape")}
         first = record["entry/raw/scan"][0]
         rate = float(record["entry/timing/scan_rate_granted"][()])
@@ -247,7 +247,7 @@ class LivePage(unittest.TestCase):
             self.assertAlmostEqual(amplitude, cycles["force_drop"][number] / 2, delta=1e-12)
             self.assertEqual(delta, told[number]["delta_mu"])
             if delta is not None:
-                self.assertAlmostEqual(delta, cycles["delta_mu"][number], delta=4 * cycles["delta_mu_standard_error"][number])
+                self.assertAlmostEqual(delta, cycles["delta_mu"][number], delta=4 * math.hypot(cycles["delta_mu_standard_error"][number], told[number]["delta_mu_standard_error"] or 0))
         peaks = [slip for slip in shown["slips"] if first / rate <= slip["peak_time"]]
         self.assertEqual(len(peaks), len(numbers))
         for number, slip in zip(numbers, peaks):
@@ -296,6 +296,42 @@ class LivePage(unittest.TestCase):
             self.assertGreater(len(drawn[kind]), 2, kind)
             alike = [pixel for pixel in drawn[kind] if max(abs(a - b) for a, b in zip(pixel, drawn[colour])) < 60]
             self.assertGreaterEqual(len(alike), 0.8 * len(drawn[kind]), (kind, drawn))  # One may lie on another.
+
+    def test_the_charts_stand_still_while_paused_tell_what_is_under_the_cursor_and_draw_s_and_k(self):
+        daemon = self.daemon(speed=5)
+        page = self.page()
+        page.until("document.querySelectorAll('#tests tbody tr').length >= 1 && Scope.data.scan.length > 1000")
+        ends = "[Scope.force.scales.x.max, Scope.force.data[0].length]"
+        page.click("#pause")
+        self.assertEqual(page.value("document.getElementById('pause').getAttribute('aria-pressed')"), "true")
+        still, scan = page.value(ends), page.value("Scope.data.scan.at(-1)")
+        page.until(f"Scope.data.scan.at(-1) > {scan} + 100")
+        page.settle()
+        self.assertEqual(page.value(ends)[0], still[0])
+        # The part of the middle of the chart, by its own column.
+        page.drag("#force .u-over", 0.5, 0.5)
+        told = page.value("[document.getElementById('force-at').textContent, Scope.force.cursor.idx, Scope.force.data]")
+        time, low, high = (column[told[1]] for column in told[2])
+        self.assertEqual(told[0], f"{time:.2f} s: {low:.4f}{'' if low == high else f' … {high:.4f}'} · ")
+        page.click("#pause")
+        page.until(f"Scope.force.scales.x.max > {still[0]}")
+        # Lines of S and K: those of the last test, once it has ended.
+        results = daemon.ask("GET", "/v1/tests")[1]["tests"]
+        levels = page.value("Scope.levels()")
+        self.assertAlmostEqual(levels["S"], results[-1]["results"]["mu_s"], delta=0.02)
+        self.assertAlmostEqual(levels["K"], results[-1]["results"]["mu_k"], delta=0.02)
+        drawn = page.value("""(() => {
+          const u = Scope.force, probe = document.createElement('canvas').getContext('2d'), {S, K} = Scope.levels();
+          probe.fillStyle = getComputedStyle(document.documentElement).getPropertyValue('--accent'); probe.fillRect(0, 0, 1, 1);
+          const want = [...probe.getImageData(0, 0, 1, 1).data];
+          return [S, K].map(level => {
+            const y = Math.round(u.valToPos(level, 'y', true)), pixels = u.ctx.getImageData(u.bbox.left, y - 1, u.bbox.width, 3).data;
+            let like = 0;
+            for (let k = 0; k < pixels.length; k += 4) like += Math.abs(pixels[k] - want[0]) + Math.abs(pixels[k + 1] - want[1]) + Math.abs(pixels[k + 2] - want[2]) < 60 && pixels[k + 3] > 100;
+            return like / u.bbox.width;
+          });
+        })()""")
+        self.assertTrue(all(part > 0.1 for part in drawn), drawn)
 
     def test_the_health_list_is_the_status_to_the_digits_shown(self):
         # With scans that go missing; in the world's time, by which alone the rate is measured.
@@ -359,12 +395,13 @@ class LivePage(unittest.TestCase):
         table = "[...document.querySelectorAll('#tests tbody tr')].map(r => [...r.cells].map(c => c.textContent))"
         before = page.value(f"({{table: {table}, cycle: Scope.cycles.number.at(-1), scan: Scope.data.scan.at(-1), name: sessionStorage.getItem('name')}})")
         page.reload()
-        # The state and the table at once, the scope and its cycles from here on; without the token in the address.
+        # The state and the table at once, and the scope is full with its first frame; without the token in the address.
         page.until("document.getElementById('bench-word').textContent === 'running' && Scope.data.scan.length > 100 && Scope.cycles.number.length > 15")
         after = page.value(f"({{table: {table}, cycle: Scope.cycles.number[0], scan: Scope.data.scan[0], name: sessionStorage.getItem('name'), holder: document.getElementById('holder').textContent}})")
         self.assertEqual(after["table"], before["table"])
-        self.assertGreater(after["cycle"], before["cycle"])
-        self.assertGreater(after["scan"], before["scan"])
+        self.assertLess(after["cycle"], before["cycle"])
+        self.assertLess(after["scan"], before["scan"] - 350)  # A second and more.
+        self.assertEqual(page.value(f"Scope.data.lowest.filter((low, k) => low === null && Scope.data.scan[k] > {before['scan']}).length"), 0)
         self.assertEqual((after["name"], after["holder"]), (before["name"], "this page commands"))
         self.assertEqual(page.value("document.getElementById('regime-word').textContent"), "stick-slip")
         self.assertEqual(page.value("document.getElementById('message').textContent"), "")
@@ -438,12 +475,12 @@ class LivePage(unittest.TestCase):
         self.assertEqual(status, 200, begun)
         batch = begun["batch"]["id"]
         page = self.page()
-        foot = "Object.fromEntries([...document.querySelectorAll('#tests tfoot tr')].map(r => [r.cells[0].textContent, [...r.cells].map(c => c.textContent)]))"
+        foot = "Object.fromEntries([...document.querySelectorAll('#tests thead tr:not(:first-child)')].map(r => [r.cells[0].textContent.split(',')[0], [...r.cells].map(c => c.textContent)]))"
         page.until(f"({foot}).limits && ({foot}).mean")
-        self.assertEqual(page.value("document.getElementById('counted').textContent"), f"mean and limits of batch {batch}")
+        self.assertEqual(page.value("document.getElementById('counted').textContent"), f"● mean and limits of batch {batch}")
         # The scene has S − K = 0.05 and K = 0.30: one limit is kept, one missed by each test.
         limits = page.value(foot)["limits"]
-        names = ["test", "regime"] + [name for name, _ in COLUMNS]
+        names = ["test", "sample", "grade", "speed", "replicate", "regime"] + [name for name, _ in COLUMNS]
         self.assertEqual(limits[names.index("delta_mu")], "0.0300 … 0.0700 ✓ kept")
         self.assertEqual(limits[names.index("mu_k")], "≤ 0.2000 ✗ missed")
         summary = daemon.ask("GET", "/v1/tests")[1]["summary"]
@@ -469,7 +506,7 @@ class LivePage(unittest.TestCase):
         self.daemon()
         for dark in (False, True):
             page = self.page(dark=dark)
-            for width, height in ((1280, 720), (820, 1180)):
+            for width, height in ((1280, 720), (820, 1180), (390, 844)):
                 page.resize(width, height)
                 page.settle()
                 self.assertLessEqual(page.value("document.documentElement.scrollWidth"), width)
@@ -582,7 +619,7 @@ class LivePage(unittest.TestCase):
             page.press("Escape")
             page.until(f"!document.querySelector('dialog:modal') && document.activeElement.id === '{opener}'")
 
-    def test_the_findings_of_the_latest_test_stand_above_the_table_and_in_its_row(self):
+    def test_the_findings_of_the_latest_test_stand_below_the_answer_and_in_its_row(self):
         daemon = self.daemon('[tester]\npull_speed = "6 in/min"\n')
         page = self.page()
         page.until("document.querySelectorAll('#findings li').length === 1")
@@ -591,7 +628,7 @@ class LivePage(unittest.TestCase):
         self.assertIn(page.value("document.querySelector('#tests tbody tr').cells[1].textContent"), ("stick-slip · pull-speed", "undecided · pull-speed"))
         [told] = daemon.ask("GET", "/v1/tests/1")[1]["results"]["coded_findings"]
         self.assertIn(told["text"], page.value("[...document.querySelectorAll('#tests tbody tr')].at(-1).cells[1].title"))
-        front, back = page.value("[...document.querySelectorAll('#findings strong')].map(e => [getComputedStyle(e).color, getComputedStyle(document.getElementById('results')).backgroundColor])[0]")
+        front, back = page.value("[...document.querySelectorAll('#findings strong')].map(e => [getComputedStyle(e).color, getComputedStyle(document.getElementById('band')).backgroundColor])[0]")
         self.assertGreaterEqual(contrast(rgb(front), rgb(back)), 4.5)
 
     def test_a_sled_that_no_tester_has_is_asked_about_before_a_test(self):
@@ -628,7 +665,7 @@ class LivePage(unittest.TestCase):
         page.tap("#batch-begin > button")
         page.until("!document.querySelector('dialog:modal')")
         self.assertEqual(daemon.ask("GET", "/v1/batch")[1]["batch"]["name"], "liner")
-        for width, height in ((820, 1180), (1280, 720)):
+        for width, height in ((820, 1180), (390, 844), (1280, 720)):
             page.resize(width, height)
             self.assertLessEqual(page.value("document.documentElement.scrollWidth"), width)
             self.fingers(page, "body", width)

@@ -262,6 +262,25 @@ TEST_F(BatchLeaderTest, FindsTheRecordsThatAStopKeptFromTheJournal) {
   EXPECT_THAT(found("20231114T221230Z"), ElementsAre(kAfter));
 }
 
+// A test that runs is not due, and neither is one whose record is being written.
+TEST_F(BatchLeaderTest, TellsTheStepOfATestUntilItsRecordIsThere) {
+  EXPECT_TRUE(BatchJournal{folder_}.append(
+      at_noon(BatchBegun{"20231114T221230Z", plan_of_text(R"({"name": "liner", "replicates": 2})")})));
+  batch::BatchLeader leader{
+      {folder_, "/bin/false", [] { return Plan{}; }, [](const Plan&) {}, {}, {}, &clock_}};
+  leader.open();
+  EXPECT_TRUE(leader.progress().value().under_way.empty());
+  leader.test_began(7);
+  const BatchProgress progress = leader.progress().value();
+  ASSERT_EQ(progress.under_way.size(), 1U);
+  EXPECT_EQ(progress.under_way[0].test, 7);
+  EXPECT_EQ(progress.under_way[0].step.replicate, 1);
+  ASSERT_TRUE(progress.next);
+  EXPECT_EQ(progress.next->replicate, 2);
+  leader.record_failed(7);
+  EXPECT_TRUE(leader.progress().value().under_way.empty());
+}
+
 // Its name says no more than that the clock was wrong then: the records themselves say whose they are.
 TEST_F(BatchLeaderTest, FindsThoseOfABatchThatBeganWhileTheClockWasAhead) {
   EXPECT_THAT(found("20361122T100000Z"), ElementsAre(kBefore, kAfter));

@@ -446,6 +446,19 @@ TEST(AccessPolicy, TcpWantsHostOriginAndToken) {
   EXPECT_EQ(status_at({false, {"127.0.0.1:80"}, ""}, {"/v1/status", host, "", "Bearer ", ""}), 401);
 }
 
+TEST(LiveHub, KeepsTheLatestFramesAsOneOfBoundedLength) {
+  LiveHub hub;
+  EXPECT_EQ(*hub.history(), R"({"type":"history","frames":[]})");
+  for (std::size_t k = 0; k < LiveHub::kMostKept + 2; ++k)
+    hub.publish_and_keep(std::make_shared<const std::string>(std::to_string(k)));
+  hub.publish(std::make_shared<const std::string>("-1"));  // Not to be kept.
+  const json history = json::parse(*hub.history());
+  EXPECT_EQ(history["type"], "history");
+  ASSERT_EQ(history["frames"].size(), LiveHub::kMostKept);
+  EXPECT_EQ(history["frames"].front(), 2);
+  EXPECT_EQ(history["frames"].back(), LiveHub::kMostKept + 1);
+}
+
 TEST(LiveQueue, DropsTheOldestAndSaysSo) {
   LiveQueue queue;
   for (std::size_t k = 0; k < LiveQueue::kMost; ++k) {
