@@ -41,8 +41,8 @@ struct HeldValues {
 /// at most [Chernoff 1952], for each of as many largest values and counts T as there are scans, and for five
 /// bands: equal values, two steps, σ/4, σ and 2 σ. A clipped signal that gets as much noise behind the
 /// amplifier as before it is not told from a sound one.
-/// \param step  of the converter, or the smallest difference of neighbours as measured; nothing is found unless it
-/// is positive.
+/// \param step  of the converter, or the smallest difference of neighbours as measured; nothing is found
+/// unless it is positive.
 [[nodiscard]] std::optional<HeldValues> flat_top(const base::LongColumn<double>& values,
                                                  const LeftOut& left_out, double step);
 
@@ -55,7 +55,8 @@ struct HeldValues {
 /// White noise of a scan in steps of the converter, less that of rounding, where the force is above a third
 /// of the largest; nullopt if fewer than eight blocks of scans tell it, or if no converter is seen. Noise of
 /// half a step reads below a quarter with a probability of 1e-6: half of the blocks would have to be off by
-/// three standard deviations. \param held  scans to leave out; nullopt: none.
+/// three standard deviations.
+/// \param held  scans to leave out; nullopt: none.
 [[nodiscard]] std::optional<double> noise_in_steps(const base::LongColumn<double>& values,
                                                    const LeftOut& left_out, double step,
                                                    const std::optional<HeldValues>& held);
