@@ -23,7 +23,8 @@ class LiveStream {
  public:
   /// Most frames in the queue to the main thread: about six seconds. Further frames are dropped and counted.
   static constexpr int kMostOnTheWay = 128;
-  /// Frames are made for so long after the last client has left: a page that is reloaded finds no gap in the history.
+  /// Frames are made for so long after the last client has left: a page that is reloaded finds no gap in the
+  /// history.
   static constexpr std::chrono::seconds kLinger{10};
 
   /// \param clock   clock of the board; outlives the stream.
