@@ -125,6 +125,12 @@ std::string_view words(BenchTrouble trouble) noexcept {
     case BenchTrouble::kPulledAgain:
       return "the sled was pulled before the force of the last test was gone, and while that lasts no pull "
              "is recorded: leave the unloaded sled at rest for a second before each pull";
+    case BenchTrouble::kNegativeForce:
+      return "the force has been as far below zero as a test begins above it, and no such pull is recorded: "
+             "if the "
+             "sled was pulled, change the sign of load_cell_gain or swap the cell's signal wires and "
+             "calibrate; if "
+             "nothing pulls, stickslip tare";
   }
   return {};
 }

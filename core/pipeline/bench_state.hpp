@@ -37,6 +37,7 @@ enum class BenchTrouble {
   kLongRunning,    ///< For longer than a pull takes.
   kLongArmed,      ///< Armed by command, and no pull followed.
   kPulledAgain,    ///< While finishing: such pulls are in no record.
+  kNegativeForce,  ///< While armed: the force has the wrong sign, and no pull begins a test.
 };
 
 /// Longest normal time in a state, s, and the trouble reported beyond it; kNone: no limit.

@@ -106,6 +106,8 @@ std::optional<EndCause> Processor::observe(const Scan& scan, const daq::ClockSta
     begin(scan.index, stamp);
     if (repeat_others(scan.index)) return stop_again();
   } else if (waiting_.size() > settings_.segmenter.pre_trigger_scans()) {
+    if (event == Segmenter::Event::kNegative && trouble_ != BenchTrouble::kNegativeForce)
+      trouble(BenchTrouble::kNegativeForce);
     const Scan& oldest = waiting_.front();
     // A bench that is not armed may be loaded by hand, which says nothing of its zero.
     if (bench_.state() == BenchState::kIdle && oldest.coefficient >= segmenter_.trigger()) {

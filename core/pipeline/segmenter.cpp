@@ -128,6 +128,7 @@ Segmenter::Event Segmenter::observe(base::ScanIndex index, double coefficient) {
   if (state_ == State::kReady) track();
   above_ = coefficient >= trigger() ? above_ + 1 : 0;
   below_ = coefficient < base() + settings_.end_coefficient ? below_ + 1 : 0;
+  negative_ = coefficient <= base() - settings_.start_coefficient ? negative_ + 1 : 0;
   const bool unloaded = below_ >= scans(settings_.unload_dwell_s);
 
   switch (state_) {
@@ -144,7 +145,7 @@ Segmenter::Event Segmenter::observe(base::ScanIndex index, double coefficient) {
         return Event::kTestStarts;
       }
       if (waiting_.size() > settings_.pre_trigger_scans()) waiting_.pop_front();
-      return Event::kNone;
+      return by_force_ && negative_ == scans(settings_.unload_dwell_s) ? Event::kNegative : Event::kNone;
     case State::kRunning:
       follow(coefficient);
       if (!was_loaded_ && loaded()) {

@@ -58,6 +58,9 @@ class Segmenter {
     kUnloaded,
     kNoRelativeMotion,
     kPulledAgain,  ///< Rose again before unloading was detected; begins no test. Once a test.
+    /// As far below the unloaded level as a test begins above it, for the unload dwell: the force has the
+    /// wrong sign. Once for each such stretch.
+    kNegative,
   };
 
   /// \throws std::invalid_argument unless rate and dwells are positive and
@@ -139,6 +142,7 @@ class Segmenter {
   std::deque<double> waiting_;  ///< As the record will begin with.
   std::int64_t above_ = 0;      ///< Consecutive scans at or above the trigger.
   std::int64_t below_ = 0;      ///< Consecutive scans below the end.
+  std::int64_t negative_ = 0;   ///< Consecutive scans as far below the level as the trigger is above it.
 
   // Of the running test.
   bool was_loaded_ = false;  ///< The force has stayed above the trigger.

@@ -26,6 +26,7 @@ std::vector<std::pair<std::size_t, std::size_t>> tests_in(const std::vector<base
         break;
       case Event::kNone:
       case Event::kPulledAgain:
+      case Event::kNegative:
         break;
     }
   }

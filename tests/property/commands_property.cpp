@@ -339,6 +339,20 @@ RC_GTEST_PROP(Commands, NoPullIsLostInSilence, ()) {
   for (const RecordedTest& test : record.tests) replay_gives(test, true);
 }
 
+TEST(Commands, AForceOfTheWrongSignIsToldUntilTheNextTest) {
+  Recorder record;
+  Processor processor{settings_of(true), coefficients(), {&record}};
+  feed(processor, std::vector<double>(300, 0.0), 0, 10);
+  for (int pull = 0; pull < 2; ++pull) {
+    feed(processor, std::vector<double>(200, -0.3), 300 + 500 * pull, 10);
+    feed(processor, std::vector<double>(300, 0.0), 500 + 500 * pull, 10);
+  }
+  EXPECT_EQ(record.troubles, std::vector{BenchTrouble::kNegativeForce});
+  EXPECT_EQ(processor.bench_trouble(), BenchTrouble::kNegativeForce);
+  feed(processor, std::vector<double>(200, 0.3), 1300, 10);
+  EXPECT_EQ(processor.bench_trouble(), BenchTrouble::kNone);
+}
+
 TEST(Commands, AForceThatStaysIsToldOnce) {
   Recorder record;
   Processor processor{settings_of(true), coefficients(), {&record}};

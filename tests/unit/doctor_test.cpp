@@ -109,6 +109,7 @@ TEST_F(Doctor, ABenchThatStaysInItsState) {
         std::pair{pipeline::BenchState::kLoading, pipeline::BenchTrouble::kLongLoading},
         std::pair{pipeline::BenchState::kRunning, pipeline::BenchTrouble::kLongRunning},
         std::pair{pipeline::BenchState::kArmed, pipeline::BenchTrouble::kLongArmed},
+        std::pair{pipeline::BenchState::kArmed, pipeline::BenchTrouble::kNegativeForce},
         std::pair{pipeline::BenchState::kFinishing, pipeline::BenchTrouble::kPulledAgain}}) {
     status_ = fmt::format(R"({{"state": "acquiring", "bench": "{}", "bench_trouble": "{}"}})",
                           pipeline::name(state), pipeline::words(trouble));

@@ -95,6 +95,26 @@ TEST(Segmenter, SpikesShorterThanTheDwellStartNothing) {
   EXPECT_TRUE(events_in(values).empty());
 }
 
+// A pull of a sled whose cell is wired the wrong way round: no test, and one event for the pull.
+TEST(Segmenter, ForceOfTheWrongSignIsToldOnceAPull) {
+  std::vector<double> values(200, 0.0);
+  for (int pull = 0; pull < 2; ++pull) {
+    values.insert(values.end(), 500, -0.3);
+    values.insert(values.end(), 200, 0.0);
+  }
+  const base::ScanIndex told = 200 + kUnloadDwell - 1;
+  EXPECT_EQ(events_in(values), (std::vector<Seen>{{told, Event::kNegative}, {told + 700, Event::kNegative}}));
+}
+
+TEST(Segmenter, ForceJustBelowZeroOrForAMomentIsNotOfTheWrongSign) {
+  std::vector<double> values(200, 0.0);
+  values.insert(values.end(), 500, -0.049);
+  values.insert(values.end(), 50, 0.0);
+  values.insert(values.end(), kUnloadDwell - 1, -0.3);
+  values.insert(values.end(), 200, 0.0);
+  EXPECT_TRUE(events_in(values).empty());
+}
+
 TEST(Segmenter, PreTriggerScansAreTimeTimesRate) {
   SegmenterSettings settings;
   EXPECT_EQ(settings.pre_trigger_scans(), static_cast<std::size_t>(kPreTrigger));
