@@ -14,13 +14,19 @@
 
 namespace stickslip::io {
 
+namespace detail {
+/// errno of a write to stdout that failed before the last flush: the stream forgets it.
+inline int output_error = 0;
+}  // namespace detail
+
 /// Prints a text of several lines; characters that could control the terminal are shown by their number. Line
 /// feeds pass: the caller escapes those inside names with base::printable(). \param has_colours  true: colour
-/// sequences of Paint pass too.
-/// What cannot be written is told by flushed().
+/// sequences of Paint pass too. What cannot be written is told by flushed().
 inline void print_text(std::FILE* stream, std::string_view text, bool has_colours = false) {
   const std::string printable = base::printable_lines(text, has_colours);
-  std::fwrite(printable.data(), 1, printable.size(), stream);
+  errno = 0;
+  if (std::fwrite(printable.data(), 1, printable.size(), stream) != printable.size() && stream == stdout)
+    detail::output_error = errno;
 }
 
 /// Prints one line to stderr: "PROGRAM: WHY".
@@ -37,9 +43,9 @@ inline constexpr int kUnwritableStatus = 74;
 [[nodiscard]] inline int flushed(std::string_view program, int status) {
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
-  print_error(program,
-              fmt::format("the output cannot be written{}{}: make room there, or write it elsewhere",
-                          errno == 0 ? "" : ": ", errno == 0 ? "" : std::generic_category().message(errno)));
+  const int error = errno != 0 ? errno : detail::output_error;
+  print_error(program, fmt::format("the output cannot be written: {}: make room there, or write it elsewhere",
+                                   std::generic_category().message(error)));
   return kUnwritableStatus;
 }
 
