@@ -112,8 +112,11 @@ class LivePage(unittest.TestCase):
             test = next(t for t in daemon.ask("GET", "/v1/tests")[1]["tests"] if t["number"] == int(row[0]))
             file = daemon.record(int(row[0])) if not row[-1].endswith(".h5") else daemon.folder / test["file"]
             with h5py.File(file) as record:
-                self.assertEqual(row[1], record["entry/results/regime"].asstr()[()])
-                self.assertEqual(title, f"rung: {record['entry/results/rung'].asstr()[()]}")
+                # With its first finding, which a sound bench may have by chance.
+                found = test["results"]["coded_findings"]
+                more = f" + {len(found) - 1}" if len(found) > 1 else ""
+                self.assertEqual(row[1], record["entry/results/regime"].asstr()[()] + (f" · {found[0]['code']}{more}" if found else ""))
+                self.assertEqual(title, "\n".join([f"rung: {record['entry/results/rung'].asstr()[()]}", *(finding["text"] for finding in found)]))
                 for cell, (name, digits) in zip(row[2:], COLUMNS):
                     value = float(record[f"entry/results/{name}"][()])
                     self.assertEqual(cell, shown_in(record, name, digits), name)
