@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -107,7 +108,12 @@ int main_of(int count, char** arguments) {
   try {
     app.parse(words(count, arguments));
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return io::flushed("stickslip", app.exit(error));
+    if (error.get_exit_code() == 0) {
+      std::ostringstream text;  // Of --help and --version.
+      const int status = app.exit(error, text, text);
+      io::print_text(stdout, text.str());
+      return io::flushed("stickslip", status);
+    }
     io::print_error("stickslip", fmt::format("{}; see stickslip --help", error.what()));
     return 2;
   }
