@@ -350,7 +350,8 @@ seed = {seed}
         handles = [statistics.median(count for _, count in some) for some in (early, late)]
         print(f"memory {memory[0]:.0f} kB in the second quarter of the watched time, {memory[1]:.0f} kB in the last; handles {handles[0]:.0f} and {handles[1]:.0f}")
         expect(abs(memory[1] - memory[0]) <= FLAT * memory[0], f"memory is not flat: {memory} kB")
-        expect(math.isclose(handles[0], handles[1], abs_tol=1), f"file handles are not flat: {handles}")
+        # A leak grows. Fewer later are journals that waited for their records early on, as on a busy machine.
+        expect(handles[1] <= handles[0] + 1, f"file handles grow: {handles}")
 
     def progress(self, now_s, total_s, tests):
         if sys.stdout.isatty():
