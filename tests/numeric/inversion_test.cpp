@@ -47,6 +47,24 @@ TEST(Inversion, GivesBackTheSpeedUpToTheThreshold) {
   }
 }
 
+// The last step of Newton's method, 1e-9 of ln Q, leaves that times the neighbour's distance. Where the
+// neighbour is too far, or there is no answer, it is as without one.
+TEST(Inversion, IsTheSameFromANeighbour) {
+  const auto near = Q_of_amplitude(amplitude_ratio(1.0, kDamping) / 1.0, kDamping);
+  ASSERT_TRUE(near);
+  for (const double Q : {1e-3, 0.5, 0.9, 1.0, 1.1, 1.5, 1.9}) {
+    const double amplitude = amplitude_ratio(Q, kDamping) / Q;
+    const double ratio = slip_speed_ratio(Q, kDamping);
+    const auto by_amplitude = Q_of_amplitude(amplitude, kDamping, near);
+    const auto by_slip_speed = Q_of_slip_speed_ratio(
+        ratio, kDamping, Q_of_slip_speed_ratio(slip_speed_ratio(1.0, kDamping), kDamping));
+    ASSERT_TRUE(by_amplitude && by_slip_speed) << Q;
+    EXPECT_NEAR(by_amplitude->Q / Q, 1.0, 1e-9) << Q;
+    EXPECT_NEAR(by_slip_speed->Q / Q, 1.0, 1e-9) << Q;
+  }
+  EXPECT_FALSE(Q_of_amplitude(-1.0, kDamping, near));
+}
+
 TEST(Inversion, IsPoorNearTheThreshold) {
   // Without damping [2], [18]: x² = 1 + Q⁻², so that d ln Q/d ln x = −(1 + Q²).
   for (const double Q : {0.2, 1.0, 3.0}) {
