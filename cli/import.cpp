@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "cli/method_option.hpp"
 #include "cli/options.hpp"
+#include "cli/progress.hpp"
 #include "cli/subcommands.hpp"
 #include "io/findings_text.hpp"
 
@@ -180,6 +182,16 @@ std::string output_of(const std::string& output, std::size_t number, std::size_t
       .string();
 }
 
+/// Errors: as evaluation::analyse(); kFailure if the folder of the output cannot hold the scans for the time
+/// being.
+Result<record::EndRecord> analysed(const record::Record& record, const std::filesystem::path& folder) {
+  try {
+    return evaluation::analyse(record, folder);
+  } catch (const std::system_error& error) {
+    return base::failure("{}", error.what());
+  }
+}
+
 Result<std::string> run_import(const ImportOptions& options, const std::string& command_line) {
   Result<traces::ImportRequest> request = request_of(options);
   if (!request) return tl::unexpected(request.error());
@@ -190,20 +202,30 @@ Result<std::string> run_import(const ImportOptions& options, const std::string& 
   if (!options.column.empty() && options.output.empty()) return no_output();
   // An exported record keeps its method unless another one is asked for.
   if (options.column.empty() && options.method.empty()) request->process.method.clear();
+  ProgressBar bar{base::printable(std::filesystem::path{options.file}.filename().string())};
+  request->progress = [&bar](double done) { bar.show(done); };
   Result<traces::Imported> imported = traces::import_trace(*request);
   if (!imported) return tl::unexpected(imported.error());
   if (options.output.empty()) return no_output();
   std::string text = std::move(imported->report);
   std::vector<record::Record>& records = imported->records;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (auto free = record::check_publishable(output_of(options.output, i + 1, records.size())); !free)
+      return tl::unexpected(free.error());
+  }
+  bar.show("analysing");
+  const std::filesystem::path output_path{options.output};
   for (record::Record& record : records) {
     record.header.process.source_command = command_line;
-    Result<record::EndRecord> end = evaluation::analyse(record);
+    Result<record::EndRecord> end =
+        analysed(record, output_path.has_parent_path() ? output_path.parent_path() : ".");
     if (!end) return tl::unexpected(end.error());
     for (base::Finding& finding : record.end->results.findings)
       base::add(end->results.findings, std::move(finding));
     if (imported->is_own) end->spikes = record.spikes;
     record::set_end(record, std::move(*end));
   }
+  bar.show("writing");
   for (std::size_t i = 0; i < records.size(); ++i) {
     const record::Record& record = records[i];
     const std::string output = output_of(options.output, i + 1, records.size());

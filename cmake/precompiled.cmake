@@ -11,6 +11,11 @@ endif()
 
 set(CMAKE_UNITY_BUILD ON)
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
+if(STICKSLIP_SANITIZE)
+  # Sanitizers build everything once, and nobody edits one source there: a folder in one bunch takes a quarter to a third
+  # less of the compiler's time than in eights.
+  set(CMAKE_UNITY_BUILD_BATCH_SIZE 40)
+endif()
 # Tests are compiled more often than run, debugged with the preset dev, and compute little by themselves. So do the
 # programs, which sanitizers build to be watched: Clang takes less than half of the time over them without
 # optimisation. What computes is core. Without tests, as the preset fuzz-fast is, all of it is to run fast.
@@ -23,7 +28,7 @@ endif()
 set(program_folders "cli|cli/(accuracy_report|doctor|manual)|daemon/(app|asio|batch|client|control|fleet|page|types)")
 set(program_options -O1)
 if(STICKSLIP_SANITIZE)
-  set(program_folders "(daemon|io|report|cli)(/.*)?")
+  set(program_folders "(daemon|io|report|cli|core/(record|accuracy|evaluation|daq))(/.*)?")
   set(program_options ${quick_options})
 endif()
 

@@ -142,8 +142,10 @@ void RecordAnalysis::finish(record::EndRecord& end, std::span<const daq::ClockAn
 }
 
 base::Result<TesterAnalysis> analyse_with_tester(const record::Record& record,
-                                                 const estimate::SharedPrior& prior) {
-  base::Result<RecordAnalysis> analysis = RecordAnalysis::make(record.header, {}, prior, record.gaps);
+                                                 const estimate::SharedPrior& prior,
+                                                 const std::filesystem::path& scratch_folder) {
+  base::Result<RecordAnalysis> analysis =
+      RecordAnalysis::make(record.header, scratch_folder, prior, record.gaps);
   if (!analysis) return tl::unexpected(analysis.error());
   for (std::size_t i = 0; i < record.scan.size(); ++i) {
     const std::span<const std::int32_t> second{record.second};
@@ -158,8 +160,9 @@ base::Result<TesterAnalysis> analyse_with_tester(const record::Record& record,
   return result;
 }
 
-base::Result<record::EndRecord> analyse(const record::Record& record) {
-  base::Result<TesterAnalysis> result = analyse_with_tester(record, {});
+base::Result<record::EndRecord> analyse(const record::Record& record,
+                                        const std::filesystem::path& scratch_folder) {
+  base::Result<TesterAnalysis> result = analyse_with_tester(record, {}, scratch_folder);
   if (!result) return tl::unexpected(result.error());
   return std::move(result->end);
 }

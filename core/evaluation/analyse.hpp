@@ -65,7 +65,9 @@ class RecordAnalysis {
 
 /// Results, cycles and spikes of the record's scans; status, cause and truth stay those of the
 /// record's end, if it has one. Errors as RecordAnalysis::make().
-[[nodiscard]] base::Result<record::EndRecord> analyse(const record::Record& record);
+/// \param scratch_folder  as RecordAnalysis::make(), which tells what may be thrown.
+[[nodiscard]] base::Result<record::EndRecord> analyse(const record::Record& record,
+                                                      const std::filesystem::path& scratch_folder = {});
 
 /// The same, with what the test says about the tester.
 struct TesterAnalysis {
@@ -73,7 +75,8 @@ struct TesterAnalysis {
   std::optional<analysis::TesterEstimate> tester;
   std::optional<analysis::TesterCheck> check;  ///< Only with a prior.
 };
-[[nodiscard]] base::Result<TesterAnalysis> analyse_with_tester(const record::Record& record,
-                                                               const estimate::SharedPrior& prior);
+[[nodiscard]] base::Result<TesterAnalysis> analyse_with_tester(
+    const record::Record& record, const estimate::SharedPrior& prior,
+    const std::filesystem::path& scratch_folder = {});
 
 }  // namespace stickslip::evaluation

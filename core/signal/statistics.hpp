@@ -23,18 +23,20 @@ inline constexpr double kRoundingSigma = 0.28867513459481287;
   return *middle;
 }
 
-/// Largest number of values that median_of() copies and sorts; for more it finds byte by byte, in constant
+/// Largest number of values that nth_of() copies and sorts; for more it finds byte by byte, in constant
 /// memory.
 inline constexpr std::size_t kMostSorted = std::size_t{1} << 16U;
 
-/// Upper median of value(0) … value(count − 1). Each is evaluated once, or eight times if count >
-/// kMostSorted. \param count  > 0. \param value  no NaN.
+/// The value at a place of value(0) … value(count − 1) in rising order. Each is evaluated once, or eight
+/// times if count > kMostSorted. \param place  from 0, < count. \param value  no NaN.
 template <typename Value>
-[[nodiscard]] double median_of(std::size_t count, const Value& value) {
+[[nodiscard]] double nth_of(std::size_t count, std::size_t place, const Value& value) {
   if (count <= kMostSorted) {
     std::vector<double> values(count);
     for (std::size_t i = 0; i < count; ++i) values[i] = value(i);
-    return median(values);
+    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(place);
+    std::nth_element(values.begin(), nth, values.end());
+    return *nth;
   }
   // Doubles rise with their bits; those below zero are turned round.
   constexpr std::uint64_t kSign = std::uint64_t{1} << 63U;
@@ -43,7 +45,7 @@ template <typename Value>
     return (bits & kSign) != 0 ? ~bits : bits | kSign;
   };
   std::uint64_t answer = 0;
-  std::size_t place = count / 2;  // Among those that begin with the bytes found.
+  // The place is among those that begin with the bytes found.
   for (unsigned shift = 56;; shift -= 8U) {
     std::array<std::size_t, 256> counts{};
     for (std::size_t i = 0; i < count; ++i) {
@@ -56,6 +58,12 @@ template <typename Value>
     if (shift == 0) break;
   }
   return std::bit_cast<double>((answer & kSign) != 0 ? answer & ~kSign : ~answer);
+}
+
+/// Upper median of value(0) … value(count − 1), as nth_of().
+template <typename Value>
+[[nodiscard]] double median_of(std::size_t count, const Value& value) {
+  return nth_of(count, count / 2, value);
 }
 
 /// Running mean. Its error is a few ε of the largest value, whatever the number of values. [Welford,

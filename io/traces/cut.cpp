@@ -4,9 +4,9 @@
 
 namespace stickslip::traces {
 
-std::vector<std::pair<std::size_t, std::size_t>> tests_in(const std::vector<base::ScanIndex>& scan,
-                                                          const std::vector<double>& coefficient,
-                                                          double rate_Hz) {
+std::vector<std::pair<std::size_t, std::size_t>> tests_in(
+    const std::vector<base::ScanIndex>& scan, const std::function<double(std::size_t)>& coefficient,
+    double rate_Hz) {
   using Event = pipeline::Segmenter::Event;
   pipeline::SegmenterSettings settings;
   settings.scan_rate_Hz = rate_Hz;
@@ -15,7 +15,7 @@ std::vector<std::pair<std::size_t, std::size_t>> tests_in(const std::vector<base
   std::size_t ended = 0;
   bool any = false;
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    switch (segmenter.observe(scan[i], coefficient[i])) {
+    switch (segmenter.observe(scan[i], coefficient(i))) {
       case Event::kTestStarts:
         if (any) cuts.push_back(ended + (i - ended) / 2);
         any = true;

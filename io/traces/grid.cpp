@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/signal/statistics.hpp"
+
 namespace stickslip::traces {
 namespace {
 
@@ -16,30 +18,51 @@ constexpr double kLongestStep = 1.5;
 /// Times with fewer digits than this in an interval cannot check a rate.
 constexpr double kCoarsest = 0.5;
 
-std::vector<double> steps_of(const std::vector<double>& time) {
-  std::vector<double> steps(time.size() - 1);
-  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = time[i + 1] - time[i];
-  return steps;
-}
+/// Times of the rows that count, without copies of a long column.
+class Times {
+ public:
+  explicit Times(std::span<const double> all) : all_(all) {}
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+  /// Leaves out each row with the time of the row before it; true for such a row.
+  std::vector<bool> skip_doubled() {
+    std::vector<bool> doubled(all_.size(), false);
+    for (std::size_t i = 0; i < all_.size(); ++i) {
+      doubled[i] = i > 0 && all_[i] == all_[i - 1];
+      if (!doubled[i]) rows_.push_back(i);
+    }
+    return doubled;
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return rows_.empty() ? all_.size() : rows_.size(); }
+  /// In the column, of one of size().
+  [[nodiscard]] std::size_t row(std::size_t i) const noexcept { return rows_.empty() ? i : rows_[i]; }
+  [[nodiscard]] double operator[](std::size_t i) const noexcept { return all_[row(i)]; }
+
+  /// Steps from one time to the next.
+  [[nodiscard]] std::size_t steps() const noexcept { return size() - 1; }
+  [[nodiscard]] double step(std::size_t i) const noexcept { return (*this)[i + 1] - (*this)[i]; }
+  [[nodiscard]] double median_step() const {
+    return signal::median_of(steps(), [this](std::size_t i) { return step(i); });
+  }
+
+ private:
+  std::span<const double> all_;
+  std::vector<std::size_t> rows_;  ///< Empty: all.
+};
 
 struct Interval {
   double mean = 0.0;     ///< Of the steps that are single intervals, those rounded to a coarse digit too.
   bool unequal = false;  ///< They differ by a digit or more.
 };
 
-Interval interval_of(const std::vector<double>& steps, double digit_s) {
-  const double middle = median(steps);
+Interval interval_of(const Times& time, double digit_s) {
+  const double middle = time.median_step();
   double sum = 0.0;
   std::size_t count = 0;
   double shortest = middle;
   double longest = middle;
-  for (const double step : steps) {
+  for (std::size_t i = 0; i < time.steps(); ++i) {
+    const double step = time.step(i);
     if (step < kShortestStep * middle - digit_s || step > kLongestStep * middle + digit_s) continue;
     sum += step;
     ++count;
@@ -55,10 +78,12 @@ struct Line {
 };
 
 /// Least squares of the times on the indices.
-Line line_through(const std::vector<std::int64_t>& index, const std::vector<double>& time) {
+Line line_through(const std::vector<std::int64_t>& index, const Times& time) {
   const auto n = static_cast<double>(time.size());
   const double mean_x = std::accumulate(index.begin(), index.end(), 0.0) / n;
-  const double mean_y = std::accumulate(time.begin(), time.end(), 0.0) / n;
+  double mean_y = 0.0;
+  for (std::size_t i = 0; i < time.size(); ++i) mean_y += time[i];
+  mean_y /= n;
   double xx = 0.0;
   double xy = 0.0;
   for (std::size_t i = 0; i < time.size(); ++i) {
@@ -78,7 +103,7 @@ struct Fit {
   std::size_t largest = 0;  ///< Of which time.
 };
 
-Fit fit_of(const std::vector<std::int64_t>& index, const std::vector<double>& time, double digit_s) {
+Fit fit_of(const std::vector<std::int64_t>& index, const Times& time, double digit_s) {
   Fit fit;
   fit.line = line_through(index, time);
   double largest = 0.0;
@@ -95,12 +120,12 @@ Fit fit_of(const std::vector<std::int64_t>& index, const std::vector<double>& ti
 }
 
 /// Cumulative, so that a slow drift of the clock moves no row.
-std::vector<std::int64_t> indices(const std::vector<double>& steps, double interval) {
+std::vector<std::int64_t> indices(const Times& time, double interval) {
   std::vector<std::int64_t> index{0};
-  index.reserve(steps.size() + 1);
+  index.reserve(time.size());
   double carried = 0.0;  // What rounding left of the steps so far, in intervals.
-  for (const double step : steps) {
-    const double wanted = step / interval + carried;
+  for (std::size_t i = 0; i < time.steps(); ++i) {
+    const double wanted = time.step(i) / interval + carried;
     const double whole = std::max(1.0, std::round(wanted));
     carried = wanted - whole;
     index.push_back(index.back() + static_cast<std::int64_t>(whole));
@@ -144,19 +169,11 @@ std::vector<std::size_t> runs_in(const std::vector<double>& time_s) {
   return runs;
 }
 
-base::Result<Grid> grid_of(const std::vector<double>& all_times, const GridOptions& options,
+base::Result<Grid> grid_of(std::span<const double> all_times, const GridOptions& options,
                            const Place& place) {
   Grid grid;
-  std::vector<double> time = all_times;
-  std::vector<std::size_t> row(time.size());  // Of what is left in `time`.
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  if (options.skip_doubled) {
-    grid.doubled.assign(time.size(), false);
-    for (std::size_t i = 1; i < time.size(); ++i) grid.doubled[i] = all_times[i] == all_times[i - 1];
-    std::erase_if(row, [&grid](std::size_t i) { return grid.doubled[i]; });
-    time.clear();
-    for (const std::size_t i : row) time.push_back(all_times[i]);
-  }
+  Times time{all_times};
+  if (options.skip_doubled) grid.doubled = time.skip_doubled();
   const auto [low, high] = std::minmax_element(all_times.begin(), all_times.end());
   if (*low == *high || time.size() < 2) {
     return base::usage_error(
@@ -164,30 +181,33 @@ base::Result<Grid> grid_of(const std::vector<double>& all_times, const GridOptio
         "another column of times",
         place(0));
   }
-  const std::vector<double> steps = steps_of(time);
-  const auto backwards = static_cast<std::size_t>(
-      std::count_if(steps.begin(), steps.end(), [](double step) { return step < 0.0; }));
-  if (2 * backwards > steps.size()) {
+  std::size_t backwards = 0;
+  std::size_t first_backwards = 0;
+  std::size_t standing = 0;
+  std::size_t first_standing = 0;
+  for (std::size_t i = 0; i < time.steps(); ++i) {
+    const double step = time.step(i);
+    if (step < 0.0 && backwards++ == 0) first_backwards = i;
+    if (step == 0.0 && standing++ == 0) first_standing = i;
+  }
+  if (2 * backwards > time.steps()) {
     return base::usage_error(
         "{}: time runs backwards: give --reverse to read the rows from the last to the first", place(0));
   }
   if (backwards > 0) {
-    const auto at = std::find_if(steps.begin(), steps.end(), [](double step) { return step < 0.0; });
-    const auto i = static_cast<std::size_t>(at - steps.begin());
     return base::usage_error(
         "{}: time goes back by {:.6g} s in this row: the clock was set while the file was written. If the "
         "scans are evenly "
         "spaced, give --time-column none and --rate HZ",
-        place(row[i + 1]), -*at);
+        place(time.row(first_backwards + 1)), -time.step(first_backwards));
   }
-  const auto standing = static_cast<std::size_t>(std::count(steps.begin(), steps.end(), 0.0));
-  const auto [interval, unequal] = interval_of(steps, options.digit_s);
-  const bool coarse = 4 * standing > steps.size() || !(interval > 0.0);
+  const auto [interval, unequal] = interval_of(time, options.digit_s);
+  const bool coarse = 4 * standing > time.steps() || !(interval > 0.0);
   if (coarse) {
     if (!options.rate_Hz) {
       return base::usage_error(
           "{}: the time column has a step of {:.6g} s, too coarse to tell the scan rate: give --rate HZ",
-          place(row[standing > 0 ? 1 : 0]), options.digit_s);
+          place(time.row(standing > 0 ? 1 : 0)), options.digit_s);
     }
     grid.rate_Hz = *options.rate_Hz;
     grid.rate_checked = false;
@@ -197,14 +217,13 @@ base::Result<Grid> grid_of(const std::vector<double>& all_times, const GridOptio
     return grid;
   }
   if (standing > 0 && options.digit_s < kCoarsest * interval) {
-    const auto i = static_cast<std::size_t>(std::find(steps.begin(), steps.end(), 0.0) - steps.begin());
     return base::usage_error(
         "{}: this row has the time of the row before it, as have {} in all: give --skip-doubled to leave "
         "such rows out",
-        place(row[i + 1]), standing);
+        place(time.row(first_standing + 1)), standing);
   }
 
-  std::vector<std::int64_t> index = indices(steps, interval);
+  std::vector<std::int64_t> index = indices(time, interval);
   // A step of two coarse digits is one long interval or a missing row; only without gaps is it surely the
   // first.
   if (unequal && options.digit_s >= kCoarsest * interval &&
@@ -216,20 +235,20 @@ base::Result<Grid> grid_of(const std::vector<double>& all_times, const GridOptio
           "--rate HZ",
           place(0), options.digit_s);
     }
-    index = indices(steps, 1.0 / *options.rate_Hz);
+    index = indices(time, 1.0 / *options.rate_Hz);
     grid.rate_checked = false;
   }
   Fit fit = fit_of(index, time, options.digit_s);
   if (unequal && options.digit_s >= kCoarsest * interval && fit.jitter > kLargestJitter) {
     // Long intervals do not fit: the long steps are missing rows.
-    std::vector<std::int64_t> with_gaps = indices(steps, median(steps));
+    std::vector<std::int64_t> with_gaps = indices(time, time.median_step());
     if (const Fit other = fit_of(with_gaps, time, options.digit_s); other.jitter <= kLargestJitter) {
       index = std::move(with_gaps);
       fit = other;
     }
   }
   grid.rate_Hz = 1.0 / fit.line.slope;
-  grid.largest_row = row[fit.largest];
+  grid.largest_row = time.row(fit.largest);
   grid.largest_jitter = fit.jitter;
   if (const auto rate = check_rate(options, grid.rate_Hz, place(0)); !rate)
     return tl::unexpected(rate.error());
@@ -244,8 +263,12 @@ base::Result<Grid> grid_of(const std::vector<double>& all_times, const GridOptio
     }
     grid.uniform = false;
   }
-  grid.index.assign(all_times.size(), 0);
-  for (std::size_t i = 0; i < row.size(); ++i) grid.index[row[i]] = index[i];
+  if (grid.doubled.empty()) {
+    grid.index = std::move(index);
+  } else {
+    grid.index.assign(all_times.size(), 0);
+    for (std::size_t i = 0; i < time.size(); ++i) grid.index[time.row(i)] = index[i];
+  }
   return grid;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,7 +47,7 @@ using Place = std::function<std::string(std::size_t row)>;
 /// \param time_s  of the rows of one run, finite, at least two.
 /// Errors, kUsage, each with its remedy: times that do not advance, run backwards, are doubled, are too
 /// coarse, are unequal by more than kLargestJitter, or have another rate than the stated one.
-[[nodiscard]] base::Result<Grid> grid_of(const std::vector<double>& time_s, const GridOptions& options,
+[[nodiscard]] base::Result<Grid> grid_of(std::span<const double> time_s, const GridOptions& options,
                                          const Place& place);
 
 }  // namespace stickslip::traces

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "io/traces/cut.hpp"
@@ -22,6 +24,7 @@
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
 #include "core/daq/calibration.hpp"
+#include "core/signal/statistics.hpp"
 
 namespace stickslip::traces {
 namespace {
@@ -107,7 +110,7 @@ struct Run {
 };
 
 /// Values at equal intervals, by linear interpolation between rows; none across a hole or a missing row.
-Run resampled(const Grid& grid, const std::vector<double>& time, const std::vector<double>& value) {
+Run resampled(const Grid& grid, std::span<const double> time, std::span<const double> value) {
   Run run;
   run.rate_Hz = grid.rate_Hz;
   const double step = 1.0 / grid.rate_Hz;
@@ -126,34 +129,34 @@ Run resampled(const Grid& grid, const std::vector<double>& time, const std::vect
   return run;
 }
 
-Run run_of(const Grid& grid, const std::vector<double>& time, const std::vector<double>& value) {
-  if (!grid.uniform) return resampled(grid, time, value);
-  Run run;
-  run.rate_Hz = grid.rate_Hz;
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    if (!std::isfinite(value[i]) || (!grid.doubled.empty() && grid.doubled[i])) continue;
-    run.scan.push_back(grid.index[i]);
-    run.raw.push_back(value[i]);
+/// Rows of equal intervals, without holes and doubled ones.
+Run uniform(Grid grid, std::vector<double> value) {
+  Run run{grid.rate_Hz, std::move(grid.index), std::move(value)};
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < run.raw.size(); ++i) {
+    if (!std::isfinite(run.raw[i]) || (!grid.doubled.empty() && grid.doubled[i])) continue;
+    run.scan[kept] = run.scan[i];
+    run.raw[kept++] = run.raw[i];
   }
+  run.scan.resize(kept);
+  run.raw.resize(kept);
   return run;
 }
 
 /// Mean coefficient of the scans of sliding, with its sign; spikes do not count.
-double sliding_level(const std::vector<double>& coefficient) {
-  std::vector<double> sizes;
-  for (const double c : coefficient) sizes.push_back(std::abs(c));
-  const auto at = sizes.begin() +
-                  static_cast<std::ptrdiff_t>((1.0 - kSpikeShare) * static_cast<double>(sizes.size() - 1));
-  std::nth_element(sizes.begin(), at, sizes.end());
-  const double largest = *at;
+double sliding_level(std::size_t count, const std::function<double(std::size_t)>& coefficient) {
+  const auto place = static_cast<std::size_t>((1.0 - kSpikeShare) * static_cast<double>(count - 1));
+  const double largest =
+      signal::nth_of(count, place, [&coefficient](std::size_t i) { return std::abs(coefficient(i)); });
   double sum = 0.0;
-  std::size_t count = 0;
-  for (const double c : coefficient) {
+  std::size_t sliding = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double c = coefficient(i);
     if (std::abs(c) < kSlidingShare * largest || std::abs(c) > largest) continue;
     sum += c;
-    ++count;
+    ++sliding;
   }
-  return count == 0 ? 0.0 : sum / static_cast<double>(count);
+  return sliding == 0 ? 0.0 : sum / static_cast<double>(sliding);
 }
 
 class Importer {
@@ -168,10 +171,11 @@ class Importer {
     auto table = read_table(source_, dialect_, columns_.value, columns_.time);
     if (!table) return tl::unexpected(table.error());
     table_ = std::move(*table);
+    row_count_ = table_.value.size();
     imported_.report = dialect_.text(columns_.value);
-    if (table_.value.size() < 2) {
+    if (row_count_ < 2) {
       return base::usage_error("{}: there {} of scans; two at least are needed", request_.path,
-                               table_.value.empty() ? "are no rows" : "is one row");
+                               row_count_ == 0 ? "are no rows" : "is one row");
     }
     if (!columns_.time && !request_.rate_Hz) {
       return base::usage_error(
@@ -192,7 +196,7 @@ class Importer {
     if (runs.size() > 1)
       note("{} runs: the clock starts again in {} {}", runs.size(), row_word(), line(runs[1]));
     for (std::size_t i = 0; i < runs.size(); ++i) {
-      const std::size_t end = i + 1 < runs.size() ? runs[i + 1] : table_.value.size();
+      const std::size_t end = i + 1 < runs.size() ? runs[i + 1] : row_count_;
       if (auto added = add_run(runs[i], end); !added) return tl::unexpected(added.error());
     }
     for (const std::string& text : table_.notes) note("{}", text);
@@ -202,7 +206,7 @@ class Importer {
  private:
   /// In the file, of a row of the trace.
   [[nodiscard]] std::int64_t line(std::size_t row) const {
-    return table_.line(request_.reverse ? table_.value.size() - 1 - row : row);
+    return table_.line(request_.reverse ? row_count_ - 1 - row : row);
   }
 
   template <typename... Args>
@@ -336,33 +340,45 @@ class Importer {
     }
   }
 
+  /// A file of one run, the long one, gives its columns away: they are not held twice.
   Result<void> add_run(std::size_t begin, std::size_t end) {
-    const auto first = static_cast<std::ptrdiff_t>(begin);
-    const auto last = static_cast<std::ptrdiff_t>(end);
-    const std::vector<double> value{table_.value.begin() + first, table_.value.begin() + last};
+    const std::size_t count = end - begin;
+    const bool whole = count == row_count_;
     Run run;
     if (time_s_.empty()) {
       Grid grid;
       grid.rate_Hz = *request_.rate_Hz;
-      grid.index.resize(value.size());
+      grid.index.resize(count);
       std::iota(grid.index.begin(), grid.index.end(), std::int64_t{0});
-      run = run_of(grid, {}, value);
+      run = uniform(std::move(grid), values(begin, end));
     } else {
-      const std::vector<double> time{time_s_.begin() + first, time_s_.begin() + last};
-      const auto grid = grid_of(time, grid_options_, [this, begin](std::size_t row) {
+      const std::span time = std::span{time_s_}.subspan(begin, count);
+      auto grid = grid_of(time, grid_options_, [this, begin](std::size_t row) {
         return fmt::format("{}:{}", request_.path, line(begin + row));
       });
       if (!grid) return tl::unexpected(grid.error());
-      run = run_of(*grid, time, value);
       tell(*grid, begin);
+      if (!grid->uniform) {
+        run = resampled(*grid, time, std::span{table_.value}.subspan(begin, count));
+      } else {
+        if (whole) std::vector<double>{}.swap(time_s_);
+        run = uniform(std::move(*grid), values(begin, end));
+      }
     }
-    if (static_cast<double>(run.raw.size()) < (1.0 - kMostHoles) * static_cast<double>(value.size()) ||
+    if (static_cast<double>(run.raw.size()) < (1.0 - kMostHoles) * static_cast<double>(count) ||
         run.raw.size() < 2) {
       return base::usage_error("{}: {} of {} values of column \"{}\" are missing: choose another column",
-                               request_.path, value.size() - run.raw.size(), value.size(),
+                               request_.path, count - run.raw.size(), count,
                                base::one_line(dialect_.columns[columns_.value].text, 40));
     }
-    return add_tests(run);
+    return add_tests(std::move(run));
+  }
+
+  /// Of the rows [begin, end), which nobody asks for again.
+  std::vector<double> values(std::size_t begin, std::size_t end) {
+    if (end - begin == row_count_) return std::move(table_.value);
+    return {table_.value.begin() + static_cast<std::ptrdiff_t>(begin),
+            table_.value.begin() + static_cast<std::ptrdiff_t>(end)};
   }
 
   void tell(const Grid& grid, std::size_t begin) {
@@ -383,7 +399,7 @@ class Importer {
       note("{} rows with the time of the row before left out", doubled);
   }
 
-  Result<void> add_tests(const Run& run) {
+  Result<void> add_tests(Run run) {
     record::Record whole;
     record::RecordHeader& header = whole.header;
     header.title = std::filesystem::path{request_.path}.stem().string();
@@ -400,19 +416,24 @@ class Importer {
     header.start_realtime_ns = start_ns_;
     const daq::Calibration calibration{header.board, load_cell_.value_or(daq::LoadCell{}),
                                        header.tester.tester().normal_load_N()};
-    std::vector<double> coefficient;
-    for (const double raw : run.raw) coefficient.push_back(calibration.coefficient(raw));
-    if (const double level = sliding_level(coefficient); level < 0.0) {
+    const auto coefficient = [&](std::size_t i) { return calibration.coefficient(run.raw[i]); };
+    if (const double level = sliding_level(run.raw.size(), coefficient); level < 0.0) {
       return base::usage_error("{}: the force is negative while sliding, {:.4g} as a coefficient: {}",
                                request_.path, level,
                                request_.invert ? "leave out --invert" : "give --invert");
     }
-    for (const auto& [begin, end] : tests_in(run.scan, coefficient, run.rate_Hz)) {
+    const auto tests = tests_in(run.scan, coefficient, run.rate_Hz);
+    for (const auto& [begin, end] : tests) {
       record::Record record = whole;
-      const auto from = static_cast<std::ptrdiff_t>(begin);
-      const auto to = static_cast<std::ptrdiff_t>(end);
-      record.scan.assign(run.scan.begin() + from, run.scan.begin() + to);
-      record.raw.assign(run.raw.begin() + from, run.raw.begin() + to);
+      if (tests.size() == 1) {
+        record.scan = std::move(run.scan);
+        record.raw = std::move(run.raw);
+      } else {
+        const auto from = static_cast<std::ptrdiff_t>(begin);
+        const auto to = static_cast<std::ptrdiff_t>(end);
+        record.scan.assign(run.scan.begin() + from, run.scan.begin() + to);
+        record.raw.assign(run.raw.begin() + from, run.raw.begin() + to);
+      }
       for (std::size_t i = 1; i < record.scan.size(); ++i) {
         const daq::ScanIndex next = record.scan[i - 1] + 1;
         if (record.scan[i] > next)
@@ -446,6 +467,7 @@ class Importer {
   Dialect dialect_;
   Columns columns_;
   TraceTable table_;
+  std::size_t row_count_ = 0;
   std::vector<double> time_s_;
   GridOptions grid_options_;
   std::optional<std::int64_t> start_ns_;
@@ -512,8 +534,9 @@ Result<Imported> import_own(const ImportRequest& request, const Source& source) 
 }  // namespace
 
 Result<Imported> import_trace(const ImportRequest& request) {
-  const auto source = Source::of(request.path);
+  auto source = Source::of(request.path);
   if (!source) return tl::unexpected(source.error());
+  source->progress = request.progress;
   if (request.column.empty()) {
     // recognise() reports files that are not text.
     const auto is_own = is_own_table(*source);

@@ -2,6 +2,7 @@
 /// Records from a trace that another program wrote: text, MATLAB or HDF5.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,7 @@ struct ImportRequest {
   record::SampleFacts sample;
   record::ProcessFacts process;
   record::Metadata metadata;
+  std::function<void(double)> progress{};  ///< As Source::progress.
 };
 
 struct Imported {

@@ -106,7 +106,7 @@ std::optional<Encoding> encoding_from_name(std::string_view text) noexcept {
 }
 
 base::Result<Source> Source::of(const std::string& path) {
-  Source source{path, path, base::Descriptor{}};
+  Source source{path, path, base::Descriptor{}, {}};
   std::error_code unknown;
   if (!std::filesystem::is_fifo(path, unknown) && !std::filesystem::is_socket(path, unknown)) return source;
   const auto text = base::read_text(path);
@@ -127,7 +127,10 @@ base::Result<TextFile> TextFile::open(const Source& source, std::optional<Encodi
   TextFile file;
   file.path_ = path;
   file.file_ = std::move(opened->file);
+  std::error_code unknown;  // The size is for the progress alone.
+  if (const auto size = std::filesystem::file_size(source.opened, unknown); !unknown) file.size_ = size;
   file.sha256_ = std::make_unique<record::Sha256>();
+  file.progress_ = source.progress;
   if (auto filled = file.fill(); !filled) return tl::unexpected(filled.error());
   if (auto text = refuse_binary(path, file.undecoded_); !text) return tl::unexpected(text.error());
   file.encoding_ = encoding.value_or(recognised(file.undecoded_));
@@ -159,6 +162,8 @@ base::Result<void> TextFile::fill() {
   sha256_->add(std::span<const char>{undecoded_.data() + before, got});
   bytes_read_ += got;
   at_end_ = got < kBlock;
+  if (progress_ && size_ > 0)
+    progress_(std::min(1.0, static_cast<double>(bytes_read_) / static_cast<double>(size_)));
   return {};
 }
 

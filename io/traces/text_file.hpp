@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,6 +26,8 @@ struct Source {
   std::string path;       ///< As the user gave it, for messages.
   std::string opened;     ///< What is opened in its place.
   base::Descriptor copy;  ///< Of a pipe.
+  /// Told from time to time which part has been read, 0 … 1; may be empty.
+  std::function<void(double)> progress{};
 
   /// Errors: base::open_text().
   [[nodiscard]] static base::Result<Source> of(const std::string& path);
@@ -71,6 +74,8 @@ class TextFile {
   bool line_was_ended_ = true;
   std::int64_t line_number_ = 0;
   std::uint64_t bytes_read_ = 0;
+  std::uint64_t size_ = 0;  ///< Of the file when it was opened, bytes.
+  std::function<void(double)> progress_;
 };
 
 }  // namespace stickslip::traces

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <random>
@@ -31,6 +32,22 @@ TEST(Median, OfMoreThanAreSortedIsTheSame) {
     }
   }
   EXPECT_EQ(median_of(kMostSorted + 1, [](std::size_t) { return -3.5; }), -3.5);
+}
+
+TEST(Median, IsOneOfTheValuesInRisingOrder) {
+  constexpr std::uint64_t kSeed = 12;
+  std::mt19937_64 engine{kSeed};
+  std::normal_distribution<double> normal{0.0, 1.0};
+  for (const std::size_t count : {std::size_t{1000}, kMostSorted + 1}) {
+    std::vector<double> values(count);
+    for (double& value : values) value = normal(engine);
+    std::vector<double> sorted = values;
+    std::sort(sorted.begin(), sorted.end());
+    for (const std::size_t place : {std::size_t{0}, count / 100, count - 1}) {
+      EXPECT_EQ(nth_of(count, place, [&](std::size_t i) { return values[i]; }), sorted[place])
+          << count << ", " << place << ", seed " << kSeed;
+    }
+  }
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,6 +40,18 @@ TEST_F(TraceImport, TakesTheValuesOfTheNamedColumn) {
   EXPECT_THAT(record.scan, ElementsAre(0, 1, 2));
   EXPECT_NEAR(record.header.board.scan_rate_granted_Hz, 1000.0, 1e-6);
   EXPECT_EQ(record.header.title, "trace");
+}
+
+TEST_F(TraceImport, TellsWhichPartOfTheFileHasBeenRead) {
+  std::vector<double> parts;
+  request_.progress = [&parts](double part) { parts.push_back(part); };
+  ASSERT_TRUE(import("t (s),F\n" + rows(0, 100'000)));  // 1.3 MB, in blocks.
+  // Once for the look at the file, once for all of it.
+  const auto whole = std::find(parts.begin(), parts.end(), 1.0);
+  ASSERT_NE(whole, parts.end());
+  EXPECT_GT(parts.front(), 0.0);
+  EXPECT_LT(parts.front(), 0.5);
+  EXPECT_TRUE(std::is_sorted(std::prev(whole, 3), whole));
 }
 
 TEST_F(TraceImport, HolesAndMissingRowsAreGaps) {
