@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/analysis/cycle_statistics.hpp"
+#include "core/analysis/ladder.hpp"
 #include "core/analysis/live_estimates.hpp"
 #include "core/analysis/model_results.hpp"
 #include "core/analysis/sections.hpp"
@@ -35,15 +36,6 @@ double noise_floor(const base::LongColumn<double>& values, double step_coefficie
   return std::max(
       {signal::kRoundingSigma * step, kSmallestRelativeNoise * largest, std::numeric_limits<double>::min()});
 }
-
-/// Probability of the agreement of a test alone with the tester's characterisation below which the difference
-/// of both rungs is in the systematic uncertainties: 1 in 20 tests on paper without a slope has it, too.
-constexpr double kSlopeLevel = 0.05;
-
-/// Q = r/(ω (S − K)) below which the belt's part of the amplitude, √((S − K)² + (r/ω)²), is less than 2 %:
-/// then S − K is half the drop whatever the damping, which may be held. Near the threshold a wrong damping
-/// would be taken for S − K.
-constexpr double kSlow = 0.2;
 
 /// Turning points must not follow noise before the noise is known.
 double hysteresis(double sigma) { return detect::SlipRule::kHysteresisSigmas * sigma; }
@@ -99,102 +91,6 @@ std::optional<base::Finding> sampling_finding(double scan_rate_Hz, const TestRes
 detect::LiveSettings live_settings(const AnalysisSettings& settings) {
   return {settings.scan_rate_Hz, settings.step_coefficient, settings.estimator, settings.prior,
           !settings.skipped.spikes};
-}
-
-void add_systematic(double uncertainty, Estimate& estimate) {
-  if (estimate.value)
-    estimate.systematic_uncertainty = estimate.systematic_uncertainty.value_or(0.0) + uncertainty;
-}
-
-/// Adds to the systematic uncertainty of S and S − K how far the slips' own fits lie from the turning points.
-/// \param fitted  no delta_mu where the fit did not converge.
-void add_spread(const base::LongColumn<detect::Cycle>& fitted, TestResults& results) {
-  signal::RunningMean delta_mu;
-  for (const detect::Cycle& row : fitted) {
-    if (std::isfinite(row.delta_mu)) delta_mu.add(row.delta_mu);
-  }
-  if (delta_mu.count == 0.0 || !results.delta_mu.value) return;
-  const double spread = std::abs(delta_mu.mean - *results.delta_mu.value);
-  add_systematic(spread, results.mu_s);
-  add_systematic(spread, results.delta_mu);
-}
-
-/// Adds to the systematic uncertainties how far a fit that leaves more than noise lies from turning points.
-void add_spread(const TestResults& turning_points, TestResults& results) {
-  const auto add = [](const Estimate& other, Estimate& estimate) {
-    if (other.value && estimate.value) add_systematic(std::abs(*other.value - *estimate.value), estimate);
-  };
-  add(turning_points.mu_s, results.mu_s);
-  add(turning_points.mu_k, results.mu_k);
-  add(turning_points.delta_mu, results.delta_mu);
-}
-
-/// Takes away what the damping tells, as it is held and not found, and adds to the systematic uncertainties
-/// of K and S − K what a typical γ leaves open: γ/2ω between 0 and twice that. Peak and trough hold; K =
-/// (trough + e peak)/(1 + e) with e = exp(−πγ/2ω) moves by π/2 of the amplitude for each unit of γ/2ω.
-void hold_damping(TestResults& results) {
-  const double shift =
-      0.5 * std::numbers::pi * model::kTypicalGammaOver2Omega * results.amplitude.value.value_or(0.0);
-  add_systematic(shift, results.mu_k);
-  add_systematic(shift, results.delta_mu);
-  const Estimate none =
-      Estimate::none(fmt::format("the damping is held at gamma/2omega = {}, typical of a sled on a spring",
-                                 model::kTypicalGammaOver2Omega));
-  for (Estimate* estimate : {&results.gamma_over_2omega, &results.Q_threshold, &results.threshold_speed,
-                             &results.slip_speed_ratio_threshold})
-    *estimate = none;
-}
-
-/// Fills misfit, misfit_place.
-void take_misfit(const Misfit& misfit, TestResults& results) {
-  results.misfit = misfit.systematic();
-  if (const auto place = misfit.place())
-    results.misfit_place = kSlipPartNames[static_cast<std::size_t>(*place)];
-}
-
-double total_error(const Estimate& estimate) {
-  return std::hypot(estimate.standard_error.value_or(0.0), estimate.systematic_uncertainty.value_or(0.0));
-}
-
-/// \param why  the fit has no results.
-base::Finding turning_points_finding(const Estimate& delta_mu, const std::string& why) {
-  constexpr auto kCode = base::FindingCode::kNotFitted;
-  if (!delta_mu.value)
-    return base::make_finding(kCode, fmt::format("S and K have no value, as {}; nor by turning points", why));
-  const double error = total_error(delta_mu);
-  return base::make_finding(
-      kCode, fmt::format("S and K are by turning points, S - K uncertain by {:.2g}, as {}", error, why),
-      {{"delta_mu_uncertainty", error, "1"}});
-}
-
-/// What makes residuals in each part of the slip.
-std::string_view likely_cause(SlipPart part) {
-  switch (part) {
-    case SlipPart::kRise:
-      return "hum, missed spikes or creep before the slips";
-    case SlipPart::kPeak:
-      return "slips that begin gradually, or a slow transducer";
-    case SlipPart::kFall:
-      return "friction that changes with speed, or a slow transducer";
-    case SlipPart::kTrough:
-      return "a slow transducer, or friction that changes as the sled comes to rest";
-  }
-  return "friction";
-}
-
-base::Finding misfit_finding(const Misfit& misfit, const Estimate& delta_mu) {
-  const SlipPart part = misfit.place().value_or(SlipPart::kFall);
-  return base::make_finding(
-      base::FindingCode::kMisfit,
-      fmt::format(
-          "the fit leaves residuals of {:.2f} times the scan noise, {:.2f} in the {} of the slips; a likely "
-          "cause is {}; "
-          "S - K is uncertain by {:.2g}, its distance to turning points included",
-          misfit.residual_sigmas(), misfit.residual_sigmas(part),
-          kSlipPartNames[static_cast<std::size_t>(part)], likely_cause(part), total_error(delta_mu)),
-      {{"residual", misfit.residual_sigmas(), "1"},
-       {"residual_of_part", misfit.residual_sigmas(part), "1"},
-       {"delta_mu_uncertainty", total_error(delta_mu), "1"}});
 }
 
 /// A stub of a test: without the noise there is no telling what is a slip.
@@ -343,7 +239,7 @@ TestResults TestAnalysis::finish() {
       estimates = by_turning_points(trace, slips, cycles_by_turning_points(), why);
       estimates.model_describes = false;
       estimates.misfit = fitted.misfit;
-      add_spread(fitted.cycles, estimates.results);
+      add_distance_to_fits(fitted.cycles, estimates.results);
       base::add(results.findings, turning_points_finding(estimates.results.delta_mu, why));
     }
     if (fits_whole_test()) {
@@ -353,7 +249,8 @@ TestResults TestAnalysis::finish() {
     }
     if (fits_whole_test() && estimates.model_describes && estimates.misfit.is_significant() &&
         trace.belt.is_constant()) {
-      add_spread(by_turning_points(trace, slips, cycles_by_turning_points(), {}).results, estimates.results);
+      add_distance(by_turning_points(trace, slips, cycles_by_turning_points(), {}).results,
+                   estimates.results);
       if (estimates.misfit.is_certain())
         base::add(results.findings, misfit_finding(estimates.misfit, estimates.results.delta_mu));
     }
@@ -503,8 +400,8 @@ TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongCol
   if (!settings_.prior.coupling) {
     if (!alone.model_describes && trace.belt.is_constant()) {
       TestEstimates typical = held(held_damping(trace, slips));
-      if (typical.model_describes && typical.results.Q.value.value_or(kSlow) < kSlow) {
-        hold_damping(typical.results);
+      if (typical.model_describes && may_hold_damping(typical.results)) {
+        tell_held_damping(typical.results);
         return typical;
       }
       // Where a fit stopped far from the best one, its residuals say nothing about the law.
@@ -517,7 +414,7 @@ TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongCol
   with.rung_reason = "the tester is characterised, and the damping found agrees with it";
   tester_check_ = check_tester(*tester_, *with.tester, *settings_.prior.coupling, settings_.tester);
   if (!tester_check_->used() || !with.model_describes) return alone;
-  if (tester_check_->probability < kSlopeLevel) add_spread(alone.results, with.results);
+  if (tester_check_->probability < kSlopeLevel) add_distance(alone.results, with.results);
   return with;
 }
 

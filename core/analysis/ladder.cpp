@@ -1,0 +1,112 @@
+#include "core/analysis/ladder.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+#include "core/model/tester.hpp"
+#include "core/signal/statistics.hpp"
+
+namespace stickslip::analysis {
+namespace {
+
+/// Q = r/(ω (S − K)) below which the belt's part of the amplitude, √((S − K)² + (r/ω)²), is less than 2 %:
+/// then S − K is half the drop whatever the damping, which may be held. Near the threshold a wrong damping
+/// would be taken for S − K.
+constexpr double kSlow = 0.2;
+
+void add_systematic(double uncertainty, Estimate& estimate) {
+  if (estimate.value)
+    estimate.systematic_uncertainty = estimate.systematic_uncertainty.value_or(0.0) + uncertainty;
+}
+
+double total_error(const Estimate& estimate) {
+  return std::hypot(estimate.standard_error.value_or(0.0), estimate.systematic_uncertainty.value_or(0.0));
+}
+
+/// What makes residuals in each part of the slip.
+std::string_view likely_cause(SlipPart part) {
+  switch (part) {
+    case SlipPart::kRise:
+      return "hum, missed spikes or creep before the slips";
+    case SlipPart::kPeak:
+      return "slips that begin gradually, or a slow transducer";
+    case SlipPart::kFall:
+      return "friction that changes with speed, or a slow transducer";
+    case SlipPart::kTrough:
+      return "a slow transducer, or friction that changes as the sled comes to rest";
+  }
+  return "friction";
+}
+
+}  // namespace
+
+void add_distance_to_fits(const base::LongColumn<detect::Cycle>& fitted, TestResults& results) {
+  signal::RunningMean delta_mu;
+  for (const detect::Cycle& row : fitted) {
+    if (std::isfinite(row.delta_mu)) delta_mu.add(row.delta_mu);
+  }
+  if (delta_mu.count == 0.0 || !results.delta_mu.value) return;
+  const double spread = std::abs(delta_mu.mean - *results.delta_mu.value);
+  add_systematic(spread, results.mu_s);
+  add_systematic(spread, results.delta_mu);
+}
+
+void add_distance(const TestResults& other_rung, TestResults& results) {
+  const auto add = [](const Estimate& other, Estimate& estimate) {
+    if (other.value && estimate.value) add_systematic(std::abs(*other.value - *estimate.value), estimate);
+  };
+  add(other_rung.mu_s, results.mu_s);
+  add(other_rung.mu_k, results.mu_k);
+  add(other_rung.delta_mu, results.delta_mu);
+}
+
+bool may_hold_damping(const TestResults& results) { return results.Q.value.value_or(kSlow) < kSlow; }
+
+void tell_held_damping(TestResults& results) {
+  const double shift =
+      0.5 * std::numbers::pi * model::kTypicalGammaOver2Omega * results.amplitude.value.value_or(0.0);
+  add_systematic(shift, results.mu_k);
+  add_systematic(shift, results.delta_mu);
+  const Estimate none =
+      Estimate::none(fmt::format("the damping is held at gamma/2omega = {}, typical of a sled on a spring",
+                                 model::kTypicalGammaOver2Omega));
+  for (Estimate* estimate : {&results.gamma_over_2omega, &results.Q_threshold, &results.threshold_speed,
+                             &results.slip_speed_ratio_threshold})
+    *estimate = none;
+}
+
+void take_misfit(const Misfit& misfit, TestResults& results) {
+  results.misfit = misfit.systematic();
+  if (const auto place = misfit.place())
+    results.misfit_place = kSlipPartNames[static_cast<std::size_t>(*place)];
+}
+
+base::Finding turning_points_finding(const Estimate& delta_mu, const std::string& why) {
+  constexpr auto kCode = base::FindingCode::kNotFitted;
+  if (!delta_mu.value)
+    return base::make_finding(kCode, fmt::format("S and K have no value, as {}; nor by turning points", why));
+  const double error = total_error(delta_mu);
+  return base::make_finding(
+      kCode, fmt::format("S and K are by turning points, S - K uncertain by {:.2g}, as {}", error, why),
+      {{"delta_mu_uncertainty", error, "1"}});
+}
+
+base::Finding misfit_finding(const Misfit& misfit, const Estimate& delta_mu) {
+  const SlipPart part = misfit.place().value_or(SlipPart::kFall);
+  return base::make_finding(
+      base::FindingCode::kMisfit,
+      fmt::format(
+          "the fit leaves residuals of {:.2f} times the scan noise, {:.2f} in the {} of the slips; a likely "
+          "cause is {}; "
+          "S - K is uncertain by {:.2g}, its distance to turning points included",
+          misfit.residual_sigmas(), misfit.residual_sigmas(part),
+          kSlipPartNames[static_cast<std::size_t>(part)], likely_cause(part), total_error(delta_mu)),
+      {{"residual", misfit.residual_sigmas(), "1"},
+       {"residual_of_part", misfit.residual_sigmas(part), "1"},
+       {"delta_mu_uncertainty", total_error(delta_mu), "1"}});
+}
+
+}  // namespace stickslip::analysis

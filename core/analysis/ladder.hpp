@@ -1,0 +1,44 @@
+/// \file
+/// What a rung of the ladder (rung.hpp, docs/ladder.md) leaves open: systematic uncertainties by the distance
+/// to another rung, and findings.
+#pragma once
+
+#include <string>
+
+#include "core/analysis/model_results.hpp"
+#include "core/analysis/results.hpp"
+#include "core/base/finding.hpp"
+#include "core/base/long_column.hpp"
+#include "core/detect/cycle.hpp"
+
+namespace stickslip::analysis {
+
+/// Probability of the agreement of a test alone with the tester's characterisation below which the difference
+/// of both rungs is in the systematic uncertainties: 1 in 20 tests on paper without a slope has it, too.
+inline constexpr double kSlopeLevel = 0.05;
+
+/// Adds to the systematic uncertainty of S and S − K by turning points how far the slips' own fits lie from
+/// them. \param fitted  no delta_mu where the fit did not converge.
+void add_distance_to_fits(const base::LongColumn<detect::Cycle>& fitted, TestResults& results);
+
+/// Adds to the systematic uncertainties of S, K and S − K how far they lie from those of another rung.
+void add_distance(const TestResults& other_rung, TestResults& results);
+
+/// Whether the pull is so slow that S − K is half the drop whatever the damping.
+[[nodiscard]] bool may_hold_damping(const TestResults& results);
+
+/// Takes away what the damping tells, as it is held and not found, and adds to the systematic uncertainties
+/// of K and S − K what a typical γ leaves open: γ/2ω between 0 and twice that. Peak and trough hold; K =
+/// (trough + e peak)/(1 + e) with e = exp(−πγ/2ω) moves by π/2 of the amplitude for each unit of γ/2ω.
+void tell_held_damping(TestResults& results);
+
+/// Fills misfit and misfit_place.
+void take_misfit(const Misfit& misfit, TestResults& results);
+
+/// Code kNotFitted. \param why  the fit has no results.
+[[nodiscard]] base::Finding turning_points_finding(const Estimate& delta_mu, const std::string& why);
+
+/// Code kMisfit, with the likely cause.
+[[nodiscard]] base::Finding misfit_finding(const Misfit& misfit, const Estimate& delta_mu);
+
+}  // namespace stickslip::analysis
