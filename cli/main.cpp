@@ -85,6 +85,7 @@ int main_of(int count, char** arguments) {
   add_boards(app, chosen);
   add_methods(app, chosen);
   add_status(app, chosen);
+  add_page(app, chosen);
   add_arm(app, chosen);
   add_start(app, chosen);
   add_stop(app, chosen);

@@ -33,6 +33,7 @@ void add_scenes(CLI::App& app, Chosen& chosen);
 void add_boards(CLI::App& app, Chosen& chosen);
 void add_methods(CLI::App& app, Chosen& chosen);
 void add_status(CLI::App& app, Chosen& chosen);
+void add_page(CLI::App& app, Chosen& chosen);
 void add_arm(CLI::App& app, Chosen& chosen);
 void add_start(CLI::App& app, Chosen& chosen);
 void add_stop(CLI::App& app, Chosen& chosen);

@@ -49,8 +49,11 @@ std::optional<daemon::HttpReply> access_refusal(const AccessPolicy& policy, cons
   }
   if (is_page(request.path)) return std::nullopt;
   if (policy.token.empty() || !has_token(request, policy.token)) {
-    return daemon::refusal(
-        401, "the token is missing or wrong: Authorization: Bearer TOKEN, from the daemon's token file");
+    return daemon::refusal(401,
+                           "the token is missing or wrong: on the tester's computer `stickslip page` opens "
+                           "the page with the right one, "
+                           "and `stickslip page --print` shows it; programs send Authorization: Bearer "
+                           "TOKEN, from the daemon's token file");
   }
   return std::nullopt;
 }

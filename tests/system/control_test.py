@@ -158,8 +158,29 @@ class Commands(unittest.TestCase):
         shell = subprocess.run(["bash", "-c", f'echo "{pasted}"'], capture_output=True, text=True, check=True, timeout=TIMEOUT_S)
         self.assertEqual(shell.stdout, f"{page['address']}#token={token}\n")
 
+    def test_the_page_opens_by_one_command(self):
+        daemon = Daemon(self, 'http = "127.0.0.1:0"\ntoken_file = "token"\n')
+        token = (daemon.folder / "token").read_text(encoding="ascii").strip()
+        whole = f"http://{daemon.port_line()}/#token={token}"
+        self.assertEqual(daemon.run("page", "--print").stdout, f"{whole}\n")
+        # On a desktop its browser is started; this one writes down what it was given.
+        browser, opened = daemon.folder / "xdg-open", daemon.folder / "opened"
+        os.mkfifo(opened)
+        browser.write_text(f'#!/bin/sh\nprintf %s "$1" > "{opened}"\n', encoding="ascii")
+        browser.chmod(0o755)
+        desktop = dict(os.environ, DISPLAY=":0", PATH=f"{daemon.folder}:{os.environ['PATH']}")
+        done = daemon.run("page", environment=desktop)
+        self.assertEqual(opened.read_text(encoding="ascii"), whole)
+        self.assertNotIn(token, done.stdout)
+        # Without one the address is printed.
+        bare = {name: value for name, value in os.environ.items() if "DISPLAY" not in name}
+        self.assertEqual(daemon.run("page", environment=bare).stdout, f"{whole}\n")
+
     def test_without_a_port_there_is_no_page(self):
         daemon = Daemon(self)
+        refused = daemon.run("page")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn('set http = "127.0.0.1:8037" in [control]', refused.stderr)
         self.assertIsNone(daemon.ask("GET", "/v1/status")[1]["page"])
         self.assertNotRegex(daemon.run("status").stdout, "(?m)^page")
 

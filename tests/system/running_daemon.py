@@ -135,9 +135,9 @@ repeats = {repeats}
         self.reply = reply
         return reply.status, json.loads(text) if reply.headers["Content-Type"] == "application/json" else text
 
-    def run(self, *arguments):
+    def run(self, *arguments, environment=None):
         return subprocess.run([str(self.cli), *(str(a) for a in arguments), "--socket", str(self.socket)], capture_output=True, text=True,
-                              timeout=TIMEOUT_S, check=False)
+                              timeout=TIMEOUT_S, check=False, env=environment)
 
     def watch(self):
         """Frames of the live stream, as `stickslip watch --json` gives them."""
