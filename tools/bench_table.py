@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Every figure that README quotes, measured now, beside what README says: `./dev bench --table`.
+"""Every figure that the pages quote in short, measured now, beside what they say: `./dev bench --table`.
 
-    tools/bench_table.py BENCH_BUILD RELEASE_BUILD README
+    tools/bench_table.py BENCH_BUILD RELEASE_BUILD DOCS
 
 Runs the demo, its scenes, the random tests, the benchmarks and the daemon, some twenty minutes in all; writes
 BENCH_BUILD/table.md and prints it. What takes hours to measure (the paper's promise, kills) is compared with the document
-that holds its whole table. Exit status 1 if a figure is not where README says it is, or off by more than its kind may be: a
-count is the same; accuracy is computed and the same everywhere but for the last digit, of which README gives one or two;
+that holds its whole table. Exit status 1 if a figure is not on its page, or off by more than its kind may be: a
+count is the same; accuracy is computed and the same everywhere but for the last digit, of which the pages give one or two;
 ratios were measured side by side; times and shares are those of the machine.
 """
 
@@ -20,7 +20,9 @@ import sys
 import tempfile
 
 FACTORS = {"count": 1.0, "accuracy": 1.2, "ratio": 1.5, "time": 2.0}
-# As README writes them.
+#: Where the figures stand, below DOCS: a page and the heading of a section, or None for what stands before the first one.
+QUOTED = (("simulate.md", "The demo"), ("detector-limits.md", "In short"), ("speed.md", "In short"), ("reliability.md", None), ("README.md", "Analyse"))
+# As the pages write them.
 UNITS = {"ns": 1e-9, "µs": 1e-6, "ms": 1e-3, "s": 1.0, "million": 1e6, "MB": 1e6, "%": 1.0, "×": 1.0, "": 1.0}
 
 
@@ -29,7 +31,7 @@ class Figure:
     what: str
     kind: str
     value: float
-    said: str  # What README says around it: one group for the number, one for its unit if it has one.
+    said: str  # What its page says around it: one group for the number, one for its unit if it has one.
     value_said: float | None = None  # Where that is no number of its own.
 
 
@@ -48,13 +50,23 @@ def printed(*command, **options):
     return subprocess.run(command, capture_output=True, text=True, check=True, **options).stdout
 
 
-def demo(release, readme):
-    """The rows of its table that README shows, for README to hold as they are."""
+def quoted(docs):
+    """The text of the sections that quote figures."""
+    texts = []
+    for page, heading in QUOTED:
+        sections = re.split(r"^## ", (docs / page).read_text(encoding="utf-8"), flags=re.MULTILINE)
+        texts += [text for text in sections[1:] if text.startswith(f"{heading}\n")] if heading else sections[:1]
+    assert len(texts) == len(QUOTED), "a section that quotes figures is not there"
+    return "\n".join(texts)
+
+
+def demo(release, text):
+    """The rows of its table that docs/simulate.md shows, to hold as they are."""
     with tempfile.TemporaryDirectory(prefix="stickslip-table-") as folder:
         rows = [line.split() for line in printed(release / "bin/stickslip", "demo", "--folder", folder).splitlines()]
-    shown = [line.split() for line in readme.splitlines() if re.match(r"^ +(\d+  [a-z-]+ |truth  |± s\w+\. )", line)]
+    shown = [line.split() for line in text.splitlines() if re.match(r"^ +(\d+  [a-z-]+ |truth  |± s\w+\. )", line)]
     found = sum(any(row[:len(line)] == line for row in rows) for line in shown)
-    yield Figure("rows of the demo's table that README shows", "count", found, r"()()", value_said=len(shown))
+    yield Figure("rows of the demo's table that are shown", "count", found, r"()()", value_said=len(shown))
 
 
 def held(release):
@@ -153,10 +165,10 @@ def daemon(release):
     yield Figure("memory of the daemon", "time", 1e6 * float(re.search(r"memory +([\d.]+) MB", done.stdout)[1]), r"of a processor and ([\d.]+) (MB)")
 
 
-def main(bench, release, readme):
+def main(bench, release, docs):
     bench, release = pathlib.Path(bench).resolve(), pathlib.Path(release).resolve()
-    text = pathlib.Path(readme).read_text(encoding="utf-8")
-    lines, wrong = ["| figure | measured | README | of it | |", "|---|---|---|---|---|"], 0
+    text = quoted(pathlib.Path(docs))
+    lines, wrong = ["| figure | measured | said | of it | |", "|---|---|---|---|---|"], 0
     for part in (demo(release, text), held(release), documents(), accuracy(release), simulator(bench / "bench"),
                  others(bench / "bench"), daemon(release), limits(bench)):
         for figure in part:
@@ -170,7 +182,7 @@ def main(bench, release, readme):
             print(lines[-1], file=sys.stderr, flush=True)
     (bench / "table.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
     print("\n".join(lines))
-    print(f"{len(lines) - 2} figures, {wrong} of them not as README says; {bench / 'table.md'}")
+    print(f"{len(lines) - 2} figures, {wrong} of them not as the pages say; {bench / 'table.md'}")
     return 1 if wrong else 0
 
 

@@ -5,12 +5,14 @@ a clone holds (config/) and a measured trace.
 
 A block that needs more has a line above it:
 
-  <!-- with a daemon -->                its lines, those of curl too, run beside a daemon that plays tests, in its folder
+  <!-- with a daemon -->                its lines, those of curl too, run beside a daemon that plays tests, in its folder; all such blocks of
+                                        a document beside the same one
   <!-- with a daemon and a broker -->   the same; the daemon tells a broker its results, and mosquitto_sub is run too
   <!-- not run: needs a board -->       it cannot be run here; the reason is said
 
 A ```toml block is a configuration that is good, once it has a board where it names none. The table of requests in
-docs/control.md says what openapi.json says, that of events in docs/reliability.md what the daemon logs.
+docs/control.md says what openapi.json says, that of events in docs/reliability.md what the daemon logs. Links lead somewhere, docs/README.md
+lists each page, and README's figures stand in the pages that it names for them.
 
 documents_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
 """
@@ -48,6 +50,12 @@ RUN = {ALONE: "stickslipd?", DAEMON: "stickslipd?|curl", BROKER: "stickslipd?|cu
 #: What a configuration in a document may leave to the reader.
 LEAST_CONFIGURATION = '[board]\ndriver = "simulated"\n[board.simulated]\nscenes = ["config/scenes/ring-down-at-12-in-per-min.toml"]\n'
 USUAL_SOCKET = "/run/stickslip/control.sock"
+USUAL_FOLDER = "/var/lib/stickslip/"
+#: Words that whoever comes first has patience for.
+SHORT_PAGE_WORDS = 600
+
+LINK = re.compile(r"\]\(([^()\s]+)\)")
+NUMBER = re.compile(r"\d+(?:\.\d+)?")
 
 
 def blocks(document, language):
@@ -59,6 +67,20 @@ def blocks(document, language):
 
 def commands(text, programs):
     return [line for line in text.replace("\\\n", " ").splitlines() if re.match(rf"(?:{programs})\s", line)]
+
+
+def without_code(text):
+    return re.sub(r"`[^`\n]*`", "", re.sub(r"^```.*?^```$", "", text, flags=re.DOTALL | re.MULTILINE))
+
+
+def anchors(text):
+    """Of each heading, as GitHub makes them."""
+    headings = re.findall(r"^#+ (.*)$", re.sub(r"^```.*?^```$", "", text, flags=re.DOTALL | re.MULTILINE), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def section(text, heading):
+    return re.search(rf"^## {heading}\n(.*?)(?=^## |\Z)", text, re.DOTALL | re.MULTILINE)[1]
 
 
 def documents():
@@ -142,10 +164,11 @@ class Documents(unittest.TestCase):
         broker = Broker(self, self.enterContext(tempfile.TemporaryDirectory(prefix="stickslip-")))
         return broker.port
 
-    def run_beside_a_daemon(self, document, remark, lines):
+    def daemon_for(self, document, remark):
+        """The daemon, its tools and the port of its broker; None where a broker is needed and there is none."""
         port = self.with_broker(document) if remark == BROKER else None
         if remark == BROKER and port is None:
-            return
+            return None
         fleet = f'[fleet]\nbroker = "mqtt://127.0.0.1:{port}"\ntester = "bench-7"\n' if port else ""
         # A test a second: a busy machine makes their records as they come.
         daemon = RunningDaemon(self, BUILD, SOURCE, config=fleet, speed=8)
@@ -153,12 +176,18 @@ class Documents(unittest.TestCase):
         tools = daemon.folder / "tools"
         tools.mkdir()
         cli = BUILD / "bin" / "stickslip"
-        (tools / "stickslip").write_text(f'#!/bin/sh\nif {cli} "$1" --help | grep -q -e "--socket"; then set -- "$@" --socket {daemon.socket}; fi\n'
+        # A simulated tester has no calibration: a warning of the doctor, status 3.
+        (tools / "stickslip").write_text(f'#!/bin/sh\nif [ "$*" = doctor ]; then {cli} doctor --config {daemon.folder}/d.toml || [ $? -eq 3 ]; exit; fi\n'
+                                         f'if {cli} "$1" --help | grep -q -e "--socket"; then set -- "$@" --socket {daemon.socket}; fi\n'
                                          f'exec {cli} "$@"\n', encoding="utf-8")
         (tools / "stickslip").chmod(0o700)
         (tools / "stickslipd").symlink_to(BUILD / "bin" / "stickslipd")
+        return daemon, tools, port
+
+    def run_beside_a_daemon(self, document, running, lines):
+        daemon, tools, port = running
         for line in lines:
-            command = line.replace(USUAL_SOCKET, str(daemon.socket)).replace("-h broker.plant", f"-h 127.0.0.1 -p {port} -C 1")
+            command = line.replace(USUAL_SOCKET, str(daemon.socket)).replace(USUAL_FOLDER, f"{daemon.folder}/").replace("-h broker.plant", f"-h 127.0.0.1 -p {port} -C 1")
             if re.search(r"\d{8}T\d{6}Z-\d{4}\.h5", command):
                 command = re.sub(r"\S*\d{8}T\d{6}Z-\d{4}\.h5", str(daemon.record(1)), command)
             with self.subTest(document=document.name, command=line):
@@ -167,10 +196,9 @@ class Documents(unittest.TestCase):
                 while (done := run(command, daemon.folder, tools)).returncode != 0 and time.monotonic() < until:
                     pass
                 self.assertEqual(done.returncode, 0, done.stderr)
-        daemon.end()
 
     def run_document(self, document):
-        ran = 0
+        ran, running = 0, {}
         with tempfile.TemporaryDirectory(prefix="stickslip-") as name:
             folder = pathlib.Path(name)
             shutil.copytree(SOURCE / "config", folder / "config")
@@ -183,18 +211,24 @@ class Documents(unittest.TestCase):
                 lines = commands(text, RUN[remark])
                 ran += len(lines)
                 if remark != ALONE:
-                    self.run_beside_a_daemon(document, remark, lines)
+                    if remark not in running:
+                        running[remark] = self.daemon_for(document, remark)
+                    if running[remark]:
+                        self.run_beside_a_daemon(document, running[remark], lines)
                     continue
                 for line in lines:
                     with self.subTest(document=document.name, command=line):
                         done = run(line, folder, BUILD / "bin")
                         self.assertEqual(done.returncode, 0, done.stderr)
+        for daemon, *_ in filter(None, running.values()):
+            daemon.end()
         return ran
 
     def test_every_command_in_the_documents_works(self):
-        ran = {document.name: self.run_document(document) for document in documents()}
+        ran = {str(document.relative_to(SOURCE)): self.run_document(document) for document in documents()}
+        print(f"{sum(ran.values())} commands:", ", ".join(f"{name} {count}" for name, count in ran.items() if count))
         # So that a change of the style of blocks does not make the test empty.
-        for name in ("README.md", "simulate.md", "control.md", "batches.md"):
+        for name in ("README.md", "docs/first-day.md", "docs/simulate.md", "docs/control.md", "docs/batches.md"):
             self.assertGreater(ran[name], 4, name)
 
     def test_every_configuration_in_the_documents_is_good(self):
@@ -209,6 +243,39 @@ class Documents(unittest.TestCase):
                     self.assertEqual(done.returncode, 0, done.stderr)
                 checked += 1
         self.assertGreater(checked, 1)
+
+    def test_every_link_leads_somewhere(self):
+        for document in [*documents(), SOURCE / "CONTRIBUTING.md", SOURCE / "CHANGELOG.md", SOURCE / "examples" / "README.md"]:
+            text = document.read_text(encoding="utf-8")
+            for link in LINK.findall(without_code(text)):
+                if re.match(r"https?:", link):
+                    continue
+                with self.subTest(document=document.name, link=link):
+                    path, _, anchor = link.partition("#")
+                    target = document.parent / path if path else document
+                    self.assertTrue(target.exists(), "no such file")
+                    if anchor:
+                        self.assertIn(anchor, anchors(target.read_text(encoding="utf-8")))
+
+    def test_the_index_lists_each_page_once(self):
+        docs = SOURCE / "docs"
+        listed = re.findall(r"^- \[[^\]]+\]\(([^()\s]+)\): \S", (docs / "README.md").read_text(encoding="utf-8"), re.MULTILINE)
+        self.assertEqual(sorted(listed), sorted(page.name for page in docs.glob("*.md") if page.name != "README.md"))
+
+    def test_the_first_pages_are_short(self):
+        for page in ("README.md", "docs/first-day.md"):
+            self.assertLessEqual(len((SOURCE / page).read_text(encoding="utf-8").split()), SHORT_PAGE_WORDS, page)
+
+    def test_the_figures_of_readme_stand_in_the_pages(self):
+        figures = re.split(r"^- ", section((SOURCE / "README.md").read_text(encoding="utf-8"), "Figures"), flags=re.MULTILINE)[1:]
+        self.assertGreaterEqual(len(figures), 3)
+        for figure in figures:
+            pages = "\n".join((SOURCE / link.partition("#")[0]).read_text(encoding="utf-8") for link in LINK.findall(figure))
+            numbers = NUMBER.findall(LINK.sub("", figure))
+            self.assertTrue(numbers, figure)
+            for number in numbers:
+                with self.subTest(figure=figure, number=number):
+                    self.assertRegex(pages, rf"(?<![\d.]){re.escape(number)}(?!\.?\d)")
 
     def test_the_table_of_events_is_that_of_the_log(self):
         logged = set(re.findall(r'\.event = "([a-z-]+)"', (SOURCE / "daemon" / "app" / "log.cpp").read_text(encoding="utf-8")))
