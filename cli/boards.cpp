@@ -47,6 +47,8 @@ Json to_json(const BoardOffer& offer) {
   json["problem"] = offer.usable() ? Json(nullptr) : Json(offer.problem);
   json["driver"] = offer.driver;
   json["board"] = offer.board;
+  json["serial"] = offer.place.serial.empty() ? Json(nullptr) : Json(offer.place.serial);
+  json["bus_path"] = offer.place.bus_path.empty() ? Json(nullptr) : Json(offer.place.bus_path);
   json["subdevices"] = Json::array();
   for (const SubdeviceOffer& subdevice : offer.subdevices) json["subdevices"].push_back(to_json(subdevice));
   json["configuration"] = offer.configuration.empty() ? Json(nullptr) : Json(offer.configuration);
@@ -76,6 +78,8 @@ std::string line_of(const SubdeviceOffer& offer) {
 std::string text_of(const BoardOffer& offer) {
   if (offer.board.empty() && !offer.usable()) return offer.problem + "\n";
   std::string text = fmt::format("{}: {} (driver {})\n", offer.device, offer.board, offer.driver);
+  if (!offer.place.serial.empty()) text += fmt::format("  serial: {}\n", offer.place.serial);
+  if (!offer.place.bus_path.empty()) text += fmt::format("  bus_path: {}\n", offer.place.bus_path);
   for (const SubdeviceOffer& subdevice : offer.subdevices) text += line_of(subdevice);
   text += offer.usable() ? fmt::format("  a configuration for it:\n\n{}\n", offer.configuration)
                          : fmt::format("  cannot be used: {}\n", offer.problem);

@@ -147,6 +147,7 @@ std::optional<drivers::SecondInputSettings> read_second(Settings& table) {
 void read_comedi(Settings table, DaemonConfig& config) {
   drivers::ComediBoardSettings& comedi = config.board.comedi;
   comedi.device = table.text("device", comedi.device);
+  comedi.choice = {table.text("board", ""), table.text("serial", ""), table.text("bus_path", "")};
   // Absent: the board's first analog input.
   if (table.has("subdevice")) {
     comedi.subdevice = static_cast<unsigned>(table.integer("subdevice", 0, kHighestChannel));

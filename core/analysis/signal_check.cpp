@@ -52,10 +52,27 @@ void keep_one(const estimate::Trace& trace, SignalCheck& check) {
   }
 }
 
+std::string text_of(const NoPull& found) {
+  if (found.is_brief) return fmt::format("the force was there for {:.2f} s", found.loaded_s);
+  return fmt::format("the force jumped to {:.4f} within two scans, and exceeded that by {:.1f} % at most",
+                     found.level, 100.0 * found.overshoot);
+}
+
+/// \pre check.voids()
+std::string why_void(const SignalCheck& check) {
+  if (check.no_pull) return "no pull: " + text_of(*check.no_pull);
+  const auto& held = check.held();
+  const double level = 0.5 * (held->lowest + held->highest);
+  return check.frozen
+             ? fmt::format("frozen: the force stood at {:.4f} for {} scans in a row", level, held->longest)
+             : fmt::format("clipped: the force above {:.4f} is not known", level);
+}
+
 }  // namespace
 
 SignalCheck check_signal(const estimate::Trace& trace, const base::LongColumn<double>& measured,
-                         const base::LongColumn<std::uint8_t>& saturated, double step_coefficient) {
+                         const base::LongColumn<std::uint8_t>& saturated, double step_coefficient,
+                         double scan_rate_Hz) {
   const signal::LeftOut unusable = [&](std::size_t scan) { return trace.usable[scan] == 0; };
   SignalCheck check;
   const double step = step_coefficient > 0.0 ? step_coefficient : signal::smallest_step(measured);
@@ -66,21 +83,17 @@ SignalCheck check_signal(const estimate::Trace& trace, const base::LongColumn<do
   const auto noise = signal::noise_in_steps(measured, unusable, step_coefficient, check.held());
   if (noise && *noise < kCoarseNoise) check.coarse_noise = noise;
   check.begins_at = begin_under_load(trace);
+  check.no_pull = no_pull(trace, scan_rate_Hz);
   return check;
 }
 
 void void_results(const SignalCheck& check, TestResults& results) {
-  const auto& held = check.held();
-  if (!held) return;
-  const double level = 0.5 * (held->lowest + held->highest);
-  const std::string reason =
-      check.frozen
-          ? fmt::format("frozen: the force stood at {:.4f} for {} scans in a row", level, held->longest)
-          : fmt::format("clipped: the force above {:.4f} is not known", level);
+  if (!check.voids()) return;
+  const std::string reason = why_void(check);
   for_each_result(results, [&](const ResultName& result, Estimate& estimate) {
-    const bool stays =
-        std::ranges::find(kOfTheScans, result.name) != std::end(kOfTheScans) ||
-        (check.clipped && std::ranges::find(kOfTheTimes, result.name) != std::end(kOfTheTimes));
+    const bool stays = std::ranges::find(kOfTheScans, result.name) != std::end(kOfTheScans) ||
+                       (check.clipped && !check.no_pull &&
+                        std::ranges::find(kOfTheTimes, result.name) != std::end(kOfTheTimes));
     if (!stays) estimate = Estimate::none(reason);
   });
   results.regime = model::Regime::kUndecided;
@@ -118,6 +131,15 @@ void add_signal_findings(const SignalCheck& check, std::size_t scan_count, TestR
                             {"frozen_count", number(held->longest), "1"},
                             {"first_scan", number(held->first), "1"},
                             {"scan_count", number(scan_count), "1"}}));
+  }
+  if (const auto& found = check.no_pull) {
+    base::add(results.findings,
+              base::make_finding(base::FindingCode::kNoPull,
+                                 text_of(*found) + ": no belt pulls a sled so, and neither regime nor "
+                                                   "coefficients are given",
+                                 {{"level", found->level, "1"},
+                                  {"loaded_time", found->loaded_s, "s"},
+                                  {"overshoot", found->overshoot, "1"}}));
   }
   if (const auto& noise = check.coarse_noise) {
     base::add(

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/analysis/cycle_statistics.hpp"
+#include "core/analysis/hum_check.hpp"
 #include "core/analysis/ladder.hpp"
 #include "core/analysis/live_estimates.hpp"
 #include "core/analysis/model_results.hpp"
@@ -189,7 +190,7 @@ TestResults TestAnalysis::finish() {
 
   estimate::Trace trace = despiked_trace();
   const SignalCheck check = check_signal(trace, std::as_const(coefficients_), std::as_const(saturated_),
-                                         settings_.step_coefficient);
+                                         settings_.step_coefficient, settings_.scan_rate_Hz);
   leave_out(check, trace);
   results.spike_count = settings_.skipped.spikes ? Estimate::none("spikes are kept, and not looked for")
                                                  : Estimate::of(static_cast<double>(spikes_.size()));
@@ -280,12 +281,14 @@ TestResults TestAnalysis::finish() {
     keep_cycles(trace, estimates, slips);
   }
   period_results(trace, slips, results);
+  if (const auto hum = find_hum(trace, slips, settings_.scan_rate_Hz))
+    base::add(results.findings, hum_finding(*hum, results.regime));
   if (auto finding = sampling_finding(settings_.scan_rate_Hz, results))
     base::add(results.findings, *std::move(finding));
   if (auto finding = level_finding(slips)) base::add(results.findings, *std::move(finding));
   results.drift_rate = drift_of(trace, slips);
   void_results(check, results);
-  if (check.held()) {
+  if (check.voids()) {
     tester_.reset();
     tester_check_.reset();
   }

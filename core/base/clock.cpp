@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <random>
 #include <stdexcept>
@@ -17,6 +18,9 @@ constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 /// Bound of one sleep: the accelerated clock maps through CLOCK_MONOTONIC_RAW, which
 /// clock_nanosleep cannot wait on, so long waits are re-measured.
 constexpr std::int64_t kLongestSleep_ns = 50'000'000;
+/// No computer suspends and resumes within it, and two clocks that are read one after the other disagree by
+/// less as a rule.
+constexpr std::int64_t kShortestSuspend_ns = 10'000'000;
 
 std::int64_t read_clock(clockid_t id) {
   timespec now{};
@@ -24,19 +28,43 @@ std::int64_t read_clock(clockid_t id) {
   return now.tv_sec * kNanosecondsPerSecond + now.tv_nsec;
 }
 
+/// CLOCK_BOOTTIME goes on in a suspend, else it is CLOCK_MONOTONIC. Read in this order, their difference is
+/// never too large; it is too small by the time for which the thread had to wait in between.
+std::int64_t suspended_since_boot_ns() {
+  const std::int64_t boot_ns = read_clock(CLOCK_BOOTTIME);
+  return boot_ns - read_clock(CLOCK_MONOTONIC);
+}
+
 class SystemClock final : public Clock {
  public:
   explicit SystemClock(double speed)
       : speed_(speed),
         origin_monotonic_ns_(read_clock(CLOCK_MONOTONIC_RAW)),
-        origin_realtime_ns_(read_clock(CLOCK_REALTIME)) {}
+        origin_realtime_ns_(read_clock(CLOCK_REALTIME)),
+        origin_suspended_ns_(suspended_since_boot_ns()) {
+    // A thread that had to wait between its two readings is off by that.
+    constexpr int kReadings = 8;
+    for (int i = 1; i < kReadings; ++i)
+      origin_suspended_ns_ = std::max(origin_suspended_ns_, suspended_since_boot_ns());
+  }
 
   [[nodiscard]] std::int64_t monotonic_ns() const override {
-    return origin_monotonic_ns_ + scaled(read_clock(CLOCK_MONOTONIC_RAW) - origin_monotonic_ns_);
+    const std::int64_t elapsed_ns = read_clock(CLOCK_MONOTONIC_RAW) + suspended_ns() - origin_monotonic_ns_;
+    return origin_monotonic_ns_ + scaled(elapsed_ns);
   }
 
   [[nodiscard]] std::int64_t realtime_ns() const override {
     return origin_realtime_ns_ + scaled(read_clock(CLOCK_REALTIME) - origin_realtime_ns_);
+  }
+
+  [[nodiscard]] std::int64_t suspended_ns() const override {
+    const std::int64_t suspended_ns = suspended_since_boot_ns() - origin_suspended_ns_;
+    std::int64_t known_ns = suspended_ns_.load(std::memory_order_relaxed);
+    while (suspended_ns > known_ns + kShortestSuspend_ns) {
+      if (suspended_ns_.compare_exchange_weak(known_ns, suspended_ns, std::memory_order_relaxed))
+        return suspended_ns;
+    }
+    return known_ns;
   }
 
   void sleep_until(std::int64_t deadline_ns) override {
@@ -57,6 +85,8 @@ class SystemClock final : public Clock {
   double speed_;
   std::int64_t origin_monotonic_ns_;
   std::int64_t origin_realtime_ns_;
+  std::int64_t origin_suspended_ns_;
+  mutable std::atomic<std::int64_t> suspended_ns_{0};
 };
 
 class SteppingClock final : public Clock {
@@ -71,6 +101,7 @@ class SteppingClock final : public Clock {
   }
 
   [[nodiscard]] std::int64_t monotonic_ns() const override { return clock_->monotonic_ns(); }
+  [[nodiscard]] std::int64_t suspended_ns() const override { return clock_->suspended_ns(); }
   [[nodiscard]] std::int64_t realtime_ns() const override {
     const double elapsed_s = 1e-9 * static_cast<double>(clock_->monotonic_ns() - begin_ns_);
     return clock_->realtime_ns() + steps_ns_[static_cast<std::size_t>(elapsed_s / every_s_) % kSteps];

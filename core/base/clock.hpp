@@ -13,8 +13,12 @@ class Clock {
  public:
   virtual ~Clock() = default;
 
-  /// CLOCK_MONOTONIC_RAW or its replacement: never steps, not slewed by NTP.
+  /// CLOCK_MONOTONIC_RAW or its replacement, and suspended_ns(): goes on while the computer is suspended,
+  /// never steps else, is not slewed by NTP.
   [[nodiscard]] virtual std::int64_t monotonic_ns() const = 0;
+  /// Time for which the computer has been suspended since the clock was made; a suspend shorter than 10 ms
+  /// does not count.
+  [[nodiscard]] virtual std::int64_t suspended_ns() const { return 0; }
   /// Since 1970-01-01T00:00:00Z.
   [[nodiscard]] virtual std::int64_t realtime_ns() const = 0;
   /// Blocks until monotonic_ns() ≥ deadline_ns; returns at once if it is already.

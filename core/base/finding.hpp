@@ -40,6 +40,8 @@ enum class FindingCode : std::uint8_t {
   kSaturated,
   kClipped,
   kFrozen,
+  kNoPull,
+  kHum,
   kCoarseSteps,
   kBeginsUnderLoad,
   kZeroOffset,

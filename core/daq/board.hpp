@@ -33,6 +33,8 @@ struct BoardInfo {
   std::string driver;      ///< "comedi", "simulated", "replay".
   std::string board_name;  ///< Name reported by the board.
   std::string device;      ///< Path or scene or file; for people.
+  std::string serial;      ///< Serial number; empty: none. Not recorded.
+  std::string bus_path;    ///< Where it is plugged in, as udev's ID_PATH; empty: nowhere. Not recorded.
   int subdevice = 0;
   int channel = 0;
   RawQuantity quantity = RawQuantity::kCounts;
@@ -61,6 +63,7 @@ enum class ReadStatus {
   kTimeout,       ///< No scan arrived in time; also before start() and after stop().
   kEndOfInput,    ///< There will be no more scans (end of a replay or a simulation). Repeats.
   kOverrun,       ///< The board lost scans and halted; start() again. Reported once.
+  kSuspended,     ///< The computer was suspended, and scans were lost; start() again. Reported once.
   kBoardMissing,  ///< The board is gone; only a new board object can bring it back. Repeats.
   kFailed,        ///< Any other error; last_error() says which. stop() and start() again.
 };

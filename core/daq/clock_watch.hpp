@@ -13,11 +13,11 @@ namespace stickslip::daq {
 /// Real-time safe. Blocks in the order of their indices.
 class ClockWatch {
  public:
-  /// Delay of a read that counts as a stall: the machine was suspended, a virtual machine paused, a debugger
+  /// Delay of a read that counts as a stall: a virtual machine was paused, a debugger
   /// stopped the program, or the processor was not available.
   static constexpr double kStall_ns = 1e9;
-  /// Change of the date relative to the monotonic clock that counts as a step; NTP slews by 0.5 ms/s. A
-  /// suspend causes a step too, since the monotonic clock stops then.
+  /// Change of the date relative to the monotonic clock that counts as a step; NTP slews by 0.5 ms/s. In
+  /// a suspend both go on.
   static constexpr std::int64_t kStep_ns = 1'000'000'000;
 
   /// Events found at one block.

@@ -15,6 +15,7 @@ enum class GapCause {
   kOverrun,       ///< The board's buffer overflowed.
   kRingFull,      ///< The processing thread was too slow: the ring dropped whole blocks.
   kBoardMissing,  ///< The board was unplugged.
+  kSuspended,     ///< The computer was suspended.
   kMissingScans,  ///< The source reports them as missing (a replayed gap).
   kStorageFull,   ///< They arrived; writing failed for longer than memory could hold them.
   kDamaged,       ///< They were stored; that part of the journal is unreadable.
@@ -30,6 +31,8 @@ enum class GapCause {
       return "ring-full";
     case GapCause::kBoardMissing:
       return "board-missing";
+    case GapCause::kSuspended:
+      return "suspended";
     case GapCause::kMissingScans:
       return "missing-scans";
     case GapCause::kStorageFull:
@@ -62,7 +65,8 @@ class GapTracker {
                                            bool halted = false) noexcept {
     std::optional<Gap> gap;
     if (next_ && block.first > *next_) {
-      const bool estimated = halted || cause == GapCause::kOverrun || cause == GapCause::kBoardMissing;
+      const bool estimated = halted || cause == GapCause::kOverrun || cause == GapCause::kBoardMissing ||
+                             cause == GapCause::kSuspended;
       gap = Gap{*next_, block.first - *next_, estimated, cause};
     }
     next_ = block.end();

@@ -33,6 +33,7 @@ struct ScanBlock {
   // Totals of the acquisition up to this block; their increase since the block before is the cause of a jump
   // between the two. The acquisition thread sets them, not the board.
   std::uint64_t overrun_count = 0;       ///< Halts of the board.
+  std::uint64_t suspend_count = 0;       ///< Suspends of the computer.
   std::uint64_t dropped_scan_count = 0;  ///< Scans dropped by a full ring.
   /// Raw readings: A/D counts (a double holds every count of up to 53 bits exactly), or the
   /// values of an imported trace in the unit that BoardInfo names.

@@ -122,13 +122,18 @@ Segmenter::Event Segmenter::observe(base::ScanIndex index, double coefficient) {
     waiting_.clear();
     above_ = 0;
   }
-  if (next_ && index != *next_) quiet_scans_.clear();
+  if (next_ && index != *next_) {
+    quiet_scans_.clear();
+    negative_ = 0;
+  }
   next_ = index + 1;
   quiet_scans_.add(coefficient);
   if (state_ == State::kReady) track();
   above_ = coefficient >= trigger() ? above_ + 1 : 0;
   below_ = coefficient < base() + settings_.end_coefficient ? below_ + 1 : 0;
   negative_ = coefficient <= base() - settings_.start_coefficient ? negative_ + 1 : 0;
+  const bool is_negative =
+      negative_ == scans(settings_.unload_dwell_s) && !std::exchange(may_push_back_, false);
   const bool unloaded = below_ >= scans(settings_.unload_dwell_s);
 
   switch (state_) {
@@ -145,11 +150,11 @@ Segmenter::Event Segmenter::observe(base::ScanIndex index, double coefficient) {
         return Event::kTestStarts;
       }
       if (waiting_.size() > settings_.pre_trigger_scans()) waiting_.pop_front();
-      return by_force_ && negative_ == scans(settings_.unload_dwell_s) ? Event::kNegative : Event::kNone;
+      return by_force_ && is_negative ? Event::kNegative : Event::kNone;
     case State::kRunning:
       follow(coefficient);
       if (!was_loaded_ && loaded()) {
-        was_loaded_ = true;
+        was_loaded_ = may_push_back_ = true;
         quiet_scans_.clear();  // The rest before the load is no unloading.
       }
       end_tail_.push_back(coefficient);
@@ -217,6 +222,7 @@ bool Segmenter::was_above() const {
 void Segmenter::begin() {
   state_ = State::kRunning;
   was_loaded_ = !start_now_;
+  may_push_back_ = may_push_back_ || was_loaded_;
   // What the force did before the record began may not count: a replay cannot see it.
   if (std::exchange(start_now_, false)) above_ = 0;
   level_is_given_ = false;

@@ -59,7 +59,8 @@ class Segmenter {
     kNoRelativeMotion,
     kPulledAgain,  ///< Rose again before unloading was detected; begins no test. Once a test.
     /// As far below the unloaded level as a test begins above it, for the unload dwell: the force has the
-    /// wrong sign. Once for each such stretch.
+    /// wrong sign. Once for each such stretch, but for the first after a test: there the carriage may push
+    /// the sled back.
     kNegative,
   };
 
@@ -143,6 +144,7 @@ class Segmenter {
   std::int64_t above_ = 0;      ///< Consecutive scans at or above the trigger.
   std::int64_t below_ = 0;      ///< Consecutive scans below the end.
   std::int64_t negative_ = 0;   ///< Consecutive scans as far below the level as the trigger is above it.
+  bool may_push_back_ = false;  ///< A pull has loaded the cell, and no negative stretch followed.
 
   // Of the running test.
   bool was_loaded_ = false;  ///< The force has stayed above the trigger.

@@ -9,6 +9,7 @@
 
 #include <Eigen/Dense>
 
+#include "core/analysis/hum_check.hpp"
 #include "core/signal/despike.hpp"
 #include "core/signal/noise.hpp"
 
@@ -23,8 +24,6 @@ constexpr double kLargestZero = 0.0025;
 constexpr double kLargestDrift_per_s = kLargestZero / 60.0;
 /// A tenth of the amplitude for S − K = 0.05; larger noise creates turning points of its own.
 constexpr double kLargestNoise = 0.005;
-/// As the noise: what is left of it after 17 scans a cycle is a ripple on the peaks.
-constexpr double kLargestHum = 0.0025;
 /// Rate of spikes at which the detector is tested (docs/detector-limits.md).
 constexpr double kMostSpikes_per_s = 20.0;
 /// Ten times the error of an aged quartz.
@@ -32,7 +31,6 @@ constexpr double kLargestRateError = 1e-3;
 /// Standard errors by which a limit must be exceeded; chance alone does so once in a thousand.
 constexpr double kSignificant = 3.3;
 
-constexpr double kMains_Hz[] = {50.0, 60.0};
 constexpr int kParameters = 6;
 
 /// Spikes replaced as for the detector, and how many.
@@ -74,7 +72,7 @@ IdleFit fit_idle(const std::vector<double>& values, double scan_rate_Hz, bool wi
     basis(i, 1) = time_s;
     if (!with_hum) continue;
     for (Eigen::Index k = 0; k < 2; ++k) {
-      const double phase = 2.0 * std::numbers::pi * kMains_Hz[k] * time_s;
+      const double phase = 2.0 * std::numbers::pi * analysis::kMains_Hz[k] * time_s;
       basis(i, 2 + 2 * k) = std::cos(phase);
       basis(i, 3 + 2 * k) = std::sin(phase);
     }
@@ -143,13 +141,21 @@ std::vector<base::Finding> self_check_findings(const daq::SelfCheck& check, doub
     found(FindingCode::kSelfCheckNoise, fmt::format("noise of {:.2g} N a scan", *check.noise_N),
           {{"noise", *check.noise_N, "N"}, {"limit", kLargestNoise * load_N, "N"}});
   }
-  const std::pair<double, std::optional<double>> hums[] = {{kMains_Hz[0], check.hum_at_50_Hz_N},
-                                                           {kMains_Hz[1], check.hum_at_60_Hz_N}};
+  const std::pair<double, std::optional<double>> hums[] = {{analysis::kMains_Hz[0], check.hum_at_50_Hz_N},
+                                                           {analysis::kMains_Hz[1], check.hum_at_60_Hz_N}};
   for (const auto& [frequency_Hz, hum_N] : hums) {
-    if (above(hum_N, kLargestHum, check.hum_standard_error_N)) {
-      found(FindingCode::kSelfCheckHum,
-            fmt::format("hum of {:.2g} N at {} Hz: look for a ground loop", *hum_N, frequency_Hz),
-            {{"hum", *hum_N, "N"}, {"frequency", frequency_Hz, "Hz"}, {"limit", kLargestHum * load_N, "N"}});
+    if (above(hum_N, analysis::kLargestHum, check.hum_standard_error_N)) {
+      found(
+          FindingCode::kSelfCheckHum,
+          fmt::format(
+              "hum of {:.2g} N at {} Hz: static, S and K of each slip are off by up to {:.2g}, a fall of up "
+              "to {:.2g} may be hum, and no stick-slip smaller than that is told from sliding: look for a "
+              "ground loop",
+              *hum_N, frequency_Hz, *hum_N / load_N, 2.0 * *hum_N / load_N),
+          {{"hum", *hum_N, "N"},
+           {"frequency", frequency_Hz, "Hz"},
+           {"limit", analysis::kLargestHum * load_N, "N"},
+           {"coefficient_error", *hum_N / load_N, "1"}});
     }
   }
   if (check.scan_rate_Hz) {
@@ -184,8 +190,7 @@ daq::SelfCheck check_idle(base::ScanIndex first, std::span<const double> raw,
                    [&](double value) { return calibration.force_N(value); });
     const double step_N = calibration.step_coefficient() * load_N;
     check.spike_count = despike(force_N, step_N / std::sqrt(12.0));
-    // Below twice 60 Hz the scans cannot show it, and close to that not its phase.
-    const bool with_hum = scan_rate_Hz > 2.2 * kMains_Hz[1];
+    const bool with_hum = scan_rate_Hz > analysis::kLowestRateForHum_Hz;
     const IdleFit fit = fit_idle(force_N, scan_rate_Hz, with_hum);
     check.zero_N = fit.zero;
     check.zero_standard_error_N = fit.zero_error;

@@ -36,7 +36,7 @@ std::optional<daq::GapCause> gap_cause_from_name(std::string_view text) noexcept
   using daq::GapCause;
   for (const auto cause :
        {GapCause::kUnknown, GapCause::kOverrun, GapCause::kRingFull, GapCause::kBoardMissing,
-        GapCause::kMissingScans, GapCause::kStorageFull, GapCause::kDamaged}) {
+        GapCause::kSuspended, GapCause::kMissingScans, GapCause::kStorageFull, GapCause::kDamaged}) {
     if (daq::name(cause) == text) return cause;
   }
   return std::nullopt;

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/signal/noise.hpp"
-#include "core/signal/sliding_window.hpp"
 #include "core/signal/statistics.hpp"
 
 namespace stickslip::signal {
@@ -180,30 +179,20 @@ std::optional<double> noise_in_steps(const base::LongColumn<double>& values, con
   const double lowest = kLoadedPart * largest_of(values, left_out);
   if (step <= 0.0) step = step_seen(values);
   if (!(lowest > 0.0) || !(step > 0.0)) return std::nullopt;
-  constexpr std::size_t kOrder = 4;
-  constexpr double kGain = 70.0;  // Sum of the squares of 1, 4, 6, 4, 1.
-  SlidingWindow<kOrder + 1> last;
-  std::size_t seen = 0;
-  double sum = 0.0;
-  std::size_t in_block = 0;
-  std::vector<double> blocks;
+  FourthDifferences differences;
+  std::vector<double> variances;
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (left_out(k) || values[k] < lowest || (held && held->holds(values[k]))) {
-      seen = 0;
-      continue;
+      differences.gap();
+    } else if (differences.add(values[k] / step)) {
+      // Differences of few steps are whole numbers, of which the median tells little.
+      double sum = 0.0;
+      for (const double difference : differences.block()) sum += difference * difference;
+      variances.push_back(sum / (FourthDifferences::kBlock * FourthDifferences::kVarianceGain));
     }
-    last.push(values[k]);
-    if (++seen <= kOrder) continue;
-    const auto v = last.values();
-    const double difference = (v[0] - 4.0 * v[1] + 6.0 * v[2] - 4.0 * v[3] + v[4]) / step;
-    sum += difference * difference;
-    if (++in_block < NoiseEstimator::kBlock) continue;
-    blocks.push_back(sum / static_cast<double>(in_block));
-    sum = 0.0;
-    in_block = 0;
   }
-  if (blocks.size() < kFewBlocks) return std::nullopt;
-  const double variance = median_of(blocks.size(), [&](std::size_t i) { return blocks[i]; }) / kGain;
+  if (variances.size() < kFewBlocks) return std::nullopt;
+  const double variance = median_of(variances.size(), [&](std::size_t i) { return variances[i]; });
   return std::sqrt(std::max(0.0, variance - kRoundingSigma * kRoundingSigma));
 }
 

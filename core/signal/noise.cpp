@@ -10,7 +10,7 @@ namespace {
 
 /// Median absolute deviation of a unit Gaussian.
 constexpr double kGaussianMad = 0.6744897501960817;
-/// √70: gain of the fourth difference for white noise.
+/// √FourthDifferences::kVarianceGain
 constexpr double kFourthDifferenceGain = 8.366600265340756;
 
 /// Relative distance of a block's median from that of all blocks that is hardly ever exceeded: two standard
@@ -19,8 +19,8 @@ constexpr double kNearly = 0.3;
 
 /// signal::median() with a guess, which only saves time: nth_element stumbles over noise at every second
 /// comparison, and parting the values at known levels does not.
-double median_near(std::span<const double, NoiseEstimator::kBlock> values, double guess) noexcept {
-  constexpr std::size_t kSize = NoiseEstimator::kBlock;
+double median_near(std::span<const double, FourthDifferences::kBlock> values, double guess) noexcept {
+  constexpr std::size_t kSize = FourthDifferences::kBlock;
   const double from = (1.0 - kNearly) * guess;
   const double to = (1.0 + kNearly) * guess;
   std::array<double, kSize> below;
@@ -55,7 +55,7 @@ NoiseEstimator::NoiseEstimator(double floor) noexcept : floor_(floor), sigma_(fl
 
 void NoiseEstimator::close_block() noexcept {
   const double typical = block_count_ == 0 ? 0.0 : sorted_[std::min(block_count_, kBlocks) / 2];
-  const double newest = median_near(block_, typical);
+  const double newest = median_near(differences_.block(), typical);
   double& slot = medians_[block_count_ % kBlocks];
   const std::size_t before = std::min(block_count_, kBlocks);
   const auto begin = sorted_.begin();
@@ -72,7 +72,6 @@ void NoiseEstimator::close_block() noexcept {
   *place = newest;
   slot = newest;
   ++block_count_;
-  in_block_ = 0;
   const std::size_t filled = std::min(block_count_, kBlocks);
   sigma_ = std::max(floor_, sorted_[filled / 2] / (kGaussianMad * kFourthDifferenceGain));
 }

@@ -13,28 +13,52 @@
 
 namespace stickslip::signal {
 
-/// Standard deviation of white noise on single scans, from fourth differences: these let pass
-/// (2 sin(π f/fs))⁴ of a sinusoid's amplitude, 1.7 % at 17.5 scans a cycle, and √70 of the noise
-/// [Σ binomial(4,k)² = 70]. Robust: the median absolute difference of blocks of 64, over 0.6745
-/// (its value for unit Gaussian noise), then the median over blocks, so that spikes and slips have no effect.
-/// Streaming, O(1) memory and bounded time per scan; does not allocate.
-class NoiseEstimator {
+/// Fourth differences of a stream, in blocks. They let pass (2 sin(π f/fs))⁴ of a sinusoid's amplitude, 1.7 %
+/// at 17.5 scans a cycle, and √70 of white noise.
+class FourthDifferences {
  public:
   static constexpr std::size_t kBlock = 64;
+  static constexpr double kVarianceGain = 70.0;  ///< Σ binomial(4,k)².
 
+  /// \return true if block() is complete; the next difference begins a new one.
+  bool add(double value) noexcept {
+    last_.push(value);
+    if (++seen_ < kValues) return false;
+    const auto v = last_.values();
+    const double fourth_difference = v[0] - 4.0 * v[1] + 6.0 * v[2] - 4.0 * v[3] + v[4];
+    block_[in_block_++] = std::abs(fourth_difference);
+    if (in_block_ < kBlock) return false;
+    in_block_ = 0;
+    return true;
+  }
+  /// To be called at a gap: no difference spans it.
+  void gap() noexcept { seen_ = 0; }
+
+  /// Absolute values.
+  [[nodiscard]] const std::array<double, kBlock>& block() const noexcept { return block_; }
+
+ private:
+  static constexpr std::size_t kValues = 5;  ///< Of one difference.
+
+  SlidingWindow<kValues> last_;
+  std::size_t seen_ = 0;
+  std::array<double, kBlock> block_{};
+  std::size_t in_block_ = 0;
+};
+
+/// Standard deviation of white noise on single scans, from fourth differences. Robust: the median absolute
+/// difference of a block, over 0.6745 (its value for unit Gaussian noise), then the median over blocks, so
+/// that spikes and slips have no effect. Streaming, O(1) memory and bounded time per scan; does not allocate.
+class NoiseEstimator {
+ public:
   /// \param floor  smallest estimate: the rounding noise of one A/D step, step/√12.
   explicit NoiseEstimator(double floor) noexcept;
 
   void add(double value) noexcept {
-    last_.push(value);
-    if (++seen_ < kDifference) return;
-    const auto v = last_.values();
-    const double fourth_difference = v[0] - 4.0 * v[1] + 6.0 * v[2] - 4.0 * v[3] + v[4];
-    block_[in_block_++] = std::abs(fourth_difference);
-    if (in_block_ == kBlock) close_block();
+    if (differences_.add(value)) close_block();
   }
-  /// To be called at a gap: no difference spans it. The estimate is unchanged.
-  void gap() noexcept { seen_ = 0; }
+  /// To be called at a gap. The estimate is unchanged.
+  void gap() noexcept { differences_.gap(); }
 
   /// Whether at least one block is complete, so that sigma() is measured.
   [[nodiscard]] bool known() const noexcept { return block_count_ > 0; }
@@ -42,7 +66,6 @@ class NoiseEstimator {
   [[nodiscard]] double sigma() const noexcept { return sigma_; }
 
  private:
-  static constexpr std::size_t kDifference = 5;  ///< Values of a fourth difference.
   /// Medians of blocks kept: the latest 256, i.e. 47 s at 350 Hz.
   static constexpr std::size_t kBlocks = 256;
 
@@ -50,10 +73,7 @@ class NoiseEstimator {
 
   double floor_;
   double sigma_;
-  SlidingWindow<kDifference> last_;
-  std::size_t seen_ = 0;
-  std::array<double, kBlock> block_{};
-  std::size_t in_block_ = 0;
+  FourthDifferences differences_;
   std::array<double, kBlocks> medians_{};  ///< In the order of time; a ring buffer.
   std::array<double, kBlocks> sorted_{};   ///< The same in the order of size.
   std::size_t block_count_ = 0;

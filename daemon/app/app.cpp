@@ -208,8 +208,7 @@ std::vector<pipeline::Sink*> App::sinks() {
 }
 
 base::Result<void> App::open_session() {
-  base::Result<drivers::OpenedBoard> board =
-      world_.open_board(config_.board, *clock_, continues_.continuation);
+  base::Result<drivers::OpenedBoard> board = world_.open_board(config_.board, *clock_, continues_.before);
   if (!board) return tl::unexpected(board.error());
   truth_ = board->truth;
   const base::Result<runtime::SessionSettings> made = runtime::session_settings(config_, *board, continues_);
@@ -283,7 +282,7 @@ void App::session_ended(runtime::Acquisition::End end) {
   const std::string why = session_->board_error();
   runtime::SessionEnd ended = session_->end();
   // A session without a scan knows nothing of the index.
-  if (!ended.continuation) ended.continuation = continues_.continuation;
+  if (!ended.before.continuation) ended.before.continuation = continues_.before.continuation;
   continues_ = ended;
   clocks_ = session_->clocks();
   issued_before_ += session_->issued_index_count();

@@ -40,7 +40,7 @@ namespace stickslip::app {
 struct AppWorld {
   runtime::RecordFolder record_folder;  ///< The configured record folder, prepared.
   std::function<base::Result<drivers::OpenedBoard>(const drivers::BoardConfig&, base::Clock&,
-                                                   const std::optional<daq::Continuation>&)>
+                                                   const daq::Predecessor&)>
       open_board;
   storage::Finalise finalise;
   daemon::EventReceiver* events = nullptr;  ///< Outlives the App.

@@ -67,6 +67,7 @@ void Acquisition::hand_over(daq::ScanBlock& block) noexcept {
   issued_end_ = block.end();
   // A full ring counts what it drops; the jump in the index tells the consumer.
   block.overrun_count = overruns_;
+  block.suspend_count = suspends_;
   block.dropped_scan_count = ring_.dropped_scan_count();
   untold_lost_ = ring_.push(block) ? 0 : untold_lost_ + lost;
   untold_ = true;
@@ -98,6 +99,10 @@ Acquisition::End Acquisition::read_to_the_end() noexcept {
       case daq::ReadStatus::kOverrun:
         ++overruns_;
         // Scans are being lost anyway: starting again may take its time.
+        if (!board_.start()) return End::kFailed;
+        break;
+      case daq::ReadStatus::kSuspended:
+        ++suspends_;
         if (!board_.start()) return End::kFailed;
         break;
       case daq::ReadStatus::kEndOfInput:

@@ -98,6 +98,7 @@ class Acquisition {
   std::optional<daq::ScanIndex> issued_end_;
   std::int64_t untold_lost_ = 0;
   std::uint64_t overruns_ = 0;  ///< Overruns so far; blocks carry the count.
+  std::uint64_t suspends_ = 0;  ///< As overruns_.
   bool untold_ = false;         ///< The ring holds blocks that were not announced.
   std::int64_t told_ns_ = 0;    ///< Stamp of the block announced last.
   base::Semaphore news_;

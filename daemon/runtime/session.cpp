@@ -124,8 +124,8 @@ void Session::count_since(const Progress& before) noexcept {
 }
 
 SessionEnd Session::end() const {
-  SessionEnd end{processor_.test_number(), processor_.rate_meter().continuation()};
-  if (end.continuation) end.continuation->end += lost_at_end_;
+  SessionEnd end{processor_.test_number(), {processor_.rate_meter().continuation(), board_info()}};
+  if (auto& continuation = end.before.continuation) continuation->end += lost_at_end_;
   return end;
 }
 
@@ -165,15 +165,17 @@ void Session::process_block(const daq::ScanBlock& block) {
   }
   if (events_.block) events_.block(block);
   const std::uint64_t overruns = block.overrun_count - std::exchange(overruns_before_, block.overrun_count);
+  const std::uint64_t suspends = block.suspend_count - std::exchange(suspends_before_, block.suspend_count);
   const std::uint64_t dropped =
       block.dropped_scan_count - std::exchange(dropped_before_, block.dropped_scan_count);
   const bool continues = std::exchange(continues_, false);
   daq::GapCause cause = daq::GapCause::kUnknown;
   if (overruns > 0) cause = daq::GapCause::kOverrun;
   if (dropped > 0) cause = daq::GapCause::kRingFull;
+  if (suspends > 0) cause = daq::GapCause::kSuspended;
   if (continues) cause = daq::GapCause::kBoardMissing;
   const Progress before = progress();
-  processor_.process(block, cause, continues || overruns > 0);
+  processor_.process(block, cause, continues || overruns > 0 || suspends > 0);
   const daq::RateMeter& meter = processor_.rate_meter();
   {
     const std::lock_guard lock{live_mutex_};

@@ -37,7 +37,7 @@ struct SessionSettings {
 /// Where a session ended; the next one continues there.
 struct SessionEnd {
   std::int64_t next_test_number = 1;
-  std::optional<daq::Continuation> continuation;  ///< Absent if there was no scan.
+  daq::Predecessor before;
 };
 
 /// Receivers of a session's events, called on the processing thread.
@@ -155,6 +155,7 @@ class Session {
   std::atomic<pipeline::BenchTrouble> bench_trouble_ = pipeline::BenchTrouble::kNone;
   SessionClocks clocks_;
   std::uint64_t dropped_before_ = 0;
+  std::uint64_t suspends_before_ = 0;
   std::uint64_t overruns_before_ = 0;
   std::int64_t lost_at_end_ = 0;
   FullRing full_ring_;

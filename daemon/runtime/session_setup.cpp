@@ -41,7 +41,7 @@ base::Result<SessionSettings> session_settings(const io::DaemonConfig& config,
   if (config.clock_speed == 1.0) settings.realtime = config.realtime;
   settings.clock_speed = config.clock_speed;
   settings.processor.first_test_number = continues.next_test_number;
-  if (continues.continuation) settings.processor.continues_at = continues.continuation->end;
+  if (const auto& from = continues.before.continuation) settings.processor.continues_at = from->end;
   settings.processor.recorded = opened.recorded;
   settings.processor.second = board.second;
   const io::BenchConfig& bench = config.bench;

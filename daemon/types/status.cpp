@@ -20,6 +20,8 @@ Json to_json(const daq::BoardInfo& board) {
   json["driver"] = board.driver;
   json["name"] = board.board_name;
   json["device"] = board.device;
+  json["serial"] = board.serial.empty() ? Json(nullptr) : Json(board.serial);
+  json["bus_path"] = board.bus_path.empty() ? Json(nullptr) : Json(board.bus_path);
   json["subdevice"] = board.subdevice;
   json["channel"] = board.channel;
   json["scan_rate_requested"] = board.scan_rate_requested_Hz;

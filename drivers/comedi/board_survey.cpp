@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <filesystem>
 #include <limits>
-#include <system_error>
 #include <utility>
 
 #include "drivers/comedi/comedi_agreement.hpp"
@@ -69,6 +66,15 @@ SubdeviceOffer survey_subdevice(unsigned number, const std::string& device, Come
   return offer;
 }
 
+/// The key that finds the board again, under whatever device file.
+std::string choice(const daq::BoardInfo& board) {
+  if (!board.serial.empty())
+    return fmt::format("serial = \"{}\"  # finds the board under any device file\n", board.serial);
+  if (!board.bus_path.empty())
+    return fmt::format("bus_path = \"{}\"  # finds the board there, under any device file\n", board.bus_path);
+  return {};
+}
+
 std::string configuration(const ComediBoardSettings& settings, const ComediSetup& setup,
                           const SubdeviceOffer& input) {
   return fmt::format(
@@ -77,6 +83,7 @@ std::string configuration(const ComediBoardSettings& settings, const ComediSetup
       "scan_rate = \"{:g} Hz\"            # granted: {:.9g} Hz\n"
       "[board.comedi]\n"
       "device = \"{}\"\n"
+      "{}"
       "subdevice = {}\n"
       "channel = 0                     # 0 to {}: where the load cell is\n"
       "range_min = \"{:g} V\"            # what the amplifier can give\n"
@@ -85,8 +92,9 @@ std::string configuration(const ComediBoardSettings& settings, const ComediSetup
       "[tester]\n"
       "sled_mass = \"2331 g\"            # weigh it\n"
       "load_cell_gain = \"2 N/V\"        # from its certificate or weights\n",
-      settings.scan_rate_Hz, setup.info.scan_rate_granted_Hz, settings.device, setup.info.subdevice,
-      input.channel_count - 1, setup.info.range_min_V, setup.info.range_max_V, input.references.front());
+      settings.scan_rate_Hz, setup.info.scan_rate_granted_Hz, settings.device, choice(setup.info),
+      setup.info.subdevice, input.channel_count - 1, setup.info.range_min_V, setup.info.range_max_V,
+      input.references.front());
 }
 
 /// Settings that the input surely has: its widest range in volts, its first reference, a rate within its own.
@@ -122,6 +130,7 @@ BoardOffer survey_board(const std::string& device, ComediCalls& calls) {
     offer.problem = explain_comedi_error(device, -opened);
     return offer;
   }
+  offer.place = calls.place(device);
   offer.driver = calls.driver_name();
   offer.board = calls.board_name();
   for (int i = 0; i < calls.subdevice_count(); ++i) {
@@ -146,27 +155,6 @@ BoardOffer survey_board(const std::string& device, ComediCalls& calls) {
     offer.problem = setup.error().message;
   }
   return offer;
-}
-
-std::vector<std::string> comedi_devices(const std::string& folder) {
-  std::vector<std::pair<int, std::string>> found;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator{folder, error}) {
-    const std::string name = entry.path().filename();
-    constexpr std::string_view kPrefix = "comedi";
-    const std::string number = name.starts_with(kPrefix) ? name.substr(kPrefix.size()) : "";
-    constexpr std::size_t kMostDigits = 3;
-    if (number.empty() || number.size() > kMostDigits ||
-        !std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c) != 0; })) {
-      continue;  // comedi0_subd1: one subdevice of a board
-    }
-    found.emplace_back(std::stoi(number), entry.path().string());
-  }
-  std::sort(found.begin(), found.end());
-  std::vector<std::string> devices;
-  devices.reserve(found.size());
-  for (auto& [number, device] : found) devices.push_back(std::move(device));
-  return devices;
 }
 
 }  // namespace stickslip::drivers

@@ -30,6 +30,7 @@ struct BoardOffer {
   std::string problem;  ///< Why it cannot be used; empty if it can.
   std::string driver;
   std::string board;
+  BoardPlace place;
   std::vector<SubdeviceOffer> subdevices;
   std::string configuration;  ///< The tables of a configuration that take its first analog input; TOML.
 
@@ -38,8 +39,5 @@ struct BoardOffer {
 
 /// Opens the board; acquires nothing and disturbs no other program.
 [[nodiscard]] BoardOffer survey_board(const std::string& device, ComediCalls& calls);
-
-/// Device files of boards (not of single subdevices) that exist, in order.
-[[nodiscard]] std::vector<std::string> comedi_devices(const std::string& folder = "/dev");
 
 }  // namespace stickslip::drivers

@@ -87,6 +87,7 @@ class ComediBoard final : public daq::Board {
     }
     meter_.started(next_, now_ns);
     heard_ns_ = now_ns;
+    suspended_ns_ = clock_.suspended_ns();
     left_over_ = 0;
     error_ = 0;
     state_ = State::kAcquiring;
@@ -102,6 +103,8 @@ class ComediBoard final : public daq::Board {
       return ReadStatus::kTimeout;
     }
     for (bool waited = false;;) {
+      // The kernel resumes the command or not; no scan tells how many were not taken.
+      if (clock_.suspended_ns() != suspended_ns_) return suspended();
       // At most what fits the block: the rest stays in the kernel's buffer, which is large.
       const std::size_t wanted = ScanBlock::kMaxScans * scan_size() - left_over_;
       const int result = calls_->read(std::span(bytes_).subspan(left_over_, wanted));
@@ -205,6 +208,12 @@ class ComediBoard final : public daq::Board {
     return error_ == EPIPE ? ReadStatus::kOverrun : ReadStatus::kFailed;
   }
 
+  ReadStatus suspended() noexcept {
+    calls_->cancel(setup_.command.subdevice);
+    state_ = State::kIdle;
+    return ReadStatus::kSuspended;
+  }
+
   /// Only closing and opening can help, as for a board that was removed.
   ReadStatus silent() noexcept {
     error_ = kSilent;
@@ -229,7 +238,8 @@ class ComediBoard final : public daq::Board {
   std::int64_t longest_silence_ns_ = 0;
   State state_ = State::kIdle;
   daq::ScanIndex next_ = 0;
-  std::int64_t heard_ns_ = 0;  ///< Of the latest scan, or of the start.
+  std::int64_t suspended_ns_ = 0;  ///< At the start.
+  std::int64_t heard_ns_ = 0;      ///< Of the latest scan, or of the start.
   int error_ = 0;
   std::size_t left_over_ = 0;  ///< Bytes of a scan not complete yet: read() is byte-granular.
   std::array<std::byte, ScanBlock::kMaxScans * kLargestScan_bytes> bytes_{};

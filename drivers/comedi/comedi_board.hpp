@@ -48,9 +48,21 @@ struct SecondInputSettings {
   double zero_V = 0.0;
 };
 
+/// Properties of the wanted board, whatever its device file is called. Empty: any.
+struct BoardChoice {
+  std::string board;  ///< As the board names itself.
+  std::string serial;
+  std::string bus_path;  ///< BoardPlace::bus_path.
+
+  [[nodiscard]] bool empty() const noexcept { return board.empty() && serial.empty() && bus_path.empty(); }
+};
+
 /// Requested settings of a board; BoardInfo holds the granted ones.
 struct ComediBoardSettings {
-  std::string device = "/dev/comedi0";
+  std::string device = "/dev/comedi0";  ///< Not used if there is a choice.
+  BoardChoice choice;
+  /// The board that acquired last. Another one behind the same device file is refused.
+  std::optional<daq::BoardInfo> before;
   std::optional<unsigned> subdevice;  ///< The first analog input if absent.
   unsigned channel = 0;
   std::optional<SecondInputSettings> second;

@@ -7,8 +7,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstdlib>
+#include <filesystem>
+#include <system_error>
+#include <utility>
 
 namespace stickslip::drivers {
 namespace {
@@ -120,6 +124,9 @@ class RealComediCalls final : public ComediCalls {
     device_ = nullptr;
     file_ = -1;
   }
+
+  std::vector<std::string> devices() override { return comedi_devices(); }
+  BoardPlace place(const std::string& device) override { return place_of(device); }
 
   std::string driver_name() override { return text(::comedi_get_driver_name(device_)); }
   std::string board_name() override { return text(::comedi_get_board_name(device_)); }
@@ -234,6 +241,27 @@ class RealComediCalls final : public ComediCalls {
 };
 
 }  // namespace
+
+std::vector<std::string> comedi_devices(const std::string& folder) {
+  std::vector<std::pair<int, std::string>> found;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator{folder, error}) {
+    const std::string name = entry.path().filename();
+    constexpr std::string_view kPrefix = "comedi";
+    const std::string number = name.starts_with(kPrefix) ? name.substr(kPrefix.size()) : "";
+    constexpr std::size_t kMostDigits = 3;
+    if (number.empty() || number.size() > kMostDigits ||
+        !std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c) != 0; })) {
+      continue;  // comedi0_subd1: one subdevice of a board
+    }
+    found.emplace_back(std::stoi(number), entry.path().string());
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<std::string> devices;
+  devices.reserve(found.size());
+  for (auto& [number, device] : found) devices.push_back(std::move(device));
+  return devices;
+}
 
 std::unique_ptr<ComediCalls> make_comedi_calls() { return std::make_unique<RealComediCalls>(); }
 

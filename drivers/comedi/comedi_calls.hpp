@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/base/result.hpp"
+#include "drivers/comedi/board_place.hpp"
 
 namespace stickslip::drivers {
 
@@ -96,6 +97,10 @@ class ComediCalls {
   /// Closes the device and ends a running command of this process. Allowed when nothing is open.
   virtual void close() noexcept = 0;
 
+  /// Device files of boards (not of single subdevices) that exist, in order.
+  virtual std::vector<std::string> devices() = 0;
+  virtual BoardPlace place(const std::string& device) = 0;
+
   virtual std::string driver_name() = 0;
   virtual std::string board_name() = 0;
   /// \return number of the first analog input subdevice.
@@ -133,6 +138,9 @@ class ComediCalls {
   /// \return bytes, not necessarily whole samples; 0 if the command ended by itself. Real-time safe.
   virtual int read(std::span<std::byte> buffer) noexcept = 0;
 };
+
+/// As ComediCalls::devices(), in any folder.
+[[nodiscard]] std::vector<std::string> comedi_devices(const std::string& folder = "/dev");
 
 /// The real calls.
 [[nodiscard]] std::unique_ptr<ComediCalls> make_comedi_calls();

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "drivers/comedi/board_search.hpp"
 #include "drivers/comedi/comedi_agreement.hpp"
 #include "drivers/comedi/comedi_errors.hpp"
 
@@ -159,9 +160,12 @@ Result<daq::SecondChannel> second_channel(const ComediBoardSettings& settings,
 
 }  // namespace
 
-base::Result<ComediSetup> agree_with_board(const ComediBoardSettings& settings, ComediCalls& calls) {
-  const auto failed = [&](int result) { return tl::unexpected(comedi_error(settings.device, -result)); };
-  if (const int result = calls.open(settings.device); result < 0) return failed(result);
+base::Result<ComediSetup> agree_with_board(const ComediBoardSettings& asked, ComediCalls& calls) {
+  const base::Result<std::string> device = open_chosen(asked, calls);
+  if (!device) return tl::unexpected(device.error());
+  ComediBoardSettings settings = asked;
+  settings.device = *device;
+  const auto failed = [&](int result) { return tl::unexpected(comedi_error(*device, -result)); };
 
   unsigned subdevice = settings.subdevice.value_or(0);
   if (!settings.subdevice) {
@@ -208,8 +212,11 @@ base::Result<ComediSetup> agree_with_board(const ComediBoardSettings& settings, 
   setup.polled = polled;
   setup.sample_size = (flags & subdevice_flag::kLargeSample) != 0 ? 4 : 2;
   setup.info.driver = "comedi";
-  setup.info.board_name = fmt::format("{} ({})", calls.board_name(), calls.driver_name());
-  setup.info.device = settings.device;
+  const BoardIdentity identity{calls.board_name(), calls.driver_name(), calls.place(*device)};
+  setup.info.board_name = full_name(identity);
+  setup.info.serial = identity.place.serial;
+  setup.info.bus_path = identity.place.bus_path;
+  setup.info.device = *device;
   setup.info.subdevice = static_cast<int>(subdevice);
   setup.info.channel = static_cast<int>(settings.channel);
   setup.info.maxdata = calls.maxdata(subdevice, settings.channel);

@@ -47,6 +47,7 @@ class PolledBoard final : public daq::Board {
     }
     error_ = 0;
     pending_.reset();
+    suspended_ns_ = clock_.suspended_ns();
     started_ns_ = clock_.monotonic_ns();
     if (continues_) next_ = daq::first_scan_after(*continues_, started_ns_);
     first_ = next_;
@@ -63,6 +64,10 @@ class PolledBoard final : public daq::Board {
     if (state_ == State::kIdle) {
       clock_.sleep_until(deadline_ns);
       return ReadStatus::kTimeout;
+    }
+    if (clock_.suspended_ns() != suspended_ns_) {
+      state_ = State::kIdle;
+      return ReadStatus::kSuspended;
     }
     // What is long due cannot be read any more: the scan whose time has come is the next one.
     const auto due =
@@ -133,6 +138,7 @@ class PolledBoard final : public daq::Board {
   daq::ScanIndex first_ = 0;           ///< Of this start; due one period after it.
   daq::ScanIndex next_ = 0;
   std::int64_t started_ns_ = 0;
+  std::int64_t suspended_ns_ = 0;  ///< At the start.
   int error_ = 0;
 };
 

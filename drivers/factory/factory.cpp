@@ -10,8 +10,8 @@ namespace stickslip::drivers {
 namespace {
 
 base::Result<OpenedBoard> open_simulated(SimulatedBoardSettings settings, base::Clock& clock,
-                                         const std::optional<daq::Continuation>& continues) {
-  settings.continues = continues;
+                                         const daq::Predecessor& before) {
+  settings.continues = before.continuation;
   base::Result<SimulatedTester> simulated = make_simulated_tester(settings, clock);
   if (!simulated) return tl::unexpected(simulated.error());
   return OpenedBoard{std::move(simulated->board),
@@ -60,8 +60,9 @@ base::Result<OpenedBoard> open_replay(const std::filesystem::path& file, base::C
 }
 
 base::Result<OpenedBoard> open_comedi(ComediBoardSettings settings, base::Clock& clock,
-                                      const std::optional<daq::Continuation>& continues) {
-  settings.continues = continues;
+                                      const daq::Predecessor& before) {
+  settings.continues = before.continuation;
+  settings.before = before.board;
   base::Result<std::unique_ptr<daq::Board>> board = make_comedi_board(settings, clock);
   if (!board) return tl::unexpected(board.error());
   return OpenedBoard{std::move(*board), nullptr, std::nullopt, std::nullopt, {}, nullptr, {}};
@@ -70,14 +71,14 @@ base::Result<OpenedBoard> open_comedi(ComediBoardSettings settings, base::Clock&
 }  // namespace
 
 base::Result<OpenedBoard> open_board(const BoardConfig& config, base::Clock& clock,
-                                     const std::optional<daq::Continuation>& continues) {
+                                     const daq::Predecessor& before) {
   switch (config.driver) {
     case Driver::kSimulated:
-      return open_simulated(config.simulated, clock, continues);
+      return open_simulated(config.simulated, clock, before);
     case Driver::kReplay:
       return open_replay(config.replay_file, clock);
     case Driver::kComedi:
-      return open_comedi(config.comedi, clock, continues);
+      return open_comedi(config.comedi, clock, before);
   }
   return base::usage_error("no such driver");
 }

@@ -9,7 +9,7 @@
 #include "core/base/result.hpp"
 #include "core/daq/board.hpp"
 #include "core/daq/calibration.hpp"
-#include "core/daq/rate_meter.hpp"
+#include "core/daq/predecessor.hpp"
 #include "core/daq/recorded_facts.hpp"
 #include "core/model/tester.hpp"
 #include "core/model/truth.hpp"
@@ -33,11 +33,11 @@ struct OpenedBoard {
 };
 
 /// \param clock  outlives the board.
-/// \param continues  state of an earlier acquisition; needed only by boards that can be unplugged.
+/// \param before  of an earlier acquisition; needed only by boards that can be unplugged.
 /// Errors: kUsage if the configuration or a file it names is wrong; kFailure if the board is not there, in
 /// which case a later try may succeed.
 [[nodiscard]] base::Result<OpenedBoard> open_board(const BoardConfig& config, base::Clock& clock,
-                                                   const std::optional<daq::Continuation>& continues = {});
+                                                   const daq::Predecessor& before = {});
 
 /// Reads and checks everything that open_board() would read, without accessing hardware.
 [[nodiscard]] base::Result<void> check_board(const BoardConfig& config);

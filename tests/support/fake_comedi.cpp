@@ -13,7 +13,25 @@ namespace {
 constexpr unsigned kPageSize = 4096;
 }  // namespace
 
-int FakeComedi::open(const std::string& /*device*/) {
+std::vector<std::string> FakeComedi::devices() {
+  std::vector<std::string> devices;
+  for (const auto& [device, board] : world_.boards) devices.push_back(device);
+  return devices;
+}
+
+drivers::BoardPlace FakeComedi::place(const std::string& device) {
+  if (world_.boards.empty()) return {world_.serial, world_.bus_path};
+  const auto found = world_.boards.find(device);
+  return found == world_.boards.end() ? drivers::BoardPlace{} : found->second.place;
+}
+
+int FakeComedi::open(const std::string& device) {
+  if (!world_.boards.empty()) {
+    const auto found = world_.boards.find(device);
+    if (found == world_.boards.end()) return -ENOENT;
+    board_ = found->second;
+    return -board_.open_error;
+  }
   if (world_.open_error != 0) return -world_.open_error;
   return world_.removed ? -ENODEV : 0;
 }
@@ -155,6 +173,12 @@ void FakeComedi::run_board() noexcept {
   }
   if (world_.removed_at_scan >= 0 && taken >= world_.removed_at_scan) {
     world_.removed = true;
+    return;
+  }
+  if (world_.suspended_at_scan >= 0 && taken >= world_.suspended_at_scan) {
+    taken_bytes_ = std::max(read_bytes_, world_.suspended_at_scan * scan_size());
+    world_.suspended_at_scan = -1;
+    clock_.suspend(world_.suspended);
     return;
   }
   if (world_.overrun_at_scan >= 0 && taken >= world_.overrun_at_scan) {

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +18,13 @@
 #include "tests/support/manual_clock.hpp"
 
 namespace stickslip::test {
+
+/// A board among several; all measure alike.
+struct FakeBoard {
+  std::string name = "fake-board";
+  drivers::BoardPlace place;
+  int open_error = 0;  ///< errno of comedi_open().
+};
 
 /// What the world does to the board. Shared by the test and the calls that the board under test owns;
 /// change it at any moment.
@@ -33,19 +41,26 @@ struct FakeComediWorld {
   bool has_convert_now = true;
   bool takes_wake_end_of_scan = true;
   std::optional<drivers::ConversionPolynomial> soft_calibration;
+  std::string serial;
+  std::string bus_path;
+
+  /// By device file; empty: one board, which answers to any.
+  std::map<std::string, FakeBoard> boards;
 
   // What happens.
   int open_error = 0;            ///< errno of comedi_open().
   bool used_by_another = false;  ///< Another program acquires.
   bool removed = false;          ///< Unplugged.
   bool cancelled_by_another = false;
-  bool locked_by_another = false;      ///< Another program holds comedi_lock() on the subdevice.
-  std::int64_t removed_at_scan = -1;   ///< Unplugged when it takes this one, counted from the command.
-  std::int64_t overrun_at_scan = -1;   ///< Halts at this one, once, as if the reader had slept …
-  std::chrono::nanoseconds halt{0};    ///< … and is asked again so much later.
-  std::int64_t ends_after_scans = -1;  ///< The command ends by itself, as with a stop count.
-  double clock_error = 0.0;            ///< Its periods are longer by this part than it says.
-  int largest_read = 1 << 20;          ///< Bytes that one read() hands over at most.
+  bool locked_by_another = false;       ///< Another program holds comedi_lock() on the subdevice.
+  std::int64_t removed_at_scan = -1;    ///< Unplugged when it takes this one, counted from the command.
+  std::int64_t overrun_at_scan = -1;    ///< Halts at this one, once, as if the reader had slept …
+  std::chrono::nanoseconds halt{0};     ///< … and is asked again so much later.
+  std::int64_t suspended_at_scan = -1;  ///< The computer is suspended when the board takes this one, once …
+  std::chrono::nanoseconds suspended{0};  ///< … for so long.
+  std::int64_t ends_after_scans = -1;     ///< The command ends by itself, as with a stop count.
+  double clock_error = 0.0;               ///< Its periods are longer by this part than it says.
+  int largest_read = 1 << 20;             ///< Bytes that one read() hands over at most.
   std::chrono::nanoseconds wake_interval{std::chrono::milliseconds(8)};  ///< Of the driver's timer.
 
   // What was asked of it.
@@ -82,8 +97,10 @@ class FakeComedi final : public drivers::ComediCalls {
 
   int open(const std::string& device) override;
   void close() noexcept override { running_ = false; }
+  std::vector<std::string> devices() override;
+  drivers::BoardPlace place(const std::string& device) override;
   std::string driver_name() override { return "fake"; }
-  std::string board_name() override { return "fake-board"; }
+  std::string board_name() override { return board_.name; }
   int subdevice_count() override { return 2; }
   int subdevice_type(unsigned subdevice) override { return subdevice == 0 ? drivers::kAnalogInput : 2; }
   int read_one(const drivers::ComediCommand& input, std::uint32_t& code) noexcept override;
@@ -116,6 +133,7 @@ class FakeComedi final : public drivers::ComediCalls {
 
   FakeComediWorld& world_;
   ManualClock& clock_;
+  FakeBoard board_;  ///< The one that is open.
   drivers::ComediCommand command_;
   bool running_ = false;  ///< The subdevice is busy with a command of ours.
   bool ended_ = false;    ///< As many scans as it was to take.

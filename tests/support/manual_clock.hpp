@@ -28,6 +28,13 @@ class ManualClock final : public base::Clock {
     }
   }
 
+  [[nodiscard]] std::int64_t suspended_ns() const override { return suspended_ns_.load(); }
+  /// Suspends the computer: no program runs meanwhile.
+  void suspend(std::chrono::nanoseconds time) {
+    advance(time);
+    suspended_ns_.fetch_add(time.count());
+  }
+
   void advance(std::chrono::nanoseconds time) { now_ns_.fetch_add(time.count()); }
   /// Sets the date ahead, or back.
   void step_date(std::chrono::nanoseconds ahead) { realtime_offset_ns_.fetch_add(ahead.count()); }
@@ -35,6 +42,7 @@ class ManualClock final : public base::Clock {
  private:
   std::atomic<std::int64_t> now_ns_;
   std::atomic<std::int64_t> realtime_offset_ns_;
+  std::atomic<std::int64_t> suspended_ns_{0};
 };
 
 }  // namespace stickslip::test

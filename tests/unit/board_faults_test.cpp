@@ -26,6 +26,7 @@ namespace {
 using test::FakeComedi;
 using test::FakeComediWorld;
 using test::ManualClock;
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using namespace std::chrono_literals;
@@ -108,9 +109,8 @@ class BoardFaults : public testing::Test {
       return record::Finalised{journal, static_cast<std::int64_t>(reading->scan_count), 0, {}};
     };
     app::App* app = nullptr;
-    world.open_board =
-        [&](const drivers::BoardConfig&, base::Clock&,
-            const std::optional<daq::Continuation>& continues) -> base::Result<drivers::OpenedBoard> {
+    world.open_board = [&](const drivers::BoardConfig&, base::Clock&,
+                           const daq::Predecessor& before) -> base::Result<drivers::OpenedBoard> {
       if (app != nullptr) {
         states_.push_back(app->status().state);
         rates_.push_back(app->status().scan_rate_measured);
@@ -123,7 +123,8 @@ class BoardFaults : public testing::Test {
       time.advance(life.absent);
       if (!life.refused.empty()) return base::failure("{}", life.refused);
       drivers::ComediBoardSettings settings;
-      settings.continues = continues;
+      settings.continues = before.continuation;
+      settings.before = before.board;
       auto board = drivers::make_comedi_board(settings, time, std::make_unique<FakeComedi>(life.world, time));
       if (!board) return tl::unexpected(board.error());
       return drivers::OpenedBoard{std::move(*board), nullptr, {}, {}, {}, nullptr, {}};
@@ -200,6 +201,21 @@ TEST_F(BoardFaults, BoardThatGoesAndReturnsLeavesAnIncompleteTestAndAnEstimatedG
   EXPECT_EQ(status_.lost_scan_count, gap.count);
 }
 
+// Both are of one kind, and only the serial number tells them apart.
+TEST_F(BoardFaults, AnotherBoardBehindTheSameDeviceFileIsNotTakenInSilence) {
+  live().world.serial = "01A2";
+  lives_.back().world.removed_at_scan = 3500;
+  live().world.serial = "77B0";
+  live().world.serial = "01A2";
+  lives_.back().world.removed_at_scan = 3500;
+  run();
+  EXPECT_THAT(diary_.losses,
+              Contains(AllOf(HasSubstr("board missing: /dev/comedi0: another board has this device file now: "
+                                       "fake-board (fake), serial \"77B0\""),
+                             HasSubstr("not serial \"01A2\" as before"))));
+  EXPECT_EQ(records_.size(), 2U);
+}
+
 TEST_F(BoardFaults, OverrunInATestIsAnEstimatedGapInItsRecord) {
   live().world.overrun_at_scan = 3500;
   lives_.back().world.halt = 7s;
@@ -216,6 +232,26 @@ TEST_F(BoardFaults, OverrunInATestIsAnEstimatedGapInItsRecord) {
   EXPECT_EQ(status_.overrun_count, 1U);
   // Its scans go on to the last one behind the gap.
   EXPECT_GT(records_[0].scan.back(), gap.first + gap.count + 6000);
+}
+
+// The kernel's own clock stands still in a suspend, and the date alone would tell that scans are missing.
+TEST_F(BoardFaults, ASuspendOfTheComputerIsALossWithItsCause) {
+  live().world.suspended_at_scan = 3500;
+  lives_.back().world.suspended = 20s;
+  lives_.back().world.removed_at_scan = 10500;
+  run();
+  ASSERT_EQ(diary_.gaps.size(), 1U);
+  const daq::Gap& gap = diary_.gaps.front();
+  EXPECT_EQ(gap.cause, daq::GapCause::kSuspended);
+  EXPECT_TRUE(gap.estimated);
+  // What was read last lies up to a wake-up of 8 ms before it, as does the anchor; rounded twice.
+  EXPECT_NEAR(static_cast<double>(gap.first), 3500.0, 0.008 * kRate_Hz + 1.0);
+  EXPECT_NEAR(static_cast<double>(gap.first + gap.count), 3500.0 + 20.0 * kRate_Hz, 0.016 * kRate_Hz + 2.0);
+  ASSERT_EQ(records_.size(), 1U);
+  ASSERT_EQ(records_.front().gaps.size(), 1U);
+  EXPECT_EQ(records_.front().gaps.front().cause, daq::GapCause::kSuspended);
+  EXPECT_EQ(status_.overrun_count, 0U);
+  EXPECT_EQ(status_.board_loss_count, 1U);  // The removal alone.
 }
 
 TEST_F(BoardFaults, AnotherOwnerIsNamedAndWaitedFor) {

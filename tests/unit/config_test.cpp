@@ -50,6 +50,19 @@ TEST(Config, RecordsMayStandInDatedFoldersReadOnly) {
   EXPECT_FALSE(read(std::string{kGood} + "[record]\ndated_folders = \"year\"\n"));
 }
 
+TEST(Config, ABoardIsNamedByItselfOrByItsDeviceFile) {
+  const std::string comedi =
+      "[board]\ndriver = \"comedi\"\n[tester]\nsled_mass = \"1 kg\"\nload_cell_gain = \"2 "
+      "N/V\"\n[board.comedi]\n";
+  EXPECT_TRUE(read(comedi)->board.comedi.choice.empty());
+  const auto chosen = read(comedi + "board = \"das\"\nserial = \"01A2\"\nbus_path = \"pci-0000:00:05.0\"\n");
+  ASSERT_TRUE(chosen) << chosen.error().message;
+  const drivers::BoardChoice& choice = chosen->board.comedi.choice;
+  EXPECT_EQ(choice.board, "das");
+  EXPECT_EQ(choice.serial, "01A2");
+  EXPECT_EQ(choice.bus_path, "pci-0000:00:05.0");
+}
+
 // The values shown behind "# " are the defaults: with all of them in force nothing changes.
 TEST(Config, ShippedFileShowsTheDefaults) {
   std::ifstream in{kFile};
@@ -57,7 +70,7 @@ TEST(Config, ShippedFileShowsTheDefaults) {
   const std::regex key{R"(^# ([a-z_]+ = .*))"};
   // These have no default, or one that cannot be written.
   const std::regex example{
-      R"(^# (scan_rate|file|hanging|subdevice|pull_speed|stiffness|socket|speed_gain|speed_channel|position_gain|position_channel|load_cell_gain|sled_mass|gravity|load_cell_zero|characterisation|replicate|broker|tester|user|password_file|ca_file|certificate_file|key_file) = .*|^# calibration = "calibrations".*)"};
+      R"(^# (scan_rate|file|hanging|board|serial|bus_path|subdevice|pull_speed|stiffness|socket|speed_gain|speed_channel|position_gain|position_channel|load_cell_gain|sled_mass|gravity|load_cell_zero|characterisation|replicate|broker|tester|user|password_file|ca_file|certificate_file|key_file) = .*|^# calibration = "calibrations".*)"};
   for (std::string line; std::getline(in, line);) {
     std::smatch match;
     const bool is_default = std::regex_match(line, match, key) && !std::regex_match(line, example);

@@ -115,6 +115,42 @@ TEST(Segmenter, ForceJustBelowZeroOrForAMomentIsNotOfTheWrongSign) {
   EXPECT_TRUE(events_in(values).empty());
 }
 
+// Of a negative force seen on both sides of a gap nobody knows what was between.
+TEST(Segmenter, ForceOfTheWrongSignIsNotCountedOverAGap) {
+  Segmenter segmenter{SegmenterSettings{}};
+  std::vector<Event> seen;
+  base::ScanIndex scan = 0;
+  const auto observe = [&](double value, int scans) {
+    for (int k = 0; k < scans; ++k) {
+      if (const Event event = segmenter.observe(scan++, value); event != Event::kNone) seen.push_back(event);
+    }
+  };
+  observe(0.0, 200);
+  observe(-0.3, kUnloadDwell - 1);
+  scan += 100;
+  observe(-0.3, kUnloadDwell - 1);
+  EXPECT_TRUE(seen.empty());
+  observe(-0.3, 1);
+  EXPECT_EQ(seen, std::vector{Event::kNegative});
+}
+
+// A carriage with a stiff coupling pushes the sled back after each test. Wires that were swapped between two
+// tests are told at the second pull.
+TEST(Segmenter, ACarriageThatPushesTheSledBackIsNoForceOfTheWrongSign) {
+  for (const int rest : {0, 50, 200}) {
+    std::vector<double> values(200, 0.0);
+    for (int test = 0; test < 3; ++test) {
+      values.insert(values.end(), 500, 0.3);
+      values.insert(values.end(), static_cast<std::size_t>(rest), 0.0);
+      values.insert(values.end(), 400, -0.2);
+      values.insert(values.end(), 300, 0.0);
+    }
+    for (const Seen& seen : events_in(values)) EXPECT_NE(seen.event, Event::kNegative) << rest;
+    values.insert(values.end(), 400, -0.2);
+    EXPECT_EQ(events_in(values).back().event, Event::kNegative) << rest;
+  }
+}
+
 TEST(Segmenter, PreTriggerScansAreTimeTimesRate) {
   SegmenterSettings settings;
   EXPECT_EQ(settings.pre_trigger_scans(), static_cast<std::size_t>(kPreTrigger));

@@ -231,13 +231,13 @@ Leaves live_once(const Leaves& before, std::int64_t lasts, std::int64_t& command
   }
   const SessionEnd end = session.end();
   EXPECT_EQ(end.next_test_number, witness.next_test());
-  if (!end.continuation) {  // Stopped before its first scan.
+  if (!end.before.continuation) {  // Stopped before its first scan.
     EXPECT_EQ(witness.next(), first);
     return {before.continuation, end.next_test_number};
   }
   // Nothing is lost at the end, where the board waits for the ring.
-  EXPECT_EQ(end.continuation->end, witness.next());
-  return {end.continuation, end.next_test_number};
+  EXPECT_EQ(end.before.continuation->end, witness.next());
+  return {end.before.continuation, end.next_test_number};
 }
 
 TEST(SessionStress, LivesBehindEachOtherKeepTheirOrder) {

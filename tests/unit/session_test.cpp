@@ -103,8 +103,8 @@ TEST(Session, WhatAFullRingDropsAtTheEndIsAGapLikeAnyOther) {
   EXPECT_EQ(last.cause, daq::GapCause::kRingFull);
   // A board that comes back goes on behind the gap: no index is lost twice.
   EXPECT_EQ(last.first + last.count, session.issued_index_count());
-  ASSERT_TRUE(session.end().continuation);
-  EXPECT_EQ(session.end().continuation->end, session.issued_index_count());
+  ASSERT_TRUE(session.end().before.continuation);
+  EXPECT_EQ(session.end().before.continuation->end, session.issued_index_count());
 }
 
 // A command that forgets scans kept for the trigger takes them from no account.

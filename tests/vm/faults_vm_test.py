@@ -4,6 +4,7 @@ The codes that the virtual tester plays tell which scan is which, so an estimate
 lost.
 """
 
+import json
 import pathlib
 import re
 import tempfile
@@ -112,6 +113,32 @@ class Faults(unittest.TestCase):
         unrecorded = int(second.scan[0]) - int(start) - int(count)
         self.assertGreaterEqual(unrecorded, 0)
         self.assertLessEqual(abs(int(count) + unrecorded - lost), INDEX_TOLERANCE)
+
+    def test_a_board_that_returns_under_another_device_file_is_followed(self):
+        gone = self.status("renamed", "gone")["detail"]
+        self.assertIn('no board with serial "01A2B3C4"', gone)
+        self.assertIn("there is /dev/comedi0: comedi_test (comedi_test)", gone)
+        board = self.status("renamed", "returned")["board"]
+        self.assertEqual((board["device"], board["serial"], board["bus_path"]),
+                         ("/dev/comedi1", "01A2B3C4", "platform-stickslip_tester"))
+        first, *others = self.judged("renamed")
+        self.assertEqual((first.status, first.end_cause), ("incomplete", "board-missing"))
+        self.assertGreaterEqual(len(others), 1)
+        for record in others:
+            self.assertLessEqual(abs(self.place(record.scan, record.counts)), INDEX_TOLERANCE)
+
+    def test_another_board_behind_the_configured_device_file_is_told_and_not_taken(self):
+        gone = self.status("taken", "gone")["detail"]
+        self.assertIn("/dev/comedi0: another board has this device file now: comedi_test (comedi_test)", gone)
+        self.assertIn("not stickslip_tester (stickslip_tester) as before", gone)
+        self.assertIn('there is /dev/comedi1: stickslip_tester (stickslip_tester), serial "01A2B3C4"', gone)
+        self.assertIn("another board has this device file now", (self.results / "taken" / "doctor.json").read_text())
+        self.assertIn("another board has this device file now", (self.results / "taken" / "daemon.log").read_text())
+        [test_board, tester] = json.loads((self.results / "taken" / "boards.json").read_text())["boards"]
+        self.assertEqual((test_board["board"], test_board["serial"]), ("comedi_test", None))
+        self.assertEqual((tester["device"], tester["serial"]), ("/dev/comedi1", "01A2B3C4"))
+        self.assertIn('serial = "01A2B3C4"', tester["configuration"])
+        self.assertEqual(self.status("taken", "returned")["board"]["device"], "/dev/comedi0")
 
     def test_a_rival_is_waited_for(self):
         waiting = self.status("second", "waiting")

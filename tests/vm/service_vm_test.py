@@ -41,6 +41,9 @@ class Package(unittest.TestCase):
     def test_installed_without_a_board_it_waits(self):
         self.assertEqual(self.status("installed")["state"], "board missing")
 
+    def test_the_board_has_a_link_by_its_place(self):
+        self.assertEqual((self.results / "link").read_text(), "/dev/comedi0\n")
+
     def test_the_demo_needs_no_privilege(self):
         self.assertEqual((self.results / "demo.txt").read_text().count("truth  "), 10)
 

@@ -42,6 +42,45 @@ status after
 stop_daemon
 say "removal: done"
 
+# Pulled and plugged in again, while the kernel's test board takes its device file: it comes back under another one.
+# The daemon that knows it by its serial number follows it; the one that has only the path says who is there.
+board
+chosen='serial = "01A2B3C4"'
+start_test renamed
+echo 0 >"$switches/attached"
+await state '"board missing"'
+modprobe comedi_test
+await detail '"board missing: no board with serial'
+status gone
+echo 1 >"$switches/attached"
+await state '"acquiring"'
+status returned
+await test_count 2 120
+status after
+stop_daemon
+chosen=''
+rmmod comedi_test
+say "renamed: done"
+
+board
+start_test taken
+echo 0 >"$switches/attached"
+await state '"board missing"'
+modprobe comedi_test
+await detail '"board missing: /dev/comedi0: another board'
+stickslip doctor --json --config "/run/taken/stickslipd.toml" >"$folder/doctor.json" || true
+echo 1 >"$switches/attached"
+await detail '"board missing: /dev/comedi0: another board.*there is /dev/comedi1: stickslip_tester'
+status gone
+stickslip boards --json >"$folder/boards.json"
+echo 0 >"$switches/attached"
+rmmod comedi_test
+echo 1 >"$switches/attached"
+await state '"acquiring"'
+status returned
+stop_daemon
+say "taken: done"
+
 # A rival was there first: the daemon waits for it to go.
 board
 use rival

@@ -17,11 +17,13 @@ use() {
   mkdir -p "$folder" "/run/$name"
 }
 
-# configure [LINE...]: what all scenarios share, then more tables.
+# configure [LINE...]: what all scenarios share, then more tables. $chosen: lines of [board.comedi].
 configure() {
   cat >"/run/$name/stickslipd.toml" <<TOML
 [board]
 driver = "comedi"
+[board.comedi]
+${chosen:-}
 [tester]
 sled_mass = "2331 g"
 load_cell_gain = "2 N/V"

@@ -38,6 +38,7 @@ install -D -m 0644 codes.bin /lib/firmware/stickslip-codes.bin
 insmod ./stickslip_tester.ko
 udevadm settle
 stat -c '%a %U %G' /dev/comedi0 >"$results/device"
+readlink -f /dev/comedi/by-path/platform-stickslip_tester >"$results/link" || true
 systemctl start "$unit"
 say "started"
 await state '"acquiring"' started

@@ -14,6 +14,9 @@
  *   overrun         write N: the next N scans are lost, then the acquisition halts: an overflow of the board's FIFO
  *   attached        write 0: the board goes as an unplugged one does; 1: it returns
  *   position        reading: code that the next scan has
+ *
+ * The board is a device of the platform bus, so that udev has a path for it, and has a serial number as a board on USB
+ * has.
  */
 #include <linux/module.h>
 #include <linux/moduleparam.h>
@@ -22,11 +25,13 @@
 #include <linux/hrtimer.h>
 #include <linux/math64.h>
 #include <linux/mutex.h>
+#include <linux/platform_device.h>
 #include <linux/spinlock.h>
 #include <linux/slab.h>
 #include <linux/comedi/comedidev.h>
 
 #define TESTER_NAME "stickslip_tester"
+#define TESTER_SERIAL "01A2B3C4"
 /* Rates up to 100 kHz: a scan must be worth an interrupt. */
 #define SHORTEST_PERIOD_NS 10000U
 /* Longer ones may not fit once the clock's error is added. */
@@ -46,6 +51,7 @@ module_param(rate_error_ppb, int, 0644);
 static const struct comedi_lrange tester_ranges = { 2, { BIP_RANGE(10), BIP_RANGE(5) } };
 
 /* What the world holds, attached or not. */
+static struct platform_device *tester_place;
 static struct device *tester_parent;
 static bool tester_is_attached;
 static DEFINE_MUTEX(tester_plug);
@@ -289,20 +295,29 @@ module_param_cb(attached, &attached_ops, NULL, 0644);
 module_param_named(overrun, tester_overrun, uint, 0644);
 module_param_named(position, tester_position, ullong, 0444);
 
+static ssize_t serial_show(struct device *dev, struct device_attribute *attr, char *text)
+{
+	return sysfs_emit(text, TESTER_SERIAL "\n");
+}
+static DEVICE_ATTR_RO(serial);
+
 static int __init tester_init(void)
 {
 	int ret = comedi_driver_register(&tester_driver);
 
 	if (ret)
 		return ret;
-	tester_parent = root_device_register(TESTER_NAME);
-	if (IS_ERR(tester_parent)) {
+	tester_place = platform_device_register_simple(TESTER_NAME, PLATFORM_DEVID_NONE, NULL, 0);
+	if (IS_ERR(tester_place)) {
 		comedi_driver_unregister(&tester_driver);
-		return PTR_ERR(tester_parent);
+		return PTR_ERR(tester_place);
 	}
-	ret = tester_plug_in(true);
+	tester_parent = &tester_place->dev;
+	ret = device_create_file(tester_parent, &dev_attr_serial);
+	if (!ret)
+		ret = tester_plug_in(true);
 	if (ret) {
-		root_device_unregister(tester_parent);
+		platform_device_unregister(tester_place);
 		comedi_driver_unregister(&tester_driver);
 	}
 	return ret;
@@ -312,7 +327,7 @@ module_init(tester_init);
 static void __exit tester_exit(void)
 {
 	tester_plug_in(false);
-	root_device_unregister(tester_parent);
+	platform_device_unregister(tester_place);
 	comedi_driver_unregister(&tester_driver);
 }
 module_exit(tester_exit);
