@@ -109,7 +109,8 @@ class CommandLine(unittest.TestCase):
         return done.stderr
 
     def examples(self, *words):
-        return re.findall(r"(?m)^  (stickslip .*)$", printed(PROGRAMS["stickslip"], *words, "--help").partition("Examples:\n")[2])
+        text = printed(PROGRAMS["stickslip"], *words, "--help").partition("Examples:\n")[2]
+        return re.findall(r"(?m)^  (stickslip .*)$", re.sub(r"\\\n\s*", "", text))
 
     def test_each_subcommand_has_three_examples_of_its_own_that_its_parser_accepts(self):
         top = Help(PROGRAMS["stickslip"]).commands
@@ -152,7 +153,7 @@ class CommandLine(unittest.TestCase):
         self.assertIn('there is no result called "mu_kk"; did you mean mu_k?', self.refused("batch", "begin", "--name", "x", "--limit", "mu_kk=0.2:0.4"))
         self.assertIn("must be RESULT=LOWEST:HIGHEST, such as mu_k=0.2:0.4", self.refused("batch", "begin", "--name", "x", "--limit", "mu_k=0.3"))
         scene = "stick-slip-at-12-in-per-min"
-        self.assertIn('"0,34" has a comma: the decimal sign is a point: write "0.34"', self.refused("simulate", scene, "-o", "q.h5", "--set", "paper.mu_s=0,34"))
+        self.assertIn('paper.mu_s = "0,34": has a comma: the decimal sign is a point: write "0.34"', self.refused("simulate", scene, "-o", "q.h5", "--set", "paper.mu_s=0,34"))
         # The remedy works.
         self.assertEqual(run(PROGRAMS["stickslip"], "simulate", scene, "-o", "q.h5", "--set", "paper.mu_s=0.34", cwd=self.folder).returncode, 0)
         self.assertIn('x.gif: a picture ends in .svg or .png, not in ".gif"', self.refused("plot", "q.h5", "-o", "x.gif"))
