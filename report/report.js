@@ -23,7 +23,7 @@
   const range = (pair, decimals) => (pair == null ? "–" : `${fixed(pair[0], decimals)} … ${fixed(pair[1], decimals)}`);
   const named = (q, model) => q.label + (q.of_model ? model : "") + (q.unit === "1" ? "" : ` (${q.unit})`);
   const title = q => named(q, "");
-  const label = q => named(q, ", model quantity");
+  const label = q => named(q, " (model)");
   const probability = p => (p == null ? "–" : p < 0.0001 ? "< 0.0001" : p.toFixed(4));
   // Digits follow the uncertainty that stands beside the number.
   const halfOf = pair => (pair == null ? null : 0.5 * (pair[1] - pair[0]));
