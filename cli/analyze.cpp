@@ -183,6 +183,7 @@ void add_analyze(CLI::App& app, Chosen& chosen) {
                     "JSON instead of a table; names as in the record, null where absent");
   command->footer(
       "Examples:\n"
+      "  stickslip analyze records/*.h5                     a table, with the truth where it is known\n"
       "  stickslip analyze pull.h5 --effects                what spikes, drift and the first slip do to S - "
       "K\n"
       "  stickslip analyze pull.h5 --keep spikes --keep drift --json");

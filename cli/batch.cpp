@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,6 +15,9 @@
 #include "cli/plan_keys.hpp"
 #include "cli/subcommands.hpp"
 #include <nlohmann/json.hpp>
+
+#include "core/analysis/results.hpp"
+#include "core/base/wording.hpp"
 
 namespace stickslip::cli {
 namespace {
@@ -45,9 +49,24 @@ base::Result<void> add_limit(Json& limits, const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::size_t colon = text.find(':', equals == std::string::npos ? 0 : equals);
   const auto wrong = [&text] {
-    return base::usage_error("--limit {}: must be RESULT=LOWEST:HIGHEST, such as mu_k=0.2:0.4 or mu_k=:0.4",
-                             text);
+    return base::usage_error("--limit {0}: must be RESULT=LOWEST:HIGHEST, such as {1}=0.2:0.4 or {1}=:0.4",
+                             text, text.substr(0, text.find('=')));
   };
+  // What the daemon would refuse is refused here too, with the names.
+  const std::string name = text.substr(0, equals);
+  std::set<std::string, std::less<>> known;
+  const analysis::TestResults none;
+  analysis::for_each_result(none, [&known](const analysis::ResultName& result, const analysis::Estimate&) {
+    known.insert(std::string{result.name});
+  });
+  if (!known.contains(name)) {
+    // Names of the trade for the coefficients.
+    const bool is_cof = name == "cof" || name == "COF" || name == "mu";
+    return base::usage_error(
+        "--limit {}: there is no result called \"{}\"; {}", text, base::one_line(name),
+        is_cof ? "the coefficients of friction are static_coefficient and kinetic_coefficient"
+               : base::spelling_hint(name, known));
+  }
   if (equals == std::string::npos || colon == std::string::npos) return wrong();
   Json limit = Json::object();
   for (const auto& [side, typed] : {std::pair{"lowest", text.substr(equals + 1, colon - equals - 1)},
@@ -79,10 +98,21 @@ base::Result<std::string> begin_batch(const BatchBeginOptions& options) {
   return batch_output(options, ask(options, {"POST", "/v1/batch", *said, {}, {}}));
 }
 
+constexpr const char* kBeginExamples = R"(Examples:
+  stickslip batch begin --name "liner 42" --method tappi-t549 --replicates 5 --slides 3
+  stickslip batch begin --name "liner 42" --pull-speed "6 in/min" --pull-speed "12 in/min" --replicates 3
+  stickslip batch begin --name "liner 42" --replicates 5 --limit mu_k=0.25:0.40 --limit static_coefficient=:0.5)";
+
+constexpr const char* kEndExamples = R"(Examples:
+  stickslip batch end
+  stickslip batch end --as ann
+  stickslip batch end --json)";
+
 void add_batch_begin(CLI::App& batch, Chosen& chosen) {
   const auto options = std::make_shared<BatchBeginOptions>();
   CLI::App* command = batch.add_subcommand("begin", "plan tests; the bench leads through them");
   add_bench_options(*command, *options, true);
+  command->footer(kBeginExamples);
   add_plan_keys(*command, options->keys);
   command
       ->add_option("--pull-speed", options->pull_speeds,
@@ -100,6 +130,7 @@ void add_batch_begin(CLI::App& batch, Chosen& chosen) {
 void add_batch_end(CLI::App& batch, Chosen& chosen) {
   const auto options = std::make_shared<BenchOptions>();
   CLI::App* command = batch.add_subcommand("end", "no more tests of this batch");
+  command->footer(kEndExamples);
   add_bench_options(*command, *options, true);
   choose(*command, chosen, [options] {
     return batch_output(*options, ask(*options, {"DELETE", "/v1/batch", {}, {}, {}}));

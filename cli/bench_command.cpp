@@ -34,13 +34,15 @@ base::Result<std::string> run_bench_command(const BenchCommand& command, const J
          (more ? more(*done) : "");
 }
 
-void add_test_command(CLI::App& app, Chosen& chosen, const char* verb, const char* help) {
+void add_test_command(CLI::App& app, Chosen& chosen, const char* verb, const char* help,
+                      const char* examples) {
   struct TestCommand : BenchCommand {
     std::optional<std::int64_t> test;
   };
   const auto options = std::make_shared<TestCommand>();
   options->verb = verb;
   CLI::App* command = add_bench_command(app, *options, help);
+  command->footer(examples);
   command
       ->add_option("--test", options->test,
                    "number of the test that is meant: what was done already is not refused")

@@ -29,6 +29,7 @@ CLI::App* add_bench_command(CLI::App& app, BenchCommand& command, const char* he
     const std::function<std::string(const nlohmann::ordered_json&)>& more = {});
 
 /// A bench command with --test, as start and stop are.
-void add_test_command(CLI::App& app, Chosen& chosen, const char* verb, const char* help);
+void add_test_command(CLI::App& app, Chosen& chosen, const char* verb, const char* help,
+                      const char* examples);
 
 }  // namespace stickslip::cli

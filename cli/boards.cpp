@@ -114,6 +114,12 @@ int run_boards(const BoardsOptions& options) {
   return io::flushed("stickslip", any_usable ? 0 : 1);
 }
 
+constexpr const char* kBoardsExamples =
+    R"(Examples:
+  stickslip boards
+  stickslip boards /dev/comedi0
+  stickslip boards --json)";
+
 }  // namespace
 
 void add_boards(CLI::App& app, Chosen& chosen) {
@@ -121,6 +127,7 @@ void add_boards(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand(
       "boards",
       "list the boards under Linux Comedi and what a configuration should say; 1 if none can be used");
+  command->footer(kBoardsExamples);
   command->add_option("devices", options->devices, "only these; else all of /dev/comedi*")
       ->type_name("DEVICE");
   command->add_flag("--json", options->json, "JSON instead of text");

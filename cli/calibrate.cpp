@@ -309,6 +309,7 @@ more than 20 % is kept only if somebody confirms it: by yes at the prompt, or wi
 
 Examples:
   stickslip calibrate --config /etc/stickslip/stickslipd.toml --certificate "DKD-1234"
+  stickslip calibrate --config stickslipd.toml --reading "2 s" --settle "5 s"
   stickslip calibrate --points readings.toml --folder calibrations --valid-days 180
 
 A file of readings: [[point]] tables with mass = "500 g" and voltage = "1.25 V", the tare first; if known

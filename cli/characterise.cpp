@@ -158,6 +158,7 @@ void add_characterise(CLI::App& app, Chosen& chosen) {
   command->footer(
       "Examples:\n"
       "  stickslip characterise ring-down-1.h5 ring-down-2.h5 -o tester.toml\n"
+      "  stickslip characterise ring-down-1.h5 ring-down-2.h5 --json\n"
       "  stickslip analyze records/*.h5 --tester tester.toml");
   choose(*command, chosen, [options] { return run_characterise(*options); });
 }

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,8 +22,9 @@ struct CompareOptions : ReportOutputs {
   std::vector<std::string> b;
   std::string batch_a;  ///< Its identifier or name; empty: the files are records.
   std::string batch_b;
-  std::string label_a = "A";
-  std::string label_b = "B";
+  std::string label_a;  ///< Empty: the batch's name, else A.
+  std::string label_b;
+  std::string pool;  ///< As of `stickslip report`.
 };
 
 Result<std::string> run_compare(const CompareOptions& options) {
@@ -39,15 +42,27 @@ Result<std::string> run_compare(const CompareOptions& options) {
   const Result<report::ChartLibrary> charts =
       with_traces ? report::read_chart_library() : report::ChartLibrary{};
   if (!charts) return tl::unexpected(charts.error());
-  const auto side = [&](const std::string& label, const std::string& batch,
-                        const std::vector<std::string>& files) {
-    return batches ? report::read_batch(label, batch, options.a.front(), with_traces)
-                   : report::read_material(label, files, with_traces);
+  Result<analysis::Pooling> pooling = report::pooling_from_text(options.pool, "--pool");
+  if (!pooling) return tl::unexpected(pooling.error());
+  pooling->regimes = true;  // Each side is one material; how many of its tests stick is compared beside.
+  const auto side = [&](const char* letter, const std::string& label, const std::string& batch,
+                        const std::vector<std::string>& files) -> Result<report::Material> {
+    Result<report::Material> own =
+        batches ? report::read_batch(label, batch, options.a.front(), with_traces, *pooling)
+                : report::read_material(label.empty() ? letter : label, files, with_traces, *pooling);
+    if (!own) return own;
+    if (auto one = report::check_one_grade(*own, letter); !one) return tl::unexpected(one.error());
+    return own;
   };
-  Result<report::Material> a = side(options.label_a, options.batch_a, options.a);
+  Result<report::Material> a = side("A", options.label_a, options.batch_a, options.a);
   if (!a) return tl::unexpected(a.error());
-  Result<report::Material> b = side(options.label_b, options.batch_b, options.b);
+  Result<report::Material> b = side("B", options.label_b, options.batch_b, options.b);
   if (!b) return tl::unexpected(b.error());
+  // Two batches of one name are told apart.
+  if (batches && a->label == b->label) {
+    a->label += fmt::format(" ({})", options.batch_a);
+    b->label += fmt::format(" ({})", options.batch_b);
+  }
   report::note_repeated_scans({&*a, &*b});
   const report::MaterialComparison comparison = report::compare_materials(*a, *b);
   return deliver(options, report::comparison_csv(*a, *b, comparison),
@@ -78,8 +93,17 @@ void add_compare(CLI::App& app, Chosen& chosen) {
   command->add_option("--batch-a", options->batch_a, "all tests of a batch, by its identifier or name")
       ->type_name("BATCH");
   command->add_option("--batch-b", options->batch_b, "all tests of the other batch")->type_name("BATCH");
-  command->add_option("--label-a", options->label_a, "what the one is called")->type_name("NAME");
-  command->add_option("--label-b", options->label_b, "what the other is called")->type_name("NAME");
+  command
+      ->add_option("--label-a", options->label_a, "what the one is called; default: the batch's name, else A")
+      ->type_name("NAME");
+  command
+      ->add_option("--label-b", options->label_b,
+                   "what the other is called; default: the batch's name, else B")
+      ->type_name("NAME");
+  command
+      ->add_option("--pool", options->pool,
+                   "grades: a side may have several, and is compared as one material")
+      ->type_name("WHAT");
   add_report_outputs(*command, *options);
   choose(*command, chosen, [options] { return run_compare(*options); });
 }

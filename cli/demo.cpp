@@ -21,6 +21,7 @@ what was simulated. No board, no configuration and no privilege is needed. The r
 
 Examples:
   stickslip demo
+  stickslip demo --folder /tmp/demo
   stickslip demo --folder /tmp/demo && stickslip report /tmp/demo/records/demo/*.h5 -o report.html)";
 
 /// Becomes the daemon. \return only where that failed.

@@ -28,7 +28,12 @@ constexpr const char* kInstalledFolder = "/var/lib/stickslip";
 constexpr const char* kDoctorHelp =
     R"(Exit status: 0 all is good, 1 something is bad, 2 wrong usage, 3 there are warnings.
 Nothing stays changed. Rights are those of the user who asks; those of the service:
-  sudo -u stickslip stickslip doctor)";
+  sudo -u stickslip stickslip doctor
+
+Examples:
+  stickslip doctor                                     the installed service
+  stickslip doctor --config config/demo.toml           another configuration, here
+  stickslip doctor --json)";
 
 struct DoctorOptions {
   std::string config = kInstalledConfig;

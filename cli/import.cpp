@@ -245,12 +245,19 @@ Result<std::string> run_import(const ImportOptions& options, const std::string& 
   return text;
 }
 
+constexpr const char* kImportExamples =
+    R"(Examples:
+  stickslip import pull.csv --inspect                          its columns, and the command that imports them
+  stickslip import pull.csv --column force --rate "350 Hz" --unit N --sled-mass "2331 g" -o pull.h5
+  stickslip import trace.csv --column mu --rate "2 kHz" --unit coefficient --speed "12 in/min" -o trace.h5)";
+
 }  // namespace
 
 void add_import(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<ImportOptions>();
   CLI::App* command =
       app.add_subcommand("import", "make records from a measured trace in a file of another program");
+  command->footer(kImportExamples);
   const auto text = [command](const char* name, std::string& value, const char* what, const char* type) {
     return command->add_option(name, value, what)->type_name(type);
   };

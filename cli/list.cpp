@@ -44,11 +44,18 @@ base::Result<std::string> run_list(const BenchOptions& options) {
   return table.text() + io::findings_text(told);
 }
 
+constexpr const char* kListExamples =
+    R"(Examples:
+  stickslip list
+  stickslip list --json
+  stickslip list --socket /run/stickslip/control.sock)";
+
 }  // namespace
 
 void add_list(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<BenchOptions>();
   CLI::App* command = app.add_subcommand("list", "the tests of the running daemon");
+  command->footer(kListExamples);
   add_bench_options(*command, *options, false);
   choose(*command, chosen, [options] { return run_list(*options); });
 }

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/subcommands.hpp"
@@ -16,6 +18,7 @@
 
 #include "core/base/shell_word.hpp"
 #include "core/base/version.hpp"
+#include "core/base/wording.hpp"
 #include "core/record/read_apart.hpp"
 
 namespace stickslip::cli {
@@ -56,8 +59,54 @@ std::vector<std::string> words(int count, char** arguments) {
     if (const auto mark = std::find(words.begin(), words.end(), "--"); mark != words.end())
       *mark = kOtherMaterial;
   }
-  std::reverse(words.begin(), words.end());  // As CLI11 takes them.
+  if (words.empty()) return words;
+  // The other spelling, and `help`, `help COMMAND`.
+  for (const auto& [said, meant] : {std::pair{"analyse", "analyze"}, {"characterize", "characterise"}}) {
+    if (words.front() == said) words.front() = meant;
+  }
+  if (words.front() == "help") {
+    words.erase(words.begin());
+    words.emplace_back("--help");
+  }
   return words;
+}
+
+std::set<std::string, std::less<>> names_of_commands(const CLI::App& app) {
+  std::set<std::string, std::less<>> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.insert(command->get_name());
+  return names;
+}
+
+/// Names the first word that is no subcommand or no option, and the nearest that is one; empty: each is
+/// known.
+std::string unknown_word(const CLI::App& app, const std::vector<std::string>& words) {
+  const CLI::App* command = &app;
+  std::string place = "stickslip";
+  for (const std::string& word : words) {
+    if (word == "--") break;
+    if (!word.starts_with('-')) {
+      const auto known = names_of_commands(*command);
+      if (known.contains(word)) {
+        command = command->get_subcommand(word);
+        place += " " + word;
+      } else if (command == &app) {
+        return fmt::format("there is no subcommand \"{}\"; {}; see stickslip --help", base::one_line(word),
+                           base::spelling_hint(word, known));
+      }
+      continue;
+    }
+    if (!word.starts_with("--")) continue;
+    const std::string option = word.substr(0, word.find('='));
+    if (command->get_option_no_throw(option) != nullptr) continue;
+    std::set<std::string, std::less<>> known;
+    for (const CLI::Option* own : command->get_options()) {
+      for (const std::string& name : own->get_lnames()) known.insert("--" + name);
+    }
+    return fmt::format("{} has no option {}; {}; see {} --help", place, base::one_line(option),
+                       base::spelling_hint(option, known), place);
+  }
+  return {};
 }
 
 /// The command as a shell would take it again.
@@ -69,7 +118,6 @@ std::string command_line(int count, char** arguments) {
 
 int main_of(int count, char** arguments) {
   CLI::App app{"stickslip: friction tests from the command line", "stickslip"};
-  app.footer(kExamples);
   app.set_version_flag("--version", fmt::format("stickslip {} ({})", base::kVersion, base::kCommit));
   app.require_subcommand(1);
   Chosen chosen{command_line(count, arguments), {}};
@@ -106,8 +154,12 @@ int main_of(int count, char** arguments) {
   add_completion(app, chosen);
   add_export(app, chosen);
   add_calibrate(app, chosen);
+  app.footer(kExamples);  // Behind the subcommands, each of which has its own.
+  std::vector<std::string> typed = words(count, arguments);
+  const std::string unknown = unknown_word(app, typed);
+  std::reverse(typed.begin(), typed.end());  // As CLI11 takes them.
   try {
-    app.parse(words(count, arguments));
+    app.parse(std::move(typed));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) {
       std::ostringstream text;  // Of --help and --version.
@@ -115,7 +167,8 @@ int main_of(int count, char** arguments) {
       io::print_text(stdout, text.str());
       return io::flushed("stickslip", status);
     }
-    io::print_error("stickslip", fmt::format("{}; see stickslip --help", error.what()));
+    io::print_error("stickslip",
+                    unknown.empty() ? fmt::format("{}; see stickslip --help", error.what()) : unknown);
     return 2;
   }
   return chosen.run();

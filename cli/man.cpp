@@ -46,6 +46,7 @@ std::string page(const CLI::App& app, const std::string& name) {
 
 constexpr const char* kManHelp = R"(Examples:
   stickslip man | man -l -
+  stickslip man stickslipd > stickslipd.8
   stickslip man stickslipd.toml > stickslipd.toml.5)";
 
 }  // namespace

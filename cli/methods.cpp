@@ -68,11 +68,18 @@ base::Result<std::string> run_methods(const MethodsOptions& options) {
   return io::json_document({{"folder", found->string()}, {"methods", methods}});
 }
 
+constexpr const char* kMethodsExamples =
+    R"(Examples:
+  stickslip methods
+  stickslip methods --json                                     all settings, and what a laboratory checks
+  stickslip methods --folder my-methods)";
+
 }  // namespace
 
 void add_methods(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<MethodsOptions>();
   CLI::App* command = app.add_subcommand("methods", "list the shipped test methods");
+  command->footer(kMethodsExamples);
   command->add_option("--folder", options->folder, "another folder of methods")->type_name("DIR");
   command->add_flag("--json", options->json, "JSON instead of lines, with all settings and what to check");
   choose(*command, chosen, [options] { return run_methods(*options); });

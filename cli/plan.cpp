@@ -73,12 +73,19 @@ base::Result<std::string> run_plan(const PlanOptions& options) {
   return list.text();
 }
 
+constexpr const char* kPlanExamples =
+    R"(Examples:
+  stickslip plan                                               what is planned
+  stickslip plan --name "liner 42" --grade kraft --direction MD --operator ann
+  stickslip plan --clear)";
+
 }  // namespace
 
 void add_plan(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<PlanOptions>();
   CLI::App* command =
       app.add_subcommand("plan", "say what the tests to come are of; without options: show it");
+  command->footer(kPlanExamples);
   add_bench_options(*command, *options, true);
   command->add_flag("--clear", options->clear, "forget what was said before");
   add_plan_keys(*command, options->keys);

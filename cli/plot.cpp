@@ -85,6 +85,8 @@ Result<std::string> run_plot(const PlotOptions& options) {
       options.output.empty() ? std::filesystem::path{options.input}.filename().replace_extension(".svg")
                              : std::filesystem::path{options.output};
   // Before the work, not only after it.
+  const Result<plot::PictureFormat> format = plot::format_of_file(output);
+  if (!format) return tl::unexpected(format.error());
   if (auto free = record::check_publishable(output); !free) return tl::unexpected(free.error());
 
   const Result<record::Record> record = record_of(options, view->title);
@@ -94,14 +96,14 @@ Result<std::string> run_plot(const PlotOptions& options) {
     return tl::unexpected(base::Error{
         figure.error().kind, fmt::format("{}: {}", base::one_line(options.input), figure.error().message)});
   }
-  const Result<std::string> svg = plot::draw_svg(*figure);
-  if (!svg) return tl::unexpected(svg.error());
-  if (auto written = io::write_new_file(output, *svg); !written) return tl::unexpected(written.error());
+  const Result<std::string> picture = plot::draw(*figure, *format);
+  if (!picture) return tl::unexpected(picture.error());
+  if (auto written = io::write_new_file(output, *picture); !written) return tl::unexpected(written.error());
   return fmt::format("{}: {} scans\n", base::printable(output.string()), record->scan.size());
 }
 
 constexpr const char* kPlotExamples =
-    R"(Draws the force over time, as SVG. Shaded: the modes that the truth knows (stick, slip, slack). Dashed: S and K
+    R"(Draws the force over time, as SVG or PNG by the ending of -o. Shaded: the modes that the truth knows (stick, slip, slack). Dashed: S and K
 of each slip in the truth. Points: the peaks that the detector found. A scene is simulated first, with its own
 seed. Needs gnuplot (Debian package gnuplot-nox).
 
@@ -109,6 +111,7 @@ Examples:
   stickslip plot records/test-3.h5                     test-3.svg, the whole record
   stickslip plot pull.h5 -o onset.svg --from 0.9 --to "1.4 s"
   stickslip plot stick-slip-at-12-in-per-min -o fig3.svg --from 2 --to 3 --overview
+  stickslip plot pull.h5 -o pull.png
   stickslip plot my-scene.toml -o speed.svg --from 2 --to 2.5 --derivative)";
 
 }  // namespace
@@ -122,7 +125,7 @@ void add_plot(CLI::App& app, Chosen& chosen) {
       ->type_name("FILE.h5|SCENE");
   command
       ->add_option("-o,--output", options->output,
-                   "picture to make; must not exist; else the input's name with .svg, here")
+                   "picture to make, .svg or .png; must not exist; else the input's name with .svg, here")
       ->type_name("FILE.svg");
   command
       ->add_option("--from", options->from, "start of the part to show, s or with unit, after the first scan")

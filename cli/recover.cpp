@@ -129,6 +129,7 @@ Exit status:
 
 Examples:
   stickslip recover /var/lib/stickslip/records
+  stickslip recover records other-records
   stickslip recover records/20261121T125252Z-0003.journal)";
 
 }  // namespace

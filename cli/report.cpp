@@ -17,6 +17,7 @@ using base::Result;
 
 struct ReportOptions : ReportOutputs {
   std::vector<std::string> files;  ///< Of a batch: the folder of its records, one.
+  std::string pool;                ///< "grades", "regimes" or both; empty: neither.
   std::string batch;               ///< Its identifier or name; empty: the files are records.
 };
 
@@ -26,13 +27,16 @@ Result<std::string> run_report(const ReportOptions& options) {
     return base::usage_error("--batch {}: one folder of records is to be named, not {}", options.batch,
                              options.files.size());
   }
+  const Result<analysis::Pooling> pooling = report::pooling_from_text(options.pool, "--pool");
+  if (!pooling) return tl::unexpected(pooling.error());
   const bool with_traces = !options.page.empty();
   const Result<report::ChartLibrary> charts =
       with_traces ? report::read_chart_library() : report::ChartLibrary{};
   if (!charts) return tl::unexpected(charts.error());
   Result<report::Material> material =
-      options.batch.empty() ? report::read_material("", options.files, with_traces)
-                            : report::read_batch("", options.batch, options.files.front(), with_traces);
+      options.batch.empty()
+          ? report::read_material("", options.files, with_traces, *pooling)
+          : report::read_batch("", options.batch, options.files.front(), with_traces, *pooling);
   if (!material) return tl::unexpected(material.error());
   report::note_repeated_scans({&*material});
   return deliver(options, report::report_csv(*material),
@@ -41,13 +45,14 @@ Result<std::string> run_report(const ReportOptions& options) {
 }
 
 constexpr const char* kReportExamples =
-    R"(Shows the results that stand in records of one material: coefficient against speed (Fig. 1 of the paper), mean,
-scatter s_r, repeatability r = 2.8 s_r, 95 % confidence interval, outliers (named, never left out).
+    R"(Shows the results that stand in records: what was tested and how, the verdict, and for each grade, regime and speed
+mean, scatter s_r, repeatability r = 2.8 s_r, 95 % confidence interval, outliers (named, never left out).
 
 Examples:
   stickslip report records/*.h5
   stickslip report pull.h5 -o pull.html                one page with traces to zoom in; needs no network
   stickslip report --batch "liner 42" records          the tests of a batch that were not voided, and its limits
+  stickslip report records/*.h5 --pool regimes         one mean over tests that stuck and tests that rang down
   stickslip report records/*.h5 --json --csv tests.csv)";
 
 }  // namespace
@@ -62,6 +67,11 @@ void add_report(CLI::App& app, Chosen& chosen) {
       ->type_name("FILE.h5");
   command->add_option("--batch", options->batch, "all tests of a batch, by its identifier or name")
       ->type_name("BATCH");
+  command
+      ->add_option(
+          "--pool", options->pool,
+          "average over what differs: grades, regimes or grades,regimes; else each has its own means")
+      ->type_name("WHAT");
   add_report_outputs(*command, *options);
   choose(*command, chosen, [options] { return run_report(*options); });
 }

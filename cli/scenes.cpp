@@ -32,11 +32,18 @@ base::Result<std::string> run_scenes(const ScenesOptions& options) {
   return io::json_document({{"folder", found->string()}, {"scenes", scenes.json()}});
 }
 
+constexpr const char* kScenesExamples =
+    R"(Examples:
+  stickslip scenes
+  stickslip scenes --json
+  stickslip scenes --folder my-scenes)";
+
 }  // namespace
 
 void add_scenes(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<ScenesOptions>();
   CLI::App* command = app.add_subcommand("scenes", "list the shipped scenes");
+  command->footer(kScenesExamples);
   command->add_option("--folder", options->folder, "another folder of scenes")->type_name("DIR");
   command->add_flag("--json", options->json, "JSON instead of lines");
   choose(*command, chosen, [options] { return run_scenes(*options); });

@@ -134,12 +134,19 @@ base::Result<std::string> run_show(const ShowOptions& options) {
   return is_number ? show_test(options) : show_record(options);
 }
 
+constexpr const char* kShowExamples =
+    R"(Examples:
+  stickslip show 7                                             a test of the daemon, by its number
+  stickslip show pull.h5                                       a record
+  stickslip show pull.h5 --json)";
+
 }  // namespace
 
 void add_show(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<ShowOptions>();
   CLI::App* command =
       app.add_subcommand("show", "one test of the running daemon, or a record, with all results");
+  command->footer(kShowExamples);
   add_bench_options(*command, *options, false);
   command->add_option("test", options->test, "its number, or a record")->required()->type_name("N|FILE.h5");
   choose(*command, chosen, [options] { return run_show(*options); });

@@ -172,11 +172,18 @@ base::Result<std::string> run_status(const StatusOptions& options) {
   return options.json ? io::json_document(status) : text_of(status);
 }
 
+constexpr const char* kStatusExamples =
+    R"(Examples:
+  stickslip status
+  stickslip status --json
+  stickslip status --socket /run/stickslip/control.sock)";
+
 }  // namespace
 
 void add_status(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<StatusOptions>();
   CLI::App* command = app.add_subcommand("status", "ask the running daemon");
+  command->footer(kStatusExamples);
   command->add_option("--socket", options->socket, "its control socket")
       ->capture_default_str()
       ->type_name("PATH");

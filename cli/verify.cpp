@@ -30,6 +30,7 @@ Exit status:
 
 Examples:
   stickslip verify records/*.h5
+  stickslip verify records/20261121T125252Z-0003.journal
   stickslip verify records/*.h5 --json                 {"files": [{"file": …, "judgement": …, "findings": […]}]})";
 
 }  // namespace

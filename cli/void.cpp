@@ -71,12 +71,19 @@ base::Result<std::string> run_void(const VoidOptions& options) {
       options, ask(options, {"POST", options.restore ? "/v1/restore" : "/v1/void", body.dump(), {}, {}}));
 }
 
+constexpr const char* kVoidExamples =
+    R"(Examples:
+  stickslip void 7 --reason "paper torn"
+  stickslip void 7 --restore                                   it counts again
+  stickslip void 7 --reason "sled slipped" --as ann)";
+
 }  // namespace
 
 void add_void(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<VoidOptions>();
   CLI::App* command = app.add_subcommand(
       "void", "a test does not count: its file stays as it is, statistics leave it out and say so");
+  command->footer(kVoidExamples);
   add_bench_options(*command, *options, true);
   command->add_option("test", options->test, "its number in the running daemon, or its record")
       ->required()

@@ -74,12 +74,19 @@ base::Result<std::string> run_watch(const WatchOptions& options) {
   return std::string{};
 }
 
+constexpr const char* kWatchExamples =
+    R"(Examples:
+  stickslip watch
+  stickslip watch --tests 5                                    leaves after five tests
+  stickslip watch --json)";
+
 }  // namespace
 
 void add_watch(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<WatchOptions>();
   CLI::App* command =
       app.add_subcommand("watch", "what happens, as it happens: tests, cycles, gaps; until Ctrl-C");
+  command->footer(kWatchExamples);
   add_bench_options(*command, *options, false);
   command->add_option("--tests", options->tests, "leave when so many tests have ended")->type_name("N");
   choose(*command, chosen, [options] { return run_watch(*options); });

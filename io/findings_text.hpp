@@ -1,7 +1,7 @@
 /// \file
 /// Findings as text for people: the sentence, then code, severity and what to do.
 ///
-///     !  test 3: the pull speed was 3.99 +- 0.01 in/min, the plan says 12.00
+///     !  test 3: the pull speed was 3.990 +- 0.012 in/min, the plan says 12 in/min
 ///        alike in 208 more: test 4–211
 ///        → pull-speed, warning: correct the tester's speed, or pull_speed of the plan
 #pragma once

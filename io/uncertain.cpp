@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "io/table.hpp"
+
+#include "core/base/digits.hpp"
 
 namespace stickslip::io {
 namespace {
@@ -23,21 +24,11 @@ double finite_or_zero(const std::optional<double>& error) {
   return error && std::isfinite(*error) ? *error : 0.0;
 }
 
-/// Decimals that show `digits` significant digits of a positive number, once it is rounded to them.
-int decimals_of(double number, int digits) {
-  const std::string text = fmt::format("{:.{}e}", number, digits - 1);
-  int exponent = 0;
-  const char* first = text.data() + text.find('e') + 1;
-  if (*first == '+') ++first;
-  std::from_chars(first, text.data() + text.size(), exponent);
-  return digits - 1 - exponent;
-}
-
 std::string error_text(double error, int decimals, int most) {
   if (std::isinf(error)) return "∞";
   std::string text = fmt::format("{:.{}f}", error, decimals);
   if (!(error > 0.0) || text.find_first_of("123456789") != std::string::npos) return text;
-  const int own = decimals_of(error, 1);
+  const int own = base::decimals_of(error, 1);
   return own <= most ? fmt::format("{:.{}f}", error, own)
                      : fmt::format("<{:.{}f}", std::pow(10.0, -most), most);
 }
@@ -51,13 +42,20 @@ std::string Uncertain::text() const {
   return text;
 }
 
+int decimals_for(const std::optional<double>& uncertainty, int plain) {
+  const double size = std::abs(finite_or_zero(uncertainty));
+  if (!(size > 0.0)) return plain;
+  return std::clamp(base::decimals_of(size, base::kUncertaintyDigits), 0, plain + kMoreDecimals);
+}
+
 Uncertain uncertain(const analysis::Estimate& estimate, std::optional<int> decimals) {
   if (!estimate.value || !std::isfinite(*estimate.value)) return {std::string{kAbsent}, "", "", true};
   const std::optional<double> random = known(estimate.standard_error);
   const std::optional<double> systematic = known(estimate.systematic_uncertainty);
   const double largest = std::max(finite_or_zero(random), finite_or_zero(systematic));
   const int most = decimals ? *decimals + kMoreDecimals : kMostDecimals;
-  const int shown = largest > 0.0 ? std::clamp(decimals_of(largest, 2), 0, most) : decimals.value_or(0);
+  const int shown = largest > 0.0 ? std::clamp(base::decimals_of(largest, base::kUncertaintyDigits), 0, most)
+                                  : decimals.value_or(0);
   Uncertain result;
   result.significant =
       !(std::hypot(random.value_or(0.0), systematic.value_or(0.0)) > std::abs(*estimate.value));

@@ -39,6 +39,10 @@ struct Uncertain {
 /// significant digits without errors, up to twelve decimals with errors.
 [[nodiscard]] Uncertain uncertain(const analysis::Estimate& estimate, std::optional<int> decimals);
 
+/// Decimals of a number whose uncertainty stands beside it: two significant digits of that, at most two more
+/// than `plain`, which are those of a number without one.
+[[nodiscard]] int decimals_for(const std::optional<double>& uncertainty, int plain);
+
 /// The estimate times a factor, as for another unit.
 [[nodiscard]] analysis::Estimate scaled(analysis::Estimate estimate, double factor);
 

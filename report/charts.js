@@ -14,7 +14,7 @@ const Charts = (() => {
 
   // ---- Fig. 1: coefficient against speed -------------------------------------------------------------
   // series: [{label, colour, dash, points: [{x, mean, low, high, values}]}]
-  function againstSpeed(box, series) {
+  function againstSpeed(box, series, unit) {
     const xs = [...new Set(series.flatMap(s => s.points.map(p => p.x)))].sort((a, b) => a - b);
     const data = [xs, ...series.map(s => xs.map(x => (s.points.find(p => p.x === x) || {mean: null}).mean))];
     const all = series.flatMap(s => s.points.flatMap(p => [p.low ?? p.mean, p.high ?? p.mean, ...p.values]));
@@ -54,8 +54,8 @@ const Charts = (() => {
       width: width(box), height: 360, cursor: {drag: {x: false, y: false}},
       scales: {x: {time: false, range: [xs[0] - 0.12 * span, xs[xs.length - 1] + 0.12 * span]},
                y: {range: [Math.min(...all) - room, Math.max(...all) + room]}},
-      axes: [axis("pull speed (mm/s)"), axis("coefficient of friction", {size: 62})],
-      series: [{label: "speed", value: (u, v) => (v == null ? "–" : clean(v) + " mm/s")},
+      axes: [axis(`pull speed (${unit})`), axis("coefficient of friction", {size: 62})],
+      series: [{label: "speed", value: (u, v) => (v == null ? "–" : `${clean(v)} ${unit}`)},
                ...series.map(s => ({label: s.label, stroke: colour(s.colour), width: 2, dash: s.dash,
                                     points: {show: true, size: 8, fill: colour(s.colour)},
                                     value: (u, v) => (v == null ? "–" : v.toFixed(4))}))],

@@ -7,8 +7,7 @@
   const sides = ["A", "B"];
   const strokes = ["--a", "--b"];
   const main = document.getElementById("main");
-  const kMillimetres = 1000;
-  const kTexts = new Set(["material", "file", "regime"]);  // Columns of words.
+  const kTexts = new Set(["material", "file", "regime", "group"]);  // Columns of words.
 
   // node("td", {class: "x"}, "text", child, …)
   const node = (tag, attributes, ...children) => {
@@ -22,15 +21,22 @@
   const plural = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;
   const fixed = (value, decimals) => (value == null ? "–" : value.toFixed(decimals));
   const range = (pair, decimals) => (pair == null ? "–" : `${fixed(pair[0], decimals)} … ${fixed(pair[1], decimals)}`);
-  const speed = value => (value == null ? "speed not known" : `${Number((value * kMillimetres).toPrecision(4))} mm/s`);
-  const title = q => (q.unit === "1" ? q.title : `${q.title} (${q.unit})`);
+  const named = (q, model) => q.label + (q.of_model ? model : "") + (q.unit === "1" ? "" : ` (${q.unit})`);
+  const title = q => named(q, "");
+  const label = q => named(q, " (model)");
   const probability = p => (p == null ? "–" : p < 0.0001 ? "< 0.0001" : p.toFixed(4));
-  const half = own => (own.confidence_interval ? own.confidence_interval[1] - own.mean : null);
-  const meanText = (own, decimals) =>
-    own.mean == null ? "–" : fixed(own.mean, decimals) + (half(own) == null ? "" : ` ± ${fixed(half(own), decimals)}`);
+  // Digits follow the uncertainty that stands beside the number.
+  const halfOf = pair => (pair == null ? null : 0.5 * (pair[1] - pair[0]));
+  const half = own => halfOf(own.confidence_interval);
+  const meanDecimals = (own, q) => Uncertain.decimalsFor(half(own) || own.systematic_uncertainty, q.decimals);
+  const scatter = (value, q) => fixed(value, Uncertain.decimalsFor(value, q.decimals));
+  const meanText = (own, q) => {
+    const decimals = meanDecimals(own, q);
+    return own.mean == null ? "–" : fixed(own.mean, decimals) + (half(own) == null ? "" : ` ± ${fixed(half(own), decimals)}`);
+  };
   const pooledText = own => Uncertain.text(own.value, own, 4);
   const pooledFacts = own => `${plural(own.slips, "slip")} of ${plural(own.tests, "test")}, ${own.escaped} escaped` +
-    (own.confidence_interval == null ? "" : `; 95 % ${range(own.confidence_interval, 4)}`) + (own.scatter == null ? "" : `; scatter from slip to slip ${fixed(own.scatter, 5)}`);
+    (own.confidence_interval == null ? "" : `; 95 % ${range(own.confidence_interval, Uncertain.decimalsFor(half(own), 4))}`) + (own.scatter == null ? "" : `; scatter from slip to slip ${fixed(own.scatter, Uncertain.decimalsFor(own.scatter, 4))}`);
   const nameOf = index => (two ? `${sides[index]}: ${data.materials[index].label}` : "");
   const absentCell = reason => node("td", {}, node("span", {class: "absent", title: reason, tabindex: "0"}, "–"));
 
@@ -52,7 +58,7 @@
       label: (two ? material.label + " " : "") + (kind ? "kinetic" : "static"),
       colour: two ? strokes[m] : strokes[kind], dash: kind ? [7, 4] : undefined,
       points: material.groups.filter(g => g.pull_speed != null && g.quantities[name].mean != null).map(g => ({
-        x: g.pull_speed * kMillimetres, mean: g.quantities[name].mean,
+        x: g.pull_speed / data.speed_unit.m_per_s, mean: g.quantities[name].mean,
         low: (g.quantities[name].confidence_interval || [null])[0], high: (g.quantities[name].confidence_interval || [null, null])[1],
         values: g.tests.map(t => material.tests[t][name]).filter(v => v != null),
       })),
@@ -64,31 +70,58 @@
   function drawFigure() {
     if (figure) figure.destroy();
     const series = figureSeries();
-    figure = series.length > 0 ? Charts.againstSpeed(figureBox, series) : null;
+    figure = series.length > 0 ? Charts.againstSpeed(figureBox, series, data.speed_unit.symbol) : null;
   }
 
+  // A chart of one speed would be a column of points.
+  const speeds = new Set(data.materials.flatMap(material => material.groups.map(g => g.pull_speed)).filter(speed => speed != null).map(speed => speed.toPrecision(2)));
   function writeFigure() {
+    if (speeds.size < 2) return;
+    section("against-speed", "Coefficient against speed",
+      node("p", {class: "note"}, "Means with their 95 % intervals; small dots are single tests (Penner 1995, Fig. 1)."), figureBox);
+    drawFigure();
+  }
+
+  // "95 % intervals: k = 4.30 for n = 3": Student's t of n − 1 degrees of freedom.
+  function coverage() {
+    const factors = new Map(data.materials.flatMap(material => material.groups.flatMap(group => Object.values(group.quantities)))
+      .filter(own => own.coverage_factor != null).map(own => [own.count, own.coverage_factor]));
+    return factors.size === 0 ? "" : "95 % intervals: mean ± k s_r/√n, Student's t, k = " +
+      [...factors].sort(([one], [other]) => one - other).map(([n, k]) => `${k.toFixed(2)} for n = ${n}`).join(", ") + ".";
+  }
+
+  function writeMeans() {
     const shown = data.quantities.slice(0, 5);
     const rows = data.materials.flatMap((material, m) => material.groups.map(group => ({m, group})));
     rows.sort((x, y) => (x.group.pull_speed ?? Infinity) - (y.group.pull_speed ?? Infinity) || x.m - y.m);
-    section("against-speed", "Coefficient against speed",
-      node("p", {class: "note"}, "Means with their 95 % intervals; small dots are single tests. Static and kinetic are the traditional numbers, " +
-        "S and K those of the two-parameter model, from which the effect of speed is taken out (Penner 1995, Fig. 1). S−K by cycle counts each slip of all tests once, " +
-        "also one that escaped; a mean of tests is too low where slips escape. " +
-        Uncertain.legend(rows.map(({group}) => [group.delta_mu_by_cycle.value, group.delta_mu_by_cycle]))),
-      figureBox,
-      table("speeds", ["speed", ...(two ? ["material"] : []), "tests", "S−K by cycle", ...shown.map(title)], rows.map(({m, group}) => row(
-        speed(group.pull_speed), ...(two ? [node("td", {class: "text"}, nameOf(m))] : []), String(group.tests.length),
+    const split = data.materials.map(material => material.not_pooled).filter(Boolean);
+    section("means", "Means",
+      table("speeds", ["group", ...(two ? ["material"] : []), "tests", "S−K by cycle", ...shown.map(title)], rows.map(({m, group}) => row(
+        node("td", {class: "text"}, group.text), ...(two ? [node("td", {class: "text"}, nameOf(m))] : []), String(group.tests.length),
         group.delta_mu_by_cycle.value == null ? absentCell(group.delta_mu_by_cycle.reason) : pooledText(group.delta_mu_by_cycle),
         ...shown.map(q => {
           const own = group.quantities[q.name];
-          return own.mean == null ? absentCell(own.absent.map(a => a.reason)[0] || "") : meanText(own, q.decimals);
-        })))));
+          return own.mean == null ? absentCell(own.absent.map(a => a.reason)[0] || "") : meanText(own, q);
+        })))),
+      node("p", {class: "note", id: "means-note"}, "± half of the 95 % interval of the mean; S−K by cycle: " +
+        (Uncertain.legend(rows.map(({group}) => [group.delta_mu_by_cycle.value, group.delta_mu_by_cycle])) || "no errors") + ". " + coverage() +
+        " S, K, S−K, ω and γ are model quantities, those of the two-parameter model, from which the effect of speed is taken out (Penner 1995). S−K by cycle counts each slip of all tests once, " +
+        "also one that escaped; a mean of tests is too low where slips escape." + split.map(text => ` ${text}.`).join("")));
+  }
+
+  // ---- The form: what was tested, how, by whom and with what ------------------------------------------
+  function writeForm() {
+    const made = section("form", "Test");
+    data.materials.forEach((material, m) => {
+      if (two) made.append(node("h3", {}, nameOf(m)));
+      made.append(node("dl", {class: "form", id: `form-${m}`}, ...[...material.form, {name: "verdict", label: "verdict", text: material.verdict}].map(line =>
+        node("div", {class: line.name === "verdict" ? "verdict" : "", "data-name": line.name}, node("dt", {}, line.label), node("dd", {}, line.text)))));
+    });
   }
 
   // ---- Comparison --------------------------------------------------------------------------------------
   const byCycle = own => (own.p == null ? row("S−K by cycle", absentCell(own.reason), ...Array(6).fill("")) :
-    row("S−K by cycle", fixed(own.difference, 4), range(own.confidence_interval, 4), node("td", own.p < 0.05 ? {class: "differs"} : {}, probability(own.p)),
+    row("S−K by cycle", fixed(own.difference, Uncertain.decimalsFor(half(own), 4)), range(own.confidence_interval, Uncertain.decimalsFor(half(own), 4)), node("td", own.p < 0.05 ? {class: "differs"} : {}, probability(own.p)),
       ...Array(4).fill("")));
   function writeComparison() {
     const made = section("comparison", "Do they differ?", node("p", {class: "note"},
@@ -96,7 +129,7 @@
       "tests of each material with which a difference as large would be found 80 or 90 times of 100. Green: differs at 5 %."));
     data.comparison.comparisons.forEach((pair, i) => {
       const reasons = data.quantities.map(q => pair.quantities[q.name].reason);
-      made.append(node("h3", {}, speed(pair.pull_speed)));
+      made.append(node("h3", {}, pair.pull_speed_text));
       if (reasons[0] && reasons.every(reason => reason === reasons[0])) {
         made.append(node("p", {class: "note", id: `comparison-${i}`}, reasons[0]));
         return;
@@ -104,9 +137,10 @@
       made.append(
         table(`comparison-${i}`, ["", "A − B", "95 %", "p", "g", "95 % of g", "tests, 80 %", "tests, 90 %"], [byCycle(pair.delta_mu_by_cycle), ...data.quantities.map(q => {
           const own = pair.quantities[q.name];
-          if (own.p == null) return row(title(q), absentCell(own.reason), ...Array(6).fill(""));
+          const decimals = Uncertain.decimalsFor(half(own), q.decimals);
+          if (own.p == null) return row(label(q), absentCell(own.reason), ...Array(6).fill(""));
           const needed = n => (n == null ? "> 10000" : String(n));
-          return row(title(q), fixed(own.difference, q.decimals), range(own.confidence_interval, q.decimals),
+          return row(label(q), fixed(own.difference, decimals), range(own.confidence_interval, decimals),
             node("td", own.p < 0.05 ? {class: "differs"} : {}, probability(own.p)), fixed(own.hedges_g, 2),
             range(own.hedges_g_interval, 1), needed(own.tests_needed_80), needed(own.tests_needed_90));
         })]));
@@ -127,13 +161,13 @@
   const hasSystematic = group => data.quantities.some(q => group.quantities[q.name].systematic_uncertainty != null);
   function writeReplicates() {
     const made = section("replicates", "Replicates", node("p", {class: "note"},
-      "Two single tests of one material differ by less than r = 2.8 s_r, 95 times of 100 (ISO 5725-6)." +
+      "Two single tests of one material differ by less than r = 2.8 s_r, 95 times of 100 (ISO 5725-6). " + coverage() +
       (data.materials.some(material => material.groups.some(hasSystematic)) ? " ± syst.: the systematic part of the mean (calibration, corrections), which more tests do not make smaller." : "")));
     const grid = node("div", {class: "grid"});
     made.append(grid);
     data.materials.forEach((material, m) => material.groups.forEach((group, g) => {
       const notes = [];
-      const own = node("div", {}, node("h3", {}, `${two ? nameOf(m) + ", " : ""}${speed(group.pull_speed)}, ${plural(group.tests.length, "test")}`),
+      const own = node("div", {}, node("h3", {}, `${two ? nameOf(m) + ", " : ""}${group.text}, ${plural(group.tests.length, "test")}`),
         node("p", {id: `by-cycle-${m}-${g}`}, node("b", {}, `S−K by cycle ${pooledText(group.delta_mu_by_cycle)}`),
           `: ${group.delta_mu_by_cycle.reason || pooledFacts(group.delta_mu_by_cycle)}`),
         table(`replicates-${m}-${g}`, ["", "n", "mean", ...(hasSystematic(group) ? ["± syst."] : []), "s_r", "r = 2.8 s_r", "95 % of the mean"], data.quantities.map(q => {
@@ -143,8 +177,8 @@
               `: Grubbs ${fixed(own.outlier.statistic, 2)} above ${fixed(own.outlier.critical, 2)} (5 %). It is not left out.`));
           }
           for (const absence of own.absent) notes.push(node("li", {}, node("b", {}, `no ${q.title} in ${absence.file}`), `: ${absence.reason}`));
-          return row(title(q), String(own.count), fixed(own.mean, q.decimals), ...(hasSystematic(group) ? [fixed(own.systematic_uncertainty, q.decimals)] : []),
-            fixed(own.standard_deviation, q.decimals + 1), fixed(own.repeatability, q.decimals + 1), range(own.confidence_interval, q.decimals));
+          return row(label(q), String(own.count), fixed(own.mean, meanDecimals(own, q)), ...(hasSystematic(group) ? [scatter(own.systematic_uncertainty, q)] : []),
+            scatter(own.standard_deviation, q), scatter(own.repeatability, q), range(own.confidence_interval, meanDecimals(own, q)));
         })));
       if (notes.length > 0) own.append(node("ul", {class: "notes"}, ...notes));
       grid.append(own);
@@ -171,7 +205,7 @@
         const trace = test.trace;
         trace.key = `${m}`;
         facts.textContent = [test.title, test.regime, `rung: ${test.rung}${test.details.rung ? `, ${test.details.rung.reason}` : ""}`, plural(trace.scan_count, "scan") + ` at ${Number(trace.rate.toPrecision(6))} Hz`,
-          speed(test.pull_speed), trace.thinned ? "lowest and highest scan of each part shown" : ""].filter(Boolean).join(" · ");
+          test.pull_speed_text, trace.thinned ? "lowest and highest scan of each part shown" : ""].filter(Boolean).join(" · ");
         if (viewer.chart) viewer.chart.destroy();
         viewer.chart = Charts.traces(box, trace, strokes[m], n => {
           count.textContent = `${plural(n, "cycle")} marked` + (n === trace.cycles.time.length ? "" : ` of ${trace.cycles.time.length}`);
@@ -220,9 +254,9 @@
     section(`all-tests-${m}`, two ? `Tests of ${nameOf(m)}` : "Tests",
       node("p", {class: "note"}, "Method: " + [...new Set(material.tests.map(t => (t.method || "not known") + (t.estimator === "fit" ? "" : ", estimator " + t.estimator)))].join("; ")),
       node("p", {class: "note", id: `errors-${m}`}, Uncertain.legend(material.tests.flatMap(t => inTests.map(q => [t[q.name], t.details[q.name]])))),
-      table(`tests-${m}`, ["test", "file", "speed", "regime", ...inTests.map(title)], material.tests.map((t, i) => row(
+      table(`tests-${m}`, ["test", "file", "speed", "regime", ...inTests.map(q => named(q, " (model)"))], material.tests.map((t, i) => row(
         node("td", {}, node("button", {type: "button", class: "link", onclick: () => show(i)}, String(i + 1))),
-        node("td", {class: "text"}, t.file), speed(t.pull_speed), node("td", {class: "text", title: t.details.regime ? t.details.regime.reason : ""}, t.regime),
+        node("td", {class: "text"}, t.file), t.pull_speed_text, node("td", {class: "text", title: t.details.regime ? t.details.regime.reason : ""}, t.regime),
         ...inTests.map(q => (t[q.name] == null ? absentCell(t.details[q.name].reason) : node("td", {}, ...Uncertain.lines(t[q.name], t.details[q.name], q.decimals))))))),
       ...(notes.length > 0 ? [node("ul", {class: "notes"}, ...notes)] : []));
   }
@@ -251,7 +285,7 @@
   document.title = `${heading} – stickslip`;
   document.getElementById("title").textContent = heading;
   document.getElementById("subtitle").textContent =
-    data.materials.map((m, i) => (two ? `${nameOf(i)}: ` : "") + `${plural(m.tests.length, "test")} at ${plural(m.groups.length, "speed")}`).join("; ");
+    data.materials.map((m, i) => (two ? `${nameOf(i)}: ` : "") + `${plural(m.tests.length, "test")} in ${plural(m.groups.length, "group")}`).join("; ");
   document.getElementById("footer").textContent = `Made by ${data.program}. This file holds everything it shows and asks no network.`;
 
   const dark = matchMedia("(prefers-color-scheme: dark)");
@@ -261,13 +295,15 @@
   const redraw = () => { drawFigure(); for (const viewer of viewers) { const at = viewer.chart.inView(); viewer.show(viewer.shown); viewer.chart.view(...at); } };
   setTheme(dark.matches ? "dark" : "light");
 
+  writeForm();
+  data.materials.forEach((_, m) => writeLimits(m));
+  writeMeans();
+  if (two) writeComparison();
+  writeReplicates();
+  data.materials.forEach((_, m) => writeTests(m));
   writeRamps();
   writeFigure();
-  if (two) writeComparison();
   data.materials.forEach((_, m) => writeViewer(m));
-  writeReplicates();
-  data.materials.forEach((_, m) => { writeTests(m); writeLimits(m); });
-  drawFigure();
   viewers.forEach(viewer => viewer.show(0));
 
   document.getElementById("theme").addEventListener("click", () => { setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"); redraw(); });

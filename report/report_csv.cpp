@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -23,6 +25,12 @@ void add(Cells& cells, const T&... values) {
 void add_interval(Cells& cells, const std::optional<analysis::Interval>& value) {
   add(cells, value ? std::optional{value->low} : std::nullopt,
       value ? std::optional{value->high} : std::nullopt);
+}
+
+bool is_quantity(std::string_view name) {
+  const auto& all = analysis::quantities();
+  return std::any_of(all.begin(), all.end(),
+                     [name](const analysis::Quantity& quantity) { return quantity.name == name; });
 }
 
 io::Table table_of(const std::vector<std::string>& names) {
@@ -78,6 +86,11 @@ std::string report_csv(const Material& material) {
   }
   names.emplace_back("at_speed_delta_mu_by_cycle_systematic_uncertainty");
   names.emplace_back("findings");
+  for (const char* name : {"date", "sample", "grade", "operator", "batch"}) names.emplace_back(name);
+  analysis::for_each_result(none, [&](const analysis::ResultName& name, const analysis::Estimate&) {
+    if (!name.is_diagnostic && !is_quantity(name.name))
+      names.push_back(fmt::format("{}_standard_error", name.name));
+  });
   io::Table table = table_of(names);
   std::vector<const analysis::PooledDeltaMu*> by_cycle(material.tests.size());
   for (const analysis::SpeedGroup& group : material.groups) {
@@ -108,7 +121,13 @@ std::string report_csv(const Material& material) {
     std::string findings;
     for (const base::Finding& finding : measured.results.findings)
       findings += fmt::format("{}{}: {}", findings.empty() ? "" : "; ", finding.code, finding.text);
-    add(cells, pooled.mean.systematic_uncertainty, findings);
+    add(cells, pooled.mean.systematic_uncertainty, findings, test.start_time, test.sample.name,
+        test.sample.grade, test.sample.operator_name, test.sample.batch);
+    analysis::for_each_result(measured.results,
+                              [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
+                                if (!name.is_diagnostic && !is_quantity(name.name))
+                                  add(cells, estimate.standard_error);
+                              });
     table.add(std::move(cells));
   }
   // No numbers, so that nobody averages them.

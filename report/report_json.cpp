@@ -28,7 +28,8 @@ Json test_json(const ReportedTest& test, const analysis::MeasuredTest& measured)
             {"method", test.method},
             {"estimator", test.estimator},
             {"departures", test.departures},
-            {"pull_speed", io::or_null(measured.pull_speed_m_per_s)}};
+            {"pull_speed", io::or_null(measured.pull_speed_m_per_s)},
+            {"pull_speed_text", test.speed.empty() ? "speed not known" : test.speed}};
   json.update(io::results_json(measured.results, true));
   if (!test.metadata.empty()) json["metadata"] = test.metadata;
   if (std::string ramp = ramp_text(measured.results); !ramp.empty()) json["ramp"] = std::move(ramp);
@@ -42,6 +43,7 @@ Json quantity_json(const Material& material, const GroupQuantity& group, const a
     json["standard_deviation"] = io::or_null(own->standard_deviation);
     json["repeatability"] = io::or_null(own->repeatability);
     json["confidence_interval"] = interval_json(own->mean_interval);
+    json["coverage_factor"] = io::or_null(own->coverage_factor);
     json["outlier"] = nullptr;
     if (own->outlier) {
       json["outlier"] = {{"file", material.tests[group.tests[own->outlier->index]].file},
@@ -49,8 +51,8 @@ Json quantity_json(const Material& material, const GroupQuantity& group, const a
                          {"critical", own->outlier->critical}};
     }
   } else {
-    for (const char* key :
-         {"mean", "standard_deviation", "repeatability", "confidence_interval", "outlier"}) {
+    for (const char* key : {"mean", "standard_deviation", "repeatability", "confidence_interval",
+                            "coverage_factor", "outlier"}) {
       json[key] = nullptr;
     }
   }
@@ -90,6 +92,16 @@ Json report_json(const Material& material) {
             {"groups", Json::array()},
             {"voided", Json::array()},
             {"limits", Json::array()}};
+  json["form"] = Json::array();
+  for (const FormLine& line : form_of(material)) {
+    json["form"].push_back({{"name", line.name},
+                            {"label", line.label},
+                            {"values", line.values},
+                            {"not_stated", line.not_stated},
+                            {"text", line.text}});
+  }
+  json["verdict"] = verdict_of(material);
+  json["not_pooled"] = not_pooled_text(material);
   for (const VoidedTest& test : material.voided) {
     json["voided"].push_back({{"file", test.file},
                               {"reason", test.voiding.reason},
@@ -109,8 +121,13 @@ Json report_json(const Material& material) {
   }
   for (const analysis::SpeedGroup& group : material.groups) {
     Json of_group{{"pull_speed", io::or_null(group.pull_speed_m_per_s)},
+                  {"pull_speed_text", speed_of(material, group)},
+                  {"text", group_text(material, group)},
+                  {"grades", group.grades},
+                  {"regimes", Json::array()},
                   {"tests", group.tests},
                   {"delta_mu_by_cycle", io::pooled_json(group.by_cycle)}};
+    for (const model::Regime regime : group.regimes) of_group["regimes"].push_back(model::name(regime));
     for (std::size_t q = 0; q < analysis::kQuantityCount; ++q) {
       const analysis::Quantity& quantity = analysis::quantities()[q];
       of_group["quantities"][std::string{quantity.name}] =
@@ -134,14 +151,17 @@ Json comparison_json(const Material& a, const Material& b, const MaterialCompari
   json["comparisons"] = Json::array();
   for (std::size_t i = 0; i < comparison.pairs.size(); ++i) {
     const RegimeComparison& regime = comparison.regimes[i];
-    Json of_pair{{"pull_speed", io::or_null(comparison.pairs[i].pull_speed_m_per_s)},
-                 {"regime",
-                  {{"a_sticking", regime.a.sticking},
-                   {"a_sliding", regime.a.sliding},
-                   {"b_sticking", regime.b.sticking},
-                   {"b_sliding", regime.b.sliding},
-                   {"p", io::or_null(regime.p)}}},
-                 {"delta_mu_by_cycle", welch_json(comparison.by_cycle[i].welch)}};
+    const analysis::SpeedPair& pair = comparison.pairs[i];
+    Json of_pair{
+        {"pull_speed", io::or_null(pair.pull_speed_m_per_s)},
+        {"pull_speed_text", pair.a ? speed_of(a, a.groups[*pair.a]) : speed_of(b, b.groups[*pair.b])},
+        {"regime",
+         {{"a_sticking", regime.a.sticking},
+          {"a_sliding", regime.a.sliding},
+          {"b_sticking", regime.b.sticking},
+          {"b_sliding", regime.b.sliding},
+          {"p", io::or_null(regime.p)}}},
+        {"delta_mu_by_cycle", welch_json(comparison.by_cycle[i].welch)}};
     if (const std::string& reason = comparison.by_cycle[i].reason; !reason.empty())
       of_pair["delta_mu_by_cycle"]["reason"] = reason;
     for (std::size_t q = 0; q < analysis::kQuantityCount; ++q) {

@@ -11,12 +11,15 @@
 
 namespace stickslip::report {
 
-/// {"tests": [{"file", "title", "method", "estimator", "departures", "pull_speed", "regime", "rung", results
+/// {"form": [{"name", "label", "values", "not_stated", "text"}], "verdict", "not_pooled",
+///  "tests": [{"file", "title", "method", "estimator", "departures", "pull_speed", "pull_speed_text",
+///  "regime", "rung", results
 /// …, "diagnostics", "details"}],
-///  "groups": [{"pull_speed", "tests": [index …], "delta_mu_by_cycle": pooled_json(), "quantities": {NAME:
+///  "groups": [{"pull_speed", "pull_speed_text", "text", "grades", "regimes", "tests": [index …],
+///  "delta_mu_by_cycle": pooled_json(), "quantities": {NAME:
 ///  {"unit", "count", "mean",
-///    "standard_deviation", "repeatability", "confidence_interval", "outlier", "systematic_uncertainty",
-///    "absent"}}}],
+///    "standard_deviation", "repeatability", "confidence_interval", "coverage_factor", "outlier",
+///    "systematic_uncertainty", "absent"}}}],
 ///  "pooled_standard_deviation": {NAME: …}}
 [[nodiscard]] nlohmann::ordered_json report_json(const Material& material);
 

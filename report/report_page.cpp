@@ -11,6 +11,7 @@
 #include "report/report_json.hpp"
 #include <nlohmann/json.hpp>
 
+#include "core/base/digits.hpp"
 #include "core/base/version.hpp"
 
 namespace stickslip::report {
@@ -23,6 +24,8 @@ Json quantities_json() {
   for (const analysis::Quantity& quantity : analysis::quantities()) {
     json.push_back({{"name", quantity.name},
                     {"title", quantity.title},
+                    {"label", quantity.in_full},
+                    {"of_model", quantity.of_model},
                     {"unit", quantity.unit},
                     {"decimals", quantity.decimals}});
   }
@@ -61,9 +64,23 @@ std::string page_of(const Json& data, const ChartLibrary& charts) {
   return page.append(html.substr(done));
 }
 
+/// The unit of the axis of speeds: that in which the first known one is shown.
+Json speed_unit_json(const Json& materials) {
+  for (const Json& material : materials) {
+    for (const Json& group : material["groups"]) {
+      const Json& speed = group["pull_speed"];
+      if (!speed.is_number()) continue;
+      const base::SpeedUnit unit = base::unit_of_speed(speed.get<double>());
+      return {{"symbol", unit.symbol}, {"m_per_s", unit.m_per_s}};
+    }
+  }
+  return {{"symbol", "m/s"}, {"m_per_s", 1.0}};
+}
+
 Json page_json(Json materials, Json comparison) {
   return {{"program", fmt::format("stickslip {} ({})", base::kVersion, base::kCommit)},
           {"quantities", quantities_json()},
+          {"speed_unit", speed_unit_json(materials)},
           {"materials", std::move(materials)},
           {"comparison", std::move(comparison)}};
 }

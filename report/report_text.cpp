@@ -13,7 +13,6 @@
 
 #include "io/table.hpp"
 #include "io/uncertain.hpp"
-#include "report/millimetres.hpp"
 #include "report/truth_table.hpp"
 
 #include "core/base/text.hpp"
@@ -27,11 +26,6 @@ using analysis::Quantity;
 using analysis::Replicates;
 using analysis::SpeedGroup;
 
-std::string speed_text(const std::optional<double>& speed_m_per_s) {
-  if (!speed_m_per_s) return "speed not known";
-  return fmt::format("{:.4g} mm/s", *speed_m_per_s * kMillimetresPerMetre);
-}
-
 std::string number(const std::optional<double>& value, int decimals) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : std::string{io::kAbsent};
 }
@@ -41,13 +35,30 @@ std::string interval(const std::optional<Interval>& value, int decimals) {
                : std::string{io::kAbsent};
 }
 
+double half_of(const Interval& value) { return 0.5 * (value.high - value.low); }
+
+/// Decimals of a mean: they follow half of its interval; of a single test without one, its systematic part.
+int mean_decimals(const GroupQuantity& group, const Quantity& quantity) {
+  std::optional<double> uncertainty = group.systematic_uncertainty;
+  if (group.replicates && group.replicates->mean_interval) {
+    const double half = half_of(*group.replicates->mean_interval);
+    if (half > 0.0) uncertainty = half;
+  }
+  return io::decimals_for(uncertainty, quantity.decimals);
+}
+
 /// "0.3812 ± 0.0012"; without the second part where the scatter is not known.
 std::string mean_text(const GroupQuantity& group, const Quantity& quantity) {
   if (!group.replicates) return std::string{io::kAbsent};
   const Replicates& own = *group.replicates;
-  if (!own.mean_interval) return number(own.mean, quantity.decimals);
-  return fmt::format("{:.{}f} ± {:.{}f}", own.mean, quantity.decimals, own.mean_interval->high - own.mean,
-                     quantity.decimals);
+  const int decimals = mean_decimals(group, quantity);
+  if (!own.mean_interval) return number(own.mean, decimals);
+  return fmt::format("{:.{}f} ± {:.{}f}", own.mean, decimals, half_of(*own.mean_interval), decimals);
+}
+
+/// A scatter, of which two digits mean something.
+std::string scatter_text(const std::optional<double>& scatter, int plain) {
+  return number(scatter, io::decimals_for(scatter, plain));
 }
 
 std::string count_of_tests(std::size_t count) {
@@ -59,21 +70,42 @@ constexpr std::size_t kFigureQuantities = 4;
 
 io::Table figure_table(bool two) {
   using enum io::Table::Align;
-  std::vector<io::Table::Column> columns{{.heading = "speed", .align = kLeft, .width = 14},
-                                         {.heading = two ? "material" : "", .align = kLeft, .width = 12},
-                                         {.heading = "tests"}};
+  std::vector<io::Table::Column> columns{{.heading = two ? "speed" : "group", .align = two ? kLeft : kRight},
+                                         {.heading = two ? "" : "n", .align = two ? kLeft : kRight}};
   for (std::size_t q = 0; q < kFigureQuantities; ++q)
-    columns.push_back({.heading = std::string{analysis::quantities()[q].title}, .width = 17});
+    columns.push_back({.heading = std::string{analysis::quantities()[q].label}});
   return io::Table{std::move(columns)};
 }
 
-void add_to_figure(io::Table& table, const std::string& speed, const std::string& label,
-                   const SpeedGroup& group) {
-  std::vector<io::Table::Cell> cells{speed, label, io::cell(group.tests.size())};
+void add_to_figure(io::Table& table, io::Table::Cell first, io::Table::Cell second, const SpeedGroup& group) {
+  std::vector<io::Table::Cell> cells{std::move(first), std::move(second)};
   for (std::size_t q = 0; q < kFigureQuantities; ++q)
     cells.emplace_back(mean_text(group.quantities[q], analysis::quantities()[q]));
   table.add(std::move(cells));
 }
+
+constexpr std::string_view kMeansHeading = "Means, ± half of the 95 % interval";
+
+/// "k = 4.30 for n = 3, 2.78 for n = 5": of all intervals that are shown.
+std::string coverage_legend(std::initializer_list<const Material*> materials) {
+  std::map<std::size_t, double> factors;
+  for (const Material* const material : materials) {
+    for (const SpeedGroup& group : material->groups) {
+      for (const GroupQuantity& own : group.quantities) {
+        if (own.replicates && own.replicates->coverage_factor)
+          factors[own.replicates->count] = *own.replicates->coverage_factor;
+      }
+    }
+  }
+  std::string text;
+  for (const auto& [count, factor] : factors)
+    text += fmt::format("{}{:.2f} for n = {}", text.empty() ? "" : ", ", factor, count);
+  return text.empty() ? text : fmt::format("95 % intervals: mean ± k s_r/√n, Student's t, k = {}\n", text);
+}
+
+constexpr std::string_view kModelLegend =
+    "static µs: ISO 8295 µS; kinetic (dynamic) µk\n"
+    "model quantities: S, K, S−K, frequency ω/2π, γ/2ω (Penner 1995)\n";
 
 constexpr int kDeltaMuDecimals = 4;
 
@@ -83,11 +115,11 @@ std::string by_cycle_line(const analysis::PooledDeltaMu& pooled) {
     return fmt::format("S−K by cycle   {}  {}\n", io::kAbsent, base::printable(pooled.mean.reason));
   std::string text = "S−K by cycle   " + io::uncertain(pooled.mean, kDeltaMuDecimals).text();
   if (const auto of_mean = analysis::mean_interval(pooled))
-    text += fmt::format(", 95 % {}", interval(of_mean, kDeltaMuDecimals));
+    text +=
+        fmt::format(", 95 % {}", interval(of_mean, io::decimals_for(half_of(*of_mean), kDeltaMuDecimals)));
   text += fmt::format(": {} slip{} of {}, {} escaped", pooled.slip_count, pooled.slip_count == 1 ? "" : "s",
                       count_of_tests(pooled.test_count), pooled.escaped_count);
-  if (pooled.scatter.value)
-    text += fmt::format(", scatter {:.{}f}", *pooled.scatter.value, kDeltaMuDecimals + 1);
+  if (pooled.scatter.value) text += ", scatter " + scatter_text(pooled.scatter.value, kDeltaMuDecimals);
   return text + "\n";
 }
 
@@ -113,8 +145,8 @@ std::string by_cycle_legend(std::initializer_list<const Material*> materials) {
 }
 
 std::string title_of(const Quantity& quantity) {
-  return quantity.unit == "1" ? std::string{quantity.title}
-                              : fmt::format("{} ({})", quantity.title, quantity.unit);
+  return quantity.unit == "1" ? std::string{quantity.label}
+                              : fmt::format("{} ({})", quantity.label, quantity.unit);
 }
 
 std::string replicates_table(const Material& material, const SpeedGroup& group) {
@@ -137,11 +169,11 @@ std::string replicates_table(const Material& material, const SpeedGroup& group) 
     const Replicates& values = own.replicates ? *own.replicates : none;
     std::vector<io::Table::Cell> cells{
         title_of(quantity), io::cell(values.count),
-        number(own.replicates ? std::optional{values.mean} : std::nullopt, quantity.decimals)};
-    if (has_systematic) cells.emplace_back(number(own.systematic_uncertainty, quantity.decimals));
-    cells.insert(cells.end(), {number(values.standard_deviation, quantity.decimals + 1),
-                               number(values.repeatability, quantity.decimals + 1),
-                               interval(values.mean_interval, quantity.decimals)});
+        number(own.replicates ? std::optional{values.mean} : std::nullopt, mean_decimals(own, quantity))};
+    if (has_systematic) cells.emplace_back(scatter_text(own.systematic_uncertainty, quantity.decimals));
+    cells.insert(cells.end(), {scatter_text(values.standard_deviation, quantity.decimals),
+                               scatter_text(values.repeatability, quantity.decimals),
+                               interval(values.mean_interval, mean_decimals(own, quantity))});
     table.add(std::move(cells));
     if (values.outlier) {
       const std::size_t test = own.tests[values.outlier->index];
@@ -170,7 +202,7 @@ std::string limits_lines(const Material& material) {
     }
     text += "\n";
   }
-  return text.empty() ? text : "\nLimits of the batch\n" + text;
+  return text;
 }
 
 std::string voided_lines(const Material& material) {
@@ -230,6 +262,10 @@ std::string regime_line(const RegimeComparison& regime) {
                      counts(regime.b), p_text(*regime.p), *regime.p < analysis::kSignificance ? "  *" : "");
 }
 
+std::string speed_of(const Material& a, const Material& b, const analysis::SpeedPair& pair) {
+  return pair.a ? report::speed_of(a, a.groups[*pair.a]) : report::speed_of(b, b.groups[*pair.b]);
+}
+
 std::string comparison_table(const analysis::PooledComparison& by_cycle,
                              const std::array<analysis::Comparison, analysis::kQuantityCount>& comparisons) {
   const std::string& first = comparisons.front().reason;
@@ -249,8 +285,9 @@ std::string comparison_table(const analysis::PooledComparison& by_cycle,
   const auto star = [](double p) { return p < analysis::kSignificance ? "*" : ""; };
   std::map<std::string, std::string> reasons;
   if (by_cycle.welch) {
-    table.add({"S−K by cycle", number(by_cycle.welch->difference, kDeltaMuDecimals),
-               interval(by_cycle.welch->interval, kDeltaMuDecimals), p_text(by_cycle.welch->p), "", "", "",
+    const int decimals = io::decimals_for(half_of(by_cycle.welch->interval), kDeltaMuDecimals);
+    table.add({"S−K by cycle", number(by_cycle.welch->difference, decimals),
+               interval(by_cycle.welch->interval, decimals), p_text(by_cycle.welch->p), "", "", "",
                star(by_cycle.welch->p)});
   } else {
     table.add({"S−K by cycle", {}});
@@ -265,8 +302,9 @@ std::string comparison_table(const analysis::PooledComparison& by_cycle,
       titles += fmt::format("{}{}", titles.empty() ? "" : ", ", quantity.title);
       continue;
     }
-    table.add({title_of(quantity), number(own.welch->difference, quantity.decimals),
-               interval(own.welch->interval, quantity.decimals), p_text(own.welch->p), own.effect->g,
+    const int decimals = io::decimals_for(half_of(own.welch->interval), quantity.decimals);
+    table.add({title_of(quantity), number(own.welch->difference, decimals),
+               interval(own.welch->interval, decimals), p_text(own.welch->p), own.effect->g,
                interval(own.effect->interval, 1),
                fmt::format("{} / {}", needed_text(own.needed->for_80_percent),
                            needed_text(own.needed->for_90_percent)),
@@ -278,39 +316,83 @@ std::string comparison_table(const analysis::PooledComparison& by_cycle,
   return text;
 }
 
+/// Breaks a line at blanks so that it fits a terminal of 80 columns. \param indent  blanks before all lines
+/// but the first.
+std::string wrapped(const std::string& line, std::size_t indent) {
+  constexpr std::size_t kWidth = 80;
+  std::string text;
+  std::size_t column = 0;
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t blanks = line.find_first_not_of(' ', at);
+    if (blanks == std::string::npos) break;
+    const std::size_t end = std::min(line.find(' ', blanks), line.size());
+    const std::string word = line.substr(at, end - at);
+    const std::size_t width = io::display_width(word);
+    if (column + width > kWidth && column > indent) {
+      text += "\n" + std::string(indent, ' ') + line.substr(blanks, end - blanks);
+      column = indent + width - (blanks - at);
+    } else {
+      text += word;
+      column += width;
+    }
+    at = end;
+  }
+  return text;
+}
+
+/// The form block: what was tested, how, by whom and with what.
+std::string form_text(const Material& material) {
+  constexpr std::size_t kLabelWidth = 17;
+  std::string text;
+  for (const FormLine& line : form_of(material)) {
+    text +=
+        wrapped(fmt::format("{:<{}}{}", line.label, kLabelWidth, base::printable(line.text)), kLabelWidth) +
+        "\n";
+  }
+  return text + wrapped(fmt::format("{:<{}}{}", "verdict", kLabelWidth, verdict_of(material)), kLabelWidth) +
+         "\n" + limits_lines(material);
+}
+
 }  // namespace
 
 std::string report_text(const Material& material) {
-  std::string text = tests_table(material) + "method: " + methods_line(material) + "\n";
-  text += "\nCoefficient against speed (Fig. 1): mean ± half of its 95 % interval\n";
+  std::string text =
+      form_text(material) + "\n" + tests_table(material) + "method: " + methods_line(material) + "\n";
+  text += fmt::format("\n{}{}\n", has_speeds(material) ? "Coefficient against speed (Fig. 1). " : "",
+                      kMeansHeading);
   io::Table figure = figure_table(false);
-  for (const SpeedGroup& group : material.groups)
-    add_to_figure(figure, speed_text(group.pull_speed_m_per_s), "", group);
+  for (std::size_t g = 0; g < material.groups.size(); ++g) {
+    const SpeedGroup& group = material.groups[g];
+    add_to_figure(figure, io::cell(g + 1), io::cell(group.tests.size()), group);
+  }
   text += figure.text();
-  for (const SpeedGroup& group : material.groups) {
-    text +=
-        fmt::format("\n{}, {}\n", speed_text(group.pull_speed_m_per_s), count_of_tests(group.tests.size()));
+  for (std::size_t g = 0; g < material.groups.size(); ++g) {
+    const SpeedGroup& group = material.groups[g];
+    text += fmt::format("\ngroup {}: {}, {}\n", g + 1, base::printable(group_text(material, group)),
+                        count_of_tests(group.tests.size()));
     text += by_cycle_line(group.by_cycle) + replicates_table(material, group);
   }
-  return text + by_cycle_legend({&material}) + limits_lines(material);
+  text += by_cycle_legend({&material}) + coverage_legend({&material}) + std::string{kModelLegend};
+  if (const std::string split = not_pooled_text(material); !split.empty()) text += split + "\n";
+  return text;
 }
 
 std::string comparison_text(const Material& a, const Material& b, const MaterialComparison& comparison) {
-  std::string text =
-      fmt::format("A: {}\n{}method: {}\n\nB: {}\n{}method: {}\n", base::printable(a.label), tests_table(a),
-                  methods_line(a), base::printable(b.label), tests_table(b), methods_line(b));
-  text += "\nCoefficient against speed (Fig. 1): mean ± half of its 95 % interval\n";
+  std::string text = fmt::format("A: {}\n{}\n{}method: {}\n\nB: {}\n{}\n{}method: {}\n",
+                                 base::printable(a.label), form_text(a), tests_table(a), methods_line(a),
+                                 base::printable(b.label), form_text(b), tests_table(b), methods_line(b));
+  text += fmt::format("\n{}{}\n", comparison.pairs.size() > 1 ? "Coefficient against speed (Fig. 1). " : "",
+                      kMeansHeading);
   io::Table figure = figure_table(true);
   for (const analysis::SpeedPair& pair : comparison.pairs) {
-    std::string speed = speed_text(pair.pull_speed_m_per_s);
+    std::string speed = speed_of(a, b, pair);
     if (pair.a) add_to_figure(figure, std::exchange(speed, ""), "A", a.groups[*pair.a]);
     if (pair.b) add_to_figure(figure, speed, "B", b.groups[*pair.b]);
   }
   text += figure.text();
   for (std::size_t i = 0; i < comparison.pairs.size(); ++i) {
     const analysis::SpeedPair& pair = comparison.pairs[i];
-    text +=
-        fmt::format("\n{}: A − B (* differs at 5 %)\n", speed_text(comparison.pairs[i].pull_speed_m_per_s));
+    text += fmt::format("\n{}: A − B (* differs at 5 %)\n", speed_of(a, b, pair));
     if (pair.a) text += "A: " + by_cycle_line(a.groups[*pair.a].by_cycle);
     if (pair.b) text += "B: " + by_cycle_line(b.groups[*pair.b].by_cycle);
     text += comparison_table(comparison.by_cycle[i], comparison.comparisons[i]) +
@@ -323,7 +405,7 @@ std::string comparison_text(const Material& a, const Material& b, const Material
                             p_text(comparison.combined[q]->p));
   }
   if (!combined.empty()) text += "\nall speeds together, p (Fisher): " + combined + "\n";
-  return text + by_cycle_legend({&a, &b});
+  return text + by_cycle_legend({&a, &b}) + coverage_legend({&a, &b}) + std::string{kModelLegend};
 }
 
 }  // namespace stickslip::report

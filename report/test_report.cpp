@@ -1,5 +1,6 @@
 #include "report/test_report.hpp"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -7,8 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/analysis/skipped_corrections.hpp"
+#include "core/base/digits.hpp"
 #include "core/base/wording.hpp"
 #include "core/model/method.hpp"
+#include "core/record/iso_time.hpp"
 #include "core/record/method_text.hpp"
 #include "core/record/read_apart.hpp"
 #include "daemon/types/batch_journal.hpp"
@@ -46,10 +49,11 @@ std::string names_of(const daemon::BatchBook& book) {
 
 }  // namespace
 
-base::Result<Material> read_material(std::string label, std::span<const std::string> files,
-                                     bool with_traces) {
+base::Result<Material> read_material(std::string label, std::span<const std::string> files, bool with_traces,
+                                     analysis::Pooling pooling) {
   Material material;
   material.label = std::move(label);
+  material.pooling = pooling;
   Voidings voidings;
   for (std::size_t i = 0; i < files.size(); ++i) {
     const std::string& file = files[i];
@@ -68,12 +72,20 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
     test.title = record->header.title;
     test.method = record->header.process.method;
     test.metadata = record->header.metadata;
+    test.sample = record->header.sample;
+    if (record->header.start_realtime_ns)
+      test.start_time = record::iso_time(*record->header.start_realtime_ns);
     test.scans_sha256 = record->sha256;
     if (!record->header.process.estimator.empty()) test.estimator = record->header.process.estimator;
     // A method in another form is shown as it stands; nothing can be compared with it.
+    std::optional<model::Nominal> asked;
     if (const base::Result<model::Method> method = record::method_from_text(test.method)) {
       test.departures = model::departures(*method, tester.sled_mass_kg, tester.pull_speed_m_per_s);
+      asked = method->pull_speed_m_per_s;
     }
+    if (const std::optional<double>& speed = tester.pull_speed_m_per_s)
+      test.speed = base::unit_of_speed(asked ? asked->value : *speed).text(*speed);
+    test.facts = facts_of(record->header, test.speed);
     if (with_traces) {
       const base::Result<nlohmann::ordered_json> trace = trace_json(*record);
       if (!trace) {
@@ -86,19 +98,20 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
     const analysis::SkippedCorrections skipped =
         analysis::skipped_from_text(record->header.process.kept).value_or(analysis::SkippedCorrections{});
     material.measured.push_back({tester.pull_speed_m_per_s, std::move(record->end->results),
-                                 analysis::slip_sums(record->cycles, skipped.first_slip)});
+                                 analysis::slip_sums(record->cycles, skipped.first_slip), test.sample.grade});
     material.tests.push_back(std::move(test));
   }
   if (material.tests.empty() && !material.voided.empty()) {
     return base::usage_error("{}: is void ({}), and so is all that was named; there is nothing to report",
                              material.voided.front().file, material.voided.front().voiding.reason);
   }
-  material.groups = analysis::group_by_speed(material.measured);
+  material.groups = analysis::group_by_speed(material.measured, pooling);
   return material;
 }
 
 base::Result<Material> read_batch(std::string label, const std::string& id_or_name,
-                                  const std::filesystem::path& folder, bool with_traces) {
+                                  const std::filesystem::path& folder, bool with_traces,
+                                  analysis::Pooling pooling) {
   daemon::BatchBook book;
   daemon::BatchJournal journal{folder};
   if (const auto read = journal.read_on(book); !read) return tl::unexpected(read.error());
@@ -110,11 +123,94 @@ base::Result<Material> read_batch(std::string label, const std::string& id_or_na
   std::vector<std::string> files;
   for (const daemon::BatchTest& test : batch->tests) files.push_back((folder / test.record).string());
   if (files.empty()) return base::usage_error("batch {} has no test yet", batch->id);
-  base::Result<Material> material = read_material(std::move(label), files, with_traces);
+  if (label.empty()) label = batch->plan.sample.name.empty() ? batch->id : batch->plan.sample.name;
+  base::Result<Material> material = read_material(std::move(label), files, with_traces, pooling);
   if (!material) return material;
   for (const auto& [quantity, limits] : batch->plan.limits)
     material->limits.push_back(daemon::judged(quantity, limits, material->measured));
   return material;
+}
+
+std::string speed_of(const Material& material, const analysis::SpeedGroup& group) {
+  const std::string& speed = material.tests[group.tests.front()].speed;
+  if (!speed.empty()) return speed;
+  return group.pull_speed_m_per_s ? base::speed_text(*group.pull_speed_m_per_s) : "speed not known";
+}
+
+std::string group_text(const Material& material, const analysis::SpeedGroup& group) {
+  std::vector<std::string> parts;
+  for (const std::string& grade : group.grades) {
+    if (!grade.empty()) parts.push_back(grade);
+  }
+  parts = parts.empty() ? parts : std::vector{fmt::format("{}", fmt::join(parts, " and "))};
+  parts.push_back(speed_of(material, group));
+  std::vector<std::string_view> regimes;
+  for (const model::Regime regime : group.regimes) regimes.push_back(model::name(regime));
+  parts.push_back(fmt::format("{}", fmt::join(regimes, " and ")));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string not_pooled_text(const Material& material) {
+  bool grades = false;
+  bool regimes = false;
+  for (std::size_t i = 1; i < material.groups.size(); ++i) {
+    const analysis::SpeedGroup& one = material.groups[i - 1];
+    const analysis::SpeedGroup& other = material.groups[i];
+    if (analysis::pair_speeds({&one, 1}, {&other, 1}).size() != 1) continue;
+    grades |= one.grades != other.grades;
+    regimes |=
+        analysis::grouping_regime(one.regimes.front()) != analysis::grouping_regime(other.regimes.front());
+  }
+  if (!grades && !regimes) return {};
+  return fmt::format("{} at one speed are not averaged; --pool {} does",
+                     grades && regimes ? "Grades and regimes"
+                     : grades          ? "Grades"
+                                       : "Regimes",
+                     grades && regimes ? "grades,regimes"
+                     : grades          ? "grades"
+                                       : "regimes");
+}
+
+base::Result<void> check_one_grade(const Material& material, std::string_view side) {
+  if (material.pooling.grades) return {};
+  const std::string& first = material.tests.front().sample.grade;
+  for (const ReportedTest& test : material.tests) {
+    if (test.sample.grade == first) continue;
+    const auto shown = [](const std::string& grade) {
+      return grade.empty() ? std::string{"no grade"}
+                           : fmt::format("grade \"{}\"", base::one_line(grade, 100));
+    };
+    return base::usage_error("{}: {} has {}, {} has {}: name the records of one grade, or --pool grades",
+                             side, material.tests.front().file, shown(first), test.file,
+                             shown(test.sample.grade));
+  }
+  return {};
+}
+
+bool has_speeds(const Material& material) {
+  const auto known = [](const analysis::SpeedGroup& group) { return group.pull_speed_m_per_s.has_value(); };
+  const auto first = std::find_if(material.groups.begin(), material.groups.end(), known);
+  return std::any_of(first, material.groups.end(), [&](const analysis::SpeedGroup& group) {
+    return known(group) && analysis::pair_speeds({&*first, 1}, {&group, 1}).size() > 1;
+  });
+}
+
+base::Result<analysis::Pooling> pooling_from_text(std::string_view text, std::string_view place) {
+  analysis::Pooling pooling;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const std::string_view word = text.substr(at, end - at);
+    if (word == "grades") {
+      pooling.grades = true;
+    } else if (word == "regimes") {
+      pooling.regimes = true;
+    } else {
+      return base::usage_error("{} \"{}\": must be grades, regimes or grades,regimes", place,
+                               base::one_line(word, 100));
+    }
+    at = end + 1;
+  }
+  return pooling;
 }
 
 void note_repeated_scans(std::initializer_list<Material*> materials) {

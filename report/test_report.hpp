@@ -1,5 +1,6 @@
 /// \file
-/// Reads the tests of one material, or of two to be compared, groups them by pull speed and summarises them.
+/// Reads the tests of one material, or of two to be compared, groups them by pull speed, grade and regime and
+/// summarises them.
 /// Reports as text, JSON, CSV and page are made from this.
 #pragma once
 
@@ -9,6 +10,8 @@
 #include <span>
 #include <string>
 #include <vector>
+
+#include "report/form_block.hpp"
 
 #include "core/analysis/grouping.hpp"
 #include "core/base/result.hpp"
@@ -27,7 +30,11 @@ struct ReportedTest {
   std::string estimator = "fit";        ///< As in the record, if that names one.
   std::vector<std::string> departures;  ///< Departures from the method, one line each.
   record::Metadata metadata;            ///< As in the record.
-  std::string scans_sha256;             ///< Of the raw values.
+  record::SampleFacts sample;           ///< As in the record.
+  std::string start_time;               ///< ISO 8601; empty if unknown.
+  std::string speed;  ///< Pull speed in the method's unit, else as it was most likely typed; empty: unknown.
+  RecordFacts facts;  ///< For the form.
+  std::string scans_sha256;  ///< Of the raw values.
   std::optional<model::TestTruth> truth;
   std::string trace;  ///< trace_json() as text, for the page; empty unless requested.
 };
@@ -46,18 +53,41 @@ struct Material {
   std::vector<analysis::SpeedGroup> groups;
   std::vector<VoidedTest> voided;            ///< Void by the batch journals; in no number here.
   std::vector<daemon::LimitVerdict> limits;  ///< Checks of the batch's limits; empty without limits.
+  analysis::Pooling pooling;
 };
 
 /// Reads records; the results are those in the files, not computed again. Void tests are listed and not read.
-/// \param with_traces  true: fills ReportedTest::trace. Errors: that of the first file that cannot be read,
-/// with its name; kUsage if all tests are void.
+/// \param with_traces  true: fills ReportedTest::trace. \param pooling  of the groups. Errors: that of the
+/// first file that cannot be read, with its name; kUsage if all tests are void.
 [[nodiscard]] base::Result<Material> read_material(std::string label, std::span<const std::string> files,
-                                                   bool with_traces);
+                                                   bool with_traces, analysis::Pooling pooling);
 
-/// Reads the tests of a batch and checks its limits. \param id_or_name  as for BatchBook::find(). \param
-/// folder  the record folder. Errors: as read_material(); kUsage if there is no such batch or it has no test.
+/// Reads the tests of a batch and checks its limits. \param label  empty: the batch's name. \param id_or_name
+/// as for BatchBook::find(). \param folder  the record folder. Errors: as read_material(); kUsage if there is
+/// no such batch or it has no test.
 [[nodiscard]] base::Result<Material> read_batch(std::string label, const std::string& id_or_name,
-                                                const std::filesystem::path& folder, bool with_traces);
+                                                const std::filesystem::path& folder, bool with_traces,
+                                                analysis::Pooling pooling);
+
+/// "Thorold, 12 in/min, ring-down": what the tests of a group have in common, and what is pooled.
+[[nodiscard]] std::string group_text(const Material& material, const analysis::SpeedGroup& group);
+
+/// The pull speed of a group; "speed not known".
+[[nodiscard]] std::string speed_of(const Material& material, const analysis::SpeedGroup& group);
+
+/// Which groups at one speed are not averaged, and the option that averages them; empty: there are none.
+[[nodiscard]] std::string not_pooled_text(const Material& material);
+
+/// A comparison has no groups by grade: kUsage if the tests of a side have several and they are not pooled.
+[[nodiscard]] base::Result<void> check_one_grade(const Material& material, std::string_view side);
+
+/// More than one speed is known: something can be drawn against it.
+[[nodiscard]] bool has_speeds(const Material& material);
+
+/// Words of --pool: "grades", "regimes", or both with a comma between. \param place  of the value, for the
+/// error: kUsage.
+[[nodiscard]] base::Result<analysis::Pooling> pooling_from_text(std::string_view text,
+                                                                std::string_view place);
 
 /// Counts of tests at one speed by regime: `sticking` those that stuck again at least once (stick-slip,
 /// mixed), `sliding` those that never did (ring-down, steady sliding). Undecided tests are not counted.

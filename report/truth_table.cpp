@@ -7,6 +7,7 @@
 #include <map>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "io/findings_text.hpp"
@@ -42,6 +43,7 @@ constexpr int kDecimals = 4;
 
 constexpr std::string_view kStandardErrorRow = "± stat.";
 constexpr std::string_view kSystematicRow = "± syst.";
+constexpr std::string_view kTruthRow = "truth";
 
 /// One line of the table before it is padded.
 struct Line {
@@ -97,22 +99,54 @@ void align_points(std::vector<Line>& lines, std::size_t column) {
   }
 }
 
-std::string table_text(std::vector<Line> lines) {
+constexpr std::size_t kTerminalWidth = 80;
+
+bool fits(const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    if (io::display_width(std::string_view{text}.substr(at, end - at)) > kTerminalWidth) return false;
+    at = end + 1;
+  }
+  return true;
+}
+
+std::string table_text(const std::vector<Line>& lines, bool with_where) {
   using enum io::Table::Align;
   std::vector<io::Table::Column> columns{{.heading = "test"}, {.heading = "regime", .align = kLeft}};
-  for (std::size_t c = 0; c < kColumns.size(); ++c) {
-    align_points(lines, c);
-    columns.push_back({.heading = std::string{kColumns[c].title}});
-  }
-  columns.push_back({.heading = "file, scene", .align = kLeft});
+  for (const Column& column : kColumns) columns.push_back({.heading = std::string{column.title}});
+  if (with_where) columns.push_back({.heading = "file, scene", .align = kLeft});
   io::Table table{std::move(columns)};
-  for (Line& line : lines) {
-    std::vector<io::Table::Cell> cells{std::move(line.number), std::move(line.label)};
-    for (std::string& number : line.numbers) cells.emplace_back(std::move(number));
-    cells.emplace_back(std::move(line.where));
+  for (const Line& line : lines) {
+    std::vector<io::Table::Cell> cells{line.number, line.label};
+    for (const std::string& number : line.numbers) cells.emplace_back(number);
+    if (with_where) cells.emplace_back(line.where);
     table.add(std::move(cells));
   }
   return table.text();
+}
+
+/// Files and scenes below the table: "file of test 3: records/3.h5", "truth of test 1, 2: ring-down".
+std::string places(std::span<const TableRow> rows) {
+  std::string text;
+  std::vector<std::pair<std::string, std::string>> scenes;  // With the tests.
+  for (const TableRow& row : rows) {
+    text += fmt::format("file of test {}: {}\n", row.number, base::printable(row.where));
+    if (!row.truth) continue;
+    auto found = std::find_if(scenes.begin(), scenes.end(),
+                              [&row](const auto& scene) { return scene.first == row.truth->scene_name; });
+    if (found == scenes.end()) found = scenes.insert(scenes.end(), {row.truth->scene_name, ""});
+    found->second += fmt::format("{}{}", found->second.empty() ? "" : ", ", row.number);
+  }
+  for (const auto& [scene, tests] : scenes)
+    text += fmt::format("scene of test {}: {}\n", tests, base::printable(scene));
+  return text;
+}
+
+/// At most 80 columns wide: files and scenes stand behind the numbers where there is room, else below.
+std::string table_text(std::vector<Line> lines, std::span<const TableRow> rows) {
+  for (std::size_t c = 0; c < kColumns.size(); ++c) align_points(lines, c);
+  std::string text = table_text(lines, true);
+  return fits(text) ? text : table_text(lines, false) + places(rows);
 }
 
 /// What the rows of errors mean.
@@ -127,6 +161,11 @@ std::string legend(const std::vector<Line>& lines) {
     text +=
         fmt::format("{}  systematic part (calibration, corrections): the same each time\n", kSystematicRow);
   }
+  if (std::any_of(lines.begin(), lines.end(), [](const Line& line) {
+        const auto* const number = std::get_if<std::string>(&line.number);
+        return number != nullptr && *number == kTruthRow;
+      }))
+    text += fmt::format("{}    what was simulated\n", kTruthRow);
   return text;
 }
 
@@ -177,11 +216,11 @@ std::string format_table(std::span<const TableRow> rows) {
       if (any(measured, part)) lines.push_back(line_of(measured, part, "", label, ""));
     }
     if (row.truth) {
-      lines.push_back(line_of(true_numbers(*row.truth), &io::Uncertain::value, "truth",
+      lines.push_back(line_of(true_numbers(*row.truth), &io::Uncertain::value, std::string{kTruthRow},
                               model::name(row.truth->regime), row.truth->scene_name));
     }
   }
-  std::string text = table_text(lines) + legend(lines);
+  std::string text = table_text(lines, rows) + legend(lines);
   std::vector<io::TestFindings> findings;
   for (const TableRow& row : rows) {
     findings.push_back({row.number, row.results.findings});

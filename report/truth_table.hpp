@@ -25,8 +25,9 @@ struct TableRow {
   std::string where;  ///< File, or why there is none.
 };
 
-/// The whole table in UTF-8, one to four lines per row; then, what the rows of errors mean, which numbers are
-/// not significant ("?"), why numbers are absent ("–"), and the findings ("!").
+/// The whole table in UTF-8, at most 80 columns wide, one to four lines per row; then, files and scenes if
+/// they do not fit behind the numbers, what the rows of errors mean, which numbers are not significant ("?"),
+/// why numbers are absent ("–"), and the findings ("!").
 [[nodiscard]] std::string format_table(std::span<const TableRow> rows);
 
 }  // namespace stickslip::report

@@ -31,6 +31,10 @@ const Uncertain = (() => {
     return {value: value.toFixed(decimals) + (significant ? "" : "?"), errors: said, significant};
   }
 
+  /// Decimals of a number whose uncertainty stands beside it: two significant digits of that, at most two more than plain.
+  const decimalsFor = (uncertainty, plain) =>
+    (known(uncertainty) && Number.isFinite(uncertainty) && uncertainty !== 0 ? Math.min(Math.max(decimalsOf(Math.abs(uncertainty), 2), 0), plain + 2) : plain);
+
   /// On one line: "0.0470 ± 0.0027 ± 0.0019".
   function text(value, errors, plain) {
     const own = parts(value, errors, plain);
@@ -60,5 +64,5 @@ const Uncertain = (() => {
     return said.join(" · ");
   }
 
-  return {parts, text, lines, legend};
+  return {parts, text, lines, legend, decimalsFor};
 })();

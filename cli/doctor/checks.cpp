@@ -76,8 +76,13 @@ class Examination {
   void look_at_config() {
     base::Result<io::DaemonConfig> config = io::load_config(file_);
     if (!config) {
+      std::error_code error;
       bad("config", config.error().message,
-          fmt::format("correct the line; then stickslipd --check-config {}", file_.string()));
+          std::filesystem::exists(file_, error)
+              ? fmt::format("correct the line; then stickslipd --check-config {}", file_.string())
+              : "name it: stickslip doctor --config FILE; without a board, stickslip demo needs none; with "
+                "one, stickslip boards "
+                "says what to write into it");
       return;
     }
     if (auto board = drivers::check_board(config->board); !board) {

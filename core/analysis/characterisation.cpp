@@ -9,10 +9,11 @@
 #include <Eigen/LU>
 #include <boost/math/distributions/chi_squared.hpp>
 
+#include "core/base/digits.hpp"
+
 namespace stickslip::analysis {
 namespace {
 
-constexpr double kInchPerMinute_m_per_s = 0.0254 / 60.0;
 /// Standard errors by which the speed must be off before it is a finding.
 constexpr double kSpeedSigmas = 3.0;
 
@@ -102,6 +103,21 @@ double probability_of_agreement(std::span<const Estimate> estimates) {
   return probability_of(chi_squared, static_cast<double>(estimates.size() - 1));
 }
 
+namespace {
+
+/// In the unit of the plan, with two significant digits of the error.
+std::string speed_sentence(double measured_m_per_s, double error_m_per_s, double plan_m_per_s) {
+  const base::SpeedUnit unit = base::unit_of_speed(plan_m_per_s);
+  const double error = error_m_per_s / unit.m_per_s;
+  constexpr int kExact = 6;  // Decimals of a speed whose error is zero.
+  const int decimals = error > 0.0 ? std::max(base::decimals_of(error, base::kUncertaintyDigits), 0) : kExact;
+  return fmt::format("the pull speed was {:.{}f} +- {:.{}f} {}, the plan says {}",
+                     measured_m_per_s / unit.m_per_s, decimals, error, decimals, unit.symbol,
+                     unit.text(plan_m_per_s));
+}
+
+}  // namespace
+
 std::optional<base::Finding> speed_finding(const Estimate& measured_m_per_s, const model::Tester& tester) {
   if (!tester.pull_speed_m_per_s || !measured_m_per_s.value || !measured_m_per_s.standard_error) {
     return std::nullopt;
@@ -111,9 +127,7 @@ std::optional<base::Finding> speed_finding(const Estimate& measured_m_per_s, con
   const double difference = std::abs(*measured_m_per_s.value - plan);
   if (!(difference > kSpeedTolerance * plan && difference > kSpeedSigmas * error)) return std::nullopt;
   return base::make_finding(base::FindingCode::kPullSpeed,
-                            fmt::format("the pull speed was {:.2f} +- {:.2f} in/min, the plan says {:.2f}",
-                                        *measured_m_per_s.value / kInchPerMinute_m_per_s,
-                                        error / kInchPerMinute_m_per_s, plan / kInchPerMinute_m_per_s),
+                            speed_sentence(*measured_m_per_s.value, error, plan),
                             {{"pull_speed_measured", *measured_m_per_s.value, "m/s"},
                              {"standard_error", error, "m/s"},
                              {"pull_speed", plan, "m/s"}});

@@ -62,18 +62,33 @@ PooledDeltaMu pool_tests(std::span<const MeasuredTest* const> tests) {
   return pooled;
 }
 
-std::vector<SpeedGroup> group_by_speed(std::span<const MeasuredTest> tests) {
+model::Regime grouping_regime(model::Regime regime) noexcept {
+  return regime == model::Regime::kMixed ? model::Regime::kStickSlip : regime;
+}
+
+std::vector<SpeedGroup> group_by_speed(std::span<const MeasuredTest> tests, Pooling pooling) {
   std::vector<SpeedGroup> groups;
+  const auto belongs = [&tests, pooling](const SpeedGroup& group, const MeasuredTest& test) {
+    const MeasuredTest& first = tests[group.tests.front()];
+    return same_speed(group.pull_speed_m_per_s, test.pull_speed_m_per_s) &&
+           (pooling.grades || first.grade == test.grade) &&
+           (pooling.regimes || grouping_regime(first.results.regime) == grouping_regime(test.results.regime));
+  };
+  const auto note = [](auto& seen, const auto& value) {
+    if (std::find(seen.begin(), seen.end(), value) == seen.end()) seen.push_back(value);
+  };
   for (std::size_t i = 0; i < tests.size(); ++i) {
-    const std::optional<double>& speed = tests[i].pull_speed_m_per_s;
-    const auto found = std::find_if(groups.begin(), groups.end(), [&](const SpeedGroup& group) {
-      return same_speed(group.pull_speed_m_per_s, speed);
-    });
+    const MeasuredTest& test = tests[i];
+    auto found = std::find_if(groups.begin(), groups.end(),
+                              [&](const SpeedGroup& group) { return belongs(group, test); });
     if (found == groups.end()) {
-      groups.push_back({speed, {i}, {}, {}});
-    } else {
-      found->tests.push_back(i);
+      SpeedGroup made{};
+      made.pull_speed_m_per_s = test.pull_speed_m_per_s;
+      found = groups.insert(groups.end(), std::move(made));
     }
+    found->tests.push_back(i);
+    note(found->grades, test.grade);
+    note(found->regimes, test.results.regime);
   }
   std::stable_sort(groups.begin(), groups.end(), [](const SpeedGroup& one, const SpeedGroup& other) {
     return slower(one.pull_speed_m_per_s, other.pull_speed_m_per_s);

@@ -22,11 +22,19 @@ namespace stickslip::analysis {
 /// differs in its last digits; speeds that a laboratory distinguishes differ by more.
 inline constexpr double kSameSpeed = 0.01;
 
+/// What may be averaged although it differs. By default neither grades nor regimes are: a mean of two papers,
+/// or of tests that stuck and tests that rang down, is that of none of them.
+struct Pooling {
+  bool grades = false;
+  bool regimes = false;
+};
+
 /// One test with its results: input of group_by_speed().
 struct MeasuredTest {
   std::optional<double> pull_speed_m_per_s;  ///< Nominal; nullopt if unknown.
   TestResults results;
-  SlipSums slips{};  ///< From its table of cycles; empty without one.
+  SlipSums slips{};     ///< From its table of cycles; empty without one.
+  std::string grade{};  ///< Of the paper; empty if not stated.
 };
 
 /// Reason why a test has no value of a quantity.
@@ -50,16 +58,23 @@ struct GroupQuantity {
 /// pool_slips() of the tests, with the systematic uncertainty of those that have such slips.
 [[nodiscard]] PooledDeltaMu pool_tests(std::span<const MeasuredTest* const> tests);
 
-/// Tests at one pull speed.
+/// Tests at one pull speed, of one grade and one regime unless these are pooled.
 struct SpeedGroup {
   std::optional<double> pull_speed_m_per_s;  ///< Of the first test.
   std::vector<std::size_t> tests;            ///< Indices among all tests.
   PooledDeltaMu by_cycle;                    ///< S − K pooled over all their slips.
   std::array<GroupQuantity, kQuantityCount> quantities;
+  std::vector<std::string> grades;     ///< Of its tests, each once, in their order.
+  std::vector<model::Regime> regimes;  ///< Likewise.
 };
 
-/// Groups in the order of rising speed; tests without a speed form the last.
-[[nodiscard]] std::vector<SpeedGroup> group_by_speed(std::span<const MeasuredTest> tests);
+/// Regime that decides about a test's group. Mixed counts as stick-slip: the two differ in whether a slip
+/// happened to escape, and leaving those tests out would bias S − K (docs/detector-limits.md).
+[[nodiscard]] model::Regime grouping_regime(model::Regime regime) noexcept;
+
+/// Groups in the order of rising speed, then of their first tests; tests without a speed form the last.
+[[nodiscard]] std::vector<SpeedGroup> group_by_speed(std::span<const MeasuredTest> tests,
+                                                     Pooling pooling = {});
 
 /// s_r of a quantity over all groups, each about its own mean.
 [[nodiscard]] std::optional<double> pooled_over_groups(std::span<const SpeedGroup> groups,

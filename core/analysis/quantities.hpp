@@ -12,10 +12,13 @@ namespace stickslip::analysis {
 /// One compared result: name, title, unit and member of TestResults.
 struct Quantity {
   std::string_view name;   ///< As in the record.
-  std::string_view title;  ///< Short, for tables.
+  std::string_view title;  ///< Short, for sentences.
   std::string_view unit;   ///< SI, "1" for a ratio.
   int decimals;            ///< In tables.
   Estimate analysis::TestResults::*estimate;
+  std::string_view label;    ///< For tables at a terminal: with the symbol.
+  std::string_view in_full;  ///< For pages: with the name in the standards.
+  bool of_model;             ///< A quantity of the two-parameter model, not one that ISO 8295 defines.
 };
 
 inline constexpr std::size_t kQuantityCount = 8;

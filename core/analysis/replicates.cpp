@@ -31,8 +31,9 @@ Replicates describe_replicates(std::span<const double> values) {
   result.standard_deviation = s;
   result.repeatability = kRepeatabilityFactor * s;
   const boost::math::students_t t_distribution{n - 1.0};
-  const double half =
-      boost::math::quantile(boost::math::complement(t_distribution, kSignificance / 2.0)) * s / std::sqrt(n);
+  const double k = boost::math::quantile(boost::math::complement(t_distribution, kSignificance / 2.0));
+  const double half = k * s / std::sqrt(n);
+  result.coverage_factor = k;
   result.mean_interval = Interval{result.mean - half, result.mean + half};
   constexpr std::size_t kFewestForGrubbs = 3;
   if (values.size() >= kFewestForGrubbs && s > 0.0) {

@@ -37,6 +37,7 @@ struct Replicates {
   std::optional<double> standard_deviation;  ///< s_r, with divisor n − 1; nullopt for a single value.
   std::optional<double> repeatability;       ///< r = 2.8 s_r.
   std::optional<Interval> mean_interval;     ///< 95 %, Student's t [Student 1908].
+  std::optional<double> coverage_factor;     ///< k of that interval, mean ± k s_r/√n.
   std::optional<Outlier> outlier;
 };
 

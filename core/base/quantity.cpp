@@ -253,6 +253,13 @@ Result<double> parse_quantity(std::string_view text, Dimension dimension) {
     if (!std::isfinite(value)) return usage_error("\"{}\" is outside the range of numbers", text);
     return value;
   }
+  if (const std::string_view rest = trimmed(number.rest);
+      rest.size() > 1 && rest.front() == ',' && rest[1] >= '0' && rest[1] <= '9') {
+    std::string point{text};
+    point[point.find(',')] = '.';
+    return usage_error("\"{}\" has a comma: the decimal sign is a point: write \"{}\"", text,
+                       one_line(point));
+  }
   return usage_error("\"{}\" has the unit \"{}\"; allowed: {}", text, one_line(symbol),
                      allowed_units(dimension));
 }

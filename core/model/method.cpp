@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "core/base/digits.hpp"
+
 namespace stickslip::model {
 namespace {
 
@@ -27,7 +29,16 @@ std::vector<std::string> departures(const Method& method, std::optional<double> 
                                     std::optional<double> pull_speed_m_per_s) {
   std::vector<std::string> lines;
   compare("sled mass", "kg", method.name, method.sled_mass_kg, sled_mass_kg, lines);
-  compare("pull speed", "m/s", method.name, method.pull_speed_m_per_s, pull_speed_m_per_s, lines);
+  if (const std::optional<Nominal>& asked = method.pull_speed_m_per_s) {
+    // In the method's unit.
+    const base::SpeedUnit unit = base::unit_of_speed(asked->value);
+    const auto in_unit = [&unit](const std::optional<double>& speed_m_per_s) {
+      return speed_m_per_s ? std::optional{*speed_m_per_s / unit.m_per_s} : std::nullopt;
+    };
+    compare("pull speed", unit.symbol, method.name,
+            Nominal{asked->value / unit.m_per_s, in_unit(asked->tolerance)}, in_unit(pull_speed_m_per_s),
+            lines);
+  }
   return lines;
 }
 

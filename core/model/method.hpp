@@ -44,8 +44,8 @@ struct Method {
   bool operator==(const Method&) const = default;
 };
 
-/// Departures of a test from its method, one line each, such as "pull speed 0.00508 m/s, iso-8295 asks
-/// 0.00166667 ± 0.000166667 m/s". Unknown values are not compared.
+/// Departures of a test from its method, one line each, such as "pull speed 304.8 mm/min, iso-8295 asks
+/// 100 ± 10 mm/min". Unknown values are not compared.
 /// \param sled_mass_kg,pull_speed_m_per_s  of the test; nullopt if unknown.
 [[nodiscard]] std::vector<std::string> departures(const Method& method, std::optional<double> sled_mass_kg,
                                                   std::optional<double> pull_speed_m_per_s);

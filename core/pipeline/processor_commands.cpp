@@ -91,9 +91,13 @@ TareReport Processor::tare(const std::string& who) {
   if (std::abs(*check->zero_N) >= largest_N) {
     // A calibration needs an idle bench, which this one is not before its force is gone.
     const bool finishing = bench_.state() == BenchState::kFinishing;
-    return refuse(fmt::format(
-        "the cell shows {:.3g} N; from {:.3g} N on that is a load: unload it, or {}", *check->zero_N,
-        largest_N, finishing ? "correct [tester] load_cell_zero and restart the daemon" : "calibrate"));
+    return refuse(
+        fmt::format("the cell reads {:.2f} ({:.3g} N), and {:.2f} ({:.3g} N) or more is a load: take the "
+                    "sled off and tare "
+                    "again; if nothing pulls, {}",
+                    *check->zero_N / calibration_.normal_load_N(), *check->zero_N,
+                    largest_N / calibration_.normal_load_N(), largest_N,
+                    finishing ? "correct [tester] load_cell_zero and restart the daemon" : "calibrate"));
   }
   if (check->saturated_count.value_or(0) > 0) return refuse("the converter is at a rail");
   const daq::LoadCell before = calibration_.load_cell();

@@ -7,9 +7,11 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
 #include <vector>
 
@@ -19,11 +21,13 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 
+#include "core/base/shell_word.hpp"
 #include "core/base/version.hpp"
 #include "core/record/read_apart.hpp"
 #include "daemon/app/app.hpp"
 #include "daemon/app/log.hpp"
 #include "daemon/fleet/backlog.hpp"
+#include "daemon/page/report_jobs.hpp"
 #include "daemon/runtime/stray_signals.hpp"
 #include "daemon/storage/finaliser_process.hpp"
 #include "daemon/types/daemon_options.hpp"
@@ -73,15 +77,35 @@ void show_status(const std::string& line) {
   std::fflush(stdout);
 }
 
+/// `stickslip` as a shell finds it: by its name if it is installed, else by its path.
+std::string program_for_shell() {
+  const std::string program = page::program_beside_this();
+  return program.starts_with("/usr/") ? "stickslip" : program;
+}
+
+/// The table of the tests of this run, where their records are, and what can be done with them next.
 void print_table(const daemon::TestLog& tests) {
   std::vector<report::TableRow> rows;
+  std::filesystem::path folder;
   for (daemon::TestSummary& test : tests.tests()) {
     if (test.earlier) continue;
+    std::error_code error;
+    const std::filesystem::path file = std::filesystem::absolute(test.file, error);
+    if (test.file_error.empty()) folder = file.parent_path();
     rows.push_back(
         {test.number, std::move(test.results), std::move(test.truth),
-         test.file_error.empty() ? std::move(test.file) : fmt::format("no file: {}", test.file_error)});
+         test.file_error.empty() ? file.filename().string() : fmt::format("no file: {}", test.file_error)});
   }
-  if (!rows.empty()) io::print_text(stdout, report::format_table(rows));
+  if (rows.empty()) return;
+  std::string text = report::format_table(rows);
+  if (!folder.empty()) {
+    const std::string records = base::shell_word(folder.string());
+    text += fmt::format(
+        "records in {}\n\nNext, means and traces of these tests as one page for a browser:\n"
+        "  {} report {}/*.h5 -o demo.html\n",
+        records, base::shell_word(program_for_shell()), records);
+  }
+  io::print_text(stdout, text);
 }
 
 /// Handles the signals between two Apps of a reload. A running App handles them itself.

@@ -35,6 +35,20 @@ using Json = nlohmann::ordered_json;
 /// Longest name of a controller.
 constexpr std::size_t kLongestController = 64;
 
+/// Why there is no test of that number, and which there are.
+std::string no_such_test(const std::string& number, const std::vector<daemon::TestSummary>& tests) {
+  if (tests.empty()) return fmt::format("there is no test {}: none has been measured yet", number);
+  const auto [first, last] = std::minmax_element(
+      tests.begin(), tests.end(), [](const daemon::TestSummary& one, const daemon::TestSummary& other) {
+        return one.number < other.number;
+      });
+  return fmt::format(
+      "there is no test {}: of the latest {} there are {} to {} (stickslip list, GET /v1/tests); an earlier "
+      "one is "
+      "named by its file, stickslip show FILE.h5",
+      number, tests.size(), first->number, last->number);
+}
+
 class Api {
  public:
   Api(daemon::Bench& bench, const base::Clock& clock)
@@ -186,9 +200,7 @@ class Api {
         return;
       }
     }
-    answer(
-        daemon::refusal(404, fmt::format("there is no test {} among the latest {}; GET /v1/tests lists them",
-                                         printable(rest), daemon::TestLog::kMaxTests)));
+    answer(daemon::refusal(404, no_such_test(printable(rest), bench_.tests())));
   }
 
   void record(const daemon::HttpRequest&, const std::string& rest, const daemon::HttpAnswer& answer) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <iterator>
 #include <map>
 #include <utility>
 #include <vector>
@@ -58,6 +59,17 @@ base::Result<Form> form_of(const Query& query) {
                                         [&asked](const Form& one) { return asked->second == one.name; });
   if (form != kForms.end()) return *form;
   return base::usage_error("format: is html, csv or json, not {}", printable(asked->second));
+}
+
+/// Empty: not given.
+base::Result<std::string> pool_of(const Query& query) {
+  const auto asked = query.find("pool");
+  if (asked == query.end()) return std::string{};
+  if (std::find(std::begin(daemon::kPoolings), std::end(daemon::kPoolings), asked->second) !=
+      std::end(daemon::kPoolings))
+    return asked->second;
+  return base::usage_error("pool: is {}, not {}", fmt::join(daemon::kPoolings, " or "),
+                           printable(asked->second));
 }
 
 const daemon::Batch* known(const daemon::BatchBook& book, const std::string& id) {
@@ -117,19 +129,23 @@ void answer_report(const daemon::HttpRequest& request, const std::string& rest, 
   const std::string id = rest.substr(0, rest.size() - kReport.size());
   const daemon::Batch* const batch = known(book, id);
   if (batch == nullptr) return answer(unknown(id));
-  const auto query = query_of(request.target, {"format"});
+  const auto query = query_of(request.target, {"format", "pool"});
   if (!query) return answer(daemon::refusal(400, query.error().message));
   const auto form = form_of(*query);
   if (!form) return answer(daemon::refusal(400, form.error().message));
-  reports.make(std::array{reported(*batch)}, form->form, reply_with_report(*form, answer));
+  const auto pool = pool_of(*query);
+  if (!pool) return answer(daemon::refusal(400, pool.error().message));
+  reports.make(std::array{reported(*batch)}, form->form, *pool, reply_with_report(*form, answer));
 }
 
 void answer_comparison(const daemon::HttpRequest& request, const daemon::BatchBook& book,
                        daemon::Reports& reports, const daemon::HttpAnswer& answer) {
-  const auto query = query_of(request.target, {"a", "b", "format"});
+  const auto query = query_of(request.target, {"a", "b", "format", "pool"});
   if (!query) return answer(daemon::refusal(400, query.error().message));
   const auto form = form_of(*query);
   if (!form) return answer(daemon::refusal(400, form.error().message));
+  const auto pool = pool_of(*query);
+  if (!pool) return answer(daemon::refusal(400, pool.error().message));
   std::vector<daemon::ReportedBatch> two;
   for (const char* side : {"a", "b"}) {
     const auto id = query->find(side);
@@ -142,7 +158,7 @@ void answer_comparison(const daemon::HttpRequest& request, const daemon::BatchBo
   }
   if (two[0].id == two[1].id)
     return answer(daemon::refusal(400, fmt::format("a and b are the same batch, {}", two[0].id)));
-  reports.make(two, form->form, reply_with_report(*form, answer));
+  reports.make(two, form->form, *pool, reply_with_report(*form, answer));
 }
 
 }  // namespace stickslip::control

@@ -1,6 +1,7 @@
 #include "daemon/page/report_jobs.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <csignal>
@@ -23,7 +24,8 @@ constexpr int kSignalled = 128;  // As ChildAnswer counts.
 
 /// Arguments for `stickslip`, which writes the report to its standard output.
 std::vector<std::string> arguments_for(std::span<const daemon::ReportedBatch> batches,
-                                       daemon::ReportForm form, const std::filesystem::path& folder) {
+                                       daemon::ReportForm form, std::string_view pool,
+                                       const std::filesystem::path& folder) {
   std::vector<std::string> arguments;
   if (batches.size() == 1) {
     arguments = {"report", "--batch=" + batches[0].id};
@@ -31,6 +33,7 @@ std::vector<std::string> arguments_for(std::span<const daemon::ReportedBatch> ba
     arguments = {"compare", "--batch-a=" + batches[0].id, "--label-a=" + batches[0].label,
                  "--batch-b=" + batches[1].id, "--label-b=" + batches[1].label};
   }
+  if (!pool.empty()) arguments.push_back(fmt::format("--pool={}", pool));
   switch (form) {
     case daemon::ReportForm::kPage:
       arguments.emplace_back("--output=-");
@@ -67,7 +70,7 @@ ReportJobs::ReportJobs(Parts parts) : parts_(std::move(parts)) {}
 ReportJobs::~ReportJobs() = default;
 
 void ReportJobs::make(std::span<const daemon::ReportedBatch> batches, daemon::ReportForm form,
-                      Answer answer) {
+                      std::string_view pool, Answer answer) {
   STICKSLIP_EXPECTS(batches.size() == 1 || batches.size() == 2);
   if (job_) {
     answer(tl::unexpected(base::Error{base::ErrorKind::kBusy,
@@ -77,7 +80,7 @@ void ReportJobs::make(std::span<const daemon::ReportedBatch> batches, daemon::Re
   using std::chrono::ceil;
   const io::ChildLimits limits{ceil<std::chrono::seconds>(parts_.longest), parts_.largest, kNiceness};
   auto child =
-      io::ChildProcess::start(parts_.program, arguments_for(batches, form, parts_.folder), {}, limits);
+      io::ChildProcess::start(parts_.program, arguments_for(batches, form, pool, parts_.folder), {}, limits);
   if (!child) return answer(tl::unexpected(child.error()));
   if (!*child) {
     return answer(base::failure("{}: there is no such program; it makes the reports: install it there",

@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
 
 #include <boost/asio/io_context.hpp>
@@ -36,7 +37,8 @@ class ReportJobs final : public daemon::Reports {
   ReportJobs(const ReportJobs&) = delete;
   ReportJobs& operator=(const ReportJobs&) = delete;
 
-  void make(std::span<const daemon::ReportedBatch> batches, daemon::ReportForm form, Answer answer) override;
+  void make(std::span<const daemon::ReportedBatch> batches, daemon::ReportForm form, std::string_view pool,
+            Answer answer) override;
 
  private:
   struct Job;

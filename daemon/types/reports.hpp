@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "core/base/result.hpp"
 
@@ -14,6 +15,9 @@ struct ReportedBatch {
   std::string id;     ///< Identifier in the batch journal.
   std::string label;  ///< Name shown in the report.
 };
+
+/// What may be averaged although it differs, as words of `stickslip report --pool`.
+inline constexpr std::string_view kPoolings[] = {"grades", "regimes", "grades,regimes"};
 
 enum class ReportForm { kPage, kCsv, kJson };
 
@@ -26,8 +30,10 @@ class Reports {
   using Answer = std::function<void(base::Result<std::string>)>;
 
   /// Makes a report on one batch, or a comparison of two; does not block. \param batches  one or two
-  /// (contract). \param answer  called once, on the main thread, at once or later.
-  virtual void make(std::span<const ReportedBatch> batches, ReportForm form, Answer answer) = 0;
+  /// (contract). \param pool  one of kPoolings; empty: neither grades nor regimes. \param answer  called
+  /// once, on the main thread, at once or later.
+  virtual void make(std::span<const ReportedBatch> batches, ReportForm form, std::string_view pool,
+                    Answer answer) = 0;
 };
 
 }  // namespace stickslip::daemon

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -84,6 +85,14 @@ struct Figure {
   int width_px = 900;              ///< 200 to 4000; so is the height.
   int height_px = 450;
 };
+
+enum class PictureFormat { kSvg, kPng };
+
+/// By the ending of its name. Error: kUsage for an unknown one, with those that are known.
+[[nodiscard]] base::Result<PictureFormat> format_of_file(const std::filesystem::path& file);
+
+/// As draw_svg(), in that format; a PNG has one pixel for each of the figure.
+[[nodiscard]] base::Result<std::string> draw(const Figure& figure, PictureFormat format);
 
 /// Draws the figure as an SVG document; blocks while gnuplot runs. Texts have no markup. Errors: kFailure if
 /// gnuplot is not installed (the message names the package) or fails.

@@ -86,20 +86,31 @@ struct PreparedPanel {
 
 class Script {
  public:
-  explicit Script(const Figure& figure) : figure_(figure) {
+  Script(const Figure& figure, PictureFormat format) : figure_(figure), format_(format) {
     std::set<Shade> explained;
     for (std::size_t i = 0; i < figure.panels.size(); ++i) panels_.push_back(prepared(i));
     for (PreparedPanel& panel : panels_) write_legend_of(panel, explained);
   }
 
+  std::string terminal() const {
+    if (format_ == PictureFormat::kPng) {
+      return fmt::format(
+          "set terminal pngcairo size {},{} enhanced font 'sans-serif,10' background rgb 'white'",
+          figure_.width_px, figure_.height_px);
+    }
+    return fmt::format(
+        "set terminal svg size {},{} fixed enhanced font 'sans-serif,13' background rgb 'white' "
+        "name 'stickslip'",
+        figure_.width_px, figure_.height_px);
+  }
+
   std::string write() {
     add("set encoding utf8\n"
-        "set terminal svg size {},{} fixed enhanced font 'sans-serif,13' background rgb 'white' "
-        "name 'stickslip'\n"
+        "{}\n"
         "set minussign\nset multiplot\nunset key\nset border 3 lc rgb '#555555'\n"
         "set tics nomirror out scale 0.6 textcolor rgb '#222222'\n"
         "set grid lt 1 lc rgb '#dddddd' lw 0.6\n",
-        figure_.width_px, figure_.height_px);
+        terminal());
     add("set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}\n", across(kLeft), across(right_px()));
 
     const int above = figure_.title.empty() ? kEdge : kTitle;
@@ -330,6 +341,7 @@ class Script {
   }
 
   const Figure& figure_;
+  PictureFormat format_;
   std::vector<PreparedPanel> panels_;
   std::string text_;
   int blocks_ = 0;
@@ -337,6 +349,8 @@ class Script {
 
 }  // namespace
 
-std::string gnuplot_script(const Figure& figure) { return Script{figure}.write(); }
+std::string gnuplot_script(const Figure& figure, PictureFormat format) {
+  return Script{figure, format}.write();
+}
 
 }  // namespace stickslip::plot

@@ -9,6 +9,6 @@
 namespace stickslip::plot {
 
 /// The complete script: layout, styles and data of the figure.
-[[nodiscard]] std::string gnuplot_script(const Figure& figure);
+[[nodiscard]] std::string gnuplot_script(const Figure& figure, PictureFormat format);
 
 }  // namespace stickslip::plot

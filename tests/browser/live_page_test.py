@@ -627,7 +627,7 @@ class LivePage(unittest.TestCase):
         page = self.page()
         page.until("document.querySelectorAll('#findings li').length === 1")
         shown = page.value("document.querySelector('#findings li').textContent")
-        self.assertRegex(shown, r"^test \d+, warning: the pull speed was 1[12]\.\d\d \+- 0\.0\d in/min, the plan says 6\.00 → correct the tester's speed, or pull_speed of the plan \(pull-speed\)$")
+        self.assertRegex(shown, r"^test \d+, warning: the pull speed was 1[12]\.\d+ \+- 0\.0*[1-9]\d in/min, the plan says 6 in/min → correct the tester's speed, or pull_speed of the plan \(pull-speed\)$")
         self.assertIn(page.value("document.querySelector('#tests tbody tr').cells[1].textContent"), ("stick-slip · pull-speed", "undecided · pull-speed"))
         [told] = daemon.ask("GET", "/v1/tests/1")[1]["results"]["coded_findings"]
         self.assertIn(told["text"], page.value("[...document.querySelectorAll('#tests tbody tr')].at(-1).cells[1].title"))

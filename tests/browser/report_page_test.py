@@ -136,12 +136,16 @@ class Pages(unittest.TestCase):
             rows = self.rows(page, f"replicates-0-{index}")
             self.assertEqual(len(rows), len(quantities))
             for row, quantity in zip(rows, quantities):
-                own, digits = group["quantities"][quantity["name"]], quantity["decimals"]
+                own = group["quantities"][quantity["name"]]
                 low, high = own["confidence_interval"]
-                self.assertEqual(row[1:], [str(own["count"]), f"{own['mean']:.{digits}f}",
-                                           "–" if own["systematic_uncertainty"] is None else f"{own['systematic_uncertainty']:.{digits}f}",
-                                           f"{own['standard_deviation']:.{digits + 1}f}", f"{own['repeatability']:.{digits + 1}f}",
-                                           f"{low:.{digits}f} … {high:.{digits}f}"])
+
+                def scatter(value):
+                    return "–" if value is None else f"{value:.{uncertain.decimals_for(value, quantity['decimals'])}f}"
+
+                digits = uncertain.decimals_for((high - low) / 2, quantity["decimals"])
+                self.assertEqual(row[0].split(" (model)")[0].split(" (Hz)")[0], quantity["label"])
+                self.assertEqual(row[1:], [str(own["count"]), f"{own['mean']:.{digits}f}", scatter(own["systematic_uncertainty"]),
+                                           scatter(own["standard_deviation"]), scatter(own["repeatability"]), f"{low:.{digits}f} … {high:.{digits}f}"])
             # All columns are in sight.
             wide = page.value(f"(t => [t.scrollWidth, t.clientWidth])(document.getElementById('replicates-0-{index}').parentNode)")
             self.assertLessEqual(wide[0], wide[1])
@@ -167,12 +171,40 @@ class Pages(unittest.TestCase):
         rows = self.rows(page, "comparison-1")
         self.assertEqual(rows[0][:2], ["S−K by cycle", "–"])  # B never stuck again.
         for row, quantity in zip(rows[1:], quantities, strict=True):
-            own, digits = compared[1]["quantities"][quantity["name"]], quantity["decimals"]
+            own = compared[1]["quantities"][quantity["name"]]
+            low, high = own["confidence_interval"]
+            digits = uncertain.decimals_for((high - low) / 2, quantity["decimals"])
             self.assertEqual(row[1], f"{own['difference']:.{digits}f}")
             self.assertEqual(row[3], "< 0.0001" if own["p"] < 0.0001 else f"{own['p']:.4f}")
             self.assertEqual(row[4], f"{own['hedges_g']:.2f}")
             self.assertEqual(row[6:], ["> 10000" if own[key] is None else str(own[key])
                                        for key in ("tests_needed_80", "tests_needed_90")])
+
+    def test_it_opens_with_the_form_and_has_a_chart_against_speed_only_of_two_speeds(self):
+        run("report", *self.a[3:], "-o", "one-speed.html", cwd=self.folder)
+        for name, drawn in (("report.html", True), ("one-speed.html", False)):
+            page = self.page(name)
+            page.resize(1280, 720)
+            sections = page.value("[...document.querySelectorAll('section')].map(s => s.id)")
+            self.assertEqual(sections, ["form", "means", "replicates", "all-tests-0", *(["against-speed"] if drawn else []), "traces-0"])
+            form = page.value("[...document.querySelectorAll('#form-0 > div')].map(line => [line.dataset.name, line.children[1].textContent])")
+            self.assertEqual([line[0] for line in form], [line["name"] for line in self.report["form"]] + ["verdict"])
+            self.assertEqual(dict(form)["operator"], "–")
+            self.assertEqual(dict(form)["speed"], "2 speeds: 6 in/min; 12 in/min" if drawn else "12 in/min")
+            # The form and the means are on the first screen.
+            self.assertLessEqual(page.value("document.getElementById('form').getBoundingClientRect().bottom"), 720)
+            self.assertIn("k = 4.30 for n = 3.", page.value("document.getElementById('means-note').textContent"))
+            self.assertIn("model quantities", page.value("document.getElementById('means-note').textContent"))
+            self.assertEqual(page.value("document.querySelector('#replicates-0-0 td').textContent"), "static µs (ISO 8295: µS)")
+            if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
+                page.screenshot(pathlib.Path(folder) / name.replace(".html", "-top.png"))
+
+    def test_on_paper_no_heading_is_left_alone(self):
+        page = self.page("compare.html")
+        page.print()
+        kept = page.value("[...document.querySelectorAll('h2, h3, h2 + .note, thead')].map(e => getComputedStyle(e).breakAfter)")
+        self.assertGreater(len(kept), 10)
+        self.assertEqual(set(kept), {"avoid"})
 
     @staticmethod
     def in_tests(quantities):
@@ -196,7 +228,7 @@ class Pages(unittest.TestCase):
         pooled = report["groups"][0]["delta_mu_by_cycle"]
         self.assertIn(f"S−K by cycle {uncertain.text(pooled['value'], None, 0.06)}: ", page.value("document.getElementById('by-cycle-0-0').textContent"))
         replicates = self.rows(page, "replicates-0-0")
-        self.assertEqual([cells[3] for cells in replicates[:5]], ["0.0030", "–", "0.0040", "–", "0.0600"])
+        self.assertEqual([cells[3] for cells in replicates[:5]], ["0.0030", "–", "0.0040", "–", "0.060"])
         if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
             page.screenshot(pathlib.Path(folder) / "report-errors.png")
 

@@ -108,7 +108,7 @@ TEST_F(TesterChecked, PullSpeedIsKnownToHalfAPerCentAndAWrongPlanIsCaught) {
   EXPECT_GT(squares / kSeeds, test::lowest_mean_square(kSeeds));
   const TestAnalysis wrong = analysed(known_, 6.0, 1);
   ASSERT_EQ(wrong.tester_check()->findings.size(), 1U);
-  EXPECT_NE(wrong.tester_check()->findings.front().text.find("the plan says 6.00"), std::string::npos);
+  EXPECT_NE(wrong.tester_check()->findings.front().text.find("the plan says 6 in/min"), std::string::npos);
 }
 
 TEST_F(TesterChecked, AnotherSpringIsAFindingAndIsNotUsed) {
@@ -128,6 +128,23 @@ TEST_F(TesterChecked, KnowingTheTesterCutsTheErrorOfSMinusK) {
   const double alone = scene_.bounds({false, false}).delta_mu;
   (void)analysed(known_, 12.0, 1);
   EXPECT_LT(*results_.delta_mu.standard_error, alone / 4.0);
+}
+
+TEST(SpeedFinding, ItsDigitsFollowTheUncertainty) {
+  constexpr double kInchPerMinute_m_per_s = 0.0254 / 60.0;
+  model::Tester tester;
+  tester.pull_speed_m_per_s = 0.5 * kInchPerMinute_m_per_s;
+  const auto text = [&tester](double measured, double error) {
+    return speed_finding(Estimate::of(measured * kInchPerMinute_m_per_s, error * kInchPerMinute_m_per_s),
+                         tester)
+        .value()
+        .text;
+  };
+  EXPECT_EQ(text(0.45, 0.0021), "the pull speed was 0.4500 +- 0.0021 in/min, the plan says 0.5 in/min");
+  EXPECT_EQ(text(0.2, 0.0213), "the pull speed was 0.200 +- 0.021 in/min, the plan says 0.5 in/min");
+  // In the unit of the plan.
+  tester.pull_speed_m_per_s = 0.1 / 60.0;
+  EXPECT_EQ(text(12.0, 0.01), "the pull speed was 304.80 +- 0.25 mm/min, the plan says 100 mm/min");
 }
 
 }  // namespace

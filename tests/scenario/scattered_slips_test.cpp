@@ -82,7 +82,7 @@ TEST(ScatteredSlips, ReportLeadsWithTheMeanByCycle) {
   std::vector<analysis::MeasuredTest> tests;
   for (std::size_t i = 0; i < trials.results.size(); ++i)
     tests.push_back({0.00508, trials.results[i], analysis::slip_sums(trials.cycles[i])});
-  const std::vector<analysis::SpeedGroup> groups = analysis::group_by_speed(tests);
+  const std::vector<analysis::SpeedGroup> groups = analysis::group_by_speed(tests, {.regimes = true});
   ASSERT_EQ(groups.size(), 1U);
   const analysis::PooledDeltaMu& by_cycle = groups[0].by_cycle;
   EXPECT_EQ(*by_cycle.mean.value, *analysis::pool_delta_mu(trials.cycles).mean.value);

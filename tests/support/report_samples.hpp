@@ -27,6 +27,7 @@ inline report::Material sample_material() {
     reported.file = fmt::format("f{}.h5", i);
     reported.method = "own kinetic_cycles=3";
     reported.trace = "{}";
+    reported.speed = "12 in/min";
     material.tests.push_back(reported);
   }
   material.tests[2].departures = {"pull speed is other"};

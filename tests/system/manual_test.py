@@ -8,6 +8,7 @@ manual_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
 import os
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -94,6 +95,98 @@ class Manual(unittest.TestCase):
         for line in self.page("stickslipd.toml").replace("\\-", "-").replace("\\&", "").partition("\n.SH [")[2].partition("\n.SH SEE ALSO")[0].splitlines()[1:]:
             told += line.split() if not line.startswith((".", "\\fB")) else []
         self.assertEqual(told, said)
+
+
+class CommandLine(unittest.TestCase):
+    """Help, spelling and refusals, as they are typed."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="stickslip-")))
+
+    def refused(self, *words, status=2):
+        done = run(PROGRAMS["stickslip"], *words, cwd=self.folder)
+        self.assertEqual((done.returncode, done.stdout, done.stderr.count("\n")), (status, "", 1), done)
+        return done.stderr
+
+    def examples(self, *words):
+        text = printed(PROGRAMS["stickslip"], *words, "--help").partition("Examples:\n")[2]
+        return re.findall(r"(?m)^  (stickslip .*)$", re.sub(r"\\\n\s*", "", text))
+
+    def test_each_subcommand_has_three_examples_of_its_own_that_its_parser_accepts(self):
+        top = Help(PROGRAMS["stickslip"]).commands
+        commands = [[name] for name in top] + [["batch", name] for name in Help(PROGRAMS["stickslip"], "batch").commands]
+        self.assertGreater(len(commands), 30)
+        for words in commands:
+            own = self.examples(*words)
+            with self.subTest(command=words):
+                self.assertGreaterEqual(len(own), 3)
+                self.assertTrue(any(example.startswith(" ".join(["stickslip", *words])) for example in own), own)
+                self.assertNotIn("stickslip demo", [example for example in own if words != ["demo"]])
+            for example in own:
+                # What stands behind the command explains it; a pipe or a file is the shell's.
+                typed = re.split(r" {3,}", example)[0]
+                # Quotes keep what stands in them; the parser is all that is asked: it refuses before anything is done.
+                argued = re.split(r"\s(?:&&|\||>|<)\s|;\s", typed)[0]
+                with self.subTest(example=argued):
+                    words_of = shlex.split(argued)[1:]
+                    # An option that none has, behind all: nothing is done, and nothing else is complained of.
+                    told = run(PROGRAMS["stickslip"], *words_of, "--no-such-option", cwd=self.folder)
+                    self.assertEqual(told.returncode, 2, told)
+                    self.assertRegex(told.stderr, r"^stickslip: stickslip [a-z ]+has no option --no-such-option; ")
+
+    def test_a_wrong_word_is_named_with_the_nearest(self):
+        self.assertIn('there is no subcommand "demoo"; did you mean demo?', self.refused("demoo"))
+        self.assertIn('there is no subcommand "reprot"; did you mean report?', self.refused("reprot", "a.h5"))
+        self.assertIn("stickslip simulate has no option --ouput; did you mean --output?", self.refused("simulate", "--ouput", "x"))
+        self.assertIn("stickslip batch begin has no option --replicate; did you mean --replicates?", self.refused("batch", "begin", "--replicate", "3"))
+
+    def test_other_spellings_and_help_do_the_same(self):
+        stickslip = PROGRAMS["stickslip"]
+        self.assertEqual(printed(stickslip, "analyse", "--help"), printed(stickslip, "analyze", "--help"))
+        self.assertEqual(printed(stickslip, "characterize", "--help"), printed(stickslip, "characterise", "--help"))
+        self.assertEqual(printed(stickslip, "help"), printed(stickslip, "--help"))
+        self.assertEqual(printed(stickslip, "help", "plot"), printed(stickslip, "plot", "--help"))
+
+    def test_refusals_name_value_limit_and_remedy(self):
+        self.assertIn("--limit cof=0.2:0.4: there is no result called \"cof\"; the coefficients of friction are static_coefficient and kinetic_coefficient",
+                      self.refused("batch", "begin", "--name", "x", "--limit", "cof=0.2:0.4"))
+        self.assertIn('there is no result called "mu_kk"; did you mean mu_k?', self.refused("batch", "begin", "--name", "x", "--limit", "mu_kk=0.2:0.4"))
+        self.assertIn("must be RESULT=LOWEST:HIGHEST, such as mu_k=0.2:0.4", self.refused("batch", "begin", "--name", "x", "--limit", "mu_k=0.3"))
+        scene = "stick-slip-at-12-in-per-min"
+        self.assertIn('paper.mu_s = "0,34": has a comma: the decimal sign is a point: write "0.34"', self.refused("simulate", scene, "-o", "q.h5", "--set", "paper.mu_s=0,34"))
+        # The remedy works.
+        self.assertEqual(run(PROGRAMS["stickslip"], "simulate", scene, "-o", "q.h5", "--set", "paper.mu_s=0.34", cwd=self.folder).returncode, 0)
+        self.assertIn('x.gif: a picture ends in .svg or .png, not in ".gif"', self.refused("plot", "q.h5", "-o", "x.gif"))
+        self.assertFalse((self.folder / "x.gif").exists())
+        doctor = run(PROGRAMS["stickslip"], "doctor", "--config", "none.toml", cwd=self.folder)
+        self.assertIn("none.toml: there is no such file", doctor.stdout)
+        self.assertIn("name it: stickslip doctor --config FILE", doctor.stdout)
+        self.assertNotIn("correct the line", doctor.stdout)
+
+    @unittest.skipIf(shutil.which("gnuplot") is None, "no gnuplot")
+    def test_a_picture_is_what_its_name_says(self):
+        for name, begin in (("x.png", b"\x89PNG\r\n"), ("x.svg", b"<?xml")):
+            done = run(PROGRAMS["stickslip"], "plot", "ring-down-at-12-in-per-min", "-o", name, cwd=self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertTrue((self.folder / name).read_bytes().startswith(begin), name)
+
+    def test_the_demo_fits_80_columns_and_says_what_to_do_next(self):
+        text = printed(PROGRAMS["stickslip"], "demo", "--folder", self.folder)
+        below = text.partition("records in ")[2]
+        records = pathlib.Path(below.partition("\n")[0])
+        self.assertEqual(len(list(records.glob("*.h5"))), 10)
+        lines = text.partition("records in ")[0].splitlines()
+        self.assertLessEqual(max(map(len, lines)), 80)
+        for legend in ("± stat.  standard error", "± syst.  systematic part", "truth    what was simulated"):
+            self.assertEqual(sum(line.startswith(legend) for line in lines), 1, legend)
+        for name in re.findall(r"(?m)^file of test \d+: (.*)$", text):
+            self.assertTrue((records / name).exists(), name)
+        # What is said to do next is done.
+        [command] = re.findall(r"(?m)^  (\S*stickslip report .*)$", below)
+        done = subprocess.run(["sh", "-c", command], cwd=self.folder, capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("Regimes at one speed are not averaged; --pool regimes does", done.stdout)
+        self.assertTrue((self.folder / "demo.html").exists())
 
 
 class Completion(unittest.TestCase):

@@ -207,7 +207,7 @@ class Reports(Folder):
         told = json.loads(self.good("report", "both.h5", "--json"))
         details, [group] = told["tests"][0]["details"], told["groups"]
         text = self.good("report", "both.h5")
-        self.check_table(text, details)
+        self.check_table(text.partition("\n\n")[2], details)  # Behind the form.
         listed = self.good("show", "both.h5")
         self.assertRegex(listed, rf"(?m)^rung: {rung}, the slope is not significant$")
         self.assertRegex(listed, r"(?m)^  misfit +3\.25.*, most at the peak$")
@@ -245,9 +245,41 @@ class Reports(Folder):
         for group in report["groups"]:
             own = group["quantities"]["static_coefficient"]
             half = own["confidence_interval"][1] - own["mean"]
-            self.assertIn(f"{own['mean']:.4f} ± {half:.4f}", text)
-            self.assertIn(f"{own['repeatability']:.5f}", text)
-        self.assertIn("5.08 mm/s, 5 tests", text)
+            decimals = uncertain.decimals_for(half, 4)
+            self.assertIn(f"{own['mean']:.{decimals}f} ± {half:.{decimals}f}", text)
+            self.assertIn(f"{own['repeatability']:.{uncertain.decimals_for(own['repeatability'], 4)}f}", text)
+        self.assertIn("group 2: 12 in/min, stick-slip, 5 tests", text)
+        self.assertIn("k = 4.30 for n = 3, 2.78 for n = 5", text)
+        self.assertIn("static µs: ISO 8295 µS; kinetic (dynamic) µk\nmodel quantities: S, K, S−K", text)
+
+    def test_it_opens_with_the_form_and_invents_nothing(self):
+        lines = self.good("report", *self.a).splitlines()
+        opens = dict((line[:17].strip(), line[17:]) for line in lines[:lines.index("")])
+        self.assertEqual(list(opens), ["date", "sample", "grade", "direction, side", "conditioning", "method", "sled", "contact time", "pull speed", "n", "operator",
+                                       "instrument", "calibration", "program", "verdict"])
+        for fact in ("date", "sample", "grade", "direction, side", "conditioning", "contact time", "operator"):
+            self.assertEqual(opens[fact], "–", fact)
+        self.assertEqual(opens["pull speed"], "2 speeds: 6 in/min; 12 in/min")
+        self.assertEqual((opens["sled"], opens["n"], opens["verdict"]), ("2331 g", "8", "no limits were stated"))
+        self.assertRegex(opens["calibration"], r"^\d+ N/V, date not stated$")
+        self.assertRegex(opens["program"], r"^stickslip simulate \d+\.\d+\.\d+")
+        form = {line["name"]: line for line in json.loads(self.good("report", *self.a, "--json"))["form"]}
+        self.assertEqual(form["operator"], {"name": "operator", "label": "operator", "values": [], "not_stated": 8, "text": "–"})
+        self.assertEqual(form["speed"]["values"], ["6 in/min", "12 in/min"])
+
+    def test_grades_and_regimes_are_averaged_only_if_asked(self):
+        files = [*self.a[3:], *self.b]
+        def groups(*options):
+            return [(group["regimes"], len(group["tests"])) for group in json.loads(self.good("report", *files, *options, "--json"))["groups"]]
+        self.assertEqual(groups(), [(["stick-slip"], 5), (["ring-down"], 3)])
+        self.assertEqual(groups("--pool", "grades"), groups())
+        self.assertEqual(groups("--pool", "regimes"), [(["stick-slip", "ring-down"], 8)])
+        text = self.good("report", *files)
+        self.assertIn("group 1: 12 in/min, stick-slip, 5 tests", text)
+        self.assertIn("group 2: 12 in/min, ring-down, 3 tests", text)
+        self.assertIn("Regimes at one speed are not averaged; --pool regimes does", text)
+        self.assertNotIn("not averaged", self.good("report", *files, "--pool", "regimes"))
+        self.refused(2, '--pool "all": must be grades, regimes or grades,regimes', "report", *files, "--pool", "all")
 
     def test_csv_has_one_line_for_each_test_and_no_quoting_goes_wrong(self):
         odd = 'odd, "name".h5'
@@ -259,6 +291,14 @@ class Reports(Folder):
         numpy.testing.assert_array_equal([float(row["mu_s"]) for row in rows[1:]], self.values(self.a, "mu_s"))
         self.assertEqual(rows[1]["scan_rate_measured"], "")
         self.assertIn("scan_rate_measured: no clock readings", rows[1]["absent"])
+        for name in ("date", "sample", "grade", "operator", "batch"):
+            self.assertEqual(rows[1][name], "")
+        details = json.loads(self.good("report", self.a[0], "--json"))["tests"][0]["details"]
+        results = [name for name in rows[1] if name in details and name not in ("regime", "rung")]
+        self.assertGreater(len(results), 20)
+        for name in results:
+            found = rows[1][f"{name}_standard_error"]
+            self.assertEqual(None if found == "" else float(found), details[name].get("standard_error"), name)
 
     def test_compare_is_welchs_test_over_the_records(self):
         comparison = json.loads(self.good("compare", *self.a, "--", *self.b, "--json", "--csv", "c.csv", "--label-b", "Thorold"))

@@ -34,6 +34,14 @@ def parts(value, standard_error=None, systematic=None, decimals=4):
     return f"{value:.{shown}f}" + ("" if significant else "?"), *map(error_text, errors)
 
 
+def decimals_for(uncertainty, plain=4):
+    """Decimals of a number beside its uncertainty: two significant digits of that."""
+    if not uncertainty:
+        return plain
+    rounded = decimal.Context(prec=2).create_decimal(decimal.Decimal(uncertainty))
+    return min(max(1 - rounded.adjusted(), 0), plain + 2)
+
+
 def text(value, standard_error=None, systematic=None, decimals=4):
     own, random, constant = parts(value, standard_error, systematic, decimals)
     own += "" if random is None else f" ± {random}"

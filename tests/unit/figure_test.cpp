@@ -151,7 +151,7 @@ TEST(Figure, TextsAreTakenLiterally) {
 TEST(Figure, NewLinesCannotBecomeCommands) {
   Figure figure = figure_with({0.0, 1.0}, {1.0, 2.0});
   figure.title = "a\nset output '/nonexistent/x'\nEOD\n!touch x";
-  const std::string script = gnuplot_script(figure);
+  const std::string script = gnuplot_script(figure, PictureFormat::kSvg);
   EXPECT_THAT(script, Not(HasSubstr("\nset output")));
   EXPECT_THAT(script, Not(HasSubstr("\n!touch")));
   EXPECT_TRUE(draw_svg(figure));

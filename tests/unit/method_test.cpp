@@ -164,7 +164,7 @@ TEST(Method, NamesWhatATestDidOtherwise) {
   const std::vector<std::string> lines = model::departures(method, 2.331, 0.00508);
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_EQ(lines[0], "sled mass 2.331 kg, iso-8295 asks 0.2 ± 0.002 kg");
-  EXPECT_EQ(lines[1], "pull speed 0.00508 m/s, iso-8295 asks 0.00166667 ± 0.000166667 m/s");
+  EXPECT_EQ(lines[1], "pull speed 304.8 mm/min, iso-8295 asks 100 ± 10 mm/min");
   // The paper names a sled but no tolerance.
   EXPECT_TRUE(model::departures(io::load_method(kFolder / "penner-1995.toml")->method, 1.0, 1.0).empty());
 }

@@ -118,9 +118,11 @@ class PaperBatches final : public Batches {
 /// Says what it was asked for.
 class PaperReports final : public Reports {
  public:
-  void make(std::span<const ReportedBatch> batches, ReportForm form, Answer answer) override {
+  void make(std::span<const ReportedBatch> batches, ReportForm form, std::string_view pool,
+            Answer answer) override {
     std::string text = fmt::format("form {}:", static_cast<int>(form));
     for (const ReportedBatch& batch : batches) text += fmt::format(" {} {}", batch.id, batch.label);
+    if (!pool.empty()) text += fmt::format(" pool {}", pool);
     if (refusal) return answer(tl::unexpected(*refusal));
     answer(std::move(text));
   }

@@ -42,6 +42,27 @@ TEST(Grouping, SpeedsTwoPerCentApartAreTwo) {
   EXPECT_EQ(group_by_speed(std::vector{test_at(1.0, 0.1), test_at(1.02, 0.1)}).size(), 2U);
 }
 
+TEST(Grouping, GradesAndRegimesArePooledOnlyIfAsked) {
+  std::vector<MeasuredTest> tests{test_at(1.0, 0.1), test_at(1.0, 0.2), test_at(1.0, 0.3), test_at(1.0, 0.4)};
+  tests[1].grade = "liner";
+  tests[2].results.regime = model::Regime::kStickSlip;
+  tests[3].results.regime = model::Regime::kMixed;
+  const auto members = [&tests](Pooling pooling) {
+    std::vector<std::vector<std::size_t>> lists;
+    for (const SpeedGroup& group : group_by_speed(tests, pooling)) lists.push_back(group.tests);
+    return lists;
+  };
+  using Lists = std::vector<std::vector<std::size_t>>;
+  EXPECT_EQ(members({}), (Lists{{0}, {1}, {2, 3}}));
+  EXPECT_EQ(members({.grades = true}), (Lists{{0, 1}, {2, 3}}));
+  EXPECT_EQ(members({.regimes = true}), (Lists{{0, 2, 3}, {1}}));
+  EXPECT_EQ(members({.grades = true, .regimes = true}), (Lists{{0, 1, 2, 3}}));
+  const SpeedGroup all = group_by_speed(tests, {.grades = true, .regimes = true}).front();
+  EXPECT_EQ(all.grades, (std::vector<std::string>{"", "liner"}));
+  EXPECT_EQ(all.regimes, (std::vector<model::Regime>{model::Regime::kUndecided, model::Regime::kStickSlip,
+                                                     model::Regime::kMixed}));
+}
+
 TEST(Grouping, KeepsTheReasonOfEachAbsentNumber) {
   std::vector<MeasuredTest> tests{test_at(1.0, 0.1), test_at(1.0, 0.2)};
   tests[1].results.static_coefficient = Estimate::none("no peak");

@@ -44,9 +44,9 @@ class ReportJobsTest : public testing::Test {
   }
   /// Runs until all is answered.
   base::Result<std::string> made(page::ReportJobs& jobs, std::span<const ReportedBatch> batches,
-                                 ReportForm form) {
+                                 ReportForm form, std::string_view pool = {}) {
     std::optional<base::Result<std::string>> got;
-    jobs.make(batches, form, [&got](base::Result<std::string> text) { got = std::move(text); });
+    jobs.make(batches, form, pool, [&got](base::Result<std::string> text) { got = std::move(text); });
     io_.restart();
     io_.run();
     return got.value_or(base::failure("no answer"));
@@ -68,6 +68,8 @@ TEST_F(ReportJobsTest, AsksForIdentifiersInTheFolderOfTheRecordsAndForNothingEls
             "report\n--batch=20261122T180301Z\n--output=-\n/records\n");
   EXPECT_EQ(made(jobs, {&kLiner, 1}, ReportForm::kCsv).value_or(""),
             "report\n--batch=20261122T180301Z\n--csv=-\n/records\n");
+  EXPECT_EQ(made(jobs, {&kLiner, 1}, ReportForm::kJson, "grades,regimes").value_or(""),
+            "report\n--batch=20261122T180301Z\n--pool=grades,regimes\n--json\n/records\n");
   EXPECT_EQ(made(jobs, both, ReportForm::kJson).value_or(""),
             "compare\n--batch-a=20261122T180301Z\n--label-a=liner (20261122T180301Z)\n"
             "--batch-b=20261122T180302Z\n--label-b=--fluting (20261122T180302Z)\n--json\n/records\n");
@@ -78,16 +80,16 @@ TEST_F(ReportJobsTest, OneIsMadeAtATimeAndItsEndLetsTheNextBegin) {
   ASSERT_EQ(::mkfifo(pipe.c_str(), S_IRWXU), 0);
   page::ReportJobs jobs{parts(script("exec /bin/cat " + pipe.string()))};
   std::string first;
-  jobs.make({&kLiner, 1}, ReportForm::kPage,
+  jobs.make({&kLiner, 1}, ReportForm::kPage, "",
             [&first](base::Result<std::string> text) { first = text.value_or("none"); });
   std::optional<base::ErrorKind> second;
-  jobs.make({&kLiner, 1}, ReportForm::kPage,
+  jobs.make({&kLiner, 1}, ReportForm::kPage, "",
             [&second](const base::Result<std::string>& text) { second = text.error().kind; });
   EXPECT_EQ(second, base::ErrorKind::kBusy);
   std::ofstream{pipe} << "whole";  // Returns when the child has opened it.
   io_.run();
   EXPECT_EQ(first, "whole");
-  jobs.make({&kLiner, 1}, ReportForm::kPage,
+  jobs.make({&kLiner, 1}, ReportForm::kPage, "",
             [&first](base::Result<std::string> text) { first = text.value_or("none"); });
   std::ofstream{pipe} << "again";
   io_.restart();
@@ -119,7 +121,7 @@ TEST_F(ReportJobsTest, ItsEndEndsWhatIsBeingMade) {
   const std::filesystem::path pipe = folder_.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), S_IRWXU), 0);
   auto jobs = std::make_optional<page::ReportJobs>(parts(script("exec /bin/cat " + pipe.string())));
-  jobs->make({&kLiner, 1}, ReportForm::kPage, [](const base::Result<std::string>&) { FAIL(); });
+  jobs->make({&kLiner, 1}, ReportForm::kPage, "", [](const base::Result<std::string>&) { FAIL(); });
   // Returns when the child reads; while this is open it goes on.
   const record::Descriptor writer{::open(pipe.c_str(), O_WRONLY | O_CLOEXEC)};
   ASSERT_TRUE(writer.open());

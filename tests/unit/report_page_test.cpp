@@ -100,11 +100,61 @@ TEST(JsonForScript, CannotEndItsElement) {
 
 TEST(ReportText, ShowsMeansReasonsAndDepartures) {
   const std::string text = report_text(test::sample_material());
-  EXPECT_THAT(text, HasSubstr("5.08 mm/s, 3 tests\n"));
-  EXPECT_THAT(text, HasSubstr("0.3850 ± 0.0635"));  // t(0.975, 1) · 0.00707/√2 = 12.706 · 0.005
+  EXPECT_THAT(text, HasSubstr("group 1: 12 in/min, undecided, 3 tests\n"));
+  EXPECT_THAT(text, HasSubstr("0.385 ± 0.064"));  // t(0.975, 1) · 0.00707/√2 = 12.706 · 0.005
   EXPECT_THAT(text, HasSubstr("–  no static in test 3: not asked\n"));
   EXPECT_THAT(text, HasSubstr("!  test 3: pull speed is other\n"));
   EXPECT_THAT(text, HasSubstr("method: own kinetic_cycles=3\n"));
+}
+
+TEST(FormBlock, NamesWhatDiffersAndWhatNoRecordStates) {
+  Material material = test::sample_material();
+  constexpr std::size_t kGrade = 2;
+  constexpr std::size_t kOperator = 9;
+  const char* const operators[] = {"Ann", "Bo", ""};
+  for (std::size_t i = 0; i < 3; ++i) {
+    material.tests[i].facts[kGrade] = "liner";
+    material.tests[i].facts[kOperator] = operators[i];
+  }
+  const std::string text = report_text(material);
+  EXPECT_THAT(text, HasSubstr("grade            liner\n"));
+  EXPECT_THAT(text, HasSubstr("operator         2 operators: Ann; Bo; not stated in 1 of 3\n"));
+  EXPECT_THAT(text, HasSubstr("conditioning     –\n"));
+  EXPECT_THAT(text, HasSubstr("n                3\n"));
+  EXPECT_THAT(text,
+              HasSubstr("verdict          no limits were stated; 1 of 3 tests not as the method asks\n"));
+  material.limits.push_back({.quantity = "mu_k", .limits = {}, .outside = {}, .absent = {}});
+  EXPECT_THAT(verdict_of(material), HasSubstr("PASS, within 1 limit"));
+  material.limits.front().outside = {1};
+  EXPECT_THAT(verdict_of(material), HasSubstr("FAIL, 1 of 1 limit not kept"));
+}
+
+TEST(FormBlock, TakesFromARecordWhatItStatesAndNothingElse) {
+  record::RecordHeader header;
+  for (const std::string& fact : facts_of(header, "")) EXPECT_EQ(fact, "");
+  header.tester.sled_mass_kg = 0.2;
+  header.metadata["Contact time"] = "15 s";
+  header.metadata["conditioning"] = "23 °C, 50 %";
+  header.load_cell.emplace();
+  header.load_cell->gain_N_per_V = 2.5;
+  header.calibration.date = "2026-11-20T10:00:00+00:00";
+  const RecordFacts facts = facts_of(header, "100 mm/min");
+  EXPECT_THAT(facts, ::testing::Contains("200 g"));
+  EXPECT_THAT(facts, ::testing::Contains("15 s"));
+  EXPECT_THAT(facts, ::testing::Contains("23 °C, 50 %"));
+  EXPECT_THAT(facts, ::testing::Contains("2.5 N/V, of 2026-11-20"));
+  EXPECT_THAT(facts, ::testing::Contains("100 mm/min"));
+}
+
+TEST(Comparison, RefusesASideOfTwoGradesUnlessTheyArePooled) {
+  Material material = test::sample_material();
+  EXPECT_TRUE(check_one_grade(material, "A"));
+  material.tests[2].sample.grade = "liner";
+  EXPECT_THAT(check_one_grade(material, "A").error().message,
+              HasSubstr("A: f0.h5 has no grade, f2.h5 has grade \"liner\": name the records of one grade, or "
+                        "--pool grades"));
+  material.pooling.grades = true;
+  EXPECT_TRUE(check_one_grade(material, "A"));
 }
 
 TEST(ReportCsv, HasTheRungAndNoDiagnostics) {

@@ -29,6 +29,7 @@ TEST(Replicates, MeanScatterAndIntervalAreThoseOfScipy) {
   EXPECT_SAME(a.repeatability.value(), 0.007837499601275914);
   EXPECT_SAME(a.mean_interval.value().low, 0.37752444961041404);
   EXPECT_SAME(a.mean_interval.value().high, 0.384475550389586);
+  EXPECT_SAME(a.coverage_factor.value(), 2.7764451051977987);  // scipy.stats.t.ppf(0.975, 4)
   EXPECT_FALSE(a.outlier);
   const Replicates c = describe_replicates(kC);
   EXPECT_SAME(c.mean_interval.value().low, 0.2806110360170937);
@@ -41,6 +42,7 @@ TEST(Replicates, OneValueHasAMeanAndNoScatter) {
   EXPECT_FALSE(one.standard_deviation);
   EXPECT_FALSE(one.repeatability);
   EXPECT_FALSE(one.mean_interval);
+  EXPECT_FALSE(one.coverage_factor);
   EXPECT_FALSE(one.outlier);
 }
 

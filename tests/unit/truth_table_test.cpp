@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "io/table.hpp"
+
 namespace stickslip::report {
 namespace {
 
@@ -33,6 +35,7 @@ TEST(TruthTable, PutsTheTruthBelowTheMeasuredNumberAndSaysWhyOneIsAbsent) {
             "       ± stat.             0.0010\n"
             "truth  stick-slip  0.0500  0.3500  0.3000       –        –  scene\n"
             "± stat.  standard error: less with more slips or more tests\n"
+            "truth    what was simulated\n"
             "–  no kinetic in test 3: too few cycles\n");
 }
 
@@ -62,6 +65,20 @@ TEST(TruthTable, PutsBothErrorsBelowTheNumberWithTheirPointsAligned) {
             "± stat.  standard error: less with more slips or more tests\n"
             "± syst.  systematic part (calibration, corrections): the same each time\n"
             "?  not significant, its errors together exceed it: S−K in test 2\n");
+}
+
+TEST(TruthTable, FitsATerminalOf80ColumnsWithFilesBelowTheNumbers) {
+  std::vector<TableRow> rows{row(), row()};
+  rows[1].number = 4;
+  for (TableRow& one : rows) {
+    one.where = "records/demo/20261127T123529Z-0001.h5";
+    one.truth.emplace().scene_name = "ring-down-at-12-in-per-min";
+  }
+  const std::string table = format_table(rows);
+  EXPECT_NE(table.find("file of test 3: records/demo/20261127T123529Z-0001.h5\n"), std::string::npos);
+  EXPECT_NE(table.find("scene of test 3, 4: ring-down-at-12-in-per-min\n"), std::string::npos);
+  for (std::size_t at = 0; at < table.size(); at = table.find('\n', at) + 1)
+    EXPECT_LE(io::display_width(table.substr(at, table.find('\n', at) - at)), 80U);
 }
 
 TEST(TruthTable, HasNoLegendOfWhatDoesNotOccur) {
