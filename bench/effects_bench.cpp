@@ -60,7 +60,7 @@ const std::vector<std::pair<std::string, Change>>& effects() {
       {"kinetic_drift",
        [](Scene& scene) {
          scene.kinetic_drift =
-             KineticDrift{KineticDrift::Course::kLinear, KineticDrift::Over::kTime, -0.1, 8.0};
+             KineticDrift{KineticDrift::Form::kLinear, KineticDrift::Over::kTime, -0.1, 8.0};
        }},
       // Solved numerically, to the scene's accuracy of 1e-9: the price is that of CVODE, not of the law.
       {"velocity_dependence", [](Scene& scene) { scene.velocity_dependence_s_per_m = -0.5; }},

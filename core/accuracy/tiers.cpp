@@ -16,7 +16,7 @@
 #include "core/estimate/cycle_fit.hpp"
 #include "core/estimate/sampling.hpp"
 #include "core/model/tester.hpp"
-#include "core/model/uniform_course.hpp"
+#include "core/model/uniform_trajectory.hpp"
 
 namespace stickslip::accuracy {
 namespace {
@@ -60,7 +60,7 @@ std::vector<double> one_test(double scan_rate_Hz, std::uint64_t seed) {
   std::normal_distribution<double> noise{0.0, kSigma};
   const double rest_s = (80.0 + std::uniform_real_distribution<double>{}(engine)) / scan_rate_Hz;
   model::UniformParameters parameters{shared(), {rest_s + kS / shared().r, kS, kK}};
-  const auto course = model::UniformCourse::make(parameters);
+  const auto course = model::UniformTrajectory::make(parameters);
   const auto count =
       static_cast<std::size_t>((parameters.slip.onset_s + kCycles * course->period_s()) * scan_rate_Hz);
   std::vector<double> scans(count);
@@ -73,7 +73,7 @@ std::vector<double> one_test(double scan_rate_Hz, std::uint64_t seed) {
 /// Of S − K of one cycle, from the middle of a stick to the middle of the next.
 double bound_of_a_cycle(double scan_rate_Hz) {
   const model::UniformParameters parameters{shared(), {0.0, kS, kK}};
-  const double period_s = model::UniformCourse::make(parameters)->period_s();
+  const double period_s = model::UniformTrajectory::make(parameters)->period_s();
   const model::SlipModel slip{parameters.shared, parameters.slip, true};
   const double begin_s = -0.5 * (period_s - slip.capture_s());
   double variance = 0.0;

@@ -130,9 +130,9 @@ double zero_before(const estimate::Trace& trace, double start_s, double unknown)
 
 }  // namespace
 
-std::optional<model::BeltCourse> belt_from_loading(const estimate::Trace& trace, const detect::Fall& first,
+std::optional<model::BeltMotion> belt_from_loading(const estimate::Trace& trace, const detect::Fall& first,
                                                    const model::PullSpeed& plan, double gravity_m_per_s2) {
-  if (plan.is_constant()) return model::BeltCourse{};
+  if (plan.is_constant()) return model::BeltMotion{};
   if (!(first.rise_from < kFromRest * first.peak)) return std::nullopt;
   const Loading loading = loading_of(trace, first);
   if (loading.value.size() < kFewestStartScans || !(loading.slope > 0.0)) return std::nullopt;
@@ -148,7 +148,7 @@ std::optional<model::BeltCourse> belt_from_loading(const estimate::Trace& trace,
   }
   const double K = 0.5 * (first.peak + first.trough);
   const double lag_s = 0.5 * plan.speed_m_per_s(plan.pulls().front().start_s) / (K * gravity_m_per_s2);
-  return model::BeltCourse{plan, line.start_s - lag_s};
+  return model::BeltMotion{plan, line.start_s - lag_s};
 }
 
 }  // namespace stickslip::analysis

@@ -21,7 +21,7 @@ namespace stickslip::analysis {
 /// \return constant_belt() if the plan has one speed; nullopt if the trace does not contain the loading from
 /// rest, the loading has fewer than four usable scans or lies beyond the first pull of the plan, or the fit
 /// fails.
-[[nodiscard]] std::optional<model::BeltCourse> belt_from_loading(const estimate::Trace& trace,
+[[nodiscard]] std::optional<model::BeltMotion> belt_from_loading(const estimate::Trace& trace,
                                                                  const detect::Fall& first,
                                                                  const model::PullSpeed& plan,
                                                                  double gravity_m_per_s2);

@@ -153,7 +153,7 @@ std::vector<EscapeTrial> escape_trials(const SlipEstimates& estimates) {
   std::vector<EscapeTrial> trials;
   const model::SharedParameters& shared = estimates.fit.shared;
   const model::Oscillator oscillator = shared.oscillator();
-  const model::BeltCourse& belt = estimates.belt;
+  const model::BeltMotion& belt = estimates.belt;
   if (belt.is_constant() || !(shared.gamma > 0.0)) return trials;
   const double Q_th = model::Q_threshold(oscillator.gamma_over_2omega());
   for (std::size_t i = 0; i < estimates.ends.size(); ++i) {

@@ -39,7 +39,7 @@ struct SlipEstimates {
   model::SharedParameters guess;  ///< By turning points and slopes: where the fit began.
   /// Fit of one S and one K to all slips but the first; nullopt if the slips differ by more than noise.
   std::optional<estimate::UniformFit> uniform;
-  model::BeltCourse belt;     ///< Belt speed over the time of the trace.
+  model::BeltMotion belt;     ///< Belt speed over the time of the trace.
   bool first_counts = false;  ///< Means include the first slip.
 
   [[nodiscard]] bool has_window(std::size_t slip) const noexcept { return window_of_slip[slip] != kNoWindow; }

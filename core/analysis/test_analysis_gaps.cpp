@@ -118,7 +118,7 @@ void TestAnalysis::follow_speed(estimate::Trace& trace, base::LongColumn<detect:
     const double first_s = estimate::time_at(trace, falls[0].peak_at);
     const double last_s = estimate::time_at(trace, falls[falls.size() - 1].peak_at);
     if (!changes(*measured_speed_, first_s, last_s, speed_resolution_m_per_s_)) return;
-    trace.belt = model::BeltCourse{*measured_speed_, std::as_const(trace.time_s)[0]};
+    trace.belt = model::BeltMotion{*measured_speed_, std::as_const(trace.time_s)[0]};
   } else {
     // What the tester did counts before what the method asks.
     const auto& plan =

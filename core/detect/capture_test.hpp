@@ -48,7 +48,7 @@ struct CapturePrior {
   double typical_delta_mu = 0.0;   ///< Typical S − K of the test's slips, > 0.
   /// First guess of S − K of the next slip; the typical one unless the next peak has been seen.
   std::optional<double> next_delta_mu{};
-  const model::BeltCourse* belt = &model::constant_belt();  ///< Must outlive the test.
+  const model::BeltMotion* belt = &model::constant_belt();  ///< Must outlive the test.
 };
 
 struct CaptureEvidence {

@@ -43,7 +43,7 @@ CapturedTrajectory::CapturedTrajectory(const Parameters& parameters, const model
 
 void CapturedTrajectory::set_next_S(double S) noexcept {
   p_[3] = S;
-  const model::BeltCourse& belt = *belt_.course;
+  const model::BeltMotion& belt = *belt_.course;
   onset_tau_s_ = capture_tau_s_ + belt.climbing_time_s(shared_.r, belt_.start_s + capture_tau_s_,
                                                        std::max(S, at_capture_) - at_capture_);
   rate_at_onset_ = belt.stick_rate(shared_.r, belt_.start_s + onset_tau_s_);

@@ -25,7 +25,7 @@ inline constexpr double kLeastRatio = 1e-6;
 
 /// Belt under a slip. `course` must outlive what uses it.
 struct BeltBelow {
-  const model::BeltCourse* course = &model::constant_belt();
+  const model::BeltMotion* course = &model::constant_belt();
   double start_s = 0.0;  ///< Time of the slip's first point on the belt's time axis.
 
   friend bool operator==(const BeltBelow&, const BeltBelow&) = default;

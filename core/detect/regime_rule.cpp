@@ -13,14 +13,14 @@ namespace {
 
 /// Log-likelihood of a course of slip ends over "all free", and the first slip that ends otherwise than the
 /// one before.
-struct Course {
+struct Path {
   double log_likelihood = -std::numeric_limits<double>::infinity();
   std::size_t changed_at = 0;
 
-  [[nodiscard]] Course plus(double ratio) const noexcept { return {log_likelihood + ratio, changed_at}; }
+  [[nodiscard]] Path plus(double ratio) const noexcept { return {log_likelihood + ratio, changed_at}; }
 };
 
-const Course& likelier(const Course& a, const Course& b) noexcept {
+const Path& likelier(const Path& a, const Path& b) noexcept {
   return b.log_likelihood > a.log_likelihood ? b : a;
 }
 
@@ -29,12 +29,12 @@ const Course& likelier(const Course& a, const Course& b) noexcept {
 struct Courses {
   double all_captured = 0.0;
   double all_free = 0.0;
-  Course mixed_captured;  ///< Mixed, the latest slip captured.
-  Course mixed_free;
+  Path mixed_captured;  ///< Mixed, the latest slip captured.
+  Path mixed_free;
 
   void add(std::size_t slip, bool is_first, double ratio, double change) noexcept {
-    const Course captured = mixed_captured;
-    const Course free = mixed_free;
+    const Path captured = mixed_captured;
+    const Path free = mixed_free;
     if (!is_first) {
       mixed_captured =
           likelier({all_free - change, slip}, likelier(captured, free.plus(-change))).plus(ratio);
@@ -42,7 +42,7 @@ struct Courses {
     }
     all_captured += ratio;
   }
-  [[nodiscard]] const Course& mixed() const noexcept { return likelier(mixed_captured, mixed_free); }
+  [[nodiscard]] const Path& mixed() const noexcept { return likelier(mixed_captured, mixed_free); }
 };
 
 /// Of a trace that the model does not describe: a slip's ratio counts up to 20 to 1, and slips change their

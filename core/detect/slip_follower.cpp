@@ -314,7 +314,7 @@ void SlipFollower::estimate_by_fit(double end_s, double sigma) noexcept {
   estimate::CycleFit fit = estimate::fit_cycle(points, is_captured, first_guess(), knowledge_, sigma);
   if (fit.converged && fit.residual_sigmas > kMisfitSigmas && rise_slope(sigma) > 0.0 &&
       std::abs(std::log(now_.rise_slope / knowledge_.best().r)) > kStickRateChange) {
-    estimate::SharedKnowledge anew = knowledge_;
+    estimate::SharedPosterior anew = knowledge_;
     anew.forget_stick_rate(now_.rise_slope);
     const estimate::CycleFit other = estimate::fit_cycle(points, is_captured, first_guess(), anew, sigma);
     if (other.converged && belt_changed(other.residual_sigmas, fit.residual_sigmas)) {

@@ -147,7 +147,7 @@ class SlipFollower {
 
   EstimatorTier tier_;
   double scan_s_;
-  estimate::SharedKnowledge knowledge_;
+  estimate::SharedPosterior knowledge_;
   bool started_whole_ = false;  ///< knowledge_, by a fall without a gap.
   estimate::CycleBuffer buffer_;
   CaptureTest capture_test_;

@@ -58,7 +58,7 @@ struct CycleProblem {
 
   std::span<const CyclePoint> points;
   bool captured;
-  const SharedKnowledge& knowledge;
+  const SharedPosterior& knowledge;
   double sigma;
 
   [[nodiscard]] bool admissible(const State& at) const noexcept {
@@ -147,7 +147,7 @@ void finish(CycleFit& fit, const CycleEquations& equations) noexcept {
 }  // namespace
 
 CycleFit fit_cycle(std::span<const CyclePoint> points, bool captured, const model::SlipParameters& start,
-                   const SharedKnowledge& knowledge, double sigma) noexcept {
+                   const SharedPosterior& knowledge, double sigma) noexcept {
   CycleFit fit;
   const CycleProblem problem{points, captured, knowledge, sigma};
   CycleState state{start, knowledge.best()};

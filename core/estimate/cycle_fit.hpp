@@ -4,7 +4,7 @@
 ///     const CycleFit fit = fit_cycle(buffer.points(), true, first_guess, knowledge, sigma);
 ///
 /// Six parameters with analytic derivatives and Huber's weights, as the fit of the whole test
-/// (core/estimate/slip_fit); the present knowledge of ω, γ and r (SharedKnowledge) enters as a
+/// (core/estimate/slip_fit); the present knowledge of ω, γ and r (SharedPosterior) enters as a
 /// Gaussian prior. All matrices have fixed sizes; nothing is allocated.
 #pragma once
 
@@ -13,7 +13,7 @@
 #include <Eigen/Core>
 
 #include "core/estimate/cycle_buffer.hpp"
-#include "core/estimate/shared_knowledge.hpp"
+#include "core/estimate/shared_posterior.hpp"
 #include "core/model/slip_model.hpp"
 
 namespace stickslip::estimate {
@@ -40,7 +40,7 @@ struct CycleFit {
 /// \param sigma   noise of one scan, > 0.
 /// \return converged = false with fewer than four points, or if the fit does not converge.
 [[nodiscard]] CycleFit fit_cycle(std::span<const CyclePoint> points, bool captured,
-                                 const model::SlipParameters& start, const SharedKnowledge& knowledge,
+                                 const model::SlipParameters& start, const SharedPosterior& knowledge,
                                  double sigma) noexcept;
 
 }  // namespace stickslip::estimate

@@ -19,7 +19,7 @@ Eigen::Matrix2d to_ratio(const model::SharedParameters& shared) {
 
 }  // namespace
 
-P::Matrix fisher_information(const model::UniformCourse& course, std::span<const double> times_s,
+P::Matrix fisher_information(const model::UniformTrajectory& course, std::span<const double> times_s,
                              double sigma) {
   P::Matrix information = P::Matrix::Zero();
   for (const double time_s : times_s) {

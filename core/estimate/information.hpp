@@ -9,13 +9,13 @@
 #include <span>
 
 #include "core/estimate/shared_prior.hpp"
-#include "core/model/uniform_course.hpp"
+#include "core/model/uniform_trajectory.hpp"
 
 namespace stickslip::estimate {
 
 /// Fisher information Σ J Jᵀ/σ² of scans with white Gaussian noise about (onset, S, K, ω, γ, r).
 /// \param sigma  noise of one scan, > 0.
-[[nodiscard]] model::UniformParameters::Matrix fisher_information(const model::UniformCourse& course,
+[[nodiscard]] model::UniformParameters::Matrix fisher_information(const model::UniformTrajectory& course,
                                                                   std::span<const double> times_s,
                                                                   double sigma);
 

@@ -153,7 +153,7 @@ class SlipsProblem {
     equations.gradient += gradient.tail<3>();
   }
 
-  const model::BeltCourse& belt_;
+  const model::BeltMotion& belt_;
   const std::vector<SlipWindow>& windows_;
   std::vector<TraceScan> scans_;   ///< Of all windows,
   std::vector<std::size_t> ends_;  ///< and where those of each window end.

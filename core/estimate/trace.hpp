@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/long_column.hpp"
-#include "core/model/belt_course.hpp"
+#include "core/model/belt_motion.hpp"
 
 namespace stickslip::estimate {
 
@@ -31,7 +31,7 @@ struct Trace {
   Drift drift;
 
   /// Belt speed over the time of the trace.
-  model::BeltCourse belt;
+  model::BeltMotion belt;
 
   /// First scans after a break, rising: the motion between such a scan and the one before it is unknown. A
   /// counted gap shorter than half an oscillation is no break.

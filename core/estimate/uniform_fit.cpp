@@ -56,12 +56,12 @@ struct UniformProblem {
 
   void assemble(const P& parameters, UniformEquations& equations) const {
     equations = {};
-    const auto course = model::UniformCourse::make(parameters);
+    const auto course = model::UniformTrajectory::make(parameters);
     if (!course) return;
     model::TurnedBasis basis{parameters.shared.oscillator()};
     const double per_sigma = 1.0 / sigma;
     for (auto scan = scans.begin(); scan != scans.end();) {
-      const model::UniformCourse::Cycle cycle = course->cycle_at(scan->time_s);
+      const model::UniformTrajectory::Cycle cycle = course->cycle_at(scan->time_s);
       SlipSums sums;
       for (; scan != scans.end() && scan->time_s < cycle.end_s; ++scan) {
         const model::SlipPlace at = course->slip().place(scan->time_s - cycle.after_first_s, basis);

@@ -9,7 +9,7 @@
 
 #include "core/estimate/shared_prior.hpp"
 #include "core/estimate/trace.hpp"
-#include "core/model/uniform_course.hpp"
+#include "core/model/uniform_trajectory.hpp"
 
 namespace stickslip::estimate {
 
@@ -24,7 +24,7 @@ struct UniformFit {
 };
 
 /// Least cost with Huber's weights, as fit_slips().
-/// \param first,end  scans of the pull. \param guess first guess; UniformCourse::make() must accept it.
+/// \param first,end  scans of the pull. \param guess first guess; UniformTrajectory::make() must accept it.
 /// \param sigma  noise of one scan, > 0.
 [[nodiscard]] UniformFit fit_uniform(const Trace& trace, std::size_t first, std::size_t end,
                                      const model::UniformParameters& guess, double sigma,

@@ -67,7 +67,7 @@ std::optional<P> first_guess(const std::vector<SlipWindow>& windows, const SlipF
   covariance.bottomLeftCorner<3, 3>() = covariance.topRightCorner<3, 3>().transpose();
   covariance.bottomRightCorner<3, 3>() = fit.shared_covariance;
   for (int step = 0; step < kPeriodSteps; ++step) {
-    const auto course = model::UniformCourse::make(guess);
+    const auto course = model::UniformTrajectory::make(guess);
     if (!course) return std::nullopt;
     const Onsets onsets = regular_onsets(windows, course->period_s());
     const P::Vector pull = covariance * course->period_slope();
@@ -77,7 +77,7 @@ std::optional<P> first_guess(const std::vector<SlipWindow>& windows, const SlipF
     p[P::kOnset] = onsets.first_s;
     guess = P::from(p);
   }
-  return model::UniformCourse::make(guess) ? std::optional{guess} : std::nullopt;
+  return model::UniformTrajectory::make(guess) ? std::optional{guess} : std::nullopt;
 }
 
 /// Probability of a difference at least this large if the slips are alike.

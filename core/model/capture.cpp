@@ -97,7 +97,7 @@ std::optional<double> capture_time_near_s(const SlipWaveform& slip, double belt_
   return std::nullopt;
 }
 
-double deciding_time_s(const SlipWaveform& slip, const BeltCourse& belt, double r, double onset_s) noexcept {
+double deciding_time_s(const SlipWaveform& slip, const BeltMotion& belt, double r, double onset_s) noexcept {
   const double t3 = slip.rise_end_time_s();
   if (belt.is_constant()) return t3;
   const auto excess_slope = [&](double t_s) {
@@ -111,7 +111,7 @@ double deciding_time_s(const SlipWaveform& slip, const BeltCourse& belt, double 
   return root_between(excess_slope, t3 - quarter_s, t3 + quarter_s, before, after);
 }
 
-std::optional<double> capture_time_s(const SlipWaveform& slip, const BeltCourse& belt, double r,
+std::optional<double> capture_time_s(const SlipWaveform& slip, const BeltMotion& belt, double r,
                                      double onset_s) noexcept {
   if (belt.is_constant()) return capture_time_s(slip, r);
   const auto excess = [&](double t_s) { return slip.rate(t_s) - belt.stick_rate(r, onset_s + t_s); };

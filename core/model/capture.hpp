@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "core/model/belt_course.hpp"
+#include "core/model/belt_motion.hpp"
 #include "core/model/slip_waveform.hpp"
 
 namespace stickslip::model {
@@ -28,15 +28,15 @@ namespace stickslip::model {
 /// that maximum is not negative. A steady acceleration moves that maximum from t₃ to where c″ equals the
 /// slope of the belt's rate. The maximum is searched within a quarter of an oscillation of t₃; this suffices
 /// while |r p′| < ω |c′|, 100 times the acceleration of a ramp that reaches the threshold speed in a second.
-/// \param r  stick rate at the plan's largest speed; p is BeltCourse::relative().
+/// \param r  stick rate at the plan's largest speed; p is BeltMotion::relative().
 /// \param onset_s  time of the slip's onset, on the belt's time axis.
 /// \return seconds after the onset; nullopt if the sled is not captured.
-[[nodiscard]] std::optional<double> capture_time_s(const SlipWaveform& slip, const BeltCourse& belt, double r,
+[[nodiscard]] std::optional<double> capture_time_s(const SlipWaveform& slip, const BeltMotion& belt, double r,
                                                    double onset_s) noexcept;
 
 /// Time at which c′ − belt rate has its maximum near t₃, in seconds after the onset: its sign there decides
 /// whether the sled is captured. Equal to t₃ with one speed throughout.
-[[nodiscard]] double deciding_time_s(const SlipWaveform& slip, const BeltCourse& belt, double r,
+[[nodiscard]] double deciding_time_s(const SlipWaveform& slip, const BeltMotion& belt, double r,
                                      double onset_s) noexcept;
 
 }  // namespace stickslip::model

@@ -7,7 +7,7 @@
 namespace stickslip::model {
 
 SlipModel::SlipModel(const SharedParameters& shared, const SlipParameters& slip, bool captured,
-                     const BeltCourse& belt, std::optional<double> expected_capture_s) noexcept
+                     const BeltMotion& belt, std::optional<double> expected_capture_s) noexcept
     : shared_(shared),
       slip_(slip),
       belt_(&belt),

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "core/model/belt_course.hpp"
+#include "core/model/belt_motion.hpp"
 #include "core/model/slip_waveform.hpp"
 #include "core/model/turned_basis.hpp"
 
@@ -18,7 +18,7 @@ namespace stickslip::model {
 struct SharedParameters {
   double omega = 0.0;  ///< rad/s, damped.
   double gamma = 0.0;  ///< 1/s
-  double r = 0.0;      ///< Stick rate, 1/s; on a changing belt at its largest speed (BeltCourse).
+  double r = 0.0;      ///< Stick rate, 1/s; on a changing belt at its largest speed (BeltMotion).
 
   [[nodiscard]] Oscillator oscillator() const noexcept {
     return Oscillator::from_omega(omega, gamma / (2.0 * omega));
@@ -50,7 +50,7 @@ enum class SlipPhase { kBefore, kSlip, kAfter };  ///< Stick, slip, stick again.
 struct SlipPlace {
   SlipPhase phase = SlipPhase::kBefore;
   double value = 0.0;
-  double way_s = 0.0;           ///< Of a stick: BeltCourse::way_s() from the onset or the capture.
+  double way_s = 0.0;           ///< Of a stick: BeltMotion::way_s() from the onset or the capture.
   double tau_s = 0.0;           ///< Of the slip: time since the onset,
   DampedBasis basis{1.0, 0.0};  ///< and the basis at it.
 };
@@ -63,7 +63,7 @@ class SlipModel {
   /// \param belt  must outlive this object.
   /// \param expected_capture_s  capture_s() of a slightly different slip: saves most of the search.
   SlipModel(const SharedParameters& shared, const SlipParameters& slip, bool captured,
-            const BeltCourse& belt = constant_belt(), std::optional<double> expected_capture_s = {}) noexcept;
+            const BeltMotion& belt = constant_belt(), std::optional<double> expected_capture_s = {}) noexcept;
 
   [[nodiscard]] SlipModelPoint at(double time_s) const noexcept {
     return point_at(
@@ -121,7 +121,7 @@ class SlipModel {
 
   SharedParameters shared_;
   SlipParameters slip_;
-  const BeltCourse* belt_;
+  const BeltMotion* belt_;
   SlipWaveform waveform_;
   double omega_B_;
   double capture_s_;

@@ -23,7 +23,7 @@ namespace stickslip::signal {
 inline constexpr std::size_t kMostSteps = 2048;
 
 /// A value with its position. Members have no initial values, since an array of steps is only partly used.
-struct CourseStep {
+struct LevelStep {
   std::size_t position;
   double value;
 };
@@ -37,8 +37,7 @@ class Stairs {
   /// Which step of a cell is stored.
   enum class Keep { kFirst, kLast };
 
-  explicit Stairs(Keep keep)
-      : keep_(keep), steps_(std::make_unique_for_overwrite<CourseStep[]>(kMostSteps)) {}
+  explicit Stairs(Keep keep) : keep_(keep), steps_(std::make_unique_for_overwrite<LevelStep[]>(kMostSteps)) {}
 
   void clear() noexcept {
     size_ = 0;
@@ -47,7 +46,7 @@ class Stairs {
   /// Appends a step, which must lie after and below the last one.
   void push(std::size_t position, double value) noexcept {
     if (cell_bits_ == 0 && size_ < kMostSteps) {
-      CourseStep& step = steps_[size_++];
+      LevelStep& step = steps_[size_++];
       step.position = position;
       step.value = value;
     } else {
@@ -59,20 +58,20 @@ class Stairs {
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
   /// Not empty. \return value of the last step.
   [[nodiscard]] double lowest() const noexcept { return steps_[size_ - 1].value; }
-  [[nodiscard]] std::span<const CourseStep> steps() const noexcept { return {steps_.get(), size_}; }
+  [[nodiscard]] std::span<const LevelStep> steps() const noexcept { return {steps_.get(), size_}; }
 
  private:
-  [[nodiscard]] bool same_cell(const CourseStep& a, const CourseStep& b) const noexcept {
+  [[nodiscard]] bool same_cell(const LevelStep& a, const LevelStep& b) const noexcept {
     return a.position >> cell_bits_ == b.position >> cell_bits_;
   }
-  void push_into_cells(const CourseStep& step) noexcept;
+  void push_into_cells(const LevelStep& step) noexcept;
   /// Joins the step to the last one if they share a cell.
-  [[nodiscard]] bool join(const CourseStep& step) noexcept;
+  [[nodiscard]] bool join(const LevelStep& step) noexcept;
   void widen_cells() noexcept;
 
   Keep keep_;
-  unsigned cell_bits_ = 0;               ///< A cell is 2^this positions wide.
-  std::unique_ptr<CourseStep[]> steps_;  ///< Room for kMostSteps, the first `size_` in use.
+  unsigned cell_bits_ = 0;              ///< A cell is 2^this positions wide.
+  std::unique_ptr<LevelStep[]> steps_;  ///< Room for kMostSteps, the first `size_` in use.
   std::size_t size_ = 0;
 };
 

@@ -8,8 +8,8 @@
 
 namespace stickslip::sim {
 
-Course belt_speed(const BeltSegment& segment) {
-  Course speed{segment.speed_m_per_s + segment.decaying_speed_m_per_s};
+ExponentialPolynomial belt_speed(const BeltSegment& segment) {
+  ExponentialPolynomial speed{segment.speed_m_per_s + segment.decaying_speed_m_per_s};
   speed.add_power(1, segment.acceleration_m_per_s2);
   speed.add_power(2, segment.jerk_m_per_s3 / 2.0);
   if (segment.decaying_speed_m_per_s != 0.0) {
@@ -36,8 +36,8 @@ std::pair<double, double> belt_travel_range_m(const std::vector<BeltSegment>& be
   double left_s = duration_s;
   for (const BeltSegment& segment : belt) {
     const double end_s = std::min(segment.duration_s, left_s);
-    const Course speed = belt_speed(segment);
-    const Course way = speed.integral();
+    const ExponentialPolynomial speed = belt_speed(segment);
+    const ExponentialPolynomial way = speed.integral();
     // The way turns where the speed changes its sign: at most once in each direction.
     for (const double sign : {1.0, -1.0}) {
       const Curve forwards{{}, speed.scaled(sign)};
@@ -57,7 +57,7 @@ std::pair<double, double> belt_travel_range_m(const std::vector<BeltSegment>& be
 
 double drift_factor(const KineticDrift& drift, double x) {
   const double part = x / drift.scale;
-  return 1.0 + drift.change * (drift.course == KineticDrift::Course::kLinear ? part : -std::expm1(-part));
+  return 1.0 + drift.change * (drift.form == KineticDrift::Form::kLinear ? part : -std::expm1(-part));
 }
 
 }  // namespace stickslip::sim

@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "core/sim/course.hpp"
+#include "core/sim/exponential_polynomial.hpp"
 #include "core/sim/motion.hpp"
 
 namespace stickslip::sim {
 
 /// v(t) of a segment, m/s. Starts at exactly speed + decaying_speed.
-[[nodiscard]] Course belt_speed(const BeltSegment& segment);
+[[nodiscard]] ExponentialPolynomial belt_speed(const BeltSegment& segment);
 
 /// Belt speed at a time ≥ 0 of the scene; at the border of two segments, that of the later. Ignores
 /// halt_when_unloaded.

@@ -83,7 +83,7 @@ class BeltWalk {
 };
 
 /// The factor f of K (KineticDrift) over a piece of the motion.
-struct DriftCourse {
+struct DriftFactor {
   std::optional<KineticDrift> drift;
   double x = 0.0;        ///< x at the start of the piece, in units of the drift's scale.
   double x_per_s = 0.0;  ///< Of a drift over time,
@@ -110,7 +110,7 @@ struct DriftCourse {
   }
 
  private:
-  [[nodiscard]] bool linear() const noexcept { return drift->course == KineticDrift::Course::kLinear; }
+  [[nodiscard]] bool linear() const noexcept { return drift->form == KineticDrift::Form::kLinear; }
   [[nodiscard]] double decay(double t_s) const noexcept {
     if (linear()) return 1.0;
     return std::exp(-(x + x_per_s * t_s + (x_per_c != 0.0 ? x_per_c * belt.travel(t_s) : 0.0)));

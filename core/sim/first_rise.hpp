@@ -1,13 +1,13 @@
 /// \file
-/// First time at which a damped oscillation, alone or added to a Course, rises to a level. All events are of
-/// this kind: capture (the rate of the force reaches that of the belt), slack (the negative force reaches
-/// zero), and, without an oscillation, slip onset and a coupling that becomes taut.
+/// First time at which a damped oscillation, alone or added to an ExponentialPolynomial, rises to a level.
+/// All events are of this kind: capture (the rate of the force reaches that of the belt), slack (the negative
+/// force reaches zero), and, without an oscillation, slip onset and a coupling that becomes taut.
 #pragma once
 
 #include <optional>
 
 #include "core/model/slip_waveform.hpp"
-#include "core/sim/course.hpp"
+#include "core/sim/exponential_polynomial.hpp"
 
 namespace stickslip::sim {
 
@@ -24,10 +24,10 @@ enum class Touch { kCounts, kDoesNot };
 /// \param touch  whether a maximum exactly at the level is an event.
 [[nodiscard]] std::optional<double> first_rise_s(const model::SlipWaveform& y, double level, Touch touch);
 
-/// Sum of an oscillation and a Course.
+/// Sum of an oscillation and an ExponentialPolynomial.
 struct Curve {
   model::SlipWaveform wave;  ///< Homogeneous: wave.K = 0; wave.D = wave.r = 0 where nothing oscillates.
-  Course course;
+  ExponentialPolynomial course;
 
   [[nodiscard]] bool oscillates() const noexcept { return wave.D != 0.0 || wave.r != 0.0; }
   [[nodiscard]] double value(double t_s) const noexcept {

@@ -101,7 +101,8 @@ class Chain {
     double at = 0.0;
     double sign = 0.0;
   };
-  static constexpr std::size_t kMaxLevels = 2 + Course::kPowers + Course::kDecays;
+  static constexpr std::size_t kMaxLevels =
+      2 + ExponentialPolynomial::kPowers + ExponentialPolynomial::kDecays;
 
   void add(const Curve& y, double from) {
     STICKSLIP_EXPECTS(count_ < kMaxLevels);

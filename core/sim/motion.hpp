@@ -15,7 +15,7 @@
 
 #include "core/model/oscillator.hpp"
 #include "core/model/truth.hpp"
-#include "core/sim/course.hpp"
+#include "core/sim/exponential_polynomial.hpp"
 #include "core/sim/paper.hpp"
 #include "core/sim/scan_time.hpp"
 
@@ -40,9 +40,9 @@ struct BeltSegment {
 ///     linear       f = 1 + change · x/scale
 ///     exponential  f = 1 + change · (1 − e^(−x/scale))
 struct KineticDrift {
-  enum class Course { kLinear, kExponential };
+  enum class Form { kLinear, kExponential };
   enum class Over { kTime, kBeltTravel };
-  Course course = Course::kLinear;
+  Form form = Form::kLinear;
   Over over = Over::kTime;
   double change = 0.0;  ///< Relative, of K; f never goes below zero within the scene.
   double scale = 1.0;   ///< > 0; s, or m of belt travel.
@@ -111,7 +111,7 @@ class MotionObserver {
 /// Interval of time in which the force has one closed form, c(t) = h(t) + course(t), with t from its start.
 struct ForceStretch {
   double duration_s = 0.0;
-  Course course;
+  ExponentialPolynomial course;
   /// The oscillation h, h″ = −ω₀² h − γ h′, by its value and rate at the start; zero unless the sled slips.
   double wave = 0.0;
   double wave_rate_per_s = 0.0;

@@ -20,7 +20,7 @@ bool responds_regularly(double rate_per_s, const model::Oscillator& oscillator) 
 }
 
 bool has_closed_form(const KineticDrift& drift, const Motion& motion) {
-  const bool exponential = drift.course == KineticDrift::Course::kExponential;
+  const bool exponential = drift.form == KineticDrift::Form::kExponential;
   if (drift.over == KineticDrift::Over::kTime)
     return !exponential || responds_regularly(1.0 / drift.scale, motion.oscillator);
   for (const BeltSegment& segment : motion.belt) {

@@ -143,10 +143,10 @@ ForceStretch Propagator::stretch_to(const ScanTime& instant) const {
   if (!plain_) {
     stretch.course = course_.later(t_s);
   } else if (phase_ == Phase::kStick) {
-    stretch.course = Course{begun_.c + belt_rate_ * t_s};
+    stretch.course = ExponentialPolynomial{begun_.c + belt_rate_ * t_s};
     stretch.course.add_power(1, belt_rate_);
   } else {
-    stretch.course = Course{slip_.K};
+    stretch.course = ExponentialPolynomial{slip_.K};
   }
   if (slips()) {
     const Wave wave = wave_at(t_s);
@@ -254,7 +254,7 @@ void Propagator::set_out() {
     course_rate_ = rate_;
     return;
   }
-  const Course friction = factor_.scaled(push_ * paper_.now().mu_k);
+  const ExponentialPolynomial friction = factor_.scaled(push_ * paper_.now().mu_k);
   if (phase_ == Phase::kFree) {
     course_rate_ = friction.scaled(omega0_squared_).integral();
     course_rate_.add_power(0, begun_.rate);

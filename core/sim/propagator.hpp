@@ -11,7 +11,8 @@
 /// counts: the friction that moves the sled with the belt is q = c + a/g.
 ///
 /// Each piece is an oscillation on a course: c(t) = h(t) + p(t). While the belt's speed and K are constant
-/// ("plain") p is a line, a parabola or K, and everything about it is written out; else p is a Course.
+/// ("plain") p is a line, a parabola or K, and everything about it is written out; else p is an
+/// ExponentialPolynomial.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@
 #include <span>
 
 #include "core/model/slip_waveform.hpp"
-#include "core/sim/course.hpp"
+#include "core/sim/exponential_polynomial.hpp"
 #include "core/sim/first_rise.hpp"
 #include "core/sim/motion.hpp"
 #include "core/sim/motion_solver.hpp"
@@ -105,7 +106,7 @@ class Propagator final : public MotionSolver {
   /// Belt and drift as seen from start_.
   void look_ahead();
   void halt_belt();
-  [[nodiscard]] Course drift_course(double piece_after_segment_s) const;
+  [[nodiscard]] ExponentialPolynomial drift_course(double piece_after_segment_s) const;
   [[nodiscard]] bool leaves_backwards() const;
 
   // propagator.cpp
@@ -153,7 +154,8 @@ class Propagator final : public MotionSolver {
   /// Until the present segment is over.
   [[nodiscard]] double longest_s() const { return seconds_since_start(segment_end_); }
   // propagator_limits.cpp: when a limit that moves is reached.
-  [[nodiscard]] std::optional<double> gives_way_s(const Course& held, double side, double from_s) const;
+  [[nodiscard]] std::optional<double> gives_way_s(const ExponentialPolynomial& held, double side,
+                                                  double from_s) const;
   [[nodiscard]] std::optional<double> stick_gives_way_s(double side) const;
 
   Motion motion_;
@@ -177,11 +179,11 @@ class Propagator final : public MotionSolver {
   double belt_slope_ = 0.0;      ///< r′ at start_, 1/s²
   double drift_factor_ = 1.0;    ///< f at start_
   // Unless plain:
-  Course segment_rate_;          ///< r from segment_start_ on,
-  double segment_travel_ = 0.0;  ///< ∫r before it.
-  Course rate_;                  ///< r, ∫r and f from start_ on.
-  Course way_;
-  Course factor_;
+  ExponentialPolynomial segment_rate_;  ///< r from segment_start_ on,
+  double segment_travel_ = 0.0;         ///< ∫r before it.
+  ExponentialPolynomial rate_;          ///< r, ∫r and f from start_ on.
+  ExponentialPolynomial way_;
+  ExponentialPolynomial factor_;
 
   Phase phase_ = Phase::kStick;
   ScanTime start_;  ///< Of the present piece.
@@ -190,8 +192,8 @@ class Propagator final : public MotionSolver {
   double push_ = 0.0;      ///< Sign of the friction: +1 while the sled is slower than the belt.
   /// Oscillation of a slip; about ±K if plain, else K = 0.
   model::SlipWaveform slip_;
-  Course course_;  ///< Unless plain: c − h from start_ on.
-  Course course_rate_;
+  ExponentialPolynomial course_;  ///< Unless plain: c − h from start_ on.
+  ExponentialPolynomial course_rate_;
   Stride stride_;
   SlipEnds last_slip_;  ///< Of the last slip that was solved.
   Ending ending_ = Ending::kNever;

@@ -31,7 +31,7 @@ void Propagator::next_segment() {
     plain_ = !motion_.kinetic_drift;
   } else {
     const BeltSegment& segment = motion_.belt[segment_++];
-    const Course speed = belt_speed(segment);
+    const ExponentialPolynomial speed = belt_speed(segment);
     plain_ = speed.is_constant() && !motion_.kinetic_drift;
     belt_rate_ = rate_per_speed * speed.value(0.0);
     segment_rate_ = speed.scaled(rate_per_speed);
@@ -68,13 +68,13 @@ void Propagator::halt_belt() {
   look_ahead();
 }
 
-Course Propagator::drift_course(double piece_after_segment_s) const {
-  if (!motion_.kinetic_drift) return Course{1.0};
+ExponentialPolynomial Propagator::drift_course(double piece_after_segment_s) const {
+  if (!motion_.kinetic_drift) return ExponentialPolynomial{1.0};
   const KineticDrift& drift = *motion_.kinetic_drift;
-  const bool linear = drift.course == KineticDrift::Course::kLinear;
+  const bool linear = drift.form == KineticDrift::Form::kLinear;
   if (drift.over == KineticDrift::Over::kTime) {
     const double now_s = start_.periods_since({}) / scan_rate_Hz_;
-    Course factor{sim::drift_factor(drift, now_s)};
+    ExponentialPolynomial factor{sim::drift_factor(drift, now_s)};
     if (linear) {
       factor.add_power(1, drift.change / drift.scale);
     } else {
@@ -85,7 +85,7 @@ Course Propagator::drift_course(double piece_after_segment_s) const {
   const double length_per_rate = motion_.gravity_m_per_s2 / omega0_squared_;
   const double now_m =
       length_per_rate * (segment_travel_ + segment_rate_.integral().value(piece_after_segment_s));
-  Course factor{sim::drift_factor(drift, now_m)};
+  ExponentialPolynomial factor{sim::drift_factor(drift, now_m)};
   if (linear) {
     factor += way_.scaled(drift.change / drift.scale * length_per_rate);
   } else {  // The speed is constant: has_closed_form().
@@ -97,8 +97,8 @@ Course Propagator::drift_course(double piece_after_segment_s) const {
 
 bool Propagator::leaves_backwards() const {
   if (belt_rate_ != 0.0 || plain_) return belt_rate_ < 0.0;
-  for (Course derivative = rate_.derivative(); derivative.powers() > 0 || derivative.decays() > 0;
-       derivative = derivative.derivative()) {
+  for (ExponentialPolynomial derivative = rate_.derivative();
+       derivative.powers() > 0 || derivative.decays() > 0; derivative = derivative.derivative()) {
     const double slope = derivative.value(0.0);
     if (slope != 0.0) return slope < 0.0;
     if (derivative.powers() <= 1) break;

@@ -86,7 +86,7 @@ void Propagator::plan_stick_end() {
 void Propagator::plan_slip_end() {
   const bool can_unload = motion_.one_way_coupling || (halt_when_unloaded_ && begun_.c > 0.0);
   if (!plain_) {
-    Course excess = rate_.scaled(-push_);
+    ExponentialPolynomial excess = rate_.scaled(-push_);
     excess += course_rate_.scaled(push_);
     offer(Ending::kCaptured,
           first_rise_s({derivative(slip_, push_), excess}, 0.0, longest_s(), Touch::kCounts));
@@ -108,7 +108,7 @@ void Propagator::plan_slip_end() {
 
 void Propagator::plan_free_end() {
   if (!plain_) {
-    Course excess = rate_.scaled(-push_);
+    ExponentialPolynomial excess = rate_.scaled(-push_);
     excess += course_rate_.scaled(push_);
     offer(Ending::kMeetsBelt, first_rise_s({{}, excess}, 0.0, longest_s(), Touch::kCounts));
     offer(Ending::kTouchesCoupling, first_rise_s({{}, course_}, 0.0, longest_s(), Touch::kDoesNot));
@@ -133,7 +133,7 @@ void Propagator::plan_ride_end() {
     return;
   }
   offer(Ending::kTouchesCoupling, first_rise_s({{}, course_}, 0.0, longest_s(), Touch::kDoesNot));
-  const Course held = rate_.derivative().scaled(1.0 / omega0_squared_);
+  const ExponentialPolynomial held = rate_.derivative().scaled(1.0 / omega0_squared_);
   for (const double side : {1.0, -1.0}) offer_giving_way(gives_way_s(held, side, 0.0), side);
 }
 

@@ -18,8 +18,9 @@ constexpr double kRounding = 1e-13;  // Of a sum of a few courses.
 }  // namespace
 
 /// First time at which ±held reaches S.
-std::optional<double> Propagator::gives_way_s(const Course& held, double side, double from_s) const {
-  Course excess = held.scaled(side);
+std::optional<double> Propagator::gives_way_s(const ExponentialPolynomial& held, double side,
+                                              double from_s) const {
+  ExponentialPolynomial excess = held.scaled(side);
   excess += factor_.scaled(-paper_.now().mu_k);
   excess.add_power(0, -(paper_.now().mu_s - paper_.now().mu_k));
   const double end_s = longest_s();
@@ -32,7 +33,7 @@ std::optional<double> Propagator::gives_way_s(const Course& held, double side, d
   const auto above = [&](double t_s) { return excess.value(t_s) - growth(t_s); };
   double t_s = from_s;
   for (int step = 0; step < kAgeingSteps; ++step) {
-    Course frozen = excess;
+    ExponentialPolynomial frozen = excess;
     frozen.add_power(0, -growth(t_s));
     const auto reached_s = first_rise_s({{}, frozen}, t_s, end_s, Touch::kDoesNot);
     if (!reached_s) return std::nullopt;
@@ -49,17 +50,17 @@ std::optional<double> Propagator::gives_way_s(const Course& held, double side, d
 
 std::optional<double> Propagator::stick_gives_way_s(double side) const {
   const double gamma = motion_.oscillator.gamma_per_s;
-  Course held = course_;
+  ExponentialPolynomial held = course_;
   held += rate_.derivative().scaled(1.0 / omega0_squared_);
-  const Course damper = rate_.scaled(gamma / omega0_squared_);
-  Course driven = held;
+  const ExponentialPolynomial damper = rate_.scaled(gamma / omega0_squared_);
+  ExponentialPolynomial driven = held;
   driven += damper;
   if (motion_.damper_counts_at_onset) held = driven;
   if (motion_.damper_counts_at_onset || gamma == 0.0) return gives_way_s(held, side, 0.0);
 
   // Where the damper alone keeps the sled at the belt's speed, it stays there beyond the limit, until spring
   // and damper together exceed K too.
-  Course drive = driven.scaled(side);
+  ExponentialPolynomial drive = driven.scaled(side);
   drive += factor_.scaled(-paper_.now().mu_k);
   const auto limit = [&](double t_s) {
     const Coefficients& contact = paper_.now();

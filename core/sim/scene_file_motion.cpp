@@ -147,13 +147,13 @@ void read_belt_effects(Settings scene_table, Settings effects, Scene& scene) {
 
 void read_kinetic_drift(Settings effects, Scene& scene) {
   if (!lists(effects, "kinetic_drift")) return;
-  constexpr std::array<std::pair<std::string_view, KineticDrift::Course>, 2> kCourses{
-      {{"linear", KineticDrift::Course::kLinear}, {"exponential", KineticDrift::Course::kExponential}}};
+  constexpr std::array<std::pair<std::string_view, KineticDrift::Form>, 2> kCourses{
+      {{"linear", KineticDrift::Form::kLinear}, {"exponential", KineticDrift::Form::kExponential}}};
   Settings effect = effects.table("kinetic_drift");
   KineticDrift drift;
   drift.change =
       effect.quantity("change", Dimension::kDimensionless, Limits::between(-kLargestDrift, kLargestDrift));
-  drift.course = effect.choice<KineticDrift::Course>("course", kCourses, KineticDrift::Course::kLinear);
+  drift.form = effect.choice<KineticDrift::Form>("course", kCourses, KineticDrift::Form::kLinear);
   read_over(effect, drift);
   scene.kinetic_drift = drift;
 

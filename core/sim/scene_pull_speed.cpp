@@ -20,7 +20,7 @@ bool is_line(const BeltSegment& segment) {
 }
 
 void append(const BeltSegment& segment, double start_s, std::vector<model::SpeedPoint>& points) {
-  const Course speed = belt_speed(segment);
+  const ExponentialPolynomial speed = belt_speed(segment);
   const auto add = [&](double t_s) { points.push_back({start_s + t_s, speed.value(t_s)}); };
   add(0.0);
   if (!is_line(segment)) {

@@ -87,7 +87,7 @@ class SlidingMotion final : public NumericMotion {
   Phase phase_ = Phase::kStick;
   State begun_;        ///< State at start_.
   BeltRate belt_;      ///< From start_ on,
-  DriftCourse drift_;  ///< this too.
+  DriftFactor drift_;  ///< this too.
   Ending ending_ = Ending::kOngoing;
   double solved_s_ = 0.0;      ///< From start_ to known_to_.
   long undecided_before_ = 0;  ///< The present run.

@@ -30,7 +30,7 @@ class SlidingSystem final : public OdeSystem {
     double stribeck_rise = 0.0;
     double place_left = 0.0;  ///< Still to slide, in units of the coefficient; may be infinite.
     BeltRate belt;
-    DriftCourse drift;
+    DriftFactor drift;
   };
 
   SlidingSystem(const model::Oscillator& oscillator, double gravity_m_per_s2,

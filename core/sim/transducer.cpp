@@ -114,7 +114,7 @@ Transducer::Vector Transducer::start(const ForceStretch& stretch, const Shape& s
   }
   for (int j = 0; j < shape.decays; ++j) {
     // The i-th derivative of φ_m at 0 is (−λ)^(i−m), nothing before i = m: Horner's scheme from m = 0 on.
-    const Course::Decay& decay = stretch.course.decay(j);
+    const ExponentialPolynomial::Decay& decay = stretch.course.decay(j);
     double derivative = 0.0;
     unit = 1.0;
     for (int i = 0; i < decay.orders; ++i) {

@@ -45,7 +45,8 @@ class Transducer final : public ForceFollower {
 
  private:
   static constexpr int kMaxFilter = 2 + AntiAlias::kHighestOrder;
-  static constexpr int kMaxForce = 2 + Course::kPowers + Course::kDecays * Course::kOrders;
+  static constexpr int kMaxForce =
+      2 + ExponentialPolynomial::kPowers + ExponentialPolynomial::kDecays * ExponentialPolynomial::kOrders;
   static constexpr int kMaxSize = kMaxFilter + kMaxForce;
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxSize, kMaxSize>;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxSize, 1>;
@@ -55,8 +56,8 @@ class Transducer final : public ForceFollower {
     bool wave = false;
     int powers = 0;
     int decays = 0;
-    std::array<double, Course::kDecays> rates_per_s{};
-    std::array<int, Course::kDecays> orders{};
+    std::array<double, ExponentialPolynomial::kDecays> rates_per_s{};
+    std::array<int, ExponentialPolynomial::kDecays> orders{};
     bool operator==(const Shape&) const = default;
   };
   struct System {

@@ -8,7 +8,7 @@
 
 #include "core/model/closed_forms.hpp"
 #include "core/model/threshold.hpp"
-#include "core/model/uniform_course.hpp"
+#include "core/model/uniform_trajectory.hpp"
 
 namespace stickslip::model {
 namespace {
@@ -116,7 +116,8 @@ TEST(Inversion, MeanExceedsKByTheDamping) {
     const double Q = part * Q_threshold(kDamping);
     const double omega = 125.0;
     const double D = 0.05;
-    const auto course = UniformCourse::make({{omega, 2.0 * kDamping * omega, Q * omega * D}, {0.0, D, 0.0}});
+    const auto course =
+        UniformTrajectory::make({{omega, 2.0 * kDamping * omega, Q * omega * D}, {0.0, D, 0.0}});
     ASSERT_TRUE(course);
     constexpr int kSteps = 200'000;
     double sum = 0.0;

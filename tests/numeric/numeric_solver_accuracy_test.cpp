@@ -63,7 +63,7 @@ sim::Motion slack_at_rest() {
   return motion;
 }
 
-sim::Motion drifting(sim::KineticDrift::Course course, sim::KineticDrift::Over over) {
+sim::Motion drifting(sim::KineticDrift::Form course, sim::KineticDrift::Over over) {
   sim::Motion motion = lasting(motion_at(1.0, kDamping));
   const bool in_time = over == sim::KineticDrift::Over::kTime;
   const double scale = in_time ? kDuration_s : kDuration_s * motion.belt[0].speed_m_per_s;
@@ -125,9 +125,9 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"overdamped", overdamped()}, Case{"ramp_up", on_a_ramp(1.5)}, Case{"ramp_down", on_a_ramp(0.3)},
         Case{"slow_motor", with_slow_motor()}, Case{"startup_slack", taut_later()},
         Case{"startup_slack_at_rest", slack_at_rest()},
-        Case{"linear_drift", drifting(sim::KineticDrift::Course::kLinear, sim::KineticDrift::Over::kTime)},
+        Case{"linear_drift", drifting(sim::KineticDrift::Form::kLinear, sim::KineticDrift::Over::kTime)},
         Case{"exponential_drift_over_travel",
-             drifting(sim::KineticDrift::Course::kExponential, sim::KineticDrift::Over::kBeltTravel)},
+             drifting(sim::KineticDrift::Form::kExponential, sim::KineticDrift::Over::kBeltTravel)},
         Case{"scattered", scattered()}),
     [](const auto& one) { return one.param.name; });
 

@@ -170,12 +170,12 @@ TEST(NumericSolverLaws, DriftOfKLetsARestingSledGo) {
   const double factor = motion.oscillator.omega0_squared() / kGravity;
   const auto seconds = [](double s) { return sim::ScanTime{}.later(s * kRate_Hz); };
   motion.belt = {{1.0, 0.30 / factor}};  // A slow pull, to about 0.30 in a second; then at rest.
-  motion.kinetic_drift = Drift{Drift::Course::kLinear, Drift::Over::kTime, -0.1, 1.0};
+  motion.kinetic_drift = Drift{Drift::Form::kLinear, Drift::Over::kTime, -0.1, 1.0};
   // Where it rests: the sled has slid a little before it followed the belt.
   const double held = sim::NumericSolver(motion, kRate_Hz, kAccuracy).at(seconds(1.1));
   // 0.35 − 0.1 t · 0.30 = held; roundings of c over the slope of S, 0.03/s.
   EXPECT_NEAR(recorded(motion, 3.0).onsets_s.at(0), (0.35 - held) / 0.03, 1e-12);
-  motion.kinetic_drift = Drift{Drift::Course::kExponential, Drift::Over::kTime, -0.2, 2.0};
+  motion.kinetic_drift = Drift{Drift::Form::kExponential, Drift::Over::kTime, -0.2, 2.0};
   // 0.35 − 0.2 (1 − e^(−t/2)) · 0.30 = held
   const double also = sim::NumericSolver(motion, kRate_Hz, kAccuracy).at(seconds(1.1));
   EXPECT_NEAR(recorded(motion, 9.0).onsets_s.at(0), -2.0 * std::log1p(-(0.35 - also) / 0.06), 1e-10);
@@ -189,7 +189,7 @@ TEST(NumericSolverLaws, SteadySlidingFollowsTheDrift) {
   const double travel_m = motion.belt[0].speed_m_per_s * 10.0;
   for (const Drift::Over over : {Drift::Over::kTime, Drift::Over::kBeltTravel}) {
     const double scale = over == Drift::Over::kTime ? 10.0 : travel_m;
-    motion.kinetic_drift = Drift{Drift::Course::kLinear, over, -0.5, scale};
+    motion.kinetic_drift = Drift{Drift::Form::kLinear, over, -0.5, scale};
     const double end = numeric_trace(motion, 3501, 1e-6).back();
     // K f − (γ/ω₀²) d(K f)/dt
     const double lag = motion.oscillator.gamma_per_s / motion.oscillator.omega0_squared() * 0.015;

@@ -62,7 +62,7 @@ std::vector<double> stepped(const sim::Motion& motion, std::size_t count) {
     if (motion.kinetic_drift) {
       const KineticDrift& law = *motion.kinetic_drift;
       const double part = (law.over == KineticDrift::Over::kTime ? now_s : travel_m) / law.scale;
-      drift += law.change * (law.course == KineticDrift::Course::kLinear ? part : 1.0 - std::exp(-part));
+      drift += law.change * (law.form == KineticDrift::Form::kLinear ? part : 1.0 - std::exp(-part));
     }
     travel_m += (belt + next_belt) / 2.0 * kStep_s / unit;
     const double K = motion.mu_k * drift;
@@ -156,7 +156,7 @@ TEST(PropagatorBelt, StartUpSlackAgreesWithTinySteps) {
 }
 
 TEST(KineticDrift, AgreesWithTinySteps) {
-  for (const auto course : {KineticDrift::Course::kLinear, KineticDrift::Course::kExponential}) {
+  for (const auto course : {KineticDrift::Form::kLinear, KineticDrift::Form::kExponential}) {
     for (const auto over : {KineticDrift::Over::kTime, KineticDrift::Over::kBeltTravel}) {
       for (const double change : {-0.5, 0.5}) {
         for (const double mu_s : {0.31, 0.35, 0.7}) {
@@ -182,10 +182,10 @@ TEST(KineticDrift, OverTheTravelOfABeltThatChangesItsSpeed) {
       {{.duration_s = 0.5, .acceleration_m_per_s2 = 0.01},
        {.duration_s = 2.0, .speed_m_per_s = 0.002, .decaying_speed_m_per_s = 0.003, .time_constant_s = 0.2}});
   motion.kinetic_drift =
-      KineticDrift{KineticDrift::Course::kLinear, KineticDrift::Over::kBeltTravel, 0.6, 0.004};
+      KineticDrift{KineticDrift::Form::kLinear, KineticDrift::Over::kBeltTravel, 0.6, 0.004};
   ASSERT_TRUE(has_closed_form(motion));
   expect_the_same(motion, "linear");
-  motion.kinetic_drift->course = KineticDrift::Course::kExponential;
+  motion.kinetic_drift->form = KineticDrift::Form::kExponential;
   EXPECT_FALSE(has_closed_form(motion));
   motion.belt = {{.duration_s = 2.0, .speed_m_per_s = kSpeed}};
   EXPECT_TRUE(has_closed_form(motion));

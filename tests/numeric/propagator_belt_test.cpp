@@ -20,8 +20,7 @@ using sim::KineticDrift;
 TEST(KineticDrift, HasNoClosedFormInResonance) {
   sim::Motion motion = on_belt({{.duration_s = 2.0, .speed_m_per_s = kSpeed}});
   motion.oscillator = model::Oscillator::from_omega0(4.0, 5.0);  // Decays with 1/s and 4/s.
-  motion.kinetic_drift =
-      KineticDrift{KineticDrift::Course::kExponential, KineticDrift::Over::kTime, 0.5, 1.0};
+  motion.kinetic_drift = KineticDrift{KineticDrift::Form::kExponential, KineticDrift::Over::kTime, 0.5, 1.0};
   EXPECT_FALSE(has_closed_form(motion));
   motion.kinetic_drift->scale = 0.5;
   EXPECT_TRUE(has_closed_form(motion));
@@ -44,7 +43,7 @@ TEST(KineticDrift, SteadySlidingLagsBehindALineByTheDampersShare) {
     const double expected =
         0.30 + slope_per_s * 20.0 - oscillator.gamma_per_s * slope_per_s / oscillator.omega0_squared();
     EXPECT_NEAR(
-        after_ringing_down({KineticDrift::Course::kLinear, KineticDrift::Over::kTime, change, 40.0}, 20.0),
+        after_ringing_down({KineticDrift::Form::kLinear, KineticDrift::Over::kTime, change, 40.0}, 20.0),
         expected, 8.0 * kEpsilon);
   }
 }
@@ -57,14 +56,14 @@ TEST(KineticDrift, SteadySlidingFollowsAnExponential) {
                       (lambda * lambda - oscillator.gamma_per_s * lambda + oscillator.omega0_squared());
   const double expected = 0.30 * (1.0 - 0.4) + 0.30 * 0.4 * part * std::exp(-2.0);
   EXPECT_NEAR(
-      after_ringing_down({KineticDrift::Course::kExponential, KineticDrift::Over::kTime, -0.4, 10.0}, 20.0),
+      after_ringing_down({KineticDrift::Form::kExponential, KineticDrift::Over::kTime, -0.4, 10.0}, 20.0),
       expected, 8.0 * kEpsilon);
 }
 
 // S − K stays: each onset is at the K of its moment plus 0.05.
 TEST(KineticDrift, OnsetsTellSAndKOfTheirMoment) {
   sim::Motion motion = motion_at(0.5, 0.022);
-  motion.kinetic_drift = KineticDrift{KineticDrift::Course::kLinear, KineticDrift::Over::kTime, 0.5, 10.0};
+  motion.kinetic_drift = KineticDrift{KineticDrift::Form::kLinear, KineticDrift::Over::kTime, 0.5, 10.0};
   MotionRecorder recorder{350.0};
   sim::Propagator sled{motion, 350.0, &recorder};
   sled.skip(3500);
@@ -198,7 +197,7 @@ TEST(SpeedRamp, DampingThroughCriticalJoinsWithoutAJump) {
                  {.duration_s = 3.0, .speed_m_per_s = 0.006, .acceleration_m_per_s2 = -0.001}});
     motion.oscillator = model::Oscillator::from_omega0(kOmega * kOmega, 2.0 * kOmega * ratio);
     motion.kinetic_drift =
-        KineticDrift{KineticDrift::Course::kExponential, KineticDrift::Over::kTime, 0.5, 2.0};
+        KineticDrift{KineticDrift::Form::kExponential, KineticDrift::Over::kTime, 0.5, 2.0};
     return trace(motion, 350.0, 1200);
   };
   const std::vector<double> critical = at(1.0);
@@ -225,8 +224,7 @@ TEST(SpeedProfiles, BackwardsIsTheMirrorImage) {
       {{.duration_s = 0.5, .acceleration_m_per_s2 = 0.02},
        {.duration_s = 1.0, .speed_m_per_s = 0.01, .decaying_speed_m_per_s = -0.004, .time_constant_s = 0.1},
        {.duration_s = 3.0, .speed_m_per_s = 0.006, .jerk_m_per_s3 = -0.002}});
-  motion.kinetic_drift =
-      KineticDrift{KineticDrift::Course::kExponential, KineticDrift::Over::kTime, 0.5, 2.0};
+  motion.kinetic_drift = KineticDrift{KineticDrift::Form::kExponential, KineticDrift::Over::kTime, 0.5, 2.0};
   const std::vector<double> forwards = trace(motion, 350.0, 2000);
   for (BeltSegment& segment : motion.belt) {
     segment.speed_m_per_s *= -1.0;

@@ -24,12 +24,12 @@ constexpr double kDriftPerS = 0.02;
 
 /// p rises or falls by ±30 % a second about the slip: twice a ramp of 2 mm/s² at its slowest. A kink lies far
 /// from all events, in the stick after the slip.
-BeltCourse belt_with(double slope_per_s) {
+BeltMotion belt_with(double slope_per_s) {
   const double v = 0.005;
   const auto plan = PullSpeed::make({{0.0, v * (1.0 - 0.2 * slope_per_s)},
                                      {0.4, v * (1.0 + 0.2 * slope_per_s)},
                                      {0.8, v * (1.0 + 0.1 * slope_per_s)}});
-  BeltCourse belt{*plan, -0.2};
+  BeltMotion belt{*plan, -0.2};
   belt.take_off_drift(kDriftPerS);
   return belt;
 }
@@ -37,12 +37,12 @@ BeltCourse belt_with(double slope_per_s) {
 /// All six in the order onset, S, K, ω, γ, r.
 using Six = std::array<double, 6>;
 
-double value_at(const Six& p, bool captured, const BeltCourse& belt, double time_s) {
+double value_at(const Six& p, bool captured, const BeltMotion& belt, double time_s) {
   return SlipModel{{p[3], p[4], p[5]}, {p[0], p[1], p[2]}, captured, belt}.at(time_s).value;
 }
 
 /// Central difference with one step of Richardson's extrapolation: error O(h⁴).
-double difference_quotient(const Six& p, std::size_t i, double h, bool captured, const BeltCourse& belt,
+double difference_quotient(const Six& p, std::size_t i, double h, bool captured, const BeltMotion& belt,
                            double time_s) {
   const auto central = [&](double step) {
     Six up = p;
@@ -58,7 +58,7 @@ double difference_quotient(const Six& p, std::size_t i, double h, bool captured,
 TEST(RampModel, DerivativesAreThoseOfTheCourse) {
   for (const bool captured : {true, false}) {
     for (const double slope_per_s : {-0.3, 0.3}) {
-      const BeltCourse belt = belt_with(slope_per_s);
+      const BeltMotion belt = belt_with(slope_per_s);
       const SharedParameters shared = ModelCourse::tester_at(captured ? 1.3 : 2.6);
       const SlipModel model{shared, kSlip, captured, belt};
       const double level = kSlip.S - kSlip.K;
@@ -88,7 +88,7 @@ TEST(RampModel, DerivativesAreThoseOfTheCourse) {
 }
 
 TEST(RampModel, ForceAndItsRateAreContinuousAtOnsetAndCapture) {
-  const BeltCourse belt = belt_with(0.3);
+  const BeltMotion belt = belt_with(0.3);
   const SharedParameters shared = ModelCourse::tester_at(1.3);
   const SlipModel model{shared, kSlip, true, belt};
   for (const double at_s : {kSlip.onset_s, kSlip.onset_s + model.capture_s()}) {
@@ -103,7 +103,7 @@ TEST(RampModel, ForceAndItsRateAreContinuousAtOnsetAndCapture) {
 }
 
 TEST(RampModel, OneSpeedThroughoutAsAPlanIsTheSameCourse) {
-  const BeltCourse belt{*PullSpeed::make({{0.0, 0.005}}), -1.0};
+  const BeltMotion belt{*PullSpeed::make({{0.0, 0.005}}), -1.0};
   const SharedParameters shared = ModelCourse::tester_at(1.3);
   const SlipModel plain{shared, kSlip, true};
   const SlipModel planned{shared, kSlip, true, belt};
@@ -115,15 +115,15 @@ TEST(RampModel, OneSpeedThroughoutAsAPlanIsTheSameCourse) {
   }
 }
 
-TEST(BeltCourse, ClimbingTimeIsTheInverseOfTheClimb) {
-  const BeltCourse belt = belt_with(0.3);
+TEST(BeltMotion, ClimbingTimeIsTheInverseOfTheClimb) {
+  const BeltMotion belt = belt_with(0.3);
   for (const double from_s : {-0.1, 0.15, 0.7}) {
     for (const double gain : {1e-3, 0.5, 3.0}) {
       const double time_s = belt.climbing_time_s(8.0, from_s, gain);
       EXPECT_NEAR(belt.climb(8.0, from_s, time_s), gain, 1e-13) << from_s;
     }
   }
-  const BeltCourse stops{*PullSpeed::make({{0.0, 0.005}, {1.0, 0.005}, {1.0, 0.0}}), 0.0};
+  const BeltMotion stops{*PullSpeed::make({{0.0, 0.005}, {1.0, 0.005}, {1.0, 0.0}}), 0.0};
   EXPECT_TRUE(std::isinf(stops.climbing_time_s(8.0, 0.5, 4.1)));
   EXPECT_NEAR(stops.climbing_time_s(8.0, 0.5, 3.9), 3.9 / 8.0, 1e-13);
 }

@@ -45,7 +45,7 @@ TEST(Transducer, RcFilterFollowsALineExactly) {
   for (int scan = 0; scan < 3500; ++scan) {
     const double t_s = scan / kRate_Hz;
     EXPECT_NEAR(filter.output(), t_s - tau_s + tau_s * std::exp(-t_s / tau_s), 1e-13) << scan;
-    Course line{t_s};
+    ExponentialPolynomial line{t_s};
     line.add_power(1, 1.0);
     filter.follow({1.0 / kRate_Hz, line});
   }
@@ -141,7 +141,7 @@ TEST(Transducer, FollowsCourses) {
   const double tau_s = 1.0 / (2.0 * kPi * 30.0);
   Scene scene = stick_slip();
   scene.exponential_start = ExponentialStart{0.3};
-  scene.kinetic_drift = KineticDrift{KineticDrift::Course::kExponential, KineticDrift::Over::kTime, 0.4, 2.0};
+  scene.kinetic_drift = KineticDrift{KineticDrift::Form::kExponential, KineticDrift::Over::kTime, 0.4, 2.0};
   Propagator dense{motion_of(scene), 1.0 / h_s};
   std::vector<double> force(kScans * kTimes + 1);
   dense.next(force);
@@ -172,7 +172,7 @@ TEST(Transducer, FollowsACubicGivenPieceByPiece) {
                             6.0 * tau_s * tau_s * tau_s * std::expm1(-t_s / tau_s);
     // Eighty pieces with some roundings of numbers up to 1 each.
     ASSERT_NEAR(filter.output(), expected, 1e-13) << piece;
-    ForceStretch stretch{duration_s, Course{t_s * t_s * t_s}};
+    ForceStretch stretch{duration_s, ExponentialPolynomial{t_s * t_s * t_s}};
     stretch.course.add_power(1, 3.0 * t_s * t_s);
     stretch.course.add_power(2, 3.0 * t_s);
     stretch.course.add_power(3, 1.0);
@@ -188,7 +188,7 @@ TEST(Transducer, FollowsDecaysAlsoInResonance) {
   for (const double rate : {0.3, 20.0, 45.0}) {
     Transducer filter{
         {}, AntiAlias{1.0 / (2.0 * kPi * tau_s), 1}, Oscillator::from_omega(125.0, 0.02), kRate_Hz};
-    Course course{0.2};
+    ExponentialPolynomial course{0.2};
     course.add_decay(rate, 2, 1.5);
     course.add_decay(rate, 0, -0.3);
     course.add_decay(7.0, 1, 2.0);
@@ -268,7 +268,7 @@ TEST(TransducerStage, DoesNotAllocate) {
   scene.anti_alias = AntiAlias{100.0, AntiAlias::kHighestOrder};
   scene.clock_jitter = ClockJitter{1e-5};
   scene.exponential_start = ExponentialStart{0.3};
-  scene.kinetic_drift = KineticDrift{KineticDrift::Course::kExponential, KineticDrift::Over::kTime, 0.4, 2.0};
+  scene.kinetic_drift = KineticDrift{KineticDrift::Form::kExponential, KineticDrift::Over::kTime, 0.4, 2.0};
   SceneRun run{scene, kRate_Hz};
   std::vector<double> raw(64);
   const std::uint64_t before = test::allocation_count();

@@ -60,7 +60,7 @@ RC_GTEST_PROP(FirstRise, IsTheFirstOfAllSignChangesUpwards, ()) {
 RC_GTEST_PROP(FirstRise, AgreesWithTheClosedFormOfAWaveAndALevel, ()) {
   Curve y = some_curve();
   const double level = y.wave.D + some(0.001, 3.0);
-  y.course = Course{-level};
+  y.course = ExponentialPolynomial{-level};
   const auto closed = first_rise_s(y.wave, level, Touch::kCounts);
   const auto chain = first_rise_s(y, 0.0, 1e6, Touch::kCounts);
   RC_ASSERT(closed.has_value() == chain.has_value());
@@ -72,7 +72,7 @@ RC_GTEST_PROP(FirstRise, AgreesWithTheClosedFormOfAWaveAndALevel, ()) {
 // The oscillation dies out in a second; the line crosses zero after a day, or after ten years.
 TEST(FirstRise, DoesNotStepThroughWhatHasDiedOut) {
   for (const double wait_s : {86'400.0, 3e8}) {
-    Curve y{{0.0, 0.3, 0.0, model::Oscillator::from_omega(125.0, 0.05)}, Course{-1.0}};
+    Curve y{{0.0, 0.3, 0.0, model::Oscillator::from_omega(125.0, 0.05)}, ExponentialPolynomial{-1.0}};
     y.course.add_power(1, 1.0 / wait_s);
     const auto found = first_rise_s(y, 0.0, 1e12, Touch::kDoesNot);
     ASSERT_TRUE(found);
@@ -83,21 +83,21 @@ TEST(FirstRise, DoesNotStepThroughWhatHasDiedOut) {
 // sin − 1 touches zero from below; ten years of it are not searched period by period.
 TEST(FirstRise, TouchingCountsWhereItIsAskedTo) {
   const double omega = 125.0;
-  Curve y{{0.0, -0.5, 0.0, model::Oscillator::from_omega(omega, 0.0)}, Course{-0.5}};
+  Curve y{{0.0, -0.5, 0.0, model::Oscillator::from_omega(omega, 0.0)}, ExponentialPolynomial{-0.5}};
   const auto touch = first_rise_s(y, 0.0, 3e8, Touch::kCounts);
   ASSERT_TRUE(touch);
   // The square root of the rounding.
   EXPECT_NEAR(*touch, std::numbers::pi / omega, 2e-8 / omega);
-  EXPECT_FALSE(first_rise_s({y.wave, Course{-0.5 - 1e-12}}, 0.0, 3e8, Touch::kCounts));
-  EXPECT_TRUE(first_rise_s({y.wave, Course{-0.5 + 1e-12}}, 0.0, 3e8, Touch::kDoesNot));
+  EXPECT_FALSE(first_rise_s({y.wave, ExponentialPolynomial{-0.5 - 1e-12}}, 0.0, 3e8, Touch::kCounts));
+  EXPECT_TRUE(first_rise_s({y.wave, ExponentialPolynomial{-0.5 + 1e-12}}, 0.0, 3e8, Touch::kDoesNot));
 }
 
 // From zero upwards at once is now; from zero downwards it comes back.
 TEST(FirstRise, StartsAtZeroOnEitherSide) {
-  Course up{0.0};
+  ExponentialPolynomial up{0.0};
   up.add_power(1, 1.0);
   EXPECT_EQ(first_rise_s({{}, up}, 0.0, 10.0, Touch::kDoesNot), 0.0);
-  Course down{0.0};
+  ExponentialPolynomial down{0.0};
   down.add_power(1, -1.0);
   down.add_power(2, 0.5);
   const auto back = first_rise_s({{}, down}, 0.0, 10.0, Touch::kDoesNot);

@@ -53,11 +53,11 @@ Motion some_motion() {
   if (*rc::gen::inRange(0, 3) == 0) motion.paper.contact_ageing = ContactAgeing{some_number(0.0, 0.1), 1e-3};
   if (*rc::gen::arbitrary<bool>()) {
     KineticDrift drift;
-    drift.course = *rc::gen::element(KineticDrift::Course::kLinear, KineticDrift::Course::kExponential);
+    drift.form = *rc::gen::element(KineticDrift::Form::kLinear, KineticDrift::Form::kExponential);
     drift.over = *rc::gen::element(KineticDrift::Over::kTime, KineticDrift::Over::kBeltTravel);
     drift.scale = drift.over == KineticDrift::Over::kTime ? *rc::gen::element(0.01, 3.0, 20.0) : 0.7;
     drift.change = some_number(-0.3, 0.3);
-    if (drift.course == KineticDrift::Course::kLinear && drift.over == KineticDrift::Over::kTime)
+    if (drift.form == KineticDrift::Form::kLinear && drift.over == KineticDrift::Over::kTime)
       drift.scale = 20.0;
     motion.kinetic_drift = drift;
     if (!has_closed_form(motion)) motion.kinetic_drift.reset();

@@ -90,7 +90,7 @@ class LimitScene {
     speed_over_gravity_s_ = speed / model::kStandardGravity_m_per_s2;
     // The first slip neither on a scan nor half way between two; half a second of rest before the pull.
     parameters_.slip = {(175.3 / kScanRate_Hz) + 0.35 / parameters_.shared.r, 0.35, 0.30};
-    const auto course = model::UniformCourse::make(parameters_);
+    const auto course = model::UniformTrajectory::make(parameters_);
     const model::SlipModel slip{parameters_.shared, {0.0, 0.35, 0.30}, true};
     const double peak_s = slip.waveform().peak_time_s();
     const double trough_s = slip.waveform().trough_time_s();

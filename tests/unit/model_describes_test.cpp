@@ -115,7 +115,7 @@ TEST(ModelDescribes, EndsAreAskedOfAConstantBeltOnly) {
   ASSERT_FALSE(describes(estimates));
   const auto ramp = model::PullSpeed::make({{0.0, 0.001}, {10.0, 0.01}});
   ASSERT_TRUE(ramp);
-  estimates.belt = model::BeltCourse{*ramp, 0.0};
+  estimates.belt = model::BeltMotion{*ramp, 0.0};
   EXPECT_TRUE(describes(estimates));
 }
 

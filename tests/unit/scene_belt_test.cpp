@@ -166,12 +166,12 @@ TEST(SceneStartupSlack, DelaysTheForce) {
 TEST(SceneKineticDrift, ReadsTimeOrTravel) {
   const Scene over_time = scene_of(kPull + "[effects.kinetic_drift]\nchange = -0.2\nover = \"8 s\"\n");
   EXPECT_EQ(over_time.kinetic_drift->over, KineticDrift::Over::kTime);
-  EXPECT_EQ(over_time.kinetic_drift->course, KineticDrift::Course::kLinear);
+  EXPECT_EQ(over_time.kinetic_drift->form, KineticDrift::Form::kLinear);
   EXPECT_EQ(over_time.kinetic_drift->scale, 8.0);
   const Scene over_travel =
       scene_of(kPull + "[effects.kinetic_drift]\nchange = 0.2\nover = \"20 mm\"\ncourse = \"exponential\"\n");
   EXPECT_EQ(over_travel.kinetic_drift->over, KineticDrift::Over::kBeltTravel);
-  EXPECT_EQ(over_travel.kinetic_drift->course, KineticDrift::Course::kExponential);
+  EXPECT_EQ(over_travel.kinetic_drift->form, KineticDrift::Form::kExponential);
   EXPECT_EQ(over_travel.kinetic_drift->scale, 0.02);
   EXPECT_THAT((SceneRun{over_travel, 350.0}.effects()), Contains("kinetic_drift"));
 }

@@ -2,7 +2,7 @@
 /// Function of time: the sum of a polynomial and a few exponential decays. It describes belt speed, drift of
 /// K, and the force without its oscillation.
 ///
-///     Course speed{0.01};                     // v = 0.01 − 0.002 t + 0.003 (1 − e^(−5t))
+///     ExponentialPolynomial speed{0.01};                     // v = 0.01 − 0.002 t + 0.003 (1 − e^(−5t))
 ///     speed.add_power(1, -0.002);
 ///     speed.add_decay(5.0, 1, 0.003 * 5.0);
 ///     const double way = speed.integral().value(2.0);
@@ -18,7 +18,7 @@ namespace stickslip::sim {
 ///
 /// φ₁ = (1 − e^(−λt))/λ, φ₂ = (t − φ₁)/λ …: integrals of a slow decay stay accurate where e^(−λt) and the
 /// polynomial that it nearly is would cancel; λ may be of any sign.
-class Course {
+class ExponentialPolynomial {
  public:
   static constexpr int kPowers = 6;  ///< k = 0 … 5
   static constexpr int kOrders = 5;  ///< m = 0 … 4
@@ -30,29 +30,29 @@ class Course {
     std::array<double, kOrders> weight{};
   };
 
-  Course() = default;
-  explicit Course(double constant) { add_power(0, constant); }
+  ExponentialPolynomial() = default;
+  explicit ExponentialPolynomial(double constant) { add_power(0, constant); }
 
   /// Adds a t^k.
   void add_power(int k, double a);
   /// Adds b φ_m(λ, t). At most kDecays different λ.
   void add_decay(double rate_per_s, int order, double b);
-  Course& operator+=(const Course& other);
+  ExponentialPolynomial& operator+=(const ExponentialPolynomial& other);
 
   [[nodiscard]] double value(double t_s) const noexcept;
   /// Sum of the absolute values of its terms, to which the rounding error is relative.
   [[nodiscard]] double magnitude(double t_s) const noexcept;
-  [[nodiscard]] Course scaled(double factor) const;
-  [[nodiscard]] Course derivative() const;
+  [[nodiscard]] ExponentialPolynomial scaled(double factor) const;
+  [[nodiscard]] ExponentialPolynomial derivative() const;
   /// Integral from 0.
-  [[nodiscard]] Course integral() const;
+  [[nodiscard]] ExponentialPolynomial integral() const;
   /// The function of t + by_s. \param by_s ≥ 0
-  [[nodiscard]] Course later(double by_s) const;
+  [[nodiscard]] ExponentialPolynomial later(double by_s) const;
   /// Derivative plus λ times the function, for the λ of a decay; the result has no such decay.
-  [[nodiscard]] Course without_decay(int index) const;
+  [[nodiscard]] ExponentialPolynomial without_decay(int index) const;
   /// Forced response: the particular solution p of p″ + γp′ + ω₀² p = ω₀² (this). Requires a
   /// distance_from_resonance() well above zero for each decay.
-  [[nodiscard]] Course response(const model::Oscillator& oscillator) const;
+  [[nodiscard]] ExponentialPolynomial response(const model::Oscillator& oscillator) const;
 
   [[nodiscard]] int powers() const noexcept { return powers_; }  ///< Highest k + 1; 0: no polynomial.
   [[nodiscard]] int decays() const noexcept { return decays_; }
@@ -68,7 +68,8 @@ class Course {
 };
 
 /// φ₀ … φ_(count−1) of λ at t ≥ 0.
-[[nodiscard]] std::array<double, Course::kOrders> decay_integrals(double rate_per_s, double t_s, int count);
+[[nodiscard]] std::array<double, ExponentialPolynomial::kOrders> decay_integrals(double rate_per_s,
+                                                                                 double t_s, int count);
 
 /// (λ² − γλ + ω₀²)/ω₀²: distance of a decay from a free motion of the oscillator; zero is resonance, possible
 /// only for an overdamped oscillator.

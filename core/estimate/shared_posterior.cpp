@@ -1,4 +1,4 @@
-#include "core/estimate/shared_knowledge.hpp"
+#include "core/estimate/shared_posterior.hpp"
 
 #include <cmath>
 
@@ -35,7 +35,7 @@ Eigen::Vector3d vector_of(const model::SharedParameters& shared) noexcept {
 
 }  // namespace
 
-void SharedKnowledge::start(double omega, double stick_rate_per_s) {
+void SharedPosterior::start(double omega, double stick_rate_per_s) {
   best_ = {omega, 2.0 * model::kTypicalGammaOver2Omega * omega, stick_rate_per_s};
   learnt_ = {};
   if (prior_.coupling) {
@@ -54,7 +54,7 @@ void SharedKnowledge::start(double omega, double stick_rate_per_s) {
   lasting_ = {kNeverFades * learnt_.information, kNeverFades * learnt_.weighted};
 }
 
-void SharedKnowledge::learn(const SharedEvidence& evidence) {
+void SharedPosterior::learn(const SharedEvidence& evidence) {
   if (!evidence.information.allFinite() || !evidence.weighted.allFinite()) return;
   learnt_.information =
       lasting_.information + kKept * (learnt_.information - lasting_.information) + evidence.information;
@@ -62,7 +62,7 @@ void SharedKnowledge::learn(const SharedEvidence& evidence) {
   update_best();
 }
 
-void SharedKnowledge::forget_stick_rate(double stick_rate_per_s) {
+void SharedPosterior::forget_stick_rate(double stick_rate_per_s) {
   // Of the Gaussian that was learnt, the distribution of (ω, γ) whatever r is; then r anew.
   const double own = learnt_.information(2, 2);
   if (own > 0.0) {
@@ -80,7 +80,7 @@ void SharedKnowledge::forget_stick_rate(double stick_rate_per_s) {
   best_.r = stick_rate_per_s;
 }
 
-PriorTerms SharedKnowledge::at(const model::SharedParameters& shared) const {
+PriorTerms SharedPosterior::at(const model::SharedParameters& shared) const {
   PriorTerms terms = prior_.at(shared);
   const Eigen::Vector3d x = vector_of(shared);
   const Eigen::Vector3d pull = learnt_.weighted - learnt_.information * x;
@@ -94,7 +94,7 @@ PriorTerms SharedKnowledge::at(const model::SharedParameters& shared) const {
   return terms;
 }
 
-void SharedKnowledge::update_best() {
+void SharedPosterior::update_best() {
   for (int round = 0; round < kKnowledgeRounds; ++round) {
     const PriorTerms terms = at(best_);
     // Scales of ω, γ and r differ by orders: each by its own.

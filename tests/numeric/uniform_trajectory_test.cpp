@@ -1,4 +1,4 @@
-#include "core/model/uniform_course.hpp"
+#include "core/model/uniform_trajectory.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,11 +20,11 @@ model::UniformParameters paper_at(double Q) {
   return {ModelCourse::tester_at(Q), {ModelCourse::kFirstOnset_s, ModelCourse::kS, ModelCourse::kK}};
 }
 
-TEST(UniformCourse, IsTheChainOfStickAndSlip) {
+TEST(UniformTrajectory, IsTheChainOfStickAndSlip) {
   // The chain adds up one cycle after the other: 1e-16 s of rounding each, times a rate below 12/s.
   for (const double Q : {0.3, 1.3, 1.9}) {
     const ModelCourse chain = ModelCourse::captured(Q, 50);
-    const auto course = model::UniformCourse::make(paper_at(Q));
+    const auto course = model::UniformTrajectory::make(paper_at(Q));
     ASSERT_TRUE(course);
     for (std::size_t k = 0; k < chain.trace.size(); ++k) {
       ASSERT_NEAR(course->at(chain.trace.time_s[k]).value, chain.trace.value[k], 1e-13) << Q << ' ' << k;
@@ -44,8 +44,8 @@ P::Vector differences(const P& parameters, double time_s) {
       P::Vector down = parameters.vector();
       up[i] += step;
       down[i] -= step;
-      return (model::UniformCourse::make(P::from(up))->at(time_s).value -
-              model::UniformCourse::make(P::from(down))->at(time_s).value) /
+      return (model::UniformTrajectory::make(P::from(up))->at(time_s).value -
+              model::UniformTrajectory::make(P::from(down))->at(time_s).value) /
              (2.0 * step);
     };
     const double step = kSteps[static_cast<std::size_t>(i)];
@@ -54,11 +54,11 @@ P::Vector differences(const P& parameters, double time_s) {
   return result;
 }
 
-TEST(UniformCourse, SlopesAreThoseOfTheCourse) {
+TEST(UniformTrajectory, SlopesAreThoseOfTheCourse) {
   // A difference over 2e-7 of values rounded to 6e-17 is right to 1e-9; what is left after the
   // extrapolation is of fourth order. Slopes in later cycles grow to the hundreds, hence relative.
   const P parameters = paper_at(1.3);
-  const auto course = model::UniformCourse::make(parameters);
+  const auto course = model::UniformTrajectory::make(parameters);
   const double T = course->period_s();
   P::Vector largest = P::Vector::Zero();
   std::vector<P::Vector> errors;
@@ -77,25 +77,25 @@ TEST(UniformCourse, SlopesAreThoseOfTheCourse) {
   }
 }
 
-TEST(UniformCourse, ExistsOnlyWhereTheSledSticksAgain) {
-  EXPECT_TRUE(model::UniformCourse::make(paper_at(1.93)));
-  EXPECT_FALSE(model::UniformCourse::make(paper_at(1.95)));  // Q_threshold = 1.93871744784
+TEST(UniformTrajectory, ExistsOnlyWhereTheSledSticksAgain) {
+  EXPECT_TRUE(model::UniformTrajectory::make(paper_at(1.93)));
+  EXPECT_FALSE(model::UniformTrajectory::make(paper_at(1.95)));  // Q_threshold = 1.93871744784
   P turned = paper_at(1.3);
   std::swap(turned.slip.S, turned.slip.K);
-  EXPECT_FALSE(model::UniformCourse::make(turned));
+  EXPECT_FALSE(model::UniformTrajectory::make(turned));
   P unknown = paper_at(1.3);
   unknown.shared.omega = std::nan("");
-  EXPECT_FALSE(model::UniformCourse::make(unknown));
+  EXPECT_FALSE(model::UniformTrajectory::make(unknown));
 }
 
 class Information : public testing::Test {
  protected:
-  Information() : course_(*model::UniformCourse::make(parameters_)) {
+  Information() : course_(*model::UniformTrajectory::make(parameters_)) {
     for (int k = 0; k < 200; ++k) times_s_.push_back(k / 350.0);
   }
 
   P parameters_ = paper_at(1.3);
-  model::UniformCourse course_;
+  model::UniformTrajectory course_;
   std::vector<double> times_s_;
 };
 

@@ -17,9 +17,9 @@ struct SharedEvidence {
 
 /// Information filter with fading memory: 32 cycles count. The prior does not fade. Fixed size; does not
 /// allocate.
-class SharedKnowledge {
+class SharedPosterior {
  public:
-  explicit SharedKnowledge(SharedPrior prior) : prior_(std::move(prior)) {}
+  explicit SharedPosterior(SharedPrior prior) : prior_(std::move(prior)) {}
 
   /// ω and γ come from a characterisation of the tester.
   [[nodiscard]] bool characterised() const noexcept { return prior_.coupling.has_value(); }

@@ -1,4 +1,4 @@
-#include "core/model/belt_course.hpp"
+#include "core/model/belt_motion.hpp"
 
 #include <cmath>
 #include <utility>
@@ -18,10 +18,10 @@ double first_time_s(double rate, double slope, double gain) noexcept {
 
 }  // namespace
 
-BeltCourse::BeltCourse(PullSpeed plan, double start_s)
+BeltMotion::BeltMotion(PullSpeed plan, double start_s)
     : plan_(std::move(plan)), scale_(1.0 / plan_->largest_m_per_s()), start_s_(start_s) {}
 
-double BeltCourse::climbing_time_s(double r, double from_s, double gain) const noexcept {
+double BeltMotion::climbing_time_s(double r, double from_s, double gain) const noexcept {
   if (!plan_) return gain / r;
   for (double t_s = from_s - start_s_;;) {
     const double time_s = t_s + start_s_;
@@ -34,23 +34,23 @@ double BeltCourse::climbing_time_s(double r, double from_s, double gain) const n
   }
 }
 
-std::size_t BeltCourse::pull_of(double time_s) const noexcept {
+std::size_t BeltMotion::pull_of(double time_s) const noexcept {
   std::size_t pull = 0;
   if (!plan_) return pull;
   while (pull + 1 < plan_->pulls().size() && plan_->pulls()[pull + 1].start_s <= time_s - start_s_) ++pull;
   return pull;
 }
 
-double BeltCourse::pull_end_s(std::size_t pull) const noexcept {
+double BeltMotion::pull_end_s(std::size_t pull) const noexcept {
   return plan_ ? plan_->pulls()[pull].end_s + start_s_ : kForEver;
 }
 
-double BeltCourse::pull_start_s(std::size_t pull) const noexcept {
+double BeltMotion::pull_start_s(std::size_t pull) const noexcept {
   return plan_ && pull > 0 ? plan_->pulls()[pull].start_s + start_s_ : -kForEver;
 }
 
-const BeltCourse& constant_belt() noexcept {
-  static const BeltCourse belt;
+const BeltMotion& constant_belt() noexcept {
+  static const BeltMotion belt;
   return belt;
 }
 

@@ -1,4 +1,4 @@
-#include "core/sim/course.hpp"
+#include "core/sim/exponential_polynomial.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,8 +29,8 @@ double integral_series(double rate, double t, int order) {
 
 }  // namespace
 
-std::array<double, Course::kOrders> decay_integrals(double rate, double t, int count) {
-  std::array<double, Course::kOrders> phi{};
+std::array<double, ExponentialPolynomial::kOrders> decay_integrals(double rate, double t, int count) {
+  std::array<double, ExponentialPolynomial::kOrders> phi{};
   if (count == 0) return phi;
   const double z = rate * t;
   phi[0] = std::exp(-z);
@@ -56,7 +56,7 @@ double distance_from_resonance(double rate, const model::Oscillator& oscillator)
   return 1.0 + rate * (rate - oscillator.gamma_per_s) / oscillator.omega0_squared();
 }
 
-void Course::add_power(int k, double a) {
+void ExponentialPolynomial::add_power(int k, double a) {
   STICKSLIP_EXPECTS(k >= 0 && k < kPowers);
   if (a == 0.0) return;
   power_.at(static_cast<std::size_t>(k)) += a;
@@ -64,7 +64,7 @@ void Course::add_power(int k, double a) {
   while (powers_ > 0 && power(powers_ - 1) == 0.0) --powers_;
 }
 
-void Course::add_decay(double rate, int order, double b) {
+void ExponentialPolynomial::add_decay(double rate, int order, double b) {
   STICKSLIP_EXPECTS(order >= 0 && order < kOrders);
   if (b == 0.0) return;
   if (rate == 0.0) {
@@ -81,7 +81,7 @@ void Course::add_decay(double rate, int order, double b) {
   term.orders = std::max(term.orders, order + 1);
 }
 
-Course& Course::operator+=(const Course& other) {
+ExponentialPolynomial& ExponentialPolynomial::operator+=(const ExponentialPolynomial& other) {
   for (int k = 0; k < other.powers_; ++k) add_power(k, other.power(k));
   for (int j = 0; j < other.decays_; ++j) {
     const Decay& term = other.decay(j);
@@ -91,7 +91,7 @@ Course& Course::operator+=(const Course& other) {
   return *this;
 }
 
-double Course::value(double t) const noexcept {
+double ExponentialPolynomial::value(double t) const noexcept {
   double sum = 0.0;
   for (std::size_t k = static_cast<std::size_t>(powers_); k-- > 0;) sum = sum * t + power_[k];
   for (std::size_t j = 0; j < static_cast<std::size_t>(decays_); ++j) {
@@ -102,7 +102,7 @@ double Course::value(double t) const noexcept {
   return sum;
 }
 
-double Course::magnitude(double t) const noexcept {
+double ExponentialPolynomial::magnitude(double t) const noexcept {
   double sum = 0.0;
   for (std::size_t k = static_cast<std::size_t>(powers_); k-- > 0;) sum = sum * t + std::abs(power_[k]);
   for (std::size_t j = 0; j < static_cast<std::size_t>(decays_); ++j) {
@@ -114,8 +114,8 @@ double Course::magnitude(double t) const noexcept {
   return sum;
 }
 
-Course Course::scaled(double factor) const {
-  Course result;
+ExponentialPolynomial ExponentialPolynomial::scaled(double factor) const {
+  ExponentialPolynomial result;
   for (int k = 0; k < powers_; ++k) result.add_power(k, factor * power(k));
   for (int j = 0; j < decays_; ++j) {
     const Decay& term = decay(j);
@@ -125,8 +125,8 @@ Course Course::scaled(double factor) const {
   return result;
 }
 
-Course Course::derivative() const {
-  Course result;
+ExponentialPolynomial ExponentialPolynomial::derivative() const {
+  ExponentialPolynomial result;
   for (int k = 1; k < powers_; ++k) result.add_power(k - 1, k * power(k));
   for (int j = 0; j < decays_; ++j) {
     const Decay& term = decay(j);
@@ -137,8 +137,8 @@ Course Course::derivative() const {
   return result;
 }
 
-Course Course::integral() const {
-  Course result;
+ExponentialPolynomial ExponentialPolynomial::integral() const {
+  ExponentialPolynomial result;
   for (int k = 0; k < powers_; ++k) result.add_power(k + 1, power(k) / (k + 1));
   for (int j = 0; j < decays_; ++j) {
     const Decay& term = decay(j);
@@ -148,8 +148,8 @@ Course Course::integral() const {
   return result;
 }
 
-Course Course::later(double by) const {
-  Course result;
+ExponentialPolynomial ExponentialPolynomial::later(double by) const {
+  ExponentialPolynomial result;
   // Taylor's shift by repeated synthetic division.
   std::array<double, kPowers> shifted = power_;
   for (int k = 0; k < powers_; ++k) {
@@ -170,13 +170,13 @@ Course Course::later(double by) const {
   return result;
 }
 
-Course Course::without_decay(int index) const {
+ExponentialPolynomial ExponentialPolynomial::without_decay(int index) const {
   const double rate = decay(index).rate_per_s;
-  Course others = *this;
+  ExponentialPolynomial others = *this;
   others.decay_.at(static_cast<std::size_t>(index)) = others.decay_.at(static_cast<std::size_t>(decays_ - 1));
   others.decay_.at(static_cast<std::size_t>(decays_ - 1)) = {};
   --others.decays_;
-  Course result = others.derivative();
+  ExponentialPolynomial result = others.derivative();
   result += others.scaled(rate);
   // φ_m′ + λφ_m = t^(m−1)/(m−1)!, nothing for φ₀.
   for (int m = 1; m < decay(index).orders; ++m)
@@ -184,10 +184,10 @@ Course Course::without_decay(int index) const {
   return result;
 }
 
-Course Course::response(const model::Oscillator& oscillator) const {
+ExponentialPolynomial ExponentialPolynomial::response(const model::Oscillator& oscillator) const {
   const double gamma = oscillator.gamma_per_s;
   const double omega0_squared = oscillator.omega0_squared();
-  Course result;
+  ExponentialPolynomial result;
   std::array<double, kPowers + 2> drive{};  // Of the polynomial, without the factor ω₀².
   for (int k = 0; k < powers_; ++k) drive.at(static_cast<std::size_t>(k)) = power(k);
   int highest = powers_ - 1;

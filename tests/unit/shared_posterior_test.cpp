@@ -1,4 +1,4 @@
-#include "core/estimate/shared_knowledge.hpp"
+#include "core/estimate/shared_posterior.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,8 +21,8 @@ SharedEvidence evidence_of(Eigen::Index which, double value, double standard_err
 }
 
 // Turning points tell nothing of γ: after any number of them it is what it was.
-TEST(SharedKnowledge, WhatNoCycleTellsStaysAsItWas) {
-  SharedKnowledge knowledge{SharedPrior{}};
+TEST(SharedPosterior, WhatNoCycleTellsStaysAsItWas) {
+  SharedPosterior knowledge{SharedPrior{}};
   knowledge.start(kOmega, kStickRate);
   const double gamma_at_first = knowledge.best().gamma;
   const double omega = 1.02 * kOmega;
@@ -38,8 +38,8 @@ TEST(SharedKnowledge, WhatNoCycleTellsStaysAsItWas) {
 }
 
 // A new belt speed is a new first knowledge.
-TEST(SharedKnowledge, AForgottenStickRateStaysAsItWasThen) {
-  SharedKnowledge knowledge{SharedPrior{}};
+TEST(SharedPosterior, AForgottenStickRateStaysAsItWasThen) {
+  SharedPosterior knowledge{SharedPrior{}};
   knowledge.start(kOmega, kStickRate);
   for (int cycle = 0; cycle < 10; ++cycle) knowledge.learn(evidence_of(2, kStickRate, 0.05 * kStickRate));
   knowledge.forget_stick_rate(2.0 * kStickRate);

@@ -2,7 +2,7 @@
 /// Periodic stick-slip: the force of a pull whose slips share one S and one K. Cycles repeat exactly; six
 /// parameters determine every onset and capture. [Penner 1995, (9)–(22)]
 ///
-///     if (const auto course = UniformCourse::make({shared, {onset_s, S, K}})) {
+///     if (const auto course = UniformTrajectory::make({shared, {onset_s, S, K}})) {
 ///       const UniformPoint point = course->at(time_s);
 ///
 #pragma once
@@ -43,10 +43,10 @@ struct UniformPoint {
 };
 
 /// Periodic trajectory with derivatives by its six parameters.
-class UniformCourse {
+class UniformTrajectory {
  public:
   /// \return nullopt unless the oscillator oscillates, S > K, r > 0 and the sled is captured.
-  [[nodiscard]] static std::optional<UniformCourse> make(const UniformParameters& parameters);
+  [[nodiscard]] static std::optional<UniformTrajectory> make(const UniformParameters& parameters);
 
   /// Force at any time; before the first onset the sled sticks.
   [[nodiscard]] UniformPoint at(double time_s) const noexcept;
@@ -67,7 +67,7 @@ class UniformCourse {
   [[nodiscard]] const UniformParameters::Vector& period_slope() const noexcept { return period_by_; }
 
  private:
-  explicit UniformCourse(const UniformParameters& parameters);
+  explicit UniformTrajectory(const UniformParameters& parameters);
 
   double onset_s_;
   SlipModel slip_;

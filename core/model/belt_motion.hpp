@@ -1,8 +1,8 @@
 /// \file
 /// Belt speed over the time of a trace, and the rate at which the force rises while the sled sticks.
 ///
-///     BeltCourse belt;                                  // one speed throughout
-///     BeltCourse ramp{plan, start_s};                   // a plan that began at start_s of the trace
+///     BeltMotion belt;                                  // one speed throughout
+///     BeltMotion ramp{plan, start_s};                   // a plan that began at start_s of the trace
 ///     const double rate = ramp.stick_rate(r, time_s);   // c′ of a stick, r that at the plan's largest speed
 ///
 /// Stick: c′(t) = r p(t), with p the speed relative to the plan's largest. The equation of slip, c″ + γ c′ +
@@ -19,12 +19,12 @@
 
 namespace stickslip::model {
 
-class BeltCourse {
+class BeltMotion {
  public:
   /// Constant belt, p = 1.
-  BeltCourse() = default;
+  BeltMotion() = default;
   /// \param start_s  time of the trace at which the belt started.
-  BeltCourse(PullSpeed plan, double start_s);
+  BeltMotion(PullSpeed plan, double start_s);
 
   [[nodiscard]] bool is_constant() const noexcept { return !plan_; }
   /// The speed, planned or measured. Requires !is_constant().
@@ -82,6 +82,6 @@ class BeltCourse {
 };
 
 /// One speed throughout.
-[[nodiscard]] const BeltCourse& constant_belt() noexcept;
+[[nodiscard]] const BeltMotion& constant_belt() noexcept;
 
 }  // namespace stickslip::model
