@@ -20,6 +20,12 @@ struct PageOptions : BenchOptions {
   bool print = false;
 };
 
+constexpr const char* kPageExamples =
+    R"(Examples:
+  stickslip page
+  stickslip page --print                                  for a browser on another computer
+  stickslip page --socket /run/stickslip/control.sock)";
+
 /// Starts the browser of a desktop, which outlives this command and has nothing of its terminal. \return
 /// whether there is one.
 bool open_browser(const std::string& address) {
@@ -70,6 +76,7 @@ void add_page(CLI::App& app, Chosen& chosen) {
       ->type_name("PATH");
   command->add_flag("--print", options->print,
                     "print the address, with the token that lets whoever has it use the bench");
+  command->footer(kPageExamples);
   choose(*command, chosen, [options] { return run_page(*options); });
 }
 
