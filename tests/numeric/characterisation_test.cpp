@@ -131,7 +131,6 @@ TEST_F(TesterChecked, KnowingTheTesterCutsTheErrorOfSMinusK) {
 }
 
 TEST(SpeedFinding, ItsDigitsFollowTheUncertainty) {
-  constexpr double kInchPerMinute_m_per_s = 0.0254 / 60.0;
   model::Tester tester;
   tester.pull_speed_m_per_s = 0.5 * kInchPerMinute_m_per_s;
   const auto text = [&tester](double measured, double error) {

@@ -247,8 +247,8 @@ plot::Figure named_figure(bool is_hostile) {
 
 // gnuplot draws what stands between single quotes literally; a quote among it is written twice.
 RC_GTEST_PROP(OutputTextProperty, PicturesAsGnuplotIsToldThem, ()) {
-  const std::string script = plot::gnuplot_script(named_figure(true));
-  expect_same_lines(script, plot::gnuplot_script(named_figure(false)));
+  const std::string script = plot::gnuplot_script(named_figure(true), plot::PictureFormat::kSvg);
+  expect_same_lines(script, plot::gnuplot_script(named_figure(false), plot::PictureFormat::kSvg));
   for (std::size_t begin = 0; begin < script.size(); begin = script.find('\n', begin) + 1) {
     const std::string line = script.substr(begin, script.find('\n', begin) - begin);
     RC_ASSERT(std::count(line.begin(), line.end(), '\'') % 2 == 0);
