@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "io/json_text.hpp"
+#include "io/table.hpp"
 #include "report/report_page.hpp"
 #include "report/truth_table.hpp"
 
@@ -76,9 +77,11 @@ RC_GTEST_PROP(TextProperty, ACellIsNoFormulaAndReadsBack, ()) {
 }
 
 RC_GTEST_PROP(TextProperty, TheTableHasItsLinesWhateverTheFileIsCalled, ()) {
-  TableRow plain{1, {}, std::nullopt, "a.h5"};
+  const std::string hostile_name = *hostile();
+  // As wide: a name that is too long for its column stands below the table.
+  TableRow plain{1, {}, std::nullopt, std::string(io::display_width(base::printable(hostile_name)), 'a')};
   TableRow named = plain;
-  named.where = *hostile();
+  named.where = hostile_name;
   named.results.findings = {{.code = *hostile(), .text = *hostile(), .action = *hostile()}};
   plain.results.findings = {{.code = "x", .text = "x", .action = "x"}};
   const std::string text = format_table(std::array{named});
