@@ -1,5 +1,6 @@
 // What gaps and the speed of the pull make of the trace of a test.
 #include <algorithm>
+#include <bit>
 #include <optional>
 #include <utility>
 
@@ -27,6 +28,25 @@ void keep_pulled(const estimate::Trace& trace, base::LongColumn<detect::Fall>& s
   slips = std::move(kept);
 }
 
+/// A cycle with a gap in it, longer than this many median ones, has lost a slip: cycles differ by less, and
+/// two of them are longer.
+constexpr double kLongestCycle = 1.5;
+
+/// From a slip to the next.
+double cycle_s(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& falls, std::size_t slip) {
+  return estimate::time_at(trace, falls[slip + 1].peak_at) - estimate::time_at(trace, falls[slip].peak_at);
+}
+
+/// Length of the cycle that spans a gap; 0 before the first slip and after the last. \param at  first scan
+/// after the gap.
+double cycle_at_s(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& falls, std::size_t at) {
+  std::size_t next = 0;  // The first slip after the gap.
+  for (std::size_t step = std::bit_floor(falls.size()); step > 0; step /= 2) {
+    if (next + step <= falls.size() && falls[next + step - 1].peak_at < static_cast<double>(at)) next += step;
+  }
+  return next == 0 || next == falls.size() ? 0.0 : cycle_s(trace, falls, next - 1);
+}
+
 /// Relative variation of the speed, from the first slip to the last, up to which it counts as constant: an
 /// error of 1 % of the stick rate is within the precision of a single test.
 constexpr double kOneSpeed = 0.01;
@@ -51,14 +71,22 @@ void TestAnalysis::break_at_gaps(estimate::Trace& trace, base::LongColumn<detect
   const base::LongColumn<base::ScanIndex>& indices = indices_;
   const base::LongColumn<detect::Fall>& falls = slips;
   if (gaps_.empty() || falls.empty()) return;
-  // Peak and trough are half an oscillation apart: no gap that is shorter hides both. Whether what is longer
-  // hides a slip, or three, no fit can tell; nor when it happened, if the scans were not counted.
+  // Peak and trough are half an oscillation apart: no gap that is shorter hides both, but what is left of a
+  // slip may be too small for one. Whether a longer gap hides a slip, or three, no fit can tell; nor when it
+  // happened, if the scans were not counted.
   const double half =
       signal::median_of(falls.size(), [&](std::size_t i) { return falls[i].trough_at - falls[i].peak_at; });
+  const double longest_s =
+      falls.size() < 2 ? 0.0 : kLongestCycle * signal::median_of(falls.size() - 1, [&](std::size_t i) {
+                                 return cycle_s(trace, falls, i);
+                               });
   for (const Gap& gap : gaps_) {
     trace.lost_s += static_cast<double>(gap.count) / settings_.scan_rate_Hz;
-    if (!gap.estimated && static_cast<double>(gap.count) < half) continue;
     const auto after = std::lower_bound(indices.begin(), indices.end(), gap.first);
+    if (!gap.estimated && static_cast<double>(gap.count) < half &&
+        cycle_at_s(trace, falls, static_cast<std::size_t>(after - indices.begin())) <= longest_s) {
+      continue;
+    }
     if (after != indices.begin() && after != indices.end()) {
       trace.breaks.push_back(static_cast<std::size_t>(after - indices.begin()));
     }

@@ -108,6 +108,20 @@ TEST(Gap, CostsStickSlipTheCyclesItTouches) {
   std::printf("%d gaps\n", tried);
 }
 
+TEST(Gap, ThatHidesASlipMakesNoCycleOfTwiceTheLength) {
+  const Played test{"stick-slip-at-12-in-per-min.toml"};
+  const double whole_Hz = *test.analyse({}).oscillation_frequency.value;
+  // A cycle has 18 scans, a slip half of them: gaps that are shorter, from every place of a cycle on.
+  for (const std::size_t count : {5U, 7U, 8U}) {
+    for (std::size_t at = 700; at < 718; ++at) {
+      const analysis::Estimate found_Hz = test.analyse({at, count, 0}).oscillation_frequency;
+      // One cycle of twice the length among 80 would be 1.2 %.
+      EXPECT_NEAR(*found_Hz.value, whole_Hz, 0.003 * whole_Hz) << count << " scans from " << at << " on";
+      EXPECT_LT(*found_Hz.standard_error, 0.003 * whole_Hz) << count << " scans from " << at << " on";
+    }
+  }
+}
+
 /// Loaded for S g/(v ω₀²) = 43 ms, a slip of half a period, 25 ms. Without them nothing tells the stick rate.
 constexpr std::size_t kFirstSlipEnds = static_cast<std::size_t>((0.5 + 0.043 + 0.025) * kRate_Hz) + 6;
 
