@@ -87,7 +87,7 @@ class Doctor(unittest.TestCase):
     def test_no_configuration_and_a_wrong_one(self):
         found, status = self.examine()
         self.assertEqual(status, 1)
-        self.expect(found["config"], "bad", "d.toml.*there is no such file", "check-config")
+        self.expect(found["config"], "bad", "d.toml.*there is no such file", "stickslip doctor --config FILE")
         self.assertEqual({check for check, finding in found.items() if finding["verdict"] == "unknown"},
                          {"daemon", "board", "calibration", "records", "filesystem", "disk", "realtime"})
         found, status = self.examine(SIMULATED + "[record]\nfolders = 1\n")

@@ -60,6 +60,8 @@ class Cases(unittest.TestCase):
         if row["file"] == "export_with_gaps.csv":  # Another pull, which says its results itself.
             said = dict(re.findall(r"^# (\w+): ([-0-9.e]+)", (CASES / row["file"]).read_text(encoding="utf-8"), re.MULTILINE))
             expected = {name: (float(said[name]), tolerance) for name, (_, tolerance) in expected.items() if name in said}
+            # The program that wrote it counted a cycle of twice the length, in which a gap hides a slip. The truth is that of the other pulls.
+            expected["oscillation_frequency"] = (TOLERANCES["oscillation_frequency"][0], 0.05)
         with h5py.File(record) as file:
             results = file["entry/results"]
             for name, (value, tolerance) in expected.items():

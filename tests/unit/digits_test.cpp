@@ -18,7 +18,7 @@ TEST(Digits, ASpeedHasTheUnitInWhichItIsShortest) {
   EXPECT_EQ(speed_text(0.1 / 60), "100 mm/min");
   EXPECT_EQ(speed_text(0.15 / 60), "150 mm/min");
   EXPECT_EQ(speed_text(0.001), "1 mm/s");
-  EXPECT_EQ(speed_text(1.5), "1.5 m/s");
+  EXPECT_EQ(speed_text(1.0), "1 m/s");
   EXPECT_EQ(speed_text(0.0), "0 in/min");
   EXPECT_EQ(unit_of_speed(0.1 / 60).text(0.00508), "304.8 mm/min");
 }

@@ -71,7 +71,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"+1 V", Dimension::kVoltage,
             "\"+1 V\" does not begin with a decimal number; write a number and one of: V, mV, uV"},
         Bad{"0x10 V", Dimension::kVoltage, "\"0x10 V\" has the unit \"x10 V\"; allowed: V, mV, uV"},
-        Bad{"1,5 V", Dimension::kVoltage, "\"1,5 V\" has the unit \",5 V\"; allowed: V, mV, uV"},
+        Bad{"1,5 V", Dimension::kVoltage,
+            "\"1,5 V\" has a comma: the decimal sign is a point: write \"1.5 V\""},
         Bad{"1e999 V", Dimension::kVoltage, "\"1e999 V\" is outside the range of numbers"},
         Bad{"1e308 MHz", Dimension::kFrequency, "\"1e308 MHz\" is outside the range of numbers"}));
 
