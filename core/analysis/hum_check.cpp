@@ -113,8 +113,9 @@ base::Finding hum_finding(const Hum& hum, model::Regime regime) {
   std::string text =
       hum.is_of_falls
           ? fmt::format(
-                "a hum of {:.4f} at {} Hz makes the falls: the regime, S and K are the hum's, and the sled "
-                "slides",
+                "the falls are a wave of {:.4f} at {} Hz, the frequency of the mains: unless the sled itself "
+                "swings so, "
+                "regime, S and K are the hum's, and the sled slides",
                 hum.amplitude, hum.frequency_Hz)
           : fmt::format(
                 "hum of {:.4f} at {} Hz: slips that drop by less than {:.4f} are not told from sliding{}",
