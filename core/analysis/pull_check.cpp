@@ -11,9 +11,9 @@ namespace stickslip::analysis {
 namespace {
 
 /// Part of the largest force from which on a scan is loaded, and of the level below which it is not.
-constexpr double kLoaded = 0.25;
+constexpr double kPulled = 0.25;
 /// Smallest largest force, in σ, that is no noise.
-constexpr double kLargestSigmas = 12.0;
+constexpr double kLeastSigmas = 12.0;
 constexpr std::size_t kJumpScans = 2;
 constexpr double kJump = 0.5;
 constexpr double kOvershoot = 0.05;
@@ -37,12 +37,12 @@ std::optional<NoPull> no_pull(const estimate::Trace& trace, double scan_rate_Hz)
   double largest = 0.0;
   for (std::size_t k = 1; k + 1 < value.size(); ++k)
     largest = std::max(largest, median_of_three(value[k - 1], value[k], value[k + 1]));
-  if (largest < kLargestSigmas * signal::scan_noise(value, 0.0) || !(largest > 0.0)) return std::nullopt;
+  if (largest < kLeastSigmas * signal::scan_noise(value, 0.0) || !(largest > 0.0)) return std::nullopt;
   std::vector<double> loaded;
   std::size_t first = value.size();
   std::size_t last = 0;
   for (std::size_t k = 0; k < value.size(); ++k) {
-    if (!(value[k] >= kLoaded * largest)) continue;
+    if (!(value[k] >= kPulled * largest)) continue;
     first = std::min(first, k);
     last = k;
     if (loaded.size() < kLevelScans) loaded.push_back(value[k]);
@@ -60,7 +60,7 @@ std::optional<NoPull> no_pull(const estimate::Trace& trace, double scan_rate_Hz)
   for (std::size_t k = first - 1; k + kJumpScans <= last; ++k) {
     const std::size_t end = k + kJumpScans;
     const bool whole = trace.time_s[end] - trace.time_s[k] < (kJumpScans + 0.5) / scan_rate_Hz;
-    if (!whole || value[k] >= kLoaded * found.level || value[end] - value[k] < kJump * found.level) continue;
+    if (!whole || value[k] >= kPulled * found.level || value[end] - value[k] < kJump * found.level) continue;
     found.jump_at_scan = k + 1;
     return found;
   }
