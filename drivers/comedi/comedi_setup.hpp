@@ -20,7 +20,7 @@ struct ComediSetup {
 };
 
 /// Opens the board and agrees on a command. Does not touch the hardware.
-[[nodiscard]] base::Result<ComediSetup> agree_with_board(const ComediBoardSettings& settings,
+[[nodiscard]] base::Result<ComediSetup> agree_with_board(const ComediBoardSettings& asked,
                                                          ComediCalls& calls);
 
 }  // namespace stickslip::drivers
