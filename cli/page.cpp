@@ -3,6 +3,7 @@
 #include <spawn.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdlib>
 #include <memory>
 #include <string>
@@ -32,13 +33,13 @@ bool open_browser(const std::string& address) {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return false;
   std::string program = "xdg-open";
   std::string argument = address;
-  char* const words[] = {program.data(), argument.data(), nullptr};  // NOLINT(modernize-avoid-c-arrays)
+  const std::array<char*, 3> words{program.data(), argument.data(), nullptr};
   posix_spawn_file_actions_t actions{};
   ::posix_spawn_file_actions_init(&actions);
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     ::posix_spawn_file_actions_addopen(&actions, descriptor, "/dev/null", O_RDWR, 0);
   pid_t child = 0;
-  const int error = ::posix_spawnp(&child, program.c_str(), &actions, nullptr, words, environ);
+  const int error = ::posix_spawnp(&child, program.c_str(), &actions, nullptr, words.data(), environ);
   ::posix_spawn_file_actions_destroy(&actions);
   return error == 0;
 }
