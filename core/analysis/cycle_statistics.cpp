@@ -12,6 +12,7 @@
 #include <boost/math/distributions/students_t.hpp>
 
 #include "core/analysis/slip_estimator.hpp"
+#include "core/detect/fall_finder.hpp"
 #include "core/signal/statistics.hpp"
 #include "core/signal/wandering_mean.hpp"
 
@@ -32,6 +33,14 @@ std::size_t whole_cycles(const estimate::Trace& trace, const base::LongColumn<de
     if (estimate::is_broken(trace, slips[i].peak_at, slips[i + 1].peak_at)) --count;
   }
   return count;
+}
+
+/// The level about which peak, trough and next peak swing. Aitken's Δ² [Math. Proc. Edinburgh 45, 1926] is
+/// exact for a damped oscillation, where their mean lies too high by a part of the decay, and is the mean of
+/// peak and trough where the next peak is as high.
+double centre(const detect::Fall& slip, double next_peak) {
+  const double turns = slip.peak + next_peak - 2.0 * slip.trough;
+  return (slip.peak * next_peak - slip.trough * slip.trough) / turns;
 }
 
 }  // namespace
@@ -85,21 +94,21 @@ estimate::Drift significant_drift(const estimate::Trace& trace, const base::Long
 }
 
 std::optional<base::Finding> level_finding(const base::LongColumn<detect::Fall>& slips) {
-  constexpr std::size_t kFewestSlips = 24;  // Eight in a third: fewer tell nothing of how they wander.
-  constexpr double kSure = 3.0;
-  if (slips.size() < kFewestSlips) return std::nullopt;
-  const std::size_t third = slips.size() / 3;
+  constexpr std::size_t kFewestCycles = 24;  // Eight in a third: fewer tell nothing of how they wander.
+  constexpr double kLevel = 0.0027;          // Three standard deviations.
+  if (slips.size() < kFewestCycles + 1) return std::nullopt;
+  const std::size_t cycles = slips.size() - 1;
+  const std::size_t third = cycles / 3;
   const auto mean_from = [&](std::size_t first) {
     signal::WanderingMean mean;
-    for (std::size_t i = first; i < first + third; ++i) {
-      const detect::Fall slip = slips[i];
-      mean.add(0.5 * (slip.peak + slip.trough));
-    }
+    for (std::size_t i = first; i < first + third; ++i) mean.add(centre(slips[i], slips[i + 1].peak));
     return std::pair{mean.mean(), mean.error_of_mean()};
   };
   const auto [first, first_error] = mean_from(0);
-  const auto [last, last_error] = mean_from(slips.size() - third);
-  if (!(std::abs(last - first) > kSure * std::hypot(first_error, last_error))) return std::nullopt;
+  const auto [last, last_error] = mean_from(cycles - third);
+  const boost::math::students_t of_errors{2.0 * static_cast<double>(third - 1)};
+  const double limit = boost::math::quantile(boost::math::complement(of_errors, 0.5 * kLevel));
+  if (!(std::abs(last - first) > limit * std::hypot(first_error, last_error))) return std::nullopt;
   return base::make_finding(base::FindingCode::kLevelDrift,
                             fmt::format("the level drifts along the track, from {:.4f} in the first third of "
                                         "the slips to {:.4f} in the last: "

@@ -20,8 +20,9 @@ namespace stickslip::analysis {
 [[nodiscard]] estimate::Drift significant_drift(const estimate::Trace& trace,
                                                 const base::LongColumn<detect::Fall>& slips);
 
-/// The finding if the means of peak and trough differ between the first and the last third of the
-/// slips by more than they wander in between: S and K then hold for this stretch of the track alone.
+/// The finding if the level about which slips swing differs between the first and the last third of them by
+/// more than it wanders in between, at the level of three standard deviations: S and K then hold for this
+/// stretch of the track alone.
 [[nodiscard]] std::optional<base::Finding> level_finding(const base::LongColumn<detect::Fall>& slips);
 
 /// Shape of the cycles, of which each has a fall and the rise to the next.

@@ -78,6 +78,28 @@ void tell_held_damping(TestResults& results) {
     *estimate = none;
 }
 
+bool may_never_have_stuck(const TesterEstimate& tester, const TestResults& results) {
+  constexpr double kNear = 0.9;
+  if (!results.mu_k.value) return false;
+  const double omega0_squared =
+      tester.omega * tester.omega * (1.0 + tester.gamma_over_2omega * tester.gamma_over_2omega);
+  return tester.speed_over_gravity_s * omega0_squared > kNear * tester.omega * *results.mu_k.value;
+}
+
+void void_start(const TesterEstimate& tester, double gravity_m_per_s2, TestResults& results) {
+  const double fastest_m_per_s = results.mu_k.value.value_or(0.0) * gravity_m_per_s2 / tester.omega;
+  const std::string why = fmt::format(
+      "the belt is about as fast as the {:.3g} m/s, K g/omega, up to which a sled comes to rest on it before "
+      "the first slip: the force may have swung about K from the start on",
+      fastest_m_per_s);
+  for (Estimate* estimate :
+       {&results.mu_s, &results.delta_mu, &results.Q, &results.threshold_speed, &results.pull_speed_measured})
+    *estimate = Estimate::none(why);
+  base::add(results.findings,
+            base::make_finding(base::FindingCode::kFastBelt, "S and S - K are not given: " + why,
+                               {{"fastest_speed", fastest_m_per_s, "m/s"}}));
+}
+
 void take_misfit(const Misfit& misfit, TestResults& results) {
   results.misfit = misfit.systematic();
   if (const auto place = misfit.place())

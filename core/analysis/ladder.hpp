@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "core/analysis/characterisation.hpp"
 #include "core/analysis/model_results.hpp"
 #include "core/analysis/results.hpp"
 #include "core/base/finding.hpp"
@@ -31,6 +32,16 @@ void add_distance(const TestResults& other_rung, TestResults& results);
 /// of K and S − K what a typical γ leaves open: γ/2ω between 0 and twice that. Peak and trough hold; K =
 /// (trough + e peak)/(1 + e) with e = exp(−πγ/2ω) moves by π/2 of the amplitude for each unit of γ/2ω.
 void tell_held_damping(TestResults& results);
+
+/// Whether the sled may not have come to rest on the belt before its first slip. Friction K g takes it along:
+/// without damping c = K (1 − cos ωt), and the sled reaches the belt's speed v if v ≤ K g/ω, or r/ω ≤ K.
+/// Beyond that the force swings about K from the start on, up to 2K, and S is not in the trace. A fit that
+/// takes the first swing for a slip finds r/ω from 0.92 K to K. \param tester  of a test in which no slip was
+/// captured.
+[[nodiscard]] bool may_never_have_stuck(const TesterEstimate& tester, const TestResults& results);
+
+/// Takes away what the first slip tells, and adds the finding kFastBelt.
+void void_start(const TesterEstimate& tester, double gravity_m_per_s2, TestResults& results);
 
 /// Fills misfit and misfit_place.
 void take_misfit(const Misfit& misfit, TestResults& results);

@@ -21,10 +21,11 @@ struct NoPull {
 
 /// Nullopt for a pull, and for a trace that begins or ends under load or lies in the noise.
 ///
-/// A jump: the force rises from below a quarter of its level L by more than L/2 within two scans, and three
-/// scans together never exceed L by more than L/20. A spring that is stretched so fast gains r ≥ L/4 a scan;
-/// the sled, at rest until the force reaches the level at which it slides, then lags behind the belt, and the
-/// force overshoots by r/ω without damping and by r/(eω) with critical damping: by 0.12 L at
+/// A jump: the force rises from below a quarter of its level L by more than L/2 within three scans, as a
+/// switched signal does behind an anti-alias filter of a sixth of the scan rate, and three scans together
+/// never exceed L by more than L/20. A spring that is stretched so fast gains r ≥ L/6 a scan; the sled, at
+/// rest until the force reaches the level at which it slides, then lags behind the belt, and the force
+/// overshoots by r/ω without damping and by r/(eω) with critical damping: by 0.078 L at
 /// estimate::kFewScansACycle = 8, and by more with more scans.
 ///
 /// A touch: less than 0.25 s lie between the first and the last scan above L/4.

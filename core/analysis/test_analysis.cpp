@@ -16,6 +16,7 @@
 #include "core/analysis/model_results.hpp"
 #include "core/analysis/sections.hpp"
 #include "core/analysis/signal_check.hpp"
+#include "core/analysis/slack.hpp"
 #include "core/analysis/slip_list.hpp"
 #include "core/analysis/traditional.hpp"
 #include "core/detect/regime_rule.hpp"
@@ -212,6 +213,7 @@ TestResults TestAnalysis::finish() {
           ? Estimate::none("the trace begins under load: the peak before the first slip is not in it")
           : traditional.static_coefficient;
   results.kinetic_coefficient = traditional.kinetic_coefficient;
+  find_slack(slips, sigma, trace, settings_.scratch_folder);
   if (slips.empty()) {
     const detect::RegimeVerdict verdict = detect::judge_regime(0, {}, detect::Description::kFits);
     results.regime = verdict.regime;
@@ -272,6 +274,7 @@ TestResults TestAnalysis::finish() {
     results.stick_cycle_count = verdict.regime == model::Regime::kUndecided
                                     ? Estimate::none("undecided: " + verdict.reason)
                                     : Estimate::of(static_cast<double>(estimates.captured));
+    if (estimates.rung == Rung::kTurningPoints) void_slack_turns(trace, verdict.regime, estimates.results);
     take_model_results(estimates.results, results);
     results.mu_slope = mu_slope(trace, slips, sigma, estimates);
     if (fits_whole_test() && estimates.model_describes) speed_results(trace, estimates, results);
@@ -285,6 +288,7 @@ TestResults TestAnalysis::finish() {
     base::add(results.findings, hum_finding(*hum, results.regime));
   if (auto finding = sampling_finding(settings_.scan_rate_Hz, results))
     base::add(results.findings, *std::move(finding));
+  if (auto finding = slack_finding(trace, slips.size())) base::add(results.findings, *std::move(finding));
   if (auto finding = level_finding(slips)) base::add(results.findings, *std::move(finding));
   results.drift_rate = drift_of(trace, slips);
   void_results(check, results);
@@ -476,6 +480,10 @@ void TestAnalysis::speed_results(const estimate::Trace& trace, const TestEstimat
     return;
   }
   const TesterEstimate& found = *estimates.tester;
+  if (estimates.captured == 0 && may_never_have_stuck(found, results)) {
+    void_start(found, settings_.tester.gravity_m_per_s2, results);
+    return;
+  }
   results.pull_speed_measured =
       tester_check_ ? tester_check_->pull_speed : pull_speed_of(found, settings_.tester.gravity_m_per_s2);
   if (results.pull_speed_measured.value) {

@@ -96,11 +96,12 @@ base::LongColumn<detect::Fall> slips_at(const std::vector<double>& levels) {
 }
 
 TEST(LevelDrift, IsToldFromThreeStandardErrorsOfTheThirdsOn) {
-  // Levels 0.3 ± 0.001 in turn: the mean of a third of 8 has 0.001/√7; their difference √2 times that.
-  const double error = 0.001 / std::sqrt(7.0) * std::numbers::sqrt2;
+  // Levels 0.3 ± 0.001 in turn: with the next peak the centre is half as far off, the mean of a third of 8 by
+  // 0.0005/√7, their difference by √2 times that. Three standard deviations are 3.6 of 14 degrees of freedom.
+  const double error = 0.0005 / std::sqrt(7.0) * std::numbers::sqrt2;
   const auto levels = [&](double step) {
     std::vector<double> values;
-    for (int i = 0; i < 24; ++i)
+    for (int i = 0; i < 25; ++i)
       values.push_back(0.3 + (i % 2 == 0 ? 0.001 : -0.001) + (i < 16 ? 0.0 : step));
     return values;
   };

@@ -9,7 +9,10 @@ say "conforms"
 
 # Channel 1 of comedi_test is a square wave in step with the saw-tooth of channel 0.
 use second
-load_cell_zero="-5 V" configure '[board.comedi]' 'speed_channel = 1' 'speed_gain = "1 mm/s/V"'
+chosen='speed_channel = 1
+speed_gain = "1 mm/s/V"'
+load_cell_zero="-5 V" configure
+chosen=''
 start_daemon
 await current_test '[0-9]'
 sleep 3
