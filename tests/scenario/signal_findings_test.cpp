@@ -374,13 +374,14 @@ TEST(SignalFindings, NoneIsOfASoundTest) {
   }
 }
 
-/// Rates at which a sound test has a finding by chance, as counted among 300 (docs/findings.md).
+/// Rates at which a sound test has a finding by chance: upper limits of 95 % of those counted among 10 000
+/// (docs/findings.md).
 struct Rate {
   const char* code;
   double share;
 };
-constexpr Rate kByChance[] = {
-    {"level-drift", 0.003}, {"pull-speed", 0.003}, {"not-fitted", 0.01}, {"misfit", 0.003}};
+constexpr Rate kByChance[] = {{"not-fitted", 0.0076}, {"pull-speed", 0.0026}, {"level-drift", 0.001},
+                              {"slack", 0.0007},      {"fast-belt", 0.0007},  {"misfit", 0.0005}};
 /// Of K g/ω: 0.9 less what the fit of a loading of three scans leaves open.
 constexpr double kSurelySlow = 0.85;
 
@@ -411,8 +412,6 @@ TEST(SignalFindings, OfSoundTestsFewHaveAFindingByChance) {
   for (const auto& [code, share] : kByChance)
     EXPECT_LE(counts[code], test::highest_count(tests, share)) << code;
   for (const char* code : kOfTheSignal) EXPECT_EQ(counts[code], 0) << code;
-  EXPECT_EQ(counts["slack"], 0);
-  EXPECT_EQ(counts["fast-belt"], 0);
 }
 
 }  // namespace
