@@ -47,8 +47,8 @@ class TheSimulatorItself(unittest.TestCase):
         # The highest step is by half a step off the peak at the most.
         below = math.sqrt(1.0 + Q * Q) * (setup.S - setup.K) * (omega / STEPS_PER_S / 2.0) ** 2 / 2.0
         peak = setup.K + (setup.S - setup.K) * math.sqrt(1.0 + Q * Q)  # [2]
-        self.assertLess(max(forces), peak + 1e-9)
-        self.assertGreater(max(forces), peak - below - 1e-9)
+        self.assertLess(max(forces), peak + 1e-8)
+        self.assertGreater(max(forces), peak - below - 1e-8)
         self.assertAlmostEqual((onsets[-1] - onsets[0]) / STEPS_PER_S / (len(onsets) - 1), period_s, delta=1.0 / STEPS_PER_S / (len(onsets) - 1))
 
     def test_an_onset_is_at_S_and_a_capture_at_the_belts_speed(self):
@@ -57,7 +57,7 @@ class TheSimulatorItself(unittest.TestCase):
         for sled in self.run_for(1.0):
             if not sled.sticks and sled.slips:
                 radius = math.hypot(sled.x - setup.K, sled.u / math.sqrt(sled.omega0_squared))
-                self.assertAlmostEqual(radius, math.hypot(setup.S - setup.K, sled.rate / math.sqrt(sled.omega0_squared)), delta=1e-9)
+                self.assertAlmostEqual(radius, math.hypot(setup.S - setup.K, sled.rate / math.sqrt(sled.omega0_squared)), delta=1e-7)
 
     def test_filters_have_their_response(self):
         step_s = 1.0 / STEPS_PER_S
@@ -67,9 +67,12 @@ class TheSimulatorItself(unittest.TestCase):
             return math.sqrt(2.0) * numpy.std(filtered(numpy.sin(2.0 * math.pi * frequency * times))[STEPS_PER_S:])
 
         for frequency in (20.0, 60.0, 120.0):
+            straight = numpy.sinc(frequency * step_s) ** 2  # Of lines between samples, for each section.
             ratio = frequency / 80.0
-            self.assertAlmostEqual(gain(lambda signal: second_order(signal, step_s, 80.0, 0.05), frequency), 1.0 / math.hypot(1.0 - ratio**2, 0.1 * ratio), delta=2e-3)
-            self.assertAlmostEqual(gain(lambda signal: butterworth(signal, step_s, 60.0, 4), frequency), 1.0 / math.sqrt(1.0 + (frequency / 60.0) ** 8), delta=2e-3)
+            cell = straight / math.hypot(1.0 - ratio**2, 0.1 * ratio)
+            self.assertAlmostEqual(gain(lambda signal: second_order(signal, step_s, 80.0, 0.05), frequency), cell, delta=1e-4)
+            corner = straight**2 / math.sqrt(1.0 + (frequency / 60.0) ** 8)
+            self.assertAlmostEqual(gain(lambda signal: butterworth(signal, step_s, 60.0, 4), frequency), corner, delta=1e-4)
 
 
 class Results(unittest.TestCase):

@@ -17,8 +17,8 @@ import numpy
 
 GRAVITY_M_PER_S2 = 9.80665
 M_PER_S_OF_IN_PER_MIN = 0.0254 / 60.0
-# Of the motion in a second, at the least: 350 steps a cycle leave 1e-9 of the amplitude.
-STEPS_PER_S = 7000
+# Of the motion, at the least: 175 steps a cycle leave 1e-7 of the amplitude.
+STEPS_PER_S = 3500
 BISECTIONS = 50
 
 
@@ -63,6 +63,8 @@ class Sled:
     def belt(self, t):
         """dx/dt of a sled that sticks to the belt, and its derivative."""
         a, w = self.setup.modulation, 2.0 * math.pi * self.setup.modulation_frequency
+        if not a:
+            return self.rate, 0.0
         return self.rate * (1.0 + a * math.sin(w * t)), self.rate * a * w * math.cos(w * t)
 
     def force(self, x):
