@@ -19,8 +19,14 @@ SEED = 1
 TESTS = 3
 # Of standard errors, where the convention of S is the same in simulator and program, and so the systematic error none. 24 numbers: one in 700 draws fails.
 STANDARD_ERRORS = 4.0
+# Of both errors together.
+ERRORS = 3.0
 # Rows that are neither within their errors nor flagged; docs/detector-limits.md has their figures.
 KNOWN_LIMITS = {"creep to 0.05 v, ring-down"}
+IDEAL = {"ideal", "ideal, ring-down"}
+# Rows that each test of the table flags.
+FLAGGED = {"load cell of 80 Hz": "misfit", "load cell of 60 Hz, 6 in/min": "misfit", "8 bits, noise of 1/8 step": "coarse-steps",
+           "creep to 0.3 v, ring-down": "not-fitted"}
 
 
 class TheSimulatorItself(unittest.TestCase):
@@ -77,24 +83,26 @@ class TheSimulatorItself(unittest.TestCase):
 
 class Results(unittest.TestCase):
     def test_an_ideal_instrument_finds_the_truth(self):
-        for row in ("ideal", "ideal, ring-down"):
+        for row in IDEAL:
             for test, found in enumerate(outcomes(PROGRAM, row, TESTS + 1, SEED)):
                 self.assertEqual(found.regime, found.expected_regime, (row, SEED + test))
                 self.assertEqual(found.findings, [], (row, SEED + test))
                 for name, number in found.numbers.items():
                     with self.subTest(row=row, seed=SEED + test, result=name):
                         self.assertLessEqual(abs(number.z(systematic=False)), STANDARD_ERRORS)
-                        self.assertLessEqual(abs(number.z()), 3.0)
+                        self.assertLessEqual(abs(number.z()), ERRORS)
 
     def test_another_one_is_within_its_errors_or_flagged(self):
-        for row in ROWS:
+        for row in (row for row in ROWS if row not in IDEAL):
             for test, found in enumerate(outcomes(PROGRAM, row, TESTS, SEED)):
                 number = found.numbers["delta_mu"]
                 print(f"{row:34} seed {SEED + test}: {found.regime}, z {number.z():+.2f}, {', '.join(found.findings) or 'no finding'}")
                 with self.subTest(row=row, seed=SEED + test):
                     self.assertEqual(found.regime, found.expected_regime)
+                    if row in FLAGGED:
+                        self.assertIn(FLAGGED[row], found.findings)
                     if row not in KNOWN_LIMITS:
-                        self.assertTrue(found.honest(), f"S - K is off by {number.z():+.2f} errors, and no finding says so")
+                        self.assertTrue(found.honest(ERRORS), f"S - K is off by {number.z():+.2f} errors, and no finding says so")
 
 
 if __name__ == "__main__":

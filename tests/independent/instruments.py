@@ -120,7 +120,7 @@ def table_row(name, found):
 
 def main():
     build = pathlib.Path(sys.argv[1])
-    tests, seed = (int(word) for word in [*sys.argv[2:4], *["200", "1"][len(sys.argv) - 2:]])
+    tests, seed = (int(word) for word in [*sys.argv[2:4], *["60", "1"][len(sys.argv) - 2:]])
     base = Setup()
     print(f"{tests} tests a row, seeds from {seed} on; S {base.S}, K {base.K} (ring-down: S {RING_DOWN['S']}), {base.frequency:g} Hz, gamma/2omega {base.damping}, "
           f"{base.speed:g} in/min, {base.rate:g} Hz, {base.pull:g} s, noise {base.noise}\n"
