@@ -137,7 +137,7 @@ void cvode_at_error_1e_9(benchmark::State& state) { run(state, *accurate_enough(
 BENCHMARK(cvode_at_error_1e_9);
 
 void peer_odeint_dopri5_at_error_1e_9(benchmark::State& state) {
-  run(state, *accurate_enough(accuracy::make_odeint));
+  run(state, *accurate_enough(accuracy::make_dormand_prince));
 }
 BENCHMARK(peer_odeint_dopri5_at_error_1e_9);
 

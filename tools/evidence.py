@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Figures of many random tests: `./dev evidence [NAME...] [--seed N] [--tests N] [--write]`.
 
-Runs the programs NAME of bench/ (all unless named; hours) and prints what they print, under program, commit, count and seed.
+Runs the programs NAME of bench/ and tests/independent (all unless named; hours) and prints what they print, under program, commit, count and seed.
 --write puts it into docs/evidence.md, in place of what stands there of the same program.
 """
 
@@ -12,8 +12,16 @@ import subprocess
 import sys
 
 # Tests of one row, unless told, as the documents quote them.
-COUNTS = {"estimator": 4000, "escape": 10000, "regime": 10000, "promise": 1000, "scatter": 1000, "ramp": 400, "consistency": 100000}
+COUNTS = {"estimator": 4000, "escape": 10000, "regime": 10000, "promise": 1000, "scatter": 1000, "ramp": 400, "consistency": 100000,
+          "instrument": 60}
 ROOT = pathlib.Path(__file__).parents[1]
+BUILD = ROOT / "build/bench"
+# (what is built, what is run) where it is no program of bench/ that is called NAME_limits.
+SCRIPTS = {"instrument": ("stickslip", ["/usr/bin/python3", ROOT / "tests/independent/instruments.py", BUILD])}
+
+
+def program(name):
+    return SCRIPTS.get(name, (f"{name}_limits", [BUILD / f"bench/{name}_limits"]))
 
 
 def main():
@@ -28,12 +36,12 @@ def main():
     if asked.seed < 1 or (asked.tests is not None and asked.tests < 2):
         parser.error("--seed takes a number from 1, --tests one from 2")
     names = asked.names or list(COUNTS)
-    targets = [f"{name}_limits" for name in names]
-    subprocess.run(["cmake", "--build", ROOT / "build/bench", "--target", *targets], stdout=sys.stderr, check=True)
+    targets = [program(name)[0] for name in names]
+    subprocess.run(["cmake", "--build", BUILD, "--target", *targets], stdout=sys.stderr, check=True)
     commit = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True).stdout.strip() or "unknown"
     for name in names:
         count = asked.tests or COUNTS[name]
-        done = subprocess.run([ROOT / f"build/bench/bench/{name}_limits", str(count), str(asked.seed)], stdout=subprocess.PIPE, text=True, check=True)
+        done = subprocess.run([*program(name)[1], str(count), str(asked.seed)], stdout=subprocess.PIPE, text=True, check=True)
         # A program's own bars would make its lines a table of Markdown; a block of text stays as it is printed.
         section = f"## {name}\n\nCommit {commit}, {count} tests a row, seed {asked.seed}.\n\n```text\n{done.stdout.strip()}\n```\n"
         print(section, flush=True)

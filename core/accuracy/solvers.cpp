@@ -61,7 +61,9 @@ std::vector<std::unique_ptr<Method>> shipped_methods() {
   std::vector<std::unique_ptr<Method>> methods;
   methods.push_back(make_exact());
   for (int digits = 3; digits <= 12; ++digits) methods.push_back(make_cvode(std::pow(10.0, -digits)));
-  for (const double tolerance : {1e-3, 1e-6, 1e-9, 1e-12}) methods.push_back(make_odeint(tolerance));
+  for (const auto make : {make_dormand_prince, make_bulirsch_stoer}) {
+    for (int digits = 3; digits <= 13; digits += 2) methods.push_back(make(std::pow(10.0, -digits)));
+  }
   for (const int steps : {1, 4, 16, 64, 256, 1024}) methods.push_back(make_euler(steps));
   for (const double width : {0.1, 0.03, 0.01, 0.003}) methods.push_back(make_tanh(width));
   return methods;

@@ -48,16 +48,33 @@ TEST(Convergence, DormandPrinceHasOrderFiveOnASlip) {
   for (const int steps : {16, 32}) EXPECT_NEAR(std::log2(error(steps) / error(2 * steps)), 5.0, 0.3) << steps;
 }
 
-// The step follows from the tolerance as tol^(1/5), the error from the step as h⁵; a cycle starts afresh, so
-// what is added up are times. A thousandth of the tolerance: a hundredth of the error at the least.
+// A step's error is the tolerance, and a cycle starts afresh, so what is added up are times: a thousandth of
+// the tolerance leaves a hundredth of the error at the most, with either stepper.
 TEST(Convergence, OdeintFollowsItsTolerance) {
   const sim::Motion motion = motion_at(1.3, 0.022);
-  const double coarse = error_of(*accuracy::make_odeint(1e-6), motion, 1000);
-  const double fine = error_of(*accuracy::make_odeint(1e-9), motion, 1000);
-  const double finest = error_of(*accuracy::make_odeint(1e-12), motion, 1000);
-  EXPECT_LT(fine, coarse / 100.0);
-  EXPECT_LT(finest, fine / 100.0);
-  EXPECT_LT(fine, 1e-7);
+  for (const auto make : {accuracy::make_dormand_prince, accuracy::make_bulirsch_stoer}) {
+    const double coarse = error_of(*make(1e-6), motion, 1000);
+    const double fine = error_of(*make(1e-9), motion, 1000);
+    const double finest = error_of(*make(1e-12), motion, 1000);
+    EXPECT_LT(fine, coarse / 100.0) << make(1e-9)->name();
+    EXPECT_LT(finest, fine / 100.0) << make(1e-9)->name();
+    EXPECT_LT(fine, 1e-7) << make(1e-9)->name();
+  }
+}
+
+// The peer goes on in its own steps: scans that lie a hundred times as close are read from the same ones.
+TEST(Convergence, OdeintDoesNotStopAtScans) {
+  const sim::Motion motion = motion_at(1.3, 0.022);
+  constexpr std::size_t kFiner = 100;
+  std::vector<double> coarse(100);
+  std::vector<double> fine(kFiner * coarse.size());
+  for (const auto make : {accuracy::make_dormand_prince, accuracy::make_bulirsch_stoer}) {
+    (void)make(1e-6)->run(motion, kRate_Hz, 1, coarse);
+    (void)make(1e-6)->run(motion, kFiner * kRate_Hz, 1, fine);
+    // Not to the last bit: the times of scans are rounded. A step more or less would show at 1e-7.
+    for (std::size_t scan = 0; scan < coarse.size(); ++scan)
+      EXPECT_NEAR(coarse[scan], fine[kFiner * scan], 1e-13);
+  }
 }
 
 // Order 1, seen where no capture is decided anew: a ring-down. Halving the step halves the error.
@@ -91,10 +108,24 @@ TEST(Convergence, PeersTakePartInWholeTests) {
   sim::Motion motion = motion_at(1.3, 0.022);
   motion.one_way_coupling = true;
   motion.belt = {{0.1, 0.0, false}, {1.0, 0.00508, false}, {0.5, 0.0, false}, {0.5, -0.00508, true}};
-  EXPECT_LT(error_of(*accuracy::make_odeint(1e-9), motion, 1000), 1e-6);
+  sim::Motion slack = motion;  // In each cycle.
+  slack.mu_s = 0.75;
   EXPECT_LT(error_of(*accuracy::make_euler(1024), motion, 1000), 1e-2);
-  motion.mu_s = 0.75;  // With slack in each cycle.
-  EXPECT_LT(error_of(*accuracy::make_odeint(1e-9), motion, 500), 1e-4);
+  for (const auto make : {accuracy::make_dormand_prince, accuracy::make_bulirsch_stoer}) {
+    EXPECT_LT(error_of(*make(1e-9), motion, 1000), 1e-7) << make(1e-9)->name();
+    EXPECT_LT(error_of(*make(1e-9), slack, 500), 1e-6) << make(1e-9)->name();
+  }
+}
+
+// A belt that comes back without halting, and a sled that it carries away; a tight coupling that is pushed.
+TEST(Convergence, OdeintSlidesEitherWay) {
+  for (const bool one_way : {true, false}) {
+    sim::Motion motion = motion_at(1.3, 0.022);
+    motion.one_way_coupling = one_way;
+    motion.belt = {{1.0, 0.00508, false}, {1.0, -0.00508, false}, {1.0, 0.01, false}};
+    for (const auto make : {accuracy::make_dormand_prince, accuracy::make_bulirsch_stoer})
+      EXPECT_LT(error_of(*make(1e-9), motion, 1050), 1e-6) << make(1e-9)->name() << one_way;
+  }
 }
 
 }  // namespace
