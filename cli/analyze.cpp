@@ -159,9 +159,9 @@ void add_analyze(CLI::App& app, Chosen& chosen) {
   command->add_option("files", options->files, "records")->required()->type_name("FILE.h5");
   add_method_option(*command, options->method);
   command
-      ->add_option(
-          "--tester", options->tester,
-          "what `stickslip characterise` wrote: S and K become surer, and what speaks against it is told")
+      ->add_option("--tester", options->tester,
+                   "file that `stickslip characterise` wrote: makes S and K more certain; a test that "
+                   "contradicts it has a finding")
       ->type_name("FILE.toml");
   command
       ->add_option("--estimator", options->estimator,
@@ -170,10 +170,11 @@ void add_analyze(CLI::App& app, Chosen& chosen) {
                    "with them omega, gamma and what needs them); default: as the record says")
       ->type_name("NAME");
   command
-      ->add_option("--keep", options->keep,
-                   "leave in what is taken care of otherwise, to see what it does: \"spikes\", \"drift\", "
-                   "\"first-slip\" (its peak is often not representative), one each time; \"nothing\" takes "
-                   "care of all; default: as the record says")
+      ->add_option(
+          "--keep", options->keep,
+          "do not correct for this, to see what it does: \"spikes\", \"drift\", "
+          "\"first-slip\" (its peak is often not representative), one each time; \"nothing\" corrects "
+          "all; default: as the record says")
       ->type_name("WHAT")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

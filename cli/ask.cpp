@@ -30,7 +30,7 @@ void add_bench_options(CLI::App& command, BenchOptions& options, bool commands) 
   if (commands) {
     command
         .add_option("--as", options.who,
-                    "who commands; default: user@host. Others are refused for half a minute")
+                    "your name as controller; default: user@host. Others are refused for half a minute")
         ->type_name("NAME");
   }
 }

@@ -121,15 +121,16 @@ void add_batch_begin(CLI::App& batch, Chosen& chosen) {
   command->add_option("--replicates", options->replicates, "sheets at each speed")->type_name("N");
   command->add_option("--slides", options->slides, "pulls of each sheet")->type_name("N");
   command
-      ->add_option("--limit", options->limits,
-                   "what a result may be, as mu_k=0.2:0.4 or \"period_median=1 s:2 s\"; may be repeated")
+      ->add_option(
+          "--limit", options->limits,
+          "range that a result has to keep, as mu_k=0.2:0.4 or \"period_median=1 s:2 s\"; may be repeated")
       ->type_name("RESULT=LOWEST:HIGHEST");
   choose(*command, chosen, [options] { return begin_batch(*options); });
 }
 
 void add_batch_end(CLI::App& batch, Chosen& chosen) {
   const auto options = std::make_shared<BenchOptions>();
-  CLI::App* command = batch.add_subcommand("end", "no more tests of this batch");
+  CLI::App* command = batch.add_subcommand("end", "end the batch: it gets no more tests");
   command->footer(kEndExamples);
   add_bench_options(*command, *options, true);
   choose(*command, chosen, [options] {
@@ -153,7 +154,8 @@ Examples:
 
 void add_batch(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<BenchOptions>();
-  CLI::App* command = app.add_subcommand("batch", "tests planned together; without more: how far they are");
+  CLI::App* command =
+      app.add_subcommand("batch", "plan tests together; without a subcommand: show how far they are");
   command->footer(kBatchExamples);
   command->require_subcommand(0, 1);
   add_bench_options(*command, *options, false);

@@ -15,7 +15,9 @@ using Json = nlohmann::ordered_json;
 CLI::App* add_bench_command(CLI::App& app, BenchCommand& command, const char* help) {
   CLI::App* parser = app.add_subcommand(command.verb, help);
   add_bench_options(*parser, command, true);
-  parser->add_option("--key", command.key, "of this request: repeated with the same key it is not done twice")
+  parser
+      ->add_option("--key", command.key,
+                   "name of this request: repeated under the same name it is not done twice")
       ->type_name("KEY");
   return parser;
 }

@@ -319,7 +319,7 @@ standard_error and wander (volts), saturated = true.)";
 
 void add_calibrate(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<CalibrateOptions>();
-  CLI::App* command = app.add_subcommand("calibrate", "gain and zero of a load cell from known weights");
+  CLI::App* command = app.add_subcommand("calibrate", "find gain and zero of a load cell by known weights");
   command->footer(kCalibrateExamples);
   command->add_option("--config", options->config, "of the daemon, which must not run: its board is read")
       ->type_name("FILE.toml");

@@ -150,7 +150,8 @@ base::Result<std::string> run_characterise(const CharacteriseOptions& options) {
 
 void add_characterise(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<CharacteriseOptions>();
-  CLI::App* command = app.add_subcommand("characterise", "omega and gamma of the tester from its ring-downs");
+  CLI::App* command =
+      app.add_subcommand("characterise", "find omega and gamma of the tester from its ring-downs");
   command->add_option("files", options->files, "records of ring-downs")->required()->type_name("FILE.h5");
   command->add_option("-o,--output", options->output, "where to keep it, a file that does not exist")
       ->type_name("FILE.toml");

@@ -84,7 +84,7 @@ Examples:
 
 void add_compare(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<CompareOptions>();
-  CLI::App* command = app.add_subcommand("compare", "two materials: stickslip compare A… -- B…");
+  CLI::App* command = app.add_subcommand("compare", "compare two materials: stickslip compare A… -- B…");
   command->footer(kCompareExamples);
   command->add_option("a", options->a, "records of the one; with --batch-a the folder of both batches")
       ->type_name("A.h5");

@@ -29,7 +29,8 @@ constexpr const char* kCompletionHelp = R"(Examples:
 
 void add_completion(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<CompletionOptions>();
-  CLI::App* command = app.add_subcommand("completion", "completion of commands and options, for a shell");
+  CLI::App* command =
+      app.add_subcommand("completion", "print the completion of commands and options for a shell");
   command->footer(kCompletionHelp);
   command->add_option("shell", options->shell, "bash, zsh or fish")
       ->required()

@@ -50,7 +50,7 @@ base::Result<std::string> run_demo(const std::string& folder) {
 
 void add_demo(CLI::App& app, Chosen& chosen) {
   const auto folder = std::make_shared<std::string>("stickslip-demo");
-  CLI::App* demo = app.add_subcommand("demo", "ten simulated tests, measured and printed beside the truth");
+  CLI::App* demo = app.add_subcommand("demo", "measure ten simulated tests and print them beside the truth");
   demo->footer(kDemoHelp);
   demo->add_option("--folder", *folder, "where its records go, made if absent; default stickslip-demo")
       ->type_name("DIR");

@@ -101,8 +101,8 @@ int run_doctor(const DoctorOptions& options) {
 
 void add_doctor(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<DoctorOptions>();
-  CLI::App* command = app.add_subcommand(
-      "doctor", "is everything there that a test needs? What is not, and what is to be done");
+  CLI::App* command =
+      app.add_subcommand("doctor", "check everything that a test needs, and say what to do about the rest");
   command->footer(kDoctorHelp);
   command->add_option("--config", options->config, "the daemon's configuration")
       ->capture_default_str()

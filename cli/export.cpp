@@ -22,7 +22,7 @@ struct ExportOptions {
 };
 
 base::Result<std::string> run_export(const ExportOptions& options) {
-  if (!options.csv) return base::usage_error("export: --csv says as what; there is no other yet");
+  if (!options.csv) return base::usage_error("export: add --csv, the only format there is");
   if (!options.output.empty()) {
     if (auto free = record::check_publishable(options.output); !free) return tl::unexpected(free.error());
   }
@@ -49,7 +49,7 @@ Examples:
 
 void add_export(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = app.add_subcommand("export", "scans or cycles of a record as a table of text");
+  CLI::App* command = app.add_subcommand("export", "write scans or cycles of a record as a table of text");
   command->footer(kExportExamples);
   command->add_option("file", options->file, "record")->required()->type_name("FILE.h5");
   command->add_flag("--csv", options->csv, "as comma-separated values");

@@ -275,7 +275,8 @@ void add_import(CLI::App& app, Chosen& chosen) {
   command->add_flag("--inspect", options->inspect,
                     "show the columns and a command that imports them; import nothing");
   text("--unit", options->unit,
-       "of the values: N, mN, kN, gf, kgf, lbf, ozf, V, mV, counts, coefficient, percent; else that of the "
+       "unit of the values: N, mN, kN, gf, kgf, lbf, ozf, V, mV, counts, coefficient, percent; else that of "
+       "the "
        "heading",
        "UNIT");
   text("--sled-mass", options->sled_mass, "with unit: \"200 g\"; needed for a force or a voltage", "M");

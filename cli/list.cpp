@@ -54,7 +54,7 @@ constexpr const char* kListExamples =
 
 void add_list(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<BenchOptions>();
-  CLI::App* command = app.add_subcommand("list", "the tests of the running daemon");
+  CLI::App* command = app.add_subcommand("list", "list the tests of the running daemon");
   command->footer(kListExamples);
   add_bench_options(*command, *options, false);
   choose(*command, chosen, [options] { return run_list(*options); });

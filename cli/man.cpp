@@ -53,7 +53,7 @@ constexpr const char* kManHelp = R"(Examples:
 
 void add_man(CLI::App& app, Chosen& chosen) {
   const auto name = std::make_shared<std::string>(kTool);
-  CLI::App* command = app.add_subcommand("man", "a manual page, for man -l");
+  CLI::App* command = app.add_subcommand("man", "print a manual page, for man -l");
   command->footer(kManHelp);
   command->add_option("page", *name, "stickslip, stickslipd or stickslipd.toml")
       ->capture_default_str()

@@ -83,8 +83,8 @@ constexpr const char* kPlanExamples =
 
 void add_plan(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<PlanOptions>();
-  CLI::App* command =
-      app.add_subcommand("plan", "say what the tests to come are of; without options: show it");
+  CLI::App* command = app.add_subcommand(
+      "plan", "set sample, operator and pull speed of the next tests; without options: show them");
   command->footer(kPlanExamples);
   add_bench_options(*command, *options, true);
   command->add_flag("--clear", options->clear, "forget what was said before");

@@ -136,7 +136,7 @@ Examples:
 
 void add_recover(CLI::App& app, Chosen& chosen) {
   const auto places = std::make_shared<std::vector<std::string>>();
-  CLI::App* command = app.add_subcommand("recover", "records from the journals that a stop left behind");
+  CLI::App* command = app.add_subcommand("recover", "make records from the journals that a stop left behind");
   command->footer(kRecoverHelp);
   command->add_option("places", *places, "folders of records, or journals")
       ->required()

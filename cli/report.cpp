@@ -60,7 +60,7 @@ Examples:
 void add_report(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<ReportOptions>();
   CLI::App* command =
-      app.add_subcommand("report", "replicates: means, repeatability, coefficient against speed");
+      app.add_subcommand("report", "summarise replicates: means, repeatability, coefficient against speed");
   command->footer(kReportExamples);
   command->add_option("files", options->files, "records; with --batch the folder they are in")
       ->required()

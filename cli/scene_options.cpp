@@ -18,7 +18,8 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
   command.add_option("scene", options.scene, "file, or name as in stickslip scenes")
       ->required()
       ->type_name("SCENE");
-  command.add_option("--seed", options.seed, "of the random numbers; else that of the scene")->type_name("N");
+  command.add_option("--seed", options.seed, "seed of the random numbers; else that of the scene")
+      ->type_name("N");
   command.add_option("--set", options.set, "change a key of the scene; may be repeated")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
@@ -27,7 +28,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
       ->type_name("EFFECT");
   command
       .add_option("--duration", options.duration,
-                  "of the whole scene, with unit: \"20 s\"; the pull is fitted")
+                  "length of the whole scene, with unit: \"20 s\"; the pull takes up the difference")
       ->type_name("T");
   command.add_option("--rate", options.rate, "scan rate, with unit: \"2 kHz\"; else that of the scene")
       ->type_name("HZ");

@@ -37,7 +37,7 @@ Examples:
 
 void add_verify(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<VerifyOptions>();
-  CLI::App* command = app.add_subcommand("verify", "whole or not, and why: any record or journal");
+  CLI::App* command = app.add_subcommand("verify", "judge records and journals: whole or not, and why");
   command->footer(kVerifyHelp);
   command->add_option("files", options->files, "records and journals")->required()->type_name("FILE");
   command->add_flag("--json", options->json, "JSON instead of lines");

@@ -81,8 +81,8 @@ constexpr const char* kVoidExamples =
 
 void add_void(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<VoidOptions>();
-  CLI::App* command = app.add_subcommand(
-      "void", "a test does not count: its file stays as it is, statistics leave it out and say so");
+  CLI::App* command =
+      app.add_subcommand("void", "leave a test out of statistics, which say so; its file stays as it is");
   command->footer(kVoidExamples);
   add_bench_options(*command, *options, true);
   command->add_option("test", options->test, "its number in the running daemon, or its record")

@@ -85,7 +85,7 @@ constexpr const char* kWatchExamples =
 void add_watch(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<WatchOptions>();
   CLI::App* command =
-      app.add_subcommand("watch", "what happens, as it happens: tests, cycles, gaps; until Ctrl-C");
+      app.add_subcommand("watch", "print tests, cycles and gaps as they happen, until Ctrl-C");
   command->footer(kWatchExamples);
   add_bench_options(*command, *options, false);
   command->add_option("--tests", options->tests, "leave when so many tests have ended")->type_name("N");

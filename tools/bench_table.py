@@ -103,7 +103,7 @@ def documents():
     yield Figure("the least factor", "accuracy", factors[0], r"it is (\d+)() to \d+, median")
     yield Figure("the largest", "accuracy", factors[-1], r"it is \d+ to (\d+)(), median")
     yield Figure("the median", "accuracy", statistics.median(factors), r"to \d+, median (\d+)()")
-    reliability = (docs / "reliability.md").read_text(encoding="utf-8")
+    reliability = (docs / "reliability-evidence.md").read_text(encoding="utf-8")
     yield Figure("kills", "count", int(re.search(r"\./dev torture (\d+) --seed", reliability)[1]), r"(\d+)() kills")
     yield Figure("states of a disk after a power cut", "count", sum(int(states) for states in re.findall(r"^\|.* states each.* \| (\d+) \| 0 \|$", reliability, re.MULTILINE)), r"(\d+)() states")
 

@@ -195,7 +195,7 @@ void answer_questions(const ChildWork& work) { answer_from(STDIN_FILENO, STDOUT_
 Result<void> LimitedChild::start() {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
-    return failure("no socket to a child: {}", system_message(errno));
+    return failure("cannot make a socket to a child process: {}", system_message(errno));
   Descriptor own{ends[0]};
   const Descriptor childs{ends[1]};
   Descriptor memory_file{::memfd_create("answer", MFD_CLOEXEC)};

@@ -189,7 +189,7 @@ base::Result<tcp::endpoint> loopback(const std::string& address) {
   }
   if (!ip.is_loopback()) {
     return base::usage_error(
-        "[control] http = \"{}\": must be of this machine, such as \"127.0.0.1:8037\"; for others "
+        "[control] http = \"{}\": must be an address of this machine, such as \"127.0.0.1:8037\"; for others "
         "put a proxy with its own checks before it",
         address);
   }

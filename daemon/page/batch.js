@@ -89,7 +89,7 @@ const Batch = (() => {
     return box;
   }));
 
-  // What is left empty has its default, that of the method where one is named.
+  // Empty fields use the method's values, else the daemon's.
   function asked() {
     const values = {};
     for (const field of plan.querySelectorAll("input")) {

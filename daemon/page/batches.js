@@ -30,7 +30,7 @@ const Batches = (() => {
   /// In a window of its own: the report draws with a script that stands in it, which this page's policy forbids.
   function show(path, what) {
     const shown = window.open("/page/report", "_blank");
-    if (shown == null) return say("the browser lets no window open: allow it, or save the report");
+    if (shown == null) return say("the browser blocks the new window: allow it, or save the report");
     const ready = new Promise(done => window.addEventListener("message", function heard(event) {
       if (event.source !== shown) return;
       window.removeEventListener("message", heard);

@@ -103,7 +103,7 @@
     event.preventDefault();
     const values = {};
     for (const field of plan.querySelectorAll("input")) if (field.value !== "") values[field.name] = field.type === "number" ? Number(field.value) : field.value;
-    attempt(async () => { fillPlan(await ask("PUT", "/v1/plan", values)); say("the plan is set, for the tests that begin from now on", true); });
+    attempt(async () => { fillPlan(await ask("PUT", "/v1/plan", values)); say("the plan holds for tests that begin from now on", true); });
   });
 
   const frames = {
@@ -142,7 +142,7 @@
     socket.addEventListener("close", () => {
       Answer.bench("not connected");
       Tare.gone();
-      Tables.trouble("the daemon does not answer: what is shown is the past");
+      Tables.trouble("the daemon does not answer: the values shown are old");
       setTimeout(connect, kRetry);
     });
   }
@@ -157,7 +157,7 @@
       await Batch.health(status);
       listen();
     } catch (error) {
-      if (error instanceof TypeError) Tables.trouble("the daemon does not answer: what is shown is the past"); else say(error.message);
+      if (error instanceof TypeError) Tables.trouble("the daemon does not answer: the values shown are old"); else say(error.message);
       Answer.bench("not connected");
       if (document.getElementById("access").hidden) setTimeout(connect, kRetry);
     }

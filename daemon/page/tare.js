@@ -36,7 +36,7 @@ const Tare = (() => {
     if (now == null) return "Waiting for a second of scans …";
     if (tared) return "✓ Done. Put the sled back on.";
     if (!quiet(now)) return "Step 1 of 2: take the sled off the load cell, so that nothing pulls, and leave it alone for 5 s. ✗ Not quiet yet.";
-    return "Step 2 of 2: ✓ quiet. Where the sled is off and nothing pulls: tare.";
+    return "Step 2 of 2: ✓ quiet. If the sled is off and nothing pulls, tare.";
   }
   function render() {
     if (!dialog.open) return;

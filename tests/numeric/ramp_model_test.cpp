@@ -144,9 +144,10 @@ TEST(RampFit, GivesBackTheTruthOfSimulatedRamps) {
     }
     const analysis::TestResults results = analysis.finish();
     ASSERT_TRUE(results.delta_mu.value) << results.delta_mu.reason;
-    // A tenth of the noise of docs/ramp.md leaves a tenth of the scatter of its S − K, 0.03 %: three of
-    // these. The belt's start adds less: off by 0.05 ms (the sled catches up with a belt that starts with a
-    // jump after 0.8 ms, which is known to first order) it is 0.005 % of the speed at 0.3 v_th by 2 mm/s².
+    // A tenth of the noise of docs/detector-limits.md, "Ramp tests", leaves a tenth of the scatter of its S −
+    // K, 0.03 %: three of these. The belt's start adds less: off by 0.05 ms (the sled catches up with a belt
+    // that starts with a jump after 0.8 ms, which is known to first order) it is 0.005 % of the speed at 0.3
+    // v_th by 2 mm/s².
     EXPECT_NEAR(*results.delta_mu.value / test::RampTrials::kDeltaMu, 1.0, 1e-3) << acceleration_m_per_s2;
     EXPECT_NEAR(*results.mu_k.value, test::RampTrials::kK, 1e-3 * test::RampTrials::kDeltaMu);
     // One ring-down of 1.5 s tells γ to 0.51 % at ten times this noise; these are shorter by half.

@@ -3,7 +3,7 @@
 // start.
 //
 // STICKSLIP_POWER_CUTS=N makes N states of every moment, else some moments are taken by chance; figures in
-// docs/reliability.md. The seed is printed and may be given as STICKSLIP_SEED.
+// docs/reliability-evidence.md. The seed is printed and may be given as STICKSLIP_SEED.
 
 #include <gmock/gmock.h>
 

@@ -135,7 +135,7 @@ TEST(RecordFlips, AnywhereElseAreFound) {
   }
 }
 
-// With STICKSLIP_EVERY_BIT=N: every N-th bit of the file; figures in docs/reliability.md.
+// With STICKSLIP_EVERY_BIT=N: every N-th bit of the file; figures in docs/reliability-evidence.md.
 TEST(RecordFlips, EveryBitIsFound) {
   const char* const stride = std::getenv("STICKSLIP_EVERY_BIT");
   if (stride == nullptr) GTEST_SKIP() << "takes long: set STICKSLIP_EVERY_BIT=1 for every bit";

@@ -32,7 +32,8 @@ double allowed_bias(const test::RampTrials& trials) {
 struct Ramp {
   double acceleration_m_per_s2;
   double cv;
-  double known_escape;  ///< Part of the threshold speed at which the sled escapes on average [docs/ramp.md].
+  double known_escape;  ///< Part of the threshold speed at which the sled escapes on average
+                        ///< [docs/detector-limits.md].
   int seeds;
 };
 
