@@ -22,6 +22,7 @@
 #include "daemon/control/report_api.hpp"
 #include "daemon/control/request_body.hpp"
 #include "daemon/control/summary.hpp"
+#include "daemon/control/trace_api.hpp"
 #include "daemon/types/batch_json.hpp"
 #include "daemon/types/calibration_json.hpp"
 #include "daemon/types/plan_json.hpp"
@@ -171,36 +172,46 @@ class Api {
     answer({200, std::string{openapi()}, {}});
   }
 
-  [[nodiscard]] Json described(const daemon::TestSummary& test, const daemon::BatchBook& book,
-                               bool with_details) const {
+  [[nodiscard]] Json described(const daemon::TestSummary& test, bool with_details) const {
     Json json = daemon::test_json(test, with_details);
-    json["voided"] =
-        daemon::voiding_json(test.file.empty() ? nullptr : book.voided(batches_.name_of(test.file)));
+    json["voided"] = daemon::voiding_json(voided(test));
     return json;
+  }
+
+  /// Null: the test counts.
+  [[nodiscard]] const daemon::Voiding* voided(const daemon::TestSummary& test) const {
+    return test.file.empty() ? nullptr : batches_.book().voided(batches_.name_of(test.file));
   }
 
   void tests(const daemon::HttpRequest&, const std::string&, const daemon::HttpAnswer& answer) {
     Json list = Json::array();
     const daemon::BatchBook& book = batches_.book();
     const std::vector<daemon::TestSummary> tests = bench_.tests();
-    for (const daemon::TestSummary& test : tests) list.push_back(described(test, book, false));
+    for (const daemon::TestSummary& test : tests) list.push_back(described(test, false));
     Json summary =
         summary_json(tests, book, [this](const std::string& file) { return batches_.name_of(file); });
     answer(daemon::reply_of({{"tests", std::move(list)}, {"summary", std::move(summary)}}));
   }
 
-  void test(const daemon::HttpRequest&, const std::string& rest, const daemon::HttpAnswer& answer) {
+  /// \param rest  "N" or "N/trace".
+  void test(const daemon::HttpRequest& request, const std::string& rest, const daemon::HttpAnswer& answer) {
+    const bool trace = rest.ends_with(kTracePath);
+    const std::string named = trace ? rest.substr(0, rest.size() - kTracePath.size()) : rest;
+    const std::vector<daemon::TestSummary> tests = bench_.tests();
     std::int64_t number = 0;
-    const char* const end = rest.data() + rest.size();
-    const auto [stopped, error] = std::from_chars(rest.data(), end, number);
+    const char* const end = named.data() + named.size();
+    const auto [stopped, error] = std::from_chars(named.data(), end, number);
     if (error == std::errc{} && stopped == end) {
-      for (const daemon::TestSummary& test : bench_.tests()) {
+      for (const daemon::TestSummary& test : tests) {
         if (test.number != number) continue;
-        answer(daemon::reply_of(described(test, batches_.book(), true)));
-        return;
+        if (trace) return answer_trace(request, test, voided(test), bench_.reports(), answer);
+        return answer(daemon::reply_of(described(test, true)));
       }
+      if (trace && bench_.status().current_test == number)
+        return answer(daemon::refusal(
+            409, fmt::format("test {} is running; GET /v1/live tells its scans until it has ended", number)));
     }
-    answer(daemon::refusal(404, no_such_test(printable(rest), bench_.tests())));
+    answer(daemon::refusal(404, no_such_test(printable(named), tests)));
   }
 
   void record(const daemon::HttpRequest&, const std::string& rest, const daemon::HttpAnswer& answer) {

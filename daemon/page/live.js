@@ -20,7 +20,7 @@
     const reply = await fetch(path, {method, headers, body: body === undefined ? undefined : JSON.stringify(body)});
     const json = await reply.json();
     if (reply.status === 401) document.getElementById("access").hidden = false;
-    if (!reply.ok) throw new Error(json.error);
+    if (!reply.ok) throw Object.assign(new Error(json.error), {status: reply.status});
     return json;
   }
   async function fetched(path) {
@@ -59,6 +59,7 @@
     const made = Batch.done();  // First: of a test that ends meanwhile the table may know more, not less.
     const {tests, summary} = await ask("GET", "/v1/tests");
     Answer.tests(tests, summary);
+    Trace.tests(summary.batch == null ? tests : tests.filter(Batch.place));
     Tables.tests(tests, summary, made, (path, name) => attempt(() => download(path, name)), Batch.voidCell, Batch.place);
     const lease = await ask("GET", "/v1/controller");
     text("holder", lease.controller ? `${lease.controller === sessionStorage.getItem("name") ? "this page" : lease.controller} commands` : "");
@@ -92,6 +93,7 @@
   Calibrate.connect(ask);
   Batch.connect(ask, say, refresh);
   Batches.connect(ask, fetched, download);
+  Trace.connect(ask);
   const plan = document.getElementById("plan");
   function fillPlan(values) {
     for (const field of plan.querySelectorAll("input")) {

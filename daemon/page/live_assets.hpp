@@ -9,7 +9,9 @@ namespace stickslip::page {
 [[nodiscard]] std::string_view live_html() noexcept;
 [[nodiscard]] std::string_view live_css() noexcept;
 [[nodiscard]] std::string_view live_js() noexcept;
+[[nodiscard]] std::string_view chart_js() noexcept;
 [[nodiscard]] std::string_view scope_js() noexcept;
+[[nodiscard]] std::string_view trace_js() noexcept;
 [[nodiscard]] std::string_view tables_js() noexcept;
 [[nodiscard]] std::string_view answer_js() noexcept;
 [[nodiscard]] std::string_view tare_js() noexcept;

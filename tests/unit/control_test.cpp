@@ -178,6 +178,27 @@ TEST_F(ControlApi, ReportsOnABatchAndComparesTwo) {
   EXPECT_EQ(get(one).status, 409);
 }
 
+TEST_F(ControlApi, ATraceIsThatOfTheRecordOfItsTest) {
+  const std::string trace = "/v1/tests/7/trace";
+  EXPECT_EQ(get(trace).body, "trace /records/20261121T125252Z-0007.h5 2000 -1 -1");
+  EXPECT_EQ(get(trace + "?points=800&from=1.25&to=2").body,
+            "trace /records/20261121T125252Z-0007.h5 800 1.25 2");
+  for (const auto& [target, status, why] : std::initializer_list<std::tuple<std::string, int, const char*>>{
+           {trace + "?points=0", 400, "points: must be a whole number from 1 to 20000, not 0"},
+           {trace + "?points=1e9", 400, "points: must be a whole number from 1 to 20000, not 1e9"},
+           {trace + "?from=-1", 400, "from: must be seconds after the first scan, 0 or more, not -1"},
+           {trace + "?from=2&to=1", 400, "to: must be above from, 2 s, not 1"},
+           {"/v1/tests/8/trace", 404, "there is no test 8"},
+           {"/v1/tests//trace", 404, "there is no test"},
+       }) {
+    const HttpReply refused = get(target);
+    EXPECT_EQ(refused.status, status) << target;
+    EXPECT_THAT(error(refused), testing::HasSubstr(why)) << target;
+  }
+  bench_.reported.refusal = base::Error{base::ErrorKind::kBusy, "another trace"};
+  EXPECT_EQ(get(trace).status, 503);
+}
+
 TEST_F(ControlApi, TellsTheStatusByTheNamesOfTheRecord) {
   const HttpReply reply = ask({"GET", "/v1/status", "", "", ""});
   EXPECT_EQ(reply.status, 200);

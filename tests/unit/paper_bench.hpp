@@ -127,6 +127,12 @@ class PaperReports final : public Reports {
     answer(std::move(text));
   }
 
+  void trace(const TraceRequest& request, Answer answer) override {
+    if (refusal) return answer(tl::unexpected(*refusal));
+    answer(fmt::format("trace {} {} {} {}", request.record.string(), request.points,
+                       request.from_s.value_or(-1.0), request.to_s.value_or(-1.0)));
+  }
+
   std::optional<base::Error> refusal;
 };
 
