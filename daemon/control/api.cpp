@@ -150,10 +150,13 @@ class Api {
   bool take(const daemon::HttpRequest& request, double for_s, const daemon::HttpAnswer& answer) {
     const auto holder = lease_.take(request.controller, for_s, now_ns());
     if (!holder) return true;
-    answer(daemon::refusal(
-        409, fmt::format("{} has the bench for another {:.0f} s; one at a time commands, all may read",
-                         *holder, std::max(1.0, lease_.left_s(now_ns())))));
+    answer(held_by(*holder));
     return false;
+  }
+  [[nodiscard]] daemon::HttpReply held_by(const std::string& holder) const {
+    return daemon::refusal(
+        409, fmt::format("{} has the bench for another {:.0f} s; one at a time commands, all may read",
+                         holder, std::max(1.0, lease_.left_s(now_ns()))));
   }
 
   // Readers.
@@ -246,14 +249,21 @@ class Api {
 
   void take_control(const daemon::HttpRequest& request, const std::string&,
                     const daemon::HttpAnswer& answer) {
-    const auto body = object_of(request.body, {"seconds"});
+    const auto body = object_of(request.body, {"seconds", "from"});
     if (!body) return answer(daemon::refusal(400, body.error().message));
+    const Json from = body->value("from", Json(request.controller));
+    if (!from.is_string())
+      return answer(
+          daemon::refusal(400, "from: must be the name of who has the bench, as GET /v1/controller"));
     const Json seconds = body->value("seconds", Json(Lease::kCommand_s));
     if (!seconds.is_number() || !(seconds > 0.0) || !(seconds <= Lease::kLongest_s)) {
       return answer(daemon::refusal(
           400, fmt::format("seconds: must be a number above 0 and at most {}", Lease::kLongest_s)));
     }
-    if (take(request, seconds.get<double>(), answer)) answer(daemon::reply_of(lease_json()));
+    const auto holder =
+        lease_.take_over(request.controller, from.get<std::string>(), seconds.get<double>(), now_ns());
+    if (holder) return answer(held_by(*holder));
+    answer(daemon::reply_of(lease_json()));
   }
 
   void release_control(const daemon::HttpRequest& request, const std::string&,
@@ -402,17 +412,20 @@ class Api {
     if (!step) return answer(daemon::refusal(400, step.error().message));
     if (!take(request, Lease::kCalibration_s, answer)) return;
     daemon::Calibrator& calibrator = bench_.calibrator();
-    (*step)(calibrator,
-            [&calibrator, answer = warned(answer, warnings)](const daemon::CalibrationRefusal& refusal) {
-              if (refusal.why.empty())
-                return answer(daemon::reply_of(daemon::calibration_json(calibrator.view())));
-              Json json{{"error", refusal.why}};
-              if (refusal.gain_change) {
-                json["code"] = daq::kGainChangeCode;
-                json["gain_change"] = daemon::gain_change_json(refusal.gain_change);
-              }
-              answer({409, io::json_text(json), {}});
-            });
+    (*step)(calibrator, [this, &calibrator, who = request.controller,
+                         answer = warned(answer, warnings)](const daemon::CalibrationRefusal& refusal) {
+      if (refusal.why.empty()) {
+        // Nobody waits for the time that a weight would have taken.
+        if (!calibrator.view().session) static_cast<void>(lease_.release(who, now_ns()));
+        return answer(daemon::reply_of(daemon::calibration_json(calibrator.view())));
+      }
+      Json json{{"error", refusal.why}};
+      if (refusal.gain_change) {
+        json["code"] = daq::kGainChangeCode;
+        json["gain_change"] = daemon::gain_change_json(refusal.gain_change);
+      }
+      answer({409, io::json_text(json), {}});
+    });
   }
 
   daemon::Bench& bench_;

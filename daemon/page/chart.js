@@ -58,7 +58,8 @@ const Chart = (() => {
     const {min: from, max: to} = u.scales.x, ctx = u.ctx;
     ctx.save();
     ctx.lineWidth = 2 * devicePixelRatio;
-    ctx.fillStyle = ctx.strokeStyle = colour("--mark");
+    ctx.fillStyle = colour("--mark");
+    ctx.strokeStyle = colour("--free");
     for (const slip of slips) {
       if (slip.peak_time < from || slip.peak_time > to) continue;
       ctx.beginPath();

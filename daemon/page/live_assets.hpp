@@ -8,6 +8,7 @@ namespace stickslip::page {
 
 [[nodiscard]] std::string_view live_html() noexcept;
 [[nodiscard]] std::string_view live_css() noexcept;
+[[nodiscard]] std::string_view theme_js() noexcept;
 [[nodiscard]] std::string_view live_js() noexcept;
 [[nodiscard]] std::string_view chart_js() noexcept;
 [[nodiscard]] std::string_view scope_js() noexcept;
@@ -16,6 +17,7 @@ namespace stickslip::page {
 [[nodiscard]] std::string_view answer_js() noexcept;
 [[nodiscard]] std::string_view tare_js() noexcept;
 [[nodiscard]] std::string_view calibrate_js() noexcept;
+[[nodiscard]] std::string_view lease_js() noexcept;
 [[nodiscard]] std::string_view batch_js() noexcept;
 [[nodiscard]] std::string_view batches_js() noexcept;
 [[nodiscard]] std::string_view shown_html() noexcept;

@@ -30,7 +30,7 @@ const Scope = (() => {
   function marks(u) {
     const [from] = xRange(), ctx = u.ctx, size = 4 * devicePixelRatio;
     Chart.peaks(u, slips);
-    Chart.lines(u, Object.entries(levels ?? {}).map(([name, level]) => [name, level, "--accent"]));
+    Chart.lines(u, [["S", levels?.S, "--static"], ["K", levels?.K, "--kinetic"]]);
     ctx.save();
     ctx.lineWidth = 2 * devicePixelRatio;
     // A slip seen as it begins: a ring, until it is known what it was.
@@ -168,5 +168,5 @@ const Scope = (() => {
     turned = 0;
   }, {passive: false});
 
-  return {level, levels: () => levels, scans, began, fall, cycle, ended, clear, data, slips, spikes, cycles, force};
+  return {level, levels: () => levels, scans, began, fall, cycle, ended, clear, data, slips, spikes, cycles, force, slope};
 })();

@@ -34,8 +34,10 @@ std::vector<Asset> assets_with(const report::ChartLibrary& charts) {
   const auto text = [](std::string_view part) { return std::string{part}; };
   return {
       {"/", kPage, text(live_html())},
+      {"/page/colours.css", kStyle, text(report::colours_css())},
       {"/page/live.css", kStyle, text(live_css())},
       {"/page/uplot.css", kStyle, charts.style},
+      {"/page/theme.js", kScript, text(theme_js())},
       {"/page/live.js", kScript, text(live_js())},
       {"/page/chart.js", kScript, text(chart_js())},
       {"/page/scope.js", kScript, text(scope_js())},
@@ -45,6 +47,7 @@ std::vector<Asset> assets_with(const report::ChartLibrary& charts) {
       {"/page/answer.js", kScript, text(answer_js())},
       {"/page/tare.js", kScript, text(tare_js())},
       {"/page/calibrate.js", kScript, text(calibrate_js())},
+      {"/page/lease.js", kScript, text(lease_js())},
       {"/page/batch.js", kScript, text(batch_js())},
       {"/page/batches.js", kScript, text(batches_js())},
       {"/page/report", kPage, text(shown_html()), kReportPolicy},

@@ -17,8 +17,8 @@ const Trace = (() => {
   const slips = trace => trace.cycles.peak_time.map((time, k) => ({test: 0, onset: trace.cycles.onset_time[k], capture: trace.cycles.capture_time[k],
     peak_time: time, peak: trace.cycles.peak[k], captured: trace.cycles.captured[k]}));
   const levels = () => shown.flatMap(({number: of, trace}, at) => {
-    const name = letter => (shown.length > 1 ? `${letter}, test ${of}` : letter), [colour, side] = at === 0 ? ["--accent", "left"] : ["--other", "right"];
-    return [[name("S"), trace.mu_s, colour, side], [name("K"), trace.mu_k, colour, side]];
+    const name = letter => (shown.length > 1 ? `${letter}, test ${of}` : letter), [s, k, side] = at === 0 ? ["--static", "--kinetic", "left"] : ["--other", "--other", "right"];
+    return [[name("S"), trace.mu_s, s, side], [name("K"), trace.mu_k, k, side]];
   });
   const under = (u, k) => shown.map(({number: of}, at) => `${shown.length > 1 ? `test ${of} ` : ""}${Chart.range(u.data[1 + 2 * at][k], u.data[2 + 2 * at][k])}`).join(", ");
 

@@ -148,7 +148,8 @@ class TracePage(unittest.TestCase):
         # A click anywhere in the row, too.
         page.value("document.getElementById('trace-3').closest('tr').cells[2].click()")
         self.assertEqual(self.shown(page)["number"], 3)
-        self.assertEqual(page.complaints(), [])
+        # The browser's advice is on how this test reads pixels.
+        self.assertEqual([said for said in page.complaints() if "willReadFrequently" not in said], [])
 
     def test_it_says_why_a_test_has_no_trace(self):
         page = self.open(2)
@@ -179,4 +180,6 @@ class TracePage(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    if CHROMIUM is None:
+        sys.exit(f"{sys.argv[2]} is not installed; ./dev deps test installs it")
     unittest.main(argv=[sys.argv[0], *sys.argv[4:]])

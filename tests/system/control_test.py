@@ -262,6 +262,13 @@ class Description(unittest.TestCase):
             # What cannot be done by anybody yet is refused for that.
             if path not in ("/v1/controller", "/v1/void", "/v1/restore") or method == "PUT":
                 self.assertEqual(self.check(method, path, body, who="bob")[0], 409, path)
+        # Bob takes it over from who has it, and from nobody else.
+        status, body = self.check("PUT", "/v1/controller", {"seconds": 60, "from": "eve"}, who="bob")
+        self.assertEqual(status, 409)
+        self.assertIn("ada has the bench", body["error"])
+        self.assertEqual(self.check("PUT", "/v1/controller", {"seconds": 60, "from": "ada"}, who="bob")[1]["controller"], "bob")
+        self.assertEqual(self.check("PUT", "/v1/controller", {"from": 1}, who="bob")[0], 400)
+        self.assertEqual(self.check("PUT", "/v1/controller", {"seconds": 60, "from": "bob"})[1]["controller"], "ada")
         # Back to ada, so that bob cannot give it away.
         self.check("PUT", "/v1/controller", {"seconds": 60})
         self.assertEqual(self.check("DELETE", "/v1/controller", None, who="bob")[0], 409)
@@ -468,8 +475,12 @@ class Description(unittest.TestCase):
             self.assertEqual(self.check("POST", "/v1/calibration/finish", wrong)[0], 400, wrong)
         self.assertEqual(self.check("POST", "/v1/calibration/finish", {"valid_days": 0})[0], 200)
         self.assertIsNone(self.check("GET", "/v1/calibration")[1]["in_use"]["expires"])
+        # What is saved or given up gives the bench back.
+        self.assertIsNone(self.check("GET", "/v1/controller")[1]["controller"])
         self.assertEqual(self.check("POST", "/v1/calibration")[0], 200)
+        self.assertEqual(self.check("GET", "/v1/controller")[1]["controller"], "ada")
         self.assertEqual(self.check("DELETE", "/v1/calibration")[0], 200)
+        self.assertIsNone(self.check("GET", "/v1/controller")[1]["controller"])
         self.hanging.nothing()
         # What was sent meanwhile has been read, and the scene plays.
         scan = self.daemon.ask("GET", "/v1/status")[1]["scan_count"]

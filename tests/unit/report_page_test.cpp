@@ -1,5 +1,6 @@
 #include "report/report_page.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,7 +8,9 @@
 #include <limits>
 #include <string>
 
+#include "report/assets.hpp"
 #include "report/binned_trace.hpp"
+#include "report/plot/looks.hpp"
 #include "report/report_json.hpp"
 #include "report/report_text.hpp"
 #include "report/trace_json.hpp"
@@ -45,6 +48,22 @@ TEST(TraceJson, HasABreakAtAGapAndEachCycle) {
   // The stiffness and the pull speed are known: the slope is a speed, with its limit.
   EXPECT_EQ(trace["slope"]["unit"], "mm/s");
   EXPECT_DOUBLE_EQ(trace["slope"]["limit"], 5.08);
+}
+
+/// "--stick: rgba(0, 158, 115, .16)" of a shade.
+std::string property_of(plot::Shade shade) {
+  const plot::ShadeLook look = plot::look(shade);
+  const auto part = [&look](std::size_t at) {
+    return std::stoi(std::string{look.colour}.substr(1 + 2 * at, 2), nullptr, 16);
+  };
+  return fmt::format("--{}: rgba({}, {}, {}, .{:.0f})", look.label, part(0), part(1), part(2),
+                     100.0 * look.opacity);
+}
+
+TEST(Colours, OfStickAndSlipAreTheSameInPicturesAndOnPages) {
+  EXPECT_THAT(std::string{colours_css()}, HasSubstr(property_of(plot::Shade::kStick)));
+  EXPECT_THAT(std::string{colours_css()}, HasSubstr(property_of(plot::Shade::kSlip)));
+  EXPECT_THAT(std::string{report_css()}, Not(HasSubstr("--stick:")));
 }
 
 TEST(BinnedTrace, ABinIsTheSameNumberOfIndicesAndOneWithoutScansIsNull) {
