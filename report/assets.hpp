@@ -7,6 +7,7 @@
 namespace stickslip::report {
 
 [[nodiscard]] std::string_view report_html() noexcept;
+[[nodiscard]] std::string_view colours_css() noexcept;
 [[nodiscard]] std::string_view report_css() noexcept;
 [[nodiscard]] std::string_view uncertain_js() noexcept;  ///< For the live page too.
 [[nodiscard]] std::string_view charts_js() noexcept;

@@ -69,9 +69,9 @@ const Charts = (() => {
     u.ctx.save();
     u.ctx.beginPath(); u.ctx.rect(left, top, wide, height); u.ctx.clip();
     for (const [from, to, mode] of modes) {
-      if (mode === "slip" || to < u.scales.x.min || from > u.scales.x.max) continue;
+      if (to < u.scales.x.min || from > u.scales.x.max) continue;
       const [a, b] = [from, to].map(t => u.valToPos(t, "x", true));
-      u.ctx.fillStyle = colour(mode === "stick" ? "--stick" : "--slide");
+      u.ctx.fillStyle = colour(mode === "stick" ? "--stick" : "--slip");
       u.ctx.fillRect(a, top, b - a, height);
     }
     u.ctx.restore();

@@ -229,7 +229,7 @@
         button("→", "move right", keys.ArrowRight), button("whole test", "whole test", keys["0"])),
       facts, box,
       node("p", {class: "legend"}, node("span", {class: "swatch", style: "background: var(--stick)"}), "sticks",
-        node("span", {class: "swatch", style: "background: var(--slide)"}), "slides without sticking",
+        node("span", {class: "swatch", style: "background: var(--slip)"}), "slips",
         node("span", {class: "swatch round", style: "background: var(--mark)"}), "peak, sticks again",
         node("span", {class: "swatch ring", style: "border-color: var(--free)"}), "peak, not seen to stick again",
         node("span", {class: "swatch", style: "background: var(--limit); height: 2px; border: 0; vertical-align: .25em"}), "pull speed", " · ", count));

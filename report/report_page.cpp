@@ -43,9 +43,10 @@ Json material_json(const Material& material, Json report) {
 /// Replaces each mark in the template once, in order.
 std::string page_of(const Json& data, const ChartLibrary& charts) {
   const std::string text = json_for_script(data);
-  const std::array<std::pair<std::string_view, std::string_view>, 8> parts{{
+  const std::array<std::pair<std::string_view, std::string_view>, 9> parts{{
       {"@LICENSE@", charts.license},
       {"@UPLOT_CSS@", charts.style},
+      {"@COLOURS_CSS@", colours_css()},
       {"@REPORT_CSS@", report_css()},
       {"@DATA@", text},
       {"@UPLOT_JS@", charts.script},

@@ -8,6 +8,7 @@
 #include "report/plot/figure.hpp"
 #include "report/plot/thinning.hpp"
 #include "report/record_trace.hpp"
+#include "report/rounded_json.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/base/long_column.hpp"
@@ -17,19 +18,6 @@ namespace stickslip::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kStepsPerUnit = 1e6;
-
-Json rounded(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  return std::round(value * kStepsPerUnit) / kStepsPerUnit;
-}
-
-Json rounded(const std::vector<double>& values) {
-  Json json = Json::array();
-  for (const double value : values) json.push_back(rounded(value));
-  return json;
-}
 
 RecordTrace thinned(RecordTrace trace) {
   if (trace.time_s.size() <= kMostPointsOnPage) return trace;

@@ -22,6 +22,7 @@
 #include "daemon/control/report_api.hpp"
 #include "daemon/control/request_body.hpp"
 #include "daemon/control/summary.hpp"
+#include "daemon/control/trace_api.hpp"
 #include "daemon/types/batch_json.hpp"
 #include "daemon/types/calibration_json.hpp"
 #include "daemon/types/plan_json.hpp"
@@ -149,10 +150,13 @@ class Api {
   bool take(const daemon::HttpRequest& request, double for_s, const daemon::HttpAnswer& answer) {
     const auto holder = lease_.take(request.controller, for_s, now_ns());
     if (!holder) return true;
-    answer(daemon::refusal(
-        409, fmt::format("{} has the bench for another {:.0f} s; one at a time commands, all may read",
-                         *holder, std::max(1.0, lease_.left_s(now_ns())))));
+    answer(held_by(*holder));
     return false;
+  }
+  [[nodiscard]] daemon::HttpReply held_by(const std::string& holder) const {
+    return daemon::refusal(
+        409, fmt::format("{} has the bench for another {:.0f} s; one at a time commands, all may read",
+                         holder, std::max(1.0, lease_.left_s(now_ns()))));
   }
 
   // Readers.
@@ -171,36 +175,46 @@ class Api {
     answer({200, std::string{openapi()}, {}});
   }
 
-  [[nodiscard]] Json described(const daemon::TestSummary& test, const daemon::BatchBook& book,
-                               bool with_details) const {
+  [[nodiscard]] Json described(const daemon::TestSummary& test, bool with_details) const {
     Json json = daemon::test_json(test, with_details);
-    json["voided"] =
-        daemon::voiding_json(test.file.empty() ? nullptr : book.voided(batches_.name_of(test.file)));
+    json["voided"] = daemon::voiding_json(voided(test));
     return json;
+  }
+
+  /// Null: the test counts.
+  [[nodiscard]] const daemon::Voiding* voided(const daemon::TestSummary& test) const {
+    return test.file.empty() ? nullptr : batches_.book().voided(batches_.name_of(test.file));
   }
 
   void tests(const daemon::HttpRequest&, const std::string&, const daemon::HttpAnswer& answer) {
     Json list = Json::array();
     const daemon::BatchBook& book = batches_.book();
     const std::vector<daemon::TestSummary> tests = bench_.tests();
-    for (const daemon::TestSummary& test : tests) list.push_back(described(test, book, false));
+    for (const daemon::TestSummary& test : tests) list.push_back(described(test, false));
     Json summary =
         summary_json(tests, book, [this](const std::string& file) { return batches_.name_of(file); });
     answer(daemon::reply_of({{"tests", std::move(list)}, {"summary", std::move(summary)}}));
   }
 
-  void test(const daemon::HttpRequest&, const std::string& rest, const daemon::HttpAnswer& answer) {
+  /// \param rest  "N" or "N/trace".
+  void test(const daemon::HttpRequest& request, const std::string& rest, const daemon::HttpAnswer& answer) {
+    const bool trace = rest.ends_with(kTracePath);
+    const std::string named = trace ? rest.substr(0, rest.size() - kTracePath.size()) : rest;
+    const std::vector<daemon::TestSummary> tests = bench_.tests();
     std::int64_t number = 0;
-    const char* const end = rest.data() + rest.size();
-    const auto [stopped, error] = std::from_chars(rest.data(), end, number);
+    const char* const end = named.data() + named.size();
+    const auto [stopped, error] = std::from_chars(named.data(), end, number);
     if (error == std::errc{} && stopped == end) {
-      for (const daemon::TestSummary& test : bench_.tests()) {
+      for (const daemon::TestSummary& test : tests) {
         if (test.number != number) continue;
-        answer(daemon::reply_of(described(test, batches_.book(), true)));
-        return;
+        if (trace) return answer_trace(request, test, voided(test), bench_.reports(), answer);
+        return answer(daemon::reply_of(described(test, true)));
       }
+      if (trace && bench_.status().current_test == number)
+        return answer(daemon::refusal(
+            409, fmt::format("test {} is running; GET /v1/live tells its scans until it has ended", number)));
     }
-    answer(daemon::refusal(404, no_such_test(printable(rest), bench_.tests())));
+    answer(daemon::refusal(404, no_such_test(printable(named), tests)));
   }
 
   void record(const daemon::HttpRequest&, const std::string& rest, const daemon::HttpAnswer& answer) {
@@ -235,14 +249,21 @@ class Api {
 
   void take_control(const daemon::HttpRequest& request, const std::string&,
                     const daemon::HttpAnswer& answer) {
-    const auto body = object_of(request.body, {"seconds"});
+    const auto body = object_of(request.body, {"seconds", "from"});
     if (!body) return answer(daemon::refusal(400, body.error().message));
+    const Json from = body->value("from", Json(request.controller));
+    if (!from.is_string())
+      return answer(
+          daemon::refusal(400, "from: must be the name of who has the bench, as GET /v1/controller"));
     const Json seconds = body->value("seconds", Json(Lease::kCommand_s));
     if (!seconds.is_number() || !(seconds > 0.0) || !(seconds <= Lease::kLongest_s)) {
       return answer(daemon::refusal(
           400, fmt::format("seconds: must be a number above 0 and at most {}", Lease::kLongest_s)));
     }
-    if (take(request, seconds.get<double>(), answer)) answer(daemon::reply_of(lease_json()));
+    const auto holder =
+        lease_.take_over(request.controller, from.get<std::string>(), seconds.get<double>(), now_ns());
+    if (holder) return answer(held_by(*holder));
+    answer(daemon::reply_of(lease_json()));
   }
 
   void release_control(const daemon::HttpRequest& request, const std::string&,
@@ -391,17 +412,20 @@ class Api {
     if (!step) return answer(daemon::refusal(400, step.error().message));
     if (!take(request, Lease::kCalibration_s, answer)) return;
     daemon::Calibrator& calibrator = bench_.calibrator();
-    (*step)(calibrator,
-            [&calibrator, answer = warned(answer, warnings)](const daemon::CalibrationRefusal& refusal) {
-              if (refusal.why.empty())
-                return answer(daemon::reply_of(daemon::calibration_json(calibrator.view())));
-              Json json{{"error", refusal.why}};
-              if (refusal.gain_change) {
-                json["code"] = daq::kGainChangeCode;
-                json["gain_change"] = daemon::gain_change_json(refusal.gain_change);
-              }
-              answer({409, io::json_text(json), {}});
-            });
+    (*step)(calibrator, [this, &calibrator, who = request.controller,
+                         answer = warned(answer, warnings)](const daemon::CalibrationRefusal& refusal) {
+      if (refusal.why.empty()) {
+        // Nobody waits for the time that a weight would have taken.
+        if (!calibrator.view().session) static_cast<void>(lease_.release(who, now_ns()));
+        return answer(daemon::reply_of(daemon::calibration_json(calibrator.view())));
+      }
+      Json json{{"error", refusal.why}};
+      if (refusal.gain_change) {
+        json["code"] = daq::kGainChangeCode;
+        json["gain_change"] = daemon::gain_change_json(refusal.gain_change);
+      }
+      answer({409, io::json_text(json), {}});
+    });
   }
 
   daemon::Bench& bench_;

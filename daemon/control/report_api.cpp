@@ -4,16 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
 #include <iterator>
-#include <map>
 #include <utility>
 #include <vector>
 
-#include <boost/algorithm/string/classification.hpp>
-#include <boost/algorithm/string/split.hpp>
 #include <nlohmann/json.hpp>
 
+#include "daemon/control/query.hpp"
 #include "daemon/control/request_body.hpp"
 #include "daemon/types/reply.hpp"
 
@@ -21,7 +18,6 @@ namespace stickslip::control {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Query = std::map<std::string, std::string>;
 
 struct Form {
   const char* name;
@@ -32,25 +28,6 @@ struct Form {
 constexpr std::array<Form, 3> kForms{{{"html", daemon::ReportForm::kPage, "text/html; charset=utf-8"},
                                       {"csv", daemon::ReportForm::kCsv, "text/csv; charset=utf-8"},
                                       {"json", daemon::ReportForm::kJson, "application/json"}}};
-
-/// The parameters behind the "?". They are not decoded: no allowed value needs it.
-base::Result<Query> query_of(const std::string& target, std::initializer_list<std::string_view> keys) {
-  Query query;
-  const std::size_t mark = target.find('?');
-  if (mark == std::string::npos || mark + 1 == target.size()) return query;
-  std::vector<std::string> parts;
-  boost::split(parts, target.substr(mark + 1), boost::is_any_of("&"));
-  for (const std::string& part : parts) {
-    const std::size_t equals = std::min(part.find('='), part.size());
-    const std::string key = part.substr(0, equals);
-    if (std::find(keys.begin(), keys.end(), key) == keys.end())
-      return base::usage_error("{}: there is no such key; there is {}", printable(key),
-                               fmt::join(keys, ", "));
-    if (!query.emplace(key, part.substr(std::min(equals + 1, part.size()))).second)
-      return base::usage_error("{}: stands there twice", key);
-  }
-  return query;
-}
 
 base::Result<Form> form_of(const Query& query) {
   const auto asked = query.find("format");
@@ -89,14 +66,7 @@ daemon::ReportedBatch reported(const daemon::Batch& batch) {
 
 daemon::Reports::Answer reply_with_report(const Form& form, daemon::HttpAnswer answer) {
   return [form, answer = std::move(answer)](base::Result<std::string> text) {
-    constexpr int kConflict = 409;
-    constexpr int kLater = 503;
-    if (!text)
-      return answer(daemon::refusal(text.error().kind == base::ErrorKind::kBusy ? kLater : kConflict,
-                                    text.error().message));
-    daemon::HttpReply reply{200, *std::move(text), {}};
-    reply.content_type = form.content_type;
-    answer(std::move(reply));
+    answer(daemon::reply_with(std::move(text), form.content_type));
   };
 }
 

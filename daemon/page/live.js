@@ -10,17 +10,22 @@
     sessionStorage.setItem("token", given);
     history.replaceState(null, "", location.pathname);
   }
-  if (!sessionStorage.getItem("name")) sessionStorage.setItem("name", `page ${Math.random().toString(36).slice(2, 6)}`);
   const token = () => sessionStorage.getItem("token") || "";
   const say = (said, good) => { text("message", said); document.getElementById("message").className = good ? "good" : ""; };
 
-  async function ask(method, path, body) {
-    const headers = {Authorization: `Bearer ${token()}`, "Stickslip-Controller": sessionStorage.getItem("name")};
+  // A header has bytes, and a name is UTF-8.
+  const bytes = text => String.fromCharCode(...new TextEncoder().encode(text));
+  function send(method, path, body, more) {
+    const headers = {Authorization: `Bearer ${token()}`, "Stickslip-Controller": bytes(Lease.name())};
     if (method !== "GET") headers["Idempotency-Key"] = `${Date.now()}-${Math.random()}`;
-    const reply = await fetch(path, {method, headers, body: body === undefined ? undefined : JSON.stringify(body)});
+    return fetch(path, {method, headers, body: body === undefined ? undefined : JSON.stringify(body), ...more});
+  }
+  async function ask(method, path, body) {
+    const reply = await send(method, path, body);
     const json = await reply.json();
     if (reply.status === 401) document.getElementById("access").hidden = false;
-    if (!reply.ok) throw new Error(json.error);
+    if (!reply.ok) throw Object.assign(new Error(json.error), {status: reply.status});
+    if (method !== "GET") Lease.took();
     return json;
   }
   async function fetched(path) {
@@ -59,9 +64,9 @@
     const made = Batch.done();  // First: of a test that ends meanwhile the table may know more, not less.
     const {tests, summary} = await ask("GET", "/v1/tests");
     Answer.tests(tests, summary);
+    Trace.tests(summary.batch == null ? tests : tests.filter(Batch.place));
     Tables.tests(tests, summary, made, (path, name) => attempt(() => download(path, name)), Batch.voidCell, Batch.place);
-    const lease = await ask("GET", "/v1/controller");
-    text("holder", lease.controller ? `${lease.controller === sessionStorage.getItem("name") ? "this page" : lease.controller} commands` : "");
+    await Lease.load();
   }
   async function command(verb, body) {
     await attempt(async () => {
@@ -92,8 +97,11 @@
   Calibrate.connect(ask);
   Batch.connect(ask, say, refresh);
   Batches.connect(ask, fetched, download);
+  Trace.connect(ask);
+  Lease.connect(ask, send, say);
   const plan = document.getElementById("plan");
   function fillPlan(values) {
+    text("planned", [values.name, values.pull_speed == null ? null : Tables.speed(values.pull_speed), values.operator].filter(said => said != null).join(", "));
     for (const field of plan.querySelectorAll("input")) {
       const value = values[field.name];
       field.value = value == null ? "" : field.name === "pull_speed" ? Tables.speed(value) : value;
@@ -128,6 +136,7 @@
       Calibrate.health(frame.status);
       Batch.health(frame.status);
       Answer.health(frame.status);
+      attempt(Lease.load);
       // Records appear a moment after their tests, and those of before the daemon began one after the other.
       if ((frame.status.latest_test && document.querySelector("#tests tbody td:last-child")?.textContent === "…") || Tables.lacks()) attempt(refresh);
     },
@@ -153,6 +162,7 @@
       Tables.health(status);
       Answer.health(status);
       fillPlan(await ask("GET", "/v1/plan"));
+      await Lease.back();
       await refresh();
       await Batch.health(status);
       listen();

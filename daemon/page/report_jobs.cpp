@@ -65,71 +65,88 @@ struct ReportJobs::Job {
   bool took_too_long = false;
 };
 
-ReportJobs::ReportJobs(Parts parts) : parts_(std::move(parts)) {}
+ReportJobs::ReportJobs(Parts parts)
+    : parts_(std::move(parts)),
+      reports_{.what = "report",
+               .if_slow = "`stickslip report --batch` takes its time",
+               .if_large = "ask for csv or json, or `stickslip report --batch` makes it"},
+      traces_{.what = "trace",
+              .if_slow = "`stickslip export --json` takes its time",
+              .if_large = "ask for fewer points"} {}
 
 ReportJobs::~ReportJobs() = default;
 
 void ReportJobs::make(std::span<const daemon::ReportedBatch> batches, daemon::ReportForm form,
                       std::string_view pool, Answer answer) {
   STICKSLIP_EXPECTS(batches.size() == 1 || batches.size() == 2);
-  if (job_) {
-    answer(tl::unexpected(base::Error{base::ErrorKind::kBusy,
-                                      "another report is being made, one at a time; ask again in a moment"}));
+  start(reports_, arguments_for(batches, form, pool, parts_.folder), std::move(answer));
+}
+
+void ReportJobs::trace(const daemon::TraceRequest& request, Answer answer) {
+  std::vector<std::string> arguments{"export", "--json", fmt::format("--points={}", request.points)};
+  if (request.from_s) arguments.push_back(fmt::format("--from={}", *request.from_s));
+  if (request.to_s) arguments.push_back(fmt::format("--to={}", *request.to_s));
+  arguments.push_back(std::filesystem::absolute(request.record).string());
+  start(traces_, std::move(arguments), std::move(answer));
+}
+
+void ReportJobs::start(Slot& slot, std::vector<std::string> arguments, Answer answer) {
+  if (slot.job) {
+    answer(tl::unexpected(base::Error{
+        base::ErrorKind::kBusy,
+        fmt::format("another {} is being made, one at a time; ask again in a moment", slot.what)}));
     return;
   }
   using std::chrono::ceil;
   const io::ChildLimits limits{ceil<std::chrono::seconds>(parts_.longest), parts_.largest, kNiceness};
-  auto child =
-      io::ChildProcess::start(parts_.program, arguments_for(batches, form, pool, parts_.folder), {}, limits);
+  auto child = io::ChildProcess::start(parts_.program, std::move(arguments), {}, limits);
   if (!child) return answer(tl::unexpected(child.error()));
   if (!*child) {
-    return answer(base::failure("{}: there is no such program; it makes the reports: install it there",
-                                parts_.program));
+    return answer(base::failure("{}: there is no such program; it makes the {}s: install it there",
+                                parts_.program, slot.what));
   }
   const record::Descriptor end = (*child)->ended();
   // Asio closes its own.
   const int own = ::fcntl(end.get(), F_DUPFD_CLOEXEC, 0);
   if (own < 0) return answer(base::failure("the end of {} cannot be waited for", parts_.program));
-  job_ = std::make_unique<Job>(Job{**std::move(child),
-                                   {parts_.io, own},
-                                   boost::asio::steady_timer{parts_.io, parts_.longest},
-                                   std::move(answer)});
-  job_->end.async_wait(boost::asio::posix::stream_descriptor::wait_read,
-                       [this](boost::system::error_code error) {
-                         if (!error) ended();
-                       });
-  job_->patience.async_wait([this, job = job_.get()](boost::system::error_code error) {
+  slot.job = std::make_unique<Job>(Job{**std::move(child),
+                                       {parts_.io, own},
+                                       boost::asio::steady_timer{parts_.io, parts_.longest},
+                                       std::move(answer)});
+  slot.job->end.async_wait(boost::asio::posix::stream_descriptor::wait_read,
+                           [this, &slot](boost::system::error_code error) {
+                             if (!error) ended(slot);
+                           });
+  slot.job->patience.async_wait([&slot, job = slot.job.get()](boost::system::error_code error) {
     // The job may have ended after the timer expired; another job may run now.
-    if (error || job_.get() != job) return;
-    job_->took_too_long = true;
-    job_->child.end();
+    if (error || slot.job.get() != job) return;
+    job->took_too_long = true;
+    job->child.end();
   });
 }
 
-void ReportJobs::ended() {
-  const std::unique_ptr<Job> job = std::move(job_);
+void ReportJobs::ended(Slot& slot) {
+  const std::unique_ptr<Job> job = std::move(slot.job);
   base::Result<io::ChildAnswer> made = job->child.wait();
   if (!made) return job->answer(tl::unexpected(made.error()));
   if (made->status == 0) return job->answer(std::move(made->output));
   if (job->took_too_long || made->status == kSignalled + SIGXCPU) {
-    return job->answer(base::failure(
-        "the report took longer than {:.3g} s and was ended; `stickslip report --batch` takes its time",
-        std::chrono::duration<double>(parts_.longest).count()));
+    return job->answer(base::failure("the {} took longer than {:.3g} s and was ended; {}", slot.what,
+                                     std::chrono::duration<double>(parts_.longest).count(), slot.if_slow));
   }
   if (made->status == kSignalled + SIGXFSZ) {
-    return job->answer(base::failure(
-        "the report is larger than {:.3g} MiB; ask for csv or json, or `stickslip report --batch` makes it",
-        static_cast<double>(parts_.largest) / (1U << 20U)));
+    return job->answer(base::failure("the {} is larger than {:.3g} MiB; {}", slot.what,
+                                     static_cast<double>(parts_.largest) / (1U << 20U), slot.if_large));
   }
   if (made->status > kSignalled)
     return job->answer(
-        base::failure("signal {} ended the program that makes the report", made->status - kSignalled));
+        base::failure("signal {} ended the program that makes the {}", made->status - kSignalled, slot.what));
   constexpr std::string_view kName = "stickslip: ";
   std::string_view why = made->errors;
   if (why.starts_with(kName)) why.remove_prefix(kName.size());
   while (why.ends_with('\n')) why.remove_suffix(1);
   constexpr std::size_t kLongestReason = 400;
-  job->answer(base::failure("there is no report: {}", base::one_line(why, kLongestReason)));
+  job->answer(base::failure("there is no {}: {}", slot.what, base::one_line(why, kLongestReason)));
 }
 
 }  // namespace stickslip::page

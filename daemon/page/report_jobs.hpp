@@ -1,6 +1,6 @@
 /// \file
-/// Makes reports, one at a time, in a child process, because errors of HDF5 can end a process and the daemon
-/// must go on measuring.
+/// Makes reports and reads traces, one of each at a time, in a child process, because errors of HDF5 can end
+/// a process and the daemon must go on measuring.
 #pragma once
 
 #include <chrono>
@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
+#include <vector>
 
 #include <boost/asio/io_context.hpp>
 
@@ -29,7 +30,7 @@ class ReportJobs final : public daemon::Reports {
     std::filesystem::path folder;                                  ///< The record folder.
     std::string program;                                           ///< Path of `stickslip`.
     std::chrono::milliseconds longest = std::chrono::seconds{60};  ///< Time after which the child is killed.
-    std::size_t largest = std::size_t{64} << 20U;  ///< Most bytes of a report, which is held in memory.
+    std::size_t largest = std::size_t{64} << 20U;  ///< Most bytes of its output, which is held in memory.
   };
   explicit ReportJobs(Parts parts);
   /// Kills the child; the answer is not called.
@@ -39,13 +40,23 @@ class ReportJobs final : public daemon::Reports {
 
   void make(std::span<const daemon::ReportedBatch> batches, daemon::ReportForm form, std::string_view pool,
             Answer answer) override;
+  void trace(const daemon::TraceRequest& request, Answer answer) override;
 
  private:
   struct Job;
-  void ended();
+  /// One job at a time, and what is said of it.
+  struct Slot {
+    std::string_view what;
+    std::string_view if_slow;    ///< What helps where it took too long.
+    std::string_view if_large;   ///< What helps where it is too large.
+    std::unique_ptr<Job> job{};  ///< Null: none is under way.
+  };
+  void start(Slot& slot, std::vector<std::string> arguments, Answer answer);
+  void ended(Slot& slot);
 
   Parts parts_;
-  std::unique_ptr<Job> job_;  ///< Null: no report is being made.
+  Slot reports_;
+  Slot traces_;
 };
 
 }  // namespace stickslip::page

@@ -2,19 +2,12 @@
 "use strict";
 
 const Scope = (() => {
-  const kWindow = 10;  // s
+  const kWindows = [0.5, 1, 2, 5, 10, 20, 40];  // s, of the world's clock
+  const kTurn = 50;  // Of a wheel, for one step: a touchpad sends many small ones.
   const kHeight = 0.18;  // Of the window: the first result stands above the fold.
   const kForceHeight = 0.22;  // Below these there is one line of text, not three.
   const kMostParts = 20000;
-  // One pixel of the screen: without a graphics card wider lines are drawn much more slowly.
-  const kLine = 1 / devicePixelRatio;
-  // Asked for at each drawing, read once: again where the reader's liking for dark or light changes.
-  const colours = new Map();
-  const colour = name => {
-    if (!colours.has(name)) colours.set(name, getComputedStyle(document.documentElement).getPropertyValue(name).trim());
-    return colours.get(name);
-  };
-  const paint = name => () => colour(name);
+  const kMostSlips = 2000;
   const forceBox = document.getElementById("force");
   const slopeBox = document.getElementById("slope");
   const deltaBox = document.getElementById("delta");
@@ -26,71 +19,28 @@ const Scope = (() => {
   const cycles = {number: [], delta: [], amplitude: []};
   let falling = null;  // {time, peak} of the latest fall; its ring goes when its cycle closes
   let levels = null;   // {S, K} of the running or last test, drawn as lines
-  let paused = null;   // The time at the right end while the charts stand still.
+  let paused = null;   // {end: time at the right end, data} while the charts stand still.
+  let zoomed = kWindows.indexOf(10), moved = false;
   let rate = 0, speed = 1, step = 1, dirty = false, newCycles = true;
 
-  const height = part => Math.round(Math.max(90, window.innerHeight * part));
-  const axes = label => [{stroke: paint("--soft"), grid: {stroke: paint("--line")}, ticks: {stroke: paint("--line")}, size: 28},
-    {stroke: paint("--soft"), grid: {stroke: paint("--line")}, ticks: {stroke: paint("--line")}, size: 58, label, labelSize: 0}];
-  const latest = () => (data.time.length ? data.time[data.time.length - 1] : kWindow);
-  const window_s = () => kWindow * speed;
-  const xRange = () => { const end = paused ?? latest(); return [end - window_s(), end]; };
-
-  function shade(u) {
-    const [from, to] = xRange(), ctx = u.ctx;
-    ctx.save();
-    let before = null, test = null;  // Where one test's last slip ends, no stick of the next begins.
-    for (const slip of slips) {
-      if (slip.peak_time < from - 1 || slip.onset == null) continue;
-      const x = t => u.valToPos(Math.min(Math.max(t, from), to), "x", true);
-      if (before != null && slip.test === test && slip.onset > before) {
-        ctx.fillStyle = colour("--stick");
-        ctx.fillRect(x(before), u.bbox.top, x(slip.onset) - x(before), u.bbox.height);
-      }
-      if (slip.capture != null) {
-        ctx.fillStyle = colour("--slip");
-        ctx.fillRect(x(slip.onset), u.bbox.top, x(slip.capture) - x(slip.onset), u.bbox.height);
-      }
-      before = slip.capture;
-      test = slip.test;
-    }
-    ctx.restore();
-  }
+  const latest = () => (data.time.length ? data.time[data.time.length - 1] : kWindows[zoomed]);
+  const window_s = () => kWindows[zoomed] * speed;
+  const xRange = () => { const end = paused?.end ?? latest(); return [end - window_s(), end]; };
 
   function marks(u) {
     const [from] = xRange(), ctx = u.ctx, size = 4 * devicePixelRatio;
+    Chart.peaks(u, slips);
+    Chart.lines(u, [["S", levels?.S, "--static"], ["K", levels?.K, "--kinetic"]]);
     ctx.save();
     ctx.lineWidth = 2 * devicePixelRatio;
-    for (const slip of slips) {
-      if (slip.peak_time < from) continue;
-      ctx.beginPath();
-      ctx.arc(u.valToPos(slip.peak_time, "x", true), u.valToPos(slip.peak, "y", true), size, 0, 2 * Math.PI);
-      ctx.fillStyle = ctx.strokeStyle = colour("--mark");
-      if (slip.captured) ctx.fill(); else ctx.stroke();
-    }
     // A slip seen as it begins: a ring, until it is known what it was.
     if (falling && falling.time >= from && falling.time > (slips.at(-1)?.peak_time ?? -Infinity) + 1 / rate) {
       ctx.beginPath();
       ctx.arc(u.valToPos(falling.time, "x", true), u.valToPos(falling.peak, "y", true), 1.5 * size, 0, 2 * Math.PI);
-      ctx.strokeStyle = colour("--mark");
+      ctx.strokeStyle = Chart.colour("--mark");
       ctx.stroke();
     }
-    ctx.save();
-    ctx.lineWidth = devicePixelRatio;
-    ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
-    ctx.strokeStyle = ctx.fillStyle = colour("--accent");
-    ctx.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
-    ctx.textBaseline = "bottom";
-    for (const [name, level] of Object.entries(levels ?? {})) {
-      if (level == null) continue;
-      const y = u.valToPos(level, "y", true);
-      ctx.beginPath();
-      ctx.moveTo(u.bbox.left, y); ctx.lineTo(u.bbox.left + u.bbox.width, y);
-      ctx.stroke();
-      ctx.fillText(name, u.bbox.left + 2 * devicePixelRatio, y);
-    }
-    ctx.restore();
-    ctx.strokeStyle = colour("--spike");
+    ctx.strokeStyle = Chart.colour("--spike");
     for (const spike of spikes) {
       if (spike.time < from) continue;
       const x = u.valToPos(spike.time, "x", true), y = u.valToPos(spike.value, "y", true);
@@ -101,28 +51,27 @@ const Scope = (() => {
     ctx.restore();
   }
 
-  // What stands under the cursor; empty: it is elsewhere.
-  const at = (id, u, text) => { const k = u.cursor.idx; document.getElementById(id).textContent = k == null || u.cursor.left < 0 || u.data[0][k] == null ? "" : text(k); };
-  const number = (value, decimals) => (value == null ? "–" : value.toFixed(decimals));
-  const range = (low, high) => (low === high ? number(low, 4) : `${number(low, 4)} … ${number(high, 4)}`);
-  const options = (box, part, series, more) => ({width: box.clientWidth || 600, height: height(part), legend: {show: false}, cursor: {y: false, drag: {x: false, y: false}, points: {show: false}},
-    scales: {x: {time: false, range: xRange}}, axes: axes(), series: [{}, ...series], ...more});
-  const force = new uPlot(options(forceBox, kForceHeight, [{stroke: paint("--force"), width: kLine, points: {show: false}},
-    {stroke: paint("--force"), width: kLine, points: {show: false}}], {bands: [{series: [2, 1], fill: paint("--band")}], hooks: {drawClear: [shade], draw: [marks], setCursor: [u => at("force-at", u, k => `${data.time[k].toFixed(2)} s: ${range(data.lowest[k], data.highest[k])} · `)]}}), [[], [], []], forceBox);
-  const slope = new uPlot(options(slopeBox, kForceHeight, [{stroke: paint("--force"), width: kLine, points: {show: false}}], {hooks: {setCursor: [u => at("slope-at", u, k => `${data.time[k].toFixed(2)} s: ${number(data.slope[k], 2)} 1/s`)]}}), [[], []], slopeBox);
-  const strip = new uPlot({...options(deltaBox, kHeight, [{stroke: paint("--delta"), width: 0, points: {show: true, size: 6, fill: paint("--delta")}},
-    {stroke: paint("--amplitude"), width: 0, points: {show: true, size: 5, fill: paint("--amplitude")}}], {hooks: {setCursor: [u => at("delta-at", u, k => `cycle ${cycles.number[k]}: S − K ${number(cycles.delta[k], 4)}, amplitude ${number(cycles.amplitude[k], 4)}`)]}}),
-    scales: {x: {time: false}, y: {range: (u, low, high) => [0, Math.max(0.01, high * 1.1 || 0)]}}}, [[], [], []], deltaBox);
+  const {height, number} = Chart;
+  const force = Chart.make(forceBox, height(kForceHeight), [Chart.line("--force"), Chart.line("--force")], xRange, {bands: [Chart.bands(1, 2)],
+    hooks: {drawClear: [u => Chart.shade(u, slips)], draw: [marks], setCursor: [u => Chart.tell("force-at", u, k => `${u.data[0][k].toFixed(2)} s: ${Chart.range(u.data[1][k], u.data[2][k])} · `)]}});
+  const slope = Chart.make(slopeBox, height(kForceHeight), [Chart.line("--force")], xRange,
+    {hooks: {setCursor: [u => Chart.tell("slope-at", u, k => `${u.data[0][k].toFixed(2)} s: ${number(u.data[1][k], 2)} 1/s`)]}});
+  const points = (name, size) => Chart.line(name, {width: 0, points: {show: true, size, fill: Chart.paint(name)}});
+  const strip = Chart.make(deltaBox, height(kHeight), [points("--delta", 6), points("--amplitude", 5)], null, {
+    scales: {x: {time: false}, y: {range: (u, low, high) => [0, Math.max(0.01, high * 1.1 || 0)]}},
+    hooks: {setCursor: [u => Chart.tell("delta-at", u, k => `cycle ${cycles.number[k]}: S − K ${number(cycles.delta[k], 4)}, amplitude ${number(cycles.amplitude[k], 4)}`)]}});
 
   function draw() {
     requestAnimationFrame(draw);
-    if (!dirty || paused != null) return;
-    dirty = false;
+    if (!dirty || (paused != null && !moved)) return;
+    dirty = moved = false;
+    const {time, lowest, highest, slope: rates} = paused?.data ?? data;
+    document.getElementById("window").textContent = `${Number(window_s().toPrecision(3))} s`;
     // Where each part is one scan, lowest and highest are one line.
     if (force.series[2].show !== step > 1) force.setSeries(2, {show: step > 1});
-    force.setData([data.time, data.lowest, data.highest]);
-    slope.setData([data.time, data.slope]);
-    if (!newCycles) return;
+    force.setData([time, lowest, highest]);
+    slope.setData([time, rates]);
+    if (!newCycles || paused != null) return;
     newCycles = false;
     strip.setData([cycles.number, cycles.delta, cycles.amplitude]);
   }
@@ -141,7 +90,7 @@ const Scope = (() => {
       data.slope.push(follows ? (middle - (data.lowest[at] + data.highest[at]) / 2) * rate / step : null);
       data.scan.push(scan); data.time.push(scan / rate); data.lowest.push(low); data.highest.push(frame.highest[k]);
     });
-    const old = data.time.findIndex(t => t >= latest() - window_s() - 1);
+    const old = data.time.findIndex(t => t >= latest() - kWindows.at(-1) * speed - 1);
     const cut = Math.max(old, data.time.length - kMostParts);
     if (cut > 500) for (const column of Object.values(data)) column.splice(0, cut);
     dirty = true;
@@ -154,7 +103,7 @@ const Scope = (() => {
   function cycle(frame) {
     const at = t => (t == null ? null : frame.test_first_scan / frame.scan_rate + t);
     if (frame.peak_time != null) slips.push({test: frame.test, onset: at(frame.onset_time), capture: at(frame.capture_time), peak_time: at(frame.peak_time), peak: frame.peak, captured: frame.captured});
-    if (slips.length > 500) slips.shift();
+    if (slips.length > kMostSlips) slips.shift();
     cycles.number.push(frame.number); cycles.delta.push(frame.delta_mu); cycles.amplitude.push(frame.force_drop == null ? null : frame.force_drop / 2);
     dirty = newCycles = true;
   }
@@ -176,10 +125,6 @@ const Scope = (() => {
     strip.setSize({width: deltaBox.clientWidth, height: height(kHeight)});
   };
   window.addEventListener("resize", resize);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-    colours.clear();
-    for (const chart of [force, slope, strip]) chart.redraw(false);
-  });
 
   /// \param own  {S, K}, or null.
   function level(own) {
@@ -188,11 +133,40 @@ const Scope = (() => {
     dirty = true;
   }
   document.getElementById("pause").addEventListener("click", event => {
-    paused = paused == null ? latest() : null;
+    paused = paused == null ? {end: latest(), data: Object.fromEntries(Object.entries(data).map(([name, column]) => [name, [...column]]))} : null;
     event.target.setAttribute("aria-pressed", String(paused != null));
     event.target.textContent = paused == null ? "Pause" : "Go on";
     dirty = true;
   });
 
-  return {level, levels: () => levels, scans, began, fall, cycle, ended, clear, data, slips, spikes, cycles, force};
+  /// \param steps  above 0: a shorter time. \param at  stays where it is while the charts stand still; else the latest scan does.
+  function zoom(steps, at) {
+    const before = window_s(), next = Math.min(Math.max(zoomed - steps, 0), kWindows.length - 1);
+    if (next === zoomed) return false;
+    zoomed = next;
+    if (paused != null) {
+      const [from, end] = [paused.end - before, paused.end], kept = at ?? (from + end) / 2;
+      paused.end = Math.min(kept + (end - kept) * window_s() / before, paused.data.time.at(-1) ?? end);
+    }
+    dirty = moved = true;
+    return true;
+  }
+  for (const [id, steps] of [["zoom-in", 1], ["zoom-out", -1]]) document.getElementById(id).addEventListener("click", () => zoom(steps));
+  for (const id of ["scope", "rate"]) document.getElementById(id).addEventListener("keydown", event => {
+    const steps = {"+": 1, "=": 1, "-": -1}[event.key];
+    if (steps == null || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    zoom(steps);
+  });
+  let turned = 0;
+  for (const [box, u] of [[forceBox, force], [slopeBox, slope]]) box.addEventListener("wheel", event => {
+    if (event.ctrlKey || (event.deltaY < 0 ? zoomed === 0 : zoomed === kWindows.length - 1)) return;  // The page's own zoom; the end: the page scrolls.
+    event.preventDefault();
+    turned = turned * event.deltaY < 0 ? event.deltaY : turned + event.deltaY;
+    if (Math.abs(turned) < kTurn) return;
+    zoom(-Math.sign(turned), u.posToVal(event.clientX - u.over.getBoundingClientRect().left, "x"));
+    turned = 0;
+  }, {passive: false});
+
+  return {level, levels: () => levels, scans, began, fall, cycle, ended, clear, data, slips, spikes, cycles, force, slope};
 })();

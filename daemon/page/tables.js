@@ -42,6 +42,16 @@ const Tables = (() => {
     td.append(link);
     return td;
   }
+  // By a click anywhere in the row but on what does something else, and by keyboard on its number.
+  function traced(test, tr) {
+    const button = document.createElement("button");
+    button.type = "button"; button.className = "link"; button.id = `trace-${test.number}`; button.textContent = String(test.number);
+    button.setAttribute("aria-label", `trace of test ${test.number}`);
+    button.setAttribute("aria-haspopup", "dialog");
+    button.addEventListener("click", () => Trace.open(test.number));
+    tr.cells[0].replaceChildren(button);
+    tr.addEventListener("click", event => { if (event.target.closest("button, a, input") == null && getSelection().isCollapsed) Trace.open(test.number); });
+  }
   const limitText = ({lowest, highest}, digits) => (lowest == null ? `≤ ${fixed(highest, digits)}` : highest == null ? `≥ ${fixed(lowest, digits)}` : `${fixed(lowest, digits)} … ${fixed(highest, digits)}`);
 
   const severities = ["fault", "warning", "note"];
@@ -95,6 +105,7 @@ const Tables = (() => {
       const found = test.results.coded_findings;
       if (found.length > 0) regimeCell.append(` · ${found[0].code}${found.length > 1 ? ` + ${found.length - 1}` : ""}`);
       regimeCell.title = [`rung: ${test.results.rung}`, ...found.map(finding => finding.text)].join("\n");
+      traced(test, tr);
       if (test.voided) tr.classList.add("void");
       if (place) tr.classList.add("own");
       return tr;
@@ -115,7 +126,7 @@ const Tables = (() => {
     }
     table.tHead.replaceChildren(row(head), ...top);
     table.tFoot.replaceChildren(...rows);
-    if (/^(void|record)-\d+$/.test(focused ?? "")) document.getElementById(focused)?.focus();
+    if (/^(void|record|trace)-\d+$/.test(focused ?? "")) document.getElementById(focused)?.focus();
     const far = summary.quantities.some(quantity => quantity.outlier_test != null);
     lacking = known < made;
     const ofBatch = lacking ? `${known} of the ${made} tests made of batch ${summary.batch}: the records of the others have not been read` :

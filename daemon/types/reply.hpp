@@ -8,6 +8,7 @@
 #include "io/json_text.hpp"
 #include <nlohmann/json.hpp>
 
+#include "core/base/result.hpp"
 #include "daemon/types/http.hpp"
 
 namespace stickslip::daemon {
@@ -19,6 +20,18 @@ namespace stickslip::daemon {
 /// {"error": why}. \param allow  the allowed methods, for status 405.
 [[nodiscard]] inline HttpReply refusal(int status, const std::string& why, std::string allow = {}) {
   return {status, io::json_text({{"error", why}}), std::move(allow)};
+}
+
+/// The text that a child process made, or why there is none: 503 if it is to be asked for later, else 409.
+[[nodiscard]] inline HttpReply reply_with(base::Result<std::string> text,
+                                          const char* content_type = "application/json") {
+  constexpr int kConflict = 409;
+  constexpr int kLater = 503;
+  if (!text)
+    return refusal(text.error().kind == base::ErrorKind::kBusy ? kLater : kConflict, text.error().message);
+  HttpReply reply{200, *std::move(text), {}};
+  reply.content_type = content_type;
+  return reply;
 }
 
 }  // namespace stickslip::daemon

@@ -1,8 +1,11 @@
 /// \file
-/// Interface between the control interface and the reports on batches.
+/// Interface between the control interface and what is made of records: reports on batches, traces of tests.
 #pragma once
 
+#include <cstddef>
+#include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,14 +22,26 @@ struct ReportedBatch {
 /// What may be averaged although it differs, as words of `stickslip report --pool`.
 inline constexpr std::string_view kPoolings[] = {"grades", "regimes", "grades,regimes"};
 
+/// Most bins of a trace that a client may ask for; bins if it says nothing.
+inline constexpr std::size_t kMostTracePoints = 20'000;
+inline constexpr std::size_t kUsualTracePoints = 2000;
+
+/// Part of a record that is to be drawn, as report::TraceSpan.
+struct TraceRequest {
+  std::filesystem::path record;
+  std::size_t points = kUsualTracePoints;
+  std::optional<double> from_s{};
+  std::optional<double> to_s{};
+};
+
 enum class ReportForm { kPage, kCsv, kJson };
 
 /// Main thread.
 class Reports {
  public:
   virtual ~Reports() = default;
-  /// Called with the text of the report. Errors: kBusy while another report is being made, else kFailure with
-  /// the reason.
+  /// Called with the text. Errors: kBusy while another one of its kind is being made, else kFailure with the
+  /// reason.
   using Answer = std::function<void(base::Result<std::string>)>;
 
   /// Makes a report on one batch, or a comparison of two; does not block. \param batches  one or two
@@ -34,6 +49,9 @@ class Reports {
   /// once, on the main thread, at once or later.
   virtual void make(std::span<const ReportedBatch> batches, ReportForm form, std::string_view pool,
                     Answer answer) = 0;
+  /// Reads the trace of a record, as report::binned_trace_json(); does not block, nor waits for a report.
+  /// \param answer  as of make().
+  virtual void trace(const TraceRequest& request, Answer answer) = 0;
 };
 
 }  // namespace stickslip::daemon

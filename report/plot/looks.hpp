@@ -22,6 +22,10 @@ inline constexpr std::array<int, 8> kShapes{7, 5, 9, 13, 6, 4, 8, 12};
 
 [[nodiscard]] inline int shape_of(std::size_t order) { return kShapes.at(order % kShapes.size()); }
 
+/// Shades of stick and slip; those of the pages are the same (report/colours.css).
+inline constexpr const char* kStickShade = "#009E73";
+inline constexpr const char* kSlipShade = "#CC79A7";
+
 struct ShadeLook {
   const char* colour;
   double opacity;
@@ -34,9 +38,9 @@ inline constexpr std::array<Shade, 4> kShades{Shade::kWindow, Shade::kStick, Sha
 [[nodiscard]] constexpr ShadeLook look(Shade shade) {
   switch (shade) {
     case Shade::kStick:
-      return {"#56B4E9", 0.30, "stick"};
+      return {kStickShade, 0.16, "stick"};
     case Shade::kSlip:
-      return {"#F0E442", 0.12, "slip"};
+      return {kSlipShade, 0.24, "slip"};
     case Shade::kSlack:
       return {"#999999", 0.30, "slack"};
     case Shade::kWindow:

@@ -88,6 +88,10 @@ class Page:
     def close(self):
         self.call("close")
 
+    def leave(self):
+        """As a hand closes a tab: the page hears of it."""
+        self.call("leave")
+
     def reload(self):
         self.call("reload")
         self.settle()
@@ -146,6 +150,11 @@ class Page:
     def drag(self, selector, start, end, index=0):
         """Over parts of its width, half-way down."""
         self.call("drag", selector=selector, index=index, start=start, end=end)
+        self.settle()
+
+    def wheel(self, selector, at, turn):
+        """Over a part of its width, half-way down; turn: pixels, above 0 is down."""
+        self.call("wheel", selector=selector, index=0, at=at, turn=turn)
         self.settle()
 
     def press(self, key, settle=True):

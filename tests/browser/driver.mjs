@@ -80,6 +80,8 @@ const commands = {
     return downloads.shift();
   },
   close: ({ page }) => page.close(),
+  /** As a hand closes a tab: the page hears of it. */
+  leave: ({ page }) => page.close({ runBeforeUnload: true }),
   reload: ({ page }) => page.reload().then(() => null),
   value: ({ page }, { expression }) => page.evaluate(expression),
   // Not waitForFunction(), whose eval() the policy of the pages forbids.
@@ -96,6 +98,14 @@ const commands = {
     await page.mouse.down();
     await page.mouse.move(...at(command.end), { steps: 2 });
     await page.mouse.up();
+  },
+  /** Over a part of its width, half-way down; above 0 is down. */
+  async wheel({ page }, command) {
+    const area = element(page, command);
+    await area.scrollIntoViewIfNeeded();
+    const { x, y, width, height } = await area.boundingBox();
+    await page.mouse.move(x + command.at * width, y + height / 2);
+    await page.mouse.wheel(0, command.turn);
   },
   press: ({ page }, { key }) => page.keyboard.press(key),
   type: ({ page }, { text }) => page.keyboard.insertText(text),

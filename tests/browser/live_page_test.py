@@ -325,9 +325,9 @@ class LivePage(unittest.TestCase):
         self.assertAlmostEqual(levels["K"], results[-1]["results"]["mu_k"], delta=0.02)
         drawn = page.value("""(() => {
           const u = Scope.force, probe = document.createElement('canvas').getContext('2d'), {S, K} = Scope.levels();
-          probe.fillStyle = getComputedStyle(document.documentElement).getPropertyValue('--accent'); probe.fillRect(0, 0, 1, 1);
-          const want = [...probe.getImageData(0, 0, 1, 1).data];
-          return [S, K].map(level => {
+          return [[S, '--static'], [K, '--kinetic']].map(([level, name]) => {
+            probe.fillStyle = getComputedStyle(document.documentElement).getPropertyValue(name); probe.fillRect(0, 0, 1, 1);
+            const want = [...probe.getImageData(0, 0, 1, 1).data];
             const y = Math.round(u.valToPos(level, 'y', true)), pixels = u.ctx.getImageData(u.bbox.left, y - 1, u.bbox.width, 3).data;
             let like = 0;
             for (let k = 0; k < pixels.length; k += 4) like += Math.abs(pixels[k] - want[0]) + Math.abs(pixels[k + 1] - want[1]) + Math.abs(pixels[k + 2] - want[2]) < 60 && pixels[k + 3] > 100;
@@ -335,6 +335,42 @@ class LivePage(unittest.TestCase):
           });
         })()""")
         self.assertTrue(all(part > 0.1 for part in drawn), drawn)
+
+    def test_wheel_and_keys_change_the_time_in_view(self):
+        self.daemon(speed=1)
+        page = self.page()
+        width, words = "Scope.force.scales.x.max - Scope.force.scales.x.min", "document.getElementById('window').textContent"
+        page.until(f"Math.abs({width} - 10) < 1e-6")
+        # The latest scan stays at the right end.
+        page.wheel("#force .u-over", 0.2, -120)
+        page.until(f"Math.abs({width} - 5) < 1e-6 && {words} === '5 s'")
+        self.assertAlmostEqual(*page.value("[Scope.force.scales.x.max, Scope.force.data[0].at(-1)]"))
+        self.assertEqual(*page.value("[Scope.slope, Scope.force].map(u => u.scales.x.max - u.scales.x.min)"))
+        page.value("document.getElementById('force').focus()")
+        page.press("-")
+        page.press("-")
+        page.until(f"Math.abs({width} - 20) < 1e-6 && {words} === '20 s'")
+        page.press("+")
+        page.click("#zoom-in")
+        page.until(f"Math.abs({width} - 5) < 1e-6")
+        # While the charts stand still what is under the cursor does.
+        page.until("Scope.data.time.at(-1) > 6")
+        page.click("#pause")
+        before = page.value("[Scope.force.scales.x.min, Scope.force.scales.x.max]")
+        scans = page.value("Scope.force.data[0].length")
+        page.wheel("#force .u-over", 0.25, -120)
+        page.until(f"Math.abs({width} - 2) < 1e-6")
+        after = page.value("[Scope.force.scales.x.min, Scope.force.scales.x.max]")
+        self.assertAlmostEqual(before[0] + 0.25 * 5, after[0] + 0.25 * 2, delta=0.02)
+        self.assertEqual(page.value("Scope.force.data[0].length"), scans)
+        # At the last step the wheel is the page's.
+        for _ in range(6):
+            page.press("+")
+        page.until(f"{words} === '0.5 s'")
+        page.resize(1280, 300)
+        page.wheel("#force .u-over", 0.25, -120)
+        self.assertEqual(page.value(words), "0.5 s")
+        self.assertEqual(page.complaints(), [])
 
     def test_the_health_list_is_the_status_to_the_digits_shown(self):
         # With scans that go missing; in the world's time, by which alone the rate is measured.
@@ -439,12 +475,17 @@ class LivePage(unittest.TestCase):
         word = "document.getElementById('bench-word').textContent"
         self.assertEqual(page.value(word), "idle")
         shapes = {"idle": page.value("document.getElementById('bench-shape').getAttribute('d')")}
+        # They stand in a drawer, below the answer.
+        self.assertFalse(page.value("document.querySelector('#plan').checkVisibility()"))
+        page.value("document.querySelector('#more > summary').focus()")
+        page.press("Enter")
         for name, typed in (("name", "liner 42"), ("operator", "Ada"), ("replicate", "3"), ("pull_speed", "12 in/min")):
             page.value(f"document.querySelector('#plan [name={name}]').focus()")
             page.type(typed)
         page.press("Enter")
         page.until_said("the plan is set")
         self.assertEqual(daemon.ask("GET", "/v1/plan")[1]["name"], "liner 42")
+        self.assertEqual(page.value("document.getElementById('planned').textContent"), "liner 42, 5.08 mm/s, Ada")
         self.assertEqual(page.value("document.querySelector('#plan [name=pull_speed]').value"), "5.08 mm/s")
         page.until("Scope.data.highest.slice(-50).every(force => force < 0.02)")  # A whole pull is to come.
         page.value("document.querySelector('[data-command=start]').focus()")
@@ -509,6 +550,7 @@ class LivePage(unittest.TestCase):
         self.daemon()
         for dark in (False, True):
             page = self.page(dark=dark)
+            page.value("document.getElementById('more').open = true")
             for width, height in ((1280, 720), (820, 1180), (390, 844)):
                 page.resize(width, height)
                 page.settle()
@@ -541,11 +583,12 @@ class LivePage(unittest.TestCase):
             self.check_drawn(page, dark)
 
     def check_drawn(self, page, dark):
-        drawn = colours(page, "--card", "--soft", "--force", "--delta", "--amplitude", "--mark", "--spike", "--accent")
+        names = ("--force", "--delta", "--amplitude", "--mark", "--free", "--static", "--kinetic", "--other", "--spike", "--accent")
+        drawn = colours(page, "--card", "--soft", *names)
         self.assertGreaterEqual(contrast(drawn["--soft"], drawn["--card"]), TEXT, f"dark {dark}")
         alpha = page.value("""['--slip', '--stick'].map(name => getComputedStyle(document.documentElement).getPropertyValue(name).match(/[0-9.]+/g).map(Number))""")
         grounds = [drawn["--card"], *([part * shade[3] + own * (1 - shade[3]) for part, own in zip(shade, drawn["--card"])] for shade in alpha)]
-        for name in ("--force", "--delta", "--amplitude", "--mark", "--spike", "--accent"):
+        for name in names:
             for ground in grounds:
                 self.assertGreaterEqual(contrast(drawn[name], ground), MARK, f"{name} on {ground}, dark {dark}")
         # The canvas has them, and has others when the reader's liking changes.
@@ -597,6 +640,8 @@ class LivePage(unittest.TestCase):
         page.until("Scope.cycles.number.length > 3")
         self.stop(page, 1)
         page.until("document.getElementById('record-1') && document.querySelectorAll('#batch-rows tr').length === 1")
+        page.value("document.getElementById('give-back').click()")  # Else it would end by itself meanwhile, with its button.
+        page.until("document.getElementById('give-back').hidden")
         page.value("document.getElementById('batch-tests').open = true")
         page.value("document.activeElement.blur()")
         wanted = page.value(f"{self.REACHABLE}('{CONTROLS}')")
@@ -610,7 +655,7 @@ class LivePage(unittest.TestCase):
         backward = [held["at"] for held in self.walk(page, "Shift+Tab", 3 * len(wanted))]
         self.assertEqual(sorted(backward), places)
         # A dialog keeps the keyboard, lets it go by Escape, and gives it back to what opened it.
-        for opener in ("tare-open", "calibrate-open", "batch-end", "batches-open", "void-1", "batch-void-0"):
+        for opener in ("tare-open", "calibrate-open", "batch-end", "batches-open", "void-1", "batch-void-0", "trace-1"):
             page.value(f"document.getElementById('{opener}').focus()")
             page.press("Enter")
             page.until("document.querySelector('dialog:modal') && document.activeElement.closest('dialog')")
@@ -670,9 +715,10 @@ class LivePage(unittest.TestCase):
         self.assertEqual(daemon.ask("GET", "/v1/batch")[1]["batch"]["name"], "liner")
         for width, height in ((820, 1180), (390, 844), (1280, 720)):
             page.resize(width, height)
+            page.value("document.getElementById('more').open = true")
             self.assertLessEqual(page.value("document.documentElement.scrollWidth"), width)
             self.fingers(page, "body", width)
-            for opener in ("tare-open", "calibrate-open", "batch-end", "batches-open", "void-1"):
+            for opener in ("tare-open", "calibrate-open", "batch-end", "batches-open", "void-1", "trace-1"):
                 page.tap(f"#{opener}")
                 page.until("document.querySelector('dialog:modal')")
                 if opener == "batches-open":

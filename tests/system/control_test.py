@@ -248,6 +248,7 @@ class Description(unittest.TestCase):
         self.assertEqual(self.check("GET", "/v1/live")[0], 426)
         self.crowd()
         self.check("GET", "/v1/tests/1", template="/v1/tests/{number}")
+        self.assertEqual(self.check("GET", "/v1/tests/1/trace", template=self.TRACE)[0], 404)
         changing = [("PUT", "/v1/plan", {"name": "x"}), ("PUT", "/v1/controller", {"seconds": 60}), ("POST", "/v1/arm", None),
                     ("POST", "/v1/stop", None), ("POST", "/v1/start", None), ("POST", "/v1/mark", {"text": "x"}), ("POST", "/v1/tare", None),
                     ("POST", "/v1/calibration", None), ("POST", "/v1/calibration/weight", {"mass": 0}), ("POST", "/v1/calibration/undo", None),
@@ -261,6 +262,13 @@ class Description(unittest.TestCase):
             # What cannot be done by anybody yet is refused for that.
             if path not in ("/v1/controller", "/v1/void", "/v1/restore") or method == "PUT":
                 self.assertEqual(self.check(method, path, body, who="bob")[0], 409, path)
+        # Bob takes it over from who has it, and from nobody else.
+        status, body = self.check("PUT", "/v1/controller", {"seconds": 60, "from": "eve"}, who="bob")
+        self.assertEqual(status, 409)
+        self.assertIn("ada has the bench", body["error"])
+        self.assertEqual(self.check("PUT", "/v1/controller", {"seconds": 60, "from": "ada"}, who="bob")[1]["controller"], "bob")
+        self.assertEqual(self.check("PUT", "/v1/controller", {"from": 1}, who="bob")[0], 400)
+        self.assertEqual(self.check("PUT", "/v1/controller", {"seconds": 60, "from": "bob"})[1]["controller"], "ada")
         # Back to ada, so that bob cannot give it away.
         self.check("PUT", "/v1/controller", {"seconds": 60})
         self.assertEqual(self.check("DELETE", "/v1/controller", None, who="bob")[0], 409)
@@ -276,14 +284,22 @@ class Description(unittest.TestCase):
             if self.check("POST", "/v1/start", {})[0] == 200:
                 break
         wait_for(frames, lambda frame: frame["type"] == "cycle")
+        running = self.daemon.ask("GET", "/v1/status")[1]["current_test"]
+        status, body = self.check("GET", f"/v1/tests/{running}/trace", template=self.TRACE)
+        self.assertEqual(status, 409)
+        self.assertIn(f"test {running} is running", body["error"])
         self.assertEqual(self.check("POST", "/v1/mark", {"text": "x"})[0], 200)
         self.assertEqual(self.check("POST", "/v1/stop", {})[0], 200)
         for _ in frames:
             if self.check("POST", "/v1/tare")[0] == 200:
                 break
         record = self.daemon.record(1)
+        self.traces(record)
         self.assertEqual(self.check("POST", "/v1/restore", {"test": 1})[0], 409)
         self.assertEqual(self.check("POST", "/v1/void", {"test": 1, "reason": "paper torn"})[0], 200)
+        status, body = self.check("GET", "/v1/tests/1/trace", template=self.TRACE)
+        self.assertEqual(status, 409)
+        self.assertIn("test 1 is void: paper torn", body["error"])
         self.assertEqual(self.check("POST", "/v1/void", {"record": record.name, "reason": "again"})[0], 409)
         self.assertEqual(self.check("GET", "/v1/tests/1", template="/v1/tests/{number}")[1]["voided"]["reason"], "paper torn")
         self.assertEqual(self.check("GET", "/v1/tests")[0], 200)
@@ -326,6 +342,62 @@ class Description(unittest.TestCase):
             one.close()
         while self.check("GET", "/v1/live")[0] != 426:
             pass
+
+    TRACE = "/v1/tests/{number}/trace"
+
+    def traces(self, record):
+        """Lowest and highest of each bin are those of the record's scans; a span has each scan of its own."""
+        with h5py.File(record) as file:
+            scans, force = file["entry/raw/scan"][()], file["entry/raw/force"][()]
+            tester = file["entry/instrument/tester"]
+            coefficient = force / (tester["sled_mass"][()] * tester["gravity"][()])
+            rate = float(file["entry/timing/scan_rate_granted"][()])
+            cycles = {name: file[f"entry/cycles/{name}"][()] for name in ("peak_time", "peak", "trough")}
+            cycles["captured"] = (file["entry/cycles/flags"][()] & 8) != 0
+            levels = [float(file[f"entry/results/{name}"][()]) for name in ("mu_s", "mu_k")]
+        at = scans - scans[0]
+
+        def compare(told, first, end):
+            width = told["scans_in_bin"]
+            self.assertEqual(len(told["time"]), -(-(end - first) // width))
+            for k, (time, low, high) in enumerate(zip(told["time"], told["lowest"], told["highest"], strict=True)):
+                self.assertAlmostEqual(time, (first + k * width) / rate, delta=1e-6)
+                part = coefficient[(at >= first + k * width) & (at < min(first + (k + 1) * width, end))]
+                self.assertAlmostEqual(low, part.min(), delta=2e-6)  # Single precision in the record, six decimals on the way.
+                self.assertAlmostEqual(high, part.max(), delta=2e-6)
+        status, whole = self.check("GET", "/v1/tests/1/trace?points=50", template=self.TRACE)
+        self.assertEqual((status, whole["scan_count"]), (200, len(scans)))
+        self.assertEqual(whole["scans_in_bin"], -(-(at[-1] + 1) // 50))
+        compare(whole, 0, at[-1] + 1)
+        for value, told in zip(levels, (whole["mu_s"], whole["mu_k"]), strict=True):
+            self.assertTrue(told is None if numpy.isnan(value) else abs(told - value) < 1e-6)
+        for name, column in cycles.items():
+            numpy.testing.assert_allclose(numpy.array(whole["cycles"][name], dtype=float), column, atol=1e-6, err_msg=name)
+        first, end = len(scans) // 2, len(scans) // 2 + 40
+        status, part = self.check("GET", f"/v1/tests/1/trace?from={first / rate:.6f}&to={(end - 1) / rate:.6f}", template=self.TRACE)
+        self.assertEqual((status, part["scans_in_bin"], len(part["time"])), (200, 1, 40))
+        compare(part, first, end)
+        self.assertEqual(self.check("GET", "/v1/tests/1/trace?points=1", template=self.TRACE)[1]["left_out_cycles"], 0 if len(cycles["peak"]) < 2 else len(cycles["peak"]))
+        for wrong in ("points=0", "points=1.5", "points=20001", "points=x", "from=-1", "from=x", "from=1&to=1", "to=nan", "x=1", "from=1&from=2"):
+            self.assertEqual(self.check("GET", f"/v1/tests/1/trace?{wrong}", template=self.TRACE)[0], 400, wrong)
+        status, body = self.check("GET", "/v1/tests/1/trace?from=1000", template=self.TRACE)
+        self.assertEqual(status, 409)
+        self.assertIn("the end of the record", body["error"])
+        for number in ("99", "x", "1/x", "..", "-1"):
+            self.assertEqual(self.check("GET", f"/v1/tests/{number}/trace", template=self.TRACE)[0], 404, number)
+        os.mkfifo(self.pipe)
+        held = UnixConnection(self.daemon.socket)
+        held.request("GET", "/v1/tests/1/trace")
+        with self.pipe.open("w", encoding="utf-8"):  # Opens when the program reads.
+            self.assertEqual(self.check("GET", "/v1/tests/1/trace", template=self.TRACE)[0], 503)
+        self.assertEqual(held.getresponse().status, 200)
+        held.close()
+        self.pipe.unlink()
+        record.rename(record.with_suffix(".kept"))
+        status, body = self.check("GET", "/v1/tests/1/trace", template=self.TRACE)
+        self.assertEqual(status, 409)
+        self.assertIn(f"{record.name}: there is no such file", body["error"])
+        record.with_suffix(".kept").rename(record)
 
     def reports(self, record):
         """On the batch that leads, which has no test yet, and on another; both compared."""
@@ -403,8 +475,12 @@ class Description(unittest.TestCase):
             self.assertEqual(self.check("POST", "/v1/calibration/finish", wrong)[0], 400, wrong)
         self.assertEqual(self.check("POST", "/v1/calibration/finish", {"valid_days": 0})[0], 200)
         self.assertIsNone(self.check("GET", "/v1/calibration")[1]["in_use"]["expires"])
+        # What is saved or given up gives the bench back.
+        self.assertIsNone(self.check("GET", "/v1/controller")[1]["controller"])
         self.assertEqual(self.check("POST", "/v1/calibration")[0], 200)
+        self.assertEqual(self.check("GET", "/v1/controller")[1]["controller"], "ada")
         self.assertEqual(self.check("DELETE", "/v1/calibration")[0], 200)
+        self.assertIsNone(self.check("GET", "/v1/controller")[1]["controller"])
         self.hanging.nothing()
         # What was sent meanwhile has been read, and the scene plays.
         scan = self.daemon.ask("GET", "/v1/status")[1]["scan_count"]

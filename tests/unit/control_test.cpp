@@ -50,13 +50,14 @@ TEST_F(ControlApi, ACalibrationIsAskedForWithUnits) {
   EXPECT_THAT(error(refused),
               testing::HasSubstr(R"("500": a mass needs its unit, such as "500 g" or "500 kg")"));
   EXPECT_EQ(error(command("/v1/calibration/undo", "ada")), "nothing has been read yet");
+  // Between two weights nobody else gets the bench: 31 s are more than a command has it.
+  clock_.advance(31s);
+  EXPECT_THAT(error(command("/v1/stop", "bob")), testing::HasSubstr("ada has the bench"));
   EXPECT_EQ(command("/v1/calibration/finish", "ada", R"({"certificate": "DKD", "valid_days": 0})").status,
             200);
   EXPECT_THAT(bench_.calibrations.asked,
               testing::ElementsAre("ada begins 0.5 3", "weigh 0.5", "weigh 2", "ada finishes DKD 0"));
-  // Between two weights nobody else gets the bench: 31 s are more than a command has it.
-  clock_.advance(31s);
-  EXPECT_THAT(error(command("/v1/stop", "bob")), testing::HasSubstr("ada has the bench"));
+  EXPECT_EQ(command("/v1/stop", "bob").status, 200) << "what is saved gives the bench back";
   const json told = json::parse(ask({"GET", "/v1/calibration", "", "", ""}).body);
   EXPECT_EQ(told["in_use"]["gain"], 2.0);
   EXPECT_EQ(told["in_use"]["date"], nullptr);
@@ -178,6 +179,28 @@ TEST_F(ControlApi, ReportsOnABatchAndComparesTwo) {
   EXPECT_EQ(get(one).status, 409);
 }
 
+TEST_F(ControlApi, ATraceIsThatOfTheRecordOfItsTest) {
+  const std::string trace = "/v1/tests/7/trace";
+  const auto get = [this](const std::string& target) { return ask({"GET", target, "", "", ""}); };
+  EXPECT_EQ(get(trace).body, "trace /records/20261121T125252Z-0007.h5 2000 -1 -1");
+  EXPECT_EQ(get(trace + "?points=800&from=1.25&to=2").body,
+            "trace /records/20261121T125252Z-0007.h5 800 1.25 2");
+  for (const auto& [target, status, why] : std::initializer_list<std::tuple<std::string, int, const char*>>{
+           {trace + "?points=0", 400, "points: must be a whole number from 1 to 20000, not 0"},
+           {trace + "?points=1e9", 400, "points: must be a whole number from 1 to 20000, not 1e9"},
+           {trace + "?from=-1", 400, "from: must be seconds after the first scan, 0 or more, not -1"},
+           {trace + "?from=2&to=1", 400, "to: must be above from, 2 s, not 1"},
+           {"/v1/tests/8/trace", 404, "there is no test 8"},
+           {"/v1/tests//trace", 404, "there is no test"},
+       }) {
+    const HttpReply refused = get(target);
+    EXPECT_EQ(refused.status, status) << target;
+    EXPECT_THAT(error(refused), testing::HasSubstr(why)) << target;
+  }
+  bench_.reported.refusal = base::Error{base::ErrorKind::kBusy, "another trace"};
+  EXPECT_EQ(get(trace).status, 503);
+}
+
 TEST_F(ControlApi, TellsTheStatusByTheNamesOfTheRecord) {
   const HttpReply reply = ask({"GET", "/v1/status", "", "", ""});
   EXPECT_EQ(reply.status, 200);
@@ -265,8 +288,14 @@ TEST_F(ControlApi, OneAtATimeCommandsUntilTheLeaseIsOver) {
   EXPECT_EQ(command("/v1/arm", "ada").status, 200);
   EXPECT_NEAR(json::parse(ask({"GET", "/v1/controller", "", "", ""}).body)["seconds_left"].get<double>(),
               100.0, 1e-6);
-  for (const char* body :
-       {R"({"seconds": 0})", R"({"seconds": 3601})", R"({"seconds": "x"})", R"({"second": 1})", "[]", "{"}) {
+  // Taken over from who has it, and from nobody else.
+  EXPECT_EQ(ask({"PUT", "/v1/controller", R"({"from": "eve"})", "bob", ""}).status, 409);
+  EXPECT_EQ(ask({"PUT", "/v1/controller", R"({"from": "ada"})", "bob", ""}).status, 200);
+  EXPECT_EQ(error(command("/v1/stop", "ada")),
+            "bob has the bench for another 30 s; one at a time commands, all may read");
+  EXPECT_EQ(ask({"PUT", "/v1/controller", R"({"from": "bob", "seconds": 3600})", "ada", ""}).status, 200);
+  for (const char* body : {R"({"seconds": 0})", R"({"from": 1})", R"({"seconds": 3601})",
+                           R"({"seconds": "x"})", R"({"second": 1})", "[]", "{"}) {
     EXPECT_EQ(ask({"PUT", "/v1/controller", body, "ada", ""}).status, 400) << body;
   }
 }

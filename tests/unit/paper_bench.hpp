@@ -42,10 +42,12 @@ class PaperCalibrator final : public Calibrator {
   [[nodiscard]] CalibrationView view() const override {
     CalibrationView view;
     view.load_cell = {2.0, 0.0123};
+    if (under_way) view.session.emplace();
     return view;
   }
   void begin(const std::string& who, const daq::WeighingTimes& times, Answer answer) override {
     asked.push_back(fmt::format("{} begins {} {}", who, times.settle_s, times.reading_s));
+    under_way = true;
     answer({});
   }
   void weigh(double mass_kg, Answer answer) override {
@@ -61,10 +63,15 @@ class PaperCalibrator final : public Calibrator {
     }
     asked.push_back(fmt::format("{} finishes {} {}{}", who, paper.certificate, paper.valid_days,
                                 paper.confirms_gain ? " confirmed" : ""));
+    under_way = false;
     answer({});
   }
-  [[nodiscard]] std::string give_up() override { return {}; }
+  [[nodiscard]] std::string give_up() override {
+    under_way = false;
+    return {};
+  }
 
+  bool under_way = false;                      ///< Between begin() and finish() or give_up().
   std::optional<daq::GainChange> gain_change;  ///< That of finish().
   std::vector<std::string> asked;
 };
@@ -125,6 +132,12 @@ class PaperReports final : public Reports {
     if (!pool.empty()) text += fmt::format(" pool {}", pool);
     if (refusal) return answer(tl::unexpected(*refusal));
     answer(std::move(text));
+  }
+
+  void trace(const TraceRequest& request, Answer answer) override {
+    if (refusal) return answer(tl::unexpected(*refusal));
+    answer(fmt::format("trace {} {} {} {}", request.record.string(), request.points,
+                       request.from_s.value_or(-1.0), request.to_s.value_or(-1.0)));
   }
 
   std::optional<base::Error> refusal;

@@ -75,6 +75,22 @@ TEST_F(ReportJobsTest, AsksForIdentifiersInTheFolderOfTheRecordsAndForNothingEls
             "--batch-b=20261122T180302Z\n--label-b=--fluting (20261122T180302Z)\n--json\n/records\n");
 }
 
+TEST_F(ReportJobsTest, ATraceIsExportedAndWaitsForNoReport) {
+  const std::filesystem::path pipe = folder_.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), S_IRWXU), 0);
+  page::ReportJobs jobs{parts(script("[ $1 = report ] && exec /bin/cat " + pipe.string() + "\necho \"$@\""))};
+  std::string report;
+  std::string trace;
+  jobs.make({&kLiner, 1}, ReportForm::kPage, "",
+            [&report](base::Result<std::string> text) { report = text.value_or("none"); });
+  jobs.trace({.record = "/records/a.h5", .points = 80, .from_s = 1.25, .to_s = 2.0},
+             [&trace](base::Result<std::string> text) { trace = text.value_or("none"); });
+  std::ofstream{pipe} << "whole";  // Returns when the child has opened it.
+  io_.run();
+  EXPECT_EQ(trace, "export --json --points=80 --from=1.25 --to=2 /records/a.h5\n");
+  EXPECT_EQ(report, "whole");
+}
+
 TEST_F(ReportJobsTest, OneIsMadeAtATimeAndItsEndLetsTheNextBegin) {
   const std::filesystem::path pipe = folder_.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), S_IRWXU), 0);

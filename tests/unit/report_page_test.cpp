@@ -1,5 +1,6 @@
 #include "report/report_page.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +8,9 @@
 #include <limits>
 #include <string>
 
+#include "report/assets.hpp"
+#include "report/binned_trace.hpp"
+#include "report/plot/looks.hpp"
 #include "report/report_json.hpp"
 #include "report/report_text.hpp"
 #include "report/trace_json.hpp"
@@ -44,6 +48,51 @@ TEST(TraceJson, HasABreakAtAGapAndEachCycle) {
   // The stiffness and the pull speed are known: the slope is a speed, with its limit.
   EXPECT_EQ(trace["slope"]["unit"], "mm/s");
   EXPECT_DOUBLE_EQ(trace["slope"]["limit"], 5.08);
+}
+
+/// "--stick: rgba(0, 158, 115, .16)" of a shade.
+std::string property_of(plot::Shade shade) {
+  const plot::ShadeLook look = plot::look(shade);
+  const auto part = [&look](std::size_t at) {
+    return std::stoi(std::string{look.colour}.substr(1 + 2 * at, 2), nullptr, 16);
+  };
+  return fmt::format("--{}: rgba({}, {}, {}, .{:.0f})", look.label, part(0), part(1), part(2),
+                     100.0 * look.opacity);
+}
+
+TEST(Colours, OfStickAndSlipAreTheSameInPicturesAndOnPages) {
+  EXPECT_THAT(std::string{colours_css()}, HasSubstr(property_of(plot::Shade::kStick)));
+  EXPECT_THAT(std::string{colours_css()}, HasSubstr(property_of(plot::Shade::kSlip)));
+  EXPECT_THAT(std::string{report_css()}, Not(HasSubstr("--stick:")));
+}
+
+TEST(BinnedTrace, ABinIsTheSameNumberOfIndicesAndOneWithoutScansIsNull) {
+  const record::Record record = test::sample_record();
+  const Json whole = binned_trace_json(record, {}).value();
+  EXPECT_EQ(whole["scans_in_bin"], 1);
+  const auto indices = static_cast<std::size_t>(record.scan.back() - record.scan.front() + 1);
+  ASSERT_GT(indices, record.scan.size());  // There is a gap.
+  ASSERT_EQ(whole["lowest"].size(), indices);
+  EXPECT_TRUE(whole["lowest"][20].is_null());
+  EXPECT_EQ(whole["lowest"][19], whole["highest"][19]);
+  const Json four = binned_trace_json(record, {.bins = 4}).value();
+  EXPECT_EQ(four["scans_in_bin"], (indices - 1) / 4 + 1);
+  EXPECT_LT(four["lowest"][0], four["highest"][0]);
+  // To the scan, from any time between the one before and it.
+  const double rate_Hz = record.header.board.scan_rate_granted_Hz;
+  const Json part = binned_trace_json(record, {.from_s = 2.5 / rate_Hz, .to_s = 5.5 / rate_Hz}).value();
+  EXPECT_EQ(part["lowest"], Json::array({whole["lowest"][3], whole["lowest"][4], whole["lowest"][5]}));
+}
+
+TEST(BinnedTrace, RefusesWhatIsNotInTheRecord) {
+  const record::Record record = test::sample_record();
+  const auto why = [&record](const TraceSpan& span) {
+    return binned_trace_json(record, span).error().message;
+  };
+  EXPECT_THAT(why({.from_s = 1000.0}), testing::HasSubstr("the end of the record"));
+  EXPECT_THAT(why({.from_s = 0.01, .to_s = 0.01}), testing::HasSubstr("must be above 0.01 s"));
+  EXPECT_THAT(why({.from_s = 1e-4, .to_s = 2e-4}), testing::HasSubstr("there is no scan"));
+  EXPECT_THAT(why({.bins = 0}), testing::HasSubstr("must be 1 or more"));
 }
 
 TEST(TraceJson, HasTheSecondChannelWithABreakWhereNoCodeCame) {
