@@ -80,7 +80,7 @@ const Chart = (() => {
     for (const [name, level, of, side] of levels) {
       if (level == null) continue;
       ctx.strokeStyle = ctx.fillStyle = colour(of);
-      const y = u.valToPos(level, "y", true);
+      const y = Math.round(u.valToPos(level, "y", true)) + ctx.lineWidth % 2 / 2;  // On whole pixels: else it is pale.
       ctx.beginPath();
       ctx.moveTo(u.bbox.left, y); ctx.lineTo(u.bbox.left + u.bbox.width, y);
       ctx.stroke();

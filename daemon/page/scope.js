@@ -134,6 +134,7 @@ const Scope = (() => {
   }
   document.getElementById("pause").addEventListener("click", event => {
     paused = paused == null ? {end: latest(), data: Object.fromEntries(Object.entries(data).map(([name, column]) => [name, [...column]]))} : null;
+    moved = true;  // Drawn once more, of what no scan changes.
     event.target.setAttribute("aria-pressed", String(paused != null));
     event.target.textContent = paused == null ? "Pause" : "Go on";
     dirty = true;

@@ -262,6 +262,9 @@ class Description(unittest.TestCase):
             # What cannot be done by anybody yet is refused for that.
             if path not in ("/v1/controller", "/v1/void", "/v1/restore") or method == "PUT":
                 self.assertEqual(self.check(method, path, body, who="bob")[0], 409, path)
+        # Back to ada, so that bob cannot give it away.
+        self.check("PUT", "/v1/controller", {"seconds": 60})
+        self.assertEqual(self.check("DELETE", "/v1/controller", None, who="bob")[0], 409)
         # Bob takes it over from who has it, and from nobody else.
         status, body = self.check("PUT", "/v1/controller", {"seconds": 60, "from": "eve"}, who="bob")
         self.assertEqual(status, 409)
@@ -269,9 +272,6 @@ class Description(unittest.TestCase):
         self.assertEqual(self.check("PUT", "/v1/controller", {"seconds": 60, "from": "ada"}, who="bob")[1]["controller"], "bob")
         self.assertEqual(self.check("PUT", "/v1/controller", {"from": 1}, who="bob")[0], 400)
         self.assertEqual(self.check("PUT", "/v1/controller", {"seconds": 60, "from": "bob"})[1]["controller"], "ada")
-        # Back to ada, so that bob cannot give it away.
-        self.check("PUT", "/v1/controller", {"seconds": 60})
-        self.assertEqual(self.check("DELETE", "/v1/controller", None, who="bob")[0], 409)
         # What has been refused so far, granted: mark in a test, tare where the load cell is unloaded.
         process, frames = self.daemon.watch()
         self.addCleanup(process.communicate)
