@@ -121,6 +121,17 @@ TEST(Grazing, OdeintIsRightDownToItsTolerance) {
   }
 }
 
+// At 1e-2 a step of Bulirsch and Stoer's takes 0.9 of an oscillation: the capture lies inside it, between two
+// extremes of c′ that a look at the whole step cancels.
+TEST(Grazing, OdeintMissesNoCaptureInALongStep) {
+  const double Q_th = model::Q_threshold(0.022);
+  for (const double part : {0.6, 0.75, 0.9}) {
+    EXPECT_EQ(accuracy::goes_on(*accuracy::make_bulirsch_stoer(1e-2), 0.022, part * Q_th),
+              accuracy::GoesOn::kYes)
+        << part;
+  }
+}
+
 // Beyond that one of the two sides is wrong, and nothing tells: it has no estimate of its own error.
 TEST(Grazing, OdeintDoesNotSayWhereItCannotTell) {
   std::vector<std::unique_ptr<accuracy::Method>> methods;
