@@ -187,6 +187,13 @@ TestEstimates estimate_in_sections(const estimate::Trace& trace, const base::Lon
   }
   whole.results = results.mean();
   whole.tester = testers.mean();
+  if (whole.model_describes && whole.results.delta_mu.value.value_or(1.0) <= 0.0) {
+    whole.model_describes = false;
+    no_model_results(
+        "the fit finds no S - K above zero: the sled crept before it slipped, or the swing is the belt's "
+        "alone",
+        whole.results);
+  }
   return whole;
 }
 

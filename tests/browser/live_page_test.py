@@ -483,7 +483,7 @@ class LivePage(unittest.TestCase):
             page.value(f"document.querySelector('#plan [name={name}]').focus()")
             page.type(typed)
         page.press("Enter")
-        page.until_said("the plan is set")
+        page.until_said("the plan holds")
         self.assertEqual(daemon.ask("GET", "/v1/plan")[1]["name"], "liner 42")
         self.assertEqual(page.value("document.getElementById('planned').textContent"), "liner 42, 5.08 mm/s, Ada")
         self.assertEqual(page.value("document.querySelector('#plan [name=pull_speed]').value"), "5.08 mm/s")

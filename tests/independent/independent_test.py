@@ -11,7 +11,7 @@ import unittest
 
 import numpy
 
-from instruments import ROWS, outcomes
+from instruments import RING_DOWN, ROWS, outcome, outcomes
 from sled import GRAVITY_M_PER_S2, M_PER_S_OF_IN_PER_MIN, STEPS_PER_S, Setup, Sled, butterworth, second_order
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve() / "bin" / "stickslip"
@@ -103,6 +103,16 @@ class Results(unittest.TestCase):
                         self.assertIn(FLAGGED[row], found.findings)
                     if row not in KNOWN_LIMITS:
                         self.assertTrue(found.honest(ERRORS), f"S - K is off by {number.z():+.2f} errors, and no finding says so")
+
+
+    def test_no_S_lies_below_K(self):
+        # The sled creeps up to the belt's speed before it slips: the more it does, the less of S - K is left in the trace.
+        for creep in (0.07, 0.1, 0.15, 0.3):
+            found = outcome(PROGRAM, Setup(seed=SEED, creep=creep, creep_scale=0.001, **RING_DOWN))
+            with self.subTest(creep=creep):
+                number = found.numbers["delta_mu"]
+                self.assertGreater(number.value, 0.0)
+                self.assertTrue(found.findings or number.standard_error < number.value, (number, found.findings))
 
 
 if __name__ == "__main__":
