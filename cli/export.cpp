@@ -29,7 +29,7 @@ struct ExportOptions {
   bool cycles = false;
 };
 
-/// Most bins of a trace: 64 MiB of JSON and more would come of more.
+/// Most bins of a trace: more would make over 64 MiB of JSON.
 constexpr std::size_t kMostPoints = 1'000'000;
 
 base::Result<std::string> trace_text(const record::Record& record, const ExportOptions& options) {

@@ -102,7 +102,10 @@ void limit(pid_t child, const ChildLimits& limits) {
     ::prlimit(child, RLIMIT_CPU, &time, nullptr);
   }
   if (limits.output_size > 0) {
-    const rlimit size{limits.output_size, limits.output_size};
+    // Soft: a reader of records that the child starts writes more (record::read_record_apart()).
+    rlimit size{};
+    ::prlimit(child, RLIMIT_FSIZE, nullptr, &size);
+    size.rlim_cur = limits.output_size;
     ::prlimit(child, RLIMIT_FSIZE, &size, nullptr);
   }
   if (limits.niceness > 0) {

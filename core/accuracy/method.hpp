@@ -46,8 +46,8 @@ class Method {
 /// \param accuracy 1e-12 … 1e-2.
 [[nodiscard]] std::unique_ptr<Method> make_cvode(double accuracy);
 /// Boost.odeint's Dormand–Prince 5(4), and its extrapolation by Bulirsch and Stoer of order up to 16, in
-/// steps of their own. Events are looked for in the dense output, inside a step at c″ = 0 too. \param
-/// tolerance > 0, absolute and relative, of a step.
+/// steps of their own. Events are looked for in the dense output, inside a step at c″ = 0 too.
+/// \param tolerance  > 0, absolute and relative, of a step.
 [[nodiscard]] std::unique_ptr<Method> make_dormand_prince(double tolerance);
 [[nodiscard]] std::unique_ptr<Method> make_bulirsch_stoer(double tolerance);
 /// Semi-implicit (symplectic) Euler. A sled that passes the belt's speed in a step sticks if static friction

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include <boost/math/distributions/students_t.hpp>
@@ -93,20 +93,27 @@ estimate::Drift significant_drift(const estimate::Trace& trace, const base::Long
   return {*slope.value, mean_s};
 }
 
-std::optional<base::Finding> level_finding(const base::LongColumn<detect::Fall>& slips) {
+std::optional<base::Finding> level_finding(const estimate::Trace& trace,
+                                           const base::LongColumn<detect::Fall>& slips) {
   constexpr std::size_t kFewestCycles = 24;  // Eight in a third: fewer tell nothing of how they wander.
   constexpr double kLevel = 0.0027;          // Three standard deviations.
-  if (slips.size() < kFewestCycles + 1) return std::nullopt;
+  if (slips.size() < kFewestCycles + 1 || !trace.belt.is_constant()) return std::nullopt;
   const std::size_t cycles = slips.size() - 1;
   const std::size_t third = cycles / 3;
   const auto mean_from = [&](std::size_t first) {
     signal::WanderingMean mean;
-    for (std::size_t i = first; i < first + third; ++i) mean.add(centre(slips[i], slips[i + 1].peak));
-    return std::pair{mean.mean(), mean.error_of_mean()};
+    for (std::size_t i = first; i < first + third; ++i) {
+      const detect::Fall slip = slips[i];
+      const detect::Fall next = slips[i + 1];
+      if (estimate::is_broken(trace, slip.peak_at, next.peak_at) || next.peak <= slip.trough) continue;
+      mean.add(centre(slip, next.peak));
+    }
+    return std::tuple{mean.mean(), mean.count() < 1.0 ? 0.0 : mean.error_of_mean(), mean.count()};
   };
-  const auto [first, first_error] = mean_from(0);
-  const auto [last, last_error] = mean_from(cycles - third);
-  const boost::math::students_t of_errors{2.0 * static_cast<double>(third - 1)};
+  const auto [first, first_error, first_count] = mean_from(0);
+  const auto [last, last_error, last_count] = mean_from(cycles - third);
+  if (std::min(first_count, last_count) < static_cast<double>(kFewestCycles) / 3.0) return std::nullopt;
+  const boost::math::students_t of_errors{first_count + last_count - 2.0};
   const double limit = boost::math::quantile(boost::math::complement(of_errors, 0.5 * kLevel));
   if (!(std::abs(last - first) > limit * std::hypot(first_error, last_error))) return std::nullopt;
   return base::make_finding(base::FindingCode::kLevelDrift,

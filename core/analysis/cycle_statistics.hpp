@@ -22,8 +22,9 @@ namespace stickslip::analysis {
 
 /// The finding if the level about which slips swing differs between the first and the last third of them by
 /// more than it wanders in between, at the level of three standard deviations: S and K then hold for this
-/// stretch of the track alone.
-[[nodiscard]] std::optional<base::Finding> level_finding(const base::LongColumn<detect::Fall>& slips);
+/// stretch of the track alone. Cycles with a break do not count; a belt of changing speed has no level.
+[[nodiscard]] std::optional<base::Finding> level_finding(const estimate::Trace& trace,
+                                                         const base::LongColumn<detect::Fall>& slips);
 
 /// Shape of the cycles, of which each has a fall and the rise to the next.
 [[nodiscard]] detect::CycleShape cycle_shape(const estimate::Trace& trace,

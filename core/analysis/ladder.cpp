@@ -92,12 +92,23 @@ void void_start(const TesterEstimate& tester, double gravity_m_per_s2, TestResul
       "the belt is about as fast as the {:.3g} m/s, K g/omega, up to which a sled comes to rest on it before "
       "the first slip: the force may have swung about K from the start on",
       fastest_m_per_s);
-  for (Estimate* estimate :
-       {&results.mu_s, &results.delta_mu, &results.Q, &results.threshold_speed, &results.pull_speed_measured})
+  for (Estimate* estimate : {&results.static_coefficient, &results.mu_s, &results.delta_mu, &results.Q,
+                             &results.threshold_speed, &results.pull_speed_measured})
     *estimate = Estimate::none(why);
   base::add(results.findings,
-            base::make_finding(base::FindingCode::kFastBelt, "S and S - K are not given: " + why,
+            base::make_finding(base::FindingCode::kFastBelt, "static, S and S - K are not given: " + why,
                                {{"fastest_speed", fastest_m_per_s, "m/s"}}));
+}
+
+void tell_bound(double bound, TestResults& results) {
+  const double half = 0.5 * bound;
+  results.delta_mu = Estimate::of(half);
+  results.delta_mu.systematic_uncertainty = half;
+  if (results.mu_k.value) {
+    results.mu_s = Estimate::of(*results.mu_k.value + half);
+    results.mu_s.systematic_uncertainty = half + results.mu_k.systematic_uncertainty.value_or(0.0);
+  }
+  results.Q = results.threshold_speed = Estimate::none("S - K is not told from zero");
 }
 
 void take_misfit(const Misfit& misfit, TestResults& results) {

@@ -40,8 +40,12 @@ void tell_held_damping(TestResults& results);
 /// captured.
 [[nodiscard]] bool may_never_have_stuck(const TesterEstimate& tester, const TestResults& results);
 
-/// Takes away what the first slip tells, and adds the finding kFastBelt.
+/// Takes away what the first slip tells, the static coefficient too, and adds the finding kFastBelt.
 void void_start(const TesterEstimate& tester, double gravity_m_per_s2, TestResults& results);
+
+/// S − K that is not told from zero lies between that and a bound: half of the bound, and as much systematic
+/// uncertainty. S is as far above K; Q and the threshold speed have no value.
+void tell_bound(double bound, TestResults& results);
 
 /// Fills misfit and misfit_place.
 void take_misfit(const Misfit& misfit, TestResults& results);

@@ -14,7 +14,6 @@ namespace {
 constexpr double kPulled = 0.25;
 /// Smallest largest force, in σ, that is no noise.
 constexpr double kLeastSigmas = 12.0;
-constexpr std::size_t kJumpScans = 3;
 constexpr double kJump = 0.5;
 constexpr double kOvershoot = 0.05;
 /// Loaded scans that tell the level: the first ones.

@@ -10,6 +10,9 @@
 
 namespace stickslip::analysis {
 
+/// Within which a jump rises.
+inline constexpr std::size_t kJumpScans = 3;
+
 /// What no pull does.
 struct NoPull {
   bool is_brief = false;         ///< Loaded for a shorter time than any pull; else it jumped.

@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 
 #include "core/analysis/cycle_features.hpp"
+#include "core/analysis/ladder.hpp"
 #include "core/analysis/model_results.hpp"
 #include "core/analysis/slip_estimator.hpp"
 #include "core/base/nan.hpp"
@@ -187,12 +188,18 @@ TestEstimates estimate_in_sections(const estimate::Trace& trace, const base::Lon
   }
   whole.results = results.mean();
   whole.tester = testers.mean();
-  if (whole.model_describes && whole.results.delta_mu.value.value_or(1.0) <= 0.0) {
-    whole.model_describes = false;
-    no_model_results(
-        "the fit finds no S - K above zero: the sled crept before it slipped, or the swing is the belt's "
-        "alone",
-        whole.results);
+  const Estimate& delta_mu = whole.results.delta_mu;
+  if (whole.model_describes && delta_mu.value.value_or(1.0) <= 0.0) {
+    constexpr double kSure = 2.0;
+    const double error =
+        std::hypot(delta_mu.standard_error.value_or(0.0), delta_mu.systematic_uncertainty.value_or(0.0));
+    const double bound = *delta_mu.value + kSure * error;
+    if (bound > 0.0) {
+      tell_bound(std::min(bound, whole.results.amplitude.value.value_or(bound)), whole.results);
+    } else {
+      whole.model_describes = false;
+      no_model_results("the fit finds S below K", whole.results);
+    }
   }
   return whole;
 }

@@ -35,7 +35,7 @@ struct TestEstimates {
   base::LongColumn<detect::Cycle> cycles;          ///< One for each slip, as from cycle_table().
   base::LongColumn<double> onset_errors_s;         ///< Standard error of each onset; NaN if unknown.
   std::int64_t captured = 0;                       ///< Slips that ended in sticking.
-  bool model_describes = true;                     ///< It does each section, and S − K > 0.
+  bool model_describes = true;                     ///< It does each section, and S is not below K.
   Rung rung = Rung::kLawWithSlope;
   std::string rung_reason;  ///< Why not a higher rung.
   Misfit misfit;            ///< Of all sections.

@@ -54,8 +54,8 @@ void keep_one(const estimate::Trace& trace, SignalCheck& check) {
 
 std::string text_of(const NoPull& found) {
   if (found.is_brief) return fmt::format("the force was there for {:.2f} s", found.loaded_s);
-  return fmt::format("the force jumped to {:.4f} within two scans, and exceeded that by {:.1f} % at most",
-                     found.level, 100.0 * found.overshoot);
+  return fmt::format("the force jumped to {:.4f} within {} scans, and exceeded that by {:.1f} % at most",
+                     found.level, kJumpScans, 100.0 * found.overshoot);
 }
 
 /// \pre check.voids()

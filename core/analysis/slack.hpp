@@ -4,8 +4,7 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
-#include <optional>
+#include <string>
 
 #include "core/analysis/results.hpp"
 #include "core/base/finding.hpp"
@@ -15,21 +14,20 @@
 
 namespace stickslip::analysis {
 
-/// Fills trace.slacks, and makes the scans of slack unusable: those between the peaks of two slips within
-/// four standard deviations of the unloaded level. The coupling hangs loose until the belt has caught up with
-/// the sled. If the sled has come to rest before, the belt loads it anew from zero, as at the begin of a
-/// pull; if not, it goes on freely with a motion that no earlier scan tells. It came to rest if the force
-/// fell faster, relative to the belt's r, than the belt takes it up: with u = −ċ/r the belt catches up after
-/// 2uv/(K g), and the sled stands after (1 + u) v/(K g). \param sigma  noise of a scan.
-void find_slack(const base::LongColumn<detect::Fall>& slips, double sigma, estimate::Trace& trace,
-                const std::filesystem::path& scratch);
+/// Number of slips whose trough lies within four standard deviations of the force before the pull, or of zero
+/// where the trace begins under load. The last slip does not count: the pull may have ended in it. \param
+/// sigma noise of a scan.
+[[nodiscard]] std::size_t count_slack(const estimate::Trace& trace,
+                                      const base::LongColumn<detect::Fall>& slips, double sigma);
 
-/// Code kSlack; nothing without slack.
-[[nodiscard]] std::optional<base::Finding> slack_finding(const estimate::Trace& trace,
-                                                         std::size_t slip_count);
+/// Why no fit of the model is made. \param slack_count > 0.
+[[nodiscard]] std::string why_slack(std::size_t slack_count, std::size_t slip_count);
 
 /// Takes away what turning points do not tell where the trough of a slip is that of a slack coupling: K and
-/// S − K, and in a free oscillation S.
-void void_slack_turns(const estimate::Trace& trace, model::Regime regime, TestResults& results);
+/// S − K, and in a free oscillation S and not K, which the slips without slack tell.
+void void_slack_turns(const std::string& why, model::Regime regime, TestResults& results);
+
+/// Code kSlack.
+[[nodiscard]] base::Finding slack_finding(std::size_t slack_count, std::size_t slip_count);
 
 }  // namespace stickslip::analysis

@@ -22,9 +22,6 @@ namespace {
 constexpr int kDecisionRounds = 3;
 /// Log-likelihood ratio up to which other evidence overrules a capture: 400 to 1.
 constexpr double kDoubtful = 6.0;
-/// Log-likelihood ratio of a slip whose sled came to rest while the coupling hung slack, or went on: 10⁸
-/// to 1.
-constexpr double kInSlack = 2.0 * detect::kDecisive;
 /// Smallest relative difference of a second guess of the stick rate that is tried.
 constexpr double kOtherRate = 0.1;
 
@@ -89,11 +86,6 @@ std::vector<SlipEnd> judge_ends(const estimate::Trace& trace, std::span<const de
   SlipEnds test{trace, slips, shared, sigma};
   const bool cut = pull_ended_in_last_slip(trace, slips, shared);
   for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
-    if (const auto* const slack = estimate::slack_between(trace, slips[i].peak_at, slips[i + 1].peak_at)) {
-      ends[i] = slack->came_to_rest ? SlipEnd::kCaptured : SlipEnd::kFree;
-      estimates.log_likelihood_ratios.push_back(slack->came_to_rest ? kInSlack : -kInSlack);
-      continue;
-    }
     if (pull_of(trace, slips[i]) != pull_of(trace, slips[i + 1]) || follows_a_break(trace, slips, i + 1)) {
       // The belt stopped in between, or a break follows: the end is unknown.
       estimates.log_likelihood_ratios.push_back(0.0);

@@ -70,16 +70,12 @@ std::size_t start_of_loading(const estimate::Trace& trace, const detect::Fall& f
 }
 
 bool begins_a_pull(const estimate::Trace& trace, std::span<const detect::Fall> slips, std::size_t i) {
-  if (i == 0 || pull_of(trace, slips[i - 1]) != pull_of(trace, slips[i])) return true;
-  const auto* const slack = estimate::slack_between(trace, slips[i - 1].peak_at, slips[i].peak_at);
-  return slack != nullptr && slack->came_to_rest;
+  return i == 0 || pull_of(trace, slips[i - 1]) != pull_of(trace, slips[i]);
 }
 
 bool follows_a_break(const estimate::Trace& trace, std::span<const detect::Fall> slips, std::size_t i) {
   const double from = i > 0 ? slips[i - 1].peak_at : slips[i].peak_at - slips[i].rise_duration;
-  if (estimate::is_broken(trace, from, slips[i].peak_at)) return true;
-  const auto* const slack = estimate::slack_between(trace, from, slips[i].peak_at);
-  return slack != nullptr && !slack->came_to_rest;
+  return estimate::is_broken(trace, from, slips[i].peak_at);
 }
 
 void lay_windows(const estimate::Trace& trace, std::span<const detect::Fall> slips,

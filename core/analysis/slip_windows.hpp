@@ -15,12 +15,10 @@ namespace stickslip::analysis {
 
 /// Index of the pull that a slip belongs to, by the plan of the speed; 0 if the speed is constant.
 [[nodiscard]] std::size_t pull_of(const estimate::Trace& trace, const detect::Fall& slip);
-/// Whether slip i is the first of the test, or the first after a stop of the belt or of the sled with a slack
-/// coupling.
+/// Whether slip i is the first of the test, or the first after a stop of the belt.
 [[nodiscard]] bool begins_a_pull(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                                  std::size_t i);
-/// Whether a break, or slack in which the sled went on, lies between slip i − 1 and slip i; or in the rise to
-/// the first slip.
+/// Whether a break lies between slip i − 1 and slip i, or in the rise to the first slip.
 [[nodiscard]] bool follows_a_break(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                                    std::size_t i);
 /// The first scan after the pull in which the slip lies.

@@ -19,6 +19,7 @@
 #include "core/analysis/slack.hpp"
 #include "core/analysis/slip_list.hpp"
 #include "core/analysis/traditional.hpp"
+#include "core/base/nan.hpp"
 #include "core/detect/regime_rule.hpp"
 #include "core/estimate/sampling.hpp"
 #include "core/signal/statistics.hpp"
@@ -213,7 +214,7 @@ TestResults TestAnalysis::finish() {
           ? Estimate::none("the trace begins under load: the peak before the first slip is not in it")
           : traditional.static_coefficient;
   results.kinetic_coefficient = traditional.kinetic_coefficient;
-  find_slack(slips, sigma, trace, settings_.scratch_folder);
+  const std::size_t slack_count = count_slack(trace, slips, sigma);
   if (slips.empty()) {
     const detect::RegimeVerdict verdict = detect::judge_regime(0, {}, detect::Description::kFits);
     results.regime = verdict.regime;
@@ -228,15 +229,20 @@ TestResults TestAnalysis::finish() {
     results.rung_reason = "no slip";
     results.misfit = results.mu_slope = Estimate::none("no slip");
   } else {
+    const bool is_fitted = fits_whole_test() && slack_count == 0;
+    const std::string why_no_K = slack_count > 0 ? why_slack(slack_count, slips.size()) : "";
     TestEstimates estimates =
-        fits_whole_test()
-            ? estimate(trace, slips, sigma)
+        is_fitted ? estimate(trace, slips, sigma)
+        : slack_count > 0
+            ? by_turning_points(trace, slips, cycles_by_turning_points(), why_no_K)
             : by_turning_points(
                   trace, slips, live_cycles_,
                   fmt::format(
                       "the estimator \"{}\" does not fit the whole test; \"fit\" does, also afterwards",
                       detect::name(settings_.estimator)));
-    if (!estimates.model_describes) {
+    if (slack_count > 0) {
+      estimates.model_describes = false;
+    } else if (!estimates.model_describes) {
       const std::string why = estimates.results.delta_mu.reason;
       const TestEstimates fitted = std::move(estimates);
       estimates = by_turning_points(trace, slips, cycles_by_turning_points(), why);
@@ -245,7 +251,7 @@ TestResults TestAnalysis::finish() {
       add_distance_to_fits(fitted.cycles, estimates.results);
       base::add(results.findings, turning_points_finding(estimates.results.delta_mu, why));
     }
-    if (fits_whole_test()) {
+    if (is_fitted) {
       take_misfit(estimates.misfit, results);
     } else {
       results.misfit = Estimate::none(estimates.rung_reason);
@@ -274,22 +280,26 @@ TestResults TestAnalysis::finish() {
     results.stick_cycle_count = verdict.regime == model::Regime::kUndecided
                                     ? Estimate::none("undecided: " + verdict.reason)
                                     : Estimate::of(static_cast<double>(estimates.captured));
-    if (estimates.rung == Rung::kTurningPoints) void_slack_turns(trace, verdict.regime, estimates.results);
+    if (slack_count > 0) {
+      void_slack_turns(why_no_K, verdict.regime, estimates.results);
+      base::add(results.findings, slack_finding(slack_count, slips.size()));
+    }
     take_model_results(estimates.results, results);
     results.mu_slope = mu_slope(trace, slips, sigma, estimates);
     if (fits_whole_test() && estimates.model_describes) speed_results(trace, estimates, results);
     if (verdict.transition_slip) {
       results.transition_time = transition_time(trace, estimates, slips, *verdict.transition_slip);
     }
-    keep_cycles(trace, estimates, slips);
+    keep_cycles(trace, estimates, slips, results.delta_mu.value.has_value());
   }
   period_results(trace, slips, results);
   if (const auto hum = find_hum(trace, slips, settings_.scan_rate_Hz))
     base::add(results.findings, hum_finding(*hum, results.regime));
   if (auto finding = sampling_finding(settings_.scan_rate_Hz, results))
     base::add(results.findings, *std::move(finding));
-  if (auto finding = slack_finding(trace, slips.size())) base::add(results.findings, *std::move(finding));
-  if (auto finding = level_finding(slips)) base::add(results.findings, *std::move(finding));
+  if (slack_count == 0) {
+    if (auto finding = level_finding(trace, slips)) base::add(results.findings, *std::move(finding));
+  }
   results.drift_rate = drift_of(trace, slips);
   void_results(check, results);
   if (check.voids()) {
@@ -482,6 +492,11 @@ void TestAnalysis::speed_results(const estimate::Trace& trace, const TestEstimat
   const TesterEstimate& found = *estimates.tester;
   if (estimates.captured == 0 && may_never_have_stuck(found, results)) {
     void_start(found, settings_.tester.gravity_m_per_s2, results);
+    if (!tester_check_) return;
+    for (const base::Finding& finding : tester_check_->findings) {
+      if (finding.code != base::kind_of(base::FindingCode::kPullSpeed).name)
+        base::add(results.findings, finding);
+    }
     return;
   }
   results.pull_speed_measured =
@@ -501,7 +516,7 @@ void TestAnalysis::speed_results(const estimate::Trace& trace, const TestEstimat
 }
 
 void TestAnalysis::keep_cycles(const estimate::Trace& trace, const TestEstimates& estimates,
-                               const base::LongColumn<detect::Fall>& slips) {
+                               const base::LongColumn<detect::Fall>& slips, bool tells_delta_mu) {
   const base::LongColumn<detect::Cycle>& cycles = estimates.cycles;
   const base::LongColumn<double>& log_likelihood_ratios = estimates.log_likelihood_ratios;
   const base::LongColumn<base::ScanIndex>& indices = indices_;
@@ -511,6 +526,7 @@ void TestAnalysis::keep_cycles(const estimate::Trace& trace, const TestEstimates
   const bool by_fit = fits_whole_test() && estimates.model_describes;
   for (std::size_t i = 0; i < cycles.size(); ++i) {
     detect::Cycle cycle = cycles[i];
+    if (!tells_delta_mu) cycle.delta_mu = cycle.delta_mu_standard_error = base::kNaN;
     const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
     const auto end = i + 1 < slips.size() ? static_cast<std::size_t>(std::lround(slips[i + 1].peak_at))
                                           : static_cast<std::size_t>(std::lround(slips[i].trough_at));

@@ -116,9 +116,9 @@ class TestAnalysis {
   [[nodiscard]] static Estimate transition_time(const estimate::Trace& trace, const TestEstimates& estimates,
                                                 const base::LongColumn<detect::Fall>& slips,
                                                 std::size_t slip);
-  /// Into cycles_, with their flags.
+  /// Into cycles_, with their flags. \param tells_delta_mu  else no cycle has an S − K.
   void keep_cycles(const estimate::Trace& trace, const TestEstimates& estimates,
-                   const base::LongColumn<detect::Fall>& slips);
+                   const base::LongColumn<detect::Fall>& slips, bool tells_delta_mu);
   /// μ′ of the paper over that of the characterisation, from the damping that the test alone has.
   [[nodiscard]] Estimate mu_slope(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                   double sigma, const TestEstimates& estimates) const;

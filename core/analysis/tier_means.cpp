@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/analysis/ladder.hpp"
+
 namespace stickslip::analysis {
 
 namespace {
@@ -48,13 +50,8 @@ void TierMeans::fill(TestResults& results) const {
   results.mu_k = estimate_of(K_, middle_, of_K);
   results.delta_mu = estimate_of(delta_mu_, delta_mu_, of_S + of_K);
   if (results.delta_mu.value && *results.delta_mu.value <= 0.0 && of_S + of_K > 0.0) {
-    // The amplitude is that of the belt's speed alone. S − K lies between zero and the bound, and is no
-    // number of them more likely.
-    const double half = 0.5 * (of_S + of_K);
-    results.delta_mu = Estimate::of(half);
-    results.mu_s = Estimate::of(*results.mu_k.value + half);
-    results.delta_mu.systematic_uncertainty = half;
-    results.mu_s.systematic_uncertainty = half + of_K;
+    // The amplitude is that of the belt's speed alone.
+    tell_bound(of_S + of_K, results);
   }
   if (delta_mu_.count() >= 3.0) {
     const double variance = delta_mu_.variance();

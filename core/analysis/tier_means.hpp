@@ -18,8 +18,8 @@ class TierMeans {
   void add_level(double peak, double trough) noexcept;
   /// mu_s, mu_k, delta_mu and delta_mu_scatter. Standard errors follow from the scatter of the cycles, of
   /// which neighbours are correlated. The systematic uncertainty is the whole correction for belt and
-  /// damping: no fit has shown that the closed forms hold. An S − K that is not above zero is half of that
-  /// instead, give or take as much.
+  /// damping: no fit has shown that the closed forms hold. Of an S − K that is not above zero that
+  /// correction is the bound (tell_bound()).
   void fill(TestResults& results) const;
 
  private:

@@ -127,6 +127,11 @@ class Allowance {
     static_cast<void>(std::signal(signal, SIG_DFL));
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
+  // A parent may be limited to short output. What is written here stays in memory, and has its own limit.
+  rlimit files{};
+  ::getrlimit(RLIMIT_FSIZE, &files);
+  files.rlim_cur = files.rlim_max;
+  ::setrlimit(RLIMIT_FSIZE, &files);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::set_new_handler([] { ::_exit(kOutOfMemory); });
   const Allowance allowance;

@@ -38,13 +38,6 @@ struct Trace {
   std::vector<std::size_t> breaks{};
   double lost_s = 0.0;  ///< Time without scans, over all gaps.
 
-  /// A time in which the coupling hung slack between two slips; its scans are not usable.
-  struct Slack {
-    std::size_t first = 0;      ///< Scan.
-    bool came_to_rest = false;  ///< The sled, before the belt had taken up the slack.
-  };
-  std::vector<Slack> slacks{};  ///< Rising.
-
   /// The coefficient without the drift.
   [[nodiscard]] double level(std::size_t scan) const { return value[scan] - drift.at(time_s[scan]); }
   [[nodiscard]] std::size_t size() const noexcept { return value.size(); }
@@ -71,13 +64,6 @@ inline void append_usable(const Trace& trace, std::size_t first, std::size_t end
   const auto first = std::upper_bound(trace.breaks.begin(), trace.breaks.end(), from,
                                       [&](double position, std::size_t scan) { return position < at(scan); });
   return first != trace.breaks.end() && at(*first) < to;
-}
-
-/// The slack that begins between two positions, in scans; null if there is none.
-[[nodiscard]] inline const Trace::Slack* slack_between(const Trace& trace, double from, double to) noexcept {
-  const auto first = std::ranges::upper_bound(
-      trace.slacks, from, {}, [](const Trace::Slack& slack) { return static_cast<double>(slack.first); });
-  return first != trace.slacks.end() && static_cast<double>(first->first) < to ? &*first : nullptr;
 }
 
 /// Time of a fractional scan position, by linear interpolation.

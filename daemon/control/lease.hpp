@@ -28,11 +28,11 @@ class Lease {
     who_ = who;
     return std::nullopt;
   }
-  /// Takes the lease from the client that holds it, for so long from now. \param from  whose lease it is
-  /// thought to be. \return the holder if it is another one than `from` and `who`; then nothing changes.
+  /// Takes the lease from another client that holds it, for so long from now. \param from  whose lease it is
+  /// thought to be; one's own is extended, and never shortened. \return the holder if it is another one than `from` and `who`; then nothing changes.
   [[nodiscard]] std::optional<std::string> take_over(const std::string& who, const std::string& from,
                                                      double for_s, std::int64_t now_ns) {
-    if (holder(now_ns) == from) who_.clear();
+    if (from != who && holder(now_ns) == from) who_.clear();
     return take(who, for_s, now_ns);
   }
   /// Ends the lease. \return false if another controller holds it.

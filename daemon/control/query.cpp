@@ -25,7 +25,7 @@ base::Result<Query> query_of(const std::string& target, std::initializer_list<st
       return base::usage_error("{}: there is no such key; there is {}", printable(key),
                                fmt::join(keys, ", "));
     if (!query.emplace(key, part.substr(std::min(equals + 1, part.size()))).second)
-      return base::usage_error("{}: stands there twice", key);
+      return base::usage_error("{}: stands there twice; send it once", key);
   }
   return query;
 }

@@ -32,22 +32,19 @@ const Chart = (() => {
   function shade(u, slips) {
     const {min: from, max: to} = u.scales.x, ctx = u.ctx;
     ctx.save();
-    let before = null, test = null;  // Where one test's last slip ends, no stick of the next begins.
+    let before = null, slides = null, test = null;  // Where one test's last slip ends, no stick of the next begins.
     for (const slip of slips) {
-      if (slip.onset == null || (slip.capture ?? slip.onset) < from - 1 || (before ?? slip.onset) > to) {
-        if (slip.onset != null) { before = slip.capture; test = slip.test; }
-        continue;
-      }
-      const x = t => u.valToPos(Math.min(Math.max(t, from), to), "x", true);
-      if (before != null && slip.test === test && slip.onset > before) {
-        ctx.fillStyle = colour("--stick");
-        ctx.fillRect(x(before), u.bbox.top, x(slip.onset) - x(before), u.bbox.height);
-      }
-      if (slip.capture != null) {
-        ctx.fillStyle = colour("--slip");
-        ctx.fillRect(x(slip.onset), u.bbox.top, x(slip.capture) - x(slip.onset), u.bbox.height);
+      const onset = slip.onset ?? slip.peak_time;  // The peak is near it.
+      if ((slip.capture ?? onset) >= from - 1 && (before ?? slides ?? onset) <= to) {
+        const x = t => u.valToPos(Math.min(Math.max(t, from), to), "x", true);
+        const fill = (name, begin, end) => { ctx.fillStyle = colour(name); ctx.fillRect(x(begin), u.bbox.top, x(end) - x(begin), u.bbox.height); };
+        if (before != null && slip.test === test && onset > before) fill("--stick", before, onset);
+        // A slip that slides on lasts until the next begins.
+        if (slip.capture != null) fill("--slip", onset, slip.capture);
+        else if (slides != null && slip.test === test) fill("--slip", slides, onset);
       }
       before = slip.capture;
+      slides = slip.capture == null && !slip.captured ? onset : null;
       test = slip.test;
     }
     ctx.restore();
@@ -61,7 +58,7 @@ const Chart = (() => {
     ctx.fillStyle = colour("--mark");
     ctx.strokeStyle = colour("--free");
     for (const slip of slips) {
-      if (slip.peak_time < from || slip.peak_time > to) continue;
+      if (slip.peak_time < from || slip.peak_time > to || slip.peak < u.scales.y.min || slip.peak > u.scales.y.max) continue;
       ctx.beginPath();
       ctx.arc(u.valToPos(slip.peak_time, "x", true), u.valToPos(slip.peak, "y", true), 4 * devicePixelRatio, 0, 2 * Math.PI);
       if (slip.captured) ctx.fill(); else ctx.stroke();
@@ -78,7 +75,7 @@ const Chart = (() => {
     ctx.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
     ctx.textBaseline = "bottom";
     for (const [name, level, of, side] of levels) {
-      if (level == null) continue;
+      if (level == null || level < u.scales.y.min || level > u.scales.y.max) continue;
       ctx.strokeStyle = ctx.fillStyle = colour(of);
       const y = Math.round(u.valToPos(level, "y", true)) + ctx.lineWidth % 2 / 2;  // On whole pixels: else it is pale.
       ctx.beginPath();

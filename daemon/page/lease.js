@@ -2,7 +2,8 @@
 "use strict";
 
 const Lease = (() => {
-  const kReturned_s = 30;  // For which a page that is loaded anew has what it had.
+  const kLongest_s = 3600;  // That may be asked for.
+  const kLongestName = 64;  // Bytes.
   const kTaken_s = 60;
   const part = id => document.getElementById(id);
   if (!sessionStorage.getItem("name")) sessionStorage.setItem("name", `page ${Math.random().toString(36).slice(2, 6)}`);
@@ -10,13 +11,15 @@ const Lease = (() => {
   const name = () => localStorage.getItem("operator") || sessionStorage.getItem("name");
   let ask = null, send = null, say = null;
   let holder = null;      // Its name, as the daemon told it last; null: nobody.
-  let commanded = false;  // This tab has taken the bench: what it took goes with it, and not what another tab of the operator took.
+  let commanded = false;  // A command of this tab was granted: only then does closing it give the bench back.
+  let until = 0;          // Of its lease, by this computer's clock, ms.
 
   function write(lease) {
     holder = lease.controller;
     const mine = holder === name();
     if (!mine) commanded = false;
-    const text = holder == null ? "nobody commands" : `${mine ? (localStorage.getItem("operator") ? `${holder}, you, commands` : "this page commands") : `${holder} commands`}`;
+    until = Date.now() + 1000 * lease.seconds_left;
+    const text = holder == null ? "nobody commands" : !mine ? `${holder} commands` : localStorage.getItem("operator") ? `${holder}, you, commands` : "this page commands";
     if (part("holder").textContent !== text) part("holder").textContent = text;
     part("give-back").hidden = !mine;
     part("take-over").hidden = holder == null || mine;
@@ -29,20 +32,28 @@ const Lease = (() => {
   part("give-back").addEventListener("click", async () => { await act("DELETE"); part("operator").focus(); });
   part("take-over").addEventListener("click", async () => {
     const from = holder;
-    if (!await Tables.confirm("Take the bench over?", `${from} has the bench. What is under way goes on, and ${from} is refused from then on.`, [], `Take it from ${from}`)) return;
+    if (!await Tables.confirm("Take the bench over?", `${from} has the bench. What is under way goes on, and ${from} is refused while you have it.`, [], `Take it from ${from}`)) return;
     await act("PUT", {seconds: kTaken_s, from});
     (part("give-back").hidden ? part("operator") : part("give-back")).focus();
   });
   part("operator").value = localStorage.getItem("operator") ?? "";
   part("operator").addEventListener("change", async event => {
+    const said = event.target.value.trim();
+    if (new TextEncoder().encode(said).length > kLongestName) return say(`my name: "${said}" is longer than ${kLongestName} bytes: shorten it`);
     // Under the old name first: with another one it cannot be given back.
     if (commanded && holder === name()) await act("DELETE");
-    localStorage.setItem("operator", event.target.value.trim());
+    localStorage.setItem("operator", said);
     await load();
+  });
+  // Said in another tab.
+  window.addEventListener("storage", event => {
+    if (event.key !== "operator") return;
+    part("operator").value = event.newValue ?? "";
+    load().catch(() => {});
   });
   window.addEventListener("pagehide", () => {
     if (!commanded) return;
-    sessionStorage.setItem("had bench", "yes");
+    sessionStorage.setItem("had bench", String(until));
     send("DELETE", "/v1/controller", undefined, {keepalive: true}).catch(() => {});
   });
 
@@ -55,9 +66,10 @@ const Lease = (() => {
     connect(asking, sending, saying) { ask = asking; send = sending; say = saying; },
     /// Takes again what this tab had before it was loaded anew, unless somebody else has it by now.
     async back() {
-      if (sessionStorage.getItem("had bench") == null) return load();
+      const left_s = (Number(sessionStorage.getItem("had bench")) - Date.now()) / 1000;
       sessionStorage.removeItem("had bench");
-      try { write(await ask("PUT", "/v1/controller", {seconds: kReturned_s})); } catch { await load(); }
+      if (!(left_s > 0)) return load();
+      try { write(await ask("PUT", "/v1/controller", {seconds: Math.min(left_s, kLongest_s)})); } catch { await load(); }
     },
   };
 })();

@@ -66,6 +66,7 @@
     Answer.tests(tests, summary);
     Trace.tests(summary.batch == null ? tests : tests.filter(Batch.place));
     Tables.tests(tests, summary, made, (path, name) => attempt(() => download(path, name)), Batch.voidCell, Batch.place);
+    planned(await ask("GET", "/v1/plan"));  // A batch and others change it, too.
     await Lease.load();
   }
   async function command(verb, body) {
@@ -100,8 +101,10 @@
   Trace.connect(ask);
   Lease.connect(ask, send, say);
   const plan = document.getElementById("plan");
-  function fillPlan(values) {
+  const planned = values =>
     text("planned", [values.name, values.pull_speed == null ? null : Tables.speed(values.pull_speed), values.operator].filter(said => said != null).join(", "));
+  function fillPlan(values) {
+    planned(values);
     for (const field of plan.querySelectorAll("input")) {
       const value = values[field.name];
       field.value = value == null ? "" : field.name === "pull_speed" ? Tables.speed(value) : value;

@@ -28,13 +28,13 @@ const Scope = (() => {
   const xRange = () => { const end = paused?.end ?? latest(); return [end - window_s(), end]; };
 
   function marks(u) {
-    const [from] = xRange(), ctx = u.ctx, size = 4 * devicePixelRatio;
+    const [from, end] = xRange(), ctx = u.ctx, size = 4 * devicePixelRatio;
     Chart.peaks(u, slips);
     Chart.lines(u, [["S", levels?.S, "--static"], ["K", levels?.K, "--kinetic"]]);
     ctx.save();
     ctx.lineWidth = 2 * devicePixelRatio;
     // A slip seen as it begins: a ring, until it is known what it was.
-    if (falling && falling.time >= from && falling.time > (slips.at(-1)?.peak_time ?? -Infinity) + 1 / rate) {
+    if (falling && falling.time >= from && falling.time <= end && falling.time > (slips.at(-1)?.peak_time ?? -Infinity) + 1 / rate) {
       ctx.beginPath();
       ctx.arc(u.valToPos(falling.time, "x", true), u.valToPos(falling.peak, "y", true), 1.5 * size, 0, 2 * Math.PI);
       ctx.strokeStyle = Chart.colour("--mark");
@@ -42,7 +42,7 @@ const Scope = (() => {
     }
     ctx.strokeStyle = Chart.colour("--spike");
     for (const spike of spikes) {
-      if (spike.time < from) continue;
+      if (spike.time < from || spike.time > end) continue;
       const x = u.valToPos(spike.time, "x", true), y = u.valToPos(spike.value, "y", true);
       ctx.beginPath();
       ctx.moveTo(x - size, y - size); ctx.lineTo(x + size, y + size); ctx.moveTo(x + size, y - size); ctx.lineTo(x - size, y + size);
@@ -66,7 +66,8 @@ const Scope = (() => {
     if (!dirty || (paused != null && !moved)) return;
     dirty = moved = false;
     const {time, lowest, highest, slope: rates} = paused?.data ?? data;
-    document.getElementById("window").textContent = `${Number(window_s().toPrecision(3))} s`;
+    const shown = `${Number(window_s().toPrecision(3))} s`, said = document.getElementById("window");
+    if (said.textContent !== shown) said.textContent = shown;  // Told once, not with each frame.
     // Where each part is one scan, lowest and highest are one line.
     if (force.series[2].show !== step > 1) force.setSeries(2, {show: step > 1});
     force.setData([time, lowest, highest]);
@@ -143,17 +144,16 @@ const Scope = (() => {
   /// \param steps  above 0: a shorter time. \param at  stays where it is while the charts stand still; else the latest scan does.
   function zoom(steps, at) {
     const before = window_s(), next = Math.min(Math.max(zoomed - steps, 0), kWindows.length - 1);
-    if (next === zoomed) return false;
+    if (next === zoomed) return;
     zoomed = next;
     if (paused != null) {
       const [from, end] = [paused.end - before, paused.end], kept = at ?? (from + end) / 2;
       paused.end = Math.min(kept + (end - kept) * window_s() / before, paused.data.time.at(-1) ?? end);
     }
     dirty = moved = true;
-    return true;
   }
   for (const [id, steps] of [["zoom-in", 1], ["zoom-out", -1]]) document.getElementById(id).addEventListener("click", () => zoom(steps));
-  for (const id of ["scope", "rate"]) document.getElementById(id).addEventListener("keydown", event => {
+  document.getElementById("scope").addEventListener("keydown", event => {
     const steps = {"+": 1, "=": 1, "-": -1}[event.key];
     if (steps == null || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();

@@ -12,7 +12,8 @@ const Trace = (() => {
   let listed = [];     // Tests that can be laid over it, the latest first.
   let chart = null;
 
-  const whole = () => [0, Math.max(...shown.map(({trace}) => trace.end), 1e-3)];
+  // The second is laid over the first, whose time counts.
+  const whole = () => [0, Math.max(shown[0]?.trace.end ?? 0, 1e-3)];
   const inView = () => view ?? (shown.length > 0 ? whole() : [0, 1]);
   const slips = trace => trace.cycles.peak_time.map((time, k) => ({test: 0, onset: trace.cycles.onset_time[k], capture: trace.cycles.capture_time[k],
     peak_time: time, peak: trace.cycles.peak[k], captured: trace.cycles.captured[k]}));
@@ -50,6 +51,8 @@ const Trace = (() => {
     part("span").textContent = first == null ? "" : view == null ? "the whole trace" : `${view[0].toFixed(3)} s to ${view[1].toFixed(3)} s`;
     part("bins").textContent = first == null ? "" : `, ${first.trace.scans_in_bin === 1 ? "each scan" : `lowest and highest of ${first.trace.scans_in_bin} scans each`}` +
       (first.trace.left_out_cycles > 0 ? `; its ${first.trace.left_out_cycles} cycles are marked in a shorter span` : "");
+    // A disabled button loses the focus, and with it the keys.
+    if (view == null && document.activeElement === part("whole")) part("in").focus();
     part("whole").disabled = view == null;
   }
 
@@ -58,9 +61,12 @@ const Trace = (() => {
     const span = view == null ? "" : `&from=${Math.max(0, view[0] - margin).toFixed(6)}&to=${(view[1] + margin).toFixed(6)}`;
     for (;;) {
       try {
-        return await ask("GET", `/v1/tests/${of}/trace?points=${Math.max(200, box.clientWidth)}${span}`);
+        const trace = await ask("GET", `/v1/tests/${of}/trace?points=${Math.max(200, box.clientWidth)}${span}`);
+        part("message").textContent = "";
+        return trace;
       } catch (error) {
-        if (error.status !== 503) throw error;
+        if (error.status !== 503 || !dialog.open) throw error;
+        part("message").textContent = error.message;
         await new Promise(done => setTimeout(done, kRetry));
       }
     }
@@ -86,6 +92,7 @@ const Trace = (() => {
             if (of === number || view == null) part("message").textContent = error.message;
           }
         }
+        if (read_traces[0]?.number !== number) read_traces.length = 0;
         if (!again && dialog.open) { shown = read_traces; draw(); }
       }
     } finally {

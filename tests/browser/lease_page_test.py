@@ -107,6 +107,7 @@ class LeasePage(unittest.TestCase):
         # One that has not commanded takes nothing with it.
         self.assertEqual(self.daemon.ask("PUT", "/v1/controller", {"seconds": 3600}, who="bob")[0], 200)
         third = self.open()
+        self.call_me(third, "bob")  # As bob's own script or other tab.
         third.leave()
         other.until(f"{HOLDER} === 'bob commands'")
         self.assertEqual(self.holder(), "bob")

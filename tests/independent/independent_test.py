@@ -106,13 +106,14 @@ class Results(unittest.TestCase):
 
 
     def test_no_S_lies_below_K(self):
-        # The sled creeps up to the belt's speed before it slips: the more it does, the less of S - K is left in the trace.
+        # The more the sled creeps before it slips, the less of S - K is left in the trace.
         for creep in (0.07, 0.1, 0.15, 0.3):
             found = outcome(PROGRAM, Setup(seed=SEED, creep=creep, creep_scale=0.001, **RING_DOWN))
             with self.subTest(creep=creep):
                 number = found.numbers["delta_mu"]
                 self.assertGreater(number.value, 0.0)
-                self.assertTrue(found.findings or number.standard_error < number.value, (number, found.findings))
+                if creep >= 0.1:
+                    self.assertLessEqual(abs(number.z()), ERRORS)
 
 
 if __name__ == "__main__":

@@ -158,7 +158,7 @@ TEST_F(ControlApi, ReportsOnABatchAndComparesTwo) {
            {one + "?format=pdf", 400, "format: is html, csv or json, not pdf"},
            {one + "?format", 400, "format: is html, csv or json, not "},
            {one + "?form=csv", 400, "form: there is no such key"},
-           {one + "?format=csv&format=csv", 400, "format: stands there twice"},
+           {one + "?format=csv&format=csv", 400, "format: stands there twice; send it once"},
            {"/v1/batches/liner/report", 404, "there is no batch liner"},
            {"/v1/batches/../report", 404, "there is no batch .."},
            {"/v1/batches//report", 404, "there is no batch ;"},
@@ -283,6 +283,8 @@ TEST_F(ControlApi, OneAtATimeCommandsUntilTheLeaseIsOver) {
   EXPECT_EQ(command("/v1/stop", "bob").status, 200);
   EXPECT_EQ(ask({"DELETE", "/v1/controller", "", "bob", ""}).status, 200);
   EXPECT_EQ(ask({"PUT", "/v1/controller", R"({"seconds": 3600})", "ada", ""}).status, 200);
+  EXPECT_EQ(ask({"PUT", "/v1/controller", R"({"seconds": 1})", "ada", ""}).status, 200);
+  EXPECT_EQ(ask({"PUT", "/v1/controller", R"({"seconds": 1, "from": "ada"})", "ada", ""}).status, 200);
   clock_.advance(3500s);
   // A command makes a lease longer, never shorter.
   EXPECT_EQ(command("/v1/arm", "ada").status, 200);

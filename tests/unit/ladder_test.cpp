@@ -105,15 +105,15 @@ TEST(LevelDrift, IsToldFromThreeStandardErrorsOfTheThirdsOn) {
       values.push_back(0.3 + (i % 2 == 0 ? 0.001 : -0.001) + (i < 16 ? 0.0 : step));
     return values;
   };
-  EXPECT_FALSE(level_finding(slips_at(levels(0.0))));
-  EXPECT_FALSE(level_finding(slips_at(levels(1.5 * error))));
-  const auto found = level_finding(slips_at(levels(6.0 * error)));
+  EXPECT_FALSE(level_finding({}, slips_at(levels(0.0))));
+  EXPECT_FALSE(level_finding({}, slips_at(levels(1.5 * error))));
+  const auto found = level_finding({}, slips_at(levels(6.0 * error)));
   ASSERT_TRUE(found);
   EXPECT_EQ(found->code, "level-drift");
   // Fewer than eight slips in a third tell nothing of how they wander.
   auto few = levels(6.0 * error);
   few.pop_back();
-  EXPECT_FALSE(level_finding(slips_at(few)));
+  EXPECT_FALSE(level_finding({}, slips_at(few)));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -32,7 +33,8 @@ using testing::HasSubstr;
 constexpr WorkLimits kEnough{milliseconds{10'000}, 512'000'000};
 constexpr WorkLimits kLittle{milliseconds{20}, 20'000'000};
 
-std::string do_as_told(std::string_view question, int /*memory_file*/) {
+std::string do_as_told(std::string_view question, int memory_file) {
+  if (question == "write") return std::to_string(::pwrite(memory_file, "x", 1, 1 << 20));
   if (question == "spin") {
     for (std::atomic<int> turns{0};;) ++turns;
   }
@@ -93,6 +95,18 @@ TEST(LimitedChildTest, ThatTakesTooMuchMemoryIsEndedAndSaysTheLimit) {
   ASSERT_FALSE(grown);
   EXPECT_EQ(grown.error().message, "cannot be read in 20 MB of memory, which is the limit for its size");
   EXPECT_EQ(child.ask("grow", kEnough).value(), "x");
+}
+
+// As of a program whose output is limited: the daemon's child that makes a report, and reads records.
+TEST(LimitedChildTest, WritesMoreThanItsParentMay) {
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit little{1 << 16, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &little), 0);
+  LimitedChild child{do_as_told};
+  const auto written = child.ask("write", kEnough);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  EXPECT_EQ(written.value(), "1");
 }
 
 TEST(LimitedChildTest, IsGivenUpWhenAskedTo) {

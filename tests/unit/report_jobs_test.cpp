@@ -85,9 +85,11 @@ TEST_F(ReportJobsTest, ATraceIsExportedAndWaitsForNoReport) {
             [&report](base::Result<std::string> text) { report = text.value_or("none"); });
   jobs.trace({.record = "/records/a.h5", .points = 80, .from_s = 1.25, .to_s = 2.0},
              [&trace](base::Result<std::string> text) { trace = text.value_or("none"); });
+  while (trace.empty()) io_.run_one();
+  EXPECT_EQ(trace, "export --json --points=80 --from=1.25 --to=2 /records/a.h5\n");
+  EXPECT_EQ(report, "");
   std::ofstream{pipe} << "whole";  // Returns when the child has opened it.
   io_.run();
-  EXPECT_EQ(trace, "export --json --points=80 --from=1.25 --to=2 /records/a.h5\n");
   EXPECT_EQ(report, "whole");
 }
 
