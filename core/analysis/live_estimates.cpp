@@ -71,6 +71,7 @@ TestEstimates estimates_from_live(const estimate::Trace& trace, const base::Long
   for (std::size_t i = 0; i < slips.size(); ++i) {
     const detect::Fall slip = slips[i];
     const bool is_last = i + 1 == slips.size();
+    const bool is_slack = !is_last && settlement.slack.holds(slip.trough);
     const bool has_next = !is_last && !estimate::is_broken(trace, slip.peak_at, slips[i + 1].peak_at);
     detect::Cycle row = row_of(trace, slip);
     const double period_s =
@@ -81,7 +82,7 @@ TestEstimates estimates_from_live(const estimate::Trace& trace, const base::Long
       // Also of one that was not decided: what hardly speaks against sticking leaves the regime undecided.
       row.capture_evidence = cycle->evidence;
       has_gap = has_gap || (row.flags & detect::kCycleHasGap) != 0;
-      means.add(*cycle);
+      if (!is_slack) means.add(*cycle);
     }
     if (has_gap || after_gap) forget_end(row);
     after_gap = has_gap;
@@ -99,7 +100,7 @@ TestEstimates estimates_from_live(const estimate::Trace& trace, const base::Long
     if (before) keep(is_next ? row.peak_time_s - before->peak_time_s : base::kNaN);
     before = row;
     is_next = has_next;
-    means.add_level(slip.peak, slip.trough);
+    if (!is_slack) means.add_level(slip.peak, slip.trough);
     amplitude.add(0.5 * slip.drop());
   }
   keep(base::kNaN);

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/analysis/sections.hpp"
+#include "core/analysis/slack.hpp"
 #include "core/base/long_column.hpp"
 #include "core/detect/fall_finder.hpp"
 #include "core/detect/live_cycle.hpp"
@@ -39,6 +40,7 @@ class LiveCycles {
 struct LiveSettlement {
   bool first_counts = false;  ///< Means include the first slip.
   std::string reason;         ///< Reason given for all results that turning points do not determine.
+  Slack slack{};              ///< Slips with such a trough are in no mean.
 };
 
 /// Replaces estimate_in_sections(). Values are given to S, K and S − K (means over the live cycles), the

@@ -11,8 +11,10 @@
 namespace stickslip::analysis {
 namespace {
 
-/// By chance one scan in 30 000 of an unloaded cell lies higher.
-constexpr double kSlackSigmas = 4.0;
+/// A trough is the lowest of all scans of a slack, and one of them in 30 000 lies so high by chance; of 10⁶
+/// none is so low.
+constexpr double kAboveSigmas = 4.0;
+constexpr double kBelowSigmas = 6.0;
 
 /// Median of the scans before the force first exceeds a quarter of its largest; 0 if there are too few, or
 /// the trace begins under load.
@@ -30,13 +32,12 @@ double unloaded_level(const estimate::Trace& trace) {
 
 }  // namespace
 
-std::size_t count_slack(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
-                        double sigma) {
-  if (slips.size() < 2) return 0;
-  const double highest = unloaded_level(trace) + kSlackSigmas * sigma;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i + 1 < slips.size(); ++i) count += slips[i].trough <= highest ? 1 : 0;
-  return count;
+Slack find_slack(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips, double sigma) {
+  if (slips.size() < 2) return {};
+  const double unloaded = unloaded_level(trace);
+  Slack slack{unloaded - kBelowSigmas * sigma, unloaded + kAboveSigmas * sigma, 0};
+  for (std::size_t i = 0; i + 1 < slips.size(); ++i) slack.count += slack.holds(slips[i].trough) ? 1 : 0;
+  return slack;
 }
 
 std::string why_slack(std::size_t slack_count, std::size_t slip_count) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 
 #include "core/analysis/results.hpp"
@@ -14,17 +15,26 @@
 
 namespace stickslip::analysis {
 
-/// Number of slips whose trough lies within four standard deviations of the force before the pull, or of zero
-/// where the trace begins under load. The last slip does not count: the pull may have ended in it. \param
-/// sigma noise of a scan.
-[[nodiscard]] std::size_t count_slack(const estimate::Trace& trace,
-                                      const base::LongColumn<detect::Fall>& slips, double sigma);
+/// Troughs that are those of the unloaded cell.
+struct Slack {
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -std::numeric_limits<double>::infinity();
+  std::size_t count = 0;  ///< Slips with such a trough.
+
+  [[nodiscard]] bool holds(double trough) const noexcept { return trough >= lowest && trough <= highest; }
+};
+
+/// Slips whose trough lies about the force before the pull, or about zero where the trace begins under load.
+/// A force clearly below it is that of a coupling that pushes, which the model describes. The last slip does
+/// not count: the pull may have ended in it. \param sigma  noise of a scan.
+[[nodiscard]] Slack find_slack(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
+                               double sigma);
 
 /// Why no fit of the model is made. \param slack_count > 0.
 [[nodiscard]] std::string why_slack(std::size_t slack_count, std::size_t slip_count);
 
-/// Takes away what turning points do not tell where the trough of a slip is that of a slack coupling: K and
-/// S − K, and in a free oscillation S and not K, which the slips without slack tell.
+/// Takes away what turning points do not tell where most troughs are those of a slack coupling: K and S − K,
+/// and in a free oscillation S.
 void void_slack_turns(const std::string& why, model::Regime regime, TestResults& results);
 
 /// Code kSlack.

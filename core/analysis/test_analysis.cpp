@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -214,7 +215,7 @@ TestResults TestAnalysis::finish() {
           ? Estimate::none("the trace begins under load: the peak before the first slip is not in it")
           : traditional.static_coefficient;
   results.kinetic_coefficient = traditional.kinetic_coefficient;
-  const std::size_t slack_count = count_slack(trace, slips, sigma);
+  const Slack slack = find_slack(trace, slips, sigma);
   if (slips.empty()) {
     const detect::RegimeVerdict verdict = detect::judge_regime(0, {}, detect::Description::kFits);
     results.regime = verdict.regime;
@@ -229,18 +230,20 @@ TestResults TestAnalysis::finish() {
     results.rung_reason = "no slip";
     results.misfit = results.mu_slope = Estimate::none("no slip");
   } else {
-    const bool is_fitted = fits_whole_test() && slack_count == 0;
-    const std::string why_no_K = slack_count > 0 ? why_slack(slack_count, slips.size()) : "";
+    const bool is_fitted = fits_whole_test() && slack.count == 0;
+    const std::string why_no_K = slack.count > 0 ? why_slack(slack.count, slips.size()) : "";
+    const bool mostly_slack = 2 * slack.count > slips.size();
     TestEstimates estimates =
         is_fitted ? estimate(trace, slips, sigma)
-        : slack_count > 0
-            ? by_turning_points(trace, slips, cycles_by_turning_points(), why_no_K)
+        : slack.count > 0
+            ? by_turning_points(trace, slips, cycles_by_turning_points(), why_no_K,
+                                mostly_slack ? Slack{} : slack)
             : by_turning_points(
                   trace, slips, live_cycles_,
                   fmt::format(
                       "the estimator \"{}\" does not fit the whole test; \"fit\" does, also afterwards",
                       detect::name(settings_.estimator)));
-    if (slack_count > 0) {
+    if (slack.count > 0) {
       estimates.model_describes = false;
     } else if (!estimates.model_describes) {
       const std::string why = estimates.results.delta_mu.reason;
@@ -280,9 +283,9 @@ TestResults TestAnalysis::finish() {
     results.stick_cycle_count = verdict.regime == model::Regime::kUndecided
                                     ? Estimate::none("undecided: " + verdict.reason)
                                     : Estimate::of(static_cast<double>(estimates.captured));
-    if (slack_count > 0) {
-      void_slack_turns(why_no_K, verdict.regime, estimates.results);
-      base::add(results.findings, slack_finding(slack_count, slips.size()));
+    if (slack.count > 0) {
+      if (mostly_slack) void_slack_turns(why_no_K, verdict.regime, estimates.results);
+      base::add(results.findings, slack_finding(slack.count, slips.size()));
     }
     take_model_results(estimates.results, results);
     results.mu_slope = mu_slope(trace, slips, sigma, estimates);
@@ -290,14 +293,16 @@ TestResults TestAnalysis::finish() {
     if (verdict.transition_slip) {
       results.transition_time = transition_time(trace, estimates, slips, *verdict.transition_slip);
     }
-    keep_cycles(trace, estimates, slips, results.delta_mu.value.has_value());
+    keep_cycles(trace, estimates, slips, [&](const detect::Fall& slip) {
+      return results.delta_mu.value && !slack.holds(slip.trough);
+    });
   }
   period_results(trace, slips, results);
   if (const auto hum = find_hum(trace, slips, settings_.scan_rate_Hz))
     base::add(results.findings, hum_finding(*hum, results.regime));
   if (auto finding = sampling_finding(settings_.scan_rate_Hz, results))
     base::add(results.findings, *std::move(finding));
-  if (slack_count == 0) {
+  if (slack.count == 0) {
     if (auto finding = level_finding(trace, slips)) base::add(results.findings, *std::move(finding));
   }
   results.drift_rate = drift_of(trace, slips);
@@ -372,8 +377,9 @@ Estimate TestAnalysis::transition_time(const estimate::Trace& trace, const TestE
 TestEstimates TestAnalysis::by_turning_points(const estimate::Trace& trace,
                                               const base::LongColumn<detect::Fall>& slips,
                                               const base::LongColumn<detect::LiveCycle>& cycles,
-                                              std::string reason) const {
+                                              std::string reason, const Slack& slack) const {
   LiveSettlement settlement;
+  settlement.slack = slack;
   settlement.first_counts = settings_.skipped.first_slip;
   settlement.reason = std::move(reason);
   TestEstimates estimates = estimates_from_live(trace, slips, cycles, settlement, settings_.scratch_folder);
@@ -516,7 +522,8 @@ void TestAnalysis::speed_results(const estimate::Trace& trace, const TestEstimat
 }
 
 void TestAnalysis::keep_cycles(const estimate::Trace& trace, const TestEstimates& estimates,
-                               const base::LongColumn<detect::Fall>& slips, bool tells_delta_mu) {
+                               const base::LongColumn<detect::Fall>& slips,
+                               const std::function<bool(const detect::Fall&)>& tells_delta_mu) {
   const base::LongColumn<detect::Cycle>& cycles = estimates.cycles;
   const base::LongColumn<double>& log_likelihood_ratios = estimates.log_likelihood_ratios;
   const base::LongColumn<base::ScanIndex>& indices = indices_;
@@ -526,7 +533,7 @@ void TestAnalysis::keep_cycles(const estimate::Trace& trace, const TestEstimates
   const bool by_fit = fits_whole_test() && estimates.model_describes;
   for (std::size_t i = 0; i < cycles.size(); ++i) {
     detect::Cycle cycle = cycles[i];
-    if (!tells_delta_mu) cycle.delta_mu = cycle.delta_mu_standard_error = base::kNaN;
+    if (!tells_delta_mu(slips[i])) cycle.delta_mu = cycle.delta_mu_standard_error = base::kNaN;
     const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
     const auto end = i + 1 < slips.size() ? static_cast<std::size_t>(std::lround(slips[i + 1].peak_at))
                                           : static_cast<std::size_t>(std::lround(slips[i].trough_at));

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "core/analysis/sections.hpp"
 #include "core/analysis/signal_check.hpp"
 #include "core/analysis/skipped_corrections.hpp"
+#include "core/analysis/slack.hpp"
 #include "core/base/long_column.hpp"
 #include "core/base/scan_index.hpp"
 #include "core/detect/cycle.hpp"
@@ -116,9 +118,11 @@ class TestAnalysis {
   [[nodiscard]] static Estimate transition_time(const estimate::Trace& trace, const TestEstimates& estimates,
                                                 const base::LongColumn<detect::Fall>& slips,
                                                 std::size_t slip);
-  /// Into cycles_, with their flags. \param tells_delta_mu  else no cycle has an S − K.
+  /// Into cycles_, with their flags. \param tells_delta_mu  whether the S − K of a slip
+  /// holds.
   void keep_cycles(const estimate::Trace& trace, const TestEstimates& estimates,
-                   const base::LongColumn<detect::Fall>& slips, bool tells_delta_mu);
+                   const base::LongColumn<detect::Fall>& slips,
+                   const std::function<bool(const detect::Fall&)>& tells_delta_mu);
   /// μ′ of the paper over that of the characterisation, from the damping that the test alone has.
   [[nodiscard]] Estimate mu_slope(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                   double sigma, const TestEstimates& estimates) const;
@@ -134,7 +138,7 @@ class TestAnalysis {
   [[nodiscard]] TestEstimates by_turning_points(const estimate::Trace& trace,
                                                 const base::LongColumn<detect::Fall>& slips,
                                                 const base::LongColumn<detect::LiveCycle>& cycles,
-                                                std::string reason) const;
+                                                std::string reason, const Slack& slack = {}) const;
   /// The cycles of all scans, seen once more by turning points.
   [[nodiscard]] base::LongColumn<detect::LiveCycle> cycles_by_turning_points() const;
   [[nodiscard]] bool fits_whole_test() const noexcept {

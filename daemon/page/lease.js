@@ -3,6 +3,7 @@
 
 const Lease = (() => {
   const kLongest_s = 3600;  // That may be asked for.
+  const kCommand_s = 30;  // That each command takes.
   const kLongestName = 64;  // Bytes.
   const kTaken_s = 60;
   const part = id => document.getElementById(id);
@@ -61,7 +62,10 @@ const Lease = (() => {
     name,
     load,
     /// A request that takes the bench has been granted.
-    took() { commanded = true; },
+    took() {
+      commanded = true;
+      until = Math.max(until, Date.now() + 1000 * kCommand_s);
+    },
     /// \param sending  (method, path, body, more for fetch) → its reply, which outlives the page with keepalive.
     connect(asking, sending, saying) { ask = asking; send = sending; say = saying; },
     /// Takes again what this tab had before it was loaded anew, unless somebody else has it by now.
