@@ -29,7 +29,8 @@ class Lease {
     return std::nullopt;
   }
   /// Takes the lease from another client that holds it, for so long from now. \param from  whose lease it is
-  /// thought to be; one's own is extended, and never shortened. \return the holder if it is another one than `from` and `who`; then nothing changes.
+  /// thought to be; one's own is extended, and never shortened. \return the holder if it is another one than
+  /// `from` and `who`; then nothing changes.
   [[nodiscard]] std::optional<std::string> take_over(const std::string& who, const std::string& from,
                                                      double for_s, std::int64_t now_ns) {
     if (from != who && holder(now_ns) == from) who_.clear();
