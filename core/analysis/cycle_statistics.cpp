@@ -35,9 +35,9 @@ std::size_t whole_cycles(const estimate::Trace& trace, const base::LongColumn<de
   return count;
 }
 
-/// The level about which peak, trough and next peak swing. Aitken's Δ² [Math. Proc. Edinburgh 45, 1926] is
-/// exact for a damped oscillation, where their mean lies too high by a part of the decay, and is the mean of
-/// peak and trough where the next peak is as high.
+/// The level about which peak, trough and next peak swing. Aitken's Δ² [Proc. R. Soc. Edinburgh 46:289, 1926]
+/// is exact for a damped oscillation, where their mean lies too high by a part of the decay, and is the mean
+/// of peak and trough where the next peak is as high.
 double centre(const detect::Fall& slip, double next_peak) {
   const double turns = slip.peak + next_peak - 2.0 * slip.trough;
   return (slip.peak * next_peak - slip.trough * slip.trough) / turns;

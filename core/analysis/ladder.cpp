@@ -22,10 +22,6 @@ void add_systematic(double uncertainty, Estimate& estimate) {
     estimate.systematic_uncertainty = estimate.systematic_uncertainty.value_or(0.0) + uncertainty;
 }
 
-double total_error(const Estimate& estimate) {
-  return std::hypot(estimate.standard_error.value_or(0.0), estimate.systematic_uncertainty.value_or(0.0));
-}
-
 /// What makes residuals in each part of the slip.
 std::string_view likely_cause(SlipPart part) {
   switch (part) {
@@ -42,6 +38,10 @@ std::string_view likely_cause(SlipPart part) {
 }
 
 }  // namespace
+
+double total_error(const Estimate& estimate) {
+  return std::hypot(estimate.standard_error.value_or(0.0), estimate.systematic_uncertainty.value_or(0.0));
+}
 
 void add_distance_to_fits(const base::LongColumn<detect::Cycle>& fitted, TestResults& results) {
   signal::RunningMean delta_mu;

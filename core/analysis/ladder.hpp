@@ -18,6 +18,9 @@ namespace stickslip::analysis {
 /// of both rungs is in the systematic uncertainties: 1 in 20 tests on paper without a slope has it, too.
 inline constexpr double kSlopeLevel = 0.05;
 
+/// Standard error and systematic uncertainty together.
+[[nodiscard]] double total_error(const Estimate& estimate);
+
 /// Adds to the systematic uncertainty of S and S − K by turning points how far the slips' own fits lie from
 /// them. \param fitted  no delta_mu where the fit did not converge.
 void add_distance_to_fits(const base::LongColumn<detect::Cycle>& fitted, TestResults& results);

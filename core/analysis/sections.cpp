@@ -191,9 +191,7 @@ TestEstimates estimate_in_sections(const estimate::Trace& trace, const base::Lon
   const Estimate& delta_mu = whole.results.delta_mu;
   if (whole.model_describes && delta_mu.value.value_or(1.0) <= 0.0) {
     constexpr double kSure = 2.0;
-    const double error =
-        std::hypot(delta_mu.standard_error.value_or(0.0), delta_mu.systematic_uncertainty.value_or(0.0));
-    const double bound = *delta_mu.value + kSure * error;
+    const double bound = *delta_mu.value + kSure * total_error(delta_mu);
     if (bound > 0.0) {
       tell_bound(std::min(bound, whole.results.amplitude.value.value_or(bound)), whole.results);
     } else {

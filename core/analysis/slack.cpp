@@ -11,8 +11,8 @@
 namespace stickslip::analysis {
 namespace {
 
-/// A trough is the lowest of all scans of a slack, and one of them in 30 000 lies so high by chance; of 10⁶
-/// none is so low.
+/// A trough is the lowest scan of a slack. One scan in 30 000 lies 4 σ above its level by chance, one in 10⁹
+/// 6 σ below.
 constexpr double kAboveSigmas = 4.0;
 constexpr double kBelowSigmas = 6.0;
 

@@ -1,6 +1,7 @@
 /// \file
 /// Where the coupling went slack. It pulls and cannot push: a sled that runs ahead of the belt leaves the
-/// force at that of the unloaded cell, where no slip follows [2], and with S and K a force below zero.
+/// force at that of the unloaded cell. The law of a slip [2] does not hold there: it would give a force below
+/// zero.
 #pragma once
 
 #include <cstddef>

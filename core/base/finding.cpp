@@ -91,7 +91,7 @@ constexpr std::array<FindingKind, kFindingCodes> kKinds{{
      "look at the cycles: S and K are means over this stretch"},
     {kSlack, "slack", "consistency", kWarning,
      "The coupling hung slack between slips: the force reached that of the unloaded cell",
-     "pull more slowly or by a stiffer coupling: the peaks tell S, and nothing tells K"},
+     "pull more slowly or by a stiffer coupling: only slips without slack tell K"},
     {kTesterChanged, "tester-changed", "consistency", kWarning,
      "Omega and gamma of the test disagree with the characterisation of the tester",
      "characterise the tester again: stickslip characterise"},
