@@ -144,7 +144,8 @@ TEST_F(ControlApi, ReportsOnABatchAndComparesTwo) {
            {one, "form 0: 20261122T180301Z liner (20261122T180301Z)", "text/html; charset=utf-8"},
            {one + "?format=csv", "form 1: 20261122T180301Z liner (20261122T180301Z)",
             "text/csv; charset=utf-8"},
-           {one + "?format=json", "form 2: 20261122T180301Z liner (20261122T180301Z)", "application/json"},
+           {one + "?format=json", "\"form 2: 20261122T180301Z liner (20261122T180301Z)\"",
+            "application/json"},
            {two,
             "form 0: 20261122T180301Z liner (20261122T180301Z) 20261122T180302Z fluting (20261122T180302Z)",
             "text/html; charset=utf-8"},
@@ -182,9 +183,9 @@ TEST_F(ControlApi, ReportsOnABatchAndComparesTwo) {
 TEST_F(ControlApi, ATraceIsThatOfTheRecordOfItsTest) {
   const std::string trace = "/v1/tests/7/trace";
   const auto get = [this](const std::string& target) { return ask({"GET", target, "", "", ""}); };
-  EXPECT_EQ(get(trace).body, "trace /records/20261121T125252Z-0007.h5 2000 -1 -1");
+  EXPECT_EQ(get(trace).body, "\"trace /records/20261121T125252Z-0007.h5 2000 -1 -1\"");
   EXPECT_EQ(get(trace + "?points=800&from=1.25&to=2").body,
-            "trace /records/20261121T125252Z-0007.h5 800 1.25 2");
+            "\"trace /records/20261121T125252Z-0007.h5 800 1.25 2\"");
   for (const auto& [target, status, why] : std::initializer_list<std::tuple<std::string, int, const char*>>{
            {trace + "?points=0", 400, "points: must be a whole number from 1 to 20000, not 0"},
            {trace + "?points=1e9", 400, "points: must be a whole number from 1 to 20000, not 1e9"},

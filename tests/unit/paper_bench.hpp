@@ -122,7 +122,7 @@ class PaperBatches final : public Batches {
   BatchBook book_;
 };
 
-/// Says what it was asked for.
+/// Says what it was asked for; in JSON, as the real one does, where JSON is the form.
 class PaperReports final : public Reports {
  public:
   void make(std::span<const ReportedBatch> batches, ReportForm form, std::string_view pool,
@@ -131,12 +131,12 @@ class PaperReports final : public Reports {
     for (const ReportedBatch& batch : batches) text += fmt::format(" {} {}", batch.id, batch.label);
     if (!pool.empty()) text += fmt::format(" pool {}", pool);
     if (refusal) return answer(tl::unexpected(*refusal));
-    answer(std::move(text));
+    answer(form == ReportForm::kJson ? fmt::format("\"{}\"", text) : std::move(text));
   }
 
   void trace(const TraceRequest& request, Answer answer) override {
     if (refusal) return answer(tl::unexpected(*refusal));
-    answer(fmt::format("trace {} {} {} {}", request.record.string(), request.points,
+    answer(fmt::format("\"trace {} {} {} {}\"", request.record.string(), request.points,
                        request.from_s.value_or(-1.0), request.to_s.value_or(-1.0)));
   }
 
