@@ -4,7 +4,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/model/tester.hpp"
 #include "core/signal/statistics.hpp"
@@ -127,19 +130,39 @@ base::Finding turning_points_finding(const Estimate& delta_mu, const std::string
       {{"delta_mu_uncertainty", error, "1"}});
 }
 
-base::Finding misfit_finding(const Misfit& misfit, const Estimate& delta_mu) {
+base::Finding misfit_finding(const Misfit& misfit, const TestResults& results) {
   const SlipPart part = misfit.place().value_or(SlipPart::kFall);
-  return base::make_finding(
-      base::FindingCode::kMisfit,
-      fmt::format(
-          "the fit leaves residuals of {:.2f} times the scan noise, {:.2f} in the {} of the slips; a likely "
-          "cause is {}; "
-          "S - K is uncertain by {:.2g}, its distance to turning points included",
-          misfit.residual_sigmas(), misfit.residual_sigmas(part),
-          kSlipPartNames[static_cast<std::size_t>(part)], likely_cause(part), total_error(delta_mu)),
-      {{"residual", misfit.residual_sigmas(), "1"},
-       {"residual_of_part", misfit.residual_sigmas(part), "1"},
-       {"delta_mu_uncertainty", total_error(delta_mu), "1"}});
+  const std::string_view name = kSlipPartNames[static_cast<std::size_t>(part)];
+  const double uncertainty = total_error(results.delta_mu);
+  std::vector<base::FindingNumber> numbers{{"residual", misfit.residual_sigmas(), "1"},
+                                           {"residual_of_part", misfit.residual_sigmas(part), "1"},
+                                           {"delta_mu_uncertainty", uncertainty, "1"}};
+  std::string text;
+  std::string cause{likely_cause(part)};
+  if (misfit.repeats()) {
+    const double size = std::sqrt(misfit.mean().square());
+    numbers.push_back({"repeating_residual", size, "1"});
+    text = fmt::format("each slip differs from the fit in the same way, by {:.2f} times the scan noise (rms)",
+                       size);
+    const auto swing = misfit.mean().swing();
+    if (swing && results.omega.value) {
+      const double frequency_Hz = *swing * *results.omega.value / (2.0 * std::numbers::pi);
+      numbers.push_back({"swing_frequency", frequency_Hz, "Hz"});
+      text += fmt::format(", swinging at {:.3g} Hz", frequency_Hz);
+      cause = "a load cell or mounting that rings, or a filter that is slow for this oscillation";
+    } else {
+      text += fmt::format(", most in the {}", name);
+    }
+  } else {
+    text =
+        fmt::format("the fit leaves residuals of {:.2f} times the scan noise, {:.2f} in the {} of the slips",
+                    misfit.residual_sigmas(), misfit.residual_sigmas(part), name);
+  }
+  text += fmt::format(
+      "; a likely cause is {}; S - K is uncertain by {:.2g}, its distance to turning points "
+      "included",
+      cause, uncertainty);
+  return base::make_finding(base::FindingCode::kMisfit, std::move(text), std::move(numbers));
 }
 
 }  // namespace stickslip::analysis

@@ -57,6 +57,6 @@ void take_misfit(const Misfit& misfit, TestResults& results);
 [[nodiscard]] base::Finding turning_points_finding(const Estimate& delta_mu, const std::string& why);
 
 /// Code kMisfit, with the likely cause.
-[[nodiscard]] base::Finding misfit_finding(const Misfit& misfit, const Estimate& delta_mu);
+[[nodiscard]] base::Finding misfit_finding(const Misfit& misfit, const TestResults& results);
 
 }  // namespace stickslip::analysis

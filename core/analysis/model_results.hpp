@@ -2,12 +2,14 @@
 /// Results with standard errors, and the table of cycles, from the fitted slips.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "core/analysis/mean_residual.hpp"
 #include "core/analysis/results.hpp"
 #include "core/analysis/slip_estimator.hpp"
 #include "core/detect/cycle.hpp"
@@ -26,7 +28,8 @@ inline constexpr double kLargestResidualSigmas = 5.0;
 enum class SlipPart { kRise, kPeak, kFall, kTrough };
 inline constexpr std::array<std::string_view, 4> kSlipPartNames{"rise", "peak", "fall", "trough"};
 
-/// Residuals of a test's fits compared with the noise of a scan.
+/// Residuals of a test's fits compared with the noise of a scan, by their size and by what repeats in each
+/// slip.
 class Misfit {
  public:
   /// Adds the fit of a section, or where it stopped. \param sigma  noise of one scan.
@@ -41,15 +44,20 @@ class Misfit {
   }
   /// Part with the largest residuals; nullopt unless the misfit is significant.
   [[nodiscard]] std::optional<SlipPart> place() const noexcept;
-  /// Systematic residual √(residual² − 1), in σ, with its standard error.
+  /// Systematic residual, in σ, with its standard error: √(residual² − 1), or what repeats if that is more.
   [[nodiscard]] Estimate systematic() const;
-  /// Deviation of the residuals' square from 1, in standard errors of residuals and of σ, which is itself
-  /// estimated.
-  [[nodiscard]] double z() const noexcept { return z_of(whole_); }
-  /// Chance exceeds it in 1 % of the tests.
-  [[nodiscard]] bool is_significant() const noexcept { return z() > kSignificant; }
-  /// Chance exceeds it in 3 of 10⁵ tests.
-  [[nodiscard]] bool is_certain() const noexcept { return z() > 4.0; }
+  /// Whether size or repetition are larger than chance makes them, each in 1 % of the tests.
+  [[nodiscard]] bool is_significant() const noexcept {
+    return std::max(z_of(whole_), z_of(mean_)) > kSignificant;
+  }
+  /// The same, in 3 of 10⁵ tests each.
+  [[nodiscard]] bool is_certain() const noexcept { return is_large() || repeats(); }
+  [[nodiscard]] bool is_large() const noexcept { return z_of(whole_) > kCertain; }
+  [[nodiscard]] bool repeats() const noexcept { return z_of(mean_) > kCertain; }
+  [[nodiscard]] const MeanResidual& mean() const noexcept { return mean_; }
+  /// What repeats makes errors larger than the noise does, by Birge's ratio: √(ratio² − 1); 0 unless
+  /// significant.
+  [[nodiscard]] double beyond_noise() const noexcept;
 
  private:
   struct Sum {
@@ -58,12 +66,15 @@ class Misfit {
     void add(double residual_sigma, double of_freedom) noexcept;
   };
   static constexpr double kSignificant = 2.326;
+  static constexpr double kCertain = 4.0;
   [[nodiscard]] static double residual_of(const Sum& sum) noexcept;
-  [[nodiscard]] static double error_of_square(const Sum& sum) noexcept;
+  /// Deviations of a mean square from 1, in standard errors of its own and of σ, which is itself estimated.
   [[nodiscard]] static double z_of(const Sum& sum) noexcept;
+  [[nodiscard]] static double z_of(const MeanResidual& mean) noexcept;
 
   bool converged_ = true;
   Sum whole_;
+  MeanResidual mean_;
   std::array<Sum, kSlipPartNames.size()> parts_;
 };
 
@@ -72,9 +83,11 @@ class Misfit {
 /// and delta_mu_scatter, each with its standard error, or the reason why it is absent. Where neighbouring
 /// slips are correlated the standard errors of S, K and S − K are those of means that wander. The systematic
 /// uncertainty of S and S − K is γ v/g: whether the damper's force counts at the slip onset is a convention
-/// that no trace can decide (here: spring only, [Penner 1995, (13)]).
-/// \param sigma  noise of one scan.
-void model_results(std::span<const detect::Fall> slips, const SlipEstimates& estimates,
+/// that no trace can decide (here: spring only, [Penner 1995, (13)]). What repeats in each slip adds to the
+/// systematic uncertainty of all results, and where no slip sticks again the creep before it to that of S and
+/// S − K.
+/// \param misfit  of this section and those before. \param sigma  noise of one scan.
+void model_results(std::span<const detect::Fall> slips, const SlipEstimates& estimates, const Misfit& misfit,
                    const model::Tester& tester, double sigma, TestResults& results);
 
 /// Fills escape_speed and escape_speed_corrected. \param estimates  converged.

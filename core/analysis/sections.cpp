@@ -28,14 +28,15 @@ class PooledEstimate {
     }
     value_ += slips * *estimate.value;
     variance_ += std::pow(slips * estimate.standard_error.value_or(std::nan("")), 2);
-    systematic_ += slips * estimate.systematic_uncertainty.value_or(std::nan(""));
+    has_systematic_ = has_systematic_ || estimate.systematic_uncertainty;
+    systematic_ += slips * estimate.systematic_uncertainty.value_or(0.0);
   }
 
   [[nodiscard]] Estimate mean() const {
     if (sections_ == 1) return first_;
     if (nothing_) return *nothing_;
     Estimate mean = Estimate::of(value_ / slips_, std::sqrt(variance_) / slips_);
-    if (std::isfinite(systematic_)) mean.systematic_uncertainty = systematic_ / slips_;
+    if (has_systematic_) mean.systematic_uncertainty = systematic_ / slips_;
     return mean;
   }
 
@@ -46,6 +47,7 @@ class PooledEstimate {
   std::optional<Estimate> nothing_;
   double value_ = 0.0;
   double variance_ = 0.0;
+  bool has_systematic_ = false;
   double systematic_ = 0.0;
 };
 
@@ -162,7 +164,7 @@ TestEstimates estimate_in_sections(const estimate::Trace& trace, const base::Lon
     whole.misfit.add(trace, estimates, sigma);
     testers.add(estimates);
     TestResults own;
-    model_results(section, estimates, tester, sigma, own);
+    model_results(section, estimates, whole.misfit, tester, sigma, own);
     if (!trace.belt.is_constant()) {
       no_feature_results("the pull speed changes during the test", own);
     } else if (model_describes(estimates, sigma)) {

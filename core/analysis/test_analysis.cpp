@@ -264,11 +264,11 @@ TestResults TestAnalysis::finish() {
       add_distance(by_turning_points(trace, slips, cycles_by_turning_points(), {}).results,
                    estimates.results);
       if (estimates.misfit.is_certain())
-        base::add(results.findings, misfit_finding(estimates.misfit, estimates.results.delta_mu));
+        base::add(results.findings, misfit_finding(estimates.misfit, estimates.results));
     }
     results.rung = estimates.rung;
     results.rung_reason = estimates.rung_reason;
-    const bool refuted = estimates.misfit.is_certain();
+    const bool refuted = estimates.misfit.is_large();
     const auto description = estimates.model_describes ? detect::Description::kFits
                              : refuted                 ? detect::Description::kRefuted
                                                        : detect::Description::kDoubtful;

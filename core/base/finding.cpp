@@ -85,7 +85,7 @@ constexpr std::array<FindingKind, kFindingCodes> kKinds{{
     {kNotFitted, "not-fitted", "misfit", kWarning,
      "No law with a fit describes the test: S and K come from turning points, or have no value",
      "read the reason, and use S - K with the uncertainty given"},
-    {kMisfit, "misfit", "misfit", kWarning, "The fit leaves residuals larger than the noise",
+    {kMisfit, "misfit", "misfit", kWarning, "The fit leaves residuals larger than the noise, or the same in each slip",
      "look for the cause named, and use S - K with the uncertainty given"},
     {kLevelDrift, "level-drift", "consistency", kNote, "S and K drift along the track",
      "look at the cycles: S and K are means over this stretch"},

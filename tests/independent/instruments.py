@@ -66,6 +66,8 @@ class Outcome:
     expected_regime: str
     numbers: dict
     findings: list  # Codes of warnings and faults.
+    swing: float  # Frequency at which the misfit swings, Hz; NaN where none is told
+    omega_systematic: float  # 1/s
 
     def honest(self, errors=2.0):
         """Is S - K within so many errors, absent, or spoken against?"""
@@ -92,7 +94,9 @@ def outcome(program, setup):
 
     numbers = {"mu_s": number("mu_s", setup.S), "mu_k": number("mu_k", setup.K), "delta_mu": number("delta_mu", setup.S - setup.K)}
     findings = [finding["code"] for finding in test["coded_findings"] if finding["severity"] != "note"]
-    return Outcome(test["regime"], "ring-down" if slips == 1 else "stick-slip", numbers, findings)
+    told_numbers = {one["name"]: one["value"] for finding in test["coded_findings"] for one in finding["numbers"]}
+    return Outcome(test["regime"], "ring-down" if slips == 1 else "stick-slip", numbers, findings, told_numbers.get("swing_frequency", math.nan),
+                   test["details"]["omega"].get("systematic_uncertainty") or 0.0)
 
 
 def outcomes(program, row, tests, seed):

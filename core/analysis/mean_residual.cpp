@@ -1,0 +1,76 @@
+#include "core/analysis/mean_residual.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace stickslip::analysis {
+
+void MeanResidual::add(double periods, double sigmas) noexcept {
+  // A missed spike may not pass for what repeats. Noise keeps 99 % of its variance.
+  constexpr double kLargest = 3.0;
+  const double bin = std::floor((periods - kFrom) / (kTo - kFrom) * static_cast<double>(kBins));
+  if (!(bin >= 0.0 && bin < static_cast<double>(kBins))) return;
+  Bin& at = bins_[static_cast<std::size_t>(bin)];
+  at.sum += std::clamp(sigmas, -kLargest, kLargest);
+  at.count += 1.0;
+}
+
+double MeanResidual::chi_squared() const noexcept {
+  double sum = 0.0;
+  for_each([&](const Bin& bin, double) { sum += bin.chi_squared(); });
+  return sum;
+}
+
+double MeanResidual::freedom() const noexcept {
+  double bins = 0.0;
+  for_each([&](const Bin&, double) { bins += 1.0; });
+  return bins;
+}
+
+double MeanResidual::count() const noexcept {
+  double scans = 0.0;
+  for_each([&](const Bin& bin, double) { scans += bin.count; });
+  return scans;
+}
+
+double MeanResidual::square() const noexcept {
+  const double scans = count();
+  return scans > 0.0 ? (chi_squared() - freedom()) / scans : 0.0;
+}
+
+double MeanResidual::birge_ratio() const noexcept {
+  const double degrees = freedom();
+  return degrees > 0.0 ? std::max(std::sqrt(chi_squared() / degrees), 1.0) : 1.0;
+}
+
+std::optional<double> MeanResidual::swing() const noexcept {
+  constexpr double kLowest = 2.0;  // The fit follows slower ones.
+  constexpr double kHighest = 20.0;
+  constexpr double kStep = 0.125;  // Over one period: an eighth of a swing at most.
+  constexpr double kShare = 0.5;
+  double all = 0.0;
+  double scans = 0.0;
+  for_each([&](const Bin& bin, double periods) {
+    if (periods < 0.0) return;
+    all += bin.chi_squared() - 1.0;
+    scans += bin.count;
+  });
+  double largest = 0.0;
+  double at = 0.0;
+  for (double frequency = kLowest; frequency <= kHighest; frequency += kStep) {
+    std::complex<double> sum;
+    for_each([&](const Bin& bin, double periods) {
+      if (periods >= 0.0) sum += std::polar(bin.sum, 2.0 * std::numbers::pi * frequency * periods);
+    });
+    const double explained = 2.0 * std::norm(sum) / std::max(scans, 1.0);
+    if (explained > largest) {
+      largest = explained;
+      at = frequency;
+    }
+  }
+  return largest > kShare * all && all > 0.0 ? std::optional{at} : std::nullopt;
+}
+
+}  // namespace stickslip::analysis

@@ -1,0 +1,61 @@
+/// \file
+/// Mean residual of the slips at each time since their onset. Noise averages out of it; what the model leaves
+/// out repeats in each slip and stays: a transducer that rings or is slow, another friction law.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+namespace stickslip::analysis {
+
+class MeanResidual {
+ public:
+  /// \param periods  time since the onset over the period of the oscillation, negative in the stick before.
+  /// \param sigmas  residual of one scan over the noise of a scan.
+  void add(double periods, double sigmas) noexcept;
+
+  /// χ² of the means of all bins that have enough scans, of freedom() degrees for noise alone; less where the
+  /// fit has taken a part of it.
+  [[nodiscard]] double chi_squared() const noexcept;
+  [[nodiscard]] double freedom() const noexcept;  ///< Bins that have enough scans.
+  [[nodiscard]] double count() const noexcept;    ///< Scans in these bins.
+
+  /// Square of what repeats in each slip, in σ²: negative by chance.
+  [[nodiscard]] double square() const noexcept;
+
+  /// Factor by which the errors of a fit are larger than the noise makes them, √(χ²/freedom); at least 1.
+  /// [Birge, Phys. Rev. 40:207–227, 1932]
+  [[nodiscard]] double birge_ratio() const noexcept;
+
+  /// Frequency, over that of the oscillation, of the one sine that explains half of what repeats after the
+  /// onset; nullopt if none does.
+  [[nodiscard]] std::optional<double> swing() const noexcept;
+
+ private:
+  // From half a period before the onset to one after it; a swing of 20 times the frequency has two bins.
+  static constexpr double kFrom = -0.5;
+  static constexpr double kTo = 1.0;
+  static constexpr std::size_t kBins = 64;
+  static constexpr double kFewest = 4.0;  ///< Scans of a mean: those of one slip are fitted too closely.
+
+  struct Bin {
+    double sum = 0.0;
+    double count = 0.0;
+    [[nodiscard]] double chi_squared() const noexcept { return sum * sum / count; }
+  };
+  [[nodiscard]] static double periods_of(std::size_t bin) noexcept {
+    return kFrom + (static_cast<double>(bin) + 0.5) * (kTo - kFrom) / static_cast<double>(kBins);
+  }
+  /// Calls each(bin, its periods) of those that have enough scans.
+  template <typename Each>
+  void for_each(const Each& each) const {
+    for (std::size_t i = 0; i < kBins; ++i) {
+      if (bins_[i].count >= kFewest) each(bins_[i], periods_of(i));
+    }
+  }
+
+  std::array<Bin, kBins> bins_;
+};
+
+}  // namespace stickslip::analysis
