@@ -71,7 +71,7 @@ TestEstimates estimates_from_live(const estimate::Trace& trace, const base::Long
   for (std::size_t i = 0; i < slips.size(); ++i) {
     const detect::Fall slip = slips[i];
     const bool is_last = i + 1 == slips.size();
-    const bool is_slack = !is_last && settlement.slack.holds(slip.trough);
+    const bool is_slack = !is_last && settlement.slack.holds(trace, slip);
     const bool has_next = !is_last && !estimate::is_broken(trace, slip.peak_at, slips[i + 1].peak_at);
     detect::Cycle row = row_of(trace, slip);
     const double period_s =

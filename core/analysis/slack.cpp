@@ -32,11 +32,22 @@ double unloaded_level(const estimate::Trace& trace) {
 
 }  // namespace
 
+bool Slack::holds(const estimate::Trace& trace, const detect::Fall& slip) const noexcept {
+  constexpr std::ptrdiff_t kBeside = 2;
+  const auto at = static_cast<std::ptrdiff_t>(slip.trough_at);
+  const auto size = static_cast<std::ptrdiff_t>(trace.size());
+  double scan = std::numeric_limits<double>::infinity();
+  for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(at - kBeside, 0); k < std::min(at + kBeside + 1, size);
+       ++k)
+    scan = std::min(scan, trace.value[static_cast<std::size_t>(k)]);
+  return scan >= lowest && scan <= highest;
+}
+
 Slack find_slack(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips, double sigma) {
   if (slips.size() < 2) return {};
   const double unloaded = unloaded_level(trace);
   Slack slack{unloaded - kBelowSigmas * sigma, unloaded + kAboveSigmas * sigma, 0};
-  for (std::size_t i = 0; i + 1 < slips.size(); ++i) slack.count += slack.holds(slips[i].trough) ? 1 : 0;
+  for (std::size_t i = 0; i + 1 < slips.size(); ++i) slack.count += slack.holds(trace, slips[i]) ? 1 : 0;
   return slack;
 }
 

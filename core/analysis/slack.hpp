@@ -22,7 +22,8 @@ struct Slack {
   double highest = -std::numeric_limits<double>::infinity();
   std::size_t count = 0;  ///< Slips with such a trough.
 
-  [[nodiscard]] bool holds(double trough) const noexcept { return trough >= lowest && trough <= highest; }
+  /// By the lowest scan: at the corner of a fall into slack an interpolated trough lies below it.
+  [[nodiscard]] bool holds(const estimate::Trace& trace, const detect::Fall& slip) const noexcept;
 };
 
 /// Slips whose trough lies about the force before the pull, or about zero where the trace begins under load.

@@ -294,7 +294,7 @@ TestResults TestAnalysis::finish() {
       results.transition_time = transition_time(trace, estimates, slips, *verdict.transition_slip);
     }
     keep_cycles(trace, estimates, slips, [&](const detect::Fall& slip) {
-      return results.delta_mu.value && !slack.holds(slip.trough);
+      return results.delta_mu.value && !slack.holds(trace, slip);
     });
   }
   period_results(trace, slips, results);

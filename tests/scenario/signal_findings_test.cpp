@@ -74,6 +74,16 @@ std::vector<std::string> codes(const analysis::TestResults& results) {
   return codes;
 }
 
+/// NaN if there is no such finding or number.
+double number_of(const analysis::TestResults& results, const std::string& code, const std::string& name) {
+  for (const base::Finding& finding : results.findings) {
+    if (finding.code != code) continue;
+    for (const base::FindingNumber& number : finding.numbers)
+      if (number.name == name) return number.value;
+  }
+  return base::kNaN;
+}
+
 sim::Scene stick_slip() { return scene_of(kScenes / "stick-slip-at-12-in-per-min.toml"); }
 
 /// Neither a regime nor a coefficient.
@@ -205,6 +215,7 @@ TEST(SignalFindings, OfASlackCouplingPeaksTellSAndNothingTellsK) {
         if (mu_s > 2.0 * mu_k) {
           EXPECT_EQ(results.regime, model::Regime::kStickSlip);
           EXPECT_FALSE(results.mu_k.value);
+          EXPECT_EQ(number_of(results, "slack", "slack_count"), number_of(results, "slack", "slip_count") - 1.0);
           EXPECT_NEAR(results.mu_s.value.value(), mu_s,
                       3.0 * std::hypot(results.mu_s.standard_error.value_or(0.0),
                                        results.mu_s.systematic_uncertainty.value_or(0.0)));
