@@ -14,7 +14,6 @@
 #include "core/base/text.hpp"
 #include "daemon/control/batch_api.hpp"
 #include "daemon/control/calibration_api.hpp"
-#include "daemon/control/lease.hpp"
 #include "daemon/control/metrics.hpp"
 #include "daemon/control/openapi.hpp"
 #include "daemon/control/record_request.hpp"
@@ -52,8 +51,8 @@ std::string no_such_test(const std::string& number, const std::vector<daemon::Te
 
 class Api {
  public:
-  Api(daemon::Bench& bench, const base::Clock& clock)
-      : bench_(bench), batches_(bench.batches()), clock_(clock) {}
+  Api(daemon::Bench& bench, const base::Clock& clock, Lease& lease)
+      : bench_(bench), batches_(bench.batches()), clock_(clock), lease_(lease) {}
 
   void handle(const daemon::HttpRequest& request, daemon::HttpAnswer answer) {
     const std::string path = request.target.substr(0, request.target.find('?'));
@@ -156,7 +155,7 @@ class Api {
   [[nodiscard]] daemon::HttpReply held_by(const std::string& holder) const {
     return daemon::refusal(
         409, fmt::format("{} has the bench for another {:.0f} s; one at a time commands, all may read",
-                         holder, std::max(1.0, lease_.left_s(now_ns()))));
+                         holder, std::max(1.0, lease_.state(now_ns()).seconds_left)));
   }
 
   // Readers.
@@ -229,11 +228,7 @@ class Api {
     answer(daemon::reply_of(lease_json()));
   }
 
-  [[nodiscard]] Json lease_json() const {
-    const auto holder = lease_.holder(now_ns());
-    return {{"controller", holder ? Json(*holder) : Json(nullptr)},
-            {"seconds_left", lease_.left_s(now_ns())}};
-  }
+  [[nodiscard]] Json lease_json() const { return daemon::lease_json(lease_.state(now_ns())); }
 
   // Commands.
 
@@ -431,7 +426,7 @@ class Api {
   daemon::Bench& bench_;
   daemon::Batches& batches_;
   const base::Clock& clock_;
-  Lease lease_;
+  Lease& lease_;
   Repeats repeats_;
 };
 
@@ -470,8 +465,8 @@ const std::array<Api::Route, 30> Api::kRoutes{{
 
 }  // namespace
 
-daemon::HttpHandler make_api(daemon::Bench& bench, const base::Clock& clock) {
-  auto api = std::make_shared<Api>(bench, clock);
+daemon::HttpHandler make_api(daemon::Bench& bench, const base::Clock& clock, Lease& lease) {
+  auto api = std::make_shared<Api>(bench, clock, lease);
   return [api](const daemon::HttpRequest& request, daemon::HttpAnswer answer) {
     api->handle(request, std::move(answer));
   };

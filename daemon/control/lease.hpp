@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "daemon/types/lease_state.hpp"
+
 namespace stickslip::control {
 
 /// Times are nanoseconds of a monotonic clock. The holder is known by name only; access is restricted by the
@@ -46,9 +48,9 @@ class Lease {
     if (who_.empty() || now_ns >= until_ns_) return std::nullopt;
     return who_;
   }
-  /// Seconds until the lease ends; 0 if it is free.
-  [[nodiscard]] double left_s(std::int64_t now_ns) const {
-    return holder(now_ns) ? 1e-9 * static_cast<double>(until_ns_ - now_ns) : 0.0;
+  [[nodiscard]] daemon::LeaseState state(std::int64_t now_ns) const {
+    if (!holder(now_ns)) return {};
+    return {who_, 1e-9 * static_cast<double>(until_ns_ - now_ns)};
   }
 
  private:

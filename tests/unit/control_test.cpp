@@ -34,8 +34,9 @@ class ControlApi : public testing::Test {
   static std::string error(const HttpReply& reply) { return json::parse(reply.body)["error"]; }
 
   test::ManualClock clock_;
+  control::Lease lease_;
   PaperBench bench_;
-  HttpHandler api_ = control::make_api(bench_, clock_);
+  HttpHandler api_ = control::make_api(bench_, clock_, lease_);
 };
 
 TEST_F(ControlApi, ACalibrationIsAskedForWithUnits) {
