@@ -154,8 +154,10 @@ class Api {
   }
   [[nodiscard]] daemon::HttpReply held_by(const std::string& holder) const {
     return daemon::refusal(
-        409, fmt::format("{} has the bench for another {:.0f} s; one at a time commands, all may read",
-                         holder, std::max(1.0, lease_.state(now_ns()).seconds_left)));
+        409, fmt::format("{} has the bench for another {:.0f} s; one at a time commands, all may read. Take "
+                         "it over with \"Take it over …\" of the live page, or PUT /v1/controller {}",
+                         holder, std::max(1.0, lease_.state(now_ns()).seconds_left),
+                         Json{{"from", holder}}.dump()));
   }
 
   // Readers.
@@ -264,7 +266,7 @@ class Api {
   void release_control(const daemon::HttpRequest& request, const std::string&,
                        const daemon::HttpAnswer& answer) {
     if (lease_.release(request.controller, now_ns())) return answer(daemon::reply_of(lease_json()));
-    answer(daemon::refusal(409, fmt::format("{} has the bench", *lease_.holder(now_ns()))));
+    answer(held_by(*lease_.holder(now_ns())));
   }
 
   void set_plan(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
@@ -411,7 +413,7 @@ class Api {
                          answer = warned(answer, warnings)](const daemon::CalibrationRefusal& refusal) {
       if (refusal.why.empty()) {
         // Nobody waits for the time that a weight would have taken.
-        if (!calibrator.view().session) static_cast<void>(lease_.release(who, now_ns()));
+        if (!calibrator.view().session) lease_.end_task(who, now_ns());
         return answer(daemon::reply_of(daemon::calibration_json(calibrator.view())));
       }
       Json json{{"error", refusal.why}};

@@ -462,6 +462,7 @@ class Description(unittest.TestCase):
         wait_for(frames, lambda frame: frame["type"] == "health" and frame["status"]["bench"] == "idle")
         for wrong in ({"settle": -1}, {"reading": "2 kg"}, {"reading": 61}, {"x": 1}):
             self.assertEqual(self.check("POST", "/v1/calibration", wrong)[0], 400, wrong)
+        self.assertEqual(self.check("PUT", "/v1/controller", {"seconds": 3600})[0], 200)
         self.assertEqual(self.check("POST", "/v1/calibration", {"settle_s": 0.5, "reading": "0.5 s"})[0], 200)
         self.assertEqual(self.check("POST", "/v1/calibration/undo")[0], 409)
         for wrong in ({}, {"mass": -1}, {"mass": "1 V"}, {"mass": "1e5 kg"}, {"mass": 0.5}, {"mass": "500"}, {"mass": None}):
@@ -475,12 +476,17 @@ class Description(unittest.TestCase):
             self.assertEqual(self.check("POST", "/v1/calibration/finish", wrong)[0], 400, wrong)
         self.assertEqual(self.check("POST", "/v1/calibration/finish", {"valid_days": 0})[0], 200)
         self.assertIsNone(self.check("GET", "/v1/calibration")[1]["in_use"]["expires"])
-        # What is saved or given up gives the bench back.
-        self.assertIsNone(self.check("GET", "/v1/controller")[1]["controller"])
+        # What is saved or given up gives the bench back, but for a lease that was asked for.
+        lease = self.check("GET", "/v1/controller")[1]
+        self.assertEqual(lease["controller"], "ada")
+        self.assertGreater(lease["seconds_left"], 300)
+        self.assertEqual(self.check("DELETE", "/v1/controller")[0], 200)
         self.assertEqual(self.check("POST", "/v1/calibration")[0], 200)
         self.assertEqual(self.check("GET", "/v1/controller")[1]["controller"], "ada")
+        self.assertEqual(self.check("GET", "/v1/status")[1]["lease"]["controller"], "ada")
         self.assertEqual(self.check("DELETE", "/v1/calibration")[0], 200)
         self.assertIsNone(self.check("GET", "/v1/controller")[1]["controller"])
+        self.assertEqual(self.check("GET", "/v1/status")[1]["lease"], {"controller": None, "seconds_left": 0.0})
         self.hanging.nothing()
         # What was sent meanwhile has been read, and the scene plays.
         scan = self.daemon.ask("GET", "/v1/status")[1]["scan_count"]
