@@ -65,26 +65,65 @@ std::string count_of_tests(std::size_t count) {
   return fmt::format("{} test{}", count, count == 1 ? "" : "s");
 }
 
-/// Fig. 1 has the first two; S and K stand beside them.
+/// Fig. 1 has the first two; S and K stand below them: four would not fit a terminal of 80 columns.
 constexpr std::size_t kFigureQuantities = 4;
+constexpr std::size_t kBesideEachOther = 2;
 
-io::Table figure_table(bool two) {
+io::Table figure_table(bool two, std::size_t first) {
   using enum io::Table::Align;
   std::vector<io::Table::Column> columns{{.heading = two ? "speed" : "group", .align = two ? kLeft : kRight},
                                          {.heading = two ? "" : "n", .align = two ? kLeft : kRight}};
-  for (std::size_t q = 0; q < kFigureQuantities; ++q)
-    columns.push_back({.heading = std::string{analysis::quantities()[q].label}});
+  for (std::size_t q = first; q < first + kBesideEachOther; ++q)
+    columns.push_back({.heading = std::string{analysis::quantities()[q].label}, .width = 17});
   return io::Table{std::move(columns)};
 }
 
-void add_to_figure(io::Table& table, io::Table::Cell first, io::Table::Cell second, const SpeedGroup& group) {
-  std::vector<io::Table::Cell> cells{std::move(first), std::move(second)};
-  for (std::size_t q = 0; q < kFigureQuantities; ++q)
-    cells.emplace_back(mean_text(group.quantities[q], analysis::quantities()[q]));
-  table.add(std::move(cells));
+struct FigureRow {
+  io::Table::Cell first;
+  io::Table::Cell second;
+  const SpeedGroup* group;
+};
+
+std::string figure_text(bool two, const std::vector<FigureRow>& rows) {
+  std::string text;
+  for (std::size_t first = 0; first < kFigureQuantities; first += kBesideEachOther) {
+    io::Table table = figure_table(two, first);
+    for (const FigureRow& row : rows) {
+      std::vector<io::Table::Cell> cells{row.first, row.second};
+      for (std::size_t q = first; q < first + kBesideEachOther; ++q)
+        cells.emplace_back(mean_text(row.group->quantities[q], analysis::quantities()[q]));
+      table.add(std::move(cells));
+    }
+    text += table.text();
+  }
+  return text;
 }
 
 constexpr std::string_view kMeansHeading = "Means, ± half of the 95 % interval";
+
+/// Breaks a line at blanks so that it fits a terminal of 80 columns. \param indent  blanks before all lines
+/// but the first.
+std::string wrapped(const std::string& line, std::size_t indent) {
+  constexpr std::size_t kWidth = 80;
+  std::string text;
+  std::size_t column = 0;
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t blanks = line.find_first_not_of(' ', at);
+    if (blanks == std::string::npos) break;
+    const std::size_t end = std::min(line.find(' ', blanks), line.size());
+    const std::string word = line.substr(at, end - at);
+    const std::size_t width = io::display_width(word);
+    if (column + width > kWidth && column > indent) {
+      text += "\n" + std::string(indent, ' ') + line.substr(blanks, end - blanks);
+      column = indent + width - (blanks - at);
+    } else {
+      text += word;
+      column += width;
+    }
+    at = end;
+  }
+  return text;
+}
 
 /// "k = 4.30 for n = 3, 2.78 for n = 5": of all intervals that are shown.
 std::string coverage_legend(std::initializer_list<const Material*> materials) {
@@ -100,7 +139,8 @@ std::string coverage_legend(std::initializer_list<const Material*> materials) {
   std::string text;
   for (const auto& [count, factor] : factors)
     text += fmt::format("{}{:.2f} for n = {}", text.empty() ? "" : ", ", factor, count);
-  return text.empty() ? text : fmt::format("95 % intervals: mean ± k s_r/√n, Student's t, k = {}\n", text);
+  if (text.empty()) return text;
+  return wrapped("95 % intervals: mean ± k s_r/√n, Student's t, k = " + text, 3) + "\n";
 }
 
 constexpr std::string_view kModelLegend =
@@ -110,17 +150,21 @@ constexpr std::string_view kModelLegend =
 constexpr int kDeltaMuDecimals = 4;
 
 /// Of all slips of the tests of a group, before the means of the tests; with its errors.
-std::string by_cycle_line(const analysis::PooledDeltaMu& pooled) {
+/// \param side  "A: " or "B: " of a comparison.
+std::string by_cycle_line(const analysis::PooledDeltaMu& pooled, std::string_view side = {}) {
+  constexpr std::size_t kIndent = 15;
+  std::string text = fmt::format("{}S−K by cycle   ", side);
   if (!pooled.mean.value)
-    return fmt::format("S−K by cycle   {}  {}\n", io::kAbsent, base::printable(pooled.mean.reason));
-  std::string text = "S−K by cycle   " + io::uncertain(pooled.mean, kDeltaMuDecimals).text();
+    return wrapped(fmt::format("{}{}  {}", text, io::kAbsent, base::printable(pooled.mean.reason)), kIndent) +
+           "\n";
+  text += io::uncertain(pooled.mean, kDeltaMuDecimals).text();
   if (const auto of_mean = analysis::mean_interval(pooled))
     text +=
         fmt::format(", 95 % {}", interval(of_mean, io::decimals_for(half_of(*of_mean), kDeltaMuDecimals)));
   text += fmt::format(": {} slip{} of {}, {} escaped", pooled.slip_count, pooled.slip_count == 1 ? "" : "s",
                       count_of_tests(pooled.test_count), pooled.escaped_count);
   if (pooled.scatter.value) text += ", scatter " + scatter_text(pooled.scatter.value, kDeltaMuDecimals);
-  return text + "\n";
+  return wrapped(text, kIndent) + "\n";
 }
 
 /// What the errors of those lines mean; empty if no line has errors.
@@ -150,16 +194,16 @@ std::string title_of(const Quantity& quantity) {
 }
 
 std::string replicates_table(const Material& material, const SpeedGroup& group) {
-  std::vector<io::Table::Column> columns{{.heading = "", .align = io::Table::Align::kLeft, .width = 13},
-                                         {.heading = "n", .width = 4},
-                                         {.heading = "mean", .width = 9}};
+  std::vector<io::Table::Column> columns{{.heading = "", .align = io::Table::Align::kLeft, .width = 10},
+                                         {.heading = "n", .width = 3},
+                                         {.heading = "mean", .width = 8}};
   const bool has_systematic =
       std::any_of(group.quantities.begin(), group.quantities.end(),
                   [](const GroupQuantity& own) { return own.systematic_uncertainty.has_value(); });
-  if (has_systematic) columns.push_back({.heading = "± syst."});
-  columns.insert(columns.end(), {{.heading = "s_r", .width = 9},
+  if (has_systematic) columns.push_back({.heading = "± syst.", .width = 8});
+  columns.insert(columns.end(), {{.heading = "s_r", .width = 8},
                                  {.heading = "r = 2.8 s_r"},
-                                 {.heading = "95 % of the mean", .width = 20}});
+                                 {.heading = "95 % of the mean", .width = 19}});
   io::Table table{std::move(columns)};
   std::string notes;
   for (std::size_t q = 0; q < analysis::kQuantityCount; ++q) {
@@ -177,9 +221,12 @@ std::string replicates_table(const Material& material, const SpeedGroup& group) 
     table.add(std::move(cells));
     if (values.outlier) {
       const std::size_t test = own.tests[values.outlier->index];
-      notes += fmt::format("!  {} of {} stands out (Grubbs {:.2f} above {:.2f}, 5 %); it is not left out\n",
-                           quantity.title, base::printable(material.tests[test].file),
-                           values.outlier->statistic, values.outlier->critical);
+      notes +=
+          wrapped(fmt::format("!  {} of {} stands out (Grubbs {:.2f} above {:.2f}, 5 %); it is not left out",
+                              quantity.title, base::printable(material.tests[test].file),
+                              values.outlier->statistic, values.outlier->critical),
+                  3) +
+          "\n";
     }
   }
   return table.text() + notes;
@@ -316,30 +363,6 @@ std::string comparison_table(const analysis::PooledComparison& by_cycle,
   return text;
 }
 
-/// Breaks a line at blanks so that it fits a terminal of 80 columns. \param indent  blanks before all lines
-/// but the first.
-std::string wrapped(const std::string& line, std::size_t indent) {
-  constexpr std::size_t kWidth = 80;
-  std::string text;
-  std::size_t column = 0;
-  for (std::size_t at = 0; at < line.size();) {
-    const std::size_t blanks = line.find_first_not_of(' ', at);
-    if (blanks == std::string::npos) break;
-    const std::size_t end = std::min(line.find(' ', blanks), line.size());
-    const std::string word = line.substr(at, end - at);
-    const std::size_t width = io::display_width(word);
-    if (column + width > kWidth && column > indent) {
-      text += "\n" + std::string(indent, ' ') + line.substr(blanks, end - blanks);
-      column = indent + width - (blanks - at);
-    } else {
-      text += word;
-      column += width;
-    }
-    at = end;
-  }
-  return text;
-}
-
 /// The form block: what was tested, how, by whom and with what.
 std::string form_text(const Material& material) {
   constexpr std::size_t kLabelWidth = 17;
@@ -360,12 +383,12 @@ std::string report_text(const Material& material) {
       form_text(material) + "\n" + tests_table(material) + "method: " + methods_line(material) + "\n";
   text += fmt::format("\n{}{}\n", has_speeds(material) ? "Coefficient against speed (Fig. 1). " : "",
                       kMeansHeading);
-  io::Table figure = figure_table(false);
+  std::vector<FigureRow> rows;
   for (std::size_t g = 0; g < material.groups.size(); ++g) {
     const SpeedGroup& group = material.groups[g];
-    add_to_figure(figure, io::cell(g + 1), io::cell(group.tests.size()), group);
+    rows.push_back({io::cell(g + 1), io::cell(group.tests.size()), &group});
   }
-  text += figure.text();
+  text += figure_text(false, rows);
   for (std::size_t g = 0; g < material.groups.size(); ++g) {
     const SpeedGroup& group = material.groups[g];
     text += fmt::format("\ngroup {}: {}, {}\n", g + 1, base::printable(group_text(material, group)),
@@ -383,18 +406,18 @@ std::string comparison_text(const Material& a, const Material& b, const Material
                                  base::printable(b.label), form_text(b), tests_table(b), methods_line(b));
   text += fmt::format("\n{}{}\n", comparison.pairs.size() > 1 ? "Coefficient against speed (Fig. 1). " : "",
                       kMeansHeading);
-  io::Table figure = figure_table(true);
+  std::vector<FigureRow> rows;
   for (const analysis::SpeedPair& pair : comparison.pairs) {
     std::string speed = speed_of(a, b, pair);
-    if (pair.a) add_to_figure(figure, std::exchange(speed, ""), "A", a.groups[*pair.a]);
-    if (pair.b) add_to_figure(figure, speed, "B", b.groups[*pair.b]);
+    if (pair.a) rows.push_back({std::exchange(speed, ""), "A", &a.groups[*pair.a]});
+    if (pair.b) rows.push_back({speed, "B", &b.groups[*pair.b]});
   }
-  text += figure.text();
+  text += figure_text(true, rows);
   for (std::size_t i = 0; i < comparison.pairs.size(); ++i) {
     const analysis::SpeedPair& pair = comparison.pairs[i];
     text += fmt::format("\n{}: A − B (* differs at 5 %)\n", speed_of(a, b, pair));
-    if (pair.a) text += "A: " + by_cycle_line(a.groups[*pair.a].by_cycle);
-    if (pair.b) text += "B: " + by_cycle_line(b.groups[*pair.b].by_cycle);
+    if (pair.a) text += by_cycle_line(a.groups[*pair.a].by_cycle, "A: ");
+    if (pair.b) text += by_cycle_line(b.groups[*pair.b].by_cycle, "B: ");
     text += comparison_table(comparison.by_cycle[i], comparison.comparisons[i]) +
             regime_line(comparison.regimes[i]);
   }

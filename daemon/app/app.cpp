@@ -165,7 +165,7 @@ void App::request_stop() {
 base::Result<void> App::open_control() {
   if (!config_.control_socket && config_.http.empty()) return {};
   const daemon::HttpHandler api =
-      page::make_site(control::make_api(commands_, *wall_), report::read_chart_library());
+      page::make_site(control::make_api(commands_, *wall_, lease_), report::read_chart_library());
   const auto keep =
       [this](base::Result<std::unique_ptr<control::ControlServer>> server) -> base::Result<void> {
     if (!server) return tl::unexpected(server.error());

@@ -134,7 +134,8 @@ class App {
   live::LiveStream live_;
   batch::BatchLeader batches_;
   page::ReportJobs reports_;
-  std::unique_ptr<base::Clock> wall_;  ///< Wall time, for leases, dates and messages.
+  std::unique_ptr<base::Clock> wall_;  ///< Wall time, for the lease, dates and messages.
+  control::Lease lease_;
   runtime::CalibrationService calibrations_;
   runtime::CommandService commands_;
   std::unique_ptr<fleet::Fleet> fleet_;  ///< Null: no broker is configured.

@@ -142,6 +142,7 @@ daemon::Status App::status() const {
   const daemon::CalibrationView calibration = calibrations_.view();
   status.calibration = {calibration.facts.date, calibration.facts.expires, calibration.expired,
                         calibration.session ? calibration.session->who : std::string{}};
+  status.lease = lease_.state(wall_->monotonic_ns());
   if (sled_mass_kg_) {
     if (auto finding = pipeline::sled_finding(*sled_mass_kg_))
       base::add(status.findings, *std::move(finding));

@@ -14,7 +14,6 @@
 #include "core/base/text.hpp"
 #include "daemon/control/batch_api.hpp"
 #include "daemon/control/calibration_api.hpp"
-#include "daemon/control/lease.hpp"
 #include "daemon/control/metrics.hpp"
 #include "daemon/control/openapi.hpp"
 #include "daemon/control/record_request.hpp"
@@ -52,8 +51,8 @@ std::string no_such_test(const std::string& number, const std::vector<daemon::Te
 
 class Api {
  public:
-  Api(daemon::Bench& bench, const base::Clock& clock)
-      : bench_(bench), batches_(bench.batches()), clock_(clock) {}
+  Api(daemon::Bench& bench, const base::Clock& clock, Lease& lease)
+      : bench_(bench), batches_(bench.batches()), clock_(clock), lease_(lease) {}
 
   void handle(const daemon::HttpRequest& request, daemon::HttpAnswer answer) {
     const std::string path = request.target.substr(0, request.target.find('?'));
@@ -155,8 +154,10 @@ class Api {
   }
   [[nodiscard]] daemon::HttpReply held_by(const std::string& holder) const {
     return daemon::refusal(
-        409, fmt::format("{} has the bench for another {:.0f} s; one at a time commands, all may read",
-                         holder, std::max(1.0, lease_.left_s(now_ns()))));
+        409, fmt::format("{} has the bench for another {:.0f} s; one at a time commands, all may read. Take "
+                         "it over with \"Take it over …\" of the live page, or PUT /v1/controller {}",
+                         holder, std::max(1.0, lease_.state(now_ns()).seconds_left),
+                         Json{{"from", holder}}.dump()));
   }
 
   // Readers.
@@ -229,11 +230,7 @@ class Api {
     answer(daemon::reply_of(lease_json()));
   }
 
-  [[nodiscard]] Json lease_json() const {
-    const auto holder = lease_.holder(now_ns());
-    return {{"controller", holder ? Json(*holder) : Json(nullptr)},
-            {"seconds_left", lease_.left_s(now_ns())}};
-  }
+  [[nodiscard]] Json lease_json() const { return daemon::lease_json(lease_.state(now_ns())); }
 
   // Commands.
 
@@ -269,7 +266,7 @@ class Api {
   void release_control(const daemon::HttpRequest& request, const std::string&,
                        const daemon::HttpAnswer& answer) {
     if (lease_.release(request.controller, now_ns())) return answer(daemon::reply_of(lease_json()));
-    answer(daemon::refusal(409, fmt::format("{} has the bench", *lease_.holder(now_ns()))));
+    answer(held_by(*lease_.holder(now_ns())));
   }
 
   void set_plan(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
@@ -416,7 +413,7 @@ class Api {
                          answer = warned(answer, warnings)](const daemon::CalibrationRefusal& refusal) {
       if (refusal.why.empty()) {
         // Nobody waits for the time that a weight would have taken.
-        if (!calibrator.view().session) static_cast<void>(lease_.release(who, now_ns()));
+        if (!calibrator.view().session) lease_.end_task(who, now_ns());
         return answer(daemon::reply_of(daemon::calibration_json(calibrator.view())));
       }
       Json json{{"error", refusal.why}};
@@ -431,7 +428,7 @@ class Api {
   daemon::Bench& bench_;
   daemon::Batches& batches_;
   const base::Clock& clock_;
-  Lease lease_;
+  Lease& lease_;
   Repeats repeats_;
 };
 
@@ -470,8 +467,8 @@ const std::array<Api::Route, 30> Api::kRoutes{{
 
 }  // namespace
 
-daemon::HttpHandler make_api(daemon::Bench& bench, const base::Clock& clock) {
-  auto api = std::make_shared<Api>(bench, clock);
+daemon::HttpHandler make_api(daemon::Bench& bench, const base::Clock& clock, Lease& lease) {
+  auto api = std::make_shared<Api>(bench, clock, lease);
   return [api](const daemon::HttpRequest& request, daemon::HttpAnswer answer) {
     api->handle(request, std::move(answer));
   };

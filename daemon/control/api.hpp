@@ -10,12 +10,13 @@
 #pragma once
 
 #include "core/base/clock.hpp"
+#include "daemon/control/lease.hpp"
 #include "daemon/types/bench.hpp"
 #include "daemon/types/http.hpp"
 
 namespace stickslip::control {
 
-/// \param bench,clock  outlive the handler. \param clock  measures the leases; runs at wall speed.
-[[nodiscard]] daemon::HttpHandler make_api(daemon::Bench& bench, const base::Clock& clock);
+/// \param bench,clock,lease  outlive the handler. \param clock  measures the lease; runs at wall speed.
+[[nodiscard]] daemon::HttpHandler make_api(daemon::Bench& bench, const base::Clock& clock, Lease& lease);
 
 }  // namespace stickslip::control

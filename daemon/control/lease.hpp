@@ -2,9 +2,12 @@
 /// The lease of the bench: one controller at a time may command, for a limited time.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
+
+#include "daemon/types/lease_state.hpp"
 
 namespace stickslip::control {
 
@@ -22,19 +25,27 @@ class Lease {
   /// Takes or extends the lease; never shortens it. \return the holder if it is another one; then nothing
   /// changes.
   [[nodiscard]] std::optional<std::string> take(const std::string& who, double for_s, std::int64_t now_ns) {
-    if (auto other = holder(now_ns); other && *other != who) return other;
-    const std::int64_t until_ns = now_ns + static_cast<std::int64_t>(for_s * 1e9);
-    if (!holder(now_ns) || until_ns > until_ns_) until_ns_ = until_ns;
+    const auto before = holder(now_ns);
+    if (before && *before != who) return before;
+    if (!before) until_ns_ = asked_until_ns_ = now_ns;
+    until_ns_ = std::max(until_ns_, after(for_s, now_ns));
     who_ = who;
     return std::nullopt;
   }
-  /// Takes the lease from another client that holds it, for so long from now. \param from  whose lease it is
-  /// thought to be; one's own is extended, and never shortened. \return the holder if it is another one than
-  /// `from` and `who`; then nothing changes.
+  /// Takes the lease for a time that was asked for, from another client that holds it too. \param from  whose
+  /// lease it is thought to be; one's own is extended, and never shortened. \return the holder if it is
+  /// another one than `from` and `who`; then nothing changes.
   [[nodiscard]] std::optional<std::string> take_over(const std::string& who, const std::string& from,
                                                      double for_s, std::int64_t now_ns) {
     if (from != who && holder(now_ns) == from) who_.clear();
-    return take(who, for_s, now_ns);
+    if (auto other = take(who, for_s, now_ns)) return other;
+    asked_until_ns_ = std::max(asked_until_ns_, after(for_s, now_ns));
+    return std::nullopt;
+  }
+  /// Gives back what commands and steps took: the lease ends at once, or when the time that its holder asked
+  /// for ends. Nothing changes if another controller holds it.
+  void end_task(const std::string& who, std::int64_t now_ns) {
+    if (holder(now_ns) == who) until_ns_ = asked_until_ns_;
   }
   /// Ends the lease. \return false if another controller holds it.
   [[nodiscard]] bool release(const std::string& who, std::int64_t now_ns) {
@@ -46,14 +57,19 @@ class Lease {
     if (who_.empty() || now_ns >= until_ns_) return std::nullopt;
     return who_;
   }
-  /// Seconds until the lease ends; 0 if it is free.
-  [[nodiscard]] double left_s(std::int64_t now_ns) const {
-    return holder(now_ns) ? 1e-9 * static_cast<double>(until_ns_ - now_ns) : 0.0;
+  [[nodiscard]] daemon::LeaseState state(std::int64_t now_ns) const {
+    if (!holder(now_ns)) return {};
+    return {who_, 1e-9 * static_cast<double>(until_ns_ - now_ns)};
   }
 
  private:
+  static std::int64_t after(double for_s, std::int64_t now_ns) {
+    return now_ns + static_cast<std::int64_t>(for_s * 1e9);
+  }
+
   std::string who_;
   std::int64_t until_ns_ = 0;
+  std::int64_t asked_until_ns_ = 0;  ///< Of the lease that its holder asked for; not after until_ns_.
 };
 
 }  // namespace stickslip::control

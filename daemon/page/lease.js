@@ -6,6 +6,7 @@ const Lease = (() => {
   const kCommand_s = 30;  // That each command takes.
   const kLongestName = 64;  // Bytes.
   const kTaken_s = 60;
+  const kHealth_ms = 1000;  // From one health frame to the next.
   const part = id => document.getElementById(id);
   if (!sessionStorage.getItem("name")) sessionStorage.setItem("name", `page ${Math.random().toString(36).slice(2, 6)}`);
   // Of the operator, on this computer; else one of this tab.
@@ -14,6 +15,7 @@ const Lease = (() => {
   let holder = null;      // Its name, as the daemon told it last; null: nobody.
   let commanded = false;  // A command of this tab was granted: only then does closing it give the bench back.
   let until = 0;          // Of its lease, by this computer's clock, ms.
+  let granted = 0;        // When this page was granted a command last, ms.
 
   function write(lease) {
     holder = lease.controller;
@@ -60,19 +62,21 @@ const Lease = (() => {
 
   return {
     name,
-    load,
+    /// A frame on its way when a command was granted does not know of it: the next one does.
+    health(status) { if (Date.now() - granted > kHealth_ms) write(status.lease); },
     /// A request that takes the bench has been granted.
     took() {
+      granted = Date.now();
+      write({controller: name(), seconds_left: Math.max((until - granted) / 1000, kCommand_s)});
       commanded = true;
-      until = Math.max(until, Date.now() + 1000 * kCommand_s);
     },
     /// \param sending  (method, path, body, more for fetch) → its reply, which outlives the page with keepalive.
     connect(asking, sending, saying) { ask = asking; send = sending; say = saying; },
     /// Takes again what this tab had before it was loaded anew, unless somebody else has it by now.
-    async back() {
+    async back(status) {
       const left_s = (Number(sessionStorage.getItem("had bench")) - Date.now()) / 1000;
       sessionStorage.removeItem("had bench");
-      if (!(left_s > 0)) return load();
+      if (!(left_s > 0)) return write(status.lease);
       try { write(await ask("PUT", "/v1/controller", {seconds: Math.min(left_s, kLongest_s)})); } catch { await load(); }
     },
   };

@@ -67,7 +67,6 @@
     Trace.tests(summary.batch == null ? tests : tests.filter(Batch.place));
     Tables.tests(tests, summary, made, (path, name) => attempt(() => download(path, name)), Batch.voidCell, Batch.place);
     planned(await ask("GET", "/v1/plan"));  // A batch and others change it, too.
-    await Lease.load();
   }
   async function command(verb, body) {
     await attempt(async () => {
@@ -139,7 +138,7 @@
       Calibrate.health(frame.status);
       Batch.health(frame.status);
       Answer.health(frame.status);
-      attempt(Lease.load);
+      Lease.health(frame.status);
       // Records appear a moment after their tests, and those of before the daemon began one after the other.
       if ((frame.status.latest_test && document.querySelector("#tests tbody td:last-child")?.textContent === "…") || Tables.lacks()) attempt(refresh);
     },
@@ -165,7 +164,7 @@
       Tables.health(status);
       Answer.health(status);
       fillPlan(await ask("GET", "/v1/plan"));
-      await Lease.back();
+      await Lease.back(status);
       await refresh();
       await Batch.health(status);
       listen();

@@ -140,6 +140,10 @@ Json live_json(const detect::LiveState& live) {
   return json;
 }
 
+Json lease_json(const LeaseState& lease) {
+  return {{"controller", or_nothing(lease.controller)}, {"seconds_left", lease.seconds_left}};
+}
+
 std::string health_frame(const Status& status) {
   return io::json_text(Json{{"type", "health"}, {"status", status_json(status)}});
 }
@@ -190,6 +194,7 @@ Json status_json(const Status& status) {
   json["storage_stall_count"] = status.storage_stall_count;
   json["storage"] = to_json(status.storage);
   json["calibration"] = to_json(status.calibration);
+  json["lease"] = lease_json(status.lease);
   Json counts = Json::object();
   record::put_findings(status.findings, json);
   for (const base::FindingKind& kind : base::finding_kinds()) {

@@ -17,6 +17,7 @@
 #include "core/pipeline/bench_state.hpp"
 #include "daemon/types/batches.hpp"
 #include "daemon/types/fleet_state.hpp"
+#include "daemon/types/lease_state.hpp"
 #include "daemon/types/scan_account.hpp"
 #include "daemon/types/storage_state.hpp"
 #include "daemon/types/test_log.hpp"
@@ -59,6 +60,7 @@ struct Status {
     bool expired = false;
     std::string under_way_by;  ///< Controller of the calibration under way; empty: none.
   } calibration;
+  LeaseState lease;
   std::vector<base::Finding> findings;  ///< Of the bench now; those of a test are in its results.
   FindingCounts finding_counts{};       ///< Over all tests that have ended.
   std::optional<BatchProgress> batch;   ///< The current batch; absent: none.
@@ -80,6 +82,8 @@ struct Status {
 /// {"id": …, "name": …, "done": 3, "planned": 10, "next": {…}, "trouble": null,
 /// "under_way": [{"test": 4, …}]}, or null.
 [[nodiscard]] nlohmann::ordered_json progress_json(const std::optional<BatchProgress>& progress);
+/// {"controller": "ada", "seconds_left": 29.5}; controller is null if nobody has the bench.
+[[nodiscard]] nlohmann::ordered_json lease_json(const LeaseState& lease);
 /// A frame of the live stream: {"type": "health", "status": …}.
 [[nodiscard]] std::string health_frame(const Status& status);
 /// Phase, regime and latest cycle of the running test.

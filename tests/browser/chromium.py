@@ -56,10 +56,10 @@ class Chromium:
             raise RuntimeError(f"{do} {parameters}: {answer['error']}")
         return answer["value"]
 
-    def open(self, file, dark=False, touch=False):
-        """A file, or an address that begins with http:; touch: on a tablet, where fingers point."""
+    def open(self, file, dark=False, touch=False, before=None):
+        """A file, or an address that begins with http:; touch: on a tablet, where fingers point; before: JavaScript that runs before the page's own."""
         address = str(file) if str(file).startswith("http:") else pathlib.Path(file).resolve().as_uri()
-        page = Page(self, self.call("open", address=address, dark=dark, touch=touch))
+        page = Page(self, self.call("open", address=address, dark=dark, touch=touch, before=before))
         page.settle()
         page.note_remarks()
         return page
@@ -103,6 +103,10 @@ class Page:
     def value(self, expression):
         """Of a JavaScript expression, as JSON carries it; a promise is waited for."""
         return self.call("value", expression=expression)
+
+    def living(self):
+        """What lives after a collection of garbage: bytes of JavaScript, nodes and listeners of documents."""
+        return self.call("living")
 
     def until(self, condition):
         """Looks again and again until it holds."""

@@ -63,8 +63,9 @@ const until = async (found) => {
 const element = (page, { selector, index }) => page.locator(selector).nth(index);
 
 const commands = {
-  async open(_, { address, dark, touch }) {
+  async open(_, { address, dark, touch, before }) {
     const page = await (touch ? tablet : mouse).newPage();
+    if (before) await page.addInitScript(before);
     await page.emulateMedia({ colorScheme: dark ? 'dark' : 'light' });
     await page.goto(address);
     return pages.findIndex((seen) => seen.page === page);
@@ -106,6 +107,18 @@ const commands = {
     const { x, y, width, height } = await area.boundingBox();
     await page.mouse.move(x + command.at * width, y + height / 2);
     await page.mouse.wheel(0, command.turn);
+  },
+  /** What lives after a collection of garbage: bytes of JavaScript, nodes and listeners of documents. */
+  async living({ page }) {
+    const session = await page.context().newCDPSession(page);
+    try {
+      await session.send('HeapProfiler.collectGarbage');
+      const { usedSize: bytes } = await session.send('Runtime.getHeapUsage');
+      const { nodes, jsEventListeners: listeners } = await session.send('Memory.getDOMCounters');
+      return { bytes, nodes, listeners };
+    } finally {
+      await session.detach();
+    }
   },
   press: ({ page }, { key }) => page.keyboard.press(key),
   type: ({ page }, { text }) => page.keyboard.insertText(text),

@@ -64,6 +64,8 @@ class LeasePage(unittest.TestCase):
         # Somebody else has it: the page learns of it by itself, with the name.
         self.assertEqual(self.daemon.ask("PUT", "/v1/controller", {"seconds": 3600}, who="bob")[0], 200)
         page.until(f"{HOLDER} === 'bob commands'")
+        # From the frames that it receives anyhow: it never asks.
+        self.assertEqual(sum(url.endswith("/v1/controller") for url in page.requests()), 1, "the DELETE alone")
         self.press(page, "take-over")
         self.assertIn("bob has the bench", page.value("document.getElementById('confirm-text').textContent"))
         self.assertEqual(page.value("document.getElementById('confirm-yes').textContent"), "Take it from bob")

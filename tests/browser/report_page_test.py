@@ -13,12 +13,15 @@ import pathlib
 import shutil
 import subprocess
 import sys
+import re
 import tempfile
+import unicodedata
 import unittest
 
 import h5py
 import numpy
 
+import pdf_text
 from chromium import Chromium
 from contrast import CONTROLS, MARK, TARGETS, TARGET_PX, TEXT, TEXTS, colours, contrast, rgb
 
@@ -205,6 +208,25 @@ class Pages(unittest.TestCase):
         kept = page.value("[...document.querySelectorAll('h2, h3, h2 + .note, thead')].map(e => getComputedStyle(e).breakAfter)")
         self.assertGreater(len(kept), 10)
         self.assertEqual(set(kept), {"avoid"})
+
+    def test_printed_each_row_is_whole_on_a_page_and_nothing_is_left_out(self):
+        def squeezed(text):
+            return "".join(unicodedata.normalize("NFKC", text).split())
+        for name in ("report.html", "compare.html"):
+            page = self.page(name)
+            shown = page.value("[...document.querySelectorAll('h1, h2, h3, tbody tr, dl.form > div, footer')].filter(e => !e.closest('.u-legend')).map(e => e.innerText)")
+            self.assertGreater(len(shown), 40)
+            file = self.folder / "printed.pdf"
+            page.pdf(file)
+            sheets = [squeezed(text) for text in pdf_text.pages(file.read_bytes())]
+            self.assertEqual(len(sheets), int(re.search(rb"/Count (\d+)", file.read_bytes())[1]))
+            self.assertGreater(len(sheets), 2)
+            for text in shown:
+                self.assertTrue(any(squeezed(text) in sheet for sheet in sheets), f"{name}: {text}")
+            axes = ["coefficientoffriction", "force/weight", "stretching(mm/s)"]
+            self.assertEqual([axis for axis in axes if not any(axis in sheet for sheet in sheets)], [])
+            # What stands under the cursor is nothing on paper.
+            self.assertEqual([sheet for sheet in sheets if ":–" in sheet], [])
 
     @staticmethod
     def in_tests(quantities):

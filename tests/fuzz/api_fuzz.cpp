@@ -56,7 +56,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   FuzzedDataProvider input{data, size};
   daemon::PaperBench bench;
   test::ManualClock clock;
-  const daemon::HttpHandler api = control::make_api(bench, clock);
+  control::Lease lease;
+  const daemon::HttpHandler api = control::make_api(bench, clock, lease);
   while (input.remaining_bytes() > 0) {
     static constexpr std::array kMethods{"GET", "PUT", "POST", "DELETE", "PATCH"};
     daemon::HttpRequest request;

@@ -31,7 +31,7 @@ class RawClient {
   explicit RawClient(control::AccessPolicy policy) {
     service_ = std::make_shared<control::Service>(
         control::Service{std::move(policy),
-                         page::make_site(control::make_api(bench_, clock_), report::ChartLibrary{}),
+                         page::make_site(control::make_api(bench_, clock_, lease_), report::ChartLibrary{}),
                          &hub_,
                          {}});
     std::array<int, 2> ends{};
@@ -74,6 +74,7 @@ class RawClient {
  private:
   daemon::PaperBench bench_;
   test::ManualClock clock_;
+  control::Lease lease_;
   daemon::LiveHub hub_;
   boost::asio::io_context io_{1};
   std::shared_ptr<control::Service> service_;

@@ -252,6 +252,13 @@ class Reports(Folder):
         self.assertIn("k = 4.30 for n = 3, 2.78 for n = 5", text)
         self.assertIn("static µs: ISO 8295 µS; kinetic (dynamic) µk\nmodel quantities: S, K, S−K", text)
 
+    def test_means_fit_a_terminal_of_80_columns(self):
+        text = self.good("report", *self.a, *self.b)
+        means = text[text.index("Means, ± half"):].splitlines()
+        self.assertGreater(len(means), 30)
+        self.assertIn("± syst.", "".join(means))
+        self.assertEqual([line for line in means if len(line) > 80], [])
+
     def test_it_opens_with_the_form_and_invents_nothing(self):
         lines = self.good("report", *self.a).splitlines()
         opens = dict((line[:17].strip(), line[17:]) for line in lines[:lines.index("")])

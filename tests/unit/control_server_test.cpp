@@ -56,15 +56,15 @@ class ControlServerTest : public testing::Test {
     std::filesystem::remove_all(folder_);
   }
   void serve(HttpLimits limits = {}) {
-    auto server = ControlServer::listen(io_, socket_, make_api(bench_, clock_), limits, &hub_);
+    auto server = ControlServer::listen(io_, socket_, make_api(bench_, clock_, lease_), limits, &hub_);
     ASSERT_TRUE(server) << server.error().message;
     server_ = std::move(*server);
     thread_ = std::thread{[this] { io_.run(); }};
   }
 
   void serve_tcp(HttpLimits limits = {}) {
-    auto server =
-        ControlServer::listen_tcp(io_, "127.0.0.1:0", kToken, make_api(bench_, clock_), limits, &hub_);
+    auto server = ControlServer::listen_tcp(io_, "127.0.0.1:0", kToken, make_api(bench_, clock_, lease_),
+                                            limits, &hub_);
     ASSERT_TRUE(server) << server.error().message;
     server_ = std::move(*server);
     thread_ = std::thread{[this] { io_.run(); }};
@@ -117,6 +117,7 @@ class ControlServerTest : public testing::Test {
   }
 
   test::ManualClock clock_;
+  Lease lease_;
   daemon::PaperBench bench_;
   std::filesystem::path folder_;
   std::filesystem::path socket_;
@@ -170,7 +171,7 @@ TEST_F(ControlServerTest, WhereNoFileCanBeOpenedItWaitsInsteadOfTryingWithoutEnd
   for (const bool soon : {false, true}) {
     HttpLimits limits;
     limits.accept_again = soon ? 0h : 1h;
-    auto server = ControlServer::listen(io_, socket_, make_api(bench_, clock_), limits);
+    auto server = ControlServer::listen(io_, socket_, make_api(bench_, clock_, lease_), limits);
     ASSERT_TRUE(server) << server.error().message;
     const int client = connected();
     send(client, std::string{"GET /v1/status HTTP/1.1\r\nHost: localhost"} + kClose);
@@ -532,7 +533,7 @@ TEST_F(ControlServerTest, OverTcpNothingComesWithoutHostAndToken) {
 TEST_F(ControlServerTest, ListensOnThisMachineAlone) {
   for (const char* address : {"0.0.0.0:0", "[::]:0", "192.0.2.1:80", "example.org:80", "127.0.0.1",
                               "127.0.0.1:", "127.0.0.1:x", "127.0.0.1:99999", ""}) {
-    const auto server = ControlServer::listen_tcp(io_, address, kToken, make_api(bench_, clock_));
+    const auto server = ControlServer::listen_tcp(io_, address, kToken, make_api(bench_, clock_, lease_));
     ASSERT_FALSE(server) << address;
     EXPECT_EQ(server.error().exit_status(), 2) << address;
   }
@@ -602,15 +603,16 @@ TEST_F(ControlServerTest, ReplacesALeftOverSocketButNothingElse) {
     ::close(descriptor);
   }
   serve();
-  const auto second = ControlServer::listen(io_, socket_, make_api(bench_, clock_));
+  const auto second = ControlServer::listen(io_, socket_, make_api(bench_, clock_, lease_));
   ASSERT_FALSE(second);
   EXPECT_THAT(second.error().message, testing::HasSubstr("another process is listening"));
 
   std::ofstream{folder_ / "file"} << "x";
-  const auto file = ControlServer::listen(io_, folder_ / "file", make_api(bench_, clock_));
+  const auto file = ControlServer::listen(io_, folder_ / "file", make_api(bench_, clock_, lease_));
   ASSERT_FALSE(file);
   EXPECT_EQ(file.error().exit_status(), 2);
-  const auto longest = ControlServer::listen(io_, folder_ / std::string(200, 'x'), make_api(bench_, clock_));
+  const auto longest =
+      ControlServer::listen(io_, folder_ / std::string(200, 'x'), make_api(bench_, clock_, lease_));
   ASSERT_FALSE(longest);
   EXPECT_EQ(longest.error().exit_status(), 2);
 }
@@ -619,7 +621,7 @@ TEST_F(ControlServerTest, ReplacesALeftOverSocketButNothingElse) {
 TEST_F(ControlServerTest, LeavesTheSocketOfAnotherWhenItStops) {
   serve();
   std::filesystem::remove(socket_);
-  auto other = ControlServer::listen(io_, socket_, make_api(bench_, clock_));
+  auto other = ControlServer::listen(io_, socket_, make_api(bench_, clock_, lease_));
   ASSERT_TRUE(other) << other.error().message;
   std::promise<void> stopped;
   boost::asio::post(io_, [&] {
@@ -647,7 +649,7 @@ TEST_F(ControlServerTest, TakesTheSocketOfNobodyWhoIsBusy) {
   ASSERT_EQ(::bind(busy, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
   ASSERT_EQ(::listen(busy, 0), 0);
   const int waiting = connected();
-  const auto second = ControlServer::listen(io_, socket_, make_api(bench_, clock_));
+  const auto second = ControlServer::listen(io_, socket_, make_api(bench_, clock_, lease_));
   ASSERT_FALSE(second);
   EXPECT_THAT(second.error().message, testing::HasSubstr("choose another path in [control] socket"));
   EXPECT_TRUE(std::filesystem::exists(socket_));

@@ -34,8 +34,9 @@ class ControlApi : public testing::Test {
   static std::string error(const HttpReply& reply) { return json::parse(reply.body)["error"]; }
 
   test::ManualClock clock_;
+  control::Lease lease_;
   PaperBench bench_;
-  HttpHandler api_ = control::make_api(bench_, clock_);
+  HttpHandler api_ = control::make_api(bench_, clock_, lease_);
 };
 
 TEST_F(ControlApi, ACalibrationIsAskedForWithUnits) {
@@ -149,6 +150,14 @@ TEST_F(ControlApi, ReportsOnABatchAndComparesTwo) {
            {two,
             "form 0: 20261122T180301Z liner (20261122T180301Z) 20261122T180302Z fluting (20261122T180302Z)",
             "text/html; charset=utf-8"},
+           {one + "?pool=grades", "form 0: 20261122T180301Z liner (20261122T180301Z) pool grades",
+            "text/html; charset=utf-8"},
+           {one + "?format=csv&pool=regimes",
+            "form 1: 20261122T180301Z liner (20261122T180301Z) pool regimes", "text/csv; charset=utf-8"},
+           {two + "&pool=grades,regimes&format=csv",
+            "form 1: 20261122T180301Z liner (20261122T180301Z) 20261122T180302Z fluting (20261122T180302Z) "
+            "pool grades,regimes",
+            "text/csv; charset=utf-8"},
        }) {
     const HttpReply reply = get(target);
     EXPECT_EQ(reply.status, 200) << target;
@@ -160,6 +169,11 @@ TEST_F(ControlApi, ReportsOnABatchAndComparesTwo) {
            {one + "?format", 400, "format: is html, csv or json, not "},
            {one + "?form=csv", 400, "form: there is no such key"},
            {one + "?format=csv&format=csv", 400, "format: stands there twice; send it once"},
+           {one + "?pool=all", 400, "pool: is grades or regimes or grades,regimes, not all"},
+           {one + "?pool=", 400, "pool: is grades or regimes or grades,regimes, not "},
+           {one + "?pool=regimes,grades", 400, "not regimes,grades"},
+           {one + "?pool=grades&pool=regimes", 400, "pool: stands there twice; send it once"},
+           {two + "&pool=speeds", 400, "pool: is grades or regimes or grades,regimes, not speeds"},
            {"/v1/batches/liner/report", 404, "there is no batch liner"},
            {"/v1/batches/../report", 404, "there is no batch .."},
            {"/v1/batches//report", 404, "there is no batch ;"},
@@ -272,10 +286,12 @@ TEST_F(ControlApi, OneAtATimeCommandsUntilTheLeaseIsOver) {
   EXPECT_EQ(command("/v1/arm", "ada").status, 200);
   const HttpReply refused = command("/v1/stop", "bob");
   EXPECT_EQ(refused.status, 409);
-  EXPECT_EQ(error(refused), "ada has the bench for another 30 s; one at a time commands, all may read");
+  EXPECT_EQ(error(refused),
+            "ada has the bench for another 30 s; one at a time commands, all may read. Take it over with "
+            "\"Take it over …\" of the live page, or PUT /v1/controller {\"from\":\"ada\"}");
   EXPECT_EQ(bench_.commands.size(), 1U);
   EXPECT_EQ(ask({"PUT", "/v1/plan", "{}", "bob", ""}).status, 409);
-  EXPECT_EQ(ask({"DELETE", "/v1/controller", "", "bob", ""}).status, 409);
+  EXPECT_EQ(error(ask({"DELETE", "/v1/controller", "", "bob", ""})), error(refused));
   EXPECT_EQ(json::parse(ask({"GET", "/v1/controller", "", "", ""}).body)["controller"], "ada");
   clock_.advance(29'999'999'999ns);
   EXPECT_EQ(command("/v1/stop", "bob").status, 409);
@@ -295,11 +311,41 @@ TEST_F(ControlApi, OneAtATimeCommandsUntilTheLeaseIsOver) {
   EXPECT_EQ(ask({"PUT", "/v1/controller", R"({"from": "eve"})", "bob", ""}).status, 409);
   EXPECT_EQ(ask({"PUT", "/v1/controller", R"({"from": "ada"})", "bob", ""}).status, 200);
   EXPECT_EQ(error(command("/v1/stop", "ada")),
-            "bob has the bench for another 30 s; one at a time commands, all may read");
+            "bob has the bench for another 30 s; one at a time commands, all may read. Take it over with "
+            "\"Take it over …\" of the live page, or PUT /v1/controller {\"from\":\"bob\"}");
+  // The request that a refusal names is granted, whatever the name.
+  const std::string odd = "Łoś \"the\\ first\"";
+  EXPECT_EQ(ask({"PUT", "/v1/controller", R"({"from": "bob"})", odd, ""}).status, 200);
+  const std::string told = error(ask({"PUT", "/v1/controller", R"({"from": "bob"})", "eve", ""}));
+  EXPECT_THAT(told, testing::StartsWith(odd + " has the bench"));
+  EXPECT_EQ(ask({"PUT", "/v1/controller", told.substr(told.find('{')), "bob", ""}).status, 200);
   EXPECT_EQ(ask({"PUT", "/v1/controller", R"({"from": "bob", "seconds": 3600})", "ada", ""}).status, 200);
   for (const char* body : {R"({"seconds": 0})", R"({"from": 1})", R"({"seconds": 3601})",
                            R"({"seconds": "x"})", R"({"second": 1})", "[]", "{"}) {
     EXPECT_EQ(ask({"PUT", "/v1/controller", body, "ada", ""}).status, 400) << body;
+  }
+}
+
+TEST_F(ControlApi, WhatEndsACalibrationDoesNotShortenALeaseThatWasAskedFor) {
+  const auto left_s = [this] { return lease_.state(clock_.monotonic_ns()).seconds_left; };
+  ASSERT_EQ(ask({"PUT", "/v1/controller", R"({"seconds": 3600})", "ada", ""}).status, 200);
+  ASSERT_EQ(command("/v1/calibration", "ada").status, 200);
+  ASSERT_EQ(command("/v1/calibration/finish", "ada", R"({"certificate": "DKD", "valid_days": 0})").status,
+            200);
+  EXPECT_NEAR(left_s(), 3600.0, 1e-6);
+  EXPECT_EQ(command("/v1/stop", "bob").status, 409);
+  // A step takes it longer than was asked for; its end gives that part back.
+  clock_.advance(3500s);
+  ASSERT_EQ(command("/v1/calibration", "ada").status, 200);
+  EXPECT_NEAR(left_s(), control::Lease::kCalibration_s, 1e-6);
+  ASSERT_EQ(ask({"DELETE", "/v1/calibration", "", "ada", ""}).status, 200);
+  EXPECT_NEAR(left_s(), 100.0, 1e-6);
+  // What another one, or the same one earlier, asked for is no longer there.
+  ASSERT_EQ(ask({"DELETE", "/v1/controller", "", "ada", ""}).status, 200);
+  for (const char* who : {"ada", "bob"}) {
+    ASSERT_EQ(command("/v1/calibration", who).status, 200);
+    ASSERT_EQ(ask({"DELETE", "/v1/calibration", "", who, ""}).status, 200);
+    EXPECT_EQ(left_s(), 0.0) << who;
   }
 }
 
