@@ -22,6 +22,7 @@
 #include "cli/sweep/scene_scans.hpp"
 
 #include "core/analysis/test_analysis.hpp"
+#include "core/base/nan.hpp"
 #include "core/sim/scene.hpp"
 #include "tests/support/random_tests.hpp"
 #include "tests/support/sample_limits.hpp"
