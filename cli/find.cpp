@@ -287,7 +287,7 @@ Examples:
   stickslip find records --sample "liner*" --from 2026-11-01 --to 2026-11-30
   stickslip find records --regime stick-slip --where S-K=0.04: --where S=0.3:0.4 --sort S-K
   stickslip find records --finding warning --finding fault --json
-  stickslip report $(stickslip find records --batch 20261122T180301Z --paths))";
+  stickslip find records --batch 20261122T180301Z -0     the files, for xargs -0 stickslip report)";
 
 }  // namespace
 
