@@ -30,9 +30,10 @@ struct FilesFound {
   std::vector<UnreadFolder> unread;          ///< These may hold more files.
 };
 
-/// Finds files in the record folder and in subfolders down to kDeepestRecordFolder. A folder that does not
+/// Finds files in a folder and in its subfolders, `deepest` levels down. A folder that does not
 /// exist counts as empty. Symbolic links to folders are not followed, and `lost+found` is skipped.
 [[nodiscard]] FilesFound find_files(const std::filesystem::path& folder,
-                                    const std::function<bool(const std::filesystem::path&)>& wanted);
+                                    const std::function<bool(const std::filesystem::path&)>& wanted,
+                                    int deepest = kDeepestRecordFolder);
 
 }  // namespace stickslip::io

@@ -76,9 +76,8 @@ std::vector<std::string> texts_of(hid_t parent, const std::string& name, int dim
 }
 
 template <typename T>
-std::vector<T> numbers_of(hid_t parent, const std::string& name, int dimensions,
+std::vector<T> numbers_in(const DatasetHandle& dataset, const std::string& name, int dimensions,
                           std::optional<std::size_t> expected) {
-  const DatasetHandle dataset = open_dataset(parent, name);
   if (!is_number<T>(type_of(dataset, name).get())) refuse(name, "has another type than this format says");
   const std::size_t count = count_in(space_of(dataset, name), dimensions, name);
   if (expected && count != *expected) refuse(name, fmt::format("has {} rows, not {}", count, *expected));
@@ -155,8 +154,8 @@ std::optional<T> find_number_attribute(hid_t object, const std::string& name) {
 }
 
 DatasetHandle open_dataset(hid_t parent, const std::string& name) {
-  if (!has(parent, name)) refuse("data set " + name, "is missing");
   const hid_t dataset = H5Dopen2(parent, name.c_str(), H5P_DEFAULT);
+  if (dataset < 0 && !has(parent, name)) refuse("data set " + name, "is missing");
   if (dataset < 0) refuse(name, "is no data set or damaged");
   return {dataset, name};
 }
@@ -168,13 +167,18 @@ std::vector<std::string> read_texts(hid_t parent, const std::string& name) {
 }
 
 template <typename T>
+T read_scalar(const DatasetHandle& dataset, const std::string& name) {
+  return numbers_in<T>(dataset, name, 0, std::nullopt).front();
+}
+
+template <typename T>
 T read_scalar(hid_t parent, const std::string& name) {
-  return numbers_of<T>(parent, name, 0, std::nullopt).front();
+  return read_scalar<T>(open_dataset(parent, name), name);
 }
 
 template <typename T>
 std::vector<T> read_column(hid_t parent, const std::string& name, std::optional<std::size_t> count) {
-  return numbers_of<T>(parent, name, 1, count);
+  return numbers_in<T>(open_dataset(parent, name), name, 1, count);
 }
 
 template <typename T>
@@ -216,6 +220,7 @@ bool holds(hid_t parent, const std::string& name) {
 
 #define STICKSLIP_INSTANTIATE(type)                                                                \
   template type read_scalar(hid_t, const std::string&);                                            \
+  template type read_scalar(const DatasetHandle&, const std::string&);                             \
   template std::vector<type> read_column(hid_t, const std::string&, std::optional<std::size_t>);   \
   template bool holds<type>(hid_t, const std::string&);                                            \
   template void read_rows(const DatasetHandle&, const std::string&, std::size_t, std::span<type>); \

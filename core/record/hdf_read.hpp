@@ -32,6 +32,9 @@ template <typename T>
 [[nodiscard]] std::vector<std::string> read_texts(hid_t parent, const std::string& name);
 template <typename T>
 [[nodiscard]] T read_scalar(hid_t parent, const std::string& name);
+/// Of an open data set. \param name  for messages.
+template <typename T>
+[[nodiscard]] T read_scalar(const DatasetHandle& dataset, const std::string& name);
 /// \param count  required length, if known. The stored type must be T exactly (size, sign, kind).
 template <typename T>
 [[nodiscard]] std::vector<T> read_column(hid_t parent, const std::string& name,

@@ -40,7 +40,7 @@ analysis::Estimate read_estimate(hid_t group, const std::string& key) {
   if (auto reason = find_attribute(dataset.get(), kReason)) {
     estimate = analysis::Estimate::none(*std::move(reason));
   } else {
-    estimate.value = read_scalar<double>(group, key);
+    estimate.value = read_scalar<double>(dataset, key);
   }
   estimate.standard_error = find_number_attribute<double>(dataset.get(), kStandardError);
   estimate.systematic_uncertainty = find_number_attribute<double>(dataset.get(), kSystematic);

@@ -125,6 +125,8 @@ Apart& apart() {
 /// Of one thread: one reads the next record while the other's is worked on.
 class PairOfReaders {
  public:
+  explicit PairOfReaders(std::string_view option) : readers_{reader(option), reader(option)} {}
+
   base::Result<Record> read(const std::filesystem::path& path, const std::filesystem::path& next) {
     if (begun_ != path) {
       if (auto begun = begin(path); !begun) return tl::unexpected(begun.error());
@@ -148,12 +150,11 @@ class PairOfReaders {
     return begun;
   }
 
-  static ApartReader reader() {
-    return ApartReader{
-        base::LimitedChild{base::ChildProgram{"/proc/self/exe", {std::string{kReaderOption}}}}};
+  static ApartReader reader(std::string_view option) {
+    return ApartReader{base::LimitedChild{base::ChildProgram{"/proc/self/exe", {std::string{option}}}}};
   }
 
-  std::array<ApartReader, 2> readers_{reader(), reader()};
+  std::array<ApartReader, 2> readers_;
   std::size_t current_ = 0;
   std::filesystem::path begun_;  ///< What the current one reads; empty: nothing.
 };
@@ -192,8 +193,9 @@ base::Result<Record> ApartReader::finish(const std::function<bool()>& given_up) 
   return std::move(reading->record);
 }
 
-std::string read_for_parent(std::string_view path, int memory_file) {
-  base::Result<Record> record = read_record(path);
+namespace {
+
+std::string answer_with(base::Result<Record> record, int memory_file) {
   if (!record) return letter_of(record.error().kind) + record.error().message;
   std::string answer = kRead + record->sha256;
   MemoryJournal journal{memory_file, record->header};
@@ -201,15 +203,33 @@ std::string read_for_parent(std::string_view path, int memory_file) {
   return answer;
 }
 
+}  // namespace
+
+std::string read_for_parent(std::string_view path, int memory_file) {
+  return answer_with(read_record(path), memory_file);
+}
+
+std::string read_facts_for_parent(std::string_view path, int memory_file) {
+  return answer_with(read_facts(path), memory_file);
+}
+
 void serve_if_reader(int count, char** arguments) {
-  if (count == 2 && arguments[1] == kReaderOption) base::answer_questions(read_for_parent);
+  if (count != 2) return;
+  if (arguments[1] == kReaderOption) base::answer_questions(read_for_parent);
+  if (arguments[1] == kFactsReaderOption) base::answer_questions(read_facts_for_parent);
 }
 
 void read_records_apart(std::function<bool()> given_up) { apart() = {true, std::move(given_up)}; }
 
 base::Result<Record> read_record_apart(const std::filesystem::path& path, const std::filesystem::path& next) {
   if (!apart().wanted) return read_record(path);
-  thread_local PairOfReaders readers;
+  thread_local PairOfReaders readers{kReaderOption};
+  return readers.read(path, next);
+}
+
+base::Result<Record> read_facts_apart(const std::filesystem::path& path, const std::filesystem::path& next) {
+  if (!apart().wanted) return read_facts(path);
+  thread_local PairOfReaders readers{kFactsReaderOption};
   return readers.read(path, next);
 }
 

@@ -23,6 +23,7 @@ namespace stickslip::record {
 
 /// Of this program as such a child.
 inline constexpr std::string_view kReaderOption = "--read-files";
+inline constexpr std::string_view kFactsReaderOption = "--read-facts";
 
 /// A child that reads one record after the other. Thread-bound.
 class ApartReader {
@@ -47,6 +48,8 @@ class ApartReader {
 
 /// A ChildWork: reads the record of that path into the memory file, as a journal.
 [[nodiscard]] std::string read_for_parent(std::string_view path, int memory_file);
+/// The same with read_facts().
+[[nodiscard]] std::string read_facts_for_parent(std::string_view path, int memory_file);
 
 /// Never returns in a process that was started as a reader.
 void serve_if_reader(int count, char** arguments);
@@ -64,5 +67,9 @@ void read_records_apart(std::function<bool()> given_up = {});
 /// files[index], for those who read one after the other: the one after it is being read meanwhile.
 /// Errors as read_record_apart().
 [[nodiscard]] base::Result<Record> read_record_in_turn(std::span<const std::string> files, std::size_t index);
+
+/// As read_record_apart(), with read_facts().
+[[nodiscard]] base::Result<Record> read_facts_apart(const std::filesystem::path& path,
+                                                    const std::filesystem::path& next = {});
 
 }  // namespace stickslip::record

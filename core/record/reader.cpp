@@ -53,6 +53,25 @@ void check_facts(const Record& record) {
   }
 }
 
+/// All but the columns.
+Record facts_in(hid_t entry) {
+  Record record;
+  record.end.emplace();
+  read_quantity(entry, record.header.board);
+  read_identity(entry, record);
+  read_instrument(entry, record);
+  read_second_channel(entry, record);
+  record.end->results = read_results(entry);
+  read_process(entry, record);
+  return record;
+}
+
+Record read_facts_of(const GivenFile& given, const std::filesystem::path& path) {
+  const FileHandle file = open_record(given, path);
+  check_format(file);
+  return facts_in(open_group(file.get(), "entry").get());
+}
+
 Record read(const GivenFile& given, const std::filesystem::path& path) {
   const FileHandle file = open_record(given, path);
   check_format(file);
@@ -80,18 +99,11 @@ void verify(const GivenFile& given, const std::filesystem::path& path, const Rec
   const FileHandle file = open_record(given, path);
   check_format(file);
   const GroupHandle entry = open_group(file.get(), "entry");
-  Record back;
-  back.end.emplace();
-  read_quantity(entry.get(), back.header.board);
+  const Record back = facts_in(entry.get());
   if (back.header.board.quantity != record.header.board.quantity) throw HdfError("holds another quantity");
-  read_identity(entry.get(), back);
-  read_instrument(entry.get(), back);
-  read_second_channel(entry.get(), back);
   if (back.header.board.second != record.header.board.second) throw HdfError("holds another second channel");
   verify_second(entry.get(), record, scans);
   check_tables(entry.get());
-  back.end->results = read_results(entry.get());
-  read_process(entry.get(), back);
   if (has(entry.get(), "truth")) check_truth(entry.get());
   verify_scans(entry.get(), record.header.board, scans);
 }
@@ -100,9 +112,8 @@ base::Error of_file(const std::filesystem::path& path, const base::Error& error)
   return {error.kind, fmt::format("{}: {}", path.string(), error.message)};
 }
 
-}  // namespace
-
-base::Result<Record> read_record(const std::filesystem::path& path, const FileCalls& calls) {
+base::Result<Record> read_by(Record (*read)(const GivenFile&, const std::filesystem::path&),
+                             const std::filesystem::path& path, const FileCalls& calls) {
   const auto given = open_shared(path, calls);
   if (!given) return tl::unexpected(of_file(path, given.error()));
   try {
@@ -112,6 +123,16 @@ base::Result<Record> read_record(const std::filesystem::path& path, const FileCa
       return base::failure("{}: {}", path.string(), why_unreadable(given->refused()));
     return base::usage_error("{}: {}", path.string(), base::reason_of(error));
   }
+}
+
+}  // namespace
+
+base::Result<Record> read_record(const std::filesystem::path& path, const FileCalls& calls) {
+  return read_by(read, path, calls);
+}
+
+base::Result<Record> read_facts(const std::filesystem::path& path, const FileCalls& calls) {
+  return read_by(read_facts_of, path, calls);
 }
 
 base::Result<void> verify_record(const std::filesystem::path& path, const Record& record,

@@ -19,6 +19,11 @@ namespace stickslip::record {
 [[nodiscard]] base::Result<Record> read_record(const std::filesystem::path& path,
                                                const FileCalls& calls = system_calls());
 
+/// Reads a record without its columns: scans, cycles, gaps, events and truth stay empty. The raw values are
+/// not looked at, so neither is their checksum. Errors as read_record().
+[[nodiscard]] base::Result<Record> read_facts(const std::filesystem::path& path,
+                                              const FileCalls& calls = system_calls());
+
 /// Verifies a file against the record and source it was written from, piece by piece. Errors: kUsage if the
 /// file is invalid or its scans (index, raw value, code of the second channel, noise-free force where both
 /// have it) differ from the source in any bit;

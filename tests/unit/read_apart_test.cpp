@@ -151,6 +151,27 @@ TEST(ReadApart, GivesEveryFieldToTheLastBit) {
   }
 }
 
+TEST(ReadApart, FactsAreThoseOfTheWholeRecord) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "1.h5";
+  ASSERT_TRUE(publish_record(test::whole_record(), path));
+  Record expected = read_record(path).value();
+  expected.scan.clear();
+  expected.raw.clear();
+  expected.true_coefficient.clear();
+  expected.second.clear();
+  expected.spikes.clear();
+  expected.gaps.clear();
+  expected.cycles.clear();
+  expected.events.clear();
+  expected.end->truth.reset();
+  ApartReader reader{LimitedChild{read_facts_for_parent}};
+  for (const auto& facts : {read_facts(path), reader.read(path, kEnough)}) {
+    ASSERT_TRUE(facts) << facts.error().message;
+    test::expect_same_record(*facts, expected);
+  }
+}
+
 TEST(ReadApart, InTurnGivesTheNamedFileOfAListUpToTheLast) {
   const test::TemporaryFolder folder;
   const std::array<std::string, 2> files{folder / "1.h5", folder / "2.h5"};

@@ -1,0 +1,201 @@
+#include "io/catalogue/catalogue.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "io/catalogue/index_place.hpp"
+
+#include "core/base/descriptor.hpp"
+#include "core/base/wording.hpp"
+#include "core/record/read_apart.hpp"
+
+namespace stickslip::catalogue {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// No folder of records is deeper; bind mounts can go round in a circle.
+constexpr int kDeepestFolder = 16;
+
+/// Files between two commits: what a kill costs.
+constexpr std::size_t kBatch = 200;
+
+/// A file to be read.
+struct Pending {
+  std::string file;  ///< From the folder on.
+  Signature signature;
+};
+
+/// Looks at one file after the other, through the folder that they are in: the kernel need not walk the whole
+/// path for each of thousands.
+class Looker {
+ public:
+  /// Nothing if the file is gone. Error: kFailure if the system refuses.
+  std::optional<base::Result<Signature>> signature_of(const std::string& path) {
+    const std::size_t slash = path.rfind('/');
+    if (!folder_.open() || path.compare(0, slash, name_) != 0) {
+      name_ = path.substr(0, slash);
+      folder_ = base::Descriptor{::open(name_.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC)};
+    }
+    constexpr std::int64_t kNsInSecond = 1'000'000'000;
+    struct stat found {};
+    if (folder_.open() && ::fstatat(folder_.get(), path.c_str() + slash + 1, &found, 0) == 0) {
+      return Signature{found.st_size, found.st_mtim.tv_sec * kNsInSecond + found.st_mtim.tv_nsec,
+                       static_cast<std::int64_t>(found.st_ino)};
+    }
+    if (errno == ENOENT || errno == ENOTDIR) return std::nullopt;
+    return base::failure("{}", base::system_message(errno));
+  }
+
+ private:
+  std::string name_;
+  base::Descriptor folder_;
+};
+
+/// Brings an index up to date with a folder.
+class Follower {
+ public:
+  Follower(Index& index, const fs::path& folder, const Progress& progress)
+      : index_(index), folder_(folder), progress_(progress) {}
+
+  void follow(Found& found) {
+    const std::vector<KnownFile> known = index_.files();
+    io::FilesFound files = io::find_files(
+        folder_, [](const fs::path& path) { return path.native().ends_with(".h5"); }, kDeepestFolder);
+    found.unread_folders = std::move(files.unread);
+    const std::size_t prefix = (folder_ / "").native().size();
+    std::vector<Pending> pending;
+    std::vector<UnreadFile> refused;
+    std::vector<std::string> gone;
+    auto next = known.begin();  // Both lists are sorted.
+    for (const fs::path& path : files.files) {
+      std::string file = path.native().substr(prefix);
+      for (; next != known.end() && next->file < file; ++next) gone.push_back(next->file);
+      const KnownFile* const was = next != known.end() && next->file == file ? &*next++ : nullptr;
+      const auto signature = looker_.signature_of(path.native());
+      if (!signature) {
+        if (was != nullptr) gone.push_back(file);
+        continue;
+      }
+      ++found.followed.file_count;
+      if (!*signature) {
+        refused.push_back({std::move(file), State::kNotLooked, signature->error().message});
+      } else if (was == nullptr || was->state == State::kNotLooked || was->signature != **signature) {
+        pending.push_back({std::move(file), **signature});
+      }
+    }
+    for (; next != known.end(); ++next) gone.push_back(next->file);
+    found.followed.read_count = pending.size();
+    found.followed.removed_count = gone.size();
+    if (!gone.empty() || !refused.empty()) {
+      Transaction transaction = index_.begin();
+      for (const std::string& file : gone) index_.remove(file);
+      for (const UnreadFile& file : refused) index_.put_unread(file, {});
+      transaction.commit();
+    }
+    for (std::size_t first = 0; first < pending.size(); first += kBatch)
+      read(pending, first, std::min(pending.size(), first + kBatch));
+  }
+
+ private:
+  /// Files [first, end). Reading takes long, writing does not: other processes wait only for that.
+  void read(const std::vector<Pending>& pending, std::size_t first, std::size_t end) {
+    std::vector<base::Result<record::Record>> records;
+    for (std::size_t i = first; i < end; ++i) {
+      if (progress_) progress_(i, pending.size());
+      records.push_back(record::read_facts_apart(
+          folder_ / pending[i].file, i + 1 < pending.size() ? folder_ / pending[i + 1].file : fs::path{}));
+    }
+    Transaction transaction = index_.begin();
+    for (std::size_t i = first; i < end; ++i) put(pending[i], records[i - first]);
+    transaction.commit();
+  }
+
+  void put(const Pending& file, const base::Result<record::Record>& record) {
+    if (record) {
+      index_.put(file.file, file.signature, *record);
+    } else if (looker_.signature_of((folder_ / file.file).native())) {
+      const bool content_is_why = record.error().kind == base::ErrorKind::kUsage;
+      index_.put_unread({file.file, content_is_why ? State::kUnreadable : State::kNotLooked,
+                         without_path(record.error().message, folder_ / file.file)},
+                        file.signature);
+    } else {
+      index_.remove(file.file);  // Gone meanwhile.
+    }
+  }
+
+  static std::string without_path(const std::string& message, const fs::path& path) {
+    const std::string prefix = path.native() + ": ";
+    return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
+  }
+
+  Index& index_;
+  const fs::path& folder_;
+  const Progress& progress_;
+  Looker looker_;
+};
+
+void follow_and_find(const std::string& index_path, const fs::path& folder, const Query& query,
+                     const Progress& progress, Found& found) {
+  Index index{index_path};
+  Follower{index, folder, progress}.follow(found);
+  found.entries = index.find(query);
+  found.unread = index.unread();
+}
+
+}  // namespace
+
+base::Result<Found> search_with(const fs::path& index, const fs::path& folder, const Query& query,
+                                const Progress& progress) {
+  const std::string path = index.empty() ? ":memory:" : index.string();
+  for (bool is_second = false;; is_second = true) {
+    Found found;
+    if (is_second)
+      found.notices.push_back(fmt::format("{}: was damaged; it is made anew from the records", path));
+    try {
+      follow_and_find(path, folder, query, progress, found);
+      return found;
+    } catch (const SqlError& error) {
+      if (!error.is_damage() || is_second) {
+        return base::failure("{}: {}: the index of the records cannot be used; remove it, it is made anew",
+                             path, error.what());
+      }
+    }
+    for (const char* const part : {"-journal", ""}) {
+      std::error_code ignored;
+      fs::remove(path + part, ignored);
+    }
+  }
+}
+
+base::Result<Found> search(const fs::path& folder, const Query& query, const Progress& progress) {
+  std::error_code error;
+  const fs::path whole = fs::canonical(folder, error);
+  if (!error && !fs::is_directory(whole, error) && !error)
+    error = std::make_error_code(std::errc::not_a_directory);
+  if (!error) static_cast<void>(fs::directory_iterator{whole, error});
+  if (error) {
+    const bool is_wrong =
+        error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory;
+    return tl::unexpected(
+        base::Error{is_wrong ? base::ErrorKind::kUsage : base::ErrorKind::kNoPermission,
+                    fmt::format("{}: {}: name a folder of records", folder.string(), error.message())});
+  }
+  const base::Result<fs::path> place = index_place(whole);
+  base::Result<Found> found = search_with(place.value_or(fs::path{}), whole, query, progress);
+  if (found && !place) {
+    found->notices.push_back(fmt::format(
+        "no index is kept, so each search reads all records: {}; set XDG_CACHE_HOME", place.error().message));
+  }
+  return found;
+}
+
+}  // namespace stickslip::catalogue

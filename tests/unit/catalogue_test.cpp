@@ -1,0 +1,281 @@
+// The index of a folder's records: it follows the files, survives kills, and takes what is typed as a text.
+
+#include "io/catalogue/catalogue.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/file.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <ctime>
+
+#include "core/base/descriptor.hpp"
+#include "core/record/finaliser.hpp"
+#include "core/record/reader.hpp"
+#include "tests/support/record_samples.hpp"
+
+namespace stickslip::catalogue {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+namespace fs = std::filesystem;
+
+record::Record record_of(const std::string& sample, double static_coefficient = 0.35) {
+  record::Record record = test::sample_record();
+  record.header.sample.name = sample;
+  record.end->results.mu_s = analysis::Estimate::of(static_coefficient, 0.001);
+  return record;
+}
+
+/// Folders for records and for their index.
+class Catalogue : public testing::Test {
+ protected:
+  [[nodiscard]] fs::path put(const std::string& name, const record::Record& record) const {
+    const fs::path path = records() / name;
+    fs::create_directories(path.parent_path());
+    EXPECT_TRUE(record::publish_record(record, path));
+    return path;
+  }
+  [[nodiscard]] Found find(const Query& query = {}, const Progress& progress = {}) const {
+    const base::Result<Found> found = search_with(index(), records(), query, progress);
+    EXPECT_TRUE(found) << found.error().message;
+    return found.value_or(Found{});
+  }
+  [[nodiscard]] std::vector<std::string> samples(const Condition& condition) const {
+    std::vector<std::string> names;
+    for (const Entry& entry : find({.conditions = {condition}, .order = "sample"}).entries)
+      names.push_back(entry.sample.name);
+    return names;
+  }
+  [[nodiscard]] fs::path records() const { return folder_ / "records"; }
+  [[nodiscard]] fs::path index() const { return folder_ / "index.sqlite"; }
+
+ private:
+  void SetUp() override { fs::create_directories(records()); }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Catalogue, HoldsWhatTheRecordHolds) {
+  const record::Record record = record_of("liner 42");
+  static_cast<void>(put("2026/11/pull.h5", record));
+  const Found found = find();
+  ASSERT_THAT(found.entries, SizeIs(1));
+  const Entry& entry = found.entries.front();
+  EXPECT_EQ(entry.file, "2026/11/pull.h5");
+  EXPECT_EQ(entry.start_realtime_ns, record.header.start_realtime_ns);
+  EXPECT_EQ(entry.sample, record.header.sample);
+  EXPECT_EQ(entry.method, record.header.process.method);
+  EXPECT_EQ(entry.results.regime, record.end->results.regime);
+  EXPECT_EQ(entry.results.rung, record.end->results.rung);
+  EXPECT_EQ(entry.results.findings, record.end->results.findings);
+  std::vector<analysis::Estimate> expected;
+  analysis::for_each_result(
+      record.end->results, [&](const analysis::ResultName&, const analysis::Estimate& estimate) {
+        expected.push_back({estimate.value, estimate.standard_error, estimate.systematic_uncertainty, {}});
+      });
+  std::size_t i = 0;
+  analysis::for_each_result(entry.results,
+                            [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
+                              EXPECT_EQ(estimate, expected[i++]) << name.name;
+                            });
+}
+
+TEST_F(Catalogue, ReadsOnlyWhatIsNewOrChangedAndDropsWhatIsGone) {
+  const fs::path a = put("a.h5", record_of("A"));
+  const fs::path b = put("b.h5", record_of("B"));
+  EXPECT_EQ(find().followed.read_count, 2U);
+  EXPECT_EQ(find().followed.read_count, 0U);
+  fs::remove(a);
+  fs::rename(put("new.h5", record_of("B, again")), b);
+  static_cast<void>(put("c.h5", record_of("C")));
+  const Found found = find();
+  EXPECT_EQ(found.followed.read_count, 2U);
+  EXPECT_EQ(found.followed.removed_count, 1U);
+  EXPECT_THAT(samples(is_like(Text::kSample, {"*"})), ElementsAre("B, again", "C"));
+}
+
+TEST_F(Catalogue, ADamagedRecordIsNamedAndNotReadAnewUntilItChanges) {
+  const fs::path path = put("a.h5", record_of("A"));
+  fs::resize_file(path, fs::file_size(path) / 2);
+  const Found found = find();
+  EXPECT_THAT(found.entries, SizeIs(0));
+  ASSERT_THAT(found.unread, SizeIs(1));
+  EXPECT_EQ(found.unread.front().file, "a.h5");
+  EXPECT_EQ(found.unread.front().state, State::kUnreadable);
+  EXPECT_THAT(found.unread.front().why, HasSubstr("cut short or damaged"));
+  const Found again = find();
+  EXPECT_EQ(again.followed.read_count, 0U);
+  EXPECT_THAT(again.unread, SizeIs(1));
+  fs::rename(put("new.h5", record_of("A")), path);
+  EXPECT_THAT(find().entries, SizeIs(1));
+}
+
+TEST_F(Catalogue, ARecordThatIsBeingWrittenIsLookedAtAgain) {
+  const fs::path path = put("a.h5", record_of("A"));
+  {
+    const base::Descriptor writer{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+    ASSERT_EQ(::flock(writer.get(), LOCK_EX), 0);
+    const Found found = find();
+    ASSERT_THAT(found.unread, SizeIs(1));
+    EXPECT_EQ(found.unread.front().state, State::kNotLooked);
+  }
+  const Found found = find();
+  EXPECT_THAT(found.entries, SizeIs(1));
+  EXPECT_THAT(found.unread, SizeIs(0));
+}
+
+TEST_F(Catalogue, ADamagedIndexIsMadeAnewWithANotice) {
+  static_cast<void>(put("a.h5", record_of("A")));
+  ASSERT_THAT(find().entries, SizeIs(1));
+  const std::string whole = test::content_of(index());
+  std::string torn = whole;
+  std::fill(torn.begin() + 4096, torn.end(), 'x');
+  for (const std::string& content :
+       {std::string{"no database at all"}, torn, whole.substr(0, whole.size() / 2)}) {
+    test::write_content(index(), content);
+    const Found found = find();
+    EXPECT_THAT(found.entries, SizeIs(1));
+    EXPECT_THAT(found.notices, ElementsAre(HasSubstr("was damaged; it is made anew")));
+    EXPECT_THAT(find().notices, SizeIs(0));
+  }
+}
+
+TEST_F(Catalogue, AnIndexOfAnotherVersionIsEmptied) {
+  static_cast<void>(put("a.h5", record_of("A")));
+  ASSERT_THAT(find().entries, SizeIs(1));
+  Database{index().string()}.run("PRAGMA user_version = 1");
+  EXPECT_EQ(find().followed.read_count, 1U);
+}
+
+TEST_F(Catalogue, KilledWhileItReadsGoesOnAtTheLastCommit) {
+  const fs::path first = put("0.h5", record_of("A"));
+  constexpr int kFiles = 401;
+  for (int i = 1; i < kFiles; ++i) fs::copy_file(first, records() / (std::to_string(i) + ".h5"));
+  std::size_t left = kFiles;
+  for (const std::size_t kill_at : {0U, 150U, 200U, 0U, 200U}) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      static_cast<void>(search_with(index(), records(), {}, [kill_at](std::size_t done, std::size_t) {
+        if (done == kill_at) static_cast<void>(std::raise(SIGKILL));
+      }));
+      ::_exit(0);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    // 200 files between two commits.
+    if (kill_at == 200) left -= std::min<std::size_t>(left, 200);
+  }
+  const Found found = find();
+  EXPECT_EQ(found.followed.read_count, left);
+  EXPECT_THAT(found.entries, SizeIs(kFiles));
+  EXPECT_THAT(found.notices, SizeIs(0));
+}
+
+TEST_F(Catalogue, KilledWhileItWritesHoldsWhatItHeldBefore) {
+  static_cast<void>(put("a.h5", record_of("A")));
+  ASSERT_THAT(find().entries, SizeIs(1));
+  for (const int written : {1, 500}) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      Index open{index().string()};
+      Transaction transaction = open.begin();
+      open.remove("a.h5");
+      for (int i = 0; i < written; ++i) open.put(std::to_string(i), {}, record_of("never committed"));
+      static_cast<void>(std::raise(SIGKILL));
+    }
+    ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+    const Found found = find();
+    EXPECT_EQ(found.followed.read_count + found.followed.removed_count, 0U);
+    EXPECT_THAT(found.entries, SizeIs(1));
+  }
+}
+
+TEST_F(Catalogue, TwoProcessesAtOnceFindTheSame) {
+  const fs::path first = put("0.h5", record_of("A"));
+  for (int i = 1; i < 20; ++i) fs::copy_file(first, records() / (std::to_string(i) + ".h5"));
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(find().entries.size() == 20 ? 0 : 1);
+  EXPECT_THAT(find().entries, SizeIs(20));
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+}
+
+TEST_F(Catalogue, WhatIsTypedIsATextAndNeverSql) {
+  const std::string hostile = "'; DROP TABLE record; --";
+  static_cast<void>(put("a.h5", record_of(hostile)));
+  static_cast<void>(put("b.h5", record_of("100 % _cotton\\")));
+  EXPECT_THAT(samples(is_like(Text::kSample, {hostile})), ElementsAre(hostile));
+  EXPECT_THAT(samples(is_like(Text::kSample, {"100 % _cotton\\"})), ElementsAre("100 % _cotton\\"));
+  EXPECT_THAT(samples(is_like(Text::kSample, {"%", "_*", "1__*"})), SizeIs(0));
+  EXPECT_THAT(find().entries, SizeIs(2));
+}
+
+TEST_F(Catalogue, FindsByPatternsRangesRegimesAndFindings) {
+  static_cast<void>(put("a.h5", record_of("Liner 1", 0.30)));
+  record::Record other = record_of("bag 7", 0.40);
+  other.header.process.method = "penner-1995 kinetic_cycles=10";
+  other.end->results.regime = model::Regime::kStickSlip;
+  other.end->results.findings.clear();
+  static_cast<void>(put("b.h5", other));
+  EXPECT_THAT(samples(is_like(Text::kSample, {"liner ?"})), ElementsAre("Liner 1"));
+  EXPECT_THAT(samples(is_like(Text::kSample, {"liner", "bag*"})), ElementsAre("bag 7"));
+  EXPECT_THAT(samples(is_like(Text::kMethod, {"penner-1995"})), ElementsAre("bag 7"));
+  // Both ends belong to the range.
+  EXPECT_THAT(samples(*in_range("S=0.30:0.40", "--where")), ElementsAre("Liner 1", "bag 7"));
+  EXPECT_THAT(samples(*in_range("mu_s=0.31:", "--where")), ElementsAre("bag 7"));
+  EXPECT_THAT(samples(*in_range("S=:0.39", "--where")), ElementsAre("Liner 1"));
+  EXPECT_THAT(samples(*in_range("Q_threshold=:9", "--where")), SizeIs(0));  // It has no value.
+  EXPECT_THAT(samples(*has_regime({"stick-slip"}, "--regime")), ElementsAre("bag 7"));
+  EXPECT_THAT(samples(*has_finding({"pull-speed"}, "--finding")), ElementsAre("Liner 1"));
+  EXPECT_THAT(samples(*has_finding({"none", "slack"}, "--finding")), ElementsAre("bag 7"));
+  const Query last{.conditions = {}, .order = "mu_s", .reversed = true, .most = 1};
+  EXPECT_EQ(find(last).entries.front().sample.name, "bag 7");
+}
+
+TEST_F(Catalogue, RefusesNamingTheValueAndWhatIsKnown) {
+  EXPECT_THAT(in_range("Sx=1:2", "--where").error().message,
+              HasSubstr("--where Sx=1:2: there is no result called \"Sx\""));
+  for (const char* const wrong : {"S", "S=", "S=1", "S=:", "S=a:", "S=1:2:3"})
+    EXPECT_THAT(in_range(wrong, "--where").error().message, HasSubstr("must be RESULT=LOWEST:HIGHEST"))
+        << wrong;
+  EXPECT_THAT(has_regime({"stickslip"}, "--regime").error().message, HasSubstr("did you mean stick-slip?"));
+  EXPECT_THAT(has_finding({"slak"}, "--finding").error().message, HasSubstr("did you mean slack?"));
+  EXPECT_THAT(sort_column("id; --", "--sort").error().message, HasSubstr("--sort id; --: "));
+}
+
+TEST_F(Catalogue, APathNeedNotBeUtf8) {
+  static_cast<void>(put("\xff\n.h5", record_of("A")));
+  EXPECT_EQ(find().entries.front().file, "\xff\n.h5");
+  EXPECT_EQ(find().followed.read_count, 0U);
+}
+
+TEST(MomentTest, ADayIsThatOfTheLocalClock) {
+  ::setenv("TZ", "Europe/Berlin", 1);
+  ::tzset();
+  constexpr std::int64_t kHour_ns = 3'600'000'000'000;
+  const auto of = [](const char* text) { return moment_from_text(text, "--from").value(); };
+  EXPECT_EQ(of("2026-11-21").begin_ns, of("2026-11-20T23:00:00Z").begin_ns);
+  EXPECT_EQ(of("2026-11-21").end_ns - of("2026-11-21").begin_ns, 24 * kHour_ns);
+  EXPECT_EQ(of("2026-03-29").end_ns - of("2026-03-29").begin_ns, 23 * kHour_ns);  // Summer time begins.
+  EXPECT_EQ(of("2026-11-21 12:53").end_ns - of("2026-11-21 12:53").begin_ns, 60'000'000'000);
+  EXPECT_EQ(of("2026-11-21T12:53:02+01:00").begin_ns, 1'795'261'982'000'000'000);
+  EXPECT_EQ(local_minute(1'795'261'982'000'000'000), "2026-11-21 12:53");
+  for (const char* const wrong :
+       {"2026-02-30", "2026-13-01", "21.11.2026", "2026-11-21T25:00", "yesterday", ""})
+    EXPECT_THAT(moment_from_text(wrong, "--from").error().message, HasSubstr("write it as 2026-11-21"))
+        << wrong;
+  ::unsetenv("TZ");
+  ::tzset();
+}
+
+}  // namespace
+}  // namespace stickslip::catalogue
