@@ -40,6 +40,7 @@ constexpr const char* kExamples = R"(Examples:
   stickslip characterise ring-down.h5 -o tester.toml   omega and gamma of the tester, for --tester
   stickslip report records/*.h5 -o report.html         replicates, coefficient against speed, traces
   stickslip compare a*.h5 -- b*.h5                     do two materials differ, and how many tests would show it
+  stickslip law records/*.h5                           friction law, from tests at several pull speeds
   stickslip verify records/*.h5                        whole or not, and why; exit status 0, 1, 3 or 4
   stickslip recover records                            records from the journals that a stop left behind
   stickslip boards                                     A/D boards, what they offer, what to configure
@@ -129,6 +130,7 @@ int main_of(int count, char** arguments) {
   add_accuracy(app, chosen);
   add_report(app, chosen);
   add_compare(app, chosen);
+  add_law(app, chosen);
   add_scenes(app, chosen);
   add_boards(app, chosen);
   add_methods(app, chosen);
