@@ -33,8 +33,9 @@ struct Pooling {
 struct MeasuredTest {
   std::optional<double> pull_speed_m_per_s;  ///< Nominal; nullopt if unknown.
   TestResults results;
-  SlipSums slips{};     ///< From its table of cycles; empty without one.
-  std::string grade{};  ///< Of the paper; empty if not stated.
+  SlipSums slips{};                      ///< From its table of cycles; empty without one.
+  std::string grade{};                   ///< Of the paper; empty if not stated.
+  std::optional<double> stick_time_s{};  ///< mean_stick_time_s() of its cycles.
 };
 
 /// Reason why a test has no value of a quantity.

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,6 +49,23 @@ template <typename Cycles>
     }
   }
   return sums;
+}
+
+/// Geometric mean of the times for which the sled stuck before the slips that slip_sums() counts; absent if
+/// none is known.
+template <typename Cycles>
+[[nodiscard]] std::optional<double> mean_stick_time_s(const Cycles& cycles, bool with_first = false) {
+  double log_sum = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < cycles.size(); ++i) {
+    const detect::Cycle& cycle = cycles[i];
+    if (!std::isfinite(cycle.delta_mu) || !(cycle.stick_time_s > 0.0) ||
+        (!with_first && (cycle.flags & detect::kCycleIsFirst) != 0))
+      continue;
+    log_sum += std::log(cycle.stick_time_s);
+    count += 1.0;
+  }
+  return count > 0.0 ? std::optional{std::exp(log_sum / count)} : std::nullopt;
 }
 
 /// Result of pool_slips().

@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""`stickslip law` from outside, over simulated records.
+
+law_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+BUILD = pathlib.Path(sys.argv[1]).resolve()
+SOURCE = pathlib.Path(sys.argv[2]).resolve()
+CLI = BUILD / "bin" / "stickslip"
+SPEED = "effects.constant_speed.pull_speed"
+
+# Generous: under sanitizers on a busy machine everything takes its time.
+TIMEOUT_S = 600
+
+
+def run(*arguments):
+    return subprocess.run([str(a) for a in arguments], capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
+
+
+class Law(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory(prefix="stickslip-")
+        cls.folder = pathlib.Path(cls.temporary.name)
+        cls.ageing = [cls.simulate("contact-ageing", speed, 5) for speed in (1.5, 3, 6, 12)]
+        cls.constant = [cls.simulate("stick-slip-at-12-in-per-min", speed, seed)
+                        for speed in (1.5, 3, 6, 12) for seed in (1, 2)]
+        cls.one_speed = [cls.ageing[2]] + [cls.simulate("contact-ageing", 6, seed) for seed in (6, 7, 8)]
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    @classmethod
+    def simulate(cls, scene, speed, seed, *options):
+        file = cls.folder / f"{scene}-{speed}-{seed}.h5"
+        done = run(CLI, "simulate", scene, "-o", file, "--set", f"{SPEED}={speed} in/min", "--seed", seed, *options)
+        assert done.returncode == 0, done.stderr
+        return file
+
+    def law(self, *arguments):
+        done = run(CLI, "law", *arguments, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout)
+
+    def test_ageing_is_named_with_its_beta(self):
+        found = self.law(*self.ageing)
+        self.assertEqual(found["law"], "ageing")
+        beta = found["parameters"]["beta"]
+        # The scene has 0.02 log10(1 + t/1 ms): over its rests, from 17 to 180 ms, that is 0.0196 log10 t.
+        self.assertLess(abs(beta["value"] - 0.0196), 4 * beta["standard_error"])
+        self.assertLess(beta["standard_error"], 0.0005)
+        self.assertLess(abs(found["parameters"]["mu_k"]["value"] - 0.3), 0.001)
+        self.assertEqual(len(found["scores"]), 4)
+        self.assertIsNone(found["next_pull"])
+        for test in found["tests"]:
+            self.assertLess(abs(test["mu_s"]["residual"]), 0.001)
+
+    def test_constant_s_and_k_are_named(self):
+        found = self.law(*self.constant)
+        self.assertEqual(found["law"], "constant")
+        self.assertLess(abs(found["parameters"]["mu_s"]["value"] - 0.35), 0.001)
+
+    def test_one_speed_cannot_tell_and_a_far_one_is_named(self):
+        found = self.law(*self.one_speed)
+        self.assertIsNone(found["law"])
+        self.assertIn("all tests for S on the stick time are at one speed", found["reasons"])
+        apart = found["next_pull"]["pull_speed"] / (6 * 0.0254 / 60)
+        self.assertGreaterEqual(max(apart, 1 / apart), 2.999)
+        text = run(CLI, "law", *self.one_speed, "--slowest", "1 in/min").stdout
+        self.assertIn("law: cannot be told from these tests", text)
+        self.assertIn("next: a pull at 1 in/min would tell most about S", text)
+
+    def test_terminal_has_eighty_columns(self):
+        for files in (self.ageing, self.constant, self.one_speed):
+            for line in run(CLI, "law", *files).stdout.splitlines():
+                if not line.startswith("file of test"):
+                    self.assertLessEqual(len(line), 80, line)
+
+    def test_a_copy_and_a_ramp_are_left_out_with_the_reason(self):
+        copy = self.folder / "copy.h5"
+        copy.write_bytes(self.ageing[0].read_bytes())
+        ramp = self.folder / "ramp.h5"
+        self.assertEqual(run(CLI, "simulate", "speed-ramp", "-o", ramp).returncode, 0)
+        found = self.law(*self.ageing, copy, ramp)
+        self.assertEqual(found["law"], "ageing")
+        reasons = {pathlib.Path(out["file"]).name: out["reason"] for out in found["left_out"] if out["what"] == "S and K"}
+        self.assertIn("same scans", reasons["copy.h5"])
+        self.assertIn("the pull speed changes", reasons["ramp.h5"])
+
+    def test_the_picture_is_made_once(self):
+        picture = self.folder / "law.svg"
+        self.assertEqual(run(CLI, "law", *self.ageing, "--plot", picture).returncode, 0)
+        self.assertIn("Friction law: S depends on the time at rest", picture.read_text())
+        again = run(CLI, "law", *self.ageing, "--plot", picture)
+        self.assertEqual(again.returncode, 2)
+        self.assertEqual(again.stdout, "")
+
+    def test_what_cannot_be_is_refused(self):
+        for options, said in ((("--slowest", "5 in/min", "--fastest", "3 in/min"), "is not below"),
+                              (("--plot", "law.pdf"), ".svg or .png")):
+            done = run(CLI, "law", *self.ageing, *options)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(said, done.stderr)
+        self.assertEqual(run(CLI, "law").returncode, 2)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

@@ -1,0 +1,235 @@
+#include "core/law/friction_law.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "core/law/line.hpp"
+#include "core/law/measured_tests.hpp"
+#include "core/law/next_pull.hpp"
+
+namespace stickslip::law {
+namespace {
+
+constexpr double kInPerMin = 0.0254 / 60.0;
+
+/// S = 0.38 + β log₁₀(t/1 s), K = 0.30 + μ′ v, t = 6e-5 m/v, with this error and offsets of it in turn.
+LawTest test_at(double in_per_min, double beta, double mu_slope, double offset = 0.0, double error = 1e-4) {
+  LawTest test;
+  test.pull_speed_m_per_s = in_per_min * kInPerMin;
+  test.stick_time_s = 6e-5 / test.pull_speed_m_per_s;
+  test.S = Value{0.38 + beta * std::log10(*test.stick_time_s) + offset * error, error, 0.0};
+  test.K = Value{0.30 + mu_slope * test.pull_speed_m_per_s - offset * error, error, 0.0};
+  return test;
+}
+
+std::vector<LawTest> tests_at(const std::vector<double>& speeds, double beta, double mu_slope) {
+  std::vector<LawTest> tests;
+  for (const double speed : speeds) {
+    for (const double offset : {-1.0, 0.3, 0.7}) tests.push_back(test_at(speed, beta, mu_slope, offset));
+  }
+  return tests;
+}
+
+const std::vector<double> kFourSpeeds{1.5, 3.0, 6.0, 12.0};
+
+TEST(LawLine, BetweenVarianceMakesTheResidualsWhatTheirFreedomSays) {
+  const std::vector<Point> points{{0, 0.1, 0.1}, {1, 0.9, 0.2}, {2, 2.6, 0.1}, {3, 2.5, 0.3}};
+  const std::optional<Line> line = fit_line(points, true);
+  ASSERT_TRUE(line && line->slope);
+  double chi_squared = 0.0;
+  for (const Point& point : points) {
+    chi_squared += std::pow(point.y - line->predicted(point.x).value, 2) /
+                   (point.error * point.error + line->between_variance);
+  }
+  EXPECT_GT(line->between_variance, 0.0);
+  EXPECT_NEAR(chi_squared, 2.0, 1e-9);
+  // Twice the error is the half width by Student's t with two degrees of freedom.
+  EXPECT_NEAR(2.0 * line->slope->error, 4.302653 * std::sqrt(line->covariance(1, 1)), 1e-6);
+}
+
+TEST(LawLine, ScattersNoMoreThanItsErrorsSay) {
+  const std::vector<Point> points{{0, 0.01, 0.1}, {1, 0.99, 0.1}, {2, 2.01, 0.1}};
+  EXPECT_EQ(fit_line(points, true)->between_variance, 0.0);
+}
+
+TEST(LawLine, SystematicPartsMoveAllPointsTogether) {
+  std::vector<Point> points{{0, 1, 0.1, 0.5}, {1, 2, 0.1, 0.5}, {2, 3, 0.1, 0.5}};
+  EXPECT_NEAR(fit_line(points, true)->level.systematic, 0.5, 1e-12);
+  EXPECT_NEAR(fit_line(points, true)->slope->systematic, 0.0, 1e-12);
+  for (Point& point : points) point.systematic = 0.2 * point.x;
+  EXPECT_NEAR(fit_line(points, true)->slope->systematic, 0.2, 1e-12);
+}
+
+TEST(LawLine, OnePlaceHasNoSlope) {
+  const std::vector<Point> points{{1, 0.1, 0.1}, {1, 0.9, 0.2}, {1, 2.6, 0.1}};
+  EXPECT_TRUE(fit_line(points, false));
+  EXPECT_FALSE(fit_line(points, true));
+  EXPECT_FALSE(fit_line(std::span{points}.first(1), false));
+}
+
+TEST(FrictionLaw, EachOfTheFourIsNamed) {
+  constexpr double kBeta = 0.02;
+  constexpr double kSlope = 2.0;
+  for (const Law law : kLaws) {
+    const double beta = has_ageing(law) ? kBeta : 0.0;
+    const double slope = has_rate(law) ? kSlope : 0.0;
+    const FrictionLaw found = find_law(tests_at(kFourSpeeds, beta, slope));
+    EXPECT_TRUE(found.told) << name(law) << ": " << found.ageing.reason << found.rate.reason;
+    EXPECT_EQ(name(found.law), name(law));
+    EXPECT_NEAR(found.ageing.line->slope->value, beta, 3.0 * found.ageing.line->slope->error);
+    EXPECT_NEAR(found.rate.line->slope->value, slope, 3.0 * found.rate.line->slope->error);
+    EXPECT_FALSE(next_pull(found, tests_at(kFourSpeeds, beta, slope), {1e-4, 1e-2}, {}));
+  }
+}
+
+TEST(FrictionLaw, OneSpeedTellsNothingAndNamesASecondFarAway) {
+  const std::vector<LawTest> tests = tests_at({6.0}, 0.02, 0.0);
+  const FrictionLaw found = find_law(tests);
+  EXPECT_FALSE(found.told);
+  ASSERT_FALSE(found.scores);  // Three tests.
+  const std::vector<LawTest> more = tests_at({6.0, 6.0}, 0.02, 0.0);
+  const FrictionLaw again = find_law(more);
+  EXPECT_FALSE(again.told);
+  EXPECT_EQ(again.ageing.reason, "all tests for S on the stick time are at one speed");
+  for (const auto& [own, own_tests] : {std::pair{&found, &tests}, {&again, &more}}) {
+    const std::optional<NextPull> next = next_pull(*own, *own_tests, usual_range(*own_tests), {});
+    ASSERT_TRUE(next);
+    const double apart = next->pull_speed_m_per_s / (6.0 * kInPerMin);
+    EXPECT_GE(std::max(apart, 1.0 / apart), 3.0 * (1.0 - 1e-12));
+  }
+}
+
+TEST(FrictionLaw, ThreeTestsAreTooFew) {
+  const std::vector<LawTest> tests{test_at(1.5, 0.02, 0), test_at(3, 0.02, 0), test_at(12, 0.02, 0)};
+  const FrictionLaw found = find_law(tests);
+  EXPECT_FALSE(found.told);
+  EXPECT_EQ(found.ageing.reason, "3 tests for S on the stick time, at least 4 are needed");
+}
+
+/// A test whose S is higher by chance also takes longer to reach it.
+TEST(FrictionLaw, ChanceAtOneSpeedIsNoAgeing) {
+  std::vector<LawTest> tests = tests_at({6.0, 6.0, 6.0}, 0.0, 0.0);
+  for (LawTest& test : tests) test.stick_time_s = *test.stick_time_s * (1.0 + 20.0 * (test.S->value - 0.38));
+  const FrictionLaw found = find_law(tests);
+  EXPECT_EQ(found.law, Law::kConstant);
+  EXPECT_FALSE(found.ageing.line);
+}
+
+TEST(FrictionLaw, WhatTheSystematicPartsCouldMakeIsNotNamed) {
+  std::vector<LawTest> tests = tests_at(kFourSpeeds, 0.006, 0.0);
+  EXPECT_TRUE(find_law(tests).told);
+  for (LawTest& test : tests) test.S->systematic = -0.008 * std::log10(*test.stick_time_s);
+  const FrictionLaw found = find_law(tests);
+  EXPECT_FALSE(found.told);
+  EXPECT_EQ(found.law, Law::kAgeing);
+  EXPECT_EQ(found.ageing.reason,
+            "S on the stick time is seen, but chance or systematic parts may have made it");
+}
+
+/// Of two speeds close together with tests that scatter, neither law can be ruled out.
+TEST(FrictionLaw, APoorDesignIsNotToldToBeConstant) {
+  std::vector<LawTest> tests;
+  for (const double speed : {6.0, 7.0}) {
+    for (const double offset : {-1.0, 0.0, 1.0}) tests.push_back(test_at(speed, 0.0, 0.0, offset, 2e-3));
+  }
+  const FrictionLaw found = find_law(tests);
+  EXPECT_FALSE(found.told);
+  const std::optional<NextPull> next = next_pull(found, tests, usual_range(tests), {});
+  ASSERT_TRUE(next);
+  EXPECT_TRUE(next->tells_ageing);
+  EXPECT_GT(next->separation, 0.0);
+}
+
+TEST(NextPull, IsSlowEnoughToStick) {
+  const std::vector<LawTest> tests = tests_at({3.0, 3.0}, 0.0, 0.0);
+  const double threshold = 6.0 * kInPerMin;
+  const std::optional<NextPull> next =
+      next_pull(find_law(tests), tests, {2.9 * kInPerMin, 50.0 * kInPerMin}, threshold);
+  ASSERT_TRUE(next);
+  EXPECT_LE(next->pull_speed_m_per_s, 0.8 * threshold * (1.0 + 1e-12));
+  EXPECT_FALSE(next_pull(find_law(tests), tests, {20.0 * kInPerMin, 50.0 * kInPerMin}, threshold));
+}
+
+TEST(NextPull, TestsWithoutSticksAskForK) {
+  std::vector<LawTest> tests = tests_at({6.0, 6.0}, 0.0, 0.0);
+  for (LawTest& test : tests) test.S.reset();
+  const std::optional<NextPull> next = next_pull(find_law(tests), tests, usual_range(tests), {});
+  ASSERT_TRUE(next);
+  EXPECT_FALSE(next->tells_ageing);
+  EXPECT_NEAR(next->pull_speed_m_per_s, 18.0 * kInPerMin, 1e-9);
+}
+
+analysis::MeasuredTest measured_at(double in_per_min) {
+  analysis::MeasuredTest test;
+  analysis::for_each_result(test.results, [](const analysis::ResultName&, analysis::Estimate& estimate) {
+    estimate = analysis::Estimate::none("not in this test");
+  });
+  test.pull_speed_m_per_s = in_per_min * kInPerMin;
+  test.results.regime = model::Regime::kStickSlip;
+  test.results.rung = analysis::Rung::kLawWithSlope;
+  test.results.mu_s = {0.35, 1e-3, 2e-3, {}};
+  test.results.mu_k = {0.30, 1e-3, {}, {}};
+  test.stick_time_s = 0.01;
+  return test;
+}
+
+TEST(LawTests, ASoundTestCountsWithItsErrors) {
+  const LawTests found = tests_for_law(std::vector{measured_at(6)});
+  ASSERT_EQ(found.tests.size(), 1U);
+  EXPECT_TRUE(found.left_out.empty());
+  EXPECT_EQ(found.tests[0].S->error, 1e-3);
+  EXPECT_EQ(found.tests[0].S->systematic, 2e-3);
+}
+
+TEST(LawTests, FaultsRepeatedScansRampsAndUnknownSpeedsCountForNothing) {
+  std::vector<analysis::MeasuredTest> tests(4, measured_at(6));
+  base::add(tests[0].results.findings, base::make_finding(base::FindingCode::kClipped, "clipped"));
+  base::add(tests[1].results.findings, base::make_finding(base::FindingCode::kRepeatedScans, "repeated"));
+  tests[2].results.Q = analysis::Estimate::none(std::string{analysis::kSpeedChanges});
+  tests[3].pull_speed_m_per_s.reset();
+  const LawTests found = tests_for_law(tests);
+  EXPECT_TRUE(found.tests.empty());
+  ASSERT_EQ(found.left_out.size(), 4U);
+  for (const LeftOut& out : found.left_out) EXPECT_EQ(out.what, "S and K");
+  EXPECT_EQ(found.left_out[0].reason, "clipped");
+  EXPECT_EQ(found.left_out[1].reason, "repeated");
+}
+
+TEST(LawTests, ARingDownTellsKAlone) {
+  analysis::MeasuredTest test = measured_at(12);
+  test.results.regime = model::Regime::kRingDown;
+  test.stick_time_s.reset();
+  const LawTests found = tests_for_law(std::vector{test});
+  ASSERT_EQ(found.tests.size(), 1U);
+  EXPECT_FALSE(found.tests[0].S);
+  EXPECT_TRUE(found.tests[0].K);
+  ASSERT_EQ(found.left_out.size(), 1U);
+  EXPECT_EQ(found.left_out[0].what, "S");
+}
+
+TEST(LawTests, SteadySlidingTellsKByItsMeanWithTheLargestErrorOfTheOthers) {
+  std::vector<analysis::MeasuredTest> tests(2, measured_at(12));
+  tests[1].results.regime = model::Regime::kSteadySliding;
+  tests[1].results.mu_s = tests[1].results.mu_k = analysis::Estimate::none("no slip");
+  tests[1].results.kinetic_coefficient = analysis::Estimate::of(0.31);
+  tests[1].stick_time_s.reset();
+  const LawTests found = tests_for_law(tests);
+  ASSERT_EQ(found.tests.size(), 2U);
+  EXPECT_EQ(found.tests[1].K->value, 0.31);
+  EXPECT_EQ(found.tests[1].K->error, 1e-3);
+}
+
+TEST(LawTests, TheCorrectionOfTurningPointsIsAnErrorOfEachTest) {
+  analysis::MeasuredTest test = measured_at(6);
+  test.results.rung = analysis::Rung::kTurningPoints;
+  test.results.mu_s.standard_error.reset();
+  const LawTests found = tests_for_law(std::vector{test});
+  EXPECT_EQ(found.tests[0].S->error, 2e-3);
+  EXPECT_EQ(found.tests[0].S->systematic, 0.0);
+}
+
+}  // namespace
+}  // namespace stickslip::law
