@@ -56,7 +56,7 @@ struct Shown {
 };
 
 constexpr double kMillisecondsPerSecond = 1e3;
-constexpr int kDecimals = 4;
+constexpr int kLawDecimals = 4;
 /// Of the table of tests, which has 80 columns: two more with an error.
 constexpr int kDecimalsOfTests = 3;
 
@@ -105,8 +105,9 @@ std::string coefficient_text(const std::optional<law::Value>& value) {
 
 std::string residual_text(const std::optional<double>& value) {
   if (!value) return "";
-  return std::abs(*value) < 0.5 * std::pow(10.0, -kDecimals) ? fmt::format("{:.{}f}", 0.0, kDecimals)
-                                                             : fmt::format("{:+.{}f}", *value, kDecimals);
+  return std::abs(*value) < 0.5 * std::pow(10.0, -kLawDecimals)
+             ? fmt::format("{:.{}f}", 0.0, kLawDecimals)
+             : fmt::format("{:+.{}f}", *value, kLawDecimals);
 }
 
 std::string tests_table(const Shown& shown) {
@@ -167,7 +168,7 @@ std::string text_of(const Shown& shown) {
   if (shown.next) text += next_text(*shown.next);
   io::Table list = io::Table::list({6, 0, 0});
   for (const Named& own : parameters_of(found))
-    list.add({std::string{"  "} + own.symbol, io::uncertain(own.value, kDecimals).text(),
+    list.add({std::string{"  "} + own.symbol, io::uncertain(own.value, kLawDecimals).text(),
               std::string{own.meaning}});
   text += fmt::format("\n{}{}\n", list.text(), io::kErrorsLegend);
   if (found.scores)

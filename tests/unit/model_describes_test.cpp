@@ -157,12 +157,33 @@ TEST(ModelResults, SlipsThatTellNothingDoNotCountInTheMeans) {
     estimates.windows.back().inverse_curvature(1, 1) = std::pow(relative_error * kS_minus_K, 2);
     estimates.first_counts = first_counts;
     TestResults results;
-    model_results({}, estimates, {}, kScanSigma, results);
+    model_results({}, estimates, Misfit{}, {}, kScanSigma, results);
     return results.mu_k.value.value_or(std::nan(""));
   };
   EXPECT_NEAR(kinetic(0.99, false), 0.4, 1e-12);
   EXPECT_NEAR(kinetic(1.01, false), 0.3, 1e-12);
   EXPECT_NEAR(kinetic(0.99, true), 0.5, 1e-12);
+}
+
+// A ring-down has the amplitude √((S − K)² + (u/ω)²) by the speed u of its onset: at 95 % of the belt's speed
+// S − K is larger than at the whole. A slip that sticks again tells S − K by its times.
+TEST(ModelResults, CreepBeforeASlipIsInTheSystematicPartOfRingDownsAlone) {
+  const auto systematic = [](double part, const std::vector<Slip>& slips) {
+    TestResults results;
+    const SlipEstimates estimates = estimates_of(part, slips);
+    model_results({}, estimates, Misfit{}, {}, kScanSigma, results);
+    const double damper = estimates.fit.shared.gamma * estimates.fit.shared.r /
+                          estimates.fit.shared.oscillator().omega0_squared();
+    EXPECT_FALSE(results.mu_k.systematic_uncertainty);
+    EXPECT_EQ(results.mu_s.systematic_uncertainty, results.delta_mu.systematic_uncertainty);
+    return results.delta_mu.systematic_uncertainty.value_or(0.0) - damper;
+  };
+  const double speed = 2.0 * model::Q_threshold(kGammaOver2Omega) * kS_minus_K;
+  const double whole = std::hypot(kS_minus_K, speed);
+  const double onset = 0.95 * speed;
+  EXPECT_NEAR(systematic(2.0, {kSurelyFree, kLast}), std::sqrt(whole * whole - onset * onset) - kS_minus_K,
+              1e-12);
+  EXPECT_NEAR(systematic(0.5, {kSurelyCaptured, kLast}), 0.0, 1e-12);
 }
 
 }  // namespace
