@@ -57,7 +57,7 @@ struct FindOptions {
 };
 
 constexpr int kNothingFound = 3;
-constexpr int kDecimals = 4;
+constexpr int kDecimalsOfFind = 4;
 
 Result<catalogue::Query> query_of(const FindOptions& options) {
   catalogue::Query query;
@@ -106,11 +106,17 @@ Result<catalogue::Query> query_of(const FindOptions& options) {
 
 /// As a program takes it that was started where this one was.
 std::string path_of(const FindOptions& options, const std::string& file) {
-  return options.folder == "." ? file : (std::filesystem::path{options.folder} / file).string();
+  std::string path = options.folder == "." ? file : (std::filesystem::path{options.folder} / file).string();
+  return path.starts_with('-') ? "./" + path : path;  // Or it would be taken for an option.
 }
 
 std::string why_unread(const catalogue::UnreadFile& file) {
   return (file.state == catalogue::State::kNotLooked ? "cannot look: " : "unreadable: ") + file.why;
+}
+
+std::string missing_text(const Found& found) {
+  return fmt::format("{} of {} files could not be read and are missing here: --unread says why",
+                     found.unread.size(), found.followed.file_count);
 }
 
 std::string text_of(const FindOptions& options, const Found& found) {
@@ -127,7 +133,7 @@ std::string text_of(const FindOptions& options, const Found& found) {
   bool all_significant = true;
   const auto number = [&](const analysis::Estimate& estimate) -> io::Table::Cell {
     if (!estimate.value) return {};
-    const io::Uncertain shown = io::uncertain(estimate, kDecimals);
+    const io::Uncertain shown = io::uncertain(estimate, kDecimalsOfFind);
     all_significant &= shown.significant;
     return options.wide ? shown.text() : shown.value;
   };
@@ -155,8 +161,7 @@ std::string text_of(const FindOptions& options, const Found& found) {
       text += fmt::format("{}: {}\n", base::printable(path_of(options, file.file)),
                           base::printable(why_unread(file)));
   } else if (!found.unread.empty()) {
-    text += fmt::format("{} of {} files could not be read and are missing here: --unread says why\n",
-                        found.unread.size(), found.followed.file_count);
+    text += missing_text(found) + "\n";
   }
   return text;
 }
@@ -228,9 +233,20 @@ std::string csv_of(const FindOptions& options, const Found& found) {
 
 void print_paths(const FindOptions& options, const Found& found) {
   std::string text;
+  std::size_t left_out = 0;
   for (const Entry& entry : found.entries) {
-    text += path_of(options, entry.file);
+    const std::string path = path_of(options, entry.file);
+    if (!options.paths0 && base::printable(path) != path) {  // It would name another file, or two.
+      ++left_out;
+      continue;
+    }
+    text += path;
     text += options.paths0 ? '\0' : '\n';
+  }
+  if (left_out > 0) {
+    io::print_error("stickslip", fmt::format("warning: {} of {} files have names that cannot be printed on a "
+                                             "line, and are left out: use -0",
+                                             left_out, found.entries.size()));
   }
   // For a program, with each byte of a name.
   if (options.paths0) {
@@ -258,6 +274,8 @@ int run_find(const FindOptions& options) {
     io::print_error("stickslip", fmt::format("warning: {}: {}: its records are missing here",
                                              folder.folder.string(), folder.why));
   }
+  const bool is_table = !options.json && !options.csv && !options.paths && !options.paths0;
+  if (!is_table && !found->unread.empty()) io::print_error("stickslip", "warning: " + missing_text(*found));
   if (options.json) {
     io::print_text(stdout, io::json_document(json_of(options, *found)));
   } else if (options.csv) {
@@ -323,7 +341,8 @@ void add_find(CLI::App& app, Chosen& chosen) {
       ->type_name("N")
       ->check(CLI::NonNegativeNumber);
   CLI::Option* const wide = command->add_flag("--wide", options->wide, "with errors and files");
-  command->add_flag("--unread", options->unread, "name the files that could not be read, and why");
+  CLI::Option* const unread =
+      command->add_flag("--unread", options->unread, "name the files that could not be read, and why");
   CLI::Option* const paths = command->add_flag("--paths", options->paths, "only the files, one a line");
   CLI::Option* const paths0 = command->add_flag("-0,--paths0", options->paths0,
                                                 "only the files, each followed by a zero byte (xargs -0)");
@@ -333,6 +352,7 @@ void add_find(CLI::App& app, Chosen& chosen) {
   paths->excludes(json)->excludes(csv)->excludes(wide)->excludes(paths0);
   paths0->excludes(json)->excludes(csv)->excludes(wide);
   json->excludes(csv);
+  unread->excludes(json)->excludes(csv)->excludes(paths)->excludes(paths0);
   command->callback([&chosen, options] { chosen.run = [options] { return run_find(*options); }; });
 }
 

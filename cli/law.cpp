@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -149,12 +150,22 @@ std::string scores_table(const std::array<law::LawScore, law::kLaws.size()>& sco
 }
 
 std::string next_text(const law::NextPull& next) {
-  const std::string pull =
-      fmt::format("next: a pull at {} would tell most about {}", base::speed_text(next.pull_speed_m_per_s),
-                  next.tells_ageing ? "S" : "K");
-  if (!next.pulls_needed) return fmt::format("{};\n      {} would not be enough\n", pull, law::kMostPulls);
-  return fmt::format("{};\n      {} such pull{} would be enough\n", pull, *next.pulls_needed,
-                     *next.pulls_needed == 1 ? "" : "s");
+  return fmt::format("next: a pull at {} would tell most about {}\n",
+                     base::speed_text(next.pull_speed_m_per_s), next.tells_ageing ? "S" : "K");
+}
+
+/// "!  …" in lines of at most 80 columns. \param reason  ASCII.
+std::string reason_text(std::string_view reason) {
+  constexpr std::size_t kWidth = 77;
+  std::string text;
+  while (!reason.empty()) {
+    std::size_t end = reason.size();
+    if (end > kWidth) end = reason.rfind(' ', kWidth);
+    end = std::min(end, reason.size());
+    text += fmt::format("{}{}\n", text.empty() ? "!  " : "   ", reason.substr(0, end));
+    reason.remove_prefix(std::min(reason.size(), end + 1));
+  }
+  return text;
 }
 
 std::string text_of(const Shown& shown) {
@@ -163,7 +174,7 @@ std::string text_of(const Shown& shown) {
                                 : fmt::format("law: cannot be told from these tests; {} leads:\n     {}\n",
                                               name(found.law), in_words(found.law));
   for (const Dependence* own : {&found.ageing, &found.rate}) {
-    if (!own->reason.empty()) text += fmt::format("!  {}\n", own->reason);
+    if (!own->reason.empty()) text += reason_text(own->reason);
   }
   if (shown.next) text += next_text(*shown.next);
   io::Table list = io::Table::list({6, 0, 0});
@@ -216,8 +227,7 @@ Json json_of(const Shown& shown) {
   if (shown.next) {
     json["next_pull"] = {{"pull_speed", shown.next->pull_speed_m_per_s},
                          {"tells", shown.next->tells_ageing ? "mu_s" : "mu_k"},
-                         {"separation", io::or_null(shown.next->separation)},
-                         {"pulls_needed", io::or_null(shown.next->pulls_needed)}};
+                         {"separation", io::or_null(shown.next->separation)}};
   }
   for (const Named& own : parameters_of(found))
     json["parameters"][own.name] = estimate_json(own.value, own.unit);
@@ -245,6 +255,10 @@ Json json_of(const Shown& shown) {
   for (const law::LeftOut& out : shown.tests.left_out) {
     json["left_out"].push_back(
         {{"file", shown.material.tests[out.test].file}, {"what", out.what}, {"reason", out.reason}});
+  }
+  for (const report::VoidedTest& test : shown.material.voided) {
+    json["left_out"].push_back(
+        {{"file", test.file}, {"what", "S and K"}, {"reason", fmt::format("void: {}", test.voiding.reason)}});
   }
   return json;
 }

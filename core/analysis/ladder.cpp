@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -131,14 +132,16 @@ base::Finding turning_points_finding(const Estimate& delta_mu, const std::string
 }
 
 base::Finding misfit_finding(const Misfit& misfit, const TestResults& results) {
-  const SlipPart part = misfit.place().value_or(SlipPart::kFall);
-  const std::string_view name = kSlipPartNames[static_cast<std::size_t>(part)];
+  const std::optional<SlipPart> part = misfit.place();
   const double uncertainty = total_error(results.delta_mu);
-  std::vector<base::FindingNumber> numbers{{"residual", misfit.residual_sigmas(), "1"},
-                                           {"residual_of_part", misfit.residual_sigmas(part), "1"},
-                                           {"delta_mu_uncertainty", uncertainty, "1"}};
+  std::vector<base::FindingNumber> numbers{{"residual", misfit.residual_sigmas(), "1"}};
   std::string text;
-  std::string cause{likely_cause(part)};
+  std::string cause = "slips that begin gradually, another law of friction, or a slow transducer";
+  if (part) {
+    numbers.push_back({"residual_of_part", misfit.residual_sigmas(*part), "1"});
+    cause = likely_cause(*part);
+  }
+  numbers.push_back({"delta_mu_uncertainty", uncertainty, "1"});
   if (misfit.repeats()) {
     const double size = std::sqrt(misfit.mean().square());
     numbers.push_back({"repeating_residual", size, "1"});
@@ -150,13 +153,15 @@ base::Finding misfit_finding(const Misfit& misfit, const TestResults& results) {
       numbers.push_back({"swing_frequency", frequency_Hz, "Hz"});
       text += fmt::format(", swinging at {:.3g} Hz", frequency_Hz);
       cause = "a load cell or mounting that rings, or a filter that is slow for this oscillation";
-    } else {
-      text += fmt::format(", most in the {}", name);
+    } else if (part) {
+      text += fmt::format(", most in the {}", kSlipPartNames[static_cast<std::size_t>(*part)]);
     }
   } else {
+    const SlipPart largest = part.value_or(SlipPart::kFall);
     text =
         fmt::format("the fit leaves residuals of {:.2f} times the scan noise, {:.2f} in the {} of the slips",
-                    misfit.residual_sigmas(), misfit.residual_sigmas(part), name);
+                    misfit.residual_sigmas(), misfit.residual_sigmas(largest),
+                    kSlipPartNames[static_cast<std::size_t>(largest)]);
   }
   text += fmt::format(
       "; a likely cause is {}; S - K is uncertain by {:.2g}, its distance to turning points "

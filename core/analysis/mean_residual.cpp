@@ -15,6 +15,17 @@ void MeanResidual::add(double periods, double sigmas) noexcept {
   Bin& at = bins_[static_cast<std::size_t>(bin)];
   at.sum += std::clamp(sigmas, -kLargest, kLargest);
   at.count += 1.0;
+  if (at.latest == slip_) return;
+  at.latest = slip_;
+  at.slips += 1.0;
+}
+
+void MeanResidual::add(const MeanResidual& others) noexcept {
+  for (std::size_t i = 0; i < kBins; ++i) {
+    bins_[i].sum += others.bins_[i].sum;
+    bins_[i].count += others.bins_[i].count;
+    bins_[i].slips += others.bins_[i].slips;
+  }
 }
 
 double MeanResidual::chi_squared() const noexcept {
@@ -38,6 +49,23 @@ double MeanResidual::count() const noexcept {
 double MeanResidual::square() const noexcept {
   const double scans = count();
   return scans > 0.0 ? (chi_squared() - freedom()) / scans : 0.0;
+}
+
+double MeanResidual::error_of_square(double scans) const noexcept {
+  // Of a χ² that is not central, by as much as it lies above its degrees.
+  const double all = chi_squared();
+  const double beyond = std::max(all - freedom(), 0.0);
+  const double variance =
+      2.0 * freedom() + 4.0 * beyond + all * all * kVarianceOfNoise / std::max(scans, 1.0);
+  return std::sqrt(variance) / std::max(count(), 1.0);
+}
+
+double MeanResidual::z(double scans) const noexcept {
+  const double degrees = freedom();
+  if (!(degrees > 0.0)) return 0.0;
+  const double of_root = 2.0 / (9.0 * degrees);
+  return (std::cbrt(chi_squared() / degrees) - 1.0 + of_root) /
+         std::sqrt(of_root + kVarianceOfNoise / std::max(scans, 1.0) / 9.0);
 }
 
 double MeanResidual::birge_ratio() const noexcept {

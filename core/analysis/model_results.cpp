@@ -253,13 +253,8 @@ std::string contradiction(const SlipEstimates& estimates) {
   return {};
 }
 
-/// Standard error of a mean square of noise over σ², which is estimated from so many scans.
-double error_of_square(double freedom, double scans) {
-  // Relative standard error of signal::scan_noise() times √n, by simulation of white noise, n from 600 on; of
-  // σ² twice that.
-  constexpr double kErrorOfVariance = 2.0 * 2.0;
-  return std::sqrt(2.0 / std::max(freedom, 1.0) + kErrorOfVariance * kErrorOfVariance / std::max(scans, 1.0));
-}
+/// Standard error of a mean square of noise over σ², both estimated from so many scans.
+double error_of_square(double scans) { return std::sqrt((2.0 + kVarianceOfNoise) / std::max(scans, 1.0)); }
 
 /// What in the friction or the trace keeps the fit from an end, by where it stopped.
 std::string why_not_converged(const SlipEstimates& estimates, double sigma) {
@@ -326,17 +321,25 @@ double Misfit::residual_of(const Sum& sum) noexcept {
 }
 
 double Misfit::z_of(const Sum& sum) noexcept {
-  return (std::pow(residual_of(sum), 2) - 1.0) / error_of_square(sum.freedom, sum.freedom);
-}
-
-double Misfit::z_of(const MeanResidual& mean) noexcept {
-  const double degrees = mean.freedom();
-  return degrees > 0.0 ? (mean.chi_squared() / degrees - 1.0) / error_of_square(degrees, mean.count()) : 0.0;
+  return (std::pow(residual_of(sum), 2) - 1.0) / error_of_square(sum.freedom);
 }
 
 double Misfit::beyond_noise() const noexcept {
-  if (!(z_of(mean_) > kSignificant)) return 0.0;
-  return std::sqrt(std::pow(mean_.birge_ratio(), 2) - 1.0);
+  if (!(z_of_mean() > kSignificant)) return 0.0;
+  const double ratio = mean_.birge_ratio() / std::max(residual_sigmas(), 1.0);
+  return std::sqrt(std::max(ratio * ratio - 1.0, 0.0));
+}
+
+void Misfit::Sum::add(const Sum& other) noexcept {
+  squares += other.squares;
+  freedom += other.freedom;
+}
+
+void Misfit::add(const Misfit& others) noexcept {
+  converged_ = converged_ && others.converged_;
+  whole_.add(others.whole_);
+  mean_.add(others.mean_);
+  for (std::size_t i = 0; i < parts_.size(); ++i) parts_[i].add(others.parts_[i]);
 }
 
 void Misfit::add(const estimate::Trace& trace, const SlipEstimates& estimates, double sigma) {
@@ -350,6 +353,7 @@ void Misfit::add(const estimate::Trace& trace, const SlipEstimates& estimates, d
   model::TurnedBasis basis{fit.shared.oscillator()};
   const double per_s = fit.shared.omega / (2.0 * std::numbers::pi);
   for (const estimate::SlipWindow& window : estimates.windows) {
+    mean_.begin_slip();
     const model::SlipModel model{fit.shared, window.slip, window.captured, estimates.belt};
     for (std::size_t k = window.first; k < window.end; ++k) {
       if (trace.usable[k] == 0) continue;
@@ -358,7 +362,7 @@ void Misfit::add(const estimate::Trace& trace, const SlipEstimates& estimates, d
                 (trace.level(k) - model.place(time_s, basis).value) / sigma);
     }
   }
-  if (!(std::max(z_of(section), z_of(mean_)) > kSignificant)) return;  // Chance has no place.
+  if (!(z_of(section) > kSignificant)) return;  // Chance has no place.
   std::array<estimate::HuberSums, kSlipPartNames.size()> sums;
   for (const estimate::SlipWindow& window : estimates.windows) {
     const model::SlipModel model{fit.shared, window.slip, window.captured, estimates.belt};
@@ -386,7 +390,7 @@ void Misfit::add(const estimate::Trace& trace, const SlipEstimates& estimates, d
 }
 
 std::optional<SlipPart> Misfit::place() const noexcept {
-  if (!converged_ || !is_significant()) return std::nullopt;
+  if (!converged_ || !(z_of(whole_) > kSignificant)) return std::nullopt;
   const auto largest = std::ranges::max_element(parts_, {}, [](const Sum& sum) { return residual_of(sum); });
   return static_cast<SlipPart>(largest - parts_.begin());
 }
@@ -396,9 +400,7 @@ Estimate Misfit::systematic() const {
   const double of_size = residual_sigmas() * residual_sigmas() - 1.0;
   const bool by_mean = repeats() && mean_.square() > of_size;
   const double square = std::max(by_mean ? mean_.square() : of_size, 0.0);
-  const double error = by_mean
-                           ? mean_.freedom() / mean_.count() * error_of_square(mean_.freedom(), mean_.count())
-                           : error_of_square(whole_.freedom, whole_.freedom);
+  const double error = by_mean ? mean_.error_of_square(whole_.freedom) : error_of_square(whole_.freedom);
   // Of the root of a square that may be zero.
   return Estimate::of(std::sqrt(square), error / (2.0 * std::sqrt(std::max(square, 0.25 * error))));
 }

@@ -34,6 +34,8 @@ class Misfit {
  public:
   /// Adds the fit of a section, or where it stopped. \param sigma  noise of one scan.
   void add(const estimate::Trace& trace, const SlipEstimates& estimates, double sigma);
+  /// Adds that of other sections.
+  void add(const Misfit& others) noexcept;
 
   /// Standard deviation of the residuals, in σ; 1 for noise alone.
   [[nodiscard]] double residual_sigmas() const noexcept { return residual_of(whole_); }
@@ -42,21 +44,21 @@ class Misfit {
   [[nodiscard]] double residual_sigmas(SlipPart part) const noexcept {
     return residual_of(parts_[static_cast<std::size_t>(part)]);
   }
-  /// Part with the largest residuals; nullopt unless the misfit is significant.
+  /// Part with the largest residuals; nullopt unless their size is significant.
   [[nodiscard]] std::optional<SlipPart> place() const noexcept;
   /// Systematic residual, in σ, with its standard error: √(residual² − 1), or what repeats if that is more.
   [[nodiscard]] Estimate systematic() const;
   /// Whether size or repetition are larger than chance makes them, each in 1 % of the tests.
   [[nodiscard]] bool is_significant() const noexcept {
-    return std::max(z_of(whole_), z_of(mean_)) > kSignificant;
+    return std::max(z_of(whole_), z_of_mean()) > kSignificant;
   }
   /// The same, in 3 of 10⁵ tests each.
   [[nodiscard]] bool is_certain() const noexcept { return is_large() || repeats(); }
   [[nodiscard]] bool is_large() const noexcept { return z_of(whole_) > kCertain; }
-  [[nodiscard]] bool repeats() const noexcept { return z_of(mean_) > kCertain; }
+  [[nodiscard]] bool repeats() const noexcept { return z_of_mean() > kCertain; }
   [[nodiscard]] const MeanResidual& mean() const noexcept { return mean_; }
-  /// What repeats makes errors larger than the noise does, by Birge's ratio: √(ratio² − 1); 0 unless
-  /// significant.
+  /// √(ratio² − 1) by Birge's ratio: what repeats adds to errors, which hold the size of the residuals
+  /// already; 0 unless significant.
   [[nodiscard]] double beyond_noise() const noexcept;
 
  private:
@@ -64,13 +66,14 @@ class Misfit {
     double squares = 0.0;  ///< In σ², times the degrees of freedom.
     double freedom = 0.0;
     void add(double residual_sigma, double of_freedom) noexcept;
+    void add(const Sum& other) noexcept;
   };
   static constexpr double kSignificant = 2.326;
   static constexpr double kCertain = 4.0;
   [[nodiscard]] static double residual_of(const Sum& sum) noexcept;
-  /// Deviations of a mean square from 1, in standard errors of its own and of σ, which is itself estimated.
+  /// Deviation of a mean square from 1, in standard errors of its own and of σ, which is itself estimated.
   [[nodiscard]] static double z_of(const Sum& sum) noexcept;
-  [[nodiscard]] static double z_of(const MeanResidual& mean) noexcept;
+  [[nodiscard]] double z_of_mean() const noexcept { return mean_.z(whole_.freedom); }
 
   bool converged_ = true;
   Sum whole_;
@@ -84,9 +87,8 @@ class Misfit {
 /// slips are correlated the standard errors of S, K and S − K are those of means that wander. The systematic
 /// uncertainty of S and S − K is γ v/g: whether the damper's force counts at the slip onset is a convention
 /// that no trace can decide (here: spring only, [Penner 1995, (13)]). What repeats in each slip adds to the
-/// systematic uncertainty of all results, and where no slip sticks again the creep before it to that of S and
-/// S − K.
-/// \param misfit  of this section and those before. \param sigma  noise of one scan.
+/// systematic uncertainty of what follows from the fit's parameters, and where no slip sticks again the creep
+/// before it to that of S and S − K. \param misfit  of this section. \param sigma  noise of one scan.
 void model_results(std::span<const detect::Fall> slips, const SlipEstimates& estimates, const Misfit& misfit,
                    const model::Tester& tester, double sigma, TestResults& results);
 

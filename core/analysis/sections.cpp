@@ -161,10 +161,12 @@ TestEstimates estimate_in_sections(const estimate::Trace& trace, const base::Lon
     // The first slip of a later section also was the last of the section before.
     const SlipEstimates estimates = estimate_slips(trace, section, sigma, prior, first_counts && first == 0);
     whole.model_describes = whole.model_describes && model_describes(estimates, sigma);
-    whole.misfit.add(trace, estimates, sigma);
+    Misfit misfit;
+    misfit.add(trace, estimates, sigma);
+    whole.misfit.add(misfit);
     testers.add(estimates);
     TestResults own;
-    model_results(section, estimates, whole.misfit, tester, sigma, own);
+    model_results(section, estimates, misfit, tester, sigma, own);
     if (!trace.belt.is_constant()) {
       no_feature_results("the pull speed changes during the test", own);
     } else if (model_describes(estimates, sigma)) {

@@ -255,7 +255,9 @@ Result<std::string> LimitedChild::answer(const std::function<bool()>& given_up) 
   }
   const WorkLimits limits = *std::exchange(asked_, std::nullopt);
   if (auto text = receive_text(socket_.get())) return *std::move(text);
-  return why_it_died(limits);
+  tl::unexpected<Error> died = why_it_died(limits);
+  died.value().worker_died = true;
+  return died;
 }
 
 Result<bool> LimitedChild::wait_for_answer(const std::function<bool()>& given_up) const {

@@ -29,6 +29,7 @@ enum class ErrorKind {
 struct Error {
   ErrorKind kind = ErrorKind::kFailure;
   std::string message;
+  bool worker_died = false;  ///< No answer: a child process was ended, by a limit or another hand.
 
   /// Exit status for a command that ends with this error: 2 usage and input, 1 failure, 130 interrupted.
   [[nodiscard]] int exit_status() const noexcept {

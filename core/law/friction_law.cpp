@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 #include "core/analysis/grouping.hpp"
 #include "core/base/contract.hpp"
@@ -22,28 +24,52 @@ constexpr double kPartThatMatters = 0.1;
 
 using Scores = std::vector<double>;
 
-/// Mean log₁₀ of the stick times of the tests at the speed of this one. A test whose S is higher by chance
-/// takes longer to reach it: its own stick time would find that chance again as ageing.
-double log_stick_time(std::span<const LawTest> tests, const LawTest& of) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const LawTest& test : tests) {
-    const double v = test.pull_speed_m_per_s;
-    const double difference = std::abs(v - of.pull_speed_m_per_s);
-    if (!test.S || difference > analysis::kSameSpeed * std::max(v, of.pull_speed_m_per_s)) continue;
-    sum += std::log10(*test.stick_time_s);
-    count += 1.0;
+using Group = std::vector<std::size_t>;
+
+/// Indices of the tests of each speed. A group begins at its lowest speed: a chain of near speeds is not one.
+std::vector<Group> groups_of(std::span<const LawTest> tests) {
+  Group sorted(tests.size());
+  std::iota(sorted.begin(), sorted.end(), std::size_t{0});
+  std::stable_sort(sorted.begin(), sorted.end(), [tests](std::size_t one, std::size_t other) {
+    return tests[one].pull_speed_m_per_s < tests[other].pull_speed_m_per_s;
+  });
+  std::vector<Group> groups;
+  double highest = 0.0;
+  for (const std::size_t test : sorted) {
+    const double v = tests[test].pull_speed_m_per_s;
+    if (groups.empty() || v > highest) {
+      groups.emplace_back();
+      highest = v * (1.0 + analysis::kSameSpeed);
+    }
+    groups.back().push_back(test);
   }
-  return sum / count;
+  return groups;
+}
+
+/// Mean over these tests, all of which have the value: of log₁₀ of the stick times for S, of the speeds for
+/// K. A test whose S is higher by chance takes longer to reach it: its own stick time would find that chance
+/// again as ageing.
+double place_of(std::span<const LawTest> tests, const Group& group, bool ageing) {
+  double sum = 0.0;
+  for (const std::size_t test : group)
+    sum += ageing ? std::log10(*tests[test].stick_time_s) : tests[test].pull_speed_m_per_s;
+  return sum / static_cast<double>(group.size());
 }
 
 Dependence dependence_of(std::span<const LawTest> tests, std::optional<Value> LawTest::*value) {
+  std::vector<double> places(tests.size());
+  for (Group group : groups_of(tests)) {
+    std::erase_if(group, [&](std::size_t test) { return !(tests[test].*value); });
+    if (group.empty()) continue;
+    const double place = place_of(tests, group, value == &LawTest::S);
+    for (const std::size_t test : group) places[test] = place;
+  }
   Dependence result;
   for (std::size_t i = 0; i < tests.size(); ++i) {
     const LawTest& test = tests[i];
     if (!(test.*value)) continue;
-    const double x = value == &LawTest::S ? log_stick_time(tests, test) : test.pull_speed_m_per_s;
-    result.points.push_back({x, (test.*value)->value, (test.*value)->error, (test.*value)->systematic});
+    result.points.push_back(
+        {places[i], (test.*value)->value, (test.*value)->error, (test.*value)->systematic});
     result.tests.push_back(i);
   }
   result.constant = fit_line(result.points, false);
@@ -51,8 +77,14 @@ Dependence dependence_of(std::span<const LawTest> tests, std::optional<Value> La
   return result;
 }
 
+/// What a dependence is measured by, with the words for the part of it that matters.
+struct Measure {
+  double delta_mu = 0.0;  ///< 0: not known.
+  const char* what_matters = "";
+};
+
 /// Mean of S − K over the tests that have both; a tenth of K where there is none.
-double delta_mu_of(std::span<const LawTest> tests) {
+Measure measure_of(std::span<const LawTest> tests) {
   double sum = 0.0;
   double count = 0.0;
   double K = 0.0;
@@ -62,7 +94,8 @@ double delta_mu_of(std::span<const LawTest> tests) {
     sum += test.S->value - test.K->value;
     count += 1.0;
   }
-  return count > 0.0 && sum > 0.0 ? sum / count : 0.1 * K;
+  if (count > 0.0 && sum > 0.0) return {sum / count, "a tenth of S - K over a decade of speed"};
+  return {0.1 * K, "a hundredth of K over a decade of speed"};
 }
 
 /// Speeds of a decade about the geometric middle of the tests, the slowest and the fastest.
@@ -125,8 +158,8 @@ void choose(FrictionLaw& found, std::size_t test_count) {
   found.law = kLaws[chosen];
 }
 
-/// \param what  "S on the stick time".
-void judge(Dependence& own, bool chosen, const char* what) {
+/// \param what  "S on the stick time". \param unknown  why what matters is not known, where it is not.
+void judge(Dependence& own, bool chosen, const char* what, const char* what_matters, const char* unknown) {
   const auto cannot = [&own](std::string reason) {
     own.verdict = Verdict::kCannotTell;
     own.reason = std::move(reason);
@@ -138,19 +171,32 @@ void judge(Dependence& own, bool chosen, const char* what) {
   if (!own.line) return cannot(fmt::format("all tests for {} are at one speed", what));
   const Parameter& slope = *own.line->slope;
   const double error = std::sqrt(own.line->covariance(1, 1));
-  const double to_name = two_sided_t(own.line->freedom, kOutsideToName) * error + slope.systematic;
-  const double to_rule_out = two_sided_t(own.line->freedom, kOutsideToRuleOut) * error;
   const double size = std::abs(slope.value);
-  if (chosen && size > to_name) {
-    own.verdict = Verdict::kYes;
-  } else if (!chosen && size + to_rule_out < own.slope_that_matters) {
-    own.verdict = Verdict::kNo;
-  } else if (chosen) {
-    cannot(fmt::format("{} is seen, but chance or systematic parts may have made it", what));
-  } else {
-    cannot(fmt::format("{} is not seen, but may be {:.2g} times what matters", what,
-                       (size + to_rule_out) / own.slope_that_matters));
+  if (chosen) {
+    const double by_chance = two_sided_t(own.line->freedom, kOutsideToName) * error;
+    if (size > by_chance + slope.systematic) {
+      own.verdict = Verdict::kYes;
+    } else if (size > by_chance && size <= slope.systematic) {
+      own.systematic_vetoes = true;
+      cannot(
+          fmt::format("{} is seen, but its systematic part may have made it: more pulls do not help", what));
+    } else {
+      cannot(fmt::format("{} is seen, but chance or systematic parts may have made it", what));
+    }
+    return;
   }
+  const double matters = own.slope_that_matters;
+  if (!(matters > 0.0)) return cannot(fmt::format("{} is not seen, but {}", what, unknown));
+  const double by_chance = two_sided_t(own.line->freedom, kOutsideToRuleOut) * error;
+  const double highest = size + by_chance + slope.systematic;
+  if (highest < matters) {
+    own.verdict = Verdict::kNo;
+    return;
+  }
+  own.systematic_vetoes = size + by_chance < matters && size + slope.systematic >= matters;
+  cannot(fmt::format("{} is not seen, but may be {:.2g} times what matters ({}){}", what, highest / matters,
+                     what_matters,
+                     own.systematic_vetoes ? ", by its systematic part: more pulls do not help" : ""));
 }
 
 }  // namespace
@@ -166,14 +212,17 @@ FrictionLaw find_law(std::span<const LawTest> tests) {
   FrictionLaw found;
   found.ageing = dependence_of(tests, &LawTest::S);
   found.rate = dependence_of(tests, &LawTest::K);
-  found.delta_mu = delta_mu_of(tests);
+  const Measure measure = measure_of(tests);
+  found.delta_mu = measure.delta_mu;
   const auto [slowest, fastest] = decade_of(tests);
   found.ageing.slope_that_matters = kPartThatMatters * found.delta_mu;  // The stick time is as 1/v.
   found.rate.slope_that_matters = kPartThatMatters * found.delta_mu / (fastest - slowest);
   if (std::max(found.ageing.points.size(), found.rate.points.size()) >= kFewestTests)
     choose(found, tests.size());
-  judge(found.ageing, has_ageing(found.law), "S on the stick time");
-  judge(found.rate, has_rate(found.law), "K on the speed");
+  const char* const unknown = found.rate.points.empty() ? "no test has K, so what matters is not known"
+                                                        : "no K is above 0, so what matters is not known";
+  judge(found.ageing, has_ageing(found.law), "S on the stick time", measure.what_matters, unknown);
+  judge(found.rate, has_rate(found.law), "K on the speed", measure.what_matters, unknown);
   found.told = found.ageing.verdict != Verdict::kCannotTell && found.rate.verdict != Verdict::kCannotTell;
   return found;
 }

@@ -1,8 +1,11 @@
 /// \file
 /// The friction law of a paper from tests at several pull speeds: do S and K depend on rest and speed?
 ///
-///     S = S₁ + β log₁₀(t/1 s)    t: how long the contact rested before the slip [Rabinowicz 1951; Dieterich
-///     1972] K = K₀ + μ′ v              v: pull speed
+///     S = S₁ + β log₁₀(t/1 s)
+///
+///     K = K₀ + μ′ v
+///
+/// t is how long the contact rested before the slip [Rabinowicz 1951; Dieterich 1972], v the pull speed.
 ///
 /// Each of the two dependences may be absent, so that there are four nested laws. Which is named: the
 /// smallest whose score on tests that it was not fitted to is within one standard error of the best [Breiman,
@@ -10,7 +13,11 @@
 /// whole: its slips share its place on the paper and its errors. The law is *told* where in addition
 ///
 /// - each dependence that it has exceeds its 99 % interval and what the systematic parts could make, and
-/// - each that it has not is at most a tenth of S − K over a decade of speed, by its 95 % interval.
+/// - each that it has not is, by its 95 % interval and with what the systematic parts could hide, at most a
+///   tenth of S − K over a decade of speed.
+///
+/// Tests whose speeds differ by at most 1 % have one speed: K is at their mean speed, S at their mean stick
+/// time.
 ///
 ///     const FrictionLaw found = find_law(tests);
 ///     found.told ? name(found.law) : "cannot be told";
@@ -74,6 +81,8 @@ struct Dependence {
   double slope_that_matters = 0.0;  ///< A tenth of S − K over a decade of speed.
   Verdict verdict = Verdict::kCannotTell;
   std::string reason;  ///< Why not, for people; set exactly for kCannotTell.
+  /// For kCannotTell: chance alone would not keep it from being told, and the systematic part alone does.
+  bool systematic_vetoes = false;
 
   [[nodiscard]] const std::optional<Line>& fitted(bool with_slope) const noexcept {
     return with_slope ? line : constant;

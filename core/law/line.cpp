@@ -18,6 +18,9 @@ constexpr double kOutside95 = 0.05;
 struct Solution {
   Eigen::Vector2d value = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  double middle = 0.0;  ///< Of the places, weighted.
+  double at_middle = 0.0;
+  double middle_variance = 0.0;
   double chi_squared = 0.0;  ///< Weighted squares of the residuals.
   double squares = 0.0;      ///< Of the residuals, unweighted.
 };
@@ -47,6 +50,9 @@ Solution solve(std::span<const Point> points, bool with_slope, double between_va
     slope /= spread;
   }
   Solution solution;
+  solution.middle = middle;
+  solution.at_middle = level;
+  solution.middle_variance = 1.0 / weights;
   solution.value << level - slope * middle, slope;
   solution.covariance(0, 0) = 1.0 / weights;
   if (with_slope) {
@@ -55,7 +61,7 @@ Solution solve(std::span<const Point> points, bool with_slope, double between_va
     solution.covariance(1, 1) = 1.0 / spread;
   }
   for (const Point& point : points) {
-    const double residual = point.y - solution.value[0] - solution.value[1] * point.x;
+    const double residual = point.y - level - slope * (point.x - middle);
     solution.squares += residual * residual;
     solution.chi_squared += weight(point) * residual * residual;
   }
@@ -79,9 +85,13 @@ double between_variance_of(std::span<const Point> points, bool with_slope, doubl
   return 0.5 * (below + above);
 }
 
+/// But for roundings.
 bool one_place(std::span<const Point> points) {
-  return std::all_of(points.begin(), points.end(),
-                     [&](const Point& point) { return point.x == points.front().x; });
+  constexpr double kRounding = 1e-9;
+  const double first = points.front().x;
+  return std::all_of(points.begin(), points.end(), [first](const Point& point) {
+    return std::abs(point.x - first) <= kRounding * std::max(std::abs(point.x), std::abs(first));
+  });
 }
 
 }  // namespace
@@ -91,8 +101,10 @@ double two_sided_t(double freedom, double outside) {
 }
 
 Line::Prediction Line::predicted(double x) const noexcept {
+  // About the middle: level and slope are independent there, and nothing cancels.
+  const double off = x - middle;
   const double rise = slope ? slope->value : 0.0;
-  return {level.value + rise * x, covariance(0, 0) + 2.0 * x * covariance(0, 1) + x * x * covariance(1, 1)};
+  return {at_middle + rise * off, middle_variance + off * off * covariance(1, 1)};
 }
 
 double Line::log_density(const Point& point) const {
@@ -110,6 +122,9 @@ std::optional<Line> fit_line(std::span<const Point> points, bool with_slope) {
   line.between_variance = between_variance_of(points, with_slope, line.freedom);
   const Solution found = solve(points, with_slope, line.between_variance);
   line.covariance = found.covariance;
+  line.middle = found.middle;
+  line.at_middle = found.at_middle;
+  line.middle_variance = found.middle_variance;
   std::vector<Point> moved{points.begin(), points.end()};
   for (Point& point : moved) point.y += point.systematic;
   const Solution other = solve(moved, with_slope, line.between_variance);

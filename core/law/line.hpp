@@ -34,6 +34,9 @@ struct Line {
   double between_variance = 0.0;    ///< Between tests, beyond their own errors.
   double freedom = 0.0;             ///< Points less parameters, ≥ 1.
   Eigen::Matrix2d covariance = {};  ///< Of level and slope, before Student's factor.
+  double middle = 0.0;              ///< Weighted mean of the places: value and slope are independent there.
+  double at_middle = 0.0;           ///< The line there.
+  double middle_variance = 0.0;     ///< Of at_middle, before Student's factor.
 
   struct Prediction {
     double value = 0.0;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/analysis/grouping.hpp"
+
 namespace stickslip::law {
 namespace {
 
@@ -38,6 +40,37 @@ double between_variance(const Dependence& dependence) {
   return dependence.constant ? dependence.constant->between_variance : 0.0;
 }
 
+/// \param highest_m_per_s  of the pulls that tell it.
+std::optional<NextPull> best_pull(const Dependence& asked, bool ageing, std::span<const LawTest> tests,
+                                  const SpeedRange& range, double highest_m_per_s) {
+  if (asked.verdict != Verdict::kCannotTell || asked.systematic_vetoes || asked.points.empty())
+    return std::nullopt;
+  if (!(highest_m_per_s >= range.from_m_per_s)) return std::nullopt;
+  const double length = ageing ? log_stick_length(tests) : 0.0;
+  const auto place = [&](double v) {
+    for (std::size_t i = 0; i < asked.points.size(); ++i) {
+      const double had = tests[asked.tests[i]].pull_speed_m_per_s;
+      if (std::abs(v - had) <= analysis::kSameSpeed * std::max(v, had)) return asked.points[i].x;
+    }
+    return ageing ? length - std::log10(v) : v;
+  };
+  std::vector<Point> points = asked.points;
+  points.push_back({0.0, 0.0, usual_error(asked), 0.0});
+  const double variance = between_variance(asked);
+  NextPull best;
+  best.tells_ageing = ageing;
+  for (int i = 0; i < kCandidates; ++i) {
+    const double part = static_cast<double>(i) / (kCandidates - 1);
+    const double v = range.from_m_per_s * std::pow(highest_m_per_s / range.from_m_per_s, part);
+    points.back().x = place(v);
+    const double separation = asked.slope_that_matters / slope_error(points, variance);
+    if (!(separation > best.separation)) continue;
+    best.separation = separation;
+    best.pull_speed_m_per_s = v;
+  }
+  return best.separation > 0.0 ? std::optional{best} : std::nullopt;
+}
+
 }  // namespace
 
 SpeedRange usual_range(std::span<const LawTest> tests) {
@@ -50,44 +83,12 @@ SpeedRange usual_range(std::span<const LawTest> tests) {
 
 std::optional<NextPull> next_pull(const FrictionLaw& found, std::span<const LawTest> tests,
                                   const SpeedRange& range, std::optional<double> highest_sticking_m_per_s) {
-  if (found.told) return std::nullopt;
   // S is asked first: a pull that tells it tells K, too.
-  const bool ageing = found.ageing.verdict == Verdict::kCannotTell && !found.ageing.points.empty();
-  const Dependence& asked = ageing ? found.ageing : found.rate;
-  if (asked.points.empty()) return std::nullopt;
-  const double fastest = ageing && highest_sticking_m_per_s
-                             ? std::min(range.to_m_per_s, kSafelySticking * *highest_sticking_m_per_s)
-                             : range.to_m_per_s;
-  if (!(fastest >= range.from_m_per_s)) return std::nullopt;
-  const double length = ageing ? log_stick_length(tests) : 0.0;
-  const auto place = [&](double v) { return ageing ? length - std::log10(v) : v; };
-  std::vector<Point> points = asked.points;
-  const std::size_t had = points.size();
-  const double variance = between_variance(asked);
-  const auto separation = [&](double v, int pulls) {
-    points.resize(had);
-    points.resize(had + static_cast<std::size_t>(pulls), {place(v), 0.0, usual_error(asked), 0.0});
-    return asked.slope_that_matters / slope_error(points, variance);
-  };
-  NextPull best;
-  best.tells_ageing = ageing;
-  for (int i = 0; i < kCandidates; ++i) {
-    const double part = static_cast<double>(i) / (kCandidates - 1);
-    const double v = range.from_m_per_s * std::pow(fastest / range.from_m_per_s, part);
-    if (const double there = separation(v, 1); there > best.separation) {
-      best.separation = there;
-      best.pull_speed_m_per_s = v;
-    }
-  }
-  if (!(best.separation > 0.0)) return std::nullopt;
-  for (int pulls = 1; pulls <= kMostPulls && !best.pulls_needed; ++pulls) {
-    const double freedom = static_cast<double>(had) + pulls - 2.0;
-    // A dependence that just matters is named, one that is absent ruled out.
-    if (had + static_cast<std::size_t>(pulls) >= kFewestTests &&
-        separation(best.pull_speed_m_per_s, pulls) > two_sided_t(freedom, 0.01))
-      best.pulls_needed = pulls;
-  }
-  return best;
+  const double sticking = highest_sticking_m_per_s
+                              ? std::min(range.to_m_per_s, kSafelySticking * *highest_sticking_m_per_s)
+                              : range.to_m_per_s;
+  if (const auto pull = best_pull(found.ageing, true, tests, range, sticking)) return pull;
+  return best_pull(found.rate, false, tests, range, range.to_m_per_s);
 }
 
 }  // namespace stickslip::law

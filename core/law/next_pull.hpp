@@ -21,16 +21,15 @@ struct NextPull {
   /// The smallest dependence that matters, in standard errors of the slope after this pull; 0 where too few
   /// tests tell the errors.
   double separation = 0.0;
-  std::optional<int> pulls_needed;  ///< So many there would tell; absent: more than kMostPulls.
 };
-
-inline constexpr int kMostPulls = 20;
 
 /// A third of the slowest speed of the tests to three times the fastest.
 [[nodiscard]] SpeedRange usual_range(std::span<const LawTest> tests);
 
+/// About S if it cannot be told and a pull in the range sticks, else about K. Not about what its systematic
+/// part alone keeps from being told.
 /// \param found  of these tests. \param highest_sticking_m_per_s  above it the sled does not stick again, so
-/// that S says nothing; absent: unknown. \return nullopt if the law is told, or the range has no such speed.
+/// that S says nothing; absent: unknown. \return nullopt if no pull in the range would tell more.
 [[nodiscard]] std::optional<NextPull> next_pull(const FrictionLaw& found, std::span<const LawTest> tests,
                                                 const SpeedRange& range,
                                                 std::optional<double> highest_sticking_m_per_s);

@@ -182,7 +182,7 @@ base::Result<Record> ApartReader::finish(const std::function<bool()>& given_up) 
       message +=
           fmt::format("; `stickslip verify {}` says what is damaged; take it from a backup", path_.string());
     }
-    return tl::unexpected(base::Error{answer.error().kind, std::move(message)});
+    return tl::unexpected(base::Error{answer.error().kind, std::move(message), answer.error().worker_died});
   }
   const char letter = answer->empty() ? kFailure : answer->front();
   if (letter != kRead) return tl::unexpected(base::Error{kind_of(letter), answer->substr(1)});

@@ -265,8 +265,9 @@ class Api {
 
   void release_control(const daemon::HttpRequest& request, const std::string&,
                        const daemon::HttpAnswer& answer) {
-    if (lease_.release(request.controller, now_ns())) return answer(daemon::reply_of(lease_json()));
-    answer(held_by(*lease_.holder(now_ns())));
+    const auto now = now_ns();
+    if (lease_.release(request.controller, now)) return answer(daemon::reply_of(lease_json()));
+    answer(held_by(*lease_.holder(now)));
   }
 
   void set_plan(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {

@@ -123,7 +123,9 @@ class Follower {
     if (record) {
       index_.put(file.file, file.signature, *record);
     } else if (looker_.signature_of((folder_ / file.file).native())) {
-      const bool content_is_why = record.error().kind == base::ErrorKind::kUsage;
+      // A reader that died may have been killed for want of memory, by whomever.
+      const bool content_is_why =
+          record.error().kind == base::ErrorKind::kUsage && !record.error().worker_died;
       index_.put_unread({file.file, content_is_why ? State::kUnreadable : State::kNotLooked,
                          without_path(record.error().message, folder_ / file.file)},
                         file.signature);
@@ -151,27 +153,49 @@ void follow_and_find(const std::string& index_path, const fs::path& folder, cons
   found.unread = index.unread();
 }
 
+std::string no_index_notice(const std::string& why) {
+  return fmt::format("no index is kept, so each search reads all records: {}; set XDG_CACHE_HOME", why);
+}
+
 }  // namespace
 
 base::Result<Found> search_with(const fs::path& index, const fs::path& folder, const Query& query,
                                 const Progress& progress) {
-  const std::string path = index.empty() ? ":memory:" : index.string();
-  for (bool is_second = false;; is_second = true) {
+  const std::string kept = index.string();
+  std::string path = index.empty() ? ":memory:" : kept;
+  std::string notice;
+  for (bool was_damaged = false;;) {
     Found found;
-    if (is_second)
-      found.notices.push_back(fmt::format("{}: was damaged; it is made anew from the records", path));
+    if (!notice.empty()) found.notices.push_back(notice);
     try {
       follow_and_find(path, folder, query, progress, found);
       return found;
     } catch (const SqlError& error) {
-      if (!error.is_damage() || is_second) {
-        return base::failure("{}: {}: the index of the records cannot be used; remove it, it is made anew",
-                             path, error.what());
+      if (path != kept) return base::failure("an index of the records cannot be made: {}", error.what());
+      switch (error.trouble()) {
+        case Trouble::kLocked:
+          return tl::unexpected(base::Error{
+              base::ErrorKind::kBusy,
+              fmt::format("{}: {}: another search is writing it; try again", kept, error.what())});
+        case Trouble::kOther:
+          return base::failure("{}: {}: the index of the records cannot be used; try again", kept,
+                               error.what());
+        case Trouble::kDamage:
+          if (!was_damaged) {
+            was_damaged = true;
+            notice = fmt::format("{}: was damaged; it is made anew from the records", kept);
+            for (const char* const part : {"-journal", ""}) {
+              std::error_code ignored;
+              fs::remove(kept + part, ignored);
+            }
+            break;
+          }
+          [[fallthrough]];  // It cannot be removed, or the disk damages it.
+        case Trouble::kNoPlace:
+          notice = no_index_notice(fmt::format("{}: {}", kept, error.what()));
+          path = ":memory:";
+          break;
       }
-    }
-    for (const char* const part : {"-journal", ""}) {
-      std::error_code ignored;
-      fs::remove(path + part, ignored);
     }
   }
 }
@@ -192,8 +216,7 @@ base::Result<Found> search(const fs::path& folder, const Query& query, const Pro
   const base::Result<fs::path> place = index_place(whole);
   base::Result<Found> found = search_with(place.value_or(fs::path{}), whole, query, progress);
   if (found && !place) {
-    found->notices.push_back(fmt::format(
-        "no index is kept, so each search reads all records: {}; set XDG_CACHE_HOME", place.error().message));
+    found->notices.push_back(no_index_notice(place.error().message));
   }
   return found;
 }

@@ -36,8 +36,9 @@ struct Found {
 /// \param done,count  of the files that are read, before each of them.
 using Progress = std::function<void(std::size_t done, std::size_t count)>;
 
-/// Errors: kUsage if the folder does not exist or is none; kNoPermission if it cannot be listed; kFailure if
-/// the index cannot be used.
+/// Without a place for the index, none is kept. Errors: kUsage if the folder does not exist or is none;
+/// kNoPermission if it cannot be listed; kBusy if another process goes on writing the index; kFailure if it
+/// cannot be used.
 [[nodiscard]] base::Result<Found> search(const std::filesystem::path& folder, const Query& query,
                                          const Progress& progress);
 

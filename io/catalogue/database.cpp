@@ -10,10 +10,32 @@ namespace {
 /// Another process writes for some milliseconds at a time.
 constexpr int kPatience_ms = 10'000;
 
+Trouble trouble_of(int code) {
+  constexpr int kPrimary = 0xff;
+  switch (code & kPrimary) {
+    case SQLITE_NOTADB:
+    case SQLITE_CORRUPT:
+    // The program's SQL is right: the tables, or what is in them, are not those that it made.
+    case SQLITE_ERROR:
+    case SQLITE_CONSTRAINT:
+    case SQLITE_MISMATCH:
+      return Trouble::kDamage;
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return Trouble::kLocked;
+    case SQLITE_FULL:
+    case SQLITE_IOERR:
+    case SQLITE_CANTOPEN:
+    case SQLITE_READONLY:
+    case SQLITE_PERM:
+      return Trouble::kNoPlace;
+    default:
+      return Trouble::kOther;
+  }
+}
+
 [[noreturn]] void refuse(sqlite3* database, int code) {
-  const int primary = code & 0xff;
-  throw SqlError(database != nullptr ? ::sqlite3_errmsg(database) : ::sqlite3_errstr(code),
-                 primary == SQLITE_NOTADB || primary == SQLITE_CORRUPT);
+  throw SqlError(database != nullptr ? ::sqlite3_errmsg(database) : ::sqlite3_errstr(code), trouble_of(code));
 }
 
 void check(sqlite3* database, int code) {

@@ -21,15 +21,22 @@ struct sqlite3_stmt;
 
 namespace stickslip::catalogue {
 
+/// Why SQLite refuses.
+enum class Trouble : std::uint8_t {
+  kDamage,   ///< The file is no database, a damaged one, or one without the tables that it should have.
+  kLocked,   ///< Another process writes it, for longer than one waits.
+  kNoPlace,  ///< The file cannot be opened, read or written, or the disk is full.
+  kOther,
+};
+
 /// What SQLite refuses, in its own words.
 class SqlError : public std::runtime_error {
  public:
-  SqlError(const std::string& message, bool is_damage) : std::runtime_error(message), damage_(is_damage) {}
-  /// True if the file is no database, or a damaged one.
-  [[nodiscard]] bool is_damage() const noexcept { return damage_; }
+  SqlError(const std::string& message, Trouble trouble) : std::runtime_error(message), trouble_(trouble) {}
+  [[nodiscard]] Trouble trouble() const noexcept { return trouble_; }
 
  private:
-  bool damage_;
+  Trouble trouble_;
 };
 
 /// A path, which need not be UTF-8.

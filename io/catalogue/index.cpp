@@ -98,6 +98,17 @@ std::string codes_of(const std::vector<base::Finding>& findings) {
   return codes;
 }
 
+/// \throws SqlError if they are none: the row is damaged.
+std::vector<base::Finding> findings_from(const std::string& json) {
+  std::vector<base::Finding> findings;
+  try {
+    findings = record::findings_in(Json{{record::kCodedFindings, Json::parse(json)}});
+  } catch (const Json::exception&) {  // Told below.
+  }
+  if (findings.empty()) throw SqlError("the findings of a record are damaged", Trouble::kDamage);
+  return findings;
+}
+
 /// Of a row of find().
 Entry entry_in(const Statement& row) {
   Entry entry;
@@ -121,10 +132,7 @@ Entry entry_in(const Statement& row) {
   entry.results.rung = analysis::rung_from_name(text()).value_or(analysis::Rung::kNone);
   const bool has_findings = !text().empty();
   const std::string findings = text();
-  if (has_findings) {
-    entry.results.findings =
-        record::findings_in(Json{{record::kCodedFindings, Json::parse(findings, nullptr, false)}});
-  }
+  if (has_findings) entry.results.findings = findings_from(findings);
   analysis::for_each_result(entry.results, [&](const analysis::ResultName&, analysis::Estimate& estimate) {
     estimate.value = row.maybe_number(column++);
     estimate.standard_error = row.maybe_number(column++);
@@ -207,7 +215,7 @@ std::vector<Entry> Index::find(const Query& query) {
     values.insert(values.end(), condition.values.begin(), condition.values.end());
   }
   const std::string order = query.order.empty() ? "start_ns" : query.order;
-  sql += fmt::format(" ORDER BY \"{0}\" IS NULL, \"{0}\"{1}, path{1} LIMIT ?", order,
+  sql += fmt::format(" ORDER BY nullif(\"{0}\", '') IS NULL, \"{0}\"{1}, path{1} LIMIT ?", order,
                      query.reversed ? " DESC" : "");
   values.emplace_back(query.most.value_or(-1));
   Statement rows = database_.prepare(sql);

@@ -28,7 +28,8 @@ struct Signature {
 enum class State : std::uint8_t {
   kRead,
   kUnreadable,  ///< Damaged, or no record: not read anew until the file changes.
-  kNotLooked,   ///< The system refuses it, or a program is writing it: tried again each time.
+  /// The system refuses it, a program is writing it, or its reader died: tried again each time.
+  kNotLooked,
 };
 
 struct KnownFile {

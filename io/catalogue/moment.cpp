@@ -15,6 +15,9 @@ namespace {
 constexpr std::int64_t kNsInSecond = 1'000'000'000;
 constexpr int kSecondsInMinute = 60;
 constexpr int kMinutesInHour = 60;
+/// Nanoseconds since 1970 fit 64 bits from 1677 to 2262.
+constexpr int kFirstYear = 1700;
+constexpr int kLastYear = 2200;
 
 /// Seconds since 1970; nothing for a day or time that there is not. \param offset_s  east of UTC; absent:
 /// local.
@@ -39,6 +42,10 @@ base::Result<Moment> moment_from_text(const std::string& text, const std::string
   };
   if (std::regex_match(text, match, form)) {
     const std::array<int, 6> typed{number(1), number(2), number(3), number(4), number(5), number(6)};
+    if (typed[0] < kFirstYear || typed[0] > kLastYear) {
+      return base::usage_error("{} {}: the year must be {} to {}", place, base::one_line(text), kFirstYear,
+                               kLastYear);
+    }
     std::tm begin{};
     begin.tm_year = typed[0] - 1900;
     begin.tm_mon = typed[1] - 1;

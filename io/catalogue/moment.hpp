@@ -16,8 +16,8 @@ struct Moment {
 };
 
 /// "2026-11-21", "2026-11-21T12:53", "2026-11-21T12:53:02": that day, minute or second, by the local clock;
-/// with Z, +01:00 or -0500 behind a time, by that one. A blank does for the T. \param place  of the text, for
-/// the error: kUsage.
+/// with Z, +01:00 or -0500 behind a time, by that one. A blank does for the T. Years 1700 to 2200. \param
+/// place  of the text, for the error: kUsage.
 [[nodiscard]] base::Result<Moment> moment_from_text(const std::string& text, const std::string& place);
 
 /// "2026-11-21 12:53", by the local clock.

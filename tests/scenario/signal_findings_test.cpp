@@ -216,7 +216,8 @@ TEST(SignalFindings, OfASlackCouplingPeaksTellSAndNothingTellsK) {
         if (mu_s > 2.0 * mu_k) {
           EXPECT_EQ(results.regime, model::Regime::kStickSlip);
           EXPECT_FALSE(results.mu_k.value);
-          EXPECT_EQ(number_of(results, "slack", "slack_count"), number_of(results, "slack", "slip_count") - 1.0);
+          EXPECT_EQ(number_of(results, "slack", "slack_count"),
+                    number_of(results, "slack", "slip_count") - 1.0);
           EXPECT_NEAR(results.mu_s.value.value(), mu_s,
                       3.0 * std::hypot(results.mu_s.standard_error.value_or(0.0),
                                        results.mu_s.systematic_uncertainty.value_or(0.0)));

@@ -10,9 +10,11 @@ import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
@@ -75,6 +77,22 @@ class Find(unittest.TestCase):
         files = self.run_stickslip("find", "records", "--paths").stdout.decode().split()
         self.assertIn("n                2", self.run_stickslip("report", *files).stdout.decode())
 
+    def test_names_that_a_line_or_a_command_would_mistake(self):
+        for name in ("-o.h5", "two\nlines.h5"):
+            shutil.copy(self.records / "sticks.h5", self.records / name)
+
+        def files_in_it(option):
+            environment = {**os.environ, "XDG_CACHE_HOME": str(self.cache)}
+            return subprocess.run([STICKSLIP, "find", option], cwd=self.records, capture_output=True, check=True,
+                                  timeout=TIMEOUT_S, env=environment)
+        done = files_in_it("--paths")
+        self.assertEqual(sorted(done.stdout.decode().splitlines()), ["./-o.h5", "rings.h5", "sticks.h5"])
+        self.assertEqual(len(done.stderr.splitlines()), 1)
+        self.assertIn(b"1 of 4 files have names that cannot be printed on a line, and are left out: use -0", done.stderr)
+        done = files_in_it("-0")
+        self.assertEqual(sorted(done.stdout.split(b"\0")), [b"", b"./-o.h5", b"rings.h5", b"sticks.h5", b"two\nlines.h5"])
+        self.assertEqual(done.stderr, b"")
+
     def test_follows_the_folder(self):
         self.found()
         (self.records / "rings.h5").unlink()
@@ -85,6 +103,28 @@ class Find(unittest.TestCase):
         self.assertIn("1 of 3 files could not be read and are missing here: --unread says why", text)
         text = self.run_stickslip("find", "records", "--unread").stdout.decode()
         self.assertIn("torn.h5: unreadable: is an HDF5 file but cut short or damaged", text)
+        for option in ("--csv", "--json", "--paths", "-0"):
+            told = self.run_stickslip("find", "records", option).stderr
+            self.assertEqual(told.count(b"1 of 3 files could not be read"), 1)
+            self.assertEqual(len(told.splitlines()), 1)
+            self.run_stickslip("find", "records", option, "--unread", status=2)
+
+    def test_a_file_whose_reader_is_killed_is_not_called_unreadable(self):
+        self.found()
+        content = bytearray((self.records / "sticks.h5").read_bytes())
+        heap = content.index(b"GCOL")
+        content[heap + 512 : heap + 1024] = bytes(512)  # HDF5 goes round in it: there is time to kill.
+        (self.records / "spins.h5").write_bytes(content)
+        environment = {**os.environ, "XDG_CACHE_HOME": str(self.cache)}
+        with subprocess.Popen([STICKSLIP, "find", "records", "--unread"], cwd=self.folder, stdout=subprocess.PIPE,
+                              env=environment) as finding:
+            children = pathlib.Path(f"/proc/{finding.pid}/task/{finding.pid}/children")
+            while not (child := children.read_text(encoding="utf-8").split()) and finding.poll() is None:
+                time.sleep(0.01)
+            time.sleep(0.2)
+            os.kill(int(child[0]), signal.SIGKILL)
+            text = finding.communicate(timeout=TIMEOUT_S)[0].decode()
+        self.assertIn("spins.h5: cannot look: cannot be read: its reader was ended by signal 9", text)
 
     def test_a_damaged_index_is_made_anew(self):
         self.found()

@@ -34,6 +34,18 @@ record::Record record_of(const std::string& sample, double static_coefficient = 
   return record;
 }
 
+/// \return true if the work, in a child, was ended by SIGKILL.
+template <typename Work>
+[[nodiscard]] bool is_killed_at(const Work& work) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    [&]() noexcept { work(); }();  // An exception must not go on with the tests of the parent.
+    ::_exit(0);
+  }
+  int status = 0;
+  return ::waitpid(child, &status, 0) == child && WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+}
+
 /// Folders for records and for their index.
 class Catalogue : public testing::Test {
  protected:
@@ -148,6 +160,43 @@ TEST_F(Catalogue, ADamagedIndexIsMadeAnewWithANotice) {
   }
 }
 
+TEST_F(Catalogue, AnIndexWithDamageInAValidFileIsMadeAnewWithANotice) {
+  static_cast<void>(put("a.h5", record_of("A")));
+  ASSERT_THAT(find().entries, SizeIs(1));
+  for (const char* const damage :
+       {"UPDATE record SET findings = '[{'", "UPDATE record SET findings = 'null'",
+        "UPDATE record SET findings = '[{\"code\": 1}]'", "UPDATE record SET findings = NULL",
+        "DROP TABLE record", "DROP TABLE record; CREATE TABLE record(id INTEGER PRIMARY KEY)",
+        "DROP TABLE file"}) {
+    Database{index().string()}.run(damage);
+    const Found found = find();
+    EXPECT_THAT(found.entries, SizeIs(1)) << damage;
+    EXPECT_THAT(found.notices, ElementsAre(HasSubstr("was damaged; it is made anew"))) << damage;
+    EXPECT_THAT(find().notices, SizeIs(0)) << damage;
+  }
+}
+
+TEST_F(Catalogue, WithoutAPlaceForTheIndexASearchReadsAll) {
+  static_cast<void>(put("a.h5", record_of("A")));
+  fs::create_directories(index());  // No file can be made there.
+  const Found found = find();
+  EXPECT_THAT(found.entries, SizeIs(1));
+  EXPECT_THAT(found.notices, ElementsAre(HasSubstr("no index is kept")));
+}
+
+TEST_F(Catalogue, ALockIsToldFromDamage) {
+  Database first{index().string()};
+  const Transaction transaction{first};
+  Database second{index().string()};
+  second.run("PRAGMA busy_timeout = 0");
+  try {
+    second.run("BEGIN IMMEDIATE");
+    ADD_FAILURE() << "is not locked";
+  } catch (const SqlError& error) {
+    EXPECT_EQ(error.trouble(), Trouble::kLocked);
+  }
+}
+
 TEST_F(Catalogue, AnIndexOfAnotherVersionIsEmptied) {
   static_cast<void>(put("a.h5", record_of("A")));
   ASSERT_THAT(find().entries, SizeIs(1));
@@ -161,15 +210,11 @@ TEST_F(Catalogue, KilledWhileItReadsGoesOnAtTheLastCommit) {
   for (int i = 1; i < kFiles; ++i) fs::copy_file(first, records() / (std::to_string(i) + ".h5"));
   std::size_t left = kFiles;
   for (const std::size_t kill_at : {0U, 150U, 200U, 0U, 200U}) {
-    const pid_t child = ::fork();
-    if (child == 0) {
+    ASSERT_TRUE(is_killed_at([&] {
       static_cast<void>(search_with(index(), records(), {}, [kill_at](std::size_t done, std::size_t) {
         if (done == kill_at) static_cast<void>(std::raise(SIGKILL));
       }));
-      ::_exit(0);
-    }
-    int status = 0;
-    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    }));
     // 200 files between two commits.
     if (kill_at == 200) left -= std::min<std::size_t>(left, 200);
   }
@@ -183,19 +228,39 @@ TEST_F(Catalogue, KilledWhileItWritesHoldsWhatItHeldBefore) {
   static_cast<void>(put("a.h5", record_of("A")));
   ASSERT_THAT(find().entries, SizeIs(1));
   for (const int written : {1, 500}) {
-    const pid_t child = ::fork();
-    if (child == 0) {
+    ASSERT_TRUE(is_killed_at([&] {
       Index open{index().string()};
       Transaction transaction = open.begin();
       open.remove("a.h5");
       for (int i = 0; i < written; ++i) open.put(std::to_string(i), {}, record_of("never committed"));
       static_cast<void>(std::raise(SIGKILL));
-    }
-    ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+    }));
     const Found found = find();
     EXPECT_EQ(found.followed.read_count + found.followed.removed_count, 0U);
     EXPECT_THAT(found.entries, SizeIs(1));
+    EXPECT_THAT(found.notices, SizeIs(0));
   }
+}
+
+TEST_F(Catalogue, KilledWithHalfATransactionInTheFileHoldsWhatItHeldBefore) {
+  static_cast<void>(put("a.h5", record_of("A")));
+  ASSERT_THAT(find().entries, SizeIs(1));
+  const std::string before = test::content_of(index());
+  ASSERT_TRUE(is_killed_at([&] {
+    Database open{index().string()};
+    // One page of memory: the rest goes into the file before the commit.
+    open.run(
+        "PRAGMA cache_size = 1; BEGIN IMMEDIATE; DELETE FROM record; DELETE FROM file;"
+        "INSERT INTO file(path, why) WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n LIMIT "
+        "500)"
+        " SELECT CAST(i AS BLOB), hex(randomblob(1000)) FROM n");
+    static_cast<void>(std::raise(SIGKILL));
+  }));
+  EXPECT_NE(test::content_of(index()), before);
+  const Found found = find();
+  EXPECT_EQ(found.followed.read_count + found.followed.removed_count, 0U);
+  EXPECT_THAT(found.entries, SizeIs(1));
+  EXPECT_THAT(found.notices, SizeIs(0));
 }
 
 TEST_F(Catalogue, TwoProcessesAtOnceFindTheSame) {
@@ -233,6 +298,7 @@ TEST_F(Catalogue, FindsByPatternsRangesRegimesAndFindings) {
   EXPECT_THAT(samples(*in_range("S=0.30:0.40", "--where")), ElementsAre("Liner 1", "bag 7"));
   EXPECT_THAT(samples(*in_range("mu_s=0.31:", "--where")), ElementsAre("bag 7"));
   EXPECT_THAT(samples(*in_range("S=:0.39", "--where")), ElementsAre("Liner 1"));
+  EXPECT_THAT(samples(*in_range("S=+0.31:+1", "--where")), ElementsAre("bag 7"));
   EXPECT_THAT(samples(*in_range("Q_threshold=:9", "--where")), SizeIs(0));  // It has no value.
   EXPECT_THAT(samples(*has_regime({"stick-slip"}, "--regime")), ElementsAre("bag 7"));
   EXPECT_THAT(samples(*has_finding({"pull-speed"}, "--finding")), ElementsAre("Liner 1"));
@@ -241,10 +307,22 @@ TEST_F(Catalogue, FindsByPatternsRangesRegimesAndFindings) {
   EXPECT_EQ(find(last).entries.front().sample.name, "bag 7");
 }
 
+TEST_F(Catalogue, AnAbsentTextComesLast) {
+  for (const char* const sample : {"", "A", "B"})
+    static_cast<void>(put(std::string{"of "} + sample + ".h5", record_of(sample)));
+  for (const bool reversed : {false, true}) {
+    const Found found = find({.conditions = {}, .order = "sample", .reversed = reversed});
+    ASSERT_THAT(found.entries, SizeIs(3));
+    EXPECT_EQ(found.entries.front().sample.name, reversed ? "B" : "A");
+    EXPECT_EQ(found.entries.back().sample.name, "");
+  }
+}
+
 TEST_F(Catalogue, RefusesNamingTheValueAndWhatIsKnown) {
   EXPECT_THAT(in_range("Sx=1:2", "--where").error().message,
               HasSubstr("--where Sx=1:2: there is no result called \"Sx\""));
-  for (const char* const wrong : {"S", "S=", "S=1", "S=:", "S=a:", "S=1:2:3"})
+  for (const char* const wrong :
+       {"S", "S=", "S=1", "S=:", "S=a:", "S=1:2:3", "S=nan:", "S=:inf", "S=+-1:", "S=++1:", "S=+:"})
     EXPECT_THAT(in_range(wrong, "--where").error().message, HasSubstr("must be RESULT=LOWEST:HIGHEST"))
         << wrong;
   EXPECT_THAT(has_regime({"stickslip"}, "--regime").error().message, HasSubstr("did you mean stick-slip?"));
@@ -273,6 +351,11 @@ TEST(MomentTest, ADayIsThatOfTheLocalClock) {
        {"2026-02-30", "2026-13-01", "21.11.2026", "2026-11-21T25:00", "yesterday", ""})
     EXPECT_THAT(moment_from_text(wrong, "--from").error().message, HasSubstr("write it as 2026-11-21"))
         << wrong;
+  for (const char* const far : {"1699-12-31", "2201-01-01", "0000-01-01", "9999-12-31T23:59:59Z"})
+    EXPECT_THAT(moment_from_text(far, "--from").error().message, HasSubstr("the year must be 1700 to 2200"))
+        << far;
+  EXPECT_LT(of("1700-01-01").begin_ns, of("1700-01-01").end_ns);
+  EXPECT_LT(of("2200-12-31").begin_ns, of("2200-12-31").end_ns);
   ::unsetenv("TZ");
   ::tzset();
 }

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/law/line.hpp"
@@ -70,6 +72,20 @@ TEST(LawLine, OnePlaceHasNoSlope) {
   EXPECT_FALSE(fit_line(std::span{points}.first(1), false));
 }
 
+/// Far from 0 the terms of a variance about 0 cancel below it.
+TEST(LawLine, VarianceIsNeverBelowZero) {
+  const std::vector<Point> points{{1e6, 0.1, 1e-4}, {1e6 + 0.01, 0.2, 1e-4}, {1e6 + 0.02, 0.3, 1e-4}};
+  const std::optional<Line> line = fit_line(points, true);
+  ASSERT_TRUE(line);
+  for (const Point& point : points) {
+    EXPECT_GT(line->predicted(point.x).variance, 0.0);
+    EXPECT_NEAR(line->predicted(point.x).value, point.y, 1e-6);
+    EXPECT_TRUE(std::isfinite(line->log_density(point)));
+  }
+  const double at_ends = 1e-8 * (1.0 / 3.0 + 1.0 / 2.0);
+  EXPECT_NEAR(line->predicted(1e6).variance, at_ends, 1e-3 * at_ends);
+}
+
 TEST(FrictionLaw, EachOfTheFourIsNamed) {
   constexpr double kBeta = 0.02;
   constexpr double kSlope = 2.0;
@@ -102,6 +118,32 @@ TEST(FrictionLaw, OneSpeedTellsNothingAndNamesASecondFarAway) {
   }
 }
 
+TEST(FrictionLaw, TheSameSpeedInOtherUnitsIsNoSecondSpeed) {
+  std::vector<LawTest> tests = tests_at({6.0, 6.0}, 0.02, 1.0);
+  for (std::size_t i = 1; i < tests.size(); i += 2)
+    tests[i].pull_speed_m_per_s = 152.4e-3 / 60.0 * (1.0 + 4.0 * std::numeric_limits<double>::epsilon());
+  ASSERT_NE(tests[0].pull_speed_m_per_s, tests[1].pull_speed_m_per_s);
+  const FrictionLaw found = find_law(tests);
+  EXPECT_FALSE(found.ageing.line);
+  EXPECT_FALSE(found.rate.line);
+  EXPECT_EQ(found.rate.reason, "all tests for K on the speed are at one speed");
+  ASSERT_TRUE(found.scores);
+  for (const LawScore& score : *found.scores) EXPECT_TRUE(std::isfinite(score.score));
+}
+
+TEST(FrictionLaw, AChainOfNearSpeedsIsNotOneSpeed) {
+  std::vector<LawTest> tests;
+  for (const double speed : {6.09, 6.00, 6.13, 6.05}) tests.push_back(test_at(speed, 0.0, 0.0));
+  const FrictionLaw found = find_law(tests);
+  const std::vector<Point>& K = found.rate.points;
+  EXPECT_EQ(K[1].x, K[3].x);  // 6.00 and 6.05
+  EXPECT_EQ(K[0].x, K[2].x);  // 6.09 and 6.13
+  EXPECT_NEAR(K[1].x, 6.025 * kInPerMin, 1e-12);
+  EXPECT_NEAR(K[0].x, 6.11 * kInPerMin, 1e-12);
+  EXPECT_EQ(found.ageing.points[1].x, found.ageing.points[3].x);
+  EXPECT_TRUE(found.rate.line);
+}
+
 TEST(FrictionLaw, ThreeTestsAreTooFew) {
   const std::vector<LawTest> tests{test_at(1.5, 0.02, 0), test_at(3, 0.02, 0), test_at(12, 0.02, 0)};
   const FrictionLaw found = find_law(tests);
@@ -126,7 +168,35 @@ TEST(FrictionLaw, WhatTheSystematicPartsCouldMakeIsNotNamed) {
   EXPECT_FALSE(found.told);
   EXPECT_EQ(found.law, Law::kAgeing);
   EXPECT_EQ(found.ageing.reason,
-            "S on the stick time is seen, but chance or systematic parts may have made it");
+            "S on the stick time is seen, but its systematic part may have made it: more pulls do not help");
+  EXPECT_FALSE(next_pull(found, tests, usual_range(tests), {}));
+}
+
+TEST(FrictionLaw, WhatTheSystematicPartsCouldHideIsNotRuledOut) {
+  std::vector<LawTest> tests = tests_at(kFourSpeeds, 0.0, 0.0);
+  ASSERT_EQ(find_law(tests).ageing.verdict, Verdict::kNo);
+  ASSERT_NEAR(find_law(tests).ageing.slope_that_matters, 0.008, 1e-4);
+  for (LawTest& test : tests) test.S->systematic = -0.016 * std::log10(*test.stick_time_s);
+  const FrictionLaw found = find_law(tests);
+  EXPECT_FALSE(found.told);
+  EXPECT_EQ(found.law, Law::kConstant);
+  EXPECT_EQ(found.ageing.verdict, Verdict::kCannotTell);
+  EXPECT_TRUE(found.ageing.systematic_vetoes);
+  EXPECT_NE(found.ageing.reason.find("times what matters (a tenth of S - K over a decade of speed), by its "
+                                     "systematic part: more pulls do not help"),
+            std::string::npos)
+      << found.ageing.reason;
+  EXPECT_FALSE(next_pull(found, tests, usual_range(tests), {}));
+}
+
+TEST(FrictionLaw, WithoutKItIsNotKnownWhatMatters) {
+  std::vector<LawTest> tests = tests_at(kFourSpeeds, 0.0, 0.0);
+  for (LawTest& test : tests) test.K.reset();
+  const FrictionLaw found = find_law(tests);
+  EXPECT_FALSE(found.told);
+  EXPECT_EQ(found.ageing.reason,
+            "S on the stick time is not seen, but no test has K, so what matters is not known");
+  EXPECT_FALSE(next_pull(found, tests, usual_range(tests), {}));
 }
 
 /// Of two speeds close together with tests that scatter, neither law can be ruled out.
@@ -150,7 +220,12 @@ TEST(NextPull, IsSlowEnoughToStick) {
       next_pull(find_law(tests), tests, {2.9 * kInPerMin, 50.0 * kInPerMin}, threshold);
   ASSERT_TRUE(next);
   EXPECT_LE(next->pull_speed_m_per_s, 0.8 * threshold * (1.0 + 1e-12));
-  EXPECT_FALSE(next_pull(find_law(tests), tests, {20.0 * kInPerMin, 50.0 * kInPerMin}, threshold));
+  // Where no pull sticks, K is asked.
+  const std::optional<NextPull> fast =
+      next_pull(find_law(tests), tests, {20.0 * kInPerMin, 50.0 * kInPerMin}, threshold);
+  ASSERT_TRUE(fast);
+  EXPECT_FALSE(fast->tells_ageing);
+  EXPECT_NEAR(fast->pull_speed_m_per_s, 50.0 * kInPerMin, 1e-9);
 }
 
 TEST(NextPull, TestsWithoutSticksAskForK) {

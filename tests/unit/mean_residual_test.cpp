@@ -21,6 +21,7 @@ MeanResidual residuals(int slips, int scans, const Law& law) {
   std::uniform_real_distribution<double> phase;
   MeanResidual mean;
   for (int slip = 0; slip < slips; ++slip) {
+    mean.begin_slip();
     const double first = phase(random);
     for (int scan = 0; scan < scans; ++scan) {
       const double periods = -0.5 + 1.5 * (first + scan) / scans;
@@ -64,17 +65,66 @@ TEST(MeanResidual, OfAGradualBeginSwingsAtNoFrequency) {
   EXPECT_FALSE(mean.swing());
 }
 
-TEST(MeanResidual, CountsNoMeanOfFewScansAndNoSpike) {
+TEST(MeanResidual, CountsNoMeanOfFewSlipsAndNoSpike) {
   MeanResidual few;
-  for (int i = 0; i < 3; ++i) few.add(0.2, 5.0);
+  for (int slip = 0; slip < 3; ++slip) {
+    few.begin_slip();
+    few.add(0.2, 5.0);
+    few.add(0.2, 5.0);
+  }
   EXPECT_EQ(few.freedom(), 0.0);
   EXPECT_EQ(few.square(), 0.0);
+  EXPECT_EQ(few.z(1000.0), 0.0);
   EXPECT_EQ(few.birge_ratio(), 1.0);
+  few.begin_slip();
   few.add(0.2, 1000.0);  // Counts as 3.
-  EXPECT_EQ(few.chi_squared(), 36.0);
+  EXPECT_EQ(few.chi_squared(), 63.0);
   few.add(-0.51, 1.0);
   few.add(1.0, 1.0);
-  EXPECT_EQ(few.count(), 4.0);
+  EXPECT_EQ(few.count(), 7.0);
+}
+
+TEST(MeanResidual, OfTwoSectionsIsThatOfAllSlips) {
+  const auto law = [](double periods) { return std::sin(30.0 * periods); };
+  MeanResidual both = residuals(50, 26, law);
+  const MeanResidual one = both;
+  both.add(one);
+  EXPECT_NEAR(both.chi_squared(), 2.0 * one.chi_squared(), 1e-9);
+  EXPECT_EQ(both.count(), 2.0 * one.count());
+}
+
+// Noise exceeds 2.326 in 1 % of the draws, and what repeats scatters by the error that is told.
+TEST(MeanResidual, ErrorsAreThoseOfNoise) {
+  constexpr int kDraws = 2000;
+  constexpr double kMany = 1e12;  // σ is known.
+  std::mt19937_64 random{kSeed};
+  std::normal_distribution<double> noise;
+  int beyond = 0;
+  double squares = 0.0;
+  double error = 0.0;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    MeanResidual quiet;
+    MeanResidual ringing;
+    double mean_square = 0.0;
+    for (int slip = 0; slip < 20; ++slip) {
+      quiet.begin_slip();
+      ringing.begin_slip();
+      for (int scan = 0; scan < 32; ++scan) {
+        const double periods = -0.5 + 1.5 * (0.5 + scan) / 32.0;
+        const double z = noise(random);
+        const double swing = 0.5 * std::sin(30.0 * periods);
+        quiet.add(periods, z);
+        ringing.add(periods, z + swing);
+        mean_square += swing * swing / (20.0 * 32.0);
+      }
+    }
+    beyond += quiet.z(kMany) > 2.326 ? 1 : 0;
+    const double off = ringing.square() - mean_square;
+    squares += off * off / kDraws;
+    error += ringing.error_of_square(kMany) / kDraws;
+  }
+  EXPECT_NEAR(beyond, 0.01 * kDraws, 4.0 * std::sqrt(0.01 * kDraws));
+  EXPECT_NEAR(std::sqrt(squares), error, 0.1 * error);
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ TEST(Recovery, LooksWhereRecordsAreMade) {
   test::write_content(elsewhere / "a.journal", "");
   fs::create_directory_symlink(elsewhere.path(), folder / "link");
   const io::FilesFound found = journals_in(folder.path());
-  EXPECT_THAT(found.files, ElementsAre(folder / "2026/11/a.journal", folder / "2026-11-21/a.journal"));
+  EXPECT_THAT(found.files, ElementsAre(folder / "2026-11-21/a.journal", folder / "2026/11/a.journal"));
   EXPECT_TRUE(found.unread.empty());
   EXPECT_TRUE(journals_in(folder / "nowhere").unread.empty());
 }
