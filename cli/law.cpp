@@ -150,8 +150,14 @@ std::string scores_table(const std::array<law::LawScore, law::kLaws.size()>& sco
 }
 
 std::string next_text(const law::NextPull& next) {
+  // Of inches per minute: nobody sets a belt more closely for it.
+  constexpr double kDigits = 2.0;
+  constexpr double kInPerMin_m_per_s = 0.0254 / 60.0;
+  const double speed = next.pull_speed_m_per_s / kInPerMin_m_per_s;
+  const double step = std::pow(10.0, std::floor(std::log10(speed)) + 1.0 - kDigits);
   return fmt::format("next: a pull at {} would tell most about {}\n",
-                     base::speed_text(next.pull_speed_m_per_s), next.tells_ageing ? "S" : "K");
+                     base::speed_text(std::round(speed / step) * step * kInPerMin_m_per_s),
+                     next.tells_ageing ? "S" : "K");
 }
 
 /// "!  …" in lines of at most 80 columns. \param reason  ASCII.
