@@ -25,7 +25,7 @@ class Lease {
   /// Takes or extends the lease; never shortens it. \return the holder if it is another one; then nothing
   /// changes.
   [[nodiscard]] std::optional<std::string> take(const std::string& who, double for_s, std::int64_t now_ns) {
-    const auto before = holder(now_ns);
+    auto before = holder(now_ns);
     if (before && *before != who) return before;
     if (!before) until_ns_ = asked_until_ns_ = now_ns;
     until_ns_ = std::max(until_ns_, after(for_s, now_ns));
