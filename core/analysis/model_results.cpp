@@ -33,7 +33,7 @@ constexpr std::size_t kEnoughToLeaveOutTheFirst = 3;
 struct Fitted {
   Eigen::Matrix<double, 5, 1> value;
   Eigen::Matrix<double, 5, 5> covariance;
-  Eigen::Matrix<double, 5, 5> of_noise;  ///< The part of the covariance that the noise of the scans makes.
+  Eigen::Matrix<double, 5, 5> of_noise;  ///< Covariance without the scatter from slip to slip.
   double beyond_noise = 0.0;             ///< Misfit::beyond_noise()
   signal::WanderingMean D;
   signal::RunningVariance amplitude;
