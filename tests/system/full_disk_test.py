@@ -70,7 +70,7 @@ def number_in(text):
 
 def main():
     build, source = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
-    with tempfile.TemporaryDirectory(prefix="stickslip-") as name:
+    with tempfile.TemporaryDirectory(prefix="stickslip-", ignore_cleanup_errors=True) as name:
         folder = pathlib.Path(name)
         records = folder / "records"
         records.mkdir()

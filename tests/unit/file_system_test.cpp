@@ -16,6 +16,7 @@
 #include "core/record/journal_care.hpp"
 #include "core/record/reader.hpp"
 #include "core/record/verdict.hpp"
+#include "tests/support/faulty_disk.hpp"
 #include "tests/support/journal_samples.hpp"
 #include "tests/support/lacking_disk.hpp"
 #include "tests/support/record_samples.hpp"
@@ -267,6 +268,37 @@ TEST_F(FileSystem, ADiskThatFailsIsNoFileSystemThatCannotSync) {
     EXPECT_FALSE(sync_folder(folder_.path(), disk_)) << error;
     EXPECT_FALSE(JournalWriter::create(folder_ / "b.journal", test::whole_record().header, disk_)) << error;
   }
+}
+
+// ---- a disk that is full for a moment ---------------------------------------------------------
+
+// HDF5 writes the last bytes of a data set when it is closed, where nobody can be told of an error.
+TEST_F(FileSystem, ARecordOfWhichOneWriteWasRefusedIsNotPublished) {
+  fs::remove(record_);
+  const fs::path journal = folder_ / "a.journal";
+  const fs::path whole = folder_ / "whole.journal";
+  test::write_journal(whole, test::whole_record());
+  test::FaultyDisk disk;
+  int refused = 0;
+  for (bool was_refused = true; was_refused; ++refused) {
+    SCOPED_TRACE(refused);
+    fs::copy_file(whole, journal);
+    disk.refuse(refused, 1, ENOSPC);
+    const auto made = finalise(journal, nullptr, disk);
+    was_refused = disk.calls() > refused;
+    if (made) {
+      EXPECT_EQ(judge(made->file).judgement, Judgement::kComplete);
+      EXPECT_EQ(read_record(made->file)->end->cycles.size(), test::whole_record().end->cycles.size());
+    } else {
+      // Where the removal of the journal was refused, the record is published.
+      const bool is_published = fs::exists(record_);
+      EXPECT_TRUE(is_published || fs::exists(journal));
+      EXPECT_TRUE(!is_published || judge(record_).judgement == Judgement::kComplete);
+    }
+    fs::remove(journal);
+    fs::remove(record_);
+  }
+  EXPECT_GT(refused, 100);
 }
 
 // ---- the probe ------------------------------------------------------------------------------
