@@ -250,7 +250,7 @@ void print_paths(const FindOptions& options, const Found& found) {
   }
   // For a program, with each byte of a name.
   if (options.paths0) {
-    static_cast<void>(std::fwrite(text.data(), 1, text.size(), stdout));
+    io::print_bytes(stdout, text);
   } else {
     io::print_text(stdout, text);
   }

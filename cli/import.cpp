@@ -182,17 +182,8 @@ std::string output_of(const std::string& output, std::size_t number, std::size_t
       .string();
 }
 
-/// Errors: as evaluation::analyse(); kFailure if the folder of the output cannot hold the scans for the time
-/// being.
-Result<record::EndRecord> analysed(const record::Record& record, const std::filesystem::path& folder) {
-  try {
-    return evaluation::analyse(record, folder);
-  } catch (const std::system_error& error) {
-    return base::failure("{}", error.what());
-  }
-}
-
-Result<std::string> run_import(const ImportOptions& options, const std::string& command_line) {
+/// Throws std::system_error if the folder of the output cannot hold the scans for the time being.
+Result<std::string> make_records(const ImportOptions& options, const std::string& command_line) {
   Result<traces::ImportRequest> request = request_of(options);
   if (!request) return tl::unexpected(request.error());
   if (options.inspect) return traces::inspect(*request);
@@ -202,23 +193,29 @@ Result<std::string> run_import(const ImportOptions& options, const std::string& 
   if (!options.column.empty() && options.output.empty()) return no_output();
   // An exported record keeps its method unless another one is asked for.
   if (options.column.empty() && options.method.empty()) request->process.method.clear();
+  const std::filesystem::path output_path{options.output};
+  if (!options.output.empty()) {
+    request->scratch_folder = output_path.has_parent_path() ? output_path.parent_path() : ".";
+    if (std::error_code ignored; !std::filesystem::is_directory(request->scratch_folder, ignored)) {
+      if (auto free = record::check_publishable(options.output); !free) return tl::unexpected(free.error());
+    }
+  }
   ProgressBar bar{base::printable(std::filesystem::path{options.file}.filename().string())};
   request->progress = [&bar](double done) { bar.show(done); };
   Result<traces::Imported> imported = traces::import_trace(*request);
   if (!imported) return tl::unexpected(imported.error());
   if (options.output.empty()) return no_output();
   std::string text = std::move(imported->report);
-  std::vector<record::Record>& records = imported->records;
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    if (auto free = record::check_publishable(output_of(options.output, i + 1, records.size())); !free)
+  std::vector<traces::ImportedTest>& tests = imported->tests;
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    if (auto free = record::check_publishable(output_of(options.output, i + 1, tests.size())); !free)
       return tl::unexpected(free.error());
   }
   bar.show("analysing");
-  const std::filesystem::path output_path{options.output};
-  for (record::Record& record : records) {
+  for (traces::ImportedTest& test : tests) {
+    record::Record& record = test.record;
     record.header.process.source_command = command_line;
-    Result<record::EndRecord> end =
-        analysed(record, output_path.has_parent_path() ? output_path.parent_path() : ".");
+    Result<record::EndRecord> end = evaluation::analyse(record, test.scans, request->scratch_folder);
     if (!end) return tl::unexpected(end.error());
     for (base::Finding& finding : record.end->results.findings)
       base::add(end->results.findings, std::move(finding));
@@ -226,13 +223,13 @@ Result<std::string> run_import(const ImportOptions& options, const std::string& 
     record::set_end(record, std::move(*end));
   }
   bar.show("writing");
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    const record::Record& record = records[i];
-    const std::string output = output_of(options.output, i + 1, records.size());
-    if (const Result<void> published = record::publish_record(record, output); !published) {
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    const record::Record& record = tests[i].record;
+    const std::string output = output_of(options.output, i + 1, tests.size());
+    if (const Result<void> published = record::publish_record(record, tests[i].scans, output); !published) {
       return tl::unexpected(published.error());
     }
-    text += fmt::format("{}: {} scans", base::printable(output), record.scan.size());
+    text += fmt::format("{}: {} scans", base::printable(output), tests[i].scans.size());
     std::int64_t missing = 0;
     for (const daq::Gap& gap : record.gaps) missing += gap.count;
     if (missing > 0)
@@ -243,6 +240,14 @@ Result<std::string> run_import(const ImportOptions& options, const std::string& 
       text += io::finding_text(finding, "  finding: ");
   }
   return text;
+}
+
+Result<std::string> run_import(const ImportOptions& options, const std::string& command_line) {
+  try {
+    return make_records(options, command_line);
+  } catch (const std::system_error& error) {
+    return base::failure("{}", error.what());
+  }
 }
 
 constexpr const char* kImportExamples =

@@ -19,14 +19,18 @@ namespace detail {
 inline int output_error = 0;
 }  // namespace detail
 
+/// Writes a text as it is. What cannot be written is told by flushed().
+inline void print_bytes(std::FILE* stream, std::string_view text) {
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), stream) != text.size() && stream == stdout)
+    detail::output_error = errno;
+}
+
 /// Prints a text of several lines; characters that could control the terminal are shown by their number. Line
 /// feeds pass: the caller escapes those inside names with base::printable(). \param has_colours  true: colour
 /// sequences of Paint pass too. What cannot be written is told by flushed().
 inline void print_text(std::FILE* stream, std::string_view text, bool has_colours = false) {
-  const std::string printable = base::printable_lines(text, has_colours);
-  errno = 0;
-  if (std::fwrite(printable.data(), 1, printable.size(), stream) != printable.size() && stream == stdout)
-    detail::output_error = errno;
+  print_bytes(stream, base::printable_lines(text, has_colours));
 }
 
 /// Prints one line to stderr: "PROGRAM: WHY".

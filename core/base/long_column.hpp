@@ -77,6 +77,19 @@ class LongColumn {
     blocks_.back()[size_ % kBlock] = value;
     ++size_;
   }
+  /// Removes the last elements but `size`, which is at most size().
+  void truncate(std::size_t size) {
+    STICKSLIP_EXPECTS(size <= size_);
+    const std::size_t blocks = (size + kBlock - 1) / kBlock;
+    if (blocks < blocks_.size()) {
+      std::erase_if(resident_, [&](std::size_t block) { return block >= blocks; });
+      blocks_.resize(blocks);
+      // The last block is in memory, since it may grow.
+      if (blocks > 0 && blocks_.back() == nullptr) fetch(blocks - 1);
+    }
+    size_ = size;
+  }
+  void pop_back() { truncate(size_ - 1); }
   void clear() { *this = LongColumn{}; }
   void assign(std::size_t count, T value) {
     clear();
@@ -101,6 +114,10 @@ class LongColumn {
   [[nodiscard]] iterator end() { return {this, size_}; }
   [[nodiscard]] auto rbegin() const { return std::make_reverse_iterator(end()); }
   [[nodiscard]] auto rend() const { return std::make_reverse_iterator(begin()); }
+
+  friend bool operator==(const LongColumn& a, const LongColumn& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end());
+  }
 
  private:
   using Buffer = std::unique_ptr<T[]>;  // NOLINT(modernize-avoid-c-arrays)

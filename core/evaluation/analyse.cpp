@@ -141,17 +141,28 @@ void RecordAnalysis::finish(record::EndRecord& end, std::span<const daq::ClockAn
   end.spikes = analysis_.spikes();
 }
 
-base::Result<TesterAnalysis> analyse_with_tester(const record::Record& record,
-                                                 const estimate::SharedPrior& prior,
-                                                 const std::filesystem::path& scratch_folder) {
+namespace {
+
+base::Result<TesterAnalysis> analyse_scans(const record::Record& record, const record::ScanSource& scans,
+                                           const estimate::SharedPrior& prior,
+                                           const std::filesystem::path& scratch_folder) {
   base::Result<RecordAnalysis> analysis =
       RecordAnalysis::make(record.header, scratch_folder, prior, record.gaps);
   if (!analysis) return tl::unexpected(analysis.error());
-  for (std::size_t i = 0; i < record.scan.size(); ++i) {
-    const std::span<const std::int32_t> second{record.second};
-    analysis->add(record.scan[i], std::span{record.raw}.subspan(i, 1),
-                  second.empty() ? second : second.subspan(i, 1));
+  base::LongColumn<std::int32_t> codes{scans.has_second() ? scratch_folder : std::filesystem::path{}};
+  if (scans.has_second()) {
+    scans.for_each_second_piece([&codes](std::span<const std::int32_t> piece) {
+      for (const std::int32_t code : piece) codes.push_back(code);
+    });
   }
+  std::size_t row = 0;
+  scans.for_each_piece([&](const record::ScanPiece& piece) {
+    for (std::size_t i = 0; i < piece.scan.size(); ++i, ++row) {
+      std::int32_t code = daq::SecondChannel::kNoCode;
+      if (!codes.empty()) code = std::as_const(codes)[row];
+      analysis->add(piece.scan[i], piece.raw.subspan(i, 1), {&code, codes.empty() ? 0U : 1U});
+    }
+  });
   TesterAnalysis result;
   result.end = record.end.value_or(record::EndRecord{});
   analysis->finish(result.end, record.anchors, record.gaps);
@@ -160,9 +171,22 @@ base::Result<TesterAnalysis> analyse_with_tester(const record::Record& record,
   return result;
 }
 
+}  // namespace
+
+base::Result<TesterAnalysis> analyse_with_tester(const record::Record& record,
+                                                 const estimate::SharedPrior& prior,
+                                                 const std::filesystem::path& scratch_folder) {
+  return analyse_scans(record, record::RecordScans{record}, prior, scratch_folder);
+}
+
 base::Result<record::EndRecord> analyse(const record::Record& record,
                                         const std::filesystem::path& scratch_folder) {
-  base::Result<TesterAnalysis> result = analyse_with_tester(record, {}, scratch_folder);
+  return analyse(record, record::RecordScans{record}, scratch_folder);
+}
+
+base::Result<record::EndRecord> analyse(const record::Record& record, const record::ScanSource& scans,
+                                        const std::filesystem::path& scratch_folder) {
+  base::Result<TesterAnalysis> result = analyse_scans(record, scans, {}, scratch_folder);
   if (!result) return tl::unexpected(result.error());
   return std::move(result->end);
 }

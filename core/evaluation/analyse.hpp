@@ -11,6 +11,7 @@
 #include "core/daq/calibration.hpp"
 #include "core/pipeline/test_facts.hpp"
 #include "core/record/record.hpp"
+#include "core/record/scan_source.hpp"
 
 namespace stickslip::evaluation {
 
@@ -67,6 +68,10 @@ class RecordAnalysis {
 /// record's end, if it has one. Errors as RecordAnalysis::make().
 /// \param scratch_folder  as RecordAnalysis::make(), which tells what may be thrown.
 [[nodiscard]] base::Result<record::EndRecord> analyse(const record::Record& record,
+                                                      const std::filesystem::path& scratch_folder = {});
+/// The same, with scans that are not in the record. Throws what reading the scans throws.
+[[nodiscard]] base::Result<record::EndRecord> analyse(const record::Record& record,
+                                                      const record::ScanSource& scans,
                                                       const std::filesystem::path& scratch_folder = {});
 
 /// The same, with what the test says about the tester.

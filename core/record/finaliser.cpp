@@ -195,7 +195,12 @@ base::Result<void> publish_record(const Record& record, const std::filesystem::p
   STICKSLIP_EXPECTS(record.scan.size() == record.raw.size());
   STICKSLIP_EXPECTS(record.second.empty() || record.second.size() == record.scan.size());
   STICKSLIP_EXPECTS(record.true_coefficient.empty() || record.true_coefficient.size() == record.scan.size());
-  return publish(record, RecordScans{record}, path, system_calls());
+  return publish_record(record, RecordScans{record}, path);
+}
+
+base::Result<void> publish_record(const Record& record, const ScanSource& scans,
+                                  const std::filesystem::path& path) {
+  return publish(record, scans, path, system_calls());
 }
 
 base::Result<void> publish_journal(const std::filesystem::path& journal, const Record& record,

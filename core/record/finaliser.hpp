@@ -13,6 +13,7 @@
 #include "core/base/result.hpp"
 #include "core/record/file_calls.hpp"
 #include "core/record/record.hpp"
+#include "core/record/scan_source.hpp"
 
 namespace stickslip::record {
 
@@ -64,6 +65,11 @@ struct Finalised {
 /// with `record` scan for scan, made durable, renamed. On any error no file is left.
 /// \param record  has an end.
 [[nodiscard]] base::Result<void> publish_record(const Record& record, const std::filesystem::path& path);
+
+/// The same, with scans that are not in the record.
+/// \param record  everything except the scans.
+[[nodiscard]] base::Result<void> publish_record(const Record& record, const ScanSource& scans,
+                                                const std::filesystem::path& path);
 
 /// As publish_record(), but the scans come piece by piece from the journal, which stays where it is.
 /// \param record  everything except the scans.

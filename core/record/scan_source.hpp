@@ -5,9 +5,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <span>
 
+#include "core/base/long_column.hpp"
 #include "core/base/scan_index.hpp"
 #include "core/record/record.hpp"
 
@@ -59,6 +61,33 @@ class RecordScans final : public ScanSource {
 
  private:
   const Record& record_;
+};
+
+/// Source on columns that may be longer than memory.
+class ColumnScans final : public ScanSource {
+ public:
+  /// \param folder  as of base::LongColumn.
+  explicit ColumnScans(const std::filesystem::path& folder = {}) : scan(folder), raw(folder) {}
+
+  // scan and raw have equal lengths; second too, or it is empty.
+  base::LongColumn<base::ScanIndex> scan;
+  base::LongColumn<double> raw;
+  base::LongColumn<std::int32_t> second;
+
+  void add(base::ScanIndex index, double value) {
+    scan.push_back(index);
+    raw.push_back(value);
+  }
+
+  [[nodiscard]] std::size_t size() const override { return scan.size(); }
+  [[nodiscard]] std::int64_t extent() const override {
+    return scan.empty() ? 0 : scan.back() - scan.front() + 1;
+  }
+  void for_each_piece(const std::function<void(const ScanPiece&)>& use) const override;
+  [[nodiscard]] bool has_force() const override { return false; }
+  void for_each_force_piece(const std::function<void(std::span<const double>)>& use) const override;
+  [[nodiscard]] bool has_second() const override { return !second.empty(); }
+  void for_each_second_piece(const std::function<void(std::span<const std::int32_t>)>& use) const override;
 };
 
 }  // namespace stickslip::record

@@ -5,7 +5,7 @@
 namespace stickslip::traces {
 
 std::vector<std::pair<std::size_t, std::size_t>> tests_in(
-    const std::vector<base::ScanIndex>& scan, const std::function<double(std::size_t)>& coefficient,
+    const base::LongColumn<base::ScanIndex>& scan, const std::function<double(std::size_t)>& coefficient,
     double rate_Hz) {
   using Event = pipeline::Segmenter::Event;
   pipeline::SegmenterSettings settings;

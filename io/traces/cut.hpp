@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/long_column.hpp"
 #include "core/base/scan_index.hpp"
 
 namespace stickslip::traces {
@@ -16,7 +17,7 @@ namespace stickslip::traces {
 /// range if it finds fewer than two.
 /// \param coefficient  of each of the scans.
 [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> tests_in(
-    const std::vector<base::ScanIndex>& scan, const std::function<double(std::size_t)>& coefficient,
+    const base::LongColumn<base::ScanIndex>& scan, const std::function<double(std::size_t)>& coefficient,
     double rate_Hz);
 
 }  // namespace stickslip::traces

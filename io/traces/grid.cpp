@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "core/signal/statistics.hpp"
 
 namespace stickslip::traces {
+
+using Index = base::LongColumn<std::int64_t>;
+
 namespace {
 
 /// A step that goes back by more than this part of the run's length is a clock that starts again.
@@ -21,10 +23,11 @@ constexpr double kCoarsest = 0.5;
 /// Times of the rows that count, without copies of a long column.
 class Times {
  public:
-  explicit Times(std::span<const double> all) : all_(all) {}
+  explicit Times(const RowView& all) : all_(all) {}
 
   /// Leaves out each row with the time of the row before it; true for such a row.
-  std::vector<bool> skip_doubled() {
+  std::vector<bool> skip_doubled(const std::filesystem::path& scratch_folder) {
+    rows_ = base::LongColumn<std::size_t>{scratch_folder};
     std::vector<bool> doubled(all_.size(), false);
     for (std::size_t i = 0; i < all_.size(); ++i) {
       doubled[i] = i > 0 && all_[i] == all_[i - 1];
@@ -35,19 +38,19 @@ class Times {
 
   [[nodiscard]] std::size_t size() const noexcept { return rows_.empty() ? all_.size() : rows_.size(); }
   /// In the column, of one of size().
-  [[nodiscard]] std::size_t row(std::size_t i) const noexcept { return rows_.empty() ? i : rows_[i]; }
-  [[nodiscard]] double operator[](std::size_t i) const noexcept { return all_[row(i)]; }
+  [[nodiscard]] std::size_t row(std::size_t i) const { return rows_.empty() ? i : rows_[i]; }
+  [[nodiscard]] double operator[](std::size_t i) const { return all_[row(i)]; }
 
   /// Steps from one time to the next.
   [[nodiscard]] std::size_t steps() const noexcept { return size() - 1; }
-  [[nodiscard]] double step(std::size_t i) const noexcept { return (*this)[i + 1] - (*this)[i]; }
+  [[nodiscard]] double step(std::size_t i) const { return (*this)[i + 1] - (*this)[i]; }
   [[nodiscard]] double median_step() const {
     return signal::median_of(steps(), [this](std::size_t i) { return step(i); });
   }
 
  private:
-  std::span<const double> all_;
-  std::vector<std::size_t> rows_;  ///< Empty: all.
+  RowView all_;
+  base::LongColumn<std::size_t> rows_;  ///< Empty: all.
 };
 
 struct Interval {
@@ -78,11 +81,15 @@ struct Line {
 };
 
 /// Least squares of the times on the indices.
-Line line_through(const std::vector<std::int64_t>& index, const Times& time) {
+Line line_through(const Index& index, const Times& time) {
   const auto n = static_cast<double>(time.size());
-  const double mean_x = std::accumulate(index.begin(), index.end(), 0.0) / n;
+  double mean_x = 0.0;
   double mean_y = 0.0;
-  for (std::size_t i = 0; i < time.size(); ++i) mean_y += time[i];
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    mean_x += static_cast<double>(index[i]);
+    mean_y += time[i];
+  }
+  mean_x /= n;
   mean_y /= n;
   double xx = 0.0;
   double xy = 0.0;
@@ -103,7 +110,7 @@ struct Fit {
   std::size_t largest = 0;  ///< Of which time.
 };
 
-Fit fit_of(const std::vector<std::int64_t>& index, const Times& time, double digit_s) {
+Fit fit_of(const Index& index, const Times& time, double digit_s) {
   Fit fit;
   fit.line = line_through(index, time);
   double largest = 0.0;
@@ -120,15 +127,16 @@ Fit fit_of(const std::vector<std::int64_t>& index, const Times& time, double dig
 }
 
 /// Cumulative, so that a slow drift of the clock moves no row.
-std::vector<std::int64_t> indices(const Times& time, double interval) {
-  std::vector<std::int64_t> index{0};
-  index.reserve(time.size());
+Index indices(const Times& time, double interval, const std::filesystem::path& scratch_folder) {
+  Index index{scratch_folder};
+  std::int64_t scan = 0;
+  index.push_back(scan);
   double carried = 0.0;  // What rounding left of the steps so far, in intervals.
   for (std::size_t i = 0; i < time.steps(); ++i) {
     const double wanted = time.step(i) / interval + carried;
     const double whole = std::max(1.0, std::round(wanted));
     carried = wanted - whole;
-    index.push_back(index.back() + static_cast<std::int64_t>(whole));
+    index.push_back(scan += static_cast<std::int64_t>(whole));
   }
   return index;
 }
@@ -153,7 +161,13 @@ base::Result<void> check_rate(const GridOptions& options, double rate_Hz, const 
 
 }  // namespace
 
-std::vector<std::size_t> runs_in(const std::vector<double>& time_s) {
+Index counted(std::size_t count, const std::filesystem::path& scratch_folder) {
+  Index index{scratch_folder};
+  for (std::size_t i = 0; i < count; ++i) index.push_back(static_cast<std::int64_t>(i));
+  return index;
+}
+
+std::vector<std::size_t> runs_in(const RowView& time_s) {
   std::vector<std::size_t> runs{0};
   double highest = time_s.empty() ? 0.0 : time_s.front();
   for (std::size_t i = 1; i < time_s.size(); ++i) {
@@ -169,13 +183,13 @@ std::vector<std::size_t> runs_in(const std::vector<double>& time_s) {
   return runs;
 }
 
-base::Result<Grid> grid_of(std::span<const double> all_times, const GridOptions& options,
-                           const Place& place) {
+base::Result<Grid> grid_of(const RowView& all_times, const GridOptions& options, const Place& place) {
   Grid grid;
   Times time{all_times};
-  if (options.skip_doubled) grid.doubled = time.skip_doubled();
-  const auto [low, high] = std::minmax_element(all_times.begin(), all_times.end());
-  if (*low == *high || time.size() < 2) {
+  if (options.skip_doubled) grid.doubled = time.skip_doubled(options.scratch_folder);
+  bool advances = false;
+  for (std::size_t i = 1; i < all_times.size() && !advances; ++i) advances = all_times[i] != all_times[0];
+  if (!advances || time.size() < 2) {
     return base::usage_error(
         "{}: the time column does not advance: give --time-column none and --rate HZ, or the name of "
         "another column of times",
@@ -211,8 +225,7 @@ base::Result<Grid> grid_of(std::span<const double> all_times, const GridOptions&
     }
     grid.rate_Hz = *options.rate_Hz;
     grid.rate_checked = false;
-    grid.index.resize(all_times.size());
-    std::iota(grid.index.begin(), grid.index.end(), std::int64_t{0});
+    grid.index = counted(all_times.size(), options.scratch_folder);
     grid.doubled.clear();
     return grid;
   }
@@ -223,7 +236,8 @@ base::Result<Grid> grid_of(std::span<const double> all_times, const GridOptions&
         place(time.row(first_standing + 1)), standing);
   }
 
-  std::vector<std::int64_t> index = indices(time, interval);
+  const auto index_for = [&](double step_s) { return indices(time, step_s, options.scratch_folder); };
+  Index index = index_for(interval);
   // A step of two coarse digits is one long interval or a missing row; only without gaps is it surely the
   // first.
   if (unequal && options.digit_s >= kCoarsest * interval &&
@@ -235,13 +249,13 @@ base::Result<Grid> grid_of(std::span<const double> all_times, const GridOptions&
           "--rate HZ",
           place(0), options.digit_s);
     }
-    index = indices(time, 1.0 / *options.rate_Hz);
+    index = index_for(1.0 / *options.rate_Hz);
     grid.rate_checked = false;
   }
   Fit fit = fit_of(index, time, options.digit_s);
   if (unequal && options.digit_s >= kCoarsest * interval && fit.jitter > kLargestJitter) {
     // Long intervals do not fit: the long steps are missing rows.
-    std::vector<std::int64_t> with_gaps = indices(time, time.median_step());
+    Index with_gaps = index_for(time.median_step());
     if (const Fit other = fit_of(with_gaps, time, options.digit_s); other.jitter <= kLargestJitter) {
       index = std::move(with_gaps);
       fit = other;
@@ -266,8 +280,12 @@ base::Result<Grid> grid_of(std::span<const double> all_times, const GridOptions&
   if (grid.doubled.empty()) {
     grid.index = std::move(index);
   } else {
-    grid.index.assign(all_times.size(), 0);
-    for (std::size_t i = 0; i < time.size(); ++i) grid.index[time.row(i)] = index[i];
+    grid.index = Index{options.scratch_folder};
+    std::size_t kept = 0;  // A row that is left out has the index of the row before it.
+    for (const bool doubled : grid.doubled) {
+      if (!doubled) ++kept;
+      grid.index.push_back(std::as_const(index)[kept - 1]);
+    }
   }
   return grid;
 }

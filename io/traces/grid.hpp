@@ -4,12 +4,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "io/traces/row_view.hpp"
+
+#include "core/base/long_column.hpp"
 #include "core/base/result.hpp"
 
 namespace stickslip::traces {
@@ -25,13 +28,14 @@ struct GridOptions {
   bool resample = false;          ///< Unequal intervals are no error.
   bool skip_doubled = false;      ///< A row with the time of the row before it is left out.
   std::string time_unit;          ///< In which the times were read, for messages.
+  std::filesystem::path scratch_folder{};  ///< Of Grid::index, as of base::LongColumn.
 };
 
 /// Rows of one run on equal intervals.
 struct Grid {
   double rate_Hz = 0.0;
-  std::vector<std::int64_t> index;  ///< Of each row, from 0, rising; a jump is a gap.
-  std::vector<bool> doubled;        ///< Rows to leave out; empty: none.
+  base::LongColumn<std::int64_t> index;  ///< Of each row, from 0, rising; a jump is a gap.
+  std::vector<bool> doubled;             ///< Rows to leave out; empty: none.
   double largest_jitter = 0.0;  ///< Largest displacement, of an interval, beyond the rounding of the digits.
   std::size_t largest_row = 0;
   bool rate_checked = true;  ///< False where the times are too coarse to check the stated rate.
@@ -41,13 +45,17 @@ struct Grid {
 /// Where a row's number stands for the user: "trace.csv:17".
 using Place = std::function<std::string(std::size_t row)>;
 
+/// 0, 1, … of rows whose times are not read. \param scratch_folder  as GridOptions.
+[[nodiscard]] base::LongColumn<std::int64_t> counted(std::size_t count,
+                                                     const std::filesystem::path& scratch_folder);
+
 /// First rows of the runs of a column in which a clock starts again. One element, 0, for one run.
-[[nodiscard]] std::vector<std::size_t> runs_in(const std::vector<double>& time_s);
+[[nodiscard]] std::vector<std::size_t> runs_in(const RowView& time_s);
 
 /// \param time_s  of the rows of one run, finite, at least two.
 /// Errors, kUsage, each with its remedy: times that do not advance, run backwards, are doubled, are too
 /// coarse, are unequal by more than kLargestJitter, or have another rate than the stated one.
-[[nodiscard]] base::Result<Grid> grid_of(std::span<const double> time_s, const GridOptions& options,
+[[nodiscard]] base::Result<Grid> grid_of(const RowView& time_s, const GridOptions& options,
                                          const Place& place);
 
 }  // namespace stickslip::traces

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <numeric>
 #include <span>
 #include <utility>
 
@@ -105,15 +104,12 @@ Result<std::string> unit_of(const ImportRequest& request, const ColumnName& colu
 /// Scans of one run on equal intervals.
 struct Run {
   double rate_Hz = 0.0;
-  std::vector<daq::ScanIndex> scan;
-  std::vector<double> raw;
+  record::ColumnScans scans;
 };
 
 /// Values at equal intervals, by linear interpolation between rows; none across a hole or a missing row.
-Run resampled(const Grid& grid, std::span<const double> time, std::span<const double> value) {
-  Run run;
-  run.rate_Hz = grid.rate_Hz;
-  const double step = 1.0 / grid.rate_Hz;
+void resample(double rate_Hz, const RowView& time, const RowView& value, record::ColumnScans& scans) {
+  const double step = 1.0 / rate_Hz;
   std::size_t right = 1;
   const double end = time.back() + 1e-9 * step;
   for (daq::ScanIndex k = 0; static_cast<double>(k) * step <= end - time.front(); ++k) {
@@ -122,25 +118,17 @@ Run resampled(const Grid& grid, std::span<const double> time, std::span<const do
     const double length = time[right] - time[right - 1];
     if (length > 2.0 * step || !(length > 0.0)) continue;
     const double mean = std::lerp(value[right - 1], value[right], (at - time[right - 1]) / length);
-    if (!std::isfinite(mean)) continue;
-    run.scan.push_back(k);
-    run.raw.push_back(mean);
+    if (std::isfinite(mean)) scans.add(k, mean);
   }
-  return run;
 }
 
 /// Rows of equal intervals, without holes and doubled ones.
-Run uniform(Grid grid, std::vector<double> value) {
-  Run run{grid.rate_Hz, std::move(grid.index), std::move(value)};
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < run.raw.size(); ++i) {
-    if (!std::isfinite(run.raw[i]) || (!grid.doubled.empty() && grid.doubled[i])) continue;
-    run.scan[kept] = run.scan[i];
-    run.raw[kept++] = run.raw[i];
+void take_rows(const Grid& grid, const RowView& value, record::ColumnScans& scans) {
+  for (std::size_t row = 0; row < value.size(); ++row) {
+    const double at = value[row];
+    if (!std::isfinite(at) || (!grid.doubled.empty() && grid.doubled[row])) continue;
+    scans.add(grid.index[row], at);
   }
-  run.scan.resize(kept);
-  run.raw.resize(kept);
-  return run;
 }
 
 /// Mean coefficient of the scans of sliding, with its sign; spikes do not count.
@@ -168,7 +156,7 @@ class Importer {
     const auto columns = columns_of(request_, dialect_);
     if (!columns) return tl::unexpected(columns.error());
     columns_ = *columns;
-    auto table = read_table(source_, dialect_, columns_.value, columns_.time);
+    auto table = read_table(source_, dialect_, columns_.value, columns_.time, request_.scratch_folder);
     if (!table) return tl::unexpected(table.error());
     table_ = std::move(*table);
     row_count_ = table_.value.size();
@@ -184,14 +172,12 @@ class Importer {
           request_.path);
     }
     if (auto ok = find_quantity(); !ok) return tl::unexpected(ok.error());
-    if (auto ok = take_counts(); !ok) return tl::unexpected(ok.error());
+    if (auto ok = check_counts(); !ok) return tl::unexpected(ok.error());
     if (auto ok = find_times(); !ok) return tl::unexpected(ok.error());
-    if (request_.reverse) {
-      std::reverse(table_.value.begin(), table_.value.end());
-      std::reverse(time_s_.begin(), time_s_.end());
-      move_start();
-    }
-    for (double& value : table_.value) value *= scale_;
+    if (request_.reverse) move_start();
+    const double offset =
+        quantity_ == RawQuantity::kCounts ? static_cast<double>(request_.counts->lowest) : 0.0;
+    value_ = RowView{table_.value, offset, scale_, request_.reverse};
     const std::vector<std::size_t> runs = time_s_.empty() ? std::vector<std::size_t>{0} : runs_in(time_s_);
     if (runs.size() > 1)
       note("{} runs: the clock starts again in {} {}", runs.size(), row_word(), line(runs[1]));
@@ -269,22 +255,19 @@ class Importer {
     return {};
   }
 
-  /// Codes from 0 at the lower rail, as a board counts them.
-  Result<void> take_counts() {
+  /// That they are codes; 0 at the lower rail, as a board counts them, is made of them later.
+  Result<void> check_counts() const {
     if (quantity_ != RawQuantity::kCounts) return {};
     const auto lowest = static_cast<double>(request_.counts->lowest);
     const auto highest = static_cast<double>(request_.counts->highest);
     for (std::size_t row = 0; row < table_.value.size(); ++row) {
-      double& value = table_.value[row];
-      if (std::isnan(value)) continue;
-      if (value != std::floor(value) || value < lowest || value > highest) {
-        return base::usage_error(
-            "{}:{}: column \"{}\" is {}, and counts are whole numbers of {} … {}: correct {}", request_.path,
-            table_.line(row), base::one_line(dialect_.columns[columns_.value].text, 40), value,
-            request_.counts->lowest, request_.counts->highest,
-            value == std::floor(value) ? "--count-range" : "--unit, or choose another column");
-      }
-      value -= lowest;
+      const double value = table_.value[row];
+      if (std::isnan(value) || (value == std::floor(value) && value >= lowest && value <= highest)) continue;
+      return base::usage_error(
+          "{}:{}: column \"{}\" is {}, and counts are whole numbers of {} … {}: correct {}", request_.path,
+          table_.line(row), base::one_line(dialect_.columns[columns_.value].text, 40), value,
+          request_.counts->lowest, request_.counts->highest,
+          value == std::floor(value) ? "--count-range" : "--unit, or choose another column");
     }
     return {};
   }
@@ -322,8 +305,7 @@ class Importer {
       note("time from column {} \"{}\" in {}{}", *columns_.time + 1, base::one_line(column.text, 40),
            unit->name, unit->inspected ? ", by inspection" : "");
     }
-    time_s_ = std::move(table_.time);
-    for (double& time : time_s_) time *= unit_s;
+    time_s_ = RowView{table_.time, 0.0, unit_s, request_.reverse};
     grid_options_.digit_s = std::pow(10.0, -table_.time_decimals) * unit_s;
     return {};
   }
@@ -340,45 +322,43 @@ class Importer {
     }
   }
 
-  /// A file of one run, the long one, gives its columns away: they are not held twice.
   Result<void> add_run(std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;
-    const bool whole = count == row_count_;
-    Run run;
+    const RowView value = value_.part(begin, count);
+    Run run{0.0, record::ColumnScans{scratch_folder(count)}};
     if (time_s_.empty()) {
+      run.rate_Hz = *request_.rate_Hz;
       Grid grid;
-      grid.rate_Hz = *request_.rate_Hz;
-      grid.index.resize(count);
-      std::iota(grid.index.begin(), grid.index.end(), std::int64_t{0});
-      run = uniform(std::move(grid), values(begin, end));
+      grid.index = counted(count, scratch_folder(count));
+      take_rows(grid, value, run.scans);
     } else {
-      const std::span time = std::span{time_s_}.subspan(begin, count);
-      auto grid = grid_of(time, grid_options_, [this, begin](std::size_t row) {
+      const RowView time = time_s_.part(begin, count);
+      grid_options_.scratch_folder = scratch_folder(count);
+      const auto grid = grid_of(time, grid_options_, [this, begin](std::size_t row) {
         return fmt::format("{}:{}", request_.path, line(begin + row));
       });
       if (!grid) return tl::unexpected(grid.error());
       tell(*grid, begin);
-      if (!grid->uniform) {
-        run = resampled(*grid, time, std::span{table_.value}.subspan(begin, count));
+      run.rate_Hz = grid->rate_Hz;
+      if (grid->uniform) {
+        take_rows(*grid, value, run.scans);
       } else {
-        if (whole) std::vector<double>{}.swap(time_s_);
-        run = uniform(std::move(*grid), values(begin, end));
+        resample(grid->rate_Hz, time, value, run.scans);
       }
     }
-    if (static_cast<double>(run.raw.size()) < (1.0 - kMostHoles) * static_cast<double>(count) ||
-        run.raw.size() < 2) {
+    const std::size_t scans = run.scans.size();
+    if (static_cast<double>(scans) < (1.0 - kMostHoles) * static_cast<double>(count) || scans < 2) {
       return base::usage_error("{}: {} of {} values of column \"{}\" are missing: choose another column",
-                               request_.path, count - run.raw.size(), count,
+                               request_.path, count - scans, count,
                                base::one_line(dialect_.columns[columns_.value].text, 40));
     }
     return add_tests(std::move(run));
   }
 
-  /// Of the rows [begin, end), which nobody asks for again.
-  std::vector<double> values(std::size_t begin, std::size_t end) {
-    if (end - begin == row_count_) return std::move(table_.value);
-    return {table_.value.begin() + static_cast<std::ptrdiff_t>(begin),
-            table_.value.begin() + static_cast<std::ptrdiff_t>(end)};
+  /// None for columns that stay in memory anyway: a trace may have many short runs and tests.
+  [[nodiscard]] std::filesystem::path scratch_folder(std::size_t count) const {
+    using Column = base::LongColumn<double>;
+    return count > Column::kResident * Column::kBlock ? request_.scratch_folder : std::filesystem::path{};
   }
 
   void tell(const Grid& grid, std::size_t begin) {
@@ -416,39 +396,36 @@ class Importer {
     header.start_realtime_ns = start_ns_;
     const daq::Calibration calibration{header.board, load_cell_.value_or(daq::LoadCell{}),
                                        header.tester.tester().normal_load_N()};
-    const auto coefficient = [&](std::size_t i) { return calibration.coefficient(run.raw[i]); };
-    if (const double level = sliding_level(run.raw.size(), coefficient); level < 0.0) {
+    const base::LongColumn<double>& raw = run.scans.raw;
+    const auto coefficient = [&](std::size_t i) { return calibration.coefficient(raw[i]); };
+    if (const double level = sliding_level(raw.size(), coefficient); level < 0.0) {
       return base::usage_error("{}: the force is negative while sliding, {:.4g} as a coefficient: {}",
                                request_.path, level,
                                request_.invert ? "leave out --invert" : "give --invert");
     }
-    const auto tests = tests_in(run.scan, coefficient, run.rate_Hz);
+    const base::LongColumn<daq::ScanIndex>& scan = run.scans.scan;
+    const auto tests = tests_in(scan, coefficient, run.rate_Hz);
     for (const auto& [begin, end] : tests) {
-      record::Record record = whole;
-      if (tests.size() == 1) {
-        record.scan = std::move(run.scan);
-        record.raw = std::move(run.raw);
-      } else {
-        const auto from = static_cast<std::ptrdiff_t>(begin);
-        const auto to = static_cast<std::ptrdiff_t>(end);
-        record.scan.assign(run.scan.begin() + from, run.scan.begin() + to);
-        record.raw.assign(run.raw.begin() + from, run.raw.begin() + to);
+      ImportedTest test{whole, record::ColumnScans{scratch_folder(end - begin)}};
+      daq::ScanIndex next = scan[begin];
+      for (std::size_t i = begin; i < end; ++i) {
+        if (scan[i] > next)
+          test.record.gaps.push_back({next, scan[i] - next, false, daq::GapCause::kMissingScans});
+        next = scan[i] + 1;
+        if (tests.size() > 1) test.scans.add(scan[i], raw[i]);
       }
-      for (std::size_t i = 1; i < record.scan.size(); ++i) {
-        const daq::ScanIndex next = record.scan[i - 1] + 1;
-        if (record.scan[i] > next)
-          record.gaps.push_back({next, record.scan[i] - next, false, daq::GapCause::kMissingScans});
-      }
-      imported_.records.push_back(std::move(record));
+      if (tests.size() == 1) test.scans = std::move(run.scans);
+      imported_.tests.push_back(std::move(test));
     }
     return {};
   }
 
   Result<Imported> finish() {
     std::int64_t number = 0;
-    for (record::Record& record : imported_.records) {
+    for (ImportedTest& test : imported_.tests) {
+      record::Record& record = test.record;
       record.header.uuid = record::make_uuid();
-      if (imported_.records.size() > 1) record.header.test_number = ++number;
+      if (imported_.tests.size() > 1) record.header.test_number = ++number;
       record::ProcessFacts& process = record.header.process;
       process.source_size = table_.size;
       process.source_file = std::filesystem::path{request_.path}.filename().string();
@@ -468,7 +445,8 @@ class Importer {
   Columns columns_;
   TraceTable table_;
   std::size_t row_count_ = 0;
-  std::vector<double> time_s_;
+  RowView value_;   ///< In board.quantity.
+  RowView time_s_;  ///< Empty without a column of times.
   GridOptions grid_options_;
   std::optional<std::int64_t> start_ns_;
   std::string unit_;
@@ -515,19 +493,20 @@ Result<Imported> import_own(const ImportRequest& request, const Source& source) 
         "--column NAME to read it as one of another program",
         request.path, option);
   }
-  auto record = read_own_table(source);
-  if (!record) return tl::unexpected(record.error());
-  record::Metadata& metadata = record->header.metadata;
+  auto test = read_own_table(source, request.scratch_folder);
+  if (!test) return tl::unexpected(test.error());
+  record::RecordHeader& header = test->record.header;
+  record::Metadata& metadata = header.metadata;
   for (const auto& [key, value] : request.metadata) {
     if (const auto added = record::add_metadata(metadata, fmt::format("{}={}", key, value), "--set-meta");
         !added)
       return tl::unexpected(added.error());
   }
-  if (!request.process.method.empty()) record->header.process.method = request.process.method;
+  if (!request.process.method.empty()) header.process.method = request.process.method;
   Imported imported;
   imported.is_own = true;
-  imported.report = record->header.process.source_reading;
-  imported.records.push_back(std::move(*record));
+  imported.report = header.process.source_reading;
+  imported.tests.push_back(std::move(*test));
   return imported;
 }
 

@@ -2,12 +2,14 @@
 /// Records from a trace that another program wrote: text, MATLAB or HDF5.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "io/traces/dialect.hpp"
+#include "io/traces/own_table.hpp"
 #include "io/traces/quantity_unit.hpp"
 
 #include "core/base/result.hpp"
@@ -36,12 +38,15 @@ struct ImportRequest {
   record::ProcessFacts process;
   record::Metadata metadata;
   std::function<void(double)> progress{};  ///< As Source::progress.
+  /// Folder of the scratch files for a trace that is longer than memory, as of base::LongColumn; empty: all
+  /// in memory.
+  std::filesystem::path scratch_folder{};
 };
 
 struct Imported {
-  std::vector<record::Record> records;  ///< One for each test of the trace, without results.
-  std::string report;                   ///< What was recognised and left out: lines for people.
-  /// The record came back from an export: it has spikes, and an end with status and reasons.
+  std::vector<ImportedTest> tests;  ///< One for each test of the trace, without results.
+  std::string report;               ///< What was recognised and left out: lines for people.
+  /// The test came back from an export: it has spikes, and an end with status and reasons.
   bool is_own = false;
 };
 
@@ -50,7 +55,8 @@ struct Imported {
 
 /// Reads the file and makes records that are not analysed yet. Scans are at equal intervals; missing rows and
 /// holes are gaps. A trace of several tests is cut where the force has returned to zero between them. Errors:
-/// kUsage with place, value and a remedy; kFailure if the file cannot be read.
+/// kUsage with place, value and a remedy; kFailure if the file cannot be read. Throws std::system_error that
+/// names the scratch folder if that cannot hold the scans.
 /// \param request  of a table of `stickslip export`: path and dialect alone, and process.method if it is
 /// another one; the record's other facts are those that the table states.
 [[nodiscard]] base::Result<Imported> import_trace(const ImportRequest& request);

@@ -345,7 +345,8 @@ base::Result<std::vector<double>> NumberFile::read(std::size_t column) {
   return values;
 }
 
-base::Result<TraceTable> NumberFile::table(std::size_t value_column, std::optional<std::size_t> time_column) {
+base::Result<TraceTable> NumberFile::table(std::size_t value_column, std::optional<std::size_t> time_column,
+                                           const std::filesystem::path& scratch_folder) {
   if (time_column && size(*time_column) != size(value_column)) {
     return base::usage_error(
         "{}: \"{}\" has {} values, \"{}\" {}: choose columns of one length, or give --time-column none and "
@@ -355,22 +356,24 @@ base::Result<TraceTable> NumberFile::table(std::size_t value_column, std::option
   }
   auto values = read(value_column);
   if (!values) return tl::unexpected(values.error());
-  TraceTable table;
+  TraceTable table{scratch_folder};
   table.sha256 = sha256_;
   table.size = file_size_;
-  table.value = *std::move(values);
-  for (double& value : table.value) {
+  for (double& value : *values) {
     if (!std::isfinite(value)) value = base::kNaN;
   }
   table.places.emplace_back(0, 1);
-  if (!time_column) return table;
+  if (!time_column) {
+    for (const double value : *values) table.value.push_back(value);
+    return table;
+  }
   auto time = read(*time_column);
   if (!time) return tl::unexpected(time.error());
   table.time_decimals = decimals_of(*time, columns_[*time_column].single);
-  std::size_t kept = 0;
   for (std::size_t row = 0; row < time->size(); ++row) {
     const double at = (*time)[row];
-    const double value = table.value[row];
+    const double value = (*values)[row];
+    const std::size_t kept = table.value.size();
     if (!std::isfinite(at)) {
       if (std::isnan(value)) continue;  // A row that is none.
       return base::usage_error(
@@ -381,12 +384,9 @@ base::Result<TraceTable> NumberFile::table(std::size_t value_column, std::option
     if (kept == 0) table.first_time = at;
     if (const auto place = static_cast<std::int64_t>(row) + 1; table.line(kept) != place)
       table.places.emplace_back(kept, place);
-    (*time)[kept] = at - table.first_time;
-    table.value[kept++] = value;
+    table.time.push_back(at - table.first_time);
+    table.value.push_back(value);
   }
-  table.value.resize(kept);
-  time->resize(kept);
-  table.time = *std::move(time);
   return table;
 }
 

@@ -57,7 +57,8 @@ class NumberFile {
 
   /// As read_table().
   [[nodiscard]] base::Result<TraceTable> table(std::size_t value_column,
-                                               std::optional<std::size_t> time_column);
+                                               std::optional<std::size_t> time_column,
+                                               const std::filesystem::path& scratch_folder);
 
  private:
   NumberFile(const Source& source, bool is_hdf5);

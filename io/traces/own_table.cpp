@@ -88,9 +88,12 @@ std::string_view raw_column(daq::RawQuantity quantity) noexcept {
 
 class OwnReader {
  public:
-  explicit OwnReader(const std::string& path) : path_(path) {}
+  OwnReader(const std::string& path, const std::filesystem::path& scratch_folder)
+      : path_(path), scans_(scratch_folder) {
+    scans_.second = base::LongColumn<std::int32_t>{scratch_folder};
+  }
 
-  Result<record::Record> read(TextFile& file) {
+  Result<ImportedTest> read(TextFile& file) {
     std::string line;
     while (true) {
       const auto more = file.next(line);
@@ -113,8 +116,8 @@ class OwnReader {
     process.source_size = static_cast<std::int64_t>(file.bytes_read());
     process.source_sha256 = file.sha256();
     process.source_reading =
-        fmt::format("recognised: a table of stickslip export, {} scans\n", record_.scan.size());
-    return std::move(record_);
+        fmt::format("recognised: a table of stickslip export, {} scans\n", scans_.size());
+    return ImportedTest{std::move(record_), std::move(scans_)};
   }
 
  private:
@@ -199,7 +202,7 @@ class OwnReader {
     }
     const daq::BoardInfo& board = record_.header.board;
     const auto scan = number_in<std::int64_t>(fields_[scan_]);
-    const std::int64_t first = record_.scan.empty() ? 0 : record_.scan.back() + 1;
+    const std::int64_t first = scans_.scan.empty() ? 0 : scans_.scan.back() + 1;
     if (!scan || *scan < first || *scan > record::kLastScan)
       return refused("scan", fields_[scan_],
                      fmt::format("a whole number of {} … {}", first, record::kLastScan));
@@ -216,18 +219,17 @@ class OwnReader {
         return refused(second_name_, text,
                        fmt::format("a whole number of 0 … {}, or nothing", board.second->maxdata));
       }
-      record_.second.push_back(*code);
+      scans_.second.push_back(*code);
     }
-    if (!record_.scan.empty() && *scan > first) jumps_.push_back({first, *scan, line_});
-    record_.scan.push_back(*scan);
-    record_.raw.push_back(*raw);
+    if (!scans_.scan.empty() && *scan > first) jumps_.push_back({first, *scan, line_});
+    scans_.add(*scan, *raw);
     if (fields_[spike_] == "1") record_.spikes.push_back(*scan);
     return {};
   }
 
   /// Refuses a table that lacks rows: each scan between two rows is in a gap, and no row is.
   Result<void> check_rows() {
-    const auto& scans = record_.scan;
+    const base::LongColumn<daq::ScanIndex>& scans = scans_.scan;
     std::ranges::stable_sort(gap_lines_, {}, [](const auto& gap) { return gap.first.first; });
     for (const auto& [gap, line] : gap_lines_) {
       const auto row = std::ranges::lower_bound(scans, gap.first);
@@ -262,6 +264,7 @@ class OwnReader {
 
   std::string path_;
   record::Record record_;
+  record::ColumnScans scans_;
   std::vector<std::pair<daq::Gap, std::int64_t>> gap_lines_;  ///< Gaps with their lines.
   std::vector<Jump> jumps_;
   std::optional<std::size_t> row_count_;  ///< As the table states it; older ones do not.
@@ -291,10 +294,10 @@ Result<bool> is_own_table(const Source& source) {
   }
 }
 
-Result<record::Record> read_own_table(const Source& source) {
+Result<ImportedTest> read_own_table(const Source& source, const std::filesystem::path& scratch_folder) {
   auto file = TextFile::open(source, std::nullopt);
   if (!file) return tl::unexpected(file.error());
-  return OwnReader{source.path}.read(*file);
+  return OwnReader{source.path, scratch_folder}.read(*file);
 }
 
 }  // namespace stickslip::traces

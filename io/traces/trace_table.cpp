@@ -45,12 +45,13 @@ constexpr std::size_t kLongestFooter = 100;
 class TableReader {
  public:
   TableReader(const Source& source, const Dialect& dialect, std::size_t value_column,
-              std::optional<std::size_t> time_column)
+              std::optional<std::size_t> time_column, const std::filesystem::path& scratch_folder)
       : source_(source),
         path_(source.path),
         dialect_(dialect),
         value_column_(value_column),
-        time_column_(time_column) {}
+        time_column_(time_column),
+        table_(scratch_folder) {}
 
   base::Result<TraceTable> read() {
     auto file = TextFile::open(source_, dialect_.encoding);
@@ -254,8 +255,8 @@ class TableReader {
     const std::size_t rows = table_.value.size();
     if (labelled_ == 0 || labelled_ > kLongestFooter || labelled_ >= rows) return;
     const std::int64_t first = table_.line(rows - labelled_);
-    table_.value.resize(rows - labelled_);
-    if (!table_.time.empty()) table_.time.resize(rows - labelled_);
+    table_.value.truncate(rows - labelled_);
+    if (!table_.time.empty()) table_.time.truncate(rows - labelled_);
     table_.notes.push_back(fmt::format("{} line{} from line {} on left out: a word stands before the numbers",
                                        labelled_, labelled_ == 1 ? "" : "s", first));
   }
@@ -381,9 +382,10 @@ std::int64_t TraceTable::line(std::size_t row) const {
 }
 
 base::Result<TraceTable> read_table(const Source& source, const Dialect& dialect, std::size_t value_column,
-                                    std::optional<std::size_t> time_column) {
-  if (dialect.numbers) return dialect.numbers->table(value_column, time_column);
-  return TableReader{source, dialect, value_column, time_column}.read();
+                                    std::optional<std::size_t> time_column,
+                                    const std::filesystem::path& scratch_folder) {
+  if (dialect.numbers) return dialect.numbers->table(value_column, time_column, scratch_folder);
+  return TableReader{source, dialect, value_column, time_column, scratch_folder}.read();
 }
 
 }  // namespace stickslip::traces

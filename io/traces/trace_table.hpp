@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include "io/traces/dialect.hpp"
 
+#include "core/base/long_column.hpp"
 #include "core/base/result.hpp"
 
 namespace stickslip::traces {
@@ -29,9 +31,12 @@ namespace stickslip::traces {
 [[nodiscard]] std::optional<std::size_t> counter_column_of(const Dialect& dialect, std::size_t value_column);
 
 struct TraceTable {
-  std::vector<double> value;  ///< As printed; NaN marks a hole.
-  std::vector<double> time;   ///< In the column's unit, less the first one; empty without such a column.
-  double first_time = 0.0;    ///< What was subtracted, without date_s.
+  explicit TraceTable(const std::filesystem::path& scratch_folder = {})
+      : value(scratch_folder), time(scratch_folder) {}
+
+  base::LongColumn<double> value;  ///< As printed; NaN marks a hole.
+  base::LongColumn<double> time;   ///< In the column's unit, less the first one; empty without such a column.
+  double first_time = 0.0;         ///< What was subtracted, without date_s.
   std::optional<std::int64_t> date_s;  ///< As TimeCell, of the first row.
   bool time_in_seconds = false;        ///< Clock times and dates.
   int time_decimals = 0;               ///< Most printed digits behind the decimal mark.
@@ -49,9 +54,10 @@ struct TraceTable {
 
 /// Reads all rows. A row with a hole in both columns is none. Rows that hold text where numbers were are left
 /// out at the end of the file, and an error before it. Errors: as TextFile; kUsage naming file:line, value
-/// and remedy.
+/// and remedy. \param scratch_folder  as of base::LongColumn, for the columns.
 [[nodiscard]] base::Result<TraceTable> read_table(const Source& source, const Dialect& dialect,
                                                   std::size_t value_column,
-                                                  std::optional<std::size_t> time_column);
+                                                  std::optional<std::size_t> time_column,
+                                                  const std::filesystem::path& scratch_folder = {});
 
 }  // namespace stickslip::traces

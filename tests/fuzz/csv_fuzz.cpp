@@ -31,11 +31,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if ((options & 64U) != 0) request.dialect.decimal = ',';
   const auto imported = traces::import_trace(request);
   STICKSLIP_EXPECTS(imported || imported.error().message.find('\n') == std::string::npos);
-  STICKSLIP_EXPECTS(!imported || !imported->records.empty());
+  STICKSLIP_EXPECTS(!imported || !imported->tests.empty());
   if (imported) {
-    for (const record::Record& record : imported->records) {
-      STICKSLIP_EXPECTS(record.scan.size() == record.raw.size() && record.end);
-      STICKSLIP_EXPECTS(std::is_sorted(record.scan.begin(), record.scan.end(), std::less_equal<>{}));
+    for (const traces::ImportedTest& test : imported->tests) {
+      const auto& scan = test.scans.scan;
+      STICKSLIP_EXPECTS(scan.size() == test.scans.raw.size() && test.record.end);
+      STICKSLIP_EXPECTS(std::is_sorted(scan.begin(), scan.end(), std::less_equal<>{}));
     }
   }
   const auto inspected = traces::inspect(request);

@@ -12,6 +12,7 @@
 #include "io/traces/import.hpp"
 
 #include "tests/support/hostile_text.hpp"
+#include "tests/support/imported_record.hpp"
 #include "tests/support/record_equality.hpp"
 #include "tests/support/record_samples.hpp"
 
@@ -98,8 +99,8 @@ RC_GTEST_PROP(OwnTableProperty, AnExportedRecordComesBack, ()) {
   auto imported = import_trace(request);
   if (!imported) RC_FAIL(imported.error().message);
   RC_ASSERT(imported->is_own);
-  RC_ASSERT(imported->records.size() == 1U);
-  record::Record& back = imported->records.front();
+  RC_ASSERT(imported->tests.size() == 1U);
+  record::Record back = test::in_memory(imported->tests.front());
   // Where it comes from is new.
   record::ProcessFacts& process = back.header.process;
   RC_ASSERT(process.source_file == "trace.csv");

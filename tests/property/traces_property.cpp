@@ -132,9 +132,10 @@ RC_GTEST_PROP(TracesProperty, ATableIsReadBackOrRefused, ()) {
     return;
   }
   std::vector<Row> read;
-  for (const record::Record& record : imported->records) {
-    RC_ASSERT(std::abs(record.header.board.scan_rate_granted_Hz / layout.rate_Hz - 1.0) < 1e-4);
-    for (std::size_t i = 0; i < record.raw.size(); ++i) read.push_back({record.scan[i], record.raw[i]});
+  for (const ImportedTest& test : imported->tests) {
+    RC_ASSERT(std::abs(test.record.header.board.scan_rate_granted_Hz / layout.rate_Hz - 1.0) < 1e-4);
+    for (std::size_t i = 0; i < test.scans.size(); ++i)
+      read.push_back({test.scans.scan[i], test.scans.raw[i]});
   }
   RC_ASSERT(read.size() == rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -265,7 +265,9 @@ class Unwritable(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             pull = pathlib.Path(folder) / "pull.h5"
             printed(PROGRAMS["stickslip"], "simulate", "stick-slip-at-12-in-per-min", "-o", pull)
-            for words in (["verify", pull], ["analyze", pull], ["show", pull], ["export", pull, "--csv"], ["boards", "--json"], ["scenes"], ["--help"]):
+            for number in range(60):  # More names than stdout holds back.
+                (pull.parent / f"{'x' * 100}-{number}.h5").hardlink_to(pull)
+            for words in (["find", folder, "-0"], ["verify", pull], ["analyze", pull], ["show", pull], ["export", pull, "--csv"], ["boards", "--json"], ["scenes"], ["--help"]):
                 with self.subTest(command=words[0]), open("/dev/full", "w", encoding="utf-8") as full:
                     done = subprocess.run([PROGRAMS["stickslip"], *words], stdout=full, stderr=subprocess.PIPE, text=True, timeout=TIMEOUT_S, check=False)
                     self.assertEqual(done.returncode, 74)

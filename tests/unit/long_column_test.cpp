@@ -52,6 +52,25 @@ TEST(LongColumn, GrowsAfterItWasRead) {
   EXPECT_EQ(column.back(), 7);
 }
 
+TEST(LongColumn, LosesItsLastElements) {
+  for (const std::filesystem::path& folder :
+       {std::filesystem::path{}, std::filesystem::temp_directory_path()}) {
+    // Within the last block, to its beginning, and into one that lies in the file.
+    for (const std::size_t size : {kSize - 3, kSize - 7, Column::kBlock + 5, std::size_t{0}}) {
+      Column column = counted(Column{folder});
+      EXPECT_EQ(std::as_const(column)[2 * Column::kBlock], 3 * static_cast<std::int64_t>(2 * Column::kBlock));
+      column.truncate(size);
+      ASSERT_EQ(column.size(), size);
+      for (std::size_t k = 0; k < 6 * Column::kBlock; ++k) column.push_back(-1);
+      for (std::size_t k = 0; k < column.size(); k += 97)
+        ASSERT_EQ(std::as_const(column)[k], k < size ? 3 * static_cast<std::int64_t>(k) : -1) << size;
+      EXPECT_EQ(column.back(), -1);
+      column.pop_back();
+      EXPECT_EQ(column.size(), size + 6 * Column::kBlock - 1);
+    }
+  }
+}
+
 TEST(LongColumn, WithoutAFolderIsAVectorThatMayBeChangedAndCopied) {
   Column column{std::vector<std::int64_t>{1, 2, 3}};
   column[1] = 20;

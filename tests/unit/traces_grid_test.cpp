@@ -26,7 +26,13 @@ std::vector<double> times(std::size_t count, double rate_Hz, double digit_s) {
 }
 
 base::Result<Grid> grid(const std::vector<double>& time, GridOptions options = {}) {
-  return grid_of(time, options, [](std::size_t row) { return fmt::format("row {}", row); });
+  const base::LongColumn<double> column{time};
+  return grid_of(RowView{column}, options, [](std::size_t row) { return fmt::format("row {}", row); });
+}
+
+std::vector<std::size_t> runs(const std::vector<double>& time) {
+  const base::LongColumn<double> column{time};
+  return runs_in(RowView{column});
 }
 
 std::string refusal(const std::vector<double>& time, const GridOptions& options = {}) {
@@ -137,9 +143,9 @@ TEST(TraceGrid, CoarseTimesWithLostRowsNeedTheRate) {
 }
 
 TEST(TraceGrid, ClockThatStartsAgainBeginsARun) {
-  EXPECT_THAT(runs_in({0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0}), ElementsAre(0U, 4U));
-  EXPECT_THAT(runs_in({3.0, 2.0, 1.0, 0.0}), ElementsAre(0U));
-  EXPECT_THAT(runs_in({0.0, 1.0, 2.0, 1.9, 3.0}), ElementsAre(0U));
+  EXPECT_THAT(runs({0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0}), ElementsAre(0U, 4U));
+  EXPECT_THAT(runs({3.0, 2.0, 1.0, 0.0}), ElementsAre(0U));
+  EXPECT_THAT(runs({0.0, 1.0, 2.0, 1.9, 3.0}), ElementsAre(0U));
 }
 
 }  // namespace

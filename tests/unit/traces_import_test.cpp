@@ -120,8 +120,8 @@ TEST_F(TraceImport, HalfATraceIsNoFooter) {
 TEST_F(TraceImport, ClockThatStartsAgainIsAnotherRecord) {
   const auto imported = import("t (s),F\n" + rows(0, 50) + "Run 2\nt (s),F\n" + rows(0, 50));
   ASSERT_TRUE(imported) << imported.error().message;
-  ASSERT_EQ(imported->records.size(), 2U);
-  EXPECT_EQ(imported->records[1].raw, values(50));
+  ASSERT_EQ(imported->tests.size(), 2U);
+  EXPECT_EQ(imported->tests[1].scans.raw, values(50));
 }
 
 TEST_F(TraceImport, ClockMayPassMidnight) {
@@ -186,7 +186,7 @@ TEST_F(TraceImport, CountsKeepTheirCodesAndTheirScale) {
   request_.counts = count_scale("-32768..32767", 0.5e-3).value();
   const auto imported = import("t (s),F\n0.00,-32768\n0.01,0\n0.02,32767\n0.03,2000\n");
   ASSERT_TRUE(imported) << imported.error().message;
-  const record::Record& record = imported->records.front();
+  const record::Record record = test::in_memory(imported->tests.front());
   const daq::BoardInfo& board = record.header.board;
   EXPECT_EQ(board.quantity, daq::RawQuantity::kCounts);
   EXPECT_EQ(board.maxdata, 65535U);
@@ -242,7 +242,7 @@ TEST_F(TraceImport, UnitOfTheTimeIsItsHeadingsOrFoundByInspection) {
        {content, "time" + content.substr(6), "Time (mSec)" + content.substr(6), minutes, since_1970}) {
     const auto imported = import(text);
     ASSERT_TRUE(imported) << imported.error().message;
-    EXPECT_NEAR(imported->records[0].header.board.scan_rate_granted_Hz, 100.0, 0.01);
+    EXPECT_NEAR(imported->tests[0].record.header.board.scan_rate_granted_Hz, 100.0, 0.01);
   }
 }
 

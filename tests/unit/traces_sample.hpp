@@ -9,6 +9,7 @@
 
 #include "io/traces/import.hpp"
 
+#include "tests/support/imported_record.hpp"
 #include "tests/support/record_samples.hpp"
 
 namespace stickslip::traces {
@@ -33,10 +34,10 @@ class Traces : public testing::Test {
     auto imported = import(content);
     EXPECT_TRUE(imported) << content << imported.error().message;
     if (!imported) return {};
-    EXPECT_EQ(imported->records.size(), 1U) << content;
-    EXPECT_EQ(imported->records.front().raw, values) << content;
+    EXPECT_EQ(imported->tests.size(), 1U) << content;
+    EXPECT_EQ(imported->tests.front().scans.raw, values) << content;
     report_ = imported->report;
-    return imported->records.front();
+    return test::in_memory(imported->tests.front());
   }
 
   void expect_refused(const std::string& content, const std::string& reason) {
