@@ -4,10 +4,12 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <utility>
 #include <vector>
 
 #include "core/analysis/model_results.hpp"
+#include "core/estimate/huber.hpp"
 #include "core/model/threshold.hpp"
 
 namespace stickslip::analysis {
@@ -184,6 +186,55 @@ TEST(ModelResults, CreepBeforeASlipIsInTheSystematicPartOfRingDownsAlone) {
   EXPECT_NEAR(systematic(2.0, {kSurelyFree, kLast}), std::sqrt(whole * whole - onset * onset) - kS_minus_K,
               1e-12);
   EXPECT_NEAR(systematic(0.5, {kSurelyCaptured, kLast}), 0.0, 1e-12);
+}
+
+/// Misfit of 200 slips of 40 scans, with noise of `noise` times that of a scan and `law`, in σ, over the
+/// periods since the onset.
+template <typename Law>
+Misfit misfit_of(double noise, const Law& law) {
+  constexpr int kSlips = 200;
+  constexpr int kScans = 40;
+  constexpr double kPeriods = 2.0;
+  SlipEstimates estimates = estimates_of(0.5, std::vector<Slip>(kSlips, kSurelyCaptured));
+  estimate::Trace trace;
+  std::mt19937_64 random{20261128};
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> phase;
+  const double period_s = 2.0 * std::numbers::pi / kOmega;
+  for (estimate::SlipWindow& window : estimates.windows) {
+    window.captured = true;
+    window.first = trace.size();
+    const model::SlipModel model{estimates.fit.shared, window.slip, true, estimates.belt};
+    model::TurnedBasis basis{estimates.fit.shared.oscillator()};
+    const double first = phase(random);
+    for (int scan = 0; scan < kScans; ++scan) {
+      const double periods = kPeriods * ((first + scan) / kScans - 0.25);
+      const double time_s = window.slip.onset_s + periods * period_s;
+      trace.time_s.push_back(time_s);
+      trace.value.push_back(model.place(time_s, basis).value +
+                            kScanSigma * (law(periods) + noise * normal(random)));
+      trace.usable.push_back(1);
+    }
+    window.end = trace.size();
+  }
+  estimates.fit.residual_sigma = noise * kScanSigma * estimate::kHuberResidualOfNoise;
+  estimates.fit.freedom = static_cast<double>(trace.size());
+  Misfit misfit;
+  misfit.add(trace, estimates, kScanSigma);
+  return misfit;
+}
+
+// Errors hold the size of the residuals already: noise of one and a half times σ makes Birge's ratio 1.5, and
+// adds nothing. 64 bins and more tell the ratio to 9 %.
+TEST(Misfit, OnlyWhatRepeatsIsAddedToErrors) {
+  const Misfit noisy = misfit_of(1.5, [](double) { return 0.0; });
+  EXPECT_GT(noisy.mean().birge_ratio(), 1.2);
+  EXPECT_LT(noisy.beyond_noise(), std::sqrt(std::pow(1.0 + 3.0 * 0.09, 2) - 1.0));
+  EXPECT_EQ(misfit_of(1.0, [](double) { return 0.0; }).beyond_noise(), 0.0);
+  // Half a σ over half a period: the mean of some 100 scans is known to a tenth of σ.
+  const Misfit bent =
+      misfit_of(1.0, [](double periods) { return periods > 0.0 && periods < 0.5 ? 0.5 : 0.0; });
+  EXPECT_GT(bent.beyond_noise(), 1.0);
 }
 
 }  // namespace
