@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <random>
 #include <vector>
 
 #include <Eigen/Cholesky>
 
+#include "core/analysis/ladder.hpp"
 #include "core/analysis/test_analysis.hpp"
 #include "tests/support/estimator_limits.hpp"
 #include "tests/support/sample_limits.hpp"
@@ -71,7 +73,7 @@ TEST(Characterisation, NormalisedErrorsOfItsMeanAreChiSquared) {
 class TesterChecked : public testing::Test {
  protected:
   /// A test at 12 in/min of the tester known, with its noise, against what it is told.
-  TestAnalysis analysed(const estimate::SharedPrior::Coupling& told, double plan_in_per_min,
+  TestAnalysis analysed(const std::optional<estimate::SharedPrior::Coupling>& told, double plan_in_per_min,
                         std::uint64_t seed) const {
     AnalysisSettings settings;
     settings.prior.coupling = told;
@@ -83,6 +85,11 @@ class TesterChecked : public testing::Test {
     for (const double value : scene_.exact()) analysis.add(index++, value + normal(engine), false);
     results_ = analysis.finish();
     return analysis;
+  }
+
+  Estimate delta_mu_alone(std::uint64_t seed) const {
+    static_cast<void>(analysed({}, 12.0, seed));
+    return results_.delta_mu;
   }
 
   test::LimitScene scene_;
@@ -122,6 +129,29 @@ TEST_F(TesterChecked, AnotherSpringIsAFindingAndIsNotUsed) {
   // As without it: γ is as uncertain as the test alone leaves it, S − K within four standard errors.
   EXPECT_GT(*results_.gamma_over_2omega.standard_error, 0.05 * 0.022);
   EXPECT_NEAR(*results_.delta_mu.value, 0.05, 4.0 * *results_.delta_mu.standard_error);
+}
+
+// A damping that differs from the characterised one by more than chance in 5 % may be a slope of the paper: S
+// − K with and without the tester then differ by what is not known.
+TEST_F(TesterChecked, ADampingThatAgreesPoorlyIsPartOfTheErrorOfSMinusK) {
+  estimate::SharedPrior::Coupling other = known_;
+  other.gamma_over_2omega *= 1.12;  // Two standard errors of one test.
+  int poor = 0;
+  constexpr int kSeeds = 40;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const TestAnalysis analysis = analysed(other, 12.0, seed);
+    const Estimate with = results_.delta_mu;
+    ASSERT_TRUE(analysis.tester_check() && analysis.tester_check()->used()) << seed;
+    const double distance = std::abs(*with.value - *delta_mu_alone(seed).value);
+    const bool agrees_poorly = analysis.tester_check()->probability < kSlopeLevel;
+    poor += agrees_poorly ? 1 : 0;
+    // The rest is the damper's force, gamma v/g [13].
+    const double of_damper =
+        2.0 * other.gamma_over_2omega * other.omega * 12.0 * kInchPerMinute_m_per_s / 9.80665;
+    EXPECT_NEAR(*with.systematic_uncertainty, of_damper + (agrees_poorly ? distance : 0.0), 0.01 * of_damper)
+        << seed;
+  }
+  EXPECT_GE(poor, kSeeds / 5);
 }
 
 TEST_F(TesterChecked, KnowingTheTesterCutsTheErrorOfSMinusK) {
