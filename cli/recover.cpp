@@ -26,20 +26,25 @@ namespace {
 class Teller final : public daemon::EventReceiver {
  public:
   void orphan_finalised(const std::filesystem::path& file) override {
-    fmt::print("made     {}\n", base::printable(file.string()));
+    tell("made     {}\n", base::printable(file.string()));
   }
   void record_damaged(const std::filesystem::path& file, std::string_view loss) override {
-    fmt::print("damaged  {}: {}\n", base::printable(file.string()), base::printable(loss));
+    tell("damaged  {}: {}\n", base::printable(file.string()), base::printable(loss));
   }
   void orphan_empty(const std::filesystem::path& journal) override {
-    fmt::print("removed  {}: nothing was recorded in it\n", base::printable(journal.string()));
+    tell("removed  {}: nothing was recorded in it\n", base::printable(journal.string()));
   }
   void orphan_kept(const std::filesystem::path& journal, std::string_view why) override {
-    fmt::print("kept     {}: {}\n", base::printable(journal.string()), base::printable(why));
+    tell("kept     {}: {}\n", base::printable(journal.string()), base::printable(why));
   }
   void folder_unread(const std::filesystem::path& folder, std::string_view why) override {
-    fmt::print("unread   {}: cannot be looked into: {}\n", base::printable(folder.string()),
-               base::printable(why));
+    tell("unread   {}: cannot be looked into: {}\n", base::printable(folder.string()), base::printable(why));
+  }
+
+ private:
+  template <typename... Args>
+  static void tell(fmt::format_string<Args...> format, Args&&... args) {
+    io::print_text(stdout, fmt::format(format, std::forward<Args>(args)...));
   }
 };
 

@@ -6,7 +6,8 @@
 ///     for (const double value : std::as_const(force)) …
 ///
 /// Without a folder it is a vector in blocks. With a folder, the latest few blocks stay in memory and the
-/// others are read from an unnamed file there. Sequential or local access reads each block once.
+/// others are read from an unnamed file there, which is made when it is needed. Sequential or local access
+/// reads each block once.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +28,7 @@
 
 namespace stickslip::base {
 
-/// Thread-bound, also where it is const. Where there is a file, growing and reading may throw
+/// Thread-bound, also where it is const. Where there is a folder, growing and reading may throw
 /// std::system_error, and elements can be read but not changed.
 template <typename T>
 class LongColumn {
@@ -38,7 +39,7 @@ class LongColumn {
   static constexpr std::size_t kBlock = sizeof(T) <= sizeof(double)
                                             ? std::size_t{1} << 16U
                                             : std::bit_floor((std::size_t{1} << 15U) / sizeof(T));
-  static constexpr std::size_t kResident = 4;  ///< Blocks in memory if there is a file.
+  static constexpr std::size_t kResident = 4;  ///< Blocks in memory if there is a folder.
 
   template <bool kConst>
   class Iterator;
@@ -54,14 +55,12 @@ class LongColumn {
     for (const T& value : values) push_back(value);
   }
   /// \param folder  of the file; empty: all in memory.
-  explicit LongColumn(const std::filesystem::path& folder) {
-    if (!folder.empty()) file_ = std::make_unique<ScratchFile>(folder);
-  }
+  explicit LongColumn(std::filesystem::path folder) : folder_(std::move(folder)) {}
   LongColumn(const LongColumn& other) { *this = other; }
   LongColumn(LongColumn&&) noexcept = default;
   LongColumn& operator=(const LongColumn& other) {
     if (this == &other) return *this;
-    STICKSLIP_EXPECTS(!other.file_);
+    STICKSLIP_EXPECTS(other.folder_.empty());
     LongColumn copy;
     for (std::size_t k = 0; k < other.size_; ++k) copy.push_back(other[k]);
     return *this = std::move(copy);
@@ -77,7 +76,7 @@ class LongColumn {
     blocks_.back()[size_ % kBlock] = value;
     ++size_;
   }
-  /// Removes the last elements but `size`, which is at most size().
+  /// Keeps the first `size` elements. \param size  at most size().
   void truncate(std::size_t size) {
     STICKSLIP_EXPECTS(size <= size_);
     const std::size_t blocks = (size + kBlock - 1) / kBlock;
@@ -102,7 +101,7 @@ class LongColumn {
     return block[k % kBlock];
   }
   [[nodiscard]] T& operator[](std::size_t k) {
-    STICKSLIP_EXPECTS(!file_);
+    STICKSLIP_EXPECTS(folder_.empty());
     return blocks_[k / kBlock][k % kBlock];
   }
   [[nodiscard]] T front() const { return (*this)[0]; }
@@ -124,14 +123,21 @@ class LongColumn {
   static constexpr std::size_t kBlockBytes = kBlock * sizeof(T);
 
   void add_block() {
-    // Every block but the last is in the file.
-    if (file_ && !blocks_.empty()) {
-      file_->write((blocks_.size() - 1) * kBlockBytes,
-                   std::as_bytes(std::span{blocks_.back().get(), kBlock}));
+    // Where there is a file, every block but the last is in it.
+    if (file_) {
+      if (!blocks_.empty()) store(*file_, blocks_.size() - 1);
+    } else if (!folder_.empty() && blocks_.size() == kResident) {
+      auto file = std::make_unique<ScratchFile>(folder_);
+      for (std::size_t block = 0; block < blocks_.size(); ++block) store(*file, block);
+      file_ = std::move(file);
     }
     Buffer buffer = free_buffer(blocks_.size());
     blocks_.push_back(std::move(buffer));
-    if (file_) resident_.push_back(blocks_.size() - 1);
+    if (!folder_.empty()) resident_.push_back(blocks_.size() - 1);
+  }
+
+  void store(ScratchFile& file, std::size_t block) const {
+    file.write(block * kBlockBytes, std::as_bytes(std::span{blocks_[block].get(), kBlock}));
   }
 
   const T* fetch(std::size_t block) const {
@@ -154,7 +160,8 @@ class LongColumn {
 
   std::size_t size_ = 0;
   mutable std::vector<Buffer> blocks_;
-  mutable std::vector<std::size_t> resident_;  ///< Blocks in memory, the latest last; only with a file.
+  mutable std::vector<std::size_t> resident_;  ///< Blocks in memory, the latest last; only with a folder.
+  std::filesystem::path folder_;               ///< Of the file; empty: all in memory.
   std::unique_ptr<ScratchFile> file_;
 };
 

@@ -61,8 +61,7 @@ void build(const Record& record, const ScanSource& scans, const std::filesystem:
     if (record.end->truth) write_truth(entry.get(), *record.end->truth, scans);
     write_numbers(file.get(), entry.get());
   }
-  check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), "flushing");
-  file.close("closing");
+  finish_file(std::move(file));
 }
 
 base::Result<void> build_verified(const Record& record, const ScanSource& scans,

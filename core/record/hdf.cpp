@@ -20,15 +20,31 @@ herr_t keep_reason(unsigned /*depth*/, const H5E_error2_t* error, void* kept) no
   return 0;
 }
 
-}  // namespace
-
-void throw_refused(const std::string& what) {
+/// In one line.
+std::string innermost_reason() {
   Reason reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, keep_reason, &reason);
   // As operator new does, so that a handler that limits memory is informed.
   if (const std::new_handler told = std::get_new_handler(); reason.no_memory && told != nullptr) told();
   std::replace(reason.text.begin(), reason.text.end(), '\n', ' ');
-  throw HdfError(what + ": " + (reason.text.empty() ? "refused by HDF5" : reason.text));
+  return reason.text.empty() ? "refused by HDF5" : reason.text;
+}
+
+}  // namespace
+
+void throw_refused(const std::string& what) { throw HdfError(what + ": " + innermost_reason()); }
+
+std::string& unclosed() noexcept {
+  static thread_local std::string why;
+  return why;
+}
+
+void note_unclosed() noexcept {
+  try {
+    unclosed() = innermost_reason();
+  } catch (const std::exception&) {
+    unclosed() = "no memory";
+  }
 }
 
 void prepare_hdf5() {

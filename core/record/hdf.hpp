@@ -21,6 +21,13 @@ class HdfError : public std::runtime_error {
 /// process's std::new_handler first.
 [[noreturn]] void throw_refused(const std::string& what);
 
+/// Why the last handle that this thread could not close was refused; empty: all were closed. HDF5 writes the
+/// last bytes of a data set when it is closed, and a destructor cannot report that they are lost: whoever
+/// writes a file empties this first, and asks for it at the end.
+[[nodiscard]] std::string& unclosed() noexcept;
+/// Notes there the library's innermost reason.
+void note_unclosed() noexcept;
+
 /// Owns an HDF5 id. \tparam Close  the library's function for its kind.
 template <herr_t (*Close)(hid_t)>
 class Handle {
@@ -37,7 +44,7 @@ class Handle {
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
   ~Handle() {
-    if (id_ >= 0) Close(id_);
+    if (id_ >= 0 && Close(id_) < 0) note_unclosed();
   }
 
   [[nodiscard]] hid_t get() const noexcept { return id_; }

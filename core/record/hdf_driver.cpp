@@ -34,10 +34,6 @@ struct File {
   std::optional<GivenFile> given;  ///< Owner of the descriptor, if the file is only read.
   haddr_t allocated;               ///< As far as HDF5 has given addresses away.
   haddr_t size;
-  /// Error number of the first change that the system refused; 0: none. HDF5 writes the last bytes of a data
-  /// set when it is closed, where nobody asks for errors: a file that lacks them must not pass for a whole
-  /// one.
-  int refused = 0;
 };
 
 // HDF5 hands over the base, the first member of a File, as its C interface has it.
@@ -45,16 +41,10 @@ File& file_of(H5FD_t* base) { return *reinterpret_cast<File*>(base); }
 const File& file_of(const H5FD_t* base) { return *reinterpret_cast<const File*>(base); }
 
 /// Onto HDF5's stack of errors, from where HdfError takes it.
-herr_t report(const char* what, int error) noexcept {
+herr_t refuse(const char* what, int error) noexcept {
   H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_VFL, H5E_WRITEERROR, "%s: %s", what,
            std::strerror(error));
   return -1;
-}
-
-/// After the first refused change every other one is refused too, so that flushing and closing fail.
-herr_t refuse_change(File& file, const char* what, int error) noexcept {
-  if (file.refused == 0) file.refused = error;
-  return report(what, error);
 }
 
 void* copy_info(const void* info) { return new (std::nothrow) Info(*static_cast<const Info*>(info)); }
@@ -78,12 +68,12 @@ H5FD_t* open_file(const char* name, unsigned flags, hid_t access, haddr_t /*larg
   constexpr mode_t kMode = 0644;
   const int descriptor = info->calls->open(name, how, kMode);
   if (descriptor < 0) {
-    report("open", errno);
+    refuse("open", errno);
     return nullptr;
   }
   struct stat found {};
   if (::fstat(descriptor, &found) != 0) {
-    report("fstat", errno);
+    refuse("fstat", errno);
     ::close(descriptor);
     return nullptr;
   }
@@ -97,9 +87,10 @@ H5FD_t* open_file(const char* name, unsigned flags, hid_t access, haddr_t /*larg
 herr_t close_file(H5FD_t* base) {
   const std::unique_ptr<File> file{&file_of(base)};
   if (file->given) return 0;
-  if (file->calls->fsync(file->descriptor) != 0) refuse_change(*file, "fsync", errno);
+  const int synced = file->calls->fsync(file->descriptor);
+  const int error = errno;
   ::close(file->descriptor);
-  return file->refused == 0 ? 0 : report("close", file->refused);
+  return synced == 0 ? 0 : refuse("fsync", error);
 }
 
 int compare(const H5FD_t* a, const H5FD_t* b) {
@@ -136,13 +127,13 @@ herr_t read_at(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t ad
   auto* to = static_cast<std::byte*>(bytes);
   const File& file = file_of(base);
   // A damaged file may ask for any place; that is no refusal of the system's.
-  if (address > file.allocated || size > file.allocated - address) return report("read", EINVAL);
+  if (address > file.allocated || size > file.allocated - address) return refuse("read", EINVAL);
   while (size > 0) {
     const ssize_t got = file.given
                             ? file.given->read({to, size}, address)
                             : file.calls->pread(file.descriptor, to, size, static_cast<off_t>(address));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return report("read", errno);
+    if (got < 0) return refuse("read", errno);
     if (got == 0) {  // Behind the end of the file stand zeros.
       std::memset(to, 0, size);
       return 0;
@@ -157,12 +148,11 @@ herr_t read_at(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t ad
 herr_t write_at(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t address, std::size_t size,
                 const void* bytes) {
   File& file = file_of(base);
-  if (file.refused != 0) return report("write", file.refused);
   const auto* from = static_cast<const std::byte*>(bytes);
   while (size > 0) {
     const ssize_t done = file.calls->pwrite(file.descriptor, from, size, static_cast<off_t>(address));
     if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) return refuse_change(file, "write", done < 0 ? errno : EIO);
+    if (done <= 0) return refuse("write", done < 0 ? errno : EIO);
     from += done;
     address += static_cast<haddr_t>(done);
     size -= static_cast<std::size_t>(done);
@@ -173,10 +163,9 @@ herr_t write_at(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t a
 
 herr_t truncate_file(H5FD_t* base, hid_t /*transfer*/, hbool_t /*closing*/) {
   File& file = file_of(base);
-  if (file.refused != 0) return report("truncate", file.refused);
   if (file.allocated == file.size) return 0;
   if (file.calls->ftruncate(file.descriptor, static_cast<off_t>(file.allocated)) != 0)
-    return refuse_change(file, "truncate", errno);
+    return refuse("truncate", errno);
   file.size = file.allocated;
   return 0;
 }

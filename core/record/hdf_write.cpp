@@ -76,6 +76,7 @@ AttributeHandle make_attribute(hid_t object, const std::string& name, hid_t type
 
 FileHandle create_file(const std::filesystem::path& path, const FileCalls& calls) {
   prepare_hdf5();
+  unclosed().clear();
   const PropertyHandle access{H5Pcreate(H5P_FILE_ACCESS), "file access properties"};
   // Readable by HDF5 1.8, MATLAB before R2021b and JavaScript readers.
   check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "library version bounds");
@@ -90,6 +91,12 @@ FileHandle create_file(const std::filesystem::path& path, const FileCalls& calls
   // Made anew, never emptied: what a stop left may be a second name of a file that was published since.
   calls.unlink(path.c_str());
   return {H5Fcreate(path.c_str(), H5F_ACC_EXCL, creation.get(), access.get()), "creating"};
+}
+
+void finish_file(FileHandle file) {
+  check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), "flushing");
+  file.close("closing");
+  if (!unclosed().empty()) throw HdfError("closing a part: " + unclosed());
 }
 
 GroupHandle make_group(hid_t parent, const std::string& name, const std::string& nx_class) {

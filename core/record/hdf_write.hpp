@@ -20,6 +20,10 @@ namespace stickslip::record {
 [[nodiscard]] FileHandle create_file(const std::filesystem::path& path,
                                      const FileCalls& calls = system_calls());
 
+/// Flushes and closes a file of create_file() after all other handles. \throws HdfError also if one of those
+/// could not be closed.
+void finish_file(FileHandle file);
+
 /// \param nx_class  NeXus class, e.g. "NXdata".
 [[nodiscard]] GroupHandle make_group(hid_t parent, const std::string& name, const std::string& nx_class);
 

@@ -1,6 +1,7 @@
 #include "core/record/scan_source.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "core/base/contract.hpp"
@@ -36,13 +37,24 @@ void RecordScans::for_each_second_piece(const std::function<void(std::span<const
   }
 }
 
+ColumnScans::ColumnScans(std::shared_ptr<const ScanColumns> columns, std::size_t first, std::size_t count)
+    : columns_(std::move(columns)), first_(first), count_(count) {
+  STICKSLIP_EXPECTS(columns_->raw.size() == columns_->scan.size());
+  STICKSLIP_EXPECTS(columns_->second.empty() || columns_->second.size() == columns_->scan.size());
+  STICKSLIP_EXPECTS(first <= columns_->scan.size() && count <= columns_->scan.size() - first);
+}
+
+std::int64_t ColumnScans::extent() const {
+  return count_ == 0 ? 0 : columns_->scan[first_ + count_ - 1] - columns_->scan[first_] + 1;
+}
+
 void ColumnScans::for_each_piece(const std::function<void(const ScanPiece&)>& use) const {
   std::vector<base::ScanIndex> scans;
   std::vector<double> values;
-  for (std::size_t row = 0; row < size(); row += kPiece) {
-    const std::size_t count = std::min(kPiece, size() - row);
-    take_rows(scan, row, count, scans);
-    take_rows(raw, row, count, values);
+  for (std::size_t row = 0; row < count_; row += kPiece) {
+    const std::size_t count = std::min(kPiece, count_ - row);
+    take_rows(columns_->scan, first_ + row, count, scans);
+    take_rows(columns_->raw, first_ + row, count, values);
     use({scans, values});
   }
 }
@@ -53,8 +65,8 @@ void ColumnScans::for_each_force_piece(const std::function<void(std::span<const 
 
 void ColumnScans::for_each_second_piece(const std::function<void(std::span<const std::int32_t>)>& use) const {
   std::vector<std::int32_t> codes;
-  for (std::size_t row = 0; row < size(); row += kPiece) {
-    take_rows(second, row, std::min(kPiece, size() - row), codes);
+  for (std::size_t row = 0; row < count_; row += kPiece) {
+    take_rows(columns_->second, first_ + row, std::min(kPiece, count_ - row), codes);
     use(codes);
   }
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <span>
 
 #include "core/base/long_column.hpp"
@@ -63,31 +64,34 @@ class RecordScans final : public ScanSource {
   const Record& record_;
 };
 
-/// Source on columns that may be longer than memory.
-class ColumnScans final : public ScanSource {
- public:
+/// Columns of equal length, but that second may be empty; they may be longer than memory.
+struct ScanColumns {
   /// \param folder  as of base::LongColumn.
-  explicit ColumnScans(const std::filesystem::path& folder = {}) : scan(folder), raw(folder) {}
+  explicit ScanColumns(const std::filesystem::path& folder = {})
+      : scan(folder), raw(folder), second(folder) {}
 
-  // scan and raw have equal lengths; second too, or it is empty.
   base::LongColumn<base::ScanIndex> scan;
   base::LongColumn<double> raw;
   base::LongColumn<std::int32_t> second;
+};
 
-  void add(base::ScanIndex index, double value) {
-    scan.push_back(index);
-    raw.push_back(value);
-  }
+/// Source on a range of rows of such columns.
+class ColumnScans final : public ScanSource {
+ public:
+  ColumnScans(std::shared_ptr<const ScanColumns> columns, std::size_t first, std::size_t count);
 
-  [[nodiscard]] std::size_t size() const override { return scan.size(); }
-  [[nodiscard]] std::int64_t extent() const override {
-    return scan.empty() ? 0 : scan.back() - scan.front() + 1;
-  }
+  [[nodiscard]] std::size_t size() const override { return count_; }
+  [[nodiscard]] std::int64_t extent() const override;
   void for_each_piece(const std::function<void(const ScanPiece&)>& use) const override;
   [[nodiscard]] bool has_force() const override { return false; }
   void for_each_force_piece(const std::function<void(std::span<const double>)>& use) const override;
-  [[nodiscard]] bool has_second() const override { return !second.empty(); }
+  [[nodiscard]] bool has_second() const override { return !columns_->second.empty(); }
   void for_each_second_piece(const std::function<void(std::span<const std::int32_t>)>& use) const override;
+
+ private:
+  std::shared_ptr<const ScanColumns> columns_;
+  std::size_t first_;
+  std::size_t count_;
 };
 
 }  // namespace stickslip::record

@@ -161,8 +161,7 @@ void build(const SweepFacts& facts, const SweepTable& table, const std::filesyst
     write_attribute(entry.get(), "default", kDefaultResult);
     SweepWriter{entry.get(), facts, table}.write();
   }
-  check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), "flushing");
-  file.close("closing");
+  finish_file(std::move(file));
 }
 
 }  // namespace

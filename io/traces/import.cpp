@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <span>
+#include <memory>
 #include <utility>
 
 #include "io/traces/cut.hpp"
@@ -101,14 +101,8 @@ Result<std::string> unit_of(const ImportRequest& request, const ColumnName& colu
   return request.unit;
 }
 
-/// Scans of one run on equal intervals.
-struct Run {
-  double rate_Hz = 0.0;
-  record::ColumnScans scans;
-};
-
 /// Values at equal intervals, by linear interpolation between rows; none across a hole or a missing row.
-void resample(double rate_Hz, const RowView& time, const RowView& value, record::ColumnScans& scans) {
+void resample(double rate_Hz, const RowView& time, const RowView& value, record::ScanColumns& scans) {
   const double step = 1.0 / rate_Hz;
   std::size_t right = 1;
   const double end = time.back() + 1e-9 * step;
@@ -118,16 +112,19 @@ void resample(double rate_Hz, const RowView& time, const RowView& value, record:
     const double length = time[right] - time[right - 1];
     if (length > 2.0 * step || !(length > 0.0)) continue;
     const double mean = std::lerp(value[right - 1], value[right], (at - time[right - 1]) / length);
-    if (std::isfinite(mean)) scans.add(k, mean);
+    if (!std::isfinite(mean)) continue;
+    scans.scan.push_back(k);
+    scans.raw.push_back(mean);
   }
 }
 
 /// Rows of equal intervals, without holes and doubled ones.
-void take_rows(const Grid& grid, const RowView& value, record::ColumnScans& scans) {
+void take_rows(const Grid& grid, const RowView& value, record::ScanColumns& scans) {
   for (std::size_t row = 0; row < value.size(); ++row) {
     const double at = value[row];
     if (!std::isfinite(at) || (!grid.doubled.empty() && grid.doubled[row])) continue;
-    scans.add(grid.index[row], at);
+    scans.scan.push_back(grid.index[row]);
+    scans.raw.push_back(at);
   }
 }
 
@@ -325,40 +322,35 @@ class Importer {
   Result<void> add_run(std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;
     const RowView value = value_.part(begin, count);
-    Run run{0.0, record::ColumnScans{scratch_folder(count)}};
+    const auto run = std::make_shared<record::ScanColumns>(request_.scratch_folder);
+    double rate_Hz = 0.0;
     if (time_s_.empty()) {
-      run.rate_Hz = *request_.rate_Hz;
+      rate_Hz = *request_.rate_Hz;
       Grid grid;
-      grid.index = counted(count, scratch_folder(count));
-      take_rows(grid, value, run.scans);
+      grid.index = counted(count, request_.scratch_folder);
+      take_rows(grid, value, *run);
     } else {
       const RowView time = time_s_.part(begin, count);
-      grid_options_.scratch_folder = scratch_folder(count);
+      grid_options_.scratch_folder = request_.scratch_folder;
       const auto grid = grid_of(time, grid_options_, [this, begin](std::size_t row) {
         return fmt::format("{}:{}", request_.path, line(begin + row));
       });
       if (!grid) return tl::unexpected(grid.error());
       tell(*grid, begin);
-      run.rate_Hz = grid->rate_Hz;
+      rate_Hz = grid->rate_Hz;
       if (grid->uniform) {
-        take_rows(*grid, value, run.scans);
+        take_rows(*grid, value, *run);
       } else {
-        resample(grid->rate_Hz, time, value, run.scans);
+        resample(rate_Hz, time, value, *run);
       }
     }
-    const std::size_t scans = run.scans.size();
+    const std::size_t scans = run->scan.size();
     if (static_cast<double>(scans) < (1.0 - kMostHoles) * static_cast<double>(count) || scans < 2) {
       return base::usage_error("{}: {} of {} values of column \"{}\" are missing: choose another column",
                                request_.path, count - scans, count,
                                base::one_line(dialect_.columns[columns_.value].text, 40));
     }
-    return add_tests(std::move(run));
-  }
-
-  /// None for columns that stay in memory anyway: a trace may have many short runs and tests.
-  [[nodiscard]] std::filesystem::path scratch_folder(std::size_t count) const {
-    using Column = base::LongColumn<double>;
-    return count > Column::kResident * Column::kBlock ? request_.scratch_folder : std::filesystem::path{};
+    return add_tests(run, rate_Hz);
   }
 
   void tell(const Grid& grid, std::size_t begin) {
@@ -379,15 +371,15 @@ class Importer {
       note("{} rows with the time of the row before left out", doubled);
   }
 
-  Result<void> add_tests(Run run) {
+  Result<void> add_tests(const std::shared_ptr<const record::ScanColumns>& run, double rate_Hz) {
     record::Record whole;
     record::RecordHeader& header = whole.header;
     header.title = std::filesystem::path{request_.path}.stem().string();
     header.board.driver = "import";
     header.board.device = std::filesystem::path{request_.path}.filename().string();
     set_board(header.board);
-    header.board.scan_rate_requested_Hz = request_.rate_Hz.value_or(run.rate_Hz);
-    header.board.scan_rate_granted_Hz = run.rate_Hz;
+    header.board.scan_rate_requested_Hz = request_.rate_Hz.value_or(rate_Hz);
+    header.board.scan_rate_granted_Hz = rate_Hz;
     header.load_cell = load_cell_;
     header.tester = request_.tester;
     header.sample = request_.sample;
@@ -396,25 +388,22 @@ class Importer {
     header.start_realtime_ns = start_ns_;
     const daq::Calibration calibration{header.board, load_cell_.value_or(daq::LoadCell{}),
                                        header.tester.tester().normal_load_N()};
-    const base::LongColumn<double>& raw = run.scans.raw;
+    const base::LongColumn<double>& raw = run->raw;
     const auto coefficient = [&](std::size_t i) { return calibration.coefficient(raw[i]); };
     if (const double level = sliding_level(raw.size(), coefficient); level < 0.0) {
       return base::usage_error("{}: the force is negative while sliding, {:.4g} as a coefficient: {}",
                                request_.path, level,
                                request_.invert ? "leave out --invert" : "give --invert");
     }
-    const base::LongColumn<daq::ScanIndex>& scan = run.scans.scan;
-    const auto tests = tests_in(scan, coefficient, run.rate_Hz);
-    for (const auto& [begin, end] : tests) {
-      ImportedTest test{whole, record::ColumnScans{scratch_folder(end - begin)}};
+    const base::LongColumn<daq::ScanIndex>& scan = run->scan;
+    for (const auto& [begin, end] : tests_in(scan, coefficient, rate_Hz)) {
+      ImportedTest test{whole, {run, begin, end - begin}};
       daq::ScanIndex next = scan[begin];
       for (std::size_t i = begin; i < end; ++i) {
         if (scan[i] > next)
           test.record.gaps.push_back({next, scan[i] - next, false, daq::GapCause::kMissingScans});
         next = scan[i] + 1;
-        if (tests.size() > 1) test.scans.add(scan[i], raw[i]);
       }
-      if (tests.size() == 1) test.scans = std::move(run.scans);
       imported_.tests.push_back(std::move(test));
     }
     return {};

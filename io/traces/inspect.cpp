@@ -163,11 +163,13 @@ Result<std::string> inspect(const ImportRequest& request) {
         first = "cannot be read";
         table.emplace();
       }
-      for (std::size_t i = 0; i < table->value.size(); ++i) {
-        if (i < kFirstValues) first += fmt::format("{}{:.6g}", i == 0 ? "" : ", ", table->value[i]);
-        if (!std::isfinite(table->value[i])) continue;
-        low = std::min(low, table->value[i]);
-        high = std::max(high, table->value[i]);
+      const base::LongColumn<double>& values = table->value;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const double value = values[i];
+        if (i < kFirstValues) first += fmt::format("{}{:.6g}", i == 0 ? "" : ", ", value);
+        if (!std::isfinite(value)) continue;
+        low = std::min(low, value);
+        high = std::max(high, value);
       }
       if (!table->cell_unit.empty()) unit = table->cell_unit;
     } else {

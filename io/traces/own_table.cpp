@@ -9,6 +9,7 @@
 #include <exception>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -89,9 +90,7 @@ std::string_view raw_column(daq::RawQuantity quantity) noexcept {
 class OwnReader {
  public:
   OwnReader(const std::string& path, const std::filesystem::path& scratch_folder)
-      : path_(path), scans_(scratch_folder) {
-    scans_.second = base::LongColumn<std::int32_t>{scratch_folder};
-  }
+      : path_(path), scans_(std::make_shared<record::ScanColumns>(scratch_folder)) {}
 
   Result<ImportedTest> read(TextFile& file) {
     std::string line;
@@ -116,8 +115,8 @@ class OwnReader {
     process.source_size = static_cast<std::int64_t>(file.bytes_read());
     process.source_sha256 = file.sha256();
     process.source_reading =
-        fmt::format("recognised: a table of stickslip export, {} scans\n", scans_.size());
-    return ImportedTest{std::move(record_), std::move(scans_)};
+        fmt::format("recognised: a table of stickslip export, {} scans\n", scans_->scan.size());
+    return ImportedTest{std::move(record_), {scans_, 0, scans_->scan.size()}};
   }
 
  private:
@@ -202,7 +201,7 @@ class OwnReader {
     }
     const daq::BoardInfo& board = record_.header.board;
     const auto scan = number_in<std::int64_t>(fields_[scan_]);
-    const std::int64_t first = scans_.scan.empty() ? 0 : scans_.scan.back() + 1;
+    const std::int64_t first = scans_->scan.empty() ? 0 : scans_->scan.back() + 1;
     if (!scan || *scan < first || *scan > record::kLastScan)
       return refused("scan", fields_[scan_],
                      fmt::format("a whole number of {} … {}", first, record::kLastScan));
@@ -219,17 +218,18 @@ class OwnReader {
         return refused(second_name_, text,
                        fmt::format("a whole number of 0 … {}, or nothing", board.second->maxdata));
       }
-      scans_.second.push_back(*code);
+      scans_->second.push_back(*code);
     }
-    if (!scans_.scan.empty() && *scan > first) jumps_.push_back({first, *scan, line_});
-    scans_.add(*scan, *raw);
+    if (!scans_->scan.empty() && *scan > first) jumps_.push_back({first, *scan, line_});
+    scans_->scan.push_back(*scan);
+    scans_->raw.push_back(*raw);
     if (fields_[spike_] == "1") record_.spikes.push_back(*scan);
     return {};
   }
 
   /// Refuses a table that lacks rows: each scan between two rows is in a gap, and no row is.
   Result<void> check_rows() {
-    const base::LongColumn<daq::ScanIndex>& scans = scans_.scan;
+    const base::LongColumn<daq::ScanIndex>& scans = scans_->scan;
     std::ranges::stable_sort(gap_lines_, {}, [](const auto& gap) { return gap.first.first; });
     for (const auto& [gap, line] : gap_lines_) {
       const auto row = std::ranges::lower_bound(scans, gap.first);
@@ -264,7 +264,7 @@ class OwnReader {
 
   std::string path_;
   record::Record record_;
-  record::ColumnScans scans_;
+  std::shared_ptr<record::ScanColumns> scans_;
   std::vector<std::pair<daq::Gap, std::int64_t>> gap_lines_;  ///< Gaps with their lines.
   std::vector<Jump> jumps_;
   std::optional<std::size_t> row_count_;  ///< As the table states it; older ones do not.

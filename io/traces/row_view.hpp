@@ -12,11 +12,11 @@ namespace stickslip::traces {
 class RowView {
  public:
   RowView() = default;
-  explicit RowView(const base::LongColumn<double>& column) : column_(&column), size_(column.size()) {}
-
   /// (value − offset)·scale of each row, from the last row to the first if `reversed`.
   RowView(const base::LongColumn<double>& column, double offset, double scale, bool reversed)
       : column_(&column), size_(column.size()), offset_(offset), scale_(scale), reversed_(reversed) {}
+
+  RowView(base::LongColumn<double>&&, double, double, bool) = delete;
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }

@@ -81,6 +81,8 @@ class Page:
     def __init__(self, browser, number):
         self.browser = browser
         self.number = number
+        # What a hand did.
+        self.clicks = self.keys = 0
 
     def call(self, do, **parameters):
         return self.browser.call(do, self.number, **parameters)
@@ -129,6 +131,7 @@ class Page:
         return self.call("requests")
 
     def click(self, selector, index=0, times=1):
+        self.clicks += times
         self.call("click", selector=selector, index=index, times=times)
         self.settle()
 
@@ -163,11 +166,13 @@ class Page:
 
     def press(self, key, settle=True):
         """settle: not where a window opens, since a page behind another paints no frames."""
+        self.keys += 1
         self.call("press", key=key)
         if settle:
             self.settle()
 
     def type(self, text):
+        self.keys += len(text)
         self.call("type", text=text)
 
     def resize(self, width, height):

@@ -34,9 +34,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   STICKSLIP_EXPECTS(!imported || !imported->tests.empty());
   if (imported) {
     for (const traces::ImportedTest& test : imported->tests) {
-      const auto& scan = test.scans.scan;
-      STICKSLIP_EXPECTS(scan.size() == test.scans.raw.size() && test.record.end);
-      STICKSLIP_EXPECTS(std::is_sorted(scan.begin(), scan.end(), std::less_equal<>{}));
+      STICKSLIP_EXPECTS(test.scans.size() > 0 && test.record.end);
+      base::ScanIndex next = 0;
+      test.scans.for_each_piece([&next](const record::ScanPiece& piece) {
+        for (const base::ScanIndex scan : piece.scan) {
+          STICKSLIP_EXPECTS(scan >= next);
+          next = scan + 1;
+        }
+      });
     }
   }
   const auto inspected = traces::inspect(request);

@@ -134,8 +134,9 @@ RC_GTEST_PROP(TracesProperty, ATableIsReadBackOrRefused, ()) {
   std::vector<Row> read;
   for (const ImportedTest& test : imported->tests) {
     RC_ASSERT(std::abs(test.record.header.board.scan_rate_granted_Hz / layout.rate_Hz - 1.0) < 1e-4);
-    for (std::size_t i = 0; i < test.scans.size(); ++i)
-      read.push_back({test.scans.scan[i], test.scans.raw[i]});
+    test.scans.for_each_piece([&read](const record::ScanPiece& piece) {
+      for (std::size_t i = 0; i < piece.scan.size(); ++i) read.push_back({piece.scan[i], piece.raw[i]});
+    });
   }
   RC_ASSERT(read.size() == rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -30,6 +30,8 @@ class FaultyDisk final : public ForwardingCalls {
   void works_again() { refuse(0, 0, 0); }
   /// Writes and syncs wait for this first.
   void hold(std::function<void()> wait) { wait_ = std::move(wait); }
+  /// Reads count as calls, and may be refused.
+  void count_reads() { counts_reads_ = true; }
   void set_room(std::int64_t bytes) { room_ = bytes; }
 
   int open(const char* path, int flags, mode_t mode) const override {
@@ -60,6 +62,9 @@ class FaultyDisk final : public ForwardingCalls {
   int mkdir(const char* path, mode_t mode) const override {
     return refused() ? -1 : ForwardingCalls::mkdir(path, mode);
   }
+  ssize_t pread(int file, void* bytes, std::size_t size, off_t position) const override {
+    return counts_reads_ && refused() ? -1 : ForwardingCalls::pread(file, bytes, size, position);
+  }
   std::int64_t room(const char* folder) const override {
     return room_ >= 0 ? room_.load() : ForwardingCalls::room(folder);
   }
@@ -80,6 +85,7 @@ class FaultyDisk final : public ForwardingCalls {
   std::atomic<int> end_{0};
   std::atomic<int> error_{0};
   std::atomic<std::int64_t> room_{-1};
+  bool counts_reads_ = false;
   std::function<void()> wait_;
 };
 

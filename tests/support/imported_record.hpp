@@ -8,9 +8,14 @@ namespace stickslip::test {
 
 inline record::Record in_memory(const traces::ImportedTest& test) {
   record::Record record = test.record;
-  record.scan.assign(test.scans.scan.begin(), test.scans.scan.end());
-  record.raw.assign(test.scans.raw.begin(), test.scans.raw.end());
-  record.second.assign(test.scans.second.begin(), test.scans.second.end());
+  test.scans.for_each_piece([&record](const record::ScanPiece& piece) {
+    record.scan.insert(record.scan.end(), piece.scan.begin(), piece.scan.end());
+    record.raw.insert(record.raw.end(), piece.raw.begin(), piece.raw.end());
+  });
+  if (!test.scans.has_second()) return record;
+  test.scans.for_each_second_piece([&record](std::span<const std::int32_t> piece) {
+    record.second.insert(record.second.end(), piece.begin(), piece.end());
+  });
   return record;
 }
 

@@ -262,6 +262,11 @@ class Import(unittest.TestCase):
             self.assertIn(said, message)
             self.assertIn("--set-meta", message)
 
+    def test_a_folder_that_is_missing_is_told_before_the_file_is_read(self):
+        file = self.write("pull.csv", self.rows())
+        words = [str(self.folder / "nowhere" / "x.h5") if word == self.folder / "x.h5" else word for word in self.arguments(file)]
+        self.assertRegex(self.call(*words, status=2), "there is no folder .*nowhere: make it first")
+
     def test_memory_does_not_grow_with_the_trace(self):
         if SANITIZED:
             self.skipTest("a sanitizer has a memory of its own")
@@ -278,6 +283,9 @@ class Import(unittest.TestCase):
             words = [sys.executable, "-c", code, CLI, *map(str, self.arguments(file))]
             peaks.append(int(subprocess.run(words, capture_output=True, text=True, check=True).stdout))
             file.unlink()
+            with h5py.File(self.folder / "x.h5") as record:
+                numpy.testing.assert_array_equal(record["entry/raw/scan"][()], scan)
+                numpy.testing.assert_allclose(record["entry/raw/force"][()], force, atol=0.51e-4)
         # One column in memory would be 8 bytes a row.
         self.assertLess((peaks[1] - peaks[0]) / (counts[1] - counts[0]), 4)
 

@@ -272,13 +272,14 @@ TEST_F(FileSystem, ADiskThatFailsIsNoFileSystemThatCannotSync) {
 
 // ---- a disk that is full for a moment ---------------------------------------------------------
 
-// HDF5 writes the last bytes of a data set when it is closed, where nobody can be told of an error.
-TEST_F(FileSystem, ARecordOfWhichOneWriteWasRefusedIsNotPublished) {
+// HDF5 writes the last bytes of a data set when it is closed, by a destructor, which cannot report an error.
+TEST_F(FileSystem, ARecordOfWhichOneCallWasRefusedIsNotPublished) {
   fs::remove(record_);
   const fs::path journal = folder_ / "a.journal";
   const fs::path whole = folder_ / "whole.journal";
   test::write_journal(whole, test::whole_record());
   test::FaultyDisk disk;
+  disk.count_reads();
   int refused = 0;
   for (bool was_refused = true; was_refused; ++refused) {
     SCOPED_TRACE(refused);
@@ -286,19 +287,13 @@ TEST_F(FileSystem, ARecordOfWhichOneWriteWasRefusedIsNotPublished) {
     disk.refuse(refused, 1, ENOSPC);
     const auto made = finalise(journal, nullptr, disk);
     was_refused = disk.calls() > refused;
-    if (made) {
-      EXPECT_EQ(judge(made->file).judgement, Judgement::kComplete);
-      EXPECT_EQ(read_record(made->file)->end->cycles.size(), test::whole_record().end->cycles.size());
-    } else {
-      // Where the removal of the journal was refused, the record is published.
-      const bool is_published = fs::exists(record_);
-      EXPECT_TRUE(is_published || fs::exists(journal));
-      EXPECT_TRUE(!is_published || judge(record_).judgement == Judgement::kComplete);
-    }
+    // Where the removal of the journal was refused, the record is published.
+    EXPECT_TRUE(fs::exists(record_) || (!made && fs::exists(journal)));
+    EXPECT_TRUE(!fs::exists(record_) || judge(record_).judgement == Judgement::kComplete);
     fs::remove(journal);
     fs::remove(record_);
   }
-  EXPECT_GT(refused, 100);
+  EXPECT_GT(refused, 300);
 }
 
 // ---- the probe ------------------------------------------------------------------------------

@@ -27,12 +27,13 @@ std::vector<double> times(std::size_t count, double rate_Hz, double digit_s) {
 
 base::Result<Grid> grid(const std::vector<double>& time, GridOptions options = {}) {
   const base::LongColumn<double> column{time};
-  return grid_of(RowView{column}, options, [](std::size_t row) { return fmt::format("row {}", row); });
+  return grid_of(RowView{column, 0.0, 1.0, false}, options,
+                 [](std::size_t row) { return fmt::format("row {}", row); });
 }
 
 std::vector<std::size_t> runs(const std::vector<double>& time) {
   const base::LongColumn<double> column{time};
-  return runs_in(RowView{column});
+  return runs_in(RowView{column, 0.0, 1.0, false});
 }
 
 std::string refusal(const std::vector<double>& time, const GridOptions& options = {}) {

@@ -121,7 +121,21 @@ TEST_F(TraceImport, ClockThatStartsAgainIsAnotherRecord) {
   const auto imported = import("t (s),F\n" + rows(0, 50) + "Run 2\nt (s),F\n" + rows(0, 50));
   ASSERT_TRUE(imported) << imported.error().message;
   ASSERT_EQ(imported->tests.size(), 2U);
-  EXPECT_EQ(imported->tests[1].scans.raw, values(50));
+  EXPECT_EQ(test::in_memory(imported->tests[1]).raw, values(50));
+}
+
+TEST_F(TraceImport, RunsInReverseAreEachTurnedRound) {
+  std::string content = "t (s),F\n";
+  for (const double offset : {100.0, 0.0}) {  // The later run stands first.
+    for (int i = 49; i >= 0; --i) content += fmt::format("{:.2f},{}\n", 0.01 * i, offset + 1 + i);
+  }
+  request_.reverse = true;
+  const auto imported = import(content);
+  ASSERT_TRUE(imported) << imported.error().message;
+  ASSERT_EQ(imported->tests.size(), 2U);
+  EXPECT_EQ(test::in_memory(imported->tests[0]).raw, values(50));
+  EXPECT_EQ(test::in_memory(imported->tests[1]).raw.front(), 101.0);
+  EXPECT_EQ(test::in_memory(imported->tests[1]).raw.back(), 150.0);
 }
 
 TEST_F(TraceImport, ClockMayPassMidnight) {

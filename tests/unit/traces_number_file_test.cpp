@@ -115,7 +115,7 @@ class NumberFiles : public Traces {
     ASSERT_TRUE(imported) << column << ": " << imported.error().message;
     report_ = imported->report;
     ASSERT_EQ(imported->tests.size(), 1U) << column;
-    EXPECT_EQ(imported->tests.front().scans.raw, values) << column;
+    EXPECT_EQ(test::in_memory(imported->tests.front()).raw, values) << column;
     EXPECT_NEAR(imported->tests.front().record.header.board.scan_rate_granted_Hz, kRate_Hz, 1e-3) << column;
     EXPECT_EQ(imported->tests.front().record.header.process.source_reading, report_);
   }
@@ -226,7 +226,7 @@ TEST_F(NumberFiles, HolesAreGapsAndTimesMayBeCoarse) {
   request_.column = "F";
   const auto imported = import_trace(request_);
   ASSERT_TRUE(imported) << imported.error().message;
-  EXPECT_EQ(imported->tests.front().scans.raw.size(), kRows - 2);
+  EXPECT_EQ(test::in_memory(imported->tests.front()).raw.size(), kRows - 2);
   EXPECT_EQ(imported->tests.front().record.gaps.size(), 2U);
   std::vector<double> lacking = times();
   lacking[5] = std::numeric_limits<double>::quiet_NaN();
@@ -451,7 +451,7 @@ TEST_F(NumberFiles, ABitTheOtherWayInACompressedVariableChangesNoValue) {
     test::write_flipped(request_.path, whole, 8 * byte + byte % 8);
     // A few bits fill the last byte of a stream, before its checksum.
     const auto imported = import_trace(request_);
-    EXPECT_TRUE(!imported || imported->tests.front().scans.raw == forces()) << byte;
+    EXPECT_TRUE(!imported || test::in_memory(imported->tests.front()).raw == forces()) << byte;
     refused += imported ? 0 : 1;
   }
   EXPECT_GT(refused, 50);
@@ -473,7 +473,7 @@ TEST_F(NumberFiles, ABitTheOtherWayIsAnErrorOrAResultAndHarmsNobody) {
         EXPECT_EQ(imported.error().message.find('\n'), std::string::npos) << imported.error().message;
         continue;
       }
-      EXPECT_LE(imported->tests.front().scans.raw.size(), kRows);
+      EXPECT_LE(test::in_memory(imported->tests.front()).raw.size(), kRows);
     }
   }
 }

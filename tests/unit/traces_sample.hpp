@@ -35,7 +35,7 @@ class Traces : public testing::Test {
     EXPECT_TRUE(imported) << content << imported.error().message;
     if (!imported) return {};
     EXPECT_EQ(imported->tests.size(), 1U) << content;
-    EXPECT_EQ(imported->tests.front().scans.raw, values) << content;
+    EXPECT_EQ(test::in_memory(imported->tests.front()).raw, values) << content;
     report_ = imported->report;
     return test::in_memory(imported->tests.front());
   }
