@@ -34,7 +34,9 @@ const Answer = (() => {
     if (batch == null) return "";
     // The batch of before this test began: its next one is the test that runs.
     if (running && !onTheWay(running.number) && same(batch.next, running.step)) return "";
-    return batch.next ? `, then ${stepText(batch.next)}` : batch.done + batch.under_way.length >= batch.planned ? "; it is the last of the batch" : "";
+    if (batch.next) return `, then ${stepText(batch.next)}`;
+    if (running && !onTheWay(running.number) && running.step == null) return "; the batch is finished, it is none of its tests";
+    return batch.done + batch.under_way.length >= batch.planned ? "; it is the last of the batch" : "";
   }
   function next() {
     if (state === "not connected") return "start the daemon; this page comes back by itself";

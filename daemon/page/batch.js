@@ -104,6 +104,10 @@ const Batch = (() => {
     return values;
   }
   part("batch-open").addEventListener("click", () => { part("batch-message").textContent = ""; part("batch-dialog").showModal(); plan.elements.name.focus(); });
+  // Fields keep what was planned before: what is typed into one that was entered replaces it.
+  let entered = null;
+  plan.addEventListener("focusin", ({target}) => { if (target.matches("input")) (entered = target).select(); });
+  plan.addEventListener("click", ({target}) => { if (target === entered) target.select(); entered = null; });
   part("batch-close").addEventListener("click", () => part("batch-dialog").close());
   plan.addEventListener("submit", async event => {
     event.preventDefault();

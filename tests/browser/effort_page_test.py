@@ -56,6 +56,7 @@ class Effort(unittest.TestCase):
         self.page.press("Enter")
         self.page.until("!document.getElementById('batch-dialog').open")
         self.assertLessEqual(self.take_effort("batch"), MOST_KEYS_OF_BATCH)
+        self.assertEqual(self.page.value("document.getElementById('batch-name').textContent").split(" ")[0], f"{name}:")
         self.page.until("document.getElementById('now').textContent === 'Now: the batch is finished, all 5 tests are made'")
 
     def test_a_first_test_two_batches_and_their_comparison(self):
@@ -73,12 +74,15 @@ class Effort(unittest.TestCase):
         shown = self.browser.opened("/page/report")
         shown.until("window.stickslip?.data")
         self.take_effort("comparison")
+        # The tester goes on pulling.
+        self.page.bring_to_front()
+        self.page.until("document.getElementById('next').textContent === 'Next: let it pull to its end; the batch is finished, it is none of its tests'")
         self.assertRegex(shown.value("document.getElementById('title').textContent"), "A[12] .* against A[12] ")
         self.assertEqual(shown.complaints() + self.page.complaints(), [])
         shown.close()
 
     def test_a_calibration(self):
-        hanging = Hanging(self)
+        self.hanging = Hanging(self)
         self.open("command", board=weighing_board(self, SOURCE))
         self.page.until("document.querySelectorAll('#health dd').length > 5")
         self.page.click("#calibrate-open")
@@ -87,7 +91,7 @@ class Effort(unittest.TestCase):
         self.page.until("!document.getElementById('calibrate-weigh').hidden")
         for number, (mass, typed) in enumerate([(0, None), (0.5, "500 g"), (1, "1 kg"), (1.5, "1.5 kg"), (1, "1 kg"), (0.5, "500 g"), (0, "0")]):
             self.page.until("document.getElementById('calibrate-dialog').getAttribute('aria-busy') === 'false'")
-            hanging.hang(mass, 0)
+            self.hanging.hang(mass, 0)
             if typed:
                 self.page.value("document.getElementById('calibrate-mass').select()")
                 self.page.type(typed)
