@@ -130,7 +130,7 @@ const commands = {
   pdf: ({ page }, { file }) => page.pdf({ path: file, format: 'A4', printBackground: false }).then(() => null),
   bring_to_front: ({ page }) => page.bringToFront(),
   screenshot: ({ page }, { file, height }) =>
-    page.screenshot({ path: file, fullPage: true, ...(height && { clip: { x: 0, y: 0, width: 1280, height } }) }).then(() => null),
+    page.screenshot({ path: file, fullPage: true, ...(height && { clip: { x: 0, y: 0, width: page.viewportSize().width, height } }) }).then(() => null),
 };
 
 for await (const line of readline.createInterface({ input: process.stdin })) {
