@@ -252,7 +252,7 @@ class Importer {
     return {};
   }
 
-  /// That they are codes; 0 at the lower rail, as a board counts them, is made of them later.
+  /// Refuses values that are no whole numbers of the range stated. value_ counts from the lower rail.
   Result<void> check_counts() const {
     if (quantity_ != RawQuantity::kCounts) return {};
     const auto lowest = static_cast<double>(request_.counts->lowest);
