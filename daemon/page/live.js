@@ -64,7 +64,7 @@
     const made = Batch.done();  // First: of a test that ends meanwhile the table may know more, not less.
     const {tests, summary} = await ask("GET", "/v1/tests");
     Answer.tests(tests, summary);
-    Trace.tests(summary.batch == null ? tests : tests.filter(Batch.place));
+    Trace.tests(tests, summary.batch == null ? null : Batch.place);
     Tables.tests(tests, summary, made, (path, name) => attempt(() => download(path, name)), Batch.voidCell, Batch.place);
     planned(await ask("GET", "/v1/plan"));  // A batch and others change it, too.
   }

@@ -1,33 +1,46 @@
-// The whole trace of one finished test with its cycles, S and K; a span of it at full resolution; a second test laid over it.
+// The whole trace of one finished test with its cycles, S and K; a span of it at full resolution; over it others of its batch or a reference.
 "use strict";
 
 const Trace = (() => {
   const kZoom = 2, kMove = 0.25;  // Of one key: how much shorter the span is; how far it moves, in spans.
   const kRetry = 300;  // ms, while the daemon reads another trace.
+  const kOver = 10;  // Tests laid over it at once: with more no line can be followed, and each is read by a process of its own.
+  const kOthers = "others", kReference = "reference";  // A choice of "compare with"; where the tab keeps the file of the reference.
   const part = id => document.getElementById(`trace-${id}`), dialog = part("dialog"), box = part("chart"), other = part("other");
   let ask = null;
   let number = null;   // Of the test that is shown.
-  let shown = [];      // [{number, trace}] of it and of the one that is laid over it, as the chart has them.
+  let shown = [];      // [{number, trace, slips}] of it and of those that are laid over it, as the chart has them.
   let view = null;     // [from, to] in view, s; null: the whole trace.
-  let listed = [];     // Tests that can be laid over it, the latest first.
+  let recorded = [];   // Every test with a record that counts.
+  let listed = [];     // Those that can be laid over it, the latest first.
+  let ofBatch = false; // Those are the tests of one batch.
+  let reference = null;  // The test that lies over each one opened.
   let chart = null;
 
-  // The second is laid over the first, whose time counts.
+  /// By its file: numbers begin anew with the daemon.
+  const refer = () => { reference = recorded.find(one => one.file === sessionStorage.getItem(kReference)) ?? null; };
+  const others = () => listed.filter(one => one.number !== number);
+  /// Numbers of the tests that were chosen to lie over it.
+  const over = () => (other.value === "" ? [] : other.value === kOthers ? others().slice(0, kOver).map(one => one.number) : [Number(other.value)]);
+  // Its column of lowest values in the chart; the one of highest follows. What is drawn last lies on top: the test itself.
+  const low = at => 1 + 2 * (kOver - at);
+  // The time of the first counts.
   const whole = () => [0, Math.max(shown[0]?.trace.end ?? 0, 1e-3)];
   const inView = () => view ?? (shown.length > 0 ? whole() : [0, 1]);
   const slips = trace => trace.cycles.peak_time.map((time, k) => ({test: 0, onset: trace.cycles.onset_time[k], capture: trace.cycles.capture_time[k],
     peak_time: time, peak: trace.cycles.peak[k], captured: trace.cycles.captured[k]}));
-  const levels = () => shown.flatMap(({number: of, trace}, at) => {
+  // Of more than two tests the first's alone: names of many would lie on one another.
+  const levels = () => (shown.length > 2 ? shown.slice(0, 1) : shown).flatMap(({number: of, trace}, at) => {
     const name = letter => (shown.length > 1 ? `${letter}, test ${of}` : letter), [s, k, side] = at === 0 ? ["--static", "--kinetic", "left"] : ["--other", "--other", "right"];
     return [[name("S"), trace.mu_s, s, side], [name("K"), trace.mu_k, k, side]];
   });
-  const under = (u, k) => shown.map(({number: of}, at) => `${shown.length > 1 ? `test ${of} ` : ""}${Chart.range(u.data[1 + 2 * at][k], u.data[2 + 2 * at][k])}`).join(", ");
+  const under = (u, k) => shown.slice(0, 2).map(({number: of}, at) => `${shown.length > 1 ? `test ${of} ` : ""}${Chart.range(u.data[low(at)][k], u.data[low(at) + 1][k])}`).join(", ");
 
   function build() {
-    const line = name => Chart.line(name, {spanGaps: false});
-    chart = Chart.make(box, Chart.height(0.45), [line("--force"), line("--force"), line("--other"), line("--other")], inView, {
+    const pair = name => Array.from({length: 2}, () => Chart.line(name, {spanGaps: false})), pairs = Array.from({length: 1 + kOver}, (_, k) => pair(k === kOver ? "--force" : "--other"));
+    chart = Chart.make(box, Chart.height(0.45), pairs.flat(), inView, {
       cursor: {y: false, drag: {x: true, y: false, setScale: false}, points: {show: false}},
-      bands: [Chart.bands(1, 2), {...Chart.bands(3, 4), fill: Chart.paint("--other-band")}],
+      bands: pairs.map((_, at) => ({...Chart.bands(low(at), low(at) + 1), ...(at === 0 ? {} : {fill: Chart.paint("--other-band")})})),
       hooks: {drawClear: [u => shown.length === 1 && Chart.shade(u, shown[0].slips)],
         draw: [u => { if (shown.length > 0) Chart.peaks(u, shown[0].slips); Chart.lines(u, levels()); }],
         setCursor: [u => Chart.tell("trace-at", u, k => `${u.data[0][k].toFixed(4)} s: ${under(u, k)} · `)],
@@ -41,11 +54,10 @@ const Trace = (() => {
 
   function draw() {
     if (chart == null) build();
-    const columns = shown.map(({trace}) => [trace.time, trace.lowest, trace.highest]);
-    const empty = [[0], [null], [null]];
-    const [times, ...values] = uPlot.join([columns[0] ?? empty, columns[1] ?? empty]);
+    const empty = [[0], [null], [null]], tables = chart.bands.map((_, at) => (shown[at] == null ? empty : [shown[at].trace.time, shown[at].trace.lowest, shown[at].trace.highest]));
+    const [times, ...values] = uPlot.join([...tables].reverse());
     // Where each bin is one scan, lowest and highest are one line.
-    [0, 1].forEach(at => chart.setSeries(2 + 2 * at, {show: shown[at] != null && shown[at].trace.scans_in_bin > 1}));
+    tables.forEach((_, at) => chart.setSeries(low(at) + 1, {show: shown[at] != null && shown[at].trace.scans_in_bin > 1}));
     chart.setData([times, ...values]);
     const first = shown[0];
     part("span").textContent = first == null ? "" : view == null ? "the whole trace" : `${view[0].toFixed(3)} s to ${view[1].toFixed(3)} s`;
@@ -81,14 +93,14 @@ const Trace = (() => {
     try {
       while (again && dialog.open) {
         again = false;
-        const wanted = [number, ...(other.value === "" ? [] : [Number(other.value)])], read_traces = [];
+        const wanted = [number, ...over()], read_traces = [];
         part("message").textContent = "";
         for (const of of wanted) {
           try {
             const trace = await read(of);
             read_traces.push({number: of, trace, slips: slips(trace)});
           } catch (error) {
-            // A second test may be shorter than the span.
+            // Another test may be shorter than the span.
             if (of === number || view == null) part("message").textContent = error.message;
           }
         }
@@ -119,11 +131,16 @@ const Trace = (() => {
     view = null;
     shown = [];
     part("title").textContent = `Trace of test ${of}`;
-    other.replaceChildren(...[["", "no other test"], ...listed.filter(one => one.number !== of).map(one => [one.number, `test ${one.number}, ${one.results.regime}`])].map(([value, text]) => {
+    const named = one => [one.number, `${one === reference ? "reference: " : ""}test ${one.number}, ${one.results.regime}`];
+    const first = reference == null || reference.number === of ? [] : [reference], rest = others().filter(one => one !== reference);
+    const batch = !ofBatch || rest.length === 0 ? [] : [[kOthers, rest.length > kOver ? `the latest ${kOver} others of its batch` : "all others of its batch"]];
+    other.replaceChildren(...[["", "no other test"], ...first.map(named), ...batch, ...rest.map(named)].map(([value, text]) => {
       const option = document.createElement("option");
       option.value = value; option.textContent = text;
       return option;
     }));
+    other.value = first.length > 0 ? String(reference.number) : "";
+    part("reference").checked = reference?.number === of;
     dialog.showModal();
     part("close").focus();
     draw();
@@ -134,6 +151,11 @@ const Trace = (() => {
   const buttons = {in: () => zoom(kZoom), out: () => zoom(1 / kZoom), left: () => move(-kMove), right: () => move(kMove), whole: back, close: () => dialog.close()};
   for (const [name, act] of Object.entries(buttons)) part(name).addEventListener("click", act);
   other.addEventListener("change", load);
+  part("reference").addEventListener("change", event => {
+    if (event.target.checked) sessionStorage.setItem(kReference, recorded.find(one => one.number === number)?.file ?? "");
+    else sessionStorage.removeItem(kReference);
+    refer();
+  });
   const keys = {"+": buttons.in, "=": buttons.in, "-": buttons.out, ArrowLeft: buttons.left, ArrowRight: buttons.right};
   dialog.addEventListener("keydown", event => {
     const act = event.key === "Escape" ? (view == null ? null : back) : event.target === other ? null : keys[event.key];
@@ -147,8 +169,13 @@ const Trace = (() => {
 
   return {
     connect(asking) { ask = asking; },
-    /// \param list  tests of which one can be laid over another, oldest first.
-    tests(list) { listed = list.filter(test => test.file && !test.voided).slice(-100).reverse(); },
+    /// \param list  all tests, oldest first. \param inBatch  test → whether it is of the batch that is shown; null: there is none.
+    tests(list, inBatch) {
+      recorded = list.filter(test => test.file && !test.voided);
+      ofBatch = inBatch != null;
+      listed = (ofBatch ? recorded.filter(inBatch) : recorded).slice(-100).reverse();
+      refer();
+    },
     open,
     levels,
     shown: () => ({number, view: inView(), tests: shown, chart}),

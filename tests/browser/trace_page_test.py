@@ -31,13 +31,18 @@ SHOWN = """(({number, view, tests, chart}) => ({number, view, tests, columns: [.
   span: document.getElementById('trace-span').textContent, message: document.getElementById('trace-message').textContent}))(Trace.shown())"""
 
 
+def values(shown, at, which="lowest"):
+    """What the chart draws of a test: the first that is shown is drawn last, on top."""
+    return [value for value in shown["columns"][-2 - 2 * at + (which == "highest")] if value is not None]
+
+
 class TracePage(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.browser = cls.enterClassContext(Chromium(CHROMIUM, BUILD))
 
-    def open(self, tests, dark=False):
-        self.daemon = RunningDaemon(self, BUILD, SOURCE, speed=4, config='http = "127.0.0.1:0"\ntoken_file = "token"\n')
+    def open(self, tests, dark=False, speed=4):
+        self.daemon = RunningDaemon(self, BUILD, SOURCE, speed=speed, config='http = "127.0.0.1:0"\ntoken_file = "token"\n')
         token = (self.daemon.folder / "token").read_text().strip()
         page = self.browser.open(f"http://{self.daemon.port_line()}/#token={token}", dark=dark)
         self.addCleanup(page.close)
@@ -79,8 +84,8 @@ class TracePage(unittest.TestCase):
         times = self.compare(trace, scans, force, rate)
         self.assertEqual(times[0], 0)
         self.assertAlmostEqual(times[-1] + trace["scans_in_bin"] / rate, (scans[-1] - scans[0] + 1) / rate, delta=trace["scans_in_bin"] / rate)
-        self.assertEqual(whole["columns"][1], trace["lowest"])
-        self.assertEqual(whole["columns"][2], trace["highest"])
+        self.assertEqual(values(whole, 0), trace["lowest"])
+        self.assertEqual(values(whole, 0, "highest"), trace["highest"])
         slips = whole["tests"][0]["slips"]
         numpy.testing.assert_allclose([slip["peak_time"] for slip in slips], cycles["peak_time"], atol=1e-6)
         self.assertEqual([slip["captured"] for slip in slips], [bool(flags & 8) for flags in cycles["flags"]])
@@ -137,8 +142,8 @@ class TracePage(unittest.TestCase):
         scans1, force1, rate1, _, levels1 = self.scans(1)
         self.compare(both["tests"][1]["trace"], scans1, force1, rate1)
         self.assertAlmostEqual(both["tests"][1]["trace"]["mu_s"], levels1["mu_s"], delta=1e-6)
-        self.assertEqual(len(both["columns"]), 5)
-        self.assertEqual([value for value in both["columns"][4] if value is not None], both["tests"][1]["trace"]["highest"])
+        self.assertEqual(values(both, 1, "highest"), both["tests"][1]["trace"]["highest"])
+        self.assertEqual({value for column in both["columns"][1:-4] for value in column}, {None})
         self.assertEqual([name for name, *_ in page.value("Trace.levels()")], ["S, test 2", "K, test 2", "S, test 1", "K, test 1"])
         self.picture(page, "trace-two")
         page.press("Escape")
@@ -149,6 +154,68 @@ class TracePage(unittest.TestCase):
         self.assertEqual(self.shown(page)["number"], 3)
         # The browser's advice is on how this test reads pixels.
         self.assertEqual([said for said in page.complaints() if "willReadFrequently" not in said], [])
+
+    def choices(self, page):
+        return page.value("[...document.getElementById('trace-other').options].map(option => [option.value, option.textContent.split(',')[0]])")
+
+    def choose(self, page, value):
+        page.value(f"(s => {{ s.value = '{value}'; s.dispatchEvent(new Event('change')); }})(document.getElementById('trace-other'))")
+
+    def test_a_reference_and_the_others_of_a_batch_lie_over_a_test(self):
+        page = self.open(2, speed=12)
+        page.value("document.getElementById('trace-1').click()")
+        self.shown(page)
+        # Without a batch there are only single tests.
+        self.assertNotIn("others", dict(self.choices(page)))
+        page.click("#trace-reference")
+        page.press("Escape")
+        status, begun = self.daemon.ask("POST", "/v1/batch", {"name": "liner", "replicates": 1000})
+        self.assertEqual(status, 200, begun)
+        page.until("document.querySelectorAll('#tests tr.own').length >= 13")
+        own = sorted(page.value("[...document.querySelectorAll('#tests tr.own button.link')].map(button => Number(button.textContent))"))
+        # A test of the batch: the reference, which is not of it, lies over it at once.
+        page.value(f"document.getElementById('trace-{own[0]}').click()")
+        page.until("Trace.shown().tests.length === 2")
+        self.assertEqual([test["number"] for test in self.shown(page)["tests"]], [own[0], 1])
+        self.assertEqual(self.choices(page)[1], ["1", "reference: test 1"])
+        self.assertFalse(page.value("document.getElementById('trace-reference').checked"))
+        # Its batch: the latest ten others, each from its record, drawn, with the levels of the first alone.
+        self.assertEqual(dict(self.choices(page))["others"], "the latest 10 others of its batch")
+        self.choose(page, "others")
+        page.until("Trace.shown().tests.length === 11")
+        shown = self.shown(page)
+        numbers = [test["number"] for test in shown["tests"]]
+        self.assertEqual((numbers[0], len(set(numbers)), set(numbers[1:]) <= set(range(own[0] + 1, own[0] + 1000))), (own[0], 11, True))
+        self.assertEqual(sorted(numbers[1:], reverse=True), numbers[1:])
+        for number in (0, 1, 10):
+            trace = shown["tests"][number]
+            scans, force, rate, _, _ = self.scans(trace["number"])
+            self.compare(trace["trace"], scans, force, rate)
+            self.assertEqual(values(shown, number), trace["trace"]["lowest"])
+        self.assertEqual([name for name, *_ in page.value("Trace.levels()")], [f"S, test {own[0]}", f"K, test {own[0]}"])
+        self.picture(page, "trace-batch")
+        page.press("Escape")
+        # The reference is kept over a reload, and until another test is it, or none.
+        page.reload()
+        page.until(f"document.getElementById('trace-{own[1]}')")
+        page.value(f"document.getElementById('trace-{own[1]}').click()")
+        page.until("Trace.shown().tests.length === 2")
+        self.assertEqual([test["number"] for test in self.shown(page)["tests"]], [own[1], 1])
+        self.picture(page, "trace-reference")
+        page.click("#trace-reference")
+        page.press("Escape")
+        page.value(f"document.getElementById('trace-{own[2]}').click()")
+        page.until("Trace.shown().tests.length === 2")
+        self.assertEqual([test["number"] for test in self.shown(page)["tests"]], [own[2], own[1]])
+        page.press("Escape")
+        page.value(f"document.getElementById('trace-{own[1]}').click()")
+        self.assertEqual(len(self.shown(page)["tests"]), 1)
+        self.assertTrue(page.value("document.getElementById('trace-reference').checked"))
+        page.click("#trace-reference")
+        page.press("Escape")
+        page.value(f"document.getElementById('trace-{own[2]}').click()")
+        self.assertEqual(len(self.shown(page)["tests"]), 1)
+        self.assertEqual(self.choices(page)[0][0], page.value("document.getElementById('trace-other').value"))
 
     def test_it_says_why_a_test_has_no_trace(self):
         page = self.open(2)
