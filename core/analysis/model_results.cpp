@@ -121,16 +121,16 @@ Fitted gather(const SlipEstimates& estimates) {
   Eigen::Matrix2d own_mean = own.bottomRightCorner<2, 2>() / (n * n);
   fitted.of_noise = covariance(own_mean);
   if (windows.size() > 1) {
-    // The scatter from slip to slip holds the noise of each and what the paper adds to it. S − K wanders less
-    // than S and K, so that its variance tells their covariance.
-    const auto variance = [](const signal::WanderingMean& values) {
-      return std::pow(values.error_of_mean(), 2);
-    };
-    const double of_S = variance(S);
-    const double of_K = variance(K);
-    const double most = std::sqrt(of_S * of_K);
-    const double both = std::clamp(0.5 * (of_S + of_K - variance(fitted.D)), -most, most);
-    own_mean << of_S, both, both, of_K;
+    // The scatter from slip to slip holds the noise of each and what the paper adds to it. The error of S − K
+    // is known best, as it wanders less than S and K: with theirs it tells the covariance of the two. Of
+    // three errors none exceeds the sum of the others; where S or K wanders so slowly that its own does, it
+    // is less.
+    const double of_D = fitted.D.error_of_mean();
+    const double of_S = std::min(S.error_of_mean(), K.error_of_mean() + of_D);
+    const double of_K = std::min(K.error_of_mean(), S.error_of_mean() + of_D);
+    const double most = of_S * of_K;
+    const double both = std::clamp(0.5 * (of_S * of_S + of_K * of_K - of_D * of_D), -most, most);
+    own_mean << of_S * of_S, both, both, of_K * of_K;
   }
   fitted.value << fit.shared.omega, fit.shared.gamma, fit.shared.r, S.mean() - fitted.drift,
       K.mean() - fitted.drift;

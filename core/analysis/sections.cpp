@@ -193,14 +193,15 @@ TestEstimates estimate_in_sections(const estimate::Trace& trace, const base::Lon
   whole.results = results.mean();
   whole.tester = testers.mean();
   const Estimate& delta_mu = whole.results.delta_mu;
-  if (whole.model_describes && delta_mu.value.value_or(1.0) <= 0.0) {
+  if (whole.model_describes && delta_mu.value) {
     constexpr double kSure = 2.0;
-    const double bound = *delta_mu.value + kSure * total_error(delta_mu);
-    if (bound > 0.0) {
-      tell_bound(std::min(bound, whole.results.amplitude.value.value_or(bound)), whole.results);
-    } else {
+    const double sure = *delta_mu.value + kSure * total_error(delta_mu);
+    const double bound = std::min(sure, whole.results.amplitude.value.value_or(sure));
+    if (sure <= 0.0) {
       whole.model_describes = false;
       no_model_results("the fit finds S below K", whole.results);
+    } else if (*delta_mu.value <= 0.0 || delta_mu.standard_error.value_or(0.0) >= 0.5 * bound) {
+      tell_bound(bound, whole.results);  // Known better than by the fit: from 0 to the bound.
     }
   }
   return whole;

@@ -33,6 +33,13 @@ TEST(Promise, FactorOfFiveIsKeptInALongTestWithAnUnsteadyFirstPeak) {
   ASSERT_GE(result->stuck.delta_mu.values.size(), 3U);
   EXPECT_GE(result->stuck.factor(), 5.0);
   EXPECT_NEAR(result->cycle_count, 194.0, 20.0);
+  // K falls during the test, and S with it. The error of S − K is that of the conditions all the same; the
+  // noise of the slips at most doubles it.
+  const double conditions = test::expected_delta_mu_error(cell) * test::PromiseCell::kDeltaMu;
+  for (const double stated : result->stated) {
+    EXPECT_GT(stated, 0.7 * conditions);
+    EXPECT_LT(stated, 2.0 * conditions);
+  }
 }
 
 TEST(Promise, ErrorsAreThoseOfTheConditions) {

@@ -129,7 +129,8 @@ struct PromiseResult {
   /// Tests that the analysis calls stick-slip or mixed: where no slip ends in sticking the first is all there
   /// is, so that S − K is as unrepresentative as the first peak.
   PromisePair stuck;
-  double cycle_count = 0.0;  ///< Mean of the slips found, all tests.
+  std::vector<double> stated;  ///< Standard errors of S − K as the results state them; of stuck.
+  double cycle_count = 0.0;    ///< Mean of the slips found, all tests.
 };
 
 /// Relative standard error that the conditions alone give the first peak less the mean: S − K of one slip and
@@ -182,6 +183,7 @@ inline base::Result<PromiseResult> measure_promise(const sim::Scene& base, const
     if (test.stick_cycle_count.value.value_or(0.0) >= 1.0) {
       result.stuck.traditional.add(traditional);
       result.stuck.delta_mu.add(delta_mu);
+      if (delta_mu) result.stated.push_back(test.delta_mu.standard_error.value_or(0.0));
     }
     result.cycle_count += test.cycle_count.value.value_or(0.0) / static_cast<double>(count);
   }
