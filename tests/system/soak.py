@@ -17,6 +17,7 @@ from the records' tables of gaps; it must be the same. Of a daemon that was kill
 import argparse
 import collections
 import contextlib
+import itertools
 import math
 import os
 import pathlib
@@ -175,13 +176,14 @@ seed = {seed}
                                                  zip(table["first_scan"], table["scan_count"], table["cause"])]
                 stretches = [(first, first + count) for first, count, _ in gaps]
                 lost = sum(count for _, count, _ in gaps)
-                expect(len(scans) > 0, f"{path.name}: no scan")
-                # A full disk may have taken the first or the last scans of a test.
-                begin = min([int(scans[0])] + [first for first, _ in stretches])
-                end = max([int(scans[-1]) + 1] + [end for _, end in stretches])
+                # A full disk may have taken the first or the last scans of a test, or all of them.
+                edges = [*(int(scan) for scan in scans[:1]), *(int(scan) + 1 for scan in scans[-1:]), *itertools.chain(*stretches)]
+                expect(edges, f"{path.name}: neither scans nor gaps")
+                begin, end = min(edges), max(edges)
                 expect(end - begin == len(scans) + lost,
                        f"{path.name}: {len(scans)} scans and {lost} in gaps are not the {end - begin} indices from {begin} on")
-                self.counts["across 2^32"] += int(scans[0] < WRAP <= scans[-1])
+                self.counts["across 2^32"] += int(begin < WRAP < end)
+                self.counts["without a scan"] += int(len(scans) == 0)
             self.begins.append(begin)
             self.rows += len(scans)
             self.refused += sum(count for _, count, cause in gaps if cause == "storage-full")
