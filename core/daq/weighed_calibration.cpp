@@ -38,7 +38,7 @@ std::string refusal(const WeightReading& reading, const WeightReading& tare, dou
                          tare.voltage_V);
     }
     if (change_V < kSmallestChange * span_V) {
-      return fmt::format("changes the voltage by {:.2g} %, less than 1 %: a heavier weight, or more gain",
+      return fmt::format("changes the voltage by {:.2g} %, less than 1 %: a heavier weight, or more amplification",
                          100.0 * change_V / span_V);
     }
   }
