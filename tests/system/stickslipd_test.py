@@ -277,6 +277,17 @@ class Signals(Folder):
         again = run(CLI, "recover", "records", cwd=self.folder)
         self.assertEqual((again.returncode, again.stdout), (0, ""), again.stderr)
 
+        # What cannot be printed stops no recovery.
+        others = self.folder / "others"
+        others.mkdir()
+        for number in (1, 2):
+            (others / f"20260101T000000Z-000{number}.journal").write_bytes(whole)
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            done = subprocess.run([CLI, "recover", others], stdout=full, stderr=subprocess.PIPE, text=True, timeout=TIMEOUT_S, check=False)
+        self.assertEqual(done.returncode, 74, done.stderr)
+        self.assertIn("the output cannot be written: No space left on device", done.stderr)
+        self.assertEqual(sorted(path.name for path in others.iterdir()), ["20260101T000000Z-0001.h5", "20260101T000000Z-0002.h5"])
+
         # Without the header nobody knows what the counts mean.
         lost = bytearray(whole)
         lost[40] ^= 4
