@@ -1,8 +1,13 @@
 # Run at build time: cmake -DURL=https://… -DSHA512=… -DFOLDER=… -P fetch.cmake. Leaves in FOLDER what the archive holds.
 get_filename_component(archive ${URL} NAME)
-file(DOWNLOAD ${URL} ${FOLDER}/${archive} TLS_VERIFY ON TIMEOUT 300 STATUS status)
-list(GET status 0 code)
-list(GET status 1 why)
+foreach(attempt RANGE 1 3) # A registry cuts a transfer now and then.
+  file(DOWNLOAD ${URL} ${FOLDER}/${archive} TLS_VERIFY ON TIMEOUT 300 STATUS status)
+  list(GET status 0 code)
+  list(GET status 1 why)
+  if(code EQUAL 0)
+    break()
+  endif()
+endforeach()
 if(NOT code EQUAL 0)
   message(FATAL_ERROR "${URL} cannot be fetched: ${why}. CONTRIBUTING.md says what to do behind a proxy, with a certificate "
     "authority of its own, and without a network")
