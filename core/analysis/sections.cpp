@@ -200,8 +200,9 @@ TestEstimates estimate_in_sections(const estimate::Trace& trace, const base::Lon
     if (sure <= 0.0) {
       whole.model_describes = false;
       no_model_results("the fit finds S below K", whole.results);
-    } else if (*delta_mu.value <= 0.0 || delta_mu.standard_error.value_or(0.0) >= 0.5 * bound) {
-      tell_bound(bound, whole.results);  // Known better than by the fit: from 0 to the bound.
+    } else if (*delta_mu.value <= 0.0 ||
+               (whole.captured == 0 && delta_mu.standard_error.value_or(0.0) >= 0.5 * bound)) {
+      tell_bound(bound, whole.results);  // The amplitude of a ring-down tells more than its fit.
     }
   }
   return whole;

@@ -3,6 +3,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
+#include <optional>
 #include <vector>
 
 #include <boost/algorithm/string/classification.hpp>
@@ -11,6 +13,27 @@
 #include "daemon/control/request_body.hpp"
 
 namespace stickslip::control {
+namespace {
+
+/// "%2C" is a comma [RFC 3986, section 2.1]. nullopt if two hexadecimal digits do not follow each "%".
+std::optional<std::string> decoded(std::string_view value) {
+  std::string text;
+  for (std::size_t at = 0; at < value.size(); ++at) {
+    if (value[at] != '%') {
+      text += value[at];
+      continue;
+    }
+    const std::string_view digits = value.substr(at + 1, 2);
+    unsigned char byte = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), byte, 16);
+    if (digits.size() != 2 || error != std::errc{} || end != digits.data() + 2) return std::nullopt;
+    text += static_cast<char>(byte);
+    at += 2;
+  }
+  return text;
+}
+
+}  // namespace
 
 base::Result<Query> query_of(const std::string& target, std::initializer_list<std::string_view> keys) {
   Query query;
@@ -24,7 +47,12 @@ base::Result<Query> query_of(const std::string& target, std::initializer_list<st
     if (std::find(keys.begin(), keys.end(), key) == keys.end())
       return base::usage_error("{}: there is no such key; there is {}", printable(key),
                                fmt::join(keys, ", "));
-    if (!query.emplace(key, part.substr(std::min(equals + 1, part.size()))).second)
+    const std::optional<std::string> value =
+        decoded(std::string_view{part}.substr(std::min(equals + 1, part.size())));
+    if (!value)
+      return base::usage_error("{}: two hexadecimal digits are needed after each %; %25 is a % itself",
+                               printable(key));
+    if (!query.emplace(key, *value).second)
       return base::usage_error("{}: stands there twice; send it once", key);
   }
   return query;

@@ -13,7 +13,7 @@ namespace stickslip::control {
 
 using Query = std::map<std::string, std::string>;
 
-/// They are not decoded: no allowed value needs it. \param keys  the allowed ones. Errors: kUsage.
+/// Values are percent-decoded. \param keys  the allowed ones. Errors: kUsage.
 [[nodiscard]] base::Result<Query> query_of(const std::string& target,
                                            std::initializer_list<std::string_view> keys);
 

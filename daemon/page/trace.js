@@ -4,6 +4,7 @@
 const Trace = (() => {
   const kZoom = 2, kMove = 0.25;  // Of one key: how much shorter the span is; how far it moves, in spans.
   const kRetry = 300;  // ms, while the daemon reads another trace.
+  const kBreak = 2;  // To uPlot.join(): where scans are missing the line breaks, whatever other tests have there.
   const kOver = 10;  // Tests laid over it at once: with more no line can be followed, and each is read by a process of its own.
   const kOthers = "others", kReference = "reference";  // A choice of "compare with"; where the tab keeps the file of the reference.
   const part = id => document.getElementById(`trace-${id}`), dialog = part("dialog"), box = part("chart"), other = part("other");
@@ -13,15 +14,21 @@ const Trace = (() => {
   let view = null;     // [from, to] in view, s; null: the whole trace.
   let recorded = [];   // Every test with a record that counts.
   let listed = [];     // Those that can be laid over it, the latest first.
-  let ofBatch = false; // Those are the tests of one batch.
+  let inBatch = null;  // test → whether it is of the batch that is shown; null: there is none.
+  let offered = [];    // Numbers of the others of its batch, when it was opened.
   let reference = null;  // The test that lies over each one opened.
   let chart = null;
 
   /// By its file: numbers begin anew with the daemon.
-  const refer = () => { reference = recorded.find(one => one.file === sessionStorage.getItem(kReference)) ?? null; };
+  function refer() {
+    reference = recorded.find(one => one.file === sessionStorage.getItem(kReference)) ?? null;
+    part("reference").checked = reference != null && reference.number === number;
+    part("reference").disabled = opened() == null;  // It has no trace.
+  }
+  const opened = () => recorded.find(one => one.number === number);
   const others = () => listed.filter(one => one.number !== number);
   /// Numbers of the tests that were chosen to lie over it.
-  const over = () => (other.value === "" ? [] : other.value === kOthers ? others().slice(0, kOver).map(one => one.number) : [Number(other.value)]);
+  const over = () => (other.value === "" ? [] : other.value === kOthers ? offered : [Number(other.value)]);
   // Its column of lowest values in the chart; the one of highest follows. What is drawn last lies on top: the test itself.
   const low = at => 1 + 2 * (kOver - at);
   // The time of the first counts.
@@ -34,7 +41,11 @@ const Trace = (() => {
     const name = letter => (shown.length > 1 ? `${letter}, test ${of}` : letter), [s, k, side] = at === 0 ? ["--static", "--kinetic", "left"] : ["--other", "--other", "right"];
     return [[name("S"), trace.mu_s, s, side], [name("K"), trace.mu_k, k, side]];
   });
-  const under = (u, k) => shown.slice(0, 2).map(({number: of}, at) => `${shown.length > 1 ? `test ${of} ` : ""}${Chart.range(u.data[low(at)][k], u.data[low(at) + 1][k])}`).join(", ");
+  // Each at its own nearest bin: tests of other lengths have other bins.
+  const under = u => shown.slice(0, shown.length > 2 ? 1 : 2).map(({number: of}, at) => {
+    const k = u.cursor.idxs[low(at)];
+    return `${shown.length > 1 ? `test ${of} ` : ""}${k == null ? "–" : Chart.range(u.data[low(at)][k], u.data[low(at) + 1][k])}`;
+  }).join(", ");
 
   function build() {
     const pair = name => Array.from({length: 2}, () => Chart.line(name, {spanGaps: false})), pairs = Array.from({length: 1 + kOver}, (_, k) => pair(k === kOver ? "--force" : "--other"));
@@ -43,7 +54,7 @@ const Trace = (() => {
       bands: pairs.map((_, at) => ({...Chart.bands(low(at), low(at) + 1), ...(at === 0 ? {} : {fill: Chart.paint("--other-band")})})),
       hooks: {drawClear: [u => shown.length === 1 && Chart.shade(u, shown[0].slips)],
         draw: [u => { if (shown.length > 0) Chart.peaks(u, shown[0].slips); Chart.lines(u, levels()); }],
-        setCursor: [u => Chart.tell("trace-at", u, k => `${u.data[0][k].toFixed(4)} s: ${under(u, k)} · `)],
+        setCursor: [u => Chart.tell("trace-at", u, k => `${u.data[0][k].toFixed(4)} s: ${under(u)} · `)],
         setSelect: [u => {
           const {left, width} = u.select;
           if (width < 3) return;
@@ -55,7 +66,7 @@ const Trace = (() => {
   function draw() {
     if (chart == null) build();
     const empty = [[0], [null], [null]], tables = chart.bands.map((_, at) => (shown[at] == null ? empty : [shown[at].trace.time, shown[at].trace.lowest, shown[at].trace.highest]));
-    const [times, ...values] = uPlot.join([...tables].reverse());
+    const [times, ...values] = uPlot.join([...tables].reverse(), tables.map(() => [0, kBreak, kBreak]));
     // Where each bin is one scan, lowest and highest are one line.
     tables.forEach((_, at) => chart.setSeries(low(at) + 1, {show: shown[at] != null && shown[at].trace.scans_in_bin > 1}));
     chart.setData([times, ...values]);
@@ -73,9 +84,7 @@ const Trace = (() => {
     const span = view == null ? "" : `&from=${Math.max(0, view[0] - margin).toFixed(6)}&to=${(view[1] + margin).toFixed(6)}`;
     for (;;) {
       try {
-        const trace = await ask("GET", `/v1/tests/${of}/trace?points=${Math.max(200, box.clientWidth)}${span}`);
-        part("message").textContent = "";
-        return trace;
+        return await ask("GET", `/v1/tests/${of}/trace?points=${Math.max(200, box.clientWidth)}${span}`);
       } catch (error) {
         if (error.status !== 503 || !dialog.open) throw error;
         part("message").textContent = error.message;
@@ -93,18 +102,20 @@ const Trace = (() => {
     try {
       while (again && dialog.open) {
         again = false;
-        const wanted = [number, ...over()], read_traces = [];
+        const wanted = [number, ...over()], read_traces = [], refused = [];
         part("message").textContent = "";
         for (const of of wanted) {
+          if (again || !dialog.open) break;  // Something else is wanted.
           try {
             const trace = await read(of);
             read_traces.push({number: of, trace, slips: slips(trace)});
           } catch (error) {
             // Another test may be shorter than the span.
-            if (of === number || view == null) part("message").textContent = error.message;
+            if (of === number || view == null) refused.push(error.message);
+            if (of === number) break;
           }
         }
-        if (read_traces[0]?.number !== number) read_traces.length = 0;
+        if (!again) part("message").textContent = refused.join("; ");
         if (!again && dialog.open) { shown = read_traces; draw(); }
       }
     } finally {
@@ -133,14 +144,16 @@ const Trace = (() => {
     part("title").textContent = `Trace of test ${of}`;
     const named = one => [one.number, `${one === reference ? "reference: " : ""}test ${one.number}, ${one.results.regime}`];
     const first = reference == null || reference.number === of ? [] : [reference], rest = others().filter(one => one !== reference);
-    const batch = !ofBatch || rest.length === 0 ? [] : [[kOthers, rest.length > kOver ? `the latest ${kOver} others of its batch` : "all others of its batch"]];
+    const own = opened(), mates = own != null && inBatch?.(own) ? others().filter(inBatch) : [];
+    offered = mates.slice(0, kOver).map(one => one.number);
+    const batch = mates.length === 0 ? [] : [[kOthers, mates.length > kOver ? `the latest ${kOver} others of its batch` : "all others of its batch"]];
     other.replaceChildren(...[["", "no other test"], ...first.map(named), ...batch, ...rest.map(named)].map(([value, text]) => {
       const option = document.createElement("option");
       option.value = value; option.textContent = text;
       return option;
     }));
     other.value = first.length > 0 ? String(reference.number) : "";
-    part("reference").checked = reference?.number === of;
+    refer();
     dialog.showModal();
     part("close").focus();
     draw();
@@ -152,7 +165,7 @@ const Trace = (() => {
   for (const [name, act] of Object.entries(buttons)) part(name).addEventListener("click", act);
   other.addEventListener("change", load);
   part("reference").addEventListener("change", event => {
-    if (event.target.checked) sessionStorage.setItem(kReference, recorded.find(one => one.number === number)?.file ?? "");
+    if (event.target.checked) sessionStorage.setItem(kReference, opened().file);
     else sessionStorage.removeItem(kReference);
     refer();
   });
@@ -169,11 +182,11 @@ const Trace = (() => {
 
   return {
     connect(asking) { ask = asking; },
-    /// \param list  all tests, oldest first. \param inBatch  test → whether it is of the batch that is shown; null: there is none.
-    tests(list, inBatch) {
+    /// \param list  all tests, oldest first. \param ofBatch  as inBatch.
+    tests(list, ofBatch) {
       recorded = list.filter(test => test.file && !test.voided);
-      ofBatch = inBatch != null;
-      listed = (ofBatch ? recorded.filter(inBatch) : recorded).slice(-100).reverse();
+      inBatch = ofBatch;
+      listed = (inBatch == null ? recorded : recorded.filter(inBatch)).slice(-100).reverse();
       refer();
     },
     open,

@@ -171,8 +171,8 @@ class TracePage(unittest.TestCase):
         page.press("Escape")
         status, begun = self.daemon.ask("POST", "/v1/batch", {"name": "liner", "replicates": 1000})
         self.assertEqual(status, 200, begun)
-        page.until("document.querySelectorAll('#tests tr.own').length >= 13")
-        own = sorted(page.value("[...document.querySelectorAll('#tests tr.own button.link')].map(button => Number(button.textContent))"))
+        page.until("document.querySelectorAll('#tests tr.own a[id^=record-]').length >= 13")
+        own = sorted(page.value("[...document.querySelectorAll('#tests tr.own:has(a[id^=record-]) button.link')].map(button => Number(button.textContent))"))
         # A test of the batch: the reference, which is not of it, lies over it at once.
         page.value(f"document.getElementById('trace-{own[0]}').click()")
         page.until("Trace.shown().tests.length === 2")
@@ -219,10 +219,16 @@ class TracePage(unittest.TestCase):
 
     def test_it_says_why_a_test_has_no_trace(self):
         page = self.open(2)
+        # With a reference, whose trace comes all the same.
+        page.value("document.getElementById('trace-2').click()")
+        self.shown(page)
+        page.click("#trace-reference")
+        page.press("Escape")
         self.assertEqual(self.daemon.ask("POST", "/v1/void", {"test": 1, "reason": "paper torn"})[0], 200)
         page.value("document.getElementById('trace-1').click()")
         page.until(READY)
         self.assertTrue(page.value("document.getElementById('trace-message').textContent").startswith("test 1 is void: paper torn"))
+        page.until("document.getElementById('trace-reference').disabled")
         self.assertEqual(page.value("Trace.shown().tests.length"), 0)
 
     def test_it_fits_and_can_be_read(self):

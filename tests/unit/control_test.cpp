@@ -158,6 +158,10 @@ TEST_F(ControlApi, ReportsOnABatchAndComparesTwo) {
             "form 1: 20261122T180301Z liner (20261122T180301Z) 20261122T180302Z fluting (20261122T180302Z) "
             "pool grades,regimes",
             "text/csv; charset=utf-8"},
+           {two + "&pool=grades%2cregimes&format=csv",
+            "form 1: 20261122T180301Z liner (20261122T180301Z) 20261122T180302Z fluting (20261122T180302Z) "
+            "pool grades,regimes",
+            "text/csv; charset=utf-8"},
        }) {
     const HttpReply reply = get(target);
     EXPECT_EQ(reply.status, 200) << target;
@@ -170,6 +174,10 @@ TEST_F(ControlApi, ReportsOnABatchAndComparesTwo) {
            {one + "?form=csv", 400, "form: there is no such key"},
            {one + "?format=csv&format=csv", 400, "format: stands there twice; send it once"},
            {one + "?pool=all", 400, "pool: is grades or regimes or grades,regimes, not all"},
+           {one + "?pool=%", 400, "pool: two hexadecimal digits are needed after each %"},
+           {one + "?pool=%1", 400, "pool: two hexadecimal digits are needed after each %"},
+           {one + "?pool=%+1", 400, "pool: two hexadecimal digits are needed after each %"},
+           {one + "?pool=%1b", 400, "not \\x1b"},
            {one + "?pool=", 400, "pool: is grades or regimes or grades,regimes, not "},
            {one + "?pool=regimes,grades", 400, "not regimes,grades"},
            {one + "?pool=grades&pool=regimes", 400, "pool: stands there twice; send it once"},
@@ -181,7 +189,7 @@ TEST_F(ControlApi, ReportsOnABatchAndComparesTwo) {
            {"/v1/batches/20261122T180301Z/report/", 404, "/v1/batches/ID/report is the report"},
            {"/v1/compare", 400, "which two batches?"},
            {"/v1/compare?a=20261122T180301Z", 400, "which two batches?"},
-           {"/v1/compare?a=20261122T180301Z&b=x%0A", 404, "there is no batch x%0A"},
+           {"/v1/compare?a=20261122T180301Z&b=x%0A", 404, "there is no batch x\\x0a"},
            {"/v1/compare?a=20261122T180301Z&b=20261122T180301Z", 400, "are the same batch"},
        }) {
     const HttpReply refused = get(target);
