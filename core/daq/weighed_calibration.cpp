@@ -38,8 +38,9 @@ std::string refusal(const WeightReading& reading, const WeightReading& tare, dou
                          tare.voltage_V);
     }
     if (change_V < kSmallestChange * span_V) {
-      return fmt::format("changes the voltage by {:.2g} %, less than 1 %: a heavier weight, or more amplification",
-                         100.0 * change_V / span_V);
+      return fmt::format(
+          "changes the voltage by {:.2g} %, less than 1 %: a heavier weight, or more amplification",
+          100.0 * change_V / span_V);
     }
   }
   if (wander_V > allowed_V) {
