@@ -169,13 +169,30 @@ DiskWriter::ScanCounts DiskWriter::scan_counts() const {
   return scans;
 }
 
-base::Result<std::filesystem::path> DiskWriter::journal_of(std::int64_t test) const {
-  const std::lock_guard lock{mutex_};
-  const auto job =
-      std::find_if(jobs_.begin(), jobs_.end(), [test](const Job& kept) { return kept.test == test; });
-  if (job == jobs_.end()) return base::failure("test {}: has no journal any more", test);
-  if (job->trouble) return base::failure("{}", *job->trouble);
-  return job->journal->path();
+base::Result<record::Finalised> DiskWriter::make_record(
+    std::int64_t test,
+    const std::function<base::Result<record::Finalised>(const std::filesystem::path& journal)>& make) {
+  const auto find = [&] {
+    return std::find_if(jobs_.begin(), jobs_.end(), [test](const Job& kept) { return kept.test == test; });
+  };
+  std::shared_ptr<std::mutex> claim;
+  {
+    const std::lock_guard lock{mutex_};
+    if (const auto job = find(); job != jobs_.end()) claim = job->claim;
+  }
+  if (!claim) return base::failure("test {}: has no journal any more", test);
+  const std::lock_guard claimed{*claim};
+  Journal journal;
+  {
+    const std::lock_guard lock{mutex_};
+    const auto job = find();
+    if (job == jobs_.end()) return base::failure("test {}: has no journal any more", test);
+    if (job->trouble) return base::failure("{}", *job->trouble);
+    journal = job->journal;
+  }
+  base::Result<record::Finalised> made = make(journal->path());
+  if (made) finished(test);
+  return made;
 }
 
 void DiskWriter::finished(std::int64_t test) {
@@ -219,8 +236,9 @@ std::optional<std::string> DiskWriter::write_all(bool sync) {
                         [&job](const Job& kept) { return kept.journal == job.journal; });
   };
   for (const Job& job : jobs) {
-    // Its record was made meanwhile, and the journal removed.
-    if (job.handed_over && is_finished(job)) continue;
+    const std::unique_lock claimed{*job.claim, std::try_to_lock};
+    // Its record is being made or was made meanwhile, and the journal removed.
+    if (job.handed_over && (!claimed || is_finished(job))) continue;
     // One that cannot be written holds up no other.
     const std::optional<std::string> refused =
         away_ ? away_->why : write(job, sync || (job.ended && !job.handed_over));

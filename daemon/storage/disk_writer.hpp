@@ -16,6 +16,7 @@
 
 #include "core/base/result.hpp"
 #include "core/daq/latency_histogram.hpp"
+#include "core/record/finaliser.hpp"
 #include "core/record/patient_journal.hpp"
 #include "daemon/storage/folder_watch.hpp"
 
@@ -104,13 +105,15 @@ class DiskWriter {
   /// Wakes the thread: entries were added to a journal.
   void wake();
   /// States that the journal is complete. The disk thread makes it durable, calls `ended`, and writes it
-  /// again if it vanishes before finished().
+  /// again if it vanishes before make_record().
   void end(const Journal& journal);
-  /// Path of the journal of an ended test. Errors: kFailure if the journal is not at its path, or finished()
-  /// was called.
-  [[nodiscard]] base::Result<std::filesystem::path> journal_of(std::int64_t test) const;
-  /// States that the record of an ended test exists; its journal is no longer watched.
-  void finished(std::int64_t test);
+  /// Makes the record of an ended test; its journal is no longer watched. While `make` runs the journal is
+  /// not looked for, as making a record removes it. \param make  called with the path of the journal; blocks
+  /// no other journal. Errors: those of `make`; kFailure if the journal is not at its path, or has its
+  /// record.
+  base::Result<record::Finalised> make_record(
+      std::int64_t test,
+      const std::function<base::Result<record::Finalised>(const std::filesystem::path& journal)>& make);
   /// Sets the growth of journal and record together, bytes in each second of scanning.
   void set_load(double bytes_per_s) { load_bytes_per_s_ = bytes_per_s; }
   [[nodiscard]] DiskState state() const;
@@ -148,6 +151,8 @@ class DiskWriter {
     bool ended = false;
     bool handed_over = false;  ///< `ended` was called; its record is being made.
     std::optional<std::string> trouble = {};
+    /// Held while its record is made, and while it is looked for.
+    std::shared_ptr<std::mutex> claim = std::make_shared<std::mutex>();
   };
   using Clock = std::chrono::steady_clock;
   using Time = Clock::time_point;
@@ -157,6 +162,7 @@ class DiskWriter {
   [[nodiscard]] std::optional<std::string> write_all(bool sync);
   [[nodiscard]] std::optional<std::string> write(const Job& job, bool sync);
   void hand_over(const Job& job);
+  void finished(std::int64_t test);
   void tell(std::optional<std::string> trouble);
   void give_up(const std::string& why);
 

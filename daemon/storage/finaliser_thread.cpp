@@ -13,12 +13,8 @@ constexpr std::chrono::minutes kLongestPause{10};
 
 }  // namespace
 
-Finisher::Finisher(Finalise finalise, Done done, Where where, std::chrono::milliseconds first_retry)
-    : finalise_(std::move(finalise)),
-      done_(std::move(done)),
-      where_(std::move(where)),
-      first_retry_(first_retry),
-      thread_([this] { run(); }) {}
+Finisher::Finisher(Make make, Done done, std::chrono::milliseconds first_retry)
+    : make_(std::move(make)), done_(std::move(done)), first_retry_(first_retry), thread_([this] { run(); }) {}
 
 Finisher::~Finisher() { stop(); }
 
@@ -63,8 +59,7 @@ std::optional<Finisher::Job> Finisher::next() {
 void Finisher::run() {
   base::name_this_thread("finisher");
   while (std::optional<Job> job = next()) {
-    const auto file = where_(job->test).and_then(
-        [&](const std::filesystem::path& journal) { return finalise_(journal, job->scans); });
+    const base::Result<record::Finalised> file = make_(job->test, job->scans);
     const std::string refused = file ? std::string{} : file.error().message;
     // The same refusal is told once.
     if (file || refused != job->refused) done_(job->test, job->scans, file);

@@ -23,16 +23,14 @@ class Finisher {
   using Done =
       std::function<void(std::int64_t test, std::int64_t scans, const base::Result<record::Finalised>&)>;
 
-  /// Returns the path of a test's journal, or why it is not at its path.
-  using Where = std::function<base::Result<std::filesystem::path>(std::int64_t test)>;
+  /// Makes the record of a test from its journal.
+  using Make = std::function<base::Result<record::Finalised>(std::int64_t test, std::int64_t scans)>;
 
   /// Starts the thread.
-  /// \param finalise  called on the thread. \param done  called on the thread after each attempt, but not if
-  /// it failed for the same reason as the one before. \param where  called on the thread before each attempt;
-  /// an error counts as a failed attempt. \param first_retry  pause after the first failure. It doubles with
-  /// each failure, up to 10 min.
-  Finisher(Finalise finalise, Done done, Where where,
-           std::chrono::milliseconds first_retry = std::chrono::seconds{5});
+  /// \param make  called on the thread. \param done  called on the thread after each attempt, but not if it
+  /// failed for the same reason as the one before. \param first_retry  pause after the first failure. It
+  /// doubles with each failure, up to 10 min.
+  Finisher(Make make, Done done, std::chrono::milliseconds first_retry = std::chrono::seconds{5});
   ~Finisher();
   Finisher(const Finisher&) = delete;
   Finisher& operator=(const Finisher&) = delete;
@@ -58,9 +56,8 @@ class Finisher {
   /// Blocks until a job is due and returns it; nothing: the thread is to end.
   [[nodiscard]] std::optional<Job> next();
 
-  Finalise finalise_;
+  Make make_;
   Done done_;
-  Where where_;
   std::chrono::milliseconds first_retry_;
   std::mutex mutex_;
   std::condition_variable news_;

@@ -86,12 +86,13 @@ Storage::Storage(StorageSettings settings, Finalise finalise, daemon::TestLog& t
       changed_(std::move(changed)),
       made_(std::move(made)),
       finisher_(
-          std::move(finalise),
-          [this](std::int64_t test, std::int64_t scans, const base::Result<record::Finalised>& finalised) {
-            if (finalised) disk_.finished(test);
-            journal_finalised(test, scans, finalised);
+          [this, finalise = std::move(finalise)](std::int64_t test, std::int64_t scans) {
+            return disk_.make_record(
+                test, [&](const std::filesystem::path& journal) { return finalise(journal, scans); });
           },
-          [this](std::int64_t test) { return disk_.journal_of(test); }),
+          [this](std::int64_t test, std::int64_t scans, const base::Result<record::Finalised>& finalised) {
+            journal_finalised(test, scans, finalised);
+          }),
       disk_(
           {.folder = settings_.folder,
            .sync_period = settings_.sync_period,

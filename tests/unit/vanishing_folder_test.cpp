@@ -318,44 +318,80 @@ class WatchedDisk final : public test::ForwardingCalls {
   std::function<void(const fs::path&)> on_look;
 };
 
-// A record is made, and taken away by its reader, while the disk thread is busy with another journal.
-TEST(DiskWriterAstray, AJournalWhoseRecordIsMadeMeanwhileIsNotMissed) {
-  const TemporaryFolder folder;
-  const fs::path running = folder / "a.journal";
-  const fs::path over = folder / "b.journal";
-  WatchedDisk disk;
-  Told told;
-  std::atomic<bool> made{false};
-  std::atomic<int> looks{0};
-  DiskWriter* disk_writer = nullptr;
-  disk.on_look = [&](const fs::path& path) {
-    if (path != running || !made) return;
-    if (++looks != 1) return;
-    fs::remove(over);
-    disk_writer->finished(2);
-  };
-  DiskWriter writer{
-      {.folder = folder.path(), .sync_period = 1ms, .retry_period = 1ms, .patience = 0ms, .calls = &disk},
-      [&](std::int64_t, const fs::path&, std::int64_t, const std::optional<std::string>& why) {
-        told.add(why.value_or("ended"));
-      },
-      [](const DiskState&) {}};
-  disk_writer = &writer;
-  const auto journal_at = [&](const fs::path& path) {
-    auto journal = std::make_shared<record::PatientJournal>(path, test::sample_header(), 1 << 20, disk);
-    journal->add_scans(0, std::vector<double>(350, 7.0), {});
-    return journal;
-  };
-  writer.begin(1, journal_at(running));
-  const auto ended = journal_at(over);
-  writer.begin(2, ended);
-  writer.end(ended);
-  told.wait_for("ended");
-  made = true;
-  while (looks < 3) std::this_thread::yield();
-  EXPECT_FALSE(fs::exists(over));
-  EXPECT_EQ(ended->anew_count(), 0);
-  writer.stop();
+using Made = base::Result<record::Finalised>;
+
+/// Two journals, a of a running test and b of one that ended.
+class RecordsTakenAway : public testing::Test {
+ protected:
+  RecordsTakenAway() {
+    disk_.on_look = [this](const fs::path& path) {
+      if (path != folder_ / "a.journal") return;
+      ++looks_;
+      if (at_next_look_.exchange(false)) make_record();
+    };
+    const auto journal_at = [&](const char* name) {
+      auto journal =
+          std::make_shared<record::PatientJournal>(folder_ / name, test::sample_header(), 1 << 20, disk_);
+      journal->add_scans(0, std::vector<double>(350, 7.0), {});
+      return journal;
+    };
+    writer_.emplace(
+        DiskWriter::Settings{.folder = folder_.path(),
+                             .sync_period = 1ms,
+                             .retry_period = 1ms,
+                             .patience = 0ms,
+                             .calls = &disk_},
+        [this](std::int64_t, const fs::path&, std::int64_t, const std::optional<std::string>& why) {
+          told_.add(why.value_or("ended"));
+        },
+        [](const DiskState&) {});
+    writer_->begin(1, journal_at("a.journal"));
+    over_ = journal_at("b.journal");
+    writer_->begin(2, over_);
+    writer_->end(over_);
+    told_.wait_for("ended");
+  }
+
+  /// As the finaliser does; the record's reader takes the record away at once.
+  void make_record(const std::function<void()>& then = [] {}) {
+    const auto made = writer_->make_record(2, [&](const fs::path& journal) -> Made {
+      fs::remove(journal);
+      then();
+      return record::Finalised{"b.h5", 350, 0, {}};
+    });
+    EXPECT_TRUE(made.has_value());
+  }
+  void wait_for_looks(int count) {
+    for (const int before = looks_; looks_ < before + count;) std::this_thread::yield();
+  }
+  void expect_not_missed() {
+    EXPECT_FALSE(fs::exists(folder_ / "b.journal"));
+    EXPECT_EQ(over_->anew_count(), 0);
+    EXPECT_FALSE(writer_->make_record(2, [](const fs::path&) -> Made { return base::failure("twice"); }));
+    EXPECT_EQ(writer_->scan_counts().recorded, 350);
+    writer_->stop();
+  }
+
+  const TemporaryFolder folder_;
+  Told told_;
+  WatchedDisk disk_;
+  std::atomic<int> looks_{0};
+  std::atomic<bool> at_next_look_{false};  ///< The disk thread itself is to make the record.
+  std::shared_ptr<record::PatientJournal> over_;
+  std::optional<DiskWriter> writer_;
+};
+
+TEST_F(RecordsTakenAway, WhileTheDiskThreadIsBusyWithAnotherJournal) {
+  at_next_look_ = true;
+  wait_for_looks(3);
+  EXPECT_FALSE(at_next_look_);
+  expect_not_missed();
+}
+
+TEST_F(RecordsTakenAway, BeforeTheFinaliserHasSaidThatItMadeThem) {
+  make_record([this] { wait_for_looks(3); });
+  wait_for_looks(3);
+  expect_not_missed();
 }
 
 TEST(DiskWriterAstray, WhatIsGoneAtTheEndIsUnsaved) {
@@ -377,12 +413,17 @@ TEST(DiskWriterAstray, WhatIsGoneAtTheEndIsUnsaved) {
   writer.begin(1, journal);
   writer.end(journal);
   told.wait_for("ended");
-  EXPECT_EQ(writer.journal_of(1), folder / "records" / "a.journal");
+  const auto place = [&writer] {
+    return writer.make_record(1, [](const fs::path& at) -> Made { return base::failure("{}", at.string()); })
+        .error()
+        .message;
+  };
+  EXPECT_EQ(place(), folder / "records" / "a.journal");
   EXPECT_EQ(writer.scan_counts().recorded, 350);
   moving.refuse_reads(EIO);
   fs::remove(folder / "records" / "a.journal");
   told.wait_for((folder / "records" / "a.journal").string() + ": is gone, and cannot be read back");
-  EXPECT_FALSE(writer.journal_of(1));
+  EXPECT_THAT(place(), testing::HasSubstr("is gone, and cannot be read back"));
   EXPECT_EQ(writer.scan_counts().recorded, 0);
   EXPECT_EQ(writer.scan_counts().unsaved, 0);
   writer.stop();
@@ -422,16 +463,13 @@ TEST(DiskWriterAstray, OneJournalThatCannotBeWrittenHoldsUpNoOther) {
 TEST(FinisherAstray, WaitsForAJournalThatIsAwayAndFollowsItToItsNewName) {
   std::atomic<bool> away{true};
   Told told;
-  Finisher finisher{[](const fs::path& journal, ExpectedScans expected) -> base::Result<record::Finalised> {
-                      return record::Finalised{journal.string() + " made", expected.value_or(0), 0, {}};
+  Finisher finisher{[&](std::int64_t, std::int64_t scans) -> Made {
+                      if (away) return base::failure("Stale file handle");
+                      return record::Finalised{"a-2.journal made", scans, 0, {}};
                     },
-                    [&](std::int64_t test, std::int64_t scans, const base::Result<record::Finalised>& made) {
+                    [&](std::int64_t test, std::int64_t scans, const Made& made) {
                       told.add(made ? fmt::format("{}: {} of {} scans", test, made->file.string(), scans)
                                     : fmt::format("{}: {}", test, made.error().message));
-                    },
-                    [&](std::int64_t) -> base::Result<fs::path> {
-                      if (away) return base::failure("Stale file handle");
-                      return "a-2.journal";
                     },
                     1ms};
   finisher.finish(1, 350);
