@@ -194,7 +194,7 @@ TEST_F(MeasuredTraces, NeighbouringPartsDifferByTheirErrors) {
          {std::pair{"S", &TestResults::mu_s}, std::pair{"K", &TestResults::mu_k},
           std::pair{"S - K", &TestResults::delta_mu}}) {
       const double rms = rms_of_differences(quantity, parts);
-      RecordProperty(std::string{"rms_"} + name[0], std::to_string(rms));
+      RecordProperty(fmt::format("rms of {}, {}", name, detect::name(estimator)), std::to_string(rms));
       EXPECT_GT(rms, 0.8) << name;
       EXPECT_LT(rms, 1.3) << name;
     }
