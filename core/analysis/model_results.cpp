@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include "core/analysis/covariance_of_means.hpp"
 #include "core/analysis/cycle_features.hpp"
 #include "core/analysis/escape.hpp"
 #include "core/base/nan.hpp"
@@ -121,20 +122,8 @@ Fitted gather(const SlipEstimates& estimates) {
   Eigen::Matrix2d own_mean = own.bottomRightCorner<2, 2>() / (n * n);
   fitted.of_noise = covariance(own_mean);
   if (windows.size() > 1) {
-    // The scatter from slip to slip holds the noise of each and what the paper adds to it. The error of S − K
-    // is known best, as it wanders less than S and K: with theirs it tells the covariance of the two. Of
-    // three errors none exceeds the sum of the others: where S or K wanders so slowly that its own does, it
-    // is less; where that of S − K does, both are more.
-    const double of_D = fitted.D.error_of_mean();
-    double of_S = std::min(S.error_of_mean(), K.error_of_mean() + of_D);
-    double of_K = std::min(K.error_of_mean(), S.error_of_mean() + of_D);
-    if (const double sum = of_S + of_K; sum > 0.0 && of_D > sum) {
-      of_S *= of_D / sum;
-      of_K *= of_D / sum;
-    }
-    const double most = of_S * of_K;
-    const double both = std::clamp(0.5 * (of_S * of_S + of_K * of_K - of_D * of_D), -most, most);
-    own_mean << of_S * of_S, both, both, of_K * of_K;
+    // The scatter from slip to slip holds the noise of each and what the paper adds to it.
+    own_mean = covariance_of_means(S.error_of_mean(), K.error_of_mean(), fitted.D.error_of_mean());
   }
   fitted.value << fit.shared.omega, fit.shared.gamma, fit.shared.r, S.mean() - fitted.drift,
       K.mean() - fitted.drift;
