@@ -36,6 +36,15 @@ def scene_with(source, times):
     return scene
 
 
+def children(pid):
+    """Processes that this one has started and that have not ended: the finalisers of a daemon."""
+    try:
+        tasks = pathlib.Path(f"/proc/{pid}/task").iterdir()
+        return [int(child) for task in tasks for child in (task / "children").read_text().split()]
+    except OSError:
+        return []
+
+
 class UnixConnection(http.client.HTTPConnection):
     def __init__(self, path):
         super().__init__("localhost", timeout=TIMEOUT_S)

@@ -37,7 +37,7 @@ import h5py
 
 import broker
 import small_disk
-from running_daemon import RunningDaemon, scene_with
+from running_daemon import RunningDaemon, children, scene_with
 from service_manager import TIMEOUT_S
 
 SCAN_RATE_HZ = 350
@@ -198,12 +198,18 @@ seed = {seed}
     def stop_for(self, virtual_s, meanwhile=lambda: None):
         """The daemon stands still for so long of its time: a suspend, a debugger."""
         self.daemon.process.send_signal(signal.SIGSTOP)
-        meanwhile()
-        time.sleep(virtual_s / self.speed)
-        self.daemon.process.send_signal(signal.SIGCONT)
+        try:
+            os.waitid(os.P_PID, self.daemon.process.pid, os.WSTOPPED)
+            meanwhile()
+            time.sleep(virtual_s / self.speed)
+        finally:
+            self.daemon.process.send_signal(signal.SIGCONT)
 
     def lose_journal(self):
-        """While the daemon stands still: removes the journal of the running test, or the whole folder, if that journal is all that is in it."""
+        """While the daemon stands still: removes the journal of the running test, or the whole folder, if that journal is all that is in it
+        and no finaliser, which goes on meanwhile, can put a record there."""
+        if children(self.daemon.process.pid):
+            return
         files = [path for path in self.records.rglob("2*") if path.is_file()]
         handles = pathlib.Path(f"/proc/{self.daemon.process.pid}/fd")
         if len(files) != 1 or files[0].suffix != ".journal" or not any(os.path.realpath(handle) == str(files[0].resolve()) for handle in handles.iterdir()):

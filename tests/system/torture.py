@@ -36,6 +36,7 @@ import time
 import h5py
 import numpy
 
+from running_daemon import children
 from stored import stored as stored_in
 from stored import told
 
@@ -100,14 +101,6 @@ def read_journal(path):
         at += HEAD.size + size
     join = lambda parts: numpy.concatenate(parts) if parts else numpy.array([], dtype=int)
     return Journal(join(scans), join(counts), has_header, has_end)
-
-
-def children(pid):
-    try:
-        text = pathlib.Path(f"/proc/{pid}/task").iterdir()
-        return [int(child) for task in text for child in (task / "children").read_text().split()]
-    except OSError:
-        return []
 
 
 def kill(pid):
