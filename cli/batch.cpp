@@ -34,6 +34,7 @@ struct BatchBeginOptions : BenchOptions {
   std::vector<std::string> pull_speeds;
   std::optional<std::int64_t> replicates;
   std::optional<std::int64_t> slides;
+  std::vector<std::string> facts;
   std::vector<std::string> limits;  ///< "mu_k=0.2:0.4"; either side may be absent.
 };
 
@@ -85,6 +86,7 @@ base::Result<std::string> begin_batch(const BatchBeginOptions& options) {
   for (const PlanKey& key : options.keys) {
     if (!key.typed.empty()) plan[key.key] = key.typed;
   }
+  if (const auto set = set_facts(plan, options.facts); !set) return tl::unexpected(set.error());
   if (!options.pull_speeds.empty()) plan["pull_speeds"] = options.pull_speeds;
   if (options.replicates) plan["replicates"] = *options.replicates;
   if (options.slides) plan["slides"] = *options.slides;
@@ -114,6 +116,7 @@ void add_batch_begin(CLI::App& batch, Chosen& chosen) {
   add_bench_options(*command, *options, true);
   command->footer(kBeginExamples);
   add_plan_keys(*command, options->keys);
+  add_fact_option(*command, options->facts);
   command
       ->add_option("--pull-speed", options->pull_speeds,
                    "with unit; may be repeated. Default: that of the method, else of the bench")

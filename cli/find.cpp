@@ -45,6 +45,7 @@ struct FindOptions {
   std::vector<std::string> regimes;
   std::vector<std::string> findings;
   std::vector<std::string> ranges;
+  std::vector<std::string> facts;
   std::string sort = "date";
   bool reversed = false;
   std::optional<std::int64_t> most;
@@ -95,6 +96,9 @@ Result<catalogue::Query> query_of(const FindOptions& options) {
   for (const std::string& range : options.ranges) {
     if (auto known = both(catalogue::in_range(range, "--where")); !known)
       return tl::unexpected(known.error());
+  }
+  for (const std::string& fact : options.facts) {
+    if (auto known = both(catalogue::has_fact(fact, "--fact")); !known) return tl::unexpected(known.error());
   }
   const Result<std::string> order = catalogue::sort_column(options.sort, "--sort");
   if (!order) return tl::unexpected(order.error());
@@ -185,6 +189,7 @@ Json json_of(const FindOptions& options, const Found& found) {
          {"batch", io::or_null(sample.batch)},
          {"operator", io::or_null(sample.operator_name)},
          {"method", io::or_null(entry.method)},
+         {"facts", sample.metadata},
          {"results", io::results_json(entry.results, false)}});
   }
   Json unread = Json::array();
@@ -292,8 +297,9 @@ constexpr const char* kFindHelp =
     R"(Searches the records of a folder and of all folders in it. The first search reads each record; an index is kept, and
 later ones read only what is new or changed. docs/catalogue.md says where the index is.
 
-All conditions hold; of a condition that is given several times one is enough, except --where. In texts * is any text
-and ? any character. Results: S, K, S-K, static, kinetic, or as in a record (stickslip show FILE.h5), in SI units.
+All conditions hold; of a condition that is given several times one is enough, except --where and --fact.
+In texts * is any text and ? any character. Results: S, K, S-K, static, kinetic, or as in a record
+(stickslip show FILE.h5), in SI units.
 
 Exit status:
   0  records are found
@@ -305,6 +311,7 @@ Examples:
   stickslip find records --sample "liner*" --from 2026-11-01 --to 2026-11-30
   stickslip find records --regime stick-slip --where S-K=0.04: --where S=0.3:0.4 --sort S-K
   stickslip find records --finding warning --finding fault --json
+  stickslip find records --fact "humidity=45 %:55 %" --fact lot=4711
   stickslip find records --batch 20261122T180301Z -0     the files, for xargs -0 stickslip report)";
 
 }  // namespace
@@ -328,6 +335,9 @@ void add_find(CLI::App& app, Chosen& chosen) {
   repeated("--operator", options->operators, "who measured", "TEXT");
   repeated("--batch", options->batches, "identifier of the batch", "TEXT");
   repeated("--method", options->methods, "test method", "TEXT");
+  repeated("--fact", options->facts,
+           "lot=47*, temperature=\"22 degC:24 degC\": what was stated of the test, as text or as a range",
+           "KEY=VALUE");
   repeated("--regime", options->regimes, "stick-slip, ring-down, mixed, …", "REGIME");
   repeated("--finding", options->findings, "code of a finding; fault, warning, note; any; none", "CODE");
   repeated("--where", options->ranges, "range of a result; either side may be absent",

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "cli/ask.hpp"
 #include "cli/json_members.hpp"
@@ -20,6 +21,7 @@ using Json = nlohmann::ordered_json;
 
 struct PlanOptions : BenchOptions {
   bool clear = false;
+  std::vector<std::string> facts;
   std::array<PlanKey, 7> keys{{{"name", "of the sample"},
                                {"grade", "of the paper"},
                                {"direction", "such as MD"},
@@ -53,7 +55,8 @@ base::Result<std::string> run_plan(const PlanOptions& options) {
     (*plan)[key.key] = *std::move(value);
     changed = true;
   }
-  if (changed) {
+  if (const auto set = set_facts(*plan, options.facts); !set) return tl::unexpected(set.error());
+  if (changed || !options.facts.empty()) {
     // What the daemon has is sent back with its unit.
     if (const auto speed = plan->find("pull_speed"); speed != plan->end() && speed->is_number())
       *speed = base::format_quantity(speed->get<double>(), base::Dimension::kSpeed);
@@ -65,11 +68,14 @@ base::Result<std::string> run_plan(const PlanOptions& options) {
   if (options.json) return plan->dump(2) + "\n";
   io::Table list = io::Table::list({0, 0});
   for (const auto& [key, value] : plan->items()) {
+    if (key == "facts") continue;
     std::string shown = value.is_string() ? value.get<std::string>() : value.dump();
     if (value.is_null()) shown = io::kAbsent;
     if (key == "pull_speed" && value.is_number()) shown = fmt::format("{:.6g} m/s", value.get<double>());
     list.add({key, shown});
   }
+  const Json facts = plan->value("facts", Json::object());
+  for (const auto& [key, value] : facts.items()) list.add({"fact " + key, value.get<std::string>()});
   return list.text();
 }
 
@@ -77,6 +83,7 @@ constexpr const char* kPlanExamples =
     R"(Examples:
   stickslip plan                                               what is planned
   stickslip plan --name "liner 42" --grade kraft --direction MD --operator ann
+  stickslip plan --fact "temperature=23 degC" --fact "humidity=50 %" --fact lot=4711
   stickslip plan --clear)";
 
 }  // namespace
@@ -84,11 +91,12 @@ constexpr const char* kPlanExamples =
 void add_plan(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<PlanOptions>();
   CLI::App* command = app.add_subcommand(
-      "plan", "set sample, operator and pull speed of the next tests; without options: show them");
+      "plan", "set sample, operator, pull speed and facts of the next tests; without options: show them");
   command->footer(kPlanExamples);
   add_bench_options(*command, *options, true);
   command->add_flag("--clear", options->clear, "forget what was said before");
   add_plan_keys(*command, options->keys);
+  add_fact_option(*command, options->facts);
   choose(*command, chosen, [options] { return run_plan(*options); });
 }
 

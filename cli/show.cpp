@@ -114,13 +114,13 @@ base::Result<std::string> show_record(const ShowOptions& options) {
     return io::json_document(Json{{"file", options.test},
                                   {"cause", record->end->cause},
                                   {"facts", facts},
-                                  {"metadata", header.metadata},
+                                  {"metadata", header.sample.metadata},
                                   {"results", results}});
   }
   io::Table known = io::Table::list({0, 0});
   for (const auto& [name, value] : facts.items())
     known.add({"  " + name, value.is_string() ? base::printable(value.get<std::string>()) : value.dump()});
-  for (const auto& [key, value] : header.metadata)
+  for (const auto& [key, value] : header.sample.metadata)
     known.add({"  metadata." + base::printable(key), base::printable(value)});
   return fmt::format(
       "{}: {}, ended: {}\n{}{}\n{}{}", base::printable(options.test), word(results, "regime"),

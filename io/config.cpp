@@ -226,6 +226,10 @@ void read_sample(Settings table, record::SampleFacts& sample) {
   const std::int64_t replicate = table.integer("replicate", 1, kMostReplicates, 1);
   if (table.has("replicate")) sample.replicate = replicate;
   sample.operator_name = name("operator");
+  for (const std::string& fact : table.texts("facts", std::vector<std::string>{})) {
+    if (const auto added = record::add_metadata(sample.metadata, fact, "[sample] facts"); !added)
+      table.refuse("facts", added.error().message);
+  }
 }
 
 void read_tester(Settings table, const std::filesystem::path& folder, DaemonConfig& config) {

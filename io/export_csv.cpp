@@ -88,7 +88,7 @@ std::string facts_text(const record::Record& record) {
     add_fact(text, name, *value);
   }
   line(FieldName{"replicate", "1", ""}, header.sample.replicate);
-  for (const auto& [key, value] : header.metadata) add_fact(text, "metadata." + key, value);
+  for (const auto& [key, value] : header.sample.metadata) add_fact(text, "metadata." + key, value);
   add_fact(text, "method", header.process.method);
   add_fact(text, "estimator", header.process.estimator);
   if (!record.end) return text;

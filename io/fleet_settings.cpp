@@ -23,6 +23,7 @@ constexpr std::size_t kMostOfPasswordFile = 4096;
 constexpr std::int64_t kMostResults = 100'000;
 constexpr double kShortestHealth_s = 1.0;
 constexpr double kLongestHealth_s = 3600.0;
+constexpr double kLongestFacts_s = 86'400.0;
 
 bool is_word(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
@@ -127,6 +128,8 @@ std::optional<FleetSettings> read_fleet(base::Settings table, const std::filesys
   settings.health_period_s =
       table.quantity("health_period", base::Dimension::kTime,
                      base::Limits::between(kShortestHealth_s, kLongestHealth_s), settings.health_period_s);
+  settings.facts_valid_s = table.quantity_if_given("facts_valid", base::Dimension::kTime,
+                                                   base::Limits::above_up_to(0.0, kLongestFacts_s));
   if (!is_topic(settings.topic) || settings.topic.size() > kLongestTopic) {
     table.refuse("topic", fmt::format("must be words of letters, digits, - _ . with single slashes between "
                                       "them, at most {} bytes",

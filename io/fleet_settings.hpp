@@ -39,6 +39,8 @@ struct FleetSettings {
   std::filesystem::path outbox = "outbox";
   std::size_t outbox_results = 1000;
   double health_period_s = 10.0;
+  /// Facts of the topic "facts" hold for so long; nullopt: the topic is not read.
+  std::optional<double> facts_valid_s;
 
   /// The topic TOPIC/TESTER/`what`.
   [[nodiscard]] std::string topic_of(std::string_view what) const;

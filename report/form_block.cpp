@@ -26,8 +26,10 @@ struct Fact {
 constexpr std::array<Fact, kFactCount> kFacts{{{"date", "date", "dates"},
                                                {"sample", "sample", "samples"},
                                                {"grade", "grade", "grades"},
+                                               {"lot", "lot", "lots"},
                                                {"direction", "direction, side", "directions or sides"},
                                                {"conditioning", "conditioning", "conditionings"},
+                                               {"climate", "climate", "climates"},
                                                {"method", "method", "methods"},
                                                {"sled", "sled", "sleds"},
                                                {"contact_time", "contact time", "contact times"},
@@ -37,7 +39,7 @@ constexpr std::array<Fact, kFactCount> kFacts{{{"date", "date", "dates"},
                                                {"calibration", "calibration", "calibrations"},
                                                {"program", "program", "programs"}}};
 /// The number of tests stands behind the speed.
-constexpr std::size_t kBehindSpeed = 9;
+constexpr std::size_t kBehindSpeed = 11;
 constexpr std::size_t kMostNamed = 4;  ///< Of the values that differ.
 
 /// "Contact time" and "contact-time" are "contact_time".
@@ -97,9 +99,9 @@ std::string count_of(std::size_t count, std::string_view noun) {
 RecordFacts facts_of(const record::RecordHeader& header, const std::string& speed) {
   const auto stated = [&header](std::string_view key, const std::string& field = {}) {
     if (!field.empty()) return field;
-    const auto found = std::find_if(header.metadata.begin(), header.metadata.end(),
+    const auto found = std::find_if(header.sample.metadata.begin(), header.sample.metadata.end(),
                                     [key](const auto& pair) { return plain_key(pair.first) == key; });
-    return found == header.metadata.end() ? std::string{} : found->second;
+    return found == header.sample.metadata.end() ? std::string{} : found->second;
   };
   constexpr std::size_t kDay = 10;
   constexpr double kGrams = 1e3;
@@ -108,8 +110,10 @@ RecordFacts facts_of(const record::RecordHeader& header, const std::string& spee
       header.start_realtime_ns ? record::iso_time(*header.start_realtime_ns).substr(0, kDay) : "",
       stated("sample", header.sample.name),
       stated("grade", header.sample.grade),
+      stated("lot"),
       joined({stated("direction", header.sample.direction), stated("side", header.sample.side)}),
       stated("conditioning"),
+      joined({stated("temperature"), stated("humidity")}),
       header.process.method,
       tester.sled_mass_kg ? fmt::format("{:.6g} g", *tester.sled_mass_kg * kGrams) : "",
       stated("contact_time"),

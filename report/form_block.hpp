@@ -16,11 +16,11 @@ namespace stickslip::report {
 struct Material;
 
 /// The facts of the form that one record states, in the order of form_of(); empty: not stated.
-inline constexpr std::size_t kFactCount = 13;
+inline constexpr std::size_t kFactCount = 15;
 using RecordFacts = std::array<std::string, kFactCount>;
 
-/// Facts without a field of their own (conditioning, contact time) are metadata of that name: `stickslip
-/// import --set-meta conditioning="23 °C, 50 %"`. \param speed  as text; empty: unknown.
+/// Facts without a field of their own (lot, conditioning, climate, contact time) are metadata.
+/// \param speed  as text; empty: unknown.
 [[nodiscard]] RecordFacts facts_of(const record::RecordHeader& header, const std::string& speed);
 
 /// One line of the form block.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -37,6 +38,24 @@ io::Table table_of(const std::vector<std::string>& names) {
   std::vector<io::Table::Column> columns;
   for (const std::string& name : names) columns.push_back({.name = name});
   return io::Table{std::move(columns)};
+}
+
+/// Keys of the facts that any test states.
+std::set<std::string> keys_of(const Material& material) {
+  std::set<std::string> keys;
+  for (const ReportedTest& test : material.tests) {
+    for (const auto& [key, value] : test.sample.metadata) keys.insert(key);
+  }
+  return keys;
+}
+
+/// Those of the known facts that have numbers.
+std::vector<const record::KnownFact*> numbers_of(const std::set<std::string>& keys) {
+  std::vector<const record::KnownFact*> facts;
+  for (const record::KnownFact& fact : record::known_facts()) {
+    if (!fact.unit.empty() && keys.contains(std::string{fact.key})) facts.push_back(&fact);
+  }
+  return facts;
 }
 
 /// One side of a comparison.
@@ -91,6 +110,10 @@ std::string report_csv(const Material& material) {
     if (!name.is_diagnostic && !is_quantity(name.name))
       names.push_back(fmt::format("{}_standard_error", name.name));
   });
+  const std::set<std::string> keys = keys_of(material);
+  for (const std::string& key : keys) names.push_back("fact." + key);
+  for (const record::KnownFact* fact : numbers_of(keys))
+    names.push_back(fmt::format("{}_{}", fact->key, fact->unit == "1" ? "ratio" : fact->unit));
   io::Table table = table_of(names);
   std::vector<const analysis::PooledDeltaMu*> by_cycle(material.tests.size());
   for (const analysis::SpeedGroup& group : material.groups) {
@@ -128,6 +151,13 @@ std::string report_csv(const Material& material) {
                                 if (!name.is_diagnostic && !is_quantity(name.name))
                                   add(cells, estimate.standard_error);
                               });
+    const auto stated = [&](std::string_view key) {
+      const auto found = test.sample.metadata.find(key);
+      return found == test.sample.metadata.end() ? std::string{} : found->second;
+    };
+    for (const std::string& key : keys) add(cells, stated(key));
+    for (const record::KnownFact* fact : numbers_of(keys))
+      add(cells, record::fact_number(fact->key, stated(fact->key)));
     table.add(std::move(cells));
   }
   // No numbers, so that nobody averages them.

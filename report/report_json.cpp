@@ -31,7 +31,7 @@ Json test_json(const ReportedTest& test, const analysis::MeasuredTest& measured)
             {"pull_speed", io::or_null(measured.pull_speed_m_per_s)},
             {"pull_speed_text", test.speed.empty() ? "speed not known" : test.speed}};
   json.update(io::results_json(measured.results, true));
-  if (!test.metadata.empty()) json["metadata"] = test.metadata;
+  if (!test.sample.metadata.empty()) json["metadata"] = test.sample.metadata;
   if (std::string ramp = ramp_text(measured.results); !ramp.empty()) json["ramp"] = std::move(ramp);
   return json;
 }

@@ -274,7 +274,7 @@ std::string tests_table(const Material& material) {
       text += fmt::format("!  test {}: {}\n", i + 1, base::printable(line));
   }
   for (std::size_t i = 0; i < material.tests.size(); ++i) {
-    for (const auto& [key, value] : material.tests[i].metadata)
+    for (const auto& [key, value] : material.tests[i].sample.metadata)
       text += fmt::format("   test {}: {}: {}\n", i + 1, base::printable(key), base::printable(value));
   }
   return text + voided_lines(material);

@@ -71,7 +71,6 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
     test.file = file;
     test.title = record->header.title;
     test.method = record->header.process.method;
-    test.metadata = record->header.metadata;
     test.sample = record->header.sample;
     if (record->header.start_realtime_ns)
       test.start_time = record::iso_time(*record->header.start_realtime_ns);

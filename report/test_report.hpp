@@ -29,7 +29,6 @@ struct ReportedTest {
   std::string method;                   ///< Text of the test method, as in the record.
   std::string estimator = "fit";        ///< As in the record, if that names one.
   std::vector<std::string> departures;  ///< Departures from the method, one line each.
-  record::Metadata metadata;            ///< As in the record.
   record::SampleFacts sample;           ///< As in the record.
   std::string start_time;               ///< ISO 8601; empty if unknown.
   std::string speed;  ///< Pull speed in the method's unit, else as it was most likely typed; empty: unknown.

@@ -14,12 +14,13 @@
 namespace stickslip::base {
 namespace {
 
-/// SI value = number · numerator / denominator. Two exact integers where possible, so that
+/// SI value = number · numerator / denominator + zero. Two exact integers where possible, so that
 /// "2331 g" is the double nearest to 2.331 (a factor of 0.001 would round twice).
 struct Unit {
   std::string_view symbol;
   double numerator;
   double denominator;
+  double zero = 0.0;  ///< SI value of 0 in this unit.
 };
 
 constexpr double kInch_m = 0.0254;
@@ -76,6 +77,9 @@ constexpr std::array kLengthPerVoltageUnits{Unit{"m/V", 1, 1}, Unit{"cm/V", 1, 1
 constexpr std::array kTimePerLengthUnits{Unit{"s/m", 1, 1}, Unit{"s/cm", 100, 1}, Unit{"s/mm", 1e3, 1},
                                          Unit{"s/in", 1, kInch_m}, Unit{"min/in", 60, kInch_m}};
 constexpr std::array kAngleUnits{Unit{"rad", 1, 1}, Unit{"deg", std::numbers::pi, 180}};
+/// 0 °C = 273.15 K and 0 °F = 459.67 · 5/9 K, exactly.
+constexpr std::array kTemperatureUnits{Unit{"K", 1, 1}, Unit{"degC", 1, 1, 273.15},
+                                       Unit{"degF", 5, 9, 459.67 * 5 / 9}};
 
 std::span<const Unit> units_of(Dimension dimension) noexcept {
   switch (dimension) {
@@ -119,6 +123,8 @@ std::span<const Unit> units_of(Dimension dimension) noexcept {
       return kTimePerLengthUnits;
     case Dimension::kAngle:
       return kAngleUnits;
+    case Dimension::kTemperature:
+      return kTemperatureUnits;
   }
   return kDimensionlessUnits;
 }
@@ -172,6 +178,8 @@ Words words_of(Dimension dimension) noexcept {
       return {"a time per length", "s/m", "s/mm"};
     case Dimension::kAngle:
       return {"an angle", "rad", "deg"};
+    case Dimension::kTemperature:
+      return {"a temperature", "degC", "degF"};
   }
   return {"a quantity", "1", "%"};
 }
@@ -194,12 +202,13 @@ std::string_view trimmed(std::string_view text) noexcept {
   return text;
 }
 
-/// "µ" exists twice in Unicode (U+00B5, U+03BC).
+/// "µ" exists twice in Unicode (U+00B5, U+03BC); "°" is "deg".
 std::string plain_symbol(std::string_view symbol) {
   std::string plain{symbol};
   boost::algorithm::replace_all(plain, "\u00B5", "u");
   boost::algorithm::replace_all(plain, "\u03BC", "u");
   boost::algorithm::replace_all(plain, "\u00B2", "^2");
+  boost::algorithm::replace_all(plain, "\u00B0", "deg");
   return plain;
 }
 
@@ -249,7 +258,7 @@ Result<double> parse_quantity(std::string_view text, Dimension dimension) {
   }
   for (const Unit& unit : units_of(dimension)) {
     if (unit.symbol != symbol) continue;
-    const double value = number.value * unit.numerator / unit.denominator;
+    const double value = number.value * unit.numerator / unit.denominator + unit.zero;
     if (!std::isfinite(value)) return usage_error("\"{}\" is outside the range of numbers", text);
     return value;
   }

@@ -39,8 +39,9 @@ enum class Dimension {
   kLengthPerVoltage,  ///< m/V
   kTimePerLength,     ///< s/m
   kAngle,             ///< rad
+  kTemperature,       ///< K; the only one whose units have different zeros
 };
-inline constexpr Dimension kLastDimension = Dimension::kAngle;
+inline constexpr Dimension kLastDimension = Dimension::kTemperature;
 
 /// The whole text as one finite decimal number: no blanks, no plus sign, no hexadecimal, no
 /// inf or nan, no number outside the range of double.

@@ -48,7 +48,7 @@ std::string header_to_json(const RecordHeader& header) {
   put(object, "trigger_scan", header.trigger_scan);
   put(object, "start_realtime_ns", header.start_realtime_ns);
   put(object, "operator", header.sample.operator_name);
-  if (!header.metadata.empty()) object["metadata"] = header.metadata;
+  if (!header.sample.metadata.empty()) object["metadata"] = header.sample.metadata;
   if (header.load_cell) object["load_cell"] = fields_to_json(*header.load_cell);
   if (const Json plan = fields_to_json(header.plan); !plan.empty()) object["plan"] = plan;
   if (header.self_check) {
@@ -92,7 +92,7 @@ RecordHeader header_from_json(std::string_view text) {
   take(object, "trigger_scan", header.trigger_scan);
   take(object, "start_realtime_ns", header.start_realtime_ns);
   take(object, "operator", header.sample.operator_name);
-  if (object.contains("metadata")) header.metadata = metadata_from(object.at("metadata"));
+  if (object.contains("metadata")) header.sample.metadata = metadata_from(object.at("metadata"));
   if (object.contains("load_cell")) {
     for_each_field(header.load_cell.emplace(), taker(object.at("load_cell")));
   }

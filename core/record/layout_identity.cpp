@@ -53,7 +53,7 @@ void write_identity(hid_t entry, const Record& record, const ScanSource& scans) 
   write(kTriggerScan, header.trigger_scan);
   if (header.start_realtime_ns) write_text(entry, "start_time", iso_time(*header.start_realtime_ns));
   if (record.end->end_realtime_ns) write_text(entry, "end_time", iso_time(*record.end->end_realtime_ns));
-  write_metadata(entry, header.metadata);
+  write_metadata(entry, header.sample.metadata);
   if (scans.size() > 0) {
     write_scalar(entry, {"collection_time", "s", "duration of the record [s]"},
                  static_cast<double>(scans.extent()) / header.board.scan_rate_granted_Hz);
@@ -69,7 +69,7 @@ void read_identity(hid_t entry, Record& record) {
   read(kTriggerScan, header.trigger_scan);
   header.start_realtime_ns = read_time(entry, "start_time");
   record.end->end_realtime_ns = read_time(entry, "end_time");
-  header.metadata = read_metadata(entry);
+  header.sample.metadata = read_metadata(entry);
 }
 
 }  // namespace stickslip::record

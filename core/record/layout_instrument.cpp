@@ -135,7 +135,16 @@ void write_instrument(hid_t entry, const Record& record) {
   if (header.load_cell) for_each_field(*header.load_cell, FieldWriter{calibration.get()});
 
   write_timing(entry, record);
-  for_each_field(header.sample, FieldWriter{make_group(entry, "sample", "NXsample").get()});
+  const GroupHandle sample = make_group(entry, "sample", "NXsample");
+  for_each_field(header.sample, FieldWriter{sample.get()});
+  // Numbers for readers; the reader of records takes the texts of entry/metadata.
+  for (const KnownFact& fact : known_facts()) {
+    const auto stated = header.sample.metadata.find(fact.key);
+    if (stated == header.sample.metadata.end()) continue;
+    const std::string long_name = fmt::format("{} [{}]", fact.long_name, fact.unit);
+    if (const auto number = fact_number(fact.key, stated->second))
+      write_scalar(sample.get(), FieldName{fact.key, fact.unit, long_name}, *number);
+  }
   const GroupHandle user = make_group(entry, "user", "NXuser");
   FieldWriter{user.get()}(FieldName{"name", "", ""}, header.sample.operator_name);
   write_plan(entry, header.plan);

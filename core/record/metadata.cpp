@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+
+#include <boost/algorithm/string/trim.hpp>
 
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
@@ -14,6 +17,26 @@ constexpr bool is_letter(char c) noexcept { return (c >= 'a' && c <= 'z') || (c 
 
 constexpr bool may_be_in_key(char c) noexcept {
   return is_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
+}
+
+constexpr double kZeroCelsius_K = 273.15;
+
+constexpr std::array<KnownFact, 5> kKnownFacts{{
+    // From the coldest to the hottest climate chamber.
+    {"temperature", "temperature of the air", "degC", base::Dimension::kTemperature, kZeroCelsius_K, -80.0,
+     200.0, "23 degC"},
+    {"humidity", "relative humidity of the air", "1", base::Dimension::kDimensionless, 0.0, 0.0, 1.0, "50 %"},
+    {.key = "conditioning", .long_name = {}, .unit = {}, .example = {}},
+    // Up to a week.
+    {"contact_time", "time at rest under the sled before the pull", "s", base::Dimension::kTime, 0.0, 0.0,
+     604'800.0, "5 s"},
+    {.key = "lot", .long_name = {}, .unit = {}, .example = {}},
+}};
+
+const KnownFact* known(std::string_view key) noexcept {
+  const auto* const found = std::find_if(kKnownFacts.begin(), kKnownFacts.end(),
+                                         [key](const KnownFact& fact) { return fact.key == key; });
+  return found == kKnownFacts.end() ? nullptr : found;
 }
 
 }  // namespace
@@ -31,25 +54,74 @@ std::string metadata_refusal(std::string_view key, std::string_view value) {
   return {};
 }
 
-base::Result<void> add_metadata(Metadata& metadata, std::string_view pair, std::string_view place) {
+std::span<const KnownFact> known_facts() noexcept { return kKnownFacts; }
+
+std::optional<double> fact_number(std::string_view key, std::string_view value) {
+  const KnownFact* const fact = known(key);
+  if (fact == nullptr || fact->unit.empty()) return std::nullopt;
+  const auto parsed = base::parse_quantity(value, fact->dimension);
+  if (!parsed) return std::nullopt;
+  return *parsed - fact->zero;
+}
+
+base::Result<void> set_fact(Metadata& metadata, std::string_view key, std::string_view value) {
+  if (value.empty()) {
+    if (const auto there = metadata.find(key); there != metadata.end()) metadata.erase(there);
+    return {};
+  }
+  if (const std::string refusal = metadata_refusal(key, value); !refusal.empty())
+    return base::usage_error("{}", refusal);
+  if (const KnownFact* const fact = known(key); fact != nullptr && !fact->unit.empty()) {
+    const auto parsed = base::parse_quantity(value, fact->dimension);
+    if (!parsed)
+      return base::usage_error("{}: {}; write it like \"{}\"", key, parsed.error().message, fact->example);
+    if (const double number = *parsed - fact->zero; !(number >= fact->lowest && number <= fact->highest)) {
+      return base::usage_error("{}: \"{}\" is not within {} … {}{}{}; write it like \"{}\"", key, value,
+                               fact->lowest, fact->highest, fact->unit == "1" ? "" : " ",
+                               fact->unit == "1" ? "" : fact->unit, fact->example);
+    }
+  }
+  if (!metadata.contains(key) && metadata.size() >= kMostMetadata) {
+    return base::usage_error("{} would be key {}, at most {} are allowed: leave out some", key,
+                             metadata.size() + 1, kMostMetadata);
+  }
+  metadata.insert_or_assign(std::string{key}, std::string{value});
+  return {};
+}
+
+base::Result<std::pair<std::string, std::string>> split_fact(std::string_view pair) {
   const std::size_t mark = pair.find('=');
   if (mark == std::string_view::npos) {
-    return base::usage_error("{}: \"{}\" has no '=': give KEY=VALUE, such as \"humidity=52 %\"", place,
+    return base::usage_error("\"{}\" has no '=': give KEY=VALUE, such as \"humidity=52 %\"",
                              base::one_line(pair));
   }
-  const std::string_view key = pair.substr(0, mark);
-  const std::string_view value = pair.substr(mark + 1);
+  const auto trimmed = [](std::string_view text) {
+    return boost::algorithm::trim_copy_if(std::string{text}, [](char c) { return c == ' ' || c == '\t'; });
+  };
+  return std::pair{trimmed(pair.substr(0, mark)), trimmed(pair.substr(mark + 1))};
+}
+
+Metadata merged(const Metadata& below, Metadata above) {
+  for (const auto& [key, value] : below) {
+    if (above.size() < kMostMetadata) above.emplace(key, value);
+  }
+  return above;
+}
+
+base::Result<void> add_metadata(Metadata& metadata, std::string_view pair, std::string_view place) {
+  const auto placed = [place](const base::Error& error) {
+    return base::usage_error("{}: {}", place, error.message);
+  };
+  const auto fact = split_fact(pair);
+  if (!fact) return placed(fact.error());
+  const auto& [key, value] = *fact;
   if (const std::string refusal = metadata_refusal(key, value); !refusal.empty())
     return base::usage_error("{}: {}", place, refusal);
   if (const auto there = metadata.find(key); there != metadata.end()) {
     return base::usage_error("{}: {} is \"{}\" already, and \"{}\" comes too: leave out one of them", place,
                              key, base::one_line(there->second), base::one_line(value));
   }
-  if (metadata.size() >= kMostMetadata) {
-    return base::usage_error("{}: {} would be key {}, at most {} are allowed: leave out some", place, key,
-                             metadata.size() + 1, kMostMetadata);
-  }
-  metadata.emplace(key, value);
+  if (auto set = set_fact(metadata, key, value); !set) return placed(set.error());
   return {};
 }
 

@@ -105,6 +105,7 @@ struct SampleFacts {
   std::optional<std::int64_t> slide;      ///< Number of the pull of this sheet, from 1.
   std::string batch;                      ///< Identifier of the batch that the test was planned in.
   std::string operator_name;
+  Metadata metadata;  ///< Temperature, lot and whatever else was stated.
 
   bool operator==(const SampleFacts&) const = default;
 };
@@ -145,7 +146,6 @@ struct RecordHeader {
   TesterFacts tester;
   SampleFacts sample;
   ProcessFacts process;
-  Metadata metadata;  ///< Of an imported trace: what its user stated.
   PlanFacts plan;
   std::optional<daq::SelfCheck> self_check;  ///< Absent without idle scans before the test.
 };

@@ -190,12 +190,15 @@ base::Result<void> App::open_control() {
 base::Result<void> App::open_fleet() {
   if (!config_.fleet) return {};
   if (base::Result<void> readable = io::check_files(*config_.fleet); !readable) return readable;
-  fleet_ = std::make_unique<fleet::Fleet>(io_, *config_.fleet,
-                                          fleet::Fleet::Parts{.status = [this] { return status(); },
-                                                              .wall = *wall_,
-                                                              .events = *world_.events,
-                                                              .record_folder = config_.record_folder,
-                                                              .program = "/proc/self/exe"});
+  fleet_ = std::make_unique<fleet::Fleet>(
+      io_, *config_.fleet,
+      fleet::Fleet::Parts{
+          .status = [this] { return status(); },
+          .wall = *wall_,
+          .events = *world_.events,
+          .record_folder = config_.record_folder,
+          .program = "/proc/self/exe",
+          .set_facts = [this](record::Metadata facts) { commands_.set_told_facts(std::move(facts)); }});
   storage_.tell_ends([this](const record::RecordHeader& header, const record::EndRecord& end,
                             const std::filesystem::path& file) { fleet_->test_recorded(header, end, file); });
   return {};

@@ -193,6 +193,11 @@ class Log final : public daemon::EventReceiver {
                                    state.why, state.outbox_count)});
     }
   }
+  void facts_refused(std::string_view topic, std::string_view why) override {
+    tell({.level = io::LogLevel::kWarning,
+          .event = "facts-refused",
+          .message = fmt::format("fleet: {}: {}", topic, why)});
+  }
   void hanging(std::string_view parts) override {
     if (parts.empty()) {
       tell({.level = io::LogLevel::kWarning,

@@ -135,7 +135,11 @@ void BatchLeader::lead() {
   if (step == planned_ && id == led_batch_) return;
   // Without a batch before and now, the function has returned: the user's plan stays.
   daemon::Plan plan = parts_.plan();
-  if (batch != nullptr) plan.sample = batch->plan.sample;
+  if (batch != nullptr) {
+    // A batch states facts of its own at its start; later ones are the user's.
+    const record::Metadata facts = std::exchange(plan.sample, batch->plan.sample).metadata;
+    plan.sample.metadata = id == led_batch_ ? facts : record::merged(facts, batch->plan.sample.metadata);
+  }
   plan.sample.batch = step ? id : "";
   plan.sample.replicate = step ? std::optional{step->replicate} : std::nullopt;
   plan.sample.slide = step ? std::optional{step->slide} : std::nullopt;

@@ -277,9 +277,15 @@ class Api {
     base::Result<daemon::Plan> plan = daemon::plan_of(*body, &warnings);
     if (!plan) return answer(daemon::refusal(400, plan.error().message));
     if (const auto progress = batches_.progress(); progress && progress->next) {
-      return answer(
-          daemon::refusal(409, fmt::format("batch {} ({}) plans the tests; DELETE /v1/batch ends it",
-                                           progress->id, progress->name)));
+      daemon::Plan other_facts = bench_.plan();
+      other_facts.sample.metadata = plan->sample.metadata;
+      if (daemon::plan_json(other_facts) != daemon::plan_json(*plan)) {
+        return answer(daemon::refusal(
+            409, fmt::format(
+                     "batch {} ({}) plans the tests, only facts may change; DELETE /v1/batch ends the batch",
+                     progress->id, progress->name)));
+      }
+      *plan = std::move(other_facts);
     }
     if (!take(request, Lease::kCommand_s, answer)) return;
     bench_.set_plan(*std::move(plan));

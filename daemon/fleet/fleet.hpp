@@ -32,6 +32,8 @@ class Fleet final : public pipeline::Sink {
     daemon::EventReceiver& events;
     std::filesystem::path record_folder;
     std::string program;  ///< Path of stickslipd, for backlog.hpp.
+    /// Takes the facts that the broker's clients have told for the tests to come; empty: they are too old.
+    std::function<void(record::Metadata)> set_facts;
   };
   /// Starts the publisher's thread. Call it after recovery and before a test can end.
   Fleet(boost::asio::io_context& io, const io::FleetSettings& settings, Parts parts);
@@ -51,6 +53,8 @@ class Fleet final : public pipeline::Sink {
   [[nodiscard]] FleetPublisher::World world(std::vector<std::filesystem::path> untold);
   void link_changed(const daemon::FleetState& state);
   void tick();
+  void take_facts(const std::string& payload);
+  void refuse_facts(const std::string& why);
 
   boost::asio::io_context& io_;
   boost::asio::steady_timer timer_;
@@ -60,6 +64,9 @@ class Fleet final : public pipeline::Sink {
   std::atomic<bool> on_the_way_{false};  ///< A call of state_changed() is posted.
   bool was_connected_ = false;           ///< Publisher's thread, with the next one.
   std::string why_told_;
+  boost::asio::steady_timer facts_timer_;  ///< Runs while told facts hold.
+  record::Metadata facts_;
+  std::string facts_refusal_;  ///< The latest that was reported.
   FleetPublisher publisher_;
 };
 

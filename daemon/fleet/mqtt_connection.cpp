@@ -122,6 +122,21 @@ void MqttConnection::set_callbacks() {
         static_cast<MqttConnection*>(self)->events_.acknowledged(
             message, code >= kFirstRefusal ? reason_of(code) : std::string{});
       });
+  mosquitto_message_v5_callback_set(
+      client, [](mosquitto*, void* self, const mosquitto_message* message, const mosquitto_property*) {
+        auto& connection = *static_cast<MqttConnection*>(self);
+        if (message->retain || !connection.events_.told) return;
+        connection.events_.told(message->payloadlen > 0
+                                    ? std::string{static_cast<const char*>(message->payload),
+                                                  static_cast<std::size_t>(message->payloadlen)}
+                                    : std::string{});
+      });
+  mosquitto_subscribe_v5_callback_set(
+      client, [](mosquitto*, void* self, int, int count, const int* granted, const mosquitto_property*) {
+        auto& connection = *static_cast<MqttConnection*>(self);
+        if (count > 0 && granted[0] >= kFirstRefusal && connection.events_.not_subscribed)
+          connection.events_.not_subscribed(reason_of(granted[0]));
+      });
   // What OpenSSL finds wrong is told nowhere else.
   mosquitto_log_callback_set(client, [](mosquitto*, void* self, int level, const char* text) {
     auto& connection = *static_cast<MqttConnection*>(self);
@@ -163,6 +178,12 @@ base::Result<int> MqttConnection::publish(const MqttMessage& message) {
                                         message.quality, message.retained, properties.get());
   if (auto done = result_of(code); !done) return tl::unexpected(done.error());
   return number;
+}
+
+base::Result<void> MqttConnection::subscribe(const std::string& topic) {
+  errno = 0;
+  return result_of(mosquitto_subscribe_v5(client_.get(), nullptr, topic.c_str(), 1,
+                                          MQTT_SUB_OPT_SEND_RETAIN_NEVER, nullptr));
 }
 
 void MqttConnection::goodbye() {

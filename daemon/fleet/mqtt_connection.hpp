@@ -44,6 +44,10 @@ class MqttConnection {
     std::function<void()> connected;
     /// The broker has answered a message. \param refusal  its reason; empty: accepted.
     std::function<void(int message, const std::string& refusal)> acknowledged;
+    /// A message of a topic that is subscribed to; none that the broker retained, since its age is unknown.
+    std::function<void(std::string payload)> told = {};
+    /// The broker refuses a subscription.
+    std::function<void(const std::string& refusal)> not_subscribed = {};
   };
 
   /// Begins to connect. serve() calls the events. \param will  the broker publishes it if the connection ends
@@ -64,6 +68,8 @@ class MqttConnection {
   [[nodiscard]] base::Result<void> serve(bool readable, bool writable);
   /// Sends a message. \return its number in Events::acknowledged. Errors: kFailure; it was not sent.
   [[nodiscard]] base::Result<int> publish(const MqttMessage& message);
+  /// Asks for the messages of a topic. Errors: kFailure; it was not asked.
+  [[nodiscard]] base::Result<void> subscribe(const std::string& topic);
   /// Disconnects without the will being published. Ignore the result of serve() afterwards.
   void goodbye();
 

@@ -175,9 +175,12 @@ bool FleetPublisher::connect_once() {
            [this] {
              connected_ = true;
              state_due_ = !state_.empty();  // The will may have been told in the meantime.
+             facts_due_ = world_.facts != nullptr;
              set_link(daemon::FleetState::Link::kConnected, "");
            },
-       .acknowledged = [this](int message, const std::string& refusal) { acknowledged(message, refusal); }});
+       .acknowledged = [this](int message, const std::string& refusal) { acknowledged(message, refusal); },
+       .told = world_.facts,
+       .not_subscribed = world_.no_facts});
   if (!opened) return ended(opened.error());
   connection_ = *std::move(opened);
   const base::Result<void> over = talk();
@@ -210,6 +213,9 @@ bool FleetPublisher::all_said() const {
 }
 
 base::Result<void> FleetPublisher::send_due() {
+  if (std::exchange(facts_due_, false)) {
+    if (auto asked = connection_->subscribe(settings_.topic_of("facts")); !asked) return asked;
+  }
   for (const FleetResult& result : outbox_.results()) {
     if (in_flight_.size() >= kMostInFlight) break;
     const bool sent_already = std::any_of(in_flight_.begin(), in_flight_.end(),

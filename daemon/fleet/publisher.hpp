@@ -33,6 +33,11 @@ class FleetPublisher {
     std::function<std::optional<FleetResult>()> backlog;
     /// Called on this object's thread when the state of the connection has changed; must not block.
     std::function<void(const daemon::FleetState&)> changed;
+    /// Called on this object's thread with each message of the topic "facts", which is read if there is such
+    /// a function; must not block.
+    std::function<void(std::string)> facts = {};
+    /// Called on this object's thread if the broker refuses that topic; must not block.
+    std::function<void(const std::string& why)> no_facts = {};
     /// Pause before the second attempt to connect; it doubles up to 30 s.
     std::chrono::milliseconds first_retry{1000};
   };
@@ -93,6 +98,7 @@ class FleetPublisher {
   // The following belong to the thread.
   std::string state_;
   bool state_due_ = false;
+  bool facts_due_ = false;  ///< The topic is to be subscribed to.
   std::optional<std::string> health_;
   std::unique_ptr<MqttConnection> connection_;
   bool connected_ = false;

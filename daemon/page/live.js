@@ -104,16 +104,36 @@
     text("planned", [values.name, values.pull_speed == null ? null : Tables.speed(values.pull_speed), values.operator].filter(said => said != null).join(", "));
   function fillPlan(values) {
     planned(values);
+    const facts = {...values.facts};
     for (const field of plan.querySelectorAll("input")) {
-      const value = values[field.name];
-      field.value = value == null ? "" : field.name === "pull_speed" ? Tables.speed(value) : value;
+      const [group, key] = field.name.split(".");
+      const value = key ? facts[key] : values[field.name];
+      if (key) delete facts[key];
+      field.value = group === "facts" ? Object.entries(facts).map(fact => fact.join("=")).join("; ")
+        : value == null ? "" : field.name === "pull_speed" ? Tables.speed(value) : value;
     }
+  }
+  /// {temperature: "23 degC", …}; those without a field of their own stand in one, between semicolons.
+  function statedFacts() {
+    const facts = {};
+    for (const other of plan.elements.facts.value.split(";").filter(other => other.trim() !== "")) {
+      const [key, ...value] = other.split("=");
+      facts[key.trim()] = value.join("=").trim();
+    }
+    for (const field of plan.querySelectorAll("[name^='fact.']")) if (field.value.trim() !== "") facts[field.name.slice("fact.".length)] = field.value.trim();
+    return facts;
   }
   plan.addEventListener("submit", event => {
     event.preventDefault();
-    const values = {};
-    for (const field of plan.querySelectorAll("input")) if (field.value !== "") values[field.name] = field.type === "number" ? Number(field.value) : field.value;
-    attempt(async () => { fillPlan(await ask("PUT", "/v1/plan", values)); say("the plan holds for tests that begin from now on", true); });
+    const values = {facts: statedFacts()};
+    for (const field of plan.querySelectorAll("input:not([name^='fact'])")) if (field.value !== "") values[field.name] = field.type === "number" ? Number(field.value) : field.value;
+    attempt(async () => {
+      // A batch plans all but the facts.
+      const leading = Batch.leads();
+      const {pull_speed: pull_speed_m_per_s, ...now} = leading ? await ask("GET", "/v1/plan") : {};
+      fillPlan(await ask("PUT", "/v1/plan", leading ? {...now, pull_speed_m_per_s, facts: values.facts} : values));
+      say(leading ? "the facts hold for tests that begin from now on; the rest is the batch's" : "the plan holds for tests that begin from now on", true);
+    });
   });
 
   const frames = {

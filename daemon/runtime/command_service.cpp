@@ -73,6 +73,7 @@ void CommandService::set_plan(daemon::Plan plan) {
   parts_.config.method = plan.method.value_or(configured_method_);
   Session* const session = parts_.session();
   if (session == nullptr) return;
+  plan.sample.metadata = record::merged(plan.sample.metadata, parts_.config.told_facts);
   // A session that is over takes it from the configuration.
   static_cast<void>(session->post([&storage = parts_.storage, plan = std::move(plan),
                                    method = parts_.config.method](pipeline::Processor& processor) {
@@ -84,6 +85,11 @@ void CommandService::set_plan(daemon::Plan plan) {
       header.process.method = record::method_text(method);
     });
   }));
+}
+
+void CommandService::set_told_facts(record::Metadata facts) {
+  parts_.config.told_facts = std::move(facts);
+  set_plan(plan());
 }
 
 std::optional<std::string> CommandService::refused_now(daemon::Command::Kind kind) const {

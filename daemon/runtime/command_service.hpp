@@ -35,6 +35,8 @@ class CommandService final : public daemon::Bench {
   [[nodiscard]] std::vector<daemon::TestSummary> tests() const override { return parts_.tests.tests(); }
   [[nodiscard]] daemon::Plan plan() const override;
   void set_plan(daemon::Plan plan) override;
+  /// Facts of tests that begin later; they replace those of the plan. Empty: none are known.
+  void set_told_facts(record::Metadata facts);
   void command(daemon::Command command, std::function<void(const daemon::Outcome&)> answer) override;
   [[nodiscard]] daemon::Calibrator& calibrator() override { return parts_.calibrations; }
   [[nodiscard]] daemon::Batches& batches() override { return *parts_.batches; }

@@ -1,6 +1,7 @@
 #include "daemon/runtime/stray_signals.hpp"
 
 #include <csignal>
+#include <initializer_list>
 
 namespace stickslip::runtime {
 namespace {

@@ -160,12 +160,13 @@ base::Result<BatchPlan> batch_plan_of(const Json& json, Warnings* warnings) {
       auto limits = limits_of(value, warnings);
       if (!limits) return tl::unexpected(limits.error());
       plan.limits = *std::move(limits);
-    } else if (key == "name" || key == "grade" || key == "direction" || key == "side" || key == "operator") {
+    } else if (key == "name" || key == "grade" || key == "direction" || key == "side" || key == "operator" ||
+               key == "facts") {
       sample[key] = value;
     } else {
       return base::usage_error(
           "\"{}\": there is no such key; there are name, grade, direction, side, operator, method, "
-          "pull_speeds, pull_speeds_m_per_s, replicates, slides, limits",
+          "pull_speeds, pull_speeds_m_per_s, replicates, slides, limits, facts",
           base::one_line(key, 60));
     }
   }

@@ -12,8 +12,8 @@
 
 namespace stickslip::daemon {
 
-/// {"name": "liner 42", "grade": …, "direction": …, "side": …, "operator": …, "method": …, "pull_speeds":
-/// [0.00508],
+/// {"name": "liner 42", "grade": …, "direction": …, "side": …, "operator": …, "facts": …, "method": …,
+/// "pull_speeds": [0.00508],
 ///  "replicates": 3, "slides": 1, "limits": {"mu_k": {"lowest": 0.2, "highest": 0.4}}}; all keys are present.
 [[nodiscard]] nlohmann::ordered_json batch_plan_json(const BatchPlan& plan);
 

@@ -70,6 +70,8 @@ class EventReceiver {
   /// A journal without a scan was removed.
   virtual void orphan_empty(const std::filesystem::path& /*journal*/) {}
   /// The connection to the broker was made or lost, or fails for another reason than before.
+  /// Facts that a client of the broker told are not used, or too old. \param why  with the remedy.
+  virtual void facts_refused(std::string_view /*topic*/, std::string_view /*why*/) {}
   virtual void fleet_changed(const FleetState& /*state*/) {}
   virtual void control_listening(std::string_view /*socket*/) {}
   /// Threads of the daemon hang, so that the service manager will restart it. \param parts  their names,

@@ -31,6 +31,21 @@ constexpr std::array<std::pair<const char*, std::string record::SampleFacts::*>,
 }};
 constexpr const char* kReplicate = "replicate";
 constexpr const char* kSpeed = "pull_speed";
+constexpr const char* kFacts = "facts";
+
+/// {"temperature": "23 degC", "lot": "4711"}; null removes a key.
+base::Result<record::Metadata> facts_of(const Json& json) {
+  if (!json.is_object()) return base::usage_error("{}: must be an object of texts", kFacts);
+  record::Metadata facts;
+  for (const auto& [key, value] : json.items()) {
+    if (!value.is_string() && !value.is_null())
+      return base::usage_error("{}: {}: must be text, with its unit if it has one", kFacts,
+                               base::one_line(key));
+    if (const auto set = record::set_fact(facts, key, value.is_null() ? "" : value.get<std::string>()); !set)
+      return base::usage_error("{}: {}", kFacts, set.error().message);
+  }
+  return facts;
+}
 
 }  // namespace
 
@@ -38,6 +53,14 @@ base::Result<void> check_pull_speed(std::string_view key, double speed_m_per_s) 
   if (speed_m_per_s > 0.0 && speed_m_per_s <= model::kFastestPull_m_per_s) return {};
   return base::usage_error("{}: {} m/s; must be above 0 and at most {} m/s", key, speed_m_per_s,
                            model::kFastestPull_m_per_s);
+}
+
+base::Result<record::Metadata> facts_in(std::string_view text) {
+  constexpr std::size_t kLongest = 65'536;
+  if (text.size() > kLongest) return base::usage_error("{} bytes, at most {}", text.size(), kLongest);
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) return base::usage_error("must be JSON, such as {{\"temperature\": \"23 degC\"}}");
+  return facts_of(json);
 }
 
 Json plan_json(const Plan& plan) {
@@ -48,6 +71,7 @@ Json plan_json(const Plan& plan) {
   }
   json[kReplicate] = plan.sample.replicate ? Json(*plan.sample.replicate) : Json(nullptr);
   json[kSpeed] = plan.pull_speed_m_per_s ? Json(*plan.pull_speed_m_per_s) : Json(nullptr);
+  json[kFacts] = plan.sample.metadata;
   return json;
 }
 
@@ -76,10 +100,14 @@ base::Result<Plan> plan_of(const Json& json, Warnings* warnings) {
       if (const auto checked = check_pull_speed(key, speed->value()); !checked)
         return tl::unexpected(checked.error());
       plan.pull_speed_m_per_s = *speed;
+    } else if (key == kFacts) {
+      auto facts = facts_of(value);
+      if (!facts) return tl::unexpected(facts.error());
+      plan.sample.metadata = *std::move(facts);
     } else {
       return base::usage_error(
           "\"{}\": there is no such key; there are name, grade, direction, side, operator, replicate, "
-          "pull_speed, pull_speed_m_per_s",
+          "pull_speed, pull_speed_m_per_s, facts",
           base::one_line(key));
     }
   }

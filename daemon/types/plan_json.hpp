@@ -15,8 +15,12 @@ namespace stickslip::daemon {
 
 [[nodiscard]] nlohmann::ordered_json plan_json(const Plan& plan);
 /// Reads a plan. Absent or null keys stay unset. "pull_speed" is text with a unit, "pull_speed_m_per_s" a
-/// number; a number as "pull_speed" is m/s, with a warning. Errors (kUsage) name the key.
+/// number; a number as "pull_speed" is m/s, with a warning. "facts" is {"temperature": "23 degC", …}. Errors
+/// (kUsage) name the key.
 [[nodiscard]] base::Result<Plan> plan_of(const nlohmann::ordered_json& json, Warnings* warnings = nullptr);
+
+/// Reads facts told as JSON text: {"temperature": "23 degC", "lot": "4711"}. Errors (kUsage) name the key.
+[[nodiscard]] base::Result<record::Metadata> facts_in(std::string_view text);
 
 /// Checks that a pull speed is above 0 and at most kFastestPull_m_per_s. \param key  named in the error.
 /// Errors: kUsage.

@@ -65,6 +65,7 @@ struct Status {
   FindingCounts finding_counts{};       ///< Over all tests that have ended.
   std::optional<BatchProgress> batch;   ///< The current batch; absent: none.
   std::optional<FleetState> fleet;      ///< Absent: no broker is configured.
+  record::Metadata facts;               ///< Of the next test, by plan and broker.
   /// The live page over TCP.
   struct Page {
     std::string address;     ///< "http://127.0.0.1:8037/"

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -12,8 +13,10 @@
 
 #include "core/analysis/results.hpp"
 #include "core/base/finding.hpp"
+#include "core/base/quantity.hpp"
 #include "core/base/wording.hpp"
 #include "core/model/regime.hpp"
+#include "core/record/metadata.hpp"
 
 namespace stickslip::catalogue {
 namespace {
@@ -157,6 +160,36 @@ base::Result<Condition> in_range(const std::string& text, const std::string& pla
     if (!value) return wrong();
     range.sql += fmt::format(" AND \"{}\" {} ?", column->second, compare);
     range.values.emplace_back(*value);
+  }
+  return range;
+}
+
+base::Result<Condition> has_fact(const std::string& text, const std::string& place) {
+  const auto fact = record::split_fact(text);
+  if (!fact) return base::usage_error("{}: {}", place, fact.error().message);
+  const auto& [key, wanted] = *fact;
+  const auto known = record::known_facts();
+  const auto number = std::find_if(known.begin(), known.end(), [&key = key](const record::KnownFact& one) {
+    return one.key == key && !one.unit.empty();
+  });
+  const std::size_t colon = wanted.find(':');
+  if (number == known.end() || colon == std::string::npos) {
+    return Condition{
+        "EXISTS (SELECT 1 FROM json_each(nullif(facts, '')) WHERE key = ? AND value LIKE ? ESCAPE '\\')",
+        {key, like_pattern(wanted)}};
+  }
+  const std::string column = fmt::format("json_extract(fact_numbers, '$.{}')", number->key);
+  Condition range{column + " IS NOT NULL", {}};
+  for (const auto& [compare, side] :
+       {std::pair{">=", wanted.substr(0, colon)}, std::pair{"<=", wanted.substr(colon + 1)}}) {
+    if (side.empty()) continue;
+    const auto value = base::parse_quantity(side, number->dimension);
+    if (!value) {
+      return base::usage_error("{} {}: {}; write it like \"{}={}:\"", place, base::one_line(text),
+                               value.error().message, key, number->example);
+    }
+    range.sql += fmt::format(" AND {} {} ?", column, compare);
+    range.values.emplace_back(*value - number->zero);
   }
   return range;
 }

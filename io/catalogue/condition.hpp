@@ -42,6 +42,10 @@ enum class Text { kSample, kGrade, kOperator, kBatch, kMethod };
 /// "S=0.3:0.4", "delta_mu=0.02:", "threshold_speed=:0.01": both ends included, SI units.
 [[nodiscard]] base::Result<Condition> in_range(const std::string& text, const std::string& place);
 
+/// "lot=47*": a pattern as of is_like(); "temperature=22 degC:24 degC", "humidity=:55 %": a range of a known
+/// fact that has a number, both ends included.
+[[nodiscard]] base::Result<Condition> has_fact(const std::string& text, const std::string& place);
+
 /// What is found, and in which order.
 struct Query {
   std::vector<Condition> conditions = {};  ///< All hold.

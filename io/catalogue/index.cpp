@@ -19,9 +19,9 @@ using Json = nlohmann::ordered_json;
 /// Columns of a record before its results.
 constexpr const char* kFactColumns =
     "start_ns, title, uuid, status, method, sample, grade, direction, side, replicate, slide, batch, "
-    "operator, "
+    "operator, facts, fact_numbers, "
     "regime, rung, codes, findings";
-constexpr int kFactCount = 17;
+constexpr int kFactCount = 19;
 
 /// "transition_time", "transition_time_error", "transition_time_systematic", … with `suffix` behind each
 /// name.
@@ -109,6 +109,25 @@ std::vector<base::Finding> findings_from(const std::string& json) {
   return findings;
 }
 
+/// \throws SqlError if they are none: the row is damaged.
+record::Metadata facts_from(const std::string& json) {
+  if (json.empty()) return {};
+  try {
+    return Json::parse(json).get<record::Metadata>();
+  } catch (const Json::exception&) {
+    throw SqlError("the facts of a record are damaged", Trouble::kDamage);
+  }
+}
+
+/// {"temperature": 23.0}, in the units of known_facts().
+std::string numbers_of(const record::Metadata& facts) {
+  Json numbers = Json::object();
+  for (const auto& [key, value] : facts) {
+    if (const auto number = record::fact_number(key, value)) numbers[key] = *number;
+  }
+  return numbers.dump();
+}
+
 /// Of a row of find().
 Entry entry_in(const Statement& row) {
   Entry entry;
@@ -128,6 +147,8 @@ Entry entry_in(const Statement& row) {
   entry.sample.slide = row.maybe_whole(column++);
   entry.sample.batch = text();
   entry.sample.operator_name = text();
+  entry.sample.metadata = facts_from(text());
+  ++column;  // Their numbers.
   entry.results.regime = model::regime_from_name(text()).value_or(model::Regime::kUndecided);
   entry.results.rung = analysis::rung_from_name(text()).value_or(analysis::Rung::kNone);
   const bool has_findings = !text().empty();
@@ -188,6 +209,8 @@ void Index::put(const std::string& file, const Signature& signature, const recor
                             value_of(sample.slide),
                             sample.batch,
                             sample.operator_name,
+                            sample.metadata.empty() ? std::string{} : Json(sample.metadata).dump(),
+                            numbers_of(sample.metadata),
                             std::string{model::name(results.regime)},
                             std::string{analysis::name(results.rung)},
                             codes,

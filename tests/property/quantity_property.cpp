@@ -29,8 +29,7 @@ double finite_number() {
 // Written in the SI unit and read back: the same double, whatever its bits.
 RC_GTEST_PROP(QuantityProperty, SurvivesWritingAndReading, ()) {
   const double value = finite_number();
-  const auto dimension =
-      static_cast<Dimension>(*rc::gen::inRange(0, static_cast<int>(Dimension::kAngle) + 1));
+  const auto dimension = static_cast<Dimension>(*rc::gen::inRange(0, static_cast<int>(kLastDimension) + 1));
   const Result<double> back = parse_quantity(format_quantity(value, dimension), dimension);
   RC_ASSERT(back.has_value());
   RC_ASSERT(*back == value);

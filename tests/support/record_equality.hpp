@@ -47,7 +47,6 @@ inline void expect_same_header(const record::RecordHeader& a, const record::Reco
   EXPECT_EQ(a.tester, b.tester);
   EXPECT_EQ(a.sample, b.sample);
   EXPECT_EQ(a.process, b.process);
-  EXPECT_EQ(a.metadata, b.metadata);
   EXPECT_EQ(a.plan, b.plan);
   EXPECT_EQ(a.self_check, b.self_check);
 }

@@ -262,9 +262,9 @@ class Reports(Folder):
     def test_it_opens_with_the_form_and_invents_nothing(self):
         lines = self.good("report", *self.a).splitlines()
         opens = dict((line[:17].strip(), line[17:]) for line in lines[:lines.index("")])
-        self.assertEqual(list(opens), ["date", "sample", "grade", "direction, side", "conditioning", "method", "sled", "contact time", "pull speed", "n", "operator",
+        self.assertEqual(list(opens), ["date", "sample", "grade", "lot", "direction, side", "conditioning", "climate", "method", "sled", "contact time", "pull speed", "n", "operator",
                                        "instrument", "calibration", "program", "verdict"])
-        for fact in ("date", "sample", "grade", "direction, side", "conditioning", "contact time", "operator"):
+        for fact in ("date", "sample", "grade", "lot", "direction, side", "conditioning", "climate", "contact time", "operator"):
             self.assertEqual(opens[fact], "–", fact)
         self.assertEqual(opens["pull speed"], "2 speeds: 6 in/min; 12 in/min")
         self.assertEqual((opens["sled"], opens["n"], opens["verdict"]), ("2331 g", "8", "no limits were stated"))

@@ -307,6 +307,31 @@ TEST_F(Catalogue, FindsByPatternsRangesRegimesAndFindings) {
   EXPECT_EQ(find(last).entries.front().sample.name, "bag 7");
 }
 
+TEST_F(Catalogue, FindsByFactsAsTextsAndAsRanges) {
+  record::Record warm = record_of("warm");
+  warm.header.sample.metadata = {{"temperature", "77 degF"}, {"lot", "47 a%"}, {"room", "lab \"2\""}};
+  static_cast<void>(put("a.h5", warm));
+  record::Record cold = record_of("cold");
+  cold.header.sample.metadata = {{"temperature", "20 degC"}, {"humidity", "dry"}};
+  static_cast<void>(put("b.h5", cold));
+  static_cast<void>(put("c.h5", record_of("silent")));
+  const auto by = [this](const std::string& fact) { return samples(*has_fact(fact, "--fact")); };
+  EXPECT_THAT(by("lot=47*"), ElementsAre("warm"));
+  EXPECT_THAT(by("lot=47 a%"), ElementsAre("warm"));
+  EXPECT_THAT(by("lot=47%"), SizeIs(0));
+  EXPECT_THAT(by("room=lab \"2\""), ElementsAre("warm"));
+  EXPECT_THAT(by("temperature=20 *"), ElementsAre("cold"));
+  // Whatever unit it was stated in; both ends belong to the range.
+  EXPECT_THAT(by("temperature=24.9 degC:25.1 degC"), ElementsAre("warm"));
+  EXPECT_THAT(by("temperature=:20 degC"), ElementsAre("cold"));
+  EXPECT_THAT(by("humidity=0 %:100 %"), SizeIs(0));
+  EXPECT_THAT(by("'); DROP TABLE record; --=x"), SizeIs(0));
+  EXPECT_EQ(find().entries.front().sample.metadata, warm.header.sample.metadata);
+  EXPECT_THAT(has_fact("lot", "--fact").error().message, HasSubstr("--fact: \"lot\" has no '='"));
+  EXPECT_THAT(has_fact("temperature=20:25", "--fact").error().message,
+              HasSubstr("a temperature needs its unit"));
+}
+
 TEST_F(Catalogue, AnAbsentTextComesLast) {
   for (const char* const sample : {"", "A", "B"})
     static_cast<void>(put(std::string{"of "} + sample + ".h5", record_of(sample)));

@@ -42,5 +42,65 @@ TEST(Metadata, RefusesAKeyTwiceAndTooManyKeys) {
   EXPECT_THAT(refusal_of(many, "one.more=x"), HasSubstr("at most 100 are allowed"));
 }
 
+TEST(Facts, OfAKnownKeyAreCheckedWhereTheyAreStated) {
+  const auto refusal = [](const char* key, const char* value) {
+    Metadata facts;
+    const auto set = set_fact(facts, key, value);
+    return set ? std::string{} : set.error().message;
+  };
+  EXPECT_EQ(refusal("temperature", "23 degC"), "");
+  EXPECT_EQ(refusal("temperature", "-80 °C"), "");
+  EXPECT_THAT(refusal("temperature", "-81 °C"),
+              HasSubstr("not within -80 … 200 degC; write it like \"23 degC\""));
+  EXPECT_THAT(refusal("temperature", "23"), HasSubstr("a temperature needs its unit"));
+  EXPECT_THAT(refusal("temperature", "warm"), HasSubstr("write it like \"23 degC\""));
+  EXPECT_EQ(refusal("humidity", "100 %"), "");
+  EXPECT_EQ(refusal("humidity", "0.5"), "");
+  // A percentage without its sign would be fifty times too large.
+  EXPECT_THAT(refusal("humidity", "50"), HasSubstr("not within 0 … 1; write it like \"50 %\""));
+  EXPECT_EQ(refusal("contact_time", "2 min"), "");
+  EXPECT_THAT(refusal("contact_time", "-1 s"), HasSubstr("not within"));
+  EXPECT_EQ(refusal("lot", "47 11/b"), "");
+  EXPECT_EQ(refusal("conditioning", "ISO 187, 24 h"), "");
+  EXPECT_EQ(refusal("room.temperature", "warm"), "");
+  for (const KnownFact& fact : known_facts()) {
+    if (!fact.unit.empty())
+      EXPECT_EQ(refusal(std::string{fact.key}.c_str(), std::string{fact.example}.c_str()), "");
+  }
+}
+
+TEST(Facts, HaveANumberInTheUnitOfTheRecord) {
+  EXPECT_NEAR(fact_number("temperature", "73.4 degF").value(), 23.0, 1e-9);
+  EXPECT_DOUBLE_EQ(fact_number("humidity", "52 %").value(), 0.52);
+  EXPECT_DOUBLE_EQ(fact_number("contact_time", "2 min").value(), 120.0);
+  EXPECT_FALSE(fact_number("humidity", "dry"));
+  EXPECT_FALSE(fact_number("lot", "4711"));
+  EXPECT_FALSE(fact_number("room.temperature", "23 degC"));
+}
+
+TEST(Facts, AreReplacedAndRemoved) {
+  Metadata facts{{"lot", "1"}};
+  EXPECT_TRUE(set_fact(facts, "lot", "2"));
+  EXPECT_EQ(facts, (Metadata{{"lot", "2"}}));
+  EXPECT_TRUE(set_fact(facts, "lot", ""));
+  EXPECT_TRUE(set_fact(facts, "never.there", ""));
+  EXPECT_EQ(facts, Metadata{});
+  EXPECT_EQ(split_fact(" lot = 4=7 ").value(), (std::pair<std::string, std::string>{"lot", "4=7"}));
+}
+
+TEST(Facts, OfTwoSourcesAreMergedWithinTheLimitOfARecord) {
+  EXPECT_EQ(merged({{"a", "1"}, {"b", "1"}}, {{"b", "2"}, {"c", "2"}}),
+            (Metadata{{"a", "1"}, {"b", "2"}, {"c", "2"}}));
+  Metadata below;
+  Metadata above;
+  for (std::size_t i = 0; i < kMostMetadata; ++i) {
+    below.emplace(fmt::format("b{}", i), "x");
+    above.emplace(fmt::format("a{}", i), "x");
+  }
+  EXPECT_EQ(merged(below, above), above);
+  EXPECT_TRUE(set_fact(above, "a0", "y"));
+  EXPECT_FALSE(set_fact(above, "one.more", "y"));
+}
+
 }  // namespace
 }  // namespace stickslip::record

@@ -36,6 +36,28 @@ TEST(QuantityJson, IsTextWithAUnitOrANumberUnderTheKeyWithTheUnit) {
   EXPECT_EQ(mass_at("{}", BareNumber::kRefused).value(), std::nullopt);
 }
 
+TEST(PlanJson, HoldsFactsAsTextsWithTheirUnits) {
+  const auto plan =
+      plan_of(Json::parse(R"({"facts": {"temperature": "23 degC", "lot": "4711", "humidity": null}})"));
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_EQ(plan->sample.metadata, (record::Metadata{{"temperature", "23 degC"}, {"lot", "4711"}}));
+  EXPECT_EQ(plan_of(plan_json(*plan)).value(), *plan);
+  for (const auto& [text, why] :
+       {std::pair{R"({"facts": ["lot"]})", "facts: must be an object of texts"},
+        {R"({"facts": {"temperature": 23}})", "facts: temperature: must be text"},
+        {R"({"facts": {"temperature": "23"}})", "facts: temperature: \"23\": a temperature needs its unit"},
+        {R"({"facts": {"a b": "x"}})", "facts: key \"a b\""}}) {
+    EXPECT_THAT(plan_of(Json::parse(text)).error().message, HasSubstr(why)) << text;
+  }
+  EXPECT_EQ(facts_in(R"({"lot": "4711"})").value(), (record::Metadata{{"lot", "4711"}}));
+  EXPECT_THAT(facts_in("23 degC").error().message, HasSubstr("must be JSON"));
+  EXPECT_THAT(facts_in(std::string(70'000, ' ')).error().message, HasSubstr("at most 65536"));
+  const auto batch = batch_plan_of(Json::parse(R"({"name": "liner", "facts": {"lot": "4711"}})"));
+  ASSERT_TRUE(batch) << batch.error().message;
+  EXPECT_EQ(batch->sample.metadata.at("lot"), "4711");
+  EXPECT_EQ(batch_plan_of(batch_plan_json(*batch)).value(), *batch);
+}
+
 TEST(QuantityJson, IsRefusedWithTheSpellingThatIsTaken) {
   EXPECT_EQ(mass_at(R"({"mass": 500})", BareNumber::kOnlyZero).error().message,
             R"(mass: "500": a mass needs its unit, such as "500 g" or "500 kg"; or a number as "mass_kg")");

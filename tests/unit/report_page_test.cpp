@@ -22,6 +22,8 @@
 namespace stickslip::report {
 namespace {
 
+using ::testing::ContainsRegex;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using Json = nlohmann::ordered_json;
@@ -159,7 +161,7 @@ TEST(ReportText, ShowsMeansReasonsAndDepartures) {
 TEST(FormBlock, NamesWhatDiffersAndWhatNoRecordStates) {
   Material material = test::sample_material();
   constexpr std::size_t kGrade = 2;
-  constexpr std::size_t kOperator = 9;
+  constexpr std::size_t kOperator = 11;
   const char* const operators[] = {"Ann", "Bo", ""};
   for (std::size_t i = 0; i < 3; ++i) {
     material.tests[i].facts[kGrade] = "liner";
@@ -182,8 +184,8 @@ TEST(FormBlock, TakesFromARecordWhatItStatesAndNothingElse) {
   record::RecordHeader header;
   for (const std::string& fact : facts_of(header, "")) EXPECT_EQ(fact, "");
   header.tester.sled_mass_kg = 0.2;
-  header.metadata["Contact time"] = "15 s";
-  header.metadata["conditioning"] = "23 °C, 50 %";
+  header.sample.metadata["Contact time"] = "15 s";
+  header.sample.metadata["conditioning"] = "23 °C, 50 %";
   header.load_cell.emplace();
   header.load_cell->gain_N_per_V = 2.5;
   header.calibration.date = "2026-11-20T10:00:00+00:00";
@@ -193,6 +195,12 @@ TEST(FormBlock, TakesFromARecordWhatItStatesAndNothingElse) {
   EXPECT_THAT(facts, ::testing::Contains("23 °C, 50 %"));
   EXPECT_THAT(facts, ::testing::Contains("2.5 N/V, of 2026-11-20"));
   EXPECT_THAT(facts, ::testing::Contains("100 mm/min"));
+  header.sample.metadata["temperature"] = "23.1 degC";
+  EXPECT_THAT(facts_of(header, ""), ::testing::Contains("23.1 degC"));
+  header.sample.metadata["humidity"] = "52 %";
+  header.sample.metadata["lot"] = "4711";
+  EXPECT_THAT(facts_of(header, ""), ::testing::Contains("23.1 degC, 52 %"));
+  EXPECT_THAT(facts_of(header, ""), ::testing::Contains("4711"));
 }
 
 TEST(Comparison, RefusesASideOfTwoGradesUnlessTheyArePooled) {
@@ -204,6 +212,18 @@ TEST(Comparison, RefusesASideOfTwoGradesUnlessTheyArePooled) {
                         "--pool grades"));
   material.pooling.grades = true;
   EXPECT_TRUE(check_one_grade(material, "A"));
+}
+
+TEST(ReportCsv, HasAColumnForEachFactThatAnyTestStatesAndOneForItsNumber) {
+  Material material = test::sample_material();
+  EXPECT_THAT(report_csv(material), Not(HasSubstr("fact.")));
+  material.tests[1].sample.metadata = {{"temperature", "73.4 degF"}, {"humidity", "dry"}, {"room", "2"}};
+  const std::string csv = report_csv(material);
+  const std::string heading = csv.substr(0, csv.find_first_of("\r\n"));
+  EXPECT_THAT(heading, EndsWith(",fact.humidity,fact.room,fact.temperature,temperature_degC,humidity_ratio"));
+  // An older record may hold a humidity that is no number.
+  EXPECT_THAT(csv, ContainsRegex(",dry,2,73.4 degF,23(.0+[0-9]+)?,\r?\n"));
+  EXPECT_THAT(csv, ContainsRegex(",,,,,\r?\n"));
 }
 
 TEST(ReportCsv, HasTheRungAndNoDiagnostics) {
