@@ -1,5 +1,5 @@
 /// \file
-/// Test methods as TOML files; config/methods/ has the shipped ones, docs/methods.md each key.
+/// Test methods as TOML files; config/methods/ has the shipped ones, penner-1995.toml each key.
 ///
 ///     Result<MethodFile> file = load_method("config/methods/iso-8295.toml");
 ///     if (!file) return tl::unexpected(file.error());   // one line: file, line, key, value, what is allowed
