@@ -174,7 +174,7 @@ class DiskWriter {
   std::optional<FolderWatch::Away> away_;  ///< Disk thread only.
   Ballast ballast_;
 
-  mutable std::mutex mutex_;
+  mutable std::mutex mutex_;  ///< Held while that of PatientJournal is taken, never taken while that is held.
   std::condition_variable woken_;
   std::list<Job> jobs_;
   bool has_news_ = false;
