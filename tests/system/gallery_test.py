@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
-"""`stickslip plot` from outside, and the gallery that is made with it: each shipped scene has a section in
-docs/gallery.md with a picture and the command that draws it, and the committed pictures show what the program
-draws now.
+"""`stickslip plot` from outside, and the gallery that is made with it: each shipped scene has in docs/gallery.md a
+picture and the command that draws it, and the committed pictures show what the program draws now.
 
 gallery_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
 """
