@@ -87,6 +87,12 @@ base::Result<std::string> begin_batch(const BatchBeginOptions& options) {
     if (!key.typed.empty()) plan[key.key] = key.typed;
   }
   if (const auto set = set_facts(plan, options.facts); !set) return tl::unexpected(set.error());
+  const Json facts = plan.value("facts", Json::object());
+  for (const auto& [key, value] : facts.items()) {
+    if (value.is_null())
+      return base::usage_error(
+          "--fact {0}=: the value is empty; to forget it, first: stickslip plan --fact {0}=", key);
+  }
   if (!options.pull_speeds.empty()) plan["pull_speeds"] = options.pull_speeds;
   if (options.replicates) plan["replicates"] = *options.replicates;
   if (options.slides) plan["slides"] = *options.slides;

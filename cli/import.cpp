@@ -161,7 +161,7 @@ Result<traces::ImportRequest> request_of(const ImportOptions& options) {
   request.sample.operator_name = options.person;
   if (options.replicate > 0) request.sample.replicate = options.replicate;
   for (const std::string& pair : options.metadata) {
-    if (const auto added = record::add_metadata(request.metadata, pair, "--set-meta"); !added)
+    if (const auto added = record::add_metadata(request.sample.metadata, pair, "--set-meta"); !added)
       return tl::unexpected(added.error());
   }
   request.process.program = "stickslip import";
@@ -206,6 +206,10 @@ Result<std::string> make_records(const ImportOptions& options, const std::string
   if (!imported) return tl::unexpected(imported.error());
   if (options.output.empty()) return no_output();
   std::string text = std::move(imported->report);
+  for (const auto& [key, value] : request->sample.metadata) {
+    if (const std::string why = record::why_no_number(key, value); !why.empty())
+      text += fmt::format("{}; kept as text, without a number\n", base::printable(why));
+  }
   std::vector<traces::ImportedTest>& tests = imported->tests;
   for (std::size_t i = 0; i < tests.size(); ++i) {
     if (auto free = record::check_publishable(output_of(options.output, i + 1, tests.size())); !free)

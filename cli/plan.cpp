@@ -84,6 +84,7 @@ constexpr const char* kPlanExamples =
   stickslip plan                                               what is planned
   stickslip plan --name "liner 42" --grade kraft --direction MD --operator ann
   stickslip plan --fact "temperature=23 degC" --fact "humidity=50 %" --fact lot=4711
+  stickslip plan --fact lot=                                   forget the lot
   stickslip plan --clear)";
 
 }  // namespace

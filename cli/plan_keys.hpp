@@ -36,7 +36,7 @@ inline void add_fact_option(CLI::App& command, std::vector<std::string>& facts) 
       .add_option(
           "--fact", facts,
           "of the tests: temperature, humidity, conditioning, contact_time, lot or a key of your own, "
-          "quantities with unit: \"temperature=23 degC\"; may be repeated; without VALUE: forget it")
+          "quantities with unit: \"temperature=23 degC\"; may be repeated")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -51,11 +51,8 @@ inline void add_fact_option(CLI::App& command, std::vector<std::string>& facts) 
     const auto known = fact ? record::set_fact(checked, fact->first, fact->second)
                             : base::Result<void>{tl::unexpected(fact.error())};
     if (!known) return base::usage_error("--fact: {}", known.error().message);
-    if (fact->second.empty()) {
-      plan["facts"].erase(fact->first);
-    } else {
-      plan["facts"][fact->first] = fact->second;
-    }
+    plan["facts"][fact->first] =
+        fact->second.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(fact->second);
   }
   return {};
 }

@@ -143,6 +143,11 @@ std::string text_of(const Json& status) {
   }
   findings(lines, status);
   findings(lines, part(part(status, "latest_test"), "results"));
+  std::string facts;
+  const Json next_facts = part(status, "facts");
+  for (const auto& [key, value] : next_facts.items())
+    facts += fmt::format("{}{} {}", facts.empty() ? "" : ", ", key, value.get<std::string>());
+  if (!facts.empty()) lines.line("next facts", base::printable(facts));
   if (const Json fleet = part(status, "fleet"); !fleet.empty()) {
     const bool connected = word(fleet, "state") == "connected";
     lines.line(

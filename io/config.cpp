@@ -227,8 +227,10 @@ void read_sample(Settings table, record::SampleFacts& sample) {
   if (table.has("replicate")) sample.replicate = replicate;
   sample.operator_name = name("operator");
   for (const std::string& fact : table.texts("facts", std::vector<std::string>{})) {
-    if (const auto added = record::add_metadata(sample.metadata, fact, "[sample] facts"); !added)
-      table.refuse("facts", added.error().message);
+    const auto pair = record::split_fact(fact);
+    const auto set = pair ? record::set_fact(sample.metadata, pair->first, pair->second)
+                          : base::Result<void>{tl::unexpected(pair.error())};
+    if (!set) table.refuse("facts", set.error().message);
   }
 }
 

@@ -61,7 +61,6 @@ struct DaemonConfig {
   bool begins_by_force = true;            ///< False: each test must be armed or started by command.
   model::Method method;
   record::SampleFacts sample;
-  record::Metadata told_facts;  ///< Of the tests to come, told by the broker; they replace those of `sample`.
   /// Absent: that of a replayed record, else "fit".
   std::optional<detect::EstimatorTier> estimator;
   analysis::SkippedCorrections skipped;

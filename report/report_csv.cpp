@@ -156,8 +156,10 @@ std::string report_csv(const Material& material) {
       return found == test.sample.metadata.end() ? std::string{} : found->second;
     };
     for (const std::string& key : keys) add(cells, stated(key));
-    for (const record::KnownFact* fact : numbers_of(keys))
-      add(cells, record::fact_number(fact->key, stated(fact->key)));
+    for (const record::KnownFact* fact : numbers_of(keys)) {
+      const auto number = record::fact_number(fact->key, stated(fact->key));
+      add(cells, number ? std::optional{*number} : std::nullopt);
+    }
     table.add(std::move(cells));
   }
   // No numbers, so that nobody averages them.

@@ -77,9 +77,9 @@ constexpr std::array kLengthPerVoltageUnits{Unit{"m/V", 1, 1}, Unit{"cm/V", 1, 1
 constexpr std::array kTimePerLengthUnits{Unit{"s/m", 1, 1}, Unit{"s/cm", 100, 1}, Unit{"s/mm", 1e3, 1},
                                          Unit{"s/in", 1, kInch_m}, Unit{"min/in", 60, kInch_m}};
 constexpr std::array kAngleUnits{Unit{"rad", 1, 1}, Unit{"deg", std::numbers::pi, 180}};
-/// 0 °C = 273.15 K and 0 °F = 459.67 · 5/9 K, exactly.
-constexpr std::array kTemperatureUnits{Unit{"K", 1, 1}, Unit{"degC", 1, 1, 273.15},
-                                       Unit{"degF", 5, 9, 459.67 * 5 / 9}};
+/// 0 K = −273.15 °C and 0 °F = −160/9 °C, exactly.
+constexpr std::array kTemperatureUnits{Unit{"degC", 1, 1}, Unit{"K", 1, 1, -273.15},
+                                       Unit{"degF", 5, 9, -160.0 / 9}};
 
 std::span<const Unit> units_of(Dimension dimension) noexcept {
   switch (dimension) {

@@ -39,7 +39,7 @@ enum class Dimension {
   kLengthPerVoltage,  ///< m/V
   kTimePerLength,     ///< s/m
   kAngle,             ///< rad
-  kTemperature,       ///< K; the only one whose units have different zeros
+  kTemperature,       ///< degC; the only one whose units have different zeros
 };
 inline constexpr Dimension kLastDimension = Dimension::kTemperature;
 

@@ -19,18 +19,15 @@ constexpr bool may_be_in_key(char c) noexcept {
   return is_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
 }
 
-constexpr double kZeroCelsius_K = 273.15;
-
 constexpr std::array<KnownFact, 5> kKnownFacts{{
     // From the coldest to the hottest climate chamber.
-    {"temperature", "temperature of the air", "degC", base::Dimension::kTemperature, kZeroCelsius_K, -80.0,
-     200.0, "23 degC"},
-    {"humidity", "relative humidity of the air", "1", base::Dimension::kDimensionless, 0.0, 0.0, 1.0, "50 %"},
+    {"temperature", "temperature of the air", "degC", base::Dimension::kTemperature, -80.0, 200.0, "23 degC"},
+    {"humidity", "relative humidity of the air", "1", base::Dimension::kDimensionless, 0.0, 1.0, "50 %"},
     {.key = "conditioning", .long_name = {}, .unit = {}, .example = {}},
     // Up to a week.
-    {"contact_time", "time at rest under the sled before the pull", "s", base::Dimension::kTime, 0.0, 0.0,
+    {"contact_time", "time at rest under the sled before the pull", "s", base::Dimension::kTime, 0.0,
      604'800.0, "5 s"},
-    {.key = "lot", .long_name = {}, .unit = {}, .example = {}},
+    {.key = kLot, .long_name = {}, .unit = {}, .example = {}},
 }};
 
 const KnownFact* known(std::string_view key) noexcept {
@@ -56,12 +53,25 @@ std::string metadata_refusal(std::string_view key, std::string_view value) {
 
 std::span<const KnownFact> known_facts() noexcept { return kKnownFacts; }
 
-std::optional<double> fact_number(std::string_view key, std::string_view value) {
+base::Result<double> fact_number(std::string_view key, std::string_view value) {
   const KnownFact* const fact = known(key);
-  if (fact == nullptr || fact->unit.empty()) return std::nullopt;
-  const auto parsed = base::parse_quantity(value, fact->dimension);
-  if (!parsed) return std::nullopt;
-  return *parsed - fact->zero;
+  if (fact == nullptr || fact->unit.empty()) return base::usage_error("{}: has no number", key);
+  const auto number = base::parse_quantity(value, fact->dimension);
+  if (!number) return base::usage_error("{}: {}", key, number.error().message);
+  if (!(*number >= fact->lowest && *number <= fact->highest)) {
+    const bool is_ratio = fact->unit == "1";
+    return base::usage_error("{}: \"{}\" is not within {} … {}{}{}; write it like \"{}\"", key,
+                             base::one_line(value), fact->lowest, fact->highest, is_ratio ? "" : " ",
+                             is_ratio ? "" : fact->unit, fact->example);
+  }
+  return *number;
+}
+
+std::string why_no_number(std::string_view key, std::string_view value) {
+  const KnownFact* const fact = known(key);
+  if (fact == nullptr || fact->unit.empty()) return {};
+  const auto number = fact_number(key, value);
+  return number ? std::string{} : number.error().message;
 }
 
 base::Result<void> set_fact(Metadata& metadata, std::string_view key, std::string_view value) {
@@ -69,17 +79,8 @@ base::Result<void> set_fact(Metadata& metadata, std::string_view key, std::strin
     if (const auto there = metadata.find(key); there != metadata.end()) metadata.erase(there);
     return {};
   }
-  if (const std::string refusal = metadata_refusal(key, value); !refusal.empty())
-    return base::usage_error("{}", refusal);
-  if (const KnownFact* const fact = known(key); fact != nullptr && !fact->unit.empty()) {
-    const auto parsed = base::parse_quantity(value, fact->dimension);
-    if (!parsed)
-      return base::usage_error("{}: {}; write it like \"{}\"", key, parsed.error().message, fact->example);
-    if (const double number = *parsed - fact->zero; !(number >= fact->lowest && number <= fact->highest)) {
-      return base::usage_error("{}: \"{}\" is not within {} … {}{}{}; write it like \"{}\"", key, value,
-                               fact->lowest, fact->highest, fact->unit == "1" ? "" : " ",
-                               fact->unit == "1" ? "" : fact->unit, fact->example);
-    }
+  for (const std::string& refusal : {metadata_refusal(key, value), why_no_number(key, value)}) {
+    if (!refusal.empty()) return base::usage_error("{}", refusal);
   }
   if (!metadata.contains(key) && metadata.size() >= kMostMetadata) {
     return base::usage_error("{} would be key {}, at most {} are allowed: leave out some", key,
@@ -87,6 +88,13 @@ base::Result<void> set_fact(Metadata& metadata, std::string_view key, std::strin
   }
   metadata.insert_or_assign(std::string{key}, std::string{value});
   return {};
+}
+
+Metadata merged(const Metadata& below, Metadata above) {
+  for (const auto& [key, value] : below) {
+    if (above.size() < kMostMetadata) above.emplace(key, value);
+  }
+  return above;
 }
 
 base::Result<std::pair<std::string, std::string>> split_fact(std::string_view pair) {
@@ -101,19 +109,9 @@ base::Result<std::pair<std::string, std::string>> split_fact(std::string_view pa
   return std::pair{trimmed(pair.substr(0, mark)), trimmed(pair.substr(mark + 1))};
 }
 
-Metadata merged(const Metadata& below, Metadata above) {
-  for (const auto& [key, value] : below) {
-    if (above.size() < kMostMetadata) above.emplace(key, value);
-  }
-  return above;
-}
-
 base::Result<void> add_metadata(Metadata& metadata, std::string_view pair, std::string_view place) {
-  const auto placed = [place](const base::Error& error) {
-    return base::usage_error("{}: {}", place, error.message);
-  };
   const auto fact = split_fact(pair);
-  if (!fact) return placed(fact.error());
+  if (!fact) return base::usage_error("{}: {}", place, fact.error().message);
   const auto& [key, value] = *fact;
   if (const std::string refusal = metadata_refusal(key, value); !refusal.empty())
     return base::usage_error("{}: {}", place, refusal);
@@ -121,7 +119,11 @@ base::Result<void> add_metadata(Metadata& metadata, std::string_view pair, std::
     return base::usage_error("{}: {} is \"{}\" already, and \"{}\" comes too: leave out one of them", place,
                              key, base::one_line(there->second), base::one_line(value));
   }
-  if (auto set = set_fact(metadata, key, value); !set) return placed(set.error());
+  if (metadata.size() >= kMostMetadata) {
+    return base::usage_error("{}: {} would be key {}, at most {} are allowed: leave out some", place, key,
+                             metadata.size() + 1, kMostMetadata);
+  }
+  metadata.emplace(key, value);
   return {};
 }
 

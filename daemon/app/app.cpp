@@ -257,8 +257,10 @@ base::Result<void> App::open_session() {
   sled_mass_kg_ = settings.processor.analysis.tester.sled_mass_kg;
   watcher_.use(truth_.get(), settings.processor.analysis.skipped.first_slip);
   live_.feed().use(settings.processor.analysis.scan_rate_Hz, config_.clock_speed);
-  storage_.use(runtime::record_header(config_, settings, session_->board_info(), realtime_facts()),
-               truth_.get(), std::move(remarks));
+  record::RecordHeader header =
+      runtime::record_header(config_, settings, session_->board_info(), realtime_facts());
+  header.sample.metadata = commands_.next_facts();
+  storage_.use(std::move(header), truth_.get(), std::move(remarks));
   session_->start_processing();
   return {};
 }

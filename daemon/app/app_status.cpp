@@ -151,7 +151,7 @@ daemon::Status App::status() const {
   status.finding_counts = tests_.finding_counts();
   status.page = page_;
   if (fleet_) status.fleet = fleet_->state();
-  status.facts = record::merged(config_.sample.metadata, config_.told_facts);
+  status.facts = commands_.next_facts();
   status.live_client_count = static_cast<std::int64_t>(live_.hub().client_count());
   status.live_dropped_count = live_.hub().dropped_count() + live_.lost_count();
   return status;

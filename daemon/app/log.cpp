@@ -198,6 +198,13 @@ class Log final : public daemon::EventReceiver {
           .event = "facts-refused",
           .message = fmt::format("fleet: {}: {}", topic, why)});
   }
+  void facts_expired(std::string_view topic, std::string_view keys, double valid_s) override {
+    tell({.level = io::LogLevel::kWarning,
+          .event = "facts-expired",
+          .message = fmt::format("fleet: {}: no message for {:.6g} s about {}: tests have the plan's facts; "
+                                 "does the client that told them run?",
+                                 topic, valid_s, keys)});
+  }
   void hanging(std::string_view parts) override {
     if (parts.empty()) {
       tell({.level = io::LogLevel::kWarning,

@@ -136,9 +136,11 @@ void BatchLeader::lead() {
   // Without a batch before and now, the function has returned: the user's plan stays.
   daemon::Plan plan = parts_.plan();
   if (batch != nullptr) {
-    // A batch states facts of its own at its start; later ones are the user's.
-    const record::Metadata facts = std::exchange(plan.sample, batch->plan.sample).metadata;
-    plan.sample.metadata = id == led_batch_ ? facts : record::merged(facts, batch->plan.sample.metadata);
+    // What a batch states holds for all its tests; the other facts are the user's, but for the lot of the
+    // sample before.
+    record::Metadata facts = std::exchange(plan.sample, batch->plan.sample).metadata;
+    if (id != led_batch_) facts.erase(std::string{record::kLot});
+    plan.sample.metadata = record::merged(facts, batch->plan.sample.metadata);
   }
   plan.sample.batch = step ? id : "";
   plan.sample.replicate = step ? std::optional{step->replicate} : std::nullopt;

@@ -270,23 +270,35 @@ class Api {
     answer(held_by(*lease_.holder(now)));
   }
 
+  /// While a batch plans the tests, only facts that it does not state may change. Makes `plan` that of the
+  /// next test with these facts. \return why not; empty: it may be set.
+  [[nodiscard]] std::string why_batch_refuses(daemon::Plan& plan) {
+    const auto progress = batches_.progress();
+    if (!progress || !progress->next) return {};
+    daemon::Plan next = bench_.plan();
+    next.sample.metadata = plan.sample.metadata;
+    plan.sample.replicate = next.sample.replicate;  // It rises as tests begin.
+    const record::Metadata& stated = batches_.book().current()->plan.sample.metadata;
+    const bool may = daemon::plan_json(next) == daemon::plan_json(plan) &&
+                     record::merged(plan.sample.metadata, stated) == plan.sample.metadata;
+    plan = std::move(next);
+    return may ? std::string{}
+               : fmt::format(
+                     "batch {} ({}) states all but some facts of its tests: end it first (stickslip batch "
+                     "end, "
+                     "DELETE /v1/batch)",
+                     progress->id, progress->name);
+  }
+
   void set_plan(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
     const auto body = object_of(request.body, {});
     if (!body) return answer(daemon::refusal(400, body.error().message));
     daemon::Warnings warnings;
     base::Result<daemon::Plan> plan = daemon::plan_of(*body, &warnings);
     if (!plan) return answer(daemon::refusal(400, plan.error().message));
-    if (const auto progress = batches_.progress(); progress && progress->next) {
-      daemon::Plan other_facts = bench_.plan();
-      other_facts.sample.metadata = plan->sample.metadata;
-      if (daemon::plan_json(other_facts) != daemon::plan_json(*plan)) {
-        return answer(daemon::refusal(
-            409, fmt::format(
-                     "batch {} ({}) plans the tests, only facts may change; DELETE /v1/batch ends the batch",
-                     progress->id, progress->name)));
-      }
-      *plan = std::move(other_facts);
-    }
+    if (!body->contains("facts")) plan->sample.metadata = bench_.plan().sample.metadata;
+    if (const std::string why = why_batch_refuses(*plan); !why.empty())
+      return answer(daemon::refusal(409, why));
     if (!take(request, Lease::kCommand_s, answer)) return;
     bench_.set_plan(*std::move(plan));
     warned(answer, warnings)(daemon::reply_of(daemon::plan_json(bench_.plan())));

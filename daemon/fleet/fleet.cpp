@@ -10,7 +10,6 @@
 
 #include "daemon/fleet/backlog.hpp"
 #include "daemon/fleet/messages.hpp"
-#include "daemon/types/plan_json.hpp"
 
 namespace stickslip::fleet {
 namespace {
@@ -28,7 +27,16 @@ std::vector<std::filesystem::path> untold_records(Outbox& outbox, const io::Flee
 }  // namespace
 
 Fleet::Fleet(boost::asio::io_context& io, const io::FleetSettings& settings, Parts parts)
-    : io_(io), timer_(io), settings_(settings), parts_(std::move(parts)), facts_timer_(io), publisher_([&] {
+    : io_(io),
+      timer_(io),
+      settings_(settings),
+      parts_(std::move(parts)),
+      told_facts_([&]() -> std::unique_ptr<ToldFacts> {
+        if (!settings.facts_valid_s) return nullptr;
+        return std::make_unique<ToldFacts>(io, settings.topic_of("facts"), *settings.facts_valid_s,
+                                           parts_.set_facts, parts_.events);
+      }()),
+      publisher_([&] {
         Outbox outbox{settings.outbox, settings.outbox_results};
         auto untold = untold_records(outbox, settings, parts_.record_folder, parts_.wall);
         return FleetPublisher{settings, std::move(outbox), world(std::move(untold))};
@@ -49,40 +57,11 @@ FleetPublisher::World Fleet::world(std::vector<std::filesystem::path> untold) {
             return std::nullopt;
           },
           .changed = [this](const daemon::FleetState& state) { link_changed(state); },
-          .facts = settings_.facts_valid_s ? std::function<void(std::string)>{[this](std::string payload) {
-            boost::asio::post(io_, [this, payload = std::move(payload)] { take_facts(payload); });
+          .facts = told_facts_ ? std::function<void(std::string)>{[this](std::string payload) {
+            told_facts_->tell(std::move(payload));
           }}
-                                           : nullptr,
-          .no_facts =
-              [this](const std::string& why) {
-                boost::asio::post(io_, [this, why] {
-                  refuse_facts(fmt::format("the broker refuses to tell it: {}; allow {} to read it", why,
-                                           settings_.user.empty() ? settings_.tester : settings_.user));
-                });
-              }};
-}
-
-void Fleet::take_facts(const std::string& payload) {
-  base::Result<record::Metadata> told = daemon::facts_in(payload);
-  if (!told) return refuse_facts(told.error().message);
-  facts_refusal_.clear();
-  facts_ = record::merged(facts_, *std::move(told));
-  parts_.set_facts(facts_);
-  facts_timer_.expires_after(std::chrono::duration_cast<std::chrono::milliseconds>(
-      std::chrono::duration<double>(*settings_.facts_valid_s)));
-  facts_timer_.async_wait([this](boost::system::error_code error) {
-    if (error) return;
-    facts_.clear();
-    parts_.set_facts({});
-    refuse_facts(fmt::format("nothing was told for {:.6g} s, so the tests to come have no facts of it",
-                             *settings_.facts_valid_s));
-  });
-}
-
-void Fleet::refuse_facts(const std::string& why) {
-  if (why == facts_refusal_) return;
-  facts_refusal_ = why;
-  parts_.events.facts_refused(settings_.topic_of("facts"), why);
+                               : nullptr,
+          .no_facts = [this](const std::string& why) { told_facts_->not_subscribed(why); }};
 }
 
 void Fleet::test_recorded(const record::RecordHeader& header, const record::EndRecord& end,
@@ -129,7 +108,7 @@ void Fleet::tick() {
 
 void Fleet::stop() {
   timer_.cancel();
-  facts_timer_.cancel();
+  if (told_facts_) told_facts_->stop();
   publisher_.stop(state_message(settings_.tester, parts_.status(), parts_.wall.realtime_ns(), "stopped"));
 }
 

@@ -1,11 +1,13 @@
 /// \file
-/// Connects the daemon to an MQTT broker and sends it state, health and results of tests (docs/fleet.md).
+/// Connects the daemon to an MQTT broker: sends it state, health and results of tests, and takes facts of
+/// tests from it (docs/fleet.md).
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>  // Boost 1.74 on GCC 12 needs it before Asio.
 #include <vector>
@@ -17,6 +19,7 @@
 #include "core/pipeline/sink.hpp"
 #include "core/record/record.hpp"
 #include "daemon/fleet/publisher.hpp"
+#include "daemon/fleet/told_facts.hpp"
 #include "daemon/types/event_receiver.hpp"
 #include "daemon/types/status.hpp"
 
@@ -31,9 +34,8 @@ class Fleet final : public pipeline::Sink {
     const base::Clock& wall;
     daemon::EventReceiver& events;
     std::filesystem::path record_folder;
-    std::string program;  ///< Path of stickslipd, for backlog.hpp.
-    /// Takes the facts that the broker's clients have told for the tests to come; empty: they are too old.
-    std::function<void(record::Metadata)> set_facts;
+    std::string program;           ///< Path of stickslipd, for backlog.hpp.
+    ToldFacts::Changed set_facts;  ///< Takes facts of the tests to come.
   };
   /// Starts the publisher's thread. Call it after recovery and before a test can end.
   Fleet(boost::asio::io_context& io, const io::FleetSettings& settings, Parts parts);
@@ -53,8 +55,6 @@ class Fleet final : public pipeline::Sink {
   [[nodiscard]] FleetPublisher::World world(std::vector<std::filesystem::path> untold);
   void link_changed(const daemon::FleetState& state);
   void tick();
-  void take_facts(const std::string& payload);
-  void refuse_facts(const std::string& why);
 
   boost::asio::io_context& io_;
   boost::asio::steady_timer timer_;
@@ -64,9 +64,7 @@ class Fleet final : public pipeline::Sink {
   std::atomic<bool> on_the_way_{false};  ///< A call of state_changed() is posted.
   bool was_connected_ = false;           ///< Publisher's thread, with the next one.
   std::string why_told_;
-  boost::asio::steady_timer facts_timer_;  ///< Runs while told facts hold.
-  record::Metadata facts_;
-  std::string facts_refusal_;  ///< The latest that was reported.
+  std::unique_ptr<ToldFacts> told_facts_;  ///< Null: the topic "facts" is not read.
   FleetPublisher publisher_;
 };
 

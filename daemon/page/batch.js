@@ -145,8 +145,6 @@ const Batch = (() => {
   return {
     /// \param asking  (method, path, body) → JSON. \param saying  (text, good). \param changing  what else shows tests.
     connect(asking, saying, changing) { ask = asking; say = saying; changed = changing; },
-    /// Whether a batch plans the next test.
-    leads: () => shown != null && shown.next != null,
     /// Reads the batch again where it has changed.
     async health(status) {
       const now = JSON.stringify(status.batch);

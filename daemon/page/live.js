@@ -66,7 +66,7 @@
     Answer.tests(tests, summary);
     Trace.tests(tests, summary.batch == null ? null : Batch.place);
     Tables.tests(tests, summary, made, (path, name) => attempt(() => download(path, name)), Batch.voidCell, Batch.place);
-    planned(await ask("GET", "/v1/plan"));  // A batch and others change it, too.
+    fillPlan(await ask("GET", "/v1/plan"));  // A batch and others change it, too.
   }
   async function command(verb, body) {
     await attempt(async () => {
@@ -102,37 +102,44 @@
   const plan = document.getElementById("plan");
   const planned = values =>
     text("planned", [values.name, values.pull_speed == null ? null : Tables.speed(values.pull_speed), values.operator].filter(said => said != null).join(", "));
-  function fillPlan(values) {
+  const planFields = () => plan.querySelectorAll("input, textarea");
+  const otherFacts = facts => Object.entries(facts).filter(([key]) => !plan.elements[`fact.${key}`]).map(fact => fact.join("=")).join("\n");
+  /// Fields that somebody has changed since they were filled keep what was typed.
+  function fillPlan(values, all) {
     planned(values);
-    const facts = {...values.facts};
-    for (const field of plan.querySelectorAll("input")) {
-      const [group, key] = field.name.split(".");
-      const value = key ? facts[key] : values[field.name];
-      if (key) delete facts[key];
-      field.value = group === "facts" ? Object.entries(facts).map(fact => fact.join("=")).join("; ")
-        : value == null ? "" : field.name === "pull_speed" ? Tables.speed(value) : value;
+    for (const field of planFields()) {
+      if (!all && field.value !== field.dataset.filled) continue;
+      const value = field.name === "facts" ? otherFacts(values.facts) : field.name.startsWith("fact.") ? values.facts[field.name.slice("fact.".length)] : values[field.name];
+      field.value = value == null ? "" : field.name === "pull_speed" ? Tables.speed(value) : value;
+      field.dataset.filled = field.value;
     }
   }
-  /// {temperature: "23 degC", …}; those without a field of their own stand in one, between semicolons.
-  function statedFacts() {
-    const facts = {};
-    for (const other of plan.elements.facts.value.split(";").filter(other => other.trim() !== "")) {
-      const [key, ...value] = other.split("=");
-      facts[key.trim()] = value.join("=").trim();
+  /// The plan as it is now, with the fields that were changed.
+  async function changedPlan() {
+    const {pull_speed: pull_speed_m_per_s, ...values} = await ask("GET", "/v1/plan");
+    values.pull_speed_m_per_s = pull_speed_m_per_s;
+    for (const field of [...planFields()].filter(field => field.value !== field.dataset.filled)) {
+      const typed = field.value.trim();
+      if (field.name === "facts") {
+        for (const key of Object.keys(values.facts)) if (!plan.elements[`fact.${key}`]) values.facts[key] = null;
+        for (const line of typed.split("\n").filter(line => line.trim() !== "")) {
+          const [key, ...value] = line.split("=");
+          if (value.length === 0) throw new Error(`other facts: "${line}" has no "=": write KEY=VALUE`);
+          values.facts[key.trim()] = value.join("=").trim();
+        }
+      } else if (field.name.startsWith("fact.")) values.facts[field.name.slice("fact.".length)] = typed === "" ? null : typed;
+      else {
+        if (field.name === "pull_speed") delete values.pull_speed_m_per_s;
+        values[field.name] = typed === "" ? null : field.type === "number" ? Number(typed) : typed;
+      }
     }
-    for (const field of plan.querySelectorAll("[name^='fact.']")) if (field.value.trim() !== "") facts[field.name.slice("fact.".length)] = field.value.trim();
-    return facts;
+    return values;
   }
   plan.addEventListener("submit", event => {
     event.preventDefault();
-    const values = {facts: statedFacts()};
-    for (const field of plan.querySelectorAll("input:not([name^='fact'])")) if (field.value !== "") values[field.name] = field.type === "number" ? Number(field.value) : field.value;
     attempt(async () => {
-      // A batch plans all but the facts.
-      const leading = Batch.leads();
-      const {pull_speed: pull_speed_m_per_s, ...now} = leading ? await ask("GET", "/v1/plan") : {};
-      fillPlan(await ask("PUT", "/v1/plan", leading ? {...now, pull_speed_m_per_s, facts: values.facts} : values));
-      say(leading ? "the facts hold for tests that begin from now on; the rest is the batch's" : "the plan holds for tests that begin from now on", true);
+      fillPlan(await ask("PUT", "/v1/plan", await changedPlan()), true);
+      say("the plan holds for tests that begin from now on", true);
     });
   });
 
@@ -183,7 +190,7 @@
       const status = await ask("GET", "/v1/status");
       Tables.health(status);
       Answer.health(status);
-      fillPlan(await ask("GET", "/v1/plan"));
+      fillPlan(await ask("GET", "/v1/plan"), true);
       await Lease.back(status);
       await refresh();
       await Batch.health(status);

@@ -69,27 +69,34 @@ daemon::Plan CommandService::plan() const {
 
 void CommandService::set_plan(daemon::Plan plan) {
   parts_.config.sample = plan.sample;
+  // A speed that nobody planned is known from the scene or the replayed record.
+  const bool new_speed = parts_.config.bench.pull_speed_m_per_s != plan.pull_speed_m_per_s;
   parts_.config.bench.pull_speed_m_per_s = plan.pull_speed_m_per_s;
   parts_.config.method = plan.method.value_or(configured_method_);
   Session* const session = parts_.session();
   if (session == nullptr) return;
-  plan.sample.metadata = record::merged(plan.sample.metadata, parts_.config.told_facts);
+  plan.sample.metadata = next_facts();
   // A session that is over takes it from the configuration.
-  static_cast<void>(session->post([&storage = parts_.storage, plan = std::move(plan),
+  static_cast<void>(session->post([&storage = parts_.storage, plan = std::move(plan), new_speed,
                                    method = parts_.config.method](pipeline::Processor& processor) {
-    processor.plan_pull_speed(plan.pull_speed_m_per_s);
+    if (new_speed) processor.plan_pull_speed(plan.pull_speed_m_per_s);
     processor.plan_method(method);
     storage.amend([&](record::RecordHeader& header) {
       header.sample = plan.sample;
-      header.tester.pull_speed_m_per_s = plan.pull_speed_m_per_s;
+      if (new_speed) header.tester.pull_speed_m_per_s = plan.pull_speed_m_per_s;
       header.process.method = record::method_text(method);
     });
   }));
 }
 
 void CommandService::set_told_facts(record::Metadata facts) {
-  parts_.config.told_facts = std::move(facts);
-  set_plan(plan());
+  told_facts_ = std::move(facts);
+  Session* const session = parts_.session();
+  if (session == nullptr) return;
+  static_cast<void>(
+      session->post([&storage = parts_.storage, next = next_facts()](pipeline::Processor& /*processor*/) {
+        storage.amend([&next](record::RecordHeader& header) { header.sample.metadata = next; });
+      }));
 }
 
 std::optional<std::string> CommandService::refused_now(daemon::Command::Kind kind) const {

@@ -35,8 +35,12 @@ class CommandService final : public daemon::Bench {
   [[nodiscard]] std::vector<daemon::TestSummary> tests() const override { return parts_.tests.tests(); }
   [[nodiscard]] daemon::Plan plan() const override;
   void set_plan(daemon::Plan plan) override;
-  /// Facts of tests that begin later; they replace those of the plan. Empty: none are known.
+  /// Facts of tests that begin later, told by the broker; they replace those of the plan.
   void set_told_facts(record::Metadata facts);
+  /// Facts of the next test, by plan and broker.
+  [[nodiscard]] record::Metadata next_facts() const {
+    return record::merged(parts_.config.sample.metadata, told_facts_);
+  }
   void command(daemon::Command command, std::function<void(const daemon::Outcome&)> answer) override;
   [[nodiscard]] daemon::Calibrator& calibrator() override { return parts_.calibrations; }
   [[nodiscard]] daemon::Batches& batches() override { return *parts_.batches; }
@@ -49,6 +53,7 @@ class CommandService final : public daemon::Bench {
 
   Parts parts_;
   model::Method configured_method_;
+  record::Metadata told_facts_;
 };
 
 /// Carries out a command between two blocks. Processing thread.

@@ -87,7 +87,6 @@ record::RecordHeader record_header(const io::DaemonConfig& config, const Session
   }
   if (header.load_cell) header.calibration = settings.calibration;
   header.sample = config.sample;
-  header.sample.metadata = record::merged(config.sample.metadata, config.told_facts);
   const pipeline::SegmenterSettings& segmenter = settings.processor.segmenter;
   header.plan = {segmenter.start_coefficient, segmenter.start_dwell_s,  segmenter.pre_trigger_s,
                  segmenter.end_coefficient,   segmenter.unload_dwell_s, segmenter.no_motion_dwell_s};

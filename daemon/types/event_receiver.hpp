@@ -69,9 +69,11 @@ class EventReceiver {
   virtual void folder_unread(const std::filesystem::path& /*folder*/, std::string_view /*why*/) {}
   /// A journal without a scan was removed.
   virtual void orphan_empty(const std::filesystem::path& /*journal*/) {}
-  /// The connection to the broker was made or lost, or fails for another reason than before.
-  /// Facts that a client of the broker told are not used, or too old. \param why  with the remedy.
+  /// Facts that a client of the broker told are not used. \param why  with the remedy.
   virtual void facts_refused(std::string_view /*topic*/, std::string_view /*why*/) {}
+  /// \param keys  of facts that no client has told for `valid_s`; they are forgotten.
+  virtual void facts_expired(std::string_view /*topic*/, std::string_view /*keys*/, double /*valid_s*/) {}
+  /// The connection to the broker was made or lost, or fails for another reason than before.
   virtual void fleet_changed(const FleetState& /*state*/) {}
   virtual void control_listening(std::string_view /*socket*/) {}
   /// Threads of the daemon hang, so that the service manager will restart it. \param parts  their names,

@@ -33,16 +33,20 @@ constexpr const char* kReplicate = "replicate";
 constexpr const char* kSpeed = "pull_speed";
 constexpr const char* kFacts = "facts";
 
-/// {"temperature": "23 degC", "lot": "4711"}; null removes a key.
-base::Result<record::Metadata> facts_of(const Json& json) {
+/// {"temperature": "23 degC", "lot": null}; an empty text stands for null.
+base::Result<std::map<std::string, std::string>> facts_of(const Json& json) {
   if (!json.is_object()) return base::usage_error("{}: must be an object of texts", kFacts);
-  record::Metadata facts;
+  std::map<std::string, std::string> facts;
   for (const auto& [key, value] : json.items()) {
-    if (!value.is_string() && !value.is_null())
+    if (!value.is_string() && !value.is_null()) {
       return base::usage_error("{}: {}: must be text, with its unit if it has one", kFacts,
                                base::one_line(key));
-    if (const auto set = record::set_fact(facts, key, value.is_null() ? "" : value.get<std::string>()); !set)
+    }
+    record::Metadata checked;
+    std::string text = value.is_null() ? std::string{} : value.get<std::string>();
+    if (const auto set = record::set_fact(checked, key, text); !set)
       return base::usage_error("{}: {}", kFacts, set.error().message);
+    facts.emplace(key, std::move(text));
   }
   return facts;
 }
@@ -55,9 +59,7 @@ base::Result<void> check_pull_speed(std::string_view key, double speed_m_per_s) 
                            model::kFastestPull_m_per_s);
 }
 
-base::Result<record::Metadata> facts_in(std::string_view text) {
-  constexpr std::size_t kLongest = 65'536;
-  if (text.size() > kLongest) return base::usage_error("{} bytes, at most {}", text.size(), kLongest);
+base::Result<std::map<std::string, std::string>> facts_in(std::string_view text) {
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) return base::usage_error("must be JSON, such as {{\"temperature\": \"23 degC\"}}");
   return facts_of(json);
@@ -101,9 +103,12 @@ base::Result<Plan> plan_of(const Json& json, Warnings* warnings) {
         return tl::unexpected(checked.error());
       plan.pull_speed_m_per_s = *speed;
     } else if (key == kFacts) {
-      auto facts = facts_of(value);
+      const auto facts = facts_of(value);
       if (!facts) return tl::unexpected(facts.error());
-      plan.sample.metadata = *std::move(facts);
+      for (const auto& [fact, stated] : *facts) {
+        if (const auto set = record::set_fact(plan.sample.metadata, fact, stated); !set)
+          return base::usage_error("{}: {}", kFacts, set.error().message);
+      }
     } else {
       return base::usage_error(
           "\"{}\": there is no such key; there are name, grade, direction, side, operator, replicate, "

@@ -2,6 +2,7 @@
 /// The plan as JSON, with the names of the record.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -19,8 +20,9 @@ namespace stickslip::daemon {
 /// (kUsage) name the key.
 [[nodiscard]] base::Result<Plan> plan_of(const nlohmann::ordered_json& json, Warnings* warnings = nullptr);
 
-/// Reads facts told as JSON text: {"temperature": "23 degC", "lot": "4711"}. Errors (kUsage) name the key.
-[[nodiscard]] base::Result<record::Metadata> facts_in(std::string_view text);
+/// Reads facts told as JSON text: {"temperature": "23 degC", "lot": null}; an empty text stands for null,
+/// which removes a fact. Errors (kUsage) name the key.
+[[nodiscard]] base::Result<std::map<std::string, std::string>> facts_in(std::string_view text);
 
 /// Checks that a pull speed is above 0 and at most kFastestPull_m_per_s. \param key  named in the error.
 /// Errors: kUsage.

@@ -189,7 +189,7 @@ base::Result<Condition> has_fact(const std::string& text, const std::string& pla
                                value.error().message, key, number->example);
     }
     range.sql += fmt::format(" AND {} {} ?", column, compare);
-    range.values.emplace_back(*value - number->zero);
+    range.values.emplace_back(*value);
   }
   return range;
 }

@@ -384,7 +384,6 @@ class Importer {
     header.tester = request_.tester;
     header.sample = request_.sample;
     header.process = request_.process;
-    header.sample.metadata = request_.metadata;
     header.start_realtime_ns = start_ns_;
     const daq::Calibration calibration{header.board, load_cell_.value_or(daq::LoadCell{}),
                                        header.tester.tester().normal_load_N()};
@@ -486,7 +485,7 @@ Result<Imported> import_own(const ImportRequest& request, const Source& source) 
   if (!test) return tl::unexpected(test.error());
   record::RecordHeader& header = test->record.header;
   record::Metadata& metadata = header.sample.metadata;
-  for (const auto& [key, value] : request.metadata) {
+  for (const auto& [key, value] : request.sample.metadata) {
     if (const auto added = record::add_metadata(metadata, fmt::format("{}={}", key, value), "--set-meta");
         !added)
       return tl::unexpected(added.error());

@@ -36,7 +36,6 @@ struct ImportRequest {
   std::optional<CountScale> counts;        ///< For counts.
   record::SampleFacts sample;
   record::ProcessFacts process;
-  record::Metadata metadata;
   std::function<void(double)> progress{};  ///< As Source::progress.
   /// Folder of the scratch files for a trace that is longer than memory, as of base::LongColumn; empty: all
   /// in memory.

@@ -479,15 +479,22 @@ class LivePage(unittest.TestCase):
         self.assertFalse(page.value("document.querySelector('#plan').checkVisibility()"))
         page.value("document.querySelector('#more > summary').focus()")
         page.press("Enter")
-        for name, typed in (("name", "liner 42"), ("operator", "Ada"), ("replicate", "3"), ("pull_speed", "12 in/min"), ("fact.temperature", "23 degC"),
-                            ("facts", "room=lab 2; door = a=b")):
+        for name, typed in (("name", "liner 42"), ("operator", "Ada"), ("replicate", "3"), ("pull_speed", "12 in/min"), ("facts", "room=lab 2"),
+                            ("fact.temperature", "23 degC")):
             page.value(f"document.querySelector('#plan [name=\"{name}\"]').focus()")
             page.type(typed)
         page.press("Enter")
         page.until_said("the plan holds")
         self.assertEqual(daemon.ask("GET", "/v1/plan")[1]["name"], "liner 42")
-        self.assertEqual(daemon.ask("GET", "/v1/plan")[1]["facts"], {"temperature": "23 degC", "room": "lab 2", "door": "a=b"})
-        self.assertEqual(page.value("document.querySelector('#plan [name=facts]').value"), "door=a=b; room=lab 2")
+        self.assertEqual(daemon.ask("GET", "/v1/plan")[1]["facts"], {"temperature": "23 degC", "room": "lab 2"})
+        # Who changes one field leaves what others have set meanwhile.
+        daemon.ask("PUT", "/v1/plan", {**{key: value for key, value in daemon.ask("GET", "/v1/plan")[1].items() if key != "pull_speed"}, "pull_speed": "12 in/min",
+                                       "facts": {"lot": "7", "door": "a=b"}}, who=daemon.ask("GET", "/v1/controller")[1]["controller"])
+        page.value("document.querySelector('#plan [name=\"fact.humidity\"]').focus()")
+        page.type("50 %")
+        page.press("Enter")
+        page.until("document.querySelector('#plan [name=facts]').value === 'door=a=b'")
+        self.assertEqual(daemon.ask("GET", "/v1/plan")[1]["facts"], {"lot": "7", "door": "a=b", "humidity": "50 %"})
         self.assertEqual(page.value("document.getElementById('planned').textContent"), "liner 42, 5.08 mm/s, Ada")
         self.assertEqual(page.value("document.querySelector('#plan [name=pull_speed]').value"), "5.08 mm/s")
         page.until("Scope.data.highest.slice(-50).every(force => force < 0.02)")  # A whole pull is to come.

@@ -101,7 +101,10 @@ inline record::RecordHeader sample_header() {
                     "0f",
                     "recognised: UTF-8",
                     "stickslip import trace.csv"};
-  header.sample.metadata = {{"humidity", "52 %"}, {"room.temperature", "23.1 °C = ok"}};
+  header.sample.metadata = {{"contact_time", "15 s"},
+                            {"humidity", "52 %"},
+                            {"room.temperature", "23.1 °C = ok"},
+                            {"temperature", "23.1 degC"}};
   header.plan = {0.05, 0.01, 0.25, 0.02, 0.25, 0.5, 0.0031};
   daq::SelfCheck& check = header.self_check.emplace();
   check = {990, {2000.0, 2001.0, 1999.0}, 0.02, 1e-3, -2e-4, 3e-4, 0.005, 1e-4, 2e-4, 5e-5, 1, 2, 350.1, 0.02,

@@ -4,6 +4,7 @@
 facts_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
 """
 
+import json
 import pathlib
 import subprocess
 import sys
@@ -32,7 +33,7 @@ class Facts(unittest.TestCase):
             pass
 
     def good(self, *arguments):
-        done = self.daemon.run(*arguments, "--as", "ada")
+        done = self.daemon.run(*arguments, *(() if arguments[0] == "status" else ("--as", "ada")))
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
 
@@ -74,14 +75,31 @@ class Facts(unittest.TestCase):
         record = self.record()
         self.assertEqual(self.stated(record), {"humidity": "52 %", "lot": "2", "room": "lab 2"})
         self.assertEqual(self.numbers(record), {"humidity": (0.52, "1")})
-        # A batch states facts of its own and keeps the others; while it leads, facts alone may change.
-        self.good("batch", "begin", "--name", "liner", "--replicates", "3", "--fact", "lot=3")
-        self.assertEqual(self.stated(self.record()), {"humidity": "52 %", "lot": "3", "room": "lab 2"})
-        self.good("plan", "--fact", "lot=4")
-        self.assertEqual(self.stated(self.record())["lot"], "4")
-        status, said = daemon.ask("PUT", "/v1/plan", {"name": "bag", "facts": {"lot": "5"}})
-        self.assertEqual(status, 409)
-        self.assertIn("only facts may change", said["error"])
+        with h5py.File(record) as file:
+            self.assertGreater(file["entry/instrument/tester/pull_speed"][()], 0.0)  # Of the scene: no plan has said one.
+        # A request without facts leaves them.
+        status, plan = daemon.ask("PUT", "/v1/plan", {"name": "bag"})
+        self.assertEqual((status, plan["name"], plan["facts"]["lot"]), (200, "bag", "2"))
+        # A batch states facts of its own for all its tests, and takes no lot of another sample. Other facts may change while it leads.
+        self.good("batch", "begin", "--name", "liner", "--replicates", "4", "--fact", "shift=3")
+        self.assertEqual(self.stated(self.record()), {"humidity": "52 %", "shift": "3", "room": "lab 2"})
+        self.good("plan", "--fact", "humidity=53 %")
+        self.assertEqual(self.stated(self.record())["humidity"], "53 %")
+        for wanted in ({"facts": {"shift": "5"}}, {"facts": {}}, {"name": "bag"}):
+            plan = daemon.ask("GET", "/v1/plan")[1]
+            del plan["pull_speed"]
+            status, said = daemon.ask("PUT", "/v1/plan", {**plan, **wanted})
+            self.assertEqual(status, 409, wanted)
+            self.assertIn("(liner) states all but some facts of its tests: end it first (stickslip batch end", said["error"])
+        refused = daemon.run("batch", "begin", "--name", "liner", "--fact", "lot=")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("stickslip plan --fact lot=", refused.stderr)
+
+        # After a restart in the batch its facts hold again, and those of the configuration.
+        self.assertEqual(daemon.end()[0], 0)
+        daemon.start()
+        self.assertEqual(daemon.ask("GET", "/v1/status")[1]["facts"], {"temperature": "73.4 degF", "shift": "3"})
+        self.assertRegex(self.good("status"), r"(?m)^next facts +shift 3, temperature 73.4 degF$")
 
         def cli(*arguments):
             return subprocess.run([daemon.cli, *arguments], capture_output=True, text=True, timeout=TIMEOUT_S, check=True, cwd=daemon.folder).stdout
@@ -94,7 +112,7 @@ class Facts(unittest.TestCase):
         config.write_text(config.read_text(encoding="utf-8").replace("73.4 degF", "warm"), encoding="utf-8")
         refused = subprocess.run([BUILD / "bin" / "stickslipd", "--check-config", config], capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
         self.assertEqual(refused.returncode, 2, refused.stdout)
-        self.assertRegex(refused.stderr, 'facts.*temperature: "warm".*write it like "23 degC"')
+        self.assertRegex(refused.stderr, 'facts.*temperature: "warm" does not begin with a decimal number.*degC, K, degF')
 
     @unittest.skipIf(MOSQUITTO is None, "no mosquitto: ./dev deps test")
     def test_that_a_logger_tells_the_broker_replace_those_of_the_plan_until_they_are_old(self):
@@ -107,7 +125,7 @@ class Facts(unittest.TestCase):
                            check=True, timeout=TIMEOUT_S)
 
         # Its age is not known.
-        tell('{"temperature": "99 degC"}', "-r")
+        tell('{"room": "old"}', "-r")
         daemon = self.begin(f'[test]\nbegins = "command"\n[sample]\nfacts = ["temperature=20 degC", "lot=1"]\n[fleet]\nbroker = "mqtt://127.0.0.1:{broker.port}"\n'
                              'tester = "bench-7"\nfacts_valid = "1 h"\n')
         wait_for(self.frames, lambda _: daemon.ask("GET", "/v1/status")[1]["fleet"]["state"] == "connected")
@@ -124,17 +142,33 @@ class Facts(unittest.TestCase):
         self.assertEqual(daemon.ask("GET", "/v1/plan")[1]["facts"], {"temperature": "20 degC", "lot": "1"})
         self.good("plan", "--fact", "lot=2")
         self.told({"temperature": "23.1 degC", "humidity": "51 %", "lot": "2"})
+        with h5py.File(record) as file:
+            self.assertGreater(file["entry/instrument/tester/pull_speed"][()], 0.0)
+        tell('{"humidity": null}')
+        self.told({"temperature": "23.1 degC", "lot": "2"})
+        tell(json.dumps({f"k{k}": "x" for k in range(20)}))
+        self.wait_for_log(daemon, "21 facts, at most 20 are taken: tell fewer")
+        tell("x" * 70_000)
+        self.wait_for_log(daemon, "a message of 70000 bytes; send at most 65536")
+        # The topic is asked for again where the broker has restarted.
+        broker.stop()
+        broker.start()
+        wait_for(self.frames, lambda _: daemon.ask("GET", "/v1/status")[1]["fleet"]["state"] == "connected")
+        tell('{"humidity": "55 %"}')
+        self.told({"temperature": "23.1 degC", "humidity": "55 %", "lot": "2"})
         self.assertEqual(daemon.end()[0], 0)
 
-        old = RunningDaemon(self, BUILD, SOURCE, f'[sample]\nfacts = ["lot=1"]\n[fleet]\nbroker = "mqtt://127.0.0.1:{broker.port}"\ntester = "bench-7"\nfacts_valid = "1 ms"\n',
+        # What is too old is forgotten, in records as well; each fact by its own age.
+        old = RunningDaemon(self, BUILD, SOURCE, f'[sample]\nfacts = ["lot=1"]\n[fleet]\nbroker = "mqtt://127.0.0.1:{broker.port}"\ntester = "bench-7"\nfacts_valid = "1 ms"\n[test]\nbegins = "command"\n',
                             speed=20, times=PATIENT)
-        process, frames = old.watch()
+        process, self.frames = old.watch()
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
-        wait_for(frames, lambda _: old.ask("GET", "/v1/status")[1]["fleet"]["state"] == "connected")
+        wait_for(self.frames, lambda _: old.ask("GET", "/v1/status")[1]["fleet"]["state"] == "connected")
         tell('{"temperature": "23.1 degC"}')
-        self.wait_for_log(old, "nothing was told for 0.001 s")
-        self.assertEqual(old.ask("GET", "/v1/status")[1]["facts"], {"lot": "1"})
+        self.wait_for_log(old, "no message for 0.001 s about temperature: tests have the plan's facts")
+        self.daemon = old
+        self.assertEqual(self.stated(self.record()), {"lot": "1"})
         self.assertEqual(old.end()[0], 0)
 
 

@@ -309,12 +309,14 @@ TEST_F(Catalogue, FindsByPatternsRangesRegimesAndFindings) {
 
 TEST_F(Catalogue, FindsByFactsAsTextsAndAsRanges) {
   record::Record warm = record_of("warm");
+  record::Record silent = record_of("silent");
+  silent.header.sample.metadata.clear();
   warm.header.sample.metadata = {{"temperature", "77 degF"}, {"lot", "47 a%"}, {"room", "lab \"2\""}};
   static_cast<void>(put("a.h5", warm));
   record::Record cold = record_of("cold");
   cold.header.sample.metadata = {{"temperature", "20 degC"}, {"humidity", "dry"}};
   static_cast<void>(put("b.h5", cold));
-  static_cast<void>(put("c.h5", record_of("silent")));
+  static_cast<void>(put("c.h5", silent));
   const auto by = [this](const std::string& fact) { return samples(*has_fact(fact, "--fact")); };
   EXPECT_THAT(by("lot=47*"), ElementsAre("warm"));
   EXPECT_THAT(by("lot=47 a%"), ElementsAre("warm"));

@@ -89,7 +89,8 @@ TEST_F(ControlApi, LeadsABatchWhichPeopleMayNotPlanAgainst) {
   EXPECT_EQ(batch["by"], "ada");
   const HttpReply planned = ask({"PUT", "/v1/plan", R"({"name": "x"})", "ada", ""});
   EXPECT_EQ(planned.status, 409);
-  EXPECT_THAT(error(planned), testing::HasSubstr("(liner) plans the tests; DELETE /v1/batch ends it"));
+  EXPECT_THAT(error(planned),
+              testing::HasSubstr("(liner) states all but some facts of its tests: end it first"));
   EXPECT_EQ(ask({"DELETE", "/v1/batch", "", "ada", ""}).status, 200);
   EXPECT_EQ(ask({"PUT", "/v1/plan", R"({"name": "x"})", "ada", ""}).status, 200);
 }

@@ -53,7 +53,7 @@ TEST(Facts, OfAKnownKeyAreCheckedWhereTheyAreStated) {
   EXPECT_THAT(refusal("temperature", "-81 °C"),
               HasSubstr("not within -80 … 200 degC; write it like \"23 degC\""));
   EXPECT_THAT(refusal("temperature", "23"), HasSubstr("a temperature needs its unit"));
-  EXPECT_THAT(refusal("temperature", "warm"), HasSubstr("write it like \"23 degC\""));
+  EXPECT_THAT(refusal("temperature", "warm"), HasSubstr("write a number and one of: degC, K, degF"));
   EXPECT_EQ(refusal("humidity", "100 %"), "");
   EXPECT_EQ(refusal("humidity", "0.5"), "");
   // A percentage without its sign would be fifty times too large.
@@ -70,10 +70,16 @@ TEST(Facts, OfAKnownKeyAreCheckedWhereTheyAreStated) {
 }
 
 TEST(Facts, HaveANumberInTheUnitOfTheRecord) {
+  EXPECT_EQ(fact_number("temperature", "23.1 degC").value(), 23.1);
   EXPECT_NEAR(fact_number("temperature", "73.4 degF").value(), 23.0, 1e-9);
   EXPECT_DOUBLE_EQ(fact_number("humidity", "52 %").value(), 0.52);
   EXPECT_DOUBLE_EQ(fact_number("contact_time", "2 min").value(), 120.0);
   EXPECT_FALSE(fact_number("humidity", "dry"));
+  // As an older version took it for 52 %.
+  EXPECT_FALSE(fact_number("humidity", "52"));
+  EXPECT_NE(why_no_number("humidity", "52"), "");
+  EXPECT_EQ(why_no_number("humidity", "52 %"), "");
+  EXPECT_EQ(why_no_number("lot", "dry"), "");
   EXPECT_FALSE(fact_number("lot", "4711"));
   EXPECT_FALSE(fact_number("room.temperature", "23 degC"));
 }

@@ -49,9 +49,9 @@ TEST(PlanJson, HoldsFactsAsTextsWithTheirUnits) {
         {R"({"facts": {"a b": "x"}})", "facts: key \"a b\""}}) {
     EXPECT_THAT(plan_of(Json::parse(text)).error().message, HasSubstr(why)) << text;
   }
-  EXPECT_EQ(facts_in(R"({"lot": "4711"})").value(), (record::Metadata{{"lot", "4711"}}));
+  EXPECT_EQ(facts_in(R"({"lot": "4711", "room": null})").value(),
+            (std::map<std::string, std::string>{{"lot", "4711"}, {"room", ""}}));
   EXPECT_THAT(facts_in("23 degC").error().message, HasSubstr("must be JSON"));
-  EXPECT_THAT(facts_in(std::string(70'000, ' ')).error().message, HasSubstr("at most 65536"));
   const auto batch = batch_plan_of(Json::parse(R"({"name": "liner", "facts": {"lot": "4711"}})"));
   ASSERT_TRUE(batch) << batch.error().message;
   EXPECT_EQ(batch->sample.metadata.at("lot"), "4711");

@@ -36,8 +36,8 @@ INSTANTIATE_TEST_SUITE_P(
         Good{"1 %", Dimension::kDimensionless, 0.01}, Good{"0.35", Dimension::kDimensionless, 0.35},
         Good{"9.8 m/s²", Dimension::kAcceleration, 9.8},
         Good{"180 deg", Dimension::kAngle, 3.14159265358979323846},
-        Good{"23 degC", Dimension::kTemperature, 296.15}, Good{"-40 °C", Dimension::kTemperature, 233.15},
-        Good{"-40 °F", Dimension::kTemperature, 233.15}, Good{"296.15 K", Dimension::kTemperature, 296.15},
+        Good{"23.1 degC", Dimension::kTemperature, 23.1}, Good{"-40 °C", Dimension::kTemperature, -40},
+        Good{"-40 °F", Dimension::kTemperature, -40}, Good{"273.15 K", Dimension::kTemperature, 0},
         Good{"2 rad/s", Dimension::kAngularFrequency, 2}, Good{"60 1/min", Dimension::kPerTime, 1}));
 
 struct Bad {
