@@ -4,6 +4,7 @@ extern "C" {  // glibc 2.36 leaves it out.
 #include <sys/pidfd.h>
 }
 
+#include <poll.h>
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -115,6 +116,20 @@ void limit(pid_t child, const ChildLimits& limits) {
   }
 }
 
+/// Waits for the end of a process. \param process  of ChildProcess::ended(); true at once if it is not open.
+bool ends_within(const record::Descriptor& process, std::chrono::milliseconds longest) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point last = Clock::now() + longest;
+  pollfd end{process.get(), POLLIN, 0};
+  while (process.open()) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(last - Clock::now());
+    const int ready = ::poll(&end, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0)));
+    if (ready == 0) return false;
+    if (ready > 0 || errno != EINTR) return true;
+  }
+  return true;
+}
+
 }  // namespace
 
 base::Result<std::optional<ChildProcess>> ChildProcess::start(const std::string& program,
@@ -198,10 +213,17 @@ base::Result<ChildAnswer> ChildProcess::wait() {
 
 base::Result<std::optional<ChildAnswer>> ask_program(const std::string& program,
                                                      std::vector<std::string> arguments,
-                                                     std::string_view input) {
+                                                     std::string_view input,
+                                                     std::optional<std::chrono::milliseconds> longest) {
   auto child = ChildProcess::start(program, std::move(arguments), input);
   if (!child) return tl::unexpected(child.error());
   if (!*child) return std::nullopt;
+  if (longest && !ends_within((*child)->ended(), *longest)) {
+    (*child)->end();
+    if (auto killed = (*child)->wait(); !killed) return tl::unexpected(killed.error());
+    return base::failure("{} did not end within {} s and was killed", program,
+                         std::chrono::duration<double>(*longest).count());
+  }
   auto answer = (*child)->wait();
   if (!answer) return tl::unexpected(answer.error());
   return *std::move(answer);

@@ -65,10 +65,11 @@ class ChildProcess {
 };
 
 /// Starts a program as ChildProcess::start() does and blocks until it ends. \param program  a path, or a name
-/// that is looked for in PATH. \return nothing if there is no such program. Errors: kFailure if it cannot be
-/// started, waited for or read.
-[[nodiscard]] base::Result<std::optional<ChildAnswer>> ask_program(const std::string& program,
-                                                                   std::vector<std::string> arguments,
-                                                                   std::string_view input);
+/// that is looked for in PATH. \param longest  the program is killed after this time; absent: never.
+/// \return nothing if there is no such program. Errors: kFailure if it cannot be started, waited for or read,
+/// or takes too long.
+[[nodiscard]] base::Result<std::optional<ChildAnswer>> ask_program(
+    const std::string& program, std::vector<std::string> arguments, std::string_view input,
+    std::optional<std::chrono::milliseconds> longest = std::nullopt);
 
 }  // namespace stickslip::io

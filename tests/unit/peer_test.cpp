@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -31,6 +32,16 @@ TEST(ChildProcess, TellsHowItEnded) {
   const auto killed = io::ask_program("/bin/sh", {"-c", "kill -9 $$"}, "");
   ASSERT_TRUE(killed && *killed);
   EXPECT_EQ((*killed)->status, 128 + 9);
+}
+
+TEST(ChildProcess, IsKilledAfterTheLongestTime) {
+  // Never ends by itself: it stops.
+  const auto hanging = io::ask_program("/bin/sh", {"-c", "kill -STOP $$"}, "", std::chrono::milliseconds{0});
+  ASSERT_FALSE(hanging);
+  EXPECT_EQ(hanging.error().message, "/bin/sh did not end within 0 s and was killed");
+  const auto quick = io::ask_program("/bin/cat", {"-"}, "in time", std::chrono::minutes{10});
+  ASSERT_TRUE(quick && *quick);
+  EXPECT_EQ((*quick)->output, "in time");
 }
 
 TEST(ChildProcess, MayNotBeThere) {
