@@ -48,6 +48,7 @@ constexpr const char* kExamples = R"(Examples:
   stickslip export pull.h5 --csv > pull.csv            scans for a spreadsheet
   stickslip calibrate --config stickslipd.toml         the load cell, by hanging known weights
   stickslip doctor                                     is everything there that a test needs?
+  stickslip bundle                                     one file for support, without secrets
   stickslip status                                     what the daemon is doing
   stickslip plan --name "liner 42" --replicate 3       what the tests to come are of
   stickslip start; stickslip mark "sheet moved"; stickslip stop
@@ -154,6 +155,7 @@ int main_of(int count, char** arguments) {
   add_verify(app, chosen);
   add_recover(app, chosen);
   add_doctor(app, chosen);
+  add_bundle(app, chosen);
   add_man(app, chosen);
   add_completion(app, chosen);
   add_export(app, chosen);

@@ -6,6 +6,7 @@
 
 #include "cli/ask.hpp"
 #include "cli/json_members.hpp"
+#include "cli/record_json.hpp"
 #include "cli/subcommands.hpp"
 #include "io/findings_text.hpp"
 #include "io/json_text.hpp"
@@ -16,7 +17,6 @@
 
 #include "core/base/text.hpp"
 #include "core/record/finding_json.hpp"
-#include "core/record/iso_time.hpp"
 #include "core/record/read_apart.hpp"
 
 namespace stickslip::cli {
@@ -81,46 +81,19 @@ base::Result<std::string> show_test(const ShowOptions& options) {
          results_text((*test)["results"]);
 }
 
-/// What is known of the sample, and what the user of an import stated.
-Json facts_of(const record::RecordHeader& header) {
-  Json facts = Json::object();
-  const auto put = [&facts](const char* name, const std::string& value) {
-    if (!value.empty()) facts[name] = value;
-  };
-  put("title", header.title);
-  put("uuid", header.uuid);
-  if (header.start_realtime_ns) put("start_time", record::iso_time(*header.start_realtime_ns));
-  put("sample", header.sample.name);
-  put("grade", header.sample.grade);
-  put("direction", header.sample.direction);
-  put("side", header.sample.side);
-  if (header.sample.replicate) facts["replicate"] = *header.sample.replicate;
-  put("operator", header.sample.operator_name);
-  put("method", header.process.method);
-  put("source_file", header.process.source_file);
-  return facts;
-}
-
 base::Result<std::string> show_record(const ShowOptions& options) {
   const base::Result<record::Record> record = record::read_record_apart(options.test);
   if (!record) {
     return tl::unexpected(base::Error{
         record.error().kind, record.error().message + "; a test of the daemon is named by its number"});
   }
-  const record::RecordHeader& header = record->header;
-  const Json facts = facts_of(header);
-  const Json results = io::results_json(record->end->results, true);
-  if (options.json) {
-    return io::json_document(Json{{"file", options.test},
-                                  {"cause", record->end->cause},
-                                  {"facts", facts},
-                                  {"metadata", header.sample.metadata},
-                                  {"results", results}});
-  }
+  const Json json = record_json(options.test, *record);
+  if (options.json) return io::json_document(json);
+  const Json& results = json["results"];
   io::Table known = io::Table::list({0, 0});
-  for (const auto& [name, value] : facts.items())
+  for (const auto& [name, value] : json["facts"].items())
     known.add({"  " + name, value.is_string() ? base::printable(value.get<std::string>()) : value.dump()});
-  for (const auto& [key, value] : header.sample.metadata)
+  for (const auto& [key, value] : record->header.sample.metadata)
     known.add({"  metadata." + base::printable(key), base::printable(value)});
   return fmt::format(
       "{}: {}, ended: {}\n{}{}\n{}{}", base::printable(options.test), word(results, "regime"),

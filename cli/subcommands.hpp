@@ -52,6 +52,7 @@ void add_characterise(CLI::App& app, Chosen& chosen);
 void add_verify(CLI::App& app, Chosen& chosen);
 void add_recover(CLI::App& app, Chosen& chosen);
 void add_doctor(CLI::App& app, Chosen& chosen);
+void add_bundle(CLI::App& app, Chosen& chosen);
 void add_man(CLI::App& app, Chosen& chosen);
 void add_completion(CLI::App& app, Chosen& chosen);
 void add_export(CLI::App& app, Chosen& chosen);

@@ -52,6 +52,7 @@ class HostileNames(unittest.TestCase):
             ["sweep", record, "-o", "s.h5"], ["calibrate", "--points", record, "--folder", NAME], ["doctor", "--config", record],
             ["status", "--socket", NAME], ["list", "--socket", NAME], ["mark", NAME, "--socket", NAME], ["methods", NAME], ["scenes", NAME],
             ["void", record, "--reason", NAME, "--socket", NAME],
+            ["bundle", "--config", record, "-o", f"{NAME}.txt"],
         ]
         succeeded = 0
         for command in commands:
