@@ -36,8 +36,8 @@ bool sounds_secret(const std::string& key) {
 /// Members of JSON that hold what people typed.
 bool is_name(std::string_view member, std::string_view parent) {
   static const std::set<std::string, std::less<>> names{
-      "operator",  "controller", "under_way_by", "by",          "sample",   "grade",
-      "direction", "side",       "source_file",  "certificate", "metadata", "title"};
+      "operator", "controller",  "under_way_by", "by",       "sample",     "grade", "direction",
+      "side",     "source_file", "certificate",  "metadata", "next_facts", "title"};
   return names.contains(member) || (member == "name" && parent != "board");
 }
 

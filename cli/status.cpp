@@ -144,7 +144,7 @@ std::string text_of(const Json& status) {
   findings(lines, status);
   findings(lines, part(part(status, "latest_test"), "results"));
   std::string facts;
-  const Json next_facts = part(status, "facts");
+  const Json next_facts = part(status, "next_facts");
   for (const auto& [key, value] : next_facts.items())
     facts += fmt::format("{}{} {}", facts.empty() ? "" : ", ", key, value.get<std::string>());
   if (!facts.empty()) lines.line("next facts", base::printable(facts));

@@ -172,7 +172,7 @@ const Tables = (() => {
       ["disk", status.storage.why != null ? `${status.storage.why}; ${status.storage.to_do}` : status.storage.room_h == null ? "–" : `${status.storage.room_h.toFixed(0)} h`],
       ["worst read", `${(1000 * latency.largest).toFixed(2)} ms`], ["worst commit", `${(1000 * status.commit_time.largest).toFixed(1)} ms`],
       ["ring", status.ring ? `${(100 * status.ring.high_water_block_count / status.ring.capacity_block_count).toFixed(1)} % at most` : "–"], ["tests", String(status.test_count)],
-      ["facts of the next test", Object.entries(status.facts).map(fact => fact.join(" ")).join(", ") || "–"],
+      ["facts of the next test", Object.entries(status.next_facts).map(fact => fact.join(" ")).join(", ") || "–"],
       ["readers", `${status.live_clients.count}, ${status.live_clients.dropped_frame_count} dropped`]];
     document.getElementById("health").replaceChildren(...terms(facts));
     sled = status.coded_findings.find(finding => finding.code === "sled-mass")?.text ?? null;

@@ -206,7 +206,7 @@ Json status_json(const Status& status) {
                           {"dropped_frame_count", status.live_dropped_count}};
   json["page"] = to_json(status.page);
   json["fleet"] = to_json(status.fleet);
-  json["facts"] = status.facts;
+  json["next_facts"] = status.facts;
   json["test_count"] = status.test_count;
   json["current_test"] = status.current_test ? Json(*status.current_test) : Json(nullptr);
   json["live"] = status.live ? live_json(*status.live) : Json(nullptr);

@@ -125,7 +125,7 @@ class Commands(unittest.TestCase):
         kept = daemon.run("plan", "--side", "wire", "--as", "bob", "--json")
         told = json.loads(kept.stdout)
         self.assertAlmostEqual(told.pop("pull_speed"), 0.00508, delta=1e-17)
-        self.assertEqual(told, {"name": "liner", "grade": None, "direction": None, "side": "wire", "operator": None, "replicate": 2})
+        self.assertEqual(told, {"name": "liner", "grade": None, "direction": None, "side": "wire", "operator": None, "replicate": 2, "facts": {}})
         refused = daemon.run("start", "--as", "ada")
         self.assertEqual(refused.returncode, 1)
         self.assertRegex(refused.stderr, r"^stickslip: refused: bob has the bench for another \d+ s")

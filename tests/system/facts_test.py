@@ -59,7 +59,7 @@ class Facts(unittest.TestCase):
 
     def told(self, facts):
         """Waits until the status says so."""
-        wait_for(self.frames, lambda _: self.daemon.ask("GET", "/v1/status")[1]["facts"] == facts)
+        wait_for(self.frames, lambda _: self.daemon.ask("GET", "/v1/status")[1]["next_facts"] == facts)
 
     def test_of_configuration_plan_and_batch_are_in_the_records_and_found_again(self):
         daemon = self.begin('[test]\nbegins = "command"\n[sample]\nfacts = ["temperature=73.4 degF", "lot = 1"]\n')
@@ -67,7 +67,7 @@ class Facts(unittest.TestCase):
         self.assertEqual(self.stated(record), {"temperature": "73.4 degF", "lot": "1"})
         self.assertEqual(self.numbers(record), {"temperature": (23.0, "degC")})
         self.good("plan", "--name", "liner", "--fact", "lot=2", "--fact", "temperature=", "--fact", "humidity=52 %", "--fact", "room=lab 2")
-        self.assertEqual(daemon.ask("GET", "/v1/status")[1]["facts"], {"humidity": "52 %", "lot": "2", "room": "lab 2"})
+        self.assertEqual(daemon.ask("GET", "/v1/status")[1]["next_facts"], {"humidity": "52 %", "lot": "2", "room": "lab 2"})
         self.assertRegex(self.good("plan"), r"(?m)^fact room +lab 2$")
         refused = daemon.run("plan", "--fact", "humidity=52")
         self.assertEqual(refused.returncode, 2)
@@ -98,7 +98,7 @@ class Facts(unittest.TestCase):
         # After a restart in the batch its facts hold again, and those of the configuration.
         self.assertEqual(daemon.end()[0], 0)
         daemon.start()
-        self.assertEqual(daemon.ask("GET", "/v1/status")[1]["facts"], {"temperature": "73.4 degF", "shift": "3"})
+        self.assertEqual(daemon.ask("GET", "/v1/status")[1]["next_facts"], {"temperature": "73.4 degF", "shift": "3"})
         self.assertRegex(self.good("status"), r"(?m)^next facts +shift 3, temperature 73.4 degF$")
 
         def cli(*arguments):
