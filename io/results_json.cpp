@@ -17,6 +17,7 @@ namespace {
 
 constexpr const char* kStandardError = "standard_error";
 constexpr const char* kSystematic = "systematic_uncertainty";
+constexpr const char* kParts = "systematic_parts";
 constexpr const char* kDiagnostics = "diagnostics";
 constexpr const char* kReason = "reason";
 constexpr const char* kPlace = "place";
@@ -36,6 +37,10 @@ nlohmann::ordered_json detail_json(const analysis::ResultName& name, const analy
   detail["unit"] = name.unit;
   if (estimate.standard_error) detail[kStandardError] = *estimate.standard_error;
   if (estimate.systematic_uncertainty) detail[kSystematic] = *estimate.systematic_uncertainty;
+  for_each_part(estimate.systematic_parts,
+                [&](analysis::UncertaintySource source, const std::optional<double>& size) {
+                  if (size) detail[kParts][std::string{name_of(source).name}] = *size;
+                });
   if (!estimate.value) detail[kReason] = estimate.reason;
   return detail;
 }
@@ -48,6 +53,13 @@ analysis::Estimate estimate_of(const nlohmann::ordered_json& detail) {
   take("value", estimate.value);
   take(kStandardError, estimate.standard_error);
   take(kSystematic, estimate.systematic_uncertainty);
+  if (const auto parts = detail.find(kParts); parts != detail.end()) {
+    for_each_part(estimate.systematic_parts,
+                  [&](analysis::UncertaintySource source, std::optional<double>& size) {
+                    const auto own = parts->find(name_of(source).name);
+                    if (own != parts->end() && own->is_number()) size = own->get<double>();
+                  });
+  }
   if (!estimate.value) detail.at(kReason).get_to(estimate.reason);
   return estimate;
 }

@@ -72,6 +72,9 @@ analysis::Estimate scaled(analysis::Estimate estimate, double factor) {
        {&estimate.value, &estimate.standard_error, &estimate.systematic_uncertainty}) {
     if (*number) **number *= factor;
   }
+  for_each_part(estimate.systematic_parts, [&](analysis::UncertaintySource, std::optional<double>& size) {
+    if (size) *size *= factor;
+  });
   return estimate;
 }
 

@@ -21,11 +21,6 @@ namespace {
 /// would be taken for S − K.
 constexpr double kSlow = 0.2;
 
-void add_systematic(double uncertainty, Estimate& estimate) {
-  if (estimate.value)
-    estimate.systematic_uncertainty = estimate.systematic_uncertainty.value_or(0.0) + uncertainty;
-}
-
 /// What makes residuals in each part of the slip.
 std::string_view likely_cause(SlipPart part) {
   switch (part) {
@@ -54,13 +49,14 @@ void add_distance_to_fits(const base::LongColumn<detect::Cycle>& fitted, TestRes
   }
   if (delta_mu.count == 0.0 || !results.delta_mu.value) return;
   const double spread = std::abs(delta_mu.mean - *results.delta_mu.value);
-  add_systematic(spread, results.mu_s);
-  add_systematic(spread, results.delta_mu);
+  add_systematic(results.mu_s, UncertaintySource::kRung, spread);
+  add_systematic(results.delta_mu, UncertaintySource::kRung, spread);
 }
 
 void add_distance(const TestResults& other_rung, TestResults& results) {
   const auto add = [](const Estimate& other, Estimate& estimate) {
-    if (other.value && estimate.value) add_systematic(std::abs(*other.value - *estimate.value), estimate);
+    if (other.value && estimate.value)
+      add_systematic(estimate, UncertaintySource::kRung, *other.value - *estimate.value);
   };
   add(other_rung.mu_s, results.mu_s);
   add(other_rung.mu_k, results.mu_k);
@@ -72,8 +68,8 @@ bool may_hold_damping(const TestResults& results) { return results.Q.value.value
 void tell_held_damping(TestResults& results) {
   const double shift =
       0.5 * std::numbers::pi * model::kTypicalGammaOver2Omega * results.amplitude.value.value_or(0.0);
-  add_systematic(shift, results.mu_k);
-  add_systematic(shift, results.delta_mu);
+  add_systematic(results.mu_k, UncertaintySource::kDamping, shift);
+  add_systematic(results.delta_mu, UncertaintySource::kDamping, shift);
   const Estimate none =
       Estimate::none(fmt::format("the damping is held at gamma/2omega = {}, typical of a sled on a spring",
                                  model::kTypicalGammaOver2Omega));
@@ -107,10 +103,12 @@ void void_start(const TesterEstimate& tester, double gravity_m_per_s2, TestResul
 void tell_bound(double bound, TestResults& results) {
   const double half = 0.5 * bound;
   results.delta_mu = Estimate::of(half);
-  results.delta_mu.systematic_uncertainty = half;
+  add_systematic(results.delta_mu, UncertaintySource::kBound, half);
   if (results.mu_k.value) {
     results.mu_s = Estimate::of(*results.mu_k.value + half);
-    results.mu_s.systematic_uncertainty = half + results.mu_k.systematic_uncertainty.value_or(0.0);
+    results.mu_s.systematic_uncertainty = results.mu_k.systematic_uncertainty;
+    results.mu_s.systematic_parts = results.mu_k.systematic_parts;
+    add_systematic(results.mu_s, UncertaintySource::kBound, half);
   }
   results.Q = results.threshold_speed = Estimate::none("S - K is not told from zero");
 }

@@ -148,8 +148,8 @@ Estimate derived(const Fitted& fitted, const Function& function) {
   Estimate estimate =
       Estimate::of(function(fitted.value), std::sqrt(gradient.dot(fitted.covariance * gradient)));
   if (fitted.beyond_noise > 0.0)
-    estimate.systematic_uncertainty =
-        fitted.beyond_noise * std::sqrt(gradient.dot(fitted.of_noise * gradient));
+    add_systematic(estimate, UncertaintySource::kMisfit,
+                   fitted.beyond_noise * std::sqrt(gradient.dot(fitted.of_noise * gradient)));
   return estimate;
 }
 
@@ -444,11 +444,18 @@ void model_results(std::span<const detect::Fall> slips, const SlipEstimates& est
   const model::SharedParameters shared{fitted.value[0], fitted.value[1], fitted.value[2]};
   const double damper =
       shared.gamma * shared.r * fitted.relative_speed / shared.oscillator().omega0_squared();
-  double at_onset = std::abs(damper);
-  if (std::ranges::none_of(estimates.ends, [](SlipEnd end) { return end == SlipEnd::kCaptured; }))
-    at_onset += of_creep(fitted.value[3] - fitted.value[4], shared.r * fitted.relative_speed / shared.omega);
-  for (Estimate* estimate : {&results.mu_s, &results.delta_mu})
-    estimate->systematic_uncertainty = estimate->systematic_uncertainty.value_or(0.0) + at_onset;
+  const bool never_sticks =
+      std::ranges::none_of(estimates.ends, [](SlipEnd end) { return end == SlipEnd::kCaptured; });
+  for (Estimate* estimate : {&results.mu_s, &results.delta_mu}) {
+    if (!never_sticks) {
+      add_systematic(*estimate, UncertaintySource::kDamping, damper);
+      continue;
+    }
+    add_systematic(*estimate,
+                   {{UncertaintySource::kDamping, damper},
+                    {UncertaintySource::kCreep, of_creep(fitted.value[3] - fitted.value[4],
+                                                         shared.r * fitted.relative_speed / shared.omega)}});
+  }
 
   const double n = fitted.amplitude.count;
   results.amplitude = n > 1.0 && !estimates.uniform

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/analysis/rung.hpp"
+#include "core/analysis/uncertainty_part.hpp"
 #include "core/base/finding.hpp"
 #include "core/model/regime.hpp"
 
@@ -22,6 +23,7 @@ struct Estimate {
   std::optional<double> standard_error;          ///< Random: decreases with replicates.
   std::optional<double> systematic_uncertainty;  ///< From calibration, mass, conventions; constant.
   std::string reason;                            ///< Set exactly when there is no value.
+  SystematicParts systematic_parts{};            ///< What makes the systematic uncertainty, as far as known.
 
   [[nodiscard]] static Estimate of(double number) {
     if (!std::isfinite(number)) return none("not finite");

@@ -30,13 +30,24 @@ class PooledEstimate {
     variance_ += std::pow(slips * estimate.standard_error.value_or(std::nan("")), 2);
     has_systematic_ = has_systematic_ || estimate.systematic_uncertainty;
     systematic_ += slips * estimate.systematic_uncertainty.value_or(0.0);
+    for_each_part(estimate.systematic_parts,
+                  [&](UncertaintySource source, const std::optional<double>& size) {
+                    if (size) parts_[source] = parts_[source].value_or(0.0) + slips * *size;
+                  });
   }
 
   [[nodiscard]] Estimate mean() const {
     if (sections_ == 1) return first_;
     if (nothing_) return *nothing_;
     Estimate mean = Estimate::of(value_ / slips_, std::sqrt(variance_) / slips_);
-    if (has_systematic_) mean.systematic_uncertainty = systematic_ / slips_;
+    if (has_systematic_) {
+      // Only parts that add as they are: their means make the mean of the totals.
+      mean.systematic_uncertainty = systematic_ / slips_;
+      mean.systematic_parts = parts_;
+      for_each_part(mean.systematic_parts, [&](UncertaintySource, std::optional<double>& size) {
+        if (size) *size /= slips_;
+      });
+    }
     return mean;
   }
 
@@ -49,6 +60,7 @@ class PooledEstimate {
   double variance_ = 0.0;
   bool has_systematic_ = false;
   double systematic_ = 0.0;
+  SystematicParts parts_;
 };
 
 class PooledResults {

@@ -17,7 +17,7 @@ Estimate estimate_of(const signal::WanderingMean& values, const signal::Wanderin
       values.count() < 2.0
           ? Estimate::of(values.mean())
           : Estimate::of(values.mean(), std::max(values.error_of_mean(), level.error_of_mean()));
-  if (estimate.value) estimate.systematic_uncertainty = systematic_uncertainty;
+  add_systematic(estimate, UncertaintySource::kCorrection, systematic_uncertainty);
   return estimate;
 }
 

@@ -19,9 +19,8 @@ void add_gain_uncertainty(analysis::TestResults& results, std::optional<double> 
         &results.delta_mu_from_amplitude, &results.delta_mu_from_timing, &results.delta_mu_from_slip_speed,
         &results.delta_mu_combined, &results.mu_k_from_mean, &results.mu_s_from_amplitude,
         &results.threshold_speed, &results.Q, &results.pull_speed_measured}) {
-    if (!estimate->value) continue;
-    estimate->systematic_uncertainty =
-        std::hypot(estimate->systematic_uncertainty.value_or(0.0), *relative * *estimate->value);
+    if (estimate->value)
+      add_systematic(*estimate, analysis::UncertaintySource::kCalibration, *relative * *estimate->value);
   }
 }
 

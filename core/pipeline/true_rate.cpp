@@ -29,7 +29,8 @@ void add_true_rate(analysis::TestResults& results, std::span<const daq::ClockAnc
     return;
   }
   results.scan_rate_measured = analysis::Estimate::of(fit->rate_Hz, fit->standard_error_Hz);
-  results.scan_rate_measured.systematic_uncertainty = kClockTolerance * fit->rate_Hz;
+  add_systematic(results.scan_rate_measured, analysis::UncertaintySource::kClock,
+                 kClockTolerance * fit->rate_Hz);
   const double factor = fit->rate_Hz / granted_Hz;
   const bool far = std::abs(factor - 1.0) > kClockTolerance &&
                    std::abs(fit->rate_Hz - granted_Hz) > kSureErrors * fit->standard_error_Hz;

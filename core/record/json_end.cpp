@@ -14,6 +14,21 @@
 namespace stickslip::record {
 namespace {
 
+constexpr const char* kParts = "systematic_parts";
+
+void put_parts(Json& entry, const analysis::SystematicParts& parts) {
+  for_each_part(parts, [&](analysis::UncertaintySource source, const std::optional<double>& size) {
+    if (size) put(entry[kParts], name_of(source).name, size);
+  });
+}
+
+void take_parts(const Json& entry, analysis::SystematicParts& parts) {
+  const Json given = entry.value(kParts, Json::object());
+  for_each_part(parts, [&](analysis::UncertaintySource source, std::optional<double>& size) {
+    take(given, name_of(source).name, size);
+  });
+}
+
 Json results_to_json(const analysis::TestResults& results) {
   Json object{{"regime", model::name(results.regime)},
               {"regime_reason", results.regime_reason},
@@ -27,6 +42,7 @@ Json results_to_json(const analysis::TestResults& results) {
                               put(entry, "value", estimate.value);
                               put(entry, "standard_error", estimate.standard_error);
                               put(entry, "systematic_uncertainty", estimate.systematic_uncertainty);
+                              put_parts(entry, estimate.systematic_parts);
                               put(entry, "reason", estimate.reason);
                               object[std::string{name.name}] = std::move(entry);
                             });
@@ -60,6 +76,7 @@ analysis::TestResults results_from_json(const Json& object) {
     take(entry, "value", estimate.value);
     take(entry, "standard_error", estimate.standard_error);
     take(entry, "systematic_uncertainty", estimate.systematic_uncertainty);
+    take_parts(entry, estimate.systematic_parts);
     take(entry, "reason", estimate.reason);
   });
   return results;

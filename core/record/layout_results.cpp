@@ -24,6 +24,11 @@ constexpr const char* kNumbers = "numbers";
 /// The last result in the oldest records; later results were added by newer versions.
 constexpr std::string_view kLastOfTheFirst = "scan_rate_measured";
 
+/// "systematic_uncertainty_zero"
+std::string part_attribute(analysis::UncertaintySource source) {
+  return fmt::format("{}_{}", kSystematic, name_of(source).name);
+}
+
 void write_estimate(hid_t group, const analysis::ResultName& name, const analysis::Estimate& estimate) {
   const std::string long_name = fmt::format("{} [{}]", name.long_name, name.unit);
   const DatasetHandle value = write_scalar(group, FieldName{name.name, name.unit, long_name},
@@ -31,6 +36,10 @@ void write_estimate(hid_t group, const analysis::ResultName& name, const analysi
   if (estimate.standard_error) write_number_attribute(value.get(), kStandardError, *estimate.standard_error);
   if (estimate.systematic_uncertainty)
     write_number_attribute(value.get(), kSystematic, *estimate.systematic_uncertainty);
+  for_each_part(estimate.systematic_parts,
+                [&](analysis::UncertaintySource source, const std::optional<double>& size) {
+                  if (size) write_number_attribute(value.get(), part_attribute(source), *size);
+                });
   if (!estimate.value) write_attribute(value.get(), kReason, estimate.reason);
 }
 
@@ -44,6 +53,10 @@ analysis::Estimate read_estimate(hid_t group, const std::string& key) {
   }
   estimate.standard_error = find_number_attribute<double>(dataset.get(), kStandardError);
   estimate.systematic_uncertainty = find_number_attribute<double>(dataset.get(), kSystematic);
+  for_each_part(estimate.systematic_parts,
+                [&](analysis::UncertaintySource source, std::optional<double>& size) {
+                  size = find_number_attribute<double>(dataset.get(), part_attribute(source));
+                });
   return estimate;
 }
 

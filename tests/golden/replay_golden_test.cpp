@@ -38,6 +38,7 @@ class Collector final : public pipeline::Sink {
     record.header.uuid = record::make_uuid();
     record.header.test_number = start.number;
     record.header.trigger_scan = start.trigger;
+    record.header.plan.unloaded_level = start.unloaded_level;
     if (start.self_check) record.header.self_check = *start.self_check;
     records_.push_back(std::move(record));
   }
@@ -57,6 +58,7 @@ class Collector final : public pipeline::Sink {
     record.results = end.results;
     record.cycles = end.cycles;
     record.spikes = end.spikes;
+    record.unloaded_level = end.unloaded_level;
     record::set_end(records_.back(), std::move(record));
   }
 

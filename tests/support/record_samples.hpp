@@ -133,7 +133,11 @@ inline analysis::TestResults sample_results() {
     }
     number += 0.1;
     estimate = analysis::Estimate::of(number, number / 3.0);
-    if (name.name == "mu_s") estimate.systematic_uncertainty = 0.002;
+    if (name.name == "mu_s") {
+      add_systematic(estimate, {{analysis::UncertaintySource::kRung, 0.0005},
+                                {analysis::UncertaintySource::kMisfit, 0.0015}});
+      note_no_systematic(estimate, analysis::UncertaintySource::kZero);
+    }
     if (name.name == "cycle_count") estimate.standard_error.reset();
   });
   return results;

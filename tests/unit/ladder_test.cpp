@@ -32,6 +32,7 @@ TEST(Ladder, TheDistanceToAnotherRungIsASystematicPart) {
   EXPECT_NEAR(results.mu_s.systematic_uncertainty.value(), 0.01, 1e-15);
   EXPECT_NEAR(results.mu_k.systematic_uncertainty.value(), 0.52, 1e-15);
   EXPECT_NEAR(results.delta_mu.systematic_uncertainty.value(), 0.03, 1e-15);
+  EXPECT_NEAR(results.delta_mu.systematic_parts[UncertaintySource::kRung].value(), 0.03, 1e-15);
 }
 
 TEST(Ladder, ARungWithoutAValueIsNoDistance) {
@@ -54,6 +55,7 @@ TEST(Ladder, TurningPointsAreAsFarOffAsTheMeanOfTheFitsOfSlips) {
   add_distance_to_fits(rows, results);
   EXPECT_NEAR(results.delta_mu.systematic_uncertainty.value(), 0.02, 1e-15);
   EXPECT_NEAR(results.mu_s.systematic_uncertainty.value(), 0.02, 1e-15);
+  EXPECT_NEAR(results.mu_s.systematic_parts[UncertaintySource::kRung].value(), 0.02, 1e-15);
   EXPECT_FALSE(results.mu_k.systematic_uncertainty);
 }
 
@@ -76,6 +78,7 @@ TEST(Ladder, AHeldDampingIsNoResult) {
   const double shift = 0.5 * std::numbers::pi * 0.05 * model::kTypicalGammaOver2Omega;
   EXPECT_NEAR(results.mu_k.systematic_uncertainty.value(), shift, 1e-15);
   EXPECT_NEAR(results.delta_mu.systematic_uncertainty.value(), shift, 1e-15);
+  EXPECT_NEAR(results.delta_mu.systematic_parts[UncertaintySource::kDamping].value(), shift, 1e-15);
   EXPECT_FALSE(results.mu_s.systematic_uncertainty);
   for (const Estimate* estimate : {&results.gamma_over_2omega, &results.Q_threshold, &results.threshold_speed,
                                    &results.slip_speed_ratio_threshold}) {

@@ -178,6 +178,10 @@ TEST(ModelResults, CreepBeforeASlipIsInTheSystematicPartOfRingDownsAlone) {
                           estimates.fit.shared.oscillator().omega0_squared();
     EXPECT_FALSE(results.mu_k.systematic_uncertainty);
     EXPECT_EQ(results.mu_s.systematic_uncertainty, results.delta_mu.systematic_uncertainty);
+    const SystematicParts& parts = results.delta_mu.systematic_parts;
+    EXPECT_NEAR(parts[UncertaintySource::kDamping].value_or(0.0), damper, 1e-15);
+    EXPECT_NEAR(parts[UncertaintySource::kCreep].value_or(0.0),
+                results.delta_mu.systematic_uncertainty.value_or(0.0) - damper, 1e-15);
     return results.delta_mu.systematic_uncertainty.value_or(0.0) - damper;
   };
   const double speed = 2.0 * model::Q_threshold(kGammaOver2Omega) * kS_minus_K;

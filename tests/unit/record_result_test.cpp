@@ -34,7 +34,8 @@ analysis::TestResults all_results() {
         break;
       case 2:
         estimate = analysis::Estimate::of(value, 1e-3 / n);
-        estimate.systematic_uncertainty = 2e-4 / n;
+        add_systematic(estimate, static_cast<analysis::UncertaintySource>(n % 9), 2e-4 / n);
+        note_no_systematic(estimate, analysis::UncertaintySource::kZero);
         break;
       default:
         estimate = analysis::Estimate::none("too few cycles");

@@ -61,6 +61,25 @@ TEST(TestFacts, TheZeroBeforeTheTestIsOneFinding) {
   EXPECT_THAT(off.findings(), ElementsAre(HasSubstr("zero: the unloaded cell read +0.0153 before the test")));
 }
 
+// Forces are proportional to the gain, times are not; without a calibration the part is not known.
+TEST(TestFacts, TheGainIsAPartOfWhatIsAForce) {
+  Sound calibrated;
+  for (const std::optional<double> relative : {std::optional{0.01}, std::optional<double>{}}) {
+    calibrated.facts.calibration.gain_uncertainty = relative;
+    analysis::TestResults results;
+    results.delta_mu = analysis::Estimate::of(-0.05);
+    results.omega = analysis::Estimate::of(60.0);
+    add_facts(calibrated.facts, results);
+    const auto part = results.delta_mu.systematic_parts[analysis::UncertaintySource::kCalibration];
+    EXPECT_EQ(part.has_value(), relative.has_value());
+    EXPECT_EQ(part, results.delta_mu.systematic_uncertainty);
+    if (part) {
+      EXPECT_DOUBLE_EQ(*part, 0.0005);
+    }
+    EXPECT_FALSE(results.omega.systematic_uncertainty);
+  }
+}
+
 TEST(TestFacts, ScansAtARailAreCounted) {
   Sound railed;
   railed.facts.saturated_count = 7;

@@ -41,6 +41,7 @@ TEST(TrueRate, IsAsCertainAsTheClock) {
   EXPECT_NEAR(*rate.value, kGrantedRate_Hz, 1e-6);
   EXPECT_NEAR(*rate.standard_error, 1e-6 * kGrantedRate_Hz, 0.01 * 1e-6 * kGrantedRate_Hz);
   EXPECT_NEAR(*rate.systematic_uncertainty, 100e-6 * kGrantedRate_Hz, 1e-9);
+  EXPECT_EQ(rate.systematic_parts[analysis::UncertaintySource::kClock], rate.systematic_uncertainty);
 }
 
 TEST(TrueRate, DeviationExceedsFiveStandardErrors) {

@@ -9,6 +9,8 @@
 namespace stickslip::pipeline {
 namespace {
 
+using analysis::UncertaintySource;
+
 analysis::TestResults some_results() {
   analysis::TestResults results;
   results.static_coefficient = analysis::Estimate::of(0.38, 0.001);
@@ -25,6 +27,7 @@ TEST(ZeroOffset, IsAFindingAndASystematicPartOfLevelsAlone) {
   EXPECT_NE(results.findings[0].text.find("-0.0400"), std::string::npos) << results.findings[0].text;
   EXPECT_DOUBLE_EQ(results.static_coefficient.systematic_uncertainty.value_or(0.0), 0.04);
   EXPECT_DOUBLE_EQ(results.mu_k.systematic_uncertainty.value_or(0.0), 0.05);
+  EXPECT_DOUBLE_EQ(results.mu_k.systematic_parts[UncertaintySource::kZero].value_or(0.0), 0.04);
   EXPECT_FALSE(results.delta_mu.systematic_uncertainty);
   EXPECT_FALSE(results.kinetic_coefficient.systematic_uncertainty) << "there is no value";
 }
@@ -44,6 +47,11 @@ TEST(ZeroOffset, WithinTheLimitOrUnknownChangesNothing) {
     add_zero_offset(results, level, level);
     EXPECT_TRUE(results.findings.empty());
     EXPECT_FALSE(results.static_coefficient.systematic_uncertainty);
+    // A level that was read is known to add nothing; one that was not is unknown.
+    const bool is_known = level && std::isfinite(*level);
+    EXPECT_EQ(results.static_coefficient.systematic_parts[UncertaintySource::kZero],
+              is_known ? std::optional{0.0} : std::nullopt);
+    EXPECT_EQ(results.delta_mu, some_results().delta_mu);
   }
 }
 
