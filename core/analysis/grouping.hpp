@@ -15,6 +15,7 @@
 #include "core/analysis/quantities.hpp"
 #include "core/analysis/replicates.hpp"
 #include "core/analysis/results.hpp"
+#include "core/analysis/uncertainty_budget.hpp"
 
 namespace stickslip::analysis {
 
@@ -36,6 +37,7 @@ struct MeasuredTest {
   SlipSums slips{};                      ///< From its table of cycles; empty without one.
   std::string grade{};                   ///< Of the paper; empty if not stated.
   std::optional<double> stick_time_s{};  ///< mean_stick_time_s() of its cycles.
+  BudgetFacts budget_facts{};
 };
 
 /// Reason why a test has no value of a quantity.
