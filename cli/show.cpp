@@ -13,6 +13,7 @@
 #include "io/results_json.hpp"
 #include "io/table.hpp"
 #include "io/uncertain.hpp"
+#include "report/budget_forms.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/base/text.hpp"
@@ -95,10 +96,13 @@ base::Result<std::string> show_record(const ShowOptions& options) {
     known.add({"  " + name, value.is_string() ? base::printable(value.get<std::string>()) : value.dump()});
   for (const auto& [key, value] : record->header.sample.metadata)
     known.add({"  metadata." + base::printable(key), base::printable(value)});
+  const std::string budget =
+      report::budget_text(report::budgets_of(record->end->results, report::budget_facts_of(record->header)));
   return fmt::format(
-      "{}: {}, ended: {}\n{}{}\n{}{}", base::printable(options.test), word(results, "regime"),
+      "{}: {}, ended: {}\n{}{}\n{}{}{}", base::printable(options.test), word(results, "regime"),
       record->end->cause.empty() ? std::string{io::kAbsent} : base::printable(record->end->cause),
-      findings_of(results), known.text(), rung_text(results), results_text(results));
+      findings_of(results), known.text(), rung_text(results), results_text(results),
+      budget.empty() ? budget : "\nuncertainty budget\n" + budget);
 }
 
 base::Result<std::string> run_show(const ShowOptions& options) {

@@ -185,6 +185,43 @@
     }));
   }
 
+  // ---- Uncertainty budgets -----------------------------------------------------------------------------
+  const budgeted = ["delta_mu", "static_coefficient", "kinetic_coefficient"].map(name => data.quantities.find(q => q.name === name));
+  const budgetSize = size => (size == null ? "" : size === 0 ? "0" : size.toFixed(Uncertain.decimalsFor(size, 5)));
+  function budgetTable(id, budgets) {
+    const owned = budgeted.filter(q => budgets[q.name] != null);
+    const lines = [...new Map(owned.flatMap(q => budgets[q.name].lines).map(line => [line.source, line])).values()];
+    const rank = line => Math.max(...owned.map(q => budgets[q.name].lines.findIndex(own => own.source === line.source)));
+    const sizeCell = line => node("td", line.note ? {title: line.note} : {}, {counted: budgetSize(line.standard_uncertainty), included: `(${budgetSize(line.standard_uncertainty) || " "})`, none: "0", unknown: "–"}[line.state]);
+    const shareOf = line => (line.share == null ? "" : line.share > 0 && line.share < 0.005 ? "<1" : (100 * line.share).toFixed(0));
+    const sums = (heading, key, share) => row(node("td", {}, node("b", {}, heading)), "", ...owned.flatMap(q =>
+      [node("td", {}, node("b", {}, budgets[q.name][key] == null ? "–" : budgetSize(budgets[q.name][key]))), budgets[q.name][key] == null ? "" : share]));
+    const notes = new Map(owned.flatMap(q => budgets[q.name].lines).filter(line => line.note && line.state !== "none").map(line => [`${line.title}: ${line.note}`, line]));
+    return node("div", {},
+      table(id, ["source", "type", ...owned.flatMap(q => [`u ${title(q)}`, "%"])], [
+        ...lines.sort((x, y) => rank(x) - rank(y)).map(line => row(node("td", {class: "text"}, line.title), line.type, ...owned.flatMap(q => {
+          const own = budgets[q.name].lines.find(other => other.source === line.source);
+          return own == null ? ["", ""] : [sizeCell(own), shareOf(own)];
+        }))),
+        sums("combined, u", "combined_standard_uncertainty", "100"), sums("expanded, U = 2 u", "expanded_uncertainty", "")]),
+      ...owned.map(q => node("p", {}, node("b", {}, budgets[q.name].statement))),
+      node("ul", {class: "notes"}, ...[...notes].map(([text, line]) => node("li", {}, `${line.state === "unknown" ? "–" : "( )"} ${text}`))));
+  }
+  function writeBudgets() {
+    const has = budgets => budgeted.some(q => budgets[q.name] != null);
+    const made = section("budgets", "Uncertainty budget", node("p", {class: "note"},
+      "As in the GUM (JCGM 100:2008): u is a standard uncertainty, by statistics (type A) or otherwise (type B); %: its share of the variance u²; – not known; ( ) counted in another line. " +
+      "The parts of the model add as they are, all else in quadrature."));
+    data.materials.forEach((material, m) => material.groups.forEach((group, g) => {
+      if (!has(group.budgets)) return;
+      made.append(node("h3", {}, `${two ? nameOf(m) + ", " : ""}${group.text}, ${plural(group.tests.length, "test")}`), budgetTable(`budget-${m}-${g}`, group.budgets));
+      if (group.tests.length > 1) {
+        made.append(node("details", {id: `budgets-of-tests-${m}-${g}`}, node("summary", {}, "of each test"), ...group.tests.filter(t => has(material.tests[t].budgets)).map(t =>
+          node("div", {}, node("h4", {}, `test ${t + 1}, ${material.tests[t].file}`), budgetTable(`budget-of-test-${m}-${t}`, material.tests[t].budgets)))));
+      }
+    }));
+  }
+
   // ---- Traces ------------------------------------------------------------------------------------------
   const viewers = [];
   function writeViewer(m) {
@@ -300,6 +337,7 @@
   writeMeans();
   if (two) writeComparison();
   writeReplicates();
+  writeBudgets();
   data.materials.forEach((_, m) => writeTests(m));
   writeRamps();
   writeFigure();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/table.hpp"
+#include "report/budget_forms.hpp"
 #include "report/report_json.hpp"
 
 #include "core/analysis/results.hpp"
@@ -110,6 +111,8 @@ std::string report_csv(const Material& material) {
     if (!name.is_diagnostic && !is_quantity(name.name))
       names.push_back(fmt::format("{}_standard_error", name.name));
   });
+  for (const std::size_t q : analysis::kBudgetQuantities)
+    names.push_back(fmt::format("{}_expanded_uncertainty", analysis::quantities()[q].name));
   const std::set<std::string> keys = keys_of(material);
   for (const std::string& key : keys) names.push_back("fact." + key);
   for (const record::KnownFact* fact : numbers_of(keys))
@@ -151,6 +154,8 @@ std::string report_csv(const Material& material) {
                                 if (!name.is_diagnostic && !is_quantity(name.name))
                                   add(cells, estimate.standard_error);
                               });
+    for (const auto& budget : budgets_of(measured.results, measured.budget_facts))
+      add(cells, budget ? budget->expanded() : std::nullopt);
     const auto stated = [&](std::string_view key) {
       const auto found = test.sample.metadata.find(key);
       return found == test.sample.metadata.end() ? std::string{} : found->second;

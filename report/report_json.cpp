@@ -7,6 +7,7 @@
 #include "io/or_null.hpp"
 #include "io/pooled_json.hpp"
 #include "io/results_json.hpp"
+#include "report/budget_forms.hpp"
 #include "report/ramp_text.hpp"
 #include <nlohmann/json.hpp>
 
@@ -32,6 +33,7 @@ Json test_json(const ReportedTest& test, const analysis::MeasuredTest& measured)
             {"pull_speed_text", test.speed.empty() ? "speed not known" : test.speed}};
   json.update(io::results_json(measured.results, true));
   if (!test.sample.metadata.empty()) json["metadata"] = test.sample.metadata;
+  json["budgets"] = budgets_json(budgets_of(measured.results, measured.budget_facts));
   if (std::string ramp = ramp_text(measured.results); !ramp.empty()) json["ramp"] = std::move(ramp);
   return json;
 }
@@ -133,6 +135,7 @@ Json report_json(const Material& material) {
       of_group["quantities"][std::string{quantity.name}] =
           quantity_json(material, group.quantities[q], quantity);
     }
+    of_group["budgets"] = budgets_json(budgets_of(material.measured, group));
     json["groups"].push_back(std::move(of_group));
   }
   for (std::size_t q = 0; q < analysis::kQuantityCount; ++q) {

@@ -13,7 +13,9 @@
 
 #include "io/table.hpp"
 #include "io/uncertain.hpp"
+#include "report/budget_forms.hpp"
 #include "report/truth_table.hpp"
+#include "report/wrapped.hpp"
 
 #include "core/base/text.hpp"
 
@@ -100,30 +102,6 @@ std::string figure_text(bool two, const std::vector<FigureRow>& rows) {
 }
 
 constexpr std::string_view kMeansHeading = "Means, ± half of the 95 % interval";
-
-/// Breaks a line at blanks so that it fits a terminal of 80 columns. \param indent  blanks before all lines
-/// but the first.
-std::string wrapped(const std::string& line, std::size_t indent) {
-  constexpr std::size_t kWidth = 80;
-  std::string text;
-  std::size_t column = 0;
-  for (std::size_t at = 0; at < line.size();) {
-    const std::size_t blanks = line.find_first_not_of(' ', at);
-    if (blanks == std::string::npos) break;
-    const std::size_t end = std::min(line.find(' ', blanks), line.size());
-    const std::string word = line.substr(at, end - at);
-    const std::size_t width = io::display_width(word);
-    if (column + width > kWidth && column > indent) {
-      text += "\n" + std::string(indent, ' ') + line.substr(blanks, end - blanks);
-      column = indent + width - (blanks - at);
-    } else {
-      text += word;
-      column += width;
-    }
-    at = end;
-  }
-  return text;
-}
 
 /// "k = 4.30 for n = 3, 2.78 for n = 5": of all intervals that are shown.
 std::string coverage_legend(std::initializer_list<const Material*> materials) {
@@ -394,6 +372,9 @@ std::string report_text(const Material& material) {
     text += fmt::format("\ngroup {}: {}, {}\n", g + 1, base::printable(group_text(material, group)),
                         count_of_tests(group.tests.size()));
     text += by_cycle_line(group.by_cycle) + replicates_table(material, group);
+    if (const std::string budget = budget_text(budgets_of(material.measured, group)); !budget.empty())
+      text += fmt::format("\nuncertainty budget of {}\n{}",
+                          group.tests.size() == 1 ? "this test" : "these means", budget);
   }
   text += by_cycle_legend({&material}) + coverage_legend({&material}) + std::string{kModelLegend};
   if (const std::string split = not_pooled_text(material); !split.empty()) text += split + "\n";

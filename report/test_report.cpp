@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "report/budget_forms.hpp"
 #include "report/trace_json.hpp"
 #include <nlohmann/json.hpp>
 
@@ -98,7 +99,8 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
         analysis::skipped_from_text(record->header.process.kept).value_or(analysis::SkippedCorrections{});
     material.measured.push_back({tester.pull_speed_m_per_s, std::move(record->end->results),
                                  analysis::slip_sums(record->cycles, skipped.first_slip), test.sample.grade,
-                                 analysis::mean_stick_time_s(record->cycles, skipped.first_slip)});
+                                 analysis::mean_stick_time_s(record->cycles, skipped.first_slip),
+                                 budget_facts_of(record->header)});
     material.tests.push_back(std::move(test));
   }
   if (material.tests.empty() && !material.voided.empty()) {

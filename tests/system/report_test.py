@@ -226,6 +226,35 @@ class Reports(Folder):
         self.assertEqual(pooled["systematic_uncertainty"], systematic)
         self.assertEqual(float(row["at_speed_delta_mu_by_cycle_systematic_uncertainty"]), systematic)
         self.assertIn(f"S−K by cycle   {uncertain.text(pooled['value'], None, systematic)}: ", text)
+        # Nobody named the parts of what was written here.
+        self.assertRegex(listed, r"(?m)^systematic, not split +B ")
+        self.assertIn("!  systematic, not split: of an older version", listed)
+
+    def test_a_budget_holds_the_errors_that_are_shown(self):
+        report = json.loads(self.good("report", *self.a, "--json"))
+        text = self.good("report", *self.a)
+        self.assertEqual(text.count("\nuncertainty budget of these means\n"), len(report["groups"]))
+        self.assertLessEqual(max(len(line) for line in text[text.index("uncertainty budget"):].splitlines() if line.startswith(("noise", "model"))), 80)
+        words = " ".join(text.split())
+        for group in report["groups"]:
+            pooled, budget = group["delta_mu_by_cycle"], group["budgets"]["delta_mu"]
+            self.assertEqual(budget["value"], pooled["value"])
+            combined = math.hypot(pooled["standard_error"], pooled["systematic_uncertainty"])
+            self.assertAlmostEqual(budget["combined_standard_uncertainty"], combined, delta=1e-9 * combined)
+            for name in ("delta_mu", "static_coefficient", "kinetic_coefficient"):
+                own = group["budgets"][name]
+                self.assertEqual(own["expanded_uncertainty"], 2.0 * own["combined_standard_uncertainty"])
+                self.assertAlmostEqual(sum(line["share"] or 0.0 for line in own["lines"]), 1.0, delta=1e-9)
+                self.assertIn(own["statement"], words)
+        # One test: its own errors.
+        [test] = json.loads(self.good("report", self.a[0], "--json"))["tests"]
+        errors, own = test["details"]["delta_mu"], test["budgets"]["delta_mu"]
+        self.assertAlmostEqual(own["combined_standard_uncertainty"], math.hypot(errors["standard_error"], errors["systematic_uncertainty"]), delta=1e-12)
+        self.assertIn(own["statement"], " ".join(self.good("show", self.a[0]).split()))
+        with h5py.File(self.folder / self.a[0]) as record:
+            part = record["entry/results/delta_mu"].attrs["systematic_uncertainty_damping"]
+        self.assertEqual([line["standard_uncertainty"] for line in own["lines"] if line["source"] == "damping"], [part])
+        self.assertEqual(errors["systematic_parts"]["damping"], part)
 
     def test_what_is_kept_is_said_and_shown_side_by_side(self):
         shown = json.loads(self.good("analyze", self.a[0], "--effects", "--json"))["tests"][0]

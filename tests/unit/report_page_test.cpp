@@ -4,10 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <string>
 
+#include "io/table.hpp"
 #include "report/assets.hpp"
 #include "report/binned_trace.hpp"
 #include "report/plot/looks.hpp"
@@ -156,6 +159,53 @@ TEST(ReportText, ShowsMeansReasonsAndDepartures) {
   EXPECT_THAT(text, HasSubstr("–  no static in test 3: not asked\n"));
   EXPECT_THAT(text, HasSubstr("!  test 3: pull speed is other\n"));
   EXPECT_THAT(text, HasSubstr("method: own kinetic_cycles=3\n"));
+}
+
+// 0.38 and 0.39: s/√2 = 0.005. Two tests are within ± 2 by Student's t in 70 % of all cases.
+TEST(ReportText, HasAnUncertaintyBudgetOfEachGroup) {
+  const std::string text = report_text(test::sample_material());
+  EXPECT_THAT(text, HasSubstr("\nuncertainty budget of these means\n"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("\nreplicates +A +0.0050  100\n"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("\nexpanded, U = 2 u +0.010\n"));
+  EXPECT_THAT(text,
+              HasSubstr("static = 0.385 ± 0.010 (k = 2), without calibration, zero; so few tests that it\n"
+                        "   covers 70 %, not 95 %\n"));
+  EXPECT_THAT(text,
+              HasSubstr("–  calibration: no uncertainty of the gain: hang weights, stickslip calibrate\n"));
+  std::istringstream lines{text.substr(text.find("uncertainty budget"))};
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(io::display_width(line), 80U) << line;
+}
+
+TEST(ReportText, HasNoBudgetOfWhatHasNoValue) {
+  Material material = test::sample_material();
+  for (analysis::MeasuredTest& test : material.measured)
+    test.results.static_coefficient = analysis::Estimate::none("not asked");
+  material.groups = analysis::group_by_speed(material.measured);
+  EXPECT_THAT(report_text(material), Not(HasSubstr("budget")));
+}
+
+TEST(ReportJson, HasTheBudgetsOfTestsAndGroups) {
+  Material material = test::sample_material();
+  analysis::Estimate& measured = material.measured[0].results.static_coefficient;
+  add_systematic(measured, analysis::UncertaintySource::kCalibration, 0.003);
+  material.groups = analysis::group_by_speed(material.measured);
+  const Json json = report_json(material);
+  const Json& own = json.at("tests").at(0).at("budgets");
+  EXPECT_TRUE(own.at("delta_mu").is_null());
+  EXPECT_EQ(own.at("static_coefficient").at("combined_standard_uncertainty"), 0.003);
+  EXPECT_EQ(own.at("static_coefficient").at("expanded_uncertainty"), 0.006);
+  EXPECT_EQ(own.at("static_coefficient").at("coverage_factor"), 2.0);
+  const Json& group = json.at("groups").at(0).at("budgets").at("static_coefficient");
+  const auto line = std::ranges::find_if(
+      group.at("lines"), [](const Json& other) { return other.at("source") == "calibration"; });
+  ASSERT_NE(line, group.at("lines").end());
+  EXPECT_EQ(line->at("state"), "counted");
+  EXPECT_EQ(line->at("standard_uncertainty"), 0.003);
+  EXPECT_NEAR(line->at("share").get<double>(), 9.0 / (9.0 + 25.0), 1e-9);
+  EXPECT_THAT(line->at("note").get<std::string>(), HasSubstr("not known in 1 of 2 tests"));
+  EXPECT_THAT(report_csv(material),
+              HasSubstr("delta_mu_expanded_uncertainty,static_coefficient_expanded_uncertainty,"
+                        "kinetic_coefficient_expanded_uncertainty"));
 }
 
 TEST(FormBlock, NamesWhatDiffersAndWhatNoRecordStates) {
