@@ -7,7 +7,6 @@
 ///     journal.read_on(book);
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -16,6 +15,7 @@
 #include "core/base/result.hpp"
 #include "core/record/file_calls.hpp"
 #include "daemon/types/batch.hpp"
+#include "daemon/types/line_journal.hpp"
 
 namespace stickslip::daemon {
 
@@ -27,7 +27,7 @@ class BatchJournal {
   explicit BatchJournal(const std::filesystem::path& folder,
                         const record::FileCalls& calls = record::system_calls());
 
-  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return lines_.path(); }
 
   /// Appends a line; blocks until it is on the disk. An incomplete last line, left by a power cut or a full
   /// disk, is ended first. Errors: kFailure.
@@ -39,10 +39,7 @@ class BatchJournal {
   [[nodiscard]] base::Result<std::vector<std::string>> read_on(BatchBook& book);
 
  private:
-  std::filesystem::path path_;
-  const record::FileCalls& calls_;
-  std::uintmax_t read_ = 0;  ///< Bytes read so far, up to the end of a line.
-  std::int64_t line_ = 0;    ///< Lines read so far.
+  LineJournal lines_;
 };
 
 /// The folder of the journal for a record: the record's folder or one of the two above it (dated folders).
