@@ -60,6 +60,13 @@ enum class FindingCode : std::uint8_t {
   kSlack,
   kTesterChanged,
   kRepeatedScans,
+  kTrendReference,
+  kTrendOmega,
+  kTrendDamping,
+  kTrendZero,
+  kTrendNoise,
+  kTrendSpikes,
+  kTrendRate,
   kUncoded,
 };
 inline constexpr std::size_t kFindingCodes = static_cast<std::size_t>(FindingCode::kUncoded) + 1;

@@ -1,0 +1,102 @@
+/// \file
+/// A two-sided CUSUM chart of one quantity that needs no phase I and no known distribution.
+///
+///     ControlChart chart;
+///     for (const double value : values)
+///       if (const auto alarm = chart.add(value)) …
+///
+/// Each value becomes the normal score of its rank among the values before it,
+/// z = Φ⁻¹((R − ½)/n) with the mid-rank R of n values [Barndorff-Nielsen 1963; McDonald, Naval Research
+/// Logistics 37:627–646, 1990]. Upper arm: max(0, · + z − k), lower arm: max(0, · − z − k); an arm above h is
+/// an alarm and restarts at 0 [Page 1954; Hawkins & Olwell 1998].
+///
+/// What is exact: while the values are independent draws from one continuous distribution, whichever, the
+/// ranks are independent and uniform, and false alarms do not depend on the distribution. Below
+/// kFullBaseline values that is all. What is not:
+/// - From kFullBaseline values on, values wait outside the baseline while an arm is above 0, so that a shift
+///   does not become part of what it is compared with. That makes false alarms a little more frequent
+///   (docs/trend.md, docs/evidence.md).
+/// - Ties share their mid-rank. Scores scatter less then, so that false alarms and alarms are rarer: a count
+///   that is nearly always zero tells only a manifold rise.
+/// - Values that follow each other closely, as a drifting zero does, cause more alarms.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/signal/statistics.hpp"
+
+namespace stickslip::trend {
+
+/// k and h, in standard deviations.
+inline constexpr double kReferenceValue = 0.5;
+inline constexpr double kDecisionInterval = 7.0;
+/// Shewhart limits, in standard deviations. They mark points and raise no alarm.
+inline constexpr double kShewhart = 3.0;
+/// Values from which on there are Shewhart limits [Montgomery 2012, 6.2: 20 to 25].
+inline constexpr std::int64_t kFewestForLimits = 20;
+/// Values from which on a shift of one standard deviation is told within 15 values on average, and values of
+/// an excursion wait outside the baseline. With fewer, waiting would make false alarms too frequent.
+inline constexpr std::int64_t kFullBaseline = 200;
+
+/// Average number of values until one arm passes h, for independent normal scores whose mean is
+/// `shift` standard deviations: Siegmund's approximation [Siegmund, Sequential Analysis, 1985;
+/// Montgomery 2012, eq. 9.5]. \param k, h  > 0.
+[[nodiscard]] double one_sided_run_length(double shift, double k = kReferenceValue,
+                                          double h = kDecisionInterval);
+/// The same for both arms together: 1/ARL = 1/ARL⁺ + 1/ARL⁻.
+[[nodiscard]] double run_length(double shift, double k = kReferenceValue, double h = kDecisionInterval);
+
+struct ChartAlarm {
+  bool rises = false;      ///< Which arm told it.
+  std::int64_t onset = 0;  ///< Index of the first value after the arm was 0 last: the estimated change.
+  std::int64_t told = 0;   ///< Index of the value that told it.
+  double shift = 0.0;      ///< Mean since the onset less the mean before, in the unit of the values.
+  double standard_deviation = 0.0;  ///< Of the baseline at the onset.
+};
+
+class ControlChart {
+ public:
+  /// \param value  finite. \return an alarm if this value raises one.
+  std::optional<ChartAlarm> add(double value);
+
+  /// Sets both arms to 0; the baseline stays.
+  void restart_arms();
+
+  [[nodiscard]] std::int64_t count() const noexcept { return count_; }
+  [[nodiscard]] double upper() const noexcept { return upper_.height; }
+  [[nodiscard]] double lower() const noexcept { return lower_.height; }
+  /// Of the baseline; 0 without values.
+  [[nodiscard]] double mean() const noexcept { return baseline_.mean; }
+  /// Of the baseline; 0 with fewer than two values.
+  [[nodiscard]] double standard_deviation() const noexcept { return std::sqrt(baseline_.variance()); }
+  /// Normal score of the rank that a value has among the baseline and itself.
+  [[nodiscard]] double score(double value) const;
+  /// The latest value lies beyond the Shewhart limits of the values before it.
+  [[nodiscard]] bool is_outside() const noexcept { return outside_; }
+
+ private:
+  struct Arm {
+    double height = 0.0;
+    signal::RunningMean since;        ///< Of the values since it was 0.
+    double standard_deviation = 0.0;  ///< Of the baseline when it was 0 last.
+
+    /// \param spread  standard deviation of the baseline now. \return true if it passes h.
+    bool add(double score, double value, double spread);
+  };
+  /// The baseline takes what waits.
+  void settle();
+
+  std::int64_t count_ = 0;
+  Arm upper_;
+  Arm lower_;
+  std::vector<double> sorted_;  ///< The baseline, rising.
+  signal::RunningVariance baseline_;
+  std::vector<double> waiting_;  ///< Values of the present excursion that are not in the baseline.
+  signal::RunningMean all_;
+  bool outside_ = false;
+};
+
+}  // namespace stickslip::trend

@@ -1,0 +1,116 @@
+/// \file
+/// The seven control charts of a tester, fed test by test.
+///
+///     TesterCharts charts{"reference 7"};
+///     for (const TestValues& test : history) charts.add(test);
+///     for (const base::Finding& finding : charts.findings()) …
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/finding.hpp"
+#include "core/trend/control_chart.hpp"
+
+namespace stickslip::trend {
+
+/// In the order of chart_kinds().
+enum class Quantity : std::uint8_t { kReference, kOmega, kDamping, kZero, kNoise, kSpikes, kRate };
+inline constexpr std::size_t kQuantities = static_cast<std::size_t>(Quantity::kRate) + 1;
+
+struct ChartKind {
+  std::string_view name;     ///< Stable between versions: "zero".
+  std::string_view unit;     ///< SI, "1" for a ratio or a count.
+  std::string_view meaning;  ///< For people; begins a sentence.
+  std::string_view key;      ///< Of its value in a line of the history, with the unit; empty: `reference`.
+  base::FindingCode code;
+};
+
+[[nodiscard]] const std::array<ChartKind, kQuantities>& chart_kinds() noexcept;
+[[nodiscard]] const ChartKind& kind_of(Quantity quantity) noexcept;
+[[nodiscard]] std::optional<Quantity> quantity_from_name(std::string_view name) noexcept;
+
+/// What one finished test gives to the charts; an absent value leaves its chart as it is.
+struct TestValues {
+  std::string time;    ///< ISO 8601, when the test began.
+  std::string file;    ///< Name of the record, for people.
+  std::string sample;  ///< Name of the sample; empty if unknown.
+  std::optional<double> pull_speed_m_per_s;
+  std::optional<double> mu_k;
+  std::optional<double> delta_mu;
+  /// By Quantity; that of kReference is chosen by TesterCharts.
+  std::array<std::optional<double>, kQuantities> values;
+
+  bool operator==(const TestValues&) const = default;
+};
+
+/// A shift that was told and that nobody has acknowledged.
+struct StandingAlarm {
+  bool rises = false;
+  double shift = 0.0;               ///< In the unit of the chart; an estimate, large when told early.
+  double standard_deviation = 0.0;  ///< Of the chart before the change.
+  std::string since_time;           ///< Of the first test of the estimated change.
+  std::string since_file;
+  std::string told_time;  ///< Of the test that told it.
+  std::string told_file;
+};
+
+enum class Verdict { kOff, kLearning, kInControl, kAlarm };
+/// "off", "learning", "in control", "alarm".
+[[nodiscard]] std::string_view name(Verdict verdict) noexcept;
+
+struct ChartState {
+  ControlChart chart;
+  std::optional<double> latest;
+  std::string latest_file;
+  std::int64_t outside_count = 0;  ///< Values beyond Shewhart limits since the restart.
+  std::optional<StandingAlarm> alarm;
+  std::string no_value_reason;  ///< Why the latest test gave no value; empty if it did.
+
+  [[nodiscard]] Verdict verdict() const noexcept;
+};
+
+class TesterCharts {
+ public:
+  /// \param reference  name of the sample that is the reference paper; empty: its chart is off.
+  explicit TesterCharts(std::string reference = {}) : reference_(std::move(reference)) {}
+
+  /// \return the quantities that this test newly alarms.
+  std::vector<Quantity> add(const TestValues& test);
+  /// Somebody acknowledges. \param baseline_stays  nothing had changed: the values before it remain the
+  /// baseline; false: a new one begins.
+  void restart(Quantity quantity, bool baseline_stays);
+
+  [[nodiscard]] const ChartState& state(Quantity quantity) const {
+    return states_[static_cast<std::size_t>(quantity)];
+  }
+  [[nodiscard]] const std::string& reference() const noexcept { return reference_; }
+  /// A finding `trend-…` for each standing alarm.
+  [[nodiscard]] std::vector<base::Finding> findings() const;
+
+ private:
+  /// Value of the reference chart, or why the test gives none.
+  [[nodiscard]] std::optional<double> reference_value(const TestValues& test, std::string& why);
+
+  std::string reference_;
+  /// What the reference chart compares, set by its first test since the restart.
+  struct Compared {
+    bool is_delta_mu = false;
+    std::optional<double> pull_speed_m_per_s;
+  };
+  std::optional<Compared> compared_;
+  std::array<ChartState, kQuantities> states_;
+  /// Tests of each chart since the restart, for the onset of an alarm.
+  struct TestName {
+    std::string time;
+    std::string file;
+  };
+  std::array<std::vector<TestName>, kQuantities> tests_;
+};
+
+}  // namespace stickslip::trend

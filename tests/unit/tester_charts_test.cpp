@@ -1,0 +1,121 @@
+#include "core/trend/tester_charts.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+
+#include "tests/support/trend_trials.hpp"
+
+namespace stickslip::trend {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TestValues reference_test(double delta_mu, double pull_speed_m_per_s = 0.005) {
+  TestValues test;
+  test.sample = "ref";
+  test.pull_speed_m_per_s = pull_speed_m_per_s;
+  test.delta_mu = delta_mu;
+  test.mu_k = 0.3;
+  return test;
+}
+
+TestValues zero_test(double zero_N, int number) {
+  TestValues test;
+  test.time = "t" + std::to_string(number);
+  test.file = std::to_string(number) + ".h5";
+  test.values[static_cast<std::size_t>(Quantity::kZero)] = zero_N;
+  return test;
+}
+
+TEST(ChartKinds, HaveEachANameAKeyAndACode) {
+  std::set<std::string_view> names;
+  for (const ChartKind& kind : chart_kinds()) {
+    names.insert(kind.name);
+    EXPECT_EQ(base::kind_of(kind.code).name, "trend-" + std::string{kind.name});
+    EXPECT_EQ(kind_of(*quantity_from_name(kind.name)).code, kind.code);
+  }
+  EXPECT_EQ(names.size(), kQuantities);
+  EXPECT_FALSE(quantity_from_name("colour"));
+}
+
+TEST(TesterCharts, LeaveAChartAsItIsWithoutAFiniteValue) {
+  TesterCharts charts;
+  charts.add(zero_test(0.1, 1));
+  charts.add(zero_test(std::numeric_limits<double>::quiet_NaN(), 2));
+  charts.add({});
+  EXPECT_EQ(charts.state(Quantity::kZero).chart.count(), 1);
+  EXPECT_EQ(charts.state(Quantity::kZero).latest_file, "1.h5");
+  EXPECT_EQ(charts.state(Quantity::kNoise).verdict(), Verdict::kOff);
+  EXPECT_THAT(charts.state(Quantity::kReference).no_value_reason, HasSubstr("[trend] reference"));
+}
+
+TEST(TesterCharts, CompareTheReferencePaperOfOneNameOneSpeedAndOneQuantity) {
+  TesterCharts charts{"ref"};
+  TestValues other = reference_test(0.05);
+  other.sample = "liner";
+  charts.add(other);
+  EXPECT_EQ(charts.state(Quantity::kReference).chart.count(), 0);
+  EXPECT_THAT(charts.state(Quantity::kReference).no_value_reason, HasSubstr("not the reference paper, ref"));
+  charts.add(reference_test(0.05));
+  charts.add(reference_test(0.06, 0.005 * 1.04));  // Within 5 % of the first.
+  charts.add(reference_test(0.05, 0.005 * 1.06));
+  EXPECT_EQ(charts.state(Quantity::kReference).chart.count(), 2);
+  EXPECT_THAT(charts.state(Quantity::kReference).no_value_reason, HasSubstr("0.005 m/s"));
+  TestValues without_slip = reference_test(0.0);
+  without_slip.delta_mu.reset();
+  charts.add(without_slip);
+  EXPECT_EQ(charts.state(Quantity::kReference).chart.count(), 2);
+  EXPECT_EQ(charts.state(Quantity::kReference).latest, 0.06);
+
+  // A paper that does not slip at first has K on the chart; so has each later test.
+  charts.restart(Quantity::kReference, false);
+  charts.add(without_slip);
+  charts.add(reference_test(0.05));
+  EXPECT_EQ(charts.state(Quantity::kReference).chart.count(), 2);
+  EXPECT_EQ(charts.state(Quantity::kReference).latest, 0.3);
+}
+
+TEST(TesterCharts, LetAnAlarmStandUntilItIsAcknowledged) {
+  TesterCharts charts;
+  int number = 0;
+  for (; number < 100; ++number) charts.add(zero_test(number % 2 == 0 ? 0.1 : -0.1, number));
+  EXPECT_THAT(charts.findings(), IsEmpty());
+  std::vector<Quantity> alarmed;
+  for (; alarmed.empty() && number < 120; ++number) alarmed = charts.add(zero_test(2.0, number));
+  EXPECT_THAT(alarmed, ElementsAre(Quantity::kZero));
+  for (int more = 0; more < 30; ++more) EXPECT_THAT(charts.add(zero_test(-9.0, ++number)), IsEmpty());
+  ASSERT_EQ(charts.findings().size(), 1U);
+  const base::Finding finding = charts.findings().front();
+  EXPECT_EQ(finding.code, "trend-zero");
+  // Around 0 before, with a standard deviation of 0.1 √(100/99).
+  EXPECT_THAT(finding.text, HasSubstr("the zero rose by about 2 N (19.9 standard deviations)"));
+  EXPECT_THAT(finding.text, HasSubstr("with the test of t100 (100.h5)"));
+  EXPECT_EQ(charts.state(Quantity::kZero).verdict(), Verdict::kAlarm);
+
+  TesterCharts false_alarm = charts;
+  const std::int64_t count = charts.state(Quantity::kZero).chart.count();
+  false_alarm.restart(Quantity::kZero, true);
+  EXPECT_THAT(false_alarm.findings(), IsEmpty());
+  EXPECT_EQ(false_alarm.state(Quantity::kZero).chart.count(), count);
+  EXPECT_EQ(false_alarm.state(Quantity::kZero).verdict(), Verdict::kLearning);
+  charts.restart(Quantity::kZero, false);
+  EXPECT_EQ(charts.state(Quantity::kZero).chart.count(), 0);
+  EXPECT_EQ(charts.state(Quantity::kZero).no_value_reason, "no test since the restart");
+}
+
+TEST(TesterCharts, LearnUntilTheBaselineIsFull) {
+  TesterCharts charts;
+  for (int number = 0; number < kFullBaseline; ++number) {
+    EXPECT_NE(charts.state(Quantity::kZero).verdict(), Verdict::kInControl);
+    charts.add(zero_test(number % 2 == 0 ? -0.1 : 0.1, number));
+  }
+  EXPECT_EQ(charts.state(Quantity::kZero).verdict(), Verdict::kInControl);
+}
+
+}  // namespace
+}  // namespace stickslip::trend
