@@ -42,6 +42,7 @@ constexpr const char* kExamples = R"(Examples:
   stickslip compare a*.h5 -- b*.h5                     do two materials differ, and how many tests would show it
   stickslip find records --regime stick-slip --where S-K=0.04:   records, by what is in them
   stickslip law records/*.h5                           friction law, from tests at several pull speeds
+  stickslip trend records                              has the tester shifted? Control charts
   stickslip verify records/*.h5                        whole or not, and why; exit status 0, 1, 3 or 4
   stickslip recover records                            records from the journals that a stop left behind
   stickslip boards                                     A/D boards, what they offer, what to configure
@@ -134,6 +135,7 @@ int main_of(int count, char** arguments) {
   add_compare(app, chosen);
   add_find(app, chosen);
   add_law(app, chosen);
+  add_trend(app, chosen);
   add_scenes(app, chosen);
   add_boards(app, chosen);
   add_methods(app, chosen);

@@ -31,6 +31,7 @@ void add_report(CLI::App& app, Chosen& chosen);
 void add_compare(CLI::App& app, Chosen& chosen);
 void add_find(CLI::App& app, Chosen& chosen);
 void add_law(CLI::App& app, Chosen& chosen);
+void add_trend(CLI::App& app, Chosen& chosen);
 void add_scenes(CLI::App& app, Chosen& chosen);
 void add_boards(CLI::App& app, Chosen& chosen);
 void add_methods(CLI::App& app, Chosen& chosen);

@@ -7,10 +7,21 @@
 #include <boost/crc.hpp>
 
 namespace stickslip::record {
+namespace {
+
+using Crc32c = boost::crc_optimal<32, 0x1EDC6F41, 0xFFFFFFFF, 0xFFFFFFFF, true, true>;
+
+}  // namespace
+
+std::uint32_t crc32c(std::span<const std::byte> bytes) {
+  Crc32c crc;
+  crc.process_bytes(bytes.data(), bytes.size());
+  return crc.checksum();
+}
 
 std::uint32_t entry_crc(EntryHead head, std::span<const std::byte> payload) {
   head.crc = 0;
-  boost::crc_optimal<32, 0x1EDC6F41, 0xFFFFFFFF, 0xFFFFFFFF, true, true> crc;
+  Crc32c crc;
   crc.process_bytes(&head, sizeof head);
   crc.process_bytes(payload.data(), payload.size());
   return crc.checksum();

@@ -46,7 +46,10 @@ struct EntryHead {
 inline constexpr std::size_t kEntryHeadSize = 32;
 static_assert(sizeof(EntryHead) == kEntryHeadSize);
 
-/// CRC-32C [Castagnoli 1993; RFC 3720, 12.1] of a head, its crc field taken as 0, and its payload.
+/// CRC-32C [Castagnoli 1993; RFC 3720, 12.1].
+[[nodiscard]] std::uint32_t crc32c(std::span<const std::byte> bytes);
+
+/// CRC-32C of a head, its crc field taken as 0, and its payload.
 [[nodiscard]] std::uint32_t entry_crc(EntryHead head, std::span<const std::byte> payload);
 
 struct Entry {
