@@ -123,10 +123,8 @@ std::string text_of(const TrendOptions& options, const daemon::TrendState& state
       reasons += fmt::format("{}: {}\n", kind.name, chart.reason);
   }
   std::string text = table.text();
-  text += fmt::format(
-      "up, down: CUSUM of k {}, an alarm above h {}; learning: fewer than {} tests, a shift is "
-      "told later\n",
-      trend::kReferenceValue, trend::kDecisionInterval, trend::kFullBaseline);
+  text += fmt::format("up, down: CUSUM, k {}, an alarm above h {}; learning: fewer than {} tests\n",
+                      trend::kReferenceValue, trend::kDecisionInterval, trend::kFullBaseline);
   text += base::printable_lines(reasons);
   for (const base::Finding& finding : state.findings) {
     text += io::finding_text(finding);

@@ -332,6 +332,10 @@ DaemonConfig read_all(Settings& settings, const std::filesystem::path& folder) {
   read_sample(settings.table("sample"), config.sample);
   read_method(settings.table("method"), folder, config.method);
   config.board.simulated.method = config.method;
+  Settings trend = settings.table("trend");
+  config.trend_reference = trend.text("reference", "");
+  if (const std::string why = base::name_refusal(config.trend_reference); !why.empty())
+    trend.refuse("reference", why);
   Settings analysis = settings.table("analysis");
   read_estimator(analysis, config);
   config.skipped = {.spikes = analysis.boolean("keep_spikes", false),

@@ -64,6 +64,7 @@ struct DaemonConfig {
   /// Absent: that of a replayed record, else "fit".
   std::optional<detect::EstimatorTier> estimator;
   analysis::SkippedCorrections skipped;
+  std::string trend_reference;  ///< Name of the sample that is the reference paper; empty: none.
   std::filesystem::path record_folder;
   DatedFolders dated_folders = DatedFolders::kNone;
   bool read_only_records = false;

@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 # Tests of one row, unless told, as the documents quote them.
-COUNTS = {"estimator": 4000, "escape": 10000, "regime": 10000, "promise": 1000, "scatter": 1000, "ramp": 400, "consistency": 100000,
+COUNTS = {"estimator": 4000, "escape": 10000, "regime": 10000, "promise": 1000, "scatter": 1000, "ramp": 400, "consistency": 100000, "trend": 4000,
           "instrument": 60}
 ROOT = pathlib.Path(__file__).parents[1]
 BUILD = ROOT / "build/bench"

@@ -60,6 +60,7 @@ App::App(io::DaemonConfig config, AppWorld world)
             boost::asio::post(io_, [this, test, file] {
               if (file) {
                 batches_.record_published(test, *file);
+                charts_.record_published(*file);
               } else {
                 batches_.record_failed(test);
               }
@@ -85,6 +86,11 @@ App::App(io::DaemonConfig config, AppWorld world)
                 .earlier = [this](daemon::TestSummary test) { tests_.add_earlier(std::move(test)); },
                 .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
                 .clock = clock_.get()}),
+      charts_({.folder = config_.record_folder,
+               .reference = config_.trend_reference,
+               .alarmed = [this](const base::Finding& finding) { world_.events->trend_alarmed(finding); },
+               .troubled = [this](const std::string& why) { world_.events->trend_troubled(why); },
+               .clock = clock_.get()}),
       reports_({.io = io_, .folder = config_.record_folder, .program = page::program_beside_this()}),
       wall_(base::make_system_clock()),
       calibrations_(
@@ -129,6 +135,7 @@ base::Result<void> App::run() {
   static_cast<void>(storage::recover_folder(config_.record_folder, finalise_, *world_.events));
   batches_.open();
   continues_.next_test_number = batches_.next_test_number();
+  charts_.open();
   if (base::Result<void> opened = open_fleet(); !opened) return opened;
   if (base::Result<void> opened = open_session();
       !opened && opened.error().kind != base::ErrorKind::kInterrupted) {
@@ -146,6 +153,7 @@ base::Result<void> App::run() {
   io_.restart();
   io_.poll();
   batches_.close();
+  charts_.close();
   io_.poll();
   if (fleet_) fleet_->stop();
   live_.close();

@@ -20,6 +20,7 @@
 #include "core/base/clock.hpp"
 #include "daemon/app/test_watcher.hpp"
 #include "daemon/batch/leader.hpp"
+#include "daemon/charts/keeper.hpp"
 #include "daemon/control/api.hpp"
 #include "daemon/control/server.hpp"
 #include "daemon/fleet/fleet.hpp"
@@ -133,6 +134,7 @@ class App {
   TestWatcher watcher_;
   live::LiveStream live_;
   batch::BatchLeader batches_;
+  charts::Keeper charts_;
   page::ReportJobs reports_;
   std::unique_ptr<base::Clock> wall_;  ///< Wall time, for the lease, dates and messages.
   control::Lease lease_;

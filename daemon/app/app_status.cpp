@@ -148,6 +148,8 @@ daemon::Status App::status() const {
       base::add(status.findings, *std::move(finding));
   }
   if (calibration.expired) base::add(status.findings, pipeline::expired_finding(calibration.facts.expires));
+  status.trend = charts_.state();
+  for (const base::Finding& finding : status.trend.findings) base::add(status.findings, finding);
   status.finding_counts = tests_.finding_counts();
   status.page = page_;
   if (fleet_) status.fleet = fleet_->state();

@@ -205,6 +205,17 @@ class Log final : public daemon::EventReceiver {
                                  "does the client that told them run?",
                                  topic, valid_s, keys)});
   }
+  void trend_alarmed(const base::Finding& finding) override {
+    tell({.level = io::LogLevel::kWarning,
+          .event = "finding",
+          .message = fmt::format("tester: {}; {}", base::printable(finding.text), io::action_text(finding)),
+          .cause = finding.code});
+  }
+  void trend_troubled(std::string_view why) override {
+    tell({.level = io::LogLevel::kWarning,
+          .event = "trend-trouble",
+          .message = fmt::format("history of the tester: {}", why)});
+  }
   void hanging(std::string_view parts) override {
     if (parts.empty()) {
       tell({.level = io::LogLevel::kWarning,

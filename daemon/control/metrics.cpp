@@ -53,6 +53,24 @@ void histogram(Page& page, std::string_view name, std::string_view help,
   page.value(fmt::format("{}_count", name), count);
 }
 
+/// Writes the gauges of the control charts.
+void charts(Page& page, const daemon::TrendState& state) {
+  using Chart = daemon::TrendState::Chart;
+  const auto gauge = [&](std::string_view name, std::string_view help, const auto& value) {
+    page.head(name, "gauge", help);
+    for (const Chart& chart : state.charts)
+      page.value(name, value(chart), fmt::format("{{chart=\"{}\"}}", trend::kind_of(chart.quantity).name));
+  };
+  gauge("trend_alarm", "1 while a control chart of the tester has an alarm that nobody has acknowledged.",
+        [](const Chart& chart) { return chart.alarm ? 1 : 0; });
+  gauge("trend_tests", "Tests on the control chart since its restart.",
+        [](const Chart& chart) { return chart.test_count; });
+  gauge("trend_upper", "Arm of the CUSUM for rising values, standard deviations; an alarm above 7.",
+        [](const Chart& chart) { return chart.upper; });
+  gauge("trend_lower", "Arm of the CUSUM for falling values, standard deviations; an alarm above 7.",
+        [](const Chart& chart) { return chart.lower; });
+}
+
 /// Text of a label: printable, with backslash and quote escaped.
 std::string escaped(std::string_view text) {
   std::string out;
@@ -98,6 +116,7 @@ std::string metrics_text(const daemon::Status& status) {
   }
   page.gauge("bench_findings", "Findings that the bench has now, as GET /v1/status names them.",
              status.findings.size());
+  if (!status.trend.charts.empty()) charts(page, status.trend);
   if (status.board) {
     page.gauge("scan_rate_hertz", "Scan rate that the board granted.", status.board->scan_rate_granted_Hz);
   }

@@ -152,6 +152,7 @@ const Tables = (() => {
     if (["board missing", "board busy", "no permission"].includes(status.state)) found.push(status.detail);
     if (status.bench_trouble != null) found.push(`bench ${status.bench}: ${status.bench_trouble}`);
     if (status.storage.why != null) found.push(`storage ${status.storage.state}: ${status.storage.why}; ${status.storage.to_do}`);
+    if (status.trend.trouble != null) found.push(`history of the tester: ${status.trend.trouble}`);
     found.push(...status.coded_findings.map(finding => `${finding.text}; ${finding.action}`));
     return found.join(" · ");
   }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core/base/finding.hpp"
 #include "core/daq/board.hpp"
 #include "core/daq/gain_change.hpp"
 #include "core/daq/gap.hpp"
@@ -75,6 +76,10 @@ class EventReceiver {
   virtual void facts_expired(std::string_view /*topic*/, std::string_view /*keys*/, double /*valid_s*/) {}
   /// The connection to the broker was made or lost, or fails for another reason than before.
   virtual void fleet_changed(const FleetState& /*state*/) {}
+  /// A control chart of the tester has an alarm, once for each start or restart of the chart.
+  virtual void trend_alarmed(const base::Finding& /*finding*/) {}
+  /// The history of the tester cannot be written, or has a line that cannot be read.
+  virtual void trend_troubled(std::string_view /*why*/) {}
   virtual void control_listening(std::string_view /*socket*/) {}
   /// Threads of the daemon hang, so that the service manager will restart it. \param parts  their names,
   /// separated by commas; empty: all run again.

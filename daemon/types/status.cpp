@@ -202,6 +202,7 @@ Json status_json(const Status& status) {
       counts[std::string{kind.name}] = count;
   }
   json["finding_counts"] = std::move(counts);
+  json["trend"] = trend_json(status.trend);
   json["live_clients"] = {{"count", status.live_client_count},
                           {"dropped_frame_count", status.live_dropped_count}};
   json["page"] = to_json(status.page);

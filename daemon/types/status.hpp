@@ -21,6 +21,7 @@
 #include "daemon/types/scan_account.hpp"
 #include "daemon/types/storage_state.hpp"
 #include "daemon/types/test_log.hpp"
+#include "daemon/types/trend_state.hpp"
 
 namespace stickslip::daemon {
 
@@ -64,6 +65,7 @@ struct Status {
   std::vector<base::Finding> findings;  ///< Of the bench now; those of a test are in its results.
   FindingCounts finding_counts{};       ///< Over all tests that have ended.
   std::optional<BatchProgress> batch;   ///< The current batch; absent: none.
+  TrendState trend;                     ///< Control charts of the tester.
   std::optional<FleetState> fleet;      ///< Absent: no broker is configured.
   record::Metadata facts;               ///< Of the next test, by plan and broker.
   /// The live page over TCP.

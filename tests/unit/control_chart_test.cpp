@@ -122,7 +122,7 @@ TEST(ControlChart, MarksValuesBeyondThreeStandardDeviationsAndRaisesNoAlarmForOn
   EXPECT_FALSE(chart.add(1e3));
   EXPECT_FALSE(chart.is_outside());  // Too few before it for limits.
   chart = chart_at_rest(100, 3);
-  const double limit = kShewhart * chart.standard_deviation();
+  const double limit = 3.0 * chart.standard_deviation();
   EXPECT_FALSE(chart.add(chart.mean() + 1.01 * limit));
   EXPECT_TRUE(chart.is_outside());
   chart = chart_at_rest(100, 3);

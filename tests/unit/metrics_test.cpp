@@ -69,6 +69,7 @@ Status busy() {
   status.latency.add(2500e6);  // 2.5 s, above all limits
   status.commit_time.add(3e6);
   status.ring = {.capacity = 12000, .high_water = 40};
+  status.trend = trend_state(trend::TesterCharts{});
   return status;
 }
 

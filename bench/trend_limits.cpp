@@ -1,0 +1,205 @@
+// The control charts of a tester on random histories: tests between false alarms of all seven charts, and
+// tests until a shift is told, by the number of tests before it; then whole simulated tests, five for each
+// history.
+//
+//     trend_limits [HISTORIES [SEED]]      # 4000, seed 1
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "bench/arguments.hpp"
+#include "tests/support/record_samples.hpp"
+#include "tests/support/trend_path.hpp"
+#include "tests/support/trend_trials.hpp"
+
+namespace {
+
+using namespace stickslip;
+
+void print_false_alarms(std::uint64_t histories, std::uint64_t seed) {
+  std::vector<double> lengths;
+  for (std::uint64_t i = 0; i < histories; ++i)
+    lengths.push_back(static_cast<double>(test::tests_to_false_alarm(seed + i)));
+  std::sort(lengths.begin(), lengths.end());
+  double sum = 0.0;
+  for (const double length : lengths) sum += length;
+  const double mean = sum / static_cast<double>(lengths.size());
+  fmt::print(
+      "tests from an empty history to the first false alarm of the seven charts: mean {:.0f} +- {:.0f}, "
+      "median {:.0f}, one history in ten below {:.0f}\n",
+      mean, mean / std::sqrt(static_cast<double>(histories)), lengths[lengths.size() / 2],
+      lengths[lengths.size() / 10]);
+  // A long history without a restart but that of the alarmed chart's arms.
+  constexpr int kTests = 20'000;
+  std::int64_t alarms = 0;
+  std::array<std::int64_t, trend::kQuantities> of_chart{};
+  const std::uint64_t long_ones = std::max<std::uint64_t>(1, histories / 100);
+  for (std::uint64_t i = 0; i < long_ones; ++i) {
+    test::RandomHistory history{seed + 1'000'000 + i};
+    trend::TesterCharts charts{"reference"};
+    for (int k = 0; k < kTests; ++k) {
+      for (const trend::Quantity quantity : charts.add(history.next())) {
+        ++alarms;
+        ++of_chart[static_cast<std::size_t>(quantity)];
+        charts.restart(quantity, true);
+      }
+    }
+  }
+  const double tests = static_cast<double>(long_ones) * kTests;
+  fmt::print("tests between false alarms over {} histories of {} tests: {:.0f} +- {:.0f}; of each chart:",
+             long_ones, kTests, tests / static_cast<double>(std::max<std::int64_t>(1, alarms)),
+             tests / std::pow(static_cast<double>(std::max<std::int64_t>(1, alarms)), 1.5));
+  for (std::size_t i = 0; i < trend::kQuantities; ++i)
+    fmt::print(" {} {:.0f}", trend::chart_kinds()[i].name,
+               tests / static_cast<double>(std::max<std::int64_t>(1, of_chart[i])));
+  fmt::print("\n");
+}
+
+void print_delays(std::uint64_t histories, std::uint64_t seed, trend::Quantity quantity, double shift) {
+  for (const std::int64_t before : {25, 50, 100, 200, 400}) {
+    std::vector<double> delays;
+    std::uint64_t late = 0;
+    constexpr std::int64_t kMost = 1000;
+    for (std::uint64_t i = 0; i < histories; ++i) {
+      const auto delay = test::tests_to_alarm(seed + i, before, {quantity, shift}, kMost);
+      if (!delay) continue;
+      delays.push_back(static_cast<double>(*delay));
+      if (*delay >= 100) ++late;
+    }
+    std::sort(delays.begin(), delays.end());
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const double delay : delays) {
+      sum += delay;
+      squares += delay * delay;
+    }
+    const auto n = static_cast<double>(delays.size());
+    const double mean = sum / n;
+    fmt::print("{:<9} {:>5.1f} {:>7} {:>8.1f} +- {:<5.1f} {:>6.0f} {:>9.0f} {:>14.1f}\n",
+               trend::kind_of(quantity).name, shift, before, mean, std::sqrt((squares / n - mean * mean) / n),
+               delays[delays.size() / 2], delays[delays.size() * 9 / 10],
+               100.0 * static_cast<double>(late) / n);
+  }
+}
+
+/// The shipped scene with short tests, and one setting more or less.
+std::filesystem::path scene_with(const test::TemporaryFolder& folder, std::uint64_t seed,
+                                 std::string_view name,
+                                 const std::vector<std::pair<std::string, std::string>>& changes) {
+  std::ifstream in{std::filesystem::path{STICKSLIP_SOURCE_DIR} /
+                   "config/scenes/stick-slip-at-12-in-per-min.toml"};
+  std::string text{std::istreambuf_iterator<char>{in}, {}};
+  std::vector<std::pair<std::string, std::string>> all{{"seed = 3 ", fmt::format("seed = {} ", seed)},
+                                                       {"idle = \"0.5 s\"", "idle = \"2 s\""},
+                                                       {"pull = \"5 s\"", "pull = \"1.5 s\""},
+                                                       {"stop = \"1 s\"", "stop = \"0.5 s\""}};
+  all.insert(all.end(), changes.begin(), changes.end());
+  for (const auto& [was, becomes] : all) {
+    const std::size_t at = text.find(was);
+    if (at == std::string::npos) throw std::runtime_error("the scene has no " + was);
+    text.replace(at, was.size(), becomes);
+  }
+  const std::filesystem::path file = folder.path() / fmt::format("{}.toml", name);
+  std::ofstream{file} << text;
+  return file;
+}
+
+/// Whole tests: their false alarms, and how soon omega or noise that is one standard deviation off is told.
+void print_whole_path(std::uint64_t tests, std::uint64_t seed) {
+  using enum trend::Quantity;
+  const test::TemporaryFolder folder;
+  const auto play = [&](std::string_view name, std::uint64_t own_seed, std::uint64_t count,
+                        const auto& changes) {
+    return test::tests_of_scene(scene_with(folder, own_seed, name, changes), static_cast<int>(count));
+  };
+  using Changes = std::vector<std::pair<std::string, std::string>>;
+  const auto in_control = play("in-control", seed, tests, Changes{});
+  trend::TesterCharts charts{"reference"};
+  std::array<int, trend::kQuantities> alarms{};
+  for (const trend::TestValues& test : in_control) {
+    for (const trend::Quantity quantity : charts.add(test)) {
+      ++alarms[static_cast<std::size_t>(quantity)];
+      charts.restart(quantity, true);
+    }
+  }
+  fmt::print(
+      "\nthe whole path: {} simulated tests from scans to charts; false alarms (by Siegmund {:.1f} a "
+      "chart)\n",
+      in_control.size(), static_cast<double>(in_control.size()) / trend::run_length(0.0));
+  for (std::size_t i = 0; i < trend::kQuantities; ++i) {
+    const trend::ControlChart& chart = charts.state(static_cast<trend::Quantity>(i)).chart;
+    fmt::print("{:<9} {:>7} values, mean {:.6g}, sd {:.3g}: {} false alarms\n", trend::chart_kinds()[i].name,
+               chart.count(), chart.mean(), chart.standard_deviation(), alarms[i]);
+  }
+  const auto sd = [&charts](trend::Quantity quantity) {
+    return charts.state(quantity).chart.standard_deviation();
+  };
+  constexpr double kTwoPi = 6.283185307179586;
+  const double noise = 0.001 * (1.0 + sd(kNoise) / charts.state(kNoise).chart.mean());
+  const std::array shifts{
+      std::pair{kOmega, Changes{{"frequency = \"20 Hz\"",
+                                 fmt::format("frequency = \"{:.9f} Hz\"", 20.0 + sd(kOmega) / kTwoPi)}}},
+      std::pair{kNoise, Changes{{"sd = 0.001 ", fmt::format("sd = {:.9f} ", noise)}}}};
+  constexpr std::size_t kAfter = 100;
+  for (const auto& [quantity, changes] : shifts) {
+    const auto shifted = play(trend::kind_of(quantity).name, seed + 1, tests / 2, changes);
+    for (const std::size_t before : {std::size_t{100}, std::size_t{200}, std::size_t{400}}) {
+      std::vector<double> delays;
+      for (std::size_t first = 0, next = 0;
+           first + before <= in_control.size() && next + kAfter <= shifted.size();
+           first += before, next += kAfter) {
+        trend::TesterCharts own{"reference"};
+        for (std::size_t i = first; i < first + before; ++i) own.add(in_control[i]);
+        if (own.state(quantity).alarm) continue;
+        std::size_t count = 0;
+        while (count < kAfter && !own.state(quantity).alarm) own.add(shifted[next + count++]);
+        delays.push_back(static_cast<double>(count));
+      }
+      double sum = 0.0;
+      double squares = 0.0;
+      for (const double delay : delays) {
+        sum += delay;
+        squares += delay * delay;
+      }
+      const auto n = static_cast<double>(delays.size());
+      fmt::print(
+          "{} shifted by one sd after {} tests: told within {:.1f} +- {:.1f} tests on average of {} "
+          "histories (at most {} are waited for)\n",
+          trend::kind_of(quantity).name, before, sum / n, std::sqrt((squares / n - sum / n * sum / n) / n),
+          delays.size(), kAfter);
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto histories = test::argument<std::uint64_t>(argc, argv, 1, 4000);
+  const auto seed = test::argument<std::uint64_t>(argc, argv, 2, 1);
+  fmt::print(
+      "k {}, h {}; Siegmund: {:.0f} tests between false alarms of a chart, {:.1f} to tell one standard "
+      "deviation\n",
+      trend::kReferenceValue, trend::kDecisionInterval, trend::run_length(0.0), trend::run_length(1.0));
+  print_false_alarms(histories, seed);
+  fmt::print(
+      "\ntests until a shift is told; at most 1000 are waited for\n"
+      "chart     shift  tests     mean            median  9 of 10    later than\n"
+      "             sd  before                              within    100 tests, %\n");
+  using enum trend::Quantity;
+  for (const double shift : {1.0, 2.0, 5.0}) print_delays(histories, seed, kOmega, shift);
+  print_delays(histories, seed, kZero, 1.0);
+  print_delays(histories, seed, kNoise, 1.0);
+  for (const double shift : {1.0, 3.0, 5.0}) print_delays(histories, seed, kSpikes, shift);
+  print_whole_path(5 * histories, seed);
+  return 0;
+}
