@@ -41,13 +41,13 @@ daemon::TrendState Keeper::state() const {
 
 void Keeper::begin() {
   evaluate();
-  if (history_.reference() != parts_.reference) {
-    const auto named = history_.append(
+  if (history_->reference() != parts_.reference) {
+    const auto named = history_->append(
         {{record::iso_time(parts_.clock->realtime_ns()), daemon::ReferenceNamed{parts_.reference}}});
     if (!named) trouble_ = named.error().message;
   }
   std::vector<std::filesystem::path> files = io::own_records(parts_.folder);
-  const std::set<std::string>& known = history_.records();
+  const std::set<std::string>& known = history_->records();
   std::erase_if(files, [&known](const std::filesystem::path& file) {
     const std::string name = file.stem().string();
     return known.contains(name) || (!known.empty() && name < *known.begin());
@@ -63,31 +63,32 @@ void Keeper::begin() {
 void Keeper::add(const std::filesystem::path& file) {
   const auto facts = record::read_facts_apart(file);
   // What cannot be read is `stickslip verify`'s to tell.
-  if (!facts || history_.has(facts->header.uuid)) return;
+  if (!facts || history_->has(facts->header.uuid)) return;
   const auto event = daemon::test_event(*facts, daemon::name_in_journal(parts_.folder, file));
   if (!event) return;
-  const auto written = history_.append({*event});
+  const auto written = history_->append({*event});
   // The record stays; the next start adds it.
   trouble_ = written ? std::string{} : written.error().message;
 }
 
 void Keeper::evaluate() {
-  const auto remarks = history_.read_on();
+  auto remarks = history_->read_on();
+  static_cast<void>(batches_.read_on(book_));  // The batch tells its own trouble.
+  if (book_.voidings() != voided_ || charts_.reference() != history_->reference()) {
+    charts_ = trend::TesterCharts{history_->reference()};
+    voided_ = book_.voidings();
+    history_ = std::make_unique<daemon::TesterHistory>(parts_.folder);
+    remarks = history_->read_on();
+  }
+  if (!remarks) {
+    // One that became shorter was replaced: the next time it is read from its beginning.
+    charts_ = trend::TesterCharts{};
+    history_ = std::make_unique<daemon::TesterHistory>(parts_.folder);
+  }
+  for (const daemon::HistoryEvent& event : history_->events()) daemon::apply(event, book_, charts_);
+  history_->forget_events();
   if (remarks && !remarks->empty() && left_out_.empty()) left_out_ = remarks->front();
   std::string trouble = !remarks ? remarks.error().message : !trouble_.empty() ? trouble_ : left_out_;
-  static_cast<void>(batches_.read_on(book_));  // The batch tells its own trouble.
-  std::set<std::string> voided;
-  for (const daemon::HistoryEvent& event : history_.events()) {
-    const auto* test = std::get_if<daemon::TestFinished>(&event.what);
-    if (test != nullptr && book_.voided(test->values.file) != nullptr) voided.insert(test->values.file);
-  }
-  if (voided != voided_ || charts_.reference() != history_.reference()) {
-    charts_ = trend::TesterCharts{history_.reference()};
-    applied_ = 0;
-    voided_ = std::move(voided);
-  }
-  for (; applied_ < history_.events().size(); ++applied_)
-    daemon::apply(history_.events()[applied_], book_, charts_);
   daemon::TrendState state = daemon::trend_state(charts_);
   if (!trouble.empty() && trouble != state_.trouble && parts_.troubled) parts_.troubled(trouble);
   state.trouble = std::move(trouble);

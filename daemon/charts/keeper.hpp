@@ -6,6 +6,8 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <string>
@@ -15,6 +17,7 @@
 
 #include "core/base/clock.hpp"
 #include "core/base/finding.hpp"
+#include "daemon/types/batch.hpp"
 #include "daemon/types/batch_journal.hpp"
 #include "daemon/types/tester_history.hpp"
 #include "daemon/types/trend_state.hpp"
@@ -62,15 +65,15 @@ class Keeper {
   void evaluate();
 
   Parts parts_;
-  daemon::TesterHistory history_{parts_.folder};
+  /// Its events are dropped when charts_ has them: the file may hold years.
+  std::unique_ptr<daemon::TesterHistory> history_ = std::make_unique<daemon::TesterHistory>(parts_.folder);
   daemon::BatchJournal batches_{parts_.folder};
   daemon::BatchBook book_;
   trend::TesterCharts charts_;
-  std::size_t applied_ = 0;        ///< Events of the history that charts_ has.
-  std::set<std::string> voided_;   ///< Records among them that are void.
-  std::set<std::string> alarmed_;  ///< Codes of the alarms that stand and were told.
-  std::string trouble_;            ///< Why the latest line could not be written; empty: it was.
-  std::string left_out_;           ///< The first line that could not be read; empty: none.
+  std::map<std::string, daemon::Voiding> voided_;  ///< Records that charts_ leaves out.
+  std::set<std::string> alarmed_;                  ///< Codes of the alarms that stand and were told.
+  std::string trouble_;   ///< Why the latest line could not be written; empty: it was.
+  std::string left_out_;  ///< The first line that could not be read; empty: none.
   mutable std::mutex mutex_;
   daemon::TrendState state_;  ///< Guarded by mutex_.
   std::atomic<bool> closing_{false};

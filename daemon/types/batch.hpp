@@ -68,6 +68,8 @@ struct Voiding {
   std::string reason;
   std::string who;
   std::string at;  ///< ISO 8601.
+
+  bool operator==(const Voiding&) const = default;
 };
 
 struct Batch {
@@ -120,6 +122,8 @@ class BatchBook {
   [[nodiscard]] const std::vector<Batch>& batches() const noexcept { return batches_; }
   /// The voiding of a test, or null if the test counts. \param record  as BatchTest::record.
   [[nodiscard]] const Voiding* voided(const std::string& record) const noexcept;
+  /// All tests that are void, by the same names.
+  [[nodiscard]] const std::map<std::string, Voiding>& voidings() const noexcept { return voided_; }
   /// True if the batch has a test with this record.
   [[nodiscard]] bool has(std::string_view batch, std::string_view record) const noexcept;
 

@@ -91,6 +91,8 @@ class TesterHistory {
 
   /// In the order of the lines.
   [[nodiscard]] const std::vector<HistoryEvent>& events() const noexcept { return events_; }
+  /// Drops events() from memory; all else that was read stays known.
+  void forget_events() noexcept { events_.clear(); }
   [[nodiscard]] bool has(const std::string& uuid) const { return uuids_.contains(uuid); }
   /// Names of records without folder and extension, which begin with the time.
   [[nodiscard]] const std::set<std::string>& records() const noexcept { return records_; }

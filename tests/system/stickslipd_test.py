@@ -99,8 +99,8 @@ class Demo(Folder):
         self.assertEqual(done.returncode, 0, done.stderr)
         records = sorted((self.folder / "records" / "demo").glob("*.h5"))
         self.assertEqual(len(records), 10)
-        leftovers = [f for f in (self.folder / "records" / "demo").iterdir() if f.suffix != ".h5"]
-        self.assertEqual(leftovers, [])
+        leftovers = [f.name for f in (self.folder / "records" / "demo").iterdir() if f.suffix != ".h5"]
+        self.assertEqual(leftovers, ["tester-history.jsonl"])
         lines = done.stdout.splitlines()
         measured = [line for line in lines if re.match(r" *\d+  [a-z]", line)]
         truths = [line for line in lines if re.match(r"truth  .*\d", line)]  # The legend has one without numbers.
@@ -204,7 +204,7 @@ class Signals(Folder):
         self.assertIn("READY=1", manager.messages)
         manager.wait_for(lambda text: "STOPPING=1" in text)
         [record] = self.records()
-        self.assertEqual([f for f in (self.folder / "records").iterdir() if f != record], [])
+        self.assertEqual([f for f in (self.folder / "records").iterdir() if f not in (record, record.with_name("tester-history.jsonl"))], [])
         self.assertEqual(ending(record), ("interrupted", ["the program stopped before the end of the test"], "stopped"))
         shown = run(CLI, "analyze", "--json", record)
         self.assertEqual(shown.returncode, 0, shown.stderr)

@@ -219,5 +219,23 @@ TEST_F(KeeperTest, TellsTroubleWithTheHistoryOnceAndKeepsItInTheState) {
   EXPECT_EQ(count(Quantity::kNoise), 1);
 }
 
+TEST_F(KeeperTest, ReadsAHistoryThatWasReplacedFromItsBeginning) {
+  keep([this](charts::Keeper& keeper) {
+    for (const char* const number : {"1", "2", "3"}) {
+      make_record(fmt::format("20261121T125252Z-000{}.h5", number),
+                  fmt::format("00000000-0000-4000-8000-00000000000{}", number));
+      keeper.record_published(folder_ / fmt::format("20261121T125252Z-000{}.h5", number));
+      keeper.settle();
+      // Of the first two nothing is left.
+      if (*number == '2') std::ofstream{folder_ / kTesterHistory} << "\n";
+    }
+    EXPECT_EQ(keeper.state().charts.at(static_cast<std::size_t>(Quantity::kNoise)).test_count, 0);
+    make_record("20261121T125252Z-0004.h5", "00000000-0000-4000-8000-000000000004");
+    keeper.record_published(folder_ / "20261121T125252Z-0004.h5");
+  });
+  EXPECT_THAT(troubles_, testing::ElementsAre(HasSubstr("is shorter than it was")));
+  EXPECT_EQ(count(Quantity::kNoise), 2);
+}
+
 }  // namespace
 }  // namespace stickslip::daemon
