@@ -26,8 +26,11 @@ void BatchBook::apply(const BatchEvent& event) {
     if (batch != nullptr && !batch->ended_at) batch->ended_at = event.at;
   } else if (const auto* recorded = std::get_if<TestRecorded>(&event.what)) {
     Batch* const batch = known(recorded->batch);
-    if (batch != nullptr && !has(recorded->batch, recorded->test.record))
-      batch->tests.push_back(recorded->test);
+    if (batch != nullptr && !has(recorded->batch, recorded->test.record)) {
+      BatchTest& test = batch->tests.emplace_back(recorded->test);
+      // The record tells the speed of the bench; the batch plans none.
+      if (batch->plan.pull_speeds_m_per_s.empty()) test.step.pull_speed_m_per_s.reset();
+    }
   } else if (const auto* voided = std::get_if<TestVoided>(&event.what)) {
     voided_.try_emplace(voided->record, Voiding{voided->reason, event.who, event.at});
   } else if (const auto* restored = std::get_if<TestRestored>(&event.what)) {

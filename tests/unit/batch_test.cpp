@@ -116,6 +116,13 @@ TEST(BatchPlan, WarnsOfNumbersWithoutAUnit) {
                           HasSubstr("limits: period_median, highest: \"2\": a time needs its unit")));
 }
 
+TEST(BatchBook, CountsATestAtTheSpeedOfTheBenchWhereItPlansNone) {
+  BatchBook book;
+  book.apply(at_noon(BatchBegun{"b", plan_of_text(R"({"name": "liner", "slides": 2})")}));
+  book.apply(at_noon(TestRecorded{"b", {"a.h5", {0.00508, 1, 1}}}));
+  EXPECT_EQ(book.next_step(*book.current(), {}), (BatchStep{std::nullopt, 1, 2}));
+}
+
 TEST(ResultLimits, HoldTheirEnds) {
   const ResultLimits limits{0.2, 0.4};
   EXPECT_TRUE(limits.holds(0.2) && limits.holds(0.4));
