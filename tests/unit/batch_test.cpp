@@ -140,8 +140,8 @@ TEST_F(BatchJournalTest, GivesBackWhatWasAppendedByWhomeverAlsoInPieces) {
   BatchJournal daemon{folder_};
   BatchBook book;
   EXPECT_THAT(daemon.read_on(book).value(), IsEmpty());  // No file yet.
-  const BatchPlan plan =
-      plan_of_text(R"({"name": "liner", "replicates": 2, "limits": {"mu_k": {"highest": 0.4}}})");
+  const BatchPlan plan = plan_of_text(
+      R"({"name": "liner", "replicates": 2, "pull_speeds": [0.00508], "limits": {"mu_k": {"highest": 0.4}}})");
   ASSERT_TRUE(daemon.append(at_noon(BatchBegun{"b", plan})));
   ASSERT_TRUE(daemon.append(at_noon(TestRecorded{"b", {"2026/11/a.h5", {0.00508, 1, 1}}})));
   EXPECT_THAT(daemon.read_on(book).value(), IsEmpty());
