@@ -47,33 +47,38 @@ class Bundle {
 
   /// \param file  the configuration. \param now_ns  nanoseconds since 1970, UTC.
   std::string text(const std::filesystem::path& file, base::Clock& clock) && {
-    // First: it learns from the configuration what to leave out.
-    const std::string configuration = bundle::configuration_text(file, redaction_);
     const bundle::Named named = bundle::named_in(file);
-    const std::vector<doctor::Finding> findings = doctor::examine(file, doctor::this_world(clock));
+    std::vector<doctor::Finding> findings;
+    const std::string unexamined = part([&] {
+      findings = doctor::examine(file, doctor::this_world(clock));
+      return std::string{};
+    });
     text_ = fmt::format("stickslip {} ({}): bundle of {}\n{}\n", base::kVersion, base::kCommit,
                         record::iso_time(clock.realtime_ns()), about(options_.with_names));
-    add("What is wrong", wrong(findings));
-    add("System", bundle::system_text(named));
-    add("Checks of stickslip doctor", io::json_document(redaction_.json(findings_json(findings))));
-    add("Configuration " + file.string(), configuration);
-    add("Files that it names", bundle::named_files_text(named, redaction_));
-    add("Status of the daemon", bundle::status_text(named, redaction_));
-    add("Log", bundle::log_text(options_.log));
-    add("Record folder " + named.record_folder.string(), bundle::folder_text(named));
+    add("What is wrong", [&] { return unexamined.empty() ? wrong(findings) : unexamined; });
+    add("System", [&] { return bundle::system_text(named); });
+    add("Checks of stickslip doctor",
+        [&] { return io::json_document(redaction_.json(findings_json(findings))); });
+    add(
+        "Configuration " + file.string(), [&] { return bundle::configuration_text(file, redaction_); }, true);
+    add(
+        "Files that it names", [&] { return bundle::named_files_text(named, redaction_); }, true);
+    add("Status of the daemon", [&] { return bundle::status_text(named, redaction_); });
+    add("Log", [&] { return bundle::log_text(options_.log); });
+    add("Record folder " + named.record_folder.string(), [&] { return bundle::folder_text(named); });
     add(fmt::format("Last records, {} at most, without scans", options_.record_count),
-        bundle::records_text(named, options_.record_count, redaction_));
+        [&] { return bundle::records_text(named, options_.record_count, redaction_); });
     return base::printable_lines(text_);
   }
 
  private:
   static std::string about(bool with_names) {
     return fmt::format(
-        "Read it before you send it. [removed] stands for passwords, tokens, keys, the user at the broker "
-        "and\n"
-        "values of unknown keys. Comments of TOML files are left out. Names of files and hosts stay. {}\n",
-        with_names ? "Names of operators\nand samples stay, as --with-names was given."
-                   : "[name left out]\nstands for what people typed, such as operators and samples; "
+        "Read it before you send it. Of settings it shows numbers, switches and a few words; [removed] "
+        "stands\n"
+        "for the rest. The log may hold more. {}\n",
+        with_names ? "Names of operators and samples stay, as --with-names was given."
+                   : "[name left out] stands for what people typed, such as\noperators and samples; "
                      "--with-names keeps it.");
   }
 
@@ -83,11 +88,23 @@ class Bundle {
              finding.verdict == doctor::Finding::Verdict::kUnknown;
     });
     std::ranges::stable_sort(findings, std::ranges::greater{}, &doctor::Finding::verdict);  // Bad first.
-    return findings.empty() ? "nothing that stickslip doctor knows\n" : findings_text(findings, false);
+    return findings.empty() ? "stickslip doctor found nothing wrong\n" : findings_text(findings, false);
   }
 
-  void add(const std::string& heading, std::string_view part) {
-    text_ += fmt::format("\n== {}\n{}", base::printable(heading), redaction_.lines(part));
+  /// A part that throws says why; the others stay.
+  static std::string part(const std::function<std::string()>& text) {
+    try {
+      return text();
+    } catch (const std::exception& error) {
+      return fmt::format("missing: {}\n", error.what());
+    }
+  }
+
+  /// \param is_filtered  the part leaves out by itself what it must.
+  void add(const std::string& heading, const std::function<std::string()>& text, bool is_filtered = false) {
+    const std::string body = part(text);
+    text_ += fmt::format("\n== {}{}", redaction_.lines(base::printable(heading)),
+                         is_filtered ? body : redaction_.lines(body));
   }
 
   const BundleOptions& options_;
@@ -121,11 +138,11 @@ constexpr const char* kBundleHelp =
 characterisation and calibration, status and log of the daemon, the record folder, and facts and results of the last
 records, without scans. A part that cannot be had says why; the daemon need not run. Nothing is sent.
 
-Left out: passwords, tokens, keys, the user at the broker, values of unknown keys, comments; and, without --with-names,
-names of operators and samples and other texts that people typed. Names of files and hosts stay. Rights are those of
-the user who asks: groups stickslip and adm read all of it.
+Of settings it shows numbers, switches and a few words, such as the driver. Left out: comments; and, without
+--with-names, names of operators and samples and other texts that people typed. The log may hold more: read the file
+before you send it. It holds what you may read; members of the groups stickslip and adm may read everything.
 
-Exit status: 0 written, whatever is wrong in it; 1 not written; 2 wrong usage.
+Exit status: 0 written, whatever is wrong in it; 1 not written; 2 wrong usage, or FILE exists, or its folder does not.
 
 Examples:
   stickslip bundle                                     the installed service: stickslip-bundle-TIME.txt
@@ -137,7 +154,7 @@ Examples:
 void add_bundle(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<BundleOptions>();
   CLI::App* command =
-      app.add_subcommand("bundle", "all that support needs to know, in one file, without secrets");
+      app.add_subcommand("bundle", "all that support needs to know, in one file to read and send");
   command->footer(kBundleHelp);
   add_installation_options(*command, options->installation);
   command

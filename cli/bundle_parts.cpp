@@ -39,10 +39,13 @@ constexpr std::chrono::milliseconds kTimeout{5000};
 constexpr std::size_t kLargestNamedFile = 64 << 10;
 constexpr std::size_t kLargestLog = 256 << 10;
 constexpr const char* kLogLines = "500";
+/// Keys of the configuration whose files hold a secret. Relative names are of the configuration's folder,
+/// those of control.token_file of the working directory.
+constexpr std::string_view kSecretFiles[] = {"fleet.password_file", "fleet.key_file", "control.token_file"};
 /// Files that tell of trouble, by name.
 constexpr std::size_t kMostNames = 50;
 
-std::string not_had(std::string_view why) { return fmt::format("not to be had: {}\n", why); }
+std::string not_had(std::string_view why) { return fmt::format("missing: {}\n", why); }
 
 /// Output of a program, or why there is none.
 std::string told_by(const std::string& program, std::vector<std::string> arguments) {
@@ -68,13 +71,14 @@ std::string toml_text(const std::filesystem::path& file, const Redaction& redact
   if (text->size() > kLargestNamedFile)
     return not_had(fmt::format("it is longer than {} bytes", kLargestNamedFile));
   if (const auto settings = base::Settings::parse(*text, file.string()); !settings)
-    return not_had(settings.error().message);
+    return redaction.lines(not_had(settings.error().message));
   return redaction.toml(*text);
 }
 
 std::string calibration_text_of(const std::filesystem::path& path, const Redaction& redaction) {
   const auto stored = io::load_calibration(path);
-  return stored ? redaction.toml(io::calibration_text(*stored)) : not_had(stored.error().message);
+  return stored ? redaction.toml(io::calibration_text(*stored))
+                : redaction.lines(not_had(stored.error().message));
 }
 
 /// The last bytes of a file, from the beginning of a line.
@@ -114,7 +118,7 @@ Named named_in(const std::filesystem::path& file) {
   named.method = beside("method.file");
   named.characterisation = beside("tester.characterisation");
   named.calibration = beside("tester.calibration");
-  for (const std::string_view key : Redaction::kSecretFiles) {
+  for (const std::string_view key : kSecretFiles) {
     const std::string name{key};
     named.secret_files.push_back(name == "control.token_file" ? std::filesystem::path{value(name, "")}
                                                               : beside(name));
@@ -126,16 +130,18 @@ std::string configuration_text(const std::filesystem::path& file, Redaction& red
   const base::Result<std::string> text = base::read_text(file, base::Settings::kLargestFile);
   if (!text) return not_had(text.error().message);
   if (!base::is_utf8(*text)) return not_had(file.string() + ": is no text in UTF-8");
-  return redaction.configuration(*text, file.parent_path());
+  return redaction.configuration(*text);
 }
 
 std::string named_files_text(const Named& named, const Redaction& redaction) {
-  if (!named.unread.empty()) return not_had("the configuration cannot be read: " + named.unread);
+  if (!named.unread.empty())
+    return redaction.lines(not_had("the configuration cannot be read: " + named.unread));
   std::string text;
   for (const auto& [what, file, read] : {std::tuple{"method", &named.method, &toml_text},
                                          {"characterisation", &named.characterisation, &toml_text},
                                          {"calibration", &named.calibration, &calibration_text_of}}) {
-    text += fmt::format("-- {}: {}\n", what, file->empty() ? "none is named" : file->string());
+    text += redaction.lines(
+        fmt::format("-- {}: {}\n", what, file->empty() ? "none is named" : base::printable(file->string())));
     if (file->empty()) continue;
     text += is_secret(named, *file) ? not_had("the configuration names it for a secret, too")
                                     : (*read)(*file, redaction);
@@ -173,7 +179,7 @@ std::string log_text(const std::filesystem::path& file) {
   if (file.empty()) {
     return told_by("journalctl", {"--unit", "stickslipd", "--lines", kLogLines, "--no-pager", "--no-hostname",
                                   "--output", "short-iso", "--utc"}) +
-           "(where the daemon's stderr goes to a file, --log FILE takes its end)\n";
+           "If the daemon logs to a file, name it: --log FILE\n";
   }
   const base::Result<std::string> text = end_of(file, kLargestLog);
   return text ? *text : not_had(text.error().message);

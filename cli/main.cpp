@@ -49,7 +49,7 @@ constexpr const char* kExamples = R"(Examples:
   stickslip export pull.h5 --csv > pull.csv            scans for a spreadsheet
   stickslip calibrate --config stickslipd.toml         the load cell, by hanging known weights
   stickslip doctor                                     is everything there that a test needs?
-  stickslip bundle                                     one file for support, without secrets
+  stickslip bundle                                     one file for support, to read and send
   stickslip status                                     what the daemon is doing
   stickslip plan --name "liner 42" --replicate 3       what the tests to come are of
   stickslip start; stickslip mark "sheet moved"; stickslip stop

@@ -21,16 +21,14 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view kRemoved = "[removed]";
 constexpr std::string_view kNameLeftOut = "[name left out]";
 /// Longer lines are no line of ours, and std::regex recurses for each byte.
-constexpr std::size_t kLongestLine = 4000;
-/// A shorter secret is not looked for in other text: it would be found in other words.
-constexpr std::size_t kShortestSecret = 4;
+constexpr std::size_t kLongestLine = 500;
 
 constexpr auto kRegex = std::regex::ECMAScript | std::regex::optimize;
 
 bool sounds_secret(const std::string& key) {
   static const std::regex secret{"pass(word|wd|phrase)|pwd|secret|token|credential|api_?key|psk",
                                  kRegex | std::regex::icase};
-  return std::regex_search(key, secret) && !key.ends_with("_file");
+  return key.ends_with("_file") || key.ends_with("user") || std::regex_search(key, secret);
 }
 
 /// Members of JSON that hold what people typed.
@@ -68,9 +66,33 @@ std::string bare(std::string key) {
   return key;
 }
 
-std::string unquoted(std::string value) {
-  boost::algorithm::trim_if(value, [](char c) { return c == '"' || c == '\''; });
-  return value;
+/// A number, a switch, or a number with a unit: "1.5", "true", "\"12 in/min\"".
+bool is_plain(const std::string& value) {
+  static const std::regex plain{R"re(true|false|"?[-+]?[0-9][0-9_.eE+-]*( ?[A-Za-z%/^0-9]{1,8})?"?)re",
+                                kRegex};
+  return std::regex_match(value, plain);
+}
+
+/// A word or a path without anything that could be more: no ':', no '@', no blank at an end.
+bool is_word(const std::string& value) {
+  static const std::regex word{R"re("[A-Za-z0-9._/-]{1,120}")re", kRegex};
+  return std::regex_match(value, word);
+}
+
+/// Keys of the configuration whose words are shown; of all others only numbers are.
+bool has_words(std::string_view key) {
+  static const std::set<std::string, std::less<>> keys{
+      "board.driver",       "board.device", "analysis.estimator", "log.level",      "test.begins",
+      "method.name",        "method.file",  "record.folder",      "control.socket", "tester.characterisation",
+      "tester.calibration", "fleet.tester", "fleet.topic"};
+  return keys.contains(key);
+}
+
+bool is_address(std::string_view key, const std::string& value) {
+  static const std::regex broker{R"re("mqtts?://[A-Za-z0-9.-]+(:[0-9]{1,5})?")re", kRegex};
+  static const std::regex http{R"re("(127\.0\.0\.1|localhost|\[::1\]):[0-9]{1,5}")re", kRegex};
+  return (key == "fleet.broker" && std::regex_match(value, broker)) ||
+         (key == "control.http" && std::regex_match(value, http));
 }
 
 /// Calls `use` with each line, and joins what it returns.
@@ -84,33 +106,28 @@ std::string each_line(std::string_view text, const std::function<std::string(std
   return result;
 }
 
-/// TOML line by line, so that it need not be valid. A value stays if `shows` its key; a line that is neither
-/// table nor value, nor element of a shown array, is removed.
+/// TOML line by line, so that it need not be valid. Shown are the values that `shows` allows; of all else not
+/// even the key is.
 /// \param shows  is called with the dotted path of the key, and the value.
+/// \param knows  whether the name of a table or of a key may be shown.
 std::string filtered_toml(std::string_view text,
                           const std::function<bool(const std::string& key, const std::string& value)>& shows,
-                          const std::function<bool(const std::string& table)>& shows_table) {
+                          const std::function<bool(const std::string& path)>& knows) {
   std::string table;
-  bool in_array = false;
   std::string result = each_line(text, [&](std::string_view whole) -> std::string {
     const std::string line = without_comment(whole);
     if (line.empty()) return {};
-    if (in_array && (line.front() == '"' || line.front() == '\'' || line.front() == ']')) {
-      in_array = line.back() != ']';
-      return "  " + line;
-    }
-    in_array = false;
     if (line.front() == '[') {
       table = bare(boost::algorithm::trim_copy_if(line, [](char c) { return c == '[' || c == ']'; }));
-      return shows_table(table) ? line : std::string{kRemoved};
+      return knows(table) ? line : std::string{kRemoved};
     }
     const std::size_t equals = line.find('=');
     if (equals == std::string::npos) return std::string{kRemoved};
     const std::string name = bare(line.substr(0, equals));
+    const std::string key = table.empty() ? name : table + "." + name;
     const std::string value = boost::algorithm::trim_copy(line.substr(equals + 1));
-    const bool shown = shows(table.empty() ? name : table + "." + name, value);
-    in_array = shown && value.starts_with('[') && !value.ends_with(']');
-    return fmt::format("{} = {}", name, shown ? std::string_view{value} : kRemoved);
+    if (!knows(key)) return std::string{kRemoved};
+    return fmt::format("{} = {}", name, shows(key, value) ? std::string_view{value} : kRemoved);
   });
   while (boost::algorithm::contains(result, "\n\n\n"))
     boost::algorithm::replace_all(result, "\n\n\n", "\n\n");
@@ -123,38 +140,26 @@ Redaction::Redaction(bool keeps_names) : keeps_names_(keeps_names) {
   for (std::string& key : io::config_keys()) known_keys_.insert(std::move(key));
 }
 
-bool Redaction::shows(const std::string& key) const {
-  if (key == "fleet.user") return false;
-  if (!keeps_names_ && key.starts_with("sample.") && key != "sample.replicate") return false;
-  return known_keys_.contains(key);
-}
-
-std::string Redaction::configuration(std::string_view text, const std::filesystem::path& folder) {
-  const auto shown = [&](const std::string& key, const std::string& value) {
-    const bool names_secret = std::ranges::find(kSecretFiles, key) != std::end(kSecretFiles);
-    const std::string name = unquoted(value);
-    std::error_code error;
-    const bool is_file = std::filesystem::exists(
-        key == "control.token_file" ? std::filesystem::path{name} : folder / name, error);
-    const bool hidden = names_secret ? !is_file : !known_keys_.contains(key) && sounds_secret(key);
-    // Usual names of files that are not there yet; all other text would lose these words.
-    const bool is_word = name == "token" || name == "password" || name == "key";
-    if (hidden && name.size() >= kShortestSecret && !is_word) secrets_.push_back(name);
-    return shows(key) && !hidden;
-  };
-  return filtered_toml(text, shown, [this](const std::string& table) {
-    const auto next = known_keys_.lower_bound(table + ".");
-    return next != known_keys_.end() && next->starts_with(table + ".");
-  });
+std::string Redaction::configuration(std::string_view text) const {
+  return filtered_toml(
+      text,
+      [this](const std::string& key, const std::string& value) {
+        if (key.starts_with("sample.")) return keeps_names_ || key == "sample.replicate";
+        if (sounds_secret(key)) return false;
+        return is_plain(value) || (has_words(key) && is_word(value)) || is_address(key, value);
+      },
+      [this](const std::string& path) {
+        const auto next = known_keys_.lower_bound(path);
+        return next != known_keys_.end() && (*next == path || next->starts_with(path + "."));
+      });
 }
 
 std::string Redaction::toml(std::string_view text) const {
+  static const std::regex name{R"re([a-z][a-z0-9_]*(\.[a-z][a-z0-9_]*)*)re", kRegex};
   return filtered_toml(
       text,
-      [this](const std::string& key, const std::string&) {
-        return !sounds_secret(key) && (keeps_names_ || (key != "certificate" && key != "operator"));
-      },
-      [](const std::string&) { return true; });
+      [](const std::string& key, const std::string& value) { return !sounds_secret(key) && is_plain(value); },
+      [](const std::string& path) { return std::regex_match(path, name); });
 }
 
 Json Redaction::json(Json json) const {
@@ -182,25 +187,17 @@ Json Redaction::json(Json json) const {
 std::string Redaction::line(std::string_view whole) const {
   if (whole.size() > kLongestLine) return fmt::format("[a line of {} bytes is left out]", whole.size());
   std::string text{whole};
-  for (const std::string& secret : secrets_) boost::algorithm::replace_all(text, secret, kRemoved);
-  // Of a message that refuses a key: its value, quoted up to the last quote.
-  static const std::regex refused{R"re(([\w-]+(?:\.[\w-]+)*) = (".*"):|([\w-]+(?:\.[\w-]+)+) = ([^":]+):)re",
-                                  kRegex};
-  std::string result;
-  std::string rest = text;
-  for (std::smatch match; std::regex_search(rest, match, refused); rest = match.suffix().str()) {
-    const std::string key = match[1].matched ? match[1].str() : match[3].str();
-    result += match.prefix().str() + (shows(key) ? match.str() : fmt::format("{} = {}:", key, kRemoved));
-  }
-  text = result + rest;
-  static const std::regex in_url{R"re(://[^\s"']*@)re", kRegex};
-  text = std::regex_replace(text, in_url, fmt::format("://{}@", kRemoved));
+  // A message that refuses a key quotes what was typed.
+  if (const std::size_t equals = text.find(" = "); equals != std::string::npos)
+    text = text.substr(0, equals + 3).append(kRemoved);
+  static const std::regex file{R"re(((password|token|key) file ).*(: ))re", kRegex};
+  text = std::regex_replace(text, file, fmt::format("$1{}$3", kRemoved));
+  static const std::regex person_at{R"re([^\s"'/]*:[^\s"']*@)re", kRegex};
+  text = std::regex_replace(text, person_at, fmt::format("{}@", kRemoved));
   static const std::regex said{
-      R"re((password|passwd|passphrase|pwd|secret|token|credentials?|api[_-]?key|psk)(["']?\s*[=:]\s*)("[^"]*"|'[^']*'|[^\s,;]+))re",
+      R"re((pass(word|wd|phrase)?|pwd|secret|token|credentials?|api[_-]?key|private[_-]?key|psk|bearer|basic|authorization|cookie)(["'\\]*\s*[=:]\s*|["'\\]* +(?!file )).+)re",
       kRegex | std::regex::icase};
-  text = std::regex_replace(text, said, fmt::format("$1$2{}", kRemoved));
-  static const std::regex bearer{R"re((bearer )\S+)re", kRegex | std::regex::icase};
-  text = std::regex_replace(text, bearer, fmt::format("$1{}", kRemoved));
+  text = std::regex_replace(text, said, fmt::format("$1$3{}", kRemoved));
   if (!keeps_names_) {
     // The one line of the log that names a person.
     static const std::regex person{"(load cell calibrated by ).*(: [-+0-9.e]+ N/V)", kRegex};
