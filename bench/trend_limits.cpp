@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -109,7 +111,7 @@ std::filesystem::path scene_with(const test::TemporaryFolder& folder, std::uint6
     if (at == std::string::npos) throw std::runtime_error("the scene has no " + was);
     text.replace(at, was.size(), becomes);
   }
-  const std::filesystem::path file = folder.path() / fmt::format("{}.toml", name);
+  std::filesystem::path file = folder.path() / fmt::format("{}.toml", name);
   std::ofstream{file} << text;
   return file;
 }
@@ -181,9 +183,7 @@ void print_whole_path(std::uint64_t tests, std::uint64_t seed) {
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+void run(int argc, char** argv) {
   const auto histories = test::argument<std::uint64_t>(argc, argv, 1, 4000);
   const auto seed = test::argument<std::uint64_t>(argc, argv, 2, 1);
   fmt::print(
@@ -201,5 +201,16 @@ int main(int argc, char** argv) {
   print_delays(histories, seed, kNoise, 1.0);
   for (const double shift : {1.0, 3.0, 5.0}) print_delays(histories, seed, kSpikes, shift);
   print_whole_path(5 * histories, seed);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
   return 0;
 }

@@ -20,7 +20,8 @@ namespace stickslip::io {
 /// All results, in the order of the record, and those that are diagnostics with their details in a member of
 /// their own. An absent result is null.
 /// \param with_details  adds "details": value, unit and, where known, standard_error, systematic_uncertainty,
-/// systematic_parts (an object of the parts' sizes) and the reason for an absent value. Else adds "uncertainties": those two of the quantities that have them.
+/// systematic_parts (an object of the parts' sizes) and the reason for an absent value. Else adds
+/// "uncertainties": those two of the quantities that have them.
 [[nodiscard]] nlohmann::ordered_json results_json(const analysis::TestResults& results, bool with_details);
 
 /// Reads what results_json(results, true) made, of this version or one before. \throws

@@ -106,13 +106,6 @@ base::Result<std::map<std::string, ResultLimits>> limits_of(const Json& value, W
   return all;
 }
 
-base::Result<std::string> text_at(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  if (found == json.end() || !found->is_string())
-    return base::usage_error("\"{}\" is missing, or is no text", key);
-  return found->get<std::string>();
-}
-
 }  // namespace
 
 Json batch_plan_json(const BatchPlan& plan) {

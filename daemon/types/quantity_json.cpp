@@ -80,4 +80,11 @@ base::Result<std::optional<double>> quantity_at(const Json& object, std::string_
   return std::optional<double>{*value};
 }
 
+base::Result<std::string> text_at(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_string())
+    return base::usage_error("\"{}\" is missing, or is no text", key);
+  return found->get<std::string>();
+}
+
 }  // namespace stickslip::daemon

@@ -39,4 +39,7 @@ using Warnings = std::vector<std::string>;
                                                               std::string_view key, base::Dimension dimension,
                                                               base::BareNumber bare, Warnings* warnings);
 
+/// A text of an object. Errors (kUsage): it is missing, or is no text.
+[[nodiscard]] base::Result<std::string> text_at(const nlohmann::ordered_json& object, const char* key);
+
 }  // namespace stickslip::daemon

@@ -12,6 +12,7 @@
 #include "core/base/wording.hpp"
 #include "core/record/iso_time.hpp"
 #include "core/record/journal_format.hpp"
+#include "daemon/types/quantity_json.hpp"
 
 namespace stickslip::daemon {
 namespace {
@@ -26,13 +27,6 @@ constexpr std::string_view kOldBaseline = "stays";
 
 std::string checksum_of(std::string_view text) {
   return fmt::format("{:08x}", record::crc32c(std::as_bytes(std::span{text})));
-}
-
-base::Result<std::string> text_at(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  if (found == json.end() || !found->is_string())
-    return base::usage_error("\"{}\" is missing, or is no text", key);
-  return found->get<std::string>();
 }
 
 std::optional<double> number_at(const Json& json, std::string_view key) {

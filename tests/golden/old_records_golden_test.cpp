@@ -51,7 +51,8 @@ void compare_identity(RecordListing& listing, const record::Record& record) {
   time("start_time", record.header.start_realtime_ns);
   time("end_time", record.end->end_realtime_ns);
   const double extent = static_cast<double>(record.scan.back() - record.scan.front() + 1);
-  for (const auto& [key, text] : record.header.sample.metadata) listing.expect_text("entry/metadata/" + key, text);
+  for (const auto& [key, text] : record.header.sample.metadata)
+    listing.expect_text("entry/metadata/" + key, text);
   listing.expect_number("entry/collection_time", "s", extent / record.header.board.scan_rate_granted_Hz);
 }
 
