@@ -175,6 +175,7 @@ base::Result<HistoryEvent> history_event_of(std::string_view line) {
 
 base::Result<void> TesterHistory::append(const std::vector<HistoryEvent>& events) const {
   std::vector<std::string> lines;
+  lines.reserve(events.size());
   for (const HistoryEvent& event : events) lines.push_back(line_of(event));
   return lines_.append(lines);
 }
