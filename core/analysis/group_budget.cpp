@@ -64,7 +64,7 @@ std::vector<MeanLine> mean_lines(const std::vector<OwnBudget>& tests) {
 /// Probability of ±k by Student's t with the effective degrees of freedom of Welch and Satterthwaite; only
 /// the replicates have few [JCGM 100:2008, G.4.1].
 std::optional<double> coverage_of(double combined, double of_replicates, std::size_t count) {
-  if (!(of_replicates > 0.0) || !std::isfinite(combined)) return std::nullopt;
+  if (count < 2 || !(of_replicates > 0.0) || !std::isfinite(combined)) return std::nullopt;
   const double freedom = static_cast<double>(count - 1) * std::pow(combined / of_replicates, 4);
   if (!std::isfinite(freedom)) return std::nullopt;
   const double coverage = 1.0 - 2.0 * boost::math::cdf(boost::math::complement(

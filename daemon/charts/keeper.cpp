@@ -1,6 +1,7 @@
 #include "daemon/charts/keeper.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <future>
 #include <utility>
 
@@ -12,12 +13,24 @@
 
 namespace stickslip::charts {
 
+void Keeper::post(std::function<void()> work) {
+  boost::asio::post(pool_, [this, work = std::move(work)] {
+    try {
+      work();
+    } catch (const std::exception& error) {
+      if (parts_.troubled) parts_.troubled(error.what());
+      const std::lock_guard lock{mutex_};
+      state_.trouble = error.what();
+    }
+  });
+}
+
 void Keeper::open() {
-  boost::asio::post(pool_, [this] { begin(); });
+  post([this] { begin(); });
 }
 
 void Keeper::record_published(const std::filesystem::path& file) {
-  boost::asio::post(pool_, [this, file] {
+  post([this, file] {
     add(file);
     evaluate();
   });
@@ -41,11 +54,6 @@ daemon::TrendState Keeper::state() const {
 
 void Keeper::begin() {
   evaluate();
-  if (history_->reference() != parts_.reference) {
-    const auto named = history_->append(
-        {{record::iso_time(parts_.clock->realtime_ns()), daemon::ReferenceNamed{parts_.reference}}});
-    if (!named) trouble_ = named.error().message;
-  }
   std::vector<std::filesystem::path> files = io::own_records(parts_.folder);
   const std::set<std::string>& known = history_->records();
   std::erase_if(files, [&known](const std::filesystem::path& file) {
@@ -73,6 +81,13 @@ void Keeper::add(const std::filesystem::path& file) {
 
 void Keeper::evaluate() {
   auto remarks = history_->read_on();
+  // At the start, and after the file was replaced.
+  if (remarks && remarks->empty() && history_->reference() != parts_.reference) {
+    const auto named = history_->append(
+        {{record::iso_time(parts_.clock->realtime_ns()), daemon::ReferenceNamed{parts_.reference}}});
+    if (!named) trouble_ = named.error().message;
+    remarks = history_->read_on();
+  }
   static_cast<void>(batches_.read_on(book_));  // The batch tells its own trouble.
   if (book_.voidings() != voided_ || charts_.reference() != history_->reference()) {
     charts_ = trend::TesterCharts{history_->reference()};

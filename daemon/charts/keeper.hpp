@@ -58,6 +58,8 @@ class Keeper {
   [[nodiscard]] daemon::TrendState state() const;
 
  private:
+  /// Does it on the thread inside; what it throws is a trouble.
+  void post(std::function<void()> work);
   // On the thread inside.
   void begin();
   void add(const std::filesystem::path& file);

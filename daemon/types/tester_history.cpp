@@ -67,7 +67,11 @@ base::Result<ChartsRestarted> restart_of(const Json& json) {
     restart.chart = trend::quantity_from_name(*chart);
     if (!restart.chart) return base::usage_error("\"{}\" is no chart", base::one_line(*chart, 60));
   }
-  restart.baseline_stays = json.value("baseline", "") == kOldBaseline;
+  const auto baseline = text_at(json, "baseline");
+  if (!baseline) return tl::unexpected(baseline.error());
+  if (*baseline != kOldBaseline && *baseline != kNewBaseline)
+    return base::usage_error("\"{}\" is no baseline", base::one_line(*baseline, 60));
+  restart.baseline_stays = *baseline == kOldBaseline;
   for (const auto& [key, text] : {std::pair{"reason", &restart.reason}, {"by", &restart.who}}) {
     auto found = text_at(json, key);
     if (!found) return tl::unexpected(found.error());

@@ -21,9 +21,9 @@ namespace {
 using enum UncertaintySource;
 using testing::HasSubstr;
 
-constexpr std::size_t kDeltaMu = kBudgetQuantities[0];
-constexpr std::size_t kStatic = kBudgetQuantities[1];
-constexpr std::size_t kKinetic = kBudgetQuantities[2];
+constexpr std::size_t kBudgetDeltaMu = kBudgetQuantities[0];
+constexpr std::size_t kBudgetStatic = kBudgetQuantities[1];
+constexpr std::size_t kBudgetKinetic = kBudgetQuantities[2];
 
 const BudgetLine& line_of(const UncertaintyBudget& budget, std::string_view source) {
   const auto found = std::ranges::find(budget.lines, source, &BudgetLine::source);
@@ -101,7 +101,7 @@ TEST(SystematicParts, OfABoundAreThatAndForSThoseOfK) {
 }
 
 TEST(Budget, CombinesRandomAndSystematicParts) {
-  const UncertaintyBudget budget = budget_of(calibrated(), kDeltaMu);
+  const UncertaintyBudget budget = budget_of(calibrated(), kBudgetDeltaMu);
   // √(0.003² + (0.001 + 0.003)² + 0.003²)
   EXPECT_DOUBLE_EQ(budget.combined.value(), std::sqrt(34e-6));
   EXPECT_DOUBLE_EQ(budget.expanded().value(), 2.0 * std::sqrt(34e-6));
@@ -117,7 +117,7 @@ TEST(Budget, CombinesRandomAndSystematicParts) {
 }
 
 TEST(Budget, TheStaticCoefficientHasTheNoiseOfOneScan) {
-  const UncertaintyBudget budget = budget_of(calibrated(), kStatic);
+  const UncertaintyBudget budget = budget_of(calibrated(), kBudgetStatic);
   EXPECT_DOUBLE_EQ(line_of(budget, "noise").size.value(), 0.0005);
   EXPECT_DOUBLE_EQ(line_of(budget, "zero").size.value(), 0.004);
   EXPECT_NEAR(budget.combined.value(), std::hypot(0.0005, 0.005), 1e-15);
@@ -127,14 +127,14 @@ TEST(Budget, TheStaticCoefficientHasTheNoiseOfOneScan) {
 TEST(Budget, WhatIsNotKnownIsNoZero) {
   TestResults results;
   results.kinetic_coefficient = Estimate::of(0.3);
-  const UncertaintyBudget budget = budget_of(results, kKinetic);
+  const UncertaintyBudget budget = budget_of(results, kBudgetKinetic);
   EXPECT_FALSE(budget.combined);
   EXPECT_FALSE(budget.expanded());
   EXPECT_EQ(budget.unknown(), "noise, replicates, calibration, zero, pull speed");
   EXPECT_THAT(line_of(budget, "calibration").note, HasSubstr("stickslip calibrate"));
   note_no_systematic(results.kinetic_coefficient, kZero);
-  EXPECT_EQ(line_of(budget_of(results, kKinetic), "zero").state, BudgetState::kNone);
-  EXPECT_FALSE(test_budget(results, quantities()[kStatic], {})) << "there is no value";
+  EXPECT_EQ(line_of(budget_of(results, kBudgetKinetic), "zero").state, BudgetState::kNone);
+  EXPECT_FALSE(test_budget(results, quantities()[kBudgetStatic], {})) << "there is no value";
 }
 
 // Records of before have the total alone.
@@ -142,28 +142,28 @@ TEST(Budget, APartThatNobodyNamedIsOneLine) {
   TestResults results;
   results.static_coefficient = Estimate::of(0.38);
   results.static_coefficient.systematic_uncertainty = 0.01;
-  const UncertaintyBudget budget = budget_of(results, kStatic);
+  const UncertaintyBudget budget = budget_of(results, kBudgetStatic);
   EXPECT_EQ(line_of(budget, "unnamed").size, 0.01);
   EXPECT_EQ(line_of(budget, "calibration").state, BudgetState::kIncluded);
   EXPECT_EQ(budget.combined, 0.01);
   // Parts that do not make the total are not believed.
   results.static_coefficient.systematic_parts[kZero] = 0.005;
-  EXPECT_EQ(line_of(budget_of(results, kStatic), "unnamed").size, 0.01);
+  EXPECT_EQ(line_of(budget_of(results, kBudgetStatic), "unnamed").size, 0.01);
   results.static_coefficient.systematic_parts[kZero] = 0.01;
-  EXPECT_FALSE(has_line(budget_of(results, kStatic), "unnamed"));
+  EXPECT_FALSE(has_line(budget_of(results, kBudgetStatic), "unnamed"));
 }
 
 TEST(Budget, OfAFileWithImpossibleErrorsHasNoFiniteNumber) {
   TestResults results;
   results.static_coefficient = Estimate::of(0.38);
   results.static_coefficient.systematic_uncertainty = std::numeric_limits<double>::infinity();
-  EXPECT_TRUE(std::isinf(budget_of(results, kStatic).combined.value()));
+  EXPECT_TRUE(std::isinf(budget_of(results, kBudgetStatic).combined.value()));
   results.static_coefficient.systematic_uncertainty = std::nan("");
-  EXPECT_FALSE(budget_of(results, kStatic).combined) << "not known";
+  EXPECT_FALSE(budget_of(results, kBudgetStatic).combined) << "not known";
 }
 
 TEST(Budget, TheResolutionIsInTheNoise) {
-  const UncertaintyBudget budget = budget_of(calibrated(), kDeltaMu, {.step_coefficient = 0.001});
+  const UncertaintyBudget budget = budget_of(calibrated(), kBudgetDeltaMu, {.step_coefficient = 0.001});
   const BudgetLine& line = line_of(budget, "resolution");
   EXPECT_EQ(line.state, BudgetState::kIncluded);
   EXPECT_NEAR(line.size.value(), 0.001 / std::sqrt(12.0), 1e-15);
@@ -176,14 +176,14 @@ TEST(Budget, TheSpeedShiftsAMeanOverATravelAndNoOther) {
   results.drift_rate = Estimate::of(-0.1);
   results.pull_speed_measured = Estimate::of(0.0101);
   BudgetFacts facts{.pull_speed_m_per_s = 0.01, .method = model::Method{}};
-  EXPECT_EQ(line_of(budget_of(results, kKinetic, facts), "speed").state, BudgetState::kNone);
+  EXPECT_EQ(line_of(budget_of(results, kBudgetKinetic, facts), "speed").state, BudgetState::kNone);
   facts.method->kinetic_travel = model::TravelWindow{0.01, 0.03};
-  EXPECT_NEAR(line_of(budget_of(results, kKinetic, facts), "speed").size.value(), 0.002, 1e-12);
-  EXPECT_EQ(line_of(budget_of(results, kStatic, facts), "speed").state, BudgetState::kNone);
+  EXPECT_NEAR(line_of(budget_of(results, kBudgetKinetic, facts), "speed").size.value(), 0.002, 1e-12);
+  EXPECT_EQ(line_of(budget_of(results, kBudgetStatic, facts), "speed").state, BudgetState::kNone);
   results.pull_speed_measured = Estimate::none("not measured");
-  EXPECT_EQ(line_of(budget_of(results, kKinetic, facts), "speed").state, BudgetState::kUnknown);
+  EXPECT_EQ(line_of(budget_of(results, kBudgetKinetic, facts), "speed").state, BudgetState::kUnknown);
   results.rung = Rung::kTurningPoints;
-  EXPECT_EQ(line_of(budget_of(results, kDeltaMu, facts), "speed").state, BudgetState::kIncluded);
+  EXPECT_EQ(line_of(budget_of(results, kBudgetDeltaMu, facts), "speed").state, BudgetState::kIncluded);
 }
 
 std::vector<MeasuredTest> replicates(const std::vector<double>& statics) {
@@ -200,7 +200,7 @@ std::vector<MeasuredTest> replicates(const std::vector<double>& statics) {
 TEST(GroupBudget, ReplicatesReplaceTheNoiseAndLeaveTheSystematicParts) {
   const std::vector<MeasuredTest> tests = replicates({0.37, 0.38, 0.39});
   const SpeedGroup group = group_by_speed(tests).front();
-  const UncertaintyBudget budget = group_budget(tests, group, kStatic).value();
+  const UncertaintyBudget budget = group_budget(tests, group, kBudgetStatic).value();
   const double error = 0.01 / std::sqrt(3.0);
   EXPECT_NEAR(line_of(budget, "replicates").size.value(), error, 1e-15);
   EXPECT_EQ(line_of(budget, "noise").state, BudgetState::kIncluded);
@@ -216,16 +216,16 @@ TEST(GroupBudget, SaysHowLittleTwoCoversWithFewTests) {
   for (MeasuredTest& test : tests)
     test.results.static_coefficient = Estimate::of(*test.results.static_coefficient.value);
   const SpeedGroup group = group_by_speed(tests).front();
-  const UncertaintyBudget budget = group_budget(tests, group, kStatic).value();
+  const UncertaintyBudget budget = group_budget(tests, group, kBudgetStatic).value();
   EXPECT_NEAR(budget.coverage.value(), 2.0 / std::numbers::pi * std::atan(2.0), 1e-12);
   const std::vector<MeasuredTest> alike = replicates({0.3799, 0.3801});
-  EXPECT_FALSE(group_budget(alike, group_by_speed(alike).front(), kStatic)->coverage)
+  EXPECT_FALSE(group_budget(alike, group_by_speed(alike).front(), kBudgetStatic)->coverage)
       << "the systematic part is nearly all";
 }
 
 TEST(GroupBudget, OfOneTestIsThatTests) {
   const std::vector<MeasuredTest> tests = replicates({0.37});
-  const UncertaintyBudget budget = group_budget(tests, group_by_speed(tests).front(), kStatic).value();
+  const UncertaintyBudget budget = group_budget(tests, group_by_speed(tests).front(), kBudgetStatic).value();
   EXPECT_DOUBLE_EQ(line_of(budget, "noise").size.value(), 0.0005);
   EXPECT_EQ(budget.unknown(), "replicates");
 }
@@ -233,7 +233,7 @@ TEST(GroupBudget, OfOneTestIsThatTests) {
 TEST(GroupBudget, CountsTheTestsInWhichASourceIsNotKnown) {
   std::vector<MeasuredTest> tests = replicates({0.37, 0.39});
   tests[1].results.static_coefficient = Estimate::of(0.39);
-  const UncertaintyBudget budget = group_budget(tests, group_by_speed(tests).front(), kStatic).value();
+  const UncertaintyBudget budget = group_budget(tests, group_by_speed(tests).front(), kBudgetStatic).value();
   EXPECT_THAT(line_of(budget, "calibration").note, HasSubstr("not known in 1 of 2 tests"));
   EXPECT_NEAR(line_of(budget, "calibration").size.value(), 0.003, 1e-15) << "as the group's: of those known";
 }
@@ -244,7 +244,7 @@ TEST(GroupBudget, OfSMinusKIsOfTheMeanByCycle) {
   tests[0].slips = {.count = 2.0, .sum = 0.10, .square_sum = 1e-6};
   tests[1].slips = {.count = 6.0, .sum = 0.36, .square_sum = 1e-6};
   const SpeedGroup group = group_by_speed(tests).front();
-  const UncertaintyBudget budget = group_budget(tests, group, kDeltaMu).value();
+  const UncertaintyBudget budget = group_budget(tests, group, kBudgetDeltaMu).value();
   EXPECT_DOUBLE_EQ(budget.value, *group.by_cycle.mean.value);
   EXPECT_EQ(line_of(budget, "replicates").size, group.by_cycle.mean.standard_error);
   EXPECT_NEAR(budget.combined.value(),
