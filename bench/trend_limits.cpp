@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "bench/arguments.hpp"
+#include "core/signal/statistics.hpp"
 #include "tests/support/record_samples.hpp"
 #include "tests/support/trend_path.hpp"
 #include "tests/support/trend_trials.hpp"
@@ -67,6 +68,13 @@ void print_false_alarms(std::uint64_t histories, std::uint64_t seed) {
   fmt::print("\n");
 }
 
+/// Mean of values, of which there is one at least, and its standard error.
+std::pair<double, double> mean_and_error(const std::vector<double>& values) {
+  signal::RunningVariance all;
+  for (const double value : values) all.add(value);
+  return {all.mean, all.error_of_mean()};
+}
+
 void print_delays(std::uint64_t histories, std::uint64_t seed, trend::Quantity quantity, double shift) {
   for (const std::int64_t before : {25, 50, 100, 200, 400}) {
     std::vector<double> delays;
@@ -79,18 +87,11 @@ void print_delays(std::uint64_t histories, std::uint64_t seed, trend::Quantity q
       if (*delay >= 100) ++late;
     }
     std::sort(delays.begin(), delays.end());
-    double sum = 0.0;
-    double squares = 0.0;
-    for (const double delay : delays) {
-      sum += delay;
-      squares += delay * delay;
-    }
-    const auto n = static_cast<double>(delays.size());
-    const double mean = sum / n;
+    const auto [mean, error] = mean_and_error(delays);
     fmt::print("{:<9} {:>5.1f} {:>7} {:>8.1f} +- {:<5.1f} {:>6.0f} {:>9.0f} {:>14.1f}\n",
-               trend::kind_of(quantity).name, shift, before, mean, std::sqrt((squares / n - mean * mean) / n),
-               delays[delays.size() / 2], delays[delays.size() * 9 / 10],
-               100.0 * static_cast<double>(late) / n);
+               trend::kind_of(quantity).name, shift, before, mean, error, delays[delays.size() / 2],
+               delays[delays.size() * 9 / 10],
+               100.0 * static_cast<double>(late) / static_cast<double>(delays.size()));
   }
 }
 
@@ -167,18 +168,11 @@ void print_whole_path(std::uint64_t tests, std::uint64_t seed) {
         while (count < kAfter && !own.state(quantity).alarm) own.add(shifted[next + count++]);
         delays.push_back(static_cast<double>(count));
       }
-      double sum = 0.0;
-      double squares = 0.0;
-      for (const double delay : delays) {
-        sum += delay;
-        squares += delay * delay;
-      }
-      const auto n = static_cast<double>(delays.size());
+      const auto [mean, error] = mean_and_error(delays);
       fmt::print(
           "{} shifted by one sd after {} tests: told within {:.1f} +- {:.1f} tests on average of {} "
           "histories (at most {} are waited for)\n",
-          trend::kind_of(quantity).name, before, sum / n, std::sqrt((squares / n - sum / n * sum / n) / n),
-          delays.size(), kAfter);
+          trend::kind_of(quantity).name, before, mean, error, delays.size(), kAfter);
     }
   }
 }

@@ -126,7 +126,7 @@ Named named_in(const std::filesystem::path& file) {
   return named;
 }
 
-std::string configuration_text(const std::filesystem::path& file, Redaction& redaction) {
+std::string configuration_text(const std::filesystem::path& file, const Redaction& redaction) {
   const base::Result<std::string> text = base::read_text(file, base::Settings::kLargestFile);
   if (!text) return not_had(text.error().message);
   if (!base::is_utf8(*text)) return not_had(file.string() + ": is no text in UTF-8");

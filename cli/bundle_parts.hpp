@@ -25,7 +25,7 @@ struct Named {
 /// \param file  the configuration, which may be missing or wrong.
 [[nodiscard]] Named named_in(const std::filesystem::path& file);
 
-[[nodiscard]] std::string configuration_text(const std::filesystem::path& file, Redaction& redaction);
+[[nodiscard]] std::string configuration_text(const std::filesystem::path& file, const Redaction& redaction);
 /// Method, characterisation and latest calibration.
 [[nodiscard]] std::string named_files_text(const Named& named, const Redaction& redaction);
 /// Kernel, distribution, state of the service, file system of the records.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <functional>
 #include <regex>
-#include <system_error>
 
 #include "io/config.hpp"
 #include <boost/algorithm/string/predicate.hpp>

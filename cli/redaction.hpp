@@ -1,8 +1,8 @@
 /// \file
-/// What `stickslip bundle` leaves out: secrets always, and what people typed unless it is wanted.
+/// What `stickslip bundle` shows and what it leaves out.
 ///
-/// Of a configuration only the values of known keys stay, so that a password in a wrong place goes too. Text
-/// of other origin (log, messages) loses what has the form of a secret.
+/// Of settings it shows only what cannot be a secret, wherever somebody typed one. Text of other origin (log,
+/// messages) loses what has the form of a secret, and may hold more. What people typed stays if it is wanted.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 /// \file
-/// Quantities in the bodies of requests: text with a unit ("mass": "500 g"), or a number under a key that
-/// names the SI unit ("mass_kg": 0.5).
+/// Values of JSON objects. Quantities in the bodies of requests: text with a unit ("mass": "500 g"), or a
+/// number under a key that names the SI unit ("mass_kg": 0.5). Texts of lines of a journal.
 #pragma once
 
 #include <optional>
