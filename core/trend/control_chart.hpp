@@ -21,6 +21,7 @@
 /// - Values that follow each other closely, as a drifting zero does, cause more alarms.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -68,6 +69,10 @@ class ControlChart {
   [[nodiscard]] std::int64_t count() const noexcept { return count_; }
   [[nodiscard]] double upper() const noexcept { return upper_.height; }
   [[nodiscard]] double lower() const noexcept { return lower_.height; }
+  /// Values since the arm that rose first was 0: the onset of an alarm to come is one of these.
+  [[nodiscard]] std::int64_t excursion_count() const noexcept {
+    return static_cast<std::int64_t>(std::max(upper_.since.count, lower_.since.count));
+  }
   /// Of the baseline; 0 without values.
   [[nodiscard]] double mean() const noexcept { return baseline_.mean; }
   /// Of the baseline; 0 with fewer than two values.

@@ -110,11 +110,14 @@ std::vector<Quantity> TesterCharts::add(const TestValues& test) {
     state.latest_file = test.file;
     if (state.chart.is_outside()) ++state.outside_count;
     // The first alarm stands until somebody acknowledges it.
-    if (!alarm || state.alarm) continue;
-    const TestName& since = tests_[i][static_cast<std::size_t>(alarm->onset)];
-    state.alarm = StandingAlarm{alarm->rises, alarm->shift, alarm->standard_deviation, since.time, since.file,
-                                test.time,    test.file};
-    alarmed.push_back(quantity);
+    if (alarm && !state.alarm) {
+      const TestName& since = tests_[i].end()[alarm->onset - alarm->told - 1];
+      state.alarm =
+          StandingAlarm{alarm->rises, alarm->shift, alarm->standard_deviation, since.time, since.file,
+                        test.time,    test.file};
+      alarmed.push_back(quantity);
+    }
+    while (std::ssize(tests_[i]) > state.chart.excursion_count()) tests_[i].pop_front();
   }
   return alarmed;
 }

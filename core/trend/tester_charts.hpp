@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -105,12 +106,12 @@ class TesterCharts {
   };
   std::optional<Compared> compared_;
   std::array<ChartState, kQuantities> states_;
-  /// Tests of each chart since the restart, for the onset of an alarm.
   struct TestName {
     std::string time;
     std::string file;
   };
-  std::array<std::vector<TestName>, kQuantities> tests_;
+  /// The latest tests of each chart: those of its excursion, one of which is the onset of an alarm.
+  std::array<std::deque<TestName>, kQuantities> tests_;
 };
 
 }  // namespace stickslip::trend

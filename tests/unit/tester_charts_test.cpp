@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <limits>
+#include <optional>
+#include <random>
 #include <set>
 
 #include "tests/support/trend_trials.hpp"
@@ -52,6 +55,29 @@ TEST(TesterCharts, LeaveAChartAsItIsWithoutAFiniteValue) {
   EXPECT_EQ(charts.state(Quantity::kZero).latest_file, "1.h5");
   EXPECT_EQ(charts.state(Quantity::kNoise).verdict(), Verdict::kOff);
   EXPECT_THAT(charts.state(Quantity::kReference).no_value_reason, HasSubstr("[trend] reference"));
+}
+
+TEST(TesterCharts, NameTheTestAtTheOnsetOfAnAlarm) {
+  int alarms = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    std::mt19937_64 random{seed};
+    std::normal_distribution<double> normal;
+    TesterCharts charts;
+    ControlChart chart;
+    for (int k = 0; k < 150; ++k) {
+      const double zero_N = normal(random) + (k < 100 ? 0.0 : 1.5);
+      const std::optional<ChartAlarm> alarm = chart.add(zero_N);
+      charts.add(zero_test(zero_N, k));
+      if (!alarm) continue;
+      ++alarms;
+      ASSERT_TRUE(charts.state(Quantity::kZero).alarm);
+      EXPECT_EQ(charts.state(Quantity::kZero).alarm->since_file, std::to_string(alarm->onset) + ".h5")
+          << "seed " << seed;
+      EXPECT_EQ(charts.state(Quantity::kZero).alarm->told_file, std::to_string(k) + ".h5");
+      break;
+    }
+  }
+  EXPECT_GE(alarms, 15);
 }
 
 TEST(TesterCharts, CompareTheReferencePaperOfOneNameOneSpeedAndOneQuantity) {
